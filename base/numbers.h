@@ -1,0 +1,16 @@
+#pragma once
+// Numbers in text, without a locale.
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace camber {
+
+/// A decimal number that fills the whole text: "1", "-.5", "+2.", "1e-3". Nothing else: no blanks, no
+/// "inf", no "nan", no hexadecimal.
+std::optional<double> parse_number(std::string_view text);
+
+/// Fixed notation with at most `decimals` decimals and no trailing zeros; never "-0".
+std::string format_trimmed(double value, int decimals);
+
+}  // namespace camber

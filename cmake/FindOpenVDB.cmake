@@ -1,0 +1,15 @@
+# Debian's OpenVDB, without the optional parts that the packaged find module insists on.
+# Gives OpenVDB::openvdb.
+find_path(OpenVDB_INCLUDE_DIR openvdb/openvdb.h)
+find_library(OpenVDB_LIBRARY openvdb)
+find_path(Imath_INCLUDE_DIR half.h PATH_SUFFIXES Imath)
+find_library(Imath_LIBRARY NAMES Imath Imath-3_1)
+find_package(TBB REQUIRED)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(OpenVDB REQUIRED_VARS OpenVDB_LIBRARY OpenVDB_INCLUDE_DIR Imath_LIBRARY Imath_INCLUDE_DIR)
+if(OpenVDB_FOUND AND NOT TARGET OpenVDB::openvdb)
+  add_library(OpenVDB::openvdb SHARED IMPORTED)
+  set_target_properties(OpenVDB::openvdb PROPERTIES IMPORTED_LOCATION ${OpenVDB_LIBRARY})
+  target_include_directories(OpenVDB::openvdb SYSTEM INTERFACE ${OpenVDB_INCLUDE_DIR} ${Imath_INCLUDE_DIR})
+  target_link_libraries(OpenVDB::openvdb INTERFACE TBB::tbb ${Imath_LIBRARY})
+endif()

@@ -1,0 +1,73 @@
+#pragma once
+// What the interpreted program makes the machine do. Positions are the tool tip in the active work offset, mm.
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "base/geometry.h"
+
+namespace camber::nc {
+
+enum class MoveKind : std::uint8_t { rapid, linear, arc, dwell };
+enum class PathControl : std::uint8_t { exact_path, exact_stop, blend };  ///< G61, G61.1/G09, G64
+enum class SpindleDirection : std::uint8_t { stopped, clockwise, counter_clockwise };
+enum class FeedMode : std::uint8_t { per_minute, inverse_time, per_revolution };  ///< G94, G93, G95
+
+/// Modal facts that hold during a move; many moves share one.
+struct ModalState {
+  int tool = 0;  ///< in the spindle (after M6)
+  double spindle_speed_rpm = 0;
+  SpindleDirection spindle = SpindleDirection::stopped;
+  PathControl path_control = PathControl::blend;
+  double blend_tolerance_mm = -1;  ///< G64 P; negative: G64 without P (the control's own)
+  double merge_tolerance_mm = -1;  ///< G64 Q; negative: not given
+  FeedMode feed_mode = FeedMode::per_minute;
+  bool inch = false;
+  bool incremental = false;  ///< G91
+  int work_offset = 54;      ///< 54..59
+  bool coolant = false;
+  bool operator==(const ModalState&) const = default;
+};
+
+/// Only arcs have one. The tool turns by sweep_rad about `normal` through `center_mm` and moves along
+/// `normal` at a constant rate from the start to the end (helix).
+struct Arc {
+  Vec3 center_mm = Vec3::Zero();        ///< component along `normal` = start's
+  Vec3 normal = Vec3::UnitZ();          ///< unit: +Z for G17, +Y for G18, +X for G19
+  double sweep_rad = 0;                 ///< counter-clockwise about `normal` positive (G3); includes full turns
+};
+
+struct Move {
+  Vec3 start_mm = Vec3::Zero();
+  Vec3 end_mm = Vec3::Zero();
+  double feed_mm_per_s = 0;   ///< programmed, along the path; 0 for rapids and dwells
+  double dwell_s = 0;
+  std::uint32_t block = 0;    ///< index into Program::blocks; line = block + 1
+  std::uint32_t state = 0;    ///< index into Interpretation::states
+  std::uint32_t arc = kNoArc; ///< index into Interpretation::arcs
+  MoveKind kind = MoveKind::rapid;
+  bool exact_stop = false;    ///< G9 or a control that must stop at the end of this move
+  /// Part of a move to or from the reference point (G28, G30, G53) whose place in the work frame is not
+  /// known: counts for nothing in material.
+  bool reference = false;
+  bool canned = false;        ///< made by a drilling cycle: not one move of the text
+
+  static constexpr std::uint32_t kNoArc = std::numeric_limits<std::uint32_t>::max();
+};
+
+struct Interpretation {
+  std::vector<Move> moves;  ///< in order; each starts where the one before ended
+  std::vector<Arc> arcs;
+  std::vector<ModalState> states;
+
+  const ModalState& state_of(const Move& m) const { return states[m.state]; }
+};
+
+/// Length along the path, mm (helices included).
+double length_mm(const Interpretation& program, const Move& move);
+/// Point at the share u in [0, 1] of the move's length.
+Vec3 point_at(const Interpretation& program, const Move& move, double u);
+/// Unit direction of motion at the share u; zero for a move without length.
+Vec3 direction_at(const Interpretation& program, const Move& move, double u);
+
+}  // namespace camber::nc

@@ -1,0 +1,45 @@
+#pragma once
+// An NC program as text: blocks and words, each with its place in the file. Nothing is interpreted here.
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/diagnostics.h"
+
+namespace camber::nc {
+
+/// One word, e.g. `X-12.5`. Offsets count bytes from the start of the file.
+struct Word {
+  char letter = 0;             ///< upper case
+  std::uint32_t offset = 0;    ///< of the letter
+  std::uint16_t length = 0;    ///< letter, blanks inside and number
+  std::uint16_t value_at = 0;  ///< of the number's first character, from `offset`
+  double value = 0;            ///< as written, in the program's unit
+};
+
+/// One line of the file. Comments, % and empty lines are blocks without words.
+struct Block {
+  std::uint32_t offset = 0;  ///< of the line's first byte
+  std::uint32_t length = 0;  ///< without the line end
+  std::uint32_t first_word = 0;
+  std::uint16_t word_count = 0;
+  bool skip = false;  ///< begins with /
+};
+
+struct Program {
+  SourceText source;
+  std::vector<Block> blocks;  ///< blocks[i] is line i + 1 of the file
+  std::vector<Word> words;
+
+  std::span<const Word> words_of(std::size_t block) const {
+    return {words.data() + blocks[block].first_word, blocks[block].word_count};
+  }
+};
+
+/// Splits a text in blocks and words. Problems go to `diagnostics`; reading resumes at the next block.
+/// Throws InputError after Diagnostics::kMaxErrors errors.
+Program read_program(SourceText source, Diagnostics& diagnostics);
+
+}  // namespace camber::nc

@@ -1,0 +1,44 @@
+#include "base/diagnostics.h"
+
+#include <gtest/gtest.h>
+
+namespace camber {
+namespace {
+
+TEST(Diagnostics, ReadLikeACompilersWithACaretBelowTheWord) {
+  const SourceText source("part.nc", "G21\nN120 G1 X40. Y12.5 F0\n");
+  const auto d = source.diagnostic(Severity::error, 23, "F0 on a cutting move (G1); the feed must be greater than zero",
+                                   "feed-zero");
+  EXPECT_EQ(to_string(d),
+            "part.nc:2:20: error: F0 on a cutting move (G1); the feed must be greater than zero [feed-zero]\n"
+            "    N120 G1 X40. Y12.5 F0\n"
+            "                       ^");
+}
+
+TEST(Diagnostics, CountLinesWithCrLfAndWithoutALastLineEnd) {
+  const SourceText source("a", "G0\r\n\r\nX1");
+  EXPECT_EQ(source.line_count(), 3u);
+  EXPECT_EQ(source.line(1), "G0");
+  EXPECT_EQ(source.line(2), "");
+  EXPECT_EQ(source.line(3), "X1");
+  EXPECT_EQ(source.location(6).line, 3u);
+}
+
+TEST(Diagnostics, StopAtTheTwentiethError) {
+  Diagnostics all;
+  for (int i = 0; i < 19; ++i) all.add({Severity::error, {"f", 1, 1}, "m", "c", ""});
+  EXPECT_THROW(all.add({Severity::error, {"f", 1, 1}, "m", "c", ""}), InputError);
+  EXPECT_EQ(all.errors(), 20u);
+}
+
+TEST(SourceText, NamesTheMissingFile) {
+  try {
+    SourceText::read("/nowhere/p.nc");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(), "/nowhere/p.nc: error: no such file [file-missing]");
+  }
+}
+
+}  // namespace
+}  // namespace camber
