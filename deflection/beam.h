@@ -1,0 +1,37 @@
+#pragma once
+// The tool as a stepped cantilever on a lateral spring.
+#include <vector>
+
+#include "machine/job.h"
+
+namespace camber::deflection {
+
+/// Heights are measured from the tip; the holder's face is at `length_mm`.
+class Beam {
+ public:
+  struct Section {
+    double from_mm = 0, to_mm = 0;
+    double bending_stiffness_N_mm2 = 0;  ///< E I
+  };
+
+  Beam(std::vector<Section> sections, double root_compliance_mm_per_N);
+
+  /// Deflection at height z_out under a unit lateral force at height z_force, mm/N:
+  /// w = 1/k_root + sum over the sections of the integral of (z - z_out)(z - z_force) / (E I) dz from the higher
+  /// of the two heights to the holder. Euler-Bernoulli (Castigliano); symmetric in its arguments. Heights beyond
+  /// the holder's face count as the face.
+  double compliance_mm_per_N(double z_out_mm, double z_force_mm) const;
+
+  /// First natural frequency of the beam alone, Hz (Rayleigh's quotient with the shape under a tip load), for the
+  /// warning that a static deflection no longer holds. `density_kg_per_m3` of the shank.
+  double first_frequency_hz(const machine::Tool& tool, double density_kg_per_m3) const;
+
+ private:
+  std::vector<Section> sections_;
+  double root_compliance_mm_per_N_;
+};
+
+/// Fluted part with the effective diameter, then the shank up to the overhang.
+Beam beam_of(const machine::Tool& tool);
+
+}  // namespace camber::deflection

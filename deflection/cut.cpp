@@ -1,0 +1,253 @@
+#include "deflection/cut.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <tbb/parallel_for.h>
+
+#include "deflection/beam.h"
+#include "removal/stretch.h"
+
+namespace camber::deflection {
+
+using removal::Engagement;
+using removal::EnvelopeGrid;
+using removal::ShiftTable;
+using removal::Stamp;
+using removal::Stock;
+using removal::Stretch;
+
+namespace {
+
+/// Height above the tip up to which the cutter can meet material anywhere on its path.
+double engaged_top_mm(const Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps) {
+  double lowest = stock.max_mm().z();
+  for (const auto& s : stamps) lowest = std::min(lowest, s.tip_mm.z());
+  const double cutting = tool.flute_length_mm.value_or(tool.overhang_mm);
+  return std::clamp(stock.max_mm().z() - lowest + stock.voxel_mm(), stock.voxel_mm(), cutting);
+}
+
+Vec2 deflection_at(const ToothPassModel& model, const EnvelopeGrid& envelope, const float* row, const Contact& c) {
+  const double step_rad = 2 * kPi / envelope.steps;
+  const int steps = envelope.steps_per_pitch;
+  double at = (c.angle_rad - c.height_mm * envelope.lag_per_mm) / step_rad;
+  at -= steps * std::floor(at / steps);
+  const int m0 = static_cast<int>(at) % steps, m1 = (m0 + 1) % steps;
+  const double f = at - std::floor(at);
+  const auto w = removal::node_weight(model.node_height_mm(), c.height_mm);
+  Vec2 sum = Vec2::Zero();
+  const auto add = [&](int node, int m, double weight) {
+    const float* v = row + 2 * (node * steps + m);
+    sum += weight * Vec2(v[0], v[1]);
+  };
+  add(w.lower, m0, (1 - w.upper_share) * (1 - f));
+  add(w.lower, m1, (1 - w.upper_share) * f);
+  add(w.upper, m0, w.upper_share * (1 - f));
+  add(w.upper, m1, w.upper_share * f);
+  return sum;
+}
+
+StampLoad summarize(const ToothPass& pass) {
+  StampLoad load;
+  for (const Vec3& f : pass.force_N) {
+    for (int a = 0; a < 3; ++a)
+      if (std::abs(f[a]) > std::abs(load.force_max_N[a])) load.force_max_N[a] = f[a];
+    load.lateral_max_N = std::max(load.lateral_max_N, f.head<2>().norm());
+    load.force_mean_N += f;
+  }
+  load.force_mean_N /= static_cast<double>(pass.force_N.size());
+  return load;
+}
+
+/// One tool on one stock; cuts stretch after stretch.
+class Cutter {
+ public:
+  Cutter(Stock& stock, const machine::Tool& tool, const machine::Material& material, std::span<const Stamp> stamps,
+         const CutOptions& options)
+      : stock_(stock),
+        blank_(stock),
+        options_(options),
+        top_mm_(engaged_top_mm(stock, tool, stamps)),
+        envelope_(removal::make_envelope(tool, top_mm_, options.envelope_step_mm, options.rotation_step_rad)),
+        model_(envelope_, material, beam_of(tool), node_heights(top_mm_)) {
+    if (options.coupling == machine::Coupling::rigid) undeflected_.emplace(stock);
+  }
+
+  /// Cuts stamps from ... from + count - 1 of all.
+  void cut(std::span<const Stamp> all, std::size_t from, std::size_t count, std::span<const Contact> contacts,
+           std::int32_t first_id, CutResult& result) {
+    const std::span<const Stamp> stamps = all.subspan(from, count);
+    ShiftTable shifts(stamps.size(), model_.steps(), model_.node_height_mm());
+    if (!last_row_.empty()) std::copy(last_row_.begin(), last_row_.end(), shifts.row(-1));
+    std::vector<StampLoad> loads(stamps.size());
+    Stretch bent(stock_, &blank_, envelope_, all, from, count, {.engage = !undeflected_, .first_id = first_id});
+    if (undeflected_) {
+      Stretch straight(*undeflected_, &blank_, envelope_, all, from, count, {.first_id = first_id});
+      evaluate(straight.carve(nullptr), stamps, shifts, loads);
+      result.stock_mm3 += straight.commit();
+      bent.carve(&shifts);
+      bent.commit();
+    } else {
+      settle(bent, stamps, shifts, loads, result);
+      result.stock_mm3 += bent.commit();
+    }
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+      if (!contacts.empty())
+        loads[k].contact_deflection_mm =
+            deflection_at(model_, envelope_, shifts.row(static_cast<std::ptrdiff_t>(k)), contacts[k]);
+      result.chip_mm3 += loads[k].chip_mm3;
+    }
+    result.loads.insert(result.loads.end(), loads.begin(), loads.end());
+    const float* last = shifts.row(static_cast<std::ptrdiff_t>(stamps.size()) - 1);
+    last_row_.assign(last, last + shifts.row_size());
+  }
+
+ private:
+  struct Change {
+    double change2 = 0, size2 = 0;
+    std::size_t count = 0;
+  };
+
+  /// Deflection straight from the chips.
+  void evaluate(const Engagement& engagement, std::span<const Stamp> stamps, ShiftTable& shifts,
+                std::vector<StampLoad>& loads) const {
+    tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+      ToothPass pass;
+      model_.evaluate(engagement.of(k), pass);
+      loads[k] = summarize(pass);
+      loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
+      std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(), shifts.row(static_cast<std::ptrdiff_t>(k)));
+    });
+  }
+
+  /// Static equilibrium: delta = C F(chip(delta)), by Newton steps that know how a shift changes this stamp's own
+  /// chip; how it changes the next stamp's comes with the next round.
+  void settle(Stretch& bent, std::span<const Stamp> stamps, ShiftTable& shifts, std::vector<StampLoad>& loads,
+              CutResult& result) const {
+    for (int round = 1; round <= options_.max_rounds; ++round) {
+      const Engagement engagement = bent.carve(&shifts);
+      std::vector<Change> changes(stamps.size());
+      tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+        changes[k] = relax(engagement.of(k), shifts.row(static_cast<std::ptrdiff_t>(k)), loads[k]);
+        loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
+      });
+      Change sum;
+      for (const Change& c : changes) {
+        sum.change2 += c.change2;
+        sum.size2 += c.size2;
+        sum.count += c.count;
+      }
+      result.rounds_max = std::max(result.rounds_max, round);
+      if (sum.count == 0) return;
+      const double change_um = 1000 * std::sqrt(sum.change2 / static_cast<double>(sum.count));
+      const double size_um = 1000 * std::sqrt(sum.size2 / static_cast<double>(sum.count));
+      if (change_um < std::max(options_.settle_um, options_.settle_share * size_um)) return;
+    }
+    ++result.unsettled;
+  }
+
+  Change relax(std::span<const removal::Chip> chips, float* row, StampLoad& load) const {
+    ToothPass pass;
+    model_.evaluate(chips, pass);
+    load = summarize(pass);
+    Change change;
+    const int steps = model_.steps(), nodes = static_cast<int>(model_.node_height_mm().size());
+    for (int m = 0; m < steps; ++m) {
+      const Eigen::Matrix2d step = (Eigen::Matrix2d::Identity() - pass.feedback[static_cast<std::size_t>(m)]).inverse();
+      for (int n = 0; n < nodes; ++n) {
+        float* v = row + 2 * (n * steps + m);
+        const float* target = pass.deflection_mm.data() + 2 * (n * steps + m);
+        const Vec2 delta = step * Vec2(target[0] - v[0], target[1] - v[1]);
+        v[0] += static_cast<float>(delta.x());
+        v[1] += static_cast<float>(delta.y());
+        if (n > 0 || pass.force_N[static_cast<std::size_t>(m)].isZero()) continue;
+        change.change2 += delta.squaredNorm();
+        change.size2 += Vec2(v[0], v[1]).squaredNorm();
+        ++change.count;
+      }
+    }
+    return change;
+  }
+
+  Stock& stock_;
+  const Stock blank_;
+  const CutOptions& options_;
+  double top_mm_;
+  EnvelopeGrid envelope_;
+  ToothPassModel model_;
+  std::optional<Stock> undeflected_;
+  std::vector<float> last_row_;
+};
+
+}  // namespace
+
+CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& material,
+              std::span<const Stamp> stamps, std::span<const Contact> contacts, std::int32_t first_id,
+              const CutOptions& options) {
+  CutResult result;
+  result.loads.reserve(stamps.size());
+  Cutter cutter(stock, tool, material, stamps, options);
+  for (std::size_t from = 0; from < stamps.size(); from += options.stretch_stamps) {
+    const std::size_t n = std::min(options.stretch_stamps, stamps.size() - from);
+    cutter.cut(stamps, from, n, contacts.empty() ? contacts : contacts.subspan(from, n), first_id, result);
+    if (options.progress) options.progress(static_cast<double>(from + n) / static_cast<double>(stamps.size()));
+  }
+  return result;
+}
+
+void sweep(Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps, std::int32_t first_id,
+           double shrink_mm) {
+  constexpr std::size_t kStretch = 2000;
+  EnvelopeGrid envelope;
+  envelope.shape = removal::shape_of(tool);
+  for (std::size_t from = 0; from < stamps.size(); from += kStretch) {
+    const std::size_t n = std::min(kStretch, stamps.size() - from);
+    Stretch stretch(stock, nullptr, envelope, stamps, from, n,
+                    {.engage = false, .shrink_mm = shrink_mm, .first_id = first_id});
+    stretch.carve(nullptr);
+    stretch.commit();
+  }
+}
+
+std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& tool, std::span<const Stamp> stamps) {
+  const removal::CutterShape shape = removal::shape_of(tool);
+  const double top = std::max(shape.corner_radius_mm, target.voxel_mm());
+  const double length = shape.bottom_length_mm() + shape.arc_length_mm() + (top - shape.corner_radius_mm);
+  constexpr int kRings = 100;
+  constexpr double kDepthBand_mm = 0.001;
+  struct Candidate {
+    double depth;
+    Vec3 place;
+  };
+  std::vector<Contact> out(stamps.size());
+  tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+    const Vec3& f = stamps[k].feed_per_tooth_mm;
+    const double along = std::atan2(f.y(), f.x()), horizontal = f.head<2>().norm();
+    std::vector<Candidate> candidates;
+    double deepest = -1e9;
+    for (int r = 0; r < kRings; ++r) {
+      const auto p = removal::profile_at(shape, (r + 0.5) * length / kRings);
+      const double tilt = horizontal > 0 ? f.z() / (horizontal * std::tan(p.normal_angle_rad)) : 2.0;
+      if (p.normal_angle_rad > 0 && std::abs(tilt) > 1) continue;
+      for (const double side : {-1.0, 1.0}) {
+        const double phi = along + side * (p.normal_angle_rad > 0 ? std::acos(tilt) : kPi / 2);
+        const Vec3 place(p.radius_mm * std::cos(phi), p.radius_mm * std::sin(phi), p.height_mm);
+        const double depth = -target.distance_mm(stamps[k].tip_mm + place);
+        candidates.push_back({depth, place});
+        deepest = std::max(deepest, depth);
+      }
+    }
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
+    for (const auto& c : candidates)
+      if (c.depth >= deepest - kDepthBand_mm) {
+        sum += c.place;
+        ++count;
+      }
+    if (count > 0) out[k] = {sum.z() / count, std::atan2(sum.y(), sum.x())};
+  });
+  return out;
+}
+
+}  // namespace camber::deflection

@@ -1,0 +1,66 @@
+#pragma once
+// Cutting a path: chips, forces and deflections at every stamp, and the stock that the bent cutter leaves.
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "deflection/tooth_pass.h"
+#include "machine/job.h"
+#include "removal/stamp.h"
+#include "removal/stock.h"
+
+namespace camber::deflection {
+
+/// The loads of one tooth passing. Forces act on the tool, in machine axes.
+struct StampLoad {
+  Vec3 force_max_N = Vec3::Zero();   ///< per component the signed value of largest magnitude
+  double lateral_max_N = 0;          ///< largest sqrt(Fx^2 + Fy^2)
+  Vec3 force_mean_N = Vec3::Zero();  ///< over the tooth passing
+  Vec2 contact_deflection_mm = Vec2::Zero();  ///< at the contact's height as an edge passes it
+  double chip_mm3 = 0;               ///< volume of the chips
+};
+
+/// Where the envelope generates the surface: the point at which an edge leaves its mark.
+struct Contact {
+  double height_mm = 0;
+  double angle_rad = 0;
+};
+
+struct CutOptions {
+  machine::Coupling coupling = machine::Coupling::static_;
+  double envelope_step_mm = 0.1;
+  double rotation_step_rad = kPi / 180;
+  std::size_t stretch_stamps = 400;  ///< solved and kept in memory at a time
+  int max_rounds = 40;               ///< of the static solution of one stretch
+  double settle_um = 0.1;            ///< rms change of the deflection at which a stretch is settled, or ...
+  double settle_share = 0.01;        ///< ... this share of its rms
+  std::function<void(double)> progress;  ///< share done, 0 to 1
+};
+
+struct CutResult {
+  std::vector<StampLoad> loads;  ///< one a stamp
+  double chip_mm3 = 0;           ///< sum over the chips
+  double stock_mm3 = 0;          ///< change of the stock that engagement reads
+  int rounds_max = 0;            ///< of the static solution
+  std::size_t unsettled = 0;     ///< stretches that did not settle
+};
+
+/// Cuts `stock` with the bent cutter. Rigid coupling reads engagement from a stock of its own that the undeflected
+/// cutter carves. `contacts` (one a stamp, or empty) only serves StampLoad::contact_deflection_mm.
+/// Stamp ids in the stock are first_id + index.
+CutResult cut(removal::Stock& stock, const machine::Tool& tool, const machine::Material& material,
+              std::span<const removal::Stamp> stamps, std::span<const Contact> contacts, std::int32_t first_id,
+              const CutOptions& options);
+
+/// Cuts `stock` with the undeflected cutter, made smaller by shrink_mm along its normal.
+void sweep(removal::Stock& stock, const machine::Tool& tool, std::span<const removal::Stamp> stamps,
+           std::int32_t first_id, double shrink_mm);
+
+/// The contact of every stamp with a target surface: of the points at which the envelope moves tangentially
+/// (f . n = 0), the middle of those that lie deepest in the target, within 1 um.
+std::vector<Contact> find_contacts(const removal::Stock& target, const machine::Tool& tool,
+                                   std::span<const removal::Stamp> stamps);
+
+}  // namespace camber::deflection

@@ -1,0 +1,48 @@
+#pragma once
+// Force on the tool and its deflection at every rotation step of one tooth passing.
+#include <span>
+#include <vector>
+
+#include "deflection/beam.h"
+#include "machine/job.h"
+#include "removal/cutter.h"
+#include "removal/shift_table.h"
+#include "removal/stretch.h"
+
+namespace camber::deflection {
+
+/// One tooth passing. Sized once, filled for many stamps.
+struct ToothPass {
+  std::vector<Vec3> force_N;          ///< per rotation step, on the tool, machine axes
+  std::vector<float> deflection_mm;   ///< [nodes][steps][2], as a row of removal::ShiftTable
+  /// Per step: how a lateral shift of the tool changes the deflection through the chip, d(deflection)/d(shift).
+  std::vector<Eigen::Matrix2d> feedback;
+};
+
+/// Turns chips into forces and deflections for one tool in one material.
+class ToothPassModel {
+ public:
+  ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material, const Beam& beam,
+                 std::vector<double> node_height_mm);
+
+  int steps() const { return envelope_.steps_per_pitch; }
+  const std::vector<double>& node_height_mm() const { return node_height_mm_; }
+  void evaluate(std::span<const removal::Chip> chips, ToothPass& out) const;
+
+ private:
+  struct Direction {
+    Vec3 tangential, normal, meridian;
+  };
+  Direction direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
+
+  const removal::EnvelopeGrid& envelope_;
+  machine::Material material_;
+  std::vector<double> node_height_mm_;
+  std::vector<double> compliance_;  ///< [rings][nodes], mm/N
+  std::vector<double> own_compliance_;  ///< [rings]: at the ring's own height
+};
+
+/// Heights for a cutter that is engaged up to `top_mm`: evenly spaced, at most 2 mm apart where 12 nodes suffice.
+std::vector<double> node_heights(double top_mm);
+
+}  // namespace camber::deflection

@@ -1,0 +1,179 @@
+#include "removal/carve.h"
+
+#include <algorithm>
+#include <cmath>
+
+// The same code for wider vectors where the processor has them; contraction is off, so results are the same.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define CAMBER_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define CAMBER_VECTOR_CLONES
+#endif
+
+namespace camber::removal {
+namespace {
+
+/// The envelope in single precision, as rows of voxels need it.
+struct Profile {
+  float flat, corner, shrink;
+};
+
+/// Cuts `count` voxels of a row upwards. qx: distance from the axis less the flat's radius; z: of the first voxel
+/// above the tip.
+CAMBER_VECTOR_CLONES
+void carve_row(float* distance, std::int32_t* stamp, int count, float qx, float z, float voxel, float band, Profile p,
+               std::int32_t id) {
+  const float a = std::max(qx, 0.0f);
+  const float a2 = a * a;
+  for (int k = 0; k < count; ++k) {
+    const float qz = p.corner - (z + static_cast<float>(k) * voxel);
+    const float b = std::max(qz, 0.0f);
+    const float d = std::min(std::max(qx, qz), 0.0f) + std::sqrt(a2 + b * b) - p.corner + p.shrink;
+    const float v = std::min(-d, band);
+    const bool cut = v > distance[k];
+    distance[k] = cut ? v : distance[k];
+    stamp[k] = cut ? id : stamp[k];
+  }
+}
+
+/// First voxel of the row that the cutter may reach.
+int first_reached(double lowest_mm, double row_z_mm, double voxel_mm) {
+  return std::clamp(static_cast<int>(std::floor((lowest_mm - row_z_mm) / voxel_mm)), 0, Tile::kSide);
+}
+
+/// atan2 to 1e-5 rad: enough to find a rotation step.
+float fast_atan2(float y, float x) {
+  const float ax = std::abs(x), ay = std::abs(y);
+  const float a = std::min(ax, ay) / std::max(std::max(ax, ay), 1e-20f);
+  const float s = a * a;
+  float r = ((((0.0208351f * s - 0.085133f) * s + 0.180141f) * s - 0.3302995f) * s + 0.999866f) * a;
+  if (ay > ax) r = static_cast<float>(kPi / 2) - r;
+  if (x < 0) r = static_cast<float>(kPi) - r;
+  return y < 0 ? -r : r;
+}
+
+/// Reads the shift of the envelope's point nearest to a place.
+class BendReader {
+ public:
+  BendReader(const EnvelopeGrid& envelope, const ShiftTable& shifts, const float* row)
+      : row_(row),
+        steps_(shifts.steps),
+        nodes_(static_cast<int>(shifts.nodes())),
+        node_step_(nodes_ > 1 ? static_cast<float>(shifts.node_height_mm[1] - shifts.node_height_mm[0]) : 1.0f),
+        flat_(static_cast<float>(envelope.shape.bottom_length_mm())),
+        corner_(static_cast<float>(envelope.shape.corner_radius_mm)),
+        lag_per_mm_(static_cast<float>(envelope.lag_per_mm)),
+        steps_per_rad_(static_cast<float>(envelope.steps / (2 * kPi))) {}
+
+  void operator()(float x, float y, float z, float& sx, float& sy) const {
+    const float height = envelope_height(std::sqrt(x * x + y * y) - flat_, z);
+    float step = (fast_atan2(y, x) - height * lag_per_mm_) * steps_per_rad_;
+    step -= static_cast<float>(steps_) * std::floor(step / static_cast<float>(steps_));
+    int m0 = static_cast<int>(step);
+    const float fm = step - static_cast<float>(m0);
+    if (m0 >= steps_) m0 = 0;
+    const int m1 = m0 + 1 == steps_ ? 0 : m0 + 1;
+    const float at = std::clamp(height / node_step_, 0.0f, static_cast<float>(nodes_ - 1));
+    const int n0 = std::min(static_cast<int>(at), std::max(nodes_ - 2, 0));
+    const int n1 = std::min(n0 + 1, nodes_ - 1);
+    const float fn = at - static_cast<float>(n0);
+    sx = sy = 0;
+    add(n0, m0, (1 - fn) * (1 - fm), sx, sy);
+    add(n0, m1, (1 - fn) * fm, sx, sy);
+    add(n1, m0, fn * (1 - fm), sx, sy);
+    add(n1, m1, fn * fm, sx, sy);
+  }
+
+ private:
+  float envelope_height(float qx, float z) const {
+    const float qz = corner_ - z;
+    if (qx > 0 && qz > 0) return corner_ - corner_ * qz / std::sqrt(qx * qx + qz * qz);
+    return qx > qz ? std::max(z, 0.0f) : 0.0f;
+  }
+  void add(int node, int step, float weight, float& sx, float& sy) const {
+    const float* v = row_ + 2 * (node * steps_ + step);
+    sx += weight * v[0];
+    sy += weight * v[1];
+  }
+
+  const float* row_;
+  int steps_, nodes_;
+  float node_step_, flat_, corner_, lag_per_mm_, steps_per_rad_;
+};
+
+float envelope_distance(float x, float y, float z, float flat, float corner) {
+  const float qx = std::sqrt(x * x + y * y) - flat, qz = corner - z;
+  const float a = std::max(qx, 0.0f), b = std::max(qz, 0.0f);
+  return std::min(std::max(qx, qz), 0.0f) + std::sqrt(a * a + b * b) - corner;
+}
+
+}  // namespace
+
+void carve(Tile& tile, const Index3& t, double voxel, double band, const CutterShape& shape, const CarveStamp& stamp) {
+  const Profile p{static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm),
+                  static_cast<float>(stamp.shrink_mm)};
+  const double z0 = t[2] * Tile::kCore * voxel;
+  const int k0 = first_reached(stamp.tip_mm.z() - band, z0, voxel);
+  const float reach = static_cast<float>(band) + p.corner - p.shrink;
+  const float z = static_cast<float>((t[2] * Tile::kCore + k0) * voxel - stamp.tip_mm.z());
+  for (int i = 0; i < Tile::kSide; ++i) {
+    const float dx = static_cast<float>((t[0] * Tile::kCore + i) * voxel - stamp.tip_mm.x());
+    for (int j = 0; j < Tile::kSide; ++j) {
+      const float dy = static_cast<float>((t[1] * Tile::kCore + j) * voxel - stamp.tip_mm.y());
+      const float qx = std::sqrt(dx * dx + dy * dy) - p.flat;
+      if (qx > reach) continue;
+      const int at = Tile::offset(i, j, k0);
+      carve_row(tile.distance.data() + at, tile.stamp.data() + at, Tile::kSide - k0, qx, z, static_cast<float>(voxel),
+                static_cast<float>(band), p, stamp.id);
+    }
+  }
+}
+
+void carve_bent(Tile& tile, const Index3& t, double voxel, double band, const EnvelopeGrid& envelope,
+                const CarveStamp& stamp, const ShiftTable& shifts, const CarveBend& bend) {
+  const float flat = static_cast<float>(envelope.shape.bottom_length_mm());
+  const float corner = static_cast<float>(envelope.shape.corner_radius_mm);
+  const float slack = static_cast<float>(bend.largest_mm), top = static_cast<float>(band);
+  const double z0 = t[2] * Tile::kCore * voxel;
+  const int k0 = first_reached(stamp.tip_mm.z() - band, z0, voxel);
+  const BendReader shift_at(envelope, shifts, bend.row);
+  for (int i = 0; i < Tile::kSide; ++i) {
+    const float dx = static_cast<float>((t[0] * Tile::kCore + i) * voxel - stamp.tip_mm.x());
+    for (int j = 0; j < Tile::kSide; ++j) {
+      const float dy = static_cast<float>((t[1] * Tile::kCore + j) * voxel - stamp.tip_mm.y());
+      const float rho2 = dx * dx + dy * dy;
+      const float limit = flat + corner + top + slack;
+      if (rho2 > limit * limit) continue;
+      const float qx = std::sqrt(rho2) - flat;
+      const float a = std::max(qx, 0.0f);
+      for (int k = k0; k < Tile::kSide; ++k) {
+        const int at = Tile::offset(i, j, k);
+        const float z = static_cast<float>((t[2] * Tile::kCore + k) * voxel - stamp.tip_mm.z());
+        const float qz = corner - z;
+        const float b = std::max(qz, 0.0f);
+        const float d = std::min(std::max(qx, qz), 0.0f) + std::sqrt(a * a + b * b) - corner;
+        if (std::min(slack - d, top) <= tile.distance[at]) continue;
+        float sx, sy;
+        shift_at(dx, dy, z, sx, sy);
+        shift_at(dx - sx, dy - sy, z, sx, sy);
+        shift_at(dx - sx, dy - sy, z, sx, sy);
+        const float v = std::min(-envelope_distance(dx - sx, dy - sy, z, flat, corner), top);
+        if (v <= tile.distance[at]) continue;
+        tile.distance[at] = v;
+        tile.stamp[at] = stamp.id;
+      }
+    }
+  }
+}
+
+double tile_distance_mm(const Index3& t, double voxel, const CutterShape& shape, const Vec3& tip) {
+  const auto gap = [&](int a) {
+    const double lo = t[a] * Tile::kCore * voxel, hi = lo + Tile::kCore * voxel;
+    return std::max({lo - tip[a], tip[a] - hi, 0.0});
+  };
+  const double top = (t[2] + 1) * Tile::kCore * voxel - tip.z();
+  return shape.distance_mm({std::hypot(gap(0), gap(1)), 0, top});
+}
+
+}  // namespace camber::removal

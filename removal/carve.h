@@ -1,0 +1,36 @@
+#pragma once
+// Cutting one tile with one stamp: stock = max(stock, -cutter).
+#include <cstdint>
+
+#include "removal/cutter.h"
+#include "removal/shift_table.h"
+#include "removal/stock.h"
+
+namespace camber::removal {
+
+struct CarveStamp {
+  Vec3 tip_mm = Vec3::Zero();
+  std::int32_t id = 0;
+  double shrink_mm = 0;  ///< the cutter is smaller by this along its normal
+};
+
+/// Bent envelope of one stamp. `largest_mm` bounds the length of every shift in the row.
+struct CarveBend {
+  const float* row = nullptr;
+  double largest_mm = 0;
+};
+
+/// Carves with the undeflected cutter. Values are clipped to +-band_mm.
+void carve(Tile& tile, const Index3& tile_index, double voxel_mm, double band_mm, const CutterShape& shape,
+           const CarveStamp& stamp);
+
+/// Carves with the envelope whose point (s, phi) is displaced by the shift of the instant at which an edge passes
+/// it: the cutter's distance is read at x - delta(s, phi), where (s, phi) belong to x - delta (two fixed-point
+/// steps).
+void carve_bent(Tile& tile, const Index3& tile_index, double voxel_mm, double band_mm, const EnvelopeGrid& envelope,
+                const CarveStamp& stamp, const ShiftTable& shifts, const CarveBend& bend);
+
+/// Lower bound of the distance between the cutter's envelope and any voxel of a tile.
+double tile_distance_mm(const Index3& tile_index, double voxel_mm, const CutterShape& shape, const Vec3& tip_mm);
+
+}  // namespace camber::removal

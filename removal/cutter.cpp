@@ -1,0 +1,97 @@
+#include "removal/cutter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camber::removal {
+
+double CutterShape::distance_mm(const Vec3& p) const {
+  const double qx = std::hypot(p.x(), p.y()) - bottom_length_mm();
+  const double qz = corner_radius_mm - p.z();
+  return std::min(std::max(qx, qz), 0.0) + std::hypot(std::max(qx, 0.0), std::max(qz, 0.0)) - corner_radius_mm;
+}
+
+Vec3 CutterShape::gradient(const Vec3& p) const {
+  const double rho = std::hypot(p.x(), p.y());
+  const double qx = rho - bottom_length_mm(), qz = corner_radius_mm - p.z();
+  double radial = 0, down = 0;
+  if (qx > 0 && qz > 0) {
+    const double length = std::hypot(qx, qz);
+    radial = qx / length;
+    down = qz / length;
+  } else {
+    (qx > qz ? radial : down) = 1;
+  }
+  const double per_rho = rho > 0 ? radial / rho : 0;
+  return {p.x() * per_rho, p.y() * per_rho, -down};
+}
+
+CutterShape shape_of(const machine::Tool& tool) {
+  const double radius = tool.diameter_mm / 2;
+  switch (tool.type) {
+    case machine::ToolType::ball: return {radius, radius};
+    case machine::ToolType::bull: return {radius, tool.corner_radius_mm};
+    case machine::ToolType::flat:
+    case machine::ToolType::drill: break;
+  }
+  return {radius, 0};
+}
+
+ProfilePoint profile_at(const CutterShape& shape, double s) {
+  const double flat = shape.bottom_length_mm(), arc = shape.arc_length_mm(), rc = shape.corner_radius_mm;
+  if (s < flat) return {s, 0, 0, 0, 0};
+  if (s < flat + arc) {
+    const double k = (s - flat) / rc;
+    const double r = flat + rc * std::sin(k);
+    return {r, rc * (1 - std::cos(k)), k, 1 / rc, r > 0 ? std::sin(k) / r : 1 / rc};
+  }
+  return {shape.radius_mm, rc + (s - flat - arc), kPi / 2, 0, 1 / shape.radius_mm};
+}
+
+namespace {
+
+/// Cuts [from, to] in equal rings no wider than `step`.
+void add_rings(EnvelopeGrid& grid, double from, double to, double step) {
+  if (to - from <= 1e-9) return;
+  const int n = std::max(1, static_cast<int>(std::ceil((to - from) / step - 1e-9)));
+  const double width = (to - from) / n;
+  for (int i = 0; i < n; ++i) {
+    const ProfilePoint p = profile_at(grid.shape, from + (i + 0.5) * width);
+    grid.rings.push_back({p, width, p.height_mm * grid.lag_per_mm});
+  }
+}
+
+}  // namespace
+
+EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step_mm, double rotation_step_rad) {
+  EnvelopeGrid grid;
+  grid.shape = shape_of(tool);
+  grid.flutes = tool.flutes;
+  grid.lag_per_mm = std::tan(tool.helix_rad) / grid.shape.radius_mm;
+  grid.steps_per_pitch =
+      std::max(4, static_cast<int>(std::ceil(2 * kPi / (rotation_step_rad * tool.flutes) - 1e-9)));
+  grid.steps = grid.steps_per_pitch * tool.flutes;
+
+  const double flat = grid.shape.bottom_length_mm(), rounded = flat + grid.shape.arc_length_mm();
+  const double rc = grid.shape.corner_radius_mm;
+  const double end = top_mm >= rc ? rounded + (top_mm - rc) : flat + rc * std::acos(1 - std::max(0.0, top_mm) / rc);
+  add_rings(grid, 0, flat, step_mm);
+  add_rings(grid, flat, std::min(rounded, end), step_mm);
+  add_rings(grid, rounded, end, step_mm);
+
+  for (const auto& ring : grid.rings) {
+    for (int i = 0; i < grid.steps; ++i) {
+      const double phi = 2 * kPi * i / grid.steps + ring.lag_rad;
+      const double sk = std::sin(ring.profile.normal_angle_rad), ck = std::cos(ring.profile.normal_angle_rad);
+      grid.x.push_back(static_cast<float>(ring.profile.radius_mm * std::cos(phi)));
+      grid.y.push_back(static_cast<float>(ring.profile.radius_mm * std::sin(phi)));
+      grid.z.push_back(static_cast<float>(ring.profile.height_mm));
+      grid.nx.push_back(static_cast<float>(sk * std::cos(phi)));
+      grid.ny.push_back(static_cast<float>(sk * std::sin(phi)));
+      grid.nz.push_back(static_cast<float>(-ck));
+    }
+  }
+  return grid;
+}
+
+}  // namespace camber::removal

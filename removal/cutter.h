@@ -1,0 +1,70 @@
+#pragma once
+// The envelope that a turning cutter sweeps, and the edges on it.
+#include <vector>
+
+#include "base/geometry.h"
+#include "machine/job.h"
+
+namespace camber::removal {
+
+/// Envelope of a ball, flat or bull-nose cutter: a cylinder of `radius_mm` whose bottom edge is rounded with
+/// `corner_radius_mm` (ball: the radius itself; flat: 0). The tip is the origin, the axis +Z; it has no top.
+struct CutterShape {
+  double radius_mm = 0;
+  double corner_radius_mm = 0;
+
+  /// Length of the flat bottom and of the rounding along the profile; the wall begins after both.
+  double bottom_length_mm() const { return radius_mm - corner_radius_mm; }
+  double arc_length_mm() const { return corner_radius_mm * kPi / 2; }
+
+  /// Signed distance to the envelope, negative inside the cutter. Exact outside, and inside as long as the
+  /// nearest point of the envelope is the bottom or the wall.
+  double distance_mm(const Vec3& point_from_tip) const;
+  /// Its gradient: the envelope's outward normal at the nearest point.
+  Vec3 gradient(const Vec3& point_from_tip) const;
+};
+
+CutterShape shape_of(const machine::Tool& tool);
+
+/// One point of the profile, s mm from the tip along it.
+struct ProfilePoint {
+  double radius_mm = 0;          ///< from the axis
+  double height_mm = 0;          ///< above the tip
+  double normal_angle_rad = 0;   ///< kappa: normal = (sin k cos phi, sin k sin phi, -cos k)
+  double meridian_curvature_per_mm = 0;
+  double parallel_curvature_per_mm = 0;  ///< normal curvature along the circle of latitude
+};
+ProfilePoint profile_at(const CutterShape& shape, double s_mm);
+
+/// Points of the envelope at which engagement is sampled: rings along the profile, `steps` points a turn.
+///
+/// The points of a ring are turned by the ring's lag, so that a straight march through rotation steps meets
+/// them exactly: at rotation step m the edge of tooth j stands at point (m + j * steps_per_pitch) mod steps of
+/// every ring. Angles run counter-clockwise from +X; under M3 edges run through them backwards, which is a
+/// matter of order in time and not of place.
+struct EnvelopeGrid {
+  CutterShape shape;
+  int flutes = 2;
+  int steps = 0;            ///< points a ring
+  int steps_per_pitch = 0;  ///< steps / flutes
+  double lag_per_mm = 0;    ///< tan(helix) / radius
+
+  struct Ring {
+    ProfilePoint profile;
+    double width_mm = 0;  ///< db, profile arc length that the ring stands for
+    double lag_rad = 0;
+  };
+  std::vector<Ring> rings;
+
+  // rings.size() * steps values each, ring by ring, from the tip.
+  std::vector<float> x, y, z;     ///< place from the tip
+  std::vector<float> nx, ny, nz;  ///< outward normal
+
+  std::size_t size() const { return x.size(); }
+};
+
+/// Rings `step_mm` apart (the last one narrower) from the tip to `top_mm` above it; at least
+/// `2 pi / rotation_step_rad` points a ring, rounded up to a multiple of the flutes.
+EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step_mm, double rotation_step_rad);
+
+}  // namespace camber::removal

@@ -1,0 +1,253 @@
+#include "removal/stock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <openvdb/openvdb.h>
+
+#include "base/diagnostics.h"
+
+namespace camber::removal {
+
+using openvdb::Coord;
+using openvdb::CoordBBox;
+
+struct Stock::Impl {
+  openvdb::FloatGrid::Ptr distance;
+  openvdb::Int32Grid::Ptr stamp;
+};
+
+namespace {
+
+constexpr int kLeaf = 8;
+
+Coord coord(const Index3& i) { return {i[0], i[1], i[2]}; }
+
+int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+
+void initialize_openvdb() {
+  static const bool done = (openvdb::initialize(), true);
+  (void)done;
+}
+
+/// Fills one leaf with the distance; returns false when it lies beyond the band.
+template <class Distance>
+void sample_leaf(openvdb::FloatGrid::Accessor& access, const Coord& origin, double voxel, double band,
+                 const Distance& distance) {
+  auto* leaf = access.touchLeaf(origin);
+  for (openvdb::Index n = 0; n < openvdb::FloatTree::LeafNodeType::SIZE; ++n) {
+    const Coord c = leaf->offsetToGlobalCoord(n);
+    const double d = std::clamp(distance(Vec3(c.x() * voxel, c.y() * voxel, c.z() * voxel)), -band, band);
+    leaf->setValueOnly(n, static_cast<float>(d));
+    leaf->setActiveState(n, std::abs(d) < band);
+  }
+}
+
+}  // namespace
+
+Stock::Stock(const std::function<double(const Vec3&)>& distance, const Vec3& min_mm, const Vec3& max_mm,
+             double voxel_mm, double band_voxels)
+    : voxel_mm_(voxel_mm),
+      band_mm_(static_cast<float>(band_voxels * voxel_mm)),
+      min_mm_(min_mm),
+      max_mm_(max_mm),
+      impl_(std::make_unique<Impl>()) {
+  initialize_openvdb();
+  const auto band = static_cast<float>(band_mm_);
+  impl_->distance = openvdb::FloatGrid::create(band);
+  impl_->distance->setTransform(openvdb::math::Transform::createLinearTransform(voxel_mm));
+  impl_->distance->setGridClass(openvdb::GRID_LEVEL_SET);
+  impl_->distance->setName("stock");
+  impl_->stamp = openvdb::Int32Grid::create(kUncut);
+
+  Coord lo, hi;
+  for (int a = 0; a < 3; ++a) {
+    lo[a] = floor_div(static_cast<int>(std::floor((min_mm[a] - band_mm_) / voxel_mm)), kLeaf);
+    hi[a] = floor_div(static_cast<int>(std::ceil((max_mm[a] + band_mm_) / voxel_mm)), kLeaf);
+  }
+  auto access = impl_->distance->getAccessor();
+  const double reach = band_mm_ + 0.5 * std::sqrt(3.0) * kLeaf * voxel_mm;
+  for (int i = lo.x(); i <= hi.x(); ++i)
+    for (int j = lo.y(); j <= hi.y(); ++j)
+      for (int k = lo.z(); k <= hi.z(); ++k) {
+        const Coord origin(i * kLeaf, j * kLeaf, k * kLeaf);
+        const double half = 0.5 * (kLeaf - 1);
+        const Vec3 centre = voxel_mm * Vec3(origin.x() + half, origin.y() + half, origin.z() + half);
+        const double d = distance(centre);
+        if (d > reach) continue;
+        if (d < -reach)
+          access.addTile(1, origin, -band, false);
+        else
+          sample_leaf(access, origin, voxel_mm, band_mm_, distance);
+      }
+  impl_->distance->pruneGrid(0.0f);
+}
+
+Stock::Stock(const Stock& o)
+    : voxel_mm_(o.voxel_mm_),
+      band_mm_(o.band_mm_),
+      min_mm_(o.min_mm_),
+      max_mm_(o.max_mm_),
+      impl_(std::make_unique<Impl>(Impl{o.impl_->distance->deepCopy(), o.impl_->stamp->deepCopy()})) {}
+Stock::Stock(Stock&&) noexcept = default;
+Stock::~Stock() = default;
+
+double Stock::distance_mm(const Vec3& p) const {
+  const Vec3 g = p / voxel_mm_;
+  const Index3 b{static_cast<int>(std::floor(g.x())), static_cast<int>(std::floor(g.y())),
+                 static_cast<int>(std::floor(g.z()))};
+  const auto access = impl_->distance->getConstAccessor();
+  double sum = 0;
+  for (int c = 0; c < 8; ++c) {
+    double w = 1;
+    Coord at;
+    for (int a = 0; a < 3; ++a) {
+      const double f = g[a] - b[a];
+      const int up = (c >> a) & 1;
+      w *= up ? f : 1 - f;
+      at[a] = b[a] + up;
+    }
+    sum += w * access.getValue(at);
+  }
+  return sum;
+}
+
+float Stock::voxel(const Index3& i) const { return impl_->distance->tree().getValue(coord(i)); }
+std::int32_t Stock::stamp(const Index3& i) const { return impl_->stamp->tree().getValue(coord(i)); }
+
+namespace {
+
+/// Copies the part of a tile that lies in one leaf; a leaf that is not there has one value throughout.
+template <class Tree, class Value>
+void copy_from(const openvdb::tree::ValueAccessor<const Tree>& access, const Coord& leaf_origin, const Coord& base,
+               Value* out) {
+  const auto* leaf = access.probeConstLeaf(leaf_origin);
+  const Value constant = leaf ? Value{} : access.getValue(leaf_origin);
+  const Value* values = leaf ? leaf->buffer().data() : nullptr;
+  const Coord at = leaf_origin - base;
+  const int ni = std::min(kLeaf, Tile::kSide - at.x()), nj = std::min(kLeaf, Tile::kSide - at.y());
+  const int nk = std::min(kLeaf, Tile::kSide - at.z());
+  for (int i = 0; i < ni; ++i)
+    for (int j = 0; j < nj; ++j) {
+      Value* row = out + Tile::offset(at.x() + i, at.y() + j, at.z());
+      if (values)
+        std::copy_n(values + (i << 6 | j << 3), nk, row);
+      else
+        std::fill_n(row, nk, constant);
+    }
+}
+
+template <class Function>
+void for_each_leaf_of_tile(const Coord& base, Function f) {
+  for (int i = 0; i < Tile::kSide; i += kLeaf)
+    for (int j = 0; j < Tile::kSide; j += kLeaf)
+      for (int k = 0; k < Tile::kSide; k += kLeaf) f(base.offsetBy(i, j, k));
+}
+
+}  // namespace
+
+void Stock::load(const Index3& tile, Tile& out) const {
+  const Coord base(tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore);
+  const openvdb::FloatGrid& distance = *impl_->distance;
+  const openvdb::Int32Grid& stamp = *impl_->stamp;
+  const auto distances = distance.getConstAccessor();
+  const auto stamps = stamp.getConstAccessor();
+  for_each_leaf_of_tile(base, [&](const Coord& leaf) {
+    copy_from(distances, leaf, base, out.distance.data());
+    copy_from(stamps, leaf, base, out.stamp.data());
+  });
+}
+
+bool Stock::is_air(const Index3& tile) const {
+  const Coord base(tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore);
+  const openvdb::FloatGrid& distance = *impl_->distance;
+  const auto access = distance.getConstAccessor();
+  bool air = true;
+  for_each_leaf_of_tile(base, [&](const Coord& leaf) {
+    air = air && !access.probeConstLeaf(leaf) && access.getValue(leaf) > 0;
+  });
+  return air;
+}
+
+void Stock::store(const Index3& tile, const Tile& in) {
+  const auto band = static_cast<float>(band_mm_);
+  auto distances = impl_->distance->getAccessor();
+  auto stamps = impl_->stamp->getAccessor();
+  for (int li = 0; li < Tile::kCore; li += kLeaf)
+    for (int lj = 0; lj < Tile::kCore; lj += kLeaf)
+      for (int lk = 0; lk < Tile::kCore; lk += kLeaf) {
+        const Coord origin(tile[0] * Tile::kCore + li, tile[1] * Tile::kCore + lj, tile[2] * Tile::kCore + lk);
+        std::array<float, 512> d;
+        std::array<std::int32_t, 512> s;
+        bool air = true, solid = true, cut = false;
+        for (int n = 0; n < 512; ++n) {
+          const int from = Tile::offset(li + (n >> 6), lj + (n >> 3 & 7), lk + (n & 7));
+          d[n] = in.distance[from];
+          s[n] = in.stamp[from];
+          air = air && d[n] >= band;
+          solid = solid && d[n] <= -band;
+          cut = cut || s[n] != kUncut;
+        }
+        if (air || solid) {
+          distances.addTile(1, origin, air ? band : -band, false);
+          stamps.addTile(1, origin, kUncut, false);
+          continue;
+        }
+        auto* leaf = distances.touchLeaf(origin);
+        auto* marks = cut ? stamps.touchLeaf(origin) : stamps.probeLeaf(origin);
+        for (openvdb::Index n = 0; n < 512; ++n) {
+          leaf->setValueOnly(n, d[n]);
+          leaf->setActiveState(n, std::abs(d[n]) < band);
+          if (marks) marks->setValueOnly(n, s[n]);
+        }
+      }
+}
+
+void Stock::clear_stamps() { impl_->stamp = openvdb::Int32Grid::create(kUncut); }
+
+double material_share(double d, double voxel) { return std::clamp(0.5 - 0.5 * d / voxel, 0.0, 1.0); }
+
+double Stock::volume_mm3() const {
+  double share = 0;
+  for (auto it = impl_->distance->tree().cbeginLeaf(); it; ++it)
+    for (openvdb::Index n = 0; n < 512; ++n) share += material_share(it->getValue(n), voxel_mm_);
+  // Below leaf level only inactive tiles of one value are left.
+  for (auto it = impl_->distance->tree().cbeginValueOff(); it; ++it)
+    if (!it.isVoxelValue() && it.getValue() < 0) share += static_cast<double>(it.getVoxelCount());
+  return share * std::pow(voxel_mm_, 3);
+}
+
+std::vector<Index3> Stock::surface_tiles() const {
+  std::vector<Index3> tiles;
+  for (auto it = impl_->distance->tree().cbeginLeaf(); it; ++it) {
+    const Coord& o = it->origin();
+    tiles.push_back({floor_div(o.x(), Tile::kCore), floor_div(o.y(), Tile::kCore), floor_div(o.z(), Tile::kCore)});
+  }
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  return tiles;
+}
+
+std::size_t Stock::memory_bytes() const { return impl_->distance->memUsage() + impl_->stamp->memUsage(); }
+
+void Stock::save(const std::string& path) const {
+  const std::string part = path + ".part";
+  try {
+    openvdb::io::File file(part);
+    file.write(openvdb::GridCPtrVec{impl_->distance});
+    file.close();
+    std::filesystem::rename(part, path);
+  } catch (const std::exception& e) {
+    std::error_code ec;
+    std::filesystem::remove(part, ec);
+    fail_on_file(path, std::string("cannot be written: ") + e.what(), "file-unwritable");
+  }
+}
+
+double box_distance_mm(const Vec3& p, const Vec3& lo, const Vec3& hi) {
+  const Vec3 q = (p - 0.5 * (lo + hi)).cwiseAbs() - 0.5 * (hi - lo);
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+}  // namespace camber::removal

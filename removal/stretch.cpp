@@ -1,0 +1,412 @@
+#include "removal/stretch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "removal/carve.h"
+
+namespace camber::removal {
+namespace {
+
+/// Envelope points first ... first + count - 1 of a stamp, all in one tile.
+struct Run {
+  std::int32_t slot, stamp;
+  std::uint32_t first, count;
+};
+
+struct StampChip {
+  std::int32_t stamp;
+  Chip chip;
+};
+
+struct WorkTile {
+  Index3 index{};
+  std::vector<std::int32_t> stamps;
+  std::vector<Run> runs;
+  std::vector<StampChip> chips;
+  std::unique_ptr<Tile> result;
+  double removed_mm3 = 0;
+};
+
+/// What one thread holds of a tile.
+struct WorkBuffers {
+  Tile stock, blank;
+};
+
+Index3 tile_of(const Vec3& p, double tile_mm) {
+  return {static_cast<int>(std::floor(p.x() / tile_mm)), static_cast<int>(std::floor(p.y() / tile_mm)),
+          static_cast<int>(std::floor(p.z() / tile_mm))};
+}
+
+/// A point in a tile: its cell's lower corner and the trilinear weights of the eight corners.
+struct Cell {
+  int at;
+  std::array<float, 8> weight;
+  static int corner(int c) { return Tile::offset(c & 1, c >> 1 & 1, c >> 2 & 1); }
+};
+
+Cell cell_of(const Vec3& g) {
+  // Rounding may put a point on the tile's face a hair outside.
+  std::array<int, 3> b{};
+  std::array<float, 3> f{};
+  for (int a = 0; a < 3; ++a) {
+    b[a] = std::clamp(static_cast<int>(g[a]), 0, Tile::kCore - 1);
+    f[a] = static_cast<float>(g[a] - b[a]);
+  }
+  Cell cell{Tile::offset(b[0], b[1], b[2]), {}};
+  for (int c = 0; c < 8; ++c)
+    cell.weight[c] = (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
+  return cell;
+}
+
+float trilinear(const std::array<float, Tile::kVolume>& values, const Cell& cell) {
+  float sum = 0;
+  for (int c = 0; c < 8; ++c) sum += cell.weight[c] * values[cell.at + Cell::corner(c)];
+  return sum;
+}
+
+Vec3 gradient(const std::array<float, Tile::kVolume>& values, const Cell& cell, double voxel) {
+  Vec3 sum = Vec3::Zero();
+  std::array<float, 3> f{};
+  for (int c = 0; c < 8; ++c)
+    for (int a = 0; a < 3; ++a)
+      if (c >> a & 1) f[a] += cell.weight[c];
+  for (int c = 0; c < 8; ++c)
+    for (int a = 0; a < 3; ++a) {
+      const float up = f[a], w = c >> a & 1 ? up : 1 - up;
+      const float face = w > 0 ? cell.weight[c] / w : 0;
+      sum[a] += (c >> a & 1 ? 1 : -1) * face * values[cell.at + Cell::corner(c)];
+    }
+  return sum / voxel;
+}
+
+/// A surface that the normal meets at a grazing angle is taken at no more than four times its distance.
+float slope(double along_normal) { return static_cast<float>(std::clamp(along_normal, 0.25, 1.0)); }
+
+/// Tiles of a box of space, numbered; -1 where there is nothing to cut.
+class SlotMap {
+ public:
+  void reset(const Index3& lo, const Index3& hi) {
+    lo_ = lo;
+    for (int a = 0; a < 3; ++a) n_[a] = std::max(0, hi[a] - lo[a] + 1);
+    slots_.assign(static_cast<std::size_t>(n_[0]) * n_[1] * n_[2], -1);
+  }
+  bool contains(int i, int j, int k) const {
+    return i >= lo_[0] && j >= lo_[1] && k >= lo_[2] && i < lo_[0] + n_[0] && j < lo_[1] + n_[1] && k < lo_[2] + n_[2];
+  }
+  std::int32_t& at(int i, int j, int k) {
+    return slots_[(static_cast<std::size_t>(i - lo_[0]) * n_[1] + (j - lo_[1])) * n_[2] + (k - lo_[2])];
+  }
+  std::int32_t find(int i, int j, int k) { return contains(i, j, k) ? at(i, j, k) : -1; }
+
+ private:
+  Index3 lo_{}, n_{};
+  std::vector<std::int32_t> slots_;
+};
+
+}  // namespace
+
+struct Stretch::Impl {
+  Stock& stock;
+  const Stock* blank;
+  const EnvelopeGrid& envelope;
+  std::span<const Stamp> all_stamps;
+  std::span<const Stamp> stamps;  ///< of this stretch
+  std::int32_t first_id;          ///< of stamps[0]
+  StretchOptions options;
+  double tile_mm;
+  std::vector<WorkTile> tiles;
+  SlotMap slots;
+
+  void find_tiles(const ShiftTable* shifts);
+  void list_stamps(const ShiftTable* shifts);
+  void list_runs(const ShiftTable* shifts);
+  void runs_of_stamp(std::int32_t k, const ShiftTable* shifts, const std::vector<NodeWeight>& weights,
+                     std::vector<Run>& out);
+  void work(WorkTile& tile, const ShiftTable* shifts, const std::vector<NodeWeight>& weights) const;
+  float thickness(const WorkBuffers& buffers, const Cell& cell, const Vec3& point, const Vec3& cell_corner,
+                  const Vec3& normal, bool bent) const;
+  void sample(const WorkBuffers& buffers, WorkTile& work, const Run& run, const ShiftTable* shifts,
+              const std::vector<NodeWeight>& weights) const;
+  Engagement gather() const;
+};
+
+namespace {
+
+/// Where the envelope's points of one stamp stand, and how far each has moved since the stamp before.
+class PointReader {
+ public:
+  PointReader(const EnvelopeGrid& envelope, const Stamp& stamp, const ShiftTable* shifts, std::ptrdiff_t k,
+              const std::vector<NodeWeight>& weights)
+      : e_(envelope),
+        feed_(stamp.feed_per_tooth_mm.cast<float>()),
+        weights_(weights),
+        now_(shifts ? shifts->row(k) : nullptr),
+        before_(!shifts || stamp.first ? now_ : shifts->row(k - 1)) {}
+
+  /// Largest thickness that the motion since the stamp before allows; <= 0: the point runs out of the material.
+  float cap(std::uint32_t point, Eigen::Vector3f& place_from_tip) const {
+    const std::uint32_t ring = point / static_cast<std::uint32_t>(e_.steps);
+    Eigen::Vector3f motion = feed_;
+    place_from_tip = {e_.x[point], e_.y[point], e_.z[point]};
+    if (now_) {
+      const std::uint32_t step = (point - ring * static_cast<std::uint32_t>(e_.steps)) %
+                                 static_cast<std::uint32_t>(e_.steps_per_pitch);
+      const Eigen::Vector2f now = shift(now_, ring, step), before = shift(before_, ring, step);
+      place_from_tip.head<2>() += now;
+      motion.head<2>() += now - before;
+    }
+    const Eigen::Vector3f n(e_.nx[point], e_.ny[point], e_.nz[point]);
+    const float along_normal = motion.dot(n);
+    const auto& profile = e_.rings[ring].profile;
+    const float k1 = static_cast<float>(profile.meridian_curvature_per_mm);
+    const float k2 = static_cast<float>(profile.parallel_curvature_per_mm);
+    const float tangential2 = std::max(0.0f, motion.squaredNorm() - along_normal * along_normal);
+    if (k1 == k2) return along_normal + 0.5f * k1 * tangential2;
+    const float horizontal = std::sqrt(n.x() * n.x() + n.y() * n.y());
+    const Eigen::Vector2f radial = horizontal > 1e-6f ? Eigen::Vector2f(n.head<2>() / horizontal)
+                                                      : Eigen::Vector2f(place_from_tip.head<2>().normalized());
+    const float around = -radial.y() * motion.x() + radial.x() * motion.y();
+    return along_normal + 0.5f * (k1 * std::max(0.0f, tangential2 - around * around) + k2 * around * around);
+  }
+
+ private:
+  Eigen::Vector2f shift(const float* row, std::uint32_t ring, std::uint32_t step) const {
+    const NodeWeight& w = weights_[ring];
+    const float* a = row + 2 * (static_cast<std::size_t>(w.lower) * e_.steps_per_pitch + step);
+    const float* b = row + 2 * (static_cast<std::size_t>(w.upper) * e_.steps_per_pitch + step);
+    return {a[0] + w.upper_share * (b[0] - a[0]), a[1] + w.upper_share * (b[1] - a[1])};
+  }
+
+  const EnvelopeGrid& e_;
+  Eigen::Vector3f feed_;
+  const std::vector<NodeWeight>& weights_;
+  const float *now_, *before_;
+};
+
+}  // namespace
+
+void Stretch::Impl::find_tiles(const ShiftTable* shifts) {
+  if (stamps.empty()) return;
+  const double reach = stock.band_mm() + (shifts ? 0.5 : 0.0) + envelope.shape.radius_mm;
+  Vec3 lo = stamps.front().tip_mm, hi = lo;
+  for (const auto& s : stamps) {
+    lo = lo.cwiseMin(s.tip_mm);
+    hi = hi.cwiseMax(s.tip_mm);
+  }
+  lo.head<2>().array() -= reach;
+  hi.head<2>().array() += reach;
+  lo.z() -= stock.band_mm() + 1e-6;
+  hi.z() = stock.max_mm().z() + stock.band_mm();
+  const Vec3 band = Vec3::Constant(stock.band_mm());
+  lo = lo.cwiseMax(stock.min_mm() - band);
+  hi = hi.cwiseMin(stock.max_mm() + band);
+  slots.reset(tile_of(lo, tile_mm), tile_of(hi, tile_mm));
+}
+
+void Stretch::Impl::list_stamps(const ShiftTable* shifts) {
+  tiles.clear();
+  find_tiles(shifts);
+  constexpr std::int32_t kAir = -2;
+  const double band = stock.band_mm();
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    const Vec3& tip = stamps[k].tip_mm;
+    const double slack = shifts ? shifts->largest_mm(static_cast<std::ptrdiff_t>(k)) : 0.0;
+    const double reach = envelope.shape.radius_mm + band + slack;
+    const Index3 lo = tile_of(tip - Vec3(reach, reach, band), tile_mm);
+    const Index3 hi = tile_of(Vec3(tip.x() + reach, tip.y() + reach, stock.max_mm().z() + band), tile_mm);
+    for (int i = lo[0]; i <= hi[0]; ++i)
+      for (int j = lo[1]; j <= hi[1]; ++j)
+        for (int l = lo[2]; l <= hi[2]; ++l) {
+          if (!slots.contains(i, j, l)) continue;
+          std::int32_t& slot = slots.at(i, j, l);
+          if (slot == kAir || tile_distance_mm({i, j, l}, stock.voxel_mm(), envelope.shape, tip) > band + slack) continue;
+          if (slot == -1) {
+            if (stock.is_air({i, j, l})) {
+              slot = kAir;
+              continue;
+            }
+            slot = static_cast<std::int32_t>(tiles.size());
+            tiles.emplace_back().index = {i, j, l};
+          }
+          tiles[static_cast<std::size_t>(slot)].stamps.push_back(static_cast<std::int32_t>(k));
+        }
+  }
+}
+
+void Stretch::Impl::runs_of_stamp(std::int32_t k, const ShiftTable* shifts, const std::vector<NodeWeight>& weights,
+                                  std::vector<Run>& out) {
+  const Stamp& stamp = stamps[static_cast<std::size_t>(k)];
+  const PointReader reader(envelope, stamp, shifts, k, weights);
+  const auto points = static_cast<std::uint32_t>(envelope.size());
+  std::int32_t open = -1;
+  for (std::uint32_t p = 0; p < points; ++p) {
+    Eigen::Vector3f place;
+    std::int32_t slot = -1;
+    if (reader.cap(p, place) > 0) {
+      const Index3 t = tile_of(stamp.tip_mm + place.cast<double>(), tile_mm);
+      slot = slots.find(t[0], t[1], t[2]);
+    }
+    if (slot >= 0 && slot == open)
+      ++out.back().count;
+    else if (slot >= 0)
+      out.push_back({slot, k, p, 1});
+    open = slot;
+  }
+}
+
+void Stretch::Impl::list_runs(const ShiftTable* shifts) {
+  std::vector<NodeWeight> weights;
+  if (shifts)
+    for (const auto& ring : envelope.rings)
+      weights.push_back(node_weight(shifts->node_height_mm, ring.profile.height_mm));
+  std::vector<std::vector<Run>> by_stamp(stamps.size());
+  if (options.engage)
+    tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+      runs_of_stamp(static_cast<std::int32_t>(k), shifts, weights, by_stamp[k]);
+    });
+  for (const auto& runs : by_stamp)
+    for (const Run& run : runs) tiles[static_cast<std::size_t>(run.slot)].runs.push_back(run);
+  tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) { work(tiles[i], shifts, weights); });
+}
+
+/// Thickness of the stock below a point, against the normal, from the fields that meet in its cell (see the
+/// header): the thinnest of distance / slope, where slope is how fast a field falls along the normal.
+float Stretch::Impl::thickness(const WorkBuffers& buffers, const Cell& cell, const Vec3& point, const Vec3& cell_corner,
+                               const Vec3& normal, bool bent) const {
+  const Tile& tile = buffers.stock;
+  float thinnest = -trilinear(buffers.blank.distance, cell);
+  if (thinnest <= 0) return 0;
+  thinnest /= slope(-gradient(buffers.blank.distance, cell, stock.voxel_mm()).dot(normal));
+  std::array<std::int32_t, 8> ids;
+  for (int c = 0; c < 8; ++c) ids[c] = tile.stamp[cell.at + Cell::corner(c)] - options.first_id;
+  for (int c = 0; c < 8; ++c) {
+    if (ids[c] < 0 || std::find(ids.begin(), ids.begin() + c, ids[c]) != ids.begin() + c) continue;
+    const Vec3& tip = all_stamps[static_cast<std::size_t>(ids[c])].tip_mm;
+    double depth = envelope.shape.distance_mm(point - tip);
+    if (bent) {
+      double weight = 0, bend = 0;
+      for (int o = c; o < 8; ++o) {
+        if (ids[o] != ids[c]) continue;
+        const Vec3 at = cell_corner + stock.voxel_mm() * Vec3(o & 1, o >> 1 & 1, o >> 2 & 1);
+        const double w = cell.weight[o] + 1e-6;
+        weight += w;
+        bend += w * (tile.distance[cell.at + Cell::corner(o)] + envelope.shape.distance_mm(at - tip));
+      }
+      depth -= bend / weight;
+    }
+    if (depth <= 0) return 0;
+    const double fall = envelope.shape.gradient(point - tip).dot(normal);
+    thinnest = std::min(thinnest, static_cast<float>(depth) / slope(fall));
+  }
+  return thinnest;
+}
+
+void Stretch::Impl::sample(const WorkBuffers& buffers, WorkTile& w, const Run& run, const ShiftTable* shifts,
+                           const std::vector<NodeWeight>& weights) const {
+  const Stamp& stamp = stamps[static_cast<std::size_t>(run.stamp)];
+  const PointReader reader(envelope, stamp, shifts, run.stamp, weights);
+  const double voxel = stock.voxel_mm();
+  const Vec3 origin(w.index[0] * Tile::kCore, w.index[1] * Tile::kCore, w.index[2] * Tile::kCore);
+  for (std::uint32_t p = run.first; p < run.first + run.count; ++p) {
+    Eigen::Vector3f place;
+    const float cap = reader.cap(p, place);
+    const Vec3 point = stamp.tip_mm + place.cast<double>();
+    const Vec3 g = point / voxel - origin;
+    const Cell cell = cell_of(g);
+    // The trilinear field is never below the ridge's, but for curvature.
+    if (trilinear(buffers.stock.distance, cell) > 0.5f * static_cast<float>(voxel)) continue;
+    const Vec3 corner = voxel * (origin + Vec3(static_cast<int>(g.x()), static_cast<int>(g.y()), static_cast<int>(g.z())));
+    const Vec3 normal(envelope.nx[p], envelope.ny[p], envelope.nz[p]);
+    const float depth = thickness(buffers, cell, point, corner, normal, shifts != nullptr);
+    if (depth > 0) w.chips.push_back({run.stamp, {p, std::min(depth, cap)}});
+  }
+}
+
+void Stretch::Impl::work(WorkTile& w, const ShiftTable* shifts, const std::vector<NodeWeight>& weights) const {
+  const auto buffers = std::make_unique<WorkBuffers>();
+  Tile& tile = buffers->stock;
+  stock.load(w.index, tile);
+  if (options.engage) blank->load(w.index, buffers->blank);
+  auto run = w.runs.begin();
+  for (const std::int32_t k : w.stamps) {
+    for (; run != w.runs.end() && run->stamp <= k; ++run) sample(*buffers, w, *run, shifts, weights);
+    const Stamp& s = stamps[static_cast<std::size_t>(k)];
+    const CarveStamp stamp{s.tip_mm, first_id + k, options.shrink_mm};
+    const CarveBend bend{shifts ? shifts->row(k) : nullptr, shifts ? shifts->largest_mm(k) : 0.0};
+    if (shifts && bend.largest_mm > 0)
+      carve_bent(tile, w.index, stock.voxel_mm(), stock.band_mm(), envelope, stamp, *shifts, bend);
+    else
+      removal::carve(tile, w.index, stock.voxel_mm(), stock.band_mm(), envelope.shape, stamp);
+  }
+  w.result = std::make_unique<Tile>(tile);
+}
+
+Engagement Stretch::Impl::gather() const {
+  Engagement out;
+  out.first.assign(stamps.size() + 1, 0);
+  for (const auto& tile : tiles)
+    for (const auto& c : tile.chips) ++out.first[static_cast<std::size_t>(c.stamp) + 1];
+  for (std::size_t k = 0; k < stamps.size(); ++k) out.first[k + 1] += out.first[k];
+  out.chips.resize(out.first.back());
+  std::vector<std::size_t> at(out.first.begin(), out.first.end() - 1);
+  for (const auto& tile : tiles)
+    for (const auto& c : tile.chips) out.chips[at[static_cast<std::size_t>(c.stamp)]++] = c.chip;
+  return out;
+}
+
+Stretch::Stretch(Stock& stock, const Stock* blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
+                 std::size_t from, std::size_t count, const StretchOptions& options)
+    : impl_(std::make_unique<Impl>(Impl{stock, blank, envelope, stamps, stamps.subspan(from, count),
+                                        options.first_id + static_cast<std::int32_t>(from), options,
+                                        Tile::kCore * stock.voxel_mm(), {}, {}})) {}
+Stretch::~Stretch() = default;
+
+Engagement Stretch::carve(const ShiftTable* shifts) {
+  impl_->list_stamps(shifts);
+  impl_->list_runs(shifts);
+  return impl_->gather();
+}
+
+double Stretch::commit() {
+  Impl& m = *impl_;
+  tbb::parallel_for(std::size_t{0}, m.tiles.size(), [&](std::size_t i) {
+    WorkTile& w = m.tiles[i];
+    Tile before;
+    m.stock.load(w.index, before);
+    double share = 0;
+    for (int x = 0; x < Tile::kCore; ++x)
+      for (int y = 0; y < Tile::kCore; ++y)
+        for (int z = 0; z < Tile::kCore; ++z) {
+          const int at = Tile::offset(x, y, z);
+          if (before.distance[at] == w.result->distance[at]) continue;
+          share += material_share(before.distance[at], m.stock.voxel_mm()) -
+                   material_share(w.result->distance[at], m.stock.voxel_mm());
+        }
+    w.removed_mm3 = share * std::pow(m.stock.voxel_mm(), 3);
+  });
+  double removed = 0;
+  for (auto& w : m.tiles) {
+    m.stock.store(w.index, *w.result);
+    removed += w.removed_mm3;
+  }
+  m.tiles.clear();
+  return removed;
+}
+
+double chip_volume_mm3(const EnvelopeGrid& e, std::span<const Chip> chips) {
+  const double turn = 2 * kPi / e.steps;
+  double volume = 0;
+  for (const Chip& c : chips) {
+    const auto& ring = e.rings[c.point / static_cast<std::uint32_t>(e.steps)];
+    const double k1 = ring.profile.meridian_curvature_per_mm, k2 = ring.profile.parallel_curvature_per_mm;
+    const double h = c.thickness_mm;
+    volume += (h - 0.5 * (k1 + k2) * h * h + k1 * k2 * h * h * h / 3) * ring.width_mm * ring.profile.radius_mm * turn;
+  }
+  return volume;
+}
+
+}  // namespace camber::removal

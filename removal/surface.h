@@ -1,0 +1,33 @@
+#pragma once
+// The machined surface against the target's: two fields on one grid, so that what the grid cannot show cancels.
+#include <cstdint>
+#include <vector>
+
+#include "base/geometry.h"
+#include "removal/stock.h"
+
+namespace camber::removal {
+
+struct SurfacePoint {
+  Vec3 place_mm = Vec3::Zero();    ///< on the target's surface
+  Vec3 normal = Vec3::UnitZ();     ///< outward, unit
+  double error_mm = 0;             ///< machined minus target along the normal; positive: material is left
+  double area_mm2 = 0;             ///< of the target's surface that the point stands for
+  std::int32_t target_stamp = -1;  ///< which stamp of the target's sweep made it
+  std::int32_t machined_stamp = -1;///< which stamp cut the machined field there last; -1: none
+};
+
+/// Points where grid lines cross the target's surface, one a voxel column along the normal's largest component,
+/// in a fixed order. Only surface that the target's sweep has cut, leaving out one voxel along its edges. Errors
+/// are cut off at the band. Both stocks must have the same voxels.
+std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target);
+
+/// Area-weighted figures of an error, in the unit of the values.
+struct ErrorFigures {
+  double min = 0, max = 0, mean = 0, rms = 0;
+  double p95 = 0;  ///< 95th percentile of the magnitude
+  double area_mm2 = 0;
+};
+ErrorFigures error_figures(const std::vector<double>& error, const std::vector<double>& area_mm2);
+
+}  // namespace camber::removal
