@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 #include <tbb/parallel_for.h>
@@ -70,7 +71,9 @@ class Cutter {
         options_(options),
         top_mm_(engaged_top_mm(stock, tool, stamps)),
         envelope_(removal::make_envelope(tool, top_mm_, options.envelope_step_mm, options.rotation_step_rad)),
-        model_(envelope_, material, beam_of(tool), node_heights(top_mm_)) {
+        model_(envelope_, material, beam_of(tool), node_heights(top_mm_),
+               options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0) {
+    removal::make_patches(envelope_, 0.6 * stock.band_mm());
     if (options.coupling == machine::Coupling::rigid) undeflected_.emplace(stock);
   }
 
@@ -80,6 +83,10 @@ class Cutter {
     const std::span<const Stamp> stamps = all.subspan(from, count);
     ShiftTable shifts(stamps.size(), model_.steps(), model_.node_height_mm());
     if (!last_row_.empty()) std::copy(last_row_.begin(), last_row_.end(), shifts.row(-1));
+    // The last loaded stamp's state is the first guess for all.
+    if (!undeflected_ && !guess_row_.empty())
+      for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
+        std::copy(guess_row_.begin(), guess_row_.end(), shifts.row(k));
     std::vector<StampLoad> loads(stamps.size());
     Stretch bent(stock_, &blank_, envelope_, all, from, count, {.engage = !undeflected_, .first_id = first_id});
     if (undeflected_) {
@@ -101,9 +108,17 @@ class Cutter {
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
     const float* last = shifts.row(static_cast<std::ptrdiff_t>(stamps.size()) - 1);
     last_row_.assign(last, last + shifts.row_size());
+    for (std::ptrdiff_t k = static_cast<std::ptrdiff_t>(stamps.size()) - 1; k >= 0; --k)
+      if (loads[static_cast<std::size_t>(k)].chip_mm3 > 0) {
+        guess_row_.assign(shifts.row(k), shifts.row(k) + shifts.row_size());
+        break;
+      }
   }
 
  private:
+  static constexpr double kFall = 0.7;        ///< a round should bring the change down to this at least
+  static constexpr double kLeastShare = 0.3;  ///< of a Newton step
+
   struct Change {
     double change2 = 0, size2 = 0;
     std::size_t count = 0;
@@ -125,11 +140,12 @@ class Cutter {
   /// chip; how it changes the next stamp's comes with the next round.
   void settle(Stretch& bent, std::span<const Stamp> stamps, ShiftTable& shifts, std::vector<StampLoad>& loads,
               CutResult& result) const {
+    double share = 1, change_before_um = std::numeric_limits<double>::infinity();
     for (int round = 1; round <= options_.max_rounds; ++round) {
       const Engagement engagement = bent.carve(&shifts);
       std::vector<Change> changes(stamps.size());
       tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
-        changes[k] = relax(engagement.of(k), shifts.row(static_cast<std::ptrdiff_t>(k)), loads[k]);
+        changes[k] = relax(engagement.of(k), share, shifts.row(static_cast<std::ptrdiff_t>(k)), loads[k]);
         loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
       });
       Change sum;
@@ -142,12 +158,16 @@ class Cutter {
       if (sum.count == 0) return;
       const double change_um = 1000 * std::sqrt(sum.change2 / static_cast<double>(sum.count));
       const double size_um = 1000 * std::sqrt(sum.size2 / static_cast<double>(sum.count));
+      if (getenv("DBG")) fprintf(stderr, "round %d change %.3f size %.3f n %zu\n", round, change_um, size_um, sum.count);
       if (change_um < std::max(options_.settle_um, options_.settle_share * size_um)) return;
+      // What swings from round to round is stilled by shorter steps.
+      if (change_um > kFall * change_before_um) share = std::max(kLeastShare, kFall * share);
+      change_before_um = change_um;
     }
     ++result.unsettled;
   }
 
-  Change relax(std::span<const removal::Chip> chips, float* row, StampLoad& load) const {
+  Change relax(std::span<const removal::Chip> chips, double share, float* row, StampLoad& load) const {
     ToothPass pass;
     model_.evaluate(chips, pass);
     load = summarize(pass);
@@ -158,7 +178,7 @@ class Cutter {
       for (int n = 0; n < nodes; ++n) {
         float* v = row + 2 * (n * steps + m);
         const float* target = pass.deflection_mm.data() + 2 * (n * steps + m);
-        const Vec2 delta = step * Vec2(target[0] - v[0], target[1] - v[1]);
+        const Vec2 delta = share * step * Vec2(target[0] - v[0], target[1] - v[1]);
         v[0] += static_cast<float>(delta.x());
         v[1] += static_cast<float>(delta.y());
         if (n > 0 || pass.force_N[static_cast<std::size_t>(m)].isZero()) continue;
@@ -177,7 +197,7 @@ class Cutter {
   EnvelopeGrid envelope_;
   ToothPassModel model_;
   std::optional<Stock> undeflected_;
-  std::vector<float> last_row_;
+  std::vector<float> last_row_, guess_row_;
 };
 
 }  // namespace

@@ -15,8 +15,8 @@ std::vector<double> node_heights(double top_mm) {
 }
 
 ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material,
-                               const Beam& beam, std::vector<double> nodes)
-    : envelope_(envelope), material_(material), node_height_mm_(std::move(nodes)) {
+                               const Beam& beam, std::vector<double> nodes, double edge_ramp_mm)
+    : envelope_(envelope), material_(material), edge_ramp_mm_(edge_ramp_mm), node_height_mm_(std::move(nodes)) {
   for (const auto& ring : envelope.rings) {
     const double z = ring.profile.height_mm;
     own_compliance_.push_back(beam.compliance_mm_per_N(z, z));
@@ -44,7 +44,7 @@ void ToothPassModel::evaluate(std::span<const removal::Chip> chips, ToothPass& o
     const std::size_t m = chip.point % static_cast<std::uint32_t>(envelope_.steps) % steps;
     const auto& ring = envelope_.rings[r];
     const Direction d = direction(chip.point, ring);
-    const EdgeForce e = edge_force(material_, chip.thickness_mm, ring.width_mm);
+    const EdgeForce e = edge_force(material_, chip.thickness_mm, ring.width_mm, edge_ramp_mm_);
     const Vec3 force = -(e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian);
     out.force_N[m] += force;
     for (std::size_t n = 0; n < nodes; ++n) {
@@ -52,7 +52,10 @@ void ToothPassModel::evaluate(std::span<const removal::Chip> chips, ToothPass& o
       deflection[2 * (n * steps + m)] += w * force.x();
       deflection[2 * (n * steps + m) + 1] += w * force.y();
     }
-    const Vec3 slope = material_.ktc_MPa * d.tangential + material_.krc_MPa * d.normal + material_.kac_MPa * d.meridian;
+    Vec3 slope = material_.ktc_MPa * d.tangential + material_.krc_MPa * d.normal + material_.kac_MPa * d.meridian;
+    if (chip.thickness_mm < edge_ramp_mm_)
+      slope += (material_.kte_N_per_mm * d.tangential + material_.kre_N_per_mm * d.normal +
+                material_.kae_N_per_mm * d.meridian) / edge_ramp_mm_;
     out.feedback[m] -= own_compliance_[r] * ring.width_mm * slope.head<2>() * d.normal.head<2>().transpose();
   }
   std::transform(deflection.begin(), deflection.end(), out.deflection_mm.begin(),

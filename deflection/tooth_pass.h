@@ -23,7 +23,7 @@ struct ToothPass {
 class ToothPassModel {
  public:
   ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material, const Beam& beam,
-                 std::vector<double> node_height_mm);
+                 std::vector<double> node_height_mm, double edge_ramp_mm);
 
   int steps() const { return envelope_.steps_per_pitch; }
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
@@ -37,6 +37,7 @@ class ToothPassModel {
 
   const removal::EnvelopeGrid& envelope_;
   machine::Material material_;
+  double edge_ramp_mm_;
   std::vector<double> node_height_mm_;
   std::vector<double> compliance_;  ///< [rings][nodes], mm/N
   std::vector<double> own_compliance_;  ///< [rings]: at the ring's own height

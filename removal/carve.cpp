@@ -37,6 +37,13 @@ void carve_row(float* distance, std::int32_t* stamp, int count, float qx, float 
   }
 }
 
+/// Height above the tip from which on a row at qx outside the flat comes within `reach` of the envelope.
+float lowest_reached(float qx, float corner, float reach) {
+  if (qx <= 0) return corner - reach;
+  const float left = reach * reach - qx * qx;
+  return left > 0 ? corner - std::sqrt(left) : corner;
+}
+
 /// First voxel of the row that the cutter may reach.
 int first_reached(double lowest_mm, double row_z_mm, double voxel_mm) {
   return std::clamp(static_cast<int>(std::floor((lowest_mm - row_z_mm) / voxel_mm)), 0, Tile::kSide);
@@ -117,14 +124,18 @@ void carve(Tile& tile, const Index3& t, double voxel, double band, const CutterS
   const int k0 = first_reached(stamp.tip_mm.z() - band, z0, voxel);
   const float reach = static_cast<float>(band) + p.corner - p.shrink;
   const float z = static_cast<float>((t[2] * Tile::kCore + k0) * voxel - stamp.tip_mm.z());
+  const auto per_voxel = static_cast<float>(1 / voxel);
   for (int i = 0; i < Tile::kSide; ++i) {
     const float dx = static_cast<float>((t[0] * Tile::kCore + i) * voxel - stamp.tip_mm.x());
     for (int j = 0; j < Tile::kSide; ++j) {
       const float dy = static_cast<float>((t[1] * Tile::kCore + j) * voxel - stamp.tip_mm.y());
       const float qx = std::sqrt(dx * dx + dy * dy) - p.flat;
       if (qx > reach) continue;
-      const int at = Tile::offset(i, j, k0);
-      carve_row(tile.distance.data() + at, tile.stamp.data() + at, Tile::kSide - k0, qx, z, static_cast<float>(voxel),
+      const int up = std::max(0, static_cast<int>((lowest_reached(qx, p.corner, reach) - z) * per_voxel));
+      if (k0 + up >= Tile::kSide) continue;
+      const int at = Tile::offset(i, j, k0 + up);
+      carve_row(tile.distance.data() + at, tile.stamp.data() + at, Tile::kSide - k0 - up, qx,
+                z + static_cast<float>(up) * static_cast<float>(voxel), static_cast<float>(voxel),
                 static_cast<float>(band), p, stamp.id);
     }
   }
@@ -147,7 +158,8 @@ void carve_bent(Tile& tile, const Index3& t, double voxel, double band, const En
       if (rho2 > limit * limit) continue;
       const float qx = std::sqrt(rho2) - flat;
       const float a = std::max(qx, 0.0f);
-      for (int k = k0; k < Tile::kSide; ++k) {
+      const double low = stamp.tip_mm.z() + lowest_reached(qx, corner, corner + top + slack);
+      for (int k = std::max(k0, first_reached(low, z0, voxel)); k < Tile::kSide; ++k) {
         const int at = Tile::offset(i, j, k);
         const float z = static_cast<float>((t[2] * Tile::kCore + k) * voxel - stamp.tip_mm.z());
         const float qz = corner - z;

@@ -94,4 +94,44 @@ EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step
   return grid;
 }
 
+void make_patches(EnvelopeGrid& grid, double size_mm) {
+  grid.patches.clear();
+  const int rings = static_cast<int>(grid.rings.size());
+  for (int r0 = 0; r0 < rings;) {
+    int r1 = r0;
+    double height = 0, widest = 0;
+    while (r1 < rings && (r1 == r0 || height + grid.rings[r1].width_mm <= size_mm)) {
+      height += grid.rings[r1].width_mm;
+      widest = std::max(widest, grid.rings[r1].profile.radius_mm);
+      ++r1;
+    }
+    const double turn = std::min(2 * kPi / 3, size_mm / std::max(widest, 1e-9));
+    const int span = std::clamp(static_cast<int>(turn * grid.steps / (2 * kPi)), 1, grid.steps);
+    for (int i0 = 0; i0 < grid.steps; i0 += span) {
+      EnvelopeGrid::Patch patch{.ring_from = r0, .ring_to = r1, .step_from = i0, .step_to = std::min(i0 + span, grid.steps)};
+      const auto for_points = [&](auto f) {
+        for (int r = r0; r < r1; ++r)
+          for (int i = patch.step_from; i < patch.step_to; ++i) {
+            const auto p = static_cast<std::size_t>(r) * grid.steps + i;
+            f(Vec3(grid.x[p], grid.y[p], grid.z[p]), Vec3(grid.nx[p], grid.ny[p], grid.nz[p]));
+          }
+      };
+      double count = 0;
+      for_points([&](const Vec3& place, const Vec3& normal) {
+        patch.centre_from_tip += place;
+        patch.normal += normal;
+        ++count;
+      });
+      patch.centre_from_tip /= count;
+      patch.normal /= count;
+      for_points([&](const Vec3& place, const Vec3& normal) {
+        patch.radius_mm = std::max(patch.radius_mm, (place - patch.centre_from_tip).norm());
+        patch.normal_spread = std::max(patch.normal_spread, (normal - patch.normal).norm());
+      });
+      grid.patches.push_back(patch);
+    }
+    r0 = r1;
+  }
+}
+
 }  // namespace camber::removal

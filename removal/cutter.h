@@ -60,8 +60,20 @@ struct EnvelopeGrid {
   std::vector<float> x, y, z;     ///< place from the tip
   std::vector<float> nx, ny, nz;  ///< outward normal
 
+  /// Neighbouring points that are met or missed together.
+  struct Patch {
+    Vec3 centre_from_tip = Vec3::Zero(), normal = Vec3::Zero();
+    double radius_mm = 0;       ///< around the centre, holds all points
+    double normal_spread = 0;   ///< largest |n - normal| of its points
+    int ring_from = 0, ring_to = 0, step_from = 0, step_to = 0;  ///< half open
+  };
+  std::vector<Patch> patches;  ///< each point is in one
+
   std::size_t size() const { return x.size(); }
 };
+
+/// Cuts the envelope in patches of about `size_mm`.
+void make_patches(EnvelopeGrid& grid, double size_mm);
 
 /// Rings `step_mm` apart (the last one narrower) from the tip to `top_mm` above it; at least
 /// `2 pi / rotation_step_rad` points a ring, rounded up to a multiple of the flutes.

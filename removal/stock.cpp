@@ -113,6 +113,19 @@ double Stock::distance_mm(const Vec3& p) const {
   return sum;
 }
 
+struct Stock::Probe::Access {
+  openvdb::FloatGrid::ConstAccessor accessor;
+};
+Stock::Probe::Probe(const Stock& stock)
+    : access_(std::make_unique<Access>(Access{stock.impl_->distance->getConstAccessor()})),
+      per_mm_(1 / stock.voxel_mm()) {}
+Stock::Probe::~Probe() = default;
+float Stock::Probe::nearest(const Vec3& p) const {
+  return access_->accessor.getValue({static_cast<int>(std::floor(p.x() * per_mm_ + 0.5)),
+                                     static_cast<int>(std::floor(p.y() * per_mm_ + 0.5)),
+                                     static_cast<int>(std::floor(p.z() * per_mm_ + 0.5))});
+}
+
 float Stock::voxel(const Index3& i) const { return impl_->distance->tree().getValue(coord(i)); }
 std::int32_t Stock::stamp(const Index3& i) const { return impl_->stamp->tree().getValue(coord(i)); }
 

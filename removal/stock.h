@@ -50,6 +50,19 @@ class Stock {
   float voxel(const Index3& index) const;
   std::int32_t stamp(const Index3& index) const;
 
+  /// Many readings by one thread: the value of the voxel nearest to a point, clipped to the band.
+  class Probe {
+   public:
+    explicit Probe(const Stock& stock);
+    ~Probe();
+    float nearest(const Vec3& point) const;
+
+   private:
+    struct Access;
+    std::unique_ptr<Access> access_;
+    double per_mm_;
+  };
+
   /// Tiles are numbered so that tile t owns the voxels t * kCore ... t * kCore + kCore - 1. Thread safe.
   void load(const Index3& tile, Tile& out) const;
   /// True where the tile and its upper layer hold nothing but air. Thread safe.

@@ -136,6 +136,9 @@ struct Stretch::Impl {
 
 namespace {
 
+/// Bent envelopes lean by no more than this (a shift that jumps at an edge's entry is no slope).
+constexpr float kMostTilt = 0.3f;
+
 /// Where the envelope's points of one stamp stand, and how far each has moved since the stamp before.
 class PointReader {
  public:
@@ -145,23 +148,28 @@ class PointReader {
         feed_(stamp.feed_per_tooth_mm.cast<float>()),
         weights_(weights),
         now_(shifts ? shifts->row(k) : nullptr),
-        before_(!shifts || stamp.first ? now_ : shifts->row(k - 1)) {}
+        before_(!shifts || stamp.first ? now_ : shifts->row(k - 1)) {
+    if (shifts && shifts->nodes() > 1)
+      node_step_ = static_cast<float>(shifts->node_height_mm[1] - shifts->node_height_mm[0]);
+  }
 
   /// Largest thickness that the motion since the stamp before allows; <= 0: the point runs out of the material.
   float cap(std::uint32_t point, Eigen::Vector3f& place_from_tip) const {
     const std::uint32_t ring = point / static_cast<std::uint32_t>(e_.steps);
     Eigen::Vector3f motion = feed_;
     place_from_tip = {e_.x[point], e_.y[point], e_.z[point]};
+    const Eigen::Vector3f n(e_.nx[point], e_.ny[point], e_.nz[point]);
+    const auto& profile = e_.rings[ring].profile;
+    float tilt = 0;
     if (now_) {
       const std::uint32_t step = (point - ring * static_cast<std::uint32_t>(e_.steps)) %
                                  static_cast<std::uint32_t>(e_.steps_per_pitch);
       const Eigen::Vector2f now = shift(now_, ring, step), before = shift(before_, ring, step);
+      tilt = tilt_of(ring, step, n, motion);
       place_from_tip.head<2>() += now;
       motion.head<2>() += now - before;
     }
-    const Eigen::Vector3f n(e_.nx[point], e_.ny[point], e_.nz[point]);
-    const float along_normal = motion.dot(n);
-    const auto& profile = e_.rings[ring].profile;
+    const float along_normal = motion.dot(n) - tilt;
     const float k1 = static_cast<float>(profile.meridian_curvature_per_mm);
     const float k2 = static_cast<float>(profile.parallel_curvature_per_mm);
     const float tangential2 = std::max(0.0f, motion.squaredNorm() - along_normal * along_normal);
@@ -174,17 +182,41 @@ class PointReader {
   }
 
  private:
+  /// How much less the motion goes along the bent envelope's normal than along n: n_bent = n - sum over the surface
+  /// directions e of e (d(shift)/de . n).
+  float tilt_of(std::uint32_t ring, std::uint32_t step, const Eigen::Vector3f& n, const Eigen::Vector3f& f) const {
+    const auto steps = static_cast<std::uint32_t>(e_.steps_per_pitch);
+    const auto& profile = e_.rings[ring].profile;
+    const float sine = static_cast<float>(std::sin(profile.normal_angle_rad));
+    if (sine < 0.05f) return 0;
+    const Eigen::Vector2f radial = n.head<2>() / sine;
+    const float around = -radial.y() * f.x() + radial.x() * f.y();
+    const float up = static_cast<float>(std::cos(profile.normal_angle_rad)) * radial.dot(f.head<2>()) + sine * f.z();
+    const float per_rad = static_cast<float>(e_.steps / (4 * kPi));
+    const float by_angle =
+        per_rad * (shift(now_, ring, step + 1 == steps ? 0 : step + 1) - shift(now_, ring, step == 0 ? steps - 1 : step - 1))
+                      .dot(n.head<2>());
+    const NodeWeight& w = weights_[ring];
+    const float by_height = (at(now_, w.upper, step) - at(now_, w.lower, step)).dot(n.head<2>()) / node_step_;
+    const float by_meridian = sine * (by_height - static_cast<float>(e_.lag_per_mm) * by_angle);
+    const float most = kMostTilt * f.norm();
+    return std::clamp(around * by_angle / static_cast<float>(profile.radius_mm) + up * by_meridian, -most, most);
+  }
+  Eigen::Vector2f at(const float* row, int node, std::uint32_t step) const {
+    const float* v = row + 2 * (static_cast<std::size_t>(node) * e_.steps_per_pitch + step);
+    return {v[0], v[1]};
+  }
   Eigen::Vector2f shift(const float* row, std::uint32_t ring, std::uint32_t step) const {
     const NodeWeight& w = weights_[ring];
-    const float* a = row + 2 * (static_cast<std::size_t>(w.lower) * e_.steps_per_pitch + step);
-    const float* b = row + 2 * (static_cast<std::size_t>(w.upper) * e_.steps_per_pitch + step);
-    return {a[0] + w.upper_share * (b[0] - a[0]), a[1] + w.upper_share * (b[1] - a[1])};
+    const Eigen::Vector2f lower = at(row, w.lower, step);
+    return lower + w.upper_share * (at(row, w.upper, step) - lower);
   }
 
   const EnvelopeGrid& e_;
   Eigen::Vector3f feed_;
   const std::vector<NodeWeight>& weights_;
   const float *now_, *before_;
+  float node_step_ = 1;
 };
 
 }  // namespace
@@ -241,20 +273,35 @@ void Stretch::Impl::runs_of_stamp(std::int32_t k, const ShiftTable* shifts, cons
                                   std::vector<Run>& out) {
   const Stamp& stamp = stamps[static_cast<std::size_t>(k)];
   const PointReader reader(envelope, stamp, shifts, k, weights);
-  const auto points = static_cast<std::uint32_t>(envelope.size());
-  std::int32_t open = -1;
-  for (std::uint32_t p = 0; p < points; ++p) {
-    Eigen::Vector3f place;
-    std::int32_t slot = -1;
-    if (reader.cap(p, place) > 0) {
-      const Index3 t = tile_of(stamp.tip_mm + place.cast<double>(), tile_mm);
-      slot = slots.find(t[0], t[1], t[2]);
+  const Stock::Probe probe(stock);
+  const double moved = shifts ? shifts->largest_mm(k) : 0.0;
+  const double slewed = shifts ? moved + shifts->largest_mm(k - 1) : 0.0;
+  const double feed = stamp.feed_per_tooth_mm.norm();
+  // What curvature, a change of shift and the bent envelope's tilt add to the chip at most.
+  const double bulge = feed * feed / (2 * std::max(envelope.shape.corner_radius_mm, 0.1)) + slewed +
+                       (shifts ? kMostTilt * feed : 0.0);
+  for (const auto& patch : envelope.patches) {
+    if (stamp.feed_per_tooth_mm.dot(patch.normal) + feed * patch.normal_spread + bulge <= 0) continue;
+    const double reach = std::min(patch.radius_mm + moved + 0.87 * stock.voxel_mm(), 0.999 * stock.band_mm());
+    if (probe.nearest(stamp.tip_mm + patch.centre_from_tip) > reach) continue;
+    for (int r = patch.ring_from; r < patch.ring_to; ++r) {
+      const auto ring = static_cast<std::uint32_t>(r * envelope.steps);
+      std::int32_t open = -1;
+      for (std::uint32_t p = ring + static_cast<std::uint32_t>(patch.step_from);
+           p < ring + static_cast<std::uint32_t>(patch.step_to); ++p) {
+        Eigen::Vector3f place;
+        std::int32_t slot = -1;
+        if (reader.cap(p, place) > 0) {
+          const Index3 t = tile_of(stamp.tip_mm + place.cast<double>(), tile_mm);
+          slot = slots.find(t[0], t[1], t[2]);
+        }
+        if (slot >= 0 && slot == open)
+          ++out.back().count;
+        else if (slot >= 0)
+          out.push_back({slot, k, p, 1});
+        open = slot;
+      }
     }
-    if (slot >= 0 && slot == open)
-      ++out.back().count;
-    else if (slot >= 0)
-      out.push_back({slot, k, p, 1});
-    open = slot;
   }
 }
 
