@@ -116,12 +116,12 @@ class Cutter {
   }
 
  private:
-  static constexpr double kFall = 0.7;        ///< a round should bring the change down to this at least
+  static constexpr double kFall = 0.6;        ///< a round should bring the change down to this at least
   static constexpr double kLeastShare = 0.3;  ///< of a Newton step
 
+  /// Over the loaded rotation steps of a stretch.
   struct Change {
-    double change2 = 0, size2 = 0;
-    std::size_t count = 0;
+    double rms_um = 0, size_um = 0;
   };
 
   /// Deflection straight from the chips.
@@ -136,58 +136,63 @@ class Cutter {
     });
   }
 
-  /// Static equilibrium: delta = C F(chip(delta)), by Newton steps that know how a shift changes this stamp's own
-  /// chip; how it changes the next stamp's comes with the next round.
+  /// Static equilibrium: delta = C F(chip(delta)) of all stamps of the stretch, by Newton steps. A shift changes this
+  /// stamp's chip and, with the other sign, the next one's.
   void settle(Stretch& bent, std::span<const Stamp> stamps, ShiftTable& shifts, std::vector<StampLoad>& loads,
               CutResult& result) const {
     double share = 1, change_before_um = std::numeric_limits<double>::infinity();
+    std::vector<ToothPass> passes(stamps.size());
     for (int round = 1; round <= options_.max_rounds; ++round) {
       const Engagement engagement = bent.carve(&shifts);
-      std::vector<Change> changes(stamps.size());
       tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
-        changes[k] = relax(engagement.of(k), share, shifts.row(static_cast<std::ptrdiff_t>(k)), loads[k]);
+        model_.evaluate(engagement.of(k), passes[k]);
+        loads[k] = summarize(passes[k]);
         loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
       });
-      Change sum;
-      for (const Change& c : changes) {
-        sum.change2 += c.change2;
-        sum.size2 += c.size2;
-        sum.count += c.count;
-      }
+      const Change change = newton_step(stamps, passes, share, shifts);
       result.rounds_max = std::max(result.rounds_max, round);
-      if (sum.count == 0) return;
-      const double change_um = 1000 * std::sqrt(sum.change2 / static_cast<double>(sum.count));
-      const double size_um = 1000 * std::sqrt(sum.size2 / static_cast<double>(sum.count));
-      if (getenv("DBG")) fprintf(stderr, "round %d change %.3f size %.3f n %zu\n", round, change_um, size_um, sum.count);
-      if (change_um < std::max(options_.settle_um, options_.settle_share * size_um)) return;
+      if (getenv("DBG")) fprintf(stderr, "round %d change %.3f size %.3f share %.2f\n", round, change.rms_um, change.size_um, share);
+      if (change.rms_um < std::max(options_.settle_um, options_.settle_share * change.size_um)) return;
       // What swings from round to round is stilled by shorter steps.
-      if (change_um > kFall * change_before_um) share = std::max(kLeastShare, kFall * share);
-      change_before_um = change_um;
+      if (change.rms_um > kFall * change_before_um) share = std::max(kLeastShare, kFall * share);
+      change_before_um = change.rms_um;
     }
     ++result.unsettled;
   }
 
-  Change relax(std::span<const removal::Chip> chips, double share, float* row, StampLoad& load) const {
-    ToothPass pass;
-    model_.evaluate(chips, pass);
-    load = summarize(pass);
-    Change change;
+  /// (I - J_k) step_k + J'_k step_(k-1) = residual_k for every rotation step: forward through the stamps.
+  Change newton_step(std::span<const Stamp> stamps, const std::vector<ToothPass>& passes, double share,
+                     ShiftTable& shifts) const {
     const int steps = model_.steps(), nodes = static_cast<int>(model_.node_height_mm().size());
-    for (int m = 0; m < steps; ++m) {
-      const Eigen::Matrix2d step = (Eigen::Matrix2d::Identity() - pass.feedback[static_cast<std::size_t>(m)]).inverse();
-      for (int n = 0; n < nodes; ++n) {
-        float* v = row + 2 * (n * steps + m);
-        const float* target = pass.deflection_mm.data() + 2 * (n * steps + m);
-        const Vec2 delta = share * step * Vec2(target[0] - v[0], target[1] - v[1]);
-        v[0] += static_cast<float>(delta.x());
-        v[1] += static_cast<float>(delta.y());
-        if (n > 0 || pass.force_N[static_cast<std::size_t>(m)].isZero()) continue;
-        change.change2 += delta.squaredNorm();
-        change.size2 += Vec2(v[0], v[1]).squaredNorm();
-        ++change.count;
+    std::vector<Vec2> before(static_cast<std::size_t>(steps * nodes), Vec2::Zero());
+    double change2 = 0, size2 = 0;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+      const ToothPass& pass = passes[k];
+      float* row = shifts.row(static_cast<std::ptrdiff_t>(k));
+      if (stamps[k].first) std::fill(before.begin(), before.end(), Vec2::Zero());
+      for (int m = 0; m < steps; ++m) {
+        const auto at = static_cast<std::size_t>(m);
+        const Eigen::Matrix2d inverse = (Eigen::Matrix2d::Identity() - pass.feedback[at]).inverse();
+        const bool loaded = !pass.force_N[at].isZero();
+        for (int n = 0; n < nodes; ++n) {
+          float* v = row + 2 * (n * steps + m);
+          const float* target = pass.deflection_mm.data() + 2 * (n * steps + m);
+          Vec2& last = before[static_cast<std::size_t>(n * steps + m)];
+          const Vec2 residual(target[0] - v[0], target[1] - v[1]);
+          const Vec2 step = share * inverse * (residual - pass.feedback_before[at] * last / share);
+          last = step;
+          v[0] += static_cast<float>(step.x());
+          v[1] += static_cast<float>(step.y());
+          if (n > 0 || !loaded) continue;
+          change2 += step.squaredNorm();
+          size2 += Vec2(v[0], v[1]).squaredNorm();
+          ++count;
+        }
       }
     }
-    return change;
+    if (count == 0) return {};
+    return {1000 * std::sqrt(change2 / static_cast<double>(count)), 1000 * std::sqrt(size2 / static_cast<double>(count))};
   }
 
   Stock& stock_;

@@ -37,6 +37,7 @@ void ToothPassModel::evaluate(std::span<const removal::Chip> chips, ToothPass& o
   const std::size_t nodes = node_height_mm_.size();
   out.force_N.assign(steps, Vec3::Zero());
   out.feedback.assign(steps, Eigen::Matrix2d::Zero());
+  out.feedback_before.assign(steps, Eigen::Matrix2d::Zero());
   out.deflection_mm.assign(nodes * steps * 2, 0.0f);
   std::vector<double> deflection(nodes * steps * 2, 0.0);
   for (const removal::Chip& chip : chips) {
@@ -56,7 +57,10 @@ void ToothPassModel::evaluate(std::span<const removal::Chip> chips, ToothPass& o
     if (chip.thickness_mm < edge_ramp_mm_)
       slope += (material_.kte_N_per_mm * d.tangential + material_.kre_N_per_mm * d.normal +
                 material_.kae_N_per_mm * d.meridian) / edge_ramp_mm_;
-    out.feedback[m] -= own_compliance_[r] * ring.width_mm * slope.head<2>() * d.normal.head<2>().transpose();
+    const Eigen::Matrix2d feedback =
+        -own_compliance_[r] * ring.width_mm * slope.head<2>() * d.normal.head<2>().transpose();
+    out.feedback[m] += feedback;
+    if (chip.after_tooth) out.feedback_before[m] += feedback;
   }
   std::transform(deflection.begin(), deflection.end(), out.deflection_mm.begin(),
                  [](double v) { return static_cast<float>(v); });

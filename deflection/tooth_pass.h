@@ -17,6 +17,8 @@ struct ToothPass {
   std::vector<float> deflection_mm;   ///< [nodes][steps][2], as a row of removal::ShiftTable
   /// Per step: how a lateral shift of the tool changes the deflection through the chip, d(deflection)/d(shift).
   std::vector<Eigen::Matrix2d> feedback;
+  /// The part of it that a shift of the tooth before takes back.
+  std::vector<Eigen::Matrix2d> feedback_before;
 };
 
 /// Turns chips into forces and deflections for one tool in one material.

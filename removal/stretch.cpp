@@ -136,6 +136,9 @@ struct Stretch::Impl {
 
 namespace {
 
+/// A depth of more than this share of what the last motion allows ends at the surface of the tooth before.
+constexpr float kNearCap = 0.8f;
+
 /// Bent envelopes lean by no more than this (a shift that jumps at an edge's entry is no slope).
 constexpr float kMostTilt = 0.3f;
 
@@ -369,7 +372,7 @@ void Stretch::Impl::sample(const WorkBuffers& buffers, WorkTile& w, const Run& r
     const Vec3 corner = voxel * (origin + Vec3(static_cast<int>(g.x()), static_cast<int>(g.y()), static_cast<int>(g.z())));
     const Vec3 normal(envelope.nx[p], envelope.ny[p], envelope.nz[p]);
     const float depth = thickness(buffers, cell, point, corner, normal, shifts != nullptr);
-    if (depth > 0) w.chips.push_back({run.stamp, {p, std::min(depth, cap)}});
+    if (depth > 0) w.chips.push_back({run.stamp, {p, std::min(depth, cap), depth > kNearCap * cap}});
   }
 }
 

@@ -16,6 +16,7 @@ namespace camber::removal {
 struct Chip {
   std::uint32_t point = 0;   ///< index into EnvelopeGrid
   float thickness_mm = 0;    ///< uncut, along the envelope normal, > 0
+  bool after_tooth = false;  ///< bounded below by what the tooth before left, not by older surface
 };
 
 /// Chips of stamp k: chips[first[k]] ... chips[first[k + 1] - 1].

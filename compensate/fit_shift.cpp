@@ -1,0 +1,99 @@
+#include "compensate/fit_shift.h"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+namespace camber::compensate {
+namespace {
+
+using Eigen::Matrix3d;
+
+/// Normal equations of one path: diagonal[i] s_i + upper[i] s_(i+1) + upper[i-1]^T s_(i-1) = right[i].
+struct System {
+  std::vector<Matrix3d> diagonal, upper;
+  std::vector<Vec3> right;
+};
+
+void add_observation(System& s, const ShiftPath& path, const Observation& o) {
+  const std::size_t i = o.place.lower;
+  const double v = o.place.upper_share, u = 1 - v;
+  const Matrix3d nn = o.area_mm2 * o.normal * o.normal.transpose();
+  const auto& points = path.points();
+  const Vec3 old = u * points[i].shift_mm + v * points[i + 1].shift_mm;
+  const Vec3 pull = o.area_mm2 * (o.normal.dot(old) - o.error_mm) * o.normal;
+  s.diagonal[i] += u * u * nn;
+  s.diagonal[i + 1] += v * v * nn;
+  s.upper[i] += u * v * nn;
+  s.right[i] += u * pull;
+  s.right[i + 1] += v * pull;
+}
+
+void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double mu, double kappa) {
+  const auto& points = path.points();
+  for (std::size_t i = chain.from; i + 1 < chain.from + chain.count; ++i) {
+    const double length = std::max(points[i + 1].along_mm - points[i].along_mm, 1e-6);
+    s.diagonal[i] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
+    s.diagonal[i + 1] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
+    s.upper[i] -= mu / length * Matrix3d::Identity();
+  }
+}
+
+/// Block Thomas elimination over one chain; the chain's fixed points are held at zero.
+void solve_chain(const System& s, const Chain& chain, std::vector<ControlPoint>& points) {
+  const std::size_t n = chain.count, o = chain.from;
+  std::vector<Matrix3d> gain(n);
+  std::vector<Vec3> value(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (points[o + i].fixed) {
+      gain[i].setZero();
+      value[i].setZero();
+      continue;
+    }
+    Matrix3d d = s.diagonal[o + i];
+    Vec3 r = s.right[o + i];
+    if (i > 0) {
+      const Matrix3d below = s.upper[o + i - 1].transpose();
+      d -= below * gain[i - 1];
+      r -= below * value[i - 1];
+    }
+    const Matrix3d inverse = d.inverse();
+    gain[i] = inverse * s.upper[o + i];
+    value[i] = inverse * r;
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    if (i + 1 < n) value[i] -= gain[i] * value[i + 1];
+    points[o + i].shift_mm = value[i];
+  }
+}
+
+}  // namespace
+
+std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options) {
+  auto& points = path.points();
+  System s{std::vector<Matrix3d>(points.size(), Matrix3d::Zero()), std::vector<Matrix3d>(points.size(), Matrix3d::Zero()),
+           std::vector<Vec3>(points.size(), Vec3::Zero())};
+  double area = 0, length = 0;
+  for (const Observation& o : observations) {
+    add_observation(s, path, o);
+    area += o.area_mm2;
+  }
+  for (const Chain& c : path.chains()) length += points[c.from + c.count - 1].along_mm;
+  const double rho = std::max(area, 1e-9) / std::max(length, 1e-9);
+  const double mu = rho * options.smoothing_mm * options.smoothing_mm;
+  const double kappa = mu / (options.decay_mm * options.decay_mm);
+  for (const Chain& c : path.chains()) {
+    add_stiffness(s, path, c, mu, kappa);
+    solve_chain(s, c, points);
+  }
+  std::size_t limited = 0;
+  for (auto& p : points) {
+    const double shift = p.shift_mm.norm();
+    if (shift <= options.max_shift_mm) continue;
+    p.shift_mm *= options.max_shift_mm / shift;
+    ++limited;
+  }
+  return limited;
+}
+
+}  // namespace camber::compensate

@@ -1,0 +1,36 @@
+#pragma once
+// From the form error to new shifts of the path's points.
+#include <span>
+#include <vector>
+
+#include "base/geometry.h"
+#include "compensate/shift_path.h"
+
+namespace camber::compensate {
+
+/// One piece of surface and the place of the path that made it.
+struct Observation {
+  ShiftPath::Place place;
+  Vec3 normal = Vec3::UnitZ();  ///< outward
+  double error_mm = 0;
+  double area_mm2 = 0;
+};
+
+struct FitShiftOptions {
+  double smoothing_mm = 0.3;   ///< features of the shift shorter than this along the path are smoothed
+  double decay_mm = 10;        ///< without surface to correct, the shift dies away over this length
+  double max_shift_mm = 0.1;
+};
+
+/// Shifts that minimize, chain by chain,
+///
+///   sum a (e + n . (s - s_old))^2 + mu integral |ds/dl|^2 dl + kappa integral |s|^2 dl
+///
+/// with a the area, e the error, n the normal of each observation, s the shift at its place (linear between the
+/// points), mu = rho smoothing^2, kappa = mu / decay^2 and rho the mean area per path length: a block tridiagonal
+/// system of 3 x 3 blocks. Directions in which no surface faces stay at rest; where surfaces face each other (a
+/// slot) the least squares between them results. Shifts longer than max_shift_mm are cut to it. Returns how many
+/// points were.
+std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options);
+
+}  // namespace camber::compensate

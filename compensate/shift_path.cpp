@@ -1,0 +1,121 @@
+#include "compensate/shift_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camber::compensate {
+
+ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm)
+    : program_(program), first_of_move_(program.moves.size(), 0) {
+  bool open = false;
+  for (std::uint32_t m = 0; m < program.moves.size(); ++m) {
+    const nc::Move& move = program.moves[m];
+    const double length = selected[m] ? nc::length_mm(program, move) : 0;
+    if (!selected[m] || length <= 0) {
+      // A move that goes nowhere does not break a chain; one that is not ours does.
+      if (!selected[m] && nc::length_mm(program, move) > 0) open = false;
+      continue;
+    }
+    if (!open) {
+      chains_.push_back({points_.size(), 1});
+      points_.push_back({.move = m, .share = 0, .along_mm = 0, .place_mm = move.start_mm, .fixed = true});
+      open = true;
+    }
+    first_of_move_[m] = points_.size() - 1;
+    const double along = points_.back().along_mm;
+    const int pieces = move.kind == nc::MoveKind::linear ? std::max(1, static_cast<int>(std::ceil(length / spacing_mm - 1e-9))) : 1;
+    for (int i = 1; i <= pieces; ++i) {
+      const double u = static_cast<double>(i) / pieces;
+      points_.push_back({.move = m, .share = u, .along_mm = along + u * length, .place_mm = nc::point_at(program, move, u)});
+      ++chains_.back().count;
+    }
+  }
+}
+
+ShiftPath::Place ShiftPath::find(std::uint32_t move, double share) const {
+  std::size_t i = first_of_move_[move];
+  double from = 0;
+  while (i + 2 < points_.size() && points_[i + 1].move == move && points_[i + 1].share < share) {
+    ++i;
+    from = points_[i].share;
+  }
+  const double to = points_[i + 1].share;
+  return {i, std::clamp((share - from) / (to - from), 0.0, 1.0)};
+}
+
+namespace {
+
+/// Indices of `path` that must stay so that no left-out point strays from the polyline (Douglas-Peucker).
+void keep_strays(const std::vector<Vec3>& path, std::size_t a, std::size_t b, double tolerance, std::vector<std::size_t>& kept) {
+  double worst = tolerance;
+  std::size_t at = 0;
+  const Vec3 chord = path[b] - path[a];
+  for (std::size_t i = a + 1; i < b; ++i) {
+    const double u = std::clamp((path[i] - path[a]).dot(chord) / std::max(chord.squaredNorm(), 1e-18), 0.0, 1.0);
+    const double stray = (path[i] - path[a] - u * chord).norm();
+    if (stray <= worst) continue;
+    worst = stray;
+    at = i;
+  }
+  if (at == 0) return;
+  keep_strays(path, a, at, tolerance, kept);
+  kept.push_back(at);
+  keep_strays(path, at, b, tolerance, kept);
+}
+
+/// Centre of the arc from a to b that lies nearest to the wished one: its projection on the plane halfway.
+Vec3 agreeing_centre(const nc::Arc& arc, const Vec3& start, const Vec3& end, const Vec3& wished) {
+  Vec3 across = end - start;
+  across -= across.dot(arc.normal) * arc.normal;
+  if (across.norm() < 1e-9) return wished;  // a full turn closes on itself
+  across.normalize();
+  const Vec3 middle = 0.5 * (start + end);
+  return wished - (wished - middle).dot(across) * across;
+}
+
+}  // namespace
+
+nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, double tolerance_mm) const {
+  const ControlPoint& end = points_[last];
+  nc::MoveEdit edit;
+  edit.move = end.move;
+  edit.end_mm = end.place_mm + end.shift_mm;
+  const nc::Move& move = program_.moves[end.move];
+  if (move.kind == nc::MoveKind::arc) {
+    const nc::Arc& arc = program_.arcs[move.arc];
+    const Vec3 start = points_[first].place_mm + points_[first].shift_mm;
+    edit.center_mm = agreeing_centre(arc, start, edit.end_mm,
+                                     arc.center_mm + 0.5 * (points_[first].shift_mm + end.shift_mm));
+    return edit;
+  }
+  std::vector<Vec3> path;
+  for (std::size_t i = first; i <= last; ++i) path.push_back(points_[i].place_mm + points_[i].shift_mm);
+  std::vector<std::size_t> kept;
+  keep_strays(path, 0, path.size() - 1, tolerance_mm, kept);
+  for (const std::size_t i : kept) edit.via_mm.push_back(path[i]);
+  return edit;
+}
+
+std::vector<nc::MoveEdit> ShiftPath::edits(double tolerance_mm) const {
+  std::vector<nc::MoveEdit> out;
+  for (const Chain& chain : chains_) {
+    const std::size_t end = chain.from + chain.count;
+    for (std::size_t first = chain.from; first + 1 < end;) {
+      std::size_t last = first + 1;
+      while (last + 1 < end && points_[last + 1].move == points_[first + 1].move) ++last;
+      bool shifted = false;
+      for (std::size_t i = first; i <= last; ++i) shifted = shifted || !points_[i].shift_mm.isZero();
+      if (shifted) out.push_back(edit_of(first, last, tolerance_mm));
+      first = last;
+    }
+  }
+  return out;
+}
+
+double ShiftPath::largest_shift_mm() const {
+  double largest = 0;
+  for (const auto& p : points_) largest = std::max(largest, p.shift_mm.norm());
+  return largest;
+}
+
+}  // namespace camber::compensate

@@ -1,0 +1,59 @@
+#pragma once
+// The points of a path that may be moved, and how far each is.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/geometry.h"
+#include "nc/emit.h"
+#include "nc/move.h"
+
+namespace camber::compensate {
+
+/// A place on the programmed path. Shifts are linear between neighbours of a chain.
+struct ControlPoint {
+  std::uint32_t move = 0;
+  double share = 0;       ///< of the move's length
+  double along_mm = 0;    ///< path length since the chain's start
+  Vec3 place_mm = Vec3::Zero();
+  Vec3 shift_mm = Vec3::Zero();
+  bool fixed = false;     ///< where a rapid or a move of another operation ends: stays
+};
+
+/// One unbroken run of moves that may be shifted: points[from] ... points[from + count - 1].
+struct Chain {
+  std::size_t from = 0, count = 0;
+};
+
+class ShiftPath {
+ public:
+  /// Lines longer than spacing_mm get points between their ends; arcs have none but their ends.
+  ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm);
+
+  std::vector<ControlPoint>& points() { return points_; }
+  const std::vector<ControlPoint>& points() const { return points_; }
+  const std::vector<Chain>& chains() const { return chains_; }
+
+  /// Between which points a place of the path lies: points()[lower] and points()[lower + 1].
+  struct Place {
+    std::size_t lower = 0;
+    double upper_share = 0;
+  };
+  /// `move` must be selected.
+  Place find(std::uint32_t move, double share) const;
+
+  /// The moves whose points are shifted. Points between the ends of a line are kept where the path without them
+  /// would stray by more than tolerance_mm.
+  std::vector<nc::MoveEdit> edits(double tolerance_mm) const;
+  double largest_shift_mm() const;
+
+ private:
+  nc::MoveEdit edit_of(std::size_t first_point, std::size_t last_point, double tolerance_mm) const;
+
+  const nc::Interpretation& program_;
+  std::vector<ControlPoint> points_;
+  std::vector<Chain> chains_;
+  std::vector<std::size_t> first_of_move_;  ///< index of the point at each selected move's start
+};
+
+}  // namespace camber::compensate

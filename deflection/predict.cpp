@@ -1,0 +1,128 @@
+#include "deflection/predict.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "deflection/job_checks.h"
+#include "nc/interpreter.h"
+
+namespace camber::deflection {
+
+using machine::Job;
+
+namespace {
+
+/// Half width of the narrow band: three voxels for the field's sake, and the thickest chip with room for bending.
+double band_voxels(const Job& job, const removal::StampPath& path) {
+  double thickest = 0;
+  for (const auto& s : path.stamps) thickest = std::max(thickest, s.feed_per_tooth_mm.norm());
+  constexpr double kLeast = 4, kMost = 12, kBending_mm = 0.1;
+  return std::clamp(std::ceil((thickest + kBending_mm) / job.simulation.voxel_mm) + 1, kLeast, kMost);
+}
+
+removal::Stock raw_stock(const Job& job, double band, Diagnostics& diagnostics) {
+  const double voxel = job.simulation.voxel_mm;
+  if (job.stock.box) {
+    const Vec3 lo = job.stock.box->min_mm, hi = job.stock.box->max_mm;
+    check_memory(job, lo, hi, band, diagnostics);
+    diagnostics.throw_if_errors();
+    return {[=](const Vec3& p) { return removal::box_distance_mm(p, lo, hi); }, lo, hi, voxel, band};
+  }
+  if (job.stock.mesh.empty())
+    fail_on_file(job.path, "has no stock; [stock] with box_mm or mesh was expected", "stock-missing");
+  // A leaf of voxels is skipped by the distance at its centre, so the mesh's band must hold a leaf's half diagonal.
+  const removal::MeshDistance mesh(job.stock.mesh, voxel, (band + 8) * voxel);
+  check_memory(job, mesh.min_mm(), mesh.max_mm(), band, diagnostics);
+  diagnostics.throw_if_errors();
+  return {[&](const Vec3& p) { return mesh.distance_mm(p); }, mesh.min_mm(), mesh.max_mm(), voxel, band};
+}
+
+template <class Function>
+void for_each_run(const Job& job, const removal::StampPath& path, Function f) {
+  for (const auto& run : path.runs) {
+    const std::span<const removal::Stamp> stamps(path.stamps.data() + run.from, run.count);
+    f(job.tools.at(run.tool), stamps, run.from);
+  }
+}
+
+}  // namespace
+
+double envelope_step_mm(const Job& job, const machine::Tool& tool) {
+  if (job.simulation.envelope_step_mm > 0) return job.simulation.envelope_step_mm;
+  return std::clamp(tool.diameter_mm / 100, 0.02, 0.1);
+}
+
+MachinedProgram machine_program(SourceText source, const Job& job, const feedmodel::SampleSink& samples,
+                                Diagnostics& diagnostics) {
+  MachinedProgram out;
+  out.text = nc::read_program(std::move(source), diagnostics);
+  nc::InterpreterOptions options;
+  options.inch = job.inch;
+  out.moves = nc::interpret(out.text, options, diagnostics);
+  diagnostics.throw_if_errors();
+  out.selected = removal::selected_moves(out.moves, job.operations);
+  check_cutting(job, out.text, out.moves, out.selected, diagnostics);
+  diagnostics.throw_if_errors();
+  removal::StampBuilder builder(out.moves, job.tools, out.selected);
+  out.feed = feedmodel::predict_feed(out.moves, job.machine, [&](std::span<const feedmodel::TimedSample> run) {
+    builder.add(run);
+    if (samples) samples(run);
+  });
+  out.path = builder.take();
+  return out;
+}
+
+Target make_target(const Job& job, const MachinedProgram& target, Diagnostics& diagnostics) {
+  removal::Stock blank = raw_stock(job, band_voxels(job, target.path), diagnostics);
+  const auto sweep_all = [&](removal::Stock& stock, double shrink_mm) {
+    for_each_run(job, target.path, [&](const machine::Tool& tool, auto stamps, std::size_t from) {
+      sweep(stock, tool, stamps, static_cast<std::int32_t>(from), shrink_mm);
+    });
+  };
+  if (job.stock.allowance_mm > 0) {
+    sweep_all(blank, job.stock.allowance_mm);
+    blank.clear_stamps();
+  }
+  removal::Stock surface(blank);
+  sweep_all(surface, 0);
+  std::optional<removal::MeshDistance> part;
+  if (!job.part.mesh.empty()) part.emplace(job.part.mesh, job.simulation.voxel_mm, 10 * job.simulation.voxel_mm);
+  return {std::move(blank), std::move(surface), std::move(part)};
+}
+
+Prediction predict(const Job& job, const Target& target, const MachinedProgram& program, const PredictOptions& options) {
+  Prediction out;
+  out.machined = std::make_unique<removal::Stock>(target.blank);
+  const auto all = static_cast<double>(program.path.stamps.size());
+  for_each_run(job, program.path, [&](const machine::Tool& tool, auto stamps, std::size_t from) {
+    std::vector<Contact> contacts;
+    if (options.contacts) contacts = find_contacts(target.surface, tool, stamps);
+    CutOptions cut_options;
+    cut_options.coupling = job.simulation.coupling;
+    cut_options.envelope_step_mm = envelope_step_mm(job, tool);
+    cut_options.rotation_step_rad = job.simulation.rotation_step_rad;
+    if (options.progress)
+      cut_options.progress = [&](double share) {
+        options.progress((static_cast<double>(from) + share * static_cast<double>(stamps.size())) / all);
+      };
+    CutResult cut_run = cut(*out.machined, tool, job.material, stamps, contacts, static_cast<std::int32_t>(from), cut_options);
+    out.cut.loads.insert(out.cut.loads.end(), cut_run.loads.begin(), cut_run.loads.end());
+    out.cut.chip_mm3 += cut_run.chip_mm3;
+    out.cut.stock_mm3 += cut_run.stock_mm3;
+    out.cut.rounds_max = std::max(out.cut.rounds_max, cut_run.rounds_max);
+    out.cut.unsettled += cut_run.unsettled;
+  });
+  out.surface = removal::compare_surfaces(*out.machined, target.surface);
+  std::vector<double> error_um, area;
+  for (const auto& p : out.surface) {
+    error_um.push_back(1000 * p.error_mm);
+    area.push_back(p.area_mm2);
+    if (target.part) out.total_error_mm.push_back(target.part->distance_mm(p.place_mm + p.error_mm * p.normal));
+  }
+  out.form_error_um = removal::error_figures(error_um, area);
+  return out;
+}
+
+}  // namespace camber::deflection

@@ -1,0 +1,67 @@
+#pragma once
+// A whole prediction: program to timed path to stamps to forces, deflections and the form error of the part.
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "deflection/cut.h"
+#include "feedmodel/timed_path.h"
+#include "machine/job.h"
+#include "nc/move.h"
+#include "nc/program.h"
+#include "removal/mesh_distance.h"
+#include "removal/stamp_path.h"
+#include "removal/stock.h"
+#include "removal/surface.h"
+
+namespace camber::deflection {
+
+/// A program as it runs on the job's machine.
+struct MachinedProgram {
+  nc::Program text;
+  nc::Interpretation moves;
+  std::vector<bool> selected;  ///< per move: cut by the job's operations
+  removal::StampPath path;
+  feedmodel::FeedSummary feed;
+};
+
+/// Reads, interprets, checks and times a program. `samples` (may be empty) also receives the timed path.
+/// Throws InputError.
+MachinedProgram machine_program(SourceText source, const machine::Job& job, const feedmodel::SampleSink& samples,
+                                Diagnostics& diagnostics);
+
+/// What the part is judged against: the undeflected sweep of the target program through the blank.
+struct Target {
+  removal::Stock blank;    ///< before this job's first cut
+  removal::Stock surface;  ///< after the undeflected sweep; its stamps are the target program's
+  std::optional<removal::MeshDistance> part;
+};
+
+/// Builds the blank (box or mesh, less what the target program leaves with the cutter shrunk by the allowance) and
+/// sweeps the target through it. Throws InputError (stock missing, memory).
+Target make_target(const machine::Job& job, const MachinedProgram& target, Diagnostics& diagnostics);
+
+struct Prediction {
+  CutResult cut;                                 ///< loads: one a stamp of the program
+  std::vector<removal::SurfacePoint> surface;
+  std::vector<double> total_error_mm;            ///< against the part's mesh, one a point; empty without a mesh
+  removal::ErrorFigures form_error_um;
+  std::unique_ptr<removal::Stock> machined;
+};
+
+/// `contacts`: also find where each stamp touches the target (only for the deflection at the contact).
+struct PredictOptions {
+  bool contacts = true;
+  std::function<void(double)> progress;
+};
+
+Prediction predict(const machine::Job& job, const Target& target, const MachinedProgram& program,
+                   const PredictOptions& options);
+
+/// Chips and forces need samples about as fine as this along the profile; the job's value where it gives one.
+double envelope_step_mm(const machine::Job& job, const machine::Tool& tool);
+
+}  // namespace camber::deflection
