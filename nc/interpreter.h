@@ -15,6 +15,8 @@ struct InterpreterOptions {
   /// Unit where the program has neither G20 nor G21; not given: millimetres, with a warning.
   std::optional<bool> inch;
   bool skip_slash_blocks = false;  ///< the block skip switch
+  /// G4 P without a decimal point counts milliseconds (Fanuc, Haas, Mazak) and not seconds (LinuxCNC).
+  bool integer_dwell_is_ms = false;
 };
 
 /// Interprets the whole program. Errors and warnings go to `diagnostics`; errors do not stop the reading

@@ -1,0 +1,69 @@
+#include "nc/move.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace camber::nc {
+namespace {
+
+/// The arc in its own frame: `out` and `along` span its plane at the start, the radius runs from one end's to the
+/// other's (they differ by what the text's decimals leave).
+struct ArcFrame {
+  Vec3 out, along;
+  double start_radius, end_radius, rise;
+};
+
+ArcFrame frame_of(const Arc& arc, const Move& move) {
+  const auto radial = [&](const Vec3& p) -> Vec3 {
+    const Vec3 r = p - arc.center_mm;
+    return r - r.dot(arc.normal) * arc.normal;
+  };
+  ArcFrame f;
+  const Vec3 start = radial(move.start_mm);
+  f.start_radius = start.norm();
+  f.end_radius = radial(move.end_mm).norm();
+  f.out = f.start_radius > 0 ? Vec3(start / f.start_radius) : Vec3(arc.normal.unitOrthogonal());
+  f.along = arc.normal.cross(f.out);
+  f.rise = (move.end_mm - move.start_mm).dot(arc.normal);
+  return f;
+}
+
+}  // namespace
+
+double length_mm(const Interpretation& program, const Move& move) {
+  if (move.kind == MoveKind::dwell) return 0;
+  if (move.arc == Move::kNoArc) return (move.end_mm - move.start_mm).norm();
+  const Arc& arc = program.arcs[move.arc];
+  const ArcFrame f = frame_of(arc, move);
+  return std::hypot(0.5 * (f.start_radius + f.end_radius) * arc.sweep_rad, f.rise);
+}
+
+Vec3 point_at(const Interpretation& program, const Move& move, double u) {
+  if (u <= 0) return move.start_mm;
+  if (u >= 1) return move.end_mm;
+  if (move.arc == Move::kNoArc) return move.start_mm + u * (move.end_mm - move.start_mm);
+  const Arc& arc = program.arcs[move.arc];
+  const ArcFrame f = frame_of(arc, move);
+  const double radius = f.start_radius + u * (f.end_radius - f.start_radius);
+  const double angle = u * arc.sweep_rad;
+  const double height = (move.start_mm - arc.center_mm).dot(arc.normal) + u * f.rise;
+  return arc.center_mm + radius * (std::cos(angle) * f.out + std::sin(angle) * f.along) + height * arc.normal;
+}
+
+Vec3 direction_at(const Interpretation& program, const Move& move, double u) {
+  Vec3 direction = move.end_mm - move.start_mm;
+  if (move.arc != Move::kNoArc) {
+    const Arc& arc = program.arcs[move.arc];
+    const ArcFrame f = frame_of(arc, move);
+    const double radius = f.start_radius + u * (f.end_radius - f.start_radius);
+    const double angle = u * arc.sweep_rad;
+    const Vec3 out = std::cos(angle) * f.out + std::sin(angle) * f.along;
+    const Vec3 along = std::cos(angle) * f.along - std::sin(angle) * f.out;
+    direction = (f.end_radius - f.start_radius) * out + radius * arc.sweep_rad * along + f.rise * arc.normal;
+  }
+  const double length = direction.norm();
+  return length > 0 && move.kind != MoveKind::dwell ? Vec3(direction / length) : Vec3(Vec3::Zero());
+}
+
+}  // namespace camber::nc

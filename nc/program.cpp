@@ -1,0 +1,300 @@
+#include "nc/program.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/numbers.h"
+#include "nc/foreign.h"
+#include "nc/reporter.h"
+
+namespace camber::nc {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
+char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+
+/// Letters whose number some CAM systems and people leave out; they are taken as zero, with a warning.
+bool may_lack_number(char letter) { return letter == 'P' || letter == 'Q' || letter == 'D' || letter == 'H' || letter == 'L'; }
+
+std::string printable(unsigned char c) {
+  if (c > 32 && c < 127) return fmt::format("`{}`", static_cast<char>(c));
+  return fmt::format("byte 0x{:02X}", c);
+}
+
+constexpr std::array<double, 20> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,
+                                                 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19};
+
+/// One pass over the text. Each block is read on its own; a block with an error keeps the words before it.
+class Scanner {
+ public:
+  Scanner(Program& program, Reporter& report)
+      : program_(program), report_(report), text_(program.source.text().data()),
+        size_(program.source.text().size()) {}
+
+  /// False when the text is of another language and reading on makes no sense.
+  bool run() {
+    program_.blocks.reserve(program_.source.line_count());
+    program_.words.reserve(size_ / 6);
+    std::size_t at = 0;
+    while (at < size_ && !foreign_ && !report_.full()) {
+      const void* found = std::char_traits<char>::find(text_ + at, size_ - at, '\n');
+      const std::size_t next = found ? static_cast<std::size_t>(static_cast<const char*>(found) - text_) : size_;
+      std::size_t end = next;
+      while (end > at && text_[end - 1] == '\r') --end;
+      scan_block(at, end);
+      at = next + 1;
+    }
+    return !foreign_;
+  }
+
+ private:
+  void scan_block(std::size_t begin, std::size_t end) {
+    Block block;
+    block.offset = static_cast<std::uint32_t>(begin);
+    block.length = static_cast<std::uint32_t>(end - begin);
+    block.first_word = static_cast<std::uint32_t>(program_.words.size());
+    at_ = begin;
+    end_ = end;
+    skip_ = false;
+    if (begin == 0 && end >= 3 && std::string_view(text_, 3) == "\xEF\xBB\xBF") at_ = 3;  // byte order mark
+    while (at_ < end_ && scan_item(begin)) {
+    }
+    std::size_t count = program_.words.size() - block.first_word;
+    if (count > std::numeric_limits<std::uint16_t>::max()) {
+      report_.error(begin, "too-many-words", fmt::format("{} words in one block; at most 65535 are read", count));
+      program_.words.resize(block.first_word);
+      count = 0;
+    }
+    block.word_count = static_cast<std::uint16_t>(count);
+    block.skip = skip_;
+    program_.blocks.push_back(block);
+  }
+
+  /// Reads one word, comment or sign; false ends the block.
+  bool scan_item(std::size_t block_begin) {
+    const char c = text_[at_];
+    if (is_letter(c)) return scan_word();
+    if (is_blank(c)) return ++at_, true;
+    switch (c) {
+      case '(': return skip_comment('(', ')');
+      case '[': return skip_comment('[', ']');
+      case '<': return skip_comment('<', '>');  // a program name, as in <PART_1>
+      case ';': return false;
+      case '%': return ++at_, true;
+      case '/': return scan_skip();
+      case ':': return scan_program_number(block_begin);
+      default: return refuse(c);
+    }
+  }
+
+  /// A comment may hold others of its kind. A bracket left open is an error unless the block's last bracket closes it.
+  bool skip_comment(char open, char close) {
+    const std::size_t begin = at_;
+    int depth = 0;
+    std::size_t last_close = 0;
+    for (; at_ < end_; ++at_) {
+      if (text_[at_] == open) ++depth;
+      if (text_[at_] != close) continue;
+      last_close = at_;
+      if (--depth == 0) return ++at_, true;
+    }
+    const bool closed_at_end = last_close > 0 && std::string_view(text_ + last_close + 1, end_ - last_close - 1)
+                                                         .find_first_not_of(" \t\r") == std::string_view::npos;
+    if (!closed_at_end)
+      report_.error(begin, "comment-open", fmt::format("the comment has no closing `{}` in its block", close), "open");
+    return false;
+  }
+
+  bool scan_skip() {
+    skip_ = true;
+    ++at_;
+    if (at_ < end_ && is_digit(text_[at_])) ++at_;  // /1 .. /9: which switch
+    return true;
+  }
+
+  /// `:1234` is another way to write O1234.
+  bool scan_program_number(std::size_t) { return scan_word_as('O', at_); }
+
+  bool scan_word() {
+    const char letter = upper(text_[at_]);
+    const char next = at_ + 1 < end_ ? text_[at_ + 1] : '\0';
+    if (is_letter(next) || next == '_' || next == '=' || next == '<') return refuse_letters();
+    return scan_word_as(letter, at_);
+  }
+
+  bool scan_word_as(char letter, std::size_t begin) {
+    ++at_;
+    skip_blanks();
+    const std::size_t number = at_;
+    double value = 0;
+    if (!scan_number(value)) return lacks_number(letter, begin, number);
+    if (at_ < end_ && text_[at_] == '=') return refuse_assignment(begin);
+    return add_word(letter, begin, number, at_, value);
+  }
+
+  bool add_word(char letter, std::size_t begin, std::size_t number, std::size_t end, double value) {
+    if (end - begin > std::numeric_limits<std::uint16_t>::max()) {
+      report_.error(begin, "word-too-long", fmt::format("the word {} is longer than 65535 characters", letter));
+      return false;
+    }
+    program_.words.push_back({letter, static_cast<std::uint32_t>(begin), static_cast<std::uint16_t>(end - begin),
+                              static_cast<std::uint16_t>(number - begin), value});
+    return true;
+  }
+
+  void skip_blanks() {
+    while (at_ < end_ && is_blank(text_[at_])) ++at_;
+  }
+
+  /// Next character of a number at or behind blanks; at_ stays behind the last character that belongs to it.
+  std::size_t behind_blanks() const {
+    std::size_t i = at_;
+    while (i < end_ && is_blank(text_[i])) ++i;
+    return i;
+  }
+
+  /// Sign, digits, point, digits, with blanks between them. Up to 2^53 in 19 digits the quotient of two exact
+  /// doubles is the nearest double; longer numbers go through parse_number.
+  bool scan_number(double& value) {
+    const std::size_t begin = at_;
+    bool negative = false;
+    if (at_ < end_ && (text_[at_] == '-' || text_[at_] == '+')) negative = text_[at_++] == '-';
+    std::uint64_t mantissa = 0;
+    int digits = 0, decimals = 0;
+    bool point = false;
+    for (std::size_t i = behind_blanks(); i < end_; i = behind_blanks()) {
+      const char c = text_[i];
+      if (is_digit(c)) {
+        if (++digits <= 18) mantissa = mantissa * 10 + static_cast<std::uint64_t>(c - '0');
+        decimals += point;
+      } else if (c == '.' && !point) {
+        point = true;
+      } else {
+        break;
+      }
+      at_ = i + 1;
+    }
+    if (digits == 0) return at_ = begin, false;
+    if (digits > 18 || mantissa > (1ull << 53)) return long_number(begin, value);
+    value = static_cast<double>(mantissa) / kPowersOfTen[static_cast<std::size_t>(decimals)];
+    if (negative) value = -value;
+    return true;
+  }
+
+  bool long_number(std::size_t begin, double& value) {
+    std::string digits;
+    for (std::size_t i = begin; i < at_; ++i)
+      if (!is_blank(text_[i])) digits += text_[i];
+    const auto parsed = parse_number(digits);
+    value = parsed.value_or(0);
+    return parsed.has_value();
+  }
+
+  bool lacks_number(char letter, std::size_t begin, std::size_t number) {
+    const char c = number < end_ ? text_[number] : '\0';
+    if (c == '#' || c == '[')
+      report_.error(number, "variable",
+                    fmt::format("the value of {} is a {}; variables and expressions are not read yet, a number was expected",
+                                letter, c == '#' ? "variable" : "expression"),
+                    "variable");
+    else if (c == '"' || c == '=')
+      return refuse_assignment(begin);
+    else if (may_lack_number(letter) && (c == '\0' || is_letter(c) || c == '(' || c == ';')) {
+      report_.warning(begin, "no-number", fmt::format("{} has no number; it is taken as {}0", letter, letter));
+      return add_word(letter, begin, begin + 1, begin + 1, 0);
+    } else
+      report_.error(begin, "no-number", fmt::format("{} has no number; a number was expected", letter));
+    return false;
+  }
+
+  std::string letters_from(std::size_t begin) const {
+    std::string name;
+    for (std::size_t i = begin; i < end_ && (is_letter(text_[i]) || text_[i] == '_'); ++i) name += upper(text_[i]);
+    return name;
+  }
+
+  bool refuse_letters() {
+    const std::string name = letters_from(at_);
+    if (at_ + name.size() < end_ && (text_[at_ + name.size()] == '=' || name.find('_') != std::string::npos))
+      return refuse_assignment(at_);
+    if (name.size() == 1) {  // O<name>
+      report_.error(at_, "subprogram", "O-word subprograms and flow control (O<name>) are not read yet; plain blocks were expected");
+      return false;
+    }
+    const std::string rest = name.substr(1);
+    if (rest == "NAN" || rest == "INF" || rest == "INFINITY") {
+      report_.error(at_, "not-a-number", fmt::format("{} is not a number; a number such as {}12.5 was expected", name, name[0]));
+      return false;
+    }
+    ForeignWord word = explain_letters(name);
+    foreign_ = word.other_language;
+    report_.error(at_, word.check, std::move(word.message));
+    return false;
+  }
+
+  bool refuse_assignment(std::size_t begin) {
+    std::size_t end = begin;
+    while (end < end_ && text_[end] != '=' && !is_blank(text_[end]) && text_[end] != '"') ++end;
+    ForeignWord word = explain_assignment(std::string_view(text_ + begin, end - begin));
+    foreign_ = true;
+    report_.error(begin, word.check, std::move(word.message));
+    return false;
+  }
+
+  bool refuse(char c) {
+    if (c == '\x1a' || c == '\0') {
+      if (at_ + 1 == size_) return false;  // end-of-file mark of old systems
+    }
+    if (c == '#') {
+      report_.error(at_, "variable", "variables (#) are not read yet; let the CAM system write the numbers out", "#");
+    } else if (c == ',') {
+      const std::string name = letters_from(at_ + 1);
+      report_.error(at_, "corner-word",
+                    fmt::format("chamfers and roundings in a block (,{}) are not read yet; a word was expected",
+                                name.substr(0, 1)));
+    } else {
+      report_.error(at_, "unexpected-character",
+                    fmt::format("{} is not expected here; a word (a letter and a number) or a comment was expected",
+                                printable(static_cast<unsigned char>(c))));
+    }
+    return false;
+  }
+
+  Program& program_;
+  Reporter& report_;
+  const char* text_;
+  std::size_t size_;
+  std::size_t at_ = 0, end_ = 0;
+  bool skip_ = false;
+  bool foreign_ = false;
+};
+
+}  // namespace
+
+Program read_program(SourceText source, Diagnostics& diagnostics) {
+  if (source.text().size() >= std::numeric_limits<std::uint32_t>::max())
+    fail_on_file(source.name(), "the program is larger than 4 GB; at most 4 GB are read", "program-too-large");
+  Program program;
+  program.source = std::move(source);
+  Reporter report(program.source, diagnostics);
+  const bool whole = Scanner(program, report).run();
+  const bool stop = !whole;
+  const bool wordless = program.words.empty() && !report.has_errors();
+  report.finish();
+  if (wordless) {
+    const bool blank = program.source.text().find_first_not_of(" \t\r\n") == std::string::npos;
+    diagnostics.add({Severity::error, {program.source.name(), 0, 0},
+                     blank ? "the file is empty; an NC program was expected"
+                           : "the file holds no NC words; an NC program was expected",
+                     "empty-program", {}});
+  }
+  if (stop) diagnostics.throw_if_errors();
+  return program;
+}
+
+}  // namespace camber::nc
