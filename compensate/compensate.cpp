@@ -15,9 +15,12 @@ using deflection::Prediction;
 
 std::string to_string(Stop stop) {
   switch (stop) {
-    case Stop::tolerance: return "tolerance";
-    case Stop::stalled: return "stalled";
-    case Stop::rounds: break;
+    case Stop::tolerance:
+      return "tolerance";
+    case Stop::stalled:
+      return "stalled";
+    case Stop::rounds:
+      break;
   }
   return "rounds";
 }
@@ -67,7 +70,8 @@ std::size_t count_changed(const nc::Program& program, const std::string& text) {
   for (std::size_t line = 1; line <= program.source.line_count(); ++line) {
     std::size_t seek = at;
     constexpr std::size_t kWindow = 200;
-    while (seek <= emitted.line_count() && seek < at + kWindow && emitted.line(seek) != program.source.line(line)) ++seek;
+    while (seek <= emitted.line_count() && seek < at + kWindow && emitted.line(seek) != program.source.line(line))
+      ++seek;
     if (seek <= emitted.line_count() && seek < at + kWindow)
       at = seek + 1;
     else
@@ -101,7 +105,8 @@ class Loop {
     std::vector<removal::SurfacePoint> surface = std::move(first.surface);
     int without_gain = 0;
     while (!done(out, without_gain)) {
-      const std::size_t limited = fit_shift(path_, attribution.observe(surface), {.max_shift_mm = job_.compensation.max_shift_mm});
+      const std::size_t limited =
+          fit_shift(path_, attribution.observe(surface), {.max_shift_mm = job_.compensation.max_shift_mm});
       const std::string text = nc::emit(program_.text, program_.moves, path_.edits(kViaTolerance_mm), {});
       Diagnostics repeated;  // the emitted program's warnings are the original's
       const MachinedProgram shifted = deflection::machine_program(SourceText(job_.program, text), job_, {}, repeated);

@@ -22,16 +22,16 @@ struct Round {
 };
 
 struct Compensation {
-  std::string text;                ///< the emitted program of the best round
+  std::string text;  ///< the emitted program of the best round
   removal::ErrorFigures before_um, after_um;
-  std::vector<Round> rounds;       ///< rounds[0]: the program as given
-  std::size_t best = 0;            ///< index into rounds
+  std::vector<Round> rounds;  ///< rounds[0]: the program as given
+  std::size_t best = 0;       ///< index into rounds
   Stop stop = Stop::rounds;
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double max_shift_mm = 0;
   std::vector<removal::SurfacePoint> surface_before, surface_after;  ///< the same points, in the same order
   feedmodel::FeedSummary feed_before, feed_after;
-  bool settled = true;             ///< every static solution of the first and the best round did
+  bool settled = true;  ///< every static solution of the first and the best round did
 };
 
 struct CompensateOptions {

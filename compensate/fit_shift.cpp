@@ -71,8 +71,8 @@ void solve_chain(const System& s, const Chain& chain, std::vector<ControlPoint>&
 
 std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options) {
   auto& points = path.points();
-  System s{std::vector<Matrix3d>(points.size(), Matrix3d::Zero()), std::vector<Matrix3d>(points.size(), Matrix3d::Zero()),
-           std::vector<Vec3>(points.size(), Vec3::Zero())};
+  System s{std::vector<Matrix3d>(points.size(), Matrix3d::Zero()),
+           std::vector<Matrix3d>(points.size(), Matrix3d::Zero()), std::vector<Vec3>(points.size(), Vec3::Zero())};
   double area = 0, length = 0;
   for (const Observation& o : observations) {
     add_observation(s, path, o);

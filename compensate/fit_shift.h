@@ -17,8 +17,8 @@ struct Observation {
 };
 
 struct FitShiftOptions {
-  double smoothing_mm = 0.3;   ///< features of the shift shorter than this along the path are smoothed
-  double decay_mm = 10;        ///< without surface to correct, the shift dies away over this length
+  double smoothing_mm = 0.3;  ///< features of the shift shorter than this along the path are smoothed
+  double decay_mm = 10;       ///< without surface to correct, the shift dies away over this length
   double max_shift_mm = 0.1;
 };
 

@@ -23,10 +23,12 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
     }
     first_of_move_[m] = points_.size() - 1;
     const double along = points_.back().along_mm;
-    const int pieces = move.kind == nc::MoveKind::linear ? std::max(1, static_cast<int>(std::ceil(length / spacing_mm - 1e-9))) : 1;
+    const int pieces =
+        move.kind == nc::MoveKind::linear ? std::max(1, static_cast<int>(std::ceil(length / spacing_mm - 1e-9))) : 1;
     for (int i = 1; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
-      points_.push_back({.move = m, .share = u, .along_mm = along + u * length, .place_mm = nc::point_at(program, move, u)});
+      points_.push_back(
+          {.move = m, .share = u, .along_mm = along + u * length, .place_mm = nc::point_at(program, move, u)});
       ++chains_.back().count;
     }
   }
@@ -46,7 +48,8 @@ ShiftPath::Place ShiftPath::find(std::uint32_t move, double share) const {
 namespace {
 
 /// Indices of `path` that must stay so that no left-out point strays from the polyline (Douglas-Peucker).
-void keep_strays(const std::vector<Vec3>& path, std::size_t a, std::size_t b, double tolerance, std::vector<std::size_t>& kept) {
+void keep_strays(const std::vector<Vec3>& path, std::size_t a, std::size_t b, double tolerance,
+                 std::vector<std::size_t>& kept) {
   double worst = tolerance;
   std::size_t at = 0;
   const Vec3 chord = path[b] - path[a];
@@ -84,8 +87,8 @@ nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, double tole
   if (move.kind == nc::MoveKind::arc) {
     const nc::Arc& arc = program_.arcs[move.arc];
     const Vec3 start = points_[first].place_mm + points_[first].shift_mm;
-    edit.center_mm = agreeing_centre(arc, start, edit.end_mm,
-                                     arc.center_mm + 0.5 * (points_[first].shift_mm + end.shift_mm));
+    edit.center_mm =
+        agreeing_centre(arc, start, edit.end_mm, arc.center_mm + 0.5 * (points_[first].shift_mm + end.shift_mm));
     return edit;
   }
   std::vector<Vec3> path;

@@ -13,11 +13,11 @@ namespace camber::compensate {
 /// A place on the programmed path. Shifts are linear between neighbours of a chain.
 struct ControlPoint {
   std::uint32_t move = 0;
-  double share = 0;       ///< of the move's length
-  double along_mm = 0;    ///< path length since the chain's start
+  double share = 0;     ///< of the move's length
+  double along_mm = 0;  ///< path length since the chain's start
   Vec3 place_mm = Vec3::Zero();
   Vec3 shift_mm = Vec3::Zero();
-  bool fixed = false;     ///< where a rapid or a move of another operation ends: stays
+  bool fixed = false;  ///< where a rapid or a move of another operation ends: stays
 };
 
 /// One unbroken run of moves that may be shifted: points[from] ... points[from + count - 1].

@@ -5,7 +5,8 @@
 
 namespace camber::deflection {
 
-Beam::Beam(std::vector<Section> sections, double root) : sections_(std::move(sections)), root_compliance_mm_per_N_(root) {}
+Beam::Beam(std::vector<Section> sections, double root)
+    : sections_(std::move(sections)), root_compliance_mm_per_N_(root) {}
 
 double Beam::compliance_mm_per_N(double a, double b) const {
   const double higher = std::max(a, b);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/LU>
 #include <tbb/parallel_for.h>
+#include <Eigen/LU>
 
 #include "deflection/beam.h"
 #include "removal/stretch.h"
@@ -116,7 +116,8 @@ class Cutter {
   }
 
  private:
-  static constexpr double kFall = 0.6;        ///< a round should bring the change down to this at least
+  static constexpr double kFall = 0.4;  ///< a round should bring the change down by this share of its step
+  static constexpr double kShorter = 0.7;
   static constexpr double kLeastShare = 0.3;  ///< of a Newton step
 
   /// Over the loaded rotation steps of a stretch.
@@ -151,10 +152,9 @@ class Cutter {
       });
       const Change change = newton_step(stamps, passes, share, shifts);
       result.rounds_max = std::max(result.rounds_max, round);
-      if (getenv("DBG")) fprintf(stderr, "round %d change %.3f size %.3f share %.2f\n", round, change.rms_um, change.size_um, share);
       if (change.rms_um < std::max(options_.settle_um, options_.settle_share * change.size_um)) return;
       // What swings from round to round is stilled by shorter steps.
-      if (change.rms_um > kFall * change_before_um) share = std::max(kLeastShare, kFall * share);
+      if (change.rms_um > (1 - kFall * share) * change_before_um) share = std::max(kLeastShare, kShorter * share);
       change_before_um = change.rms_um;
     }
     ++result.unsettled;
@@ -192,7 +192,8 @@ class Cutter {
       }
     }
     if (count == 0) return {};
-    return {1000 * std::sqrt(change2 / static_cast<double>(count)), 1000 * std::sqrt(size2 / static_cast<double>(count))};
+    return {1000 * std::sqrt(change2 / static_cast<double>(count)),
+            1000 * std::sqrt(size2 / static_cast<double>(count))};
   }
 
   Stock& stock_;
@@ -207,9 +208,8 @@ class Cutter {
 
 }  // namespace
 
-CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& material,
-              std::span<const Stamp> stamps, std::span<const Contact> contacts, std::int32_t first_id,
-              const CutOptions& options) {
+CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& material, std::span<const Stamp> stamps,
+              std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options) {
   CutResult result;
   result.loads.reserve(stamps.size());
   Cutter cutter(stock, tool, material, stamps, options);

@@ -15,11 +15,11 @@ namespace camber::deflection {
 
 /// The loads of one tooth passing. Forces act on the tool, in machine axes.
 struct StampLoad {
-  Vec3 force_max_N = Vec3::Zero();   ///< per component the signed value of largest magnitude
-  double lateral_max_N = 0;          ///< largest sqrt(Fx^2 + Fy^2)
-  Vec3 force_mean_N = Vec3::Zero();  ///< over the tooth passing
+  Vec3 force_max_N = Vec3::Zero();            ///< per component the signed value of largest magnitude
+  double lateral_max_N = 0;                   ///< largest sqrt(Fx^2 + Fy^2)
+  Vec3 force_mean_N = Vec3::Zero();           ///< over the tooth passing
   Vec2 contact_deflection_mm = Vec2::Zero();  ///< at the contact's height as an edge passes it
-  double chip_mm3 = 0;               ///< volume of the chips
+  double chip_mm3 = 0;                        ///< volume of the chips
 };
 
 /// Where the envelope generates the surface: the point at which an edge leaves its mark.
@@ -32,11 +32,11 @@ struct CutOptions {
   machine::Coupling coupling = machine::Coupling::static_;
   double envelope_step_mm = 0.1;
   double rotation_step_rad = kPi / 180;
-  std::size_t stretch_stamps = 400;  ///< solved and kept in memory at a time
-  int max_rounds = 40;               ///< of the static solution of one stretch
-  double edge_ramp_mm = 0.002;       ///< static only, see edge_force
-  double settle_um = 0.1;            ///< rms change of the deflection at which a stretch is settled, or ...
-  double settle_share = 0.01;        ///< ... this share of its rms
+  std::size_t stretch_stamps = 400;      ///< solved and kept in memory at a time
+  int max_rounds = 40;                   ///< of the static solution of one stretch
+  double edge_ramp_mm = 0.002;           ///< static only, see edge_force
+  double settle_um = 0.1;                ///< rms change of the deflection at which a stretch is settled, or ...
+  double settle_share = 0.01;            ///< ... this share of its rms
   std::function<void(double)> progress;  ///< share done, 0 to 1
 };
 

@@ -33,9 +33,10 @@ void warn_of_vibration(const machine::Tool& tool, double rpm, const nc::Program&
   if (tooth_hz <= first_hz / 3) return;
   diagnostics.add(program.source.diagnostic(
       Severity::warning, offset,
-      fmt::format("T{} passes {:.0f} teeth a second, more than a third of its first natural frequency of about {:.0f} Hz: "
-                  "a static deflection no longer holds",
-                  tool.number, tooth_hz, first_hz),
+      fmt::format(
+          "T{} passes {:.0f} teeth a second, more than a third of its first natural frequency of about {:.0f} Hz: "
+          "a static deflection no longer holds",
+          tool.number, tooth_hz, first_hz),
       "tooth-frequency"));
 }
 
@@ -62,21 +63,23 @@ void check_cutting(const machine::Job& job, const nc::Program& program, const nc
       continue;
     }
     if (tool->second.type == machine::ToolType::drill)
-      error(fmt::format("T{} is a drill in the job, but mills here; ball, flat or bull was expected", number), "tool-type");
+      error(fmt::format("T{} is a drill in the job, but mills here; ball, flat or bull was expected", number),
+            "tool-type");
     if (direction == nc::SpindleDirection::stopped || rpm <= 0)
       error(fmt::format("T{} cuts here with the spindle {}; S above zero and M3 were expected", number,
                         rpm <= 0 ? "at S0" : "stopped"),
             "spindle-stopped");
     else if (direction == nc::SpindleDirection::counter_clockwise)
-      error(fmt::format("T{} cuts here under M4, but cutters are right-hand; M3 was expected", number), "spindle-direction");
+      error(fmt::format("T{} cuts here under M4, but cutters are right-hand; M3 was expected", number),
+            "spindle-direction");
     else
       warn_of_vibration(tool->second, rpm, program, offset, diagnostics);
   }
 }
 
 double field_bytes(const Vec3& size, double voxel, double band_voxels) {
-  constexpr double kCopies = 5;        // blank, target, machined, its blank, its undeflected twin
-  constexpr double kBytesPerVoxel = 8; // distance and stamp
+  constexpr double kCopies = 5;         // blank, target, machined, its blank, its undeflected twin
+  constexpr double kBytesPerVoxel = 8;  // distance and stamp
   constexpr double kLeaf = 8;
   const double area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
   return kCopies * kBytesPerVoxel * area / (voxel * voxel) * (2 * band_voxels + kLeaf);
@@ -91,19 +94,21 @@ double free_memory_bytes() {
 }
 }  // namespace
 
-void check_memory(const machine::Job& job, const Vec3& lo, const Vec3& hi, double band_voxels, Diagnostics& diagnostics) {
+void check_memory(const machine::Job& job, const Vec3& lo, const Vec3& hi, double band_voxels,
+                  Diagnostics& diagnostics) {
   const double voxel = job.simulation.voxel_mm;
   const double needed = field_bytes(hi - lo, voxel, band_voxels), free = free_memory_bytes();
   if (needed <= free) return;
   double enough = voxel;
   while (field_bytes(hi - lo, enough, band_voxels) > free / 2) enough *= 1.25;
-  diagnostics.add({Severity::error,
-                   {job.path, 0, 0},
-                   fmt::format("voxel_mm = {:g} needs about {:.1f} GB for a stock of {:.0f} x {:.0f} x {:.0f} mm, but {:.1f} GB "
-                               "are free; voxel_mm = {:.2g} or a smaller stock was expected",
-                               voxel, needed / 1e9, hi.x() - lo.x(), hi.y() - lo.y(), hi.z() - lo.z(), free / 1e9, enough),
-                   "voxel-memory",
-                   {}});
+  diagnostics.add(
+      {Severity::error,
+       {job.path, 0, 0},
+       fmt::format("voxel_mm = {:g} needs about {:.1f} GB for a stock of {:.0f} x {:.0f} x {:.0f} mm, but {:.1f} GB "
+                   "are free; voxel_mm = {:.2g} or a smaller stock was expected",
+                   voxel, needed / 1e9, hi.x() - lo.x(), hi.y() - lo.y(), hi.z() - lo.z(), free / 1e9, enough),
+       "voxel-memory",
+       {}});
 }
 
 }  // namespace camber::deflection

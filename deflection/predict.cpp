@@ -92,7 +92,8 @@ Target make_target(const Job& job, const MachinedProgram& target, Diagnostics& d
   return {std::move(blank), std::move(surface), std::move(part)};
 }
 
-Prediction predict(const Job& job, const Target& target, const MachinedProgram& program, const PredictOptions& options) {
+Prediction predict(const Job& job, const Target& target, const MachinedProgram& program,
+                   const PredictOptions& options) {
   Prediction out;
   out.machined = std::make_unique<removal::Stock>(target.blank);
   const auto all = static_cast<double>(program.path.stamps.size());
@@ -107,7 +108,8 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
       cut_options.progress = [&](double share) {
         options.progress((static_cast<double>(from) + share * static_cast<double>(stamps.size())) / all);
       };
-    CutResult cut_run = cut(*out.machined, tool, job.material, stamps, contacts, static_cast<std::int32_t>(from), cut_options);
+    CutResult cut_run =
+        cut(*out.machined, tool, job.material, stamps, contacts, static_cast<std::int32_t>(from), cut_options);
     out.cut.loads.insert(out.cut.loads.end(), cut_run.loads.begin(), cut_run.loads.end());
     out.cut.chip_mm3 += cut_run.chip_mm3;
     out.cut.stock_mm3 += cut_run.stock_mm3;

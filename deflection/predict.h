@@ -45,9 +45,9 @@ struct Target {
 Target make_target(const machine::Job& job, const MachinedProgram& target, Diagnostics& diagnostics);
 
 struct Prediction {
-  CutResult cut;                                 ///< loads: one a stamp of the program
+  CutResult cut;  ///< loads: one a stamp of the program
   std::vector<removal::SurfacePoint> surface;
-  std::vector<double> total_error_mm;            ///< against the part's mesh, one a point; empty without a mesh
+  std::vector<double> total_error_mm;  ///< against the part's mesh, one a point; empty without a mesh
   removal::ErrorFigures form_error_um;
   std::unique_ptr<removal::Stock> machined;
 };

@@ -25,9 +25,8 @@ ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const mach
 }
 
 ToothPassModel::Direction ToothPassModel::direction(std::uint32_t p, const removal::EnvelopeGrid::Ring& ring) const {
-  const double phi = 2 * kPi * (p % static_cast<std::uint32_t>(envelope_.steps)) / envelope_.steps + ring.lag_rad;
-  const double s = std::sin(phi), c = std::cos(phi);
-  const double sk = std::sin(ring.profile.normal_angle_rad), ck = std::cos(ring.profile.normal_angle_rad);
+  const double s = envelope_.sin_phi[p], c = envelope_.cos_phi[p];
+  const double sk = ring.sine, ck = ring.cosine;
   // Clockwise seen from above (M3).
   return {{s, -c, 0}, {sk * c, sk * s, -ck}, {ck * c, ck * s, sk}};
 }
@@ -56,7 +55,8 @@ void ToothPassModel::evaluate(std::span<const removal::Chip> chips, ToothPass& o
     Vec3 slope = material_.ktc_MPa * d.tangential + material_.krc_MPa * d.normal + material_.kac_MPa * d.meridian;
     if (chip.thickness_mm < edge_ramp_mm_)
       slope += (material_.kte_N_per_mm * d.tangential + material_.kre_N_per_mm * d.normal +
-                material_.kae_N_per_mm * d.meridian) / edge_ramp_mm_;
+                material_.kae_N_per_mm * d.meridian) /
+               edge_ramp_mm_;
     const Eigen::Matrix2d feedback =
         -own_compliance_[r] * ring.width_mm * slope.head<2>() * d.normal.head<2>().transpose();
     out.feedback[m] += feedback;

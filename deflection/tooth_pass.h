@@ -13,8 +13,8 @@ namespace camber::deflection {
 
 /// One tooth passing. Sized once, filled for many stamps.
 struct ToothPass {
-  std::vector<Vec3> force_N;          ///< per rotation step, on the tool, machine axes
-  std::vector<float> deflection_mm;   ///< [nodes][steps][2], as a row of removal::ShiftTable
+  std::vector<Vec3> force_N;         ///< per rotation step, on the tool, machine axes
+  std::vector<float> deflection_mm;  ///< [nodes][steps][2], as a row of removal::ShiftTable
   /// Per step: how a lateral shift of the tool changes the deflection through the chip, d(deflection)/d(shift).
   std::vector<Eigen::Matrix2d> feedback;
   /// The part of it that a shift of the tooth before takes back.
@@ -41,7 +41,7 @@ class ToothPassModel {
   machine::Material material_;
   double edge_ramp_mm_;
   std::vector<double> node_height_mm_;
-  std::vector<double> compliance_;  ///< [rings][nodes], mm/N
+  std::vector<double> compliance_;      ///< [rings][nodes], mm/N
   std::vector<double> own_compliance_;  ///< [rings]: at the ring's own height
 };
 

@@ -12,11 +12,11 @@ namespace camber::feedmodel {
 
 struct TimedSample {
   double t_s = 0;
-  Vec3 command_mm = Vec3::Zero();             ///< what the interpolator commands
-  Vec3 position_mm = Vec3::Zero();            ///< predicted actual axes
-  Vec3 velocity_mm_per_s = Vec3::Zero();      ///< predicted actual axes
-  double feed_command_mm_per_s = 0;           ///< programmed feed of the commanded move (rapid: its top speed)
-  std::uint32_t move = 0;                     ///< index of the move being commanded
+  Vec3 command_mm = Vec3::Zero();         ///< what the interpolator commands
+  Vec3 position_mm = Vec3::Zero();        ///< predicted actual axes
+  Vec3 velocity_mm_per_s = Vec3::Zero();  ///< predicted actual axes
+  double feed_command_mm_per_s = 0;       ///< programmed feed of the commanded move (rapid: its top speed)
+  std::uint32_t move = 0;                 ///< index of the move being commanded
 };
 
 struct FeedSummary {

@@ -89,4 +89,7 @@ struct Job {
 /// Reads the job and its machine file. Throws InputError with file:line:column.
 Job read_job(const std::string& path, Diagnostics& diagnostics);
 
+/// job.toml text with every default filled in; paths as they were resolved.
+std::string to_toml(const Job& job);
+
 }  // namespace camber::machine

@@ -23,6 +23,11 @@ struct Corner {
   double tolerance_mm = 0;                 ///< blend
   double speed_difference_mm_per_s = kNoLimit;  ///< speed_difference
   double time_s = 0;                       ///< angle: dt
+  /// Corners passed without rounding: the speed of an axis may jump by this share of what it gains in one period
+  /// (dV = share x acceleration x period). 0: only corners without a change of direction are passed so.
+  double step_share = 0;
+  /// A line that lasts less than this between two roundings is driven with the limits of the roundings.
+  double short_line_time_s = 0;
 };
 
 struct Control {
@@ -31,6 +36,13 @@ struct Control {
   double block_time_s = 0;      ///< block processing time T_b
   Corner corner;
   double merge_tolerance_mm = 0;  ///< short lines within it are merged; 0: none
+  int lookahead_blocks = 0;       ///< segments seen ahead, at the last of which it could stop; 0: all
+  double arc_normal_share = 1;      ///< of the acceleration, to turn: v <= sqrt(share a r)
+  double arc_tangential_share = 1;  ///< of the acceleration, along an arc whose speed may reach that limit
+  /// Of the acceleration, in a block that should be blended (G64) but ends in a stop; taken twice when the
+  /// look-ahead plans how fast that block may be entered.
+  double stop_acceleration_share = 1;
+  double rest_latency_s = 0;  ///< a rest (dwell) takes this much longer than programmed
 };
 
 struct Axis {
@@ -39,6 +51,7 @@ struct Axis {
   double jerk_mm_per_s3 = kNoLimit;
   double filter_s = 0;                      ///< moving average after interpolation; 0: none
   double position_gain_per_s = kNoLimit;    ///< Kp of the position loop; infinity: no lag
+  double velocity_lag_s = 0;                ///< time constant of the velocity loop inside the position loop
   double feed_forward_percent = 0;
   std::array<double, 2> travel_mm{-kNoLimit, kNoLimit};
 };

@@ -47,8 +47,9 @@ std::string centre_from_radius(const ArcWords& words, const PlaneAxes& axes, Vec
   if (chord < kSamePlaceMm)
     return "an arc with R ends where it starts, which leaves its centre open; I J K were expected for a full turn";
   if (chord > 2 * radius + kChordOverDiameterMm)
-    return fmt::format("the end of the arc is {:.4f} mm from its start; with R {:.4f} mm at most {:.4f} mm can be reached",
-                       chord, radius, 2 * radius);
+    return fmt::format(
+        "the end of the arc is {:.4f} mm from its start; with R {:.4f} mm at most {:.4f} mm can be reached", chord,
+        radius, 2 * radius);
   const double height = std::sqrt(std::max(0.0, radius * radius - 0.25 * chord * chord));
   const bool left = words.clockwise == (*words.r_mm < 0);
   const double side = (left ? 1.0 : -1.0) * height / chord;
@@ -59,7 +60,8 @@ std::string centre_from_radius(const ArcWords& words, const PlaneAxes& axes, Vec
 }
 
 double sweep_of(const ArcWords& words, const PlaneAxes& axes, const Vec3& centre) {
-  const double x0 = words.start_mm[axes.first] - centre[axes.first], y0 = words.start_mm[axes.second] - centre[axes.second];
+  const double x0 = words.start_mm[axes.first] - centre[axes.first],
+               y0 = words.start_mm[axes.second] - centre[axes.second];
   const double x1 = words.end_mm[axes.first] - centre[axes.first], y1 = words.end_mm[axes.second] - centre[axes.second];
   double sweep = std::atan2(x0 * y1 - y0 * x1, x0 * x1 + y0 * y1);  // counter-clockwise, -pi..pi
   if (words.clockwise) sweep = -sweep;
@@ -78,9 +80,12 @@ Vec3 normal_of(Plane plane) { return Vec3::Unit(axes_of(plane).normal); }
 
 PlaneAxes axes_of(Plane plane) {
   switch (plane) {
-    case Plane::zx: return {2, 0, 1};
-    case Plane::yz: return {1, 2, 0};
-    case Plane::xy: break;
+    case Plane::zx:
+      return {2, 0, 1};
+    case Plane::yz:
+      return {1, 2, 0};
+    case Plane::xy:
+      break;
   }
   return {0, 1, 2};
 }

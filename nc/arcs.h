@@ -19,19 +19,19 @@ struct PlaneAxes {
 PlaneAxes axes_of(Plane plane);
 
 struct ArcWords {
-  Vec3 start_mm, end_mm;
+  Vec3 start_mm = Vec3::Zero(), end_mm = Vec3::Zero();
   Plane plane = Plane::xy;
-  bool clockwise = false;              ///< G2, seen against the plane's normal
-  std::optional<double> i_mm, j_mm, k_mm, r_mm;
-  bool absolute_centre = false;        ///< G90.1
-  int turns = 1;                       ///< P: 1 is up to one full turn
+  bool clockwise = false;  ///< G2, seen against the plane's normal
+  std::optional<double> i_mm{}, j_mm{}, k_mm{}, r_mm{};
+  bool absolute_centre = false;  ///< G90.1
+  int turns = 1;                 ///< P: 1 is up to one full turn
 };
 
 struct ArcResult {
   Arc arc;
-  double radius_difference_mm = 0;     ///< |radius at end - radius at start|
+  double radius_difference_mm = 0;  ///< |radius at end - radius at start|
   double start_radius_mm = 0, end_radius_mm = 0;
-  std::string error;                   ///< not empty: no arc
+  std::string error;  ///< not empty: no arc
 };
 
 /// Centre and sweep. R: the arc up to half a turn, for R < 0 the larger one (the centre lies at

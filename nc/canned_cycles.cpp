@@ -1,75 +1,72 @@
-// Drilling cycles G73 and G81 to G89 as the moves that they stand for.
+#include "nc/canned_cycles.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
-
-#include "nc/machine_state.h"
 
 namespace camber::nc {
 namespace {
 
-constexpr double kPeckClearance_mm =
-    0.25;  // above the last depth, where G83 goes back to rapid and G73 breaks the chip
-constexpr double kMostPecks = 10000;
+/// Collects steps and keeps the tool's place.
+class HoleWriter {
+ public:
+  HoleWriter(const CycleHole& hole, const PlaneAxes& axes) : hole_(hole), axes_(axes), at_(hole.from_mm) {}
 
-/// Down in pecks. G83 clears the hole each time, G73 only breaks the chip.
-void peck(MachineState& s, const BlockWords& words, const Vec3& top, double feed, MoveWriter& writer) {
-  const double q = s.cycle.q_mm, depth = top.z() - s.cycle.z_mm;
-  if (q <= 0 || depth / q > kMostPecks) {
-    words.error(words.word('Q'),
-                fmt::format("G{} with Q{:g} mm for a hole of {:g} mm; a peck of a sensible depth was expected",
-                            s.cycle.code, q, depth),
-                "cycle-peck");
-    return;
+  std::vector<CycleStep> run() {
+    if (height() < hole_.retract_mm) go(CycleStep::Kind::rapid, hole_.retract_mm);
+    approach();
+    if (pecked())
+      drill_in_pecks();
+    else
+      go(CycleStep::Kind::feed, hole_.bottom_mm);
+    if (dwells() && hole_.dwell_s > 0) steps_.push_back({CycleStep::Kind::dwell, at_, hole_.dwell_s});
+    if (feeds_out()) go(CycleStep::Kind::feed, hole_.retract_mm);
+    go(CycleStep::Kind::rapid, hole_.clear_mm);
+    return std::move(steps_);
   }
-  const Vec3 down = -Vec3::UnitZ();
-  for (double reached = 0; reached < depth - 1e-9;) {
-    const double next = std::min(reached + q, depth);
-    writer.line(top + next * down, feed, true);
-    reached = next;
-    if (reached >= depth - 1e-9) break;
-    if (s.cycle.code == 83) {
-      writer.rapid(top, false, true);
-      writer.rapid(top + std::max(0.0, reached - kPeckClearance_mm) * down, false, true);
-    } else {
-      writer.rapid(top + std::max(0.0, reached - kPeckClearance_mm) * down, false, true);
+
+ private:
+  double height() const { return at_[axes_.normal]; }
+  bool pecked() const { return (hole_.g == 73 || hole_.g == 83) && hole_.peck_mm > 0; }
+  bool feeds_out() const { return hole_.g == 84 || hole_.g == 74 || hole_.g == 85 || hole_.g == 89; }
+  bool dwells() const { return hole_.g != 81 && hole_.g != 83 && hole_.g != 73 && hole_.g != 85; }
+
+  void approach() {
+    Vec3 over = at_;
+    over[axes_.first] = hole_.place_mm[axes_.first];
+    over[axes_.second] = hole_.place_mm[axes_.second];
+    if (over != at_) steps_.push_back({CycleStep::Kind::rapid, over, 0});
+    at_ = over;
+    go(CycleStep::Kind::rapid, hole_.retract_mm);
+  }
+
+  void drill_in_pecks() {
+    double depth = hole_.retract_mm;
+    while (depth > hole_.bottom_mm) {
+      const double next = std::max(depth - hole_.peck_mm, hole_.bottom_mm);
+      if (hole_.g == 83 && depth < hole_.retract_mm)
+        go(CycleStep::Kind::rapid, std::min(depth + hole_.peck_clearance_mm, hole_.retract_mm));
+      go(CycleStep::Kind::feed, next);
+      depth = next;
+      if (depth <= hole_.bottom_mm) break;
+      go(CycleStep::Kind::rapid,
+         hole_.g == 83 ? hole_.retract_mm : std::min(depth + hole_.peck_clearance_mm, hole_.retract_mm));
     }
   }
-}
 
-void one_hole(MachineState& s, const BlockWords& words, const Vec3& at, double feed, MoveWriter& writer) {
-  const CannedCycle& c = s.cycle;
-  const auto height = [&](double z) { return Vec3(at.x(), at.y(), z); };
-  const bool reference = !s.all_known();
-  writer.rapid(height(s.position_mm.z()), reference, true);
-  s.known = {true, true, true};
-  writer.rapid(height(c.r_mm), reference, true);
-  if (c.code == 73 || c.code == 83)
-    peck(s, words, height(c.r_mm), feed, writer);
-  else
-    writer.line(height(c.z_mm), feed, true);
-  if (c.p_s > 0) writer.dwell(c.p_s, true);
-  // Taps, reamers and boring bars come out at the feed.
-  if (c.code == 74 || c.code == 84 || c.code == 85 || c.code == 89) writer.line(height(c.r_mm), feed, true);
-  writer.rapid(height(s.retract_to_r ? c.r_mm : std::max(c.r_mm, c.initial_z_mm)), false, true);
-}
+  void go(CycleStep::Kind kind, double height_mm) {
+    if (height() == height_mm) return;
+    at_[axes_.normal] = height_mm;
+    steps_.push_back({kind, at_, 0});
+  }
+
+  const CycleHole& hole_;
+  const PlaneAxes& axes_;
+  Vec3 at_;
+  std::vector<CycleStep> steps_;
+};
 
 }  // namespace
 
-void run_cycle(MachineState& s, const BlockWords& words, const Vec3& at, int repeats, const Vec3& increment,
-               MoveWriter& writer) {
-  const std::string name = fmt::format("G{}", s.cycle.code);
-  const auto feed = cutting_feed(s, words, s.cycle.r_mm - s.cycle.z_mm, name.c_str());
-  if (!feed) return;
-  if (s.cycle.z_mm > s.cycle.r_mm) {
-    words.error(words.word('Z'),
-                fmt::format("{}: Z {:g} mm lies above R {:g} mm; a hole below R was expected", name, s.cycle.z_mm,
-                            s.cycle.r_mm),
-                "cycle-depth");
-    return;
-  }
-  for (int i = 0; i < repeats; ++i) one_hole(s, words, at + i * increment, *feed, writer);
-}
+std::vector<CycleStep> hole_steps(const CycleHole& hole, const PlaneAxes& axes) { return HoleWriter(hole, axes).run(); }
 
 }  // namespace camber::nc

@@ -15,12 +15,21 @@ struct InterpreterOptions {
   /// Unit where the program has neither G20 nor G21; not given: millimetres, with a warning.
   std::optional<bool> inch;
   bool skip_slash_blocks = false;  ///< the block skip switch
-  /// G4 P without a decimal point counts milliseconds (Fanuc, Haas, Mazak) and not seconds (LinuxCNC).
-  bool integer_dwell_is_ms = false;
+  /// G4 P and the P of drilling cycles without a decimal point: milliseconds (Fanuc, Haas, Mazak), or seconds
+  /// (LinuxCNC). With a point they are seconds for all.
+  bool dwell_p_is_ms = false;
+  bool absolute_arc_centre = false;  ///< the control starts in G90.1 rather than G91.1
+  double peck_clearance_mm = 0.254;  ///< G83 stops its rapid so far above the last depth; G73 retracts by it
 };
 
-/// Interprets the whole program. Errors and warnings go to `diagnostics`; errors do not stop the reading
-/// (Diagnostics throws InputError after kMaxErrors).
+/// Arcs whose radii at start and end differ by more than the first are warned of, by more than the second refused.
+inline constexpr double kArcRadiusWarningMm = 0.005;
+inline constexpr double kArcRadiusErrorMm = 0.05;
+
+/// Interprets the whole program. Words of a block act in the order unit, feed mode, distance mode, plane, F, S, T,
+/// M6, M3 M4, coolant on, dwell or motion, M5 M9, stops. Reading ends at M2 or M30. All work offsets are taken as
+/// one frame, with a warning when several are cut in. Errors and warnings go to `diagnostics`; errors do not stop the
+/// reading (Diagnostics throws InputError after kMaxErrors).
 Interpretation interpret(const Program& program, const InterpreterOptions& options, Diagnostics& diagnostics);
 
 }  // namespace camber::nc

@@ -24,33 +24,35 @@ struct ModalState {
   FeedMode feed_mode = FeedMode::per_minute;
   bool inch = false;
   bool incremental = false;  ///< G91
-  int work_offset = 54;      ///< 54..59
+  int work_offset = 54;      ///< 54..59; G59.1..G59.3: 591..593; G54.1 Pn: 540000 + n
   bool coolant = false;
+  bool absolute_arc_centre = false;    ///< G90.1
+  bool high_speed_contouring = false;  ///< G08 P1, G05 P10000, G05.1 Q1
   bool operator==(const ModalState&) const = default;
 };
 
 /// Only arcs have one. The tool turns by sweep_rad about `normal` through `center_mm` and moves along
 /// `normal` at a constant rate from the start to the end (helix).
 struct Arc {
-  Vec3 center_mm = Vec3::Zero();        ///< component along `normal` = start's
-  Vec3 normal = Vec3::UnitZ();          ///< unit: +Z for G17, +Y for G18, +X for G19
-  double sweep_rad = 0;                 ///< counter-clockwise about `normal` positive (G3); includes full turns
+  Vec3 center_mm = Vec3::Zero();  ///< component along `normal` = start's
+  Vec3 normal = Vec3::UnitZ();    ///< unit: +Z for G17, +Y for G18, +X for G19
+  double sweep_rad = 0;           ///< counter-clockwise about `normal` positive (G3); includes full turns
 };
 
 struct Move {
   Vec3 start_mm = Vec3::Zero();
   Vec3 end_mm = Vec3::Zero();
-  double feed_mm_per_s = 0;   ///< programmed, along the path; 0 for rapids and dwells
+  double feed_mm_per_s = 0;  ///< programmed, along the path; 0 for rapids and dwells
   double dwell_s = 0;
-  std::uint32_t block = 0;    ///< index into Program::blocks; line = block + 1
-  std::uint32_t state = 0;    ///< index into Interpretation::states
-  std::uint32_t arc = kNoArc; ///< index into Interpretation::arcs
+  std::uint32_t block = 0;     ///< index into Program::blocks; line = block + 1
+  std::uint32_t state = 0;     ///< index into Interpretation::states
+  std::uint32_t arc = kNoArc;  ///< index into Interpretation::arcs
   MoveKind kind = MoveKind::rapid;
-  bool exact_stop = false;    ///< G9 or a control that must stop at the end of this move
+  bool exact_stop = false;  ///< G9 or a control that must stop at the end of this move
   /// Part of a move to or from the reference point (G28, G30, G53) whose place in the work frame is not
   /// known: counts for nothing in material.
   bool reference = false;
-  bool canned = false;        ///< made by a drilling cycle: not one move of the text
+  bool canned = false;  ///< made by a drilling cycle: not one move of the text
 
   static constexpr std::uint32_t kNoArc = std::numeric_limits<std::uint32_t>::max();
 };

@@ -19,7 +19,9 @@ bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
 /// Letters whose number some CAM systems and people leave out; they are taken as zero, with a warning.
-bool may_lack_number(char letter) { return letter == 'P' || letter == 'Q' || letter == 'D' || letter == 'H' || letter == 'L'; }
+bool may_lack_number(char letter) {
+  return letter == 'P' || letter == 'Q' || letter == 'D' || letter == 'H' || letter == 'L';
+}
 
 std::string printable(unsigned char c) {
   if (c > 32 && c < 127) return fmt::format("`{}`", static_cast<char>(c));
@@ -33,8 +35,7 @@ constexpr std::array<double, 20> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1
 class Scanner {
  public:
   Scanner(Program& program, Reporter& report)
-      : program_(program), report_(report), text_(program.source.text().data()),
-        size_(program.source.text().size()) {}
+      : program_(program), report_(report), text_(program.source.text().data()), size_(program.source.text().size()) {}
 
   /// False when the text is of another language and reading on makes no sense.
   bool run() {
@@ -81,14 +82,22 @@ class Scanner {
     if (is_letter(c)) return scan_word();
     if (is_blank(c)) return ++at_, true;
     switch (c) {
-      case '(': return skip_comment('(', ')');
-      case '[': return skip_comment('[', ']');
-      case '<': return skip_comment('<', '>');  // a program name, as in <PART_1>
-      case ';': return false;
-      case '%': return ++at_, true;
-      case '/': return scan_skip();
-      case ':': return scan_program_number(block_begin);
-      default: return refuse(c);
+      case '(':
+        return skip_comment('(', ')');
+      case '[':
+        return skip_comment('[', ']');
+      case '<':
+        return skip_comment('<', '>');  // a program name, as in <PART_1>
+      case ';':
+        return false;
+      case '%':
+        return ++at_, true;
+      case '/':
+        return scan_skip();
+      case ':':
+        return scan_program_number(block_begin);
+      default:
+        return refuse(c);
     }
   }
 
@@ -103,8 +112,9 @@ class Scanner {
       last_close = at_;
       if (--depth == 0) return ++at_, true;
     }
-    const bool closed_at_end = last_close > 0 && std::string_view(text_ + last_close + 1, end_ - last_close - 1)
-                                                         .find_first_not_of(" \t\r") == std::string_view::npos;
+    const bool closed_at_end =
+        last_close > 0 && std::string_view(text_ + last_close + 1, end_ - last_close - 1).find_first_not_of(" \t\r") ==
+                              std::string_view::npos;
     if (!closed_at_end)
       report_.error(begin, "comment-open", fmt::format("the comment has no closing `{}` in its block", close), "open");
     return false;
@@ -198,10 +208,11 @@ class Scanner {
   bool lacks_number(char letter, std::size_t begin, std::size_t number) {
     const char c = number < end_ ? text_[number] : '\0';
     if (c == '#' || c == '[')
-      report_.error(number, "variable",
-                    fmt::format("the value of {} is a {}; variables and expressions are not read yet, a number was expected",
-                                letter, c == '#' ? "variable" : "expression"),
-                    "variable");
+      report_.error(
+          number, "variable",
+          fmt::format("the value of {} is {}; variables and expressions are not read yet, a number was expected",
+                      letter, c == '#' ? "a variable" : "an expression"),
+          "variable");
     else if (c == '"' || c == '=')
       return refuse_assignment(begin);
     else if (may_lack_number(letter) && (c == '\0' || is_letter(c) || c == '(' || c == ';')) {
@@ -223,12 +234,14 @@ class Scanner {
     if (at_ + name.size() < end_ && (text_[at_ + name.size()] == '=' || name.find('_') != std::string::npos))
       return refuse_assignment(at_);
     if (name.size() == 1) {  // O<name>
-      report_.error(at_, "subprogram", "O-word subprograms and flow control (O<name>) are not read yet; plain blocks were expected");
+      report_.error(at_, "subprogram",
+                    "O-word subprograms and flow control (O<name>) are not read yet; plain blocks were expected");
       return false;
     }
     const std::string rest = name.substr(1);
     if (rest == "NAN" || rest == "INF" || rest == "INFINITY") {
-      report_.error(at_, "not-a-number", fmt::format("{} is not a number; a number such as {}12.5 was expected", name, name[0]));
+      report_.error(at_, "not-a-number",
+                    fmt::format("{} is not a number; a number such as {}12.5 was expected", name, name[0]));
       return false;
     }
     ForeignWord word = explain_letters(name);
@@ -288,10 +301,12 @@ Program read_program(SourceText source, Diagnostics& diagnostics) {
   report.finish();
   if (wordless) {
     const bool blank = program.source.text().find_first_not_of(" \t\r\n") == std::string::npos;
-    diagnostics.add({Severity::error, {program.source.name(), 0, 0},
+    diagnostics.add({Severity::error,
+                     {program.source.name(), 0, 0},
                      blank ? "the file is empty; an NC program was expected"
                            : "the file holds no NC words; an NC program was expected",
-                     "empty-program", {}});
+                     "empty-program",
+                     {}});
   }
   if (stop) diagnostics.throw_if_errors();
   return program;

@@ -39,7 +39,8 @@ struct Program {
 };
 
 /// Splits a text in blocks and words. Problems go to `diagnostics`; reading resumes at the next block.
-/// Throws InputError after Diagnostics::kMaxErrors errors.
+/// Throws InputError after Diagnostics::kMaxErrors errors, and at once when the text is in the language of another
+/// control (Siemens, Heidenhain).
 Program read_program(SourceText source, Diagnostics& diagnostics);
 
 }  // namespace camber::nc

@@ -37,6 +37,24 @@ void carve_row(float* distance, std::int32_t* stamp, int count, float qx, float 
   }
 }
 
+/// Distances of a row of voxels to the straight envelope; true where a voxel could be cut with a shift that moves the
+/// envelope outwards by no more than `slack`.
+CAMBER_VECTOR_CLONES
+bool row_may_be_cut(const float* distance, float* out, int count, float qx, float z, float voxel, float band, Profile p,
+                    float slack) {
+  const float a = std::max(qx, 0.0f);
+  const float a2 = a * a;
+  int any = 0;
+  for (int k = 0; k < count; ++k) {
+    const float qz = p.corner - (z + static_cast<float>(k) * voxel);
+    const float b = std::max(qz, 0.0f);
+    const float d = std::min(std::max(qx, qz), 0.0f) + std::sqrt(a2 + b * b) - p.corner;
+    out[k] = std::min(slack - d, band);
+    any |= out[k] > distance[k];
+  }
+  return any != 0;
+}
+
 /// Height above the tip from which on a row at qx outside the flat comes within `reach` of the envelope.
 float lowest_reached(float qx, float corner, float reach) {
   if (qx <= 0) return corner - reach;
@@ -141,39 +159,81 @@ void carve(Tile& tile, const Index3& t, double voxel, double band, const CutterS
   }
 }
 
+CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std::ptrdiff_t stamp) {
+  CarveBend bend{shifts.row(stamp), shifts.largest_mm(stamp), {}};
+  const int nodes = static_cast<int>(shifts.nodes());
+  const double node_step = nodes > 1 ? shifts.node_height_mm[1] : 0.0;
+  const double sector = 2 * kPi / CarveBend::kSectors;
+  // A shift between two nodes belongs to a range of lags; one sector more for interpolation between steps.
+  const int spread = 1 + static_cast<int>(std::ceil(envelope.lag_per_mm * node_step / sector));
+  const float half_sector = static_cast<float>(sector / 2);
+  std::array<float, CarveBend::kSectors> cosine, sine;
+  for (int i = 0; i < CarveBend::kSectors; ++i) {
+    cosine[i] = static_cast<float>(std::cos(-kPi + (i + 0.5) * sector));
+    sine[i] = static_cast<float>(std::sin(-kPi + (i + 0.5) * sector));
+  }
+  for (int n = 0; n < nodes; ++n)
+    for (int m = 0; m < shifts.steps; ++m) {
+      const float* v = bend.row + 2 * (n * shifts.steps + m);
+      if (v[0] == 0 && v[1] == 0) continue;
+      const float length = std::sqrt(v[0] * v[0] + v[1] * v[1]);
+      for (int j = 0; j < envelope.flutes; ++j) {
+        const double phi =
+            2 * kPi * (m + j * shifts.steps) / envelope.steps + shifts.node_height_mm[n] * envelope.lag_per_mm;
+        const int centre = static_cast<int>(std::floor((phi + kPi) / sector));
+        for (int o = centre - spread; o <= centre + spread; ++o) {
+          const int i = (o % CarveBend::kSectors + CarveBend::kSectors) % CarveBend::kSectors;
+          const float outward = v[0] * cosine[i] + v[1] * sine[i] + half_sector * length;
+          bend.outward_mm[i] = std::max(bend.outward_mm[i], outward);
+        }
+      }
+    }
+  return bend;
+}
+
 void carve_bent(Tile& tile, const Index3& t, double voxel, double band, const EnvelopeGrid& envelope,
                 const CarveStamp& stamp, const ShiftTable& shifts, const CarveBend& bend) {
-  const float flat = static_cast<float>(envelope.shape.bottom_length_mm());
-  const float corner = static_cast<float>(envelope.shape.corner_radius_mm);
-  const float slack = static_cast<float>(bend.largest_mm), top = static_cast<float>(band);
+  const Profile p{static_cast<float>(envelope.shape.bottom_length_mm()),
+                  static_cast<float>(envelope.shape.corner_radius_mm), 0};
+  const auto top = static_cast<float>(band), step = static_cast<float>(voxel);
+  const auto largest = static_cast<float>(bend.largest_mm);
+  const float sectors_per_rad = static_cast<float>(CarveBend::kSectors / (2 * kPi));
+  // Near the axis a shift turns a place into another direction.
+  const float axis_zone2 = 25 * largest * largest;
   const double z0 = t[2] * Tile::kCore * voxel;
   const int k0 = first_reached(stamp.tip_mm.z() - band, z0, voxel);
   const BendReader shift_at(envelope, shifts, bend.row);
+  std::array<float, Tile::kSide> candidate;
   for (int i = 0; i < Tile::kSide; ++i) {
     const float dx = static_cast<float>((t[0] * Tile::kCore + i) * voxel - stamp.tip_mm.x());
     for (int j = 0; j < Tile::kSide; ++j) {
       const float dy = static_cast<float>((t[1] * Tile::kCore + j) * voxel - stamp.tip_mm.y());
       const float rho2 = dx * dx + dy * dy;
-      const float limit = flat + corner + top + slack;
+      float slack = largest;
+      if (rho2 > axis_zone2) {
+        const int sector = static_cast<int>((fast_atan2(dy, dx) + static_cast<float>(kPi)) * sectors_per_rad);
+        slack = std::min(slack, bend.outward_mm[std::clamp(sector, 0, CarveBend::kSectors - 1)]);
+      }
+      const float limit = p.flat + p.corner + top + slack;
       if (rho2 > limit * limit) continue;
-      const float qx = std::sqrt(rho2) - flat;
-      const float a = std::max(qx, 0.0f);
-      const double low = stamp.tip_mm.z() + lowest_reached(qx, corner, corner + top + slack);
-      for (int k = std::max(k0, first_reached(low, z0, voxel)); k < Tile::kSide; ++k) {
-        const int at = Tile::offset(i, j, k);
-        const float z = static_cast<float>((t[2] * Tile::kCore + k) * voxel - stamp.tip_mm.z());
-        const float qz = corner - z;
-        const float b = std::max(qz, 0.0f);
-        const float d = std::min(std::max(qx, qz), 0.0f) + std::sqrt(a * a + b * b) - corner;
-        if (std::min(slack - d, top) <= tile.distance[at]) continue;
+      const float qx = std::sqrt(rho2) - p.flat;
+      const double low = stamp.tip_mm.z() + lowest_reached(qx, p.corner, p.corner + top + slack);
+      const int k1 = std::max(k0, first_reached(low, z0, voxel));
+      const float z1 = static_cast<float>((t[2] * Tile::kCore + k1) * voxel - stamp.tip_mm.z());
+      float* distance = tile.distance.data() + Tile::offset(i, j, k1);
+      std::int32_t* id = tile.stamp.data() + Tile::offset(i, j, k1);
+      const int count = Tile::kSide - k1;
+      if (!row_may_be_cut(distance, candidate.data(), count, qx, z1, step, top, p, slack)) continue;
+      for (int k = 0; k < count; ++k) {
+        if (candidate[static_cast<std::size_t>(k)] <= distance[k]) continue;
+        const float z = z1 + static_cast<float>(k) * step;
         float sx, sy;
         shift_at(dx, dy, z, sx, sy);
         shift_at(dx - sx, dy - sy, z, sx, sy);
-        shift_at(dx - sx, dy - sy, z, sx, sy);
-        const float v = std::min(-envelope_distance(dx - sx, dy - sy, z, flat, corner), top);
-        if (v <= tile.distance[at]) continue;
-        tile.distance[at] = v;
-        tile.stamp[at] = stamp.id;
+        const float v = std::min(-envelope_distance(dx - sx, dy - sy, z, p.flat, p.corner), top);
+        if (v <= distance[k]) continue;
+        distance[k] = v;
+        id[k] = stamp.id;
       }
     }
   }
@@ -185,7 +245,7 @@ double tile_distance_mm(const Index3& t, double voxel, const CutterShape& shape,
     return std::max({lo - tip[a], tip[a] - hi, 0.0});
   };
   const double top = (t[2] + 1) * Tile::kCore * voxel - tip.z();
-  return shape.distance_mm({std::hypot(gap(0), gap(1)), 0, top});
+  return shape.distance_mm({std::sqrt(gap(0) * gap(0) + gap(1) * gap(1)), 0, top});
 }
 
 }  // namespace camber::removal

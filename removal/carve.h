@@ -1,5 +1,7 @@
 #pragma once
 // Cutting one tile with one stamp: stock = max(stock, -cutter).
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "removal/cutter.h"
@@ -14,11 +16,15 @@ struct CarveStamp {
   double shrink_mm = 0;  ///< the cutter is smaller by this along its normal
 };
 
-/// Bent envelope of one stamp. `largest_mm` bounds the length of every shift in the row.
+/// Bent envelope of one stamp.
 struct CarveBend {
+  static constexpr int kSectors = 32;
   const float* row = nullptr;
-  double largest_mm = 0;
+  double largest_mm = 0;  ///< bounds the length of every shift in the row
+  /// By the direction from the axis, sector 0 from -pi: bounds how far a shift moves the envelope outwards there.
+  std::array<float, kSectors> outward_mm{};
 };
+CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std::ptrdiff_t stamp);
 
 /// Carves with the undeflected cutter. Values are clipped to +-band_mm.
 void carve(Tile& tile, const Index3& tile_index, double voxel_mm, double band_mm, const CutterShape& shape,
@@ -26,7 +32,7 @@ void carve(Tile& tile, const Index3& tile_index, double voxel_mm, double band_mm
 
 /// Carves with the envelope whose point (s, phi) is displaced by the shift of the instant at which an edge passes
 /// it: the cutter's distance is read at x - delta(s, phi), where (s, phi) belong to x - delta (two fixed-point
-/// steps).
+/// steps: what is left is the square of the shift's slope, a quarter of a percent of it).
 void carve_bent(Tile& tile, const Index3& tile_index, double voxel_mm, double band_mm, const EnvelopeGrid& envelope,
                 const CarveStamp& stamp, const ShiftTable& shifts, const CarveBend& bend);
 

@@ -6,17 +6,18 @@
 namespace camber::removal {
 
 double CutterShape::distance_mm(const Vec3& p) const {
-  const double qx = std::hypot(p.x(), p.y()) - bottom_length_mm();
+  const double qx = std::sqrt(p.x() * p.x() + p.y() * p.y()) - bottom_length_mm();
   const double qz = corner_radius_mm - p.z();
-  return std::min(std::max(qx, qz), 0.0) + std::hypot(std::max(qx, 0.0), std::max(qz, 0.0)) - corner_radius_mm;
+  const double a = std::max(qx, 0.0), b = std::max(qz, 0.0);
+  return std::min(std::max(qx, qz), 0.0) + std::sqrt(a * a + b * b) - corner_radius_mm;
 }
 
 Vec3 CutterShape::gradient(const Vec3& p) const {
-  const double rho = std::hypot(p.x(), p.y());
+  const double rho = std::sqrt(p.x() * p.x() + p.y() * p.y());
   const double qx = rho - bottom_length_mm(), qz = corner_radius_mm - p.z();
   double radial = 0, down = 0;
   if (qx > 0 && qz > 0) {
-    const double length = std::hypot(qx, qz);
+    const double length = std::sqrt(qx * qx + qz * qz);
     radial = qx / length;
     down = qz / length;
   } else {
@@ -29,10 +30,13 @@ Vec3 CutterShape::gradient(const Vec3& p) const {
 CutterShape shape_of(const machine::Tool& tool) {
   const double radius = tool.diameter_mm / 2;
   switch (tool.type) {
-    case machine::ToolType::ball: return {radius, radius};
-    case machine::ToolType::bull: return {radius, tool.corner_radius_mm};
+    case machine::ToolType::ball:
+      return {radius, radius};
+    case machine::ToolType::bull:
+      return {radius, tool.corner_radius_mm};
     case machine::ToolType::flat:
-    case machine::ToolType::drill: break;
+    case machine::ToolType::drill:
+      break;
   }
   return {radius, 0};
 }
@@ -57,7 +61,8 @@ void add_rings(EnvelopeGrid& grid, double from, double to, double step) {
   const double width = (to - from) / n;
   for (int i = 0; i < n; ++i) {
     const ProfilePoint p = profile_at(grid.shape, from + (i + 0.5) * width);
-    grid.rings.push_back({p, width, p.height_mm * grid.lag_per_mm});
+    grid.rings.push_back({p, width, p.height_mm * grid.lag_per_mm, static_cast<float>(std::sin(p.normal_angle_rad)),
+                          static_cast<float>(std::cos(p.normal_angle_rad))});
   }
 }
 
@@ -68,8 +73,7 @@ EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step
   grid.shape = shape_of(tool);
   grid.flutes = tool.flutes;
   grid.lag_per_mm = std::tan(tool.helix_rad) / grid.shape.radius_mm;
-  grid.steps_per_pitch =
-      std::max(4, static_cast<int>(std::ceil(2 * kPi / (rotation_step_rad * tool.flutes) - 1e-9)));
+  grid.steps_per_pitch = std::max(4, static_cast<int>(std::ceil(2 * kPi / (rotation_step_rad * tool.flutes) - 1e-9)));
   grid.steps = grid.steps_per_pitch * tool.flutes;
 
   const double flat = grid.shape.bottom_length_mm(), rounded = flat + grid.shape.arc_length_mm();
@@ -89,6 +93,8 @@ EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step
       grid.nx.push_back(static_cast<float>(sk * std::cos(phi)));
       grid.ny.push_back(static_cast<float>(sk * std::sin(phi)));
       grid.nz.push_back(static_cast<float>(-ck));
+      grid.cos_phi.push_back(static_cast<float>(std::cos(phi)));
+      grid.sin_phi.push_back(static_cast<float>(std::sin(phi)));
     }
   }
   return grid;
@@ -108,7 +114,8 @@ void make_patches(EnvelopeGrid& grid, double size_mm) {
     const double turn = std::min(2 * kPi / 3, size_mm / std::max(widest, 1e-9));
     const int span = std::clamp(static_cast<int>(turn * grid.steps / (2 * kPi)), 1, grid.steps);
     for (int i0 = 0; i0 < grid.steps; i0 += span) {
-      EnvelopeGrid::Patch patch{.ring_from = r0, .ring_to = r1, .step_from = i0, .step_to = std::min(i0 + span, grid.steps)};
+      EnvelopeGrid::Patch patch{
+          .ring_from = r0, .ring_to = r1, .step_from = i0, .step_to = std::min(i0 + span, grid.steps)};
       const auto for_points = [&](auto f) {
         for (int r = r0; r < r1; ++r)
           for (int i = patch.step_from; i < patch.step_to; ++i) {

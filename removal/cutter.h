@@ -28,9 +28,9 @@ CutterShape shape_of(const machine::Tool& tool);
 
 /// One point of the profile, s mm from the tip along it.
 struct ProfilePoint {
-  double radius_mm = 0;          ///< from the axis
-  double height_mm = 0;          ///< above the tip
-  double normal_angle_rad = 0;   ///< kappa: normal = (sin k cos phi, sin k sin phi, -cos k)
+  double radius_mm = 0;         ///< from the axis
+  double height_mm = 0;         ///< above the tip
+  double normal_angle_rad = 0;  ///< kappa: normal = (sin k cos phi, sin k sin phi, -cos k)
   double meridian_curvature_per_mm = 0;
   double parallel_curvature_per_mm = 0;  ///< normal curvature along the circle of latitude
 };
@@ -53,18 +53,20 @@ struct EnvelopeGrid {
     ProfilePoint profile;
     double width_mm = 0;  ///< db, profile arc length that the ring stands for
     double lag_rad = 0;
+    float sine = 0, cosine = 0;  ///< of the profile's normal angle
   };
   std::vector<Ring> rings;
 
   // rings.size() * steps values each, ring by ring, from the tip.
   std::vector<float> x, y, z;     ///< place from the tip
   std::vector<float> nx, ny, nz;  ///< outward normal
+  std::vector<float> cos_phi, sin_phi;
 
   /// Neighbouring points that are met or missed together.
   struct Patch {
     Vec3 centre_from_tip = Vec3::Zero(), normal = Vec3::Zero();
-    double radius_mm = 0;       ///< around the centre, holds all points
-    double normal_spread = 0;   ///< largest |n - normal| of its points
+    double radius_mm = 0;                                        ///< around the centre, holds all points
+    double normal_spread = 0;                                    ///< largest |n - normal| of its points
     int ring_from = 0, ring_to = 0, step_from = 0, step_to = 0;  ///< half open
   };
   std::vector<Patch> patches;  ///< each point is in one

@@ -33,11 +33,10 @@ MeshDistance::MeshDistance(const std::string& path, double voxel_mm, double band
   std::vector<openvdb::Vec3I> triangles;
   for (const auto& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
   const auto transform = openvdb::math::Transform::createLinearTransform(voxel_mm);
-  impl_ = std::make_unique<Impl>(
-      Impl{openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
-               *transform, points, triangles, {}, static_cast<float>(band_mm / voxel_mm),
-               static_cast<float>(band_mm / voxel_mm)),
-           voxel_mm});
+  impl_ = std::make_unique<Impl>(Impl{openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
+                                          *transform, points, triangles, {}, static_cast<float>(band_mm / voxel_mm),
+                                          static_cast<float>(band_mm / voxel_mm)),
+                                      voxel_mm});
 }
 MeshDistance::~MeshDistance() = default;
 MeshDistance::MeshDistance(MeshDistance&&) noexcept = default;

@@ -12,8 +12,8 @@ namespace camber::removal {
 /// m at that instant of the tooth passing; between nodes the shift is linear in height, beyond the last node it
 /// is the last node's. Row 0 belongs to the stamp before the stretch's first.
 struct ShiftTable {
-  std::size_t stamps = 0;   ///< without row 0
-  int steps = 0;            ///< per pitch
+  std::size_t stamps = 0;              ///< without row 0
+  int steps = 0;                       ///< per pitch
   std::vector<double> node_height_mm;  ///< above the tip, ascending, evenly spaced, the first 0
   std::vector<float> values;           ///< [stamps + 1][nodes][steps][2], mm
 

@@ -12,7 +12,7 @@ struct Stamp {
   Vec3 feed_per_tooth_mm = Vec3::Zero();  ///< motion since the stamp before, one tooth passing earlier
   double share = 0;                       ///< of `move`'s length at which the tip stands, 0 to 1
   bool first = false;                     ///< after a rapid, a dwell or a tool change: no tooth passed just before
-  std::uint32_t move = 0;                 ///< index into Interpretation::moves, where the tip is (not what is commanded)
+  std::uint32_t move = 0;  ///< index into Interpretation::moves, where the tip is (not what is commanded)
 };
 
 }  // namespace camber::removal

@@ -31,7 +31,7 @@ void StampBuilder::add(std::span<const TimedSample> samples) {
 }
 
 void StampBuilder::add(const TimedSample& sample) {
-  const feedmodel::PathPlace place = tracker_.locate(sample);
+  const feedmodel::PathPlace place = tracker_(sample);
   if (!selected_[place.move]) {
     cutting_ = false;
   } else {
@@ -51,7 +51,7 @@ void StampBuilder::stamp_at(double t_s, const TimedSample& sample, const feedmod
   constexpr double kStill_mm = 1e-6;
   Stamp stamp;
   stamp.t_s = t_s;
-  stamp.share = place.share;
+  stamp.share = place.u;
   stamp.move = place.move;
   stamp.first = !cutting_;
   const double span = have_last_ ? sample.t_s - last_.t_s : 0;

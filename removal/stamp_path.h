@@ -33,7 +33,8 @@ std::vector<bool> selected_moves(const nc::Interpretation& program, const machin
 /// Every selected move's tool must be in `tools` and its spindle must turn.
 class StampBuilder {
  public:
-  StampBuilder(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools, std::vector<bool> selected);
+  StampBuilder(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools,
+               std::vector<bool> selected);
   void add(std::span<const feedmodel::TimedSample> samples);
   StampPath take() { return std::move(path_); }
 

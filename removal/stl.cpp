@@ -58,7 +58,8 @@ TriangleMesh read_binary(const SourceText& source) {
     for (const float x : v)
       if (!std::isfinite(x))
         fail_on_file(source.name(), fmt::format("triangle {} has a coordinate that is no number", i + 1), "stl-format");
-    builder.add({Eigen::Vector3f(v[3], v[4], v[5]), Eigen::Vector3f(v[6], v[7], v[8]), Eigen::Vector3f(v[9], v[10], v[11])});
+    builder.add(
+        {Eigen::Vector3f(v[3], v[4], v[5]), Eigen::Vector3f(v[6], v[7], v[8]), Eigen::Vector3f(v[9], v[10], v[11])});
   }
   return std::move(builder.mesh);
 }
@@ -79,7 +80,8 @@ TriangleMesh read_ascii(const SourceText& source) {
     for (int a = 0; a < 3; ++a) {
       const std::string_view number = next();
       const auto value = parse_number(number);
-      if (!value) fail_at(source, at - number.size(), fmt::format("'{}' where a vertex's coordinate was expected", number));
+      if (!value)
+        fail_at(source, at - number.size(), fmt::format("'{}' where a vertex's coordinate was expected", number));
       corners[corner][a] = static_cast<float>(*value);
     }
     if (++corner == 3) {

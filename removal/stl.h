@@ -10,7 +10,7 @@
 namespace camber::removal {
 
 struct TriangleMesh {
-  std::vector<Eigen::Vector3f> points;                     ///< mm, equal ones joined
+  std::vector<Eigen::Vector3f> points;  ///< mm, equal ones joined
   std::vector<std::array<std::uint32_t, 3>> triangles;
   /// Every edge has exactly two triangles, of opposite direction.
   bool closed() const;

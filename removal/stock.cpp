@@ -177,9 +177,8 @@ bool Stock::is_air(const Index3& tile) const {
   const openvdb::FloatGrid& distance = *impl_->distance;
   const auto access = distance.getConstAccessor();
   bool air = true;
-  for_each_leaf_of_tile(base, [&](const Coord& leaf) {
-    air = air && !access.probeConstLeaf(leaf) && access.getValue(leaf) > 0;
-  });
+  for_each_leaf_of_tile(
+      base, [&](const Coord& leaf) { air = air && !access.probeConstLeaf(leaf) && access.getValue(leaf) > 0; });
   return air;
 }
 

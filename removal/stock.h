@@ -33,8 +33,8 @@ class Stock {
 
   /// Samples a signed distance (mm, negative inside, 1-Lipschitz) over a box. `band_voxels`: half width of the
   /// narrow band; values beyond it are cut off. Outside the box there is air.
-  Stock(const std::function<double(const Vec3&)>& distance_mm, const Vec3& min_mm, const Vec3& max_mm,
-        double voxel_mm, double band_voxels);
+  Stock(const std::function<double(const Vec3&)>& distance_mm, const Vec3& min_mm, const Vec3& max_mm, double voxel_mm,
+        double band_voxels);
   Stock(const Stock& other);
   Stock& operator=(const Stock&) = delete;
   Stock(Stock&&) noexcept;

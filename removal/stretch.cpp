@@ -86,6 +86,15 @@ Vec3 gradient(const std::array<float, Tile::kVolume>& values, const Cell& cell, 
 /// A surface that the normal meets at a grazing angle is taken at no more than four times its distance.
 float slope(double along_normal) { return static_cast<float>(std::clamp(along_normal, 0.25, 1.0)); }
 
+/// A tile that has become air takes no more stamps; looking is worth it now and then.
+constexpr int kAirCheckEvery = 8;
+
+bool all_air(const Tile& tile, float band) {
+  float least = band;
+  for (const float d : tile.distance) least = std::min(least, d);
+  return least >= band;
+}
+
 /// Tiles of a box of space, numbered; -1 where there is nothing to cut.
 class SlotMap {
  public:
@@ -120,6 +129,7 @@ struct Stretch::Impl {
   double tile_mm;
   std::vector<WorkTile> tiles;
   SlotMap slots;
+  std::vector<CarveBend> bends;  ///< per stamp of the stretch; empty: straight
 
   void find_tiles(const ShiftTable* shifts);
   void list_stamps(const ShiftTable* shifts);
@@ -165,10 +175,10 @@ class PointReader {
     const auto& profile = e_.rings[ring].profile;
     float tilt = 0;
     if (now_) {
-      const std::uint32_t step = (point - ring * static_cast<std::uint32_t>(e_.steps)) %
-                                 static_cast<std::uint32_t>(e_.steps_per_pitch);
+      const std::uint32_t step =
+          (point - ring * static_cast<std::uint32_t>(e_.steps)) % static_cast<std::uint32_t>(e_.steps_per_pitch);
       const Eigen::Vector2f now = shift(now_, ring, step), before = shift(before_, ring, step);
-      tilt = tilt_of(ring, step, n, motion);
+      tilt = tilt_of(point, ring, step, n, motion);
       place_from_tip.head<2>() += now;
       motion.head<2>() += now - before;
     }
@@ -177,28 +187,26 @@ class PointReader {
     const float k2 = static_cast<float>(profile.parallel_curvature_per_mm);
     const float tangential2 = std::max(0.0f, motion.squaredNorm() - along_normal * along_normal);
     if (k1 == k2) return along_normal + 0.5f * k1 * tangential2;
-    const float horizontal = std::sqrt(n.x() * n.x() + n.y() * n.y());
-    const Eigen::Vector2f radial = horizontal > 1e-6f ? Eigen::Vector2f(n.head<2>() / horizontal)
-                                                      : Eigen::Vector2f(place_from_tip.head<2>().normalized());
-    const float around = -radial.y() * motion.x() + radial.x() * motion.y();
+    const float around = -e_.sin_phi[point] * motion.x() + e_.cos_phi[point] * motion.y();
     return along_normal + 0.5f * (k1 * std::max(0.0f, tangential2 - around * around) + k2 * around * around);
   }
 
  private:
   /// How much less the motion goes along the bent envelope's normal than along n: n_bent = n - sum over the surface
   /// directions e of e (d(shift)/de . n).
-  float tilt_of(std::uint32_t ring, std::uint32_t step, const Eigen::Vector3f& n, const Eigen::Vector3f& f) const {
+  float tilt_of(std::uint32_t point, std::uint32_t ring, std::uint32_t step, const Eigen::Vector3f& n,
+                const Eigen::Vector3f& f) const {
     const auto steps = static_cast<std::uint32_t>(e_.steps_per_pitch);
     const auto& profile = e_.rings[ring].profile;
-    const float sine = static_cast<float>(std::sin(profile.normal_angle_rad));
+    const float sine = e_.rings[ring].sine;
     if (sine < 0.05f) return 0;
-    const Eigen::Vector2f radial = n.head<2>() / sine;
+    const Eigen::Vector2f radial(e_.cos_phi[point], e_.sin_phi[point]);
     const float around = -radial.y() * f.x() + radial.x() * f.y();
-    const float up = static_cast<float>(std::cos(profile.normal_angle_rad)) * radial.dot(f.head<2>()) + sine * f.z();
+    const float up = e_.rings[ring].cosine * radial.dot(f.head<2>()) + sine * f.z();
     const float per_rad = static_cast<float>(e_.steps / (4 * kPi));
-    const float by_angle =
-        per_rad * (shift(now_, ring, step + 1 == steps ? 0 : step + 1) - shift(now_, ring, step == 0 ? steps - 1 : step - 1))
-                      .dot(n.head<2>());
+    const float by_angle = per_rad * (shift(now_, ring, step + 1 == steps ? 0 : step + 1) -
+                                      shift(now_, ring, step == 0 ? steps - 1 : step - 1))
+                                         .dot(n.head<2>());
     const NodeWeight& w = weights_[ring];
     const float by_height = (at(now_, w.upper, step) - at(now_, w.lower, step)).dot(n.head<2>()) / node_step_;
     const float by_meridian = sine * (by_height - static_cast<float>(e_.lag_per_mm) * by_angle);
@@ -245,11 +253,14 @@ void Stretch::Impl::find_tiles(const ShiftTable* shifts) {
 void Stretch::Impl::list_stamps(const ShiftTable* shifts) {
   tiles.clear();
   find_tiles(shifts);
+  bends.assign(shifts ? stamps.size() : 0, {});
+  tbb::parallel_for(std::size_t{0}, bends.size(),
+                    [&](std::size_t k) { bends[k] = make_bend(envelope, *shifts, static_cast<std::ptrdiff_t>(k)); });
   constexpr std::int32_t kAir = -2;
   const double band = stock.band_mm();
   for (std::size_t k = 0; k < stamps.size(); ++k) {
     const Vec3& tip = stamps[k].tip_mm;
-    const double slack = shifts ? shifts->largest_mm(static_cast<std::ptrdiff_t>(k)) : 0.0;
+    const double slack = shifts ? bends[k].largest_mm : 0.0;
     const double reach = envelope.shape.radius_mm + band + slack;
     const Index3 lo = tile_of(tip - Vec3(reach, reach, band), tile_mm);
     const Index3 hi = tile_of(Vec3(tip.x() + reach, tip.y() + reach, stock.max_mm().z() + band), tile_mm);
@@ -258,7 +269,8 @@ void Stretch::Impl::list_stamps(const ShiftTable* shifts) {
         for (int l = lo[2]; l <= hi[2]; ++l) {
           if (!slots.contains(i, j, l)) continue;
           std::int32_t& slot = slots.at(i, j, l);
-          if (slot == kAir || tile_distance_mm({i, j, l}, stock.voxel_mm(), envelope.shape, tip) > band + slack) continue;
+          if (slot == kAir || tile_distance_mm({i, j, l}, stock.voxel_mm(), envelope.shape, tip) > band + slack)
+            continue;
           if (slot == -1) {
             if (stock.is_air({i, j, l})) {
               slot = kAir;
@@ -277,12 +289,15 @@ void Stretch::Impl::runs_of_stamp(std::int32_t k, const ShiftTable* shifts, cons
   const Stamp& stamp = stamps[static_cast<std::size_t>(k)];
   const PointReader reader(envelope, stamp, shifts, k, weights);
   const Stock::Probe probe(stock);
-  const double moved = shifts ? shifts->largest_mm(k) : 0.0;
-  const double slewed = shifts ? moved + shifts->largest_mm(k - 1) : 0.0;
+  const double moved = shifts ? bends[static_cast<std::size_t>(k)].largest_mm : 0.0;
+  const double before = !shifts ? 0.0
+                        : k > 0 ? bends[static_cast<std::size_t>(k) - 1].largest_mm
+                                : shifts->largest_mm(-1);
+  const double slewed = moved + before;
   const double feed = stamp.feed_per_tooth_mm.norm();
   // What curvature, a change of shift and the bent envelope's tilt add to the chip at most.
-  const double bulge = feed * feed / (2 * std::max(envelope.shape.corner_radius_mm, 0.1)) + slewed +
-                       (shifts ? kMostTilt * feed : 0.0);
+  const double bulge =
+      feed * feed / (2 * std::max(envelope.shape.corner_radius_mm, 0.1)) + slewed + (shifts ? kMostTilt * feed : 0.0);
   for (const auto& patch : envelope.patches) {
     if (stamp.feed_per_tooth_mm.dot(patch.normal) + feed * patch.normal_spread + bulge <= 0) continue;
     const double reach = std::min(patch.radius_mm + moved + 0.87 * stock.voxel_mm(), 0.999 * stock.band_mm());
@@ -369,7 +384,8 @@ void Stretch::Impl::sample(const WorkBuffers& buffers, WorkTile& w, const Run& r
     const Cell cell = cell_of(g);
     // The trilinear field is never below the ridge's, but for curvature.
     if (trilinear(buffers.stock.distance, cell) > 0.5f * static_cast<float>(voxel)) continue;
-    const Vec3 corner = voxel * (origin + Vec3(static_cast<int>(g.x()), static_cast<int>(g.y()), static_cast<int>(g.z())));
+    const Vec3 corner =
+        voxel * (origin + Vec3(static_cast<int>(g.x()), static_cast<int>(g.y()), static_cast<int>(g.z())));
     const Vec3 normal(envelope.nx[p], envelope.ny[p], envelope.nz[p]);
     const float depth = thickness(buffers, cell, point, corner, normal, shifts != nullptr);
     if (depth > 0) w.chips.push_back({run.stamp, {p, std::min(depth, cap), depth > kNearCap * cap}});
@@ -382,13 +398,18 @@ void Stretch::Impl::work(WorkTile& w, const ShiftTable* shifts, const std::vecto
   stock.load(w.index, tile);
   if (options.engage) blank->load(w.index, buffers->blank);
   auto run = w.runs.begin();
+  int since_check = 0;
   for (const std::int32_t k : w.stamps) {
+    if (++since_check == kAirCheckEvery) {
+      if (all_air(tile, static_cast<float>(stock.band_mm()))) break;
+      since_check = 0;
+    }
     for (; run != w.runs.end() && run->stamp <= k; ++run) sample(*buffers, w, *run, shifts, weights);
     const Stamp& s = stamps[static_cast<std::size_t>(k)];
     const CarveStamp stamp{s.tip_mm, first_id + k, options.shrink_mm};
-    const CarveBend bend{shifts ? shifts->row(k) : nullptr, shifts ? shifts->largest_mm(k) : 0.0};
-    if (shifts && bend.largest_mm > 0)
-      carve_bent(tile, w.index, stock.voxel_mm(), stock.band_mm(), envelope, stamp, *shifts, bend);
+    if (shifts && bends[static_cast<std::size_t>(k)].largest_mm > 0)
+      carve_bent(tile, w.index, stock.voxel_mm(), stock.band_mm(), envelope, stamp, *shifts,
+                 bends[static_cast<std::size_t>(k)]);
     else
       removal::carve(tile, w.index, stock.voxel_mm(), stock.band_mm(), envelope.shape, stamp);
   }
@@ -410,9 +431,17 @@ Engagement Stretch::Impl::gather() const {
 
 Stretch::Stretch(Stock& stock, const Stock* blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
                  std::size_t from, std::size_t count, const StretchOptions& options)
-    : impl_(std::make_unique<Impl>(Impl{stock, blank, envelope, stamps, stamps.subspan(from, count),
-                                        options.first_id + static_cast<std::int32_t>(from), options,
-                                        Tile::kCore * stock.voxel_mm(), {}, {}})) {}
+    : impl_(std::make_unique<Impl>(Impl{stock,
+                                        blank,
+                                        envelope,
+                                        stamps,
+                                        stamps.subspan(from, count),
+                                        options.first_id + static_cast<std::int32_t>(from),
+                                        options,
+                                        Tile::kCore * stock.voxel_mm(),
+                                        {},
+                                        {},
+                                        {}})) {}
 Stretch::~Stretch() = default;
 
 Engagement Stretch::carve(const ShiftTable* shifts) {

@@ -27,8 +27,8 @@ struct Engagement {
 };
 
 struct StretchOptions {
-  bool engage = true;      ///< sample chips; false: only carve
-  double shrink_mm = 0;    ///< cutter smaller by this along its normal (the blank's allowance); undeflected only
+  bool engage = true;         ///< sample chips; false: only carve
+  double shrink_mm = 0;       ///< cutter smaller by this along its normal (the blank's allowance); undeflected only
   std::int32_t first_id = 0;  ///< id of stamps[0], written to the voxels that it sets last
 };
 

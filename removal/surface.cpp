@@ -106,7 +106,8 @@ void collect(const Stock& machined, const Stock& target, const Index3& tile, std
 std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target) {
   const std::vector<Index3> tiles = target.surface_tiles();
   std::vector<std::vector<SurfacePoint>> parts(tiles.size());
-  tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) { collect(machined, target, tiles[i], parts[i]); });
+  tbb::parallel_for(std::size_t{0}, tiles.size(),
+                    [&](std::size_t i) { collect(machined, target, tiles[i], parts[i]); });
   std::vector<SurfacePoint> points;
   for (const auto& part : parts) points.insert(points.end(), part.begin(), part.end());
   return points;

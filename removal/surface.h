@@ -9,12 +9,12 @@
 namespace camber::removal {
 
 struct SurfacePoint {
-  Vec3 place_mm = Vec3::Zero();    ///< on the target's surface
-  Vec3 normal = Vec3::UnitZ();     ///< outward, unit
-  double error_mm = 0;             ///< machined minus target along the normal; positive: material is left
-  double area_mm2 = 0;             ///< of the target's surface that the point stands for
-  std::int32_t target_stamp = -1;  ///< which stamp of the target's sweep made it
-  std::int32_t machined_stamp = -1;///< which stamp cut the machined field there last; -1: none
+  Vec3 place_mm = Vec3::Zero();      ///< on the target's surface
+  Vec3 normal = Vec3::UnitZ();       ///< outward, unit
+  double error_mm = 0;               ///< machined minus target along the normal; positive: material is left
+  double area_mm2 = 0;               ///< of the target's surface that the point stands for
+  std::int32_t target_stamp = -1;    ///< which stamp of the target's sweep made it
+  std::int32_t machined_stamp = -1;  ///< which stamp cut the machined field there last; -1: none
 };
 
 /// Points where grid lines cross the target's surface, one a voxel column along the normal's largest component,

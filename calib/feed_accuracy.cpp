@@ -1,0 +1,190 @@
+#include "calib/feed_accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/numbers.h"
+#include "base/units.h"
+#include "feedmodel/timed_path.h"
+
+namespace camber::calib {
+namespace {
+
+/// What trace and model have in common.
+struct Record {
+  double period_s = 0;
+  std::vector<Vec3> command_mm, actual_mm;
+  std::vector<std::uint32_t> line;
+};
+
+Record record_of(const nc::Interpretation& program, const machine::Machine& machine) {
+  Record r;
+  r.period_s = machine.control.period_s;
+  feedmodel::predict_feed(program, machine, [&](std::span<const feedmodel::TimedSample> run) {
+    for (const feedmodel::TimedSample& s : run) {
+      r.command_mm.push_back(s.command_mm);
+      r.actual_mm.push_back(s.position_mm);
+      const bool rests = s.feed_command_mm_per_s == 0;
+      r.line.push_back(rests ? 0 : program.moves[s.move].block + 1);
+    }
+  });
+  return r;
+}
+
+struct Window {
+  std::size_t first = 0, commanded_end = 0, end = 0;  ///< end - commanded_end: the tail
+};
+
+/// Windows of all parts in one walk. Parts are in the order of their lines.
+std::vector<Window> windows_of(const Record& r, const std::vector<Part>& parts) {
+  std::vector<Window> windows(parts.size());
+  std::size_t i = 0;
+  const std::size_t n = r.line.size();
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const auto inside = [&](std::size_t k) {
+      return r.line[k] >= parts[p].line_first && r.line[k] <= parts[p].line_last;
+    };
+    std::size_t k = i;
+    while (k < n && !inside(k)) ++k;
+    if (k == n) continue;
+    Window& w = windows[p];
+    w.first = k;
+    for (; k < n && (inside(k) || r.line[k] == 0); ++k) {
+      if (inside(k)) w.commanded_end = k + 1;
+    }
+    w.end = k;
+    i = w.commanded_end;
+  }
+  return windows;
+}
+
+double speed_at(const Record& r, const Window& w, std::size_t k, std::size_t half) {
+  const std::size_t from = std::max(k, w.first + half) - half, to = std::min(k + half, w.end - 1);
+  return to > from ? (r.actual_mm[to] - r.actual_mm[from]).norm() / (static_cast<double>(to - from) * r.period_s) : 0;
+}
+
+/// Speed at stations that lie evenly over the share of the length that the axes really went.
+std::vector<double> speed_profile(const Record& r, const Window& w, const FeedAccuracyOptions& options) {
+  std::vector<double> length{0.0};
+  for (std::size_t k = w.first + 1; k < w.end; ++k)
+    length.push_back(length.back() + (r.actual_mm[k] - r.actual_mm[k - 1]).norm());
+  const auto half = static_cast<std::size_t>(std::max(1L, std::lround(options.speed_window_s / r.period_s / 2)));
+  std::vector<double> speeds(options.stations);
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < options.stations; ++i) {
+    const double s = (static_cast<double>(i) + 0.5) / static_cast<double>(options.stations) * length.back();
+    while (k + 2 < length.size() && length[k + 1] < s) ++k;
+    const double step = length[k + 1] - length[k];
+    const double u = step > 0 ? (s - length[k]) / step : 0.0;
+    speeds[i] = (1 - u) * speed_at(r, w, w.first + k, half) + u * speed_at(r, w, w.first + k + 1, half);
+  }
+  return speeds;
+}
+
+double percentile_95(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double sum = 0;
+  for (double v : values) sum += v * v;
+  return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double motion_time(const Record& r) {
+  std::size_t first = r.command_mm.size(), last = 0;
+  for (std::size_t k = 1; k < r.command_mm.size(); ++k) {
+    if (r.command_mm[k] == r.command_mm[k - 1]) continue;
+    first = std::min(first, k - 1);
+    last = k;
+  }
+  return last > first ? static_cast<double>(last - first) * r.period_s : 0;
+}
+
+}  // namespace
+
+std::vector<Part> parts_of(const nc::Interpretation& program) {
+  std::vector<Part> parts;
+  bool open = false;
+  for (const nc::Move& move : program.moves) {
+    const bool cutting = move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc;
+    if (!cutting) {
+      open = false;
+      continue;
+    }
+    if (open && parts.back().feed_mm_per_s == move.feed_mm_per_s) {
+      parts.back().line_last = move.block + 1;
+    } else {
+      parts.push_back({move.block + 1, move.block + 1, move.feed_mm_per_s});
+    }
+    open = true;
+  }
+  return parts;
+}
+
+std::vector<Part> read_parts(const std::string& path) {
+  const SourceText source = SourceText::read(path);
+  std::istringstream text(source.text());
+  std::string line, field;
+  std::vector<std::string> header;
+  std::vector<Part> parts;
+  while (std::getline(text, line)) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty()) continue;
+    std::istringstream row(line);
+    std::vector<std::string> fields;
+    while (std::getline(row, field, ',')) fields.push_back(field);
+    if (header.empty()) {
+      header = fields;
+      continue;
+    }
+    const auto value = [&](std::string_view name) {
+      const auto at = std::find(header.begin(), header.end(), name) - header.begin();
+      const auto v = at < static_cast<std::ptrdiff_t>(fields.size()) ? parse_number(fields[at]) : std::nullopt;
+      if (!v) fail_on_file(path, "column " + std::string(name) + " is missing or holds no number", "parts-column");
+      return *v;
+    };
+    parts.push_back({static_cast<std::uint32_t>(value("line_first")), static_cast<std::uint32_t>(value("line_last")),
+                     mm_per_s_from_mm_per_min(value("feed_mm_min"))});
+  }
+  return parts;
+}
+
+FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program, const machine::Machine& machine,
+                           const std::vector<Part>& parts, const FeedAccuracyOptions& options) {
+  const Record traced{trace.period_s, trace.command_mm, trace.actual_mm, trace.line};
+  const Record model = record_of(program, machine);
+  FeedAccuracy result;
+  result.time_trace_s = motion_time(traced);
+  result.time_model_s = motion_time(model);
+  if (result.time_trace_s > 0) result.time_error_percent = 100 * (result.time_model_s / result.time_trace_s - 1);
+  if (trace.line.empty()) return result;
+
+  const auto in_trace = windows_of(traced, parts), in_model = windows_of(model, parts);
+  std::vector<double> all;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (in_trace[p].end < in_trace[p].first + 3 || in_model[p].end < in_model[p].first + 3) continue;
+    PartAccuracy part;
+    part.part = parts[p];
+    part.time_trace_s = static_cast<double>(in_trace[p].commanded_end - in_trace[p].first) * traced.period_s;
+    part.time_model_s = static_cast<double>(in_model[p].commanded_end - in_model[p].first) * model.period_s;
+    const auto a = speed_profile(traced, in_trace[p], options), b = speed_profile(model, in_model[p], options);
+    std::vector<double> errors(a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) errors[i] = 100 * std::abs(b[i] - a[i]) / parts[p].feed_mm_per_s;
+    part.speed_rms_percent = root_mean_square(errors);
+    part.speed_p95_percent = percentile_95(errors);
+    result.part_time_error_percent += 100 * std::abs(part.time_model_s / part.time_trace_s - 1);
+    all.insert(all.end(), errors.begin(), errors.end());
+    result.parts.push_back(part);
+  }
+  if (!result.parts.empty()) result.part_time_error_percent /= static_cast<double>(result.parts.size());
+  result.speed_rms_percent = root_mean_square(all);
+  result.speed_p95_percent = percentile_95(all);
+  return result;
+}
+
+}  // namespace camber::calib

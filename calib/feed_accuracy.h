@@ -1,0 +1,53 @@
+#pragma once
+// How well the feed model agrees with a servo trace: time and path speed of the actual axes, part by part.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "calib/trace.h"
+#include "machine/machine.h"
+#include "nc/move.h"
+
+namespace camber::calib {
+
+/// A stretch of consecutive lines of the program that is judged as one.
+struct Part {
+  std::uint32_t line_first = 0, line_last = 0;  ///< 1-based, both included
+  double feed_mm_per_s = 0;                     ///< programmed
+};
+
+/// Reads a CSV with the columns line_first, line_last, feed_mm_min (others are left out). Throws InputError.
+std::vector<Part> read_parts(const std::string& path);
+
+/// Parts of a program without such a list: runs of feed moves of one feed between rapids, dwells and rests.
+std::vector<Part> parts_of(const nc::Interpretation& program);
+
+struct PartAccuracy {
+  Part part;
+  double time_trace_s = 0, time_model_s = 0;  ///< commanded
+  double speed_rms_percent = 0;               ///< over the stations, in % of the programmed feed
+  double speed_p95_percent = 0;
+};
+
+struct FeedAccuracy {
+  double time_trace_s = 0, time_model_s = 0;  ///< from the first to the last commanded motion
+  double time_error_percent = 0;
+  double part_time_error_percent = 0;  ///< mean of the parts' absolute errors
+  double speed_rms_percent = 0;        ///< over the stations of all parts
+  double speed_p95_percent = 0;
+  std::vector<PartAccuracy> parts;
+};
+
+struct FeedAccuracyOptions {
+  std::size_t stations = 2000;    ///< a part, evenly over the share of path length
+  double speed_window_s = 0.004;  ///< speeds are taken over this time: a trace is rounded to 0.1 um
+};
+
+/// Path speed of the actual axes over the share of path length, predicted against traced. A part begins with its
+/// first commanded sample and ends when another line is commanded (its tail, where the axes still come up
+/// while line is 0, belongs to it). Parts that the trace does not hold are left out.
+FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program, const machine::Machine& machine,
+                           const std::vector<Part>& parts, const FeedAccuracyOptions& options);
+
+}  // namespace camber::calib

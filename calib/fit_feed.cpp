@@ -1,0 +1,341 @@
+#include "calib/fit_feed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "calib/fit_limits.h"
+
+namespace camber::calib {
+namespace {
+
+using machine::Machine;
+
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+constexpr double kPlateauShare = 0.999;  // of the highest speed
+constexpr double kPlateauS = 0.02;       // at least this long at it, or it was just passed through
+constexpr std::uint32_t kMostBlocksApart = 60;
+constexpr int kListIterations = 6;      // for each value of a list
+constexpr double kSettledShare = 1e-3;  // gain of cost under which a richer law is not worth it
+
+/// Commanded time of each part: first to last sample of its lines.
+std::vector<double> traced_times_s(const ServoTrace& trace, const std::vector<Part>& parts) {
+  std::vector<double> times(parts.size(), 0.0);
+  std::size_t k = 0;
+  const std::size_t n = trace.line.size();
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const auto inside = [&](std::size_t i) {
+      return trace.line[i] >= parts[p].line_first && trace.line[i] <= parts[p].line_last;
+    };
+    std::size_t i = k;
+    while (i < n && (trace.line[i] == 0 || trace.line[i] < parts[p].line_first)) ++i;
+    if (i == n || !inside(i)) continue;
+    const std::size_t first = i;
+    std::size_t last = i;
+    bool whole = true;
+    for (; i < n && (inside(i) || trace.line[i] == 0); ++i) {
+      if (!inside(i)) continue;
+      if (i > last + 1) whole = false;  // the control waited inside the part
+      last = i;
+    }
+    for (const Stretch& s : trace.stretches) whole = whole && !(s.first > first && s.first <= last);
+    if (whole) times[p] = static_cast<double>(last + 1 - first) * trace.period_s;
+    k = last + 1;
+  }
+  return times;
+}
+
+/// Parts are timed as a whole and, where they have few blocks, block by block as well: a line and the arc after it
+/// tell more apart than together. Blocks that were merged into a later one do not appear in the trace and are left
+/// out there and in the plan.
+void add_timed_lines(const FeedRun& run, int keep_back_every, std::size_t& count, std::vector<TimedLines>& data) {
+  TimedLines parts, blocks;
+  for (const Part& part : parts_of(run.program)) {
+    const bool kept_back = ++count % static_cast<std::size_t>(keep_back_every) == 0;
+    const bool by_block = part.line_last - part.line_first < kMostBlocksApart && part.line_last > part.line_first;
+    for (std::uint32_t line = part.line_first; by_block && line <= part.line_last; ++line) {
+      blocks.parts.push_back({line, line, part.feed_mm_per_s});
+      blocks.kept_back.push_back(kept_back);
+    }
+    parts.parts.push_back(part);
+    parts.kept_back.push_back(kept_back);
+  }
+  for (TimedLines* lines : {&parts, &blocks}) {
+    lines->program = &run.program;
+    lines->time_s = traced_times_s(run.trace, lines->parts);
+    data.push_back(std::move(*lines));
+  }
+}
+
+std::vector<TimedLines> timed_lines(const std::vector<FeedRun>& runs, int keep_back_every) {
+  std::vector<TimedLines> data;
+  std::size_t count = 0;
+  for (const FeedRun& run : runs)
+    if (!run.trace.line.empty()) add_timed_lines(run, keep_back_every, count, data);
+  return data;
+}
+
+/// Highest speed of an axis in rapids, and whether it was held long enough to be a limit.
+struct Plateau {
+  double speed_mm_per_s = 0;
+  bool held = false;
+};
+
+Plateau rapid_plateau(const std::vector<FeedRun>& runs, int axis) {
+  Plateau plateau;
+  for (int pass = 0; pass < 2; ++pass) {
+    double at_top_s = 0;
+    for (const FeedRun& run : runs) {
+      std::vector<char> rapid;
+      for (const nc::Move& move : run.program.moves) {
+        if (rapid.size() <= move.block + 1) rapid.resize(move.block + 2, 0);
+        rapid[move.block + 1] = move.kind == nc::MoveKind::rapid;
+      }
+      for (std::size_t k = 1; k < run.trace.line.size(); ++k) {
+        if (run.trace.line[k] >= rapid.size() || !rapid[run.trace.line[k]]) continue;
+        if (run.trace.line[k] != run.trace.line[k - 1]) continue;
+        const double speed =
+            std::abs(run.trace.command_mm[k][axis] - run.trace.command_mm[k - 1][axis]) / run.trace.period_s;
+        if (pass == 0) plateau.speed_mm_per_s = std::max(plateau.speed_mm_per_s, speed);
+        if (pass == 1 && speed > kPlateauShare * plateau.speed_mm_per_s) at_top_s += run.trace.period_s;
+      }
+    }
+    plateau.held = at_top_s > kPlateauS;
+  }
+  return plateau;
+}
+
+/// Acceleration that an axis was commanded at most, over windows of ten periods (a trace is rounded); the few
+/// highest are left out. 0: the axis rests.
+double traced_acceleration(const std::vector<FeedRun>& runs, int axis) {
+  constexpr std::size_t kWindow = 10, kLeftOut = 20;
+  std::vector<double> highest;  // a heap, least in front
+  for (const FeedRun& run : runs) {
+    const auto& c = run.trace.command_mm;
+    const double t = static_cast<double>(kWindow) * run.trace.period_s;
+    for (const Stretch& s : run.trace.stretches)
+      for (std::size_t k = s.first; k + 2 * kWindow < s.end; ++k) {
+        const double a = std::abs(c[k + 2 * kWindow][axis] - 2 * c[k + kWindow][axis] + c[k][axis]) / (t * t);
+        if (highest.size() > kLeftOut && a <= highest.front()) continue;
+        highest.push_back(a);
+        std::push_heap(highest.begin(), highest.end(), std::greater<>());
+        if (highest.size() <= kLeftOut + 1) continue;
+        std::pop_heap(highest.begin(), highest.end(), std::greater<>());
+        highest.pop_back();
+      }
+  }
+  return highest.empty() ? 0 : highest.front();
+}
+
+/// Start values: those of the machine, or what the traces show at a glance. Equal accelerations would hide from
+/// the first step which axis limits.
+std::vector<LimitParameter> start_values(const std::vector<FeedRun>& runs, const Machine& machine) {
+  std::vector<LimitParameter> parameters = limit_parameters(machine);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double traced = traced_acceleration(runs, axis);
+    LimitParameter& p = parameters[static_cast<std::size_t>(axis)];
+    if (std::isinf(machine.axis[axis].acceleration_mm_per_s2) && traced > p.least) p.start = traced;
+  }
+  return parameters;
+}
+
+/// Median of what rests took longer than programmed; 0 without rests.
+double rest_latency_s(const std::vector<FeedRun>& runs) {
+  std::vector<double> extra;
+  for (const FeedRun& run : runs) {
+    std::vector<double> after_line;  // dwell that follows the block with this line
+    double dwell = 0;
+    std::uint32_t last_line = 0;
+    for (const nc::Move& move : run.program.moves) {
+      if (move.kind == nc::MoveKind::dwell) {
+        dwell += move.dwell_s;
+      } else if (length_mm(run.program, move) > 0) {
+        if (after_line.size() <= last_line) after_line.resize(last_line + 1, 0.0);
+        after_line[last_line] = dwell;
+        dwell = 0;
+        last_line = move.block + 1;
+      }
+    }
+    std::size_t rest_from = 0;
+    std::uint32_t before = 0;
+    for (std::size_t k = 1; k < run.trace.line.size(); ++k) {
+      if (run.trace.line[k] == 0 && run.trace.line[k - 1] != 0) {
+        rest_from = k;
+        before = run.trace.line[k - 1];
+      }
+      if (run.trace.line[k] != 0 && run.trace.line[k - 1] == 0 && before > 0 && before < after_line.size() &&
+          after_line[before] > 0)
+        extra.push_back(static_cast<double>(k - rest_from) * run.trace.period_s - after_line[before]);
+    }
+  }
+  if (extra.empty()) return 0;
+  const auto middle = extra.begin() + static_cast<std::ptrdiff_t>(extra.size() / 2);
+  std::nth_element(extra.begin(), middle, extra.end());
+  return std::max(0.0, std::round(*middle * 1e6) / 1e6);
+}
+
+/// Fits the limits for each value of a list and keeps the value that predicts the kept-back parts best; the
+/// first one stands unless another is clearly better.
+template <class Set>
+void choose(LimitFit& best, const std::vector<TimedLines>& data, const std::vector<double>& values, const Set& set,
+            int iterations) {
+  LimitFit standing = best;
+  for (double value : values) {
+    Machine m = best.machine;
+    set(m, value);
+    auto parameters = best.parameters;
+    for (LimitParameter& p : parameters) p.start = std::clamp(p.fitted.value, p.least * 1.001, p.most * 0.999);
+    const LimitFit fit = fit_limits(data, m, std::move(parameters), iterations, false);
+    const double gain = kSettledShare * (1 + standing.fitted_cost);
+    if (fit.fitted_cost + fit.held_out_cost < standing.fitted_cost + standing.held_out_cost - gain) standing = fit;
+  }
+  best = standing;
+}
+
+/// Fits again from the best block time of its whole range.
+void refine_block_time(LimitFit& fit, const std::vector<TimedLines>& data, const Machine& base, int iterations) {
+  auto parameters = fit.parameters;
+  for (LimitParameter& p : parameters) p.start = std::clamp(p.fitted.value, p.least * 1.001, p.most * 0.999);
+  scan_start(data, base, parameters, parameters.size() - 1);
+  fit = fit_limits(data, base, std::move(parameters), iterations, false);
+}
+
+void add_drive(FitFeedResult& result, int axis, const DriveFit& drive) {
+  const std::string name = std::string("axis.") + kAxes[axis] + ".";
+  machine::Axis& a = result.machine.axis[axis];
+  if (!drive.moved) {
+    result.parameters.push_back({name + "position_gain_per_s", a.position_gain_per_s, "1/s", std::nullopt,
+                                 "the axis does not move in the traces", false});
+    return;
+  }
+  a.position_gain_per_s = drive.gain_per_s.value;
+  a.velocity_lag_s = drive.velocity_lag_s.value;
+  a.feed_forward_percent = std::clamp(drive.feed_forward_percent.value, 0.0, 100.0);
+  a.filter_s = drive.filter_s.value;
+  const auto add = [&](const char* key, const FittedValue& v, double scale, const char* unit) {
+    if (v.value == 0 && v.std_error == 0) return;
+    result.parameters.push_back({name + key, v.value * scale, unit,
+                                 std::isfinite(v.std_error) ? std::optional(v.std_error * scale) : std::nullopt, "",
+                                 true});
+  };
+  add("position_gain_per_s", drive.gain_per_s, 1, "1/s");
+  add("velocity_lag_ms", drive.velocity_lag_s, 1000, "ms");
+  add("feed_forward_percent", drive.feed_forward_percent, 1, "%");
+  if (drive.filter_s.value > 0)
+    result.parameters.push_back(
+        {name + "filter_ms", 1000 * drive.filter_s.value, "ms", std::nullopt, "chosen from a list", true});
+}
+
+void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start) {
+  for (const LimitParameter& p : fit.parameters) {
+    if (p.told) {
+      result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, "", true});
+    } else {
+      result.parameters.push_back(
+          {p.name, p.get(start), p.unit, std::nullopt, "the traces do not tell; left as it was", false});
+    }
+  }
+}
+
+void add_velocity(FitFeedResult& result, const std::vector<FeedRun>& runs, int axis) {
+  const Plateau plateau = rapid_plateau(runs, axis);
+  const std::string name = std::string("axis.") + kAxes[axis] + ".max_velocity_mm_per_min";
+  double& limit = result.machine.axis[axis].max_velocity_mm_per_s;
+  if (plateau.held) {
+    limit = plateau.speed_mm_per_s;
+    result.parameters.push_back(
+        {name, 60 * limit, "mm/min", 60 * 1e-4 / runs.front().trace.period_s, "plateau of the rapids", true});
+    return;
+  }
+  result.parameters.push_back(
+      {name, 60 * limit, "mm/min", std::nullopt,
+       fmt::format("no rapid holds a top speed (highest {:.0f} mm/min); left as it was", 60 * plateau.speed_mm_per_s),
+       false});
+}
+
+void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_back_every) {
+  double square[2] = {0, 0}, p95[2] = {0, 0};
+  std::size_t count = 0;
+  for (const FeedRun& run : runs) {
+    const std::vector<Part> parts = parts_of(run.program);
+    RunAccuracy accuracy{run.program_name, feed_accuracy(run.trace, run.program, result.machine, parts, {})};
+    if (!run.trace.line.empty()) {
+      std::size_t seen = 0;
+      for (const Part& part : parts) {
+        const bool kept_back = ++count % static_cast<std::size_t>(keep_back_every) == 0;
+        if (seen == accuracy.accuracy.parts.size()) continue;
+        const PartAccuracy& a = accuracy.accuracy.parts[seen];
+        if (a.part.line_first != part.line_first) continue;
+        ++seen;
+        FitError& error = kept_back ? result.held_out : result.fitted;
+        ++error.parts;
+        error.part_time_percent += 100 * std::abs(a.time_model_s / a.time_trace_s - 1);
+        square[kept_back] += a.speed_rms_percent * a.speed_rms_percent;
+        p95[kept_back] += a.speed_p95_percent;
+      }
+    }
+    result.runs.push_back(std::move(accuracy));
+  }
+  for (int i = 0; i < 2; ++i) {
+    FitError& error = i ? result.held_out : result.fitted;
+    if (error.parts == 0) continue;
+    const auto n = static_cast<double>(error.parts);
+    error.part_time_percent /= n;
+    error.speed_rms_percent = std::sqrt(square[i] / n);
+    error.speed_p95_percent = p95[i] / n;
+  }
+}
+
+}  // namespace
+
+FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, const FitFeedOptions& options) {
+  FitFeedResult result;
+  result.machine = start;
+  std::vector<const ServoTrace*> traces;
+  for (const FeedRun& run : runs) traces.push_back(&run.trace);
+  bool drives_converged = true;
+  if (!traces.empty()) result.machine.control.period_s = traces.front()->period_s;
+
+  const std::vector<TimedLines> data = timed_lines(runs, options.keep_back_every);
+  for (int axis = 0; axis < 3; ++axis) add_velocity(result, runs, axis);
+  LimitFit limits = fit_limits(data, result.machine, start_values(runs, result.machine), options.max_iterations, true);
+  refine_block_time(limits, data, result.machine, options.max_iterations / 3);
+  const double period = result.machine.control.period_s;
+  if (start.control.corner.law == machine::CornerLaw::blend) {
+    choose(
+        limits, data, {2 * period, 4 * period, 8 * period},
+        [](Machine& m, double v) { m.control.corner.short_line_time_s = v; }, kListIterations);
+    choose(
+        limits, data, {25, 50, 100}, [](Machine& m, double v) { m.control.lookahead_blocks = static_cast<int>(v); },
+        kListIterations);
+    refine_block_time(limits, data, limits.machine, options.max_iterations / 3);
+  }
+  const Machine base = result.machine;
+  result.machine = limits.machine;
+  add_limits(result, limits, base);
+  result.parameters.push_back({"control.lookahead_blocks", static_cast<double>(limits.machine.control.lookahead_blocks),
+                               "1", std::nullopt, "chosen from a list", true});
+  result.parameters.push_back({"control.corner.short_line_time_ms",
+                               1000 * limits.machine.control.corner.short_line_time_s, "ms", std::nullopt,
+                               "chosen from a list", true});
+  result.machine.control.rest_latency_s = rest_latency_s(runs);
+  result.parameters.push_back({"control.rest_latency_ms", 1000 * result.machine.control.rest_latency_s, "ms",
+                               std::nullopt, "median of the rests", true});
+  for (int axis = 0; axis < 3; ++axis) {
+    result.drives[axis] = fit_drive(traces, axis, {});
+    add_drive(result, axis, result.drives[axis]);
+    drives_converged = drives_converged && (!result.drives[axis].moved || result.drives[axis].converged);
+  }
+  result.residual_median_ms = limits.residual_median_ms;
+  judge(result, runs, options.keep_back_every);
+  result.converged = limits.converged && drives_converged;
+  result.message = !drives_converged ? "the fit of a drive did not converge"
+                   : !limits.converged
+                       ? "the fit of the limits did not converge: too few parts for its parameters, or too many steps"
+                       : "converged";
+  return result;
+}
+
+}  // namespace camber::calib

@@ -1,0 +1,67 @@
+#pragma once
+// fit-feed: the feed model of a machine from programs and the servo traces that they left.
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/feed_accuracy.h"
+#include "calib/fit_drive.h"
+#include "calib/trace.h"
+#include "machine/machine.h"
+#include "nc/move.h"
+
+namespace camber::calib {
+
+/// One program and what was traced while it ran.
+struct FeedRun {
+  std::string program_name;
+  nc::Interpretation program;
+  ServoTrace trace;
+};
+
+struct FitFeedOptions {
+  int keep_back_every = 3;  ///< each so-manieth part is not fitted but predicted
+  int max_iterations = 60;
+};
+
+struct FitParameter {
+  std::string name;  ///< key of the machine file, e.g. "axis.x.acceleration_mm_per_s2"
+  double value = 0;
+  std::string unit;
+  std::optional<double> std_error;  ///< not given: not fitted, or the data does not tell
+  std::string note;                 ///< why it has no error, where the reason is worth a word
+  bool written = true;              ///< the machine file takes the value
+};
+
+/// The model's error on parts of the traces.
+struct FitError {
+  std::size_t parts = 0;
+  double part_time_percent = 0;                         ///< mean of the parts' absolute errors
+  double speed_rms_percent = 0, speed_p95_percent = 0;  ///< path speed, in % of the programmed feed
+};
+
+struct RunAccuracy {
+  std::string program_name;
+  FeedAccuracy accuracy;
+};
+
+struct FitFeedResult {
+  machine::Machine machine;
+  std::vector<FitParameter> parameters;
+  std::array<DriveFit, 3> drives;
+  FitError fitted, held_out;
+  std::vector<RunAccuracy> runs;  ///< all parts, with the fitted machine
+  double residual_median_ms = 0;  ///< of the commanded times of the fitted parts
+  bool converged = false;
+  std::string message;  ///< one sentence: why it ended, and what it means
+};
+
+/// `start` gives the control's dialect, corner law and period, and whatever the traces do not tell.
+/// Stage one fits each axis' servo (fit_drive). Stage two fits accelerations, the shares that arcs and stops take,
+/// corner steps and block time to the commanded times of parts, every third kept back, and takes from a list of
+/// values the look-ahead and the short-line time that predict best. Velocity limits are read where a rapid shows
+/// a plateau. Deterministic.
+FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const machine::Machine& start, const FitFeedOptions& options);
+
+}  // namespace camber::calib

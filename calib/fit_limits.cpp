@@ -1,0 +1,267 @@
+#include "calib/fit_limits.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "feedmodel/plan.h"
+
+namespace camber::calib {
+namespace {
+
+using machine::Machine;
+
+constexpr double kTimeNoise = 0.001;  // s; a part's time is known to about a period
+constexpr double kTimeShare = 0.002;  // and to this share of itself
+constexpr double kWideLossScale = 300.0;
+constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
+
+template <int axis>
+LimitParameter acceleration(const Machine& start, const char* name) {
+  LimitParameter p{.name = name,
+                   .unit = "mm/s2",
+                   .get = [](const Machine& m) { return m.axis[axis].acceleration_mm_per_s2; },
+                   .set = [](Machine& m, double v) { m.axis[axis].acceleration_mm_per_s2 = v; },
+                   .least = 5,
+                   .most = 50000,
+                   .start = 500,
+                   .fitted = {}};
+  if (std::isfinite(p.get(start))) p.start = p.get(start);
+  return p;
+}
+
+double scale_of(double time_s) { return kTimeNoise + kTimeShare * time_s; }
+
+/// Residuals of the fitted parts, in units of what a part's time is known to.
+void residuals_of(const std::vector<TimedLines>& data, const Machine& machine, bool kept_back,
+                  std::vector<double>& residuals) {
+  residuals.clear();
+  std::vector<feedmodel::SegmentTime> segments;
+  const nc::Interpretation* planned_program = nullptr;
+  for (const TimedLines& lines : data) {
+    if (lines.program != planned_program) segments = feedmodel::segment_times(*lines.program, machine);
+    planned_program = lines.program;
+    const std::vector<double> planned = planned_times_s(lines, machine, segments);
+    for (std::size_t i = 0; i < planned.size(); ++i) {
+      if (lines.time_s[i] <= 0 || (lines.kept_back[i] != 0) != kept_back) continue;
+      residuals.push_back((planned[i] - lines.time_s[i]) / scale_of(lines.time_s[i]));
+    }
+  }
+}
+
+double robust_cost(const std::vector<double>& residuals) {
+  double sum = 0;
+  for (double r : residuals) sum += kLossScale * kLossScale * std::log1p(r * r / (kLossScale * kLossScale));
+  return residuals.empty() ? 0 : sum / static_cast<double>(residuals.size());
+}
+
+Machine machine_at(const Machine& base, const std::vector<LimitParameter>& parameters, const double* logs) {
+  Machine m = base;
+  for (std::size_t i = 0; i < parameters.size(); ++i) parameters[i].set(m, std::exp(logs[i]));
+  return m;
+}
+
+class TimeResiduals {
+ public:
+  TimeResiduals(const std::vector<TimedLines>& data, const Machine& base, const std::vector<LimitParameter>& parameters,
+                double loss_scale)
+      : data_(data), base_(base), parameters_(parameters), loss_scale_(loss_scale) {}
+
+  bool operator()(const double* const* logs, double* out) const {
+    std::vector<double> residuals;
+    residuals_of(data_, machine_at(base_, parameters_, logs[0]), false, residuals);
+    // The square root of the Cauchy loss, residual by residual.
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+      const double r = residuals[i];
+      out[i] = std::copysign(loss_scale_ * std::sqrt(std::log1p(r * r / (loss_scale_ * loss_scale_))), r);
+    }
+    return true;
+  }
+
+ private:
+  const std::vector<TimedLines>& data_;
+  const Machine& base_;
+  const std::vector<LimitParameter>& parameters_;
+  double loss_scale_;
+};
+
+std::unique_ptr<ceres::CostFunction> make_cost(const std::vector<TimedLines>& data, const Machine& base,
+                                               const std::vector<LimitParameter>& parameters, std::size_t residuals,
+                                               double loss_scale) {
+  ceres::NumericDiffOptions step;
+  step.relative_step_size = 1e-3;  // the plan has small kinks (whole periods); a wide step looks over them
+  auto cost = std::make_unique<ceres::DynamicNumericDiffCostFunction<TimeResiduals, ceres::FORWARD>>(
+      new TimeResiduals(data, base, parameters, loss_scale), ceres::TAKE_OWNERSHIP, step);
+  cost->AddParameterBlock(static_cast<int>(parameters.size()));
+  cost->SetNumResiduals(static_cast<int>(residuals));
+  return cost;
+}
+
+/// Standard errors from the Jacobian; parameters that hardly change any time are marked as not told.
+void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machine& base,
+                const std::vector<double>& logs, std::size_t count) {
+  const auto n = static_cast<int>(fit.parameters.size());
+  const auto cost = make_cost(data, base, fit.parameters, count, kLossScale);
+  std::vector<double> residuals(count), jacobian(count * n);
+  const double* blocks[] = {logs.data()};
+  double* jacobians[] = {jacobian.data()};
+  cost->Evaluate(blocks, residuals.data(), jacobians);
+  const Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> j(
+      jacobian.data(), static_cast<Eigen::Index>(count), n);
+  double sum = 0;
+  for (double r : residuals) sum += r * r;
+  const double variance = sum / std::max(1.0, static_cast<double>(count) - n);
+  std::vector<int> told;
+  for (int i = 0; i < n; ++i) {
+    fit.parameters[i].told = j.col(i).norm() > 1.0;  // a change by a factor e moves some time by its noise
+    fit.parameters[i].fitted = {std::exp(logs[i]), INFINITY};
+    if (fit.parameters[i].told) told.push_back(i);
+  }
+  Eigen::MatrixXd normal(told.size(), told.size());
+  for (std::size_t a = 0; a < told.size(); ++a)
+    for (std::size_t b = 0; b < told.size(); ++b) normal(a, b) = j.col(told[a]).dot(j.col(told[b]));
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(normal);
+  if (!lu.isInvertible()) return;
+  const Eigen::MatrixXd covariance = lu.inverse() * variance;
+  for (std::size_t a = 0; a < told.size(); ++a) {
+    LimitParameter& p = fit.parameters[told[a]];
+    const double log_error = std::sqrt(std::max(0.0, covariance(a, a)));
+    p.fitted.std_error = p.fitted.value * log_error;
+    if (log_error > 0.5) p.told = false;
+  }
+}
+
+}  // namespace
+
+std::vector<LimitParameter> limit_parameters(const Machine& start) {
+  const auto share = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double), double value) {
+    return LimitParameter{
+        .name = name, .unit = "1", .get = get, .set = set, .least = 0.02, .most = 1, .start = value, .fitted = {}};
+  };
+  std::vector<LimitParameter> p;
+  p.push_back(acceleration<0>(start, "axis.x.acceleration_mm_per_s2"));
+  p.push_back(acceleration<1>(start, "axis.y.acceleration_mm_per_s2"));
+  p.push_back(acceleration<2>(start, "axis.z.acceleration_mm_per_s2"));
+  p.push_back(share(
+      "control.arc_normal_share", [](const Machine& m) { return m.control.arc_normal_share; },
+      [](Machine& m, double v) { m.control.arc_normal_share = v; }, 0.9));
+  p.push_back(share(
+      "control.arc_tangential_share", [](const Machine& m) { return m.control.arc_tangential_share; },
+      [](Machine& m, double v) { m.control.arc_tangential_share = v; }, 0.7));
+  p.push_back(share(
+      "control.stop_acceleration_share", [](const Machine& m) { return m.control.stop_acceleration_share; },
+      [](Machine& m, double v) { m.control.stop_acceleration_share = v; }, 0.7));
+  p.push_back({.name = "control.corner.step_share",
+               .unit = "1",
+               .get = [](const Machine& m) { return m.control.corner.step_share; },
+               .set = [](Machine& m, double v) { m.control.corner.step_share = v; },
+               .least = 1e-3,
+               .most = 0.7,
+               .start = 0.05,
+               .fitted = {}});
+  p.push_back({.name = "control.block_time_ms",
+               .unit = "ms",
+               .get = [](const Machine& m) { return 1000 * m.control.block_time_s; },
+               .set = [](Machine& m, double v) { m.control.block_time_s = v / 1000; },
+               .least = 0.01,
+               .most = 50,
+               .start = 1000 * start.control.period_s,
+               .fitted = {}});
+  return p;
+}
+
+std::vector<double> planned_times_s(const TimedLines& data, const Machine& machine,
+                                    const std::vector<feedmodel::SegmentTime>& segments) {
+  std::vector<double> times(data.parts.size(), 0.0);
+  std::size_t i = 0;
+  for (std::size_t p = 0; p < data.parts.size(); ++p) {
+    const auto line = [&](std::size_t k) { return data.program->moves[segments[k].move].block + 1; };
+    while (i < segments.size() && (segments[i].rest || line(i) < data.parts[p].line_first)) ++i;
+    const bool after_rest = i == 0 || (i < segments.size() && segments[i - 1].rest);
+    double first = -1, end = 0;
+    for (; i < segments.size() && (segments[i].rest || line(i) <= data.parts[p].line_last); ++i) {
+      if (segments[i].rest) continue;
+      if (first < 0) first = segments[i].start_s;
+      end = segments[i].start_s + segments[i].duration_s;
+    }
+    // After a rest the trace also counts the sample at which the part begins.
+    if (first >= 0) times[p] = end - first + (after_rest ? machine.control.period_s : 0.0);
+  }
+  return times;
+}
+
+void scan_start(const std::vector<TimedLines>& data, const Machine& base, std::vector<LimitParameter>& parameters,
+                std::size_t index) {
+  constexpr int kSteps = 48;
+  LimitParameter& p = parameters[index];
+  std::vector<double> logs, residuals;
+  for (const LimitParameter& q : parameters) logs.push_back(std::log(q.start));
+  double least = INFINITY, best = p.start;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double u = static_cast<double>(i) / kSteps;
+    logs[index] = (1 - u) * std::log(p.least) + u * std::log(p.most);
+    residuals_of(data, machine_at(base, parameters, logs.data()), false, residuals);
+    const double cost = robust_cost(residuals);
+    if (cost > least) continue;  // of equal costs the last: just before the data begins to tell
+    least = cost;
+    best = std::exp(logs[index]);
+  }
+  p.start = best;
+}
+
+LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, std::vector<LimitParameter> parameters,
+                    int max_iterations, bool far_away) {
+  LimitFit fit;
+  fit.parameters = std::move(parameters);
+  std::vector<double> logs;
+  for (const LimitParameter& p : fit.parameters) logs.push_back(std::log(p.start));
+  std::vector<double> residuals;
+  residuals_of(data, machine_at(start, fit.parameters, logs.data()), false, residuals);
+  fit.machine = start;
+  if (residuals.size() <= fit.parameters.size()) return fit;
+
+  // A wide loss first: from far away every part looks like one that no plan explains.
+  for (double loss_scale : {kWideLossScale, kLossScale}) {
+    if (loss_scale == kWideLossScale && !far_away) continue;
+    ceres::Problem problem;
+    problem.AddResidualBlock(make_cost(data, start, fit.parameters, residuals.size(), loss_scale).release(), nullptr,
+                             logs.data());
+    for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+      problem.SetParameterLowerBound(logs.data(), static_cast<int>(i), std::log(fit.parameters[i].least));
+      problem.SetParameterUpperBound(logs.data(), static_cast<int>(i), std::log(fit.parameters[i].most));
+    }
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_QR;
+    options.max_num_iterations = max_iterations;
+    options.function_tolerance = 1e-4;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    fit.converged = summary.termination_type == ceres::CONVERGENCE;
+  }
+  set_errors(fit, data, start, logs, residuals.size());
+
+  const Machine fitted = machine_at(start, fit.parameters, logs.data());
+  for (const LimitParameter& p : fit.parameters)
+    if (p.told) p.set(fit.machine, p.fitted.value);
+  residuals_of(data, fitted, false, residuals);
+  fit.fitted_cost = robust_cost(residuals);
+  std::vector<double> milliseconds;
+  for (const TimedLines& lines : data) {
+    const auto planned = planned_times_s(lines, fitted, feedmodel::segment_times(*lines.program, fitted));
+    for (std::size_t i = 0; i < planned.size(); ++i)
+      if (lines.time_s[i] > 0 && !lines.kept_back[i])
+        milliseconds.push_back(1000 * std::abs(planned[i] - lines.time_s[i]));
+  }
+  const auto middle = milliseconds.begin() + static_cast<std::ptrdiff_t>(milliseconds.size() / 2);
+  std::nth_element(milliseconds.begin(), middle, milliseconds.end());
+  fit.residual_median_ms = *middle;
+  residuals_of(data, fitted, true, residuals);
+  fit.held_out_cost = robust_cost(residuals);
+  return fit;
+}
+
+}  // namespace camber::calib

@@ -1,0 +1,58 @@
+#pragma once
+// Stage two of fit-feed: the limits that the control plans with, from the times of blocks that it commanded.
+#include <string>
+#include <vector>
+
+#include "calib/feed_accuracy.h"
+#include "calib/fit_drive.h"
+#include "feedmodel/plan.h"
+#include "machine/machine.h"
+#include "nc/move.h"
+
+namespace camber::calib {
+
+/// A stretch of lines whose commanded time is known.
+struct TimedLines {
+  const nc::Interpretation* program = nullptr;
+  std::vector<Part> parts;
+  std::vector<double> time_s;   ///< of each part; 0: not in the trace
+  std::vector<char> kept_back;  ///< of each part
+};
+
+/// A number of the machine that the fit may change.
+struct LimitParameter {
+  std::string name, unit;
+  double (*get)(const machine::Machine&);
+  void (*set)(machine::Machine&, double);
+  double least = 0, most = 0, start = 0;
+  FittedValue fitted;
+  bool told = false;  ///< the data tells it
+};
+
+/// Those that the fit knows, with the start values that the machine gives or that suit most controls.
+std::vector<LimitParameter> limit_parameters(const machine::Machine& start);
+
+struct LimitFit {
+  machine::Machine machine;
+  std::vector<LimitParameter> parameters;
+  double fitted_cost = 0, held_out_cost = 0;  ///< mean robust cost of a part
+  double residual_median_ms = 0;
+  bool converged = false;
+};
+
+/// Least squares (Cauchy loss: a trace may hold pauses that no plan explains) over the times of the parts.
+/// far_away: the start values may be wrong by much; a wide loss leads first.
+LimitFit fit_limits(const std::vector<TimedLines>& data, const machine::Machine& start,
+                    std::vector<LimitParameter> parameters, int max_iterations, bool far_away);
+
+/// Sets the start value of one parameter to the best of values spread evenly (in the logarithm) over its range,
+/// the others at their start: for those that change nothing over most of their range, such as a block time.
+void scan_start(const std::vector<TimedLines>& data, const machine::Machine& base,
+                std::vector<LimitParameter>& parameters, std::size_t index);
+
+/// Seconds that the plan takes for each part: from the start of its first to the end of its last segment.
+/// `segments`: the plan of the whole program, segment_times(*data.program, machine).
+std::vector<double> planned_times_s(const TimedLines& data, const machine::Machine& machine,
+                                    const std::vector<feedmodel::SegmentTime>& segments);
+
+}  // namespace camber::calib

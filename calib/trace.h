@@ -1,0 +1,41 @@
+#pragma once
+// Servo traces: what the control commanded and where the axes were, sample by sample.
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/geometry.h"
+
+namespace camber::calib {
+
+/// A trace without holes: samples `first` .. `end` - 1 follow each other at the period.
+struct Stretch {
+  std::size_t first = 0, end = 0;
+};
+
+/// Columns that the file does not have are zero throughout.
+struct ServoTrace {
+  std::string path;
+  double period_s = 0;      ///< median distance of the samples
+  std::vector<double> t_s;  ///< ascending
+  std::vector<Vec3> command_mm, actual_mm;
+  std::vector<double> feed_mm_per_s;  ///< empty without the column
+  std::vector<std::uint32_t> line;  ///< 1-based line of the program being commanded, 0: none; empty without the column
+  std::array<bool, 3> has_command{}, has_actual{};
+  std::vector<Stretch> stretches;  ///< in order; one when there is no gap
+
+  std::size_t size() const { return t_s.size(); }
+};
+
+/// Reads a CSV whose header names columns: `t_s` and any of x_cmd_mm y_cmd_mm z_cmd_mm x_act_mm y_act_mm
+/// z_act_mm feed_mm_per_min line, in any order; CRLF and blanks around fields are allowed.
+///
+/// Errors (InputError): [file-missing], [trace-empty], [trace-column] (no t_s, no position, a column twice),
+/// [trace-fields] (number of fields), [trace-number] (not a finite number), [trace-time] (time does not rise).
+/// Warnings: [trace-column] for a column that is not known, [trace-gap] for a hole in the time (more than
+/// 1.5 periods), with its line and size; the trace is split there.
+ServoTrace read_trace(const std::string& path, Diagnostics& diagnostics);
+
+}  // namespace camber::calib

@@ -1,0 +1,29 @@
+#pragma once
+// camber check: read and interpret a program, report, change nothing.
+#include <iosfwd>
+#include <string>
+
+#include "base/diagnostics.h"
+#include "nc/interpreter.h"
+#include "nc/summary.h"
+
+namespace camber::cli {
+
+struct CheckCommand {
+  std::string program;
+  std::string json;  ///< file for the figures; empty: none
+  nc::InterpreterOptions interpreter;
+};
+
+/// Writes a short report to `out` and, where asked for, the same figures as JSON. Warnings go to `diagnostics` in the
+/// order of the file. Throws InputError, likewise in order, when the program cannot be read; then no file is written.
+/// Returns 0.
+int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out);
+
+/// The figures of a report as JSON text, with a line end.
+std::string check_json(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics);
+
+/// The report as it is printed.
+std::string check_report(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics);
+
+}  // namespace camber::cli

@@ -1,0 +1,85 @@
+#include "cli/command_line.h"
+
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <new>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/console.h"
+
+namespace camber::cli {
+namespace {
+
+constexpr const char* kDescription =
+    "Camber predicts how far the cutter bends along an NC program and moves the path the other way.";
+constexpr const char* kExitStatus =
+    "Exit status: 0 done; 1 the input is wrong; 2 the command line is wrong; 3 done as far as possible, but the "
+    "numbers did not work out.";
+constexpr int kMostThreads = 1024;
+
+void add_global_options(CLI::App& app, GlobalOptions& options) {
+  app.set_version_flag("--version", std::string("camber ") + CAMBER_VERSION);
+  app.add_flag("--strict", options.strict, "warnings become errors");
+  auto* quiet = app.add_flag("-q,--quiet", options.quiet, "print errors only");
+  app.add_flag("-v,--verbose", options.verbosity, "say more; twice: still more")->excludes(quiet);
+  app.add_option("--threads", options.threads, "number of threads; 0: as many as the computer has")
+      ->check(CLI::Range(0, kMostThreads))
+      ->type_name("N");
+  app.add_flag("--effective-config", options.effective_config,
+               "print the job and the machine with every default filled in, and stop");
+}
+
+/// Limits the threads for as long as it lives.
+std::unique_ptr<tbb::global_control> thread_limit(int threads) {
+  if (threads <= 0) return nullptr;
+  return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                               static_cast<std::size_t>(threads));
+}
+
+int guarded(const Action& action, const GlobalOptions& options) {
+  try {
+    return action();
+  } catch (const InputError& problem) {
+    print_diagnostics(problem.diagnostics(), options);
+  } catch (const std::bad_alloc&) {
+    print_error("not enough memory; a larger voxel_mm, a smaller stock or fewer threads need less [memory]");
+  } catch (const std::exception& problem) {
+    print_error(
+        fmt::format("this should not have happened: {}; please report it with the files [internal]", problem.what()));
+  }
+  return kInputWrong;
+}
+
+}  // namespace
+
+void require_folder_of(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code ec;
+  if (path.empty() || folder.empty() || std::filesystem::is_directory(folder, ec)) return;
+  fail_on_file(path, fmt::format("cannot be written: there is no folder {}", folder.string()), "file-unwritable");
+}
+
+int run(int argc, const char* const* argv) {
+  CLI::App app(kDescription, "camber");
+  app.footer(kExitStatus);
+  app.require_subcommand(1);
+  app.fallthrough();
+  GlobalOptions options;
+  Action chosen;
+  add_global_options(app, options);
+  add_program_commands(app, options, chosen);
+  add_job_commands(app, options, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem) == 0 ? kDone : kCommandLineWrong;
+  }
+  const auto limit = thread_limit(options.threads);
+  return guarded(chosen, options);
+}
+
+}  // namespace camber::cli

@@ -1,0 +1,62 @@
+#include "cli/compensate_command.h"
+
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "base/output_file.h"
+#include "cli/console.h"
+#include "cli/progress.h"
+#include "nc/interpreter.h"
+#include "report/report_data.h"
+#include "report/summary.h"
+
+namespace camber::cli {
+namespace {
+
+std::vector<report::FeedSample> feed_of(SourceText source, const machine::Job& job) {
+  Diagnostics ignored;  // said already
+  const auto text = nc::read_program(std::move(source), ignored);
+  nc::InterpreterOptions options;
+  options.inch = job.inch;
+  const auto moves = nc::interpret(text, options, ignored);
+  report::FeedCollector collector;
+  feedmodel::predict_feed(moves, job.machine, [&](std::span<const feedmodel::TimedSample> s) { collector.add(s); });
+  return collector.take();
+}
+
+}  // namespace
+
+int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Diagnostics diagnostics;
+  const machine::Job job = machine::read_job(arguments.job, diagnostics);
+  ProgressLine progress(options);
+  compensate::CompensateOptions compensate_options;
+  compensate_options.progress = [&](const std::string& what, double share) { progress.show(what, share); };
+  const compensate::Compensation result = compensate::compensate(job, diagnostics, compensate_options);
+  progress.clear();
+  settle(diagnostics, options);
+  const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+
+  write_file(arguments.output, result.text);
+  if (!arguments.json.empty()) write_file(arguments.json, report::compensate_json(result, compute_s));
+  if (!arguments.report.empty())
+    report::write_html_report(
+        arguments.report,
+        report::compensate_report("Form error before and after compensation", result,
+                                  feed_of(SourceText::read(job.program), job),
+                                  feed_of(SourceText(arguments.output, result.text), job), diagnostics));
+
+  if (!options.quiet) fmt::print("{}", report::compensate_text(result, compute_s));
+  if (const std::string unsettled = report::unsettled_sentence(result); !unsettled.empty()) {
+    print_error(unsettled);
+    return kNumbersDidNotWorkOut;
+  }
+  if (result.stop == compensate::Stop::tolerance) return kDone;
+  print_error(fmt::format("the residual of {:.2f} um (95th percentile) is over tolerance_um = {:g}",
+                          result.after_um.p95, job.compensation.tolerance_um));
+  return kNumbersDidNotWorkOut;
+}
+
+}  // namespace camber::cli

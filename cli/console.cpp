@@ -1,0 +1,59 @@
+#include "cli/console.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace camber::cli {
+namespace {
+
+constexpr std::string_view kRed = "\033[1;31m", kMagenta = "\033[1;35m", kPlain = "\033[0m";
+
+std::string coloured(std::string_view text, std::string_view colour) {
+  return fmt::format("{}{}{}", colour, text, kPlain);
+}
+
+}  // namespace
+
+bool stderr_is_terminal() { return isatty(STDERR_FILENO) != 0; }
+
+bool colour_wanted() {
+  const char* no_color = std::getenv("NO_COLOR");
+  return stderr_is_terminal() && (no_color == nullptr || *no_color == '\0');
+}
+
+std::string diagnostic_text(const Diagnostic& diagnostic, bool colour) {
+  std::string text = to_string(diagnostic);
+  if (!colour) return text;
+  const bool error = diagnostic.severity == Severity::error;
+  const std::string_view word = error ? "error:" : "warning:";
+  const std::size_t at = text.find(word, diagnostic.location.file.size());
+  if (at != std::string::npos) text.replace(at, word.size(), coloured(word, error ? kRed : kMagenta));
+  return text;
+}
+
+void print_diagnostics(std::span<const Diagnostic> diagnostics, const GlobalOptions& options) {
+  for (const auto& d : diagnostics)
+    if (!options.quiet || d.severity == Severity::error)
+      fmt::print(stderr, "{}\n", diagnostic_text(d, colour_wanted()));
+}
+
+void settle(const Diagnostics& diagnostics, const GlobalOptions& options) {
+  diagnostics.throw_if_errors();
+  if (!options.strict || diagnostics.warnings() == 0) {
+    print_diagnostics(diagnostics.all(), options);
+    return;
+  }
+  std::vector<Diagnostic> errors = diagnostics.all();
+  for (auto& d : errors) d.severity = Severity::error;
+  throw InputError(std::move(errors));
+}
+
+void print_error(const std::string& sentence) {
+  fmt::print(stderr, "camber: {} {}\n", colour_wanted() ? coloured("error:", kRed) : "error:", sentence);
+}
+
+}  // namespace camber::cli

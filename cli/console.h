@@ -1,0 +1,28 @@
+#pragma once
+// What goes to the terminal: diagnostics, in colour where the terminal and the user want it.
+#include <span>
+#include <string>
+
+#include "base/diagnostics.h"
+#include "cli/global_options.h"
+
+namespace camber::cli {
+
+bool stderr_is_terminal();
+/// A terminal, and no NO_COLOR in the environment (https://no-color.org).
+bool colour_wanted();
+
+/// As to_string, with the word error in red and warning in magenta where `colour`.
+std::string diagnostic_text(const Diagnostic& diagnostic, bool colour);
+
+/// Prints all of them to stderr; with -q only the errors.
+void print_diagnostics(std::span<const Diagnostic> diagnostics, const GlobalOptions& options);
+
+/// What a command does with what its readers found: prints warnings; throws InputError when there are errors, or
+/// (--strict) warnings, which are errors then.
+void settle(const Diagnostics& diagnostics, const GlobalOptions& options);
+
+/// One line "camber: error: ..." on stderr.
+void print_error(const std::string& sentence);
+
+}  // namespace camber::cli

@@ -1,0 +1,43 @@
+#include "cli/feed_command.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/output_file.h"
+#include "cli/console.h"
+#include "feedmodel/feed_csv.h"
+#include "feedmodel/timed_path.h"
+#include "machine/machine.h"
+#include "nc/program.h"
+
+namespace camber::cli {
+
+int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
+  Diagnostics diagnostics;
+  const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
+  const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
+  const nc::Interpretation moves = nc::interpret(program, arguments.interpreter, diagnostics);
+  settle(diagnostics, options);
+
+  std::unique_ptr<feedmodel::FeedCsv> csv;
+  if (!arguments.output.empty()) csv = std::make_unique<feedmodel::FeedCsv>(moves, arguments.output);
+  const feedmodel::FeedSummary summary =
+      feedmodel::predict_feed(moves, machine, [&](std::span<const feedmodel::TimedSample> samples) {
+        if (csv) csv->write(samples);
+      });
+  if (csv) csv->commit();
+
+  if (!options.quiet)
+    fmt::print("time          {:.3f} s\ncutting time  {:.3f} s\nblocks        {}\n", summary.time_s,
+               summary.cutting_time_s, summary.blocks);
+  if (!arguments.json.empty()) {
+    const nlohmann::ordered_json report = {
+        {"time_s", summary.time_s}, {"cutting_time_s", summary.cutting_time_s}, {"blocks", summary.blocks}};
+    write_file(arguments.json, report.dump(2) + "\n");
+  }
+  return kDone;
+}
+
+}  // namespace camber::cli

@@ -1,0 +1,23 @@
+#pragma once
+// camber fit-feed: a machine file from programs and the servo traces that they left.
+#include <string>
+#include <vector>
+
+#include "cli/global_options.h"
+#include "nc/interpreter.h"
+
+namespace camber::cli {
+
+struct FitFeedArguments {
+  std::vector<std::string> programs, traces;  ///< as many of one as of the other
+  std::string machine;
+  std::string output;  ///< fitted.toml
+  std::string json;    ///< empty: none
+  nc::InterpreterOptions interpreter;
+};
+
+/// camber fit-feed. Throws InputError. Returns kDone, or kNumbersDidNotWorkOut when the fit did not converge (the
+/// machine file is written all the same, and a sentence says so).
+int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options);
+
+}  // namespace camber::cli

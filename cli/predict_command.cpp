@@ -1,0 +1,88 @@
+#include "cli/predict_command.h"
+
+#include <chrono>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/output_file.h"
+#include "cli/console.h"
+#include "cli/progress.h"
+#include "feedmodel/feed_csv.h"
+#include "nc/interpreter.h"
+#include "report/forces_csv.h"
+#include "report/report_data.h"
+#include "report/summary.h"
+
+namespace camber::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path make_folder(const std::string& path) {
+  std::error_code ec;
+  fs::create_directories(path, ec);
+  if (!fs::is_directory(path)) fail_on_file(path, "cannot be made a folder: " + ec.message(), "file-unwritable");
+  return path;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Times the program once more to write feed.csv, a sample a period.
+std::vector<report::FeedSample> write_feed(const deflection::MachinedProgram& program, const machine::Job& job,
+                                           const std::string& path) {
+  feedmodel::FeedCsv csv(program.moves, path);
+  report::FeedCollector collector;
+  feedmodel::predict_feed(program.moves, job.machine, [&](std::span<const feedmodel::TimedSample> samples) {
+    csv.write(samples);
+    collector.add(samples);
+  });
+  csv.commit();
+  return collector.take();
+}
+
+}  // namespace
+
+int run_predict(const PredictArguments& arguments, const GlobalOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Diagnostics diagnostics;
+  const machine::Job job = machine::read_job(arguments.job, diagnostics);
+  const auto program = deflection::machine_program(SourceText::read(job.program), job, {}, diagnostics);
+  const deflection::Target target = [&] {
+    if (job.part.program.empty()) return deflection::make_target(job, program, diagnostics);
+    Diagnostics of_target;
+    const auto original = deflection::machine_program(SourceText::read(job.part.program), job, {}, of_target);
+    return deflection::make_target(job, original, diagnostics);
+  }();
+  settle(diagnostics, options);
+  const fs::path folder = make_folder(arguments.output_folder);
+
+  ProgressLine progress(options);
+  deflection::PredictOptions predict_options;
+  predict_options.progress = [&](double share) { progress.show("cutting", share); };
+  const auto prediction = deflection::predict(job, target, program, predict_options);
+  progress.clear();
+  const double compute_s = seconds_since(begin);
+
+  auto feed = write_feed(program, job, folder / "feed.csv");
+  report::write_forces_csv(folder / "forces.csv", job, program, prediction);
+  const auto points = report::form_error_points(program, prediction);
+  report::write_form_error_csv(folder / "form_error.csv", points);
+  report::write_form_error_vtp(folder / "form_error.vtp", points);
+  prediction.machined->save(folder / "stock.vdb");
+  report::write_html_report(folder / "report.html", report::predict_report("Predicted form error", program, prediction,
+                                                                           std::move(feed), diagnostics));
+  const std::string json = report::predict_json(program, prediction, compute_s);
+  write_file(folder / "summary.json", json);
+  if (!arguments.json.empty()) write_file(arguments.json, json);
+
+  if (!options.quiet) fmt::print("{}", report::predict_text(program, prediction, compute_s));
+  const std::string unsettled = report::unsettled_sentence(prediction);
+  if (unsettled.empty()) return kDone;
+  print_error(unsettled);
+  return kNumbersDidNotWorkOut;
+}
+
+}  // namespace camber::cli

@@ -1,0 +1,19 @@
+#pragma once
+// camber predict J.toml -o DIR [--json R.json]
+#include <string>
+
+#include "cli/global_options.h"
+
+namespace camber::cli {
+
+struct PredictArguments {
+  std::string job;
+  std::string output_folder;
+  std::string json;  ///< empty: only summary.json in the folder
+};
+
+/// Writes feed.csv, forces.csv, form_error.csv, form_error.vtp, stock.vdb, report.html and summary.json. Throws
+/// InputError. Returns kDone or kNumbersDidNotWorkOut.
+int run_predict(const PredictArguments& arguments, const GlobalOptions& options);
+
+}  // namespace camber::cli

@@ -1,0 +1,112 @@
+// check, feed and fit-feed on the command line.
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/check_command.h"
+#include "cli/command_line.h"
+#include "cli/console.h"
+#include "cli/feed_command.h"
+#include "cli/fit_feed_command.h"
+#include "machine/machine.h"
+
+namespace camber::cli {
+namespace {
+
+void add_interpreter_options(CLI::App& command, nc::InterpreterOptions& interpreter) {
+  command.add_option("--units", interpreter.inch, "unit of a program that has neither G20 nor G21")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"mm", false}, {"inch", true}}).description(""))
+      ->type_name("mm|inch");
+  command.add_flag("--block-skip", interpreter.skip_slash_blocks, "leave out blocks that begin with /");
+}
+
+int print_effective_machine(const std::string& path, const GlobalOptions& options) {
+  Diagnostics diagnostics;
+  const machine::Machine machine = machine::read_machine(path, diagnostics);
+  settle(diagnostics, options);
+  fmt::print("# {}\n{}", path, machine::to_toml(machine));
+  return kDone;
+}
+
+/// What check finds is its result: it is printed, and what --strict makes errors ends it with 1.
+int check(const CheckCommand& command, const GlobalOptions& options) {
+  Diagnostics diagnostics;
+  std::ostream silent(nullptr);
+  const int status = run_check(command, diagnostics, options.quiet ? silent : std::cout);
+  std::cout.flush();
+  settle(diagnostics, options);
+  return status;
+}
+
+void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("check", "read and interpret a program, report, change nothing");
+  auto arguments = std::make_shared<CheckCommand>();
+  command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  add_interpreter_options(*command, arguments->interpreter);
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      require_folder_of(arguments->json);
+      return check(*arguments, options);
+    };
+  });
+}
+
+void add_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("feed", "actual feed along a program, and its time");
+  auto arguments = std::make_shared<FeedArguments>();
+  command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
+  command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
+  command->add_option("-o,--output", arguments->output, "the axes at every period")->type_name("feed.csv");
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  add_interpreter_options(*command, arguments->interpreter);
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      if (options.effective_config) return print_effective_machine(arguments->machine, options);
+      for (const auto& path : {arguments->output, arguments->json}) require_folder_of(path);
+      return run_feed(*arguments, options);
+    };
+  });
+}
+
+void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("fit-feed", "fit a machine's feed model to servo traces");
+  auto arguments = std::make_shared<FitFeedArguments>();
+  command->add_option("--program", arguments->programs, "a program that was run; once for each trace")
+      ->required()
+      ->expected(1)
+      ->take_all()
+      ->type_name("P.nc");
+  command->add_option("--trace", arguments->traces, "what the axes did")
+      ->required()
+      ->expected(1)
+      ->take_all()
+      ->type_name("T.csv");
+  command->add_option("--machine", arguments->machine, "machine to start from")->required()->type_name("M.toml");
+  command->add_option("-o,--output", arguments->output, "the fitted machine")->required()->type_name("fitted.toml");
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  add_interpreter_options(*command, arguments->interpreter);
+  command->callback([arguments, &options, &chosen] {
+    if (arguments->programs.size() != arguments->traces.size())
+      throw CLI::ValidationError("--trace",
+                                 fmt::format("{} programs and {} traces; as many of one as of the other were expected",
+                                             arguments->programs.size(), arguments->traces.size()));
+    chosen = [arguments, &options] {
+      if (options.effective_config) return print_effective_machine(arguments->machine, options);
+      for (const auto& path : {arguments->output, arguments->json}) require_folder_of(path);
+      return run_fit_feed(*arguments, options);
+    };
+  });
+}
+
+}  // namespace
+
+void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  add_check(app, options, chosen);
+  add_feed(app, options, chosen);
+  add_fit_feed(app, options, chosen);
+}
+
+}  // namespace camber::cli

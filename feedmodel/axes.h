@@ -1,0 +1,37 @@
+#pragma once
+// From commanded to actual position, axis by axis: filter, then position loop.
+#include <array>
+#include <optional>
+
+#include "base/geometry.h"
+#include "feedmodel/axis_filter.h"
+#include "feedmodel/position_loop.h"
+#include "machine/machine.h"
+
+namespace camber::feedmodel {
+
+/// Seconds of the moving average of every axis: its own filter, or what turns its acceleration into one with
+/// the given jerk (acceleration / jerk), whichever is longer. Jerk windows are those of the slowest axis for
+/// all three, so that they do not bend the path.
+Vec3 filter_times_s(const machine::Machine& machine);
+
+class Axes {
+ public:
+  Axes(const machine::Machine& machine, const Vec3& start_mm);
+
+  /// One period: the command at its end; returns the actual position at its end.
+  Vec3 operator()(const Vec3& command_mm);
+  Vec3 velocity_mm_per_s() const;
+  /// How long, at most, the axes need to come to rest behind a command that rests.
+  double settling_time_s() const { return settling_time_s_; }
+
+ private:
+  struct Axis {
+    AxisFilter filter;
+    PositionLoop loop;
+  };
+  std::array<std::optional<Axis>, 3> axes_;
+  double settling_time_s_ = 0;
+};
+
+}  // namespace camber::feedmodel

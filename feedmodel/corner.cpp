@@ -1,0 +1,51 @@
+#include "feedmodel/corner.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "feedmodel/limits.h"
+
+namespace camber::feedmodel {
+namespace {
+
+constexpr double kSameDirection = 1e-9;  // rad; below it rounding of the end points decides
+
+}  // namespace
+
+double speed_difference_limit(const Vec3& from, const Vec3& to, const Vec3& permitted_mm_per_s) {
+  double limit = machine::kNoLimit;
+  for (int i = 0; i < 3; ++i) {
+    const double step = std::abs(to[i] - from[i]);
+    if (step > kSameDirection) limit = std::min(limit, permitted_mm_per_s[i] / step);
+  }
+  return limit;
+}
+
+double angle_limit(const Vec3& from, const Vec3& to, double acceleration_mm_per_s2, double time_s) {
+  const double change = (to - from).norm();  // = sqrt(2 (1 - cos theta)) without its loss of digits
+  return change > kSameDirection ? acceleration_mm_per_s2 * time_s / change : machine::kNoLimit;
+}
+
+std::optional<Blend> blend_corner(const Vec3& from, const Vec3& to, const BlendOptions& options) {
+  const Vec3 axis = from.cross(to);
+  Blend blend;
+  blend.turn_rad = std::atan2(axis.norm(), from.dot(to));
+  if (blend.turn_rad < 1e-7 || blend.turn_rad > kPi - 1e-3 || options.tolerance_mm <= 0) return std::nullopt;
+  const Vec3 normal = axis.normalized();
+  const double half = (kPi - blend.turn_rad) / 2.0;
+  const double by_tolerance = options.tolerance_mm / (1.0 / std::sin(half) - 1.0);
+  const double by_room = options.room_mm * std::tan(half);
+  const double largest = std::min(by_tolerance, by_room);
+  blend.acceleration_mm_per_s2 = limit_in_plane(normal, options.acceleration_mm_per_s2);
+  const double goal = std::min(options.goal_speed_mm_per_s, limit_in_plane(normal, options.velocity_mm_per_s));
+  blend.speed_mm_per_s = std::min(goal, arc_speed(largest, blend.acceleration_mm_per_s2, options.normal_share));
+  blend.radius_mm =
+      std::isinf(blend.acceleration_mm_per_s2)
+          ? 0.0
+          : blend.speed_mm_per_s * blend.speed_mm_per_s / (options.normal_share * blend.acceleration_mm_per_s2);
+  blend.trim_mm = blend.radius_mm / std::tan(half);
+  return blend;
+}
+
+}  // namespace camber::feedmodel

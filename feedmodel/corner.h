@@ -1,0 +1,43 @@
+#pragma once
+// How fast, and how, the control passes from one segment to the next.
+#include <optional>
+
+#include "base/geometry.h"
+#include "machine/machine.h"
+
+namespace camber::feedmodel {
+
+/// Corner speed at which no axis' speed jumps by more than `permitted` [mm/s]:
+/// F_c = min_i permitted_i / |u2_i - u1_i|, the form F / max(dV_axis / V_permitted) of Fanuc's parameter 1783.
+/// Infinite where the directions agree.
+double speed_difference_limit(const Vec3& from, const Vec3& to, const Vec3& permitted_mm_per_s);
+
+/// F <= a dt / sqrt(2 (1 - cos theta)).      [mm/s] = [mm/s^2][s]
+/// Source: Takata 1999, eq. 2.11 as corrected (docs/errata.md). theta = angle between the directions.
+double angle_limit(const Vec3& from, const Vec3& to, double acceleration_mm_per_s2, double time_s);
+
+/// A corner rounded by a circular arc that touches both sides.
+struct Blend {
+  double trim_mm = 0;  ///< cut off each side
+  double radius_mm = 0;
+  double turn_rad = 0;
+  double speed_mm_per_s = 0;
+  double acceleration_mm_per_s2 = 0;  ///< of the axes in the arc's plane, before any share is taken
+};
+
+struct BlendOptions {
+  double tolerance_mm = 0;         ///< largest distance between the arc and the corner; infinite: only the room counts
+  double room_mm = 0;              ///< most that may be cut off each side
+  double goal_speed_mm_per_s = 0;  ///< no faster than this
+  double normal_share = 1;         ///< of the plane's acceleration that turns the motion
+  Vec3 velocity_mm_per_s, acceleration_mm_per_s2;  ///< of the axes
+};
+
+/// With the half angle h between the sides (turn = pi - 2h), an arc of radius R touches at R / tan h from the
+/// corner and passes it at R (1/sin h - 1). The largest R that the tolerance and the room allow gives the speed
+/// sqrt(share a R); where the goal is lower, the arc is made no larger than the goal needs: R = v^2 / (share a).
+/// Nothing for directions that agree or are opposite.
+/// Source: LinuxCNC's G64 P corners as its traces show them (docs/feed-model.md).
+std::optional<Blend> blend_corner(const Vec3& from, const Vec3& to, const BlendOptions& options);
+
+}  // namespace camber::feedmodel

@@ -1,0 +1,35 @@
+#include "feedmodel/feed_csv.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "base/units.h"
+
+namespace camber::feedmodel {
+namespace {
+
+/// No "-0.000": the same bytes for a resting axis, whichever way it came to rest.
+double clean(double value, double half_step) { return value > -half_step && value < half_step ? 0.0 : value; }
+
+}  // namespace
+
+FeedCsv::FeedCsv(const nc::Interpretation& program, const std::string& path) : program_(program), file_(path) {
+  file_.stream() << "t_s,block,x_mm,y_mm,z_mm,vx_mm_per_min,vy_mm_per_min,vz_mm_per_min,feed_cmd_mm_per_min,"
+                    "feed_mm_per_min\n";
+}
+
+void FeedCsv::write(std::span<const TimedSample> samples) {
+  text_.clear();
+  for (const TimedSample& s : samples) {
+    const auto position = [&](int i) { return clean(s.position_mm[i], 0.5e-5); };
+    const auto speed = [&](int i) { return clean(mm_per_min_from_mm_per_s(s.velocity_mm_per_s[i]), 0.5e-3); };
+    fmt::format_to(std::back_inserter(text_), "{:.6f},{},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}\n",
+                   s.t_s, program_.moves[s.move].block + 1, position(0), position(1), position(2), speed(0), speed(1),
+                   speed(2), mm_per_min_from_mm_per_s(s.feed_command_mm_per_s),
+                   mm_per_min_from_mm_per_s(s.velocity_mm_per_s.norm()));
+  }
+  file_.stream() << text_;
+}
+
+}  // namespace camber::feedmodel

@@ -1,0 +1,286 @@
+#include "feedmodel/path_builder.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "feedmodel/corner.h"
+#include "feedmodel/limits.h"
+#include "feedmodel/merge.h"
+
+namespace camber::feedmodel {
+namespace {
+
+using machine::CornerLaw;
+using machine::kNoLimit;
+
+/// LinuxCNC, G64 without P: the rounding may reach this share of the shorter side (and never past its middle).
+constexpr double kOpenToleranceShare = 0.25;
+/// A block gives at most this share of its length to the rounding of one end.
+constexpr double kBlendRoomShare = 0.5;
+/// 1 + cos of the angle between the directions under which the corner is a reversal: the axes stop.
+constexpr double kReversal = 1e-6;
+/// Shorter pieces than this (mm) are rounding of numbers, not path.
+constexpr double kNoLength = 1e-9;
+
+/// One block (or run of merged blocks) before its ends are rounded.
+struct Element {
+  Segment segment;
+  double top_speed_mm_per_s = 0;  ///< whatever the feed: of the axes and the block time
+  bool line = true;
+  nc::PathControl control = nc::PathControl::blend;
+  double tolerance_mm = 0;
+  bool stops = false;        ///< G9, G61.1
+  double from_s = 0;         ///< where the rounding at its start ends
+  double less_share = 0;     ///< of its acceleration, kept free for the corners' speed steps
+  double planned_share = 1;  ///< of its acceleration, that the look-ahead counts on
+};
+
+/// How one element passes into the next.
+struct Junction {
+  double speed_mm_per_s = 0;
+  double less_share = 0;
+  std::optional<Blend> blend;
+};
+
+double axis_speed_limit(const Segment& s, const Vec3& velocity) {
+  if (s.radius_mm == 0) return limit_along(s.along, velocity);
+  const Vec3 normal = s.along.cross(s.across);
+  const double in_plane = s.radius_mm * s.turn_rad_per_mm;  // share of the speed that lies in the plane
+  return std::min(limit_in_plane(normal, velocity) / in_plane, limit_along(s.rise, velocity));
+}
+
+/// Limits of an arc. Along it a share of the acceleration is left beside the one that turns the motion: the
+/// given share where the axes could reach the speed at which the turning takes its whole share, else
+/// sqrt(1 - (v^2 / (r a))^2) with the axes' top speed v.
+void set_arc_limits(Segment& s, const Vec3& acceleration, const machine::Control& control) {
+  const Vec3 normal = s.along.cross(s.across);
+  const double in_plane = s.radius_mm * s.turn_rad_per_mm;
+  const double a = std::min(limit_in_plane(normal, acceleration) / in_plane, limit_along(s.rise, acceleration));
+  const double rise_per_rad = s.rise.norm() / s.turn_rad_per_mm;
+  const double curvature_radius = helix_curvature_radius(s.radius_mm, rise_per_rad);
+  const double turning = arc_speed(curvature_radius, limit_in_plane(normal, acceleration), control.arc_normal_share);
+  double share = control.arc_tangential_share;
+  if (s.speed_limit_mm_per_s < turning && !std::isinf(a)) {
+    const double used = s.speed_limit_mm_per_s * s.speed_limit_mm_per_s / (curvature_radius * a);
+    share = std::max(share, std::sqrt(std::max(0.0, 1.0 - used * used)));
+  } else if (control.dialect == machine::Dialect::linuxcnc && rise_per_rad > 0 && share < 1) {
+    // The traced helices leave more to the path the more the whole arc rises (not the rise of one radian).
+    const double used =
+        control.arc_normal_share / (helix_curvature_radius(s.radius_mm, s.rise.norm() * s.length_mm) / s.radius_mm);
+    share = std::max(share, std::sqrt(std::max(0.0, 1.0 - used * used)));
+  }
+  s.acceleration_mm_per_s2 = std::isinf(a) ? a : a * share;
+  s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, turning);
+}
+
+class Builder {
+ public:
+  Builder(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink)
+      : program_(program),
+        control_(machine.control),
+        sink_(sink),
+        velocity_(velocity_limits_mm_per_s(machine)),
+        acceleration_(acceleration_limits_mm_per_s2(machine)) {}
+
+  void run() {
+    const auto& moves = program_.moves;
+    int tool = moves.empty() ? 0 : program_.state_of(moves.front()).tool;
+    for (std::size_t i = 0; i < moves.size();) {
+      const nc::Move& move = moves[i];
+      const nc::ModalState& state = program_.state_of(move);
+      if (state.tool != tool) rest(0, i, move.start_mm);
+      tool = state.tool;
+      std::size_t end = i + 1;
+      if (move.kind == nc::MoveKind::dwell) {
+        rest(move.dwell_s, i, move.start_mm);
+      } else if (!move.reference) {
+        end = merged_run_end(moves, i, merge_tolerance_mm(state, control_));
+        add(i, end);
+      }
+      i = end;
+    }
+    if (!moves.empty()) rest(0, moves.size() - 1, moves.back().end_mm);
+  }
+
+ private:
+  void add(std::size_t first, std::size_t end) {
+    Element element = element_of(first, end);
+    if (element.segment.length_mm < kNoLength) return;
+    if (previous_) join(*previous_, element);
+    previous_ = element;
+  }
+
+  Element element_of(std::size_t first, std::size_t end) const {
+    const nc::Move& move = program_.moves[first];
+    const nc::Move& last = program_.moves[end - 1];
+    const nc::ModalState& state = program_.state_of(move);
+    Element e;
+    e.line = move.arc == nc::Move::kNoArc;
+    if (e.line) {
+      e.segment = line_segment(move.start_mm, last.end_mm);
+    } else {
+      const nc::Arc& arc = program_.arcs[move.arc];
+      e.segment = arc_segment(move.start_mm, arc.center_mm, arc.normal, arc.sweep_rad,
+                              arc.normal.dot(move.end_mm - move.start_mm));
+    }
+    e.control = state.path_control;
+    e.tolerance_mm = state.blend_tolerance_mm > 0 ? state.blend_tolerance_mm : control_.corner.tolerance_mm;
+    e.stops = last.exact_stop;
+    e.segment.move = static_cast<std::uint32_t>(end - 1);
+    if (e.segment.length_mm >= kNoLength) set_limits(e, move);
+    return e;
+  }
+
+  void set_limits(Element& e, const nc::Move& move) const {
+    Segment& s = e.segment;
+    s.speed_limit_mm_per_s = axis_speed_limit(s, velocity_);
+    if (s.radius_mm == 0) {
+      s.acceleration_mm_per_s2 = limit_along(s.along, acceleration_);
+    } else {
+      set_arc_limits(s, acceleration_, control_);
+    }
+    s.cutting = move.kind != nc::MoveKind::rapid;
+    s.feed_command_mm_per_s = s.cutting ? move.feed_mm_per_s : s.speed_limit_mm_per_s;
+    s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, block_time_speed(s.length_mm, control_.block_time_s));
+    e.top_speed_mm_per_s = s.speed_limit_mm_per_s;
+    if (s.cutting) s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, move.feed_mm_per_s);
+  }
+
+  // --- corners ---------------------------------------------------------------------------------------------
+
+  /// The speed steps that the axes take in one period without being asked to round the corner.
+  Junction step_junction(const Element& a, const Element& b, const Vec3& from, const Vec3& to) const {
+    Junction j;
+    const double share = control_.corner.step_share;
+    const double arc_factor = a.line && b.line ? 1.0 : 0.5;
+    Vec3 permitted = Vec3::Zero();
+    if (share > 0) permitted = share * arc_factor * control_.period_s * acceleration_;
+    j.speed_mm_per_s = speed_difference_limit(from, to, permitted);
+    const double reference = std::min(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s);
+    j.less_share = share * (j.speed_mm_per_s > reference ? reference / j.speed_mm_per_s : 1.0);
+    return j;
+  }
+
+  Junction blend_junction(const Element& a, const Element& b, const Vec3& from, const Vec3& to) const {
+    BlendOptions options;
+    const double shorter = std::min(a.segment.length_mm, b.segment.length_mm);
+    options.tolerance_mm = std::min(a.tolerance_mm, b.tolerance_mm);
+    if (std::isinf(options.tolerance_mm)) options.tolerance_mm = kOpenToleranceShare * shorter;
+    options.room_mm = std::min(kBlendRoomShare * shorter, a.segment.length_mm - a.from_s);
+    options.goal_speed_mm_per_s = std::max(a.top_speed_mm_per_s, b.top_speed_mm_per_s);
+    options.normal_share = control_.arc_normal_share;
+    options.velocity_mm_per_s = velocity_;
+    options.acceleration_mm_per_s2 = acceleration_;
+    Junction j;
+    j.blend = blend_corner(from, to, options);
+    if (j.blend) j.speed_mm_per_s = j.blend->speed_mm_per_s;
+    return j;
+  }
+
+  Junction junction(const Element& a, const Element& b) const {
+    const Vec3 from = a.segment.direction_at(a.segment.length_mm), to = b.segment.direction_at(0);
+    if (from.dot(to) < -1.0 + kReversal) return {};
+    if (control_.dialect == machine::Dialect::linuxcnc && a.segment.cutting != b.segment.cutting) return {};
+    if (a.stops || a.control == nc::PathControl::exact_stop) return {};
+    const machine::Corner& corner = control_.corner;
+    const bool exact = a.control == nc::PathControl::exact_path || b.control == nc::PathControl::exact_path;
+    if (exact) return step_junction(a, b, from, to);
+    Junction j;
+    switch (corner.law) {
+      case CornerLaw::exact_stop:
+        return j;
+      case CornerLaw::speed_difference:
+        j.speed_mm_per_s = speed_difference_limit(from, to, Vec3::Constant(corner.speed_difference_mm_per_s));
+        return j;
+      case CornerLaw::angle:
+        j.speed_mm_per_s = angle_limit(
+            from, to, std::min(a.segment.acceleration_mm_per_s2, b.segment.acceleration_mm_per_s2), corner.time_s);
+        return j;
+      case CornerLaw::blend:
+        break;
+    }
+    const Junction step = step_junction(a, b, from, to), blend = blend_junction(a, b, from, to);
+    return blend.speed_mm_per_s > step.speed_mm_per_s ? blend : step;
+  }
+
+  void join(Element& a, Element& b) {
+    const Junction j = junction(a, b);
+    b.segment.entry_limit_mm_per_s = j.speed_mm_per_s;
+    a.less_share = std::max(a.less_share, j.less_share);
+    b.less_share = j.less_share;
+    if (j.blend && a.line && b.line && j.blend->trim_mm > kNoLength) {
+      emit_with_blend(a, b, *j.blend);
+    } else {
+      emit(a, a.segment.length_mm, a.segment.acceleration_mm_per_s2 * (1.0 - a.less_share));
+    }
+  }
+
+  void emit_with_blend(Element& a, Element& b, const Blend& blend) {
+    const Vec3 &from = a.segment.along, &to = b.segment.along;
+    const double end_s = a.segment.length_mm - blend.trim_mm;
+    const Vec3 touch = a.segment.point_at(end_s);
+    const Vec3 normal = from.cross(to).normalized();
+    Segment arc = arc_segment(touch, touch + blend.radius_mm * normal.cross(from), normal, blend.turn_rad, 0);
+    arc.acceleration_mm_per_s2 = blend.acceleration_mm_per_s2 * control_.arc_tangential_share;
+    arc.speed_limit_mm_per_s =
+        std::min(blend.speed_mm_per_s, std::max(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s));
+    arc.entry_limit_mm_per_s = arc.speed_limit_mm_per_s;
+    arc.feed_command_mm_per_s = std::max(a.segment.feed_command_mm_per_s, b.segment.feed_command_mm_per_s);
+    arc.move = b.segment.move;
+    arc.cutting = a.segment.cutting || b.segment.cutting;
+    const double left = std::max(0.0, end_s - a.from_s);
+    const bool absorbed = left < control_.corner.short_line_time_s * blend.speed_mm_per_s;
+    const double whole = absorbed ? left + arc.length_mm : arc.length_mm;
+    arc.speed_limit_mm_per_s = std::min(arc.speed_limit_mm_per_s, block_time_speed(whole, control_.block_time_s));
+    if (absorbed) {
+      a.segment.joined = true;
+      a.segment.speed_limit_mm_per_s = std::min(a.segment.speed_limit_mm_per_s, arc.speed_limit_mm_per_s);
+      emit(a, end_s, arc.acceleration_mm_per_s2);
+    } else {
+      emit(a, end_s, a.segment.acceleration_mm_per_s2 * (1.0 - a.less_share));
+    }
+    sink_(arc);
+    b.from_s = blend.trim_mm;
+  }
+
+  void emit(const Element& element, double end_s, double acceleration) {
+    if (end_s - element.from_s < kNoLength) return;
+    Segment s = element.from_s > 0 || end_s < element.segment.length_mm
+                    ? part_of(element.segment, element.from_s, end_s)
+                    : element.segment;
+    s.acceleration_mm_per_s2 = acceleration;
+    s.planned_share = element.planned_share;
+    sink_(s);
+  }
+
+  void rest(double dwell_s, std::size_t move, const Vec3& where_mm) {
+    if (previous_) {
+      const bool blended = previous_->control == nc::PathControl::blend && control_.corner.law == CornerLaw::blend;
+      const double share = (1.0 - previous_->less_share) * (blended ? control_.stop_acceleration_share : 1.0);
+      previous_->planned_share = blended ? control_.stop_acceleration_share : 1.0;
+      emit(*previous_, previous_->segment.length_mm, previous_->segment.acceleration_mm_per_s2 * share);
+    }
+    previous_.reset();
+    Segment s;
+    s.start_mm = where_mm;
+    s.dwell_s = dwell_s > 0 ? dwell_s + control_.rest_latency_s : 0.0;
+    s.move = static_cast<std::uint32_t>(move);
+    sink_(s);
+  }
+
+  const nc::Interpretation& program_;
+  const machine::Control& control_;
+  const SegmentSink& sink_;
+  const Vec3 velocity_, acceleration_;
+  std::optional<Element> previous_;
+};
+
+}  // namespace
+
+void build_segments(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink) {
+  Builder(program, machine, sink).run();
+}
+
+}  // namespace camber::feedmodel

@@ -1,0 +1,48 @@
+#pragma once
+// Where on the programmed path the axes really are: behind the command, often by several short blocks.
+#include <cstdint>
+#include <vector>
+
+#include "feedmodel/timed_path.h"
+#include "nc/move.h"
+
+namespace camber::feedmodel {
+
+/// A place on the programmed path.
+struct PathPlace {
+  std::uint32_t move = 0;
+  double u = 0;            ///< share of the move's length, in [0, 1]
+  double distance_mm = 0;  ///< from the actual position to that place
+};
+
+struct PathTrackerOptions {
+  /// The path is searched ahead of the last place over this length, the way the axes went since the last sample
+  /// and twice their distance from the command (which bounds how far round a corner they can be behind).
+  double search_mm = 0.5;
+};
+
+/// Follows the samples of predict_feed in order. The place of a sample is the closest point of the programmed path
+/// between the last place and the commanded move, searched a little further than the axes went: it never goes
+/// back, never passes the command, and does not jump to a neighbouring row or to the start of a closed figure.
+/// When the axes rest at the end of a motion the place is the end. Linear time over the whole path.
+class PathTracker {
+ public:
+  explicit PathTracker(const nc::Interpretation& program, const PathTrackerOptions& options = {})
+      : program_(program), options_(options) {}
+
+  PathPlace operator()(const TimedSample& sample);
+
+ private:
+  const nc::Interpretation& program_;
+  PathTrackerOptions options_;
+  PathPlace place_;
+  Vec3 last_position_mm_ = Vec3::Zero();
+  bool started_ = false;
+};
+
+/// Share u in [from_u, to_u] of a move's length that lies closest to a point, and its distance. For a full or
+/// repeated turn the closest one after from_u counts.
+PathPlace closest_on_move(const nc::Interpretation& program, std::uint32_t move, const Vec3& point_mm, double from_u,
+                          double to_u);
+
+}  // namespace camber::feedmodel

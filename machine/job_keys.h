@@ -1,0 +1,52 @@
+#pragma once
+// The keys of job.toml, for its reader and its writer.
+#include <array>
+
+#include "machine/job.h"
+#include "machine/number_key.h"
+
+namespace camber::machine {
+
+inline constexpr std::array<std::string_view, 4> kToolTypeWords{"ball", "flat", "bull", "drill"};
+inline constexpr std::array<std::string_view, 2> kCouplingWords{"rigid", "static"};
+inline constexpr std::array<std::string_view, 2> kUnitWords{"mm", "inch"};
+
+inline constexpr NumberRange kFlutes{.min = 1, .max = 100, .whole = true};
+inline constexpr NumberRange kToolNumber{.min = 0, .max = 99999999, .whole = true};
+inline constexpr NumberRange kLineNumber{.min = 1, .max = 2e9, .whole = true};
+inline constexpr NumberRange kRounds{.min = 1, .max = 1000, .whole = true};
+inline constexpr NumberRange kHelixDeg{.min = 0, .max = 80};
+inline constexpr NumberRange kRatio{.min = 0, .max = 1, .above_min = true};
+inline constexpr NumberRange kRotationStepDeg{.min = 0, .max = 10, .above_min = true};
+
+/// Numbers that a tool has anyway. Diameter and overhang must be given.
+inline constexpr std::array kToolKeys{
+    NumberKey<Tool>{"diameter_mm", &Tool::diameter_mm, kPositive},
+    NumberKey<Tool>{"helix_deg", &Tool::helix_rad, kHelixDeg, kDegrees},
+    NumberKey<Tool>{"overhang_mm", &Tool::overhang_mm, kPositive},
+    NumberKey<Tool>{"effective_diameter_ratio", &Tool::effective_diameter_ratio, kRatio},
+    NumberKey<Tool>{"youngs_modulus_GPa", &Tool::youngs_modulus_MPa, kPositive, kGigapascals},
+    NumberKey<Tool>{"root_stiffness_N_per_um", &Tool::root_stiffness_N_per_mm, kPositiveOrInf, kNewtonsPerMicrometre},
+};
+
+inline constexpr std::array kMaterialKeys{
+    NumberKey<Material>{"ktc_MPa", &Material::ktc_MPa, kNotNegative},
+    NumberKey<Material>{"krc_MPa", &Material::krc_MPa, kNotNegative},
+    NumberKey<Material>{"kac_MPa", &Material::kac_MPa, kAnyNumber},
+    NumberKey<Material>{"kte_N_per_mm", &Material::kte_N_per_mm, kNotNegative},
+    NumberKey<Material>{"kre_N_per_mm", &Material::kre_N_per_mm, kNotNegative},
+    NumberKey<Material>{"kae_N_per_mm", &Material::kae_N_per_mm, kAnyNumber},
+};
+
+inline constexpr std::array kSimulationKeys{
+    NumberKey<Simulation>{"voxel_mm", &Simulation::voxel_mm, kPositive},
+    NumberKey<Simulation>{"rotation_step_deg", &Simulation::rotation_step_rad, kRotationStepDeg, kDegrees},
+    NumberKey<Simulation>{"envelope_step_mm", &Simulation::envelope_step_mm, kNotNegative},
+};
+
+inline constexpr std::array kCompensationKeys{
+    NumberKey<Compensation>{"tolerance_um", &Compensation::tolerance_um, kPositive},
+    NumberKey<Compensation>{"max_shift_mm", &Compensation::max_shift_mm, kPositive},
+};
+
+}  // namespace camber::machine

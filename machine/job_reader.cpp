@@ -1,0 +1,159 @@
+// job.toml into a Job.
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "machine/job_keys.h"
+#include "machine/tool_reader.h"
+
+namespace camber::machine {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Path at `key` against the job's folder; "" where it is not given. The file must be there.
+std::string file_at(TomlTable& table, std::string_view key, const fs::path& folder) {
+  const std::string given = table.text(key, "");
+  if (given.empty()) return {};
+  const std::string path = (folder / given).lexically_normal().string();
+  std::error_code ec;
+  if (!fs::exists(path, ec))
+    table.error_at(key, fmt::format("{}: no such file: {} (paths count from the job's folder)", key, path),
+                   "file-missing");
+  else if (fs::is_directory(path, ec))
+    table.error_at(key, fmt::format("{}: {} is a folder; a file was expected", key, path), "file-unreadable");
+  return path;
+}
+
+std::string required_file_at(TomlTable& table, std::string_view key, const fs::path& folder) {
+  if (!table.has(key)) table.missing(key, "the path of a file, in quotes");
+  return file_at(table, key, folder);
+}
+
+void read_tools(TomlTable table, std::map<int, Tool>& tools) {
+  for (const auto& key : table.keys()) {
+    int number = 0;
+    const auto [end, ec] = std::from_chars(key.data(), key.data() + key.size(), number);
+    const bool is_number = ec == std::errc{} && end == key.data() + key.size() && number >= 0;
+    const auto tool = table.table(key);
+    if (!is_number)
+      table.error_at_name(key, fmt::format("[tool.{}]: a tool number was expected, as in [tool.1] for T1", key),
+                          "tool-number");
+    else if (tool)
+      tools.emplace(number, read_tool(*tool, number));
+  }
+}
+
+void read_material(TomlTable table, Material& material) {
+  for (const std::string_view key : {"ktc_MPa", "krc_MPa"})
+    if (!table.has(key)) table.missing(key, kNotNegative.wanted());
+  read_numbers<Material>(table, kMaterialKeys, material);
+  table.finish();
+}
+
+std::optional<Box> read_box(TomlTable& table) {
+  const auto rows = table.number_rows("box_mm", 2, 3, kAnyNumber, "[[x, y, z], [x, y, z]], two opposite corners,");
+  if (!rows) return std::nullopt;
+  Box box;
+  for (int i = 0; i < 3; ++i) {
+    box.min_mm[i] = (*rows)[0][static_cast<std::size_t>(i)];
+    box.max_mm[i] = (*rows)[1][static_cast<std::size_t>(i)];
+    if (!(box.min_mm[i] < box.max_mm[i]))
+      table.error_at("box_mm",
+                     fmt::format("box_mm goes from {0} = {1} to {0} = {2}; the second must be greater than the first",
+                                 "xyz"[i], box.min_mm[i], box.max_mm[i]),
+                     "stock-box");
+  }
+  return box;
+}
+
+void read_stock(TomlTable table, const fs::path& folder, Stock& stock) {
+  stock.box = read_box(table);
+  stock.mesh = file_at(table, "mesh", folder);
+  stock.allowance_mm = table.number("allowance_mm", kNotNegative, 0);
+  if (table.has("box_mm") && table.has("mesh"))
+    table.error_at_name("mesh", "the stock has box_mm and mesh; one of them was expected", "stock-shape");
+  if (!table.has("box_mm") && !table.has("mesh"))
+    table.missing("box_mm", "box_mm = [[x, y, z], [x, y, z]] or mesh = \"stock.stl\"");
+  table.finish();
+}
+
+void read_operations(TomlTable table, const std::map<int, Tool>& tools, Operations& operations) {
+  for (const double t :
+       table.number_list("tools", kToolNumber, "tool numbers, as in [1, 9],").value_or(std::vector<double>{})) {
+    operations.tools.push_back(static_cast<int>(t));
+    if (!tools.contains(static_cast<int>(t)))
+      table.error_at("tools", fmt::format("operations ask for T{0}, but there is no [tool.{0}]", t), "tool-missing");
+  }
+  const auto rows = table.number_rows("blocks", 0, 2, kLineNumber, "ranges of lines, as in [[120, 900]],");
+  for (const auto& row : rows.value_or(std::vector<std::vector<double>>{})) {
+    operations.blocks.push_back({static_cast<int>(row[0]), static_cast<int>(row[1])});
+    if (row[0] > row[1])
+      table.error_at("blocks",
+                     fmt::format("blocks go from line {} to line {}; the first must not be greater", row[0], row[1]),
+                     "value-range");
+  }
+  table.finish();
+}
+
+void read_simulation(TomlTable table, Simulation& simulation) {
+  read_numbers<Simulation>(table, kSimulationKeys, simulation);
+  simulation.coupling = table.choice("coupling", kCouplingWords, simulation.coupling == Coupling::rigid ? 0 : 1) == 0
+                            ? Coupling::rigid
+                            : Coupling::static_;
+  table.finish();
+}
+
+void read_compensation(TomlTable table, Compensation& compensation) {
+  read_numbers<Compensation>(table, kCompensationKeys, compensation);
+  compensation.max_rounds = static_cast<int>(table.number("max_rounds", kRounds, compensation.max_rounds));
+  table.finish();
+}
+
+void read_part(TomlTable table, const fs::path& folder, Part& part) {
+  part.mesh = file_at(table, "mesh", folder);
+  part.program = file_at(table, "program", folder);
+  table.finish();
+}
+
+void read_tables(TomlTable& top, const fs::path& folder, Job& job) {
+  if (auto tools = top.table("tool")) read_tools(*tools, job.tools);
+  if (job.tools.empty() && !top.has("tool")) top.missing("[tool.1]", "a table for each tool of the program");
+  if (auto operations = top.table("operations")) read_operations(*operations, job.tools, job.operations);
+  if (auto material = top.table("material"))
+    read_material(*material, job.material);
+  else if (!top.has("material"))
+    top.missing("[material]", "a table with the specific cutting forces ktc_MPa, krc_MPa ...");
+  if (auto stock = top.table("stock"))
+    read_stock(*stock, folder, job.stock);
+  else if (!top.has("stock"))
+    top.missing("[stock]", "a table with box_mm or mesh");
+  if (auto part = top.table("part")) read_part(*part, folder, job.part);
+  if (auto simulation = top.table("simulation")) read_simulation(*simulation, job.simulation);
+  if (auto compensation = top.table("compensation")) read_compensation(*compensation, job.compensation);
+}
+
+}  // namespace
+
+Job read_job(const std::string& path, Diagnostics& diagnostics) {
+  Job job;
+  job.path = path;
+  const auto file =
+      read_toml(path, "a job description (program, machine, [tool.1], [material], [stock] ...)", diagnostics);
+  diagnostics.throw_if_errors();
+  const fs::path folder = fs::path(path).parent_path();
+  TomlTable top = TomlTable::top(*file, diagnostics);
+  job.program = required_file_at(top, "program", folder);
+  job.machine_path = required_file_at(top, "machine", folder);
+  if (top.has("units")) job.inch = top.choice("units", kUnitWords, 0) == 1;
+  read_tables(top, folder, job);
+  top.finish();
+  std::error_code ec;
+  if (fs::is_regular_file(job.machine_path, ec)) job.machine = read_machine(job.machine_path, diagnostics);
+  diagnostics.throw_if_errors();
+  return job;
+}
+
+}  // namespace camber::machine

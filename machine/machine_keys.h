@@ -1,0 +1,51 @@
+#pragma once
+// The keys of machine.toml, for its reader and its writer.
+#include <array>
+
+#include "machine/machine.h"
+#include "machine/number_key.h"
+
+namespace camber::machine {
+
+inline constexpr std::array<std::string_view, 4> kDialectWords{"fanuc", "haas", "mazak", "linuxcnc"};
+inline constexpr std::array<std::string_view, 4> kCornerLawWords{"speed_difference", "angle", "blend", "exact_stop"};
+inline constexpr std::array<std::string_view, 3> kAxisNames{"x", "y", "z"};
+
+inline constexpr NumberRange kShare{.min = 0, .max = 1, .above_min = true};
+inline constexpr NumberRange kPeriodMs{.min = 0, .max = 1000, .above_min = true};
+inline constexpr NumberRange kPercent{.min = 0, .max = 100};
+inline constexpr NumberRange kBlockCount{.min = 0, .max = 1e6, .whole = true};
+
+inline constexpr std::array kControlKeys{
+    NumberKey<Control>{"period_ms", &Control::period_s, kPeriodMs, kMilliseconds},
+    NumberKey<Control>{"block_time_ms", &Control::block_time_s, kNotNegative, kMilliseconds},
+    NumberKey<Control>{"merge_tolerance_mm", &Control::merge_tolerance_mm, kNotNegative},
+    NumberKey<Control>{"arc_normal_share", &Control::arc_normal_share, kShare},
+    NumberKey<Control>{"arc_tangential_share", &Control::arc_tangential_share, kShare},
+    NumberKey<Control>{"rest_latency_ms", &Control::rest_latency_s, kNotNegative, kMilliseconds},
+    NumberKey<Control>{"stop_acceleration_share", &Control::stop_acceleration_share, kShare},
+};
+
+inline constexpr std::array kCornerKeys{
+    NumberKey<Corner>{"tolerance_mm", &Corner::tolerance_mm, kNotNegativeOrInf},
+    NumberKey<Corner>{"speed_difference_mm_per_min", &Corner::speed_difference_mm_per_s, kPositiveOrInf, kPerMinute},
+    NumberKey<Corner>{"time_ms", &Corner::time_s, kNotNegative, kMilliseconds},
+    NumberKey<Corner>{"step_share", &Corner::step_share, kNotNegative},
+    NumberKey<Corner>{"short_line_time_ms", &Corner::short_line_time_s, kNotNegative, kMilliseconds},
+};
+
+inline constexpr std::array kAxisKeys{
+    NumberKey<Axis>{"max_velocity_mm_per_min", &Axis::max_velocity_mm_per_s, kPositiveOrInf, kPerMinute},
+    NumberKey<Axis>{"acceleration_mm_per_s2", &Axis::acceleration_mm_per_s2, kPositiveOrInf},
+    NumberKey<Axis>{"jerk_mm_per_s3", &Axis::jerk_mm_per_s3, kPositiveOrInf},
+    NumberKey<Axis>{"filter_ms", &Axis::filter_s, kNotNegative, kMilliseconds},
+    NumberKey<Axis>{"position_gain_per_s", &Axis::position_gain_per_s, kPositiveOrInf},
+    NumberKey<Axis>{"velocity_lag_ms", &Axis::velocity_lag_s, kNotNegative, kMilliseconds},
+    NumberKey<Axis>{"feed_forward_percent", &Axis::feed_forward_percent, kPercent},
+};
+
+inline constexpr std::array kSpindleKeys{
+    NumberKey<Spindle>{"max_rpm", &Spindle::max_rpm, kPositiveOrInf},
+};
+
+}  // namespace camber::machine

@@ -1,0 +1,88 @@
+// machine.toml into a Machine.
+#include <fmt/format.h>
+
+#include "machine/machine_keys.h"
+
+namespace camber::machine {
+namespace {
+
+/// The number that each law cannot do without.
+std::string_view key_of_law(CornerLaw law) {
+  switch (law) {
+    case CornerLaw::speed_difference:
+      return "speed_difference_mm_per_min";
+    case CornerLaw::angle:
+      return "time_ms";
+    case CornerLaw::blend:
+      return "tolerance_mm";
+    case CornerLaw::exact_stop:
+      break;
+  }
+  return {};
+}
+
+void read_corner(TomlTable table, Corner& corner) {
+  const auto law = table.required_choice("law", kCornerLawWords);
+  read_numbers<Corner>(table, kCornerKeys, corner);
+  table.finish();
+  if (!law) return;
+  corner.law = static_cast<CornerLaw>(*law);
+  const std::string_view needed = key_of_law(corner.law);
+  for (const auto& k : kCornerKeys) {
+    const bool of_a_law = k.key == "tolerance_mm" || k.key == "speed_difference_mm_per_min" || k.key == "time_ms";
+    if (k.key == needed && !table.has(k.key)) table.missing(k.key, k.range.wanted());
+    if (of_a_law && k.key != needed && table.has(k.key))
+      table.error_at_name(k.key,
+                          fmt::format("{} does not belong to the corner law \"{}\"", k.key,
+                                      kCornerLawWords[static_cast<std::size_t>(corner.law)]),
+                          "key-unused");
+  }
+}
+
+void read_control(TomlTable table, Control& control) {
+  control.dialect = static_cast<Dialect>(table.choice("dialect", kDialectWords, 0));
+  read_numbers<Control>(table, kControlKeys, control);
+  control.lookahead_blocks = static_cast<int>(table.number("lookahead_blocks", kBlockCount, control.lookahead_blocks));
+  if (auto corner = table.table("corner")) read_corner(*corner, control.corner);
+  table.finish();
+}
+
+void read_axis(TomlTable table, Axis& axis) {
+  read_numbers<Axis>(table, kAxisKeys, axis);
+  if (const auto travel = table.numbers("travel_mm", 2, kAnyNumberOrInf, "[least, greatest]")) {
+    axis.travel_mm = {(*travel)[0], (*travel)[1]};
+    if (!(axis.travel_mm[0] < axis.travel_mm[1]))
+      table.error_at("travel_mm",
+                     fmt::format("travel_mm goes from {} to {}; the second must be greater than the first",
+                                 axis.travel_mm[0], axis.travel_mm[1]),
+                     "value-range");
+  }
+  table.finish();
+}
+
+void read_axes(TomlTable table, std::array<Axis, 3>& axes) {
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    if (auto axis = table.table(kAxisNames[i])) read_axis(*axis, axes[i]);
+  table.finish();
+}
+
+}  // namespace
+
+Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
+  Machine machine;
+  machine.path = path;
+  const auto file = read_toml(path, "a machine description ([control], [axis.x] ...)", diagnostics);
+  diagnostics.throw_if_errors();
+  TomlTable top = TomlTable::top(*file, diagnostics);
+  if (auto control = top.table("control")) read_control(*control, machine.control);
+  if (auto axes = top.table("axis")) read_axes(*axes, machine.axis);
+  if (auto spindle = top.table("spindle")) {
+    read_numbers<Spindle>(*spindle, kSpindleKeys, machine.spindle);
+    spindle->finish();
+  }
+  top.finish();
+  diagnostics.throw_if_errors();
+  return machine;
+}
+
+}  // namespace camber::machine

@@ -1,0 +1,41 @@
+// A Machine as machine.toml.
+#include <fmt/format.h>
+
+#include "machine/machine_keys.h"
+
+namespace camber::machine {
+namespace {
+
+std::string corner_text(const Corner& corner) {
+  std::string out = fmt::format("corner = {{ law = \"{}\"", kCornerLawWords[static_cast<std::size_t>(corner.law)]);
+  const Corner defaults;
+  for (const auto& k : kCornerKeys) {
+    const bool of_this_law = (corner.law == CornerLaw::blend && k.key == "tolerance_mm") ||
+                             (corner.law == CornerLaw::angle && k.key == "time_ms") ||
+                             (corner.law == CornerLaw::speed_difference && k.key == "speed_difference_mm_per_min");
+    const bool of_no_law = k.key == "step_share" || k.key == "short_line_time_ms";
+    if (of_this_law || (of_no_law && corner.*k.field != defaults.*k.field))
+      out += fmt::format(", {} = {}", k.key, toml_number(corner.*k.field, k.unit));
+  }
+  return out + " }\n";
+}
+
+std::string axis_text(std::string_view name, const Axis& axis) {
+  return fmt::format("\n[axis.{}]\n{}travel_mm = [{}, {}]\n", name, toml_lines<Axis>(kAxisKeys, axis),
+                     toml_number(axis.travel_mm[0], kAsIs), toml_number(axis.travel_mm[1], kAsIs));
+}
+
+}  // namespace
+
+std::string to_toml(const Machine& machine) {
+  std::string out = "[control]\n";
+  out += toml_line("dialect", kDialectWords[static_cast<std::size_t>(machine.control.dialect)]);
+  out += toml_lines<Control>(kControlKeys, machine.control);
+  out += toml_line("lookahead_blocks", machine.control.lookahead_blocks, kAsIs);
+  out += corner_text(machine.control.corner);
+  for (std::size_t i = 0; i < machine.axis.size(); ++i) out += axis_text(kAxisNames[i], machine.axis[i]);
+  out += "\n[spindle]\n" + toml_lines<Spindle>(kSpindleKeys, machine.spindle);
+  return out;
+}
+
+}  // namespace camber::machine

@@ -1,0 +1,128 @@
+#pragma once
+// A typed, checking reader of TOML tables. Every problem becomes a diagnostic at its key or value.
+//
+// A table is read key by key; finish() then names the keys that nobody asked for. The readers below return
+// the fallback where a key is missing or its value is wrong, so that reading goes on and finds the next problem.
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/diagnostics.h"
+
+namespace camber::machine {
+
+/// Which numbers a key takes, and how a message says so.
+struct NumberRange {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool above_min = false;         ///< min itself is not allowed
+  bool infinity_allowed = false;  ///< the TOML value `inf`
+  bool whole = false;             ///< whole numbers only
+
+  bool holds(double value) const;
+  /// "a number greater than zero", "a whole number from 1 to 20" ...
+  std::string wanted() const;
+};
+
+inline constexpr NumberRange kAnyNumber{};
+inline constexpr NumberRange kPositive{.min = 0, .above_min = true};
+inline constexpr NumberRange kPositiveOrInf{.min = 0, .above_min = true, .infinity_allowed = true};
+inline constexpr NumberRange kNotNegative{.min = 0};
+inline constexpr NumberRange kNotNegativeOrInf{.min = 0, .infinity_allowed = true};
+inline constexpr NumberRange kAnyNumberOrInf{.infinity_allowed = true};
+
+/// One value of the file, with its place.
+struct TomlNode {
+  enum class Kind { table, array, text, number, boolean, other };
+  struct Entry;
+  Kind kind = Kind::other;
+  std::size_t offset = 0;       ///< of the value, bytes from the file's start
+  std::string text;             ///< kind text
+  double number = 0;            ///< kind number
+  bool boolean = false;         ///< kind boolean
+  std::vector<TomlNode> items;  ///< kind array
+  std::vector<Entry> entries;   ///< kind table, in alphabetical order
+};
+struct TomlNode::Entry {
+  std::string key;
+  std::size_t key_offset = 0;
+  TomlNode value;
+};
+
+/// A parsed file. Tables point into it: it must outlive them.
+struct TomlFile {
+  SourceText source;
+  TomlNode root;
+};
+
+/// Syntax errors go to `diagnostics` [toml-syntax]; the file is empty then. An empty file is an error as well
+/// [file-empty]; `contents` says what was expected ("a job description").
+/// Throws InputError where the file cannot be read.
+std::unique_ptr<TomlFile> read_toml(const std::string& path, const std::string& contents, Diagnostics& diagnostics);
+
+class TomlTable {
+ public:
+  /// `name` as in the file's brackets: "tool.1"; empty for the top of the file.
+  TomlTable(const TomlFile& file, const TomlNode& node, std::string name, Diagnostics& diagnostics);
+  static TomlTable top(const TomlFile& file, Diagnostics& diagnostics);
+
+  bool has(std::string_view key) const { return find(key) != nullptr; }
+  double number(std::string_view key, const NumberRange& range, double fallback);
+  double required_number(std::string_view key, const NumberRange& range);
+  std::optional<double> optional_number(std::string_view key, const NumberRange& range);
+  std::string text(std::string_view key, std::string fallback);
+  std::string required_text(std::string_view key);
+  bool boolean(std::string_view key, bool fallback);
+  /// Index into `words` of the text at `key`; a word that is not in the list is an error that shows the list.
+  std::size_t choice(std::string_view key, std::span<const std::string_view> words, std::size_t fallback);
+  std::optional<std::size_t> required_choice(std::string_view key, std::span<const std::string_view> words);
+  /// Array of exactly `count` numbers; `wanted` describes it: "two numbers [min, max]".
+  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const NumberRange& range,
+                                             std::string_view wanted);
+  /// Array of any number of numbers.
+  std::optional<std::vector<double>> number_list(std::string_view key, const NumberRange& range,
+                                                 std::string_view wanted);
+  /// Array of arrays of `columns` numbers; exactly `rows` rows unless rows is 0.
+  std::optional<std::vector<std::vector<double>>> number_rows(std::string_view key, std::size_t rows,
+                                                              std::size_t columns, const NumberRange& range,
+                                                              std::string_view wanted);
+  std::optional<TomlTable> table(std::string_view key);
+  /// Keys of this table; reading them marks them as known.
+  std::vector<std::string> keys() const;
+
+  /// An error at the value of `key`, or at the table where there is no such key.
+  void error_at(std::string_view key, std::string message, std::string check);
+  void warning_at(std::string_view key, std::string message, std::string check);
+  /// An error at the name of `key`.
+  void error_at_name(std::string_view key, std::string message, std::string check);
+  void missing(std::string_view key, std::string_view wanted);
+  /// Every key that was not asked for is an error with the nearest known key as a suggestion.
+  void finish();
+
+ private:
+  const TomlNode::Entry* find(std::string_view key) const;
+  const TomlNode* use(std::string_view key);
+  void report(Severity severity, std::size_t offset, std::string message, std::string check);
+  void wrong_type(std::string_view key, const TomlNode& value, std::string_view wanted);
+  bool number_ok(const std::string& key, const TomlNode& value, const NumberRange& range, std::string_view wanted);
+  /// " in [tool.1]", or nothing at the top of the file.
+  std::string where() const;
+
+  const TomlFile* file_;
+  const TomlNode* node_;
+  std::string name_;
+  Diagnostics* diagnostics_;
+  std::set<std::string, std::less<>> known_;
+};
+
+/// The word of `known` that is most like `word`; empty where none is near.
+std::string nearest_word(std::string_view word, std::span<const std::string> known);
+
+}  // namespace camber::machine

@@ -1,0 +1,11 @@
+#pragma once
+// One [tool.N] table of a job.
+#include "machine/job.h"
+#include "machine/toml_table.h"
+
+namespace camber::machine {
+
+/// Problems go to the table's diagnostics; the tool is then not fit for use.
+Tool read_tool(TomlTable table, int number);
+
+}  // namespace camber::machine

@@ -1,0 +1,131 @@
+#pragma once
+// The state of the interpreter and what it does with one block. Internal to nc/; see interpreter.h for the door.
+#include <array>
+#include <optional>
+#include <string>
+
+#include "nc/arcs.h"
+#include "nc/block_words.h"
+#include "nc/canned_cycles.h"
+#include "nc/interpreter.h"
+#include "nc/modal_codes.h"
+
+namespace camber::nc {
+
+/// Where an axis stands in the work frame.
+enum class AxisPlace : std::uint8_t {
+  never,      ///< not programmed so far; its coordinate counts as 0
+  reference,  ///< at the reference point or at a machine coordinate (G28, G30, G53)
+  known
+};
+
+class BlockInterpreter {
+ public:
+  BlockInterpreter(const Program& program, const InterpreterOptions& options, Reporter& report, Interpretation& out);
+
+  /// Runs one block; false at the end of the program (M2, M30) or where reading on makes no sense.
+  bool run(std::uint32_t block);
+  /// What can be said only at the end.
+  void finish();
+  /// True when arcs fit with absolute centres only, none with relative ones only, and no word says which they are.
+  bool centres_look_absolute() const {
+    return arcs_fit_absolute_ > 0 && arcs_fit_relative_ == 0 && !centre_mode_given_;
+  }
+
+ private:
+  enum class Motion : std::uint8_t { none, rapid, linear, clockwise, counter_clockwise };
+  /// What the G codes of one block ask for beside the modal state.
+  struct Request {
+    bool dwell = false, exact_stop = false, machine_frame = false, reference = false;
+    bool motion_given = false, cycle_given = false, feed_mode_given = false;
+    bool skip_motion = false;  ///< the axis words belong to something that is not read
+    bool trouble = false;      ///< an error was reported: say nothing of unused words
+    const Word* motion_word = nullptr;
+    const Word* reference_word = nullptr;
+  };
+  struct Cycle {
+    int g = 0;  ///< 0: none active
+    std::optional<double> r_mm, z_mm, p_s, q_mm;
+    double initial_mm = 0;
+    bool incremental = false;
+    bool peck_warned = false;
+  };
+
+  // modal_state.cpp: words that change the state
+  bool read_g_codes();
+  bool read_g_code(const Code& code, const GCode& meaning);
+  void check_one_of_each_group();
+  void set_motion(const Code& code);
+  void set_cycle(const Code& code);
+  void set_work_offset(const Code& code);
+  void set_path_control(int tenths);
+  void set_tool_length(const Code& code);
+  void set_feed_mode(FeedMode mode);
+  void set_contouring(const Code& code);
+  void read_feed();
+  void read_spindle_speed();
+  void read_tool();
+  bool read_m_codes_before();
+  bool read_m_codes_after();
+  void check_letters();
+  void warn_of_unused_words();
+
+  // motion.cpp: words that make moves
+  void dwell();
+  std::optional<double> dwell_seconds(char letter);
+  void go_to_reference();
+  void go_in_machine_frame();
+  void move();
+  void move_on_line();
+  void move_on_arc();
+  void run_cycle();
+  bool read_cycle_words();
+  void drill(const Vec3& place);
+  bool arc_error(const ArcResult& arc, const ArcWords& words);
+  bool other_centre_fits(const ArcWords& words) const;
+  Vec3 target();
+  void prepare_cutting(char const* what);
+  std::optional<double> cutting_feed(double length_mm, char const* g);
+  std::optional<double> per_revolution_feed();
+  void check_unit();
+  void settle_axes();
+  bool place_unknown() const;
+  Move& add_move(MoveKind kind, const Vec3& end_mm);
+  std::uint32_t state_index();
+
+  void error(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});
+  std::string code_text(const Code& code) const;
+  bool written_with_point(const Word& word) const;
+  double unit_mm() const { return state_.inch ? kInch : 1.0; }
+  static constexpr double kInch = 25.4;
+
+  const Program& program_;
+  const InterpreterOptions& options_;
+  Reporter& report_;
+  Interpretation& out_;
+
+  BlockWords words_;
+  Request request_;
+  std::uint32_t block_ = 0;
+
+  ModalState state_;
+  bool state_changed_ = true;
+  std::uint32_t state_index_ = 0;
+  Motion motion_ = Motion::none;
+  Plane plane_ = Plane::xy;
+  Cycle cycle_;
+  bool return_to_r_ = false;  ///< G99
+  bool unit_given_ = false;
+  std::optional<double> feed_;  ///< mm/s (G94), 1/s (G93), mm a turn (G95)
+  int next_tool_ = -1;
+  bool tool_changed_ = false;
+  std::size_t tool_word_offset_ = 0;
+  int first_cut_offset_ = 0;
+  bool centre_mode_given_ = false;  ///< G90.1 or G91.1
+  std::size_t arcs_fit_relative_ = 0, arcs_fit_absolute_ = 0;
+
+  Vec3 position_mm_ = Vec3::Zero();
+  std::array<AxisPlace, 3> place_{AxisPlace::never, AxisPlace::never, AxisPlace::never};
+};
+
+}  // namespace camber::nc

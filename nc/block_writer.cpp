@@ -1,0 +1,111 @@
+#include "nc/block_writer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camber::nc {
+namespace {
+
+constexpr std::string_view kOrder = "NGXYZIJKR";  ///< where added words go
+
+std::string_view number_text(const Program& program, const Word& word) {
+  return std::string_view(program.source.text())
+      .substr(word.offset + word.value_at, static_cast<std::size_t>(word.length - word.value_at));
+}
+
+}  // namespace
+
+BlockWriter::BlockWriter(const Program& program, std::size_t block, const NumberStyle& style)
+    : program_(program),
+      block_(program.blocks[block]),
+      words_(program.words_of(block)),
+      style_(style),
+      blanks_(block_uses_blanks()) {}
+
+bool BlockWriter::block_uses_blanks() const {
+  if (words_.size() < 2) return style_.blanks;
+  for (std::size_t i = 1; i < words_.size(); ++i)
+    if (program_.source.text()[words_[i].offset - 1] == ' ') return true;
+  return false;
+}
+
+const Word* BlockWriter::find(char letter) const {
+  const Word* found = nullptr;
+  for (const Word& w : words_)
+    if (w.letter == letter) found = &w;
+  return found;
+}
+
+double BlockWriter::value(char letter) const {
+  for (const Change& c : changes_)
+    if (c.letter == letter) return c.value;
+  const Word* word = find(letter);
+  return word ? word->value : 0;
+}
+
+int BlockWriter::decimals(char letter, int least) const {
+  const Word* word = find(letter);
+  return std::max(least, word ? decimals_of(number_text(program_, *word)) : 0);
+}
+
+void BlockWriter::set(char letter, double value, int decimals) {
+  const Word* word = find(letter);
+  if (!word) {
+    add(letter, value, decimals);
+    return;
+  }
+  const double r = rounded(value, decimals);
+  if (r == word->value) return;
+  const auto old = number_text(program_, *word);
+  changes_.push_back({word->offset + word->value_at, old.size(), format_number(r, decimals, style_, old), letter, r});
+}
+
+/// Behind the nearest neighbour that comes before it in the usual order; otherwise before the next one.
+void BlockWriter::add(char letter, double value, int decimals) {
+  const double r = rounded(value, decimals);
+  const std::string word = letter + format_number(r, decimals, style_);
+  const std::size_t rank = kOrder.find(letter);
+  const Word *before = nullptr, *after = nullptr;
+  for (const Word& w : words_) {
+    const std::size_t other = kOrder.find(w.letter);
+    if (other == std::string_view::npos || other == rank) continue;
+    if (other < rank && (!before || other >= kOrder.find(before->letter))) before = &w;
+    if (other > rank && (!after || other < kOrder.find(after->letter))) after = &w;
+  }
+  const char* const gap = blanks_ ? " " : "";
+  if (before)
+    changes_.push_back({before->offset + std::size_t{before->length}, 0, gap + word, letter, r});
+  else if (after)
+    changes_.push_back({after->offset, 0, word + gap, letter, r});
+  else
+    changes_.push_back({words_.empty() ? block_.offset : words_.front().offset, 0, word + gap, letter, r});
+}
+
+std::string BlockWriter::text() const {
+  std::vector<Change> changes = changes_;
+  std::stable_sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
+    return a.at != b.at ? a.at < b.at : kOrder.find(a.letter) < kOrder.find(b.letter);
+  });
+  std::string out;
+  std::size_t from = block_.offset;
+  for (const Change& c : changes) {
+    out.append(program_.source.text(), from, c.at - from);
+    out += c.text;
+    from = c.at + c.length;
+  }
+  out.append(program_.source.text(), from, block_.offset + block_.length - from);
+  return out;
+}
+
+std::string BlockWriter::further_block(std::string_view letters, const std::vector<double>& values,
+                                       int decimals) const {
+  std::string out = block_.skip ? "/" : "";
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    if (i > 0 && blanks_) out += ' ';
+    out += letters[i];
+    out += letters[i] == 'G' ? std::to_string(std::lround(values[i])) : format_number(values[i], decimals, style_);
+  }
+  return out;
+}
+
+}  // namespace camber::nc

@@ -1,0 +1,36 @@
+#pragma once
+// Drilling, tapping and boring cycles written out as moves.
+#include <vector>
+
+#include "base/geometry.h"
+#include "nc/arcs.h"
+
+namespace camber::nc {
+
+/// One hole of a cycle. Heights are coordinates along the plane's normal (Z for G17), mm.
+struct CycleHole {
+  int g = 81;  ///< 73, 74, 81..86, 89
+  Vec3 from_mm = Vec3::Zero();
+  Vec3 place_mm = Vec3::Zero();      ///< the two coordinates in the plane count
+  double retract_mm = 0;             ///< R
+  double bottom_mm = 0;              ///< Z
+  double clear_mm = 0;               ///< where the tool ends: the initial level (G98) or R (G99)
+  double peck_mm = 0;                ///< Q of G73 and G83; 0: in one go
+  double dwell_s = 0;                ///< P
+  double peck_clearance_mm = 0.254;  ///< G83: back to so far above the last depth; G73: retract of each peck
+};
+
+struct CycleStep {
+  enum class Kind { rapid, feed, dwell } kind = Kind::rapid;
+  Vec3 end_mm = Vec3::Zero();
+  double dwell_s = 0;
+};
+
+/// The moves of one hole. First to the R level where the tool is below it, then over the hole, then down to R.
+/// G81: feed in, rapid out. G82, G86, G89: dwell at the bottom. G73, G83: in pecks. G84, G74 (tapping), G85, G89:
+/// out in feed. Steps that go nowhere are left out. Pecks are at most kMaxPecks.
+std::vector<CycleStep> hole_steps(const CycleHole& hole, const PlaneAxes& axes);
+
+inline constexpr double kMaxPecks = 100000;
+
+}  // namespace camber::nc

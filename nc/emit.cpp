@@ -1,0 +1,382 @@
+#include "nc/emit.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "base/units.h"
+#include "nc/arc_rounding.h"
+#include "nc/block_writer.h"
+
+namespace camber::nc {
+namespace {
+
+constexpr char kAxis[] = "XYZ";
+constexpr char kCentre[] = "IJK";
+constexpr double kSamePlaceMm = 1e-9;  ///< sums of increments; far below any decimal
+constexpr int kMoreDecimals = 4;       ///< an arc may take so many decimals more to close
+
+bool has_code(std::span<const Word> words, char letter, std::initializer_list<double> codes) {
+  return std::any_of(words.begin(), words.end(), [&](const Word& w) {
+    return w.letter == letter && std::find(codes.begin(), codes.end(), w.value) != codes.end();
+  });
+}
+
+/// Words that act at the end of their block.
+bool ends_something(std::span<const Word> words) {
+  return has_code(words, 'M', {0, 1, 2, 5, 9, 30, 60}) || has_code(words, 'G', {9});
+}
+
+bool goes_to_machine_place(std::span<const Word> words) { return has_code(words, 'G', {28, 30, 53}); }
+
+Plane plane_of(const Arc& arc) { return arc.normal.z() != 0 ? Plane::xy : arc.normal.y() != 0 ? Plane::zx : Plane::yz; }
+
+class Emitter {
+ public:
+  Emitter(const Program& program, const Interpretation& moves, std::span<const MoveEdit> edits,
+          const EmitOptions& options)
+      : program_(program), moves_(moves), edits_(edits), options_(options), style_(style_of(program)) {
+    const std::string& text = program.source.text();
+    const std::size_t end = text.find('\n');
+    line_end_ = end != std::string::npos && end > 0 && text[end - 1] == '\r' ? "\r\n" : "\n";
+  }
+
+  std::string run() {
+    out_.reserve(program_.source.text().size() + 64);
+    add_header();
+    const auto& moves = moves_.moves;
+    if (!moves.empty()) at_ = moves.front().start_mm;
+    for (std::size_t m = 0; m < moves.size();) {
+      std::size_t end = m + 1;
+      while (end < moves.size() && moves[end].block == moves[m].block) ++end;
+      run_block(m, end);
+      m = end;
+    }
+    copy_until(program_.source.text().size());
+    return std::move(out_);
+  }
+
+ private:
+  void copy_until(std::size_t offset) {
+    if (offset <= copied_) return;
+    out_.append(program_.source.text(), copied_, offset - copied_);
+    copied_ = offset;
+  }
+
+  void add_header() {
+    if (options_.header_comment.empty()) return;
+    std::size_t block = 0;
+    const auto& text = program_.source.text();
+    while (block < program_.blocks.size()) {
+      const Block& b = program_.blocks[block];
+      const bool tape = b.length > 0 && text[b.offset] == '%';
+      const auto words = program_.words_of(block);
+      if (!tape && (words.empty() || words.front().letter != 'O')) break;
+      ++block;
+    }
+    const std::size_t at = block < program_.blocks.size() ? program_.blocks[block].offset : text.size();
+    copy_until(at);
+    if (!out_.empty() && out_.back() != '\n') out_ += line_end_;
+    out_ += "(" + options_.header_comment + ")" + line_end_;
+  }
+
+  /// All moves [first, end) are of one block.
+  void run_block(std::size_t first, std::size_t end) {
+    const Move& move = moves_.moves[first];
+    const MoveEdit* edit = next_edit_ < edits_.size() && edits_[next_edit_].move < end ? &edits_[next_edit_] : nullptr;
+    assert(!edit || (edit->move == first && end == first + 1 && !move.canned && move.kind != MoveKind::dwell));
+    if (edit) ++next_edit_;
+    const Vec3 last_end = moves_.moves[end - 1].end_mm;
+    if (!edit && (at_ - move.start_mm).cwiseAbs().maxCoeff() < kSamePlaceMm) {
+      at_ = last_end;
+      return;
+    }
+    if (move.kind == MoveKind::dwell) return;
+    const auto words = program_.words_of(move.block);
+    unit_mm_ = moves_.state_of(move).inch ? kMmPerInch : 1.0;
+    least_decimals_ = unit_mm_ == 1.0 ? options_.decimals_mm : options_.decimals_inch;
+    BlockWriter writer(program_, move.block, style_);
+    if (goes_to_machine_place(words)) {
+      leave_for_machine_place(writer, last_end);
+    } else if (move.canned) {
+      drill(writer, move, last_end);
+    } else if (move.kind == MoveKind::rapid && !edit) {
+      go_rapidly(writer, move);
+    } else if (move.kind == MoveKind::arc) {
+      go_on_arc(writer, move, edit);
+    } else {
+      go_on_line(writer, move, edit);
+    }
+  }
+
+  void replace_block(std::uint32_t block, const std::string& text) {
+    copy_until(program_.blocks[block].offset);
+    out_ += text;
+    copied_ = program_.blocks[block].offset + program_.blocks[block].length;
+  }
+
+  void replace_block(std::uint32_t block, const BlockWriter& writer) {
+    if (writer.changed()) replace_block(block, writer.text());
+  }
+
+  std::string line_end_of(std::uint32_t block) const {
+    const auto& text = program_.source.text();
+    const std::size_t end = program_.blocks[block].offset + program_.blocks[block].length;
+    const std::size_t next = text.find('\n', end);
+    return next == std::string::npos ? line_end_ : text.substr(end, next + 1 - end);
+  }
+
+  // --- one axis ---------------------------------------------------------------------------------------------------
+
+  bool incremental(const Move& move) const { return moves_.state_of(move).incremental; }
+
+  double step_mm(int decimals) const { return unit_mm_ * std::pow(10.0, -decimals); }
+
+  /// The word's value that takes the axis to `wanted`.
+  double word_for(const Move& move, int axis, double wanted) const {
+    return (incremental(move) ? wanted - at_[axis] : wanted) / unit_mm_;
+  }
+
+  double place_after(const Move& move, int axis, double value) const {
+    return incremental(move) ? at_[axis] + value * unit_mm_ : value * unit_mm_;
+  }
+
+  /// Sets the words that take the tool as near to `wanted` as the decimals allow; returns where it will be.
+  Vec3 set_end(BlockWriter& writer, const Move& move, const Vec3& wanted, int more_decimals, bool add_words) const {
+    Vec3 after = at_;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int decimals = writer.decimals(kAxis[axis], least_decimals_) + more_decimals;
+      const bool present = writer.find(kAxis[axis]) != nullptr;
+      const bool away = std::abs(wanted[axis] - at_[axis]) > 0.5 * step_mm(decimals) + kSamePlaceMm;
+      if (!present && !(away && add_words)) continue;
+      const double value = rounded(word_for(move, axis, wanted[axis]), decimals);
+      writer.set(kAxis[axis], value, decimals);
+      after[axis] = place_after(move, axis, writer.value(kAxis[axis]));
+    }
+    return after;
+  }
+
+  // --- kinds of blocks ----------------------------------------------------------------------------------------------
+
+  void leave_for_machine_place(const BlockWriter& writer, const Vec3& end) {
+    const bool all = !writer.find('X') && !writer.find('Y') && !writer.find('Z');
+    for (int axis = 0; axis < 3; ++axis)
+      if (all || writer.find(kAxis[axis])) at_[axis] = end[axis];
+  }
+
+  void go_rapidly(BlockWriter& writer, const Move& move) {
+    at_ = set_end(writer, move, move.end_mm, 0, false);
+    replace_block(move.block, writer);
+  }
+
+  /// A cycle drills where the tool stands or where its words say: both must be the old place.
+  void drill(BlockWriter& writer, const Move& move, const Vec3& last_end) {
+    const int normal = cycle_normal(move, last_end);
+    Vec3 place = last_end;
+    if (!incremental(move) || !writer.find('L')) {
+      place[normal] = at_[normal];
+      const Vec3 before = at_;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (axis == normal) continue;
+        const int decimals = writer.decimals(kAxis[axis], least_decimals_);
+        const bool away = std::abs(place[axis] - before[axis]) > 0.5 * step_mm(decimals) + kSamePlaceMm;
+        if (!writer.find(kAxis[axis]) && !away) continue;
+        writer.set(kAxis[axis], rounded(word_for(move, axis, place[axis]), decimals), decimals);
+      }
+    }
+    replace_block(move.block, writer);
+    const double height = last_end[normal] == move.start_mm[normal] ? at_[normal] : last_end[normal];
+    at_ = last_end;
+    at_[normal] = height;
+  }
+
+  /// The axis that the cycle's feed moves run along.
+  int cycle_normal(const Move& first, const Vec3&) const {
+    for (std::size_t m = static_cast<std::size_t>(&first - moves_.moves.data());
+         m < moves_.moves.size() && moves_.moves[m].block == first.block; ++m) {
+      const Move& move = moves_.moves[m];
+      if (move.kind != MoveKind::linear) continue;
+      Eigen::Index axis = 0;
+      (move.end_mm - move.start_mm).cwiseAbs().maxCoeff(&axis);
+      return static_cast<int>(axis);
+    }
+    return 2;
+  }
+
+  void go_on_line(BlockWriter& writer, const Move& move, const MoveEdit* edit) {
+    const Vec3 end = edit ? edit->end_mm : move.end_mm;
+    std::vector<Vec3> points;
+    if (edit && may_be_split(move)) points = edit->via_mm;
+    points.push_back(end);
+    const auto words = program_.words_of(move.block);
+    if (points.size() > 1 && ends_something(words)) {
+      go_before(writer, move, points);
+      return;
+    }
+    const Vec3 start = at_;
+    // Via points that round to the start would be moves without length.
+    while (points.size() > 1 && (points.front() - at_).cwiseAbs().maxCoeff() < 0.5 * step_mm(least_decimals_))
+      points.erase(points.begin());
+    at_ = set_end(writer, move, points.front(), 0, true);
+    if (points.size() > 1) set_inverse_time_feed(writer, move, (at_ - start).norm());
+    std::string more;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const std::string line = further_line(writer, move, points[i], false);
+      if (!line.empty()) more += line_end_of(move.block) + line;
+    }
+    if (writer.changed() || !more.empty()) replace_block(move.block, writer.text() + more);
+  }
+
+  /// Blocks whose other words must act at the end come last, the via points before them.
+  void go_before(BlockWriter& writer, const Move& move, const std::vector<Vec3>& points) {
+    std::string before;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      const std::string line = further_line(writer, move, points[i], before.empty());
+      if (!line.empty()) before += line + line_end_of(move.block);
+    }
+    const Vec3 start = at_;
+    at_ = set_end(writer, move, points.back(), 0, true);
+    set_inverse_time_feed(writer, move, (at_ - start).norm());
+    if (writer.changed() || !before.empty()) replace_block(move.block, before + writer.text());
+  }
+
+  /// False where the lines before would act in another state: the block changes modes and ends something.
+  bool may_be_split(const Move& move) const {
+    const auto words = program_.words_of(move.block);
+    if (!ends_something(words)) return true;
+    return std::all_of(words.begin(), words.end(),
+                       [](const Word& w) { return w.letter != 'G' || w.value == 1 || w.value == 9; });
+  }
+
+  /// The F of inverse time (G93) belongs to one block: its own length counts.
+  void set_inverse_time_feed(BlockWriter& writer, const Move& move, double length_mm) const {
+    if (moves_.state_of(move).feed_mode != FeedMode::inverse_time || length_mm <= 0) return;
+    writer.set('F', mm_per_min_from_mm_per_s(move.feed_mm_per_s) / length_mm, writer.decimals('F', 3));
+  }
+
+  /// A block with coordinates only; empty when the point rounds to where the tool stands.
+  std::string further_line(const BlockWriter& writer, const Move& move, const Vec3& point, bool with_g_and_f) {
+    std::string letters;
+    std::vector<double> values;
+    Vec3 after = at_;
+    if (with_g_and_f && has_code(program_.words_of(move.block), 'G', {1})) {
+      letters += 'G';
+      values.push_back(1);
+    }
+    bool moves = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double value = rounded(word_for(move, axis, point[axis]), least_decimals_);
+      const double place = place_after(move, axis, value);
+      if (std::abs(place - at_[axis]) < 0.5 * step_mm(least_decimals_)) continue;
+      letters += kAxis[axis];
+      values.push_back(value);
+      after[axis] = place;
+      moves = true;
+    }
+    if (!moves) return {};
+    if (moves_.state_of(move).feed_mode == FeedMode::inverse_time) {
+      letters += 'F';
+      values.push_back(mm_per_min_from_mm_per_s(move.feed_mm_per_s) / (after - at_).norm());
+    } else if (with_g_and_f && writer.find('F')) {
+      letters += 'F';
+      values.push_back(writer.find('F')->value);
+    }
+    at_ = after;
+    return writer.further_block(letters, values, least_decimals_);
+  }
+
+  // --- arcs ---------------------------------------------------------------------------------------------------------
+
+  void go_on_arc(BlockWriter& writer, const Move& move, const MoveEdit* edit) {
+    const Arc& arc = moves_.arcs[move.arc];
+    WantedArc wanted;
+    wanted.plane = plane_of(arc);
+    const PlaneAxes axes = axes_of(wanted.plane);
+    wanted.end_mm = edit ? edit->end_mm : move.end_mm;
+    wanted.center_mm = edit ? edit->center_mm : arc.center_mm;
+    wanted.sweep_rad = arc.sweep_rad;
+    wanted.full_turn = std::hypot(move.end_mm[axes.first] - move.start_mm[axes.first],
+                                  move.end_mm[axes.second] - move.start_mm[axes.second]) < 1e-6;
+    wanted.by_radius = writer.find('R') != nullptr;
+    wanted.absolute_centre = moves_.state_of(move).absolute_arc_centre;
+    wanted.turns = writer.find('P') ? std::max(1, static_cast<int>(std::lround(writer.value('P')))) : 1;
+    if (is_as_before(writer, move, wanted)) {
+      at_ = move.end_mm;
+      return;
+    }
+    for (int more = 0; more <= kMoreDecimals; ++more)
+      if (write_arc(move, wanted, more)) return;
+    // No room between the ends: the old arc, moved to where the tool stands.
+    wanted.end_mm = at_ + move.end_mm - move.start_mm;
+    wanted.center_mm = at_ + arc.center_mm - move.start_mm;
+    if (!write_arc(move, wanted, kMoreDecimals)) at_ = place_of_untouched(writer, move);
+  }
+
+  /// Start, end and centre differ from the text by less than its decimals can say.
+  bool is_as_before(const BlockWriter& writer, const Move& move, const WantedArc& wanted) const {
+    if ((at_ - move.start_mm).cwiseAbs().maxCoeff() >= kSamePlaceMm) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double half = 0.5 * step_mm(writer.decimals(kAxis[axis], least_decimals_));
+      if (std::abs(wanted.end_mm[axis] - move.end_mm[axis]) > half) return false;
+    }
+    const Vec3 centre_shift = wanted.center_mm - moves_.arcs[move.arc].center_mm;
+    return centre_shift.cwiseAbs().maxCoeff() <= 0.5 * step_mm(least_decimals_);
+  }
+
+  bool write_arc(const Move& move, const WantedArc& wish, int more_decimals) {
+    BlockWriter writer(program_, move.block, style_);
+    WantedArc wanted = wish;
+    const PlaneAxes axes = axes_of(wanted.plane);
+    if (wanted.full_turn)
+      for (const int axis : {axes.first, axes.second}) wanted.end_mm[axis] = at_[axis];
+    wanted.start_mm = at_;
+    wanted.end_mm = set_end(writer, move, wanted.end_mm, more_decimals, true);
+    const char first = kCentre[axes.first], second = kCentre[axes.second];
+    const int decimals = least_decimals_ + more_decimals;
+    const auto arc = round_arc(wanted, unit_mm_, decimals);
+    if (!arc) return false;
+    if (wanted.by_radius) {
+      writer.set('R', arc->r_mm / unit_mm_, decimals);
+    } else {
+      set_centre(writer, first, arc->first_mm, decimals);
+      set_centre(writer, second, arc->second_mm, decimals);
+    }
+    at_ = wanted.end_mm;
+    replace_block(move.block, writer);
+    return true;
+  }
+
+  void set_centre(BlockWriter& writer, char letter, double value_mm, int decimals) const {
+    if (writer.find(letter) || value_mm != 0) writer.set(letter, value_mm / unit_mm_, decimals);
+  }
+
+  Vec3 place_of_untouched(const BlockWriter& writer, const Move& move) const {
+    Vec3 after = at_;
+    for (int axis = 0; axis < 3; ++axis)
+      if (const Word* word = writer.find(kAxis[axis])) after[axis] = place_after(move, axis, word->value);
+    return after;
+  }
+
+  const Program& program_;
+  const Interpretation& moves_;
+  std::span<const MoveEdit> edits_;
+  const EmitOptions& options_;
+  NumberStyle style_;
+  std::string line_end_;
+
+  std::string out_;
+  std::size_t copied_ = 0;  ///< bytes of the source that are in out_ or replaced
+  std::size_t next_edit_ = 0;
+  Vec3 at_ = Vec3::Zero();  ///< where the emitted program has taken the tool
+  double unit_mm_ = 1;
+  int least_decimals_ = 4;
+};
+
+}  // namespace
+
+std::string emit(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
+                 const EmitOptions& options) {
+  return Emitter(program, interpretation, edits, options).run();
+}
+
+}  // namespace camber::nc

@@ -1,0 +1,56 @@
+#include "nc/foreign.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace camber::nc {
+namespace {
+
+constexpr std::string_view kExpected = "Camber reads programs in the style of Fanuc, Haas, Mazak EIA and LinuxCNC";
+
+constexpr std::array<std::string_view, 37> kSiemens = {
+    "DEF",    "SUPA",  "CYCLE",  "TRAFOOF", "TRAORI", "COMPOF", "COMPON", "COMPCAD", "COMPCURV", "MSG",
+    "MCALL",  "FNORM", "TRANS",  "ATRANS",  "ROT",    "AROT",   "MIRROR", "SCALE",   "FFWON",    "FFWOF",
+    "SOFT",   "BRISK", "CR",     "TURN",    "CIP",    "CFTCP",  "DIAMOF", "DIAMON",  "REPEATB",  "WORKPIECE",
+    "EXTERN", "PROC",  "STOPRE", "ORIWKS",  "OFFN",   "WCS",    "GROUP"};
+constexpr std::array<std::string_view, 11> kHeidenhain = {"BEGIN", "PGM", "TOOL", "CYCL", "BLK", "FMAX",
+                                                          "LBL",   "CC",  "RND",  "CHF",  "FN"};
+constexpr std::array<std::string_view, 10> kMacro = {"IF",  "THEN", "GOTO",  "WHILE", "DO",
+                                                     "END", "ENDW", "POPEN", "DPRNT", "SETVN"};
+constexpr std::array<std::string_view, 15> kOWord = {"SUB",   "CALL",     "ENDSUB", "ENDWHILE", "ENDIF",
+                                                     "ELSE",  "ELSEIF",   "RETURN", "REPEAT",   "ENDREPEAT",
+                                                     "BREAK", "CONTINUE", "OCALL",  "OSUB",     "OIF"};
+
+template <std::size_t N>
+bool among(const std::array<std::string_view, N>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+}  // namespace
+
+ForeignWord explain_letters(std::string_view name) {
+  if (among(kSiemens, name))
+    return {fmt::format("{} belongs to a Siemens Sinumerik program, which is not read yet; {}", name, kExpected),
+            "siemens", true};
+  if (among(kMacro, name))
+    return {fmt::format("macro statements ({}) are not read yet; let the CAM system write the moves out", name),
+            "macro", false};
+  if (among(kOWord, name))
+    return {fmt::format("O-word subprograms and flow control ({}) are not read yet; plain blocks were expected", name),
+            "subprogram", false};
+  if (among(kHeidenhain, name))
+    return {fmt::format("{} belongs to a Heidenhain program, which is not read yet; {}", name, kExpected), "heidenhain",
+            true};
+  if (name.size() == 2)
+    return {fmt::format("{} has no number; a number was expected", name.front()), "no-number", false};
+  return {fmt::format("{} is not an NC word; a letter and a number were expected", name), "not-a-word", false};
+}
+
+ForeignWord explain_assignment(std::string_view address) {
+  return {fmt::format("{}= belongs to a Siemens Sinumerik program, which is not read yet; {}", address, kExpected),
+          "siemens", true};
+}
+
+}  // namespace camber::nc

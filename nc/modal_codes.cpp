@@ -1,0 +1,179 @@
+#include "nc/modal_codes.h"
+
+#include <algorithm>
+#include <array>
+
+namespace camber::nc {
+namespace {
+
+struct Entry {
+  int tenths;
+  GCode code;
+};
+
+constexpr GCode not_read(std::string_view name, bool owns_words = true) { return {GGroup::not_read, name, owns_words}; }
+
+/// In ascending order. Codes of one group that follow each other in tens are listed one by one on purpose: this
+/// is the place to look a code up.
+constexpr std::array kCodes = {
+    Entry{0, {GGroup::motion}},
+    Entry{10, {GGroup::motion}},
+    Entry{20, {GGroup::motion}},
+    Entry{30, {GGroup::motion}},
+    Entry{40, {GGroup::one_shot}},
+    Entry{50, {GGroup::contouring}},
+    Entry{51, {GGroup::contouring}},
+    Entry{80, {GGroup::contouring}},
+    Entry{90, {GGroup::one_shot}},
+    Entry{100, not_read("setting of offsets by the program")},
+    Entry{110, {GGroup::no_effect}},
+    Entry{120, not_read("circular pocket")},
+    Entry{130, not_read("circular pocket")},
+    Entry{150, {GGroup::no_effect}},
+    Entry{160, not_read("polar coordinates")},
+    Entry{170, {GGroup::plane}},
+    Entry{180, {GGroup::plane}},
+    Entry{190, {GGroup::plane}},
+    Entry{200, {GGroup::unit}},
+    Entry{210, {GGroup::unit}},
+    Entry{280, {GGroup::one_shot}},
+    Entry{290, not_read("return from the reference point")},
+    Entry{300, {GGroup::one_shot}},
+    Entry{310, not_read("skip function of a probe")},
+    Entry{330, not_read("thread cutting, the spindle in step")},
+    Entry{331, not_read("rigid tapping")},
+    Entry{382, not_read("probing")},
+    Entry{400, {GGroup::cutter_radius}},
+    Entry{410, not_read("cutter radius compensation in the control, left", false)},
+    Entry{411, not_read("cutter radius compensation in the control, left", false)},
+    Entry{420, not_read("cutter radius compensation in the control, right", false)},
+    Entry{421, not_read("cutter radius compensation in the control, right", false)},
+    Entry{430, {GGroup::tool_length}},
+    Entry{431, {GGroup::tool_length}},
+    Entry{434, not_read("tool centre point control of five axes", false)},
+    Entry{435, not_read("tool centre point control of five axes", false)},
+    Entry{440, {GGroup::tool_length}},
+    Entry{490, {GGroup::tool_length}},
+    Entry{500, {GGroup::no_effect}},
+    Entry{501, {GGroup::no_effect}},
+    Entry{510, not_read("scaling")},
+    Entry{511, not_read("mirror image")},
+    Entry{520, not_read("local coordinate system")},
+    Entry{530, {GGroup::one_shot}},
+    Entry{540, {GGroup::work_offset}},
+    Entry{541, {GGroup::work_offset}},
+    Entry{550, {GGroup::work_offset}},
+    Entry{560, {GGroup::work_offset}},
+    Entry{570, {GGroup::work_offset}},
+    Entry{580, {GGroup::work_offset}},
+    Entry{590, {GGroup::work_offset}},
+    Entry{591, {GGroup::work_offset}},
+    Entry{592, {GGroup::work_offset}},
+    Entry{593, {GGroup::work_offset}},
+    Entry{610, {GGroup::path_control}},
+    Entry{611, {GGroup::path_control}},
+    Entry{640, {GGroup::path_control}},
+    Entry{650, not_read("macro call")},
+    Entry{660, not_read("modal macro call")},
+    Entry{670, {GGroup::no_effect}},
+    Entry{680, not_read("rotation of the coordinate system")},
+    Entry{682, not_read("tilted working plane")},
+    Entry{690, {GGroup::no_effect}},
+    Entry{730, {GGroup::cycle}},
+    Entry{740, {GGroup::cycle}},
+    Entry{760, not_read("fine boring cycle")},
+    Entry{800, {GGroup::cycle}},
+    Entry{810, {GGroup::cycle}},
+    Entry{820, {GGroup::cycle}},
+    Entry{830, {GGroup::cycle}},
+    Entry{840, {GGroup::cycle}},
+    Entry{850, {GGroup::cycle}},
+    Entry{860, {GGroup::cycle}},
+    Entry{870, not_read("back boring cycle")},
+    Entry{880, not_read("boring cycle with a manual retract")},
+    Entry{890, {GGroup::cycle}},
+    Entry{900, {GGroup::distance}},
+    Entry{901, {GGroup::arc_distance}},
+    Entry{910, {GGroup::distance}},
+    Entry{911, {GGroup::arc_distance}},
+    Entry{920, not_read("shift of the coordinate system")},
+    Entry{921, not_read("shift of the coordinate system")},
+    Entry{922, not_read("shift of the coordinate system")},
+    Entry{923, not_read("shift of the coordinate system")},
+    Entry{930, {GGroup::feed_mode}},
+    Entry{940, {GGroup::feed_mode}},
+    Entry{950, {GGroup::feed_mode}},
+    Entry{960, {GGroup::turning, "constant cutting speed"}},
+    Entry{970, {GGroup::no_effect}},
+    Entry{980, {GGroup::return_level}},
+    Entry{990, {GGroup::return_level}},
+    Entry{1030, {GGroup::no_effect}},
+    Entry{1120, {GGroup::turning, "polar interpolation"}},
+    Entry{1121, {GGroup::turning, "polar interpolation"}},
+    Entry{1221, {GGroup::turning, "radius or diameter of X on a mill-turn machine"}},
+    Entry{1231, {GGroup::turning, "radius or diameter of X on a mill-turn machine"}},
+    Entry{1870, {GGroup::no_effect}},
+};
+
+static_assert(std::is_sorted(kCodes.begin(), kCodes.end(),
+                             [](const Entry& a, const Entry& b) { return a.tenths < b.tenths; }));
+
+}  // namespace
+
+GCode g_code(int tenths) {
+  const auto it = std::lower_bound(kCodes.begin(), kCodes.end(), tenths,
+                                   [](const Entry& e, int value) { return e.tenths < value; });
+  return it != kCodes.end() && it->tenths == tenths ? it->code : GCode{};
+}
+
+MGroup m_code(int tenths) {
+  switch (tenths) {
+    case 0:
+    case 10:
+    case 600:
+      return MGroup::stop;
+    case 20:
+    case 300:
+      return MGroup::end;
+    case 30:
+    case 40:
+    case 50:
+    case 130:
+    case 140:
+      return MGroup::spindle;
+    case 60:
+      return MGroup::tool;
+    case 70:
+    case 80:
+    case 90:
+      return MGroup::coolant;
+    case 100:
+    case 110:
+      return MGroup::no_effect;  // clamp, unclamp
+    case 190:
+      return MGroup::no_effect;  // spindle orientation
+    case 290:
+      return MGroup::no_effect;  // the tap that follows is rigid
+    case 400:
+    case 410:
+    case 420:
+    case 430:
+      return MGroup::no_effect;  // spindle gear
+    case 480:
+    case 490:
+    case 500:
+    case 510:
+    case 520:
+    case 530:
+      return MGroup::no_effect;  // overrides on, off
+    case 960:
+    case 970:
+    case 980:
+    case 990:
+      return MGroup::subprogram;
+    default:
+      return MGroup::unknown;
+  }
+}
+
+}  // namespace camber::nc

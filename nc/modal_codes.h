@@ -1,0 +1,49 @@
+#pragma once
+// What every G and M code is: its modal group, and what to say of those that are not read.
+#include <string_view>
+
+namespace camber::nc {
+
+enum class GGroup {
+  motion,         ///< G0 G1 G2 G3
+  cycle,          ///< G80, G73, G74, G81-G89
+  plane,          ///< G17 G18 G19
+  distance,       ///< G90 G91
+  arc_distance,   ///< G90.1 G91.1
+  feed_mode,      ///< G93 G94 G95
+  unit,           ///< G20 G21
+  cutter_radius,  ///< G40 (G41 G42 are not read)
+  tool_length,    ///< G43 G44 G49
+  work_offset,    ///< G54 .. G59.3, G54.1
+  path_control,   ///< G61 G61.1 G64
+  return_level,   ///< G98 G99
+  one_shot,       ///< G4 G9 G28 G30 G53
+  contouring,     ///< G05 G05.1 G08: high speed contouring
+  no_effect,      ///< taken and without effect on the path
+  not_read,       ///< known, not read yet
+  turning,        ///< of lathes and mill-turn machines
+  unknown
+};
+
+struct GCode {
+  GGroup group = GGroup::unknown;
+  std::string_view name{};  ///< for not_read and turning: what the code means
+  bool owns_words = false;  ///< not_read: its axis words are no move
+};
+
+/// code in tenths: 541 is G54.1.
+GCode g_code(int tenths);
+
+enum class MGroup {
+  stop,        ///< M0 M1 M60
+  end,         ///< M2 M30
+  spindle,     ///< M3 M4 M5, M13 M14 (with coolant)
+  tool,        ///< M6
+  coolant,     ///< M7 M8 M9
+  no_effect,   ///< taken and without effect on the path
+  subprogram,  ///< M97 M98 M99 and M96: not read yet
+  unknown
+};
+MGroup m_code(int tenths);
+
+}  // namespace camber::nc

@@ -1,0 +1,361 @@
+// Words that change the modal state: G codes, F, S, T and M codes.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "nc/block_interpreter.h"
+
+namespace camber::nc {
+namespace {
+
+constexpr const char* kAxisWords = "XYZ";
+
+bool is_whole(double value) { return value == std::floor(value) && value >= 0 && value < 1e8; }
+
+/// Groups of which one block may hold one code.
+bool is_exclusive(GGroup group) {
+  return group != GGroup::no_effect && group != GGroup::not_read && group != GGroup::turning &&
+         group != GGroup::unknown && group != GGroup::contouring;
+}
+
+}  // namespace
+
+void BlockInterpreter::check_one_of_each_group() {
+  for (std::size_t i = 0; i < words_.g().size(); ++i)
+    for (std::size_t k = i + 1; k < words_.g().size(); ++k) {
+      const Code &a = words_.g()[i], &b = words_.g()[k];
+      if (a.tenths == b.tenths) continue;
+      GGroup group_a = g_code(a.tenths).group, group_b = g_code(b.tenths).group;
+      if (a.tenths == 800 || b.tenths == 800) continue;  // G80 may stand with G0..G3
+      if (group_a == GGroup::cycle) group_a = GGroup::motion;
+      if (group_b == GGroup::cycle) group_b = GGroup::motion;
+      const bool aside = a.tenths == 90 || b.tenths == 90;  // G9 goes with every other
+      if (group_a != group_b || !is_exclusive(group_a) || aside) continue;
+      error(b.word->offset, "modal-group",
+            fmt::format("{} and {} in one block exclude each other; one of them was expected", code_text(a),
+                        code_text(b)));
+    }
+}
+
+bool BlockInterpreter::read_g_codes() {
+  if (words_.g().size() > 1) check_one_of_each_group();
+  // Units and feed mode first: they say how the other words of the block are meant.
+  for (const Code& code : words_.g()) {
+    if (code.tenths == 200 || code.tenths == 210) {
+      state_.inch = code.tenths == 200;
+      unit_given_ = state_changed_ = true;
+    }
+  }
+  for (const Code& code : words_.g())
+    if (!read_g_code(code, g_code(code.tenths))) return false;
+  return true;
+}
+
+bool BlockInterpreter::read_g_code(const Code& code, const GCode& meaning) {
+  switch (meaning.group) {
+    case GGroup::motion:
+      set_motion(code);
+      break;
+    case GGroup::cycle:
+      set_cycle(code);
+      break;
+    case GGroup::plane:
+      plane_ = code.tenths == 170 ? Plane::xy : code.tenths == 180 ? Plane::zx : Plane::yz;
+      break;
+    case GGroup::distance:
+      state_.incremental = code.tenths == 910;
+      break;
+    case GGroup::arc_distance:
+      state_.absolute_arc_centre = code.tenths == 901;
+      centre_mode_given_ = true;
+      break;
+    case GGroup::feed_mode:
+      set_feed_mode(code.tenths == 930   ? FeedMode::inverse_time
+                    : code.tenths == 940 ? FeedMode::per_minute
+                                         : FeedMode::per_revolution);
+      break;
+    case GGroup::unit:
+      break;
+    case GGroup::cutter_radius:
+      words_.use("D");
+      break;
+    case GGroup::tool_length:
+      set_tool_length(code);
+      break;
+    case GGroup::work_offset:
+      set_work_offset(code);
+      break;
+    case GGroup::path_control:
+      set_path_control(code.tenths);
+      break;
+    case GGroup::return_level:
+      return_to_r_ = code.tenths == 990;
+      break;
+    case GGroup::one_shot:
+      request_.dwell |= code.tenths == 40;
+      request_.exact_stop |= code.tenths == 90;
+      request_.machine_frame |= code.tenths == 530;
+      if (code.tenths == 280 || code.tenths == 300) {
+        request_.reference = true;
+        request_.reference_word = code.word;
+      }
+      break;
+    case GGroup::contouring:
+      set_contouring(code);
+      break;
+    case GGroup::no_effect:
+      if (code.tenths == 500 && words_.has('S')) {
+        error(code.word->offset, "turning",
+              "G50 with S (largest spindle speed) belongs to a turning program; milling programs are read");
+        return false;
+      }
+      if (code.tenths == 1870 || code.tenths == 1030) words_.use("PE");
+      break;
+    case GGroup::not_read:
+      error(code.word->offset, "not-read", fmt::format("{} ({}) is not read yet", code_text(code), meaning.name),
+            code_text(code));
+      request_.skip_motion |= meaning.owns_words;
+      words_.use("D");
+      break;
+    case GGroup::turning:
+      error(code.word->offset, "turning",
+            fmt::format("{} ({}) belongs to a turning program; milling programs are read", code_text(code),
+                        meaning.name));
+      return false;
+    case GGroup::unknown:
+      error(code.word->offset, "unknown-g", fmt::format("{} is not a G code that Camber knows", code_text(code)));
+      request_.skip_motion = true;
+      break;
+  }
+  state_changed_ = true;
+  return true;
+}
+
+void BlockInterpreter::set_motion(const Code& code) {
+  constexpr std::array kMotions = {Motion::rapid, Motion::linear, Motion::clockwise, Motion::counter_clockwise};
+  motion_ = kMotions[static_cast<std::size_t>(code.tenths / 10)];
+  cycle_ = {};
+  request_.motion_given = true;
+  request_.motion_word = code.word;
+}
+
+void BlockInterpreter::set_cycle(const Code& code) {
+  if (code.tenths == 800) {
+    cycle_ = {};
+    return;
+  }
+  if (cycle_.g == 0) cycle_.initial_mm = position_mm_[axes_of(plane_).normal];
+  cycle_.g = code.tenths / 10;
+  request_.cycle_given = true;
+  request_.motion_word = code.word;
+}
+
+void BlockInterpreter::set_work_offset(const Code& code) {
+  if (code.tenths >= 591) {
+    state_.work_offset = code.tenths;
+  } else if (code.tenths == 541) {
+    if (!words_.has('P') || !is_whole(words_.value('P')))
+      error(code.word->offset, "work-offset", "G54.1 needs a P with the number of the offset");
+    else
+      state_.work_offset = 540000 + static_cast<int>(words_.value('P'));
+  } else {
+    state_.work_offset = code.tenths / 10;
+    // G54 P3 is another way to write G54.1 P3.
+    if (code.tenths == 540 && words_.has('P') && !request_.dwell && is_whole(words_.value('P')))
+      state_.work_offset = 540000 + static_cast<int>(words_.value('P'));
+  }
+}
+
+void BlockInterpreter::set_path_control(int tenths) {
+  state_.path_control = tenths == 610   ? PathControl::exact_path
+                        : tenths == 611 ? PathControl::exact_stop
+                                        : PathControl::blend;
+  if (tenths != 640) return;
+  state_.blend_tolerance_mm = words_.scaled('P', unit_mm()).value_or(-1);
+  state_.merge_tolerance_mm = words_.scaled('Q', unit_mm()).value_or(-1);
+  for (const char letter : {'P', 'Q'})
+    if (words_.has(letter) && words_.value(letter) < 0)
+      error(words_.offset_of(letter), "blend-tolerance", fmt::format("the tolerance {} of G64 is negative", letter));
+}
+
+void BlockInterpreter::set_tool_length(const Code& code) {
+  words_.use("H");
+  if (code.tenths == 431) words_.use("IJK");
+}
+
+void BlockInterpreter::set_feed_mode(FeedMode mode) {
+  request_.feed_mode_given = true;
+  if (mode == state_.feed_mode) return;
+  state_.feed_mode = mode;
+  feed_.reset();
+}
+
+void BlockInterpreter::set_contouring(const Code& code) {
+  words_.use("PQRL");
+  const char letter = code.tenths == 51 ? 'Q' : 'P';
+  if (code.tenths == 50 && !words_.has('P')) {
+    error(code.word->offset, "not-read", "G5 (spline) is not read yet");
+    request_.skip_motion = true;
+    return;
+  }
+  state_.high_speed_contouring = words_.has(letter) && words_.value(letter) > 0;
+}
+
+void BlockInterpreter::read_feed() {
+  if (!words_.has('F')) return;
+  const double value = words_.value('F');
+  if (value < 0) {
+    error(words_.offset_of('F'), "feed-negative", "the feed F is negative; a feed greater than zero was expected");
+    return;
+  }
+  switch (state_.feed_mode) {
+    case FeedMode::per_minute:
+      feed_ = value * unit_mm() / 60.0;
+      break;
+    case FeedMode::inverse_time:
+      feed_ = value / 60.0;
+      break;
+    case FeedMode::per_revolution:
+      feed_ = value * unit_mm();
+      break;
+  }
+}
+
+void BlockInterpreter::read_spindle_speed() {
+  if (!words_.has('S')) return;
+  const double value = words_.value('S');
+  if (value < 0) {
+    error(words_.offset_of('S'), "spindle-negative", "the spindle speed S is negative; zero or more was expected");
+    return;
+  }
+  state_changed_ |= value != state_.spindle_speed_rpm;
+  state_.spindle_speed_rpm = value;
+}
+
+void BlockInterpreter::read_tool() {
+  if (!words_.has('T')) return;
+  const double value = words_.value('T');
+  if (!is_whole(value)) {
+    error(words_.offset_of('T'), "tool-number", "the tool number T is not a whole number of zero or more");
+    return;
+  }
+  if (next_tool_ < 0) tool_word_offset_ = words_.offset_of('T');
+  next_tool_ = static_cast<int>(value);
+}
+
+bool BlockInterpreter::read_m_codes_before() {
+  const Word* spindle = nullptr;
+  for (const Code& code : words_.m()) {
+    switch (m_code(code.tenths)) {
+      case MGroup::spindle:
+        if (spindle && spindle->value != code.word->value)
+          error(code.word->offset, "modal-group",
+                fmt::format("M{} and {} in one block exclude each other; one of them was expected", spindle->value,
+                            code_text(code)));
+        spindle = code.word;
+        if (code.tenths == 130 || code.tenths == 140) state_.coolant = true;
+        if (code.tenths != 50)
+          state_.spindle = code.tenths == 30 || code.tenths == 130 ? SpindleDirection::clockwise
+                                                                   : SpindleDirection::counter_clockwise;
+        break;
+      case MGroup::tool:
+        if (next_tool_ < 0)
+          error(code.word->offset, "tool-missing",
+                "M6 without a tool: no T was given so far; T with a number was expected");
+        else
+          state_.tool = next_tool_;
+        if (!out_.moves.empty()) out_.moves.back().exact_stop = true;
+        tool_changed_ = true;
+        break;
+      case MGroup::coolant:
+        if (code.tenths != 90) state_.coolant = true;
+        break;
+      case MGroup::subprogram:
+        error(code.word->offset, "subprogram",
+              fmt::format("subprograms ({}) are not read yet; let the CAM system write the moves out", code_text(code)),
+              "M9x");
+        request_.skip_motion = true;
+        break;
+      case MGroup::unknown:
+        if (code.tenths < 0 || code.tenths % 10 != 0 || code.tenths > 9990)
+          error(code.word->offset, "unknown-m", fmt::format("{} is not an M code", code_text(code)));
+        else
+          report_.warning(code.word->offset, "unknown-m",
+                          fmt::format("{} is not known; it is taken to have no effect on the path", code_text(code)));
+        words_.use("PQR");
+        break;
+      case MGroup::no_effect:
+        words_.use("PQR");
+        break;
+      case MGroup::stop:
+      case MGroup::end:
+        break;
+    }
+    state_changed_ = true;
+  }
+  return true;
+}
+
+bool BlockInterpreter::read_m_codes_after() {
+  bool go_on = true;
+  for (const Code& code : words_.m()) {
+    switch (m_code(code.tenths)) {
+      case MGroup::end:
+        go_on = false;
+        [[fallthrough]];
+      case MGroup::stop:
+        if (!out_.moves.empty()) out_.moves.back().exact_stop = true;
+        break;
+      case MGroup::spindle:
+        if (code.tenths == 50) state_.spindle = SpindleDirection::stopped;
+        break;
+      case MGroup::coolant:
+        if (code.tenths == 90) state_.coolant = false;
+        break;
+      default:
+        break;
+    }
+    state_changed_ = true;
+  }
+  return go_on;
+}
+
+void BlockInterpreter::check_letters() {
+  for (const char letter : {'A', 'B', 'C'}) {
+    if (!words_.has(letter)) continue;
+    if (words_.value(letter) != 0)
+      error(words_.offset_of(letter), "rotary-axis",
+            fmt::format("rotary axis {} is not read yet; X, Y and Z were expected", letter), std::string(1, letter));
+    else
+      report_.warning(words_.offset_of(letter), "rotary-axis",
+                      fmt::format("rotary axis {} is not read; it is taken to stand still at 0", letter));
+  }
+  for (const char letter : {'V', 'W', 'U'}) {
+    if (!words_.has(letter) || (letter == 'U' && request_.dwell)) continue;
+    error(words_.offset_of(letter), "unknown-letter",
+          fmt::format("axis {} is not read yet; X, Y and Z were expected", letter), std::string(1, letter));
+    words_.use("UVW");
+  }
+}
+
+void BlockInterpreter::warn_of_unused_words() {
+  if (request_.trouble) return;
+  words_.use("NOFST");
+  if (words_.has_any("DH")) words_.use("DH");  // numbers of offsets: the tip is what is programmed
+  if (!words_.m().empty()) words_.use("PQRL");
+  const std::uint32_t unused = words_.unused();
+  if (unused == 0) return;
+  for (char letter = 'A'; letter <= 'Z'; ++letter) {
+    if ((unused & (1u << (letter - 'A'))) == 0) continue;
+    const Word& word = words_.word(letter);
+    if (letter == 'E')
+      error(word.offset, "unknown-letter", "E is not a letter of a milling program", "E");
+    else if (word.value != 0 || std::string_view(kAxisWords).find(letter) != std::string_view::npos)
+      report_.warning(word.offset, "unused-word",
+                      fmt::format("{} has no meaning in this block and is ignored",
+                                  program_.source.text().substr(word.offset, word.length)),
+                      std::string(1, letter));
+  }
+}
+
+}  // namespace camber::nc

@@ -1,0 +1,377 @@
+// Words that make moves: dwells, lines, arcs, drilling cycles, the way to the reference point.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "nc/block_interpreter.h"
+
+namespace camber::nc {
+namespace {
+
+constexpr char kAxisLetters[] = "XYZ";
+
+}  // namespace
+
+bool BlockInterpreter::place_unknown() const {
+  return std::any_of(place_.begin(), place_.end(), [](AxisPlace p) { return p != AxisPlace::known; });
+}
+
+std::uint32_t BlockInterpreter::state_index() {
+  if (!state_changed_) return state_index_;
+  state_changed_ = false;
+  auto& states = out_.states;
+  const std::size_t count = states.size(), oldest = count > 8 ? count - 8 : 0;
+  for (std::size_t i = count; i-- > oldest;)
+    if (states[i] == state_) return state_index_ = static_cast<std::uint32_t>(i);
+  states.push_back(state_);
+  return state_index_ = static_cast<std::uint32_t>(count);
+}
+
+Move& BlockInterpreter::add_move(MoveKind kind, const Vec3& end_mm) {
+  Move move;
+  move.start_mm = position_mm_;
+  move.end_mm = end_mm;
+  move.block = block_;
+  move.state = state_index();
+  move.kind = kind;
+  move.exact_stop = request_.exact_stop;
+  move.reference = kind != MoveKind::dwell && place_unknown();
+  position_mm_ = end_mm;
+  out_.moves.push_back(move);
+  return out_.moves.back();
+}
+
+void BlockInterpreter::check_unit() {
+  if (unit_given_) return;
+  unit_given_ = true;
+  report_.warning(words_.offset(), "unit-missing",
+                  "the program has moves before G20 or G21 says which unit it is in; millimetres are assumed");
+}
+
+Vec3 BlockInterpreter::target() {
+  Vec3 end = position_mm_;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!words_.has(kAxisLetters[axis])) continue;
+    const double value = words_.value(kAxisLetters[axis]) * unit_mm();
+    end[axis] = state_.incremental ? end[axis] + value : value;
+  }
+  return end;
+}
+
+/// An absolute word puts an axis in the work frame.
+void BlockInterpreter::settle_axes() {
+  if (state_.incremental) return;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (words_.has(kAxisLetters[axis])) place_[axis] = AxisPlace::known;
+}
+
+std::optional<double> BlockInterpreter::dwell_seconds(char letter) {
+  if (!words_.has(letter)) return std::nullopt;
+  const double value = words_.value(letter);
+  const Word& word = words_.word(letter);
+  if (value < 0) {
+    error(word.offset, "dwell", fmt::format("a dwell of {} {} is negative; zero or more was expected", letter, value));
+    return 0.0;
+  }
+  if (written_with_point(word)) return value;
+  if (options_.dwell_p_is_ms) return value / 1000.0;
+  if (value >= 100)
+    report_.warning(
+        word.offset, "dwell-long",
+        fmt::format("a dwell of {} s; where {} without a point counts milliseconds, the control must be named", value,
+                    letter),
+        "dwell-long");
+  return value;
+}
+
+void BlockInterpreter::dwell() {
+  std::optional<double> seconds;
+  for (const char letter : {'P', 'X', 'U'})
+    if (!seconds) seconds = dwell_seconds(letter);
+  if (!seconds) {
+    error(words_.offset(), "dwell", "G4 has no time; P with the time was expected");
+    return;
+  }
+  add_move(MoveKind::dwell, position_mm_).dwell_s = *seconds;
+}
+
+void BlockInterpreter::go_to_reference() {
+  check_unit();
+  words_.use("P");
+  std::array<bool, 3> goes{};
+  for (std::size_t axis = 0; axis < 3; ++axis) goes[axis] = words_.has(kAxisLetters[axis]);
+  const bool none = !goes[0] && !goes[1] && !goes[2];
+  const Vec3 via = target();
+  if (via != position_mm_) {
+    add_move(MoveKind::rapid, via);
+    settle_axes();
+  }
+  Vec3 home = position_mm_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!none && !goes[axis]) continue;
+    home[static_cast<Eigen::Index>(axis)] = 0;
+    place_[axis] = AxisPlace::reference;
+  }
+  add_move(MoveKind::rapid, home);
+}
+
+void BlockInterpreter::go_in_machine_frame() {
+  if (!words_.has_any("XYZ")) return;
+  check_unit();
+  if (motion_ == Motion::clockwise || motion_ == Motion::counter_clockwise || cycle_.g != 0) {
+    error(words_.offset(), "machine-frame", "G53 goes with G0 or G1; another motion is active");
+    return;
+  }
+  Vec3 end = position_mm_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!words_.has(kAxisLetters[axis])) continue;
+    end[static_cast<Eigen::Index>(axis)] = words_.value(kAxisLetters[axis]) * unit_mm();
+    place_[axis] = AxisPlace::reference;
+  }
+  std::optional<double> feed;
+  if (motion_ == Motion::linear) feed = cutting_feed((end - position_mm_).norm(), "G1");
+  Move& move = add_move(motion_ == Motion::linear ? MoveKind::linear : MoveKind::rapid, end);
+  move.feed_mm_per_s = feed.value_or(0);
+}
+
+void BlockInterpreter::move() {
+  const bool axes = words_.has_any("XYZ");
+  if (cycle_.g != 0) {
+    run_cycle();
+    return;
+  }
+  const bool arc = motion_ == Motion::clockwise || motion_ == Motion::counter_clockwise;
+  if (arc && (axes || words_.has_any("IJKR"))) {
+    move_on_arc();
+  } else if (axes && motion_ == Motion::none) {
+    const char letter = words_.has('X') ? 'X' : words_.has('Y') ? 'Y' : 'Z';
+    error(words_.offset_of(letter), "motion-missing",
+          fmt::format("{} without a kind of motion; G0, G1, G2 or G3 was expected before", letter), "motion");
+  } else if (axes) {
+    move_on_line();
+  }
+}
+
+void BlockInterpreter::move_on_line() {
+  check_unit();
+  const Vec3 end = target();
+  if (motion_ == Motion::rapid) {
+    add_move(MoveKind::rapid, end);
+  } else {
+    prepare_cutting("G1");
+    const auto feed = cutting_feed((end - position_mm_).norm(), "G1");
+    add_move(MoveKind::linear, end).feed_mm_per_s = feed.value_or(0);
+  }
+  settle_axes();
+}
+
+/// A cutting move needs a place to start from: axes that were never programmed are taken to stand at zero.
+void BlockInterpreter::prepare_cutting(const char* what) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool placed = words_.has(kAxisLetters[axis]) && !state_.incremental;
+    if (place_[axis] == AxisPlace::known || placed) continue;
+    const char letter = kAxisLetters[axis];
+    if (place_[axis] == AxisPlace::never) {
+      report_.warning(
+          words_.offset(), "start-unknown",
+          fmt::format("{} before {} was programmed; the tool is taken to stand at {}0", what, letter, letter));
+      place_[axis] = AxisPlace::known;
+    } else {
+      report_.warning(words_.offset(), "at-reference",
+                      fmt::format("{} while {} stands at the reference point; the move counts for nothing in material",
+                                  what, letter));
+    }
+  }
+  if (first_cut_offset_ == 0) first_cut_offset_ = state_.work_offset;
+  if (state_.work_offset != first_cut_offset_)
+    report_.warning(
+        words_.offset(), "work-offsets",
+        "the program cuts in more than one work offset; their distance is not known, all are taken as one frame");
+}
+
+std::optional<double> BlockInterpreter::cutting_feed(double length_mm, const char* g) {
+  if (state_.feed_mode == FeedMode::inverse_time && !words_.has('F')) {
+    error(words_.offset(), "feed-missing",
+          fmt::format("{} in inverse time (G93) without F; every cutting block needs its own F", g), "G93");
+    return std::nullopt;
+  }
+  const std::size_t at = request_.motion_given ? request_.motion_word->offset : words_.offset();
+  if (!feed_) {
+    if (!words_.has('F'))
+      error(at, "feed-missing",
+            fmt::format("{} without a feed; F greater than zero was expected before or in this block", g), "feed");
+    return std::nullopt;
+  }
+  if (*feed_ == 0) {
+    error(words_.offset_of('F'), "feed-zero",
+          fmt::format("F0 on a cutting move ({}); the feed must be greater than zero", g), "feed");
+    return std::nullopt;
+  }
+  switch (state_.feed_mode) {
+    case FeedMode::inverse_time:
+      return *feed_ * length_mm;
+    case FeedMode::per_revolution:
+      return per_revolution_feed();
+    case FeedMode::per_minute:
+      break;
+  }
+  return feed_;
+}
+
+std::optional<double> BlockInterpreter::per_revolution_feed() {
+  if (state_.spindle_speed_rpm > 0) return *feed_ * state_.spindle_speed_rpm / 60.0;
+  error(words_.offset(), "feed-per-turn", "a feed per revolution (G95) without a spindle speed; S was expected before",
+        "feed-per-turn");
+  return std::nullopt;
+}
+
+bool BlockInterpreter::other_centre_fits(const ArcWords& arc) const {
+  ArcWords other = arc;
+  other.absolute_centre = !arc.absolute_centre;
+  const ArcResult fitting = make_arc(other);
+  return fitting.error.empty() && fitting.radius_difference_mm < kArcRadiusWarningMm;
+}
+
+bool BlockInterpreter::arc_error(const ArcResult& result, const ArcWords& arc) {
+  const std::size_t at = request_.motion_given ? request_.motion_word->offset : words_.offset();
+  if (!result.error.empty()) {
+    error(at, "arc", result.error);
+    return true;
+  }
+  if (result.radius_difference_mm < kArcRadiusWarningMm) return false;
+  std::string message = fmt::format("the radius of the arc is {:.4f} mm at its start and {:.4f} mm at its end",
+                                    result.start_radius_mm, result.end_radius_mm);
+  if (result.radius_difference_mm < kArcRadiusErrorMm) {
+    report_.warning(at, "arc-radius",
+                    message + fmt::format("; a difference below {:.3f} mm was expected", kArcRadiusWarningMm),
+                    "arc-radius");
+    return false;
+  }
+  message += fmt::format("; a difference below {:.2f} mm was expected", kArcRadiusErrorMm);
+  if (other_centre_fits(arc)) {
+    ++arcs_fit_absolute_;
+    message += arc.absolute_centre ? " (with a centre from the start, G91.1, it would fit)"
+                                   : " (with an absolute centre, G90.1, it would fit)";
+  }
+  error(at, "arc-radius", std::move(message));
+  return true;
+}
+
+void BlockInterpreter::move_on_arc() {
+  check_unit();
+  ArcWords arc;
+  arc.plane = plane_;
+  arc.clockwise = motion_ == Motion::clockwise;
+  arc.absolute_centre = state_.absolute_arc_centre;
+  const char* g = arc.clockwise ? "G2" : "G3";
+  prepare_cutting(g);
+  arc.start_mm = position_mm_;
+  arc.end_mm = target();
+  arc.i_mm = words_.scaled('I', unit_mm());
+  arc.j_mm = words_.scaled('J', unit_mm());
+  arc.k_mm = words_.scaled('K', unit_mm());
+  arc.r_mm = words_.scaled('R', unit_mm());
+  if (words_.has('P')) {
+    const double turns = words_.value('P');
+    arc.turns = turns == std::floor(turns) && turns >= 1 && turns < 1e6 ? static_cast<int>(turns) : 0;
+    if (arc.turns == 0)
+      error(words_.offset_of('P'), "arc-turns",
+            fmt::format("{} turns (P) on an arc; a whole number of one or more was expected", turns));
+    arc.turns = std::max(arc.turns, 1);
+  }
+  const ArcResult result = make_arc(arc);
+  if (arc_error(result, arc)) {
+    position_mm_ = arc.end_mm;
+    settle_axes();
+    return;
+  }
+  if (!arc.r_mm) ++arcs_fit_relative_;
+  out_.arcs.push_back(result.arc);
+  Move& move = add_move(MoveKind::arc, arc.end_mm);
+  move.arc = static_cast<std::uint32_t>(out_.arcs.size() - 1);
+  settle_axes();
+  move.feed_mm_per_s = cutting_feed(length_mm(out_, move), g).value_or(0);
+}
+
+bool BlockInterpreter::read_cycle_words() {
+  const char normal = kAxisLetters[axes_of(plane_).normal];
+  if (words_.has(normal)) cycle_.z_mm = words_.scaled(normal, unit_mm());
+  if (words_.has('R')) cycle_.r_mm = words_.scaled('R', unit_mm());
+  if (words_.has('Q')) cycle_.q_mm = std::abs(*words_.scaled('Q', unit_mm()));
+  if (words_.has('P')) cycle_.p_s = dwell_seconds('P');
+  words_.use("IJKL");
+  const std::string name = fmt::format("G{}", cycle_.g);
+  if (!words_.has_any("XYZ")) return false;
+  if (!cycle_.r_mm) error(words_.offset(), "cycle", name + " has no retract level; R was expected", "cycle R");
+  if (!cycle_.z_mm)
+    error(words_.offset(), "cycle", fmt::format("{} has no depth; {} was expected", name, normal), "cycle Z");
+  if ((cycle_.g == 73 || cycle_.g == 83) && cycle_.q_mm.value_or(0) <= 0) {
+    error(words_.offset(), "cycle", name + " has no depth of each peck; Q greater than zero was expected", "cycle Q");
+    return false;
+  }
+  return cycle_.r_mm && cycle_.z_mm;
+}
+
+void BlockInterpreter::run_cycle() {
+  check_unit();
+  if (!read_cycle_words()) return;
+  prepare_cutting("a drilling cycle");
+  const PlaneAxes axes = axes_of(plane_);
+  const double repeats = words_.has('L') ? words_.value('L') : words_.has('K') ? words_.value('K') : 1;
+  if (repeats < 0 || repeats > 1e5 || repeats != std::floor(repeats)) {
+    error(words_.offset(), "cycle",
+          fmt::format("{} repeats of a cycle; a whole number up to 100000 was expected", repeats));
+    return;
+  }
+  for (int i = 0; i < static_cast<int>(repeats); ++i) {
+    Vec3 place = target();
+    place[axes.normal] = position_mm_[axes.normal];
+    drill(place);
+    if (request_.trouble) return;
+    settle_axes();
+  }
+}
+
+void BlockInterpreter::drill(const Vec3& place) {
+  const int normal = axes_of(plane_).normal;
+  CycleHole hole;
+  hole.g = cycle_.g;
+  hole.from_mm = position_mm_;
+  hole.place_mm = place;
+  hole.retract_mm = *cycle_.r_mm + (state_.incremental ? cycle_.initial_mm : 0);
+  hole.bottom_mm = *cycle_.z_mm + (state_.incremental ? hole.retract_mm : 0);
+  hole.clear_mm = return_to_r_ ? hole.retract_mm : std::max(cycle_.initial_mm, hole.retract_mm);
+  hole.peck_mm = cycle_.q_mm.value_or(0);
+  hole.dwell_s = cycle_.p_s.value_or(0);
+  hole.peck_clearance_mm = options_.peck_clearance_mm;
+  const std::string name = fmt::format("G{}", cycle_.g);
+  const double depth = hole.retract_mm - hole.bottom_mm;
+  if (depth < 0) {
+    error(words_.offset(), "cycle",
+          fmt::format("the bottom of {} at {} {:.4f} mm is above its retract level R {:.4f} mm", name,
+                      kAxisLetters[normal], hole.bottom_mm, hole.retract_mm));
+    return;
+  }
+  if ((cycle_.g == 73 || cycle_.g == 83) && depth > hole.peck_mm * kMaxPecks) {
+    error(words_.offset(), "cycle", fmt::format("{} would peck more than 100000 times; a larger Q was expected", name));
+    return;
+  }
+  const auto feed = cutting_feed(depth, name.c_str());
+  if (!feed) return;
+  for (const CycleStep& step : hole_steps(hole, axes_of(plane_))) {
+    const bool rapid = step.kind == CycleStep::Kind::rapid;
+    Move& move = add_move(rapid                                 ? MoveKind::rapid
+                          : step.kind == CycleStep::Kind::dwell ? MoveKind::dwell
+                                                                : MoveKind::linear,
+                          step.end_mm);
+    move.canned = true;
+    move.dwell_s = step.dwell_s;
+    if (move.kind == MoveKind::linear) move.feed_mm_per_s = *feed;
+    for (int axis = 0; axis < 3; ++axis)
+      if (step.end_mm[axis] != move.start_mm[axis] && !state_.incremental)
+        place_[static_cast<std::size_t>(axis)] = AxisPlace::known;
+  }
+}
+
+}  // namespace camber::nc

@@ -1,0 +1,32 @@
+#pragma once
+// How a program writes its numbers, so that a changed word looks like its neighbours.
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "nc/program.h"
+
+namespace camber::nc {
+
+enum class WholeStyle { point, plain, point_zero };  ///< 1.  1  1.0
+
+struct NumberStyle {
+  bool leading_zero = true;              ///< 0.5 rather than .5
+  int padded_decimals = 0;               ///< every number has at least so many decimals: 12.500
+  WholeStyle whole = WholeStyle::point;  ///< whole numbers, where nothing is padded
+  bool blanks = false;                   ///< blanks between the words of a block
+};
+
+/// What most of the coordinates of the program do.
+NumberStyle style_of(const Program& program);
+
+/// Decimals of a number as written; -1 without a point.
+int decimals_of(std::string_view number);
+
+/// The double that a number with so many decimals is read as.
+double rounded(double value, int decimals);
+
+/// `value` rounded, in the style; `like`: the text of the number that it replaces, whose own style wins.
+std::string format_number(double value, int decimals, const NumberStyle& style, std::string_view like = {});
+
+}  // namespace camber::nc

@@ -1,0 +1,46 @@
+#include "nc/reporter.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace camber::nc {
+
+void Reporter::error(std::size_t offset, std::string_view check, std::string message, std::string_view alike) {
+  add(Severity::error, offset, check, std::move(message), alike);
+}
+
+void Reporter::warning(std::size_t offset, std::string_view check, std::string message, std::string_view alike) {
+  add(Severity::warning, offset, check, std::move(message), alike);
+}
+
+void Reporter::add(Severity severity, std::size_t offset, std::string_view check, std::string message,
+                   std::string_view alike) {
+  const std::string key =
+      fmt::format("{}/{}/{}", severity == Severity::error ? 'e' : 'w', check, alike.empty() ? message : alike);
+  const auto [found, is_new] = index_.try_emplace(key, entries_.size());
+  if (!is_new) {
+    ++entries_[found->second].more;
+    return;
+  }
+  if (severity == Severity::error) {
+    if (full()) return;
+    ++errors_;
+  }
+  entries_.push_back({severity, offset, std::string(check), std::move(message)});
+}
+
+void Reporter::finish() {
+  std::stable_sort(entries_.begin(), entries_.end(),
+                   [](const Entry& a, const Entry& b) { return a.offset < b.offset; });
+  const std::vector<Entry> entries = std::move(entries_);
+  entries_.clear();
+  index_.clear();
+  errors_ = 0;
+  for (const Entry& e : entries) {
+    const std::string more = e.more > 0 ? fmt::format(" (and {} more like it)", e.more) : "";
+    diagnostics_.add(source_.diagnostic(e.severity, e.offset, e.message + more, e.check));
+  }
+}
+
+}  // namespace camber::nc

@@ -1,0 +1,46 @@
+#pragma once
+// Diagnostics about one NC program: said once, with a count, and handed over in the order of the file.
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/diagnostics.h"
+
+namespace camber::nc {
+
+/// Collects what a pass over the program finds. The same complaint in many blocks is kept once, at its first place,
+/// with "(and N more like it)". finish() hands everything to the Diagnostics, sorted by place.
+class Reporter {
+ public:
+  Reporter(const SourceText& source, Diagnostics& diagnostics) : source_(source), diagnostics_(diagnostics) {}
+
+  /// `alike`: what counts as the same complaint; empty: the message itself.
+  void error(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});
+  void warning(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});
+
+  /// True when as many different errors were met as a reader may give: time to stop.
+  bool full() const { return errors_ + diagnostics_.errors() >= Diagnostics::kMaxErrors; }
+  bool has_errors() const { return errors_ > 0; }
+
+  /// Throws InputError when there are Diagnostics::kMaxErrors errors or more.
+  void finish();
+
+ private:
+  struct Entry {
+    Severity severity;
+    std::size_t offset;
+    std::string check, message;
+    std::size_t more = 0;
+  };
+  void add(Severity severity, std::size_t offset, std::string_view check, std::string message, std::string_view alike);
+
+  const SourceText& source_;
+  Diagnostics& diagnostics_;
+  std::vector<Entry> entries_;
+  std::map<std::string, std::size_t, std::less<>> index_;
+  std::size_t errors_ = 0;
+};
+
+}  // namespace camber::nc

@@ -1,0 +1,134 @@
+#include "nc/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Geometry>
+
+#include "base/units.h"
+
+namespace camber::nc {
+namespace {
+
+/// Points of an arc where a coordinate is largest or smallest: there its radius points along that axis.
+void add_bulge(const Interpretation& program, const Move& move, Extents& box) {
+  const Arc& arc = program.arcs[move.arc];
+  const Vec3 radius = move.start_mm - arc.center_mm;
+  const Vec3 out = radius - radius.dot(arc.normal) * arc.normal;
+  const Vec3 along = arc.normal.cross(out);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (arc.normal[axis] != 0) continue;  // along the axis of the helix the ends are the extremes
+    const double quarter = std::atan2(along[axis], out[axis]);
+    const double sign = arc.sweep_rad < 0 ? -1 : 1;
+    double turn = std::fmod(sign * quarter + 4 * kPi, kPi);
+    for (int i = 0; i < 2 && turn < std::abs(arc.sweep_rad); ++i, turn += kPi)
+      box.add(point_at(program, move, turn / std::abs(arc.sweep_rad)));
+  }
+}
+
+/// Blocks with an M6, ascending.
+std::vector<std::size_t> tool_change_blocks(const Program& text) {
+  std::vector<std::size_t> blocks;
+  for (std::size_t b = 0; b < text.blocks.size(); ++b)
+    for (const Word& w : text.words_of(b))
+      if (w.letter == 'M' && w.value == 6) blocks.push_back(b);
+  return blocks;
+}
+
+class Summarizer {
+ public:
+  Summarizer(const Program& text, const Interpretation& program)
+      : program_(program), changes_(tool_change_blocks(text)) {
+    s_.blocks = text.blocks.size();
+    for (const Block& b : text.blocks) s_.blocks_with_words += b.word_count > 0;
+  }
+
+  Summary run() {
+    for (const Move& move : program_.moves) {
+      count(move);
+      if (move.kind == MoveKind::dwell) {
+        s_.dwell_s += move.dwell_s;
+      } else if (!move.reference) {
+        measure(move, tool_of(move));
+      }
+    }
+    return std::move(s_);
+  }
+
+ private:
+  void count(const Move& move) {
+    s_.rapids += move.kind == MoveKind::rapid;
+    s_.lines += move.kind == MoveKind::linear;
+    s_.arcs += move.kind == MoveKind::arc;
+    s_.dwells += move.kind == MoveKind::dwell;
+    s_.canned += move.canned;
+    s_.reference += move.reference;
+    const ModalState& state = program_.state_of(move);
+    (state.inch ? s_.has_inch : s_.has_mm) = true;
+  }
+
+  ToolUse& tool_of(const Move& move) {
+    const int tool = program_.state_of(move).tool;
+    const bool same = tool_ && *tool_ == tool;
+    auto it = std::find_if(s_.tools.begin(), s_.tools.end(), [&](const ToolUse& t) { return t.tool == tool; });
+    if (it == s_.tools.end()) {
+      s_.tools.push_back({.tool = tool, .line = line_of_change(move.block)});
+      it = s_.tools.end() - 1;
+    }
+    if (!same) ++it->calls;
+    tool_ = tool;
+    return *it;
+  }
+
+  std::size_t line_of_change(std::size_t block) const {
+    const auto after = std::upper_bound(changes_.begin(), changes_.end(), block);
+    return after == changes_.begin() ? block + 1 : *(after - 1) + 1;
+  }
+
+  void measure(const Move& move, ToolUse& tool) {
+    const double length = length_mm(program_, move);
+    const Extents box = extents_of(program_, move);
+    const bool rapid = move.kind == MoveKind::rapid;
+    Extents& all = rapid ? s_.rapid : s_.cutting;
+    all.add(box.min_mm);
+    all.add(box.max_mm);
+    (rapid ? s_.rapid_length_mm : s_.cutting_length_mm) += length;
+    (rapid ? tool.rapid_length_mm : tool.cutting_length_mm) += length;
+    if (rapid) return;
+    ++tool.cutting_moves;
+    tool.feed_mm_per_min.add(mm_per_min_from_mm_per_s(move.feed_mm_per_s));
+    tool.spindle_speed_rpm.add(program_.state_of(move).spindle_speed_rpm);
+    tool.cutting.add(box.min_mm);
+    tool.cutting.add(box.max_mm);
+  }
+
+  const Interpretation& program_;
+  std::vector<std::size_t> changes_;
+  std::optional<int> tool_;
+  Summary s_;
+};
+
+}  // namespace
+
+void Extents::add(const Vec3& point_mm) {
+  min_mm = min_mm.cwiseMin(point_mm);
+  max_mm = max_mm.cwiseMax(point_mm);
+}
+
+void Range::add(double value) {
+  min = std::min(min, value);
+  max = std::max(max, value);
+}
+
+Extents extents_of(const Interpretation& program, const Move& move) {
+  Extents box;
+  box.add(move.start_mm);
+  box.add(move.end_mm);
+  if (move.arc != Move::kNoArc) add_bulge(program, move, box);
+  return box;
+}
+
+Summary summarize(const Program& text, const Interpretation& program) { return Summarizer(text, program).run(); }
+
+}  // namespace camber::nc

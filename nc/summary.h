@@ -1,0 +1,58 @@
+#pragma once
+// What a person wants to know of a program before it runs.
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "base/geometry.h"
+#include "nc/move.h"
+#include "nc/program.h"
+
+namespace camber::nc {
+
+/// A box around points; empty until the first one.
+struct Extents {
+  Vec3 min_mm = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 max_mm = Vec3::Constant(-std::numeric_limits<double>::infinity());
+  bool empty() const { return min_mm.x() > max_mm.x(); }
+  void add(const Vec3& point_mm);
+};
+
+/// Smallest and largest of a figure; empty until the first one.
+struct Range {
+  double min = std::numeric_limits<double>::infinity();
+  double max = -std::numeric_limits<double>::infinity();
+  bool empty() const { return min > max; }
+  void add(double value);
+};
+
+struct ToolUse {
+  int tool = 0;           ///< 0: before any M6
+  std::size_t line = 0;   ///< of the M6 that brought it in first, or of its first move where there is none
+  std::size_t calls = 0;  ///< times it was brought in and used
+  std::size_t cutting_moves = 0;
+  double cutting_length_mm = 0, rapid_length_mm = 0;
+  Range feed_mm_per_min{};    ///< of its cutting moves
+  Range spindle_speed_rpm{};  ///< of its cutting moves
+  Extents cutting{};
+};
+
+struct Summary {
+  std::size_t blocks = 0;  ///< lines of the file
+  std::size_t blocks_with_words = 0;
+  std::size_t rapids = 0, lines = 0, arcs = 0, dwells = 0;
+  std::size_t canned = 0;     ///< of these, moves of drilling cycles
+  std::size_t reference = 0;  ///< of these, moves to or from the reference point; in no length and no extents
+  bool has_mm = false, has_inch = false;
+  std::vector<ToolUse> tools;  ///< in the order of their first use
+  Extents cutting, rapid;
+  double cutting_length_mm = 0, rapid_length_mm = 0;
+  double dwell_s = 0;
+};
+
+/// Box around the whole move, the bulge of an arc included.
+Extents extents_of(const Interpretation& program, const Move& move);
+
+Summary summarize(const Program& text, const Interpretation& program);
+
+}  // namespace camber::nc

@@ -1,0 +1,73 @@
+#include "report/forces_csv.h"
+
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "base/output_file.h"
+
+namespace camber::report {
+namespace {
+
+using deflection::StampLoad;
+using removal::Stamp;
+
+/// Loads of a row's teeth, taken together.
+struct Row {
+  std::size_t teeth = 0;
+  StampLoad load;
+
+  void add(const StampLoad& l) {
+    for (int a = 0; a < 3; ++a)
+      if (std::abs(l.force_max_N[a]) > std::abs(load.force_max_N[a])) load.force_max_N[a] = l.force_max_N[a];
+    load.lateral_max_N = std::max(load.lateral_max_N, l.lateral_max_N);
+    load.force_mean_N += l.force_mean_N;
+    load.contact_deflection_mm += l.contact_deflection_mm;
+    load.chip_mm3 += l.chip_mm3;
+    ++teeth;
+  }
+};
+
+void write_row(std::string& out, const Stamp& first, std::size_t line, const Row& row, double passing_s) {
+  const auto n = static_cast<double>(row.teeth);
+  const StampLoad& l = row.load;
+  fmt::format_to(
+      std::back_inserter(out),
+      "{:.4f},{},{:.4f},{:.4f},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.5f},{:.7f}\n",
+      first.t_s, line, first.tip_mm.x(), first.tip_mm.y(), first.tip_mm.z(), l.force_max_N.x(), l.force_max_N.y(),
+      l.force_max_N.z(), l.lateral_max_N, l.force_mean_N.x() / n, l.force_mean_N.y() / n, l.force_mean_N.z() / n,
+      1000 * l.contact_deflection_mm.x() / n, 1000 * l.contact_deflection_mm.y() / n, l.chip_mm3 / (n * passing_s),
+      l.chip_mm3);
+}
+
+}  // namespace
+
+void write_forces_csv(const std::string& path, const machine::Job& job, const deflection::MachinedProgram& program,
+                      const deflection::Prediction& prediction) {
+  OutputFile file(path);
+  file.stream() << "t_s,block,x_mm,y_mm,z_mm,fx_max_N,fy_max_N,fz_max_N,f_max_N,fx_mean_N,fy_mean_N,fz_mean_N,"
+                   "dx_um,dy_um,mrr_mm3_per_s,removed_mm3\n";
+  std::string text;
+  const auto& stamps = program.path.stamps;
+  for (const auto& run : program.path.runs) {
+    const auto flutes = static_cast<std::size_t>(job.tools.at(run.tool).flutes);
+    const std::size_t end = run.from + run.count;
+    for (std::size_t from = run.from; from < end;) {
+      const nc::Move& move = program.moves.moves[stamps[from].move];
+      Row row;
+      std::size_t k = from;
+      while (k < end && row.teeth < flutes && program.moves.moves[stamps[k].move].block == move.block &&
+             (k == from || !stamps[k].first))
+        row.add(prediction.cut.loads[k++]);
+      const double rpm = program.moves.state_of(move).spindle_speed_rpm;
+      write_row(text, stamps[from], move.block + 1, row, 60.0 / (rpm * static_cast<double>(flutes)));
+      from = k;
+    }
+    file.stream() << text;
+    text.clear();
+  }
+  file.commit();
+}
+
+}  // namespace camber::report

@@ -1,0 +1,28 @@
+#pragma once
+// form_error.csv and form_error.vtp: the error at every point of the machined surface.
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "base/geometry.h"
+
+namespace camber::report {
+
+struct FormErrorPoint {
+  Vec3 place_mm = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();
+  double error_um = 0;  ///< machined minus target surface along the normal; positive: material is left
+  double total_error_um = std::numeric_limits<double>::quiet_NaN();  ///< against the part's mesh; NaN: no mesh
+  std::uint32_t block = 0;  ///< 1-based line of the program that made the surface here; 0: unknown
+};
+
+/// Columns x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block; total_error_um is empty where there is none.
+/// Throws InputError [file-unwritable].
+void write_form_error_csv(const std::string& path, std::span<const FormErrorPoint> points);
+
+/// The same points for ParaView (VTK PolyData, XML, base64): normals, error_um, block and, where there is one,
+/// total_error_um. Throws InputError [file-unwritable].
+void write_form_error_vtp(const std::string& path, std::span<const FormErrorPoint> points);
+
+}  // namespace camber::report

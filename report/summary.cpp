@@ -1,0 +1,123 @@
+#include "report/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace camber::report {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json figures(const removal::ErrorFigures& f) {
+  return {{"min", f.min}, {"max", f.max}, {"mean", f.mean}, {"rms", f.rms}, {"p95", f.p95}, {"area_mm2", f.area_mm2}};
+}
+
+std::string figures_row(const std::string& name, const removal::ErrorFigures& f) {
+  return fmt::format("{:<12}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}", name, f.p95, f.rms, f.mean, f.min, f.max);
+}
+constexpr const char* kFiguresHead = "form error, um     p95      rms     mean      min      max";
+
+/// Area-weighted figures of |total error| against the mesh.
+removal::ErrorFigures total_error(const deflection::Prediction& p) {
+  std::vector<double> um, area;
+  for (std::size_t i = 0; i < p.total_error_mm.size(); ++i) {
+    um.push_back(1000 * p.total_error_mm[i]);
+    area.push_back(p.surface[i].area_mm2);
+  }
+  return removal::error_figures(um, area);
+}
+
+double largest_force_N(const deflection::Prediction& p) {
+  double largest = 0;
+  for (const auto& l : p.cut.loads) largest = std::max(largest, l.lateral_max_N);
+  return largest;
+}
+
+}  // namespace
+
+std::string predict_json(const deflection::MachinedProgram& program, const deflection::Prediction& p,
+                         double compute_s) {
+  ordered_json j;
+  j["machine_time_s"] = program.feed.time_s;
+  j["cutting_time_s"] = program.feed.cutting_time_s;
+  j["compute_s"] = compute_s;
+  j["stamps"] = program.path.stamps.size();
+  j["force_N"] = {{"max", largest_force_N(p)}};
+  j["removed_mm3"] = {{"path", p.cut.chip_mm3}, {"stock", p.cut.stock_mm3}};
+  j["form_error_um"] = figures(p.form_error_um);
+  if (!p.total_error_mm.empty()) j["total_error_um"] = figures(total_error(p));
+  j["static"] = {{"rounds_max", p.cut.rounds_max}, {"unsettled_stretches", p.cut.unsettled}};
+  return j.dump(2) + "\n";
+}
+
+std::string compensate_json(const compensate::Compensation& c, double compute_s) {
+  ordered_json j;
+  j["before_um"] = figures(c.before_um);
+  j["after_um"] = figures(c.after_um);
+  j["rounds"] = ordered_json::array();
+  for (const auto& r : c.rounds) {
+    ordered_json row = figures(r.error_um);
+    row["largest_shift_um"] = 1000 * r.largest_shift_mm;
+    row["limited_points"] = r.limited_points;
+    row["static_rounds"] = r.static_rounds;
+    row["unsettled_stretches"] = r.unsettled;
+    j["rounds"].push_back(std::move(row));
+  }
+  j["best_round"] = c.best;
+  j["stop"] = compensate::to_string(c.stop);
+  j["blocks"] = {{"before", c.blocks_before}, {"after", c.blocks_after}, {"changed", c.blocks_changed}};
+  j["max_shift_um"] = 1000 * c.max_shift_mm;
+  j["machine_time_s"] = {{"before", c.feed_before.time_s}, {"after", c.feed_after.time_s}};
+  j["compute_s"] = compute_s;
+  return j.dump(2) + "\n";
+}
+
+std::string predict_text(const deflection::MachinedProgram& program, const deflection::Prediction& p,
+                         double compute_s) {
+  std::string out = fmt::format("machine time {:.1f} s, of it cutting {:.1f} s; computed in {:.1f} s\n",
+                                program.feed.time_s, program.feed.cutting_time_s, compute_s);
+  const double balance = p.cut.stock_mm3 > 0 ? 100 * (p.cut.chip_mm3 / p.cut.stock_mm3 - 1) : 0;
+  fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the chips, {:.3f} mm3 by the stock ({:+.2f} %)\n",
+                 p.cut.chip_mm3, p.cut.stock_mm3, balance);
+  fmt::format_to(std::back_inserter(out), "greatest lateral force {:.1f} N\n{}\n{}\n", largest_force_N(p), kFiguresHead,
+                 figures_row("error", p.form_error_um));
+  if (!p.total_error_mm.empty())
+    fmt::format_to(std::back_inserter(out), "{}\n", figures_row("against part", total_error(p)));
+  return out;
+}
+
+std::string compensate_text(const compensate::Compensation& c, double compute_s) {
+  std::string out = fmt::format("{}\n", kFiguresHead);
+  for (std::size_t i = 0; i < c.rounds.size(); ++i)
+    fmt::format_to(std::back_inserter(out), "{}{}\n",
+                   figures_row(i == 0 ? "as given" : fmt::format("round {}", i), c.rounds[i].error_um),
+                   i == c.best ? "  <" : "");
+  const char* why = c.stop == compensate::Stop::tolerance ? "the 95th percentile is within the tolerance"
+                    : c.stop == compensate::Stop::stalled ? "the 95th percentile no longer falls"
+                                                          : "the largest number of rounds was reached";
+  fmt::format_to(std::back_inserter(out),
+                 "stopped: {}\nlargest shift {:.1f} um; {} of {} blocks changed, {} blocks after\n"
+                 "machine time {:.1f} s before, {:.1f} s after; computed in {:.1f} s\n",
+                 why, 1000 * c.max_shift_mm, c.blocks_changed, c.blocks_before, c.blocks_after, c.feed_before.time_s,
+                 c.feed_after.time_s, compute_s);
+  const std::size_t limited = c.rounds[c.best].limited_points;
+  if (limited > 0) fmt::format_to(std::back_inserter(out), "{} points of the path reached max_shift_mm\n", limited);
+  return out;
+}
+
+std::string unsettled_sentence(const deflection::Prediction& p) {
+  if (p.cut.unsettled == 0) return {};
+  return fmt::format("the static deflection of {} stretches did not settle; their figures are uncertain",
+                     p.cut.unsettled);
+}
+
+std::string unsettled_sentence(const compensate::Compensation& c) {
+  if (c.settled) return {};
+  return "the static deflection of some stretches did not settle; their figures are uncertain";
+}
+
+}  // namespace camber::report

@@ -1,0 +1,23 @@
+#pragma once
+// The figures of a run as JSON text: every figure that a person is shown, under the names of docs/file-formats.md.
+#include <string>
+
+#include "compensate/compensate.h"
+#include "deflection/predict.h"
+
+namespace camber::report {
+
+std::string predict_json(const deflection::MachinedProgram& program, const deflection::Prediction& prediction,
+                         double compute_s);
+std::string compensate_json(const compensate::Compensation& result, double compute_s);
+
+/// The same for a terminal, within 80 columns.
+std::string predict_text(const deflection::MachinedProgram& program, const deflection::Prediction& prediction,
+                         double compute_s);
+std::string compensate_text(const compensate::Compensation& result, double compute_s);
+
+/// A sentence about static solutions that did not settle; empty where all did.
+std::string unsettled_sentence(const deflection::Prediction& prediction);
+std::string unsettled_sentence(const compensate::Compensation& result);
+
+}  // namespace camber::report

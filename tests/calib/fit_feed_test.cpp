@@ -1,0 +1,189 @@
+#include "calib/fit_feed.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "feedmodel/timed_path.h"
+#include "nc/interpreter.h"
+#include "nc/program.h"
+#include "tests/support/temp_folder.h"
+#include "tests/support/test_program.h"
+
+namespace camber::calib {
+namespace {
+
+machine::Machine known_machine() {
+  machine::Machine m;
+  m.control.dialect = machine::Dialect::linuxcnc;
+  m.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01, .step_share = 0.1};
+  m.control.arc_normal_share = 0.8;
+  m.control.arc_tangential_share = 0.6;
+  m.control.stop_acceleration_share = 0.5;
+  const double acceleration[] = {900, 700, 450}, gain[] = {25, 35, 45}, lag[] = {0.002, 0.004, 0.006};
+  for (int i = 0; i < 3; ++i) {
+    m.axis[i].acceleration_mm_per_s2 = acceleration[i];
+    m.axis[i].position_gain_per_s = gain[i];
+    m.axis[i].velocity_lag_s = lag[i];
+  }
+  return m;
+}
+
+/// Figures in three planes, each from rest to rest at the origin.
+nc::Interpretation figures() {
+  tests::TestProgram p;
+  for (double feed : {1000.0, 3000.0, 6000.0}) {
+    for (double side : {2.0, 7.0}) {
+      p.line(side, 0, 0, feed).line(side, side, 0, feed).line(0, side, 0, feed).line(0, 0, 0, feed).dwell(0.1);
+      p.line(0, side, 0, feed).line(0, side, side, feed).line(0, 0, side, feed).line(0, 0, 0, feed).dwell(0.1);
+      p.line(side, 0, 0, feed).line(side / 2, 0, side, feed).line(0, 0, 0, feed).dwell(0.1);
+      p.line(side, 0, 0, feed).arc_xy(side, 2, side, 1, kPi, feed).line(0, 2, 0, feed).line(0, 0, 0, feed).dwell(0.1);
+    }
+  }
+  p.new_state().path_control = nc::PathControl::exact_path;
+  for (double turn : {0.1, 0.3, 0.6}) {
+    double angle = 0;
+    Vec3 at = Vec3::Zero();
+    for (int i = 0; i < 8; ++i) {
+      at += Vec3(std::cos(angle), std::sin(angle), 0);
+      angle += turn;
+      p.line(at.x(), at.y(), 0, 3000);
+    }
+    p.dwell(0.1).line(0, 0, 0, 3000).dwell(0.1);
+  }
+  return p.program;
+}
+
+FeedRun synthetic_run(const machine::Machine& machine) {
+  FeedRun run{"figures", figures(), {}};
+  run.trace.period_s = machine.control.period_s;
+  run.trace.has_command = run.trace.has_actual = {true, true, true};
+  feedmodel::predict_feed(run.program, machine, [&](std::span<const feedmodel::TimedSample> samples) {
+    for (const feedmodel::TimedSample& s : samples) {
+      run.trace.t_s.push_back(s.t_s);
+      run.trace.command_mm.push_back(s.command_mm);
+      run.trace.actual_mm.push_back(s.position_mm);
+      run.trace.line.push_back(s.feed_command_mm_per_s > 0 ? run.program.moves[s.move].block + 1 : 0);
+    }
+  });
+  run.trace.stretches = {{0, run.trace.t_s.size()}};
+  return run;
+}
+
+double value_of(const FitFeedResult& result, const std::string& name) {
+  for (const FitParameter& p : result.parameters)
+    if (p.name == name) return p.value;
+  ADD_FAILURE() << "no parameter " << name;
+  return NAN;
+}
+
+constexpr double kLimitShare = 0.03;  // block times are known to a period of 1 ms
+constexpr double kDriveShare = 1e-3;
+
+TEST(FitFeed, GivesTheParametersOfASyntheticMachineBack) {
+  const machine::Machine known = known_machine();
+  machine::Machine start;
+  start.control.dialect = known.control.dialect;
+  start.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01};
+  const FitFeedResult fit = fit_feed({synthetic_run(known)}, start, {});
+  EXPECT_TRUE(fit.converged) << fit.message;
+  for (int i = 0; i < 3; ++i) {
+    const machine::Axis &is = fit.machine.axis[i], &was = known.axis[i];
+    EXPECT_NEAR(is.acceleration_mm_per_s2 / was.acceleration_mm_per_s2, 1, kLimitShare) << i;
+    EXPECT_NEAR(is.position_gain_per_s / was.position_gain_per_s, 1, kDriveShare) << i;
+    EXPECT_NEAR(is.velocity_lag_s / was.velocity_lag_s, 1, kDriveShare) << i;
+  }
+  EXPECT_NEAR(fit.machine.control.arc_normal_share, 0.8, 0.8 * kLimitShare);
+  EXPECT_TRUE(std::isinf(value_of(fit, "axis.x.max_velocity_mm_per_min")));  // no rapid shows it: not invented
+  EXPECT_LT(fit.held_out.part_time_percent, 1.0);
+  EXPECT_LT(fit.held_out.speed_rms_percent, 2.0);
+}
+
+TEST(FitFeed, SaysWhatATraceOfOneAxisDoesNotTell) {
+  tests::TestProgram p;
+  for (int i = 1; i < 12; ++i) p.line(i % 2 ? 10 : 0, 0, 0, 500.0 * i).dwell(0.1);
+  machine::Machine known = known_machine();
+  FeedRun run = synthetic_run(known);
+  run.program = p.program;
+  run.trace = {};
+  run.trace.period_s = 0.001;
+  run.trace.has_command = run.trace.has_actual = {true, true, true};
+  feedmodel::predict_feed(run.program, known, [&](std::span<const feedmodel::TimedSample> samples) {
+    for (const feedmodel::TimedSample& s : samples) {
+      run.trace.t_s.push_back(s.t_s);
+      run.trace.command_mm.push_back(s.command_mm);
+      run.trace.actual_mm.push_back(s.position_mm);
+      run.trace.line.push_back(s.feed_command_mm_per_s > 0 ? run.program.moves[s.move].block + 1 : 0);
+    }
+  });
+  run.trace.stretches = {{0, run.trace.t_s.size()}};
+  const FitFeedResult fit = fit_feed({run}, known, {});
+  for (const FitParameter& parameter : fit.parameters) {
+    if (parameter.name != "axis.z.acceleration_mm_per_s2") continue;
+    EXPECT_FALSE(parameter.std_error);
+    EXPECT_FALSE(parameter.written);
+    EXPECT_DOUBLE_EQ(fit.machine.axis[2].acceleration_mm_per_s2, 450);
+  }
+}
+
+// --- a real control -------------------------------------------------------------------------------------------
+
+FeedRun real_run(const tests::TempFolder& folder, const std::string& name) {
+  std::string data = CAMBER_SHARED_DATA_DIR;
+  data += "/linuxcnc/";
+  const std::string csv = folder / (name + ".csv");
+  if (std::system(("zstd -dcq '" + data + name + "_a.csv.zst' > '" + csv + "'").c_str()) != 0)
+    throw std::runtime_error("zstd is needed to read the traces");
+  Diagnostics diagnostics;
+  const nc::Program program = nc::read_program(SourceText::read(data + "programs/" + name + ".ngc"), diagnostics);
+  FeedRun run;
+  run.program_name = name;
+  run.program = nc::interpret(program, {}, diagnostics);
+  run.trace = read_trace(csv, diagnostics);
+  return run;
+}
+
+/// The targets of the project: whole-program time within 1 %, path speed within 5 % of the feed (rms).
+TEST(FitFeedSlow, PredictsTheTracedControl) {
+  std::string data = CAMBER_SHARED_DATA_DIR;
+  data += "/linuxcnc/programs/";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "the servo traces (shared data) are not here";
+  Diagnostics diagnostics;
+  const machine::Machine fitted =
+      machine::read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_fitted.toml", diagnostics);
+  const tests::TempFolder folder;
+  for (const std::string name : {"protocol_xy_g61", "protocol_xy_g64", "protocol_yz_g64", "protocol_zx_g64", "arcs_g64",
+                                 "shortblocks_g64", "dense_g64"}) {
+    const FeedRun run = real_run(folder, name);
+    const FeedAccuracy a = feed_accuracy(run.trace, run.program, fitted, read_parts(data + name + ".parts.csv"), {});
+    printf(
+        "%-16s time %8.2f s traced, %8.2f s predicted (%+.2f %%); parts %.2f %%; path speed rms %.2f %%, p95 %.2f %%\n",
+        name.c_str(), a.time_trace_s, a.time_model_s, a.time_error_percent, a.part_time_error_percent,
+        a.speed_rms_percent, a.speed_p95_percent);
+    EXPECT_LT(std::abs(a.time_error_percent), 1.0) << name;
+    EXPECT_LT(a.speed_rms_percent, 5.0) << name;
+  }
+}
+
+TEST(FitFeedSlow, FitsTheSamplesTrace) {
+  const std::string folder = CAMBER_SOURCE_DIR "/samples/01-finishing/";
+  Diagnostics diagnostics;
+  FeedRun run;
+  run.program =
+      nc::interpret(nc::read_program(SourceText::read(folder + "trace_program.nc"), diagnostics), {}, diagnostics);
+  run.trace = read_trace(folder + "trace.csv", diagnostics);
+  machine::Machine start;
+  start.control.dialect = machine::Dialect::linuxcnc;
+  start.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = machine::kNoLimit};
+  const std::vector<FeedRun> runs{run};
+  const FitFeedResult fit = fit_feed(runs, start, {});
+  EXPECT_TRUE(fit.converged) << fit.message;
+  EXPECT_LT(fit.held_out.speed_rms_percent, 3.0);
+  EXPECT_LT(fit.held_out.part_time_percent, 0.5);
+  for (const DriveFit& drive : fit.drives) EXPECT_LT(drive.held_out_rms_mm, 0.002);
+}
+
+}  // namespace
+}  // namespace camber::calib

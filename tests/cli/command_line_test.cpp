@@ -1,0 +1,80 @@
+// Options, exit status and what is said about a wrong command line.
+#include <gtest/gtest.h>
+
+#include "cli/progress.h"
+#include "tests/support/run_camber.h"
+
+namespace camber {
+namespace {
+
+using tests::run_camber;
+using tests::TempFolder;
+
+TEST(CommandLine, TellsItsVersion) {
+  const TempFolder folder;
+  const auto run = run_camber(folder, "--version");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.out.substr(0, 7), "camber ");
+  EXPECT_EQ(run.err, "");
+}
+
+TEST(CommandLine, ListsItsSubcommands) {
+  const TempFolder folder;
+  const auto run = run_camber(folder, "--help");
+  EXPECT_EQ(run.status, 0);
+  for (const char* word : {"check", "feed", "fit-feed", "predict", "compensate", "--strict", "--threads",
+                           "--effective-config", "Exit status"})
+    EXPECT_NE(run.out.find(word), std::string::npos) << word;
+}
+
+TEST(CommandLine, ExitsWithTwoWhenItIsWrong) {
+  const TempFolder folder;
+  EXPECT_EQ(run_camber(folder, "").status, 2);
+  EXPECT_EQ(run_camber(folder, "polish part.nc").status, 2);
+  EXPECT_EQ(run_camber(folder, "check").status, 2);
+  EXPECT_EQ(run_camber(folder, "check part.nc --loud").status, 2);
+  EXPECT_EQ(run_camber(folder, "predict job.toml").status, 2);  // no -o
+  EXPECT_EQ(run_camber(folder, "check part.nc -q -v").status, 2);
+  EXPECT_EQ(run_camber(folder, "check part.nc --threads many").status, 2);
+  const auto run =
+      run_camber(folder, "fit-feed --program a.nc --program b.nc --trace a.csv --machine m.toml -o f.toml");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(run.err,
+            "--trace: 2 programs and 1 traces; as many of one as of the other were expected\n"
+            "Run with --help for more information.\n");
+}
+
+TEST(CommandLine, SaysBeforeTheWorkThatAnOutputCannotBeWritten) {
+  const TempFolder folder;
+  const auto run = run_camber(folder, "feed part.nc --machine m.toml -o nowhere/feed.csv");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err, "nowhere/feed.csv: error: cannot be written: there is no folder nowhere [file-unwritable]\n");
+}
+
+TEST(CommandLine, PrintsTheEffectiveConfigurationAsAFileThatCanBeRead) {
+  const TempFolder folder;
+  folder.write("m.toml", "[axis.x]\nmax_velocity_mm_per_min = 9000\n");
+  const auto run = run_camber(folder, "feed p.nc --machine m.toml --effective-config");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("max_velocity_mm_per_min = 9000\n"), std::string::npos);
+  EXPECT_NE(run.out.find("acceleration_mm_per_s2 = inf\n"), std::string::npos);
+  folder.write("again.toml", run.out);
+  EXPECT_EQ(run_camber(folder, "feed p.nc --machine again.toml --effective-config").status, 0);
+}
+
+TEST(CommandLine, PutsNoColourInAPipe) {
+  const TempFolder folder;
+  const auto run = run_camber(folder, "check nothing.nc");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err, "nothing.nc: error: no such file [file-missing]\n");
+}
+
+TEST(Progress, TellsShareAndTimeLeft) {
+  EXPECT_EQ(cli::progress_text("cutting", 0.02, 10), "  2 %  cutting");
+  EXPECT_EQ(cli::progress_text("cutting", 0.25, 10), " 25 %  cutting, 30 s left");
+  EXPECT_EQ(cli::progress_text("round 2", 0.1, 60), " 10 %  round 2, 9 min left");
+  EXPECT_EQ(cli::progress_text("round 2", 1.2, 60), "100 %  round 2, 0 s left");
+}
+
+}  // namespace
+}  // namespace camber

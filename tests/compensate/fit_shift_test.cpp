@@ -1,0 +1,88 @@
+#include "compensate/fit_shift.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace camber::compensate {
+namespace {
+
+/// A straight line of n blocks of 1 mm along X.
+nc::Interpretation line_program(int n) {
+  nc::Interpretation p;
+  p.states.emplace_back();
+  for (int i = 0; i < n; ++i) {
+    nc::Move m;
+    m.kind = nc::MoveKind::linear;
+    m.start_mm = {static_cast<double>(i), 0, 0};
+    m.end_mm = {i + 1.0, 0, 0};
+    m.feed_mm_per_s = 10;
+    m.block = static_cast<std::uint32_t>(i);
+    p.moves.push_back(m);
+  }
+  return p;
+}
+
+std::vector<Observation> observe(const ShiftPath& path, int moves, auto error_of_x) {
+  std::vector<Observation> out;
+  for (int i = 0; i < moves; ++i)
+    for (double u = 0.05; u < 1; u += 0.1)
+      out.push_back({path.find(static_cast<std::uint32_t>(i), u), Vec3(0, 0, 1), error_of_x(i + u), 0.03});
+  return out;
+}
+
+TEST(FitShift, MovesThePathAgainstASmoothError) {
+  const auto program = line_program(20);
+  ShiftPath path(program, std::vector<bool>(20, true), 1.0);
+  const auto error = [](double x) { return 0.02 + 0.005 * std::sin(x / 4); };
+  fit_shift(path, observe(path, 20, error), {});
+  for (const auto& p : path.points()) {
+    if (p.place_mm.x() < 3) continue;  // the first point is fixed
+    EXPECT_NEAR(p.shift_mm.z(), -error(p.place_mm.x()), 0.0004);
+    EXPECT_NEAR(p.shift_mm.x(), 0, 1e-9);
+    EXPECT_NEAR(p.shift_mm.y(), 0, 1e-9);
+  }
+}
+
+TEST(FitShift, LeavesTheChainsFirstPointWhereTheRapidEnds) {
+  const auto program = line_program(5);
+  ShiftPath path(program, std::vector<bool>(5, true), 1.0);
+  fit_shift(path, observe(path, 5, [](double) { return 0.02; }), {});
+  EXPECT_TRUE(path.points().front().shift_mm.isZero());
+}
+
+TEST(FitShift, DiesAwayWhereNoSurfaceIsMade) {
+  const auto program = line_program(60);
+  ShiftPath path(program, std::vector<bool>(60, true), 1.0);
+  fit_shift(path, observe(path, 10, [](double) { return 0.02; }), {.decay_mm = 5});
+  EXPECT_LT(std::abs(path.points().back().shift_mm.z()), 1e-5);
+  EXPECT_LT(std::abs(path.points()[30].shift_mm.z()), std::abs(path.points()[15].shift_mm.z()));
+}
+
+TEST(FitShift, IsHeldToTheLargestShift) {
+  const auto program = line_program(10);
+  ShiftPath path(program, std::vector<bool>(10, true), 1.0);
+  EXPECT_GT(fit_shift(path, observe(path, 10, [](double) { return 0.5; }), {.max_shift_mm = 0.1}), 0u);
+  EXPECT_NEAR(path.largest_shift_mm(), 0.1, 1e-12);
+}
+
+TEST(ShiftPath, SplitsALineOnlyWhereTheShiftChangesAlongIt) {
+  nc::Interpretation program = line_program(1);
+  program.moves[0].end_mm = {20, 0, 0};
+  ShiftPath path(program, {true}, 1.0);
+  for (auto& p : path.points()) p.shift_mm.z() = 0.001 * p.place_mm.x();
+  ASSERT_EQ(path.edits(0.0005).size(), 1u);
+  EXPECT_TRUE(path.edits(0.0005)[0].via_mm.empty()) << "a shift that grows evenly needs no split";
+  path.points()[10].shift_mm.z() = 0.02;
+  EXPECT_FALSE(path.edits(0.0005)[0].via_mm.empty());
+}
+
+TEST(ShiftPath, DoesNotTouchMovesThatAreNotSelected) {
+  auto program = line_program(4);
+  ShiftPath path(program, {true, false, true, true}, 1.0);
+  ASSERT_EQ(path.chains().size(), 2u);
+  EXPECT_TRUE(path.points()[path.chains()[1].from].fixed);
+}
+
+}  // namespace
+}  // namespace camber::compensate

@@ -1,0 +1,71 @@
+#pragma once
+// Short programs in tests, and what is said of them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "nc/interpreter.h"
+
+namespace camber::nc {
+
+struct Read {
+  Program program;
+  Interpretation moves;
+  Diagnostics diagnostics;
+  std::vector<std::string> messages;  ///< one line each, without the source line
+};
+
+inline std::string headline(const Diagnostic& d) {
+  Diagnostic short_one = d;
+  short_one.source_line.clear();
+  return to_string(short_one);
+}
+
+/// Reads and interprets; an InputError thrown on the way ends up in `messages` like the rest.
+inline Read read_text(std::string text, const InterpreterOptions& options = {.inch = false},
+                      std::string name = "p.nc") {
+  Read r;
+  std::vector<Diagnostic> found;
+  try {
+    r.program = read_program(SourceText(std::move(name), std::move(text)), r.diagnostics);
+    r.moves = interpret(r.program, options, r.diagnostics);
+    found = r.diagnostics.all();
+  } catch (const InputError& e) {
+    found = e.diagnostics();
+  }
+  for (const auto& d : found) r.messages.push_back(headline(d));
+  return r;
+}
+
+/// Reads a program that nothing is said of.
+inline Read read_clean(std::string text, const InterpreterOptions& options = {.inch = false}) {
+  Read r = read_text(std::move(text), options);
+  EXPECT_EQ(r.messages, std::vector<std::string>{});
+  return r;
+}
+
+inline void expect_near_mm(const Vec3& actual, const Vec3& expected, double tolerance_mm = 1e-9) {
+  EXPECT_LE((actual - expected).cwiseAbs().maxCoeff(), tolerance_mm)
+      << "actual " << actual.transpose() << ", expected " << expected.transpose();
+}
+
+/// A file of the shared data; empty where the folder is missing.
+inline std::string shared_file(const std::string& name) {
+  const std::string path = std::string(CAMBER_SHARED_DATA_DIR) + "/" + name;
+  return std::filesystem::exists(path) ? path : std::string();
+}
+
+/// All regular files of a folder of the shared data, sorted; empty where it is missing.
+inline std::vector<std::string> shared_files(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code none;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(CAMBER_SHARED_DATA_DIR) + "/" + folder, none))
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace camber::nc

@@ -1,0 +1,148 @@
+#include "nc/program.h"
+
+#include <fmt/format.h>
+
+#include "tests/nc/nc_text.h"
+
+namespace camber::nc {
+namespace {
+
+/// "G1 X-0.5": letters and values of a block.
+std::string words_text(const Program& p, std::size_t block) {
+  std::string out;
+  for (const Word& w : p.words_of(block)) out += fmt::format("{}{}{}", out.empty() ? "" : " ", w.letter, w.value);
+  return out;
+}
+
+std::string words_of_line(const std::string& line) {
+  Diagnostics d;
+  const Program p = read_program(SourceText("p.nc", line), d);
+  EXPECT_TRUE(d.all().empty()) << to_string(d.all().front());
+  return words_text(p, 0);
+}
+
+std::string complaint(const std::string& text) {
+  const Read r = read_text(text);
+  return r.messages.empty() ? "" : r.messages.front();
+}
+
+TEST(NcReader, SplitsWordsWithoutBlanks) { EXPECT_EQ(words_of_line("N110G0G17G40X1.Y.5"), "N110 G0 G17 G40 X1 Y0.5"); }
+TEST(NcReader, TakesLowerCaseBlanksAndTabs) { EXPECT_EQ(words_of_line("g1\tx 1 . 5 y- 2 f 1 00"), "G1 X1.5 Y-2 F100"); }
+TEST(NcReader, TakesSignsAndNumbersWithoutDigitsOnOneSide) {
+  EXPECT_EQ(words_of_line("X+.5Y-.25Z1.I-0."), "X0.5 Y-0.25 Z1 I-0");
+}
+TEST(NcReader, TakesNineDecimalsAndMore) {
+  EXPECT_EQ(words_of_line("X1.123456789"), "X1.123456789");
+  EXPECT_EQ(words_of_line("X0.1234567890123456789012"), "X0.12345678901234568");
+}
+TEST(NcReader, LeavesOutCommentsOfAllKinds) {
+  EXPECT_EQ(words_of_line("G1(a (nested) one)X1(b)[bracket 12.104\" x] Y2 ; Z3 (rest)"), "G1 X1 Y2");
+  EXPECT_EQ(words_of_line("X1(\xC3\x9Cmlaut \xB0)"), "X1");
+  EXPECT_EQ(words_of_line("G1 X1 (open ( inside)"), "G1 X1");
+}
+TEST(NcReader, TakesBlockSkipPercentAndProgramNumbers) {
+  Diagnostics d;
+  const Program p =
+      read_program(SourceText("p.nc", "%\r\nO0001(PART)\r\n/ M08\r\n/2G1X1\r\n:12\r\n<NAME>\r\n%\r\n"), d);
+  EXPECT_TRUE(d.all().empty());
+  ASSERT_EQ(p.blocks.size(), 7u);
+  EXPECT_EQ(words_text(p, 1), "O1");
+  EXPECT_TRUE(p.blocks[2].skip);
+  EXPECT_TRUE(p.blocks[3].skip);
+  EXPECT_EQ(words_text(p, 3), "G1 X1");
+  EXPECT_EQ(words_text(p, 4), "O12");
+  EXPECT_EQ(p.blocks[1].length, 11u);  // without the carriage return
+}
+TEST(NcReader, KeepsThePlaceOfEveryWord) {
+  Diagnostics d;
+  const Program p = read_program(SourceText("p.nc", "G1\n  X -1.5Y2\n"), d);
+  const auto words = p.words_of(1);
+  ASSERT_EQ(words.size(), 2u);
+  EXPECT_EQ(words[0].offset, 5u);
+  EXPECT_EQ(words[0].value_at, 2u);
+  EXPECT_EQ(words[0].length, 6u);
+  EXPECT_EQ(words[1].offset, 11u);
+}
+TEST(NcReader, TakesLongLinesAndAByteOrderMark) {
+  EXPECT_EQ(words_of_line("\xEF\xBB\xBFG1" + std::string(100000, ' ') + "X1(" + std::string(100000, 'x') + ")"),
+            "G1 X1");
+}
+
+TEST(NcReader, RefusesAnEmptyFile) {
+  EXPECT_EQ(complaint(""), "p.nc: error: the file is empty; an NC program was expected [empty-program]");
+  EXPECT_EQ(complaint("\r\n \n"), "p.nc: error: the file is empty; an NC program was expected [empty-program]");
+  EXPECT_EQ(complaint("%\n(only a comment)\n"),
+            "p.nc: error: the file holds no NC words; an NC program was expected [empty-program]");
+}
+TEST(NcReader, RefusesWhatIsNoNumber) {
+  EXPECT_EQ(complaint("G1 XNAN"),
+            "p.nc:1:4: error: XNAN is not a number; a number such as X12.5 was expected [not-a-number]");
+  EXPECT_EQ(complaint("G1 Xinf"),
+            "p.nc:1:4: error: XINF is not a number; a number such as X12.5 was expected [not-a-number]");
+  EXPECT_EQ(complaint("G1 X Y2"), "p.nc:1:4: error: X has no number; a number was expected [no-number]");
+  EXPECT_EQ(complaint("G1 X-"), "p.nc:1:4: error: X has no number; a number was expected [no-number]");
+  EXPECT_EQ(complaint("G0 X1.2.3"),
+            "p.nc:1:8: error: `.` is not expected here; a word (a letter and a number) or a comment was expected "
+            "[unexpected-character]");
+  EXPECT_EQ(complaint("G0 X1\xE4"),
+            "p.nc:1:6: error: byte 0xE4 is not expected here; a word (a letter and a number) or a comment was expected "
+            "[unexpected-character]");
+}
+TEST(NcReader, RefusesACommentWithoutAnEnd) {
+  EXPECT_EQ(complaint("G0 X1 (no end"), "p.nc:1:7: error: the comment has no closing `)` in its block [comment-open]");
+}
+TEST(NcReader, SaysThatVariablesMacrosAndSubprogramsAreNotReadYet) {
+  EXPECT_EQ(
+      complaint("#100 = 5\n#101 = 6\n"),
+      "p.nc:1:1: error: variables (#) are not read yet; let the CAM system write the numbers out (and 1 more like it) "
+      "[variable]");
+  EXPECT_EQ(
+      complaint("G1 X[#1+2]"),
+      "p.nc:1:5: error: the value of X is an expression; variables and expressions are not read yet, a number was "
+      "expected [variable]");
+  EXPECT_EQ(complaint("G1 X#1"),
+            "p.nc:1:5: error: the value of X is a variable; variables and expressions are not read yet, a number was "
+            "expected "
+            "[variable]");
+  EXPECT_EQ(
+      complaint("GOTO 10"),
+      "p.nc:1:1: error: macro statements (GOTO) are not read yet; let the CAM system write the moves out [macro]");
+  EXPECT_EQ(complaint("O100 SUB"),
+            "p.nc:1:6: error: O-word subprograms and flow control (SUB) are not read yet; plain blocks were expected "
+            "[subprogram]");
+  EXPECT_EQ(
+      complaint("O<drill> CALL"),
+      "p.nc:1:1: error: O-word subprograms and flow control (O<name>) are not read yet; plain blocks were expected "
+      "[subprogram]");
+  EXPECT_EQ(
+      complaint("G1 X1 ,C2"),
+      "p.nc:1:7: error: chamfers and roundings in a block (,C) are not read yet; a word was expected [corner-word]");
+}
+TEST(NcReader, NamesTheLanguageOfOtherControlsAndStops) {
+  const Read siemens = read_text("N10 G17\nN20 SUPA G0 Z=_Z_HOME D0\nN30 T=\"MILL\"\n");
+  EXPECT_EQ(siemens.messages,
+            std::vector<std::string>{
+                "p.nc:2:5: error: SUPA belongs to a Siemens Sinumerik program, which is not read yet; Camber "
+                "reads programs in the style of Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]"});
+  EXPECT_EQ(
+      complaint("T=\"MILL\""),
+      "p.nc:1:1: error: T= belongs to a Siemens Sinumerik program, which is not read yet; Camber reads programs in the "
+      "style of Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]");
+  EXPECT_EQ(complaint("0 BEGIN PGM PART MM").find("not expected here") != std::string::npos, true);
+  EXPECT_EQ(complaint("BEGIN PGM PART MM"),
+            "p.nc:1:1: error: BEGIN belongs to a Heidenhain program, which is not read yet; Camber reads programs in "
+            "the style of "
+            "Fanuc, Haas, Mazak EIA and LinuxCNC [heidenhain]");
+}
+TEST(NcReader, TakesMissingNumbersOfMinorWordsAsZeroAndWarns) {
+  const Read r = read_text("G21 G99 G82 X1 Y1 Z-1 R1 P F15.04");
+  EXPECT_EQ(r.messages.at(0), "p.nc:1:26: warning: P has no number; it is taken as P0 [no-number]");
+}
+TEST(NcReader, GivesUpAfterTwentyDifferentErrors) {
+  std::string text;
+  for (int i = 0; i < 100; ++i) text += fmt::format("G1 X1 {}\n", static_cast<char>(0x80 + i % 26));
+  EXPECT_EQ(read_text(text).messages.size(), 20u);
+}
+
+}  // namespace
+}  // namespace camber::nc

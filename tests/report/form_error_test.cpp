@@ -1,0 +1,79 @@
+#include "report/form_error.h"
+
+#include <gtest/gtest.h>
+
+#include "report/base64.h"
+#include "report/decimate.h"
+#include "tests/support/temp_folder.h"
+
+namespace camber::report {
+namespace {
+
+std::vector<FormErrorPoint> two_points() {
+  return {{{1, 2, -3.25}, {0, 0, 1}, 12.3456, 13.5, 42}, {{0, 0, 0}, {0, 0.6, 0.8}, -0.5, std::nan(""), 0}};
+}
+
+TEST(FormErrorCsv, HasARowAPoint) {
+  const tests::TempFolder folder;
+  write_form_error_csv(folder / "e.csv", two_points());
+  EXPECT_EQ(tests::file_text(folder / "e.csv"),
+            "x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block\n"
+            "1.0000,2.0000,-3.2500,0.00000,0.00000,1.00000,12.346,13.500,42\n"
+            "0.0000,0.0000,0.0000,0.00000,0.60000,0.80000,-0.500,,0\n");
+}
+
+TEST(FormErrorVtp, HoldsEveryArray) {
+  const tests::TempFolder folder;
+  write_form_error_vtp(folder / "e.vtp", two_points());
+  const std::string text = tests::file_text(folder / "e.vtp");
+  EXPECT_NE(text.find("<Piece NumberOfPoints=\"2\" NumberOfVerts=\"2\""), std::string::npos);
+  for (const char* name : {"error_um", "total_error_um", "normal", "block", "connectivity", "offsets"})
+    EXPECT_NE(text.find(std::string("Name=\"") + name + "\""), std::string::npos) << name;
+  // 8 bytes of length (8), then 12.3456f and -0.5f.
+  std::string bytes;
+  append_little_endian(bytes, std::uint64_t{8});
+  append_little_endian(bytes, 12.3456f);
+  append_little_endian(bytes, -0.5f);
+  EXPECT_NE(text.find(">" + base64(bytes) + "<"), std::string::npos);
+}
+
+TEST(FormErrorVtp, LeavesTheTotalOutWhereThereIsNoMesh) {
+  const tests::TempFolder folder;
+  auto points = two_points();
+  points[0].total_error_um = std::nan("");
+  write_form_error_vtp(folder / "e.vtp", points);
+  EXPECT_EQ(tests::file_text(folder / "e.vtp").find("total_error_um"), std::string::npos);
+}
+
+TEST(Base64, AgreesWithRfc4648) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64("\xff\xfe"), "//4=");
+}
+
+TEST(Decimation, KeepsTheExtremes) {
+  std::vector<double> values(1000, 0.0);
+  values[437] = 5;
+  values[900] = -7;
+  const auto kept = keep_extremes(values, 90);
+  EXPECT_LE(kept.size(), 90u);
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+  EXPECT_NE(std::find(kept.begin(), kept.end(), 437u), kept.end());
+  EXPECT_NE(std::find(kept.begin(), kept.end(), 900u), kept.end());
+  EXPECT_EQ(keep_extremes(values, 1000).size(), 1000u);
+}
+
+TEST(Decimation, FindsRoundScales) {
+  EXPECT_EQ(nice_limit(0), 1);
+  EXPECT_EQ(nice_limit(0.7), 1);
+  EXPECT_EQ(nice_limit(1.2), 2);
+  EXPECT_EQ(nice_limit(20), 20);
+  EXPECT_EQ(nice_limit(21), 30);
+  EXPECT_EQ(nice_limit(98), 100);
+}
+
+}  // namespace
+}  // namespace camber::report
