@@ -63,6 +63,14 @@ void require_folder_of(const std::string& path) {
   fail_on_file(path, fmt::format("cannot be written: there is no folder {}", folder.string()), "file-unwritable");
 }
 
+void require_not_an_input(const std::string& output, const std::vector<std::string>& inputs) {
+  std::error_code ec;
+  if (output.empty() || !std::filesystem::exists(output, ec)) return;
+  for (const auto& input : inputs)
+    if (!input.empty() && std::filesystem::equivalent(output, input, ec))
+      fail_on_file(output, "would be written over, but it is read; another name was expected", "output-is-input");
+}
+
 int run(int argc, const char* const* argv) {
   CLI::App app(kDescription, "camber");
   app.footer(kExitStatus);

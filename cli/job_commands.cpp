@@ -21,6 +21,17 @@ int print_effective_job(const std::string& path, const GlobalOptions& options) {
   return kDone;
 }
 
+/// Outputs may be written, and are none of the job's own files.
+void check_outputs(const std::string& job_path, std::initializer_list<std::string> outputs) {
+  Diagnostics diagnostics;
+  const machine::Job job = machine::read_job(job_path, diagnostics);
+  for (const auto& output : outputs) {
+    require_folder_of(output);
+    require_not_an_input(output,
+                         {job_path, job.program, job.machine_path, job.stock.mesh, job.part.mesh, job.part.program});
+  }
+}
+
 void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("predict", "cutting force, deflection and form error of a job");
   auto arguments = std::make_shared<PredictArguments>();
@@ -30,7 +41,7 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);
-      require_folder_of(arguments->json);
+      check_outputs(arguments->job, {arguments->json});
       return run_predict(*arguments, options);
     };
   });
@@ -46,7 +57,7 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);
-      for (const auto& path : {arguments->output, arguments->report, arguments->json}) require_folder_of(path);
+      check_outputs(arguments->job, {arguments->output, arguments->report, arguments->json});
       return run_compensate(*arguments, options);
     };
   });

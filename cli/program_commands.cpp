@@ -40,6 +40,14 @@ int check(const CheckCommand& command, const GlobalOptions& options) {
   return status;
 }
 
+/// Outputs may be written, and are none of the files that are read. (A machine file may be fitted in its place.)
+void check_outputs(std::initializer_list<std::string> outputs, const std::vector<std::string>& inputs) {
+  for (const auto& output : outputs) {
+    require_folder_of(output);
+    require_not_an_input(output, inputs);
+  }
+}
+
 void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("check", "read and interpret a program, report, change nothing");
   auto arguments = std::make_shared<CheckCommand>();
@@ -48,7 +56,7 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
-      require_folder_of(arguments->json);
+      check_outputs({arguments->json}, {arguments->program});
       return check(*arguments, options);
     };
   });
@@ -65,7 +73,7 @@ void add_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);
-      for (const auto& path : {arguments->output, arguments->json}) require_folder_of(path);
+      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->machine});
       return run_feed(*arguments, options);
     };
   });
@@ -95,7 +103,8 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
                                              arguments->programs.size(), arguments->traces.size()));
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);
-      for (const auto& path : {arguments->output, arguments->json}) require_folder_of(path);
+      check_outputs({arguments->output, arguments->json}, arguments->programs);
+      check_outputs({arguments->output, arguments->json}, arguments->traces);
       return run_fit_feed(*arguments, options);
     };
   });

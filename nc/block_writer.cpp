@@ -6,7 +6,7 @@
 namespace camber::nc {
 namespace {
 
-constexpr std::string_view kOrder = "NGXYZIJKR";  ///< where added words go
+constexpr std::string_view kOrder = "XYZIJKR";  ///< where added words go
 
 std::string_view number_text(const Program& program, const Word& word) {
   return std::string_view(program.source.text())
@@ -60,25 +60,25 @@ void BlockWriter::set(char letter, double value, int decimals) {
   changes_.push_back({word->offset + word->value_at, old.size(), format_number(r, decimals, style_, old), letter, r});
 }
 
-/// Behind the nearest neighbour that comes before it in the usual order; otherwise before the next one.
+/// Behind the nearest coordinate that comes before it in the usual order; otherwise before the next one; otherwise
+/// behind the last N or G.
 void BlockWriter::add(char letter, double value, int decimals) {
   const double r = rounded(value, decimals);
   const std::string word = letter + format_number(r, decimals, style_);
-  const std::size_t rank = kOrder.find(letter);
-  const Word *before = nullptr, *after = nullptr;
+  const auto rank = [](char c) { return static_cast<int>(kOrder.find(c)); };
+  const Word *before = nullptr, *after = nullptr, *code = nullptr;
   for (const Word& w : words_) {
-    const std::size_t other = kOrder.find(w.letter);
-    if (other == std::string_view::npos || other == rank) continue;
-    if (other < rank && (!before || other >= kOrder.find(before->letter))) before = &w;
-    if (other > rank && (!after || other < kOrder.find(after->letter))) after = &w;
+    if (w.letter == 'N' || w.letter == 'G') code = &w;
+    if (kOrder.find(w.letter) == std::string_view::npos) continue;
+    if (rank(w.letter) < rank(letter) && (!before || rank(w.letter) >= rank(before->letter))) before = &w;
+    if (rank(w.letter) > rank(letter) && (!after || rank(w.letter) < rank(after->letter))) after = &w;
   }
-  const char* const gap = blanks_ ? " " : "";
+  if (!before && !after) before = code;
+  const std::string gap = blanks_ ? " " : "";
   if (before)
     changes_.push_back({before->offset + std::size_t{before->length}, 0, gap + word, letter, r});
-  else if (after)
-    changes_.push_back({after->offset, 0, word + gap, letter, r});
   else
-    changes_.push_back({words_.empty() ? block_.offset : words_.front().offset, 0, word + gap, letter, r});
+    changes_.push_back({after ? after->offset : words_.front().offset, 0, word + gap, letter, r});
 }
 
 std::string BlockWriter::text() const {
@@ -102,8 +102,13 @@ std::string BlockWriter::further_block(std::string_view letters, const std::vect
   std::string out = block_.skip ? "/" : "";
   for (std::size_t i = 0; i < letters.size(); ++i) {
     if (i > 0 && blanks_) out += ' ';
-    out += letters[i];
-    out += letters[i] == 'G' ? std::to_string(std::lround(values[i])) : format_number(values[i], decimals, style_);
+    const Word* own = find(letters[i]);
+    if (letters[i] == 'G')
+      out += "G" + std::to_string(std::lround(values[i]));
+    else if (letters[i] == 'F' && own && own->value == values[i])
+      out += program_.source.text().substr(own->offset, own->length);
+    else
+      out += letters[i] + format_number(values[i], decimals, style_);
   }
   return out;
 }

@@ -1,7 +1,6 @@
 #include "nc/emit.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "base/units.h"
@@ -83,9 +82,7 @@ class Emitter {
   /// All moves [first, end) are of one block.
   void run_block(std::size_t first, std::size_t end) {
     const Move& move = moves_.moves[first];
-    const MoveEdit* edit = next_edit_ < edits_.size() && edits_[next_edit_].move < end ? &edits_[next_edit_] : nullptr;
-    assert(!edit || (edit->move == first && end == first + 1 && !move.canned && move.kind != MoveKind::dwell));
-    if (edit) ++next_edit_;
+    const MoveEdit* edit = take_edit(first, end);
     const Vec3 last_end = moves_.moves[end - 1].end_mm;
     if (!edit && (at_ - move.start_mm).cwiseAbs().maxCoeff() < kSamePlaceMm) {
       at_ = last_end;
@@ -107,6 +104,17 @@ class Emitter {
     } else {
       go_on_line(writer, move, edit);
     }
+  }
+
+  /// The edit of the block's only move; what cannot be edited is passed over.
+  const MoveEdit* take_edit(std::size_t first, std::size_t end) {
+    const MoveEdit* edit = nullptr;
+    for (; next_edit_ < edits_.size() && edits_[next_edit_].move < end; ++next_edit_) edit = &edits_[next_edit_];
+    if (!edit || end != first + 1) return nullptr;
+    const Move& move = moves_.moves[first];
+    const bool editable = edit->move == first && !move.canned && move.kind != MoveKind::dwell &&
+                          !goes_to_machine_place(program_.words_of(move.block));
+    return editable ? edit : nullptr;
   }
 
   void replace_block(std::uint32_t block, const std::string& text) {

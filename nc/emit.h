@@ -14,8 +14,8 @@ namespace camber::nc {
 
 /// New geometry for one move (a linear or an arc move that stands in the text as one block; not canned).
 struct MoveEdit {
-  std::uint32_t move = 0;    ///< index into Interpretation::moves; ascending in the list
-  std::vector<Vec3> via_mm;  ///< points to pass before the end, in order: the block becomes several (linear only)
+  std::uint32_t move = 0;      ///< index into Interpretation::moves; ascending in the list
+  std::vector<Vec3> via_mm{};  ///< points to pass before the end, in order: the block becomes several (linear only)
   Vec3 end_mm = Vec3::Zero();
   Vec3 center_mm = Vec3::Zero();  ///< arcs only: the new centre; the emitter makes it agree with the rounded ends
 };
@@ -23,7 +23,7 @@ struct MoveEdit {
 struct EmitOptions {
   int decimals_mm = 4;  ///< at least as many as the word had
   int decimals_inch = 5;
-  std::string header_comment;  ///< one line without brackets; empty: none. Goes after % and the O word.
+  std::string header_comment{};  ///< one line without brackets; empty: none. Goes after % and the O word.
 };
 
 /// The new text. Blocks without an edit come out byte for byte, except where an unedited cutting move would otherwise
@@ -36,7 +36,7 @@ struct EmitOptions {
 /// A full turn stays closed: it ends where the emitted program starts it. Arcs get as many decimals as it takes for the
 /// radii at start and end to agree within one unit of the last decimal.
 ///
-/// Every edit must be of a linear, arc or rapid move that is neither canned nor part of G28, G30 or G53.
+/// Moves of drilling cycles and of G28, G30 and G53, and dwells, cannot be edited: their edits are passed over.
 std::string emit(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
                  const EmitOptions& options);
 

@@ -236,6 +236,7 @@ bool BlockInterpreter::other_centre_fits(const ArcWords& arc) const {
 bool BlockInterpreter::arc_error(const ArcResult& result, const ArcWords& arc) {
   const std::size_t at = request_.motion_given ? request_.motion_word->offset : words_.offset();
   if (!result.error.empty()) {
+    arcs_fit_absolute_ += other_centre_fits(arc);
     error(at, "arc", result.error);
     return true;
   }

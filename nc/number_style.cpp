@@ -47,7 +47,8 @@ struct StyleCounts {
 
   void add(std::string_view number, double value) {
     if (const auto zero_first = has_leading_zero(number, value)) ++(*zero_first ? zero : no_zero);
-    if (const auto style = whole_style(number, value)) ++whole[static_cast<std::size_t>(*style)];
+    const auto style = whole_style(number, value);
+    if (style && value != 0) ++whole[static_cast<std::size_t>(*style)];  // X0 stands beside X1. in many programs
     const int d = decimals_of(number);
     if (d < 0) return;
     ++pointed;
@@ -105,7 +106,8 @@ std::string format_number(double value, int decimals, const NumberStyle& style, 
   double old = 0;
   if (!like.empty()) std::from_chars(like.data() + (like.front() == '+'), like.data() + like.size(), old);
   if (out.back() == '.') {
-    const WholeStyle whole = like.empty() ? style.whole : whole_style(like, old).value_or(style.whole);
+    WholeStyle whole = style.whole;
+    if (!like.empty() && (old != 0 || r == 0)) whole = whole_style(like, old).value_or(whole);
     if (whole == WholeStyle::plain) out.pop_back();
     if (whole == WholeStyle::point_zero) out += '0';
   }

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Makes finish.nc and part.stl of this sample. Same files every time; needs nothing but Python 3.
 
-The part is a block of 20 x 14 mm. Its top is made of two curved faces that meet in a sharp ridge, a "character
+The part is a block of 10 x 7 mm. Its top is made of two curved faces that meet in a sharp ridge, a "character
 line" as car bodies have it. With d = y - ridge_y(x), mm:
 
-    lower face, d < 0 (convex):   z = crown(x) + 0.45 d - 0.053 d^2     slope 24 to 50 degrees, rising with y
-    upper face, d > 0 (concave):  z = crown(x) - 0.75 d + 0.035 d^2     slope 37 to 12 degrees, falling with y
+    lower face, d < 0 (convex):   z = crown(x) + 0.95 d - 0.02 d^2     slope 44 to 48 degrees, rising with y
+    upper face, d > 0 (concave):  z = crown(x) - 0.70 d + 0.03 d^2     slope 35 to 28 degrees, falling with y
 
 The cutter's path is the exact offset of that surface: rows along X at a constant y of the ball's centre. The
 centre lies R along the normal from a point of either face, or on a sphere of radius R about a point of the ridge.
@@ -15,10 +15,10 @@ import os
 import struct
 
 RADIUS = 3.0
-SIZE_X, SIZE_Y, BOTTOM_Z = 20.0, 14.0, -14.0
-ROW_STEP = 0.25                 # of the centre; 0.26 to 0.39 along the faces
-FIRST_ROW_Y, LAST_ROW_Y = -2.5, 15.0
-ROW_FROM_X, ROW_TO_X = 21.5, -1.5
+SIZE_X, SIZE_Y, BOTTOM_Z = 10.0, 7.0, -8.0
+ROW_STEP = 0.18                 # of the centre; 0.21 to 0.27 along the faces
+FIRST_ROW_Y, LAST_ROW_Y = -2.5, 8.3
+ROW_FROM_X, ROW_TO_X = 11.5, -1.5
 CHORD_TOLERANCE = 0.002
 SHORTEST, LONGEST = 0.2, 1.0    # block lengths in X
 CLEARANCE_Z, RETRACT_Z = 20.0, 3.0
@@ -28,23 +28,23 @@ FEED, PLUNGE_FEED, SPINDLE = 900, 300, 3000
 # ---- the surface -------------------------------------------------------------------------------------------------
 
 def crown(x):
-    return -0.012 * (x - 10) ** 2
+    return -0.003 * (x - 5) ** 2
 
 
 def crown_slope(x):
-    return -0.024 * (x - 10)
+    return -0.006 * (x - 5)
 
 
 def ridge_y(x):
-    return 5.2 + 0.2 * x - 0.004 * x * x
+    return 3.2 + 0.2 * x - 0.004 * x * x
 
 
 def ridge_y_slope(x):
     return 0.2 - 0.008 * x
 
 
-LOWER = (0.45, -0.053)
-UPPER = (-0.75, 0.035)
+LOWER = (0.95, -0.02)
+UPPER = (-0.70, 0.03)
 
 
 def height(face, x, y):

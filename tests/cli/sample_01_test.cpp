@@ -5,6 +5,7 @@
 #include <map>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "machine/job.h"
 #include "nc/interpreter.h"
@@ -19,7 +20,7 @@ const std::string kSample = CAMBER_SOURCE_DIR "/samples/01-finishing/";
 constexpr double kBallRadiusMm = 3;
 /// The chord tolerance, and half of the last decimal.
 constexpr double kGougeMm = 0.002 + 0.0005;
-/// Cusps between rows of 0.25 mm, 0.39 mm apart along the steepest slope: 0.39^2 / (8 R).
+/// Cusps between rows that lie no more than 0.39 mm apart along the steepest slope: 0.39^2 / (8 R).
 constexpr double kCuspMm = 0.0064;
 
 nc::Interpretation program() {
@@ -69,10 +70,12 @@ TEST(Sample01, JobReadsWithoutAWord) {
 TEST(Sample01, ProgramMakesThePart) {
   const auto vertices = tests::stl_vertices(kSample + "part.stl");
   ASSERT_FALSE(vertices.empty());
+  const double bottom =
+      std::min_element(vertices.begin(), vertices.end(), [](auto& a, auto& b) { return a.z() < b.z(); })->z();
   const auto rows = ball_centres(program());
   double least = std::numeric_limits<double>::infinity(), greatest = 0;
   for (std::size_t i = 0; i < vertices.size(); i += 7) {  // every vertex stands in about six triangles
-    if (vertices[i].z() == -14) continue;                 // the bottom
+    if (vertices[i].z() == bottom) continue;
     const double d = distance_mm(vertices[i], rows);
     least = std::min(least, d);
     greatest = std::max(greatest, d);

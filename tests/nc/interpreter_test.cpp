@@ -249,8 +249,8 @@ TEST(NcInterpreter, SaysWhatIsNotReadYet) {
 
 TEST(NcInterpreter, RefusesContradictions) {
   EXPECT_EQ(
-      read_text("G0 G1 X1 F1").messages,
-      Messages{"p.nc:1:4: error: G0 and G1 in one block exclude each other; one of them was expected [modal-group]"});
+      read_text("G0 X0 Y0 Z0\nG0 G1 X1 F1").messages,
+      Messages{"p.nc:2:4: error: G0 and G1 in one block exclude each other; one of them was expected [modal-group]"});
   EXPECT_EQ(
       read_text("G90 G91").messages,
       Messages{"p.nc:1:5: error: G90 and G91 in one block exclude each other; one of them was expected [modal-group]"});
@@ -260,7 +260,7 @@ TEST(NcInterpreter, RefusesContradictions) {
   EXPECT_EQ(
       read_text("X1").messages,
       Messages{"p.nc:1:1: error: X without a kind of motion; G0, G1, G2 or G3 was expected before [motion-missing]"});
-  EXPECT_EQ(read_text("G0 X0 Y0 Z0\nG2 X1 F1 J2 P1.5").messages.at(0),
+  EXPECT_EQ(read_text("G0 X0 Y0 Z0\nG2 X2 F1 I1 P1.5").messages.at(0),
             "p.nc:2:13: error: 1.5 turns (P) on an arc; a whole number of one or more was expected [arc-turns]");
 }
 

@@ -2,6 +2,7 @@
 // Short programs in tests, and what is said of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -53,7 +54,7 @@ inline void expect_near_mm(const Vec3& actual, const Vec3& expected, double tole
 
 /// A file of the shared data; empty where the folder is missing.
 inline std::string shared_file(const std::string& name) {
-  const std::string path = std::string(CAMBER_SHARED_DATA_DIR) + "/" + name;
+  const std::string path = (std::filesystem::path(CAMBER_SHARED_DATA_DIR) / name).string();
   return std::filesystem::exists(path) ? path : std::string();
 }
 
@@ -62,7 +63,7 @@ inline std::vector<std::string> shared_files(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code none;
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(CAMBER_SHARED_DATA_DIR) + "/" + folder, none))
+       std::filesystem::directory_iterator(std::filesystem::path(CAMBER_SHARED_DATA_DIR) / folder, none))
     if (entry.is_regular_file()) files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
   return files;

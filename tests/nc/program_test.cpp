@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <random>
+
 #include "tests/nc/nc_text.h"
 
 namespace camber::nc {
@@ -142,6 +144,29 @@ TEST(NcReader, GivesUpAfterTwentyDifferentErrors) {
   std::string text;
   for (int i = 0; i < 100; ++i) text += fmt::format("G1 X1 {}\n", static_cast<char>(0x80 + i % 26));
   EXPECT_EQ(read_text(text).messages.size(), 20u);
+}
+
+/// Real-looking text with random bytes in it: any answer but a crash or a hang.
+TEST(NcReader, NoTextMakesItCrash) {
+  const std::string seed =
+      "%\nO1(A)\nN1G20G0G90G54X-1.5Y.5S100M3\nG1Z-1.F10.\nG3X1.Y2.I.5J0P2\nG2R5.X3.\nG91G28Z0.M9\n/G83X1Z-2R1Q.1L3\n"
+      "G4P1\nG64P.01Q.1\nG53Z0\nG10L2P1X0\n#1=[2+3]\nIF[#1EQ1]GOTO5\nT=\"A\"\nM30\n%";
+  std::mt19937 random(17);
+  for (int i = 0; i < 5000; ++i) {
+    std::string text = seed;
+    for (int k = 0; k < 1 + i % 9; ++k) {
+      const std::size_t at = random() % text.size();
+      if (random() % 3 == 0)
+        text.erase(at, random() % 6);
+      else if (random() % 2 == 0)
+        text[at] = static_cast<char>(random() % 256);
+      else
+        text.insert(at, seed, random() % seed.size(), random() % 9);
+      if (text.empty()) text = seed;
+    }
+    const Read r = read_text(text, {});
+    for (const Move& m : r.moves.moves) ASSERT_TRUE(m.end_mm.allFinite());
+  }
 }
 
 }  // namespace

@@ -1,0 +1,177 @@
+// Our moves against the canonical output of LinuxCNC's interpreter, where `rs274` is on the PATH.
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "tests/nc/nc_text.h"
+#include "tests/support/temp_folder.h"
+
+namespace camber::nc {
+namespace {
+
+struct CanonMove {
+  MoveKind kind;
+  Vec3 end_mm;
+  double unit_mm;
+};
+
+/// Numbers behind the first bracket of a line.
+std::vector<double> arguments(const std::string& line) {
+  std::vector<double> out;
+  std::stringstream in(line.substr(line.find('(') + 1));
+  for (std::string item; std::getline(in, item, ',');) out.push_back(std::strtod(item.c_str(), nullptr));
+  return out;
+}
+
+/// Traverses, feeds and arcs in order, lines without length left out. Arc ends come in the order of the plane.
+std::vector<CanonMove> canonical(const std::string& output) {
+  std::vector<CanonMove> moves;
+  Vec3 at = Vec3::Zero();
+  const auto add = [&](MoveKind kind, const Vec3& end_mm, double unit_mm) {
+    if (kind == MoveKind::arc || end_mm != at) moves.push_back({kind, end_mm, unit_mm});
+    at = end_mm;
+  };
+  double unit = 1;
+  std::string plane = "XY";
+  std::stringstream in(output);
+  for (std::string line; std::getline(in, line);) {
+    const auto a = arguments(line);
+    const auto has = [&](const char* name) { return line.find(name) != std::string::npos; };
+    if (has("USE_LENGTH_UNITS")) unit = has("INCHES") ? kMmPerInch : 1;
+    if (has("SELECT_PLANE")) plane = has("PLANE_XZ") ? "XZ" : has("PLANE_YZ") ? "YZ" : "XY";
+    if (has("STRAIGHT_TRAVERSE")) add(MoveKind::rapid, unit * Vec3(a[0], a[1], a[2]), unit);
+    if (has("STRAIGHT_FEED")) add(MoveKind::linear, unit * Vec3(a[0], a[1], a[2]), unit);
+    if (!has("ARC_FEED")) continue;
+    const Vec3 end = plane == "XY"   ? Vec3(a[0], a[1], a[5])
+                     : plane == "XZ" ? Vec3(a[1], a[5], a[0])
+                                     : Vec3(a[5], a[0], a[1]);
+    add(MoveKind::arc, unit * end, unit);
+  }
+  return moves;
+}
+
+bool rs274_present() { return std::system("command -v rs274 >/dev/null 2>&1") == 0; }
+
+std::string run_rs274(const std::string& text) {
+  tests::TempFolder folder;
+  const std::string command = "rs274 -g '" + folder.write("program.ngc", text) + "' 2>&1";
+  std::string out;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) return out;
+  char buffer[4096];
+  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) out.append(buffer, n);
+  pclose(pipe);
+  return out;
+}
+
+/// Returns the largest difference, mm; moves without length may be missing on either side.
+double expect_same_moves(const std::string& text) {
+  const Read r = read_text(text, {});
+  for (const auto& m : r.messages) EXPECT_EQ(m.find("error"), std::string::npos) << m;
+  const std::vector<CanonMove> canon = canonical(run_rs274(text));
+  double largest = 0;
+  std::size_t at = 0;
+  for (const Move& m : r.moves.moves) {
+    if (m.kind == MoveKind::dwell || (m.kind != MoveKind::arc && m.start_mm == m.end_mm)) continue;
+    if (at == canon.size()) {
+      ADD_FAILURE() << "rs274 has " << canon.size() << " moves only";
+      return largest;
+    }
+    const CanonMove& c = canon[at++];
+    const double difference = (m.end_mm - c.end_mm).cwiseAbs().maxCoeff();
+    largest = std::max(largest, difference);
+    const bool alike = m.kind == c.kind && difference <= 0.00006 * c.unit_mm;  // it prints four decimals
+    EXPECT_TRUE(alike) << "block " << m.block + 1 << ": " << m.end_mm.transpose() << " and " << c.end_mm.transpose();
+    if (!alike) return largest;
+  }
+  EXPECT_EQ(at, canon.size());
+  return largest;
+}
+
+TEST(Rs274, LinuxCncProgramsMoveAlike) {
+  if (!rs274_present()) GTEST_SKIP() << "rs274 (package linuxcnc-uspace) is not on the PATH";
+  const auto files = shared_files("linuxcnc/programs");
+  if (files.empty()) GTEST_SKIP() << "no shared data at " << CAMBER_SHARED_DATA_DIR;
+  for (const auto& f : files) {
+    if (!f.ends_with(".ngc")) continue;
+    SCOPED_TRACE(f);
+    expect_same_moves(SourceText::read(f).text());
+  }
+}
+
+TEST(Rs274, BallFinishingOfBoxOp5MovesAlike) {
+  if (!rs274_present()) GTEST_SKIP() << "rs274 (package linuxcnc-uspace) is not on the PATH";
+  const std::string path = shared_file("nist/box_op5.nc");
+  if (path.empty()) GTEST_SKIP() << "no shared data at " << CAMBER_SHARED_DATA_DIR;
+  std::string text = "G20 G17 G40 G49 G90 G94\n", line;
+  std::ifstream in(path);
+  bool ours = false;
+  while (std::getline(in, line)) {
+    if (ours && line.find("G28") != std::string::npos) break;
+    if (ours) text += line + "\n";
+    ours = ours || line.find("T9M6") != std::string::npos;
+  }
+  EXPECT_LT(expect_same_moves(text + "M2\n"), 0.0015);
+}
+
+TEST(Rs274, RandomProgramsMoveAlike) {
+  if (!rs274_present()) GTEST_SKIP() << "rs274 (package linuxcnc-uspace) is not on the PATH";
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> u(-10, 10);
+  for (int program = 0; program < 20; ++program) {
+    SCOPED_TRACE(program);
+    std::string text = "G21 G17 G90 G94 G64 P0.01\nG0 X0 Y0 Z20\nF100 S1000 M3\n";
+    for (int i = 0; i < 60; ++i) {
+      switch (random() % 8) {
+        case 0:
+          text += fmt::format("G0 X{:.3f} Z{:.3f}\n", u(random), u(random));
+          break;
+        case 1:
+          text += fmt::format("g1x{:.3f}y{:.3f}\n", u(random), u(random));
+          break;
+        case 2:
+          text += fmt::format("G91 G1 X{:.3f} Z{:.3f} (inc)\nG90\n", u(random), u(random));
+          break;
+        case 3:
+          text += fmt::format("G17 G{} I{:.3f} J{:.3f} P2\n", 2 + random() % 2, u(random), u(random));
+          break;
+        case 4:
+          text += fmt::format("G18 G2 I{:.3f} K{:.3f} Y{:.3f}\nG17\n", u(random), u(random), u(random));
+          break;
+        case 5:
+          text += fmt::format("G19 G3 J{:.3f} K{:.3f}\nG17\n", u(random), u(random));
+          break;
+        case 6:
+          text += fmt::format("G91 G2 X{:.3f} Y1 R-{:.3f}\nG90\n", u(random), 12 + std::abs(u(random)));
+          break;
+        default:
+          text += fmt::format("G20\nG1 X{:.4f}\nG21\n", u(random) / 25);
+          break;
+      }
+    }
+    expect_same_moves(text + "M2\n");
+  }
+}
+
+TEST(Rs274, DrillingCyclesMoveAlike) {
+  if (!rs274_present()) GTEST_SKIP() << "rs274 (package linuxcnc-uspace) is not on the PATH";
+  for (const char* cycle : {"G81 X5 Y5 Z-3 R1", "G82 X5 Y5 Z-3 R1 P0.5", "G83 X5 Y5 Z-3 R1 Q1.5",
+                            "G73 X5 Y5 Z-3 R1 Q1.5", "G85 X5 Y5 Z-3 R1", "G89 X5 Y5 Z-3 R1 P0.5"})
+    for (const char* level : {"G98", "G99"}) {
+      SCOPED_TRACE(cycle);
+      // G85 and G89 feed out to R and go on in rapid, as Fanuc does; LinuxCNC feeds up to the initial level.
+      const bool feeds_out = std::string_view(cycle).starts_with("G85") || std::string_view(cycle).starts_with("G89");
+      if (feeds_out && std::string_view(level) == "G98") continue;
+      expect_same_moves(fmt::format(
+          "G21 G17 G90 G94\nG0 X0 Y0 Z20\nF100 S1000 M3\n{} {}\nX9\nX12 Y3\nG80\nG0 Z20\nM2\n", level, cycle));
+    }
+}
+
+}  // namespace
+}  // namespace camber::nc

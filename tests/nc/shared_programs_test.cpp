@@ -1,0 +1,99 @@
+// Programs of real CAM systems and controls, where the shared data lie beside the project.
+#include "nc/interpreter.h"
+#include "nc/summary.h"
+#include "tests/nc/nc_text.h"
+
+namespace camber::nc {
+namespace {
+
+using Messages = std::vector<std::string>;
+
+/// What is said of a shared program; file names without their folder.
+Messages said_of(const std::string& path, const InterpreterOptions& options = {}) {
+  const std::string name = path.substr(path.rfind('/') + 1);
+  return read_text(SourceText::read(path).text(), options, name).messages;
+}
+
+#define CAMBER_SHARED_OR_SKIP(variable, name)     \
+  const std::string variable = shared_file(name); \
+  if (variable.empty()) GTEST_SKIP() << "no shared data: " << CAMBER_SHARED_DATA_DIR << "/" << name
+
+TEST(SharedPrograms, BoxOp5ReadsWithoutAWord) {
+  CAMBER_SHARED_OR_SKIP(path, "nist/box_op5.nc");
+  const Read r = read_text(SourceText::read(path).text(), {});
+  EXPECT_EQ(r.messages, Messages{});
+  const Summary s = summarize(r.program, r.moves);
+  EXPECT_EQ(s.blocks, 18767u);
+  EXPECT_EQ(s.tools.size(), 12u);
+  EXPECT_TRUE(s.has_inch);
+  EXPECT_FALSE(s.has_mm);
+  const auto ball = std::find_if(s.tools.begin(), s.tools.end(), [](const ToolUse& t) { return t.tool == 9; });
+  ASSERT_NE(ball, s.tools.end());
+  EXPECT_EQ(ball->line, 11085u);
+}
+
+TEST(SharedPrograms, LinuxCncProgramsReadWithoutAWord) {
+  const auto files = shared_files("linuxcnc/programs");
+  if (files.empty()) GTEST_SKIP() << "no shared data at " << CAMBER_SHARED_DATA_DIR;
+  for (const auto& f : files) {
+    if (!f.ends_with(".ngc")) continue;
+    EXPECT_EQ(said_of(f), Messages{}) << f;
+  }
+}
+
+TEST(SharedPrograms, NistAndFusionProgramsReadWithoutAWord) {
+  CAMBER_SHARED_OR_SKIP(path, "nc/nist_plate_5.nc");
+  EXPECT_EQ(said_of(path), Messages{});
+  EXPECT_EQ(said_of(shared_file("nc/nist_cover.nc")), Messages{});
+  EXPECT_EQ(said_of(shared_file("nc/fusion_parallel_ball_inch.nc")), Messages{});
+}
+
+TEST(SharedPrograms, ProgramsWithoutAUnitNeedOne) {
+  CAMBER_SHARED_OR_SKIP(path, "nc/maestro_contour_R.nc");
+  EXPECT_EQ(said_of(path),
+            Messages{"maestro_contour_R.nc:7:1: warning: the program has moves before G20 or G21 says which unit it "
+                     "is in; millimetres are assumed [unit-missing]"});
+  for (const char* name : {"nc/maestro_contour_R.nc", "nc/maestro_g91.nc", "nc/maestro_helix_full_turns.nc"})
+    EXPECT_EQ(said_of(shared_file(name), {.inch = false}), Messages{}) << name;
+}
+
+TEST(SharedPrograms, AbsoluteCentresAreNoticed) {
+  CAMBER_SHARED_OR_SKIP(path, "nc/bottle_helix_arcs.nc");
+  EXPECT_EQ(
+      said_of(path, {.inch = false}),
+      Messages{
+          "bottle_helix_arcs.nc:12:1: warning: the 2051 arcs of the program fit with absolute centres only; G90.1 is "
+          "assumed [arc-centre]"});
+}
+
+TEST(SharedPrograms, HaasDrillingReadsWithAWarning) {
+  CAMBER_SHARED_OR_SKIP(path, "nc/gpr_haas_sample.ncf");
+  EXPECT_EQ(said_of(path, {.inch = true}),
+            Messages{"gpr_haas_sample.ncf:9:23: warning: P has no number; it is taken as P0 [no-number]"});
+}
+
+TEST(SharedPrograms, WhatIsNotReadSaysSo) {
+  CAMBER_SHARED_OR_SKIP(path, "nc/elmoe_keychain_840d.mpf");
+  EXPECT_EQ(said_of(path),
+            Messages{"elmoe_keychain_840d.mpf:3:5: error: DEF belongs to a Siemens Sinumerik program, which is not "
+                     "read yet; Camber reads programs in the style of Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]"});
+  EXPECT_EQ(
+      said_of(shared_file("nc/gpr_mazak_sample.eia")),
+      (Messages{"gpr_mazak_sample.eia:2:1: error: G53.5 is not a G code that Camber knows [unknown-g]",
+                "gpr_mazak_sample.eia:3:1: error: G122.1 (radius or diameter of X on a mill-turn machine) belongs to a "
+                "turning program; milling programs are read [turning]"}));
+  EXPECT_EQ(
+      said_of(shared_file("nc/gpr_camaster_vectric.tap"), {.inch = true}),
+      (Messages{
+          "gpr_camaster_vectric.tap:29:6: error: X has no number; a number was expected (and 3 more like it) "
+          "[no-number]",
+          "gpr_camaster_vectric.tap:30:8: error: the value of Z is an expression; variables and expressions are not "
+          "read yet, a number was expected (and 3 more like it) [variable]",
+          "gpr_camaster_vectric.tap:20:2: warning: the program selects tools (T) but never changes one; M6 was "
+          "expected, all moves count as tool 0 [tool-not-changed]"}));
+  for (const auto& m : said_of(shared_file("nc/nist_d2mi_904_op1.nc"), {}))
+    EXPECT_TRUE(m.find("[variable]") != std::string::npos || m.find("[not-read]") != std::string::npos) << m;
+}
+
+}  // namespace
+}  // namespace camber::nc
