@@ -7,6 +7,7 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "feedmodel/control_options.h"
 #include "nc/interpreter.h"
 #include "report/report_data.h"
 #include "report/summary.h"
@@ -17,9 +18,7 @@ namespace {
 std::vector<report::FeedSample> feed_of(SourceText source, const machine::Job& job) {
   Diagnostics ignored;  // said already
   const auto text = nc::read_program(std::move(source), ignored);
-  nc::InterpreterOptions options;
-  options.inch = job.inch;
-  const auto moves = nc::interpret(text, options, ignored);
+  const auto moves = nc::interpret(text, feedmodel::interpreter_options(job.machine, job.inch), ignored);
   report::FeedCollector collector;
   feedmodel::predict_feed(moves, job.machine, [&](std::span<const feedmodel::TimedSample> s) { collector.add(s); });
   return collector.take();

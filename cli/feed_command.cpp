@@ -7,6 +7,7 @@
 
 #include "base/output_file.h"
 #include "cli/console.h"
+#include "feedmodel/control_options.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/timed_path.h"
 #include "machine/machine.h"
@@ -18,7 +19,8 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   Diagnostics diagnostics;
   const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
   const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
-  const nc::Interpretation moves = nc::interpret(program, arguments.interpreter, diagnostics);
+  const nc::Interpretation moves =
+      nc::interpret(program, feedmodel::interpreter_options(machine, arguments.interpreter.inch), diagnostics);
   settle(diagnostics, options);
 
   std::unique_ptr<feedmodel::FeedCsv> csv;

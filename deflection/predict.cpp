@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "deflection/job_checks.h"
+#include "feedmodel/control_options.h"
 #include "nc/interpreter.h"
 
 namespace camber::deflection {
@@ -58,9 +59,7 @@ MachinedProgram machine_program(SourceText source, const Job& job, const feedmod
                                 Diagnostics& diagnostics) {
   MachinedProgram out;
   out.text = nc::read_program(std::move(source), diagnostics);
-  nc::InterpreterOptions options;
-  options.inch = job.inch;
-  out.moves = nc::interpret(out.text, options, diagnostics);
+  out.moves = nc::interpret(out.text, feedmodel::interpreter_options(job.machine, job.inch), diagnostics);
   diagnostics.throw_if_errors();
   out.selected = removal::selected_moves(out.moves, job.operations);
   check_cutting(job, out.text, out.moves, out.selected, diagnostics);

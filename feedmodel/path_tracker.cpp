@@ -10,6 +10,9 @@ namespace {
 /// Places that are this much nearer win over an earlier one; less is rounding.
 constexpr double kNearerMm = 1e-9;
 
+/// So far from the path the place is lost (a control may cut a corner between rapids widely): search up to the command.
+constexpr double kLostMm = 1.0;
+
 double share_on_line(const nc::Move& move, const Vec3& point_mm) {
   const Vec3 line = move.end_mm - move.start_mm;
   const double square = line.squaredNorm();
@@ -42,6 +45,14 @@ PathPlace closest_on_move(const nc::Interpretation& program, std::uint32_t index
   return {index, u, (nc::point_at(program, move, u) - point_mm).norm()};
 }
 
+PathPlace PathTracker::search_all(const TimedSample& sample, PathPlace best) const {
+  for (std::uint32_t move = place_.move; move <= sample.move; ++move) {
+    const PathPlace here = closest_on_move(program_, move, sample.position_mm, move == place_.move ? place_.u : 0.0, 1.0);
+    if (here.distance_mm < best.distance_mm - kNearerMm) best = here;
+  }
+  return best;
+}
+
 PathPlace PathTracker::operator()(const TimedSample& sample) {
   if (!started_) {
     place_ = {0, 0, (nc::point_at(program_, program_.moves.front(), 0) - sample.position_mm).norm()};
@@ -58,6 +69,7 @@ PathPlace PathTracker::operator()(const TimedSample& sample) {
     if (here.distance_mm < best.distance_mm - kNearerMm) best = here;
     room_mm -= nc::length_mm(program_, program_.moves[move]);
   }
+  if (best.distance_mm > kLostMm) best = search_all(sample, best);
   place_ = best;
   return best;
 }

@@ -23,7 +23,8 @@ struct PathTrackerOptions {
 
 /// Follows the samples of predict_feed in order. The place of a sample is the closest point of the programmed path
 /// between the last place and the commanded move, searched a little further than the axes went: it never goes
-/// back, never passes the command, and does not jump to a neighbouring row or to the start of a closed figure.
+/// back, never passes the command, and does not jump to a neighbouring row or to the start of a closed figure. Only a
+/// position more than 1 mm off the path found so is looked for on all moves up to the command.
 /// When the axes rest at the end of a motion the place is the end. Linear time over the whole path.
 class PathTracker {
  public:
@@ -33,6 +34,9 @@ class PathTracker {
   PathPlace operator()(const TimedSample& sample);
 
  private:
+  /// The closest place between the last one and the commanded move.
+  PathPlace search_all(const TimedSample& sample, PathPlace best) const;
+
   const nc::Interpretation& program_;
   PathTrackerOptions options_;
   PathPlace place_;
