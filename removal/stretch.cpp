@@ -382,8 +382,14 @@ void Stretch::Impl::sample(const WorkBuffers& buffers, WorkTile& w, const Run& r
     const Vec3 point = stamp.tip_mm + place.cast<double>();
     const Vec3 g = point / voxel - origin;
     const Cell cell = cell_of(g);
-    // The trilinear field is never below the ridge's, but for curvature.
-    if (trilinear(buffers.stock.distance, cell) > 0.5f * static_cast<float>(voxel)) continue;
+    // The trilinear field is never below the ridge's, but for curvature: so it tells what is in air, and what is
+    // deeper than the chip.
+    const float field = trilinear(buffers.stock.distance, cell);
+    if (field > 0.5f * static_cast<float>(voxel)) continue;
+    if (-field > cap) {
+      w.chips.push_back({run.stamp, {p, cap, true}});
+      continue;
+    }
     const Vec3 corner =
         voxel * (origin + Vec3(static_cast<int>(g.x()), static_cast<int>(g.y()), static_cast<int>(g.z())));
     const Vec3 normal(envelope.nx[p], envelope.ny[p], envelope.nz[p]);

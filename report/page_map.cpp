@@ -55,7 +55,7 @@ class MapCanvas {
     px.fill(0);
     const { right: r, up: u, out: o } = view.axes(), [mx, my, mz] = view.middle, scale = this.pixelsPerMm();
     const ox = w / 2 + view.panX * scale, oy = h / 2 - view.panY * scale, xyz = map.xyz, nrm = map.normal;
-    const half = Math.min(24, Math.max(0.6, 0.8 * this.spacing * scale));
+    const half = Math.min(24, Math.max(0.6, this.spacing * scale));
     for (let i = 0; i < map.error.length; i++) {
       const x = xyz[3 * i] - mx, y = xyz[3 * i + 1] - my, z = xyz[3 * i + 2] - mz;
       const a = nrm[3 * i], b = nrm[3 * i + 1], c = nrm[3 * i + 2];

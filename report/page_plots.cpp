@@ -77,9 +77,10 @@ class FeedPlot {
     Object.assign(this, { canvas, runs });
     this.end = Math.max(...runs.map(r => r.t[r.t.length - 1]));
     this.most = Math.max(...runs.map(r => r.feed.reduce((a, b) => Math.max(a, b), 1)));
-    // Rapids go far above the cutting feed, which is what the picture is for: cut them off where they are the few.
-    const usual = Float32Array.from(runs[0].command).sort()[Math.floor(0.8 * runs[0].command.length)];
-    if (usual > 0 && this.most > 2 * usual) this.most = 1.4 * usual;
+    // Rapids go far above the cutting feed, which is what the picture is for: they are cut off where cutting takes
+    // most of the time.
+    const usual = Float32Array.from(runs[0].command).sort()[Math.floor(runs[0].command.length / 2)];
+    if (usual > 0 && this.most > 2 * usual) this.most = 1.5 * usual;
     this.reset();
     canvas.addEventListener('wheel', e => this.zoom(e), { passive: false });
     canvas.addEventListener('dblclick', () => { this.reset(); this.draw(); });
@@ -113,10 +114,10 @@ class FeedPlot {
     g.beginPath();
     g.rect(f.left, f.top, f.right - f.left, f.bottom - f.top);
     g.clip();
-    this.runs.forEach((run, i) => {
-      if (i === 0) this.line(f, run.t, run.command, GREY, 1);
-      this.line(f, run.t, run.feed, i === 0 ? BLUE : ORANGE, i === 0 ? 1.2 : 1);
-    });
+    const [before, after] = this.runs;
+    this.line(f, before.t, before.command, GREY, 1);
+    if (after) this.line(f, after.t, after.feed, ORANGE, 2.6);
+    this.line(f, before.t, before.feed, BLUE, 1.1);
     g.restore();
     key(f, [['commanded', GREY], ['actual', BLUE], ...(this.runs.length > 1 ? [['actual, compensated program', ORANGE]] : [])]);
   }

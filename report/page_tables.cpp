@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::size_t kTiles = 4;
 
+std::string unit_text(const std::string& unit) { return html_text(unit == "um" ? "µm" : unit); }
+
 std::string number(double value, int decimals) {
   if (!std::isfinite(value)) return "–";
   const std::string text = fmt::format("{:.{}f}", value, decimals);
@@ -20,7 +22,7 @@ std::string number(double value, int decimals) {
 }
 
 std::string tile(const Figure& f) {
-  const std::string unit = f.unit.empty() ? "" : " <small>" + html_text(f.unit) + "</small>";
+  const std::string unit = f.unit.empty() ? "" : " <small>" + unit_text(f.unit) + "</small>";
   const std::string value =
       f.after ? number(f.before, f.decimals) + " → " + number(*f.after, f.decimals) : number(f.before, f.decimals);
   return fmt::format("<div class=\"tile\"><div class=\"name\">{}</div><div class=\"value\">{}{}</div></div>\n",
@@ -36,7 +38,7 @@ std::string decimation_note(std::size_t count, std::size_t most, std::string_vie
 std::string figure_row(const Figure& f, bool with_after) {
   std::string row = fmt::format("<tr><td>{}</td><td>{}</td>", html_text(f.name), number(f.before, f.decimals));
   if (with_after) row += fmt::format("<td>{}</td>", f.after ? number(*f.after, f.decimals) : "");
-  return row + fmt::format("<td>{}</td></tr>\n", html_text(f.unit));
+  return row + fmt::format("<td>{}</td></tr>\n", unit_text(f.unit));
 }
 
 std::string figures_table(const ReportData& data) {
@@ -140,9 +142,11 @@ std::string charts_html(const ReportData& data, const ReportOptions& options) {
     out += histogram + rounds;
   if (data.feed.empty()) return out;
   out += "<div class=\"card\"><h2>Feed along time</h2><canvas class=\"plot\" id=\"feed\"></canvas>\n";
-  out += fmt::format("<p class=\"note\">Wheel to zoom, drag to move, double click for the whole. Where rapids are few, they go beyond the top.{}</p></div>\n",
-                     decimation_note(data.feed.size(), options.most_feed_samples, "samples",
-                                     "the first, the slowest and the fastest"));
+  out += fmt::format(
+      "<p class=\"note\">Wheel to zoom, drag to move, double click for the whole. Rapids go beyond the top where "
+      "cutting takes most of the time.{}</p></div>\n",
+      decimation_note(data.feed.size(), options.most_feed_samples, "samples",
+                      "the first, the slowest and the fastest"));
   return out;
 }
 

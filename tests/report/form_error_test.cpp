@@ -68,8 +68,8 @@ TEST(Decimation, KeepsTheExtremes) {
 
 TEST(Decimation, FindsRoundScales) {
   EXPECT_EQ(nice_limit(0), 1);
-  EXPECT_EQ(nice_limit(0.7), 1);
-  EXPECT_EQ(nice_limit(1.2), 2);
+  EXPECT_EQ(nice_limit(0.7), 0.75);
+  EXPECT_EQ(nice_limit(1.2), 1.5);
   EXPECT_EQ(nice_limit(20), 20);
   EXPECT_EQ(nice_limit(21), 30);
   EXPECT_EQ(nice_limit(98), 100);

@@ -28,7 +28,7 @@ ReportData example() {
   data.title = "Camber: finish.nc";
   data.subtitle = "job.toml";
   data.figures = {{"95 % of the form error", 24.31, 1.2, "µm", 1},
-                  {"root mean square", 12.0, 0.6, "µm", 1},
+                  {"root mean square", 12.0, 0.6, "um", 1},
                   {"greatest force", 61.5, 60.2, "N", 1},
                   {"machine time", 111.2, 111.9, "s", 1},
                   {"points", 900, std::nullopt, "", 0}};
