@@ -60,7 +60,9 @@ bool rs274_present() { return std::system("command -v rs274 >/dev/null 2>&1") ==
 
 std::string run_rs274(const std::string& text) {
   tests::TempFolder folder;
-  const std::string command = "rs274 -g '" + folder.write("program.ngc", text) + "' 2>&1";
+  folder.write("program.ngc", text);
+  // rs274 keeps its variables in the working directory: one of its own, as tests run side by side.
+  const std::string command = "cd '" + folder.path() + "' && rs274 -g program.ngc 2>&1";
   std::string out;
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return out;
