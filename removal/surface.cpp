@@ -9,7 +9,8 @@
 namespace camber::removal {
 namespace {
 
-constexpr int kMargin = 2;  // voxels around a tile for gradients and edges
+constexpr int kMargin = 2;         // voxels around a tile for gradients and edges
+constexpr double kGrazing = 0.05;  // grid lines that meet the surface at a flatter angle tell nothing
 constexpr int kPad = Tile::kCore + 2 * kMargin;
 
 /// Distance, machined distance and stamps of a tile with a margin on all sides.
@@ -81,9 +82,7 @@ void collect(const Stock& machined, const Stock& target, const Index3& tile, std
           if ((t0 < 0) == (t1 < 0)) continue;
           const double u = t0 / (static_cast<double>(t0) - t1);
           const Vec3 g = (1 - u) * gradient(b.target, i, j, k) + u * gradient(b.target, ni, nj, nk);
-          Eigen::Index axis = 0;
-          g.cwiseAbs().maxCoeff(&axis);
-          if (axis != a || g.norm() == 0) continue;
+          if (std::abs(g[a]) <= kGrazing * g.norm()) continue;
           if (b.target_stamp[here] == Stock::kUncut || b.target_stamp[next] == Stock::kUncut) continue;
           if (!inside_cut(b, i, j, k, static_cast<float>(voxel)) ||
               !inside_cut(b, ni, nj, nk, static_cast<float>(voxel)))
@@ -93,7 +92,7 @@ void collect(const Stock& machined, const Stock& target, const Index3& tile, std
           p.place_mm = voxel * Vec3(tile[0] * Tile::kCore + i + (a == 0) * u, tile[1] * Tile::kCore + j + (a == 1) * u,
                                     tile[2] * Tile::kCore + k + (a == 2) * u);
           p.error_mm = -((1 - u) * b.machined[here] + u * b.machined[next]);
-          p.area_mm2 = voxel * voxel / std::abs(p.normal[a]);
+          p.area_mm2 = voxel * voxel * std::abs(p.normal[a]);
           p.target_stamp = b.target_stamp[u < 0.5 ? here : next];
           p.machined_stamp = b.machined_stamp[u < 0.5 ? here : next];
           out.push_back(p);

@@ -17,9 +17,10 @@ struct SurfacePoint {
   std::int32_t machined_stamp = -1;  ///< which stamp cut the machined field there last; -1: none
 };
 
-/// Points where grid lines cross the target's surface, one a voxel column along the normal's largest component,
-/// in a fixed order. Only surface that the target's sweep has cut, leaving out one voxel along its edges. Errors
-/// are cut off at the band. Both stocks must have the same voxels.
+/// Points where grid lines cross the target's surface, in a fixed order. A crossing along axis a stands for
+/// voxel^2 |n_a|: along all three axes these add up to the surface's area, since sum n_a^2 = 1. Only surface that the
+/// target's sweep has cut, leaving out one voxel along its edges. Errors are cut off at the band. Both stocks must have
+/// the same voxels.
 std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target);
 
 /// Area-weighted figures of an error, in the unit of the values.

@@ -116,6 +116,19 @@ TEST(Surface, ReportsMaterialLeftAsPositive) {
   for (const auto& p : points) EXPECT_NEAR(p.error_mm, 0.02 * p.normal.z(), 0.0005) << p.place_mm.transpose();
 }
 
+TEST(Surface, PointsStandForTheWholeArea) {
+  Stock target = make_box({-6, -6, -4}, {6, 6, 0}, 0.1);
+  const EnvelopeGrid envelope = ball_envelope();
+  std::vector<Stamp> one(1);
+  one[0].tip_mm = {0.03, -0.02, -2};
+  carve_row(target, envelope, one);
+  double area = 0;
+  for (const auto& p : compare_surfaces(target, target))
+    if (p.place_mm.z() < -0.45) area += p.area_mm2;
+  // A spherical cap of height 1.55 of R3, cut off between two layers of voxels.
+  EXPECT_NEAR(area, 2 * kPi * 3 * 1.55, 0.002 * 2 * kPi * 3 * 1.55);
+}
+
 TEST(ErrorFigures, AreWeightedByArea) {
   const ErrorFigures f = error_figures({1, -3, 2}, {1, 1, 2});
   EXPECT_DOUBLE_EQ(f.mean, 0.5);
