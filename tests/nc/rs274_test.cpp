@@ -61,14 +61,15 @@ bool rs274_present() { return std::system("command -v rs274 >/dev/null 2>&1") ==
 std::string run_rs274(const std::string& text) {
   tests::TempFolder folder;
   folder.write("program.ngc", text);
-  // rs274 keeps its variables in the working directory: one of its own, as tests run side by side.
-  const std::string command = "cd '" + folder.path() + "' && rs274 -g program.ngc 2>&1";
+  // rs274 keeps its variables in the working directory and its tool table in ~/.tool.mmap, which a second one
+  // cuts off under the first (bus error): a folder and a home of its own, as tests run side by side.
+  const std::string command = "cd '" + folder.path() + "' && HOME=\"$PWD\" rs274 -g program.ngc 2>&1";
   std::string out;
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return out;
   char buffer[4096];
   for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) out.append(buffer, n);
-  pclose(pipe);
+  EXPECT_EQ(pclose(pipe), 0) << out;
   return out;
 }
 
