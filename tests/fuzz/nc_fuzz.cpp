@@ -1,0 +1,112 @@
+// libFuzzer target: any bytes are read as a program, interpreted, summed up and written back.
+//
+// What has to hold beside "no crash, no hang, no unbounded memory": a program without errors comes out byte for byte;
+// with one move edited the text still reads without an error, has the moves that it had, and the edited one ends where
+// it should. The last bytes of the input say which move is edited and how; the others are the program.
+#include <fuzzer/FuzzedDataProvider.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "nc/emit.h"
+#include "nc/interpreter.h"
+#include "nc/summary.h"
+
+namespace {
+
+using namespace camber;
+
+/// Beyond this a double has fewer digits left than the decimals that are compared.
+constexpr double kLargestPlaceMm = 1e6;
+constexpr double kPlaceTolerance_mm = 2e-3;  ///< rounding to four decimals, or to five of an inch, and the sums of G91
+/// More moves than the blocks of any fuzzed text make without repeats of cycles: not worth emitting in this time.
+constexpr std::size_t kMostMoves = 20000;
+
+struct Read {
+  nc::Program program;
+  nc::Interpretation moves;
+  bool clean = false;  ///< no errors
+};
+
+Read read(const std::string& text, const nc::InterpreterOptions& options) {
+  Read r;
+  Diagnostics diagnostics;
+  try {
+    r.program = nc::read_program(SourceText("fuzz.nc", text), diagnostics);
+    r.moves = nc::interpret(r.program, options, diagnostics);
+    r.clean = !diagnostics.has_errors();
+  } catch (const InputError& e) {
+    if (std::string_view(e.what()).empty()) std::abort();
+  }
+  return r;
+}
+
+[[noreturn]] void fail(const char* what, const std::string& before, const std::string& after) {
+  std::fprintf(stderr, "%s\n--- program\n%s\n--- emitted\n%s\n", what, before.c_str(), after.c_str());
+  std::abort();
+}
+
+bool within_reach(const nc::Interpretation& moves) {
+  for (const nc::Move& m : moves.moves)
+    if (!(m.end_mm.cwiseAbs().maxCoeff() < kLargestPlaceMm)) return false;
+  return true;
+}
+
+/// One line or arc of the program with a new end.
+std::optional<nc::MoveEdit> edit_from(FuzzedDataProvider& bytes, const Read& r) {
+  const std::size_t count = r.moves.moves.size();
+  if (count == 0) return std::nullopt;
+  const auto index = static_cast<std::uint32_t>(bytes.ConsumeIntegral<std::uint16_t>() % count);
+  const nc::Move& move = r.moves.moves[index];
+  Vec3 shift;
+  for (int axis = 0; axis < 3; ++axis) shift[axis] = bytes.ConsumeIntegral<std::int8_t>() / 256.0;
+  nc::MoveEdit edit{.move = index, .end_mm = move.end_mm + shift};
+  if (move.arc != nc::Move::kNoArc)
+    edit.center_mm = r.moves.arcs[move.arc].center_mm + shift;
+  else if (move.kind == nc::MoveKind::linear && bytes.ConsumeBool())
+    edit.via_mm = {0.5 * (move.start_mm + move.end_mm) + shift};
+  return edit;
+}
+
+void emit_and_read(const Read& r, const nc::InterpreterOptions& options, FuzzedDataProvider& bytes) {
+  const std::string& text = r.program.source.text();
+  if (const std::string same = nc::emit(r.program, r.moves, {}, {}); same != text)
+    fail("an untouched program does not come out byte for byte", text, same);
+  if (!within_reach(r.moves)) return;
+  const auto edit = edit_from(bytes, r);
+  if (!edit) return;
+  const std::string changed = nc::emit(r.program, r.moves, std::span(&*edit, 1), {});
+  const Read again = read(changed, options);
+  if (!again.clean) fail("the emitted program does not read", text, changed);
+  const bool split = !edit->via_mm.empty();
+  if (!split && again.moves.moves.size() != r.moves.moves.size()) fail("moves are lost or added", text, changed);
+  if (split && again.moves.moves.size() < r.moves.moves.size()) fail("moves are lost", text, changed);
+  const nc::Move& before = r.moves.moves[edit->move];
+  if (split || before.kind != nc::MoveKind::linear || before.canned) return;
+  const Vec3 end = again.moves.moves[edit->move].end_mm;
+  if ((end - edit->end_mm).cwiseAbs().maxCoeff() > kPlaceTolerance_mm &&
+      (end - before.end_mm).cwiseAbs().maxCoeff() > kPlaceTolerance_mm)
+    fail("the edited move ends neither at its new place nor at its old one", text, changed);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  FuzzedDataProvider bytes(data, size);
+  // Integers are taken from the end of the input, so that what stands before them is a program as it is written.
+  const auto flags = bytes.ConsumeIntegral<std::uint8_t>();
+  std::vector<std::uint8_t> choice;
+  for (int i = 0; i < 6; ++i) choice.push_back(bytes.ConsumeIntegral<std::uint8_t>());
+  nc::InterpreterOptions options{.inch = (flags & 1) != 0};
+  options.skip_slash_blocks = (flags & 2) != 0;
+  options.dwell_p_is_ms = (flags & 4) != 0;
+  options.absolute_arc_centre = (flags & 8) != 0;
+  const Read r = read(bytes.ConsumeRemainingBytesAsString(), options);
+  if (!r.clean) return 0;
+  nc::summarize(r.program, r.moves);
+  if (r.moves.moves.size() > kMostMoves) return 0;
+  FuzzedDataProvider edit_bytes(choice.data(), choice.size());
+  emit_and_read(r, options, edit_bytes);
+  return 0;
+}
