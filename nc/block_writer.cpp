@@ -81,6 +81,16 @@ void BlockWriter::add(char letter, double value, int decimals) {
     changes_.push_back({after ? after->offset : words_.front().offset, 0, word + gap, letter, r});
 }
 
+void BlockWriter::take_out(const Word& word) {
+  const std::string& text = program_.source.text();
+  std::size_t begin = word.offset, end = begin + word.length;
+  if (begin > block_.offset && text[begin - 1] == ' ')
+    --begin;
+  else if (begin == block_.offset && end < block_.offset + block_.length && text[end] == ' ')
+    ++end;
+  changes_.push_back({begin, end - begin, {}, word.letter, word.value});
+}
+
 std::string BlockWriter::text() const {
   std::vector<Change> changes = changes_;
   std::stable_sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
@@ -97,19 +107,26 @@ std::string BlockWriter::text() const {
   return out;
 }
 
-std::string BlockWriter::further_block(std::string_view letters, const std::vector<double>& values,
-                                       int decimals) const {
-  std::string out = block_.skip ? "/" : "";
+std::string BlockWriter::further_block(std::string_view letters, const std::vector<double>& values, int decimals,
+                                       std::span<const Word> own) const {
+  std::vector<std::string> words;
   for (std::size_t i = 0; i < letters.size(); ++i) {
-    if (i > 0 && blanks_) out += ' ';
-    const Word* own = find(letters[i]);
-    if (letters[i] == 'G')
-      out += "G" + std::to_string(std::lround(values[i]));
-    else if (letters[i] == 'F' && own && own->value == values[i])
-      out += program_.source.text().substr(own->offset, own->length);
+    const Word* same = letters[i] == 'F' ? find('F') : nullptr;
+    if (same && same->value == values[i])
+      words.push_back(program_.source.text().substr(same->offset, same->length));
     else
-      out += letters[i] + format_number(values[i], decimals, style_);
+      words.push_back(letters[i] + format_number(values[i], decimals, style_));
   }
+  auto behind_codes = words.begin();
+  for (const Word& w : own)
+    if (w.letter == 'G') {
+      behind_codes = words.insert(behind_codes, program_.source.text().substr(w.offset, w.length));
+      ++behind_codes;
+    }
+  for (const Word& w : own)
+    if (w.letter != 'G') words.push_back(program_.source.text().substr(w.offset, w.length));
+  std::string out = block_.skip ? "/" : "";
+  for (std::size_t i = 0; i < words.size(); ++i) out += (i > 0 && blanks_ ? " " : "") + words[i];
   return out;
 }
 

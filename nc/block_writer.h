@@ -1,5 +1,6 @@
 #pragma once
 // One block's text with some of its words changed.
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,11 +26,16 @@ class BlockWriter {
   /// missing is added beside its neighbours.
   void set(char letter, double value, int decimals);
 
+  /// Leaves a word of the block out, with the blank before it.
+  void take_out(const Word& word);
+
   bool changed() const { return !changes_.empty(); }
   /// The block without its line end.
   std::string text() const;
-  /// A further block with just these words, in the block's style.
-  std::string further_block(std::string_view letters, const std::vector<double>& values, int decimals) const;
+  /// A further block with just these words, in the block's style, and words of this block as they are: G words in
+  /// front, others behind.
+  std::string further_block(std::string_view letters, const std::vector<double>& values, int decimals,
+                            std::span<const Word> own = {}) const;
   bool uses_blanks() const { return blanks_; }
 
  private:

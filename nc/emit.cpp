@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/units.h"
 #include "nc/arc_rounding.h"
@@ -21,9 +22,12 @@ bool has_code(std::span<const Word> words, char letter, std::initializer_list<do
   });
 }
 
-/// Words that act at the end of their block.
-bool ends_something(std::span<const Word> words) {
-  return has_code(words, 'M', {0, 1, 2, 5, 9, 30, 60}) || has_code(words, 'G', {9});
+/// Words that act at the end of their block's move.
+std::vector<Word> words_at_end(std::span<const Word> words) {
+  std::vector<Word> out;
+  for (const Word& w : words)
+    if (has_code({&w, 1}, 'M', {0, 1, 2, 5, 9, 30, 60}) || has_code({&w, 1}, 'G', {9})) out.push_back(w);
+  return out;
 }
 
 bool goes_to_machine_place(std::span<const Word> words) { return has_code(words, 'G', {28, 30, 53}); }
@@ -40,7 +44,7 @@ class Emitter {
     line_end_ = end != std::string::npos && end > 0 && text[end - 1] == '\r' ? "\r\n" : "\n";
   }
 
-  std::string run() {
+  Emission run() {
     out_.reserve(program_.source.text().size() + 64);
     add_header();
     const auto& moves = moves_.moves;
@@ -52,7 +56,7 @@ class Emitter {
       m = end;
     }
     copy_until(program_.source.text().size());
-    return std::move(out_);
+    return {std::move(out_), std::move(not_made_)};
   }
 
  private:
@@ -106,15 +110,26 @@ class Emitter {
     }
   }
 
-  /// The edit of the block's only move; what cannot be edited is passed over.
+  /// The edit of the block's only move; what cannot be edited is noted and passed over.
   const MoveEdit* take_edit(std::size_t first, std::size_t end) {
     const MoveEdit* edit = nullptr;
-    for (; next_edit_ < edits_.size() && edits_[next_edit_].move < end; ++next_edit_) edit = &edits_[next_edit_];
-    if (!edit || end != first + 1) return nullptr;
-    const Move& move = moves_.moves[first];
-    const bool editable = edit->move == first && !move.canned && move.kind != MoveKind::dwell &&
-                          !goes_to_machine_place(program_.words_of(move.block));
-    return editable ? edit : nullptr;
+    for (; next_edit_ < edits_.size() && edits_[next_edit_].move < end; ++next_edit_) {
+      const MoveEdit& next = edits_[next_edit_];
+      if (const auto why = why_not(next.move, end - first))
+        not_made_.push_back({next.move, *why});
+      else
+        edit = &next;
+    }
+    return edit;
+  }
+
+  std::optional<EmitGap> why_not(std::uint32_t m, std::size_t moves_of_block) const {
+    const Move& move = moves_.moves[m];
+    if (move.kind == MoveKind::dwell) return EmitGap::dwell;
+    if (goes_to_machine_place(program_.words_of(move.block))) return EmitGap::machine_place;
+    if (move.canned) return EmitGap::canned_cycle;
+    if (moves_of_block > 1) return EmitGap::several_moves;
+    return std::nullopt;
   }
 
   void replace_block(std::uint32_t block, const std::string& text) {
@@ -212,48 +227,35 @@ class Emitter {
   }
 
   void go_on_line(BlockWriter& writer, const Move& move, const MoveEdit* edit) {
-    const Vec3 end = edit ? edit->end_mm : move.end_mm;
-    std::vector<Vec3> points;
-    if (edit && may_be_split(move)) points = edit->via_mm;
-    points.push_back(end);
-    const auto words = program_.words_of(move.block);
-    if (points.size() > 1 && ends_something(words)) {
-      go_before(writer, move, points);
-      return;
-    }
+    std::vector<Vec3> points = points_of(move, edit);
     const Vec3 start = at_;
-    // Via points that round to the start would be moves without length.
-    while (points.size() > 1 && (points.front() - at_).cwiseAbs().maxCoeff() < 0.5 * step_mm(least_decimals_))
-      points.erase(points.begin());
     at_ = set_end(writer, move, points.front(), 0, true);
-    if (points.size() > 1) set_inverse_time_feed(writer, move, (at_ - start).norm());
     std::string more;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      const std::string line = further_line(writer, move, points[i], false);
-      if (!line.empty()) more += line_end_of(move.block) + line;
+    if (points.size() > 1) {
+      set_inverse_time_feed(writer, move, (at_ - start).norm());
+      const auto at_end = words_at_end(program_.words_of(move.block));
+      for (const Word& word : at_end) writer.take_out(word);
+      for (std::size_t i = 1; i < points.size(); ++i)
+        more += further_line(writer, move, points[i], i + 1 == points.size() ? at_end : std::vector<Word>{});
     }
     if (writer.changed() || !more.empty()) replace_block(move.block, writer.text() + more);
   }
 
-  /// Blocks whose other words must act at the end come last, the via points before them.
-  void go_before(BlockWriter& writer, const Move& move, const std::vector<Vec3>& points) {
-    std::string before;
-    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-      const std::string line = further_line(writer, move, points[i], before.empty());
-      if (!line.empty()) before += line + line_end_of(move.block);
+  /// The via points and the end. Those that the decimals cannot tell from the start or the end are left out: they
+  /// would be moves without length.
+  std::vector<Vec3> points_of(const Move& move, const MoveEdit* edit) {
+    if (!edit) return {move.end_mm};
+    std::vector<Vec3> points = edit->via_mm;
+    if (!points.empty() && has_code(program_.words_of(move.block), 'M', {96, 97, 98, 99})) {
+      not_made_.push_back({edit->move, EmitGap::subprogram});
+      points.clear();
     }
-    const Vec3 start = at_;
-    at_ = set_end(writer, move, points.back(), 0, true);
-    set_inverse_time_feed(writer, move, (at_ - start).norm());
-    if (writer.changed() || !before.empty()) replace_block(move.block, before + writer.text());
-  }
-
-  /// False where the lines before would act in another state: the block changes modes and ends something.
-  bool may_be_split(const Move& move) const {
-    const auto words = program_.words_of(move.block);
-    if (!ends_something(words)) return true;
-    return std::all_of(words.begin(), words.end(),
-                       [](const Word& w) { return w.letter != 'G' || w.value == 1 || w.value == 9; });
+    const double near = step_mm(least_decimals_);
+    const auto close = [](const Vec3& a, const Vec3& b) { return (a - b).cwiseAbs().maxCoeff(); };
+    while (!points.empty() && close(points.front(), at_) < 0.5 * near) points.erase(points.begin());
+    while (!points.empty() && close(points.back(), edit->end_mm) < 2 * near) points.pop_back();
+    points.push_back(edit->end_mm);
+    return points;
   }
 
   /// The F of inverse time (G93) belongs to one block: its own length counts.
@@ -262,16 +264,13 @@ class Emitter {
     writer.set('F', mm_per_min_from_mm_per_s(move.feed_mm_per_s) / length_mm, writer.decimals('F', 3));
   }
 
-  /// A block with coordinates only; empty when the point rounds to where the tool stands.
-  std::string further_line(const BlockWriter& writer, const Move& move, const Vec3& point, bool with_g_and_f) {
+  /// A line end and a block with coordinates, and the words that act at its end; empty when the point rounds to where
+  /// the tool stands.
+  std::string further_line(const BlockWriter& writer, const Move& move, const Vec3& point,
+                           const std::vector<Word>& at_end) {
     std::string letters;
     std::vector<double> values;
     Vec3 after = at_;
-    if (with_g_and_f && has_code(program_.words_of(move.block), 'G', {1})) {
-      letters += 'G';
-      values.push_back(1);
-    }
-    bool moves = false;
     for (int axis = 0; axis < 3; ++axis) {
       const double value = rounded(word_for(move, axis, point[axis]), least_decimals_);
       const double place = place_after(move, axis, value);
@@ -279,18 +278,14 @@ class Emitter {
       letters += kAxis[axis];
       values.push_back(value);
       after[axis] = place;
-      moves = true;
     }
-    if (!moves) return {};
-    if (moves_.state_of(move).feed_mode == FeedMode::inverse_time) {
+    if (letters.empty() && at_end.empty()) return {};
+    if (!letters.empty() && moves_.state_of(move).feed_mode == FeedMode::inverse_time) {
       letters += 'F';
       values.push_back(mm_per_min_from_mm_per_s(move.feed_mm_per_s) / (after - at_).norm());
-    } else if (with_g_and_f && writer.find('F')) {
-      letters += 'F';
-      values.push_back(writer.find('F')->value);
     }
     at_ = after;
-    return writer.further_block(letters, values, least_decimals_);
+    return line_end_of(move.block) + writer.further_block(letters, values, least_decimals_, at_end);
   }
 
   // --- arcs ---------------------------------------------------------------------------------------------------------
@@ -315,6 +310,7 @@ class Emitter {
     for (int more = 0; more <= kMoreDecimals; ++more)
       if (write_arc(move, wanted, more)) return;
     // No room between the ends: the old arc, moved to where the tool stands.
+    if (edit) not_made_.push_back({edit->move, EmitGap::arc});
     wanted.end_mm = at_ + move.end_mm - move.start_mm;
     wanted.center_mm = at_ + arc.center_mm - move.start_mm;
     if (!write_arc(move, wanted, kMoreDecimals)) at_ = place_of_untouched(writer, move);
@@ -373,6 +369,7 @@ class Emitter {
   std::string line_end_;
 
   std::string out_;
+  std::vector<EditNotMade> not_made_;
   std::size_t copied_ = 0;  ///< bytes of the source that are in out_ or replaced
   std::size_t next_edit_ = 0;
   Vec3 at_ = Vec3::Zero();  ///< where the emitted program has taken the tool
@@ -382,9 +379,32 @@ class Emitter {
 
 }  // namespace
 
+std::string to_string(EmitGap why) {
+  switch (why) {
+    case EmitGap::canned_cycle:
+      return "a drilling cycle";
+    case EmitGap::machine_place:
+      return "a move of G28, G30 or G53";
+    case EmitGap::dwell:
+      return "a dwell";
+    case EmitGap::several_moves:
+      return "a block of several moves";
+    case EmitGap::subprogram:
+      return "a block that also calls or ends a subprogram";
+    case EmitGap::arc:
+      break;
+  }
+  return "an arc that does not reach the new ends";
+}
+
+Emission emit_edits(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
+                    const EmitOptions& options) {
+  return Emitter(program, interpretation, edits, options).run();
+}
+
 std::string emit(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
                  const EmitOptions& options) {
-  return Emitter(program, interpretation, edits, options).run();
+  return emit_edits(program, interpretation, edits, options).text;
 }
 
 }  // namespace camber::nc

@@ -32,12 +32,39 @@ struct EmitOptions {
 /// corrected, so an axis that a rapid does not name stays where the edited move left it until the next cutting move.
 ///
 /// A block with via points becomes several: the first keeps its words and comment and goes to the first via point, the
-/// others hold coordinates only. A block that ends something (M0 M1 M2 M5 M9 M30 M60, G9) comes last instead.
+/// others hold coordinates only. Words that act at the end of the move (M0 M1 M2 M5 M9 M30 M60, G9) go to the last.
 /// A full turn stays closed: it ends where the emitted program starts it. Arcs get as many decimals as it takes for the
 /// radii at start and end to agree within one unit of the last decimal.
 ///
 /// Moves of drilling cycles and of G28, G30 and G53, and dwells, cannot be edited: their edits are passed over.
 std::string emit(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
                  const EmitOptions& options);
+
+/// Why an edit is not in the text as it was asked for.
+enum class EmitGap {
+  canned_cycle,   ///< a move of a drilling cycle
+  machine_place,  ///< a move of G28, G30 or G53
+  dwell,
+  several_moves,  ///< the block makes more than one move
+  subprogram,     ///< only the via points are left out: the block also calls or ends a subprogram (M96 .. M99)
+  arc             ///< no arc reaches the new ends; the old one was kept
+};
+
+struct EditNotMade {
+  std::uint32_t move = 0;  ///< index into Interpretation::moves
+  EmitGap why = EmitGap::canned_cycle;
+};
+
+/// In shop words: what the edit's move is.
+std::string to_string(EmitGap why);
+
+struct Emission {
+  std::string text;
+  std::vector<EditNotMade> not_made;  ///< ascending
+};
+
+/// As emit(), and says which edits are not in the text.
+Emission emit_edits(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
+                    const EmitOptions& options);
 
 }  // namespace camber::nc

@@ -114,10 +114,30 @@ TEST(NcEmit, ViaPointsBecomeBlocksOfTheirOwn) {
             "G0 X0 Y0 Z0\r\nN7 G1 X1. Y0.5 F100 S500 M3 (cut)\r\nX2.\r\nX3. Y0.\r\nX6.\r\n");
 }
 
-TEST(NcEmit, ViaPointsComeFirstWhereTheBlockEndsSomething) {
-  const Read r = read_clean("G0 X0 Y0 Z0\nG1 X3. F100 M5\nM30\n");
-  const MoveEdit e{.move = 1, .via_mm = {{1, 0.5, 0}}, .end_mm = {3, 0.5, 0}};
-  EXPECT_EQ(emit(r.program, r.moves, std::vector{e}, {}), "G0 X0 Y0 Z0\nG1 X1. Y0.5 F100\nG1 X3. F100 M5\nM30\n");
+/// The program's second move through one via point.
+std::string with_via(const std::string& text, const Vec3& via, const Vec3& end) {
+  const Read r = read_clean(text);
+  const MoveEdit e{.move = 1, .via_mm = {via}, .end_mm = end};
+  return emit(r.program, r.moves, std::vector{e}, {});
+}
+
+TEST(NcEmit, WordsThatActAtTheEndGoBehindTheViaPoints) {
+  EXPECT_EQ(with_via("G0 X0 Y0 Z0\nG1 X3. F100 M5 (off)\nM30\n", {1, 0.5, 0}, {3, 0.5, 0}),
+            "G0 X0 Y0 Z0\nG1 X1. Y0.5 F100 (off)\nX3. M5\nM30\n");
+  EXPECT_EQ(with_via("G0X0Y0Z0\nM9G9G1X3.F100M1\n", {1, 0.5, 0}, {3, 0, 0}),
+            "G0X0Y0Z0\nG1X1.Y0.5F100\nG9X3.Y0.M9M1\n");
+}
+
+TEST(NcEmit, ViaPointsAreKeptWhereTheBlockAlsoChangesModes) {
+  EXPECT_EQ(with_via("G0 X0 Y0 Z0\nN5 G91 G17 G1 X3. F100 S500 M3 M9\nM30\n", {1, 0.5, 0}, {3, 0, 0}),
+            "G0 X0 Y0 Z0\nN5 G91 G17 G1 X1. Y0.5 F100 S500 M3\nX2. Y-0.5 M9\nM30\n");
+  EXPECT_EQ(with_via("G0 X0 Y0 Z0\nG61.1 G1 X3. F100 M30\n", {1, 0.5, 0}, {3, 0, 0}),
+            "G0 X0 Y0 Z0\nG61.1 G1 X1. Y0.5 F100\nX3. Y0. M30\n");
+}
+
+TEST(NcEmit, ViaPointsAtTheStartOrTheEndAreLeftOut) {
+  EXPECT_EQ(with_via("G0 X0 Y0 Z0\nG1 X3. F100 M5\n", {3, 0.00005, 0}, {3, 0, 0}), "G0 X0 Y0 Z0\nG1 X3. F100 M5\n");
+  EXPECT_EQ(with_via("G0 X0 Y0 Z0\nG1 X3. F100 M5\n", {0.00002, 0, 0}, {3, 0, 0}), "G0 X0 Y0 Z0\nG1 X3. F100 M5\n");
 }
 
 TEST(NcEmit, ViaPointsInIncrementalAndSkippedBlocks) {
@@ -142,6 +162,26 @@ TEST(NcEmit, DrillsAtTheOldPlace) {
 TEST(NcEmit, PassesOverEditsOfCyclesAndReferenceMoves) {
   const std::string text = "G0X0Y0Z5.\nG99G81X1.Z-3.R1.F100\nG80\nG91G28Z0\nG4P1.\n";
   EXPECT_EQ(emitted(text, {0.1, 0.1, 0.1}, {1, 2, 3, 4, 5, 6}), text);
+}
+
+TEST(NcEmit, SaysWhichEditsAreNotInTheText) {
+  const Read r = read_clean(
+      "G0X0Y0Z5.\nG99G81X1.Z-3.R1.F100\nG80\nG4P1.\nG1X5.\nG53G0Z0\nG91G28X1.\nG90G0X0.Y0.Z0.\nG3X2.R1.\n");
+  const auto& moves = r.moves.moves;
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t i = 0; i < moves.size(); ++i)
+    if (moves[i].kind != MoveKind::rapid || moves[i].canned || moves[i].reference) all.push_back(i);
+  auto edits = shifted(r, {0.1, 0, 0}, all);
+  edits.back().end_mm = edits[edits.size() - 2].end_mm;  // an arc by R that ends where it starts
+  const Emission out = emit_edits(r.program, r.moves, edits, {});
+  std::vector<std::string> said;
+  for (const auto& n : out.not_made) {
+    const std::string one = fmt::format("line {}: {}", moves[n.move].block + 1, to_string(n.why));
+    if (said.empty() || said.back() != one) said.push_back(one);
+  }
+  EXPECT_EQ(said, (std::vector<std::string>{"line 2: a drilling cycle", "line 4: a dwell",
+                                            "line 6: a move of G28, G30 or G53", "line 7: a move of G28, G30 or G53",
+                                            "line 9: an arc that does not reach the new ends"}));
 }
 
 TEST(NcEmit, PutsAHeaderCommentBehindTheProgramNumber) {
