@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "compensate/fit_shift.h"
+#include "compensate/not_emitted.h"
 #include "compensate/shift_path.h"
 #include "nc/emit.h"
 
@@ -107,16 +108,21 @@ class Loop {
     while (!done(out, without_gain)) {
       const std::size_t limited =
           fit_shift(path_, attribution.observe(surface), {.max_shift_mm = job_.compensation.max_shift_mm});
-      const std::string text = nc::emit(program_.text, program_.moves, path_.edits(kViaTolerance_mm), {});
+      const nc::Emission emission = nc::emit_edits(program_.text, program_.moves, path_.edits(kViaTolerance_mm), {});
+      const std::string& text = emission.text;
       Diagnostics repeated;  // the emitted program's warnings are the original's
       const MachinedProgram shifted = deflection::machine_program(SourceText(job_.program, text), job_, {}, repeated);
       Prediction prediction = predict(shifted, out.rounds.size());
       record(prediction, limited, out);
       const double best = out.rounds[out.best].error_um.p95, now = prediction.form_error_um.p95;
       without_gain = now < (1 - kLeastGain) * best ? 0 : without_gain + 1;
-      if (now < best) take(out, prediction, shifted.feed, text, out.rounds.size() - 1);
+      if (now < best) {
+        take(out, prediction, shifted.feed, text, out.rounds.size() - 1);
+        not_made_ = emission.not_made;
+      }
       surface = std::move(prediction.surface);
     }
+    warn_of_not_emitted(program_.text, program_.moves, not_made_, diagnostics_);
     finish(out);
     return out;
   }
@@ -178,6 +184,7 @@ class Loop {
   bool own_target_;
   deflection::Target target_;
   ShiftPath path_;
+  std::vector<nc::EditNotMade> not_made_;  ///< of the best round
 };
 
 }  // namespace

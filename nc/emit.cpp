@@ -310,7 +310,7 @@ class Emitter {
     for (int more = 0; more <= kMoreDecimals; ++more)
       if (write_arc(move, wanted, more)) return;
     // No room between the ends: the old arc, moved to where the tool stands.
-    if (edit) not_made_.push_back({edit->move, EmitGap::arc});
+    not_made_.push_back({static_cast<std::uint32_t>(&move - moves_.moves.data()), EmitGap::arc});
     wanted.end_mm = at_ + move.end_mm - move.start_mm;
     wanted.center_mm = at_ + arc.center_mm - move.start_mm;
     if (!write_arc(move, wanted, kMoreDecimals)) at_ = place_of_untouched(writer, move);

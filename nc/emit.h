@@ -47,7 +47,7 @@ enum class EmitGap {
   dwell,
   several_moves,  ///< the block makes more than one move
   subprogram,     ///< only the via points are left out: the block also calls or ends a subprogram (M96 .. M99)
-  arc             ///< no arc reaches the new ends; the old one was kept
+  arc             ///< no arc reaches the new ends, the old one was kept; also of unedited arcs behind an edit
 };
 
 struct EditNotMade {
