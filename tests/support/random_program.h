@@ -247,7 +247,7 @@ class ProgramWriter {
       case 12:
         return set_unit(b.flags & 1);
       case 13:
-        return block({}, fmt::format("(NOTE {})", b.flags));
+        return block({}, "", fmt::format("(NOTE {})", b.flags));
       case 14:
         return cycle(b);
       case 15:
