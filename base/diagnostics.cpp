@@ -53,36 +53,62 @@ void Diagnostics::append(const Diagnostics& other) {
   for (const auto& d : other.all_) add(d);
 }
 
+namespace {
+
+/// Start of the line behind the one that `from` lies in; npos where the text ends before.
+std::size_t next_line(const std::string& text, std::size_t from) {
+  const std::size_t end = text.find('\n', from);
+  return end == std::string::npos || end + 1 >= text.size() ? std::string::npos : end + 1;
+}
+
+/// All that is left of a stream whose length nobody knows (a pipe).
+std::string read_to_end(std::istream& in) {
+  std::ostringstream buffer;
+  buffer << in.rdbuf();
+  return std::move(buffer).str();
+}
+
+}  // namespace
+
 SourceText::SourceText(std::string name, std::string text) : name_(std::move(name)), text_(std::move(text)) {
-  line_starts_.push_back(0);
-  for (std::size_t i = 0; i < text_.size(); ++i)
-    if (text_[i] == '\n' && i + 1 < text_.size()) line_starts_.push_back(i + 1);
+  for (std::size_t at = 0; at != std::string::npos; at = next_line(text_, at))
+    if (line_count_++ % kLinesPerMark == 0) marks_.push_back(at);
 }
 
 SourceText SourceText::read(const std::string& path) {
   std::error_code ec;
   if (!std::filesystem::exists(path, ec)) fail_on_file(path, "no such file", "file-missing");
-  if (std::filesystem::is_directory(path, ec)) fail_on_file(path, "is a folder; a file was expected", "file-unreadable");
+  if (std::filesystem::is_directory(path, ec))
+    fail_on_file(path, "is a folder; a file was expected", "file-unreadable");
   std::ifstream in(path, std::ios::binary);
   if (!in) fail_on_file(path, "cannot be opened for reading", "file-unreadable");
-  std::ostringstream buffer;
-  buffer << in.rdbuf();
-  return SourceText(path, std::move(buffer).str());
+  if (!std::filesystem::is_regular_file(path, ec)) return SourceText(path, read_to_end(in));
+  const auto size = std::filesystem::file_size(path, ec);
+  std::string text(ec ? 0 : static_cast<std::size_t>(size), '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (in) text += read_to_end(in);  // it has grown meanwhile
+  return SourceText(path, std::move(text));
 }
 
 SourceLocation SourceText::location(std::size_t offset) const {
+  if (marks_.empty()) return {name_, 1, 1};
   offset = std::min(offset, text_.size());
-  const auto it = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
-  const std::size_t line = static_cast<std::size_t>(it - line_starts_.begin());
-  if (line == 0) return {name_, 1, offset + 1};
-  return {name_, line, offset - line_starts_[line - 1] + 1};
+  const auto mark = std::upper_bound(marks_.begin(), marks_.end(), offset) - 1;
+  std::size_t line = static_cast<std::size_t>(mark - marks_.begin()) * kLinesPerMark + 1, begin = *mark;
+  for (std::size_t next = next_line(text_, begin); next <= offset; next = next_line(text_, begin)) {
+    begin = next;
+    ++line;
+  }
+  return {name_, line, offset - begin + 1};
 }
 
 std::string_view SourceText::line(std::size_t number) const {
-  if (number == 0 || number > line_starts_.size()) return {};
-  const std::size_t begin = line_starts_[number - 1];
-  std::size_t end = number < line_starts_.size() ? line_starts_[number] : text_.size();
-  while (end > begin && (text_[end - 1] == '\n' || text_[end - 1] == '\r')) --end;
+  if (number == 0 || number > line_count_) return {};
+  std::size_t begin = marks_[(number - 1) / kLinesPerMark];
+  for (std::size_t i = (number - 1) % kLinesPerMark; i > 0; --i) begin = next_line(text_, begin);
+  std::size_t end = std::min(text_.find('\n', begin), text_.size());
+  while (end > begin && text_[end - 1] == '\r') --end;
   return std::string_view(text_).substr(begin, end - begin);
 }
 

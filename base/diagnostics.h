@@ -75,13 +75,17 @@ class SourceText {
   SourceLocation location(std::size_t offset) const;
   /// Text of a 1-based line without its line end.
   std::string_view line(std::size_t number) const;
-  std::size_t line_count() const { return line_starts_.size(); }
+  std::size_t line_count() const { return line_count_; }
   Diagnostic diagnostic(Severity severity, std::size_t offset, std::string message, std::string check) const;
 
  private:
   std::string name_;
   std::string text_;
-  std::vector<std::size_t> line_starts_;
+  std::size_t line_count_ = 0;
+  /// Offsets of lines 1, 1 + kLinesPerMark ...; the others are counted from there: a program of millions of lines is
+  /// asked for few of them.
+  std::vector<std::size_t> marks_;
+  static constexpr std::size_t kLinesPerMark = 64;
 };
 
 }  // namespace camber

@@ -40,7 +40,7 @@ class Scanner {
   /// False when the text is of another language and reading on makes no sense.
   bool run() {
     program_.blocks.reserve(program_.source.line_count());
-    program_.words.reserve(size_ / 6);
+    program_.words.reserve(size_ / 4);  // pages that are not written to cost nothing
     std::size_t at = 0;
     while (at < size_ && !foreign_ && !report_.full()) {
       const void* found = std::char_traits<char>::find(text_ + at, size_ - at, '\n');
@@ -152,8 +152,12 @@ class Scanner {
       report_.error(begin, "word-too-long", fmt::format("the word {} is longer than 65535 characters", letter));
       return false;
     }
-    program_.words.push_back({letter, static_cast<std::uint32_t>(begin), static_cast<std::uint16_t>(end - begin),
-                              static_cast<std::uint16_t>(number - begin), value});
+    if (number - begin > std::numeric_limits<std::uint8_t>::max()) {
+      report_.error(begin, "word-too-long", fmt::format("more than 255 blanks between {} and its number", letter));
+      return false;
+    }
+    program_.words.push_back({letter, static_cast<std::uint8_t>(number - begin),
+                              static_cast<std::uint16_t>(end - begin), static_cast<std::uint32_t>(begin), value});
     return true;
   }
 

@@ -12,12 +12,14 @@ namespace camber::nc {
 
 /// One word, e.g. `X-12.5`. Offsets count bytes from the start of the file.
 struct Word {
-  char letter = 0;             ///< upper case
-  std::uint32_t offset = 0;    ///< of the letter
-  std::uint16_t length = 0;    ///< letter, blanks inside and number
-  std::uint16_t value_at = 0;  ///< of the number's first character, from `offset`
+  char letter = 0;            ///< upper case
+  std::uint8_t value_at = 0;  ///< of the number's first character, from `offset`
+  std::uint16_t length = 0;   ///< letter, blanks inside and number
+  std::uint32_t offset = 0;   ///< of the letter
   double value = 0;            ///< as written, in the program's unit
 };
+
+static_assert(sizeof(Word) == 16, "large programs have a hundred million of them");
 
 /// One line of the file. Comments, % and empty lines are blocks without words.
 struct Block {

@@ -31,6 +31,34 @@ TEST(Diagnostics, StopAtTheTwentiethError) {
   EXPECT_EQ(all.errors(), 20u);
 }
 
+TEST(SourceText, FindsEveryPlaceOfALongText) {
+  for (const std::string end : {"", "\n", "\n\n", "\r\n"}) {
+    std::string text;
+    for (int i = 0; i < 200; ++i) text += std::string(static_cast<std::size_t>(i % 7), 'x') + (i % 3 ? "\n" : "\r\n");
+    text += "last" + end;
+    const SourceText source("a", text);
+    std::size_t line = 1, column = 1;
+    std::string of_line;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+      const SourceLocation found = source.location(at);
+      ASSERT_EQ(std::pair(found.line, found.column), std::pair(line, column)) << at;
+      if (text[at] != '\n') {
+        of_line += text[at];
+        ++column;
+        continue;
+      }
+      while (of_line.ends_with('\r')) of_line.pop_back();
+      ASSERT_EQ(source.line(line), of_line);
+      of_line.clear();
+      if (at + 1 < text.size()) ++line;
+      column = 1;
+    }
+    EXPECT_EQ(source.line_count(), line);
+    EXPECT_EQ(source.line(line + 1), "");
+    EXPECT_EQ(source.location(text.size() + 10).line, line);
+  }
+}
+
 TEST(SourceText, NamesTheMissingFile) {
   try {
     SourceText::read("/nowhere/p.nc");

@@ -70,6 +70,12 @@ TEST(NcReader, TakesLongLinesAndAByteOrderMark) {
             "G1 X1");
 }
 
+TEST(NcReader, RefusesANumberFarBehindItsLetter) {
+  EXPECT_EQ(words_of_line("G0 X" + std::string(254, ' ') + "5"), "G0 X5");
+  EXPECT_EQ(read_text("G0 X" + std::string(300, ' ') + "5\n").messages,
+            std::vector<std::string>{"p.nc:1:4: error: more than 255 blanks between X and its number [word-too-long]"});
+}
+
 TEST(NcReader, RefusesAnEmptyFile) {
   EXPECT_EQ(complaint(""), "p.nc: error: the file is empty; an NC program was expected [empty-program]");
   EXPECT_EQ(complaint("\r\n \n"), "p.nc: error: the file is empty; an NC program was expected [empty-program]");
