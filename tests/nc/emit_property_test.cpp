@@ -63,10 +63,10 @@ bool is_full_turn(const Read& r, const Move& m) {
   return (way - way.dot(normal) * normal).norm() < 1e-6;
 }
 
-MoveEdit shifted(const Read& r, std::uint32_t m, const Vec3& by) {
+MoveEdit shifted(const Read& r, std::uint32_t m, const Vec3& by, double share_of_centre = 0.5) {
   const Move& move = r.moves.moves[m];
   MoveEdit edit{.move = m, .end_mm = move.end_mm + by};
-  if (move.arc != Move::kNoArc) edit.center_mm = r.moves.arcs[move.arc].center_mm + 0.5 * by;
+  if (move.arc != Move::kNoArc) edit.center_mm = r.moves.arcs[move.arc].center_mm + share_of_centre * by;
   return edit;
 }
 
@@ -160,10 +160,12 @@ std::vector<std::uint32_t> editable_moves(const Read& r, bool lines_only) {
   return out;
 }
 
+/// Up to a fifth of a millimetre, or a few steps of the last decimal.
 Vec3 random_shift() {
   Vec3 shift;
+  const double step_mm = *rc::gen::element(1e-4, 1e-6);
   for (int axis = 0; axis < 3; ++axis)
-    shift[axis] = *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(-2000, 2001)) * 1e-4 + 1e-5;
+    shift[axis] = *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(-2000, 2001)) * step_mm + 1e-5;
   return shift;
 }
 
@@ -226,7 +228,7 @@ TEST_F(NcEmitProperty, OneEditOfARandomProgramChangesNoMoreThanItMust) {
     ++counts_.programs;
     counts_.moves += r.moves.moves.size();
     for (int i = 0; i < 3; ++i) {
-      const MoveEdit edit = shifted(r, *rc::gen::elementOf(moves), random_shift());
+      const MoveEdit edit = shifted(r, *rc::gen::elementOf(moves), random_shift(), *rc::gen::element(0.0, 0.5));
       const OneEdit one(r, edit);
       const std::string problem = one.problem(counts_);
       if (!problem.empty()) RC_LOG() << text << "--- line " << r.moves.moves[edit.move].block + 1 << "\n" << one.text();
