@@ -114,7 +114,8 @@ class BlockInterpreter {
   Motion motion_ = Motion::none;
   Plane plane_ = Plane::xy;
   Cycle cycle_;
-  bool return_to_r_ = false;  ///< G99
+  std::size_t cycle_moves_ = 0;  ///< made by drilling cycles so far
+  bool return_to_r_ = false;     ///< G99
   bool unit_given_ = false;
   std::optional<double> feed_;  ///< mm/s (G94), 1/s (G93), mm a turn (G95)
   int next_tool_ = -1;

@@ -1,5 +1,6 @@
 #pragma once
 // Drilling, tapping and boring cycles written out as moves.
+#include <cstddef>
 #include <vector>
 
 #include "base/geometry.h"
@@ -32,5 +33,8 @@ struct CycleStep {
 std::vector<CycleStep> hole_steps(const CycleHole& hole, const PlaneAxes& axes);
 
 inline constexpr double kMaxPecks = 100000;
+
+/// Moves that all the drilling cycles of a program may make: some 300000 pecked holes. More are a slip of L or Q.
+inline constexpr std::size_t kMaxCycleMoves = 4'000'000;
 
 }  // namespace camber::nc

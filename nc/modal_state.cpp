@@ -9,6 +9,7 @@ namespace camber::nc {
 namespace {
 
 constexpr const char* kAxisWords = "XYZ";
+constexpr std::size_t kMostGWords = 64;  ///< there are some 20 modal groups; each word is compared with each
 
 bool is_whole(double value) { return value == std::floor(value) && value >= 0 && value < 1e8; }
 
@@ -21,6 +22,11 @@ bool is_exclusive(GGroup group) {
 }  // namespace
 
 void BlockInterpreter::check_one_of_each_group() {
+  if (words_.g().size() > kMostGWords) {
+    error(words_.offset(), "too-many-words",
+          fmt::format("{} G words in one block; at most {} are read", words_.g().size(), kMostGWords));
+    return;
+  }
   for (std::size_t i = 0; i < words_.g().size(); ++i)
     for (std::size_t k = i + 1; k < words_.g().size(); ++k) {
       const Code &a = words_.g()[i], &b = words_.g()[k];

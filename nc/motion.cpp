@@ -326,6 +326,12 @@ void BlockInterpreter::run_cycle() {
     return;
   }
   for (int i = 0; i < static_cast<int>(repeats); ++i) {
+    if (cycle_moves_ > kMaxCycleMoves) {
+      error(words_.offset(), "cycle",
+            fmt::format("the drilling cycles make more than {} moves; fewer repeats (L) or a larger Q were expected",
+                        kMaxCycleMoves));
+      return;
+    }
     Vec3 place = target();
     place[axes.normal] = position_mm_[axes.normal];
     drill(place);
@@ -366,6 +372,7 @@ void BlockInterpreter::drill(const Vec3& place) {
                           : step.kind == CycleStep::Kind::dwell ? MoveKind::dwell
                                                                 : MoveKind::linear,
                           step.end_mm);
+    ++cycle_moves_;
     move.canned = true;
     move.dwell_s = step.dwell_s;
     if (move.kind == MoveKind::linear) move.feed_mm_per_s = *feed;

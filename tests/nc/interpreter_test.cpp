@@ -353,5 +353,17 @@ TEST(NcCycles, SayWhatIsMissing) {
                      "[feed-missing]"});
 }
 
+/// A few bytes of text must not fill the memory or take minutes.
+TEST(NcInterpreter, BoundsWhatAFewWordsCanMake) {
+  std::string text = "G0X0Y0Z5.\nG91G83X1.Z-1.R-1.Q.01F100L100000\n";
+  EXPECT_EQ(read_text(text + "X1.L100000\n").messages,
+            (Messages{"p.nc:2:1: error: the drilling cycles make more than 4000000 moves; fewer repeats (L) or a "
+                      "larger Q were expected (and 1 more like it) [cycle]"}));
+  std::string codes;
+  for (int i = 0; i < 30000; ++i) codes += "G0G1";
+  EXPECT_EQ(read_text(codes + "X1F1\n").messages.front(),
+            "p.nc:1:1: error: 60000 G words in one block; at most 64 are read [too-many-words]");
+}
+
 }  // namespace
 }  // namespace camber::nc
