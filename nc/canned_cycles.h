@@ -34,7 +34,8 @@ std::vector<CycleStep> hole_steps(const CycleHole& hole, const PlaneAxes& axes);
 
 inline constexpr double kMaxPecks = 100000;
 
-/// Moves that all the drilling cycles of a program may make: some 300000 pecked holes. More are a slip of L or Q.
-inline constexpr std::size_t kMaxCycleMoves = 4'000'000;
+/// Moves that all the drilling cycles of a program may make: tens of thousands of pecked holes. More are a slip of L or
+/// Q.
+inline constexpr std::size_t kMaxCycleMoves = 1'000'000;
 
 }  // namespace camber::nc

@@ -357,7 +357,7 @@ TEST(NcCycles, SayWhatIsMissing) {
 TEST(NcInterpreter, BoundsWhatAFewWordsCanMake) {
   std::string text = "G0X0Y0Z5.\nG91G83X1.Z-1.R-1.Q.01F100L100000\n";
   EXPECT_EQ(read_text(text + "X1.L100000\n").messages,
-            (Messages{"p.nc:2:1: error: the drilling cycles make more than 4000000 moves; fewer repeats (L) or a "
+            (Messages{"p.nc:2:1: error: the drilling cycles make more than 1000000 moves; fewer repeats (L) or a "
                       "larger Q were expected (and 1 more like it) [cycle]"}));
   std::string codes;
   for (int i = 0; i < 30000; ++i) codes += "G0G1";
