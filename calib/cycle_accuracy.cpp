@@ -72,7 +72,9 @@ CycleAccuracy cycle_accuracy(const ServoTrace& trace, const nc::Interpretation& 
   out.has_lines = !trace.line.empty();
   std::uint32_t lines = 0;
   for (const nc::Move& move : program.moves) lines = std::max(lines, move.block + 1);
-  if (out.has_lines) add_lines(out, line_times(trace, run, lines), program, time.move_s);
+  if (!out.has_lines) return out;
+  add_lines(out, line_times(trace, run, lines), program, time.move_s);
+  out.dwell.measured_s = out.total.measured_s - out.cutting.measured_s - out.positioning.measured_s;
   return out;
 }
 

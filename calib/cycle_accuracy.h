@@ -22,7 +22,8 @@ struct MeasuredPart {
 struct CycleAccuracy {
   TimePair total;  ///< measured from the first to the last commanded motion
   bool has_lines = false;
-  TimePair cutting, positioning, dwell;  ///< by the line being commanded; with has_lines
+  /// By the line being commanded, with has_lines. Time without a line (the control waits) counts as dwell.
+  TimePair cutting, positioning, dwell;
   std::vector<MeasuredPart> parts;       ///< runs of feed moves of one feed; with has_lines, those that were run
 };
 

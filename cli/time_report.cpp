@@ -170,10 +170,10 @@ ordered_json accuracy_json(const calib::CycleAccuracy& a) {
 }  // namespace
 
 std::string time_text(const TimeReport& report) {
-  std::string out = fmt::format("{} on {}\n\n", report.program, report.machine);
+  std::string out = fmt::format("{} on {}\n", report.program, report.machine);
   const CycleTime& first = report.rows.front().time;
   if (report.rows.size() == 1 && report.keys.empty()) {
-    out += kinds_text(first) + report::dominance_sentence(first) + "\n" + tools_text(first) + histogram_text(first);
+    out += "\n" + kinds_text(first) + report::dominance_sentence(first) + "\n" + tools_text(first) + histogram_text(first);
     if (report.accuracy) out += accuracy_text(*report.accuracy);
   } else {
     out += rows_text(report);

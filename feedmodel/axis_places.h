@@ -9,8 +9,8 @@
 
 namespace camber::feedmodel {
 
-/// Follows the moves in order. An axis stands at the tool change position until it is first programmed, and again
-/// after G28, G30 or G53 (a reference move that takes it to 0).
+/// Follows the moves in order. While a program has not placed every axis (reference moves) an axis stands at the tool
+/// change position until it is taken to another coordinate, and again after G28, G30 or G53 (which take it to 0).
 class AxisPlaces {
  public:
   explicit AxisPlaces(const machine::ToolChange& change) : home_{change.x_mm, change.y_mm, change.z_mm} {}
@@ -22,14 +22,16 @@ class AxisPlaces {
   };
   Way pass(const nc::Move& move) {
     Way way{move.start_mm, move.end_mm, true};
+    at_mm_ = move.end_mm;
+    if (!move.reference) {
+      at_home_.fill(false);
+      return way;
+    }
     for (int i = 0; i < 3; ++i) {
       const auto axis = static_cast<std::size_t>(i);
       const bool stays = move.start_mm[i] == move.end_mm[i];
       const bool was_home = at_home_[axis];
-      if (!move.reference)
-        at_home_[axis] = false;
-      else if (!stays)
-        at_home_[axis] = move.end_mm[i] == 0.0;
+      if (!stays) at_home_[axis] = move.end_mm[i] == 0.0;
       if (!was_home && !at_home_[axis]) continue;
       const bool known = std::isfinite(home_[i]);
       if (was_home) way.from_mm[i] = known ? home_[i] : way.to_mm[i];

@@ -48,7 +48,7 @@ bool below_full_rapid(const Vec3& distance_mm, const Vec3& speed_mm_per_s, const
   Eigen::Index slowest = 0;
   axis_times_s(distance_mm, speed_mm_per_s, acceleration_mm_per_s2).maxCoeff(&slowest);
   const double full = speed_mm_per_s[slowest] * speed_mm_per_s[slowest] / acceleration_mm_per_s2[slowest];
-  return std::abs(distance_mm[slowest]) < full;
+  return std::isfinite(full) && std::abs(distance_mm[slowest]) < full;
 }
 
 std::vector<Vec3> dog_leg(const Vec3& from_mm, const Vec3& to_mm, const Vec3& speed_mm_per_s,

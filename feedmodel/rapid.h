@@ -18,7 +18,8 @@ Vec3 axis_times_s(const Vec3& distance_mm, const Vec3& speed_mm_per_s, const Vec
 /// The slowest axis' time. Source: Takata 1999, eq. 2.12.
 double rapid_time_s(const Vec3& distance_mm, const Vec3& speed_mm_per_s, const Vec3& acceleration_mm_per_s2);
 
-/// True where the slowest axis does not come to its rapid: its distance is shorter than F^2/a.
+/// True where the slowest axis does not come to its rapid: its distance is shorter than F^2/a. False
+/// without a rapid.
 bool below_full_rapid(const Vec3& distance_mm, const Vec3& speed_mm_per_s, const Vec3& acceleration_mm_per_s2);
 
 /// The path of a positioning: its start, the places where an axis has arrived while others still move, its end.

@@ -38,13 +38,13 @@ inline constexpr std::array kCornerKeys{
 inline constexpr std::array kAxisKeys{
     NumberKey<Axis>{"max_velocity_mm_per_min", &Axis::max_velocity_mm_per_s, kPositiveOrInf, kPerMinute},
     NumberKey<Axis>{"acceleration_mm_per_s2", &Axis::acceleration_mm_per_s2, kPositiveOrInf},
-    NumberKey<Axis>{"rapid_mm_per_min", &Axis::rapid_mm_per_s, kPositiveOrInf, kPerMinute},
-    NumberKey<Axis>{"rapid_acceleration_mm_per_s2", &Axis::rapid_acceleration_mm_per_s2, kPositiveOrInf},
     NumberKey<Axis>{"jerk_mm_per_s3", &Axis::jerk_mm_per_s3, kPositiveOrInf},
     NumberKey<Axis>{"filter_ms", &Axis::filter_s, kNotNegative, kMilliseconds},
     NumberKey<Axis>{"position_gain_per_s", &Axis::position_gain_per_s, kPositiveOrInf},
     NumberKey<Axis>{"velocity_lag_ms", &Axis::velocity_lag_s, kNotNegative, kMilliseconds},
     NumberKey<Axis>{"feed_forward_percent", &Axis::feed_forward_percent, kPercent},
+    NumberKey<Axis>{"rapid_mm_per_min", &Axis::rapid_mm_per_s, kPositiveOrInf, kPerMinute},
+    NumberKey<Axis>{"rapid_acceleration_mm_per_s2", &Axis::rapid_acceleration_mm_per_s2, kPositiveOrInf},
 };
 
 inline constexpr std::array kSpindleKeys{
