@@ -38,7 +38,7 @@ std::string use_cells(const CycleUse& use) {
 }
 
 std::string table_head(const std::vector<std::string>& first) {
-  std::string out = "<table><thead><tr>";
+  std::string out = "<div style=\"overflow-x:auto\"><table><thead><tr>";
   for (const auto& name : first) out += "<th>" + html_text(name) + "</th>";
   for (const auto& kind : kCycleKinds) out += fmt::format("<th>{}, s</th>", kind.name);
   return out + "<th>total, s</th><th>F, mm/min</th><th>actual, mm/min</th><th>e</th><th>k</th></tr></thead><tbody>\n";
@@ -52,14 +52,14 @@ std::string rows_table(const CyclePage& page) {
     for (const double value : row.values) out += cell(format_trimmed(value, 4));
     out += use_cells(row.time.all) + "</tr>\n";
   }
-  return out + "</tbody></table>\n";
+  return out + "</tbody></table></div>\n";
 }
 
 std::string tools_table(const CycleTime& time) {
   std::string out = table_head({"tool"});
   for (const CycleUse& use : time.tools)
     out += "<tr>" + cell(fmt::format("T{}", use.tool)) + use_cells(use) + "</tr>\n";
-  return out + "</tbody></table>\n";
+  return out + "</tbody></table></div>\n";
 }
 
 std::string notes_list(const std::vector<std::string>& notes) {
@@ -94,7 +94,8 @@ std::string cycle_page(const CyclePage& page) {
   out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   out += fmt::format("<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle);
   out += fmt::format("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n<div class=\"tiles\">\n", title, html_text(page.subtitle));
-  out += tile("total time", fmt::format("{:.1f} s", first.all.time.total_s()));
+  const std::string of = page.rows.size() > 1 ? ", " + page.rows.front().name : "";
+  out += tile("total time" + of, fmt::format("{:.1f} s", first.all.time.total_s()));
   out += tile("cutting", fmt::format("{:.1f} s", first.all.time.cutting_s));
   out += tile("positioning", fmt::format("{:.1f} s", first.all.time.positioning_s));
   out += tile("actual / commanded feed, e", fmt::format("{:.3f}", first.all.e())) + "</div>\n";
@@ -105,7 +106,6 @@ std::string cycle_page(const CyclePage& page) {
                                                    html_text(dominance_sentence(first))));
   out += card("Total time over " + (page.keys.empty() ? "" : page.keys.front()), sweep_svg(page));
   out += card(page.rows.size() > 1 ? "Side by side" : "By kind", rows_table(page));
-  const std::string of = page.rows.size() > 1 ? ", " + page.rows.front().name : "";
   out += card("By tool" + of, tools_table(first));
   out += card("Distances" + of,
               distance_svg(first.g00, "positionings, G0") + distance_svg(first.g01, "straight cuts, G1"));

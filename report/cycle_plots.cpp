@@ -98,17 +98,26 @@ std::string sweep_svg(const CyclePage& page) {
   }
   for (std::size_t i = 0; i < others.size(); ++i) {
     std::string line, name;
+    double end_x = 0, end_y = 0;
+    for (std::size_t k = 0; k < others[i].size(); ++k) name += (k > 0 ? " / " : "") + format_trimmed(others[i][k], 4);
     for (const CycleRow& row : page.rows) {
       if (std::vector<double>(row.values.begin() + 1, row.values.end()) != others[i]) continue;
       const double total = row.time.all.time.total_s();
       line += fmt::format("{:.1f},{:.1f} ", x(row.values.front()), y(total));
+      end_x = x(row.values.front());
+      end_y = y(total);
       out +=
           fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"><title>{}: {:.1f} s</title></circle>\n",
                       x(row.values.front()), y(total), kColours[i % std::size(kColours)], html_text(row.name), total);
     }
     out += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"/>\n", line,
                        kColours[i % std::size(kColours)]);
+    out += text(end_x, end_y - 8, "end", name);
   }
+  std::string others_name;
+  for (std::size_t k = 1; k < page.keys.size(); ++k)
+    others_name += (k > 1 ? " / " : "at the end of each line: ") + page.keys[k];
+  out += text(kPlotRight, 14, "end", others_name);
   for (const CycleRow& row : page.rows)
     if (row.values.size() < 2 || std::vector<double>(row.values.begin() + 1, row.values.end()) == others.front())
       out += text(x(row.values.front()), kBottom + 16, "middle", format_trimmed(row.values.front(), 3));

@@ -108,11 +108,11 @@ TEST(CycleKeys, RapidPathComesFromTheDialect) {
 }
 
 TEST(CycleKeys, ASpindleWithAFlywheelNeedsItsPower) {
-  EXPECT_EQ(
-      machine_message("[spindle]\ngd2_kgf_m2 = 0.1\nconstant_torque_rpm = 1500\n"),
-      "m.toml:1:1: error: [spindle] has no power_W; a number greater than zero or inf was expected [key-missing]\n"
-      "    [spindle]\n"
-      "    ^");
+  EXPECT_EQ(machine_message("[spindle]\ngd2_kgf_m2 = 0.1\nconstant_torque_rpm = 1500\n"),
+            "m.toml:1:1: error: power_W is missing in [spindle]; a number greater than zero or inf was expected "
+            "[key-missing]\n"
+            "    [spindle]\n"
+            "    ^");
 }
 
 TEST(CycleKeys, ZonesOfTheSpindleStandInOrder) {
