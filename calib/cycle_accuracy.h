@@ -24,7 +24,7 @@ struct CycleAccuracy {
   bool has_lines = false;
   /// By the line being commanded, with has_lines. Time without a line (the control waits) counts as dwell.
   TimePair cutting, positioning, dwell;
-  std::vector<MeasuredPart> parts;       ///< runs of feed moves of one feed; with has_lines, those that were run
+  std::vector<MeasuredPart> parts;  ///< runs of feed moves of one feed; with has_lines, those that were run
 };
 
 /// `time`: cycle_time of the program that was run.

@@ -173,7 +173,8 @@ std::string time_text(const TimeReport& report) {
   std::string out = fmt::format("{} on {}\n", report.program, report.machine);
   const CycleTime& first = report.rows.front().time;
   if (report.rows.size() == 1 && report.keys.empty()) {
-    out += "\n" + kinds_text(first) + report::dominance_sentence(first) + "\n" + tools_text(first) + histogram_text(first);
+    out +=
+        "\n" + kinds_text(first) + report::dominance_sentence(first) + "\n" + tools_text(first) + histogram_text(first);
     if (report.accuracy) out += accuracy_text(*report.accuracy);
   } else {
     out += rows_text(report);

@@ -136,10 +136,11 @@ class MotionClock {
       }
       if (replaced(i)) continue;
       const ExponentialRamp ramp{speed, rows_[i].speed_limit_mm_per_s, t1, t2};
-      const double time_s = std::isinf(ramp.command_mm_per_s) ? 0.0 : ramp.time_of(rows_[i].length_mm);
+      const bool at_once = std::isinf(ramp.command_mm_per_s);  // a rapid of axes without a limit
+      const double time_s = at_once ? 0.0 : ramp.time_of(rows_[i].length_mm);
       const bool stops = i + 1 >= rows_.size() || info_[i + 1].rest || stops_after(i);
       out_.move_s[info_[i].move] += time_s + (stops ? t1 + t2 : 0.0);
-      speed = stops ? 0.0 : ramp.speed_at(time_s);
+      speed = stops || at_once ? 0.0 : ramp.speed_at(time_s);
     }
   }
 
@@ -183,6 +184,7 @@ class MotionClock {
     if (cycle_.rapid_overlap_percent <= 0) return 0;
     Eigen::Index slowest = 0;
     axis_times_s(distance, speed, acceleration).maxCoeff(&slowest);
+    if (std::isinf(acceleration[slowest])) return 0;
     const double peak = std::min(speed[slowest], std::sqrt(acceleration[slowest] * std::abs(distance[slowest])));
     return std::min(cycle_.rapid_overlap_percent / 100.0 * speed[slowest], peak) / acceleration[slowest];
   }

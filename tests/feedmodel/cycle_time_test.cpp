@@ -105,7 +105,7 @@ TEST(CycleTime, ToolsAddUpToTheWhole) {
   EXPECT_EQ(time.tools[0].tool_changes, 2u);
   EXPECT_NEAR(time.tools[0].cutting_mm, 70, 1e-9);
   EXPECT_NEAR(time.tools[1].cutting_mm, 50, 1e-9);
-  EXPECT_EQ(time.tools[1].time.dwell_s, 1);
+  EXPECT_NEAR(time.tools[1].time.dwell_s, 1, 1e-9);
   EXPECT_NEAR(time.tools[0].time.total_s() + time.tools[1].time.total_s(), time.all.time.total_s(), 1e-12);
   EXPECT_EQ(time.all.time.tool_change_s, 9);
 }
@@ -120,6 +120,22 @@ TEST(CycleTime, TheWayToTheReferencePointIsCountedWhereItIsKnown) {
   const CycleTime time = cycle_time(program, m);
   EXPECT_EQ(time.unplaced_moves, 0u);
   EXPECT_NEAR(time.all.time.positioning_s, 4 * kLongRapid, 1e-9);
+}
+
+TEST(CycleTime, AMachineWithoutLimitsTakesLengthOverFeed) {
+  machine::Machine m;
+  m.cycle.rapid_overlap_percent = 50;
+  tests::TestProgram p;
+  p.rapid(400, 0, 0).rapid(0, 0, 0).line(60, 0, 0, 600).rapid(0, 0, 0);
+  for (const auto law : {machine::AccelerationLaw::linear, machine::AccelerationLaw::exponential}) {
+    m.cycle.acceleration_law = law;
+    for (const auto path : {machine::RapidPath::dogleg, machine::RapidPath::linear}) {
+      m.cycle.rapid_path = path;
+      const CycleTime time = cycle_time(p.program, m);
+      EXPECT_NEAR(time.all.time.total_s(), 6, 1e-9);
+      EXPECT_EQ(time.below_full_rapid, 0u);
+    }
+  }
 }
 
 TEST(CycleTime, AnEmptyProgramTakesNoTime) {
