@@ -16,8 +16,8 @@ using SegmentSink = std::function<void(const Segment&)>;
 struct PathOptions {
   std::span<const std::uint32_t> rests;  ///< moves (ascending) before which the path rests
   bool rest_at_rapids = false;           ///< before, after and between rapids
-  double feed_factor = 1, rapid_factor = 1;                    ///< overrides
-  double linear_acceleration_mm_per_s2 = machine::kNoLimit;    ///< most along a straight feed move
+  double feed_factor = 1, rapid_factor = 1;                  ///< overrides
+  double linear_acceleration_mm_per_s2 = machine::kNoLimit;  ///< most along a straight feed move
 };
 
 /// Hands the segments out in order; each starts where the one before ended. A dwell, a tool change and the end
