@@ -14,8 +14,8 @@ using SegmentSink = std::function<void(const Segment&)>;
 
 /// What cycle time asks beside what a machine's feed model has.
 struct PathOptions {
-  std::span<const std::uint32_t> rests;  ///< moves (ascending) before which the path rests
-  bool rest_at_rapids = false;           ///< before, after and between rapids
+  std::span<const std::uint32_t> rests;                      ///< moves (ascending) before which the path rests
+  bool rest_at_rapids = false;                               ///< before, after and between rapids
   double feed_factor = 1, rapid_factor = 1;                  ///< overrides
   double linear_acceleration_mm_per_s2 = machine::kNoLimit;  ///< most along a straight feed move
 };
