@@ -1,4 +1,4 @@
-// check, feed and fit-feed on the command line.
+// check, feed, time and fit-feed on the command line.
 #include <iostream>
 #include <memory>
 
@@ -10,6 +10,7 @@
 #include "cli/console.h"
 #include "cli/feed_command.h"
 #include "cli/fit_feed_command.h"
+#include "cli/time_command.h"
 #include "machine/machine.h"
 
 namespace camber::cli {
@@ -79,6 +80,43 @@ void add_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   });
 }
 
+void add_time(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("time", "cycle time by kind of operation and by tool, and what-if");
+  auto arguments = std::make_shared<TimeArguments>();
+  command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
+  auto* machine = command->add_option("--machine", arguments->machine, "machine.toml")->type_name("M.toml");
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  auto* trace = command->add_option("--trace", arguments->trace, "a measured run to set it against");
+  trace->type_name("T.csv");
+  auto* sweep = command->add_option("--sweep", arguments->sweeps, "what if: a number of the machine takes N values");
+  sweep->expected(1)->take_all()->type_name("KEY=FROM:TO:N")->needs(machine)->excludes(trace);
+  sweep->check(CLI::Validator(
+      [](std::string& text) {
+        try {
+          parse_sweep(text);
+        } catch (const std::invalid_argument& problem) {
+          return std::string(problem.what());
+        }
+        return std::string();
+      },
+      ""));
+  auto* cases = command->add_option("--case", arguments->cases, "machines side by side");
+  cases->type_name("cases.toml")->excludes(trace)->excludes(sweep);
+  command->add_option("--report", arguments->report, "the page with pictures")->type_name("R.html");
+  add_interpreter_options(*command, arguments->interpreter);
+  command->callback([arguments, &options, &chosen] {
+    if (arguments->machine.empty() && arguments->cases.empty())
+      throw CLI::ValidationError("time", "--machine M.toml or --case cases.toml was expected");
+    chosen = [arguments, &options] {
+      if (options.effective_config && !arguments->machine.empty())
+        return print_effective_machine(arguments->machine, options);
+      check_outputs({arguments->json, arguments->report},
+                    {arguments->program, arguments->machine, arguments->trace, arguments->cases});
+      return run_time(*arguments, options);
+    };
+  });
+}
+
 void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("fit-feed", "fit a machine's feed model to servo traces");
   auto arguments = std::make_shared<FitFeedArguments>();
@@ -115,6 +153,7 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
 void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   add_check(app, options, chosen);
   add_feed(app, options, chosen);
+  add_time(app, options, chosen);
   add_fit_feed(app, options, chosen);
 }
 

@@ -77,8 +77,10 @@ void set_arc_limits(Segment& s, const Vec3& acceleration, const machine::Control
 
 class Builder {
  public:
-  Builder(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink)
-      : program_(program),
+  Builder(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink,
+          const PathOptions& options)
+      : options_(options),
+        program_(program),
         control_(machine.control),
         sink_(sink),
         velocity_(velocity_limits_mm_per_s(machine)),
@@ -87,10 +89,13 @@ class Builder {
   void run() {
     const auto& moves = program_.moves;
     int tool = moves.empty() ? 0 : program_.state_of(moves.front()).tool;
+    std::size_t next_rest = 0;
     for (std::size_t i = 0; i < moves.size();) {
       const nc::Move& move = moves[i];
       const nc::ModalState& state = program_.state_of(move);
-      if (state.tool != tool) rest(0, i, move.start_mm);
+      const bool asked = next_rest < options_.rests.size() && options_.rests[next_rest] <= i;
+      while (next_rest < options_.rests.size() && options_.rests[next_rest] <= i) ++next_rest;
+      if (state.tool != tool || asked || (move.reference && options_.rest_at_rapids)) rest(0, i, move.start_mm);
       tool = state.tool;
       std::size_t end = i + 1;
       if (move.kind == nc::MoveKind::dwell) {
@@ -138,14 +143,18 @@ class Builder {
     s.speed_limit_mm_per_s = axis_speed_limit(s, velocity_);
     if (s.radius_mm == 0) {
       s.acceleration_mm_per_s2 = limit_along(s.along, acceleration_);
+      if (move.kind == nc::MoveKind::linear)
+        s.acceleration_mm_per_s2 = std::min(s.acceleration_mm_per_s2, options_.linear_acceleration_mm_per_s2);
     } else {
       set_arc_limits(s, acceleration_, control_);
     }
     s.cutting = move.kind != nc::MoveKind::rapid;
-    s.feed_command_mm_per_s = s.cutting ? move.feed_mm_per_s : s.speed_limit_mm_per_s;
+    if (!s.cutting) s.speed_limit_mm_per_s *= options_.rapid_factor;
+    const double feed = move.feed_mm_per_s * options_.feed_factor;
+    s.feed_command_mm_per_s = s.cutting ? feed : s.speed_limit_mm_per_s;
     s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, block_time_speed(s.length_mm, control_.block_time_s));
     e.top_speed_mm_per_s = s.speed_limit_mm_per_s;
-    if (s.cutting) s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, move.feed_mm_per_s);
+    if (s.cutting) s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, feed);
   }
 
   // --- corners ---------------------------------------------------------------------------------------------
@@ -183,6 +192,7 @@ class Builder {
     const Vec3 from = a.segment.direction_at(a.segment.length_mm), to = b.segment.direction_at(0);
     if (from.dot(to) < -1.0 + kReversal) return {};
     if (control_.dialect == machine::Dialect::linuxcnc && a.segment.cutting != b.segment.cutting) return {};
+    if (options_.rest_at_rapids && !(a.segment.cutting && b.segment.cutting)) return {};
     if (a.stops || a.control == nc::PathControl::exact_stop) return {};
     const machine::Corner& corner = control_.corner;
     const bool exact = a.control == nc::PathControl::exact_path || b.control == nc::PathControl::exact_path;
@@ -270,6 +280,7 @@ class Builder {
     sink_(s);
   }
 
+  const PathOptions& options_;
   const nc::Interpretation& program_;
   const machine::Control& control_;
   const SegmentSink& sink_;
@@ -279,8 +290,9 @@ class Builder {
 
 }  // namespace
 
-void build_segments(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink) {
-  Builder(program, machine, sink).run();
+void build_segments(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink,
+                    const PathOptions& options) {
+  Builder(program, machine, sink, options).run();
 }
 
 }  // namespace camber::feedmodel

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/diagnostics.h"
+#include "machine/cycle.h"
 
 namespace camber::machine {
 
@@ -48,6 +49,8 @@ struct Control {
 struct Axis {
   double max_velocity_mm_per_s = kNoLimit;
   double acceleration_mm_per_s2 = kNoLimit;
+  double rapid_mm_per_s = kNoLimit;  ///< of G0, where it is lower than max_velocity
+  double rapid_acceleration_mm_per_s2 = kNoLimit;  ///< of G0; infinity: the same as acceleration
   double jerk_mm_per_s3 = kNoLimit;
   double filter_s = 0;                      ///< moving average after interpolation; 0: none
   double position_gain_per_s = kNoLimit;    ///< Kp of the position loop; infinity: no lag
@@ -58,6 +61,11 @@ struct Axis {
 
 struct Spindle {
   double max_rpm = kNoLimit;
+  double gd2_kgf_m2 = 0;                  ///< flywheel effect of spindle, motor and tool; 0: it starts at once
+  double power_W = kNoLimit;              ///< of the motor
+  double constant_torque_rpm = kNoLimit;  ///< N1: constant torque up to here
+  double constant_power_rpm = kNoLimit;   ///< N2: constant power from N1 to here, falling above
+  double orient_s = 0;                    ///< to turn the standing spindle into the place for a tool change
 };
 
 struct Machine {
@@ -65,6 +73,9 @@ struct Machine {
   Control control;
   std::array<Axis, 3> axis;  ///< x, y, z
   Spindle spindle;
+  Cycle cycle;
+  ToolChange tool_change;
+  IndexTable index;
 };
 
 /// Throws InputError with file:line:column for unknown keys, wrong types and values out of range.

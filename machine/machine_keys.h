@@ -2,6 +2,7 @@
 // The keys of machine.toml, for its reader and its writer.
 #include <array>
 
+#include "machine/cycle_keys.h"
 #include "machine/machine.h"
 #include "machine/number_key.h"
 
@@ -42,10 +43,17 @@ inline constexpr std::array kAxisKeys{
     NumberKey<Axis>{"position_gain_per_s", &Axis::position_gain_per_s, kPositiveOrInf},
     NumberKey<Axis>{"velocity_lag_ms", &Axis::velocity_lag_s, kNotNegative, kMilliseconds},
     NumberKey<Axis>{"feed_forward_percent", &Axis::feed_forward_percent, kPercent},
+    NumberKey<Axis>{"rapid_mm_per_min", &Axis::rapid_mm_per_s, kPositiveOrInf, kPerMinute},
+    NumberKey<Axis>{"rapid_acceleration_mm_per_s2", &Axis::rapid_acceleration_mm_per_s2, kPositiveOrInf},
 };
 
 inline constexpr std::array kSpindleKeys{
     NumberKey<Spindle>{"max_rpm", &Spindle::max_rpm, kPositiveOrInf},
+    NumberKey<Spindle>{"gd2_kgf_m2", &Spindle::gd2_kgf_m2, kNotNegative},
+    NumberKey<Spindle>{"power_W", &Spindle::power_W, kPositiveOrInf},
+    NumberKey<Spindle>{"constant_torque_rpm", &Spindle::constant_torque_rpm, kPositiveOrInf},
+    NumberKey<Spindle>{"constant_power_rpm", &Spindle::constant_power_rpm, kPositiveOrInf},
+    NumberKey<Spindle>{"orient_s", &Spindle::orient_s, kNotNegative},
 };
 
 }  // namespace camber::machine

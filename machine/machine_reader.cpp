@@ -66,6 +66,30 @@ void read_axes(TomlTable table, std::array<Axis, 3>& axes) {
   table.finish();
 }
 
+void read_spindle(TomlTable table, Spindle& spindle) {
+  read_numbers<Spindle>(table, kSpindleKeys, spindle);
+  for (const auto& k : kSpindleKeys)
+    if (spindle.gd2_kgf_m2 > 0 && (k.key == "power_W" || k.key == "constant_torque_rpm") && !table.has(k.key))
+      table.missing(k.key, k.range.wanted());
+  if (spindle.constant_power_rpm < spindle.constant_torque_rpm && table.has("constant_power_rpm"))
+    table.error_at("constant_power_rpm",
+                   fmt::format("constant_power_rpm is {}; at least constant_torque_rpm, {}, was expected",
+                               spindle.constant_power_rpm, spindle.constant_torque_rpm),
+                   "value-range");
+  table.finish();
+}
+
+void read_cycle(TomlTable table, Cycle& cycle) {
+  cycle.rapid_path =
+      static_cast<RapidPath>(table.choice("rapid_path", kRapidPathWords, static_cast<std::size_t>(cycle.rapid_path)));
+  cycle.acceleration_law = static_cast<AccelerationLaw>(table.choice("acceleration_law", kAccelerationLawWords, 0));
+  cycle.code_order = static_cast<CodeOrder>(table.choice("code_order", kCodeOrderWords, 0));
+  read_numbers<Cycle>(table, kCycleKeys, cycle);
+  if (cycle.acceleration_law == AccelerationLaw::exponential && !table.has("time_constant_1_ms"))
+    table.missing("time_constant_1_ms", kNotNegative.wanted());
+  table.finish();
+}
+
 }  // namespace
 
 Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
@@ -76,9 +100,17 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
   TomlTable top = TomlTable::top(*file, diagnostics);
   if (auto control = top.table("control")) read_control(*control, machine.control);
   if (auto axes = top.table("axis")) read_axes(*axes, machine.axis);
-  if (auto spindle = top.table("spindle")) {
-    read_numbers<Spindle>(*spindle, kSpindleKeys, machine.spindle);
-    spindle->finish();
+  if (auto spindle = top.table("spindle")) read_spindle(*spindle, machine.spindle);
+  if (machine.control.dialect == Dialect::linuxcnc) machine.cycle.rapid_path = RapidPath::linear;
+  if (auto cycle = top.table("cycle")) read_cycle(*cycle, machine.cycle);
+  if (auto change = top.table("tool_change")) {
+    read_numbers<ToolChange>(*change, kToolChangeKeys, machine.tool_change);
+    change->finish();
+  }
+  if (auto index = top.table("index")) {
+    machine.index.present = true;
+    read_numbers<IndexTable>(*index, kIndexKeys, machine.index);
+    index->finish();
   }
   top.finish();
   diagnostics.throw_if_errors();

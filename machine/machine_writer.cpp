@@ -25,6 +25,14 @@ std::string axis_text(std::string_view name, const Axis& axis) {
                      toml_number(axis.travel_mm[0], kAsIs), toml_number(axis.travel_mm[1], kAsIs));
 }
 
+std::string cycle_text(const Cycle& cycle) {
+  std::string out = "\n[cycle]\n";
+  out += toml_line("rapid_path", kRapidPathWords[static_cast<std::size_t>(cycle.rapid_path)]);
+  out += toml_line("acceleration_law", kAccelerationLawWords[static_cast<std::size_t>(cycle.acceleration_law)]);
+  out += toml_line("code_order", kCodeOrderWords[static_cast<std::size_t>(cycle.code_order)]);
+  return out + toml_lines<Cycle>(kCycleKeys, cycle);
+}
+
 }  // namespace
 
 std::string to_toml(const Machine& machine) {
@@ -35,6 +43,9 @@ std::string to_toml(const Machine& machine) {
   out += corner_text(machine.control.corner);
   for (std::size_t i = 0; i < machine.axis.size(); ++i) out += axis_text(kAxisNames[i], machine.axis[i]);
   out += "\n[spindle]\n" + toml_lines<Spindle>(kSpindleKeys, machine.spindle);
+  out += cycle_text(machine.cycle);
+  out += "\n[tool_change]\n" + toml_lines<ToolChange>(kToolChangeKeys, machine.tool_change);
+  if (machine.index.present) out += "\n[index]\n" + toml_lines<IndexTable>(kIndexKeys, machine.index);
   return out;
 }
 

@@ -92,6 +92,8 @@ class BlockInterpreter {
   bool place_unknown() const;
   Move& add_move(MoveKind kind, const Vec3& end_mm);
   std::uint32_t state_index();
+  void add_event(EventKind kind, double value);
+  void add_m_event(const Code& code);
 
   void error(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});
   std::string code_text(const Code& code) const;

@@ -19,6 +19,7 @@ struct InterpreterOptions {
   /// (LinuxCNC). With a point they are seconds for all.
   bool dwell_p_is_ms = false;
   bool absolute_arc_centre = false;  ///< the control starts in G90.1 rather than G91.1
+  bool index_table = false;         ///< B turns an index table: an event, no error
   double peck_clearance_mm = 0.254;  ///< G83 stops its rapid so far above the last depth; G73 retracts by it
 };
 

@@ -1,4 +1,5 @@
 // Words that change the modal state: G codes, F, S, T and M codes.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -19,7 +20,38 @@ bool is_exclusive(GGroup group) {
          group != GGroup::unknown && group != GGroup::contouring;
 }
 
+/// M codes that act after the motion of their block.
+bool acts_at_end(const Code& code) {
+  const MGroup group = m_code(code.tenths);
+  return group == MGroup::stop || group == MGroup::end || code.tenths == 50 || code.tenths == 90;
+}
+
 }  // namespace
+
+void BlockInterpreter::add_event(EventKind kind, double value) {
+  out_.events.push_back({value, block_, static_cast<std::uint32_t>(out_.moves.size()), kind, state_.incremental});
+}
+
+void BlockInterpreter::add_m_event(const Code& code) {
+  switch (code.tenths) {
+    case 30:
+    case 130:
+      return add_event(EventKind::spindle_clockwise, code.word->value);
+    case 40:
+    case 140:
+      return add_event(EventKind::spindle_counter_clockwise, code.word->value);
+    case 50:
+      return add_event(EventKind::spindle_stop, code.word->value);
+    case 60:
+      return add_event(EventKind::tool_change, std::max(next_tool_, 0));
+    case 190:
+      return add_event(EventKind::spindle_orient, code.word->value);
+    case 600:
+      return add_event(EventKind::pallet, code.word->value);
+    default:
+      return add_event(EventKind::m_code, code.word->value);
+  }
+}
 
 void BlockInterpreter::check_one_of_each_group() {
   if (words_.g().size() > kMostGWords) {
@@ -234,6 +266,7 @@ void BlockInterpreter::read_spindle_speed() {
     error(words_.offset_of('S'), "spindle-negative", "the spindle speed S is negative; zero or more was expected");
     return;
   }
+  add_event(EventKind::spindle_speed, value);
   state_changed_ |= value != state_.spindle_speed_rpm;
   state_.spindle_speed_rpm = value;
 }
@@ -247,11 +280,13 @@ void BlockInterpreter::read_tool() {
   }
   if (next_tool_ < 0) tool_word_offset_ = words_.offset_of('T');
   next_tool_ = static_cast<int>(value);
+  add_event(EventKind::tool_select, value);
 }
 
 bool BlockInterpreter::read_m_codes_before() {
   const Word* spindle = nullptr;
   for (const Code& code : words_.m()) {
+    if (!acts_at_end(code)) add_m_event(code);
     switch (m_code(code.tenths)) {
       case MGroup::spindle:
         if (spindle && spindle->value != code.word->value)
@@ -305,6 +340,7 @@ bool BlockInterpreter::read_m_codes_before() {
 bool BlockInterpreter::read_m_codes_after() {
   bool go_on = true;
   for (const Code& code : words_.m()) {
+    if (acts_at_end(code)) add_m_event(code);
     switch (m_code(code.tenths)) {
       case MGroup::end:
         go_on = false;
@@ -329,7 +365,9 @@ bool BlockInterpreter::read_m_codes_after() {
 void BlockInterpreter::check_letters() {
   for (const char letter : {'A', 'B', 'C'}) {
     if (!words_.has(letter)) continue;
-    if (words_.value(letter) != 0)
+    if (letter == 'B' && options_.index_table)
+      add_event(EventKind::index, words_.value(letter));
+    else if (words_.value(letter) != 0)
       error(words_.offset_of(letter), "rotary-axis",
             fmt::format("rotary axis {} is not read yet; X, Y and Z were expected", letter), std::string(1, letter));
     else

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "nc/event.h"
 
 namespace camber::nc {
 
@@ -61,6 +62,7 @@ struct Interpretation {
   std::vector<Move> moves;  ///< in order; each starts where the one before ended
   std::vector<Arc> arcs;
   std::vector<ModalState> states;
+  std::vector<Event> events;  ///< beside the moves, in order
 
   const ModalState& state_of(const Move& m) const { return states[m.state]; }
 };

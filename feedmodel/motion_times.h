@@ -1,0 +1,23 @@
+#pragma once
+// The time of every move of a program, the axes alone: no tools, no spindle, no codes.
+#include <cstdint>
+#include <vector>
+
+#include "machine/machine.h"
+#include "nc/move.h"
+
+namespace camber::feedmodel {
+
+struct MotionTimes {
+  std::vector<double> move_s;        ///< of each move; merged lines stand with the last of them
+  std::vector<float> acceleration;   ///< along the path of each cutting move's last segment, mm/s^2; 0: none
+  std::size_t speed_changes = 0;     ///< along the path
+  std::size_t below_full_rapid = 0;  ///< positionings
+  std::size_t unplaced_moves = 0;    ///< see CycleTime
+};
+
+/// `rests`: moves (ascending) before which the path rests.
+MotionTimes motion_times(const nc::Interpretation& program, const machine::Machine& machine,
+                         const std::vector<std::uint32_t>& rests);
+
+}  // namespace camber::feedmodel

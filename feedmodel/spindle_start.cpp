@@ -1,0 +1,22 @@
+#include "feedmodel/spindle_start.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camber::feedmodel {
+
+double spindle_start_s(const machine::Spindle& spindle, double speed_rpm) {
+  const double n = speed_rpm, n1 = spindle.constant_torque_rpm, n2 = spindle.constant_power_rpm;
+  if (spindle.gd2_kgf_m2 <= 0 || n <= 0 || std::isinf(spindle.power_W) || std::isinf(n1)) return 0;
+  const double flywheel = 1.03 * spindle.gd2_kgf_m2 / spindle.power_W;
+  double t = flywheel * std::min(n, n1) * n1 / 375.0;
+  if (n > n1) t += flywheel * (std::pow(std::min(n, n2), 2) - n1 * n1) / 750.0;
+  if (n > n2) t += flywheel * (n * n * n - n2 * n2 * n2) / (1125.0 * n2);
+  return t;
+}
+
+double spindle_change_s(const machine::Spindle& spindle, double from_rpm, double to_rpm) {
+  return std::abs(spindle_start_s(spindle, to_rpm) - spindle_start_s(spindle, from_rpm));
+}
+
+}  // namespace camber::feedmodel

@@ -1,0 +1,37 @@
+#pragma once
+// The page of camber time: where the time goes, for one machine or several side by side.
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "feedmodel/cycle_time.h"
+
+namespace camber::report {
+
+struct CycleRow {
+  std::string name;            ///< of the case or point
+  std::vector<double> values;  ///< of the swept keys
+  feedmodel::CycleTime time;
+};
+
+struct CyclePage {
+  std::string title, subtitle;
+  std::vector<std::string> keys;  ///< swept; empty: cases or a single run
+  std::vector<CycleRow> rows;     ///< at least one
+  std::vector<std::string> notes;
+};
+
+/// One sentence: what takes most of the time, and what of the cutting time acceleration, corners and short blocks cost.
+std::string dominance_sentence(const feedmodel::CycleTime& time);
+
+/// The page's text, UTF-8, self-contained, pictures as SVG. The same data give the same bytes.
+std::string cycle_page(const CyclePage& page);
+
+/// Bars of the kinds of time, a row each.
+std::string split_bars_svg(const std::vector<CycleRow>& rows);
+/// Total and cutting time over the values of the first swept key.
+std::string sweep_svg(const CyclePage& page);
+std::string distance_svg(const feedmodel::DistanceHistogram& histogram, const std::string& name);
+
+}  // namespace camber::report
