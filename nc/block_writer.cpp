@@ -99,7 +99,7 @@ std::string BlockWriter::text() const {
 
 std::string BlockWriter::further_block(std::string_view letters, const std::vector<double>& values,
                                        int decimals) const {
-  std::string out = block_.skip ? "/" : "";
+  std::string out = block_.skip == 0 ? "" : block_.skip == 1 ? "/" : "/" + std::to_string(block_.skip);
   for (std::size_t i = 0; i < letters.size(); ++i) {
     if (i > 0 && blanks_) out += ' ';
     const Word* own = find(letters[i]);
