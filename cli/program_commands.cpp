@@ -36,15 +36,16 @@ void add_interpreter_options(CLI::App& command, nc::InterpreterOptions& interpre
 
 void add_language_options(CLI::App& command, nc::InterpreterOptions& interpreter) {
   command
-      .add_option("--dialect", interpreter.control,
-                  "control that the program is for; not given: what its text shows (O-words: linuxcnc, M97: haas), else "
-                  "fanuc, with a dwell's P in seconds")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, nc::ControlKind>{{"fanuc", nc::ControlKind::fanuc},
-                                                                                 {"haas", nc::ControlKind::haas},
-                                                                                 {"mazak", nc::ControlKind::mazak},
-                                                                                 {"linuxcnc",
-                                                                                  nc::ControlKind::linuxcnc}})
-                      .description(""))
+      .add_option(
+          "--dialect", interpreter.control,
+          "control that the program is for; not given: what its text shows (O-words: linuxcnc, M97: haas), else "
+          "fanuc, with a dwell's P in seconds")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, nc::ControlKind>{{"fanuc", nc::ControlKind::fanuc},
+                                                                         {"haas", nc::ControlKind::haas},
+                                                                         {"mazak", nc::ControlKind::mazak},
+                                                                         {"linuxcnc", nc::ControlKind::linuxcnc}})
+              .description(""))
       ->type_name("fanuc|haas|mazak|linuxcnc");
   command.add_flag("--least-increments", interpreter.whole_numbers_are_increments,
                    "X1000 without a point is 1000 least increments (1 mm), not 1000 mm");

@@ -23,16 +23,16 @@ struct Dialect {
   std::string_view name;
 
   // Numbers
-  bool dwell_p_is_ms = true;                 ///< G4 P500 is 500 ms; else 500 s
-  bool whole_numbers_are_increments = false; ///< X1000 is 1000 least increments (Fanuc 3401#0 = 0); else 1000 mm
+  bool dwell_p_is_ms = true;                  ///< G4 P500 is 500 ms; else 500 s
+  bool whole_numbers_are_increments = false;  ///< X1000 is 1000 least increments (Fanuc 3401#0 = 0); else 1000 mm
   double least_increment_mm = 0.001;
   double least_increment_inch = 0.0001;
 
   // Variables
   NumberRange local{1, 33};  ///< one set for each level of macro calls
   NumberRange common[2]{{100, 199}, {500, 999}};
-  bool has_null = true;        ///< a variable never set is vacant (#0): X#1 is then as if it were not written; else 0
-  bool system_4000 = true;     ///< #1000.. #5000.. as Fanuc numbers them; else LinuxCNC's #5061..#5428
+  bool has_null = true;     ///< a variable never set is vacant (#0): X#1 is then as if it were not written; else 0
+  bool system_4000 = true;  ///< #1000.. #5000.. as Fanuc numbers them; else LinuxCNC's #5061..#5428
 
   // Expressions
   bool logic_is_bitwise = true;      ///< 5 AND 2 is 0; else any number but 0 is true, and the result is 0 or 1

@@ -399,7 +399,7 @@ class Emitter {
   std::string line_end_;
 
   std::string out_;
-  std::size_t copied_ = 0;  ///< bytes of the source that are in out_ or replaced
+  std::size_t copied_ = 0;                                       ///< bytes of the source that are in out_ or replaced
   std::vector<std::pair<std::uint32_t, std::string>> replaced_;  ///< blocks and their new text
   std::size_t next_edit_ = 0;
   Vec3 at_ = Vec3::Zero();  ///< where the emitted program has taken the tool

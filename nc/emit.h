@@ -38,12 +38,13 @@ struct EmitOptions {
 /// radii at start and end to agree within one unit of the last decimal.
 ///
 /// Moves of drilling cycles and of G28, G30 and G53, dwells, and moves that are not Move::editable cannot be edited:
-/// their edits are passed over. Edits go by the order of the moves, the text keeps its own (a subprogram may stand behind).
+/// their edits are passed over. Edits go by the order of the moves, the text keeps its own (a subprogram may stand
+/// behind).
 std::string emit(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
                  const EmitOptions& options);
 
-/// Warns [not-editable] at the first of the `wanted` moves that cannot be edited because the text does not say it alone,
-/// and tells how many there are. `wanted`: one entry for each move.
+/// Warns [not-editable] at the first of the `wanted` moves that cannot be edited because the text does not say it
+/// alone, and tells how many there are. `wanted`: one entry for each move.
 void warn_of_uneditable(const Program& program, const Interpretation& interpretation, const std::vector<bool>& wanted,
                         Diagnostics& diagnostics);
 

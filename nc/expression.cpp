@@ -18,9 +18,7 @@ double checked(double value, const ExpressionOp& op, const std::string& why) {
   throw MacroError(op.offset, "expression", why);
 }
 
-std::int64_t bits(double value) {
-  return std::abs(value) < 9e15 ? static_cast<std::int64_t>(std::round(value)) : 0;
-}
+std::int64_t bits(double value) { return std::abs(value) < 9e15 ? static_cast<std::int64_t>(std::round(value)) : 0; }
 
 double modulo(double a, double b, const Dialect& dialect) {
   if (dialect.mod_is_whole) return std::fmod(std::round(a), std::round(b));
@@ -144,9 +142,7 @@ double binary(const ExpressionOp& op, const Value& left, const Value& right, con
   }
 }
 
-bool takes_two(Op op) {
-  return (op >= Op::add && op <= Op::logic_xor) || op == Op::arc_tangent_2;
-}
+bool takes_two(Op op) { return (op >= Op::add && op <= Op::logic_xor) || op == Op::arc_tangent_2; }
 
 }  // namespace
 

@@ -63,8 +63,8 @@ struct ExpressionOp {
 };
 
 struct Expression {
-  std::uint32_t offset = 0;  ///< in the file
-  std::uint32_t first = 0, count = 0;  ///< in Expressions::ops, AND, OR and XOR last
+  std::uint32_t offset = 0;                            ///< in the file
+  std::uint32_t first = 0, count = 0;                  ///< in Expressions::ops, AND, OR and XOR last
   std::uint32_t product_first = 0, product_count = 0;  ///< the same with AND as a product (Dialect)
 };
 
@@ -141,7 +141,8 @@ class VariableSource {
   virtual bool known(const std::string& name) = 0;
 };
 
-/// `round_step`: what ROUND rounds to; 1 but in axis words. Throws MacroError [expression] where the value is no number.
+/// `round_step`: what ROUND rounds to; 1 but in axis words. Throws MacroError [expression] where the value is no
+/// number.
 Value evaluate(const Expressions& expressions, std::uint32_t index, VariableSource& variables, const Dialect& dialect,
                double round_step = 1);
 

@@ -18,20 +18,23 @@ struct Spelling {
 
 /// The longer of two that begin alike comes first.
 constexpr std::array kFunctions{
-    Spelling{"ASIN", Op::arc_sine},     Spelling{"ACOS", Op::arc_cosine},  Spelling{"ATAN", Op::arc_tangent},
-    Spelling{"SIN", Op::sine},          Spelling{"COS", Op::cosine},       Spelling{"TAN", Op::tangent},
-    Spelling{"SQRT", Op::square_root},  Spelling{"SQR", Op::square_root},  Spelling{"ABS", Op::absolute},
-    Spelling{"ROUND", Op::round},       Spelling{"RND", Op::round},        Spelling{"FIX", Op::fix},
-    Spelling{"FUP", Op::fup},           Spelling{"LN", Op::logarithm},     Spelling{"EXP", Op::exponential},
-    Spelling{"EXISTS", Op::name_known}, Spelling{"POW", Op::power},        Spelling{"BIN", Op::from_bcd},
+    Spelling{"ASIN", Op::arc_sine},     Spelling{"ACOS", Op::arc_cosine}, Spelling{"ATAN", Op::arc_tangent},
+    Spelling{"SIN", Op::sine},          Spelling{"COS", Op::cosine},      Spelling{"TAN", Op::tangent},
+    Spelling{"SQRT", Op::square_root},  Spelling{"SQR", Op::square_root}, Spelling{"ABS", Op::absolute},
+    Spelling{"ROUND", Op::round},       Spelling{"RND", Op::round},       Spelling{"FIX", Op::fix},
+    Spelling{"FUP", Op::fup},           Spelling{"LN", Op::logarithm},    Spelling{"EXP", Op::exponential},
+    Spelling{"EXISTS", Op::name_known}, Spelling{"POW", Op::power},       Spelling{"BIN", Op::from_bcd},
     Spelling{"BCD", Op::to_bcd},        Spelling{"NOT", Op::logic_not},
 };
 constexpr std::array kOperators{
-    Spelling{"**", Op::power},       Spelling{"*", Op::multiply},       Spelling{"/", Op::divide},
-    Spelling{"+", Op::add},          Spelling{"-", Op::subtract},       Spelling{"MOD", Op::modulo},
-    Spelling{"AND", Op::logic_and},  Spelling{"XOR", Op::logic_xor},    Spelling{"OR", Op::logic_or},
-    Spelling{"EQ", Op::equal},       Spelling{"NE", Op::not_equal},     Spelling{"GT", Op::greater},
-    Spelling{"GE", Op::greater_equal}, Spelling{"LT", Op::less},        Spelling{"LE", Op::less_equal},
+    Spelling{"**", Op::power},         Spelling{"*", Op::multiply},
+    Spelling{"/", Op::divide},         Spelling{"+", Op::add},
+    Spelling{"-", Op::subtract},       Spelling{"MOD", Op::modulo},
+    Spelling{"AND", Op::logic_and},    Spelling{"XOR", Op::logic_xor},
+    Spelling{"OR", Op::logic_or},      Spelling{"EQ", Op::equal},
+    Spelling{"NE", Op::not_equal},     Spelling{"GT", Op::greater},
+    Spelling{"GE", Op::greater_equal}, Spelling{"LT", Op::less},
+    Spelling{"LE", Op::less_equal},
 };
 
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
@@ -254,7 +257,8 @@ void ExpressionReader::bracketed() {
   binary(0);
   if (peek() != ']') {
     if (at_ >= end_) throw MacroError(begin, "expression", "the bracket `[` is not closed in its block");
-    throw MacroError(at_, "expression", "an operator (+ - * / MOD ** AND OR XOR EQ NE GT GE LT LE) or `]` was expected");
+    throw MacroError(at_, "expression",
+                     "an operator (+ - * / MOD ** AND OR XOR EQ NE GT GE LT LE) or `]` was expected");
   }
   ++at_;
 }

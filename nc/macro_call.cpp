@@ -6,7 +6,8 @@ namespace camber::nc {
 namespace {
 
 /// Local variable of a letter, A to Z; 0: no argument.
-constexpr int kVariable[26] = {1, 2, 3, 7, 8, 9, 0, 11, 4, 5, 6, 0, 13, 0, 0, 0, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26};
+constexpr int kVariable[26] = {1, 2, 3, 7,  8,  9,  0,  11, 4,  5,  6,  0,  13,
+                               0, 0, 0, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26};
 
 }  // namespace
 

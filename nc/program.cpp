@@ -84,6 +84,7 @@ class Scanner {
       return scan_item(block_begin);
     } catch (const MacroError& e) {
       report_.error(e.offset, e.check, e.what());
+      program_.macro.broken = true;
       return false;
     }
   }
@@ -344,7 +345,10 @@ Program read_program(SourceText source, Diagnostics& diagnostics) {
   program.source = std::move(source);
   Reporter report(program.source, diagnostics);
   const bool whole = Scanner(program, report).run();
-  for (const MacroError& e : link_statements(program.macro)) report.error(e.offset, e.check, e.what());
+  for (const MacroError& e : link_statements(program.macro)) {
+    report.error(e.offset, e.check, e.what());
+    program.macro.broken = true;
+  }
   const bool stop = !whole;
   const bool wordless = program.words.empty() && program.macro.statements.empty() && !report.has_errors();
   report.finish();

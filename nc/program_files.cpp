@@ -64,8 +64,7 @@ const Program* ProgramFiles::file_named(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const auto path = folder / name;
     std::error_code none;
-    if (!std::filesystem::is_regular_file(path, none) ||
-        std::filesystem::equivalent(path, main_.source.name(), none))
+    if (!std::filesystem::is_regular_file(path, none) || std::filesystem::equivalent(path, main_.source.name(), none))
       continue;
     file = std::make_unique<Program>(read_program(SourceText::read(path.string()), diagnostics_));
     break;

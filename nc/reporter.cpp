@@ -16,9 +16,8 @@ void Reporter::warning(std::size_t offset, std::string_view check, std::string m
 
 void Reporter::add(Severity severity, std::size_t offset, std::string_view check, std::string message,
                    std::string_view alike) {
-  const std::string key =
-      fmt::format("{}/{}/{}/{}", severity == Severity::error ? 'e' : 'w', check, alike.empty() ? message : alike,
-                  source_->name());
+  const std::string key = fmt::format("{}/{}/{}/{}", severity == Severity::error ? 'e' : 'w', check,
+                                      alike.empty() ? message : alike, source_->name());
   const auto [found, is_new] = index_.try_emplace(key, entries_.size());
   if (!is_new) {
     ++entries_[found->second].more;

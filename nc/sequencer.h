@@ -90,7 +90,7 @@ class Sequencer {
   BlockPlace at_;
   bool running_ = true, failed_ = false;
   std::vector<Frame> frames_;
-  std::map<std::uint32_t, double> turns_left_;  ///< of the main program
+  std::map<std::uint32_t, double> turns_left_;       ///< of the main program
   std::vector<std::optional<Call>> modal_calls_{1};  ///< G66, of each level of macros
   std::vector<Word> words_;                          ///< of the block, with numbers for values
   bool editable_ = true;

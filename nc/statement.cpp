@@ -143,7 +143,8 @@ void StatementReader::read_if(std::size_t begin) {
 
 void StatementReader::read_while(std::size_t begin) {
   const std::uint32_t condition = expressions().read_bracketed();
-  if (!take("DO")) throw MacroError(at_, "statement", "WHILE [condition] without DO; WHILE [condition] DO 1 was expected");
+  if (!take("DO"))
+    throw MacroError(at_, "statement", "WHILE [condition] without DO; WHILE [condition] DO 1 was expected");
   read_loop_number(StatementKind::loop, begin, "DO");
   add_value(condition);
 }
@@ -220,8 +221,7 @@ bool StatementReader::read_o_keyword(std::size_t begin, std::uint32_t label, boo
     if (values.size() == most) break;
     values.push_back(expressions().read_bracketed());
   }
-  if (k->values == 1 && values.empty())
-    throw MacroError(begin, "statement", fmt::format("{} has no [value]", word));
+  if (k->values == 1 && values.empty()) throw MacroError(begin, "statement", fmt::format("{} has no [value]", word));
   Statement& s = add(k->kind, begin, label);
   s.o_word = true;
   s.repeats = word == "REPEAT";

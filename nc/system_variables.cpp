@@ -12,7 +12,9 @@ namespace {
 
 bool within(int number, int first, int last) { return number >= first && number <= last; }
 
-double work_offset_code(int work_offset) { return work_offset > 540000 ? 54.1 : work_offset > 100 ? work_offset / 10.0 : work_offset; }
+double work_offset_code(int work_offset) {
+  return work_offset > 540000 ? 54.1 : work_offset > 100 ? work_offset / 10.0 : work_offset;
+}
 
 }  // namespace
 
@@ -193,9 +195,10 @@ void SystemVariables::set(int number, Value value, std::size_t offset) {
     if (!out_.moves.empty()) out_.moves.back().exact_stop = true;
   } else if (within(number, 2000, 2999) || within(number, 5201, 5400) || within(number, 7001, 7960) ||
              within(number, 10001, 19999)) {
-    report_.warning(offset, "variable",
-                    fmt::format("#{} (an offset) is set by the program; it is taken to leave the path as it is", number),
-                    "offset set");
+    report_.warning(
+        offset, "variable",
+        fmt::format("#{} (an offset) is set by the program; it is taken to leave the path as it is", number),
+        "offset set");
   } else if (!within(number, 1000, 1199) && !within(number, 3003, 3012) && !within(number, 3901, 3902)) {
     throw MacroError(offset, "variable",
                      fmt::format("#{} cannot be set on a {} control that Camber knows", number, dialect_.name));
