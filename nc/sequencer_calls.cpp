@@ -71,7 +71,8 @@ void Sequencer::leave_frame() {
 /// True where a program comes upon the O number of the next one in its file.
 bool Sequencer::runs_into_next_program() {
   if (!program_number(*at_.file, at_.block)) return false;
-  if (frames_.empty()) return at_.file->macro.calls && at_.block != files_.program_starts(*at_.file).front();
+  if (frames_.empty())
+    return at_.file->macro.calls && (at_.block != files_.program_starts(*at_.file).front() || (*runs_)[at_.block] > 0);
   return at_.block != frames_.back().call.start.block || at_.file != frames_.back().call.start.file;
 }
 
