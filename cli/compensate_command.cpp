@@ -45,7 +45,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
         arguments.report,
         report::compensate_report("Form error before and after compensation", result,
                                   feed_of(SourceText::read(job.program), job),
-                                  feed_of(SourceText(arguments.output, result.text), job), diagnostics));
+                                  feed_of(SourceText(job.program, result.text), job), diagnostics));
 
   if (!options.quiet) fmt::print("{}", report::compensate_text(result, compute_s));
   if (const std::string unsettled = report::unsettled_sentence(result); !unsettled.empty()) {

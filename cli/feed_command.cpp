@@ -20,7 +20,7 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
   const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const nc::Interpretation moves =
-      nc::interpret(program, feedmodel::interpreter_options(machine, arguments.interpreter.inch), diagnostics);
+      nc::interpret(program, feedmodel::interpreter_options(machine, arguments.interpreter), diagnostics);
   settle(diagnostics, options);
 
   std::unique_ptr<feedmodel::FeedCsv> csv;

@@ -20,7 +20,36 @@ void add_interpreter_options(CLI::App& command, nc::InterpreterOptions& interpre
   command.add_option("--units", interpreter.inch, "unit of a program that has neither G20 nor G21")
       ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"mm", false}, {"inch", true}}).description(""))
       ->type_name("mm|inch");
-  command.add_flag("--block-skip", interpreter.skip_slash_blocks, "leave out blocks that begin with /");
+  command.add_flag("--block-skip", interpreter.skip_slash_blocks, "leave out blocks that begin with / or /1 to /9");
+  command
+      .add_option_function<std::vector<int>>(
+          "--skip-switch",
+          [&interpreter](const std::vector<int>& switches) {
+            for (const int n : switches) interpreter.skip_switches |= static_cast<std::uint16_t>(1u << n);
+          },
+          "leave out blocks that begin with /N; / is /1")
+      ->check(CLI::Range(1, 9))
+      ->delimiter(',')
+      ->expected(1)
+      ->take_all()
+      ->type_name("N");
+}
+
+void add_language_options(CLI::App& command, nc::InterpreterOptions& interpreter) {
+  command
+      .add_option(
+          "--dialect", interpreter.control,
+          "control that the program is for; not given: what its text shows (O-words: linuxcnc, M97: haas), else "
+          "fanuc, with a dwell's P in seconds")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, nc::ControlKind>{{"fanuc", nc::ControlKind::fanuc},
+                                                                         {"haas", nc::ControlKind::haas},
+                                                                         {"mazak", nc::ControlKind::mazak},
+                                                                         {"linuxcnc", nc::ControlKind::linuxcnc}})
+              .description(""))
+      ->type_name("fanuc|haas|mazak|linuxcnc");
+  command.add_flag("--least-increments", interpreter.whole_numbers_are_increments,
+                   "X1000 without a point is 1000 least increments (1 mm), not 1000 mm");
 }
 
 int print_effective_machine(const std::string& path, const GlobalOptions& options) {
@@ -55,6 +84,7 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
   add_interpreter_options(*command, arguments->interpreter);
+  add_language_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       check_outputs({arguments->json}, {arguments->program});

@@ -91,7 +91,9 @@ class Loop {
         own_target_(job.part.program.empty()),
         target_(own_target_ ? deflection::make_target(job, program_, diagnostics)
                             : deflection::make_target(job, read_target(), diagnostics)),
-        path_(program_.moves, program_.selected, spacing_mm(job, program_)) {}
+        path_(program_.moves, program_.selected, spacing_mm(job, program_)) {
+    nc::warn_of_uneditable(program_.text, program_.moves, program_.selected, diagnostics);
+  }
 
   Compensation run() {
     Compensation out;

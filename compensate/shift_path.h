@@ -17,7 +17,7 @@ struct ControlPoint {
   double along_mm = 0;  ///< path length since the chain's start
   Vec3 place_mm = Vec3::Zero();
   Vec3 shift_mm = Vec3::Zero();
-  bool fixed = false;  ///< where a rapid or a move of another operation ends: stays
+  bool fixed = false;  ///< where a rapid, a move of another operation or one that cannot be edited ends: stays
 };
 
 /// One unbroken run of moves that may be shifted: points[from] ... points[from + count - 1].

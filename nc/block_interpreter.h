@@ -19,12 +19,36 @@ enum class AxisPlace : std::uint8_t {
   known
 };
 
+/// What variables of the control tell.
+struct MachineFacts {
+  Vec3 position_mm = Vec3::Zero();
+  double unit_mm = 1;
+  const ModalState* state = nullptr;
+  int motion_g = 0;  ///< 0 .. 3; 0 where none was given
+  int plane_g = 17;
+  int cycle_g = 0;  ///< 0: none active
+  bool return_to_r = false;
+  double feed = 0;  ///< F as the program gave it
+  int selected_tool = 0;
+};
+
+/// A block that is run: where its text stands and which words act.
+struct RunBlock {
+  const Program& program;       ///< the file that it stands in
+  std::uint32_t block = 0;      ///< in that file
+  std::span<const Word> words;  ///< with numbers for values
+  std::uint32_t called_from;    ///< Move::block: the block itself, or of the main program the one that called the file
+  bool editable = true;         ///< Move::editable
+};
+
 class BlockInterpreter {
  public:
   BlockInterpreter(const Program& program, const InterpreterOptions& options, Reporter& report, Interpretation& out);
 
   /// Runs one block; false at the end of the program (M2, M30) or where reading on makes no sense.
-  bool run(std::uint32_t block);
+  bool run(std::uint32_t block) { return run({*program_, block, program_->words_of(block), block}); }
+  bool run(const RunBlock& block);
+  MachineFacts facts() const;
   /// What can be said only at the end.
   void finish();
   /// True when arcs fit with absolute centres only, none with relative ones only, and no word says which they are.
@@ -62,6 +86,7 @@ class BlockInterpreter {
   void set_tool_length(const Code& code);
   void set_feed_mode(FeedMode mode);
   void set_contouring(const Code& code);
+  void scale_whole_numbers();
   void read_feed();
   void read_spindle_speed();
   void read_tool();
@@ -101,7 +126,7 @@ class BlockInterpreter {
   double unit_mm() const { return state_.inch ? kInch : 1.0; }
   static constexpr double kInch = 25.4;
 
-  const Program& program_;
+  const Program* program_;
   const InterpreterOptions& options_;
   Reporter& report_;
   Interpretation& out_;
@@ -109,6 +134,7 @@ class BlockInterpreter {
   BlockWords words_;
   Request request_;
   std::uint32_t block_ = 0;
+  bool editable_ = true;
 
   ModalState state_;
   bool state_changed_ = true;

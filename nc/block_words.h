@@ -35,6 +35,8 @@ class BlockWords {
     if (!has(letter)) return std::nullopt;
     return value(letter) * scale;
   }
+  /// Multiplies the value of a word. Precondition: has(letter).
+  void scale(char letter, double factor) { value_[index(letter)] *= factor; }
   const Word& word(char letter) const { return *word_[index(letter)]; }
   void use(const char* letters);
   /// Words that nothing asked for: bits of the letters.

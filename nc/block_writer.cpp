@@ -125,7 +125,7 @@ std::string BlockWriter::further_block(std::string_view letters, const std::vect
     }
   for (const Word& w : own)
     if (w.letter != 'G') words.push_back(program_.source.text().substr(w.offset, w.length));
-  std::string out = block_.skip ? "/" : "";
+  std::string out = block_.skip == 0 ? "" : block_.skip == 1 ? "/" : "/" + std::to_string(block_.skip);
   for (std::size_t i = 0; i < words.size(); ++i) out += (i > 0 && blanks_ ? " " : "") + words[i];
   return out;
 }

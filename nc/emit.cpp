@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/units.h"
 #include "nc/arc_rounding.h"
 #include "nc/block_writer.h"
@@ -55,6 +57,7 @@ class Emitter {
       run_block(m, end);
       m = end;
     }
+    write_replaced_blocks();
     copy_until(program_.source.text().size());
     return {std::move(out_), std::move(not_made_)};
   }
@@ -93,6 +96,10 @@ class Emitter {
       return;
     }
     if (move.kind == MoveKind::dwell) return;
+    if (!move.editable) {
+      pass_over(first, end);
+      return;
+    }
     const auto words = program_.words_of(move.block);
     unit_mm_ = moves_.state_of(move).inch ? kMmPerInch : 1.0;
     least_decimals_ = unit_mm_ == 1.0 ? options_.decimals_mm : options_.decimals_inch;
@@ -128,14 +135,34 @@ class Emitter {
     if (move.kind == MoveKind::dwell) return EmitGap::dwell;
     if (goes_to_machine_place(program_.words_of(move.block))) return EmitGap::machine_place;
     if (move.canned) return EmitGap::canned_cycle;
+    if (!move.editable) return EmitGap::not_in_text;
     if (moves_of_block > 1) return EmitGap::several_moves;
     return std::nullopt;
   }
 
-  void replace_block(std::uint32_t block, const std::string& text) {
-    copy_until(program_.blocks[block].offset);
-    out_ += text;
-    copied_ = program_.blocks[block].offset + program_.blocks[block].length;
+  /// Moves that the text does not say one by one: where they go does not depend on where the tool stands, but for axes
+  /// that stand still or go by increments.
+  void pass_over(std::size_t first, std::size_t end) {
+    const Vec3 start = moves_.moves[first].start_mm, shift = at_ - start;
+    at_ = moves_.moves[end - 1].end_mm;
+    for (int axis = 0; axis < 3; ++axis) {
+      bool still = true;
+      for (std::size_t m = first; m < end; ++m) still = still && moves_.moves[m].end_mm[axis] == start[axis];
+      if (still || incremental(moves_.moves[first])) at_[axis] += shift[axis];
+    }
+  }
+
+  /// Subprograms run out of the order of the text: blocks are written when all are known.
+  void replace_block(std::uint32_t block, std::string text) { replaced_.emplace_back(block, std::move(text)); }
+
+  void write_replaced_blocks() {
+    std::stable_sort(replaced_.begin(), replaced_.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [block, text] : replaced_) {
+      copy_until(program_.blocks[block].offset);
+      out_ += text;
+      copied_ = program_.blocks[block].offset + program_.blocks[block].length;
+    }
   }
 
   void replace_block(std::uint32_t block, const BlockWriter& writer) {
@@ -370,7 +397,8 @@ class Emitter {
 
   std::string out_;
   std::vector<EditNotMade> not_made_;
-  std::size_t copied_ = 0;  ///< bytes of the source that are in out_ or replaced
+  std::size_t copied_ = 0;                                       ///< bytes of the source that are in out_ or replaced
+  std::vector<std::pair<std::uint32_t, std::string>> replaced_;  ///< blocks and their new text
   std::size_t next_edit_ = 0;
   Vec3 at_ = Vec3::Zero();  ///< where the emitted program has taken the tool
   double unit_mm_ = 1;
@@ -387,6 +415,8 @@ std::string to_string(EmitGap why) {
       return "a move of G28, G30 or G53";
     case EmitGap::dwell:
       return "a dwell";
+    case EmitGap::not_in_text:
+      return "a move of a loop, an expression or a subprogram";
     case EmitGap::several_moves:
       return "a block of several moves";
     case EmitGap::subprogram:
@@ -405,6 +435,25 @@ Emission emit_edits(const Program& program, const Interpretation& interpretation
 std::string emit(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
                  const EmitOptions& options) {
   return emit_edits(program, interpretation, edits, options).text;
+}
+
+void warn_of_uneditable(const Program& program, const Interpretation& interpretation, const std::vector<bool>& wanted,
+                        Diagnostics& diagnostics) {
+  const Move* first = nullptr;
+  std::size_t count = 0;
+  for (std::size_t m = 0; m < interpretation.moves.size(); ++m) {
+    const Move& move = interpretation.moves[m];
+    if (!wanted[m] || move.editable || move.canned) continue;
+    if (!first) first = &move;
+    ++count;
+  }
+  if (!first) return;
+  diagnostics.add(program.source.diagnostic(
+      Severity::warning, program.blocks[first->block].offset,
+      fmt::format("{} cutting move{} from here on {} made by a loop, an expression or a subprogram that is called more "
+                  "than once or stands in another file; the text has no words of their own, they stay as they are",
+                  count, count == 1 ? "" : "s", count == 1 ? "is" : "are"),
+      "not-editable"));
 }
 
 }  // namespace camber::nc

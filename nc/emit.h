@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostics.h"
 #include "base/geometry.h"
 #include "nc/move.h"
 #include "nc/program.h"
 
 namespace camber::nc {
 
-/// New geometry for one move (a linear or an arc move that stands in the text as one block; not canned).
+/// New geometry for one move (a linear or an arc move that is editable and not canned).
 struct MoveEdit {
   std::uint32_t move = 0;      ///< index into Interpretation::moves; ascending in the list
   std::vector<Vec3> via_mm{};  ///< points to pass before the end, in order: the block becomes several (linear only)
@@ -36,7 +37,9 @@ struct EmitOptions {
 /// A full turn stays closed: it ends where the emitted program starts it. Arcs get as many decimals as it takes for the
 /// radii at start and end to agree within one unit of the last decimal.
 ///
-/// Moves of drilling cycles and of G28, G30 and G53, and dwells, cannot be edited: their edits are passed over.
+/// Moves of drilling cycles and of G28, G30 and G53, dwells, and moves that are not Move::editable cannot be edited:
+/// their edits are passed over. Edits go by the order of the moves, the text keeps its own (a subprogram may stand
+/// behind).
 std::string emit(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
                  const EmitOptions& options);
 
@@ -45,6 +48,7 @@ enum class EmitGap {
   canned_cycle,   ///< a move of a drilling cycle
   machine_place,  ///< a move of G28, G30 or G53
   dwell,
+  not_in_text,    ///< made by a loop, an expression or a subprogram: the text has no words of its own for it
   several_moves,  ///< the block makes more than one move
   subprogram,     ///< only the via points are left out: the block also calls or ends a subprogram (M96 .. M99)
   arc             ///< no arc reaches the new ends, the old one was kept; also of unedited arcs behind an edit
@@ -66,5 +70,10 @@ struct Emission {
 /// As emit(), and says which edits are not in the text.
 Emission emit_edits(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
                     const EmitOptions& options);
+
+/// Warns [not-editable] at the first of the `wanted` moves that cannot be edited because the text does not say it
+/// alone, and tells how many there are. `wanted`: one entry for each move.
+void warn_of_uneditable(const Program& program, const Interpretation& interpretation, const std::vector<bool>& wanted,
+                        Diagnostics& diagnostics);
 
 }  // namespace camber::nc

@@ -17,11 +17,9 @@ constexpr std::array<std::string_view, 37> kSiemens = {
     "EXTERN", "PROC",  "STOPRE", "ORIWKS",  "OFFN",   "WCS",    "GROUP"};
 constexpr std::array<std::string_view, 11> kHeidenhain = {"BEGIN", "PGM", "TOOL", "CYCL", "BLK", "FMAX",
                                                           "LBL",   "CC",  "RND",  "CHF",  "FN"};
-constexpr std::array<std::string_view, 10> kMacro = {"IF",  "THEN", "GOTO",  "WHILE", "DO",
-                                                     "END", "ENDW", "POPEN", "DPRNT", "SETVN"};
-constexpr std::array<std::string_view, 15> kOWord = {"SUB",   "CALL",     "ENDSUB", "ENDWHILE", "ENDIF",
-                                                     "ELSE",  "ELSEIF",   "RETURN", "REPEAT",   "ENDREPEAT",
-                                                     "BREAK", "CONTINUE", "OCALL",  "OSUB",     "OIF"};
+constexpr std::array<std::string_view, 13> kOWord = {"SUB",    "CALL",      "ENDSUB", "ENDWHILE", "ELSEIF",
+                                                     "RETURN", "REPEAT",    "BREAK",  "CONTINUE", "OCALL",
+                                                     "OSUB",   "ENDREPEAT", "OIF"};
 
 template <std::size_t N>
 bool among(const std::array<std::string_view, N>& names, std::string_view name) {
@@ -34,12 +32,9 @@ ForeignWord explain_letters(std::string_view name) {
   if (among(kSiemens, name))
     return {fmt::format("{} belongs to a Siemens Sinumerik program, which is not read yet; {}", name, kExpected),
             "siemens", true};
-  if (among(kMacro, name))
-    return {fmt::format("macro statements ({}) are not read yet; let the CAM system write the moves out", name),
-            "macro", false};
   if (among(kOWord, name))
-    return {fmt::format("O-word subprograms and flow control ({}) are not read yet; plain blocks were expected", name),
-            "subprogram", false};
+    return {fmt::format("{} without its O number; O100 {} or O<name> {} was expected", name, name, name), "statement",
+            false};
   if (among(kHeidenhain, name))
     return {fmt::format("{} belongs to a Heidenhain program, which is not read yet; {}", name, kExpected), "heidenhain",
             true};

@@ -5,24 +5,28 @@
 #include <fmt/format.h>
 
 #include "nc/block_interpreter.h"
+#include "nc/program_files.h"
+#include "nc/sequencer.h"
 
 namespace camber::nc {
 
 BlockInterpreter::BlockInterpreter(const Program& program, const InterpreterOptions& options, Reporter& report,
                                    Interpretation& out)
-    : program_(program), options_(options), report_(report), out_(out) {
+    : program_(&program), options_(options), report_(report), out_(out) {
   state_.inch = options.inch.value_or(false);
   state_.absolute_arc_centre = options.absolute_arc_centre;
   unit_given_ = options.inch.has_value();
 }
 
-bool BlockInterpreter::run(std::uint32_t block) {
-  const auto words = program_.words_of(block);
-  if (words.empty() || (program_.blocks[block].skip && options_.skip_slash_blocks)) return true;
-  block_ = block;
+bool BlockInterpreter::run(const RunBlock& block) {
+  if (block.words.empty()) return true;
+  program_ = &block.program;
+  block_ = block.called_from;
+  editable_ = block.editable;
   request_ = {};
-  words_.read(words, report_);
+  words_.read(block.words, report_);
   if (!words_.g().empty() && !read_g_codes()) return false;
+  if (options_.whole_numbers_are_increments) scale_whole_numbers();
   read_feed();
   read_spindle_speed();
   read_tool();
@@ -57,46 +61,70 @@ void BlockInterpreter::error(std::size_t offset, std::string_view check, std::st
 
 std::string BlockInterpreter::code_text(const Code& code) const {
   const char letter = code.word->letter;
-  if (code.tenths < 0) return program_.source.text().substr(code.word->offset, code.word->length);
+  if (code.tenths < 0) return program_->source.text().substr(code.word->offset, code.word->length);
   if (code.tenths % 10 == 0) return fmt::format("{}{}", letter, code.tenths / 10);
   return fmt::format("{}{}.{}", letter, code.tenths / 10, code.tenths % 10);
 }
 
 bool BlockInterpreter::written_with_point(const Word& word) const {
-  return std::string_view(program_.source.text()).substr(word.offset, word.length).find('.') != std::string_view::npos;
+  return std::string_view(program_->source.text()).substr(word.offset, word.length).find('.') != std::string_view::npos;
+}
+
+MachineFacts BlockInterpreter::facts() const {
+  MachineFacts f;
+  f.position_mm = position_mm_;
+  f.unit_mm = unit_mm();
+  f.state = &state_;
+  f.motion_g = motion_ == Motion::none ? 0 : static_cast<int>(motion_) - 1;
+  f.plane_g = plane_ == Plane::xy ? 17 : plane_ == Plane::zx ? 18 : 19;
+  f.cycle_g = cycle_.g;
+  f.return_to_r = return_to_r_;
+  if (feed_)
+    f.feed = *feed_ * (state_.feed_mode == FeedMode::per_revolution ? 1 / unit_mm()
+                       : state_.feed_mode == FeedMode::inverse_time ? 60
+                                                                    : 60 / unit_mm());
+  f.selected_tool = next_tool_;
+  return f;
+}
+
+/// X1000 is a number of least increments where the control counts so (G4 X1000 is a time: see dwell_seconds).
+void BlockInterpreter::scale_whole_numbers() {
+  if (request_.dwell) return;
+  const Dialect& dialect = options_.dialect();
+  const double step = state_.inch ? dialect.least_increment_inch : dialect.least_increment_mm;
+  for (const char letter : std::string_view("XYZUVWIJKRQABC")) {
+    if (!words_.has(letter) || written_with_point(words_.word(letter)) || words_.word(letter).value == 0) continue;
+    words_.scale(letter, step);
+    editable_ = false;
+  }
 }
 
 namespace {
 
-/// The first block behind `block` that still holds words, if any.
-std::optional<std::size_t> next_with_words(const Program& program, std::size_t block) {
-  for (std::size_t i = block + 1; i < program.blocks.size(); ++i)
-    if (program.blocks[i].word_count > 0) return i;
-  return std::nullopt;
+/// Runs the program once. Returns what the interpreter thinks of its arc centres.
+bool run_program(ProgramFiles& files, const InterpreterOptions& options, Reporter& report, Interpretation& out) {
+  Sequencer sequencer(files, options, report, out);
+  sequencer.run();
+  return sequencer.centres_look_absolute();
 }
 
-/// Runs the program once. Returns what the interpreter thinks of its arc centres.
-bool run_program(const Program& program, const InterpreterOptions& options, Reporter& report, Interpretation& out) {
-  BlockInterpreter interpreter(program, options, report, out);
-  out.moves.reserve(program.blocks.size());
-  const std::size_t blocks = program.blocks.size();
-  std::size_t block = 0;
-  while (block < blocks && !report.full() && interpreter.run(static_cast<std::uint32_t>(block))) ++block;
-  const auto after = block < blocks && !report.has_errors() ? next_with_words(program, block) : std::nullopt;
-  if (after)
-    report.warning(program.words_of(*after).front().offset, "after-end",
-                   "the blocks behind the end of the program (M2, M30) are not run");
-  interpreter.finish();
-  return interpreter.centres_look_absolute();
+/// The dialect that the text shows where none is named, and what it says of dwells.
+InterpreterOptions settled(const Program& program, InterpreterOptions options) {
+  if (!options.control) options.control = control_shown_by(program);
+  if (options.control) options.dwell_p_is_ms |= options.dialect().dwell_p_is_ms;
+  options.whole_numbers_are_increments |= options.dialect().whole_numbers_are_increments;
+  return options;
 }
 
 /// Some CAM systems write absolute arc centres and leave G90.1 to the control. It shows: no arc fits otherwise.
-std::optional<Interpretation> try_absolute_centres(const Program& program, InterpreterOptions options,
+std::optional<Interpretation> try_absolute_centres(ProgramFiles& files, InterpreterOptions options,
                                                    Diagnostics& diagnostics) {
   options.absolute_arc_centre = true;
+  files.forget_runs();
+  const Program& program = files.main();
   Interpretation out;
   Reporter report(program.source, diagnostics);
-  run_program(program, options, report, out);
+  run_program(files, options, report, out);
   if (report.has_errors()) return std::nullopt;
   const auto first_arc = std::find_if(out.moves.begin(), out.moves.end(), [](const Move& m) { return m.arc == 0; });
   report.warning(
@@ -108,11 +136,13 @@ std::optional<Interpretation> try_absolute_centres(const Program& program, Inter
 
 }  // namespace
 
-Interpretation interpret(const Program& program, const InterpreterOptions& options, Diagnostics& diagnostics) {
+Interpretation interpret(const Program& program, const InterpreterOptions& wanted, Diagnostics& diagnostics) {
+  const InterpreterOptions options = settled(program, wanted);
   Interpretation out;
+  ProgramFiles files(program, diagnostics);
   Reporter report(program.source, diagnostics);
-  if (run_program(program, options, report, out) && !options.absolute_arc_centre)
-    if (auto absolute = try_absolute_centres(program, options, diagnostics)) return std::move(*absolute);
+  if (run_program(files, options, report, out) && !options.absolute_arc_centre)
+    if (auto absolute = try_absolute_centres(files, options, diagnostics)) return std::move(*absolute);
   report.finish();
   return out;
 }

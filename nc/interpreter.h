@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "nc/dialect.h"
 #include "nc/move.h"
 #include "nc/program.h"
 
@@ -21,6 +22,15 @@ struct InterpreterOptions {
   bool absolute_arc_centre = false;  ///< the control starts in G90.1 rather than G91.1
   bool index_table = false;         ///< B turns an index table: an event, no error
   double peck_clearance_mm = 0.254;  ///< G83 stops its rapid so far above the last depth; G73 retracts by it
+  /// Whose language the program is in. Not given: what its text shows (O-words, M97), else Fanuc, whose macros most
+  /// programs are written in; a dwell's P then counts as `dwell_p_is_ms` says.
+  std::optional<ControlKind> control{};
+  bool whole_numbers_are_increments = false;  ///< X1000 is 1000 least increments of the dialect (1 mm), not 1000 mm
+  std::uint16_t skip_switches = 0;            ///< bit n: blocks that begin with /n are left out (/ is /1)
+  /// Blocks that loops and repeated subprograms may run again before the program counts as endless.
+  std::size_t most_repeated_blocks = 10'000'000;
+
+  const Dialect& dialect() const { return dialect_of(control.value_or(ControlKind::fanuc)); }
 };
 
 /// Arcs whose radii at start and end differ by more than the first are warned of, by more than the second refused.

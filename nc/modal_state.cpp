@@ -397,7 +397,7 @@ void BlockInterpreter::warn_of_unused_words() {
     else if (word.value != 0 || std::string_view(kAxisWords).find(letter) != std::string_view::npos)
       report_.warning(word.offset, "unused-word",
                       fmt::format("{} has no meaning in this block and is ignored",
-                                  program_.source.text().substr(word.offset, word.length)),
+                                  program_->source.text().substr(word.offset, word.length)),
                       std::string(1, letter));
   }
 }

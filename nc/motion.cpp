@@ -35,6 +35,7 @@ Move& BlockInterpreter::add_move(MoveKind kind, const Vec3& end_mm) {
   move.block = block_;
   move.state = state_index();
   move.kind = kind;
+  move.editable = editable_;
   move.exact_stop = request_.exact_stop;
   move.reference = kind != MoveKind::dwell && place_unknown();
   position_mm_ = end_mm;

@@ -72,7 +72,7 @@ NumberStyle style_of(const Program& program) {
   const std::size_t count = std::min(program.words.size(), kSample);
   for (std::size_t i = 0; i < count; ++i) {
     const Word& w = program.words[i];
-    if (!is_coordinate(w.letter)) continue;
+    if (!is_coordinate(w.letter) || std::isnan(w.value)) continue;
     if (w.offset > 0) ++(text[w.offset - 1] == ' ' ? c.blank : c.no_blank);
     if (w.length > w.value_at)
       c.add(text.substr(w.offset + w.value_at, static_cast<std::size_t>(w.length - w.value_at)), w.value);

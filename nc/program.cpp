@@ -61,22 +61,35 @@ class Scanner {
     block.first_word = static_cast<std::uint32_t>(program_.words.size());
     at_ = begin;
     end_ = end;
-    skip_ = false;
+    skip_ = 0;
+    flow_ = false;
     if (begin == 0 && end >= 3 && std::string_view(text_, 3) == "\xEF\xBB\xBF") at_ = 3;  // byte order mark
-    while (at_ < end_ && scan_item(begin)) {
+    while (at_ < end_ && scan_item_or_fail(begin)) {
     }
     std::size_t count = program_.words.size() - block.first_word;
     if (count > std::numeric_limits<std::uint16_t>::max()) {
       report_.error(begin, "too-many-words", fmt::format("{} words in one block; at most 65535 are read", count));
       program_.words.resize(block.first_word);
+      std::erase_if(program_.macro.words, [&](const ExpressionWord& w) { return w.word >= block.first_word; });
       count = 0;
     }
     block.word_count = static_cast<std::uint16_t>(count);
     block.skip = skip_;
+    block.flow = flow_;
     program_.blocks.push_back(block);
   }
 
-  /// Reads one word, comment or sign; false ends the block.
+  bool scan_item_or_fail(std::size_t block_begin) {
+    try {
+      return scan_item(block_begin);
+    } catch (const MacroError& e) {
+      report_.error(e.offset, e.check, e.what());
+      program_.macro.broken = true;
+      return false;
+    }
+  }
+
+  /// Reads one word, comment, statement or sign; false ends the block.
   bool scan_item(std::size_t block_begin) {
     const char c = text_[at_];
     if (is_letter(c)) return scan_word();
@@ -94,6 +107,9 @@ class Scanner {
         return ++at_, true;
       case '/':
         return scan_skip();
+      case '#':
+        statements().read_assignment();
+        return flow_ = true;
       case ':':
         return scan_program_number(block_begin);
       default:
@@ -121,9 +137,10 @@ class Scanner {
   }
 
   bool scan_skip() {
-    skip_ = true;
+    skip_ = 1;
     ++at_;
-    if (at_ < end_ && is_digit(text_[at_])) ++at_;  // /1 .. /9: which switch
+    if (at_ < end_ && text_[at_] >= '1' && text_[at_] <= '9') skip_ = static_cast<std::uint8_t>(text_[at_] - '0');
+    if (at_ < end_ && is_digit(text_[at_])) ++at_;
     return true;
   }
 
@@ -133,9 +150,40 @@ class Scanner {
   bool scan_word() {
     const char letter = upper(text_[at_]);
     const char next = at_ + 1 < end_ ? text_[at_ + 1] : '\0';
+    if (letter == 'O' && scan_o_word()) return true;
+    if (is_letter(next) && scan_statement()) return true;
+    if (is_letter(next) && value_follows(at_ + 1)) return scan_word_as(letter, at_);
     if (is_letter(next) || next == '_' || next == '=' || next == '<') return refuse_letters();
     return scan_word_as(letter, at_);
   }
+
+  StatementReader statements() {
+    return {program_.macro, text(), at_, end_, static_cast<std::uint32_t>(program_.blocks.size())};
+  }
+
+  bool scan_o_word() {
+    const auto found = statements().read_o_word();
+    flow_ |= found == StatementReader::Found::statement;
+    return found != StatementReader::Found::nothing;
+  }
+
+  bool scan_statement() {
+    const auto found = statements().read_keyword();
+    flow_ |= found == StatementReader::Found::statement;
+    return found != StatementReader::Found::nothing;
+  }
+
+  /// True when a variable, a bracket or a function stands there, so that a word has it for its value.
+  bool value_follows(std::size_t at) {
+    if (at < end_ && text_[at] == '[') {
+      // `Z [FEEDRATE OF Z]` is a comment behind a word without its number.
+      const std::string_view inside = text().substr(at, std::min(text().find(']', at), end_) - at);
+      if (inside.find_first_of("#0123456789") == std::string_view::npos) return false;
+    }
+    return ExpressionReader(program_.macro.expressions, text(), at, end_).begins_value();
+  }
+
+  std::string_view text() const { return {text_, size_}; }
 
   bool scan_word_as(char letter, std::size_t begin) {
     ++at_;
@@ -150,11 +198,17 @@ class Scanner {
   bool add_word(char letter, std::size_t begin, std::size_t number, std::size_t end, double value) {
     if (end - begin > std::numeric_limits<std::uint16_t>::max()) {
       report_.error(begin, "word-too-long", fmt::format("the word {} is longer than 65535 characters", letter));
+      if (std::isnan(value)) program_.macro.words.pop_back();
       return false;
     }
     if (number - begin > std::numeric_limits<std::uint8_t>::max()) {
       report_.error(begin, "word-too-long", fmt::format("more than 255 blanks between {} and its number", letter));
+      if (std::isnan(value)) program_.macro.words.pop_back();
       return false;
+    }
+    if ((letter == 'M' && value >= 97 && value <= 99) || (letter == 'G' && value >= 65 && value <= 67)) {
+      flow_ = program_.macro.calls = true;
+      program_.macro.local_calls |= letter == 'M' && value == 97;
     }
     program_.words.push_back({letter, static_cast<std::uint8_t>(number - begin),
                               static_cast<std::uint16_t>(end - begin), static_cast<std::uint32_t>(begin), value});
@@ -211,13 +265,15 @@ class Scanner {
 
   bool lacks_number(char letter, std::size_t begin, std::size_t number) {
     const char c = number < end_ ? text_[number] : '\0';
-    if (c == '#' || c == '[')
-      report_.error(
-          number, "variable",
-          fmt::format("the value of {} is {}; variables and expressions are not read yet, a number was expected",
-                      letter, c == '#' ? "a variable" : "an expression"),
-          "variable");
-    else if (c == '"' || c == '=')
+    if (value_follows(number)) {
+      at_ = number;
+      const std::uint32_t value = ExpressionReader(program_.macro.expressions, text(), at_, end_).read_value();
+      const std::size_t word = program_.words.size();
+      program_.macro.words.push_back({static_cast<std::uint32_t>(word), value});
+      flow_ = true;
+      return add_word(letter, begin, number, at_, std::numeric_limits<double>::quiet_NaN());
+    }
+    if (c == '"' || c == '=')
       return refuse_assignment(begin);
     else if (may_lack_number(letter) && (c == '\0' || is_letter(c) || c == '(' || c == ';')) {
       report_.warning(begin, "no-number", fmt::format("{} has no number; it is taken as {}0", letter, letter));
@@ -237,11 +293,6 @@ class Scanner {
     const std::string name = letters_from(at_);
     if (at_ + name.size() < end_ && (text_[at_ + name.size()] == '=' || name.find('_') != std::string::npos))
       return refuse_assignment(at_);
-    if (name.size() == 1) {  // O<name>
-      report_.error(at_, "subprogram",
-                    "O-word subprograms and flow control (O<name>) are not read yet; plain blocks were expected");
-      return false;
-    }
     const std::string rest = name.substr(1);
     if (rest == "NAN" || rest == "INF" || rest == "INFINITY") {
       report_.error(at_, "not-a-number",
@@ -267,9 +318,7 @@ class Scanner {
     if (c == '\x1a' || c == '\0') {
       if (at_ + 1 == size_) return false;  // end-of-file mark of old systems
     }
-    if (c == '#') {
-      report_.error(at_, "variable", "variables (#) are not read yet; let the CAM system write the numbers out", "#");
-    } else if (c == ',') {
+    if (c == ',') {
       const std::string name = letters_from(at_ + 1);
       report_.error(at_, "corner-word",
                     fmt::format("chamfers and roundings in a block (,{}) are not read yet; a word was expected",
@@ -287,7 +336,8 @@ class Scanner {
   const char* text_;
   std::size_t size_;
   std::size_t at_ = 0, end_ = 0;
-  bool skip_ = false;
+  std::uint8_t skip_ = 0;
+  bool flow_ = false;
   bool foreign_ = false;
 };
 
@@ -300,8 +350,12 @@ Program read_program(SourceText source, Diagnostics& diagnostics) {
   program.source = std::move(source);
   Reporter report(program.source, diagnostics);
   const bool whole = Scanner(program, report).run();
+  for (const MacroError& e : link_statements(program.macro)) {
+    report.error(e.offset, e.check, e.what());
+    program.macro.broken = true;
+  }
   const bool stop = !whole;
-  const bool wordless = program.words.empty() && !report.has_errors();
+  const bool wordless = program.words.empty() && program.macro.statements.empty() && !report.has_errors();
   report.finish();
   if (wordless) {
     const bool blank = program.source.text().find_first_not_of(" \t\r\n") == std::string::npos;

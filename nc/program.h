@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "nc/statement.h"
 
 namespace camber::nc {
 
@@ -16,7 +17,7 @@ struct Word {
   std::uint8_t value_at = 0;  ///< of the number's first character, from `offset`
   std::uint16_t length = 0;   ///< letter, blanks inside and number
   std::uint32_t offset = 0;   ///< of the letter
-  double value = 0;            ///< as written, in the program's unit
+  double value = 0;           ///< as written, in the program's unit; NaN: an expression (MacroTables::words)
 };
 
 static_assert(sizeof(Word) == 16, "large programs have a hundred million of them");
@@ -27,13 +28,15 @@ struct Block {
   std::uint32_t length = 0;  ///< without the line end
   std::uint32_t first_word = 0;
   std::uint16_t word_count = 0;
-  bool skip = false;  ///< begins with /
+  std::uint8_t skip = 0;  ///< begins with / or /1: 1; with /2 .. /9: 2 .. 9
+  bool flow = false;      ///< holds statements, expressions or calls (M97 M98 M99, G65 G66 G67)
 };
 
 struct Program {
   SourceText source;
   std::vector<Block> blocks;  ///< blocks[i] is line i + 1 of the file
   std::vector<Word> words;
+  MacroTables macro;
 
   std::span<const Word> words_of(std::size_t block) const {
     return {words.data() + blocks[block].first_word, blocks[block].word_count};

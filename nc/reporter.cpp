@@ -16,8 +16,8 @@ void Reporter::warning(std::size_t offset, std::string_view check, std::string m
 
 void Reporter::add(Severity severity, std::size_t offset, std::string_view check, std::string message,
                    std::string_view alike) {
-  const std::string key =
-      fmt::format("{}/{}/{}", severity == Severity::error ? 'e' : 'w', check, alike.empty() ? message : alike);
+  const std::string key = fmt::format("{}/{}/{}/{}", severity == Severity::error ? 'e' : 'w', check,
+                                      alike.empty() ? message : alike, source_->name());
   const auto [found, is_new] = index_.try_emplace(key, entries_.size());
   if (!is_new) {
     ++entries_[found->second].more;
@@ -27,7 +27,7 @@ void Reporter::add(Severity severity, std::size_t offset, std::string_view check
     if (full()) return;
     ++errors_;
   }
-  entries_.push_back({severity, offset, std::string(check), std::move(message)});
+  entries_.push_back({source_, severity, offset, std::string(check), std::move(message)});
 }
 
 void Reporter::finish() {
@@ -39,7 +39,7 @@ void Reporter::finish() {
   errors_ = 0;
   for (const Entry& e : entries) {
     const std::string more = e.more > 0 ? fmt::format(" (and {} more like it)", e.more) : "";
-    diagnostics_.add(source_.diagnostic(e.severity, e.offset, e.message + more, e.check));
+    diagnostics_.add(e.source->diagnostic(e.severity, e.offset, e.message + more, e.check));
   }
 }
 

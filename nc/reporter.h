@@ -14,7 +14,10 @@ namespace camber::nc {
 /// with "(and N more like it)". finish() hands everything to the Diagnostics, sorted by place.
 class Reporter {
  public:
-  Reporter(const SourceText& source, Diagnostics& diagnostics) : source_(source), diagnostics_(diagnostics) {}
+  Reporter(const SourceText& source, Diagnostics& diagnostics) : source_(&source), diagnostics_(diagnostics) {}
+
+  /// What is said from now on is about this file. It must outlive finish().
+  void set_source(const SourceText& source) { source_ = &source; }
 
   /// `alike`: what counts as the same complaint; empty: the message itself.
   void error(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});
@@ -29,6 +32,7 @@ class Reporter {
 
  private:
   struct Entry {
+    const SourceText* source;
     Severity severity;
     std::size_t offset;
     std::string check, message;
@@ -36,7 +40,7 @@ class Reporter {
   };
   void add(Severity severity, std::size_t offset, std::string_view check, std::string message, std::string_view alike);
 
-  const SourceText& source_;
+  const SourceText* source_;
   Diagnostics& diagnostics_;
   std::vector<Entry> entries_;
   std::map<std::string, std::size_t, std::less<>> index_;

@@ -99,29 +99,7 @@ TEST(NcReader, RefusesWhatIsNoNumber) {
 TEST(NcReader, RefusesACommentWithoutAnEnd) {
   EXPECT_EQ(complaint("G0 X1 (no end"), "p.nc:1:7: error: the comment has no closing `)` in its block [comment-open]");
 }
-TEST(NcReader, SaysThatVariablesMacrosAndSubprogramsAreNotReadYet) {
-  EXPECT_EQ(
-      complaint("#100 = 5\n#101 = 6\n"),
-      "p.nc:1:1: error: variables (#) are not read yet; let the CAM system write the numbers out (and 1 more like it) "
-      "[variable]");
-  EXPECT_EQ(
-      complaint("G1 X[#1+2]"),
-      "p.nc:1:5: error: the value of X is an expression; variables and expressions are not read yet, a number was "
-      "expected [variable]");
-  EXPECT_EQ(complaint("G1 X#1"),
-            "p.nc:1:5: error: the value of X is a variable; variables and expressions are not read yet, a number was "
-            "expected "
-            "[variable]");
-  EXPECT_EQ(
-      complaint("GOTO 10"),
-      "p.nc:1:1: error: macro statements (GOTO) are not read yet; let the CAM system write the moves out [macro]");
-  EXPECT_EQ(complaint("O100 SUB"),
-            "p.nc:1:6: error: O-word subprograms and flow control (SUB) are not read yet; plain blocks were expected "
-            "[subprogram]");
-  EXPECT_EQ(
-      complaint("O<drill> CALL"),
-      "p.nc:1:1: error: O-word subprograms and flow control (O<name>) are not read yet; plain blocks were expected "
-      "[subprogram]");
+TEST(NcReader, SaysThatCornerWordsAreNotReadYet) {
   EXPECT_EQ(
       complaint("G1 X1 ,C2"),
       "p.nc:1:7: error: chamfers and roundings in a block (,C) are not read yet; a word was expected [corner-word]");

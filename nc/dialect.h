@@ -1,0 +1,59 @@
+#pragma once
+// What differs between the controls whose programs are read: one table of facts, nothing else in nc/ asks for a name.
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace camber::nc {
+
+struct Program;
+
+/// Siemens and Heidenhain have languages of their own: read_program refuses them by name (see foreign.h). A preset here
+/// is for controls that read RS-274 blocks.
+enum class ControlKind : std::uint8_t { fanuc, haas, mazak, linuxcnc };
+
+/// Inclusive range of variable numbers.
+struct NumberRange {
+  int first = 0, last = -1;
+  bool holds(double number) const { return number >= first && number <= last; }
+};
+
+struct Dialect {
+  ControlKind control = ControlKind::fanuc;
+  std::string_view name;
+
+  // Numbers
+  bool dwell_p_is_ms = true;                  ///< G4 P500 is 500 ms; else 500 s
+  bool whole_numbers_are_increments = false;  ///< X1000 is 1000 least increments (Fanuc 3401#0 = 0); else 1000 mm
+  double least_increment_mm = 0.001;
+  double least_increment_inch = 0.0001;
+
+  // Variables
+  NumberRange local{1, 33};  ///< one set for each level of macro calls
+  NumberRange common[2]{{100, 199}, {500, 999}};
+  bool has_null = true;     ///< a variable never set is vacant (#0): X#1 is then as if it were not written; else 0
+  bool system_4000 = true;  ///< #1000.. #5000.. as Fanuc numbers them; else LinuxCNC's #5061..#5428
+
+  // Expressions
+  bool logic_is_bitwise = true;      ///< 5 AND 2 is 0; else any number but 0 is true, and the result is 0 or 1
+  bool and_binds_as_product = true;  ///< AND goes with * and /, OR and XOR with + and -; else all three come last
+  bool fix_to_zero = true;           ///< FIX[-2.8] is -2 and FUP[-2.2] is -3; else floor and ceiling
+  bool mod_is_whole = true;          ///< MOD rounds both sides and has the sign of the left; else never negative
+  bool atan_is_positive = true;      ///< ATAN[a]/[b] runs from 0 to 360 degrees; else from -180 to 180
+  bool round_to_increment = true;    ///< ROUND in the value of an axis word rounds to the least increment
+  double equal_within = 0;           ///< EQ holds for numbers that differ by less
+
+  // Subprograms
+  bool m98_count_in_p = false;  ///< M98 P31234: O1234, three times
+  int most_levels = 15;         ///< of calls inside calls
+};
+
+const Dialect& dialect_of(ControlKind control);
+
+/// "fanuc", "haas", "mazak", "linuxcnc".
+std::optional<ControlKind> control_named(std::string_view name);
+
+/// What the text itself shows: O-words and named parameters (LinuxCNC), M97 (Haas). Nothing where it shows nothing.
+std::optional<ControlKind> control_shown_by(const Program& program);
+
+}  // namespace camber::nc

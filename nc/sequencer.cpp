@@ -1,0 +1,335 @@
+#include "nc/sequencer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace camber::nc {
+namespace {
+
+bool is_motion(const Move& m) { return m.kind != MoveKind::dwell; }
+
+/// Words whose expressions leave the place of a move as the text says it.
+bool leaves_place(char letter) { return std::string_view("NOMTSHD").find(letter) != std::string_view::npos; }
+
+bool is_axis(char letter) { return std::string_view("XYZUVWIJKRQABC").find(letter) != std::string_view::npos; }
+
+}  // namespace
+
+Sequencer::Sequencer(ProgramFiles& files, const InterpreterOptions& options, Reporter& report, Interpretation& out)
+    : files_(files),
+      options_(options),
+      dialect_(options.dialect()),
+      report_(report),
+      out_(out),
+      interpreter_(files.main(), options, report, out),
+      system_(dialect_, interpreter_, report, out),
+      variables_(dialect_, system_),
+      at_{&files.main(), 0} {}
+
+void Sequencer::run() {
+  out_.moves.reserve(at_.file->blocks.size());
+  if (at_.file->macro.flow())
+    run_blocks();
+  else
+    run_plain();
+  if (!failed_ && !report_.has_errors()) warn_of_blocks_behind_the_end();
+  report_.set_source(files_.main().source);
+  interpreter_.finish();
+}
+
+void Sequencer::run_plain() {
+  const Program& program = *at_.file;
+  const std::size_t blocks = program.blocks.size();
+  for (; at_.block < blocks && !report_.full(); ++at_.block) {
+    if (program.blocks[at_.block].word_count == 0 || is_skipped(program.blocks[at_.block])) continue;
+    if (!interpreter_.run(at_.block)) return;
+  }
+}
+
+void Sequencer::run_blocks() {
+  go(at_);
+  while (running_ && !report_.full()) {
+    try {
+      step();
+    } catch (const MacroError& e) {
+      report_.error(e.offset, e.check, e.what());
+      running_ = false;
+      failed_ = true;
+    }
+  }
+  mark_repeated_moves();
+}
+
+bool Sequencer::is_skipped(const Block& block) const {
+  if (block.skip == 0) return false;
+  return options_.skip_slash_blocks || (options_.skip_switches >> block.skip & 1) != 0;
+}
+
+std::uint32_t Sequencer::called_from() const {
+  return at_.file == &files_.main() ? at_.block : frames_.back().called_from;
+}
+
+void Sequencer::go(BlockPlace place) {
+  const bool same = runs_ != nullptr && place.file == at_.file;
+  at_ = place;
+  if (same) return;
+  report_.set_source(at_.file->source);
+  if (at_.file->macro.broken) failed_ = true, running_ = false;
+  runs_ = &files_.runs(*at_.file);
+}
+
+void Sequencer::count_run() {
+  std::uint8_t& runs = (*runs_)[at_.block];
+  if (runs > 0 && ++repeated_ > options_.most_repeated_blocks) fail_as_endless();
+  if (runs < 255) ++runs;
+}
+
+void Sequencer::step() {
+  if (at_.block >= at_.file->blocks.size()) return end_of_program_text();
+  const Block& block = at_.file->blocks[at_.block];
+  if (is_skipped(block) || (block.word_count == 0 && !block.flow)) {
+    ++at_.block;
+    return;
+  }
+  if (runs_into_next_program()) return end_of_program_text();
+  count_run();
+  if (block.flow) return run_flow_block(block);
+  editable_ = true;
+  const auto words = at_.file->words_of(at_.block);
+  run_words(words);
+}
+
+/// Runs plain words of the block and goes on to the next block, or to the macro that G66 has called behind each move.
+void Sequencer::run_words(std::span<const Word> words) {
+  const std::size_t before = out_.moves.size();
+  const bool in_main = at_.file == &files_.main();
+  const bool go_on = interpreter_.run({*at_.file, at_.block, words, called_from(), editable_ && in_main});
+  const std::size_t made = out_.moves.size() - before;
+  if ((*runs_)[at_.block] > 1) repeated_ += made;
+  ++at_.block;
+  running_ = go_on;
+  const auto& modal = modal_calls_.back();
+  if (!go_on || !modal || made == 0 || !is_motion(out_.moves.back())) return;
+  enter(*modal);
+}
+
+// --- flow control -------------------------------------------------------------------------------------------------
+
+Value Sequencer::value_of(const Statement& s, std::size_t which, double round_step) {
+  const MacroTables& macro = at_.file->macro;
+  return evaluate(macro.expressions, macro.values[s.first_value + which], variables_, dialect_, round_step);
+}
+
+bool Sequencer::holds(const Statement& s) { return value_of(s, 0).value_or(0) != 0; }
+
+void Sequencer::run_flow_block(const Block&) {
+  system_.tick();
+  system_.set_block(*at_.file, at_.block);
+  const auto& statements = at_.file->macro.statements;
+  const auto first = std::lower_bound(statements.begin(), statements.end(), at_.block,
+                                      [](const Statement& s, std::uint32_t block) { return s.block < block; });
+  auto end = first;
+  while (end != statements.end() && end->block == at_.block) ++end;
+  if (run_statements(static_cast<std::size_t>(first - statements.begin()),
+                     static_cast<std::size_t>(end - statements.begin())))
+    run_words_and_calls();
+}
+
+/// Returns true when the words of the block are to be run as well. All values of a block are worked out before the
+/// first variable is set.
+bool Sequencer::run_statements(std::size_t first, std::size_t end) {
+  const auto& statements = at_.file->macro.statements;
+  for (std::size_t i = first; i < end && statements[i].kind == StatementKind::condition; ++i) {
+    if (holds(statements[i])) continue;
+    ++at_.block;
+    return false;
+  }
+  evaluate_words();
+  struct Setting {
+    const Statement* statement;
+    double number;
+    Value value;
+  };
+  std::vector<Setting> settings;
+  const Statement* jump = nullptr;
+  for (std::size_t i = first; i < end; ++i) {
+    const Statement& s = statements[i];
+    if (s.kind == StatementKind::assign_number)
+      settings.push_back({&s, value_of(s, 0).value_or(0), value_of(s, 1)});
+    else if (s.kind == StatementKind::assign_name)
+      settings.push_back({&s, 0, value_of(s, 0)});
+    else if (s.kind == StatementKind::go_to)
+      jump = &s;
+    else if (s.kind != StatementKind::condition)
+      return run_flow_statement(static_cast<std::uint32_t>(i)), false;
+  }
+  for (const Setting& s : settings) {
+    if (s.statement->kind == StatementKind::assign_number)
+      variables_.set(s.number, s.value, s.statement->offset);
+    else
+      variables_.set(at_.file->macro.expressions.names[s.statement->label], s.value, s.statement->offset);
+  }
+  if (!jump) return true;
+  jump_to_number(value_of(*jump, 0).value_or(0), jump->offset, at_);
+  return false;
+}
+
+void Sequencer::run_flow_statement(std::uint32_t index) {
+  const Statement& s = statement(index);
+  switch (s.kind) {
+    case StatementKind::branch_if:
+    case StatementKind::branch_elseif:
+    case StatementKind::branch_else:
+      return run_branch(index);
+    case StatementKind::loop:
+      return run_loop(index);
+    case StatementKind::loop_end:
+    case StatementKind::loop_until:
+    case StatementKind::next_turn:
+      return next_turn(s.partner);
+    case StatementKind::leave_loop:
+      return leave_loop(s.partner);
+    case StatementKind::sub:
+      at_.block = statement(s.partner).block + 1;
+      return;
+    case StatementKind::call:
+      return call_sub(s);
+    case StatementKind::sub_end:
+    case StatementKind::sub_return:
+      return return_from_sub(s);
+    default:
+      ++at_.block;
+  }
+}
+
+/// if asks one condition after the other; elseif and else that are come upon from above end the branch before them.
+void Sequencer::run_branch(std::uint32_t index) {
+  if (statement(index).kind != StatementKind::branch_if) {
+    at_.block = statement(statement(index).partner).block + 1;
+    return;
+  }
+  for (std::uint32_t i = index;; i = statement(i).next_branch) {
+    const Statement& s = statement(i);
+    const bool asks = s.kind == StatementKind::branch_if || s.kind == StatementKind::branch_elseif;
+    if (asks && !holds(s)) continue;
+    at_.block = s.block + 1;
+    return;
+  }
+}
+
+void Sequencer::leave_loop(std::uint32_t head) {
+  const Statement& s = statement(head);
+  entered_.erase({at_.file, s.offset});
+  at_.block = statement(s.partner).block + 1;
+}
+
+void Sequencer::run_loop(std::uint32_t index) {
+  const Statement& s = statement(index);
+  note_entry(s.offset);
+  if (s.repeats) {
+    const double times = std::round(value_of(s, 0).value_or(0));
+    turns_left()[index] = times;
+    if (times < 1) return leave_loop(index);
+  } else if (s.value_count > 0 && !holds(s)) {
+    return leave_loop(index);
+  }
+  ++at_.block;
+}
+
+/// At the end of a loop, and at continue.
+void Sequencer::next_turn(std::uint32_t head) {
+  const Statement& s = statement(head);
+  const Statement& last = statement(s.partner);
+  if (++repeated_ > options_.most_repeated_blocks) fail_as_endless();
+  bool again = true;
+  if (s.repeats)
+    again = --turns_left()[head] >= 1;
+  else if (last.kind == StatementKind::loop_until)
+    again = holds(last);
+  else if (s.value_count > 0)
+    again = holds(s);
+  if (!again) return leave_loop(head);
+  at_.block = s.block + 1;
+}
+
+void Sequencer::jump_to_number(double number, std::uint32_t offset, BlockPlace from) {
+  const auto block = files_.find_block(from, std::round(number));
+  if (!block)
+    throw MacroError(offset, "block-number",
+                     fmt::format("there is no block N{} in this program to go to", std::round(number)));
+  if (*block <= from.block && from.file == at_.file) note_jump(offset);
+  go({from.file, *block});
+}
+
+void Sequencer::note_jump(std::uint32_t offset) { entered_.try_emplace({at_.file, offset}, repeated_); }
+
+/// The loop that has run for most of the time: of those, the one entered last.
+void Sequencer::fail_as_endless() {
+  const LoopKey* loop = nullptr;
+  std::size_t entered = 0;
+  for (const auto& [key, when] : entered_)
+    if (repeated_ - when > options_.most_repeated_blocks / 2 && (!loop || when >= entered)) {
+      loop = &key;
+      entered = when;
+    }
+  if (loop) report_.set_source(loop->first->source);
+  throw MacroError(
+      loop ? loop->second : at_.file->blocks[at_.block].offset, "endless-loop",
+      fmt::format("the loop does not end: {} blocks were run again; it is not read on", options_.most_repeated_blocks));
+}
+
+// --- words ----------------------------------------------------------------------------------------------------------
+
+/// The words of the block with numbers for values; those of vacant variables are left out.
+bool Sequencer::evaluate_words() {
+  const Program& file = *at_.file;
+  const Block& block = file.blocks[at_.block];
+  editable_ = true;
+  words_.clear();
+  auto expression = std::lower_bound(file.macro.words.begin(), file.macro.words.end(), block.first_word,
+                                     [](const ExpressionWord& w, std::uint32_t word) { return w.word < word; });
+  const bool inch = interpreter_.facts().state->inch;
+  for (std::uint32_t i = block.first_word; i < block.first_word + block.word_count; ++i) {
+    Word word = file.words[i];
+    if (expression != file.macro.words.end() && expression->word == i) {
+      double step = 1;
+      if (dialect_.round_to_increment && is_axis(word.letter))
+        step = inch ? dialect_.least_increment_inch : dialect_.least_increment_mm;
+      const Value value = evaluate(file.macro.expressions, (expression++)->expression, variables_, dialect_, step);
+      editable_ = editable_ && leaves_place(word.letter);
+      if (!value) continue;
+      if (std::abs(*value) > 1e12)
+        throw MacroError(word.offset, "expression", fmt::format("{}{} is too large", word.letter, *value));
+      word.value = *value;
+    }
+    words_.push_back(word);
+  }
+  return editable_;
+}
+
+// --- the end --------------------------------------------------------------------------------------------------------
+
+void Sequencer::mark_repeated_moves() {
+  const auto& runs = files_.runs(files_.main());
+  for (Move& m : out_.moves)
+    if (runs[m.block] > 1) m.editable = false;
+}
+
+/// Blocks behind M30 are no mistake where they are subprograms.
+void Sequencer::warn_of_blocks_behind_the_end() {
+  const Program& program = files_.main();
+  const bool flow = program.macro.flow();
+  if (!frames_.empty() || at_.file != &program) return;
+  for (std::uint32_t b = at_.block + (flow ? 0 : 1); b < program.blocks.size(); ++b) {
+    const Block& block = program.blocks[b];
+    if (block.word_count == 0 && !block.flow) continue;
+    if (flow && ((files_.runs(program)[b] > 0) || block.flow || program_number(program, b))) return;
+    report_.warning(program.words_of(b).front().offset, "after-end",
+                    "the blocks behind the end of the program (M2, M30) are not run");
+    return;
+  }
+}
+
+}  // namespace camber::nc
