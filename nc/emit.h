@@ -36,7 +36,11 @@ struct EmitOptions {
 /// A full turn stays closed: it ends where the emitted program starts it. Arcs get as many decimals as it takes for the
 /// radii at start and end to agree within one unit of the last decimal.
 ///
-/// Moves of drilling cycles and of G28, G30 and G53, and dwells, cannot be edited: their edits are passed over.
+/// Points are in the frame of the moves; where the text has them in a shifted, turned, mirrored or scaled frame the words
+/// are counted back into it.
+///
+/// Moves of drilling cycles, under G41 and G42, in polar coordinates, of G28, G29, G30 and G53, and dwells, cannot be
+/// edited: their edits are passed over.
 std::string emit(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
                  const EmitOptions& options);
 

@@ -6,18 +6,19 @@ namespace camber::nc {
 
 enum class GGroup {
   motion,         ///< G0 G1 G2 G3
-  cycle,          ///< G80, G73, G74, G81-G89
+  cycle,          ///< G80, G73, G74, G76, G81-G89
   plane,          ///< G17 G18 G19
   distance,       ///< G90 G91
   arc_distance,   ///< G90.1 G91.1
   feed_mode,      ///< G93 G94 G95
   unit,           ///< G20 G21
-  cutter_radius,  ///< G40 (G41 G42 are not read)
+  cutter_radius,  ///< G40 G41 G42 G41.1 G42.1
   tool_length,    ///< G43 G44 G49
   work_offset,    ///< G54 .. G59.3, G54.1
   path_control,   ///< G61 G61.1 G64
   return_level,   ///< G98 G99
-  one_shot,       ///< G4 G9 G28 G30 G53
+  one_shot,       ///< G4 G9 G28 G29 G30 G53
+  frame,          ///< G10 G15 G16 G50 G51 G50.1 G51.1 G52 G68 G69 G92: where coordinates lie
   contouring,     ///< G05 G05.1 G08: high speed contouring
   no_effect,      ///< taken and without effect on the path
   not_read,       ///< known, not read yet

@@ -1,10 +1,12 @@
 #pragma once
-// What the interpreted program makes the machine do. Positions are the tool tip in the active work offset, mm.
+// What the interpreted program makes the machine do. Positions are the tool tip, mm, in the frame of the
+// work offset that was active at the first move (docs/nc-language.md, Frames).
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "base/geometry.h"
+#include "nc/frame.h"
 
 namespace camber::nc {
 
@@ -28,6 +30,8 @@ struct ModalState {
   bool coolant = false;
   bool absolute_arc_centre = false;    ///< G90.1
   bool high_speed_contouring = false;  ///< G08 P1, G05 P10000, G05.1 Q1
+  bool cutter_radius = false;          ///< G41, G42 with a radius other than zero: the path was computed
+  std::uint32_t frame = 0;             ///< index into Interpretation::frames
   bool operator==(const ModalState&) const = default;
 };
 
@@ -61,8 +65,10 @@ struct Interpretation {
   std::vector<Move> moves;  ///< in order; each starts where the one before ended
   std::vector<Arc> arcs;
   std::vector<ModalState> states;
+  std::vector<Frame> frames{Frame{}};  ///< where the text's coordinates lie; the first is the identity
 
   const ModalState& state_of(const Move& m) const { return states[m.state]; }
+  const Frame& frame_of(const Move& m) const { return frames[states[m.state].frame]; }
 };
 
 /// Length along the path, mm (helices included).

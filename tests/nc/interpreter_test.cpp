@@ -226,17 +226,11 @@ TEST(NcInterpreter, NamesWhatItDoesNotKnow) {
 
 TEST(NcInterpreter, SaysWhatIsNotReadYet) {
   EXPECT_EQ(
-      read_text("G0 X1 Y1 Z1\nG1 G41 D3 X2 F100\nG40 X3\nG42 D3 X4").messages,
-      (Messages{"p.nc:2:4: error: G41 (cutter radius compensation in the control, left) is not read yet [not-read]",
-                "p.nc:4:1: error: G42 (cutter radius compensation in the control, right) is not read yet [not-read]"}));
-  EXPECT_EQ(
       read_text("M98 P1000").messages,
       Messages{
           "p.nc:1:1: error: subprograms (M98) are not read yet; let the CAM system write the moves out [subprogram]"});
   EXPECT_EQ(read_text("G65 P9810 X1.").messages,
             Messages{"p.nc:1:1: error: G65 (macro call) is not read yet [not-read]"});
-  EXPECT_EQ(read_text("G92 X0 Y0").messages,
-            Messages{"p.nc:1:1: error: G92 (shift of the coordinate system) is not read yet [not-read]"});
   EXPECT_EQ(read_text("G0 X0\nG96 S200 M3\nG1 X1").messages,
             Messages{"p.nc:2:1: error: G96 (constant cutting speed) belongs to a turning program; milling programs are "
                      "read [turning]"});
