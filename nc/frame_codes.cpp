@@ -103,6 +103,7 @@ void BlockInterpreter::set_local_shift() {
   Vec3& shift = options_.g52_is_g92 ? frames_.g92_mm : frames_.g52_mm;
   for (int axis = 0; axis < 3; ++axis)
     if (words_.has(kAxisLetters[axis])) shift[axis] = words_.value(kAxisLetters[axis]) * unit_mm();
+  frames_.g92_kept_mm = frames_.g92_mm;
 }
 
 /// G92: where the tool stands has the given coordinates from now on.
@@ -111,25 +112,20 @@ void BlockInterpreter::set_position() {
     error(request_.frame_code.word->offset, "frame", "G92 has no axis; X, Y or Z was expected");
     return;
   }
+  for (int axis = 0; axis < 3; ++axis)
+    if (words_.has(kAxisLetters[axis]) && place_[static_cast<std::size_t>(axis)] != AxisPlace::known)
+      place_at_program_point(axis, words_.value(kAxisLetters[axis]) * unit_mm());
   Vec3 p = programmed();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!words_.has(kAxisLetters[axis])) continue;
-    const double value = words_.value(kAxisLetters[axis]) * unit_mm();
-    if (place_[static_cast<std::size_t>(axis)] != AxisPlace::known)
-      place_at_program_point(axis, value);
-    else
-      p[axis] = value;
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    if (words_.has(kAxisLetters[axis])) p[axis] = words_.value(kAxisLetters[axis]) * unit_mm();
   if (!options_.g52_is_g92)
     for (int axis = 0; axis < 3; ++axis)
       if (words_.has(kAxisLetters[axis])) {
         frames_.g92_mm[axis] += frames_.g52_mm[axis];
         frames_.g52_mm[axis] = 0;
       }
-  for (int axis = 0; axis < 3; ++axis)
-    if (!words_.has(kAxisLetters[axis]) || place_[static_cast<std::size_t>(axis)] != AxisPlace::known)
-      p[axis] = programmed()[axis];
   frames_.g92_mm += frames_.offset_rotation(state_.work_offset).transpose() * (position_mm_ - frame_.from_program(p));
+  frames_.g92_kept_mm = frames_.g92_mm;
 }
 
 /// The axis stood where nobody knew; now it is known. The moves that led there end there.
@@ -152,7 +148,6 @@ void BlockInterpreter::restore_shift(int tenths) {
     return;
   }
   words_.use("P");
-  if (tenths == 922) frames_.g92_kept_mm = frames_.g92_mm;
   if (tenths == 921) frames_.g92_kept_mm = Vec3::Zero();
   frames_.g92_mm = Vec3::Zero();
 }

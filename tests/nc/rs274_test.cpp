@@ -80,16 +80,18 @@ std::string run_rs274(const std::string& text, bool must_succeed = true) {
   char buffer[4096];
   for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) out.append(buffer, n);
   const int status = pclose(pipe);
-  if (must_succeed) EXPECT_EQ(status, 0) << out;
+  if (must_succeed) {
+    EXPECT_EQ(status, 0) << out;
+  }
   return out;
 }
 
 /// Returns the largest difference, mm; moves without length may be missing on either side.
 double expect_same_moves(const std::string& text, const InterpreterOptions& options = {},
-                         double tolerance = 0.00006) {
+                         double tolerance = 0.00006, const std::string& output = {}) {
   const Read r = read_text(text, options);
   for (const auto& m : r.messages) EXPECT_EQ(m.find("error"), std::string::npos) << m;
-  const std::vector<CanonMove> canon = canonical(run_rs274(text));
+  const std::vector<CanonMove> canon = canonical(output.empty() ? run_rs274(text) : output);
   double largest = 0;
   std::size_t at = 0;
   for (const Move& m : r.moves.moves) {
@@ -203,7 +205,7 @@ TEST(Rs274, FramesOfRandomProgramsMoveAlike) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> u(-20, 20);
   constexpr const char* kOffsets[] = {"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"};
-  for (int program = 0; program < 30; ++program) {
+  for (int program = 0; program < 15; ++program) {
     SCOPED_TRACE(program);
     std::string text = "G21 G17 G90 G94\nG0 X0 Y0 Z20\nF100 S1000 M3\n";
     for (int i = 0; i < 60; ++i) {
@@ -251,7 +253,7 @@ TEST(Rs274, TurnedWorkOffsetsMoveAlike) {
   if (!rs274_present()) GTEST_SKIP() << "rs274 (package linuxcnc-uspace) is not on the PATH";
   expect_same_moves(
       "G21 G17 G90 G94\nG0 X1 Y2 Z3\nF100\nG92 X0 Y0\nG1 X5\nG10 L2 P1 X10 Y20 R30\nG1 X0 Y0\nX5\nG2 X8 Y3 I0 J3\n"
-      "G55 X0 Y0\nG52 X1\nG1 X0\nG54\nG92.1\nG1 X5\nG10 L20 P2 X0\nX1\nG55\nX1 Y1\nM2\n",
+      "G55 G1 X0 Y0\nG52 X1\nG1 X0\nG54\nG92.1\nG1 X5\nG10 L20 P2 X0\nX1\nG55\nX1 Y1\nM2\n",
       all_known(), 0.0003);
 }
 
@@ -291,21 +293,23 @@ TEST(Rs274, RandomContoursUnderCutterRadiusCompensationMoveAlike) {
   if (!rs274_present()) GTEST_SKIP() << "rs274 (package linuxcnc-uspace) is not on the PATH";
   std::mt19937 random(5);
   int compared = 0, refused_by_both = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 40; ++i) {
     SCOPED_TRACE(i);
     const std::string text = random_contour(random, 41 + i % 2, 1 + i % 3, i % 4 == 3 ? "G18" : "G17");
     const Read r = read_text(text, all_known());
     const bool ours = r.diagnostics.has_errors() || r.moves.moves.empty();
-    const bool theirs = run_rs274(text, false).find("gouging") != std::string::npos;
+    const std::string output = run_rs274(text, false);
+    const bool theirs = output.find("gouging") != std::string::npos;
     EXPECT_EQ(ours, theirs) << text << (r.messages.empty() ? "" : r.messages.back());
     if (ours || theirs) {
       refused_by_both += ours && theirs;
       continue;
     }
     ++compared;
-    expect_same_moves(text, all_known(), 0.0002);
+    expect_same_moves(text, all_known(), 0.0002, output);
   }
-  EXPECT_GT(compared, 30);
+  EXPECT_GT(compared, 20);
+  EXPECT_GT(refused_by_both, 0);
   RecordProperty("compared", compared);
   RecordProperty("refused_by_both", refused_by_both);
 }
