@@ -22,13 +22,15 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
       open = true;
     }
     first_of_move_[m] = points_.size() - 1;
+    if (!move.editable) points_.back().fixed = true;
     const double along = points_.back().along_mm;
     const int pieces =
         move.kind == nc::MoveKind::linear ? std::max(1, static_cast<int>(std::ceil(length / spacing_mm - 1e-9))) : 1;
     for (int i = 1; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
       points_.push_back(
-          {.move = m, .share = u, .along_mm = along + u * length, .place_mm = nc::point_at(program, move, u)});
+          {.move = m, .share = u, .along_mm = along + u * length, .place_mm = nc::point_at(program, move, u),
+           .fixed = !move.editable});
       ++chains_.back().count;
     }
   }

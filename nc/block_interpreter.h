@@ -169,7 +169,7 @@ class BlockInterpreter {
 
   Frames frames_;
   Frame frame_;
-  bool frames_used_ = false;     ///< something but unknown work offsets is in play
+  bool frames_used_ = false;  ///< something but unknown work offsets is in play
   bool not_editable_told_ = false;
   double polar_angle_deg_ = 0;
   std::optional<Vec3> reference_via_mm_;  ///< the intermediate point of G28, G30; for G29

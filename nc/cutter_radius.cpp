@@ -10,9 +10,9 @@ namespace camber::nc {
 namespace {
 
 constexpr double kSamePlaceMm = 1e-6;
-constexpr double kTangentRad = 1e-4;    ///< corners that turn by less are none
-constexpr double kTooShortMm = 0.002;   ///< programs with three decimals make lines that are short by so much
-constexpr double kSpiralMm = 0.05;      ///< as kArcRadiusErrorMm: radii that differ by more make a spiral
+constexpr double kTangentRad = 1e-4;   ///< corners that turn by less are none
+constexpr double kTooShortMm = 0.002;  ///< programs with three decimals make lines that are short by so much
+constexpr double kSpiralMm = 0.05;     ///< as kArcRadiusErrorMm: radii that differ by more make a spiral
 
 Vec2 left_of(const Vec2& direction) { return {-direction.y(), direction.x()}; }
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -24,13 +24,13 @@ struct Element {
   std::size_t move = 0;
   bool arc = false;
   Vec2 start, end, centre = Vec2::Zero();
-  double sense = 1;                        ///< arcs: 1 counter-clockwise
-  double sweep = 0;                        ///< arcs: without sign
-  Vec2 start_direction, end_direction;     ///< unit
-  Vec2 offset_start, offset_end;           ///< beside start and end
-  double start_radius = 0, end_radius = 0; ///< arcs: of the offset
-  double trim_start = 0, trim_end = 0;     ///< lengths that the corners take off (negative: add)
-  Vec2 path_start, path_end;               ///< of the offset, corners applied
+  double sense = 1;                         ///< arcs: 1 counter-clockwise
+  double sweep = 0;                         ///< arcs: without sign
+  Vec2 start_direction, end_direction;      ///< unit
+  Vec2 offset_start, offset_end;            ///< beside start and end
+  double start_radius = 0, end_radius = 0;  ///< arcs: of the offset
+  double trim_start = 0, trim_end = 0;      ///< lengths that the corners take off (negative: add)
+  Vec2 path_start, path_end;                ///< of the offset, corners applied
 
   double radius() const { return 0.5 * (start_radius + end_radius); }
   double length() const { return arc ? radius() * sweep : (end - start).norm(); }
@@ -66,18 +66,20 @@ class Compensation {
   Vec2 in_plane(const Vec3& p) const { return {p[axes_.first], p[axes_.second]}; }
 
   void problem(std::size_t move, std::string message) {
-    result_.problems.push_back({program_.moves[move].block,
-                                fmt::format("{} with a cutter radius of {:.4f} mm: {}", cutter_.name,
-                                            std::abs(cutter_.radius_mm), message)});
+    result_.problems.push_back(
+        {program_.moves[move].block,
+         fmt::format("{} with a cutter radius of {:.4f} mm: {}", cutter_.name, std::abs(cutter_.radius_mm), message)});
   }
 
-  // --- the programmed contour -----------------------------------------------------------------------------------------
+  // --- the programmed contour
+  // -----------------------------------------------------------------------------------------
 
   void collect() {
     int without = 0;
     for (std::size_t m = first_; m < program_.moves.size(); ++m) {
       const Move& move = program_.moves[m];
-      const bool flat = move.arc == Move::kNoArc && (in_plane(move.end_mm) - in_plane(move.start_mm)).norm() < kSamePlaceMm;
+      const bool flat =
+          move.arc == Move::kNoArc && (in_plane(move.end_mm) - in_plane(move.start_mm)).norm() < kSamePlaceMm;
       if (move.kind == MoveKind::dwell || flat) {
         ++without;
         continue;
@@ -139,10 +141,12 @@ class Compensation {
     if (entry.arc)
       problem(entry.move, "compensation begins on an arc; a straight entry move (G0, G1) was expected");
     else if (entry.length() <= std::abs(cutter_.radius_mm))
-      problem(entry.move, fmt::format("the entry move is {:.4f} mm long; more than the radius was expected", entry.length()));
+      problem(entry.move,
+              fmt::format("the entry move is {:.4f} mm long; more than the radius was expected", entry.length()));
   }
 
-  // --- corners ----------------------------------------------------------------------------------------------------------
+  // --- corners
+  // ----------------------------------------------------------------------------------------------------------
 
   void make_corners() {
     corners_.resize(elements_.size());
@@ -186,8 +190,9 @@ class Compensation {
       best_after = t_after;
     }
     if (!best) {
-      problem(after.move, "the inside corner before this move cannot be cut, the offset paths do not meet; a longer move or "
-                          "a smaller cutter was expected");
+      problem(after.move,
+              "the inside corner before this move cannot be cut, the offset paths do not meet; a longer move or "
+              "a smaller cutter was expected");
       return;
     }
     before.path_end = after.path_start = *best;
@@ -218,8 +223,7 @@ class Compensation {
       const double along = cross(after.offset_start - before.offset_end, after.start_direction) / across;
       return {before.offset_end + along * before.end_direction};
     }
-    if (before.arc && after.arc)
-      return of_circles(before.centre, before.end_radius, after.centre, after.start_radius);
+    if (before.arc && after.arc) return of_circles(before.centre, before.end_radius, after.centre, after.start_radius);
     return before.arc ? of_line(after.offset_start, after.start_direction, before.centre, before.end_radius)
                       : of_line(before.offset_end, before.end_direction, after.centre, after.start_radius);
   }
@@ -279,7 +283,8 @@ class Compensation {
     }
   }
 
-  // --- the cutter's path ------------------------------------------------------------------------------------------------
+  // --- the cutter's path
+  // ------------------------------------------------------------------------------------------------
 
   void write() {
     const std::vector<Move> old(program_.moves.begin() + static_cast<std::ptrdiff_t>(first_), program_.moves.end());
@@ -306,7 +311,7 @@ class Compensation {
     at_[axes_.second] = end.y();
     at_[axes_.normal] = height;
     move.end_mm = at_;
-    move.canned = move.canned || !elements_.empty();
+    if (!elements_.empty()) move.editable = false;
     program_.moves.push_back(move);
     return program_.moves.back();
   }

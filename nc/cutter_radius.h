@@ -33,8 +33,8 @@ struct CutterRadiusResult {
   std::vector<CutterRadiusProblem> problems;  ///< not empty: the moves are as they were
 };
 
-/// Rewrites the moves from `first` to the end as the path of the cutter's centre and marks them as `canned`: they are
-/// not one word of the text each. The first move in the plane is the entry: from where the tool stands to beside its
+/// Rewrites the moves from `first` to the end as the path of the cutter's centre and marks them as not editable: the
+/// text has other coordinates. The first move in the plane is the entry: from where the tool stands to beside its
 /// programmed end. Inside corners are cut short where the offset lines or arcs meet; the move that follows the last one
 /// (after G40) starts from `end_mm`. Told as problems: an entry on an arc or not longer than the radius, inside corners
 /// and arcs too small for the radius, a spiral, more moves without motion in the plane than the control looks ahead.

@@ -91,7 +91,7 @@ class Emitter {
     }
     if (move.kind == MoveKind::dwell) return;
     const Frame& frame = moves_.frame_of(move);
-    if (is_computed(move, end)) {
+    if (!move.editable) {
       // Its words say less than where it goes; absolute ones take the tool there from anywhere.
       if (!incremental(move)) at_ = last_end;
       return;
@@ -113,18 +113,6 @@ class Emitter {
     at_ = frame.to_program(at_);
     run_block_in_program(there, edit ? &wish : nullptr, frame.to_program(last_end), cycle_normal(first, end));
     at_ = frame.from_program(at_);
-  }
-
-  /// Moves that stand in the text as something else: under G41, G42 and what leaves it, in polar coordinates.
-  bool is_computed(const Move& move, std::size_t end) const {
-    const bool cycle = end > 0 && has_cycle_moves(move, end);
-    return moves_.frame_of(move).polar || moves_.state_of(move).cutter_radius || (move.canned && !cycle);
-  }
-
-  /// A drilling cycle moves along one axis at a time, in several moves of one block; the way off a contour is one.
-  bool has_cycle_moves(const Move& move, std::size_t end) const {
-    return move.canned && moves_.moves[end - 1].canned &&
-           (moves_.moves[end - 1].block == move.block && &moves_.moves[end - 1] != &move);
   }
 
   /// The coordinates of `move`, `edit` and at_ are those of the text.
@@ -152,7 +140,7 @@ class Emitter {
     for (; next_edit_ < edits_.size() && edits_[next_edit_].move < end; ++next_edit_) edit = &edits_[next_edit_];
     if (!edit || end != first + 1) return nullptr;
     const Move& move = moves_.moves[first];
-    const bool editable = edit->move == first && !move.canned && move.kind != MoveKind::dwell &&
+    const bool editable = edit->move == first && move.editable && !move.canned && move.kind != MoveKind::dwell &&
                           !goes_to_machine_place(program_.words_of(move.block));
     return editable ? edit : nullptr;
   }

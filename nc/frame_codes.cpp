@@ -95,7 +95,8 @@ void BlockInterpreter::run_frame_code() {
   update_frame();
 }
 
-// --- G52, G92 -----------------------------------------------------------------------------------------------------------
+// --- G52, G92
+// -----------------------------------------------------------------------------------------------------------
 
 void BlockInterpreter::set_local_shift() {
   if (!words_.has_any("XYZ"))
@@ -152,7 +153,8 @@ void BlockInterpreter::restore_shift(int tenths) {
   frames_.g92_mm = Vec3::Zero();
 }
 
-// --- G68, G51, G51.1, G16 ---------------------------------------------------------------------------------------------
+// --- G68, G51, G51.1, G16
+// ---------------------------------------------------------------------------------------------
 
 void BlockInterpreter::set_rotation() {
   if (!words_.has('R')) {
@@ -236,7 +238,8 @@ Vec3 BlockInterpreter::polar_target(Vec3 end) {
   return end;
 }
 
-// --- G10 ----------------------------------------------------------------------------------------------------------------
+// --- G10
+// ----------------------------------------------------------------------------------------------------------------
 
 void BlockInterpreter::set_data() {
   const std::size_t at = request_.frame_code.word->offset;
@@ -257,9 +260,10 @@ void BlockInterpreter::set_data() {
       set_tool_data(kind);
       break;
     default:
-      error(at, "not-read", fmt::format("G10 L{} is not read; L2, L20 (work offsets) or L1, L10 to L13 (tool offsets) was "
-                                        "expected",
-                                        words_.value('L')),
+      error(at, "not-read",
+            fmt::format("G10 L{} is not read; L2, L20 (work offsets) or L1, L10 to L13 (tool offsets) was "
+                        "expected",
+                        words_.value('L')),
             "G10");
       words_.use("XYZIJKPQR");
       break;
@@ -297,11 +301,12 @@ void BlockInterpreter::set_work_offset_data(bool touch_off) {
     return;
   }
   if (!external && !offset.known && !adds && number == state_.work_offset && !out_.moves.empty())
-    report_.warning(at, "work-offsets",
-                    fmt::format("{} sets the work offset that the program has moved in; where it lay before is not known, "
-                                "it is taken to lie there",
-                                name),
-                    "G10");
+    report_.warning(
+        at, "work-offsets",
+        fmt::format("{} sets the work offset that the program has moved in; where it lay before is not known, "
+                    "it is taken to lie there",
+                    name),
+        "G10");
   for (int axis = 0; axis < 3; ++axis) {
     if (!words_.has(kAxisLetters[axis])) continue;
     const double given = words_.value(kAxisLetters[axis]) * unit_mm();
@@ -340,7 +345,8 @@ void BlockInterpreter::set_tool_data(int kind) {
     tool.length_mm = tool.radius_mm = words_.value('R') * unit_mm();
 }
 
-// --- machine coordinates ------------------------------------------------------------------------------------------------
+// --- machine coordinates
+// ------------------------------------------------------------------------------------------------
 
 /// An axis goes to a machine coordinate: known in the frame of the moves where the work offset is known. The height
 /// stays unknown, as it needs the tool's length.

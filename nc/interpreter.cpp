@@ -60,9 +60,10 @@ void BlockInterpreter::finish() {
   if (radius_.active) {
     const Radius radius = radius_;
     end_radius();
-    const std::string message = fmt::format("G{} is never cancelled; G40 with a straight move off the contour was expected "
-                                            "before the end",
-                                            radius.g_tenths / 10);
+    const std::string message = fmt::format(
+        "G{} is never cancelled; G40 with a straight move off the contour was expected "
+        "before the end",
+        radius.g_tenths / 10);
     if (radius.radius_mm != 0 && !report_.has_errors())
       report_.error(radius.offset, "cutter-radius", message);
     else if (radius.radius_mm == 0)

@@ -126,6 +126,78 @@ GCode g_code(int tenths) {
   return it != kCodes.end() && it->tenths == tenths ? it->code : GCode{};
 }
 
+std::vector<int> known_g_codes() {
+  std::vector<int> codes;
+  for (const Entry& e : kCodes) codes.push_back(e.tenths);
+  return codes;
+}
+
+std::string_view group_name(GGroup group) {
+  switch (group) {
+    case GGroup::motion:
+      return "motion";
+    case GGroup::cycle:
+      return "cycle";
+    case GGroup::plane:
+      return "plane";
+    case GGroup::distance:
+      return "distance";
+    case GGroup::arc_distance:
+      return "arc distance";
+    case GGroup::feed_mode:
+      return "feed mode";
+    case GGroup::unit:
+      return "unit";
+    case GGroup::cutter_radius:
+      return "cutter radius";
+    case GGroup::tool_length:
+      return "tool length";
+    case GGroup::work_offset:
+      return "work offset";
+    case GGroup::path_control:
+      return "path control";
+    case GGroup::return_level:
+      return "return level";
+    case GGroup::one_shot:
+      return "one block";
+    case GGroup::frame:
+      return "frame";
+    case GGroup::contouring:
+      return "contouring";
+    case GGroup::no_effect:
+      return "no effect";
+    case GGroup::not_read:
+      return "not read";
+    case GGroup::turning:
+      return "turning";
+    case GGroup::unknown:
+      break;
+  }
+  return "unknown";
+}
+
+std::string_view group_name(MGroup group) {
+  switch (group) {
+    case MGroup::stop:
+      return "stop";
+    case MGroup::end:
+      return "end";
+    case MGroup::spindle:
+      return "spindle";
+    case MGroup::tool:
+      return "tool";
+    case MGroup::coolant:
+      return "coolant";
+    case MGroup::no_effect:
+      return "no effect";
+    case MGroup::subprogram:
+      return "subprogram";
+    case MGroup::unknown:
+      break;
+  }
+  return "unknown";
+}
+
 MGroup m_code(int tenths) {
   switch (tenths) {
     case 0:

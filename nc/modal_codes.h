@@ -1,6 +1,7 @@
 #pragma once
 // What every G and M code is: its modal group, and what to say of those that are not read.
 #include <string_view>
+#include <vector>
 
 namespace camber::nc {
 
@@ -34,6 +35,10 @@ struct GCode {
 
 /// code in tenths: 541 is G54.1.
 GCode g_code(int tenths);
+/// All codes of the table, in tenths, ascending.
+std::vector<int> known_g_codes();
+/// As docs/nc-language.md names it, e.g. "work offset".
+std::string_view group_name(GGroup group);
 
 enum class MGroup {
   stop,        ///< M0 M1 M60
@@ -46,5 +51,6 @@ enum class MGroup {
   unknown
 };
 MGroup m_code(int tenths);
+std::string_view group_name(MGroup group);
 
 }  // namespace camber::nc

@@ -157,8 +157,9 @@ void BlockInterpreter::set_cycle(const Code& code) {
 void BlockInterpreter::set_plane(const Code& code) {
   const Plane plane = code.tenths == 170 ? Plane::xy : code.tenths == 180 ? Plane::zx : Plane::yz;
   if (plane != plane_ && radius_.active && radius_.radius_mm != 0)
-    error(code.word->offset, "cutter-radius",
-          fmt::format("{} changes the plane under G{}; G40 was expected before", code_text(code), radius_.g_tenths / 10));
+    error(
+        code.word->offset, "cutter-radius",
+        fmt::format("{} changes the plane under G{}; G40 was expected before", code_text(code), radius_.g_tenths / 10));
   plane_ = plane;
 }
 

@@ -37,7 +37,7 @@ Move& BlockInterpreter::add_move(MoveKind kind, const Vec3& end_mm) {
   move.kind = kind;
   move.exact_stop = request_.exact_stop;
   move.reference = kind != MoveKind::dwell && place_unknown();
-  move.canned = frame_.polar && kind != MoveKind::dwell;
+  move.editable = !frame_.polar;
   if (leaving_) leave_contour(move);
   position_mm_ = end_mm;
   out_.moves.push_back(move);
@@ -125,7 +125,8 @@ void BlockInterpreter::go_to_reference() {
   if (words_.has('P') && request_.reference_word->value == 30) {
     const double p = words_.value('P');
     if (p != 2 && p != 3 && p != 4) {
-      error(words_.offset_of('P'), "reference", fmt::format("G30 P{} is no reference point; P2, P3 or P4 was expected", p));
+      error(words_.offset_of('P'), "reference",
+            fmt::format("G30 P{} is no reference point; P2, P3 or P4 was expected", p));
       return;
     }
     point = static_cast<std::size_t>(p) - 1;
@@ -322,8 +323,9 @@ void BlockInterpreter::move_on_arc() {
   ArcResult result = make_arc(arc);
   const auto in_moves = frame_.plain || !result.error.empty() ? result.arc : from_program(frame_, result.arc);
   if (!in_moves)
-    error(words_.offset(), "scaling", "an arc under a scale that differs along its two axes would be an ellipse; one scale "
-                                      "for both was expected");
+    error(words_.offset(), "scaling",
+          "an arc under a scale that differs along its two axes would be an ellipse; one scale "
+          "for both was expected");
   if (arc_error(result, arc) || !in_moves) {
     position_mm_ = end_mm;
     settle_axes();
@@ -381,10 +383,11 @@ bool BlockInterpreter::set_shift(CycleHole& hole) {
   }
   if (hole.g != 87) return true;
   if (hole.bottom_mm < hole.retract_mm || hole.retract_mm > cycle_.initial_mm) {
-    error(words_.offset(), "cycle",
-          fmt::format("G87 bores upwards from R {:.4f} mm to {} {:.4f} mm; R below it and below the initial level {:.4f} "
-                      "mm was expected",
-                      hole.retract_mm, kAxisLetters[axes.normal], hole.bottom_mm, cycle_.initial_mm));
+    error(
+        words_.offset(), "cycle",
+        fmt::format("G87 bores upwards from R {:.4f} mm to {} {:.4f} mm; R below it and below the initial level {:.4f} "
+                    "mm was expected",
+                    hole.retract_mm, kAxisLetters[axes.normal], hole.bottom_mm, cycle_.initial_mm));
     return false;
   }
   if (return_to_r_) {
@@ -430,6 +433,7 @@ void BlockInterpreter::run_cycle() {
           fmt::format("{} repeats of a cycle; a whole number up to 100000 was expected", repeats));
     return;
   }
+  if (repeats == 0) words_.use("XYZ");  // kept for the blocks that follow
   for (int i = 0; i < static_cast<int>(repeats); ++i) {
     Vec3 place = programmed_target();
     place[axes.normal] = programmed()[axes.normal];

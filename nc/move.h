@@ -52,11 +52,15 @@ struct Move {
   std::uint32_t state = 0;     ///< index into Interpretation::states
   std::uint32_t arc = kNoArc;  ///< index into Interpretation::arcs
   MoveKind kind = MoveKind::rapid;
-  bool exact_stop = false;  ///< G9 or a control that must stop at the end of this move
+  bool exact_stop : 1 = false;  ///< G9 or a control that must stop at the end of this move
   /// Part of a move to or from the reference point (G28, G30, G53) whose place in the work frame is not
   /// known: counts for nothing in material.
-  bool reference = false;
-  bool canned = false;  ///< made by a drilling cycle: not one move of the text
+  bool reference : 1 = false;
+  bool canned : 1 = false;  ///< made by a drilling cycle: one of several moves of its block
+  /// The block's text says where the move goes, and says it for this move alone: it stands in the main program, is run
+  /// once, and its words have numbers. Only the words of such a block may be changed. False in loops, in subprograms
+  /// called more than once or from a file of their own, for expressions, under G41 and G42 and in polar coordinates.
+  bool editable : 1 = true;
 
   static constexpr std::uint32_t kNoArc = std::numeric_limits<std::uint32_t>::max();
 };

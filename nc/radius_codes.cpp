@@ -33,10 +33,11 @@ void BlockInterpreter::read_radius_code(const Code& code) {
   state_.cutter_radius = *radius_mm != 0;
   if (*radius_mm == 0 || not_editable_told_) return;
   not_editable_told_ = true;
-  report_.warning(code.word->offset, "not-editable",
-                  fmt::format("the path under {} is computed here, cutter radius {:.4f} mm; compensation will leave these "
-                              "moves as they are",
-                              code_text(code), std::abs(*radius_mm)));
+  report_.warning(
+      code.word->offset, "not-editable",
+      fmt::format("the path under {} is computed here, cutter radius {:.4f} mm; compensation will leave these "
+                  "moves as they are",
+                  code_text(code), std::abs(*radius_mm)));
 }
 
 /// The radius for D, or for the tool in the spindle where no D was given; zero, with a warning, where none is known.
@@ -62,11 +63,12 @@ std::optional<double> BlockInterpreter::radius_of(const Code& code) {
   const auto found = tool_offsets_.find(number);
   if (found != tool_offsets_.end())
     if (const auto radius_mm = found->second.effective_radius_mm()) return radius_mm;
-  report_.warning(code.word->offset, "radius-unknown",
-                  fmt::format("no radius is given for D{}; {} takes 0, as where the program is written for the cutter's "
-                              "centre and D holds the wear only",
-                              number, code_text(code)),
-                  fmt::format("D{}", number));
+  report_.warning(
+      code.word->offset, "radius-unknown",
+      fmt::format("no radius is given for D{}; {} takes 0, as where the program is written for the cutter's "
+                  "centre and D holds the wear only",
+                  number, code_text(code)),
+      fmt::format("D{}", number));
   return 0.0;
 }
 
@@ -120,7 +122,7 @@ void BlockInterpreter::end_radius() {
 /// The first move after G40 starts beside the contour.
 void BlockInterpreter::leave_contour(Move& move) {
   move.start_mm += beside_mm_;
-  move.canned = true;
+  move.editable = false;
   const PlaneAxes axes = axes_of(plane_);
   constexpr char kLetters[] = "XYZ";
   const bool in_plane = words_.has(kLetters[axes.first]) || words_.has(kLetters[axes.second]);

@@ -14,14 +14,18 @@ namespace {
 
 using Messages = std::vector<std::string>;
 
-const std::string kNote = " is computed here, cutter radius 2.0000 mm; compensation will leave these moves as they are "
-                          "[not-editable]";
+const std::string kNote =
+    " is computed here, cutter radius 2.0000 mm; compensation will leave these moves as they are "
+    "[not-editable]";
 
 /// "l 8 2; a 10 12; ": kind and end of each move in the plane of X and Y.
 std::string path_of(const Read& r) {
   std::string out;
   for (const Move& m : r.moves.moves) {
-    const char kind = m.kind == MoveKind::rapid ? 'r' : m.kind == MoveKind::arc ? 'a' : m.kind == MoveKind::dwell ? 'd' : 'l';
+    const char kind = m.kind == MoveKind::rapid   ? 'r'
+                      : m.kind == MoveKind::arc   ? 'a'
+                      : m.kind == MoveKind::dwell ? 'd'
+                                                  : 'l';
     const auto shown = [](double v) { return std::round(v * 1e4) / 1e4 + 0.0; };
     out += fmt::format("{} {} {} {}; ", kind, shown(m.end_mm.x()), shown(m.end_mm.y()), shown(m.end_mm.z()));
   }
@@ -50,8 +54,10 @@ InterpreterOptions fanuc() {
 
 TEST(CutterRadius, InsideCornersMeetAndOutsideCornersAreArcs) {
   // Left of the way, radius 2: inside at (20, 0), outside at (20, 10).
-  EXPECT_EQ(path("G41.1 D4 G1 X10\nX20\nY10\nX30\nG40 Y20\n"), "l 10 2 0; l 18 2 0; l 18 10 0; a 20 12 0; l 30 12 0; l 30 20 0; ");
-  EXPECT_EQ(path("G42.1 D4 G1 X10\nX20\nY10\nX30\nG40 Y20\n"), "l 10 -2 0; l 20 -2 0; a 22 0 0; l 22 8 0; l 30 8 0; l 30 20 0; ");
+  EXPECT_EQ(path("G41.1 D4 G1 X10\nX20\nY10\nX30\nG40 Y20\n"),
+            "l 10 2 0; l 18 2 0; l 18 10 0; a 20 12 0; l 30 12 0; l 30 20 0; ");
+  EXPECT_EQ(path("G42.1 D4 G1 X10\nX20\nY10\nX30\nG40 Y20\n"),
+            "l 10 -2 0; l 20 -2 0; a 22 0 0; l 22 8 0; l 30 8 0; l 30 20 0; ");
 }
 
 TEST(CutterRadius, OutsideCornersOfFanucAreLines) {
@@ -77,7 +83,8 @@ TEST(CutterRadius, ArcsInsideAndOutside) {
   EXPECT_EQ(path("G42.1 D4 G1 X10\nX20\nG3 X30 Y10 J10\nG1 Y20\nG40 X40\n"),
             "l 10 -2 0; l 20 -2 0; a 32 10 0; l 32 20 0; l 40 20 0; ");
   // A full circle from inside, entered square: radius 8 about (20, 0).
-  const Read r = read_text("G0 X20 Y0 Z0\nG41.1 D4 G1 X25 Y-5 F100\nG3 X30 Y0 J5\nG3 I-10\nX25 Y5 I-5\nG40 G1 X20 Y0\n");
+  const Read r =
+      read_text("G0 X20 Y0 Z0\nG41.1 D4 G1 X25 Y-5 F100\nG3 X30 Y0 J5\nG3 I-10\nX25 Y5 I-5\nG40 G1 X20 Y0\n");
   ASSERT_EQ(r.moves.moves.size(), 6u);
   EXPECT_NEAR(r.moves.arcs[1].sweep_rad, 2 * kPi, 1e-9);
   expect_near_mm(r.moves.moves[3].start_mm, {28, 0, 0});
@@ -132,16 +139,16 @@ TEST(CutterRadius, WithoutARadiusItIsZeroAndSaysSo) {
   EXPECT_EQ(r.messages, Messages{"p.nc:2:1: warning: no radius is given for D3; G41 takes 0, as where the program is "
                                  "written for the cutter's centre and D holds the wear only [radius-unknown]"});
   EXPECT_EQ(path_of(r), "r 0 0 0; l 10 0 0; l 10 10 0; l 0 10 0; ");
-  for (const Move& m : r.moves.moves) EXPECT_FALSE(m.canned);  // these can be edited
+  for (const Move& m : r.moves.moves) EXPECT_TRUE(m.editable);  // these can be edited
   EXPECT_EQ(read_clean("G0 X0 Y0 Z0\nG41 D0 G1 X10 F100\nG40 X0\n").moves.moves.size(), 3u);
 }
 
 TEST(CutterRadius, SaysOnceThatCompensationLeavesTheMoves) {
   const Read r = read_text("G0 X0 Y0 Z0\nG41.1 D4 G1 X10 F100\nX20\nG40 Y9\nG42.1 D4 X9\nX0\nG40 Y0\nX5\n");
   EXPECT_EQ(r.messages, Messages{"p.nc:2:1: warning: the path under G41.1" + kNote});
-  std::vector<bool> canned;
-  for (const Move& m : r.moves.moves) canned.push_back(m.canned);
-  EXPECT_EQ(canned, (std::vector<bool>{false, true, true, true, true, true, true, false}));
+  std::vector<bool> editable;
+  for (const Move& m : r.moves.moves) editable.push_back(m.editable);
+  EXPECT_EQ(editable, (std::vector<bool>{true, false, false, false, false, false, false, true}));
 }
 
 TEST(CutterRadius, TurnsOverUnderAMirrorImageAndTurnsWithARotation) {
@@ -158,14 +165,17 @@ TEST(CutterRadius, TellsWhatDoesNotWork) {
   EXPECT_EQ(complaint("G41.1 D4 G1 X2\nX20\nG40 Y9\n"),
             said("2:1", "the entry move is 2.0000 mm long; more than the radius was expected"));
   EXPECT_EQ(complaint("G41.1 D4 G1 X10\nX20\nG3 X21.5 Y1.5 J1.5\nG1 Y20\nG40 X0\n"),
-            said("4:1", "the cutter does not fit into the arc of radius 1.5000 mm; a larger arc or a smaller cutter was "
-                        "expected"));
+            said("4:1",
+                 "the cutter does not fit into the arc of radius 1.5000 mm; a larger arc or a smaller cutter was "
+                 "expected"));
   EXPECT_EQ(complaint("G41.1 D4 G1 X10\nX20\nY3\nX10\nG40 X0\n"),
-            said("4:1", "the cutter gouges at the inside corners of this move: they take 4.0000 mm off its offset, which "
-                        "is 3.0000 mm long; a longer move or a smaller cutter was expected"));
+            said("4:1",
+                 "the cutter gouges at the inside corners of this move: they take 4.0000 mm off its offset, which "
+                 "is 3.0000 mm long; a longer move or a smaller cutter was expected"));
   EXPECT_EQ(complaint("G41.1 D4 G1 X10\nX20\nZ1\nZ2\nY10\nG40 X0\n"),
-            said("6:1", "2 moves without motion in the plane stand before this one; the control looks 1 ahead and would "
-                        "gouge, at most 1 was expected"));
+            said("6:1",
+                 "2 moves without motion in the plane stand before this one; the control looks 1 ahead and would "
+                 "gouge, at most 1 was expected"));
   EXPECT_EQ(complaint("G41.1 D4 G1 X10\nX20\nG3 X30 Y15 J10 L1\nG1 Y30\nG40 X0\n"),
             said("4:1", "a spiral has no offset of the same kind; an arc or a line was expected"));
   EXPECT_EQ(complaint("G41.1 D4 G1 X10\nX20\nM30\n"),

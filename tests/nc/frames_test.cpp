@@ -88,9 +88,10 @@ TEST(Frames, UnknownWorkOffsetsShareOneFrameWithAWarning) {
   expect_ends("G54 G1 X1\nG10 L2 P2 X50\nG10 L2 P3 X60\nG55 X2\nG56 X2\n", {{1, 0, 0}, {2, 0, 0}, {12, 0, 0}}, fanuc(),
               {"p.nc:5:1: warning: the program cuts in more than one work offset; their distance is not known, all are "
                "taken as one frame (and 1 more like it) [work-offsets]"});
-  expect_ends("G10 L2 P1 X50\nG1 X2\n", {{2, 0, 0}}, fanuc(),
-              {"p.nc:2:1: warning: G10 L2 sets the work offset that the program has moved in; where it lay before is not "
-               "known, it is taken to lie there [work-offsets]"});
+  expect_ends(
+      "G10 L2 P1 X50\nG1 X2\n", {{2, 0, 0}}, fanuc(),
+      {"p.nc:2:1: warning: G10 L2 sets the work offset that the program has moved in; where it lay before is not "
+       "known, it is taken to lie there [work-offsets]"});
 }
 
 TEST(Frames, G10L20TouchesOffOrSetsG541) {
@@ -104,8 +105,8 @@ TEST(Frames, G10L20TouchesOffOrSetsG541) {
 
 TEST(Frames, RotationInThreePlanes) {
   expect_ends("G17 G68 X10 Y0 R90\nG1 X20 Y0\nX20 Y5\nG69 X0 Y0\n", {{10, 10, 0}, {5, 10, 0}, {0, 0, 0}});
-  expect_ends("G18 G68 X0 Z0 R90\nG1 Z10\nG69\n", {{10, 0, 0}});   // Z towards X
-  expect_ends("G19 G68 Y0 Z0 R90\nG1 Y10\nG69\n", {{0, 0, 10}});   // Y towards Z
+  expect_ends("G18 G68 X0 Z0 R90\nG1 Z10\nG69\n", {{10, 0, 0}});            // Z towards X
+  expect_ends("G19 G68 Y0 Z0 R90\nG1 Y10\nG69\n", {{0, 0, 10}});            // Y towards Z
   expect_ends("G0 X3 Y4\nG68 R180\nX4 Y4\nG69\n", {{3, 4, 0}, {2, 4, 0}});  // about where the tool stands
   const double c = std::cos(kPi / 6), s = std::sin(kPi / 6);
   expect_ends("G68 X0 Y0 R30\nG91 G1 X10\nY10\nG69\n", {{10 * c, 10 * s, 0}, {10 * c - 10 * s, 10 * s + 10 * c, 0}});
@@ -130,9 +131,11 @@ TEST(Frames, MirrorImageTurnsTheSenseOfArcs) {
   EXPECT_NEAR(r.moves.arcs[0].sweep_rad, -kPi / 2, 1e-12);
   EXPECT_NEAR(r.moves.arcs[1].sweep_rad, kPi / 2, 1e-12);
   // Two mirrors are half a turn; a mirrored Z leaves an arc in G17 as it was.
-  EXPECT_NEAR(read_clean("G0 X10 Y0 Z0\nG51.1 X0 Y0\nG0 X10 Y0\nG3 X0 Y10 I-10 F100\n").moves.arcs[0].sweep_rad, kPi / 2, 1e-12);
+  EXPECT_NEAR(read_clean("G0 X10 Y0 Z0\nG51.1 X0 Y0\nG0 X10 Y0\nG3 X0 Y10 I-10 F100\n").moves.arcs[0].sweep_rad,
+              kPi / 2, 1e-12);
   EXPECT_NEAR(read_clean("G0 X10 Y0 Z0\nG51.1 Z0\nG3 X0 Y10 I-10 F100\n").moves.arcs[0].sweep_rad, kPi / 2, 1e-12);
-  EXPECT_NEAR(read_clean("G0 X10 Y0 Z0\nG51.1 Z0\nG18 G3 X0 Z10 I-10 F100\n").moves.arcs[0].sweep_rad, -1.5 * kPi, 1e-12);
+  EXPECT_NEAR(read_clean("G0 X10 Y0 Z0\nG51.1 Z0\nG18 G3 X0 Z10 I-10 F100\n").moves.arcs[0].sweep_rad, -1.5 * kPi,
+              1e-12);
 }
 
 TEST(Frames, ScalingAboutAPoint) {
@@ -156,8 +159,9 @@ TEST(Frames, MirrorThenScaleThenRotate) {
 }
 
 TEST(Frames, PolarCoordinates) {
-  const Messages note{"p.nc:2:1: warning: moves in polar coordinates (G16) are read, but compensation will leave them as "
-                      "they are [not-editable]"};
+  const Messages note{
+      "p.nc:2:1: warning: moves in polar coordinates (G16) are read, but compensation will leave them as "
+      "they are [not-editable]"};
   expect_ends("G16\nG1 X10 Y90\nY180\nX20\nG15 X1\n", {{0, 10, 0}, {-10, 0, 0}, {-20, 0, 0}, {1, 0, 0}}, fanuc(), note);
   expect_ends("G16\nG91 G1 X10 Y90\nX10 Y-90\n", {{0, 10, 0}, {10, 10, 0}}, fanuc(), note);
   const Read r = read_text("G0 X0 Y0 Z0\nG16\nG81 X10 Y0 Z-1 R1 F100\nY120\nY240\nG80 G15\n");
@@ -174,8 +178,9 @@ TEST(Frames, ReturnFromTheReferencePoint) {
   expect_near_mm(e[3], {10, 10, 0});
   expect_near_mm(e[4], {20, 5, 0});
   EXPECT_FALSE(r.moves.moves[4].reference);
-  EXPECT_EQ(read_text("G29 X1").messages,
-            Messages{"p.nc:1:1: error: G29 without a G28 or G30 before; its intermediate point was expected [reference]"});
+  EXPECT_EQ(
+      read_text("G29 X1").messages,
+      Messages{"p.nc:1:1: error: G29 without a G28 or G30 before; its intermediate point was expected [reference]"});
 }
 
 TEST(Frames, ReferencePointsThatAreKnown) {
@@ -186,7 +191,8 @@ TEST(Frames, ReferencePointsThatAreKnown) {
   const Read r = read_text("G0 X0 Y0 Z0\nG91 G28 X0 Y0\nG30 X0\nG30 P4 X0\nG30 P7 X0\n", o);
   expect_near_mm(r.moves.moves[1].end_mm, {-100, -50, 0});
   expect_near_mm(r.moves.moves[2].end_mm, {-110, -50, 0});
-  EXPECT_EQ(r.messages, Messages{"p.nc:5:5: error: G30 P7 is no reference point; P2, P3 or P4 was expected [reference]"});
+  EXPECT_EQ(r.messages,
+            Messages{"p.nc:5:5: error: G30 P7 is no reference point; P2, P3 or P4 was expected [reference]"});
 }
 
 TEST(Frames, SayWhatIsMissing) {
@@ -194,8 +200,10 @@ TEST(Frames, SayWhatIsMissing) {
   EXPECT_EQ(read_text("G92").messages, Messages{"p.nc:1:1: error: G92 has no axis; X, Y or Z was expected [frame]"});
   EXPECT_EQ(read_text("G68 X0 Y0").messages,
             Messages{"p.nc:1:1: error: G68 has no angle; R in degrees was expected [frame]"});
-  EXPECT_EQ(read_text("G51 X0").messages, Messages{"p.nc:1:1: error: G51 has no scale; P, or I J K, was expected [frame]"});
-  EXPECT_EQ(read_text("G51.1").messages, Messages{"p.nc:1:1: error: G51.1 has no axis; X, Y or Z was expected [frame]"});
+  EXPECT_EQ(read_text("G51 X0").messages,
+            Messages{"p.nc:1:1: error: G51 has no scale; P, or I J K, was expected [frame]"});
+  EXPECT_EQ(read_text("G51.1").messages,
+            Messages{"p.nc:1:1: error: G51.1 has no axis; X, Y or Z was expected [frame]"});
   EXPECT_EQ(read_text("G10 L2 X1").messages,
             Messages{"p.nc:1:1: error: G10 L2 needs a P with the number of the offset [work-offset]"});
   EXPECT_EQ(read_text("G10 L2 P44 X1").messages,
@@ -203,9 +211,10 @@ TEST(Frames, SayWhatIsMissing) {
   EXPECT_EQ(read_text("G10 L12 R1").messages,
             Messages{"p.nc:1:1: error: G10 of a tool offset needs P with its number and R (or Z) with its value "
                      "[tool-offset]"});
-  EXPECT_EQ(read_text("G10 L50 P1 R2").messages,
-            Messages{"p.nc:1:1: error: G10 L50 is not read; L2, L20 (work offsets) or L1, L10 to L13 (tool offsets) was "
-                     "expected [not-read]"});
+  EXPECT_EQ(
+      read_text("G10 L50 P1 R2").messages,
+      Messages{"p.nc:1:1: error: G10 L50 is not read; L2, L20 (work offsets) or L1, L10 to L13 (tool offsets) was "
+               "expected [not-read]"});
   EXPECT_EQ(read_text("G52 X1 G68 R1").messages.at(0),
             "p.nc:1:8: error: G52 and G68 in one block exclude each other; one of them was expected [modal-group]");
 }
@@ -258,7 +267,8 @@ TEST(Literature, B2LengthOfArcsInTheirPlanes) {
   }
 }
 
-// --- emission -----------------------------------------------------------------------------------------------------------
+// --- emission
+// -----------------------------------------------------------------------------------------------------------
 
 /// Every editable move of the program is moved by the same small vector and read again.
 void expect_edits_arrive(const std::string& text, const InterpreterOptions& options = fanuc()) {
@@ -288,7 +298,8 @@ void expect_edits_arrive(const std::string& text, const InterpreterOptions& opti
 
 TEST(FramesEmit, EditsGoBackThroughShiftTurnMirrorAndScale) {
   expect_edits_arrive("G0 X0 Y0 Z5\nG52 X10 Y5\nG1 X1 Y1 Z0 F100\nG91 X5\nG90 G3 X6 Y11 J5\nG52 X0 Y0\nG1 X0 Y0\n");
-  expect_edits_arrive("G0 X0 Y0 Z5\nG68 X3 Y4 R30\nG1 X10 Y0 Z0 F100\nX20\nG91 Y5\nG90 G3 X10 Y15 R10\nG69\nG1 X0 Y0\n");
+  expect_edits_arrive(
+      "G0 X0 Y0 Z5\nG68 X3 Y4 R30\nG1 X10 Y0 Z0 F100\nX20\nG91 Y5\nG90 G3 X10 Y15 R10\nG69\nG1 X0 Y0\n");
   expect_edits_arrive("G0 X0 Y0 Z5\nG51.1 X1\nG1 X10 Y0 Z0 F100\nG2 X20 Y10 I10 J0\nG50.1\nG1 X0 Y0\n");
   expect_edits_arrive("G0 X0 Y0 Z5\nG51 X0 Y0 Z0 P2.\nG1 X10 Y0 Z0 F100\nG2 X20 Y10 I10 J0\nG50\nG1 X0 Y0\n");
   expect_edits_arrive("G10 L2 P1 X5 Y5 Z5\nG10 L2 P2 X9 Y9 Z9\nG54 G0 X0 Y0 Z5\nG1 X1 F100\nG55 X2 Y2\nG2 X4 Y4 R2\n");

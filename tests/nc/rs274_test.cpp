@@ -87,8 +87,8 @@ std::string run_rs274(const std::string& text, bool must_succeed = true) {
 }
 
 /// Returns the largest difference, mm; moves without length may be missing on either side.
-double expect_same_moves(const std::string& text, const InterpreterOptions& options = {},
-                         double tolerance = 0.00006, const std::string& output = {}) {
+double expect_same_moves(const std::string& text, const InterpreterOptions& options = {}, double tolerance = 0.00006,
+                         const std::string& output = {}) {
   const Read r = read_text(text, options);
   for (const auto& m : r.messages) EXPECT_EQ(m.find("error"), std::string::npos) << m;
   const std::vector<CanonMove> canon = canonical(output.empty() ? run_rs274(text) : output);
@@ -190,7 +190,8 @@ TEST(Rs274, DrillingCyclesMoveAlike) {
     }
 }
 
-// --- frames and cutter radius compensation ------------------------------------------------------------------------------
+// --- frames and cutter radius compensation
+// ------------------------------------------------------------------------------
 
 /// As LinuxCNC starts: every offset and reference point known, and zero.
 InterpreterOptions all_known() {
@@ -262,7 +263,8 @@ std::string random_contour(std::mt19937& random, int side, double radius, const 
   std::uniform_real_distribution<double> u(0, 1);
   const bool xy = std::string_view(plane) == "G17";
   const char first = xy ? 'X' : 'Z', second = xy ? 'Y' : 'X';
-  std::string text = fmt::format("G21 {} G90 G94 G40\nG0 X0 Y0 Z0\nF100\nG{}.1 D{} G1 {}10\n", plane, side, 2 * radius, first);
+  std::string text =
+      fmt::format("G21 {} G90 G94 G40\nG0 X0 Y0 Z0\nF100\nG{}.1 D{} G1 {}10\n", plane, side, 2 * radius, first);
   double x = 10, y = 0, heading = 0;
   for (int i = 0; i < 12; ++i) {
     double turn = (10 + 130 * u(random)) * kPi / 180;
