@@ -118,15 +118,16 @@ class BlockInterpreter {
   void move();
   void move_on_line();
   void move_on_arc();
+  // cycle_codes.cpp
   void run_cycle();
   bool read_cycle_words();
+  bool set_shift(CycleHole& hole);
   void drill(const Vec3& place);
   bool arc_error(const ArcResult& arc, const ArcWords& words);
   bool other_centre_fits(const ArcWords& words) const;
   Vec3 target();
   Vec3 programmed_target();
   void read_spiral_words(ArcWords& arc);
-  bool set_shift(CycleHole& hole);
   void prepare_cutting(char const* what);
   std::optional<double> cutting_feed(double length_mm, char const* g);
   std::optional<double> per_revolution_feed();

@@ -182,6 +182,15 @@ TEST(NcInterpreter, TakesWordsThatAStrictReaderRefuses) {
   EXPECT_FALSE(r.moves.state_of(r.moves.moves[1]).high_speed_contouring);
 }
 
+TEST(NcInterpreter, ReadsWhatProgramsOfCamSystemsHold) {
+  // Words that a strict RS-274 reader refuses: an axis word after G80, G28 with G91 and G0, K0 on an arc in G17.
+  const Read r = read_clean(
+      "G0X0Y0Z5\r\nM29 S100\r\nG84Z-3.R1.F100\r\nG80 Z20.123456789\r\nG0 G91 G28 Z0.\r\nG90G0X1.Y1.Z1.(caf\xE9)\r\n"
+      "G2 X3. I1. J0. K0.000 F100 [a (b) c]\r\nM30\r\n");
+  EXPECT_NEAR(r.moves.moves[5].end_mm.z(), 20.123456789, 1e-12);
+  EXPECT_NEAR(r.moves.arcs[0].sweep_rad, -kPi, 1e-12);
+}
+
 TEST(NcInterpreter, HighSpeedContouringIsAModalState) {
   for (const auto& [on, off] : {std::pair("G05 P10000", "G05 P0"), std::pair("G05.1 Q1", "G05.1 Q0"),
                                 std::pair("G08 P1", "G08 P0"), std::pair("G5.1 Q1 R5", "G5.1 Q0")}) {
