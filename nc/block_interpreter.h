@@ -126,6 +126,7 @@ class BlockInterpreter {
   bool arc_error(const ArcResult& arc, const ArcWords& words);
   bool other_centre_fits(const ArcWords& words) const;
   Vec3 target();
+  Vec3 target_from(const Vec3& start);
   Vec3 programmed_target();
   void read_spiral_words(ArcWords& arc);
   void prepare_cutting(char const* what);

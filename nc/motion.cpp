@@ -51,9 +51,9 @@ void BlockInterpreter::check_unit() {
                   "the program has moves before G20 or G21 says which unit it is in; millimetres are assumed");
 }
 
-Vec3 BlockInterpreter::programmed_target() {
-  Vec3 end = programmed();
-  if (frame_.polar) return polar_target(end);
+/// The axis words of the block, counted from `start`, a point in the same coordinates.
+Vec3 BlockInterpreter::target_from(const Vec3& start) {
+  Vec3 end = start;
   for (int axis = 0; axis < 3; ++axis) {
     if (!words_.has(kAxisLetters[axis])) continue;
     const double value = words_.value(kAxisLetters[axis]) * unit_mm();
@@ -62,11 +62,15 @@ Vec3 BlockInterpreter::programmed_target() {
   return end;
 }
 
+Vec3 BlockInterpreter::programmed_target() {
+  const Vec3 start = programmed();
+  return frame_.polar ? polar_target(start) : target_from(start);
+}
+
 /// The end of the block's move in the frame of the moves. Axes that no word moves keep their place to the last bit.
 Vec3 BlockInterpreter::target() {
-  const Vec3 programmed_end = programmed_target();
-  if (frame_.plain) return programmed_end;
-  Vec3 end = frame_.from_program(programmed_end);
+  if (frame_.plain && !frame_.polar) return target_from(position_mm_);
+  Vec3 end = frame_.from_program(programmed_target());
   if (!frame_.shift_only) return end;
   for (int axis = 0; axis < 3; ++axis)
     if (!words_.has(kAxisLetters[axis]) && !frame_.polar) end[axis] = position_mm_[axis];
