@@ -100,6 +100,8 @@ std::string check_report(const std::string& program, const nc::Summary& s, const
       fmt::format("{}: {} blocks, {} of them with words, {}\n", program, s.blocks, s.blocks_with_words, unit_text(s));
   out += fmt::format("moves     {} rapid, {} linear, {} arc, {} dwell", s.rapids, s.lines, s.arcs, s.dwells);
   if (s.canned > 0) out += fmt::format("; {} of them by drilling cycles", s.canned);
+  if (s.cutter_radius > 0) out += fmt::format("; {} under cutter radius compensation", s.cutter_radius);
+  if (s.high_speed_contouring > 0) out += fmt::format("; {} in high speed contouring", s.high_speed_contouring);
   if (s.reference > 0) out += fmt::format("; {} to or from the reference point", s.reference);
   out += fmt::format("\ncutting   {:.1f} mm   {}\n", s.cutting_length_mm, extents_text(s.cutting));
   out += fmt::format("rapid     {:.1f} mm   {}\n", s.rapid_length_mm, extents_text(s.rapid));
@@ -125,6 +127,8 @@ std::string check_json(const std::string& program, const nc::Summary& s, const D
                                  {"arc", s.arcs},
                                  {"dwell", s.dwells},
                                  {"canned", s.canned},
+                                 {"cutter_radius", s.cutter_radius},
+                                 {"high_speed_contouring", s.high_speed_contouring},
                                  {"reference", s.reference}}},
                                {"cutting_length_mm", s.cutting_length_mm},
                                {"rapid_length_mm", s.rapid_length_mm},

@@ -65,7 +65,7 @@ double sweep_of(const ArcWords& words, const PlaneAxes& axes, const Vec3& centre
   const double x1 = words.end_mm[axes.first] - centre[axes.first], y1 = words.end_mm[axes.second] - centre[axes.second];
   double sweep = std::atan2(x0 * y1 - y0 * x1, x0 * x1 + y0 * y1);  // counter-clockwise, -pi..pi
   if (words.clockwise) sweep = -sweep;
-  const bool closed = std::hypot(x1 - x0, y1 - y0) < kSamePlaceMm;
+  const bool closed = std::hypot(x1 - x0, y1 - y0) < kSamePlaceMm || (words.spiral && std::abs(sweep) < 1e-9);
   if (closed)
     sweep = 2 * kPi;
   else if (sweep <= 0)

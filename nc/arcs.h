@@ -24,7 +24,8 @@ struct ArcWords {
   bool clockwise = false;  ///< G2, seen against the plane's normal
   std::optional<double> i_mm{}, j_mm{}, k_mm{}, r_mm{};
   bool absolute_centre = false;  ///< G90.1
-  int turns = 1;                 ///< P: 1 is up to one full turn
+  int turns = 1;                 ///< P, L: 1 is up to one full turn
+  bool spiral = false;           ///< the radius may change along the way; ends in one direction are a full turn
 };
 
 struct ArcResult {

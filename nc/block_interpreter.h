@@ -7,6 +7,7 @@
 #include "nc/arcs.h"
 #include "nc/block_words.h"
 #include "nc/canned_cycles.h"
+#include "nc/frames.h"
 #include "nc/interpreter.h"
 #include "nc/modal_codes.h"
 
@@ -66,10 +67,21 @@ class BlockInterpreter {
     bool trouble = false;      ///< an error was reported: say nothing of unused words
     const Word* motion_word = nullptr;
     const Word* reference_word = nullptr;
+    Code frame_code{};  ///< a code whose words set a frame or an offset (G10, G52, G68 ...); no word: none
+    bool return_from_reference = false;
+  };
+  /// Cutter radius compensation that is switched on.
+  struct Radius {
+    bool active = false;
+    int g_tenths = 0;
+    double radius_mm = 0;
+    std::size_t first_move = 0;  ///< in Interpretation::moves
+    std::size_t offset = 0;      ///< of the G41 or G42
   };
   struct Cycle {
     int g = 0;  ///< 0: none active
     std::optional<double> r_mm, z_mm, p_s, q_mm;
+    Vec3 shift_mm = Vec3::Zero();  ///< I J K of G76 and G87
     double initial_mm = 0;
     bool incremental = false;
     bool peck_warned = false;
@@ -81,6 +93,7 @@ class BlockInterpreter {
   void check_one_of_each_group();
   void set_motion(const Code& code);
   void set_cycle(const Code& code);
+  void set_plane(const Code& code);
   void set_work_offset(const Code& code);
   void set_path_control(int tenths);
   void set_tool_length(const Code& code);
@@ -95,6 +108,33 @@ class BlockInterpreter {
   void check_letters();
   void warn_of_unused_words();
 
+  // frame_codes.cpp: where programmed coordinates lie
+  void read_frame_code(const Code& code);
+  void run_frame_code();
+  void set_local_shift();
+  void set_position();
+  void place_at_program_point(int axis, double programmed_mm);
+  void restore_shift(int tenths);
+  void set_rotation();
+  void set_scaling();
+  void set_mirror();
+  void set_data();
+  void set_work_offset_data(bool touch_off);
+  void set_tool_data(int kind);
+  double scale_value(char letter);
+  void update_frame();
+  void settle_machine_axis(std::size_t axis, double machine_mm, Vec3& place_mm);
+  Vec3 programmed() const { return frame_.to_program(position_mm_); }
+  Vec3 polar_target(Vec3 programmed_mm);
+  void return_from_reference();
+
+  // radius_codes.cpp: G40, G41, G42
+  void read_radius_code(const Code& code);
+  std::optional<double> radius_of(const Code& code);
+  void check_radius_block();
+  void end_radius();
+  void leave_contour(Move& move);
+
   // motion.cpp: words that make moves
   void dwell();
   std::optional<double> dwell_seconds(char letter);
@@ -103,12 +143,17 @@ class BlockInterpreter {
   void move();
   void move_on_line();
   void move_on_arc();
+  // cycle_codes.cpp
   void run_cycle();
   bool read_cycle_words();
+  bool set_shift(CycleHole& hole);
   void drill(const Vec3& place);
   bool arc_error(const ArcResult& arc, const ArcWords& words);
   bool other_centre_fits(const ArcWords& words) const;
   Vec3 target();
+  Vec3 target_from(const Vec3& start);
+  Vec3 programmed_target();
+  void read_spiral_words(ArcWords& arc);
   void prepare_cutting(char const* what);
   std::optional<double> cutting_feed(double length_mm, char const* g);
   std::optional<double> per_revolution_feed();
@@ -126,6 +171,7 @@ class BlockInterpreter {
   double unit_mm() const { return state_.inch ? kInch : 1.0; }
   static constexpr double kInch = 25.4;
 
+  const Program* main_;
   const Program* program_;
   const InterpreterOptions& options_;
   Reporter& report_;
@@ -152,6 +198,18 @@ class BlockInterpreter {
   int first_cut_offset_ = 0;
   bool centre_mode_given_ = false;  ///< G90.1 or G91.1
   std::size_t arcs_fit_relative_ = 0, arcs_fit_absolute_ = 0;
+
+  Frames frames_;
+  Frame frame_;
+  bool frames_used_ = false;  ///< something but unknown work offsets is in play
+  bool not_editable_told_ = false;
+  double polar_angle_deg_ = 0;
+  std::optional<Vec3> reference_via_mm_;  ///< the intermediate point of G28, G30; for G29
+  std::map<int, ToolOffset> tool_offsets_;
+  Radius radius_;
+  int radius_number_ = -1;  ///< the last D
+  bool leaving_ = false;    ///< G40 was read; the cutter still stands beside the contour
+  Vec3 beside_mm_ = Vec3::Zero();
 
   Vec3 position_mm_ = Vec3::Zero();
   std::array<AxisPlace, 3> place_{AxisPlace::never, AxisPlace::never, AxisPlace::never};

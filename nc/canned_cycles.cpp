@@ -12,15 +12,18 @@ class HoleWriter {
   HoleWriter(const CycleHole& hole, const PlaneAxes& axes) : hole_(hole), axes_(axes), at_(hole.from_mm) {}
 
   std::vector<CycleStep> run() {
-    if (height() < hole_.retract_mm) go(CycleStep::Kind::rapid, hole_.retract_mm);
+    if (height() < hole_.retract_mm && hole_.g != 87) go(CycleStep::Kind::rapid, hole_.retract_mm);
     approach();
+    if (hole_.g == 87) return bore_back();
     if (pecked())
       drill_in_pecks();
     else
       go(CycleStep::Kind::feed, hole_.bottom_mm);
     if (dwells() && hole_.dwell_s > 0) steps_.push_back({CycleStep::Kind::dwell, at_, hole_.dwell_s});
     if (feeds_out()) go(CycleStep::Kind::feed, hole_.retract_mm);
+    if (hole_.g == 76) shift(1);
     go(CycleStep::Kind::rapid, hole_.clear_mm);
+    if (hole_.g == 76) shift(-1);
     return std::move(steps_);
   }
 
@@ -36,7 +39,25 @@ class HoleWriter {
     over[axes_.second] = hole_.place_mm[axes_.second];
     if (over != at_) steps_.push_back({CycleStep::Kind::rapid, over, 0});
     at_ = over;
+    if (hole_.g != 87) go(CycleStep::Kind::rapid, hole_.retract_mm);
+  }
+
+  std::vector<CycleStep> bore_back() {
+    shift(1);
     go(CycleStep::Kind::rapid, hole_.retract_mm);
+    shift(-1);
+    go(CycleStep::Kind::feed, hole_.bottom_mm);
+    if (hole_.dwell_s > 0) steps_.push_back({CycleStep::Kind::dwell, at_, hole_.dwell_s});
+    shift(1);
+    go(CycleStep::Kind::rapid, hole_.clear_mm);
+    shift(-1);
+    return std::move(steps_);
+  }
+
+  void shift(double sign) {
+    if (hole_.shift_mm == Vec3::Zero()) return;
+    at_ += sign * hole_.shift_mm;
+    steps_.push_back({CycleStep::Kind::rapid, at_, 0});
   }
 
   void drill_in_pecks() {

@@ -10,7 +10,7 @@ namespace camber::nc {
 
 /// One hole of a cycle. Heights are coordinates along the plane's normal (Z for G17), mm.
 struct CycleHole {
-  int g = 81;  ///< 73, 74, 81..86, 89
+  int g = 81;  ///< 73, 74, 76, 81..89
   Vec3 from_mm = Vec3::Zero();
   Vec3 place_mm = Vec3::Zero();      ///< the two coordinates in the plane count
   double retract_mm = 0;             ///< R
@@ -18,6 +18,7 @@ struct CycleHole {
   double clear_mm = 0;               ///< where the tool ends: the initial level (G98) or R (G99)
   double peck_mm = 0;                ///< Q of G73 and G83; 0: in one go
   double dwell_s = 0;                ///< P
+  Vec3 shift_mm = Vec3::Zero();      ///< G76, G87: off the wall, with the spindle oriented
   double peck_clearance_mm = 0.254;  ///< G83: back to so far above the last depth; G73: retract of each peck
 };
 
@@ -29,7 +30,9 @@ struct CycleStep {
 
 /// The moves of one hole. First to the R level where the tool is below it, then over the hole, then down to R.
 /// G81: feed in, rapid out. G82, G86, G89: dwell at the bottom. G73, G83: in pecks. G84, G74 (tapping), G85, G89:
-/// out in feed. Steps that go nowhere are left out. Pecks are at most kMaxPecks.
+/// out in feed. G76: bored, shifted off the wall, out in rapid, shifted back. G87: shifted, in rapid down to R, shifted
+/// back, bored upwards to Z, shifted, out in rapid, shifted back. G88: as G86 (the retract by hand is taken as a
+/// rapid). Steps that go nowhere are left out. Pecks are at most kMaxPecks.
 std::vector<CycleStep> hole_steps(const CycleHole& hole, const PlaneAxes& axes);
 
 inline constexpr double kMaxPecks = 100000;

@@ -13,7 +13,10 @@ constexpr Dialect kFanuc{.control = ControlKind::fanuc, .name = "fanuc", .m98_co
 
 /// Haas mill operator's manual, macros: as Fanuc, but O numbers of five digits, so that P is always the whole number,
 /// and common variables up to #999 without a gap.
-constexpr Dialect kHaas{.control = ControlKind::haas, .name = "haas", .common = {{100, 999}, {10000, 10999}}};
+constexpr Dialect kHaas{.control = ControlKind::haas,
+                        .name = "haas",
+                        .common = {{100, 999}, {10000, 10999}},
+                        .rotation_r_adds_in_g91 = true};
 
 /// Mazak EIA/ISO (Mazatrol's custom macro follows Fanuc's), O numbers of eight digits.
 constexpr Dialect kMazak{.control = ControlKind::mazak, .name = "mazak", .common = {{100, 199}, {400, 999}}};
@@ -33,6 +36,15 @@ constexpr Dialect kLinuxCnc{.control = ControlKind::linuxcnc,
                             .atan_is_positive = false,
                             .round_to_increment = false,
                             .equal_within = 1e-4,
+                            .g52_is_g92 = true,
+                            .g10_adds_in_g91 = false,
+                            .g10_p0_is_external = false,
+                            .g10_l20_is_g54_1 = false,
+                            .g41_1_has_diameter = true,
+                            .radius_corner_lines = false,
+                            .radius_entry_square = false,
+                            .radius_exit_waits = false,
+                            .radius_look_ahead = 1'000'000,
                             .most_levels = 10};
 
 constexpr std::array kDialects{&kFanuc, &kHaas, &kMazak, &kLinuxCnc};

@@ -43,6 +43,23 @@ struct Dialect {
   bool round_to_increment = true;    ///< ROUND in the value of an axis word rounds to the least increment
   double equal_within = 0;           ///< EQ holds for numbers that differ by less
 
+  // Frames and cutter radius compensation
+  bool g52_is_g92 = false;              ///< G52 and G92 share one shift; else they add up
+  bool g10_adds_in_g91 = true;          ///< G91 G10 L2 adds to the offset; else G91 is nothing to it
+  bool g10_p0_is_external = true;       ///< G10 L2 P0 sets the shift common to all offsets; else the active one
+  bool g10_l20_is_g54_1 = true;         ///< G10 L20 Pn sets G54.1 Pn; else it touches off
+  bool rotation_r_adds_in_g91 = false;  ///< R of G68 in G91 is added to the angle (RIN = 1)
+  double scale_unit = 0.001;            ///< what 1 without a decimal point is in P, I, J, K of G51
+  bool g41_1_has_diameter = false;      ///< G41.1 D: a diameter; else it is normal direction control
+  bool radius_corner_lines = true;      ///< outside corners by lines, else by arcs
+  bool radius_entry_square = true;      ///< CutterRadius::entry_square_to_next (type A, 5003#0 = 0)
+  /// After G40 the cutter stays off the contour until a block has a word of the plane; else it returns with the next
+  /// move of any kind.
+  bool radius_exit_waits = true;
+  int radius_look_ahead = 1;  ///< CutterRadius::moves_without_plane_motion
+  /// Arcs by I J K whose radii differ by up to this are spirals (3410 = 0); 0: only those with L are.
+  double spiral_radius_difference_mm = 0;
+
   // Subprograms
   bool m98_count_in_p = false;  ///< M98 P31234: O1234, three times
   int most_levels = 15;         ///< of calls inside calls

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "nc/arc_rounding.h"
 #include "nc/block_writer.h"
+#include "nc/frames.h"
 
 namespace camber::nc {
 namespace {
@@ -32,7 +33,7 @@ std::vector<Word> words_at_end(std::span<const Word> words) {
   return out;
 }
 
-bool goes_to_machine_place(std::span<const Word> words) { return has_code(words, 'G', {28, 30, 53}); }
+bool goes_to_machine_place(std::span<const Word> words) { return has_code(words, 'G', {28, 29, 30, 53}); }
 
 Plane plane_of(const Arc& arc) { return arc.normal.z() != 0 ? Plane::xy : arc.normal.y() != 0 ? Plane::zx : Plane::yz; }
 
@@ -96,10 +97,32 @@ class Emitter {
       return;
     }
     if (move.kind == MoveKind::dwell) return;
+    const Frame& frame = moves_.frame_of(move);
     if (!move.editable) {
       pass_over(first, end);
       return;
     }
+    if (frame.plain) {
+      run_block_in_program(move, edit, last_end, cycle_normal(first, end));
+      return;
+    }
+    Move there = move;
+    there.start_mm = frame.to_program(move.start_mm);
+    there.end_mm = frame.to_program(move.end_mm);
+    MoveEdit wish;
+    if (edit) {
+      wish = *edit;
+      wish.end_mm = frame.to_program(wish.end_mm);
+      wish.center_mm = frame.to_program(wish.center_mm);
+      for (Vec3& via : wish.via_mm) via = frame.to_program(via);
+    }
+    at_ = frame.to_program(at_);
+    run_block_in_program(there, edit ? &wish : nullptr, frame.to_program(last_end), cycle_normal(first, end));
+    at_ = frame.from_program(at_);
+  }
+
+  /// The coordinates of `move`, `edit` and at_ are those of the text.
+  void run_block_in_program(const Move& move, const MoveEdit* edit, const Vec3& last_end, int normal) {
     const auto words = program_.words_of(move.block);
     unit_mm_ = moves_.state_of(move).inch ? kMmPerInch : 1.0;
     least_decimals_ = unit_mm_ == 1.0 ? options_.decimals_mm : options_.decimals_inch;
@@ -107,7 +130,7 @@ class Emitter {
     if (goes_to_machine_place(words)) {
       leave_for_machine_place(writer, last_end);
     } else if (move.canned) {
-      drill(writer, move, last_end);
+      drill(writer, move, last_end, normal);
     } else if (move.kind == MoveKind::rapid && !edit) {
       go_rapidly(writer, move);
     } else if (move.kind == MoveKind::arc) {
@@ -220,8 +243,7 @@ class Emitter {
   }
 
   /// A cycle drills where the tool stands or where its words say: both must be the old place.
-  void drill(BlockWriter& writer, const Move& move, const Vec3& last_end) {
-    const int normal = cycle_normal(move, last_end);
+  void drill(BlockWriter& writer, const Move& move, const Vec3& last_end, int normal) {
     Vec3 place = last_end;
     if (!incremental(move) || !writer.find('L')) {
       place[normal] = at_[normal];
@@ -241,9 +263,9 @@ class Emitter {
   }
 
   /// The axis that the cycle's feed moves run along.
-  int cycle_normal(const Move& first, const Vec3&) const {
-    for (std::size_t m = static_cast<std::size_t>(&first - moves_.moves.data());
-         m < moves_.moves.size() && moves_.moves[m].block == first.block; ++m) {
+  int cycle_normal(std::size_t first, std::size_t end) const {
+    if (!moves_.moves[first].canned) return 2;
+    for (std::size_t m = first; m < end; ++m) {
       const Move& move = moves_.moves[m];
       if (move.kind != MoveKind::linear) continue;
       Eigen::Index axis = 0;
@@ -318,7 +340,7 @@ class Emitter {
   // --- arcs ---------------------------------------------------------------------------------------------------------
 
   void go_on_arc(BlockWriter& writer, const Move& move, const MoveEdit* edit) {
-    const Arc& arc = moves_.arcs[move.arc];
+    const Arc arc = arc_in_program(move);
     WantedArc wanted;
     wanted.plane = plane_of(arc);
     const PlaneAxes axes = axes_of(wanted.plane);
@@ -350,8 +372,13 @@ class Emitter {
       const double half = 0.5 * step_mm(writer.decimals(kAxis[axis], least_decimals_));
       if (std::abs(wanted.end_mm[axis] - move.end_mm[axis]) > half) return false;
     }
-    const Vec3 centre_shift = wanted.center_mm - moves_.arcs[move.arc].center_mm;
+    const Vec3 centre_shift = wanted.center_mm - arc_in_program(move).center_mm;
     return centre_shift.cwiseAbs().maxCoeff() <= 0.5 * step_mm(least_decimals_);
+  }
+
+  Arc arc_in_program(const Move& move) const {
+    const Frame& frame = moves_.frame_of(move);
+    return frame.plain ? moves_.arcs[move.arc] : to_program(frame, moves_.arcs[move.arc]);
   }
 
   bool write_arc(const Move& move, const WantedArc& wish, int more_decimals) {

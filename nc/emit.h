@@ -37,9 +37,12 @@ struct EmitOptions {
 /// A full turn stays closed: it ends where the emitted program starts it. Arcs get as many decimals as it takes for the
 /// radii at start and end to agree within one unit of the last decimal.
 ///
-/// Moves of drilling cycles and of G28, G30 and G53, dwells, and moves that are not Move::editable cannot be edited:
-/// their edits are passed over. Edits go by the order of the moves, the text keeps its own (a subprogram may stand
-/// behind).
+/// Points are in the frame of the moves; where the text has them in a shifted, turned, mirrored or scaled frame the
+/// words are counted back into it.
+///
+/// Moves of drilling cycles and of G28, G29, G30 and G53, dwells, and moves that are not Move::editable (under G41 and
+/// G42, in polar coordinates, of loops) cannot be edited: their edits are passed over. Edits go by the order of the
+/// moves, the text keeps its own (a subprogram may stand behind).
 std::string emit(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
                  const EmitOptions& options);
 

@@ -12,10 +12,18 @@ namespace camber::nc {
 
 BlockInterpreter::BlockInterpreter(const Program& program, const InterpreterOptions& options, Reporter& report,
                                    Interpretation& out)
-    : program_(&program), options_(options), report_(report), out_(out) {
+    : main_(&program),
+      program_(&program),
+      options_(options),
+      report_(report),
+      out_(out),
+      frames_(options.work_offsets_mm),
+      frames_used_(!options.work_offsets_mm.empty()),
+      tool_offsets_(options.tool_offsets) {
   state_.inch = options.inch.value_or(false);
   state_.absolute_arc_centre = options.absolute_arc_centre;
   unit_given_ = options.inch.has_value();
+  update_frame();
 }
 
 bool BlockInterpreter::run(const RunBlock& block) {
@@ -32,10 +40,15 @@ bool BlockInterpreter::run(const RunBlock& block) {
   read_tool();
   if (!words_.m().empty() && !read_m_codes_before()) return false;
   check_letters();
+  if (radius_.active) check_radius_block();
   if (request_.skip_motion) {
     words_.use("XYZIJKPQR");
+  } else if (request_.frame_code.word) {
+    run_frame_code();
   } else if (request_.dwell) {
     dwell();
+  } else if (request_.return_from_reference) {
+    return_from_reference();
   } else if (request_.reference) {
     go_to_reference();
   } else if (request_.machine_frame) {
@@ -49,6 +62,18 @@ bool BlockInterpreter::run(const RunBlock& block) {
 }
 
 void BlockInterpreter::finish() {
+  if (radius_.active) {
+    const Radius radius = radius_;
+    end_radius();
+    const std::string message = fmt::format(
+        "G{} is never cancelled; G40 with a straight move off the contour was expected "
+        "before the end",
+        radius.g_tenths / 10);
+    if (radius.radius_mm != 0 && !report_.has_errors())
+      report_.error(radius.offset, "cutter-radius", message);
+    else if (radius.radius_mm == 0)
+      report_.warning(radius.offset, "cutter-radius", message);
+  }
   if (next_tool_ >= 0 && !tool_changed_)
     report_.warning(tool_word_offset_, "tool-not-changed",
                     "the program selects tools (T) but never changes one; M6 was expected, all moves count as tool 0");

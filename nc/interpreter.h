@@ -1,5 +1,7 @@
 #pragma once
 // From words to moves: modal state, units, planes, arcs, canned cycles.
+#include <array>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -8,6 +10,7 @@
 #include "base/diagnostics.h"
 #include "nc/dialect.h"
 #include "nc/move.h"
+#include "nc/offsets.h"
 #include "nc/program.h"
 
 namespace camber::nc {
@@ -20,7 +23,7 @@ struct InterpreterOptions {
   /// (LinuxCNC). With a point they are seconds for all.
   bool dwell_p_is_ms = false;
   bool absolute_arc_centre = false;  ///< the control starts in G90.1 rather than G91.1
-  bool index_table = false;         ///< B turns an index table: an event, no error
+  bool index_table = false;          ///< B turns an index table: an event, no error
   double peck_clearance_mm = 0.254;  ///< G83 stops its rapid so far above the last depth; G73 retracts by it
   /// Whose language the program is in. Not given: what its text shows (O-words, M97), else Fanuc, whose macros most
   /// programs are written in; a dwell's P then counts as `dwell_p_is_ms` says.
@@ -30,7 +33,17 @@ struct InterpreterOptions {
   /// Blocks that loops and repeated subprograms may run again before the program counts as endless.
   std::size_t most_repeated_blocks = 10'000'000;
 
-  const Dialect& dialect() const { return dialect_of(control.value_or(ControlKind::fanuc)); }
+  // What the operator has set at the control; what is not given here and not set by the program is not known.
+  std::map<int, Vec3> work_offsets_mm{};     ///< machine coordinates, by the number of ModalState::work_offset
+  std::map<int, ToolOffset> tool_offsets{};  ///< by H and D number
+  /// Machine coordinates of the reference points: G28, G30 P2, P3, P4.
+  std::array<std::optional<Vec3>, 4> reference_points_mm{};
+  /// A control whose parameters differ from its preset; goes before `control`.
+  std::optional<Dialect> own_dialect{};
+
+  const Dialect& dialect() const {
+    return own_dialect ? *own_dialect : dialect_of(control.value_or(ControlKind::fanuc));
+  }
 };
 
 /// Arcs whose radii at start and end differ by more than the first are warned of, by more than the second refused.
@@ -39,8 +52,9 @@ inline constexpr double kArcRadiusErrorMm = 0.05;
 
 /// Interprets the whole program. Words of a block act in the order unit, feed mode, distance mode, plane, F, S, T,
 /// M6, M3 M4, coolant on, dwell or motion, M5 M9, stops. Reading ends at M2 or M30. All work offsets are taken as
-/// one frame, with a warning when several are cut in. Errors and warnings go to `diagnostics`; errors do not stop the
-/// reading (Diagnostics throws InputError after kMaxErrors).
+/// one frame, with a warning when several are cut in, unless their values are known (docs/nc-language.md, Frames).
+/// Errors and warnings go to `diagnostics`; errors do not stop the reading (Diagnostics throws InputError after
+/// kMaxErrors).
 Interpretation interpret(const Program& program, const InterpreterOptions& options, Diagnostics& diagnostics);
 
 }  // namespace camber::nc

@@ -25,40 +25,40 @@ constexpr std::array kCodes = {
     Entry{51, {GGroup::contouring}},
     Entry{80, {GGroup::contouring}},
     Entry{90, {GGroup::one_shot}},
-    Entry{100, not_read("setting of offsets by the program")},
+    Entry{100, {GGroup::frame}},
     Entry{110, {GGroup::no_effect}},
     Entry{120, not_read("circular pocket")},
     Entry{130, not_read("circular pocket")},
-    Entry{150, {GGroup::no_effect}},
-    Entry{160, not_read("polar coordinates")},
+    Entry{150, {GGroup::frame}},
+    Entry{160, {GGroup::frame}},
     Entry{170, {GGroup::plane}},
     Entry{180, {GGroup::plane}},
     Entry{190, {GGroup::plane}},
     Entry{200, {GGroup::unit}},
     Entry{210, {GGroup::unit}},
     Entry{280, {GGroup::one_shot}},
-    Entry{290, not_read("return from the reference point")},
+    Entry{290, {GGroup::one_shot}},
     Entry{300, {GGroup::one_shot}},
     Entry{310, not_read("skip function of a probe")},
     Entry{330, not_read("thread cutting, the spindle in step")},
     Entry{331, not_read("rigid tapping")},
     Entry{382, not_read("probing")},
     Entry{400, {GGroup::cutter_radius}},
-    Entry{410, not_read("cutter radius compensation in the control, left", false)},
-    Entry{411, not_read("cutter radius compensation in the control, left", false)},
-    Entry{420, not_read("cutter radius compensation in the control, right", false)},
-    Entry{421, not_read("cutter radius compensation in the control, right", false)},
+    Entry{410, {GGroup::cutter_radius}},
+    Entry{411, {GGroup::cutter_radius}},
+    Entry{420, {GGroup::cutter_radius}},
+    Entry{421, {GGroup::cutter_radius}},
     Entry{430, {GGroup::tool_length}},
     Entry{431, {GGroup::tool_length}},
     Entry{434, not_read("tool centre point control of five axes", false)},
     Entry{435, not_read("tool centre point control of five axes", false)},
     Entry{440, {GGroup::tool_length}},
     Entry{490, {GGroup::tool_length}},
-    Entry{500, {GGroup::no_effect}},
-    Entry{501, {GGroup::no_effect}},
-    Entry{510, not_read("scaling")},
-    Entry{511, not_read("mirror image")},
-    Entry{520, not_read("local coordinate system")},
+    Entry{500, {GGroup::frame}},
+    Entry{501, {GGroup::frame}},
+    Entry{510, {GGroup::frame}},
+    Entry{511, {GGroup::frame}},
+    Entry{520, {GGroup::frame}},
     Entry{530, {GGroup::one_shot}},
     Entry{540, {GGroup::work_offset}},
     Entry{541, {GGroup::work_offset}},
@@ -73,15 +73,15 @@ constexpr std::array kCodes = {
     Entry{610, {GGroup::path_control}},
     Entry{611, {GGroup::path_control}},
     Entry{640, {GGroup::path_control}},
-    Entry{650, not_read("macro call")},
-    Entry{660, not_read("modal macro call")},
-    Entry{670, {GGroup::no_effect}},
-    Entry{680, not_read("rotation of the coordinate system")},
+    Entry{650, {GGroup::macro}},
+    Entry{660, {GGroup::macro}},
+    Entry{670, {GGroup::macro}},
+    Entry{680, {GGroup::frame}},
     Entry{682, not_read("tilted working plane")},
-    Entry{690, {GGroup::no_effect}},
+    Entry{690, {GGroup::frame}},
     Entry{730, {GGroup::cycle}},
     Entry{740, {GGroup::cycle}},
-    Entry{760, not_read("fine boring cycle")},
+    Entry{760, {GGroup::cycle}},
     Entry{800, {GGroup::cycle}},
     Entry{810, {GGroup::cycle}},
     Entry{820, {GGroup::cycle}},
@@ -89,17 +89,17 @@ constexpr std::array kCodes = {
     Entry{840, {GGroup::cycle}},
     Entry{850, {GGroup::cycle}},
     Entry{860, {GGroup::cycle}},
-    Entry{870, not_read("back boring cycle")},
-    Entry{880, not_read("boring cycle with a manual retract")},
+    Entry{870, {GGroup::cycle}},
+    Entry{880, {GGroup::cycle}},
     Entry{890, {GGroup::cycle}},
     Entry{900, {GGroup::distance}},
     Entry{901, {GGroup::arc_distance}},
     Entry{910, {GGroup::distance}},
     Entry{911, {GGroup::arc_distance}},
-    Entry{920, not_read("shift of the coordinate system")},
-    Entry{921, not_read("shift of the coordinate system")},
-    Entry{922, not_read("shift of the coordinate system")},
-    Entry{923, not_read("shift of the coordinate system")},
+    Entry{920, {GGroup::frame}},
+    Entry{921, {GGroup::frame}},
+    Entry{922, {GGroup::frame}},
+    Entry{923, {GGroup::frame}},
     Entry{930, {GGroup::feed_mode}},
     Entry{940, {GGroup::feed_mode}},
     Entry{950, {GGroup::feed_mode}},
@@ -124,6 +124,82 @@ GCode g_code(int tenths) {
   const auto it = std::lower_bound(kCodes.begin(), kCodes.end(), tenths,
                                    [](const Entry& e, int value) { return e.tenths < value; });
   return it != kCodes.end() && it->tenths == tenths ? it->code : GCode{};
+}
+
+std::vector<int> known_g_codes() {
+  std::vector<int> codes;
+  for (const Entry& e : kCodes) codes.push_back(e.tenths);
+  return codes;
+}
+
+std::string_view group_name(GGroup group) {
+  switch (group) {
+    case GGroup::motion:
+      return "motion";
+    case GGroup::cycle:
+      return "cycle";
+    case GGroup::plane:
+      return "plane";
+    case GGroup::distance:
+      return "distance";
+    case GGroup::arc_distance:
+      return "arc distance";
+    case GGroup::feed_mode:
+      return "feed mode";
+    case GGroup::unit:
+      return "unit";
+    case GGroup::cutter_radius:
+      return "cutter radius";
+    case GGroup::tool_length:
+      return "tool length";
+    case GGroup::work_offset:
+      return "work offset";
+    case GGroup::path_control:
+      return "path control";
+    case GGroup::return_level:
+      return "return level";
+    case GGroup::one_shot:
+      return "one block";
+    case GGroup::frame:
+      return "frame";
+    case GGroup::contouring:
+      return "contouring";
+    case GGroup::macro:
+      return "macro";
+    case GGroup::no_effect:
+      return "no effect";
+    case GGroup::not_read:
+      return "not read";
+    case GGroup::turning:
+      return "turning";
+    case GGroup::unknown:
+      break;
+  }
+  return "unknown";
+}
+
+std::string_view group_name(MGroup group) {
+  switch (group) {
+    case MGroup::stop:
+      return "stop";
+    case MGroup::end:
+      return "end";
+    case MGroup::spindle:
+      return "spindle";
+    case MGroup::tool:
+      return "tool";
+    case MGroup::coolant:
+      return "coolant";
+    case MGroup::no_effect:
+      return "no effect";
+    case MGroup::interruption:
+      return "interruption";
+    case MGroup::subprogram:
+      return "subprogram";
+    case MGroup::unknown:
+      break;
+  }
+  return "unknown";
 }
 
 MGroup m_code(int tenths) {
@@ -167,6 +243,7 @@ MGroup m_code(int tenths) {
     case 530:
       return MGroup::no_effect;  // overrides on, off
     case 960:
+      return MGroup::interruption;
     case 970:
     case 980:
     case 990:

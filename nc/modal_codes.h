@@ -1,24 +1,27 @@
 #pragma once
 // What every G and M code is: its modal group, and what to say of those that are not read.
 #include <string_view>
+#include <vector>
 
 namespace camber::nc {
 
 enum class GGroup {
   motion,         ///< G0 G1 G2 G3
-  cycle,          ///< G80, G73, G74, G81-G89
+  cycle,          ///< G80, G73, G74, G76, G81-G89
   plane,          ///< G17 G18 G19
   distance,       ///< G90 G91
   arc_distance,   ///< G90.1 G91.1
   feed_mode,      ///< G93 G94 G95
   unit,           ///< G20 G21
-  cutter_radius,  ///< G40 (G41 G42 are not read)
+  cutter_radius,  ///< G40 G41 G42 G41.1 G42.1
   tool_length,    ///< G43 G44 G49
   work_offset,    ///< G54 .. G59.3, G54.1
   path_control,   ///< G61 G61.1 G64
   return_level,   ///< G98 G99
-  one_shot,       ///< G4 G9 G28 G30 G53
+  one_shot,       ///< G4 G9 G28 G29 G30 G53
+  frame,          ///< G10 G15 G16 G50 G51 G50.1 G51.1 G52 G68 G69 G92: where coordinates lie
   contouring,     ///< G05 G05.1 G08: high speed contouring
+  macro,          ///< G65 G66 G67: the sequencer's
   no_effect,      ///< taken and without effect on the path
   not_read,       ///< known, not read yet
   turning,        ///< of lathes and mill-turn machines
@@ -33,17 +36,23 @@ struct GCode {
 
 /// code in tenths: 541 is G54.1.
 GCode g_code(int tenths);
+/// All codes of the table, in tenths, ascending.
+std::vector<int> known_g_codes();
+/// As docs/nc-language.md names it, e.g. "work offset".
+std::string_view group_name(GGroup group);
 
 enum class MGroup {
-  stop,        ///< M0 M1 M60
-  end,         ///< M2 M30
-  spindle,     ///< M3 M4 M5, M13 M14 (with coolant)
-  tool,        ///< M6
-  coolant,     ///< M7 M8 M9
-  no_effect,   ///< taken and without effect on the path
-  subprogram,  ///< M97 M98 M99 and M96: not read yet
+  stop,          ///< M0 M1 M60
+  end,           ///< M2 M30
+  spindle,       ///< M3 M4 M5, M13 M14 (with coolant)
+  tool,          ///< M6
+  coolant,       ///< M7 M8 M9
+  no_effect,     ///< taken and without effect on the path
+  subprogram,    ///< M97 M98 M99: the sequencer's
+  interruption,  ///< M96: not read yet
   unknown
 };
 MGroup m_code(int tenths);
+std::string_view group_name(MGroup group);
 
 }  // namespace camber::nc

@@ -17,7 +17,7 @@ bool is_whole(double value) { return value == std::floor(value) && value >= 0 &&
 /// Groups of which one block may hold one code.
 bool is_exclusive(GGroup group) {
   return group != GGroup::no_effect && group != GGroup::not_read && group != GGroup::turning &&
-         group != GGroup::unknown && group != GGroup::contouring;
+         group != GGroup::unknown && group != GGroup::contouring && group != GGroup::frame;
 }
 
 /// M codes that act after the motion of their block.
@@ -90,6 +90,11 @@ bool BlockInterpreter::read_g_codes() {
 }
 
 bool BlockInterpreter::read_g_code(const Code& code, const GCode& meaning) {
+  if (code.tenths == 500 && words_.has('S')) {
+    error(code.word->offset, "turning",
+          "G50 with S (largest spindle speed) belongs to a turning program; milling programs are read");
+    return false;
+  }
   switch (meaning.group) {
     case GGroup::motion:
       set_motion(code);
@@ -98,7 +103,7 @@ bool BlockInterpreter::read_g_code(const Code& code, const GCode& meaning) {
       set_cycle(code);
       break;
     case GGroup::plane:
-      plane_ = code.tenths == 170 ? Plane::xy : code.tenths == 180 ? Plane::zx : Plane::yz;
+      set_plane(code);
       break;
     case GGroup::distance:
       state_.incremental = code.tenths == 910;
@@ -115,7 +120,10 @@ bool BlockInterpreter::read_g_code(const Code& code, const GCode& meaning) {
     case GGroup::unit:
       break;
     case GGroup::cutter_radius:
-      words_.use("D");
+      read_radius_code(code);
+      break;
+    case GGroup::frame:
+      read_frame_code(code);
       break;
     case GGroup::tool_length:
       set_tool_length(code);
@@ -137,16 +145,14 @@ bool BlockInterpreter::read_g_code(const Code& code, const GCode& meaning) {
         request_.reference = true;
         request_.reference_word = code.word;
       }
+      request_.return_from_reference |= code.tenths == 290;
       break;
     case GGroup::contouring:
       set_contouring(code);
       break;
+    case GGroup::macro:
+      break;
     case GGroup::no_effect:
-      if (code.tenths == 500 && words_.has('S')) {
-        error(code.word->offset, "turning",
-              "G50 with S (largest spindle speed) belongs to a turning program; milling programs are read");
-        return false;
-      }
       if (code.tenths == 1870 || code.tenths == 1030) words_.use("PE");
       break;
     case GGroup::not_read:
@@ -182,13 +188,23 @@ void BlockInterpreter::set_cycle(const Code& code) {
     cycle_ = {};
     return;
   }
-  if (cycle_.g == 0) cycle_.initial_mm = position_mm_[axes_of(plane_).normal];
+  if (cycle_.g == 0) cycle_.initial_mm = programmed()[axes_of(plane_).normal];
   cycle_.g = code.tenths / 10;
   request_.cycle_given = true;
   request_.motion_word = code.word;
 }
 
+void BlockInterpreter::set_plane(const Code& code) {
+  const Plane plane = code.tenths == 170 ? Plane::xy : code.tenths == 180 ? Plane::zx : Plane::yz;
+  if (plane != plane_ && radius_.active && radius_.radius_mm != 0)
+    error(
+        code.word->offset, "cutter-radius",
+        fmt::format("{} changes the plane under G{}; G40 was expected before", code_text(code), radius_.g_tenths / 10));
+  plane_ = plane;
+}
+
 void BlockInterpreter::set_work_offset(const Code& code) {
+  const int before = state_.work_offset;
   if (code.tenths >= 591) {
     state_.work_offset = code.tenths;
   } else if (code.tenths == 541) {
@@ -202,6 +218,12 @@ void BlockInterpreter::set_work_offset(const Code& code) {
     if (code.tenths == 540 && words_.has('P') && !request_.dwell && is_whole(words_.value('P')))
       state_.work_offset = 540000 + static_cast<int>(words_.value('P'));
   }
+  if (state_.work_offset == before) return;
+  if (radius_.active && radius_.radius_mm != 0)
+    error(code.word->offset, "cutter-radius",
+          fmt::format("{} changes the work offset under G{}; G40 was expected before", code_text(code),
+                      radius_.g_tenths / 10));
+  if (frames_used_) update_frame();
 }
 
 void BlockInterpreter::set_path_control(int tenths) {
@@ -311,11 +333,12 @@ bool BlockInterpreter::read_m_codes_before() {
       case MGroup::coolant:
         if (code.tenths != 90) state_.coolant = true;
         break;
-      case MGroup::subprogram:
-        error(code.word->offset, "subprogram",
-              fmt::format("subprograms ({}) are not read yet; let the CAM system write the moves out", code_text(code)),
-              "M9x");
+      case MGroup::interruption:
+        error(code.word->offset, "not-read",
+              fmt::format("interruption by a macro ({}) is not read yet", code_text(code)), "M96");
         request_.skip_motion = true;
+        break;
+      case MGroup::subprogram:
         break;
       case MGroup::unknown:
         if (code.tenths < 0 || code.tenths % 10 != 0 || code.tenths > 9990)

@@ -1,4 +1,4 @@
-// Words that make moves: dwells, lines, arcs, drilling cycles, the way to the reference point.
+// Words that make moves: dwells, lines, arcs, the way to the reference point. Cycles: cycle_codes.cpp.
 #include <algorithm>
 #include <cmath>
 
@@ -35,9 +35,10 @@ Move& BlockInterpreter::add_move(MoveKind kind, const Vec3& end_mm) {
   move.block = block_;
   move.state = state_index();
   move.kind = kind;
-  move.editable = editable_;
+  move.editable = editable_ && !frame_.polar;
   move.exact_stop = request_.exact_stop;
   move.reference = kind != MoveKind::dwell && place_unknown();
+  if (leaving_) leave_contour(move);
   position_mm_ = end_mm;
   out_.moves.push_back(move);
   return out_.moves.back();
@@ -50,13 +51,29 @@ void BlockInterpreter::check_unit() {
                   "the program has moves before G20 or G21 says which unit it is in; millimetres are assumed");
 }
 
-Vec3 BlockInterpreter::target() {
-  Vec3 end = position_mm_;
+/// The axis words of the block, counted from `start`, a point in the same coordinates.
+Vec3 BlockInterpreter::target_from(const Vec3& start) {
+  Vec3 end = start;
   for (int axis = 0; axis < 3; ++axis) {
     if (!words_.has(kAxisLetters[axis])) continue;
     const double value = words_.value(kAxisLetters[axis]) * unit_mm();
     end[axis] = state_.incremental ? end[axis] + value : value;
   }
+  return end;
+}
+
+Vec3 BlockInterpreter::programmed_target() {
+  const Vec3 start = programmed();
+  return frame_.polar ? polar_target(start) : target_from(start);
+}
+
+/// The end of the block's move in the frame of the moves. Axes that no word moves keep their place to the last bit.
+Vec3 BlockInterpreter::target() {
+  if (frame_.plain && !frame_.polar) return target_from(position_mm_);
+  Vec3 end = frame_.from_program(programmed_target());
+  if (!frame_.shift_only) return end;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!words_.has(kAxisLetters[axis]) && !frame_.polar) end[axis] = position_mm_[axis];
   return end;
 }
 
@@ -104,6 +121,22 @@ void BlockInterpreter::go_to_reference() {
   for (std::size_t axis = 0; axis < 3; ++axis) goes[axis] = words_.has(kAxisLetters[axis]);
   const bool none = !goes[0] && !goes[1] && !goes[2];
   const Vec3 via = target();
+  const Vec3 old_via = reference_via_mm_.value_or(position_mm_);
+  reference_via_mm_ = via;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!goes[static_cast<std::size_t>(axis)]) (*reference_via_mm_)[axis] = old_via[axis];
+  std::size_t point = 0;
+  if (words_.has('P') && request_.reference_word->value == 30) {
+    const double p = words_.value('P');
+    if (p != 2 && p != 3 && p != 4) {
+      error(words_.offset_of('P'), "reference",
+            fmt::format("G30 P{} is no reference point; P2, P3 or P4 was expected", p));
+      return;
+    }
+    point = static_cast<std::size_t>(p) - 1;
+  } else if (request_.reference_word->value == 30) {
+    point = 1;
+  }
   if (via != position_mm_) {
     add_move(MoveKind::rapid, via);
     settle_axes();
@@ -113,6 +146,8 @@ void BlockInterpreter::go_to_reference() {
     if (!none && !goes[axis]) continue;
     home[static_cast<Eigen::Index>(axis)] = 0;
     place_[axis] = AxisPlace::reference;
+    if (const auto& at = options_.reference_points_mm[point])
+      settle_machine_axis(axis, (*at)[static_cast<Eigen::Index>(axis)], home);
   }
   add_move(MoveKind::rapid, home);
 }
@@ -127,8 +162,7 @@ void BlockInterpreter::go_in_machine_frame() {
   Vec3 end = position_mm_;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!words_.has(kAxisLetters[axis])) continue;
-    end[static_cast<Eigen::Index>(axis)] = words_.value(kAxisLetters[axis]) * unit_mm();
-    place_[axis] = AxisPlace::reference;
+    settle_machine_axis(axis, words_.value(kAxisLetters[axis]) * unit_mm(), end);
   }
   std::optional<double> feed;
   if (motion_ == Motion::linear) feed = cutting_feed((end - position_mm_).norm(), "G1");
@@ -185,7 +219,8 @@ void BlockInterpreter::prepare_cutting(const char* what) {
     }
   }
   if (first_cut_offset_ == 0) first_cut_offset_ = state_.work_offset;
-  if (state_.work_offset != first_cut_offset_)
+  if (state_.work_offset != first_cut_offset_ &&
+      !(frames_.offsets.known(state_.work_offset) && frames_.offsets.known(first_cut_offset_)))
     report_.warning(
         words_.offset(), "work-offsets",
         "the program cuts in more than one work offset; their distance is not known, all are taken as one frame");
@@ -241,7 +276,7 @@ bool BlockInterpreter::arc_error(const ArcResult& result, const ArcWords& arc) {
     error(at, "arc", result.error);
     return true;
   }
-  if (result.radius_difference_mm < kArcRadiusWarningMm) return false;
+  if (result.radius_difference_mm < kArcRadiusWarningMm || arc.spiral) return false;
   std::string message = fmt::format("the radius of the arc is {:.4f} mm at its start and {:.4f} mm at its end",
                                     result.start_radius_mm, result.end_radius_mm);
   if (result.radius_difference_mm < kArcRadiusErrorMm) {
@@ -268,8 +303,14 @@ void BlockInterpreter::move_on_arc() {
   arc.absolute_centre = state_.absolute_arc_centre;
   const char* g = arc.clockwise ? "G2" : "G3";
   prepare_cutting(g);
-  arc.start_mm = position_mm_;
-  arc.end_mm = target();
+  if (leaving_) {
+    error(words_.offset(), "cutter-radius",
+          fmt::format("the move off the contour after G40 is an arc ({}); a straight move (G0, G1) was expected", g));
+    leaving_ = false;
+  }
+  const Vec3 end_mm = target();
+  arc.start_mm = programmed();
+  arc.end_mm = frame_.plain ? end_mm : frame_.to_program(end_mm);
   arc.i_mm = words_.scaled('I', unit_mm());
   arc.j_mm = words_.scaled('J', unit_mm());
   arc.k_mm = words_.scaled('K', unit_mm());
@@ -282,105 +323,54 @@ void BlockInterpreter::move_on_arc() {
             fmt::format("{} turns (P) on an arc; a whole number of one or more was expected", turns));
     arc.turns = std::max(arc.turns, 1);
   }
-  const ArcResult result = make_arc(arc);
-  if (arc_error(result, arc)) {
-    position_mm_ = arc.end_mm;
+  read_spiral_words(arc);
+  ArcResult result = make_arc(arc);
+  const auto in_moves = frame_.plain || !result.error.empty() ? result.arc : from_program(frame_, result.arc);
+  if (!in_moves)
+    error(words_.offset(), "scaling",
+          "an arc under a scale that differs along its two axes would be an ellipse; one scale "
+          "for both was expected");
+  if (arc_error(result, arc) || !in_moves) {
+    position_mm_ = end_mm;
     settle_axes();
     return;
   }
   if (!arc.r_mm) ++arcs_fit_relative_;
-  out_.arcs.push_back(result.arc);
-  Move& move = add_move(MoveKind::arc, arc.end_mm);
+  out_.arcs.push_back(*in_moves);
+  Move& move = add_move(MoveKind::arc, end_mm);
   move.arc = static_cast<std::uint32_t>(out_.arcs.size() - 1);
   settle_axes();
   move.feed_mm_per_s = cutting_feed(length_mm(out_, move), g).value_or(0);
 }
 
-bool BlockInterpreter::read_cycle_words() {
-  const char normal = kAxisLetters[axes_of(plane_).normal];
-  if (words_.has(normal)) cycle_.z_mm = words_.scaled(normal, unit_mm());
-  if (words_.has('R')) cycle_.r_mm = words_.scaled('R', unit_mm());
-  if (words_.has('Q')) cycle_.q_mm = std::abs(*words_.scaled('Q', unit_mm()));
-  if (words_.has('P')) cycle_.p_s = dwell_seconds('P');
-  words_.use("IJKL");
-  const std::string name = fmt::format("G{}", cycle_.g);
-  if (!words_.has_any("XYZ")) return false;
-  if (!cycle_.r_mm) error(words_.offset(), "cycle", name + " has no retract level; R was expected", "cycle R");
-  if (!cycle_.z_mm)
-    error(words_.offset(), "cycle", fmt::format("{} has no depth; {} was expected", name, normal), "cycle Z");
-  if ((cycle_.g == 73 || cycle_.g == 83) && cycle_.q_mm.value_or(0) <= 0) {
-    error(words_.offset(), "cycle", name + " has no depth of each peck; Q greater than zero was expected", "cycle Q");
-    return false;
-  }
-  return cycle_.r_mm && cycle_.z_mm;
-}
-
-void BlockInterpreter::run_cycle() {
-  check_unit();
-  if (!read_cycle_words()) return;
-  prepare_cutting("a drilling cycle");
-  const PlaneAxes axes = axes_of(plane_);
-  const double repeats = words_.has('L') ? words_.value('L') : words_.has('K') ? words_.value('K') : 1;
-  if (repeats < 0 || repeats > 1e5 || repeats != std::floor(repeats)) {
-    error(words_.offset(), "cycle",
-          fmt::format("{} repeats of a cycle; a whole number up to 100000 was expected", repeats));
+/// L, and Q with it: an Archimedean spiral (in G17 with Z a conical one); or radii that differ where the control
+/// takes that as a spiral.
+void BlockInterpreter::read_spiral_words(ArcWords& arc) {
+  if (arc.r_mm) return;
+  if (!words_.has('L')) {
+    if (options_.dialect().spiral_radius_difference_mm <= 0) return;
+    const ArcResult plain = make_arc(arc);
+    arc.spiral = plain.error.empty() && plain.radius_difference_mm > kArcRadiusWarningMm &&
+                 plain.radius_difference_mm <= options_.dialect().spiral_radius_difference_mm;
     return;
   }
-  for (int i = 0; i < static_cast<int>(repeats); ++i) {
-    if (cycle_moves_ > kMaxCycleMoves) {
-      error(words_.offset(), "cycle",
-            fmt::format("the drilling cycles make more than {} moves; fewer repeats (L) or a larger Q were expected",
-                        kMaxCycleMoves));
-      return;
-    }
-    Vec3 place = target();
-    place[axes.normal] = position_mm_[axes.normal];
-    drill(place);
-    if (request_.trouble) return;
-    settle_axes();
-  }
-}
-
-void BlockInterpreter::drill(const Vec3& place) {
-  const int normal = axes_of(plane_).normal;
-  CycleHole hole;
-  hole.g = cycle_.g;
-  hole.from_mm = position_mm_;
-  hole.place_mm = place;
-  hole.retract_mm = *cycle_.r_mm + (state_.incremental ? cycle_.initial_mm : 0);
-  hole.bottom_mm = *cycle_.z_mm + (state_.incremental ? hole.retract_mm : 0);
-  hole.clear_mm = return_to_r_ ? hole.retract_mm : std::max(cycle_.initial_mm, hole.retract_mm);
-  hole.peck_mm = cycle_.q_mm.value_or(0);
-  hole.dwell_s = cycle_.p_s.value_or(0);
-  hole.peck_clearance_mm = options_.peck_clearance_mm;
-  const std::string name = fmt::format("G{}", cycle_.g);
-  const double depth = hole.retract_mm - hole.bottom_mm;
-  if (depth < 0) {
-    error(words_.offset(), "cycle",
-          fmt::format("the bottom of {} at {} {:.4f} mm is above its retract level R {:.4f} mm", name,
-                      kAxisLetters[normal], hole.bottom_mm, hole.retract_mm));
+  const double turns = words_.value('L');
+  if (!(turns > 0 && turns < 1e6)) {
+    error(words_.offset_of('L'), "arc-turns",
+          fmt::format("{} turns (L) on an arc; a number greater than zero was expected", turns));
     return;
   }
-  if ((cycle_.g == 73 || cycle_.g == 83) && depth > hole.peck_mm * kMaxPecks) {
-    error(words_.offset(), "cycle", fmt::format("{} would peck more than 100000 times; a larger Q was expected", name));
-    return;
-  }
-  const auto feed = cutting_feed(depth, name.c_str());
-  if (!feed) return;
-  for (const CycleStep& step : hole_steps(hole, axes_of(plane_))) {
-    const bool rapid = step.kind == CycleStep::Kind::rapid;
-    Move& move = add_move(rapid                                 ? MoveKind::rapid
-                          : step.kind == CycleStep::Kind::dwell ? MoveKind::dwell
-                                                                : MoveKind::linear,
-                          step.end_mm);
-    ++cycle_moves_;
-    move.canned = true;
-    move.dwell_s = step.dwell_s;
-    if (move.kind == MoveKind::linear) move.feed_mm_per_s = *feed;
-    for (int axis = 0; axis < 3; ++axis)
-      if (step.end_mm[axis] != move.start_mm[axis] && !state_.incremental)
-        place_[static_cast<std::size_t>(axis)] = AxisPlace::known;
-  }
+  arc.spiral = true;
+  arc.turns = static_cast<int>(std::ceil(turns));
+  const ArcResult result = make_arc(arc);
+  if (!words_.has('Q') || !result.error.empty()) return;
+  const double end_mm =
+      result.start_radius_mm + words_.value('Q') * unit_mm() * std::abs(result.arc.sweep_rad) / (2 * kPi);
+  if (std::abs(end_mm - result.end_radius_mm) >= kArcRadiusErrorMm)
+    error(words_.offset_of('Q'), "arc-radius",
+          fmt::format("the spiral ends at a radius of {:.4f} mm, with Q at {:.4f} mm; a difference below {:.2f} mm was "
+                      "expected",
+                      result.end_radius_mm, end_mm, kArcRadiusErrorMm));
 }
 
 }  // namespace camber::nc

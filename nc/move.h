@@ -1,11 +1,13 @@
 #pragma once
-// What the interpreted program makes the machine do. Positions are the tool tip in the active work offset, mm.
+// What the interpreted program makes the machine do. Positions are the tool tip, mm, in the frame of the
+// work offset that was active at the first move (docs/nc-language.md, Frames).
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "base/geometry.h"
 #include "nc/event.h"
+#include "nc/frame.h"
 
 namespace camber::nc {
 
@@ -29,6 +31,8 @@ struct ModalState {
   bool coolant = false;
   bool absolute_arc_centre = false;    ///< G90.1
   bool high_speed_contouring = false;  ///< G08 P1, G05 P10000, G05.1 Q1
+  bool cutter_radius = false;          ///< G41, G42 with a radius other than zero: the path was computed
+  std::uint32_t frame = 0;             ///< index into Interpretation::frames
   bool operator==(const ModalState&) const = default;
 };
 
@@ -56,7 +60,7 @@ struct Move {
   bool canned : 1 = false;  ///< made by a drilling cycle: one of several moves of its block
   /// The block's text says where the move goes, and says it for this move alone: it stands in the main program, is run
   /// once, and its words have numbers. Only the words of such a block may be changed. False in loops, in subprograms
-  /// called more than once or from a file of their own, and for expressions.
+  /// called more than once or from a file of their own, for expressions, under G41 and G42 and in polar coordinates.
   bool editable : 1 = true;
 
   static constexpr std::uint32_t kNoArc = std::numeric_limits<std::uint32_t>::max();
@@ -66,9 +70,11 @@ struct Interpretation {
   std::vector<Move> moves;  ///< in order; each starts where the one before ended
   std::vector<Arc> arcs;
   std::vector<ModalState> states;
-  std::vector<Event> events;  ///< beside the moves, in order
+  std::vector<Event> events;           ///< beside the moves, in order
+  std::vector<Frame> frames{Frame{}};  ///< where the text's coordinates lie; the first is the identity
 
   const ModalState& state_of(const Move& m) const { return states[m.state]; }
+  const Frame& frame_of(const Move& m) const { return frames[states[m.state].frame]; }
 };
 
 /// Length along the path, mm (helices included).

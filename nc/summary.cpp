@@ -65,6 +65,9 @@ class Summarizer {
     s_.canned += move.canned;
     s_.reference += move.reference;
     const ModalState& state = program_.state_of(move);
+    s_.high_speed_contouring +=
+        state.high_speed_contouring && (move.kind == MoveKind::linear || move.kind == MoveKind::arc);
+    s_.cutter_radius += state.cutter_radius;
     (state.inch ? s_.has_inch : s_.has_mm) = true;
   }
 

@@ -41,7 +41,9 @@ struct Summary {
   std::size_t blocks = 0;  ///< lines of the file
   std::size_t blocks_with_words = 0;
   std::size_t rapids = 0, lines = 0, arcs = 0, dwells = 0;
-  std::size_t canned = 0;     ///< of these, moves of drilling cycles
+  std::size_t canned = 0;                 ///< of these, moves of drilling cycles
+  std::size_t high_speed_contouring = 0;  ///< of these, cutting moves under G08 P1, G05 P10000 or G05.1 Q1
+  std::size_t cutter_radius = 0;          ///< of these, moves computed under G41, G42
   std::size_t reference = 0;  ///< of these, moves to or from the reference point; in no length and no extents
   bool has_mm = false, has_inch = false;
   std::vector<ToolUse> tools;  ///< in the order of their first use

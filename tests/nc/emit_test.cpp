@@ -124,8 +124,7 @@ std::string with_via(const std::string& text, const Vec3& via, const Vec3& end) 
 TEST(NcEmit, WordsThatActAtTheEndGoBehindTheViaPoints) {
   EXPECT_EQ(with_via("G0 X0 Y0 Z0\nG1 X3. F100 M5 (off)\nM30\n", {1, 0.5, 0}, {3, 0.5, 0}),
             "G0 X0 Y0 Z0\nG1 X1. Y0.5 F100 (off)\nX3. M5\nM30\n");
-  EXPECT_EQ(with_via("G0X0Y0Z0\nM9G9G1X3.F100M1\n", {1, 0.5, 0}, {3, 0, 0}),
-            "G0X0Y0Z0\nG1X1.Y0.5F100\nG9X3.Y0.M9M1\n");
+  EXPECT_EQ(with_via("G0X0Y0Z0\nM9G9G1X3.F100M1\n", {1, 0.5, 0}, {3, 0, 0}), "G0X0Y0Z0\nG1X1.Y0.5F100\nG9X3.Y0.M9M1\n");
 }
 
 TEST(NcEmit, ViaPointsAreKeptWhereTheBlockAlsoChangesModes) {
@@ -165,8 +164,8 @@ TEST(NcEmit, PassesOverEditsOfCyclesAndReferenceMoves) {
 }
 
 TEST(NcEmit, SaysWhichEditsAreNotInTheText) {
-  const Read r = read_clean(
-      "G0X0Y0Z5.\nG99G81X1.Z-3.R1.F100\nG80\nG4P1.\nG1X5.\nG53G0Z0\nG91G28X1.\nG90G0X0.Y0.Z0.\nG3X2.R1.\n");
+  const Read r =
+      read_clean("G0X0Y0Z5.\nG99G81X1.Z-3.R1.F100\nG80\nG4P1.\nG1X5.\nG53G0Z0\nG91G28X1.\nG90G0X0.Y0.Z0.\nG3X2.R1.\n");
   const auto& moves = r.moves.moves;
   std::vector<std::uint32_t> all;
   for (std::uint32_t i = 0; i < moves.size(); ++i)

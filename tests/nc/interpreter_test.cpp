@@ -182,6 +182,25 @@ TEST(NcInterpreter, TakesWordsThatAStrictReaderRefuses) {
   EXPECT_FALSE(r.moves.state_of(r.moves.moves[1]).high_speed_contouring);
 }
 
+TEST(NcInterpreter, ReadsWhatProgramsOfCamSystemsHold) {
+  // Words that a strict RS-274 reader refuses: an axis word after G80, G28 with G91 and G0, K0 on an arc in G17.
+  const Read r = read_clean(
+      "G0X0Y0Z5\r\nM29 S100\r\nG84Z-3.R1.F100\r\nG80 Z20.123456789\r\nG0 G91 G28 Z0.\r\nG90G0X1.Y1.Z1.(caf\xE9)\r\n"
+      "G2 X3. I1. J0. K0.000 F100 [a (b) c]\r\nM30\r\n");
+  EXPECT_NEAR(r.moves.moves[5].end_mm.z(), 20.123456789, 1e-12);
+  EXPECT_NEAR(r.moves.arcs[0].sweep_rad, -kPi, 1e-12);
+}
+
+TEST(NcInterpreter, HighSpeedContouringIsAModalState) {
+  for (const auto& [on, off] : {std::pair("G05 P10000", "G05 P0"), std::pair("G05.1 Q1", "G05.1 Q0"),
+                                std::pair("G08 P1", "G08 P0"), std::pair("G5.1 Q1 R5", "G5.1 Q0")}) {
+    const Read r = read_clean(std::string("G0 X0 Y0 Z0\n") + on + "\nG1 X1 F100\nY1\n" + off + "\nX0\n");
+    std::vector<bool> fast;
+    for (const Move& m : r.moves.moves) fast.push_back(r.moves.state_of(m).high_speed_contouring);
+    EXPECT_EQ(fast, (std::vector<bool>{false, true, true, false})) << on;
+  }
+}
+
 TEST(NcInterpreter, StopsTheSpindleAndTheCoolantAtTheEndOfTheBlock) {
   const Read r = read_clean("M3 S100 M8\nG0 X0 Y0 Z0 M5\nG0 X1 M9\nG0 X2\n");
   EXPECT_EQ(r.moves.state_of(r.moves.moves[0]).spindle, SpindleDirection::clockwise);
@@ -224,13 +243,7 @@ TEST(NcInterpreter, NamesWhatItDoesNotKnow) {
             Messages{"p.nc:1:7: error: X stands twice in the block; one was expected [word-twice]"});
 }
 
-TEST(NcInterpreter, SaysWhatIsNotReadYet) {
-  EXPECT_EQ(
-      read_text("G0 X1 Y1 Z1\nG1 G41 D3 X2 F100\nG40 X3\nG42 D3 X4").messages,
-      (Messages{"p.nc:2:4: error: G41 (cutter radius compensation in the control, left) is not read yet [not-read]",
-                "p.nc:4:1: error: G42 (cutter radius compensation in the control, right) is not read yet [not-read]"}));
-  EXPECT_EQ(read_text("G92 X0 Y0").messages,
-            Messages{"p.nc:1:1: error: G92 (shift of the coordinate system) is not read yet [not-read]"});
+TEST(NcInterpreter, NamesTurningPrograms) {
   EXPECT_EQ(read_text("G0 X0\nG96 S200 M3\nG1 X1").messages,
             Messages{"p.nc:2:1: error: G96 (constant cutting speed) belongs to a turning program; milling programs are "
                      "read [turning]"});
@@ -312,6 +325,55 @@ TEST(NcCycles, DwellTapAndBore) {
   EXPECT_EQ(steps_of(read_clean("G0 X0 Y0 Z5\nG99 G85 Z-3 R1 F100\n")), "r 0 0 1; f 0 0 -3; f 0 0 1; ");
   EXPECT_EQ(steps_of(read_clean("G0 X0 Y0 Z5\nG99 G86 Z-3 R1 P1. F100\n")), "r 0 0 1; f 0 0 -3; dwell 1.0; r 0 0 1; ");
   EXPECT_EQ(steps_of(read_clean("G0 X0 Y0 Z5\nG99 G89 Z-3 R1 P1. F100\n")), "r 0 0 1; f 0 0 -3; dwell 1.0; f 0 0 1; ");
+}
+
+TEST(NcCycles, FineBoringShiftsOffTheWall) {
+  EXPECT_EQ(steps_of(read_clean("G0 X0 Y0 Z5\nG98 G76 X1 Z-3 R1 Q.5 P1. F100\n")),
+            "r 1 0 5; r 1 0 1; f 1 0 -3; dwell 1.0; r 1.5 0 -3; r 1.5 0 5; r 1 0 5; ");
+  EXPECT_EQ(steps_of(read_clean("G0 X0 Y0 Z5\nG99 G76 X1 Z-3 R1 I-.3 J.4 F100\n")),
+            "r 1 0 5; r 1 0 1; f 1 0 -3; r 0.7 0.4 -3; r 0.7 0.4 1; r 1 0 1; ");
+  EXPECT_EQ(
+      read_text("G0 X0 Y0 Z5\nG76 X1 Z-3 R1 F100\n").messages,
+      Messages{"p.nc:2:1: error: G76 has no shift off the wall; Q (or I, J) other than zero was expected [cycle]"});
+}
+
+TEST(NcCycles, BackBoringGoesDownBesideTheHoleAndBoresUp) {
+  EXPECT_EQ(steps_of(read_clean("G0 X0 Y0 Z5\nG98 G87 X1 Z-10 R-20 Q.5 P1. F100\n")),
+            "r 1 0 5; r 1.5 0 5; r 1.5 0 -20; r 1 0 -20; f 1 0 -10; dwell 1.0; r 1.5 0 -10; r 1.5 0 5; r 1 0 5; ");
+  EXPECT_EQ(read_text("G0 X0 Y0 Z5\nG98 G87 X1 Z-20 R-10 Q.5 F100\n").messages,
+            Messages{"p.nc:2:1: error: G87 bores upwards from R -10.0000 mm to Z -20.0000 mm; R below it and below the "
+                     "initial level 5.0000 mm was expected [cycle]"});
+  EXPECT_EQ(read_text("G0 X0 Y0 Z5\nG99 G87 X1 Z-10 R-20 Q.5 F100\n").messages,
+            Messages{"p.nc:2:1: error: G87 with G99 would leave the tool under the work; G98 was expected [cycle]"});
+}
+
+TEST(NcCycles, BoringWithARetractByHandIsTakenAsARapid) {
+  const Read r = read_text("G0 X0 Y0 Z5\nG99 G88 Z-3 R1 P1. F100\n");
+  EXPECT_EQ(steps_of(r), "r 0 0 1; f 0 0 -3; dwell 1.0; r 0 0 1; ");
+  EXPECT_EQ(r.messages, Messages{"p.nc:2:1: warning: G88 is retracted by hand; a rapid is taken in its place [cycle]"});
+}
+
+TEST(NcCycles, TappingFeedIsAMinutesOrATurns) {
+  // M6 x 1 at 500 rpm: 500 mm/min, or 1 mm a turn.
+  for (const char* text : {"S500 M3 G0 X0 Y0 Z5\nG94 G84 Z-9 R1 F500\n", "S500 M4 G0 X0 Y0 Z5\nG95 G74 Z-9 R1 F1\n"}) {
+    const Read r = read_clean(text);
+    ASSERT_EQ(r.moves.moves.size(), 5u);
+    EXPECT_NEAR(r.moves.moves[2].feed_mm_per_s, 500.0 / 60, 1e-12);
+    EXPECT_NEAR(r.moves.moves[3].feed_mm_per_s, 500.0 / 60, 1e-12);
+    EXPECT_EQ(r.moves.moves[3].kind, MoveKind::linear);
+  }
+}
+
+TEST(NcCycles, RepeatInIncrementsWithK) {
+  EXPECT_EQ(steps_of(read_clean("G0 X0 Y0 Z5\nG91 G99 G81 X10 Y1 Z-3 R-4 K3 F100\nG80\nG90 G0 X0\n")),
+            "r 10 1 5; r 10 1 1; f 10 1 -2; r 10 1 1; r 20 2 1; f 20 2 -2; r 20 2 1; r 30 3 1; f 30 3 -2; r 30 3 1; ");
+  EXPECT_EQ(steps_of(read_clean("G0 X0 Y0 Z5\nG81 X10 Z-3 R1 K0 F100\nX20\n")),
+            "r 20 0 5; r 20 0 1; f 20 0 -3; r 20 0 5; ");
+}
+
+TEST(NcCycles, InARotatedAndAShiftedFrame) {
+  EXPECT_EQ(steps_of(read_clean("G0 X0 Y0 Z5\nG52 X1 Z-1\nG68 X0 Y0 R90\nG99 G81 X10 Y0 Z-3 R1 F100\nX20\n")),
+            "r 1 10 5; r 1 10 0; f 1 10 -4; r 1 10 0; r 1 20 0; f 1 20 -4; r 1 20 0; ");
 }
 
 TEST(NcCycles, PeckWithFullRetractOrChipBreak) {

@@ -6,12 +6,6 @@
 
 namespace camber::nc {
 
-inline InterpreterOptions as(ControlKind control) {
-  InterpreterOptions options{.inch = false};
-  options.control = control;
-  return options;
-}
-
 /// "1 2 3; 4 5 6": X Y Z at the end of each move, four decimals at most.
 inline std::string ends_of(const Read& r) {
   std::string out;

@@ -24,6 +24,12 @@ inline std::string headline(const Diagnostic& d) {
   return to_string(short_one);
 }
 
+inline InterpreterOptions as(ControlKind control) {
+  InterpreterOptions options{.inch = false};
+  options.control = control;
+  return options;
+}
+
 /// Reads and interprets; an InputError thrown on the way ends up in `messages` like the rest.
 inline Read read_text(std::string text, const InterpreterOptions& options = {.inch = false},
                       std::string name = "p.nc") {

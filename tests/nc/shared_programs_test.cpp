@@ -91,7 +91,10 @@ TEST(SharedPrograms, WhatIsNotReadSaysSo) {
                 "gpr_camaster_vectric.tap:20:2: warning: the program selects tools (T) but never changes one; M6 was "
                 "expected, all moves count as tool 0 [tool-not-changed]"}));
   for (const auto& m : said_of(shared_file("nc/nist_d2mi_904_op1.nc"), {}))
-    EXPECT_TRUE(m.find("[not-read]") != std::string::npos) << m;
+    // G10 L2 takes its numbers from variables; its G41 has D numbers that only the operator knows.
+    EXPECT_TRUE(m.find("[variable]") != std::string::npos || m.find("[not-read]") != std::string::npos ||
+                m.find("[work-offset]") != std::string::npos || m.find("[radius-unknown]") != std::string::npos)
+        << m;
 }
 
 }  // namespace

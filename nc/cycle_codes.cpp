@@ -1,0 +1,139 @@
+// Blocks of drilling, tapping and boring cycles.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "nc/block_interpreter.h"
+
+namespace camber::nc {
+namespace {
+
+constexpr char kAxisLetters[] = "XYZ";
+
+}  // namespace
+
+/// The way off the wall of G76 and G87: I J K of the plane, or Q along the plane's first axis. False: an error.
+bool BlockInterpreter::set_shift(CycleHole& hole) {
+  if (hole.g != 76 && hole.g != 87) return true;
+  const PlaneAxes axes = axes_of(plane_);
+  hole.shift_mm = cycle_.shift_mm;
+  hole.shift_mm[axes.normal] = 0;
+  if (hole.shift_mm == Vec3::Zero()) hole.shift_mm[axes.first] = cycle_.q_mm.value_or(0);
+  if (hole.shift_mm == Vec3::Zero()) {
+    error(words_.offset(), "cycle",
+          fmt::format("G{} has no shift off the wall; Q (or I, J) other than zero was expected", hole.g), "cycle Q");
+    return false;
+  }
+  if (hole.g != 87) return true;
+  if (hole.bottom_mm < hole.retract_mm || hole.retract_mm > cycle_.initial_mm) {
+    error(
+        words_.offset(), "cycle",
+        fmt::format("G87 bores upwards from R {:.4f} mm to {} {:.4f} mm; R below it and below the initial level {:.4f} "
+                    "mm was expected",
+                    hole.retract_mm, kAxisLetters[axes.normal], hole.bottom_mm, cycle_.initial_mm));
+    return false;
+  }
+  if (return_to_r_) {
+    error(words_.offset(), "cycle", "G87 with G99 would leave the tool under the work; G98 was expected");
+    return false;
+  }
+  hole.clear_mm = cycle_.initial_mm;
+  return true;
+}
+
+bool BlockInterpreter::read_cycle_words() {
+  const char normal = kAxisLetters[axes_of(plane_).normal];
+  if (words_.has(normal)) cycle_.z_mm = words_.scaled(normal, unit_mm());
+  if (words_.has('R')) cycle_.r_mm = words_.scaled('R', unit_mm());
+  if (words_.has('Q')) cycle_.q_mm = std::abs(*words_.scaled('Q', unit_mm()));
+  if (words_.has('P')) cycle_.p_s = dwell_seconds('P');
+  for (int axis = 0; axis < 3; ++axis)
+    if (words_.has("IJK"[axis]) && (cycle_.g == 76 || cycle_.g == 87))
+      cycle_.shift_mm[axis] = words_.value("IJK"[axis]) * unit_mm();
+  words_.use("IJKL");
+  if (cycle_.g == 88)
+    report_.warning(words_.offset(), "cycle", "G88 is retracted by hand; a rapid is taken in its place", "G88");
+  const std::string name = fmt::format("G{}", cycle_.g);
+  if (!words_.has_any("XYZ")) return false;
+  if (!cycle_.r_mm) error(words_.offset(), "cycle", name + " has no retract level; R was expected", "cycle R");
+  if (!cycle_.z_mm)
+    error(words_.offset(), "cycle", fmt::format("{} has no depth; {} was expected", name, normal), "cycle Z");
+  if ((cycle_.g == 73 || cycle_.g == 83) && cycle_.q_mm.value_or(0) <= 0) {
+    error(words_.offset(), "cycle", name + " has no depth of each peck; Q greater than zero was expected", "cycle Q");
+    return false;
+  }
+  return cycle_.r_mm && cycle_.z_mm;
+}
+
+void BlockInterpreter::run_cycle() {
+  check_unit();
+  if (!read_cycle_words()) return;
+  prepare_cutting("a drilling cycle");
+  const PlaneAxes axes = axes_of(plane_);
+  const double repeats = words_.has('L') ? words_.value('L') : words_.has('K') ? words_.value('K') : 1;
+  if (repeats < 0 || repeats > 1e5 || repeats != std::floor(repeats)) {
+    error(words_.offset(), "cycle",
+          fmt::format("{} repeats of a cycle; a whole number up to 100000 was expected", repeats));
+    return;
+  }
+  if (repeats == 0) words_.use("XYZ");  // kept for the blocks that follow
+  for (int i = 0; i < static_cast<int>(repeats); ++i) {
+    if (cycle_moves_ > kMaxCycleMoves) {
+      error(words_.offset(), "cycle",
+            fmt::format("the drilling cycles make more than {} moves; fewer repeats (L) or a larger Q were expected",
+                        kMaxCycleMoves));
+      return;
+    }
+    Vec3 place = programmed_target();
+    place[axes.normal] = programmed()[axes.normal];
+    drill(place);
+    if (request_.trouble) return;
+    settle_axes();
+  }
+}
+
+void BlockInterpreter::drill(const Vec3& place) {
+  const int normal = axes_of(plane_).normal;
+  CycleHole hole;
+  hole.g = cycle_.g;
+  hole.from_mm = programmed();
+  hole.place_mm = place;
+  hole.retract_mm = *cycle_.r_mm + (state_.incremental ? cycle_.initial_mm : 0);
+  hole.bottom_mm = *cycle_.z_mm + (state_.incremental ? hole.retract_mm : 0);
+  hole.clear_mm = return_to_r_ ? hole.retract_mm : std::max(cycle_.initial_mm, hole.retract_mm);
+  hole.peck_mm = cycle_.q_mm.value_or(0);
+  hole.dwell_s = cycle_.p_s.value_or(0);
+  hole.peck_clearance_mm = options_.peck_clearance_mm;
+  const std::string name = fmt::format("G{}", cycle_.g);
+  const double depth = hole.retract_mm - hole.bottom_mm;
+  if (depth < 0 && hole.g != 87) {
+    error(words_.offset(), "cycle",
+          fmt::format("the bottom of {} at {} {:.4f} mm is above its retract level R {:.4f} mm", name,
+                      kAxisLetters[normal], hole.bottom_mm, hole.retract_mm));
+    return;
+  }
+  if ((cycle_.g == 73 || cycle_.g == 83) && depth > hole.peck_mm * kMaxPecks) {
+    error(words_.offset(), "cycle", fmt::format("{} would peck more than 100000 times; a larger Q was expected", name));
+    return;
+  }
+  if (!set_shift(hole)) return;
+  const auto feed = cutting_feed(std::abs(depth), name.c_str());
+  if (!feed) return;
+  for (const CycleStep& step : hole_steps(hole, axes_of(plane_))) {
+    const bool rapid = step.kind == CycleStep::Kind::rapid;
+    Move& move = add_move(rapid                                 ? MoveKind::rapid
+                          : step.kind == CycleStep::Kind::dwell ? MoveKind::dwell
+                                                                : MoveKind::linear,
+                          frame_.from_program(step.end_mm));
+    ++cycle_moves_;
+    move.canned = true;
+    move.dwell_s = step.dwell_s;
+    if (move.kind == MoveKind::linear) move.feed_mm_per_s = *feed;
+    for (int axis = 0; axis < 3; ++axis)
+      if (move.end_mm[axis] != move.start_mm[axis] && !state_.incremental)
+        place_[static_cast<std::size_t>(axis)] = AxisPlace::known;
+  }
+}
+
+}  // namespace camber::nc

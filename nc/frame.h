@@ -1,0 +1,26 @@
+#pragma once
+// Where programmed coordinates lie: one affine map from the program's frame to the frame of the moves.
+#include <Eigen/Core>
+
+#include "base/geometry.h"
+
+namespace camber::nc {
+
+/// point in the frame of the moves = linear * programmed point + shift_mm. Made of a shift (work offsets, G52, G92),
+/// rotation (G68), mirror image (G51.1) and scaling (G51): see frames.h.
+struct Frame {
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d inverse = Eigen::Matrix3d::Identity();
+  Vec3 shift_mm = Vec3::Zero();
+  bool plain = true;       ///< the identity: nothing to do
+  bool shift_only = true;  ///< linear is the identity
+  bool polar = false;      ///< G16: X Y Z of the text are a radius and an angle, not these coordinates
+
+  Vec3 from_program(const Vec3& p) const { return plain ? p : Vec3(linear * p + shift_mm); }
+  Vec3 to_program(const Vec3& p) const { return plain ? p : Vec3(inverse * (p - shift_mm)); }
+  bool operator==(const Frame& other) const {
+    return linear == other.linear && shift_mm == other.shift_mm && polar == other.polar;
+  }
+};
+
+}  // namespace camber::nc

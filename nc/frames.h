@@ -1,0 +1,48 @@
+#pragma once
+// The shifts, turns, mirrors and scales between what is programmed and where the tool goes.
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "nc/arcs.h"
+#include "nc/frame.h"
+#include "nc/offsets.h"
+
+namespace camber::nc {
+
+/// What G52, G92, G68, G51, G51.1 and the work offsets say together. A programmed point is mirrored, then scaled, then
+/// rotated (each about its own centre, in coordinates of the work offset), then shifted by G52 and G92, turned by the
+/// work offset's own rotation (G10 L2 R) and shifted by the work offset.
+struct Frames {
+  explicit Frames(const std::map<int, Vec3>& work_offsets_mm) : offsets(work_offsets_mm) {}
+
+  WorkOffsets offsets;
+  Vec3 g52_mm = Vec3::Zero(), g92_mm = Vec3::Zero();
+  Vec3 g92_kept_mm = Vec3::Zero();  ///< what G92.3 brings back
+  std::array<std::optional<double>, 3> mirror_at_mm{};
+  Vec3 scale = Vec3::Ones(), scale_centre_mm = Vec3::Zero();
+  double rotation_rad = 0;
+  Vec3 rotation_centre_mm = Vec3::Zero();
+  bool rotated = false;
+  Plane rotation_plane = Plane::xy;
+  bool polar = false;
+
+  /// The map for the work offset; `first`: see WorkOffsets::origin_mm.
+  Frame frame(int work_offset, bool first);
+  /// The point in the coordinates of the work offset, before G52 and G92, of a programmed one: mirrored, scaled,
+  /// rotated.
+  Vec3 in_work_mm(const Vec3& programmed_mm) const;
+  /// The turn of the work offset itself (G10 L2 R).
+  Eigen::Matrix3d offset_rotation(int work_offset) const;
+};
+
+/// Rotation in a plane, counter-clockwise seen against its normal.
+Eigen::Matrix3d rotation_in(Plane plane, double angle_rad);
+
+/// The arc in the frame of the moves; the sense turns where the frame mirrors the arc's plane. Nothing where the scale
+/// differs along the two axes of the plane: the arc would be an ellipse.
+std::optional<Arc> from_program(const Frame& frame, const Arc& arc);
+/// The reverse of from_program.
+Arc to_program(const Frame& frame, const Arc& arc);
+
+}  // namespace camber::nc
