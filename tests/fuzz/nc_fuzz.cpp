@@ -20,6 +20,8 @@ using namespace camber;
 /// Beyond this a double has fewer digits left than the decimals that are compared.
 constexpr double kLargestPlaceMm = 1e6;
 constexpr double kPlaceTolerance_mm = 2e-3;  ///< rounding to four decimals, or to five of an inch, and the sums of G91
+/// Blocks that loops may run again. A run with the limit of everyday (ten million) would take seconds.
+constexpr std::size_t kMostRepeatedBlocks = 20000;
 /// More moves than the blocks of any fuzzed text make without repeats of cycles: not worth emitting in this time.
 constexpr std::size_t kMostMoves = 20000;
 
@@ -53,6 +55,15 @@ bool within_reach(const nc::Interpretation& moves) {
   return true;
 }
 
+/// Programs in which an edit may rightly change other moves, or make an error: those that ask where the tool is, set a
+/// frame from there, or compute a path beside a contour.
+bool edits_stay_where_they_are(const Read& r) {
+  if (!r.program.macro.expressions.list.empty()) return false;
+  for (const nc::ModalState& s : r.moves.states)
+    if (s.cutter_radius) return false;
+  return r.moves.frames.size() == 1;
+}
+
 /// One line or arc of the program with a new end.
 std::optional<nc::MoveEdit> edit_from(FuzzedDataProvider& bytes, const Read& r) {
   const std::size_t count = r.moves.moves.size();
@@ -73,7 +84,7 @@ void emit_and_read(const Read& r, const nc::InterpreterOptions& options, FuzzedD
   const std::string& text = r.program.source.text();
   if (const std::string same = nc::emit(r.program, r.moves, {}, {}); same != text)
     fail("an untouched program does not come out byte for byte", text, same);
-  if (!within_reach(r.moves)) return;
+  if (!within_reach(r.moves) || !edits_stay_where_they_are(r)) return;
   const auto edit = edit_from(bytes, r);
   if (!edit) return;
   const std::string changed = nc::emit(r.program, r.moves, std::span(&*edit, 1), {});
@@ -102,6 +113,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.skip_slash_blocks = (flags & 2) != 0;
   options.dwell_p_is_ms = (flags & 4) != 0;
   options.absolute_arc_centre = (flags & 8) != 0;
+  if ((flags & 16) != 0) options.control = static_cast<nc::ControlKind>((flags >> 5) & 3);
+  options.whole_numbers_are_increments = (choice[5] & 3) == 3;
+  options.skip_switches = static_cast<std::uint16_t>((choice[5] & 4) != 0 ? 0x3fe : 0);
+  options.most_repeated_blocks = kMostRepeatedBlocks;
+  options.tool_offsets[1].radius_mm = 1.5;
   const Read r = read(bytes.ConsumeRemainingBytesAsString(), options);
   if (!r.clean) return 0;
   nc::summarize(r.program, r.moves);
