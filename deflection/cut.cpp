@@ -88,7 +88,8 @@ class Cutter {
       for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
         std::copy(guess_row_.begin(), guess_row_.end(), shifts.row(k));
     std::vector<StampLoad> loads(stamps.size());
-    Stretch bent(stock_, &blank_, envelope_, all, from, count, {.engage = !undeflected_, .first_id = first_id});
+    Stretch bent(stock_, &blank_, envelope_, all, from, count,
+                 {.engage = !undeflected_, .first_id = first_id, .bent_before_mm = most_bent_mm_});
     if (undeflected_) {
       Stretch straight(*undeflected_, &blank_, envelope_, all, from, count, {.first_id = first_id});
       evaluate(straight.carve(nullptr), stamps, shifts, loads);
@@ -106,6 +107,8 @@ class Cutter {
       result.chip_mm3 += loads[k].chip_mm3;
     }
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
+    for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
+      most_bent_mm_ = std::max(most_bent_mm_, shifts.largest_mm(k));
     const float* last = shifts.row(static_cast<std::ptrdiff_t>(stamps.size()) - 1);
     last_row_.assign(last, last + shifts.row_size());
     for (std::ptrdiff_t k = static_cast<std::ptrdiff_t>(stamps.size()) - 1; k >= 0; --k)
@@ -204,6 +207,7 @@ class Cutter {
   ToothPassModel model_;
   std::optional<Stock> undeflected_;
   std::vector<float> last_row_, guess_row_;
+  double most_bent_mm_ = 0;
 };
 
 }  // namespace

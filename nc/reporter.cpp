@@ -18,8 +18,7 @@ void Reporter::add(Severity severity, std::size_t offset, std::string_view check
                    std::string_view alike) {
   const std::string key = fmt::format("{}/{}/{}/{}", severity == Severity::error ? 'e' : 'w', check,
                                       alike.empty() ? message : alike, source_->name());
-  const auto [found, is_new] = index_.try_emplace(key, entries_.size());
-  if (!is_new) {
+  if (const auto found = index_.find(key); found != index_.end()) {
     ++entries_[found->second].more;
     return;
   }
@@ -27,6 +26,7 @@ void Reporter::add(Severity severity, std::size_t offset, std::string_view check
     if (full()) return;
     ++errors_;
   }
+  index_.emplace(key, entries_.size());
   entries_.push_back({source_, severity, offset, std::string(check), std::move(message)});
 }
 

@@ -3,13 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-// The same code for wider vectors where the processor has them; contraction is off, so results are the same.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define CAMBER_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define CAMBER_VECTOR_CLONES
-#endif
+#include "removal/vector_clones.h"
 
 namespace camber::removal {
 namespace {
@@ -20,12 +14,13 @@ struct Profile {
 };
 
 /// Cuts `count` voxels of a row upwards. qx: distance from the axis less the flat's radius; z: of the first voxel
-/// above the tip.
+/// above the tip. True when one changed.
 CAMBER_VECTOR_CLONES
-void carve_row(float* distance, std::int32_t* stamp, int count, float qx, float z, float voxel, float band, Profile p,
+bool carve_row(float* distance, std::int32_t* stamp, int count, float qx, float z, float voxel, float band, Profile p,
                std::int32_t id) {
   const float a = std::max(qx, 0.0f);
   const float a2 = a * a;
+  int any = 0;
   for (int k = 0; k < count; ++k) {
     const float qz = p.corner - (z + static_cast<float>(k) * voxel);
     const float b = std::max(qz, 0.0f);
@@ -34,7 +29,9 @@ void carve_row(float* distance, std::int32_t* stamp, int count, float qx, float 
     const bool cut = v > distance[k];
     distance[k] = cut ? v : distance[k];
     stamp[k] = cut ? id : stamp[k];
+    any |= cut;
   }
+  return any != 0;
 }
 
 /// Distances of a row of voxels to the straight envelope; true where a voxel could be cut with a shift that moves the
@@ -135,7 +132,8 @@ float envelope_distance(float x, float y, float z, float flat, float corner) {
 
 }  // namespace
 
-void carve(Tile& tile, const Index3& t, double voxel, double band, const CutterShape& shape, const CarveStamp& stamp) {
+void carve(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band, const CutterShape& shape,
+           const CarveStamp& stamp) {
   const Profile p{static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm),
                   static_cast<float>(stamp.shrink_mm)};
   const double z0 = t[2] * Tile::kCore * voxel;
@@ -143,18 +141,24 @@ void carve(Tile& tile, const Index3& t, double voxel, double band, const CutterS
   const float reach = static_cast<float>(band) + p.corner - p.shrink;
   const float z = static_cast<float>((t[2] * Tile::kCore + k0) * voxel - stamp.tip_mm.z());
   const auto per_voxel = static_cast<float>(1 / voxel);
+  std::array<float, ColumnCover::kLine> changeable;
   for (int i = 0; i < Tile::kSide; ++i) {
     const float dx = static_cast<float>((t[0] * Tile::kCore + i) * voxel - stamp.tip_mm.x());
+    if (std::abs(dx) > reach + p.flat) continue;
+    if (!cover.changeable(i, stamp.tip_mm, 0, changeable)) continue;
     for (int j = 0; j < Tile::kSide; ++j) {
+      if (!(changeable[static_cast<std::size_t>(j)] > 0)) continue;
       const float dy = static_cast<float>((t[1] * Tile::kCore + j) * voxel - stamp.tip_mm.y());
       const float qx = std::sqrt(dx * dx + dy * dy) - p.flat;
       if (qx > reach) continue;
       const int up = std::max(0, static_cast<int>((lowest_reached(qx, p.corner, reach) - z) * per_voxel));
-      if (k0 + up >= Tile::kSide) continue;
+      const int count = cover.top(i * Tile::kSide + j) - (k0 + up);
+      if (count <= 0) continue;
       const int at = Tile::offset(i, j, k0 + up);
-      carve_row(tile.distance.data() + at, tile.stamp.data() + at, Tile::kSide - k0 - up, qx,
-                z + static_cast<float>(up) * static_cast<float>(voxel), static_cast<float>(voxel),
-                static_cast<float>(band), p, stamp.id);
+      const bool changed = carve_row(tile.distance.data() + at, tile.stamp.data() + at, count, qx,
+                                     z + static_cast<float>(up) * static_cast<float>(voxel), static_cast<float>(voxel),
+                                     static_cast<float>(band), p, stamp.id);
+      cover.cut(tile, i, j, stamp.tip_mm, 0, changed);
     }
   }
 }
@@ -191,8 +195,9 @@ CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std:
   return bend;
 }
 
-void carve_bent(Tile& tile, const Index3& t, double voxel, double band, const EnvelopeGrid& envelope,
-                const CarveStamp& stamp, const ShiftTable& shifts, const CarveBend& bend) {
+void carve_bent(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band,
+                const EnvelopeGrid& envelope, const CarveStamp& stamp, const ShiftTable& shifts,
+                const CarveBend& bend) {
   const Profile p{static_cast<float>(envelope.shape.bottom_length_mm()),
                   static_cast<float>(envelope.shape.corner_radius_mm), 0};
   const auto top = static_cast<float>(band), step = static_cast<float>(voxel);
@@ -204,9 +209,13 @@ void carve_bent(Tile& tile, const Index3& t, double voxel, double band, const En
   const int k0 = first_reached(stamp.tip_mm.z() - band, z0, voxel);
   const BendReader shift_at(envelope, shifts, bend.row);
   std::array<float, Tile::kSide> candidate;
+  std::array<float, ColumnCover::kLine> changeable;
   for (int i = 0; i < Tile::kSide; ++i) {
     const float dx = static_cast<float>((t[0] * Tile::kCore + i) * voxel - stamp.tip_mm.x());
+    if (std::abs(dx) > p.flat + p.corner + top + largest) continue;
+    if (!cover.changeable(i, stamp.tip_mm, bend.largest_mm, changeable)) continue;
     for (int j = 0; j < Tile::kSide; ++j) {
+      if (!(changeable[static_cast<std::size_t>(j)] > 0)) continue;
       const float dy = static_cast<float>((t[1] * Tile::kCore + j) * voxel - stamp.tip_mm.y());
       const float rho2 = dx * dx + dy * dy;
       float slack = largest;
@@ -222,8 +231,9 @@ void carve_bent(Tile& tile, const Index3& t, double voxel, double band, const En
       const float z1 = static_cast<float>((t[2] * Tile::kCore + k1) * voxel - stamp.tip_mm.z());
       float* distance = tile.distance.data() + Tile::offset(i, j, k1);
       std::int32_t* id = tile.stamp.data() + Tile::offset(i, j, k1);
-      const int count = Tile::kSide - k1;
-      if (!row_may_be_cut(distance, candidate.data(), count, qx, z1, step, top, p, slack)) continue;
+      const int count = cover.top(i * Tile::kSide + j) - k1;
+      if (count <= 0 || !row_may_be_cut(distance, candidate.data(), count, qx, z1, step, top, p, slack)) continue;
+      bool changed = false;
       for (int k = 0; k < count; ++k) {
         if (candidate[static_cast<std::size_t>(k)] <= distance[k]) continue;
         const float z = z1 + static_cast<float>(k) * step;
@@ -234,7 +244,9 @@ void carve_bent(Tile& tile, const Index3& t, double voxel, double band, const En
         if (v <= distance[k]) continue;
         distance[k] = v;
         id[k] = stamp.id;
+        changed = true;
       }
+      cover.cut(tile, i, j, stamp.tip_mm, bend.largest_mm, changed);
     }
   }
 }

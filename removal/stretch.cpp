@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -15,6 +16,7 @@ namespace {
 struct Run {
   std::int32_t slot, stamp;
   std::uint32_t first, count;
+  std::uint32_t cap;  ///< where the caps of its points begin in the stamp's list
 };
 
 struct StampChip {
@@ -86,15 +88,6 @@ Vec3 gradient(const std::array<float, Tile::kVolume>& values, const Cell& cell, 
 /// A surface that the normal meets at a grazing angle is taken at no more than four times its distance.
 float slope(double along_normal) { return static_cast<float>(std::clamp(along_normal, 0.25, 1.0)); }
 
-/// A tile that has become air takes no more stamps; looking is worth it now and then.
-constexpr int kAirCheckEvery = 8;
-
-bool all_air(const Tile& tile, float band) {
-  float least = band;
-  for (const float d : tile.distance) least = std::min(least, d);
-  return least >= band;
-}
-
 /// Tiles of a box of space, numbered; -1 where there is nothing to cut.
 class SlotMap {
  public:
@@ -129,7 +122,8 @@ struct Stretch::Impl {
   double tile_mm;
   std::vector<WorkTile> tiles;
   SlotMap slots;
-  std::vector<CarveBend> bends;  ///< per stamp of the stretch; empty: straight
+  std::vector<CarveBend> bends;          ///< per stamp of the stretch; empty: straight
+  std::vector<std::vector<float>> caps;  ///< per stamp: what the motion allows at the points of its runs
 
   void find_tiles(const ShiftTable* shifts);
   void list_stamps(const ShiftTable* shifts);
@@ -164,6 +158,15 @@ class PointReader {
         before_(!shifts || stamp.first ? now_ : shifts->row(k - 1)) {
     if (shifts && shifts->nodes() > 1)
       node_step_ = static_cast<float>(shifts->node_height_mm[1] - shifts->node_height_mm[0]);
+  }
+
+  /// Where the point stands, from the tip.
+  Eigen::Vector3f place(std::uint32_t point) const {
+    Eigen::Vector3f from_tip(e_.x[point], e_.y[point], e_.z[point]);
+    const auto turn = static_cast<std::uint32_t>(e_.steps);
+    if (now_)
+      from_tip.head<2>() += shift(now_, point / turn, point % turn % static_cast<std::uint32_t>(e_.steps_per_pitch));
+    return from_tip;
   }
 
   /// Largest thickness that the motion since the stamp before allows; <= 0: the point runs out of the material.
@@ -289,6 +292,7 @@ void Stretch::Impl::runs_of_stamp(std::int32_t k, const ShiftTable* shifts, cons
   const Stamp& stamp = stamps[static_cast<std::size_t>(k)];
   const PointReader reader(envelope, stamp, shifts, k, weights);
   const Stock::Probe probe(stock);
+  std::vector<float>& cap_list = caps[static_cast<std::size_t>(k)];
   const double moved = shifts ? bends[static_cast<std::size_t>(k)].largest_mm : 0.0;
   const double before = !shifts ? 0.0
                         : k > 0 ? bends[static_cast<std::size_t>(k) - 1].largest_mm
@@ -309,14 +313,16 @@ void Stretch::Impl::runs_of_stamp(std::int32_t k, const ShiftTable* shifts, cons
            p < ring + static_cast<std::uint32_t>(patch.step_to); ++p) {
         Eigen::Vector3f place;
         std::int32_t slot = -1;
-        if (reader.cap(p, place) > 0) {
+        const float cap = reader.cap(p, place);
+        if (cap > 0) {
           const Index3 t = tile_of(stamp.tip_mm + place.cast<double>(), tile_mm);
           slot = slots.find(t[0], t[1], t[2]);
         }
         if (slot >= 0 && slot == open)
           ++out.back().count;
         else if (slot >= 0)
-          out.push_back({slot, k, p, 1});
+          out.push_back({slot, k, p, 1, static_cast<std::uint32_t>(cap_list.size())});
+        if (slot >= 0) cap_list.push_back(cap);
         open = slot;
       }
     }
@@ -329,6 +335,7 @@ void Stretch::Impl::list_runs(const ShiftTable* shifts) {
     for (const auto& ring : envelope.rings)
       weights.push_back(node_weight(shifts->node_height_mm, ring.profile.height_mm));
   std::vector<std::vector<Run>> by_stamp(stamps.size());
+  caps.assign(stamps.size(), {});
   if (options.engage)
     tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
       runs_of_stamp(static_cast<std::int32_t>(k), shifts, weights, by_stamp[k]);
@@ -343,11 +350,11 @@ void Stretch::Impl::list_runs(const ShiftTable* shifts) {
 float Stretch::Impl::thickness(const WorkBuffers& buffers, const Cell& cell, const Vec3& point, const Vec3& cell_corner,
                                const Vec3& normal, bool bent) const {
   const Tile& tile = buffers.stock;
-  float thinnest = -trilinear(buffers.blank.distance, cell);
-  if (thinnest <= 0) return 0;
-  thinnest /= slope(-gradient(buffers.blank.distance, cell, stock.voxel_mm()).dot(normal));
+  const float below_blank = -trilinear(buffers.blank.distance, cell);
+  if (below_blank <= 0) return 0;
   std::array<std::int32_t, 8> ids;
   for (int c = 0; c < 8; ++c) ids[c] = tile.stamp[cell.at + Cell::corner(c)] - options.first_id;
+  float thinnest = std::numeric_limits<float>::infinity();
   for (int c = 0; c < 8; ++c) {
     if (ids[c] < 0 || std::find(ids.begin(), ids.begin() + c, ids[c]) != ids.begin() + c) continue;
     const Vec3& tip = all_stamps[static_cast<std::size_t>(ids[c])].tip_mm;
@@ -364,22 +371,25 @@ float Stretch::Impl::thickness(const WorkBuffers& buffers, const Cell& cell, con
       depth -= bend / weight;
     }
     if (depth <= 0) return 0;
+    // A slope is at most 1: what is deeper than the thinnest so far cannot become thinner.
+    if (static_cast<float>(depth) >= thinnest) continue;
     const double fall = envelope.shape.gradient(point - tip).dot(normal);
     thinnest = std::min(thinnest, static_cast<float>(depth) / slope(fall));
   }
-  return thinnest;
+  if (below_blank >= thinnest) return thinnest;
+  return std::min(thinnest, below_blank / slope(-gradient(buffers.blank.distance, cell, stock.voxel_mm()).dot(normal)));
 }
 
 void Stretch::Impl::sample(const WorkBuffers& buffers, WorkTile& w, const Run& run, const ShiftTable* shifts,
                            const std::vector<NodeWeight>& weights) const {
   const Stamp& stamp = stamps[static_cast<std::size_t>(run.stamp)];
   const PointReader reader(envelope, stamp, shifts, run.stamp, weights);
+  const std::vector<float>& cap_list = caps[static_cast<std::size_t>(run.stamp)];
   const double voxel = stock.voxel_mm();
   const Vec3 origin(w.index[0] * Tile::kCore, w.index[1] * Tile::kCore, w.index[2] * Tile::kCore);
   for (std::uint32_t p = run.first; p < run.first + run.count; ++p) {
-    Eigen::Vector3f place;
-    const float cap = reader.cap(p, place);
-    const Vec3 point = stamp.tip_mm + place.cast<double>();
+    const float cap = cap_list[run.cap + (p - run.first)];
+    const Vec3 point = stamp.tip_mm + reader.place(p).cast<double>();
     const Vec3 g = point / voxel - origin;
     const Cell cell = cell_of(g);
     // The trilinear field is never below the ridge's, but for curvature: so it tells what is in air, and what is
@@ -404,20 +414,29 @@ void Stretch::Impl::work(WorkTile& w, const ShiftTable* shifts, const std::vecto
   stock.load(w.index, tile);
   if (options.engage) blank->load(w.index, buffers->blank);
   auto run = w.runs.begin();
-  int since_check = 0;
+  ColumnCover cover(tile, w.index, stock.voxel_mm(), stock.band_mm(), envelope.shape,
+                    [&](std::int32_t id, Vec3& tip_mm, double& bend_mm) {
+                      if (id < options.first_id) return false;
+                      tip_mm = all_stamps[static_cast<std::size_t>(id - options.first_id)].tip_mm;
+                      bend_mm = options.bent_before_mm;
+                      return true;
+                    });
+  std::int32_t last = -1;
+  const auto bend_of = [&](std::int32_t k) { return shifts ? bends[static_cast<std::size_t>(k)].largest_mm : 0.0; };
   for (const std::int32_t k : w.stamps) {
-    if (++since_check == kAirCheckEvery) {
-      if (all_air(tile, static_cast<float>(stock.band_mm()))) break;
-      since_check = 0;
-    }
+    if (cover.all_air()) break;
     for (; run != w.runs.end() && run->stamp <= k; ++run) sample(*buffers, w, *run, shifts, weights);
     const Stamp& s = stamps[static_cast<std::size_t>(k)];
+    const bool changes = last < 0 || cover.changeable_after(stamps[static_cast<std::size_t>(last)].tip_mm,
+                                                            bend_of(last), s.tip_mm, bend_of(k));
+    last = k;
+    if (!changes) continue;
     const CarveStamp stamp{s.tip_mm, first_id + k, options.shrink_mm};
-    if (shifts && bends[static_cast<std::size_t>(k)].largest_mm > 0)
-      carve_bent(tile, w.index, stock.voxel_mm(), stock.band_mm(), envelope, stamp, *shifts,
+    if (bend_of(k) > 0)
+      carve_bent(tile, cover, w.index, stock.voxel_mm(), stock.band_mm(), envelope, stamp, *shifts,
                  bends[static_cast<std::size_t>(k)]);
     else
-      removal::carve(tile, w.index, stock.voxel_mm(), stock.band_mm(), envelope.shape, stamp);
+      removal::carve(tile, cover, w.index, stock.voxel_mm(), stock.band_mm(), envelope.shape, stamp);
   }
   w.result = std::make_unique<Tile>(tile);
 }
@@ -445,6 +464,7 @@ Stretch::Stretch(Stock& stock, const Stock* blank, const EnvelopeGrid& envelope,
                                         options.first_id + static_cast<std::int32_t>(from),
                                         options,
                                         Tile::kCore * stock.voxel_mm(),
+                                        {},
                                         {},
                                         {},
                                         {}})) {}

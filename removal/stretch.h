@@ -30,6 +30,7 @@ struct StretchOptions {
   bool engage = true;         ///< sample chips; false: only carve
   double shrink_mm = 0;       ///< cutter smaller by this along its normal (the blank's allowance); undeflected only
   std::int32_t first_id = 0;  ///< id of stamps[0], written to the voxels that it sets last
+  double bent_before_mm = 0;  ///< bounds the shifts of the stamps that are in the stock already
 };
 
 /// Space is cut in tiles that take the stamps in order, all tiles at once; no result depends on the number of

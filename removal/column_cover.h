@@ -1,0 +1,58 @@
+#pragma once
+// Which columns of a tile a stamp can still change: most of a finishing cutter's disc lies where another stamp has cut
+// deeper.
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+
+#include "removal/cutter.h"
+#include "removal/stock.h"
+
+namespace camber::removal {
+
+/// Columns are the tile's rows of voxels along z, numbered i * kSide + j. Places count from the tile's voxel (0, 0, 0).
+///
+/// Each column remembers one stamp that has cut it. Another stamp of the same cutter changes no voxel that is not
+/// nearer to it than to the first: for a ball, below both centres, that is a plane between the two; for every cutter
+/// a tip that is neither lower nor nearer in the plane changes nothing.
+class ColumnCover {
+ public:
+  static constexpr int kColumns = Tile::kSide * Tile::kSide;
+  static constexpr int kLine = 24;  ///< columns of one i, filled up to whole vectors
+
+  /// Tip and largest bend of a stamp that is in the tile already; false: not known.
+  using TipOf = std::function<bool(std::int32_t id, Vec3& tip_mm, double& bend_mm)>;
+
+  /// Reads a loaded tile: where air begins in each column, and a stamp that it names.
+  ColumnCover(const Tile& tile, const Index3& index, double voxel_mm, double band_mm, const CutterShape& shape,
+              const TipOf& tip_of);
+
+  /// First voxel of the column from which on all are air.
+  int top(int column) const { return top_[static_cast<std::size_t>(column)]; }
+  bool all_air() const { return air_columns_ == kColumns; }
+
+  /// out[j] > 0: a stamp with this tip may change column (i, j); `bend_mm` bounds how far it leans.
+  /// False when none of them may.
+  bool changeable(int i, const Vec3& tip_mm, double bend_mm, std::array<float, kLine>& out) const;
+
+  /// False when this stamp, coming right after the one given, can change nothing in the tile.
+  bool changeable_after(const Vec3& before_mm, double before_bend_mm, const Vec3& tip_mm, double bend_mm) const;
+
+  /// After the stamp has been cut into the column: `changed` tells whether a voxel did.
+  void cut(const Tile& tile, int i, int j, const Vec3& tip_mm, double bend_mm, bool changed);
+
+ private:
+  static constexpr float kNone = 1e9f;
+
+  void lower_top(const Tile& tile, int column);
+
+  float voxel_, band_, radius_;
+  bool ball_;
+  Vec3 origin_mm_;
+  int air_columns_ = 0;
+  std::array<float, Tile::kSide * kLine> x_, y_, z_, bend_, top_mm_;
+  std::array<std::int16_t, kColumns> top_;
+};
+
+}  // namespace camber::removal

@@ -1,0 +1,8 @@
+#pragma once
+// The same code for wider vectors where the processor has them; contraction is off, so results are the same.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define CAMBER_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define CAMBER_VECTOR_CLONES
+#endif
