@@ -1,5 +1,7 @@
 #include "nc/interpreter.h"
 
+#include <fmt/format.h>
+
 #include "tests/nc/nc_text.h"
 
 namespace camber::nc {
@@ -241,6 +243,15 @@ TEST(NcInterpreter, NamesWhatItDoesNotKnow) {
           "p.nc:1:13: warning: K5.5 has no meaning in this block and is ignored (and 1 more like it) [unused-word]"});
   EXPECT_EQ(read_text("G0 X1 X2").messages,
             Messages{"p.nc:1:7: error: X stands twice in the block; one was expected [word-twice]"});
+}
+
+TEST(NcInterpreter, RepeatsOfAnErrorBeyondTheLastOneThatIsKeptAreNotCounted) {
+  std::string text = "G0 X0 Y0 Z0\n";
+  for (int i = 0; i < 25; ++i)
+    text += fmt::format("G12.{} X1\n", i % 2 == 0 ? 3 : 4) + fmt::format("G{} X1\n", 201 + i);
+  text += text;
+  const Read r = read_text(text);
+  EXPECT_EQ(r.diagnostics.errors(), Diagnostics::kMaxErrors);
 }
 
 TEST(NcInterpreter, NamesTurningPrograms) {
