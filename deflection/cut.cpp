@@ -91,9 +91,12 @@ class Cutter {
     Stretch bent(stock_, &blank_, envelope_, all, from, count,
                  {.engage = !undeflected_, .first_id = first_id, .bent_before_mm = most_bent_mm_});
     if (undeflected_) {
-      Stretch straight(*undeflected_, &blank_, envelope_, all, from, count, {.first_id = first_id});
-      evaluate(straight.carve(nullptr), stamps, shifts, loads);
-      result.stock_mm3 += straight.commit();
+      for (std::size_t at = 0; at < count; at += options_.rigid_engage_stamps) {
+        const std::size_t n = std::min(options_.rigid_engage_stamps, count - at);
+        Stretch straight(*undeflected_, &blank_, envelope_, all, from + at, n, {.first_id = first_id});
+        evaluate(straight.carve(nullptr), at, n, shifts, loads);
+        result.stock_mm3 += straight.commit();
+      }
       bent.carve(&shifts);
       bent.commit();
     } else {
@@ -128,15 +131,16 @@ class Cutter {
     double rms_um = 0, size_um = 0;
   };
 
-  /// Deflection straight from the chips.
-  void evaluate(const Engagement& engagement, std::span<const Stamp> stamps, ShiftTable& shifts,
+  /// Deflection straight from the chips of stamps from ... from + count - 1.
+  void evaluate(const Engagement& engagement, std::size_t from, std::size_t count, ShiftTable& shifts,
                 std::vector<StampLoad>& loads) const {
-    tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
       ToothPass pass;
       model_.evaluate(engagement.of(k), pass);
-      loads[k] = summarize(pass);
-      loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
-      std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(), shifts.row(static_cast<std::ptrdiff_t>(k)));
+      loads[from + k] = summarize(pass);
+      loads[from + k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
+      std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(),
+                shifts.row(static_cast<std::ptrdiff_t>(from + k)));
     });
   }
 
@@ -217,8 +221,10 @@ CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& 
   CutResult result;
   result.loads.reserve(stamps.size());
   Cutter cutter(stock, tool, material, stamps, options);
-  for (std::size_t from = 0; from < stamps.size(); from += options.stretch_stamps) {
-    const std::size_t n = std::min(options.stretch_stamps, stamps.size() - from);
+  const std::size_t stretch =
+      options.coupling == machine::Coupling::rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
+  for (std::size_t from = 0; from < stamps.size(); from += stretch) {
+    const std::size_t n = std::min(stretch, stamps.size() - from);
     cutter.cut(stamps, from, n, contacts.empty() ? contacts : contacts.subspan(from, n), first_id, result);
     if (options.progress) options.progress(static_cast<double>(from + n) / static_cast<double>(stamps.size()));
   }

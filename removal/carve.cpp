@@ -132,7 +132,7 @@ float envelope_distance(float x, float y, float z, float flat, float corner) {
 
 }  // namespace
 
-void carve(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band, const CutterShape& shape,
+bool carve(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band, const CutterShape& shape,
            const CarveStamp& stamp) {
   const Profile p{static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm),
                   static_cast<float>(stamp.shrink_mm)};
@@ -142,6 +142,7 @@ void carve(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double
   const float z = static_cast<float>((t[2] * Tile::kCore + k0) * voxel - stamp.tip_mm.z());
   const auto per_voxel = static_cast<float>(1 / voxel);
   std::array<float, ColumnCover::kLine> changeable;
+  bool any = false;
   for (int i = 0; i < Tile::kSide; ++i) {
     const float dx = static_cast<float>((t[0] * Tile::kCore + i) * voxel - stamp.tip_mm.x());
     if (std::abs(dx) > reach + p.flat) continue;
@@ -159,8 +160,10 @@ void carve(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double
                                      z + static_cast<float>(up) * static_cast<float>(voxel), static_cast<float>(voxel),
                                      static_cast<float>(band), p, stamp.id);
       cover.cut(tile, i, j, stamp.tip_mm, 0, changed);
+      any |= changed;
     }
   }
+  return any;
 }
 
 CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std::ptrdiff_t stamp) {
@@ -195,7 +198,7 @@ CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std:
   return bend;
 }
 
-void carve_bent(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band,
+bool carve_bent(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band,
                 const EnvelopeGrid& envelope, const CarveStamp& stamp, const ShiftTable& shifts,
                 const CarveBend& bend) {
   const Profile p{static_cast<float>(envelope.shape.bottom_length_mm()),
@@ -210,6 +213,7 @@ void carve_bent(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, d
   const BendReader shift_at(envelope, shifts, bend.row);
   std::array<float, Tile::kSide> candidate;
   std::array<float, ColumnCover::kLine> changeable;
+  bool any = false;
   for (int i = 0; i < Tile::kSide; ++i) {
     const float dx = static_cast<float>((t[0] * Tile::kCore + i) * voxel - stamp.tip_mm.x());
     if (std::abs(dx) > p.flat + p.corner + top + largest) continue;
@@ -247,8 +251,10 @@ void carve_bent(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, d
         changed = true;
       }
       cover.cut(tile, i, j, stamp.tip_mm, bend.largest_mm, changed);
+      any |= changed;
     }
   }
+  return any;
 }
 
 double tile_distance_mm(const Index3& t, double voxel, const CutterShape& shape, const Vec3& tip) {

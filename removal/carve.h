@@ -27,14 +27,14 @@ struct CarveBend {
 };
 CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std::ptrdiff_t stamp);
 
-/// Carves with the undeflected cutter. Values are clipped to +-band_mm.
-void carve(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
+/// Carves with the undeflected cutter; true where a voxel changed. Values are clipped to +-band_mm.
+bool carve(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
            const CutterShape& shape, const CarveStamp& stamp);
 
 /// Carves with the envelope whose point (s, phi) is displaced by the shift of the instant at which an edge passes
 /// it: the cutter's distance is read at x - delta(s, phi), where (s, phi) belong to x - delta (two fixed-point
 /// steps: what is left is the square of the shift's slope, a quarter of a percent of it).
-void carve_bent(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
+bool carve_bent(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
                 const EnvelopeGrid& envelope, const CarveStamp& stamp, const ShiftTable& shifts, const CarveBend& bend);
 
 /// Lower bound of the distance between the cutter's envelope and any voxel of a tile.

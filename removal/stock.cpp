@@ -182,6 +182,23 @@ bool Stock::is_air(const Index3& tile) const {
   return air;
 }
 
+namespace {
+
+struct RowFacts {
+  bool air = true, solid = true, cut = false;
+};
+RowFacts row_facts(const float* d, const std::int32_t* s, float band) {
+  RowFacts facts;
+  for (int k = 0; k < kLeaf; ++k) {
+    facts.air &= d[k] >= band;
+    facts.solid &= d[k] <= -band;
+    facts.cut |= s[k] != Stock::kUncut;
+  }
+  return facts;
+}
+
+}  // namespace
+
 void Stock::store(const Index3& tile, const Tile& in) {
   const auto band = static_cast<float>(band_mm_);
   auto distances = impl_->distance->getAccessor();
@@ -190,16 +207,13 @@ void Stock::store(const Index3& tile, const Tile& in) {
     for (int lj = 0; lj < Tile::kCore; lj += kLeaf)
       for (int lk = 0; lk < Tile::kCore; lk += kLeaf) {
         const Coord origin(tile[0] * Tile::kCore + li, tile[1] * Tile::kCore + lj, tile[2] * Tile::kCore + lk);
-        std::array<float, 512> d;
-        std::array<std::int32_t, 512> s;
         bool air = true, solid = true, cut = false;
-        for (int n = 0; n < 512; ++n) {
-          const int from = Tile::offset(li + (n >> 6), lj + (n >> 3 & 7), lk + (n & 7));
-          d[n] = in.distance[from];
-          s[n] = in.stamp[from];
-          air = air && d[n] >= band;
-          solid = solid && d[n] <= -band;
-          cut = cut || s[n] != kUncut;
+        for (int n = 0; n < 64; ++n) {
+          const int from = Tile::offset(li + (n >> 3), lj + (n & 7), lk);
+          const RowFacts row = row_facts(in.distance.data() + from, in.stamp.data() + from, band);
+          air &= row.air;
+          solid &= row.solid;
+          cut |= row.cut;
         }
         if (air || solid) {
           distances.addTile(1, origin, air ? band : -band, false);
@@ -208,11 +222,17 @@ void Stock::store(const Index3& tile, const Tile& in) {
         }
         auto* leaf = distances.touchLeaf(origin);
         auto* marks = cut ? stamps.touchLeaf(origin) : stamps.probeLeaf(origin);
-        for (openvdb::Index n = 0; n < 512; ++n) {
-          leaf->setValueOnly(n, d[n]);
-          leaf->setActiveState(n, std::abs(d[n]) < band);
-          if (marks) marks->setValueOnly(n, s[n]);
+        float* d = leaf->buffer().data();
+        std::int32_t* s = marks ? marks->buffer().data() : nullptr;
+        openvdb::util::NodeMask<3> active;
+        for (int n = 0; n < 64; ++n) {
+          const int from = Tile::offset(li + (n >> 3), lj + (n & 7), lk);
+          std::copy_n(in.distance.data() + from, kLeaf, d + kLeaf * n);
+          if (s) std::copy_n(in.stamp.data() + from, kLeaf, s + kLeaf * n);
+          for (int k = 0; k < kLeaf; ++k)
+            if (std::abs(in.distance[from + k]) < band) active.setOn(kLeaf * n + k);
         }
+        leaf->setValueMask(active);
       }
 }
 

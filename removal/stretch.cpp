@@ -8,6 +8,8 @@
 #include <tbb/parallel_for.h>
 
 #include "removal/carve.h"
+#include "removal/stamp_order.h"
+#include "removal/vector_clones.h"
 
 namespace camber::removal {
 namespace {
@@ -29,13 +31,14 @@ struct WorkTile {
   std::vector<std::int32_t> stamps;
   std::vector<Run> runs;
   std::vector<StampChip> chips;
-  std::unique_ptr<Tile> result;
+  std::unique_ptr<Tile> result;  ///< null: nothing changed
   double removed_mm3 = 0;
 };
 
 /// What one thread holds of a tile.
 struct WorkBuffers {
-  Tile stock, blank;
+  std::unique_ptr<Tile> stock = std::make_unique<Tile>();
+  Tile blank;
 };
 
 Index3 tile_of(const Vec3& p, double tile_mm) {
@@ -88,6 +91,22 @@ Vec3 gradient(const std::array<float, Tile::kVolume>& values, const Cell& cell, 
 /// A surface that the normal meets at a grazing angle is taken at no more than four times its distance.
 float slope(double along_normal) { return static_cast<float>(std::clamp(along_normal, 0.25, 1.0)); }
 
+/// Material in the tile's core, in voxels.
+CAMBER_VECTOR_CLONES
+double material_voxels(const Tile& tile, double voxel_mm) {
+  const auto scale = static_cast<float>(0.5 / voxel_mm);
+  double sum = 0;
+  for (int i = 0; i < Tile::kCore; ++i) {
+    std::array<float, Tile::kCore> share{};
+    for (int j = 0; j < Tile::kCore; ++j) {
+      const float* d = tile.distance.data() + Tile::offset(i, j, 0);
+      for (int k = 0; k < Tile::kCore; ++k) share[k] += std::min(std::max(0.5f - scale * d[k], 0.0f), 1.0f);
+    }
+    for (const float v : share) sum += static_cast<double>(v);
+  }
+  return sum;
+}
+
 /// Tiles of a box of space, numbered; -1 where there is nothing to cut.
 class SlotMap {
  public:
@@ -122,6 +141,7 @@ struct Stretch::Impl {
   double tile_mm;
   std::vector<WorkTile> tiles;
   SlotMap slots;
+  StampOrder order;                      ///< batches and who covers whom
   std::vector<CarveBend> bends;          ///< per stamp of the stretch; empty: straight
   std::vector<std::vector<float>> caps;  ///< per stamp: what the motion allows at the points of its runs
 
@@ -135,6 +155,7 @@ struct Stretch::Impl {
                   const Vec3& normal, bool bent) const;
   void sample(const WorkBuffers& buffers, WorkTile& work, const Run& run, const ShiftTable* shifts,
               const std::vector<NodeWeight>& weights) const;
+  float thickness_over(std::span<const std::int32_t> earlier, const Vec3& point, const Vec3& normal) const;
   Engagement gather() const;
 };
 
@@ -255,6 +276,9 @@ void Stretch::Impl::find_tiles(const ShiftTable* shifts) {
 
 void Stretch::Impl::list_stamps(const ShiftTable* shifts) {
   tiles.clear();
+  order = !options.engage ? StampOrder::one_batch(stamps.size())
+          : shifts        ? StampOrder::one_by_one(stamps.size())
+                          : StampOrder::of_path(stamps, envelope.shape);
   find_tiles(shifts);
   bends.assign(shifts ? stamps.size() : 0, {});
   tbb::parallel_for(std::size_t{0}, bends.size(),
@@ -349,7 +373,7 @@ void Stretch::Impl::list_runs(const ShiftTable* shifts) {
 /// header): the thinnest of distance / slope, where slope is how fast a field falls along the normal.
 float Stretch::Impl::thickness(const WorkBuffers& buffers, const Cell& cell, const Vec3& point, const Vec3& cell_corner,
                                const Vec3& normal, bool bent) const {
-  const Tile& tile = buffers.stock;
+  const Tile& tile = *buffers.stock;
   const float below_blank = -trilinear(buffers.blank.distance, cell);
   if (below_blank <= 0) return 0;
   std::array<std::int32_t, 8> ids;
@@ -380,11 +404,25 @@ float Stretch::Impl::thickness(const WorkBuffers& buffers, const Cell& cell, con
   return std::min(thinnest, below_blank / slope(-gradient(buffers.blank.distance, cell, stock.voxel_mm()).dot(normal)));
 }
 
+/// The same over stamps of the batch that are not in the tile yet.
+float Stretch::Impl::thickness_over(std::span<const std::int32_t> earlier, const Vec3& point,
+                                    const Vec3& normal) const {
+  float thinnest = std::numeric_limits<float>::infinity();
+  for (const std::int32_t j : earlier) {
+    const Vec3 from_tip = point - stamps[static_cast<std::size_t>(j)].tip_mm;
+    const auto depth = static_cast<float>(envelope.shape.distance_mm(from_tip));
+    if (depth <= 0) return 0;
+    if (depth < thinnest) thinnest = std::min(thinnest, depth / slope(envelope.shape.gradient(from_tip).dot(normal)));
+  }
+  return thinnest;
+}
+
 void Stretch::Impl::sample(const WorkBuffers& buffers, WorkTile& w, const Run& run, const ShiftTable* shifts,
                            const std::vector<NodeWeight>& weights) const {
   const Stamp& stamp = stamps[static_cast<std::size_t>(run.stamp)];
   const PointReader reader(envelope, stamp, shifts, run.stamp, weights);
   const std::vector<float>& cap_list = caps[static_cast<std::size_t>(run.stamp)];
+  const auto earlier = order.earlier(run.stamp);
   const double voxel = stock.voxel_mm();
   const Vec3 origin(w.index[0] * Tile::kCore, w.index[1] * Tile::kCore, w.index[2] * Tile::kCore);
   for (std::uint32_t p = run.first; p < run.first + run.count; ++p) {
@@ -394,24 +432,28 @@ void Stretch::Impl::sample(const WorkBuffers& buffers, WorkTile& w, const Run& r
     const Cell cell = cell_of(g);
     // The trilinear field is never below the ridge's, but for curvature: so it tells what is in air, and what is
     // deeper than the chip.
-    const float field = trilinear(buffers.stock.distance, cell);
+    const float field = trilinear(buffers.stock->distance, cell);
     if (field > 0.5f * static_cast<float>(voxel)) continue;
-    if (-field > cap) {
+    if (-field > cap && earlier.empty()) {
       w.chips.push_back({run.stamp, {p, cap, true}});
       continue;
     }
     const Vec3 corner =
         voxel * (origin + Vec3(static_cast<int>(g.x()), static_cast<int>(g.y()), static_cast<int>(g.z())));
     const Vec3 normal(envelope.nx[p], envelope.ny[p], envelope.nz[p]);
-    const float depth = thickness(buffers, cell, point, corner, normal, shifts != nullptr);
+    float depth = thickness_over(earlier, point, normal);
+    if (-field <= cap && depth > 0)
+      depth = std::min(depth, thickness(buffers, cell, point, corner, normal, shifts != nullptr));
     if (depth > 0) w.chips.push_back({run.stamp, {p, std::min(depth, cap), depth > kNearCap * cap}});
   }
 }
 
 void Stretch::Impl::work(WorkTile& w, const ShiftTable* shifts, const std::vector<NodeWeight>& weights) const {
   const auto buffers = std::make_unique<WorkBuffers>();
-  Tile& tile = buffers->stock;
+  Tile& tile = *buffers->stock;
   stock.load(w.index, tile);
+  const double material = material_voxels(tile, stock.voxel_mm());
+  bool changed = false;
   if (options.engage) blank->load(w.index, buffers->blank);
   auto run = w.runs.begin();
   ColumnCover cover(tile, w.index, stock.voxel_mm(), stock.band_mm(), envelope.shape,
@@ -421,24 +463,35 @@ void Stretch::Impl::work(WorkTile& w, const ShiftTable* shifts, const std::vecto
                       bend_mm = options.bent_before_mm;
                       return true;
                     });
-  std::int32_t last = -1;
   const auto bend_of = [&](std::int32_t k) { return shifts ? bends[static_cast<std::size_t>(k)].largest_mm : 0.0; };
-  for (const std::int32_t k : w.stamps) {
-    if (cover.all_air()) break;
-    for (; run != w.runs.end() && run->stamp <= k; ++run) sample(*buffers, w, *run, shifts, weights);
-    const Stamp& s = stamps[static_cast<std::size_t>(k)];
-    const bool changes = last < 0 || cover.changeable_after(stamps[static_cast<std::size_t>(last)].tip_mm,
-                                                            bend_of(last), s.tip_mm, bend_of(k));
-    last = k;
-    if (!changes) continue;
-    const CarveStamp stamp{s.tip_mm, first_id + k, options.shrink_mm};
-    if (bend_of(k) > 0)
-      carve_bent(tile, cover, w.index, stock.voxel_mm(), stock.band_mm(), envelope, stamp, *shifts,
-                 bends[static_cast<std::size_t>(k)]);
-    else
-      removal::carve(tile, cover, w.index, stock.voxel_mm(), stock.band_mm(), envelope.shape, stamp);
+  const auto covers = [&](std::int32_t last, std::int32_t k) {
+    return last >= 0 && !cover.changeable_after(stamps[static_cast<std::size_t>(last)].tip_mm, bend_of(last),
+                                                stamps[static_cast<std::size_t>(k)].tip_mm, bend_of(k));
+  };
+  for (std::size_t from = 0; from < w.stamps.size() && !cover.all_air();) {
+    std::size_t end = from + 1;
+    while (end < w.stamps.size() && order.batch(w.stamps[end]) == order.batch(w.stamps[from])) ++end;
+    for (; run != w.runs.end() && run->stamp <= w.stamps[end - 1]; ++run) sample(*buffers, w, *run, shifts, weights);
+    const std::int32_t* batch = w.stamps.data() + from;
+    for_each_coarse_to_fine(
+        static_cast<std::int32_t>(end - from), [&](std::int32_t i, std::int32_t left, std::int32_t right) {
+          const std::int32_t k = batch[i];
+          // The neighbours of the batch are in the tile already; in the first of a batch the one before it.
+          const std::int32_t before = left >= 0 ? batch[left] : from > 0 ? w.stamps[from - 1] : -1;
+          if (covers(before, k) || (right >= 0 && covers(batch[right], k))) return;
+          const Stamp& s = stamps[static_cast<std::size_t>(k)];
+          const CarveStamp stamp{s.tip_mm, first_id + k, options.shrink_mm};
+          if (bend_of(k) > 0)
+            changed |= carve_bent(tile, cover, w.index, stock.voxel_mm(), stock.band_mm(), envelope, stamp, *shifts,
+                                  bends[static_cast<std::size_t>(k)]);
+          else
+            changed |= removal::carve(tile, cover, w.index, stock.voxel_mm(), stock.band_mm(), envelope.shape, stamp);
+        });
+    from = end;
   }
-  w.result = std::make_unique<Tile>(tile);
+  if (!changed) return;
+  w.removed_mm3 = (material - material_voxels(tile, stock.voxel_mm())) * std::pow(stock.voxel_mm(), 3);
+  w.result = std::move(buffers->stock);
 }
 
 Engagement Stretch::Impl::gather() const {
@@ -467,6 +520,7 @@ Stretch::Stretch(Stock& stock, const Stock* blank, const EnvelopeGrid& envelope,
                                         {},
                                         {},
                                         {},
+                                        {},
                                         {}})) {}
 Stretch::~Stretch() = default;
 
@@ -478,24 +532,9 @@ Engagement Stretch::carve(const ShiftTable* shifts) {
 
 double Stretch::commit() {
   Impl& m = *impl_;
-  tbb::parallel_for(std::size_t{0}, m.tiles.size(), [&](std::size_t i) {
-    WorkTile& w = m.tiles[i];
-    Tile before;
-    m.stock.load(w.index, before);
-    double share = 0;
-    for (int x = 0; x < Tile::kCore; ++x)
-      for (int y = 0; y < Tile::kCore; ++y)
-        for (int z = 0; z < Tile::kCore; ++z) {
-          const int at = Tile::offset(x, y, z);
-          if (before.distance[at] == w.result->distance[at]) continue;
-          share += material_share(before.distance[at], m.stock.voxel_mm()) -
-                   material_share(w.result->distance[at], m.stock.voxel_mm());
-        }
-    w.removed_mm3 = share * std::pow(m.stock.voxel_mm(), 3);
-  });
   double removed = 0;
   for (auto& w : m.tiles) {
-    m.stock.store(w.index, *w.result);
+    if (w.result) m.stock.store(w.index, *w.result);
     removed += w.removed_mm3;
   }
   m.tiles.clear();

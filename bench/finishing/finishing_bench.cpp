@@ -87,10 +87,11 @@ int main(int argc, char** argv) {
   removal::Stock stock([&](const Vec3& p) { return removal::box_distance_mm(p, lo, hi); }, lo, hi, voxel, band);
   // The pass before, where the cutter can meet it.
   const int row0 = std::max(0, from_row - 20), row1 = std::min(kRows, from_row + rows + 20);
-  if (second) {
-    deflection::sweep(stock, tool, stamps_of(row0, row1 - row0, 0.3), 0, 0);
-    stock.clear_stamps();
-  }
+  if (second) deflection::sweep(stock, tool, stamps_of(row0, row1 - row0, 0.3), 0, 0);
+  stock.clear_stamps();
+  // A part of the path meets what the rows before it have left.
+  if (from_row > row0) deflection::sweep(stock, tool, stamps_of(row0, from_row - row0, 0), 0, 0);
+  stock.clear_stamps();
   const auto stamps = stamps_of(from_row, rows, 0);
   const double volume = stock.volume_mm3();
   rusage at_start{};

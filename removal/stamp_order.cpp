@@ -1,0 +1,66 @@
+#include "removal/stamp_order.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camber::removal {
+namespace {
+
+constexpr std::size_t kLongestBatch = 64;
+constexpr std::size_t kMostEarlier = 6;  ///< more than these: a new batch is cheaper
+
+/// True where stamp `before` (right before `tip`) leaves less than `earlier` wherever the cutter moves into material.
+bool covers(const Vec3& tip, const Vec3& before, const Vec3& earlier, const CutterShape& shape) {
+  const Vec3 f = tip - before, u = earlier - before;
+  const double step = f.norm(), along = u.dot(f) / step;
+  if (!(step > 0) || along >= 0) return false;
+  const double across = (u - along / step * f).norm();
+  constexpr double kStraight = 1e-6;
+  if (across <= kStraight) return true;
+  const bool level = std::abs(f.z()) < kStraight && std::abs(u.z()) < kStraight;
+  if (shape.bottom_length_mm() > 0 && !level) return false;
+  // Points that still cut may lean back by step / 2R.
+  return along * step - 0.5 * u.squaredNorm() + shape.radius_mm * across - 0.5 * along * step <= 0;
+}
+
+}  // namespace
+
+StampOrder StampOrder::one_batch(std::size_t count) {
+  StampOrder order;
+  order.batch_.assign(count, 0);
+  return order;
+}
+
+StampOrder StampOrder::one_by_one(std::size_t count) {
+  StampOrder order;
+  for (std::size_t k = 0; k < count; ++k) order.batch_.push_back(static_cast<std::int32_t>(k));
+  return order;
+}
+
+StampOrder StampOrder::of_path(std::span<const Stamp> stamps, const CutterShape& shape) {
+  StampOrder order;
+  std::int32_t batch = -1;
+  std::size_t begin = 0;
+  std::vector<std::int32_t> earlier;
+  order.first_.push_back(0);
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    earlier.clear();
+    bool fresh = k == 0 || stamps[k].first || k - begin >= kLongestBatch;
+    for (std::size_t j = begin; !fresh && j + 1 < k; ++j) {
+      if (!covers(stamps[k].tip_mm, stamps[k - 1].tip_mm, stamps[j].tip_mm, shape))
+        earlier.push_back(static_cast<std::int32_t>(j));
+      fresh = earlier.size() > kMostEarlier;
+    }
+    if (fresh) {
+      begin = k;
+      ++batch;
+      earlier.clear();
+    }
+    order.batch_.push_back(batch);
+    order.earlier_.insert(order.earlier_.end(), earlier.begin(), earlier.end());
+    order.first_.push_back(order.earlier_.size());
+  }
+  return order;
+}
+
+}  // namespace camber::removal
