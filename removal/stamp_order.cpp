@@ -9,18 +9,24 @@ namespace {
 constexpr std::size_t kLongestBatch = 64;
 constexpr std::size_t kMostEarlier = 6;  ///< more than these: a new batch is cheaper
 
-/// True where stamp `before` (right before `tip`) leaves less than `earlier` wherever the cutter moves into material.
-bool covers(const Vec3& tip, const Vec3& before, const Vec3& earlier, const CutterShape& shape) {
-  const Vec3 f = tip - before, u = earlier - before;
+/// The inequality of the header, for spheres, or for circles when the vectors are level.
+bool spheres_covered(const Vec3& f, const Vec3& u, double radius) {
   const double step = f.norm(), along = u.dot(f) / step;
   if (!(step > 0) || along >= 0) return false;
   const double across = (u - along / step * f).norm();
-  constexpr double kStraight = 1e-6;
-  if (across <= kStraight) return true;
-  const bool level = std::abs(f.z()) < kStraight && std::abs(u.z()) < kStraight;
-  if (shape.bottom_length_mm() > 0 && !level) return false;
   // Points that still cut may lean back by step / 2R.
-  return along * step - 0.5 * u.squaredNorm() + shape.radius_mm * across - 0.5 * along * step <= 0;
+  return along * step - 0.5 * u.squaredNorm() + radius * across - 0.5 * along * step <= 0;
+}
+
+/// True where stamp `before` (right before `tip`) leaves less than `earlier` wherever the cutter moves into material.
+bool covers(const Vec3& tip, const Vec3& before, const Vec3& earlier, const CutterShape& shape) {
+  const Vec3 f = tip - before, u = earlier - before;
+  constexpr double kStraight = 1e-6;
+  if (u.dot(f) < 0 && (u - u.dot(f) / f.squaredNorm() * f).norm() <= kStraight) return true;
+  const bool level = std::abs(f.z()) < kStraight && std::abs(u.z()) < kStraight;
+  // Between bottom and wall of a cutter with a flat there is more than spheres and circles.
+  if (!level && (shape.bottom_length_mm() > 0 || !spheres_covered(f, u, shape.radius_mm))) return false;
+  return spheres_covered({f.x(), f.y(), 0}, {u.x(), u.y(), 0}, shape.radius_mm);
 }
 
 }  // namespace
