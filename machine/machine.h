@@ -28,6 +28,8 @@ struct Corner {
   double step_share = 0;
   /// A line that lasts less than this between two roundings is driven with the limits of the roundings.
   double short_line_time_s = 0;
+  double stop_angle_rad = kNoLimit;  ///< corners that turn by more are stopped at, whatever the law
+  double stop_time_s = 0;            ///< such a stop lasts this long
 };
 
 struct Control {
@@ -43,6 +45,10 @@ struct Control {
   /// look-ahead plans how fast that block may be entered.
   double stop_acceleration_share = 1;
   double rest_latency_s = 0;  ///< a rest (dwell) takes this much longer than programmed
+  /// Along the path, beside what the axes allow (before interpolation).
+  double path_acceleration_mm_per_s2 = kNoLimit;
+  /// Between rapid and feed moves it stops and waits so long (until the axes are in position); 0: no stop asked for.
+  double rapid_change_s = 0;
 };
 
 struct Axis {
@@ -56,6 +62,13 @@ struct Axis {
   std::array<double, 2> travel_mm{-kNoLimit, kNoLimit};
 };
 
+/// What the programs held that a model was fitted on; beyond it the model is a guess. [least, greatest].
+struct FittedRange {
+  bool known = false;
+  std::array<double, 2> feed_mm_per_s{}, corner_rad{}, line_mm{}, arc_radius_mm{};
+  std::array<bool, 3> axis{};  ///< x, y, z moved
+};
+
 struct Spindle {
   double max_rpm = kNoLimit;
 };
@@ -65,6 +78,7 @@ struct Machine {
   Control control;
   std::array<Axis, 3> axis;  ///< x, y, z
   Spindle spindle;
+  FittedRange fitted_range;
 };
 
 /// Throws InputError with file:line:column for unknown keys, wrong types and values out of range.

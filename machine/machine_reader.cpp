@@ -66,6 +66,29 @@ void read_axes(TomlTable table, std::array<Axis, 3>& axes) {
   table.finish();
 }
 
+/// Two numbers, the second not the smaller one; without the key both are 0 (nothing of the kind was seen).
+void read_range(TomlTable& table, std::string_view key, const FileUnit& unit, std::array<double, 2>& range) {
+  const auto numbers = table.numbers(key, 2, kNotNegativeOrInf, "[least, greatest]");
+  if (!numbers) return;
+  range = {unit.inside_from_file((*numbers)[0]), unit.inside_from_file((*numbers)[1])};
+  if (range[0] > range[1])
+    table.error_at(key,
+                   fmt::format("{} goes from {} to {}; the second must not be less than the first", key, (*numbers)[0],
+                               (*numbers)[1]),
+                   "value-range");
+}
+
+void read_fitted_range(TomlTable table, FittedRange& range) {
+  range.known = true;
+  read_range(table, "feed_mm_per_min", kPerMinute, range.feed_mm_per_s);
+  read_range(table, "corner_degrees", kDegrees, range.corner_rad);
+  read_range(table, "line_mm", kAsIs, range.line_mm);
+  read_range(table, "arc_radius_mm", kAsIs, range.arc_radius_mm);
+  const std::string axes = table.text("axes", "xyz");
+  for (std::size_t i = 0; i < range.axis.size(); ++i) range.axis[i] = axes.find(kAxisNames[i]) != std::string::npos;
+  table.finish();
+}
+
 }  // namespace
 
 Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
@@ -80,6 +103,7 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
     read_numbers<Spindle>(*spindle, kSpindleKeys, machine.spindle);
     spindle->finish();
   }
+  if (auto range = top.table("fitted_range")) read_fitted_range(*range, machine.fitted_range);
   top.finish();
   diagnostics.throw_if_errors();
   return machine;

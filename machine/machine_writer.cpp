@@ -13,7 +13,8 @@ std::string corner_text(const Corner& corner) {
     const bool of_this_law = (corner.law == CornerLaw::blend && k.key == "tolerance_mm") ||
                              (corner.law == CornerLaw::angle && k.key == "time_ms") ||
                              (corner.law == CornerLaw::speed_difference && k.key == "speed_difference_mm_per_min");
-    const bool of_no_law = k.key == "step_share" || k.key == "short_line_time_ms";
+    const bool of_no_law = k.key == "step_share" || k.key == "short_line_time_ms" || k.key == "stop_angle_degrees" ||
+                           k.key == "stop_time_ms";
     if (of_this_law || (of_no_law && corner.*k.field != defaults.*k.field))
       out += fmt::format(", {} = {}", k.key, toml_number(corner.*k.field, k.unit));
   }
@@ -23,6 +24,20 @@ std::string corner_text(const Corner& corner) {
 std::string axis_text(std::string_view name, const Axis& axis) {
   return fmt::format("\n[axis.{}]\n{}travel_mm = [{}, {}]\n", name, toml_lines<Axis>(kAxisKeys, axis),
                      toml_number(axis.travel_mm[0], kAsIs), toml_number(axis.travel_mm[1], kAsIs));
+}
+
+std::string range_text(std::string_view key, const std::array<double, 2>& range, const FileUnit& unit) {
+  return fmt::format("{} = [{}, {}]\n", key, toml_number(range[0], unit), toml_number(range[1], unit));
+}
+
+std::string fitted_range_text(const FittedRange& r) {
+  if (!r.known) return {};
+  std::string axes;
+  for (std::size_t i = 0; i < r.axis.size(); ++i)
+    if (r.axis[i]) axes += kAxisNames[i];
+  return "\n[fitted_range]\n" + range_text("feed_mm_per_min", r.feed_mm_per_s, kPerMinute) +
+         range_text("corner_degrees", r.corner_rad, kDegrees) + range_text("line_mm", r.line_mm, kAsIs) +
+         range_text("arc_radius_mm", r.arc_radius_mm, kAsIs) + toml_line("axes", axes);
 }
 
 }  // namespace
@@ -35,6 +50,7 @@ std::string to_toml(const Machine& machine) {
   out += corner_text(machine.control.corner);
   for (std::size_t i = 0; i < machine.axis.size(); ++i) out += axis_text(kAxisNames[i], machine.axis[i]);
   out += "\n[spindle]\n" + toml_lines<Spindle>(kSpindleKeys, machine.spindle);
+  out += fitted_range_text(machine.fitted_range);
   return out;
 }
 
