@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "calib/fit_limits.h"
+#include "feedmodel/fitted_range.h"
 
 namespace camber::calib {
 namespace {
@@ -202,32 +203,6 @@ void refine_block_time(LimitFit& fit, const std::vector<TimedLines>& data, const
   fit = fit_limits(data, base, std::move(parameters), iterations, false);
 }
 
-void add_drive(FitFeedResult& result, int axis, const DriveFit& drive) {
-  const std::string name = std::string("axis.") + kAxes[axis] + ".";
-  machine::Axis& a = result.machine.axis[axis];
-  if (!drive.moved) {
-    result.parameters.push_back({name + "position_gain_per_s", a.position_gain_per_s, "1/s", std::nullopt,
-                                 "the axis does not move in the traces", false});
-    return;
-  }
-  a.position_gain_per_s = drive.gain_per_s.value;
-  a.velocity_lag_s = drive.velocity_lag_s.value;
-  a.feed_forward_percent = std::clamp(drive.feed_forward_percent.value, 0.0, 100.0);
-  a.filter_s = drive.filter_s.value;
-  const auto add = [&](const char* key, const FittedValue& v, double scale, const char* unit) {
-    if (v.value == 0 && v.std_error == 0) return;
-    result.parameters.push_back({name + key, v.value * scale, unit,
-                                 std::isfinite(v.std_error) ? std::optional(v.std_error * scale) : std::nullopt, "",
-                                 true});
-  };
-  add("position_gain_per_s", drive.gain_per_s, 1, "1/s");
-  add("velocity_lag_ms", drive.velocity_lag_s, 1000, "ms");
-  add("feed_forward_percent", drive.feed_forward_percent, 1, "%");
-  if (drive.filter_s.value > 0)
-    result.parameters.push_back(
-        {name + "filter_ms", 1000 * drive.filter_s.value, "ms", std::nullopt, "chosen from a list", true});
-}
-
 void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start) {
   for (const LimitParameter& p : fit.parameters) {
     if (p.told) {
@@ -290,6 +265,32 @@ void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_bac
 
 }  // namespace
 
+void add_drive(Machine& machine, std::vector<FitParameter>& parameters, int axis, const DriveFit& drive) {
+  const std::string name = std::string("axis.") + kAxes[axis] + ".";
+  machine::Axis& a = machine.axis[axis];
+  if (!drive.moved) {
+    parameters.push_back({name + "position_gain_per_s", a.position_gain_per_s, "1/s", std::nullopt,
+                                 "the axis does not move in the traces", false});
+    return;
+  }
+  a.position_gain_per_s = drive.gain_per_s.value;
+  a.velocity_lag_s = drive.velocity_lag_s.value;
+  a.feed_forward_percent = std::clamp(drive.feed_forward_percent.value, 0.0, 100.0);
+  a.filter_s = drive.filter_s.value;
+  const auto add = [&](const char* key, const FittedValue& v, double scale, const char* unit) {
+    if (v.value == 0 && v.std_error == 0) return;
+    parameters.push_back({name + key, v.value * scale, unit,
+                                 std::isfinite(v.std_error) ? std::optional(v.std_error * scale) : std::nullopt, "",
+                                 true});
+  };
+  add("position_gain_per_s", drive.gain_per_s, 1, "1/s");
+  add("velocity_lag_ms", drive.velocity_lag_s, 1000, "ms");
+  add("feed_forward_percent", drive.feed_forward_percent, 1, "%");
+  if (drive.filter_s.value > 0)
+    parameters.push_back(
+        {name + "filter_ms", 1000 * drive.filter_s.value, "ms", std::nullopt, "chosen from a list", true});
+}
+
 FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, const FitFeedOptions& options) {
   FitFeedResult result;
   result.machine = start;
@@ -325,9 +326,12 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
                                std::nullopt, "median of the rests", true});
   for (int axis = 0; axis < 3; ++axis) {
     result.drives[axis] = fit_drive(traces, axis, {});
-    add_drive(result, axis, result.drives[axis]);
+    add_drive(result.machine, result.parameters, axis, result.drives[axis]);
     drives_converged = drives_converged && (!result.drives[axis].moved || result.drives[axis].converged);
   }
+  std::vector<const nc::Interpretation*> programs;
+  for (const FeedRun& run : runs) programs.push_back(&run.program);
+  result.machine.fitted_range = feedmodel::range_of(programs);
   result.residual_median_ms = limits.residual_median_ms;
   judge(result, runs, options.keep_back_every);
   result.converged = limits.converged && drives_converged;

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "calib/fit_limits.h"
+#include "feedmodel/fitted_range.h"
 #include "feedmodel/plan.h"
 
 namespace camber::calib {
@@ -387,6 +388,9 @@ StretchFit fit_stretches(const std::vector<StretchRun>& runs, const Machine& sta
     consider(with_axes);
   }
   fit.machine = best->machine;
+  std::vector<const nc::Interpretation*> programs;
+  for (const nc::Interpretation& program : data.programs) programs.push_back(&program);
+  fit.machine.fitted_range = feedmodel::range_of(programs);
   add_parameters(fit, *best);
   const auto stopping = times_s(data, stops_at_every_block(fit.machine));
   std::vector<double> constant;

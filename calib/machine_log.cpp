@@ -18,6 +18,8 @@ constexpr double kHoldS = 1.0;           // feed 0 for longer within a stretch i
 constexpr double kHoleS = 3.0;           // an adapter that counts seconds is never silent for longer
 constexpr double kFullOverride = 100.0;  // %
 constexpr double kOverrideNoise = 0.5;   // %
+constexpr std::size_t kBrokenShown = 3;
+constexpr double kBrokenShare = 0.05;
 constexpr std::size_t kFewestEvents = 3;
 
 /// Seconds since 1970 of 2017-02-14T14:56:22.9058750Z.
@@ -59,6 +61,10 @@ class LogReader {
       begin = end + 1;
     }
     diagnostics_.throw_if_errors();
+    if (static_cast<double>(broken_) > kBrokenShare * static_cast<double>(lines_))
+      fail_on_file(log_.path,
+                   fmt::format("{} of {} lines are not timestamp|item|value; is this a machine log?", broken_, lines_),
+                   "log-fields");
     if (log_.line.empty())
       fail_on_file(log_.path,
                    "the log has no Block_Number; lines as 2017-02-14T14:56:34.62Z|Block_Number|18 were expected",
@@ -71,10 +77,17 @@ class LogReader {
     diagnostics_.add(source_.diagnostic(severity, offset, std::move(message), std::move(check)));
   }
 
+  /// An adapter breaks a line now and then: not worth an error, unless the file is something else altogether.
+  void broken(std::size_t offset) {
+    if (++broken_ <= kBrokenShown)
+      report(Severity::warning, offset, "this is not timestamp|item|value; the line is left out", "log-fields");
+  }
+
   void read_line(std::string_view line, std::size_t offset) {
+    ++lines_;
     const std::size_t bar = line.find('|'), bar2 = bar == line.npos ? bar : line.find('|', bar + 1);
     if (bar2 == line.npos) {
-      report(Severity::error, offset, "timestamp|item|value was expected", "log-fields");
+      broken(offset);
       return;
     }
     const std::string_view stamp = line.substr(0, bar), item = line.substr(bar + 1, bar2 - bar - 1),
@@ -96,7 +109,7 @@ class LogReader {
                                   : item == "Feed_Rate"     ? &log_.feed_mm_per_s
                                   : item == "Feed_Override" ? &log_.override_percent
                                                             : nullptr;
-    if (!into || value == "UNAVAILABLE") return;
+    if (!into || value.empty() || value == "UNAVAILABLE") return;
     const auto number = parse_number(value);
     if (!number || *number < 0) {
       report(Severity::error, offset + bar2 + 1,
@@ -110,6 +123,7 @@ class LogReader {
   Diagnostics& diagnostics_;
   MachineLog log_;
   std::optional<double> begin_s_;
+  std::size_t lines_ = 0, broken_ = 0;
 };
 
 bool has_hole(const std::vector<double>& times, double from, double to) {

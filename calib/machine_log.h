@@ -26,9 +26,11 @@ struct MachineLog {
 /// Whether a file looks like such a log: its first line has two bars.
 bool is_machine_log(const std::string& path);
 
-/// Reads lines `timestamp|item|value`, timestamps as 2017-02-14T14:56:22.9058750Z; items that are not known are left
-/// out. Throws InputError: [log-fields], [log-time], [log-number], [log-item] (no Block_Number in the file),
-/// [file-missing]. Warning [log-time] where an event is older than the one before it; it is left out.
+/// Reads lines `timestamp|item|value`, timestamps as 2017-02-14T14:56:22.9058750Z; items that are not known and
+/// values that are empty or UNAVAILABLE are left out. Throws InputError: [log-time], [log-number], [log-item] (no
+/// Block_Number in the file), [log-fields] (more than a twentieth of the lines are of another form), [file-missing].
+/// Warnings: [log-time] where an event is older than the one before it, [log-fields] for the first lines of another
+/// form; these are left out.
 MachineLog read_machine_log(const std::string& path, Diagnostics& diagnostics);
 
 /// The time of every stretch of `stretches` that the log holds whole: from the first event that names a line of it to
