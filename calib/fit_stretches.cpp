@@ -220,6 +220,17 @@ Solution solve(const Data& data, const Machine& base, const std::vector<LimitPar
   return {std::move(logs), summary.termination_type == ceres::CONVERGENCE};
 }
 
+double known_to_s(const TimedStretch& t) { return std::hypot(t.sigma_s, kTimeShare * t.time_s); }
+
+double mean_score(const Data& data, const std::vector<double>& predicted_s) {
+  double sum = 0;
+  for (std::size_t i = 0; i < predicted_s.size(); ++i) {
+    const TimedStretch& t = data.items[i].judged.timed;
+    sum += std::abs(predicted_s[i] - t.time_s) / known_to_s(t);
+  }
+  return sum / static_cast<double>(predicted_s.size());
+}
+
 std::vector<double> measured_s(const Data& data) {
   std::vector<double> times;
   for (const auto& item : data.items) times.push_back(item.judged.timed.time_s);
@@ -374,9 +385,10 @@ StretchFit fit_stretches(const std::vector<StretchRun>& runs, const Machine& sta
   std::optional<Trial> best;
   const auto consider = [&](const StretchLaw& law) {
     Trial trial = try_law(data, start, law, options.max_iterations);
-    fit.laws.push_back({law, stretch_errors(measured, trial.fitted_s), stretch_errors(measured, trial.held_out_s)});
+    fit.laws.push_back({law, stretch_errors(measured, trial.fitted_s), stretch_errors(measured, trial.held_out_s),
+                        mean_score(data, trial.held_out_s)});
     const double better_by = law.axis_acceleration ? kBetterBy : 0.0;
-    if (best && fit.laws.back().held_out.mean >= (1 - better_by) * fit.laws[fit.chosen].held_out.mean) return;
+    if (best && fit.laws.back().score >= (1 - better_by) * fit.laws[fit.chosen].score) return;
     fit.chosen = fit.laws.size() - 1;
     best = std::move(trial);
   };

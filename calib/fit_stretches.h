@@ -39,6 +39,7 @@ struct JudgedStretch {
 struct JudgedLaw {
   StretchLaw law;
   StretchErrors fitted, held_out;
+  double score = 0;  ///< mean held-out error in units of what each time is known to: what laws are chosen by
 };
 
 struct StretchFit {
@@ -72,7 +73,8 @@ std::vector<StretchLaw> candidate_laws(const std::vector<StretchRun>& runs);
 /// Acceleration, corner step, time of a stop, arc limit and the wait between rapid and feed, fitted (Cauchy loss) to
 /// one time for each geometry. Each fold keeps back all stretches of one tool (of one geometry in five, where there
 /// are fewer than three tools), so that no copy of what is tested was fitted on. The law with the least mean held-out
-/// error is taken (axis accelerations, which are one number more, only where they lower it by 5 %). Deterministic.
+/// error, each in units of what its time is known to, is taken (axis accelerations, which are one number more, only
+/// where they lower it by 5 %). Deterministic.
 StretchFit fit_stretches(const std::vector<StretchRun>& runs, const machine::Machine& start,
                          const FitStretchesOptions& options);
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
+#include <numeric>
 #include <optional>
 
 #include "base/units.h"
@@ -15,18 +17,20 @@ namespace {
 
 constexpr double kBeyond = 1.1;  // so much past the range is not called beyond it
 constexpr std::size_t kBlocksNamed = 5;
-constexpr double kMoves = 1e-6;  // mm; less is rounding of numbers
+constexpr std::size_t kRunBlocks = 8;  // so many blocks in a row make a rate
+constexpr double kMoves = 1e-6;        // mm; less is rounding of numbers
 
 /// What one feed move asks of the control.
 struct Demand {
   double length_mm = 0, feed_mm_per_s = 0;
-  double corner_rad = 0;  ///< at its start, against the feed move before it
-  double radius_mm = 0;   ///< of curvature; 0: a line
+  double corner_rad = 0;    ///< at its start, against the feed move before it
+  double radius_mm = 0;     ///< of curvature; 0: a line
+  double blocks_per_s = 0;  ///< over the last kRunBlocks, 0 where fewer follow each other
   std::array<bool, 3> axis{};
 };
 
 bool is_feed(const nc::Move& move) {
-  return (move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc) && !move.reference;
+  return (move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc) && !move.reference && !move.canned;
 }
 
 double curvature_radius(const nc::Interpretation& program, const nc::Move& move) {
@@ -57,10 +61,17 @@ Demand demand_of(const nc::Interpretation& program, std::size_t i) {
 
 template <class Use>
 void for_each_demand(const nc::Interpretation& program, const Use& use) {
+  std::deque<double> run;  // programmed times of the last blocks
   for (std::size_t i = 0; i < program.moves.size(); ++i) {
     if (!is_feed(program.moves[i])) continue;
-    const Demand d = demand_of(program, i);
-    if (d.length_mm > kMoves) use(program.moves[i], d);
+    Demand d = demand_of(program, i);
+    if (d.length_mm <= kMoves) continue;
+    if (i == 0 || !is_feed(program.moves[i - 1])) run.clear();
+    run.push_back(d.length_mm / d.feed_mm_per_s);
+    if (run.size() > kRunBlocks) run.pop_front();
+    if (run.size() == kRunBlocks)
+      d.blocks_per_s = static_cast<double>(kRunBlocks) / std::accumulate(run.begin(), run.end(), 0.0);
+    use(program.moves[i], d);
   }
 }
 
@@ -102,7 +113,7 @@ void include(std::array<double, 2>& range, double value, bool first) {
 
 machine::FittedRange range_of(const std::vector<const nc::Interpretation*>& programs) {
   machine::FittedRange range;
-  bool first = true, first_line = true, first_arc = true;
+  bool first = true, first_line = true, first_arc = true, first_rate = true;
   for (const nc::Interpretation* program : programs) {
     for_each_demand(*program, [&](const nc::Move&, const Demand& d) {
       include(range.feed_mm_per_s, d.feed_mm_per_s, first);
@@ -115,6 +126,10 @@ machine::FittedRange range_of(const std::vector<const nc::Interpretation*>& prog
         include(range.line_mm, d.length_mm, first_line);
         first_line = false;
       }
+      if (d.blocks_per_s > 0) {
+        include(range.blocks_per_s, d.blocks_per_s, first_rate);
+        first_rate = false;
+      }
       for (int k = 0; k < 3; ++k) range.axis[k] = range.axis[k] || d.axis[k];
     });
   }
@@ -126,13 +141,14 @@ void check_range(const nc::Interpretation& program, const std::string& program_p
                  Diagnostics& diagnostics) {
   const machine::FittedRange& r = machine.fitted_range;
   if (!r.known) return;
-  Beyond feed, corner, line, arc;
+  Beyond feed, corner, line, arc, rate;
   std::array<Beyond, 3> axis;
   double cutting_mm = 0;
   for_each_demand(program, [&](const nc::Move& move, const Demand& d) {
     cutting_mm += d.length_mm;
     if (d.feed_mm_per_s > kBeyond * r.feed_mm_per_s[1]) feed.add(move, d);
     if (d.corner_rad > kBeyond * r.corner_rad[1]) corner.add(move, d);
+    if (d.blocks_per_s > kBeyond * r.blocks_per_s[1]) rate.add(move, d);
     if (d.radius_mm == 0 && d.length_mm * kBeyond < r.line_mm[0]) line.add(move, d);
     if (d.radius_mm > 0 && (r.arc_radius_mm[1] == 0 || d.radius_mm * kBeyond < r.arc_radius_mm[0])) arc.add(move, d);
     for (int k = 0; k < 3; ++k)
@@ -156,6 +172,11 @@ void check_range(const nc::Interpretation& program, const std::string& program_p
                                : fmt::format("arcs tighter than {:.3g} mm, the tightest that the machine was fitted on",
                                              r.arc_radius_mm[0]),
        "range-arc");
+  tell(rate,
+       r.blocks_per_s[1] == 0 ? "runs of blocks, of which the machine was fitted on none"
+                              : fmt::format("more than {:.0f} blocks a second, the most that the machine was fitted on",
+                                            r.blocks_per_s[1]),
+       "range-blocks");
   for (int k = 0; k < 3; ++k)
     tell(axis[k], fmt::format("motion of {}, which the machine was not fitted on", "XYZ"[k]), "range-axis");
 }

@@ -15,8 +15,9 @@ machine::FittedRange range_of(const std::vector<const nc::Interpretation*>& prog
 
 /// Where a program leaves the range that the machine was fitted on: feeds above the highest, corners sharper than the
 /// sharpest, lines shorter than the shortest, arcs tighter than the tightest (each by more than a tenth), axes that
-/// did not move. Longer lines, wider arcs and slower feeds hold nothing new.
-/// One warning for each [range-feed], [range-corner], [range-line], [range-arc], [range-axis] with its share of the
+/// did not move, runs of more blocks a second. Longer lines, wider arcs and slower feeds hold nothing new.
+/// One warning for each [range-feed], [range-corner], [range-line], [range-arc], [range-axis],
+/// [range-blocks] with its share of the
 /// cutting length and the first blocks. Nothing where the machine file has no [fitted_range].
 void check_range(const nc::Interpretation& program, const std::string& program_path, const machine::Machine& machine,
                  Diagnostics& diagnostics);

@@ -66,6 +66,7 @@ struct Axis {
 struct FittedRange {
   bool known = false;
   std::array<double, 2> feed_mm_per_s{}, corner_rad{}, line_mm{}, arc_radius_mm{};
+  std::array<double, 2> blocks_per_s{};  ///< at the programmed feed, over eight blocks in a row
   std::array<bool, 3> axis{};  ///< x, y, z moved
 };
 

@@ -84,6 +84,7 @@ void read_fitted_range(TomlTable table, FittedRange& range) {
   read_range(table, "corner_degrees", kDegrees, range.corner_rad);
   read_range(table, "line_mm", kAsIs, range.line_mm);
   read_range(table, "arc_radius_mm", kAsIs, range.arc_radius_mm);
+  read_range(table, "blocks_per_s", kAsIs, range.blocks_per_s);
   const std::string axes = table.text("axes", "xyz");
   for (std::size_t i = 0; i < range.axis.size(); ++i) range.axis[i] = axes.find(kAxisNames[i]) != std::string::npos;
   table.finish();
