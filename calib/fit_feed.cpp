@@ -270,7 +270,7 @@ void add_drive(Machine& machine, std::vector<FitParameter>& parameters, int axis
   machine::Axis& a = machine.axis[axis];
   if (!drive.moved) {
     parameters.push_back({name + "position_gain_per_s", a.position_gain_per_s, "1/s", std::nullopt,
-                                 "the axis does not move in the traces", false});
+                          "the axis does not move in the traces", false});
     return;
   }
   a.position_gain_per_s = drive.gain_per_s.value;
@@ -280,8 +280,7 @@ void add_drive(Machine& machine, std::vector<FitParameter>& parameters, int axis
   const auto add = [&](const char* key, const FittedValue& v, double scale, const char* unit) {
     if (v.value == 0 && v.std_error == 0) return;
     parameters.push_back({name + key, v.value * scale, unit,
-                                 std::isfinite(v.std_error) ? std::optional(v.std_error * scale) : std::nullopt, "",
-                                 true});
+                          std::isfinite(v.std_error) ? std::optional(v.std_error * scale) : std::nullopt, "", true});
   };
   add("position_gain_per_s", drive.gain_per_s, 1, "1/s");
   add("velocity_lag_ms", drive.velocity_lag_s, 1000, "ms");

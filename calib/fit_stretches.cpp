@@ -85,10 +85,10 @@ Data shortened(const std::vector<StretchRun>& runs) {
   return data;
 }
 
-/// Commanded time of each item: its segments, the waits at stops within it, a period for each start, and the wait
+/// Commanded time of each item: its segments, the waits at stops within it, half a period for each start, and the wait
 /// before the rapid that follows. Summed by hand, not read off the clock, whose whole periods a fit would stumble on.
 std::vector<double> times_s(const Data& data, const Machine& machine) {
-  std::vector<double> times(data.items.size(), machine.control.rapid_change_s + machine.control.period_s);
+  std::vector<double> times(data.items.size(), machine.control.rapid_change_s);
   std::size_t at = 0;
   for (std::size_t p = 0; p < data.programs.size(); ++p) {
     double end_s = 0;
@@ -97,7 +97,7 @@ std::vector<double> times_s(const Data& data, const Machine& machine) {
       const bool counts = at < data.items.size() && data.items[at].program == p && s.move >= data.items[at].move_first;
       if (counts) {
         const bool waited = s.start_s > end_s + 1e-9 && s.move > data.items[at].move_first;
-        times[at] += s.duration_s + (waited ? machine.control.period_s : 0.0);
+        times[at] += s.duration_s + (waited ? 0.5 * machine.control.period_s : 0.0);
       }
       end_s = s.start_s + s.duration_s;
     }
@@ -130,7 +130,7 @@ std::vector<LimitParameter> parameters_of(const StretchLaw& law) {
   }
   p.push_back(positive(
       "control.arc_normal_share", "1", [](const Machine& m) { return m.control.arc_normal_share; },
-      [](Machine& m, double v) { m.control.arc_normal_share = v; }, 0.02, 50, 1));
+      [](Machine& m, double v) { m.control.arc_normal_share = v; }, 0.02, 50, 1.3));
   if (law.corner == CornerLaw::angle)
     p.push_back(positive(
         "control.corner.time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.time_s; },
@@ -213,7 +213,7 @@ Solution solve(const Data& data, const Machine& base, const std::vector<LimitPar
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-4;
+  options.function_tolerance = 1e-6;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);

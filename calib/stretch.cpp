@@ -24,12 +24,14 @@ bool is_feed(const nc::Move& move) { return move.kind == nc::MoveKind::linear ||
 /// What copies, turned and mirrored ones too, have in common: the lengths of the moves and the angles between them.
 struct Shape {
   std::vector<double> length_mm, corner_rad;  ///< sorted
+  double programmed_s = 0;
 };
 
 Shape shape_of(const nc::Interpretation& program, const FeedStretch& s) {
   Shape shape;
   for (std::size_t i = s.move_first; i < s.move_end; ++i) {
     shape.length_mm.push_back(length_mm(program, program.moves[i]));
+    shape.programmed_s += shape.length_mm.back() / program.moves[i].feed_mm_per_s;
     if (i == s.move_first) continue;
     const Vec3 from = direction_at(program, program.moves[i - 1], 1.0),
                to = direction_at(program, program.moves[i], 0.0);
@@ -51,6 +53,7 @@ double mean(const std::vector<double>& values) { return mean_difference(values, 
 bool is_copy(const Shape& a, const Shape& b) {
   return a.length_mm.size() == b.length_mm.size() &&
          mean_difference(a.length_mm, b.length_mm) < kCopyLengthShare * mean(a.length_mm) &&
+         std::abs(a.programmed_s - b.programmed_s) < kCopyLengthShare * a.programmed_s &&
          mean_difference(a.corner_rad, b.corner_rad) < kCopyCornerRad;
 }
 

@@ -26,8 +26,8 @@ struct TimedStretch {
 };
 
 /// All stretches of feed moves of a program. Two are of one geometry, turned or mirrored, when they have as many
-/// moves, the sorted lengths of which differ by less than 9 % of their mean, and the sorted corners by less than
-/// 0.05 rad, on average.
+/// moves, the sorted lengths of which differ by less than 9 % of their mean, their programmed times by as
+/// much, and the sorted corners by less than 0.05 rad, on average.
 std::vector<FeedStretch> feed_stretches(const nc::Interpretation& program);
 
 /// Whether a file is a table of stretch times: its header names line_first or first_line.

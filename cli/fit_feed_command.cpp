@@ -7,6 +7,7 @@
 
 #include "base/output_file.h"
 #include "base/units.h"
+#include "calib/cross_validate.h"
 #include "calib/fit_feed.h"
 #include "calib/fit_stretches.h"
 #include "calib/machine_log.h"
@@ -230,6 +231,23 @@ int finish(const Result& result, const machine::Machine& fitted, const FitFeedAr
   return result.converged ? kDone : kNumbersDidNotWorkOut;
 }
 
+void print(const std::vector<calib::HeldOutRun>& runs) {
+  fmt::print(
+      "\nleave one trace out; time, path speed rms and p95 in %; beside it constant feed and a stop at every block\n");
+  fmt::print("{:<28} {:>24} {:>24} {:>24}   {}\n", "program", "fitted on the others", "constant feed",
+             "stop at every block", "drives x, y, z, rms um");
+  const auto figures = [](const calib::FeedAccuracy& a) {
+    return fmt::format("{:>+8.2f} {:>7.2f} {:>7.2f}", a.time_error_percent, a.speed_rms_percent, a.speed_p95_percent);
+  };
+  for (const calib::HeldOutRun& run : runs) {
+    const std::size_t slash = run.program_name.find_last_of('/');
+    fmt::print("{:<28} {} {} {}   {:.3f} {:.3f} {:.3f}\n",
+               slash == std::string::npos ? run.program_name : run.program_name.substr(slash + 1),
+               figures(run.accuracy), figures(run.constant_feed), figures(run.stop_every_block),
+               1000 * run.drive_rms_mm[0], 1000 * run.drive_rms_mm[1], 1000 * run.drive_rms_mm[2]);
+  }
+}
+
 /// Times of stretches; the drives from the servo traces, where some are given beside them.
 int fit_to_times(const Runs& runs, const machine::Machine& start, const FitFeedArguments& arguments,
                  const GlobalOptions& options) {
@@ -250,7 +268,9 @@ int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options
   settle(diagnostics, options);
   if (!runs.stretches.empty()) return fit_to_times(runs, start, arguments, options);
   const FitFeedResult result = calib::fit_feed(runs.servo, start, {});
-  return finish(result, result.machine, arguments, options);
+  const int status = finish(result, result.machine, arguments, options);
+  if (arguments.leave_one_out) print(calib::leave_one_out(runs.servo, start, {}));
+  return status;
 }
 
 }  // namespace camber::cli

@@ -88,7 +88,9 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->expected(1)
       ->take_all()
       ->type_name("P.nc");
-  command->add_option("--trace", arguments->traces, "what the machine did: servo trace, MTConnect log or table of stretch times")
+  command
+      ->add_option("--trace", arguments->traces,
+                   "what the machine did: servo trace, MTConnect log or table of stretch times")
       ->required()
       ->expected(1)
       ->take_all()
@@ -96,6 +98,8 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("--machine", arguments->machine, "machine to start from")->required()->type_name("M.toml");
   command->add_option("-o,--output", arguments->output, "the fitted machine")->required()->type_name("fitted.toml");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  command->add_flag("--leave-one-out", arguments->leave_one_out,
+                    "predict each servo trace by a fit on the others as well (takes a fit for each)");
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     if (arguments->programs.size() != arguments->traces.size())

@@ -161,6 +161,9 @@ class Builder {
     Vec3 permitted = Vec3::Zero();
     if (share > 0) permitted = share * arc_factor * control_.period_s * acceleration_;
     j.speed_mm_per_s = speed_difference_limit(from, to, permitted);
+    // A step that is less than what the path gains in a period is none: the control stops and starts anew.
+    const double least = std::min(a.segment.acceleration_mm_per_s2, b.segment.acceleration_mm_per_s2);
+    if (j.speed_mm_per_s < least * control_.period_s) j.speed_mm_per_s = 0;
     const double reference = std::min(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s);
     j.less_share = share * (j.speed_mm_per_s > reference ? reference / j.speed_mm_per_s : 1.0);
     return j;

@@ -36,7 +36,7 @@ Trapezoid profile_of(const std::vector<PlanRow>& rows, std::size_t i) {
 double PlanClock::begin(const Trapezoid& profile) {
   const bool from_rest = profile.length > 0 && profile.entry < profile.acceleration * period_s_;
   if (from_rest && now_s_ > 0 && std::isfinite(profile.acceleration))
-    now_s_ = (std::ceil(now_s_ / period_s_ - 1e-9) + 0.5) * period_s_;
+    now_s_ = std::ceil(now_s_ / period_s_ - 1e-9) * period_s_;
   return now_s_;
 }
 

@@ -37,7 +37,8 @@ std::string fitted_range_text(const FittedRange& r) {
     if (r.axis[i]) axes += kAxisNames[i];
   return "\n[fitted_range]\n" + range_text("feed_mm_per_min", r.feed_mm_per_s, kPerMinute) +
          range_text("corner_degrees", r.corner_rad, kDegrees) + range_text("line_mm", r.line_mm, kAsIs) +
-         range_text("arc_radius_mm", r.arc_radius_mm, kAsIs) + range_text("blocks_per_s", r.blocks_per_s, kAsIs) + toml_line("axes", axes);
+         range_text("arc_radius_mm", r.arc_radius_mm, kAsIs) + range_text("blocks_per_s", r.blocks_per_s, kAsIs) +
+         toml_line("axes", axes);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "calib/fit_stretches.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,15 +14,14 @@
 namespace camber::calib {
 namespace {
 
-constexpr const char* kNist = CAMBER_SHARED_DATA_DIR "/nist/";
+std::string nist(const char* file) { return fmt::format("{}/nist/{}", CAMBER_SHARED_DATA_DIR, file); }
 
 nc::Interpretation nist_program() {
   Diagnostics diagnostics;
-  return nc::interpret(nc::read_program(SourceText::read(std::string(kNist) + "box_op5.nc"), diagnostics), {},
-                       diagnostics);
+  return nc::interpret(nc::read_program(SourceText::read(nist("box_op5.nc")), diagnostics), {}, diagnostics);
 }
 
-bool have_nist() { return std::filesystem::exists(std::string(kNist) + "box_op5.nc"); }
+bool have_nist() { return std::filesystem::exists(nist("box_op5.nc")); }
 
 StretchLaw stop_law() { return {"stop", machine::CornerLaw::angle, 0.6, false}; }
 
@@ -54,9 +54,10 @@ nc::Interpretation figures() {
       }
     }
     for (double r : {0.3, 1.0, 3.0}) {
-      p.rapid(0, 0, 0);
+      p.rapid(0, 0, 5).rapid(0, 0, 0);
       for (int i = 0; i < 6; ++i) p.arc_xy(0, 0, r, 0, 2 * kPi, feed);
     }
+    p.rapid(0, 0, 10);
   }
   return p.program;
 }
@@ -108,7 +109,7 @@ TEST(FitStretches, PrefersTheLawThatTheTimesWereMadeWith) {
 TEST(FitStretches, CountsCopiesOnceAndKeepsThemInOneFold) {
   if (!have_nist()) GTEST_SKIP() << "no ../shared/data";
   const nc::Interpretation program = nist_program();
-  const auto table = read_stretch_table(std::string(kNist) + "op5_feed_runs.csv", program);
+  const auto table = read_stretch_table(nist("op5_feed_runs.csv"), program);
   ASSERT_EQ(table.size(), 82u);
   EXPECT_EQ(table[0].stretch.line_first, 21u);
   EXPECT_EQ(table[0].stretch.geometry, table[4].stretch.geometry);  // 21-43 again at 91-113
@@ -121,19 +122,17 @@ TEST(FitStretches, CountsCopiesOnceAndKeepsThemInOneFold) {
 TEST(FitStretches, PredictsToolsOfTheNistBoxThatItHasNotSeen) {
   if (!have_nist()) GTEST_SKIP() << "no ../shared/data";
   StretchRun run{"box_op5", nist_program(), {}};
-  run.timed = read_stretch_table(std::string(kNist) + "op5_feed_runs.csv", run.program);
-  // Without the three longest of its programs' stretches, to be quick; fit-feed prints the whole table.
-  std::erase_if(run.timed, [](const TimedStretch& t) { return t.time_s > 100; });
+  run.timed = read_stretch_table(nist("op5_feed_runs.csv"), run.program);
   StretchLaw law = stop_law();
   const StretchFit fit = fit_stretches({run}, {}, {.laws = {law}});
   EXPECT_TRUE(fit.converged) << fit.message;
-  EXPECT_EQ(fit.folds, 8);
+  EXPECT_EQ(fit.folds, 9);
   EXPECT_LT(fit.held_out.mean, 0.5);
   EXPECT_LT(fit.held_out.p90, 1.0);
   EXPECT_LT(fit.held_out.worst, 1.5);
   EXPECT_LT(std::abs(fit.held_out.total), 0.3);
   EXPECT_GT(fit.constant_feed.worst, 20);
-  EXPECT_NEAR(fit.machine.fitted_range.corner_rad[1], kPi / 2, 0.1 * kPi);
+  EXPECT_GT(fit.machine.fitted_range.corner_rad[1], 0.5 * kPi);
 }
 
 TEST(FitStretches, SaysThatTooFewTimesTellNothing) {

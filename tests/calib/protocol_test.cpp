@@ -82,8 +82,8 @@ TEST(Protocol, SaturationHasEveryChordAndStaysUnderTheTopSpeed) {
 
 TEST(Protocol, PartsListNamesTheLines) {
   const ProtocolProgram program = named(protocol_programs(machine_of(machine::Dialect::linuxcnc)), "protocol_xy.ngc");
-  EXPECT_EQ(parts_csv(program).substr(0, 84),
-            "line_first,line_last,angle_deg,feed_mm_min,plane,size_mm\n7,42,10,100,xy,0.5\n47,82,");
+  EXPECT_EQ(parts_csv(program).substr(0, 85),
+            "line_first,line_last,angle_deg,feed_mm_min,plane,size_mm\n6,41,10,100,xy,0.5\n45,80,10,");
 }
 
 }  // namespace
