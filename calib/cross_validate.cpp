@@ -7,15 +7,6 @@ namespace {
 
 using machine::Machine;
 
-Machine without_limits(const Machine& start) {
-  Machine m;
-  m.control.dialect = start.control.dialect;
-  m.control.period_s = start.control.period_s;
-  m.control.corner.law = machine::CornerLaw::angle;
-  m.control.corner.time_s = machine::kNoLimit;
-  return m;
-}
-
 Machine stopping(Machine m) {
   m.control.corner.law = machine::CornerLaw::exact_stop;
   m.control.corner.step_share = 0;
@@ -29,7 +20,7 @@ HeldOutRun judge(const FeedRun& run, const FitFeedResult& fit) {
   held.converged = fit.converged;
   const std::vector<Part> parts = parts_of(run.program);
   held.accuracy = feed_accuracy(run.trace, run.program, fit.machine, parts, {});
-  held.constant_feed = feed_accuracy(run.trace, run.program, without_limits(fit.machine), parts, {});
+  held.constant_feed = constant_feed_accuracy(run.trace, run.program, parts, {});
   held.stop_every_block = feed_accuracy(run.trace, run.program, stopping(fit.machine), parts, {});
   for (int axis = 0; axis < 3; ++axis)
     if (run.trace.has_command[axis] && run.trace.has_actual[axis])

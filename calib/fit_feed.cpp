@@ -297,6 +297,8 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
   for (const FeedRun& run : runs) traces.push_back(&run.trace);
   bool drives_converged = true;
   if (!traces.empty()) result.machine.control.period_s = traces.front()->period_s;
+  // No control takes up two blocks in one period: what holds where the traces do not tell more.
+  if (start.control.block_time_s == 0) result.machine.control.block_time_s = result.machine.control.period_s;
 
   const std::vector<TimedLines> data = timed_lines(runs, options.keep_back_every);
   for (int axis = 0; axis < 3; ++axis) add_velocity(result, runs, axis);

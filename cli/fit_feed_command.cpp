@@ -233,18 +233,21 @@ int finish(const Result& result, const machine::Machine& fitted, const FitFeedAr
 
 void print(const std::vector<calib::HeldOutRun>& runs) {
   fmt::print(
-      "\nleave one trace out; time, path speed rms and p95 in %; beside it constant feed and a stop at every block\n");
-  fmt::print("{:<28} {:>24} {:>24} {:>24}   {}\n", "program", "fitted on the others", "constant feed",
-             "stop at every block", "drives x, y, z, rms um");
-  const auto figures = [](const calib::FeedAccuracy& a) {
-    return fmt::format("{:>+8.2f} {:>7.2f} {:>7.2f}", a.time_error_percent, a.speed_rms_percent, a.speed_p95_percent);
+      "\nleave one trace out: every trace predicted by a fit on the others\n{:<34} {:>7} {:>6} {:>6} {:>6} {:>11} "
+      "{:>7} {:>7}\n",
+      "", "total %", "part %", "p90 %", "worst", "over 0.5 %", "rms %", "p95 %");
+  const auto line = [](const std::string& name, const calib::FeedAccuracy& a) {
+    const calib::PartTimes t = calib::part_times(a);
+    fmt::print("{:<34} {:>+7.2f} {:>6.2f} {:>6.2f} {:>6.2f} {:>4} of {:>4} {:>7.2f} {:>7.2f}\n", name,
+               a.time_error_percent, t.mean, t.p90, t.worst, t.over, t.parts, a.speed_rms_percent, a.speed_p95_percent);
   };
   for (const calib::HeldOutRun& run : runs) {
     const std::size_t slash = run.program_name.find_last_of('/');
-    fmt::print("{:<28} {} {} {}   {:.3f} {:.3f} {:.3f}\n",
-               slash == std::string::npos ? run.program_name : run.program_name.substr(slash + 1),
-               figures(run.accuracy), figures(run.constant_feed), figures(run.stop_every_block),
-               1000 * run.drive_rms_mm[0], 1000 * run.drive_rms_mm[1], 1000 * run.drive_rms_mm[2]);
+    line(slash == std::string::npos ? run.program_name : run.program_name.substr(slash + 1), run.accuracy);
+    line("  constant feed", run.constant_feed);
+    line("  stop at every block", run.stop_every_block);
+    fmt::print("  drives alone: x {:.3f}, y {:.3f}, z {:.3f} um rms\n", 1000 * run.drive_rms_mm[0],
+               1000 * run.drive_rms_mm[1], 1000 * run.drive_rms_mm[2]);
   }
 }
 

@@ -27,7 +27,6 @@ constexpr double kNoLength = 1e-9;
 /// One block (or run of merged blocks) before its ends are rounded.
 struct Element {
   Segment segment;
-  double top_speed_mm_per_s = 0;  ///< whatever the feed: of the axes and the block time
   bool line = true;
   nc::PathControl control = nc::PathControl::blend;
   double tolerance_mm = 0;
@@ -147,7 +146,6 @@ class Builder {
     s.cutting = move.kind != nc::MoveKind::rapid;
     s.feed_command_mm_per_s = s.cutting ? move.feed_mm_per_s : s.speed_limit_mm_per_s;
     s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, block_time_speed(s.length_mm, control_.block_time_s));
-    e.top_speed_mm_per_s = s.speed_limit_mm_per_s;
     if (s.cutting) s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, move.feed_mm_per_s);
   }
 
@@ -175,13 +173,15 @@ class Builder {
     options.tolerance_mm = std::min(a.tolerance_mm, b.tolerance_mm);
     if (std::isinf(options.tolerance_mm)) options.tolerance_mm = kOpenToleranceShare * shorter;
     options.room_mm = std::min(kBlendRoomShare * shorter, a.segment.length_mm - a.from_s);
-    options.goal_speed_mm_per_s = std::max(a.top_speed_mm_per_s, b.top_speed_mm_per_s);
+    options.goal_speed_mm_per_s = std::max(a.segment.feed_command_mm_per_s, b.segment.feed_command_mm_per_s);
     options.normal_share = control_.arc_normal_share;
     options.velocity_mm_per_s = velocity_;
     options.acceleration_mm_per_s2 = acceleration_.cwiseMin(control_.path_acceleration_mm_per_s2);
     Junction j;
     j.blend = blend_corner(from, to, options);
-    if (j.blend) j.speed_mm_per_s = j.blend->speed_mm_per_s;
+    if (j.blend)
+      j.speed_mm_per_s = j.blend->speed_mm_per_s =
+          std::min(j.blend->speed_mm_per_s, std::max(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s));
     return j;
   }
 
