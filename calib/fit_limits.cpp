@@ -16,6 +16,7 @@ using machine::Machine;
 
 constexpr double kTimeNoise = 0.001;  // s; a part's time is known to about a period
 constexpr double kTimeShare = 0.002;  // and to this share of itself
+constexpr double kNoTime = 1e-9;      // s
 constexpr double kWideLossScale = 300.0;
 constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
 
@@ -180,15 +181,17 @@ std::vector<double> planned_times_s(const TimedLines& data, const Machine& machi
   for (std::size_t p = 0; p < data.parts.size(); ++p) {
     const auto line = [&](std::size_t k) { return data.program->moves[segments[k].move].block + 1; };
     while (i < segments.size() && (segments[i].rest || line(i) < data.parts[p].line_first)) ++i;
-    const bool after_rest = i == 0 || (i < segments.size() && segments[i - 1].rest);
     double first = -1, end = 0;
     for (; i < segments.size() && (segments[i].rest || line(i) <= data.parts[p].line_last); ++i) {
       if (segments[i].rest) continue;
       if (first < 0) first = segments[i].start_s;
       end = segments[i].start_s + segments[i].duration_s;
     }
-    // After a rest the trace also counts the sample at which the part begins.
-    if (first >= 0) times[p] = end - first + (after_rest ? machine.control.period_s : 0.0);
+    if (first < 0) continue;
+    // At a stop the line changes with the next period: half a period on average, which a fit can follow better than
+    // whole ones.
+    const bool stops = i >= segments.size() || segments[i].rest || segments[i].start_s > end + kNoTime;
+    times[p] = end - first + (stops ? 0.5 * machine.control.period_s : 0.0);
   }
   return times;
 }

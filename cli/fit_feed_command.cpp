@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/output_file.h"
 #include "base/units.h"
+#include "calib/column_map.h"
 #include "calib/cross_validate.h"
 #include "calib/fit_feed.h"
 #include "calib/fit_stretches.h"
@@ -59,6 +61,8 @@ Runs read_runs(const FitFeedArguments& arguments, Diagnostics& diagnostics) {
                  fmt::format("{} programs and {} traces are given; each --program needs its --trace",
                              arguments.programs.size(), arguments.traces.size()),
                  "fit-runs");
+  std::optional<calib::ColumnMap> columns;
+  if (!arguments.columns.empty()) columns = calib::read_column_map(arguments.columns, diagnostics);
   Runs runs;
   for (std::size_t i = 0; i < arguments.programs.size(); ++i) {
     const nc::Program program = nc::read_program(SourceText::read(arguments.programs[i]), diagnostics);
@@ -66,7 +70,8 @@ Runs read_runs(const FitFeedArguments& arguments, Diagnostics& diagnostics) {
     diagnostics.throw_if_errors();
     const TraceKind kind = kind_of(arguments.traces[i]);
     if (kind == TraceKind::servo) {
-      auto trace = calib::read_trace(arguments.traces[i], diagnostics);
+      auto trace = columns ? calib::read_mapped_trace(arguments.traces[i], *columns, diagnostics)
+                           : calib::read_trace(arguments.traces[i], diagnostics);
       runs.servo.push_back({arguments.programs[i], std::move(moves), std::move(trace)});
     } else {
       add_times(stretch_run(runs, arguments.programs[i], moves), arguments.traces[i], kind, diagnostics);

@@ -10,6 +10,7 @@ namespace camber::cli {
 
 struct FitFeedArguments {
   std::vector<std::string> programs, traces;  ///< as many of one as of the other
+  std::string columns;                        ///< column map; empty: our CSV
   std::string machine;
   std::string output;          ///< fitted.toml
   std::string json;            ///< empty: none

@@ -95,6 +95,8 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->expected(1)
       ->take_all()
       ->type_name("T");
+  command->add_option("--columns", arguments->columns, "what the columns of the servo traces are, where they are not ours")
+      ->type_name("C.toml");
   command->add_option("--machine", arguments->machine, "machine to start from")->required()->type_name("M.toml");
   command->add_option("-o,--output", arguments->output, "the fitted machine")->required()->type_name("fitted.toml");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
