@@ -8,6 +8,7 @@
 
 #include "base/output_file.h"
 #include "base/units.h"
+#include "calib/block_time.h"
 #include "calib/column_map.h"
 #include "calib/cross_validate.h"
 #include "calib/fit_feed.h"
@@ -16,6 +17,7 @@
 #include "cli/console.h"
 #include "machine/machine.h"
 #include "nc/program.h"
+#include "report/block_time_plot.h"
 
 namespace camber::cli {
 namespace {
@@ -256,6 +258,19 @@ void print(const std::vector<calib::HeldOutRun>& runs) {
   }
 }
 
+void plot_block_time(const Runs& runs, const FitFeedArguments& arguments, const GlobalOptions& options) {
+  std::vector<std::pair<const nc::Interpretation*, const calib::ServoTrace*>> traced;
+  for (const calib::FeedRun& run : runs.servo) traced.emplace_back(&run.program, &run.trace);
+  const calib::BlockTimeFit fit = calib::fit_block_time(traced);
+  write_file(arguments.block_time_plot, report::block_time_svg(fit));
+  if (options.quiet) return;
+  for (const calib::ChordRun& r : fit.runs)
+    fmt::print("lines {}-{}: {:.4g} mm at F{:.0f}: {:.0f} mm/min, {:.4g} ms a block{}\n", r.line_first, r.line_last,
+               r.chord_mm, mm_per_min_from_mm_per_s(r.feed_mm_per_s), mm_per_min_from_mm_per_s(r.speed_mm_per_s),
+               1000 * r.block_time_s, r.saturated ? ", saturated" : "");
+  fmt::print("{}\n", fit.message);
+}
+
 /// Times of stretches; the drives from the servo traces, where some are given beside them.
 int fit_to_times(const Runs& runs, const machine::Machine& start, const FitFeedArguments& arguments,
                  const GlobalOptions& options) {
@@ -274,6 +289,7 @@ int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options
   const machine::Machine start = machine::read_machine(arguments.machine, diagnostics);
   const Runs runs = read_runs(arguments, diagnostics);
   settle(diagnostics, options);
+  if (!arguments.block_time_plot.empty()) plot_block_time(runs, arguments, options);
   if (!runs.stretches.empty()) return fit_to_times(runs, start, arguments, options);
   const FitFeedResult result = calib::fit_feed(runs.servo, start, {});
   const int status = finish(result, result.machine, arguments, options);

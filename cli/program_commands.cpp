@@ -100,6 +100,8 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("--machine", arguments->machine, "machine to start from")->required()->type_name("M.toml");
   command->add_option("-o,--output", arguments->output, "the fitted machine")->required()->type_name("fitted.toml");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  command->add_option("--block-time-plot", arguments->block_time_plot,
+                      "speed against block length of the saturated runs")->type_name("P.svg");
   command->add_flag("--leave-one-out", arguments->leave_one_out,
                     "predict each servo trace by a fit on the others as well (takes a fit for each)");
   add_interpreter_options(*command, arguments->interpreter);
