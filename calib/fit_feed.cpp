@@ -21,6 +21,22 @@ constexpr std::uint32_t kMostBlocksApart = 60;
 constexpr int kListIterations = 6;      // for each value of a list
 constexpr double kSettledShare = 1e-3;  // gain of cost under which a richer law is not worth it
 
+/// What LinuxCNC does unless its INI file says otherwise ([TRAJ] ARC_BLEND_KINK_RATIO and ARC_BLEND_OPTIMIZATION_DEPTH)
+/// and the short lines that its traces show, where the start file says nothing and the traces may not tell.
+constexpr double kLinuxCncStepShare = 0.1;
+constexpr int kLinuxCncLookahead = 50;
+constexpr double kLinuxCncShortLinePeriods = 4;
+
+void set_control_defaults(machine::Control& control) {
+  // No control takes up two blocks in one period.
+  if (control.block_time_s == 0) control.block_time_s = control.period_s;
+  if (control.dialect != machine::Dialect::linuxcnc || control.corner.law != machine::CornerLaw::blend) return;
+  if (control.corner.step_share == 0) control.corner.step_share = kLinuxCncStepShare;
+  if (control.lookahead_blocks == 0) control.lookahead_blocks = kLinuxCncLookahead;
+  if (control.corner.short_line_time_s == 0)
+    control.corner.short_line_time_s = kLinuxCncShortLinePeriods * control.period_s;
+}
+
 /// Commanded time of each part: first to last sample of its lines.
 std::vector<double> traced_times_s(const ServoTrace& trace, const std::vector<Part>& parts) {
   std::vector<double> times(parts.size(), 0.0);
@@ -203,13 +219,23 @@ void refine_block_time(LimitFit& fit, const std::vector<TimedLines>& data, const
   fit = fit_limits(data, base, std::move(parameters), iterations, false);
 }
 
+/// Which program of camber protocol has what a parameter shows in.
+std::string_view what_tells(std::string_view name) {
+  if (name.ends_with("block_time_ms")) return "run the saturation program of camber protocol";
+  if (name.find("arc_") != name.npos) return "run the circles of camber protocol";
+  if (name.find("stop_acceleration") != name.npos) return "run a polygon program of camber protocol under G64";
+  if (name.find("step_share") != name.npos) return "run a polygon program of camber protocol under G61";
+  return "run the polygon programs of camber protocol in all planes";
+}
+
 void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start) {
   for (const LimitParameter& p : fit.parameters) {
     if (p.told) {
       result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, "", true});
     } else {
-      result.parameters.push_back(
-          {p.name, p.get(start), p.unit, std::nullopt, "the traces do not tell; left as it was", false});
+      result.parameters.push_back({p.name, p.get(start), p.unit, std::nullopt,
+                                   fmt::format("the traces do not tell; left as it was ({})", what_tells(p.name)),
+                                   false});
     }
   }
 }
@@ -297,8 +323,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
   for (const FeedRun& run : runs) traces.push_back(&run.trace);
   bool drives_converged = true;
   if (!traces.empty()) result.machine.control.period_s = traces.front()->period_s;
-  // No control takes up two blocks in one period: what holds where the traces do not tell more.
-  if (start.control.block_time_s == 0) result.machine.control.block_time_s = result.machine.control.period_s;
+  set_control_defaults(result.machine.control);
 
   const std::vector<TimedLines> data = timed_lines(runs, options.keep_back_every);
   for (int axis = 0; axis < 3; ++axis) add_velocity(result, runs, axis);

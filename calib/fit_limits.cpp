@@ -161,7 +161,7 @@ std::vector<LimitParameter> limit_parameters(const Machine& start) {
                .set = [](Machine& m, double v) { m.control.corner.step_share = v; },
                .least = 1e-3,
                .most = 0.7,
-               .start = 0.05,
+               .start = start.control.corner.step_share > 0 ? start.control.corner.step_share : 0.05,
                .fitted = {}});
   p.push_back({.name = "control.block_time_ms",
                .unit = "ms",
