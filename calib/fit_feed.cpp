@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "calib/fit_limits.h"
+#include "calib/fit_smoothing.h"
 #include "feedmodel/fitted_range.h"
 
 namespace camber::calib {
@@ -75,9 +76,11 @@ void add_timed_lines(const FeedRun& run, int keep_back_every, std::size_t& count
     for (std::uint32_t line = part.line_first; by_block && line <= part.line_last; ++line) {
       blocks.parts.push_back({line, line, part.feed_mm_per_s});
       blocks.kept_back.push_back(kept_back);
+      blocks.group.push_back(static_cast<int>(count));
     }
     parts.parts.push_back(part);
     parts.kept_back.push_back(kept_back);
+    parts.group.push_back(static_cast<int>(count));
   }
   for (TimedLines* lines : {&parts, &blocks}) {
     lines->program = &run.program;
@@ -256,6 +259,20 @@ void add_velocity(FitFeedResult& result, const std::vector<FeedRun>& runs, int a
        false});
 }
 
+/// Jerk of each axis: one window for all, so that it does not bend the path.
+void add_smoothing(FitFeedResult& result, const std::vector<const ServoTrace*>& traces) {
+  const auto window_s = smoothing_time_s(traces);
+  if (!window_s) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    machine::Axis& a = result.machine.axis[axis];
+    if (!std::isfinite(a.acceleration_mm_per_s2)) continue;
+    a.jerk_mm_per_s3 = a.acceleration_mm_per_s2 / window_s->value;
+    result.parameters.push_back({std::string("axis.") + kAxes[axis] + ".jerk_mm_per_s3", a.jerk_mm_per_s3, "mm/s3",
+                                 a.jerk_mm_per_s3 * window_s->std_error / window_s->value,
+                                 "rise of the commanded acceleration from rest", true});
+  }
+}
+
 void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_back_every) {
   double square[2] = {0, 0}, p95[2] = {0, 0};
   std::size_t count = 0;
@@ -355,6 +372,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
     add_drive(result.machine, result.parameters, axis, result.drives[axis]);
     drives_converged = drives_converged && (!result.drives[axis].moved || result.drives[axis].converged);
   }
+  add_smoothing(result, traces);
   std::vector<const nc::Interpretation*> programs;
   for (const FeedRun& run : runs) programs.push_back(&run.program);
   result.machine.fitted_range = feedmodel::range_of(programs);
