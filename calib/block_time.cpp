@@ -47,7 +47,8 @@ void add_runs(const nc::Interpretation& program, const ServoTrace& trace, std::v
                         .chord_mm = length / static_cast<double>(b - a),
                         .feed_mm_per_s = moves[first].feed_mm_per_s,
                         .speed_mm_per_s = speed,
-                        .block_time_s = (to - from) / static_cast<double>(b - a)});
+                        .block_time_s = (to - from) / static_cast<double>(b - a),
+                        .resolution_s = trace.period_s / static_cast<double>(b - a)});
       }
     }
     first = end;
@@ -64,10 +65,12 @@ BlockTimeFit fit_block_time(const std::vector<std::pair<const nc::Interpretation
   for (const ChordRun& r : fit.runs)
     if (r.speed_mm_per_s < kReached * r.feed_mm_per_s) least = std::min(least, r.block_time_s);
   std::vector<double> times;
+  double resolution_s = 0;
   for (ChordRun& r : fit.runs) {
     r.saturated = r.speed_mm_per_s < kReached * r.feed_mm_per_s && r.block_time_s < (1 + kLeastShare) * least;
     if (!r.saturated) continue;
     times.push_back(r.block_time_s);
+    resolution_s = std::max(resolution_s, r.resolution_s);
     shortest = std::min(shortest, r.chord_mm);
     longest = std::max(longest, r.chord_mm);
   }
@@ -88,7 +91,7 @@ BlockTimeFit fit_block_time(const std::vector<std::pair<const nc::Interpretation
   const auto n = static_cast<double>(times.size());
   for (double t : times) mean += t / n;
   for (double t : times) square += (t - mean) * (t - mean);
-  fit.block_time_s = FittedValue{mean, std::sqrt(square / std::max(1.0, n - 1) / n)};
+  fit.block_time_s = FittedValue{mean, std::hypot(std::sqrt(square / std::max(1.0, n - 1) / n), resolution_s)};
   fit.message = fmt::format(
       "block processing time {:.4g} ms, standard error {:.2g} ms, from {} runs of {:.3g} to "
       "{:.3g} mm",

@@ -17,6 +17,7 @@ struct ChordRun {
   double feed_mm_per_s = 0;   ///< programmed
   double speed_mm_per_s = 0;  ///< V_s, mean over the middle half
   double block_time_s = 0;    ///< T = L_b / V_s
+  double resolution_s = 0;    ///< what T is known to: a period over so many blocks
   bool saturated = false;     ///< slower than the feed, and with the least T of all
 };
 

@@ -45,7 +45,7 @@ std::optional<double> rise_of(const std::vector<double>& a, double period_s) {
     if (high >= 0 && a[i] < 0.9 * a[top]) break;
     if (high >= 0) ++held;
   }
-  const double apparent = (high - low) / 0.8, window = 2.0 * kHalfWindow;
+  const double apparent = (high - low) / 0.8, window = 1.0 * kHalfWindow;
   if (low < 0 || high < 0 || held < 0.5 * apparent) return std::nullopt;
   return period_s * std::sqrt(std::max(0.0, apparent * apparent - window * window));
 }

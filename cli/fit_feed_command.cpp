@@ -265,9 +265,10 @@ void plot_block_time(const Runs& runs, const FitFeedArguments& arguments, const 
   write_file(arguments.block_time_plot, report::block_time_svg(fit));
   if (options.quiet) return;
   for (const calib::ChordRun& r : fit.runs)
-    fmt::print("lines {}-{}: {:.4g} mm at F{:.0f}: {:.0f} mm/min, {:.4g} ms a block{}\n", r.line_first, r.line_last,
-               r.chord_mm, mm_per_min_from_mm_per_s(r.feed_mm_per_s), mm_per_min_from_mm_per_s(r.speed_mm_per_s),
-               1000 * r.block_time_s, r.saturated ? ", saturated" : "");
+    if (r.saturated)
+      fmt::print("lines {}-{}: {:.4g} mm at F{:.0f}: {:.0f} mm/min, {:.4g} ms a block\n", r.line_first, r.line_last,
+                 r.chord_mm, mm_per_min_from_mm_per_s(r.feed_mm_per_s), mm_per_min_from_mm_per_s(r.speed_mm_per_s),
+                 1000 * r.block_time_s);
   fmt::print("{}\n", fit.message);
 }
 

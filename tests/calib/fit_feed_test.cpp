@@ -93,7 +93,8 @@ FeedRun real_run(const tests::TempFolder& folder, const std::string& name) {
   return run;
 }
 
-/// The targets of the project: whole-program time within 1 %, path speed within 5 % of the feed (rms).
+/// Fitted on all seven (bench/feed/held-out predicts each by a fit on the others). dense_g64 has five parts, of which
+/// one is 3 % off.
 TEST(FitFeedSlow, PredictsTheTracedControl) {
   std::string data = CAMBER_SHARED_DATA_DIR;
   data += "/linuxcnc/programs/";
@@ -111,7 +112,9 @@ TEST(FitFeedSlow, PredictsTheTracedControl) {
         name.c_str(), a.time_trace_s, a.time_model_s, a.time_error_percent, a.part_time_error_percent,
         a.speed_rms_percent, a.speed_p95_percent);
     EXPECT_LT(std::abs(a.time_error_percent), 1.0) << name;
-    EXPECT_LT(a.speed_rms_percent, 5.0) << name;
+    EXPECT_LT(a.part_time_error_percent, name == "dense_g64" ? 1.0 : 0.5) << name;
+    EXPECT_LT(a.speed_rms_percent, 3.0) << name;
+    EXPECT_LT(a.speed_p95_percent, 8.0) << name;
   }
 }
 
