@@ -42,6 +42,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   progress.clear();
   feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
   settle(diagnostics, options);
+  print_translation(job.machine.translation, options);
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   write_file(arguments.output, result.text);

@@ -24,6 +24,7 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
       nc::interpret(program, feedmodel::interpreter_options(machine, arguments.interpreter.inch), diagnostics);
   feedmodel::check_range(moves, arguments.program, machine, diagnostics);
   settle(diagnostics, options);
+  print_translation(machine.translation, options);
 
   std::unique_ptr<feedmodel::FeedCsv> csv;
   if (!arguments.output.empty()) csv = std::make_unique<feedmodel::FeedCsv>(moves, arguments.output);

@@ -290,6 +290,7 @@ int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options
   const machine::Machine start = machine::read_machine(arguments.machine, diagnostics);
   const Runs runs = read_runs(arguments, diagnostics);
   settle(diagnostics, options);
+  print_translation(start.translation, options);
   if (!arguments.block_time_plot.empty()) plot_block_time(runs, arguments, options);
   if (!runs.stretches.empty()) return fit_to_times(runs, start, arguments, options);
   const FitFeedResult result = calib::fit_feed(runs.servo, start, {});

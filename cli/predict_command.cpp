@@ -59,6 +59,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   }();
   feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
   settle(diagnostics, options);
+  print_translation(job.machine.translation, options);
   const fs::path folder = make_folder(arguments.output_folder);
 
   ProgressLine progress(options);

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "base/diagnostics.h"
 
@@ -80,6 +81,7 @@ struct Machine {
   std::array<Axis, 3> axis;  ///< x, y, z
   Spindle spindle;
   FittedRange fitted_range;
+  std::vector<std::string> translation;  ///< of [source]: a line for each native parameter
 };
 
 /// Throws InputError with file:line:column for unknown keys, wrong types and values out of range.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "machine/machine_keys.h"
+#include "machine/source_parameters.h"
 
 namespace camber::machine {
 namespace {
@@ -98,6 +99,7 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
   const auto file = read_toml(path, "a machine description ([control], [axis.x] ...)", diagnostics);
   diagnostics.throw_if_errors();
   TomlTable top = TomlTable::top(*file, diagnostics);
+  if (auto source = top.table("source")) read_source(*source, machine);
   if (auto control = top.table("control")) read_control(*control, machine.control);
   if (auto axes = top.table("axis")) read_axes(*axes, machine.axis);
   if (auto spindle = top.table("spindle")) {

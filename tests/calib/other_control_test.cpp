@@ -50,8 +50,8 @@ constexpr double kNoiseMm = 0.0005;
 
 /// What a jerk-limited control with a notch at 150 Hz before each position loop leaves: the command is averaged over
 /// 24 ms, the encoders have a noise of 0.5 um.
-FeedRun jerk_limited_run(const machine::Machine& machine) {
-  FeedRun run = synthetic_run(machine);
+FeedRun jerk_limited_run(const machine::Machine& machine, double size = 1.0) {
+  FeedRun run = synthetic_run(machine, size);
   ServoTrace& t = run.trace;
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0, kNoiseMm);
@@ -106,12 +106,13 @@ TEST(OtherControl, JerkLimitedWithANotchAndNoise) {
          fit.held_out.part_time_percent, fit.held_out.speed_rms_percent);
   for (const FitParameter& p : fit.parameters)
     if (p.std_error) printf("  %-32s %10.4g +- %.2g %s\n", p.name.c_str(), p.value, *p.std_error, p.unit.c_str());
-  // Told honestly: the held-out error is that of a run that the fit never saw.
-  machine::Machine as_it_is = known;
-  FeedRun other = jerk_limited_run(as_it_is);
-  const FeedAccuracy seen = feed_accuracy(other.trace, other.program, fit.machine, parts_of(other.program), {});
-  EXPECT_LT(seen.speed_rms_percent, 1.5 * fit.held_out.speed_rms_percent + 0.5);
-  EXPECT_LT(fit.held_out.speed_rms_percent, 1.5 * seen.speed_rms_percent + 0.5);
+  // Told honestly: on figures of another size, at other feeds, the error is as large as the held-out one says.
+  const FeedRun other = jerk_limited_run(known, 1.4);
+  const FeedAccuracy unseen = feed_accuracy(other.trace, other.program, fit.machine, parts_of(other.program), {});
+  printf("  unseen: parts %.2f %% time, %.2f %% path speed rms\n", unseen.part_time_error_percent,
+         unseen.speed_rms_percent);
+  EXPECT_LT(unseen.speed_rms_percent, 1.3 * fit.held_out.speed_rms_percent);
+  EXPECT_LT(unseen.part_time_error_percent, fit.held_out.part_time_percent + 0.2);
 }
 
 TEST(OtherControl, ConstantAccelerationIsNotTakenForJerk) {

@@ -25,10 +25,11 @@ inline machine::Machine known_machine() {
 }
 
 /// Figures in three planes, each from rest to rest at the origin.
-inline nc::Interpretation figures() {
+/// `size`: of every side; the feeds go with it the other way.
+inline nc::Interpretation figures(double size = 1.0) {
   TestProgram p;
-  for (double feed : {1000.0, 3000.0, 6000.0}) {
-    for (double side : {2.0, 7.0}) {
+  for (double feed : {1000.0 / size, 3000.0 / size, 6000.0 / size}) {
+    for (double side : {2.0 * size, 7.0 * size}) {
       p.line(side, 0, 0, feed).line(side, side, 0, feed).line(0, side, 0, feed).line(0, 0, 0, feed).dwell(0.1);
       p.line(0, side, 0, feed).line(0, side, side, feed).line(0, 0, side, feed).line(0, 0, 0, feed).dwell(0.1);
       p.line(side, 0, 0, feed).line(side / 2, 0, side, feed).line(0, 0, 0, feed).dwell(0.1);
@@ -49,8 +50,8 @@ inline nc::Interpretation figures() {
   return p.program;
 }
 
-inline calib::FeedRun synthetic_run(const machine::Machine& machine) {
-  calib::FeedRun run{"figures", figures(), {}};
+inline calib::FeedRun synthetic_run(const machine::Machine& machine, double size = 1.0) {
+  calib::FeedRun run{"figures", figures(size), {}};
   run.trace.period_s = machine.control.period_s;
   run.trace.has_command = run.trace.has_actual = {true, true, true};
   feedmodel::predict_feed(run.program, machine, [&](std::span<const feedmodel::TimedSample> samples) {
