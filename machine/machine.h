@@ -57,6 +57,7 @@ struct Axis {
   double acceleration_mm_per_s2 = kNoLimit;
   double jerk_mm_per_s3 = kNoLimit;
   double filter_s = 0;                      ///< moving average after interpolation; 0: none
+  double exponential_1_s = 0, exponential_2_s = 0;  ///< first-order lags after interpolation (Yan & Shirase); 0: none
   double position_gain_per_s = kNoLimit;    ///< Kp of the position loop; infinity: no lag
   double velocity_lag_s = 0;                ///< time constant of the velocity loop inside the position loop
   double feed_forward_percent = 0;

@@ -44,6 +44,8 @@ inline constexpr std::array kAxisKeys{
     NumberKey<Axis>{"acceleration_mm_per_s2", &Axis::acceleration_mm_per_s2, kPositiveOrInf},
     NumberKey<Axis>{"jerk_mm_per_s3", &Axis::jerk_mm_per_s3, kPositiveOrInf},
     NumberKey<Axis>{"filter_ms", &Axis::filter_s, kNotNegative, kMilliseconds},
+    NumberKey<Axis>{"exponential_1_ms", &Axis::exponential_1_s, kNotNegative, kMilliseconds},
+    NumberKey<Axis>{"exponential_2_ms", &Axis::exponential_2_s, kNotNegative, kMilliseconds},
     NumberKey<Axis>{"position_gain_per_s", &Axis::position_gain_per_s, kPositiveOrInf},
     NumberKey<Axis>{"velocity_lag_ms", &Axis::velocity_lag_s, kNotNegative, kMilliseconds},
     NumberKey<Axis>{"feed_forward_percent", &Axis::feed_forward_percent, kPercent},
