@@ -11,6 +11,8 @@
 namespace camber::calib {
 namespace {
 
+constexpr double kPartPercent = 0.5;
+
 /// What trace and model have in common.
 struct Record {
   double period_s = 0;
@@ -152,6 +154,59 @@ std::vector<Part> read_parts(const std::string& path) {
                      mm_per_s_from_mm_per_min(value("feed_mm_min"))});
   }
   return parts;
+}
+
+PartTimes part_times(const FeedAccuracy& accuracy) {
+  PartTimes times;
+  times.parts = accuracy.parts.size();
+  if (accuracy.parts.empty()) return times;
+  std::vector<double> errors;
+  for (const PartAccuracy& p : accuracy.parts) errors.push_back(100 * std::abs(p.time_model_s / p.time_trace_s - 1));
+  std::sort(errors.begin(), errors.end());
+  for (double e : errors) {
+    times.mean += e / static_cast<double>(errors.size());
+    times.over += e > kPartPercent;
+  }
+  times.p90 = errors[static_cast<std::size_t>(std::ceil(0.9 * static_cast<double>(errors.size()))) - 1];
+  times.worst = errors.back();
+  return times;
+}
+
+FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program,
+                                    const std::vector<Part>& parts, const FeedAccuracyOptions& options) {
+  const Record traced{trace.period_s, trace.command_mm, trace.actual_mm, trace.line};
+  std::vector<double> line_s;  // at the programmed feed
+  for (const nc::Move& move : program.moves) {
+    if (move.kind != nc::MoveKind::linear && move.kind != nc::MoveKind::arc) continue;
+    if (line_s.size() <= move.block + 1) line_s.resize(move.block + 2, 0.0);
+    line_s[move.block + 1] += length_mm(program, move) / move.feed_mm_per_s;
+  }
+  FeedAccuracy result;
+  if (trace.line.empty()) return result;
+  const auto windows = windows_of(traced, parts);
+  std::vector<double> all;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (windows[p].end < windows[p].first + 3) continue;
+    PartAccuracy part;
+    part.part = parts[p];
+    part.time_trace_s = static_cast<double>(windows[p].commanded_end - windows[p].first) * traced.period_s;
+    for (std::size_t line = parts[p].line_first; line <= parts[p].line_last && line < line_s.size(); ++line)
+      part.time_model_s += line_s[line];
+    std::vector<double> errors = speed_profile(traced, windows[p], options);
+    for (double& e : errors) e = 100 * std::abs(1 - e / parts[p].feed_mm_per_s);
+    part.speed_rms_percent = root_mean_square(errors);
+    part.speed_p95_percent = percentile_95(errors);
+    result.time_trace_s += part.time_trace_s;
+    result.time_model_s += part.time_model_s;
+    result.part_time_error_percent += 100 * std::abs(part.time_model_s / part.time_trace_s - 1);
+    all.insert(all.end(), errors.begin(), errors.end());
+    result.parts.push_back(part);
+  }
+  if (!result.parts.empty()) result.part_time_error_percent /= static_cast<double>(result.parts.size());
+  if (result.time_trace_s > 0) result.time_error_percent = 100 * (result.time_model_s / result.time_trace_s - 1);
+  result.speed_rms_percent = root_mean_square(all);
+  result.speed_p95_percent = percentile_95(all);
+  return result;
 }
 
 FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program, const machine::Machine& machine,

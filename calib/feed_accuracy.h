@@ -44,6 +44,18 @@ struct FeedAccuracyOptions {
   double speed_window_s = 0.004;  ///< speeds are taken over this time: a trace is rounded to 0.1 um
 };
 
+/// How the errors of the parts' times lie, in %.
+struct PartTimes {
+  std::size_t parts = 0, over = 0;  ///< over: beyond half a percent
+  double mean = 0, p90 = 0, worst = 0;
+};
+PartTimes part_times(const FeedAccuracy& accuracy);
+
+/// Baseline: every part at its programmed feed from its first to its last point, without the machine's lag. Times are
+/// those of the parts alone.
+FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program,
+                                    const std::vector<Part>& parts, const FeedAccuracyOptions& options);
+
 /// Path speed of the actual axes over the share of path length, predicted against traced. A part begins with its
 /// first commanded sample and ends when another line is commanded (its tail, where the axes still come up
 /// while line is 0, belongs to it). Parts that the trace does not hold are left out.

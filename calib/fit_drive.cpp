@@ -17,7 +17,8 @@ using feedmodel::AxisFilter;
 using feedmodel::PositionLoop;
 using feedmodel::PositionLoopOptions;
 
-constexpr double kEnoughMm = 0.001;  // a residual under this needs no filter to explain it
+constexpr double kEnoughMm = 0.001;    // a residual under this needs no filter to explain it
+constexpr double kNearlyAsGood = 2.0;  // times the least held-out error
 constexpr std::size_t kMostResiduals = 60000;
 
 enum class Share { fitted, held_out };
@@ -159,6 +160,17 @@ bool moves(const ServoTrace& trace, int axis, double range_mm) {
   return (*high)[axis] - (*low)[axis] > range_mm;
 }
 
+/// Another model that explains the trace nearly as well and finds other values says that these are no better known.
+void add_ambiguity(Candidate& best, const std::vector<Candidate>& tried) {
+  double spread[3] = {0, 0, 0};
+  for (const Candidate& c : tried) {
+    if (!c.converged || c.held_out_rms_mm > kNearlyAsGood * best.held_out_rms_mm) continue;
+    for (int i = 0; i < std::min(c.model.parameters, best.model.parameters); ++i)
+      spread[i] = std::max(spread[i], std::abs(c.p[i] - best.p[i]));
+  }
+  for (int i = 0; i < best.model.parameters; ++i) best.error[i] = std::hypot(best.error[i], spread[i]);
+}
+
 DriveFit result_of(const Candidate& c) {
   DriveFit fit;
   fit.moved = true;
@@ -184,6 +196,7 @@ DriveFit fit_drive(const std::vector<const ServoTrace*>& all, int axis, const Dr
     if (moves(*trace, axis, options.moved_mm)) traces.push_back(trace);
   if (traces.empty()) return {};
 
+  std::vector<Candidate> all_tried;
   Candidate best;
   best.held_out_rms_mm = INFINITY;
   const auto try_models = [&](double filter_s) {
@@ -192,12 +205,14 @@ DriveFit fit_drive(const std::vector<const ServoTrace*>& all, int axis, const Dr
       c.model = {parameters, filter_s};
       if (best.converged) std::copy(best.p, best.p + 2, c.p);
       solve(c, traces, axis, options);
+      all_tried.push_back(c);
       if (c.held_out_rms_mm < (1.0 - options.better_by) * best.held_out_rms_mm - options.better_by_mm) best = c;
     }
   };
   try_models(0);
   for (double filter_s = 0.002; filter_s <= 0.13 && best.held_out_rms_mm > kEnoughMm; filter_s *= 2)
     try_models(filter_s);
+  add_ambiguity(best, all_tried);
   return result_of(best);
 }
 

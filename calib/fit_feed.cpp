@@ -7,6 +7,8 @@
 #include <functional>
 
 #include "calib/fit_limits.h"
+#include "calib/fit_smoothing.h"
+#include "feedmodel/fitted_range.h"
 
 namespace camber::calib {
 namespace {
@@ -19,6 +21,22 @@ constexpr double kPlateauS = 0.02;       // at least this long at it, or it was 
 constexpr std::uint32_t kMostBlocksApart = 60;
 constexpr int kListIterations = 6;      // for each value of a list
 constexpr double kSettledShare = 1e-3;  // gain of cost under which a richer law is not worth it
+
+/// What LinuxCNC does unless its INI file says otherwise ([TRAJ] ARC_BLEND_KINK_RATIO and ARC_BLEND_OPTIMIZATION_DEPTH)
+/// and the short lines that its traces show, where the start file says nothing and the traces may not tell.
+constexpr double kLinuxCncStepShare = 0.1;
+constexpr int kLinuxCncLookahead = 50;
+constexpr double kLinuxCncShortLinePeriods = 4;
+
+void set_control_defaults(machine::Control& control) {
+  // No control takes up two blocks in one period.
+  if (control.block_time_s == 0) control.block_time_s = control.period_s;
+  if (control.dialect != machine::Dialect::linuxcnc || control.corner.law != machine::CornerLaw::blend) return;
+  if (control.corner.step_share == 0) control.corner.step_share = kLinuxCncStepShare;
+  if (control.lookahead_blocks == 0) control.lookahead_blocks = kLinuxCncLookahead;
+  if (control.corner.short_line_time_s == 0)
+    control.corner.short_line_time_s = kLinuxCncShortLinePeriods * control.period_s;
+}
 
 /// Commanded time of each part: first to last sample of its lines.
 std::vector<double> traced_times_s(const ServoTrace& trace, const std::vector<Part>& parts) {
@@ -58,9 +76,11 @@ void add_timed_lines(const FeedRun& run, int keep_back_every, std::size_t& count
     for (std::uint32_t line = part.line_first; by_block && line <= part.line_last; ++line) {
       blocks.parts.push_back({line, line, part.feed_mm_per_s});
       blocks.kept_back.push_back(kept_back);
+      blocks.group.push_back(static_cast<int>(count));
     }
     parts.parts.push_back(part);
     parts.kept_back.push_back(kept_back);
+    parts.group.push_back(static_cast<int>(count));
   }
   for (TimedLines* lines : {&parts, &blocks}) {
     lines->program = &run.program;
@@ -202,30 +222,13 @@ void refine_block_time(LimitFit& fit, const std::vector<TimedLines>& data, const
   fit = fit_limits(data, base, std::move(parameters), iterations, false);
 }
 
-void add_drive(FitFeedResult& result, int axis, const DriveFit& drive) {
-  const std::string name = std::string("axis.") + kAxes[axis] + ".";
-  machine::Axis& a = result.machine.axis[axis];
-  if (!drive.moved) {
-    result.parameters.push_back({name + "position_gain_per_s", a.position_gain_per_s, "1/s", std::nullopt,
-                                 "the axis does not move in the traces", false});
-    return;
-  }
-  a.position_gain_per_s = drive.gain_per_s.value;
-  a.velocity_lag_s = drive.velocity_lag_s.value;
-  a.feed_forward_percent = std::clamp(drive.feed_forward_percent.value, 0.0, 100.0);
-  a.filter_s = drive.filter_s.value;
-  const auto add = [&](const char* key, const FittedValue& v, double scale, const char* unit) {
-    if (v.value == 0 && v.std_error == 0) return;
-    result.parameters.push_back({name + key, v.value * scale, unit,
-                                 std::isfinite(v.std_error) ? std::optional(v.std_error * scale) : std::nullopt, "",
-                                 true});
-  };
-  add("position_gain_per_s", drive.gain_per_s, 1, "1/s");
-  add("velocity_lag_ms", drive.velocity_lag_s, 1000, "ms");
-  add("feed_forward_percent", drive.feed_forward_percent, 1, "%");
-  if (drive.filter_s.value > 0)
-    result.parameters.push_back(
-        {name + "filter_ms", 1000 * drive.filter_s.value, "ms", std::nullopt, "chosen from a list", true});
+/// Which program of camber protocol has what a parameter shows in.
+std::string_view what_tells(std::string_view name) {
+  if (name.ends_with("block_time_ms")) return "run the saturation program of camber protocol";
+  if (name.find("arc_") != name.npos) return "run the circles of camber protocol";
+  if (name.find("stop_acceleration") != name.npos) return "run a polygon program of camber protocol under G64";
+  if (name.find("step_share") != name.npos) return "run a polygon program of camber protocol under G61";
+  return "run the polygon programs of camber protocol in all planes";
 }
 
 void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start) {
@@ -233,8 +236,9 @@ void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start
     if (p.told) {
       result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, "", true});
     } else {
-      result.parameters.push_back(
-          {p.name, p.get(start), p.unit, std::nullopt, "the traces do not tell; left as it was", false});
+      result.parameters.push_back({p.name, p.get(start), p.unit, std::nullopt,
+                                   fmt::format("the traces do not tell; left as it was ({})", what_tells(p.name)),
+                                   false});
     }
   }
 }
@@ -253,6 +257,20 @@ void add_velocity(FitFeedResult& result, const std::vector<FeedRun>& runs, int a
       {name, 60 * limit, "mm/min", std::nullopt,
        fmt::format("no rapid holds a top speed (highest {:.0f} mm/min); left as it was", 60 * plateau.speed_mm_per_s),
        false});
+}
+
+/// Jerk of each axis: one window for all, so that it does not bend the path.
+void add_smoothing(FitFeedResult& result, const std::vector<const ServoTrace*>& traces) {
+  const auto window_s = smoothing_time_s(traces);
+  if (!window_s) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    machine::Axis& a = result.machine.axis[axis];
+    if (!std::isfinite(a.acceleration_mm_per_s2)) continue;
+    a.jerk_mm_per_s3 = a.acceleration_mm_per_s2 / window_s->value;
+    result.parameters.push_back({std::string("axis.") + kAxes[axis] + ".jerk_mm_per_s3", a.jerk_mm_per_s3, "mm/s3",
+                                 a.jerk_mm_per_s3 * window_s->std_error / window_s->value,
+                                 "rise of the commanded acceleration from rest", true});
+  }
 }
 
 void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_back_every) {
@@ -290,6 +308,31 @@ void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_bac
 
 }  // namespace
 
+void add_drive(Machine& machine, std::vector<FitParameter>& parameters, int axis, const DriveFit& drive) {
+  const std::string name = std::string("axis.") + kAxes[axis] + ".";
+  machine::Axis& a = machine.axis[axis];
+  if (!drive.moved) {
+    parameters.push_back({name + "position_gain_per_s", a.position_gain_per_s, "1/s", std::nullopt,
+                          "the axis does not move in the traces", false});
+    return;
+  }
+  a.position_gain_per_s = drive.gain_per_s.value;
+  a.velocity_lag_s = drive.velocity_lag_s.value;
+  a.feed_forward_percent = std::clamp(drive.feed_forward_percent.value, 0.0, 100.0);
+  a.filter_s = drive.filter_s.value;
+  const auto add = [&](const char* key, const FittedValue& v, double scale, const char* unit) {
+    if (v.value == 0 && v.std_error == 0) return;
+    parameters.push_back({name + key, v.value * scale, unit,
+                          std::isfinite(v.std_error) ? std::optional(v.std_error * scale) : std::nullopt, "", true});
+  };
+  add("position_gain_per_s", drive.gain_per_s, 1, "1/s");
+  add("velocity_lag_ms", drive.velocity_lag_s, 1000, "ms");
+  add("feed_forward_percent", drive.feed_forward_percent, 1, "%");
+  if (drive.filter_s.value > 0)
+    parameters.push_back(
+        {name + "filter_ms", 1000 * drive.filter_s.value, "ms", std::nullopt, "chosen from a list", true});
+}
+
 FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, const FitFeedOptions& options) {
   FitFeedResult result;
   result.machine = start;
@@ -297,6 +340,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
   for (const FeedRun& run : runs) traces.push_back(&run.trace);
   bool drives_converged = true;
   if (!traces.empty()) result.machine.control.period_s = traces.front()->period_s;
+  set_control_defaults(result.machine.control);
 
   const std::vector<TimedLines> data = timed_lines(runs, options.keep_back_every);
   for (int axis = 0; axis < 3; ++axis) add_velocity(result, runs, axis);
@@ -325,9 +369,13 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
                                std::nullopt, "median of the rests", true});
   for (int axis = 0; axis < 3; ++axis) {
     result.drives[axis] = fit_drive(traces, axis, {});
-    add_drive(result, axis, result.drives[axis]);
+    add_drive(result.machine, result.parameters, axis, result.drives[axis]);
     drives_converged = drives_converged && (!result.drives[axis].moved || result.drives[axis].converged);
   }
+  add_smoothing(result, traces);
+  std::vector<const nc::Interpretation*> programs;
+  for (const FeedRun& run : runs) programs.push_back(&run.program);
+  result.machine.fitted_range = feedmodel::range_of(programs);
   result.residual_median_ms = limits.residual_median_ms;
   judge(result, runs, options.keep_back_every);
   result.converged = limits.converged && drives_converged;

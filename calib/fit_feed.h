@@ -57,6 +57,9 @@ struct FitFeedResult {
   std::string message;  ///< one sentence: why it ended, and what it means
 };
 
+/// Puts what the fit of an axis' drive found into the machine and the list.
+void add_drive(machine::Machine& machine, std::vector<FitParameter>& parameters, int axis, const DriveFit& drive);
+
 /// `start` gives the control's dialect, corner law and period, and whatever the traces do not tell.
 /// Stage one fits each axis' servo (fit_drive). Stage two fits accelerations, the shares that arcs and stops take,
 /// corner steps and block time to the commanded times of parts, every third kept back, and takes from a list of

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 
 #include "feedmodel/plan.h"
@@ -16,6 +17,8 @@ using machine::Machine;
 
 constexpr double kTimeNoise = 0.001;  // s; a part's time is known to about a period
 constexpr double kTimeShare = 0.002;  // and to this share of itself
+constexpr double kNoTime = 1e-9;      // s
+constexpr double kShiftPeriods = 0.5;
 constexpr double kWideLossScale = 300.0;
 constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
 
@@ -100,6 +103,20 @@ std::unique_ptr<ceres::CostFunction> make_cost(const std::vector<TimedLines>& da
   return cost;
 }
 
+/// What each residual of the fitted parts is of, in their order.
+struct Row {
+  int group = 0;
+  double time_s = 0;
+};
+
+std::vector<Row> rows_of(const std::vector<TimedLines>& data) {
+  std::vector<Row> rows;
+  for (const TimedLines& lines : data)
+    for (std::size_t i = 0; i < lines.time_s.size(); ++i)
+      if (lines.time_s[i] > 0 && !lines.kept_back[i]) rows.push_back({lines.group[i], lines.time_s[i]});
+  return rows;
+}
+
 /// Standard errors from the Jacobian; parameters that hardly change any time are marked as not told.
 void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machine& base,
                 const std::vector<double>& logs, std::size_t count) {
@@ -111,9 +128,6 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
   cost->Evaluate(blocks, residuals.data(), jacobians);
   const Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> j(
       jacobian.data(), static_cast<Eigen::Index>(count), n);
-  double sum = 0;
-  for (double r : residuals) sum += r * r;
-  const double variance = sum / std::max(1.0, static_cast<double>(count) - n);
   std::vector<int> told;
   for (int i = 0; i < n; ++i) {
     fit.parameters[i].told = j.col(i).norm() > 1.0;  // a change by a factor e moves some time by its noise
@@ -125,7 +139,21 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
     for (std::size_t b = 0; b < told.size(); ++b) normal(a, b) = j.col(told[a]).dot(j.col(told[b]));
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(normal);
   if (!lu.isInvertible()) return;
-  const Eigen::MatrixXd covariance = lu.inverse() * variance;
+  const Eigen::MatrixXd inverse = lu.inverse();
+  const auto rows = rows_of(data);
+  std::map<int, Eigen::VectorXd> scores;
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(told.size()));
+  for (std::size_t row = 0; row < count; ++row) {
+    Eigen::VectorXd gradient(told.size());
+    for (std::size_t a = 0; a < told.size(); ++a) gradient(a) = j(static_cast<Eigen::Index>(row), told[a]);
+    auto& score = scores.try_emplace(rows[row].group, Eigen::VectorXd::Zero(gradient.size())).first->second;
+    score += gradient * residuals[row];
+    shift += gradient * (kShiftPeriods * base.control.period_s / scale_of(rows[row].time_s));
+  }
+  Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
+  for (const auto& [group, score] : scores) middle += score * score.transpose();
+  shift = inverse * shift;
+  const Eigen::MatrixXd covariance = inverse * middle * inverse + shift * shift.transpose();
   for (std::size_t a = 0; a < told.size(); ++a) {
     LimitParameter& p = fit.parameters[told[a]];
     const double log_error = std::sqrt(std::max(0.0, covariance(a, a)));
@@ -160,7 +188,7 @@ std::vector<LimitParameter> limit_parameters(const Machine& start) {
                .set = [](Machine& m, double v) { m.control.corner.step_share = v; },
                .least = 1e-3,
                .most = 0.7,
-               .start = 0.05,
+               .start = start.control.corner.step_share > 0 ? start.control.corner.step_share : 0.05,
                .fitted = {}});
   p.push_back({.name = "control.block_time_ms",
                .unit = "ms",
@@ -180,15 +208,17 @@ std::vector<double> planned_times_s(const TimedLines& data, const Machine& machi
   for (std::size_t p = 0; p < data.parts.size(); ++p) {
     const auto line = [&](std::size_t k) { return data.program->moves[segments[k].move].block + 1; };
     while (i < segments.size() && (segments[i].rest || line(i) < data.parts[p].line_first)) ++i;
-    const bool after_rest = i == 0 || (i < segments.size() && segments[i - 1].rest);
     double first = -1, end = 0;
     for (; i < segments.size() && (segments[i].rest || line(i) <= data.parts[p].line_last); ++i) {
       if (segments[i].rest) continue;
       if (first < 0) first = segments[i].start_s;
       end = segments[i].start_s + segments[i].duration_s;
     }
-    // After a rest the trace also counts the sample at which the part begins.
-    if (first >= 0) times[p] = end - first + (after_rest ? machine.control.period_s : 0.0);
+    if (first < 0) continue;
+    // At a stop the line changes with the next period: half a period on average, which a fit can follow better than
+    // whole ones.
+    const bool stops = i >= segments.size() || segments[i].rest || segments[i].start_s > end + kNoTime;
+    times[p] = end - first + (stops ? 0.5 * machine.control.period_s : 0.0);
   }
   return times;
 }

@@ -17,6 +17,7 @@ struct TimedLines {
   std::vector<Part> parts;
   std::vector<double> time_s;   ///< of each part; 0: not in the trace
   std::vector<char> kept_back;  ///< of each part
+  std::vector<int> group;       ///< of each part: what lies within one part of the program errs together
 };
 
 /// A number of the machine that the fit may change.
@@ -40,6 +41,8 @@ struct LimitFit {
   bool converged = false;
 };
 
+/// Standard errors: the sandwich (J'J)^-1 sum(s s') (J'J)^-1 over groups, s = J'r of a group, and beside it what a
+/// common shift of all times by half a period does, since a trace tells times to a period.
 /// Least squares (Cauchy loss: a trace may hold pauses that no plan explains) over the times of the parts.
 /// far_away: the start values may be wrong by much; a wide loss leads first.
 LimitFit fit_limits(const std::vector<TimedLines>& data, const machine::Machine& start,

@@ -148,26 +148,15 @@ class Reader {
   }
 
   void find_gaps() {
-    std::vector<double> steps(trace_.size() - 1);
-    for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = trace_.t_s[i + 1] - trace_.t_s[i];
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    trace_.period_s = std::round(*middle * 1e6) / 1e6 > 0 ? std::round(*middle * 1e6) / 1e6 : *middle;
-    std::size_t first = 0, gaps = 0;
-    for (std::size_t i = 1; i < trace_.size(); ++i) {
-      const double step = trace_.t_s[i] - trace_.t_s[i - 1];
-      if (step <= kGapPeriods * trace_.period_s) continue;
-      if (++gaps <= kGapsShown) report_gap(i, step);
-      trace_.stretches.push_back({first, i});
-      first = i;
-    }
-    if (gaps > kGapsShown)
+    const std::vector<std::size_t> gaps = set_stretches(trace_);
+    for (std::size_t n = 0; n < std::min(gaps.size(), kGapsShown); ++n)
+      report_gap(gaps[n], trace_.t_s[gaps[n]] - trace_.t_s[gaps[n] - 1]);
+    if (gaps.size() > kGapsShown)
       diagnostics_.add({.severity = Severity::warning,
                         .location = {trace_.path, 0, 0},
-                        .message = fmt::format("{} more gaps in the trace", gaps - kGapsShown),
+                        .message = fmt::format("{} more gaps in the trace", gaps.size() - kGapsShown),
                         .check = "trace-gap",
                         .source_line = {}});
-    trace_.stretches.push_back({first, trace_.size()});
   }
 
   void report_gap(std::size_t i, double step_s) {
@@ -188,6 +177,25 @@ class Reader {
 };
 
 }  // namespace
+
+std::vector<std::size_t> set_stretches(ServoTrace& trace) {
+  std::vector<double> steps(trace.size() - 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = trace.t_s[i + 1] - trace.t_s[i];
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  trace.period_s = std::round(*middle * 1e6) / 1e6 > 0 ? std::round(*middle * 1e6) / 1e6 : *middle;
+  std::vector<std::size_t> gaps;
+  trace.stretches.clear();
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < trace.size(); ++i) {
+    if (trace.t_s[i] - trace.t_s[i - 1] <= kGapPeriods * trace.period_s) continue;
+    gaps.push_back(i);
+    trace.stretches.push_back({first, i});
+    first = i;
+  }
+  trace.stretches.push_back({first, trace.size()});
+  return gaps;
+}
 
 ServoTrace read_trace(const std::string& path, Diagnostics& diagnostics) {
   const SourceText source = SourceText::read(path);

@@ -29,6 +29,9 @@ struct ServoTrace {
   std::size_t size() const { return t_s.size(); }
 };
 
+/// Sets period (median distance of the samples) and stretches from the times; returns the samples after a gap.
+std::vector<std::size_t> set_stretches(ServoTrace& trace);
+
 /// Reads a CSV whose header names columns: `t_s` and any of x_cmd_mm y_cmd_mm z_cmd_mm x_act_mm y_act_mm
 /// z_act_mm feed_mm_per_min line, in any order; CRLF and blanks around fields are allowed.
 ///

@@ -8,6 +8,7 @@
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "feedmodel/control_options.h"
+#include "feedmodel/fitted_range.h"
 #include "nc/interpreter.h"
 #include "report/report_data.h"
 #include "report/summary.h"
@@ -15,10 +16,14 @@
 namespace camber::cli {
 namespace {
 
-std::vector<report::FeedSample> feed_of(SourceText source, const machine::Job& job) {
+nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
   Diagnostics ignored;  // said already
   const auto text = nc::read_program(std::move(source), ignored);
-  const auto moves = nc::interpret(text, feedmodel::interpreter_options(job.machine, job.inch), ignored);
+  return nc::interpret(text, feedmodel::interpreter_options(job.machine, job.inch), ignored);
+}
+
+std::vector<report::FeedSample> feed_of(SourceText source, const machine::Job& job) {
+  const auto moves = moves_of(std::move(source), job);
   report::FeedCollector collector;
   feedmodel::predict_feed(moves, job.machine, [&](std::span<const feedmodel::TimedSample> s) { collector.add(s); });
   return collector.take();
@@ -35,17 +40,18 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   compensate_options.progress = [&](const std::string& what, double share) { progress.show(what, share); };
   const compensate::Compensation result = compensate::compensate(job, diagnostics, compensate_options);
   progress.clear();
+  feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
   settle(diagnostics, options);
+  print_translation(job.machine.translation, options);
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   write_file(arguments.output, result.text);
   if (!arguments.json.empty()) write_file(arguments.json, report::compensate_json(result, compute_s));
   if (!arguments.report.empty())
     report::write_html_report(
-        arguments.report,
-        report::compensate_report("Form error before and after compensation", result,
-                                  feed_of(SourceText::read(job.program), job),
-                                  feed_of(SourceText(job.program, result.text), job), diagnostics));
+        arguments.report, report::compensate_report("Form error before and after compensation", result,
+                                                    feed_of(SourceText::read(job.program), job),
+                                                    feed_of(SourceText(job.program, result.text), job), diagnostics));
 
   if (!options.quiet) fmt::print("{}", report::compensate_text(result, compute_s));
   if (const std::string unsettled = report::unsettled_sentence(result); !unsettled.empty()) {

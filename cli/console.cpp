@@ -52,6 +52,11 @@ void settle(const Diagnostics& diagnostics, const GlobalOptions& options) {
   throw InputError(std::move(errors));
 }
 
+void print_translation(std::span<const std::string> translation, const GlobalOptions& options) {
+  if (options.quiet) return;
+  for (const std::string& line : translation) fmt::print(stderr, "{}\n", line);
+}
+
 void print_error(const std::string& sentence) {
   fmt::print(stderr, "camber: {} {}\n", colour_wanted() ? coloured("error:", kRed) : "error:", sentence);
 }

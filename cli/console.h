@@ -22,6 +22,9 @@ void print_diagnostics(std::span<const Diagnostic> diagnostics, const GlobalOpti
 /// (--strict) warnings, which are errors then.
 void settle(const Diagnostics& diagnostics, const GlobalOptions& options);
 
+/// What [source] of a machine file was read as, on stderr; nothing with -q.
+void print_translation(std::span<const std::string> translation, const GlobalOptions& options);
+
 /// One line "camber: error: ..." on stderr.
 void print_error(const std::string& sentence);
 

@@ -9,6 +9,7 @@
 #include "cli/console.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/feed_csv.h"
+#include "feedmodel/fitted_range.h"
 #include "feedmodel/timed_path.h"
 #include "machine/machine.h"
 #include "nc/program.h"
@@ -21,7 +22,9 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const nc::Interpretation moves =
       nc::interpret(program, feedmodel::interpreter_options(machine, arguments.interpreter), diagnostics);
+  feedmodel::check_range(moves, arguments.program, machine, diagnostics);
   settle(diagnostics, options);
+  print_translation(machine.translation, options);
 
   std::unique_ptr<feedmodel::FeedCsv> csv;
   if (!arguments.output.empty()) csv = std::make_unique<feedmodel::FeedCsv>(moves, arguments.output);

@@ -4,12 +4,20 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/output_file.h"
+#include "base/units.h"
+#include "calib/block_time.h"
+#include "calib/column_map.h"
+#include "calib/cross_validate.h"
 #include "calib/fit_feed.h"
+#include "calib/fit_stretches.h"
+#include "calib/machine_log.h"
 #include "cli/console.h"
 #include "machine/machine.h"
 #include "nc/program.h"
+#include "report/block_time_plot.h"
 
 namespace camber::cli {
 namespace {
@@ -17,30 +25,78 @@ namespace {
 using calib::FitFeedResult;
 using nlohmann::ordered_json;
 
-std::vector<calib::FeedRun> read_runs(const FitFeedArguments& arguments, Diagnostics& diagnostics) {
+/// What a trace file holds is told by its content.
+enum class TraceKind { servo, machine_log, stretch_table };
+
+TraceKind kind_of(const std::string& path) {
+  if (calib::is_machine_log(path)) return TraceKind::machine_log;
+  return calib::is_stretch_table(path) ? TraceKind::stretch_table : TraceKind::servo;
+}
+
+struct Runs {
+  std::vector<calib::FeedRun> servo;
+  std::vector<calib::StretchRun> stretches;  ///< one for each program; empty where all traces are servo traces
+};
+
+/// The stretches of one program belong together, however many logs tell of it: copies of a geometry must not be in
+/// two folds.
+calib::StretchRun& stretch_run(Runs& runs, const std::string& name, const nc::Interpretation& program) {
+  for (calib::StretchRun& run : runs.stretches)
+    if (run.program_name == name) return run;
+  runs.stretches.push_back({name, program, {}});
+  return runs.stretches.back();
+}
+
+void add_times(calib::StretchRun& run, const std::string& path, TraceKind kind, Diagnostics& diagnostics) {
+  const auto timed =
+      kind == TraceKind::machine_log
+          ? calib::logged_stretches(calib::read_machine_log(path, diagnostics), calib::feed_stretches(run.program))
+          : calib::read_stretch_table(path, run.program);
+  if (timed.empty())
+    fail_on_file(path, "holds no whole stretch of feed moves of the program at 100 % override", "log-stretches");
+  run.timed.insert(run.timed.end(), timed.begin(), timed.end());
+}
+
+Runs read_runs(const FitFeedArguments& arguments, Diagnostics& diagnostics) {
   if (arguments.programs.size() != arguments.traces.size() || arguments.programs.empty())
     fail_on_file(arguments.machine,
                  fmt::format("{} programs and {} traces are given; each --program needs its --trace",
                              arguments.programs.size(), arguments.traces.size()),
                  "fit-runs");
-  std::vector<calib::FeedRun> runs;
+  std::optional<calib::ColumnMap> columns;
+  if (!arguments.columns.empty()) columns = calib::read_column_map(arguments.columns, diagnostics);
+  Runs runs;
   for (std::size_t i = 0; i < arguments.programs.size(); ++i) {
     const nc::Program program = nc::read_program(SourceText::read(arguments.programs[i]), diagnostics);
-    calib::FeedRun run;
-    run.program_name = arguments.programs[i];
-    run.program = nc::interpret(program, arguments.interpreter, diagnostics);
+    nc::Interpretation moves = nc::interpret(program, arguments.interpreter, diagnostics);
     diagnostics.throw_if_errors();
-    run.trace = calib::read_trace(arguments.traces[i], diagnostics);
-    runs.push_back(std::move(run));
+    const TraceKind kind = kind_of(arguments.traces[i]);
+    if (kind == TraceKind::servo) {
+      auto trace = columns ? calib::read_mapped_trace(arguments.traces[i], *columns, diagnostics)
+                           : calib::read_trace(arguments.traces[i], diagnostics);
+      runs.servo.push_back({arguments.programs[i], std::move(moves), std::move(trace)});
+    } else {
+      add_times(stretch_run(runs, arguments.programs[i], moves), arguments.traces[i], kind, diagnostics);
+    }
+  }
+  if (runs.stretches.empty()) return runs;
+  for (const calib::FeedRun& run : runs.servo) {
+    const auto timed = calib::traced_stretches(run.trace, calib::feed_stretches(run.program));
+    auto& into = stretch_run(runs, run.program_name, run.program).timed;
+    into.insert(into.end(), timed.begin(), timed.end());
   }
   return runs;
 }
 
-void print(const FitFeedResult& result) {
-  fmt::print("{:<40} {:>14} {:<7} {:>12}\n", "parameter", "value", "unit", "std error");
-  for (const calib::FitParameter& p : result.parameters)
-    fmt::print("{:<40} {:>14.6g} {:<7} {:>12}  {}\n", p.name, p.value, p.unit,
+void print_parameters(const std::vector<calib::FitParameter>& parameters) {
+  fmt::print("{:<44} {:>14} {:<7} {:>12}\n", "parameter", "value", "unit", "std error");
+  for (const calib::FitParameter& p : parameters)
+    fmt::print("{:<44} {:>14.6g} {:<7} {:>12}  {}\n", p.name, p.value, p.unit,
                p.std_error ? fmt::format("{:.2g}", *p.std_error) : "-", p.note);
+}
+
+void print(const FitFeedResult& result) {
+  print_parameters(result.parameters);
   constexpr const char* kAxes = "xyz";
   for (int i = 0; i < 3; ++i) {
     const calib::DriveFit& drive = result.drives[i];
@@ -71,15 +127,85 @@ ordered_json error_json(const calib::FitError& e) {
           {"speed_p95_percent", e.speed_p95_percent}};
 }
 
+ordered_json parameters_json(const std::vector<calib::FitParameter>& parameters) {
+  ordered_json list = ordered_json::array();
+  for (const calib::FitParameter& p : parameters)
+    list.push_back({{"name", p.name},
+                    {"value", number(p.value)},
+                    {"unit", p.unit},
+                    {"std_error", p.std_error ? number(*p.std_error) : ordered_json(nullptr)},
+                    {"written", p.written},
+                    {"note", p.note}});
+  return list;
+}
+
+double percent(double value, double reference) { return 100 * (value / reference - 1); }
+
+void print(const calib::StretchFit& fit) {
+  print_parameters(fit.parameters);
+  const auto line = [](const std::string& name, const calib::StretchErrors& e) {
+    fmt::print("{:<76} {:>7.2f} {:>7.2f} {:>7.2f} {:>+7.2f}\n", name, e.mean, e.p90, e.worst, e.total);
+  };
+  fmt::print("\n{:<76} {:>7} {:>7} {:>7} {:>7}\n",
+             fmt::format("error of the stretch times, % ({} geometries, {} folds)", fit.stretches.size(), fit.folds),
+             "mean", "p90", "worst", "total");
+  for (const calib::JudgedLaw& law : fit.laws) line("held out: " + law.law.name, law.held_out);
+  if (!fit.laws.empty()) {
+    line("chosen, held out: " + fit.laws[fit.chosen].law.name, fit.held_out);
+    line("chosen, fitted to all", fit.fitted);
+  }
+  line("constant feed", fit.constant_feed);
+  line("stop at every block", fit.stop_every_block);
+  fmt::print("\n{:<16} {:>4} {:>10} {:>9} {:>9} {:>10} {:>10}   %\n", "lines", "tool", "machine, s", "held out",
+             "fitted", "const feed", "stop each");
+  for (const calib::JudgedStretch& s : fit.stretches) {
+    const auto& t = s.timed;
+    fmt::print("{:<16} {:>4} {:>10.3f} {:>+9.2f} {:>+9.2f} {:>+10.2f} {:>+10.2f}\n",
+               fmt::format("{}-{}", t.stretch.line_first, t.stretch.line_last), t.stretch.tool, t.time_s,
+               percent(s.held_out_s, t.time_s), percent(s.fitted_s, t.time_s), percent(s.constant_feed_s, t.time_s),
+               percent(s.stop_every_block_s, t.time_s));
+  }
+  for (const auto& gap : fit.unseen_corners_rad)
+    fmt::print("no corner between {:.1f} and {:.1f} degrees was seen; camber protocol writes programs that have them\n",
+               deg_from_rad(gap[0]), deg_from_rad(gap[1]));
+  fmt::print("{}\n", fit.message);
+}
+
+ordered_json errors_json(const calib::StretchErrors& e) {
+  return {{"stretch_time_mean_percent", e.mean},
+          {"stretch_time_p90_percent", e.p90},
+          {"stretch_time_worst_percent", e.worst},
+          {"total_time_percent", e.total}};
+}
+
+ordered_json report_of(const calib::StretchFit& fit) {
+  ordered_json report;
+  report["parameters"] = parameters_json(fit.parameters);
+  report["held_out"] = errors_json(fit.held_out);
+  report["held_out"]["stretches"] = fit.stretches.size();
+  report["fitted"] = errors_json(fit.fitted);
+  report["baselines"] = {{"constant_feed", errors_json(fit.constant_feed)},
+                         {"stop_at_every_block", errors_json(fit.stop_every_block)}};
+  for (const calib::JudgedLaw& law : fit.laws)
+    report["laws"].push_back({{"name", law.law.name}, {"held_out", errors_json(law.held_out)}});
+  for (const calib::JudgedStretch& s : fit.stretches)
+    report["stretches"].push_back({{"program", s.program_name},
+                                   {"line_first", s.timed.stretch.line_first},
+                                   {"line_last", s.timed.stretch.line_last},
+                                   {"tool", s.timed.stretch.tool},
+                                   {"time_s", s.timed.time_s},
+                                   {"held_out_s", s.held_out_s},
+                                   {"fitted_s", s.fitted_s},
+                                   {"constant_feed_s", s.constant_feed_s},
+                                   {"stop_every_block_s", s.stop_every_block_s}});
+  report["converged"] = fit.converged;
+  report["message"] = fit.message;
+  return report;
+}
+
 ordered_json report_of(const FitFeedResult& result) {
   ordered_json report;
-  for (const calib::FitParameter& p : result.parameters)
-    report["parameters"].push_back({{"name", p.name},
-                                    {"value", number(p.value)},
-                                    {"unit", p.unit},
-                                    {"std_error", p.std_error ? number(*p.std_error) : ordered_json(nullptr)},
-                                    {"written", p.written},
-                                    {"note", p.note}});
+  report["parameters"] = parameters_json(result.parameters);
   report["held_out"] = error_json(result.held_out);
   report["fitted"] = error_json(result.fitted);
   for (int i = 0; i < 3; ++i)
@@ -101,19 +227,76 @@ ordered_json report_of(const FitFeedResult& result) {
   return report;
 }
 
+/// Writes the machine and the report, prints, and tells how it went.
+template <class Result>
+int finish(const Result& result, const machine::Machine& fitted, const FitFeedArguments& arguments,
+           const GlobalOptions& options) {
+  if (!options.quiet) print(result);
+  write_file(arguments.output, machine::to_toml(fitted));
+  if (!arguments.json.empty()) write_file(arguments.json, report_of(result).dump(2) + "\n");
+  if (!result.converged) print_error(result.message);
+  return result.converged ? kDone : kNumbersDidNotWorkOut;
+}
+
+void print(const std::vector<calib::HeldOutRun>& runs) {
+  fmt::print(
+      "\nleave one trace out: every trace predicted by a fit on the others\n{:<34} {:>7} {:>6} {:>6} {:>6} {:>11} "
+      "{:>7} {:>7}\n",
+      "", "total %", "part %", "p90 %", "worst", "over 0.5 %", "rms %", "p95 %");
+  const auto line = [](const std::string& name, const calib::FeedAccuracy& a) {
+    const calib::PartTimes t = calib::part_times(a);
+    fmt::print("{:<34} {:>+7.2f} {:>6.2f} {:>6.2f} {:>6.2f} {:>4} of {:>4} {:>7.2f} {:>7.2f}\n", name,
+               a.time_error_percent, t.mean, t.p90, t.worst, t.over, t.parts, a.speed_rms_percent, a.speed_p95_percent);
+  };
+  for (const calib::HeldOutRun& run : runs) {
+    const std::size_t slash = run.program_name.find_last_of('/');
+    line(slash == std::string::npos ? run.program_name : run.program_name.substr(slash + 1), run.accuracy);
+    line("  constant feed", run.constant_feed);
+    line("  stop at every block", run.stop_every_block);
+    fmt::print("  drives alone: x {:.3f}, y {:.3f}, z {:.3f} um rms\n", 1000 * run.drive_rms_mm[0],
+               1000 * run.drive_rms_mm[1], 1000 * run.drive_rms_mm[2]);
+  }
+}
+
+void plot_block_time(const Runs& runs, const FitFeedArguments& arguments, const GlobalOptions& options) {
+  std::vector<std::pair<const nc::Interpretation*, const calib::ServoTrace*>> traced;
+  for (const calib::FeedRun& run : runs.servo) traced.emplace_back(&run.program, &run.trace);
+  const calib::BlockTimeFit fit = calib::fit_block_time(traced);
+  write_file(arguments.block_time_plot, report::block_time_svg(fit));
+  if (options.quiet) return;
+  for (const calib::ChordRun& r : fit.runs)
+    if (r.saturated)
+      fmt::print("lines {}-{}: {:.4g} mm at F{:.0f}: {:.0f} mm/min, {:.4g} ms a block\n", r.line_first, r.line_last,
+                 r.chord_mm, mm_per_min_from_mm_per_s(r.feed_mm_per_s), mm_per_min_from_mm_per_s(r.speed_mm_per_s),
+                 1000 * r.block_time_s);
+  fmt::print("{}\n", fit.message);
+}
+
+/// Times of stretches; the drives from the servo traces, where some are given beside them.
+int fit_to_times(const Runs& runs, const machine::Machine& start, const FitFeedArguments& arguments,
+                 const GlobalOptions& options) {
+  calib::StretchFit fit = calib::fit_stretches(runs.stretches, start, {});
+  std::vector<const calib::ServoTrace*> traces;
+  for (const calib::FeedRun& run : runs.servo) traces.push_back(&run.trace);
+  for (int axis = 0; axis < 3 && !traces.empty(); ++axis)
+    calib::add_drive(fit.machine, fit.parameters, axis, calib::fit_drive(traces, axis, {}));
+  return finish(fit, fit.machine, arguments, options);
+}
+
 }  // namespace
 
 int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options) {
   Diagnostics diagnostics;
   const machine::Machine start = machine::read_machine(arguments.machine, diagnostics);
-  const std::vector<calib::FeedRun> runs = read_runs(arguments, diagnostics);
+  const Runs runs = read_runs(arguments, diagnostics);
   settle(diagnostics, options);
-  const FitFeedResult result = calib::fit_feed(runs, start, {});
-  if (!options.quiet) print(result);
-  write_file(arguments.output, machine::to_toml(result.machine));
-  if (!arguments.json.empty()) write_file(arguments.json, report_of(result).dump(2) + "\n");
-  if (!result.converged) print_error(result.message);
-  return result.converged ? kDone : kNumbersDidNotWorkOut;
+  print_translation(start.translation, options);
+  if (!arguments.block_time_plot.empty()) plot_block_time(runs, arguments, options);
+  if (!runs.stretches.empty()) return fit_to_times(runs, start, arguments, options);
+  const FitFeedResult result = calib::fit_feed(runs.servo, start, {});
+  const int status = finish(result, result.machine, arguments, options);
+  if (arguments.leave_one_out) print(calib::leave_one_out(runs.servo, start, {}));
+  return status;
 }
 
 }  // namespace camber::cli

@@ -10,9 +10,12 @@ namespace camber::cli {
 
 struct FitFeedArguments {
   std::vector<std::string> programs, traces;  ///< as many of one as of the other
+  std::string columns;                        ///< column map; empty: our CSV
   std::string machine;
-  std::string output;  ///< fitted.toml
-  std::string json;    ///< empty: none
+  std::string output;           ///< fitted.toml
+  std::string json;             ///< empty: none
+  std::string block_time_plot;  ///< empty: none
+  bool leave_one_out = false;   ///< judge each servo trace by a fit on the others as well
   nc::InterpreterOptions interpreter;
 };
 

@@ -9,6 +9,7 @@
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "feedmodel/feed_csv.h"
+#include "feedmodel/fitted_range.h"
 #include "nc/interpreter.h"
 #include "report/forces_csv.h"
 #include "report/report_data.h"
@@ -56,7 +57,9 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
     const auto original = deflection::machine_program(SourceText::read(job.part.program), job, {}, of_target);
     return deflection::make_target(job, original, diagnostics);
   }();
+  feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
   settle(diagnostics, options);
+  print_translation(job.machine.translation, options);
   const fs::path folder = make_folder(arguments.output_folder);
 
   ProgressLine progress(options);

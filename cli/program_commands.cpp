@@ -10,6 +10,7 @@
 #include "cli/console.h"
 #include "cli/feed_command.h"
 #include "cli/fit_feed_command.h"
+#include "cli/protocol_command.h"
 #include "cli/time_command.h"
 #include "machine/machine.h"
 
@@ -155,14 +156,24 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->expected(1)
       ->take_all()
       ->type_name("P.nc");
-  command->add_option("--trace", arguments->traces, "what the axes did")
+  command
+      ->add_option("--trace", arguments->traces,
+                   "what the machine did: servo trace, MTConnect log or table of stretch times")
       ->required()
       ->expected(1)
       ->take_all()
-      ->type_name("T.csv");
+      ->type_name("T");
+  command
+      ->add_option("--columns", arguments->columns, "what the columns of the servo traces are, where they are not ours")
+      ->type_name("C.toml");
   command->add_option("--machine", arguments->machine, "machine to start from")->required()->type_name("M.toml");
   command->add_option("-o,--output", arguments->output, "the fitted machine")->required()->type_name("fitted.toml");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  command
+      ->add_option("--block-time-plot", arguments->block_time_plot, "speed against block length of the saturated runs")
+      ->type_name("P.svg");
+  command->add_flag("--leave-one-out", arguments->leave_one_out,
+                    "predict each servo trace by a fit on the others as well (takes a fit for each)");
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     if (arguments->programs.size() != arguments->traces.size())
@@ -178,6 +189,19 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   });
 }
 
+void add_protocol(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("protocol", "programs to run on a machine so that fit-feed has what it needs");
+  auto arguments = std::make_shared<ProtocolArguments>();
+  command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
+  command->add_option("-o,--output", arguments->folder, "folder for the programs")->required()->type_name("DIR");
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      if (options.effective_config) return print_effective_machine(arguments->machine, options);
+      return run_protocol(*arguments, options);
+    };
+  });
+}
+
 }  // namespace
 
 void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& chosen) {
@@ -185,6 +209,7 @@ void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& c
   add_feed(app, options, chosen);
   add_time(app, options, chosen);
   add_fit_feed(app, options, chosen);
+  add_protocol(app, options, chosen);
 }
 
 }  // namespace camber::cli

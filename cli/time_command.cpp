@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/time_report.h"
 #include "feedmodel/control_options.h"
+#include "feedmodel/fitted_range.h"
 #include "machine/cases.h"
 #include "machine/set_number.h"
 #include "nc/program.h"
@@ -25,10 +26,11 @@ constexpr std::size_t kMostPoints = 10000;
 nc::Interpretation read_moves(const std::string& path, const machine::Machine& machine, const TimeArguments& arguments,
                               Diagnostics& diagnostics) {
   const nc::Program program = nc::read_program(SourceText::read(path), diagnostics);
-  nc::InterpreterOptions options = feedmodel::interpreter_options(machine, arguments.interpreter.inch);
-  options.skip_slash_blocks = arguments.interpreter.skip_slash_blocks;
+  nc::InterpreterOptions options = feedmodel::interpreter_options(machine, arguments.interpreter);
   options.index_table = machine.index.present;
-  return nc::interpret(program, options, diagnostics);
+  nc::Interpretation moves = nc::interpret(program, options, diagnostics);
+  feedmodel::check_range(moves, path, machine, diagnostics);
+  return moves;
 }
 
 report::CycleRow row_of(std::string name, std::vector<double> values, const nc::Interpretation& moves,

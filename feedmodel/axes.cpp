@@ -32,15 +32,23 @@ Axes::Axes(const machine::Machine& machine, const Vec3& start_mm) {
                                    .velocity_lag_s = axis.velocity_lag_s,
                                    .feed_forward_percent = axis.feed_forward_percent,
                                    .period_s = period};
-    axes_[i].emplace(Axis{AxisFilter(window, start_mm[i]), PositionLoop(loop, start_mm[i])});
+    const auto lag_of = [&](double time_s) {
+      return PositionLoop({.gain_per_s = time_s > 0 ? 1.0 / time_s : machine::kNoLimit, .period_s = period},
+                          start_mm[i]);
+    };
+    axes_[i].emplace(Axis{AxisFilter(window, start_mm[i]), lag_of(axis.exponential_1_s), lag_of(axis.exponential_2_s),
+                          PositionLoop(loop, start_mm[i])});
     const double lag = std::isinf(axis.position_gain_per_s) ? 0.0 : 1.0 / axis.position_gain_per_s;
-    settling_time_s_ = std::max(settling_time_s_, filters[i] + kSettlingFoldings * (lag + axis.velocity_lag_s));
+    settling_time_s_ = std::max(
+        settling_time_s_,
+        filters[i] + kSettlingFoldings * (lag + axis.velocity_lag_s + axis.exponential_1_s + axis.exponential_2_s));
   }
 }
 
 Vec3 Axes::operator()(const Vec3& command_mm) {
   Vec3 position;
-  for (int i = 0; i < 3; ++i) position[i] = axes_[i]->loop(axes_[i]->filter(command_mm[i]));
+  for (int i = 0; i < 3; ++i)
+    position[i] = axes_[i]->loop(axes_[i]->exponential_2(axes_[i]->exponential_1(axes_[i]->filter(command_mm[i]))));
   return position;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// From commanded to actual position, axis by axis: filter, then position loop.
+// From commanded to actual position, axis by axis: filter, exponential lags, position loop.
 #include <array>
 #include <optional>
 
@@ -28,6 +28,7 @@ class Axes {
  private:
   struct Axis {
     AxisFilter filter;
+    PositionLoop exponential_1, exponential_2;  ///< first-order lags: loops with a gain of 1 / T
     PositionLoop loop;
   };
   std::array<std::optional<Axis>, 3> axes_;

@@ -36,14 +36,14 @@ std::optional<Blend> blend_corner(const Vec3& from, const Vec3& to, const BlendO
   const double half = (kPi - blend.turn_rad) / 2.0;
   const double by_tolerance = options.tolerance_mm / (1.0 / std::sin(half) - 1.0);
   const double by_room = options.room_mm * std::tan(half);
-  const double largest = std::min(by_tolerance, by_room);
   blend.acceleration_mm_per_s2 = limit_in_plane(normal, options.acceleration_mm_per_s2);
   const double goal = std::min(options.goal_speed_mm_per_s, limit_in_plane(normal, options.velocity_mm_per_s));
-  blend.speed_mm_per_s = std::min(goal, arc_speed(largest, blend.acceleration_mm_per_s2, options.normal_share));
-  blend.radius_mm =
-      std::isinf(blend.acceleration_mm_per_s2)
-          ? 0.0
-          : blend.speed_mm_per_s * blend.speed_mm_per_s / (options.normal_share * blend.acceleration_mm_per_s2);
+  const double by_goal = goal * goal / (blend.acceleration_mm_per_s2 * std::cos(half));
+  blend.radius_mm = std::min({by_tolerance, by_room, by_goal});
+  blend.speed_mm_per_s = std::min(goal, arc_speed(blend.radius_mm, blend.acceleration_mm_per_s2, options.normal_share));
+  if (std::isinf(blend.acceleration_mm_per_s2))
+    blend = {
+        .turn_rad = blend.turn_rad, .speed_mm_per_s = goal, .acceleration_mm_per_s2 = blend.acceleration_mm_per_s2};
   blend.trim_mm = blend.radius_mm / std::tan(half);
   return blend;
 }

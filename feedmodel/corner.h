@@ -28,15 +28,15 @@ struct Blend {
 struct BlendOptions {
   double tolerance_mm = 0;         ///< largest distance between the arc and the corner; infinite: only the room counts
   double room_mm = 0;              ///< most that may be cut off each side
-  double goal_speed_mm_per_s = 0;  ///< no faster than this
+  double goal_speed_mm_per_s = 0;  ///< programmed; no faster than this
   double normal_share = 1;         ///< of the plane's acceleration that turns the motion
   Vec3 velocity_mm_per_s, acceleration_mm_per_s2;  ///< of the axes
 };
 
 /// With the half angle h between the sides (turn = pi - 2h), an arc of radius R touches at R / tan h from the
-/// corner and passes it at R (1/sin h - 1). The largest R that the tolerance and the room allow gives the speed
-/// sqrt(share a R); where the goal is lower, the arc is made no larger than the goal needs: R = v^2 / (share a).
-/// Nothing for directions that agree or are opposite.
+/// corner and passes it at R (1/sin h - 1). R is the largest that the tolerance and the room allow, and no larger than
+/// the goal v asks for: R <= v^2 / (a cos h), so that each side loses at most v^2 / (a sin h). The speed is
+/// sqrt(share a R), the goal at most. Nothing for directions that agree or are opposite.
 /// Source: LinuxCNC's G64 P corners as its traces show them (docs/feed-model.md).
 std::optional<Blend> blend_corner(const Vec3& from, const Vec3& to, const BlendOptions& options);
 

@@ -53,6 +53,10 @@ double ExponentialRamp::time_of(double distance_mm) const {
   return t;
 }
 
+double ExponentialRamp::approximate_time_of(double distance_mm) const {
+  return distance_mm / command_mm_per_s + (1 - start_mm_per_s / command_mm_per_s) * (t1_s + t2_s);
+}
+
 double exponential_rest_to_rest_s(double distance_mm, double feed_mm_per_s, double t1_s, double t2_s) {
   return ExponentialRamp{0, feed_mm_per_s, t1_s, t2_s}.time_of(distance_mm) + t1_s + t2_s;
 }

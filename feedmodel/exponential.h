@@ -16,6 +16,8 @@ struct ExponentialRamp {
   double distance_at(double t_s) const;
   /// The time at which the distance is covered, exact to 1e-12 s. Infinite where it is never covered (F = 0).
   double time_of(double distance_mm) const;
+  /// The same as the printed model has it, once the lags have died out: d/F + (1 - f_s/F)(T1 + T2).
+  double approximate_time_of(double distance_mm) const;
 };
 
 /// From rest to rest: the ramp's time and T1 + T2 for the stop, d/F + 2 (T1 + T2) on a long block.

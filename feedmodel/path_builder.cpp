@@ -27,7 +27,6 @@ constexpr double kNoLength = 1e-9;
 /// One block (or run of merged blocks) before its ends are rounded.
 struct Element {
   Segment segment;
-  double top_speed_mm_per_s = 0;  ///< whatever the feed: of the axes and the block time
   bool line = true;
   nc::PathControl control = nc::PathControl::blend;
   double tolerance_mm = 0;
@@ -41,6 +40,7 @@ struct Element {
 struct Junction {
   double speed_mm_per_s = 0;
   double less_share = 0;
+  double wait_s = 0;  ///< at a stop
   std::optional<Blend> blend;
 };
 
@@ -57,10 +57,12 @@ double axis_speed_limit(const Segment& s, const Vec3& velocity) {
 void set_arc_limits(Segment& s, const Vec3& acceleration, const machine::Control& control) {
   const Vec3 normal = s.along.cross(s.across);
   const double in_plane = s.radius_mm * s.turn_rad_per_mm;
-  const double a = std::min(limit_in_plane(normal, acceleration) / in_plane, limit_along(s.rise, acceleration));
+  const double plane = std::min(limit_in_plane(normal, acceleration), control.path_acceleration_mm_per_s2);
+  const double a = std::min({limit_in_plane(normal, acceleration) / in_plane, limit_along(s.rise, acceleration),
+                             control.path_acceleration_mm_per_s2});
   const double rise_per_rad = s.rise.norm() / s.turn_rad_per_mm;
   const double curvature_radius = helix_curvature_radius(s.radius_mm, rise_per_rad);
-  const double turning = arc_speed(curvature_radius, limit_in_plane(normal, acceleration), control.arc_normal_share);
+  const double turning = arc_speed(curvature_radius, plane, control.arc_normal_share);
   double share = control.arc_tangential_share;
   if (s.speed_limit_mm_per_s < turning && !std::isinf(a)) {
     const double used = s.speed_limit_mm_per_s * s.speed_limit_mm_per_s / (curvature_radius * a);
@@ -142,7 +144,7 @@ class Builder {
     Segment& s = e.segment;
     s.speed_limit_mm_per_s = axis_speed_limit(s, velocity_);
     if (s.radius_mm == 0) {
-      s.acceleration_mm_per_s2 = limit_along(s.along, acceleration_);
+      s.acceleration_mm_per_s2 = std::min(limit_along(s.along, acceleration_), control_.path_acceleration_mm_per_s2);
       if (move.kind == nc::MoveKind::linear)
         s.acceleration_mm_per_s2 = std::min(s.acceleration_mm_per_s2, options_.linear_acceleration_mm_per_s2);
     } else {
@@ -153,7 +155,6 @@ class Builder {
     const double feed = move.feed_mm_per_s * options_.feed_factor;
     s.feed_command_mm_per_s = s.cutting ? feed : s.speed_limit_mm_per_s;
     s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, block_time_speed(s.length_mm, control_.block_time_s));
-    e.top_speed_mm_per_s = s.speed_limit_mm_per_s;
     if (s.cutting) s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, feed);
   }
 
@@ -167,6 +168,9 @@ class Builder {
     Vec3 permitted = Vec3::Zero();
     if (share > 0) permitted = share * arc_factor * control_.period_s * acceleration_;
     j.speed_mm_per_s = speed_difference_limit(from, to, permitted);
+    // A step that is less than what the path gains in a period is none: the control stops and starts anew.
+    const double least = std::min(a.segment.acceleration_mm_per_s2, b.segment.acceleration_mm_per_s2);
+    if (j.speed_mm_per_s < least * control_.period_s) j.speed_mm_per_s = 0;
     const double reference = std::min(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s);
     j.less_share = share * (j.speed_mm_per_s > reference ? reference / j.speed_mm_per_s : 1.0);
     return j;
@@ -178,23 +182,33 @@ class Builder {
     options.tolerance_mm = std::min(a.tolerance_mm, b.tolerance_mm);
     if (std::isinf(options.tolerance_mm)) options.tolerance_mm = kOpenToleranceShare * shorter;
     options.room_mm = std::min(kBlendRoomShare * shorter, a.segment.length_mm - a.from_s);
-    options.goal_speed_mm_per_s = std::max(a.top_speed_mm_per_s, b.top_speed_mm_per_s);
+    options.goal_speed_mm_per_s = std::max(a.segment.feed_command_mm_per_s, b.segment.feed_command_mm_per_s);
     options.normal_share = control_.arc_normal_share;
     options.velocity_mm_per_s = velocity_;
-    options.acceleration_mm_per_s2 = acceleration_;
+    options.acceleration_mm_per_s2 = acceleration_.cwiseMin(control_.path_acceleration_mm_per_s2);
     Junction j;
     j.blend = blend_corner(from, to, options);
-    if (j.blend) j.speed_mm_per_s = j.blend->speed_mm_per_s;
+    if (j.blend)
+      j.speed_mm_per_s = j.blend->speed_mm_per_s =
+          std::min(j.blend->speed_mm_per_s, std::max(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s));
+    return j;
+  }
+
+  static Junction stop(double wait_s) {
+    Junction j;
+    j.wait_s = wait_s;
     return j;
   }
 
   Junction junction(const Element& a, const Element& b) const {
     const Vec3 from = a.segment.direction_at(a.segment.length_mm), to = b.segment.direction_at(0);
-    if (from.dot(to) < -1.0 + kReversal) return {};
+    if (control_.rapid_change_s > 0 && a.segment.cutting != b.segment.cutting) return stop(control_.rapid_change_s);
+    if (from.dot(to) < -1.0 + kReversal) return stop(control_.corner.stop_time_s);
     if (control_.dialect == machine::Dialect::linuxcnc && a.segment.cutting != b.segment.cutting) return {};
     if (options_.rest_at_rapids && !(a.segment.cutting && b.segment.cutting)) return {};
     if (a.stops || a.control == nc::PathControl::exact_stop) return {};
     const machine::Corner& corner = control_.corner;
+    if (from.dot(to) < std::cos(std::min(corner.stop_angle_rad, kPi))) return stop(corner.stop_time_s);
     const bool exact = a.control == nc::PathControl::exact_path || b.control == nc::PathControl::exact_path;
     if (exact) return step_junction(a, b, from, to);
     Junction j;
@@ -225,6 +239,17 @@ class Builder {
     } else {
       emit(a, a.segment.length_mm, a.segment.acceleration_mm_per_s2 * (1.0 - a.less_share));
     }
+    if (j.wait_s > 0) wait(j.wait_s, a.segment);
+  }
+
+  /// A stop within the path that lasts.
+  void wait(double wait_s, const Segment& after) {
+    Segment s;
+    s.start_mm = after.point_at(after.length_mm);
+    s.dwell_s = wait_s;
+    s.move = after.move;
+    s.cutting = after.cutting;
+    sink_(s);
   }
 
   void emit_with_blend(Element& a, Element& b, const Blend& blend) {

@@ -47,7 +47,8 @@ PathPlace closest_on_move(const nc::Interpretation& program, std::uint32_t index
 
 PathPlace PathTracker::search_all(const TimedSample& sample, PathPlace best) const {
   for (std::uint32_t move = place_.move; move <= sample.move; ++move) {
-    const PathPlace here = closest_on_move(program_, move, sample.position_mm, move == place_.move ? place_.u : 0.0, 1.0);
+    const PathPlace here =
+        closest_on_move(program_, move, sample.position_mm, move == place_.move ? place_.u : 0.0, 1.0);
     if (here.distance_mm < best.distance_mm - kNearerMm) best = here;
   }
   return best;

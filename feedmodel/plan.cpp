@@ -7,16 +7,22 @@
 
 namespace camber::feedmodel {
 
+namespace {
+
+PlanRow row_of(const Segment& s) {
+  return {.length_mm = s.length_mm,
+          .speed_limit_mm_per_s = s.speed_limit_mm_per_s,
+          .acceleration_mm_per_s2 = s.acceleration_mm_per_s2,
+          .planned_share = s.planned_share,
+          .joined = s.joined,
+          .entry_speed_mm_per_s = s.entry_limit_mm_per_s};
+}
+
+}  // namespace
+
 std::vector<PlanRow> plan_path(const nc::Interpretation& program, const machine::Machine& machine) {
   std::vector<PlanRow> rows;
-  build_segments(program, machine, [&](const Segment& s) {
-    rows.push_back({.length_mm = s.length_mm,
-                    .speed_limit_mm_per_s = s.speed_limit_mm_per_s,
-                    .acceleration_mm_per_s2 = s.acceleration_mm_per_s2,
-                    .planned_share = s.planned_share,
-                    .joined = s.joined,
-                    .entry_speed_mm_per_s = s.entry_limit_mm_per_s});
-  });
+  build_segments(program, machine, [&](const Segment& s) { rows.push_back(row_of(s)); });
   plan_speeds(rows, static_cast<std::size_t>(std::max(0, machine.control.lookahead_blocks)));
   return rows;
 }
@@ -30,25 +36,26 @@ Trapezoid profile_of(const std::vector<PlanRow>& rows, std::size_t i) {
 double PlanClock::begin(const Trapezoid& profile) {
   const bool from_rest = profile.length > 0 && profile.entry < profile.acceleration * period_s_;
   if (from_rest && now_s_ > 0 && std::isfinite(profile.acceleration))
-    now_s_ = (std::ceil(now_s_ / period_s_ - 1e-9) + 0.5) * period_s_;
+    now_s_ = std::ceil(now_s_ / period_s_ - 1e-9) * period_s_;
   return now_s_;
 }
 
 std::vector<SegmentTime> segment_times(const nc::Interpretation& program, const machine::Machine& machine) {
-  const std::vector<PlanRow> rows = plan_path(program, machine);
+  std::vector<PlanRow> rows;
   std::vector<SegmentTime> times;
-  times.reserve(rows.size());
-  PlanClock clock(machine.control.period_s);
-  build_segments(program, machine, [&](const Segment& segment) {
-    const Trapezoid profile = profile_of(rows, times.size());
-    SegmentTime time;
-    time.move = segment.move;
-    time.rest = segment.length_mm == 0;
-    time.start_s = clock.begin(profile);
-    time.duration_s = time.rest ? segment.dwell_s : profile.duration_s();
-    clock.advance(time.duration_s);
-    times.push_back(time);
+  build_segments(program, machine, [&](const Segment& s) {
+    rows.push_back(row_of(s));
+    times.push_back({.move = s.move, .rest = s.length_mm == 0, .start_s = 0, .duration_s = s.dwell_s});
   });
+  plan_speeds(rows, static_cast<std::size_t>(std::max(0, machine.control.lookahead_blocks)));
+  PlanClock clock(machine.control.period_s);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Trapezoid profile = profile_of(rows, i);
+    SegmentTime& time = times[i];
+    time.start_s = clock.begin(profile);
+    if (!time.rest) time.duration_s = profile.duration_s();
+    clock.advance(time.duration_s);
+  }
   return times;
 }
 

@@ -22,8 +22,8 @@ class PlanClock {
  public:
   explicit PlanClock(double period_s) : period_s_(period_s) {}
 
-  /// Start of a segment that begins now. A start from (almost) rest waits for the next period of the control,
-  /// and the period in which it stopped is on average half empty: a stop costs one period.
+  /// Start of a segment that begins now. A start from (almost) rest waits for the next period of the control:
+  /// from stop to stop a block lasts whole periods.
   double begin(const Trapezoid& profile);
   void advance(double duration_s) { now_s_ += duration_s; }
   double now_s() const { return now_s_; }

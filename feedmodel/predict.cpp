@@ -94,7 +94,7 @@ FeedSummary predict_feed(const nc::Interpretation& program, const machine::Machi
   std::size_t i = 0;
   build_segments(program, machine, [&](const Segment& segment) {
     const Trapezoid profile = profile_of(rows, i++);
-    if (segment.cutting) summary.cutting_time_s += profile.duration_s();
+    if (segment.cutting) summary.cutting_time_s += segment.length_mm > 0 ? profile.duration_s() : segment.dwell_s;
     sampler.pass(segment, profile);
   });
   summary.time_s = sampler.time_s();

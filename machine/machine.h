@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "machine/cycle.h"
@@ -29,6 +30,8 @@ struct Corner {
   double step_share = 0;
   /// A line that lasts less than this between two roundings is driven with the limits of the roundings.
   double short_line_time_s = 0;
+  double stop_angle_rad = kNoLimit;  ///< corners that turn by more are stopped at, whatever the law
+  double stop_time_s = 0;            ///< such a stop lasts this long
 };
 
 struct Control {
@@ -44,6 +47,10 @@ struct Control {
   /// look-ahead plans how fast that block may be entered.
   double stop_acceleration_share = 1;
   double rest_latency_s = 0;  ///< a rest (dwell) takes this much longer than programmed
+  /// Along the path, beside what the axes allow (before interpolation).
+  double path_acceleration_mm_per_s2 = kNoLimit;
+  /// Between rapid and feed moves it stops and waits so long (until the axes are in position); 0: no stop asked for.
+  double rapid_change_s = 0;
 };
 
 struct Axis {
@@ -53,10 +60,19 @@ struct Axis {
   double rapid_acceleration_mm_per_s2 = kNoLimit;  ///< of G0; infinity: the same as acceleration
   double jerk_mm_per_s3 = kNoLimit;
   double filter_s = 0;                      ///< moving average after interpolation; 0: none
+  double exponential_1_s = 0, exponential_2_s = 0;  ///< first-order lags after interpolation (Yan & Shirase); 0: none
   double position_gain_per_s = kNoLimit;    ///< Kp of the position loop; infinity: no lag
   double velocity_lag_s = 0;                ///< time constant of the velocity loop inside the position loop
   double feed_forward_percent = 0;
   std::array<double, 2> travel_mm{-kNoLimit, kNoLimit};
+};
+
+/// What the programs held that a model was fitted on; beyond it the model is a guess. [least, greatest].
+struct FittedRange {
+  bool known = false;
+  std::array<double, 2> feed_mm_per_s{}, corner_rad{}, line_mm{}, arc_radius_mm{};
+  std::array<double, 2> blocks_per_s{};  ///< at the programmed feed, over eight blocks in a row
+  std::array<bool, 3> axis{};  ///< x, y, z moved
 };
 
 struct Spindle {
@@ -76,6 +92,8 @@ struct Machine {
   Cycle cycle;
   ToolChange tool_change;
   IndexTable index;
+  FittedRange fitted_range;
+  std::vector<std::string> translation;  ///< of [source]: a line for each native parameter
 };
 
 /// Throws InputError with file:line:column for unknown keys, wrong types and values out of range.

@@ -13,6 +13,7 @@ inline constexpr std::array<std::string_view, 4> kCornerLawWords{"speed_differen
 inline constexpr std::array<std::string_view, 3> kAxisNames{"x", "y", "z"};
 
 inline constexpr NumberRange kShare{.min = 0, .max = 1, .above_min = true};
+inline constexpr NumberRange kArcShare{.min = 0, .max = 100, .above_min = true};
 inline constexpr NumberRange kPeriodMs{.min = 0, .max = 1000, .above_min = true};
 inline constexpr NumberRange kPercent{.min = 0, .max = 100};
 inline constexpr NumberRange kBlockCount{.min = 0, .max = 1e6, .whole = true};
@@ -21,10 +22,12 @@ inline constexpr std::array kControlKeys{
     NumberKey<Control>{"period_ms", &Control::period_s, kPeriodMs, kMilliseconds},
     NumberKey<Control>{"block_time_ms", &Control::block_time_s, kNotNegative, kMilliseconds},
     NumberKey<Control>{"merge_tolerance_mm", &Control::merge_tolerance_mm, kNotNegative},
-    NumberKey<Control>{"arc_normal_share", &Control::arc_normal_share, kShare},
+    NumberKey<Control>{"arc_normal_share", &Control::arc_normal_share, kArcShare},
     NumberKey<Control>{"arc_tangential_share", &Control::arc_tangential_share, kShare},
     NumberKey<Control>{"rest_latency_ms", &Control::rest_latency_s, kNotNegative, kMilliseconds},
     NumberKey<Control>{"stop_acceleration_share", &Control::stop_acceleration_share, kShare},
+    NumberKey<Control>{"path_acceleration_mm_per_s2", &Control::path_acceleration_mm_per_s2, kPositiveOrInf},
+    NumberKey<Control>{"rapid_change_ms", &Control::rapid_change_s, kNotNegative, kMilliseconds},
 };
 
 inline constexpr std::array kCornerKeys{
@@ -33,6 +36,8 @@ inline constexpr std::array kCornerKeys{
     NumberKey<Corner>{"time_ms", &Corner::time_s, kNotNegative, kMilliseconds},
     NumberKey<Corner>{"step_share", &Corner::step_share, kNotNegative},
     NumberKey<Corner>{"short_line_time_ms", &Corner::short_line_time_s, kNotNegative, kMilliseconds},
+    NumberKey<Corner>{"stop_angle_degrees", &Corner::stop_angle_rad, kPositiveOrInf, kDegrees},
+    NumberKey<Corner>{"stop_time_ms", &Corner::stop_time_s, kNotNegative, kMilliseconds},
 };
 
 inline constexpr std::array kAxisKeys{
@@ -40,6 +45,8 @@ inline constexpr std::array kAxisKeys{
     NumberKey<Axis>{"acceleration_mm_per_s2", &Axis::acceleration_mm_per_s2, kPositiveOrInf},
     NumberKey<Axis>{"jerk_mm_per_s3", &Axis::jerk_mm_per_s3, kPositiveOrInf},
     NumberKey<Axis>{"filter_ms", &Axis::filter_s, kNotNegative, kMilliseconds},
+    NumberKey<Axis>{"exponential_1_ms", &Axis::exponential_1_s, kNotNegative, kMilliseconds},
+    NumberKey<Axis>{"exponential_2_ms", &Axis::exponential_2_s, kNotNegative, kMilliseconds},
     NumberKey<Axis>{"position_gain_per_s", &Axis::position_gain_per_s, kPositiveOrInf},
     NumberKey<Axis>{"velocity_lag_ms", &Axis::velocity_lag_s, kNotNegative, kMilliseconds},
     NumberKey<Axis>{"feed_forward_percent", &Axis::feed_forward_percent, kPercent},

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "machine/machine_keys.h"
+#include "machine/source_parameters.h"
 
 namespace camber::machine {
 namespace {
@@ -90,6 +91,30 @@ void read_cycle(TomlTable table, Cycle& cycle) {
   table.finish();
 }
 
+/// Two numbers, the second not the smaller one; without the key both are 0 (nothing of the kind was seen).
+void read_range(TomlTable& table, std::string_view key, const FileUnit& unit, std::array<double, 2>& range) {
+  const auto numbers = table.numbers(key, 2, kNotNegativeOrInf, "[least, greatest]");
+  if (!numbers) return;
+  range = {unit.inside_from_file((*numbers)[0]), unit.inside_from_file((*numbers)[1])};
+  if (range[0] > range[1])
+    table.error_at(key,
+                   fmt::format("{} goes from {} to {}; the second must not be less than the first", key, (*numbers)[0],
+                               (*numbers)[1]),
+                   "value-range");
+}
+
+void read_fitted_range(TomlTable table, FittedRange& range) {
+  range.known = true;
+  read_range(table, "feed_mm_per_min", kPerMinute, range.feed_mm_per_s);
+  read_range(table, "corner_degrees", kDegrees, range.corner_rad);
+  read_range(table, "line_mm", kAsIs, range.line_mm);
+  read_range(table, "arc_radius_mm", kAsIs, range.arc_radius_mm);
+  read_range(table, "blocks_per_s", kAsIs, range.blocks_per_s);
+  const std::string axes = table.text("axes", "xyz");
+  for (std::size_t i = 0; i < range.axis.size(); ++i) range.axis[i] = axes.find(kAxisNames[i]) != std::string::npos;
+  table.finish();
+}
+
 }  // namespace
 
 Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
@@ -98,6 +123,7 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
   const auto file = read_toml(path, "a machine description ([control], [axis.x] ...)", diagnostics);
   diagnostics.throw_if_errors();
   TomlTable top = TomlTable::top(*file, diagnostics);
+  if (auto source = top.table("source")) read_source(*source, machine);
   if (auto control = top.table("control")) read_control(*control, machine.control);
   if (auto axes = top.table("axis")) read_axes(*axes, machine.axis);
   if (auto spindle = top.table("spindle")) read_spindle(*spindle, machine.spindle);
@@ -112,6 +138,7 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
     read_numbers<IndexTable>(*index, kIndexKeys, machine.index);
     index->finish();
   }
+  if (auto range = top.table("fitted_range")) read_fitted_range(*range, machine.fitted_range);
   top.finish();
   diagnostics.throw_if_errors();
   return machine;

@@ -13,7 +13,8 @@ std::string corner_text(const Corner& corner) {
     const bool of_this_law = (corner.law == CornerLaw::blend && k.key == "tolerance_mm") ||
                              (corner.law == CornerLaw::angle && k.key == "time_ms") ||
                              (corner.law == CornerLaw::speed_difference && k.key == "speed_difference_mm_per_min");
-    const bool of_no_law = k.key == "step_share" || k.key == "short_line_time_ms";
+    const bool of_no_law = k.key == "step_share" || k.key == "short_line_time_ms" || k.key == "stop_angle_degrees" ||
+                           k.key == "stop_time_ms";
     if (of_this_law || (of_no_law && corner.*k.field != defaults.*k.field))
       out += fmt::format(", {} = {}", k.key, toml_number(corner.*k.field, k.unit));
   }
@@ -33,6 +34,21 @@ std::string cycle_text(const Cycle& cycle) {
   return out + toml_lines<Cycle>(kCycleKeys, cycle);
 }
 
+std::string range_text(std::string_view key, const std::array<double, 2>& range, const FileUnit& unit) {
+  return fmt::format("{} = [{}, {}]\n", key, toml_number(range[0], unit), toml_number(range[1], unit));
+}
+
+std::string fitted_range_text(const FittedRange& r) {
+  if (!r.known) return {};
+  std::string axes;
+  for (std::size_t i = 0; i < r.axis.size(); ++i)
+    if (r.axis[i]) axes += kAxisNames[i];
+  return "\n[fitted_range]\n" + range_text("feed_mm_per_min", r.feed_mm_per_s, kPerMinute) +
+         range_text("corner_degrees", r.corner_rad, kDegrees) + range_text("line_mm", r.line_mm, kAsIs) +
+         range_text("arc_radius_mm", r.arc_radius_mm, kAsIs) + range_text("blocks_per_s", r.blocks_per_s, kAsIs) +
+         toml_line("axes", axes);
+}
+
 }  // namespace
 
 std::string to_toml(const Machine& machine) {
@@ -46,6 +62,7 @@ std::string to_toml(const Machine& machine) {
   out += cycle_text(machine.cycle);
   out += "\n[tool_change]\n" + toml_lines<ToolChange>(kToolChangeKeys, machine.tool_change);
   if (machine.index.present) out += "\n[index]\n" + toml_lines<IndexTable>(kIndexKeys, machine.index);
+  out += fitted_range_text(machine.fitted_range);
   return out;
 }
 

@@ -219,6 +219,11 @@ std::optional<std::size_t> TomlTable::required_choice(std::string_view key, std:
   return at < words.size() ? std::optional(at) : std::nullopt;
 }
 
+bool TomlTable::is_list(std::string_view key) const {
+  const auto* entry = find(key);
+  return entry && entry->value.kind == TomlNode::Kind::array;
+}
+
 std::optional<std::vector<double>> TomlTable::number_list(std::string_view key, const NumberRange& range,
                                                           std::string_view wanted) {
   const auto* value = use(key);

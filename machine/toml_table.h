@@ -74,6 +74,7 @@ class TomlTable {
   static TomlTable top(const TomlFile& file, Diagnostics& diagnostics);
 
   bool has(std::string_view key) const { return find(key) != nullptr; }
+  bool is_list(std::string_view key) const;
   double number(std::string_view key, const NumberRange& range, double fallback);
   double required_number(std::string_view key, const NumberRange& range);
   std::optional<double> optional_number(std::string_view key, const NumberRange& range);

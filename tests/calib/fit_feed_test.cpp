@@ -9,68 +9,16 @@
 #include "feedmodel/timed_path.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
+#include "tests/support/feed_runs.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_program.h"
 
 namespace camber::calib {
 namespace {
 
-machine::Machine known_machine() {
-  machine::Machine m;
-  m.control.dialect = machine::Dialect::linuxcnc;
-  m.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01, .step_share = 0.1};
-  m.control.arc_normal_share = 0.8;
-  m.control.arc_tangential_share = 0.6;
-  m.control.stop_acceleration_share = 0.5;
-  const double acceleration[] = {900, 700, 450}, gain[] = {25, 35, 45}, lag[] = {0.002, 0.004, 0.006};
-  for (int i = 0; i < 3; ++i) {
-    m.axis[i].acceleration_mm_per_s2 = acceleration[i];
-    m.axis[i].position_gain_per_s = gain[i];
-    m.axis[i].velocity_lag_s = lag[i];
-  }
-  return m;
-}
-
-/// Figures in three planes, each from rest to rest at the origin.
-nc::Interpretation figures() {
-  tests::TestProgram p;
-  for (double feed : {1000.0, 3000.0, 6000.0}) {
-    for (double side : {2.0, 7.0}) {
-      p.line(side, 0, 0, feed).line(side, side, 0, feed).line(0, side, 0, feed).line(0, 0, 0, feed).dwell(0.1);
-      p.line(0, side, 0, feed).line(0, side, side, feed).line(0, 0, side, feed).line(0, 0, 0, feed).dwell(0.1);
-      p.line(side, 0, 0, feed).line(side / 2, 0, side, feed).line(0, 0, 0, feed).dwell(0.1);
-      p.line(side, 0, 0, feed).arc_xy(side, 2, side, 1, kPi, feed).line(0, 2, 0, feed).line(0, 0, 0, feed).dwell(0.1);
-    }
-  }
-  p.new_state().path_control = nc::PathControl::exact_path;
-  for (double turn : {0.1, 0.3, 0.6}) {
-    double angle = 0;
-    Vec3 at = Vec3::Zero();
-    for (int i = 0; i < 8; ++i) {
-      at += Vec3(std::cos(angle), std::sin(angle), 0);
-      angle += turn;
-      p.line(at.x(), at.y(), 0, 3000);
-    }
-    p.dwell(0.1).line(0, 0, 0, 3000).dwell(0.1);
-  }
-  return p.program;
-}
-
-FeedRun synthetic_run(const machine::Machine& machine) {
-  FeedRun run{"figures", figures(), {}};
-  run.trace.period_s = machine.control.period_s;
-  run.trace.has_command = run.trace.has_actual = {true, true, true};
-  feedmodel::predict_feed(run.program, machine, [&](std::span<const feedmodel::TimedSample> samples) {
-    for (const feedmodel::TimedSample& s : samples) {
-      run.trace.t_s.push_back(s.t_s);
-      run.trace.command_mm.push_back(s.command_mm);
-      run.trace.actual_mm.push_back(s.position_mm);
-      run.trace.line.push_back(s.feed_command_mm_per_s > 0 ? run.program.moves[s.move].block + 1 : 0);
-    }
-  });
-  run.trace.stretches = {{0, run.trace.t_s.size()}};
-  return run;
-}
+using tests::figures;
+using tests::known_machine;
+using tests::synthetic_run;
 
 double value_of(const FitFeedResult& result, const std::string& name) {
   for (const FitParameter& p : result.parameters)
@@ -145,7 +93,8 @@ FeedRun real_run(const tests::TempFolder& folder, const std::string& name) {
   return run;
 }
 
-/// The targets of the project: whole-program time within 1 %, path speed within 5 % of the feed (rms).
+/// Fitted on all seven (bench/feed/held-out predicts each by a fit on the others). dense_g64 has five parts, of which
+/// one is 3 % off.
 TEST(FitFeedSlow, PredictsTheTracedControl) {
   std::string data = CAMBER_SHARED_DATA_DIR;
   data += "/linuxcnc/programs/";
@@ -163,7 +112,9 @@ TEST(FitFeedSlow, PredictsTheTracedControl) {
         name.c_str(), a.time_trace_s, a.time_model_s, a.time_error_percent, a.part_time_error_percent,
         a.speed_rms_percent, a.speed_p95_percent);
     EXPECT_LT(std::abs(a.time_error_percent), 1.0) << name;
-    EXPECT_LT(a.speed_rms_percent, 5.0) << name;
+    EXPECT_LT(a.part_time_error_percent, name == "dense_g64" ? 1.0 : 0.5) << name;
+    EXPECT_LT(a.speed_rms_percent, 3.0) << name;
+    EXPECT_LT(a.speed_p95_percent, 8.0) << name;
   }
 }
 

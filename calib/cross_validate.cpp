@@ -1,0 +1,47 @@
+#include "calib/cross_validate.h"
+
+#include <utility>
+
+namespace camber::calib {
+namespace {
+
+using machine::Machine;
+
+Machine stopping(Machine m) {
+  m.control.corner.law = machine::CornerLaw::exact_stop;
+  m.control.corner.step_share = 0;
+  m.control.merge_tolerance_mm = 0;
+  return m;
+}
+
+HeldOutRun judge(const FeedRun& run, const FitFeedResult& fit) {
+  HeldOutRun held;
+  held.program_name = run.program_name;
+  held.converged = fit.converged;
+  const std::vector<Part> parts = parts_of(run.program);
+  held.accuracy = feed_accuracy(run.trace, run.program, fit.machine, parts, {});
+  held.constant_feed = constant_feed_accuracy(run.trace, run.program, parts, {});
+  held.stop_every_block = feed_accuracy(run.trace, run.program, stopping(fit.machine), parts, {});
+  for (int axis = 0; axis < 3; ++axis)
+    if (run.trace.has_command[axis] && run.trace.has_actual[axis])
+      held.drive_rms_mm[axis] = drive_rms_mm({&run.trace}, axis, fit.machine.axis[axis]);
+  return held;
+}
+
+}  // namespace
+
+std::vector<HeldOutRun> leave_one_out(std::vector<FeedRun> runs, const Machine& start, const FitFeedOptions& options) {
+  std::vector<HeldOutRun> result;
+  for (std::size_t i = 0; i < runs.size() && runs.size() > 1; ++i) {
+    if (runs[i].trace.line.empty()) continue;
+    std::swap(runs[i], runs.back());
+    const FeedRun held = std::move(runs.back());
+    runs.pop_back();
+    result.push_back(judge(held, fit_feed(runs, start, options)));
+    runs.push_back(held);
+    std::swap(runs[i], runs.back());
+  }
+  return result;
+}
+
+}  // namespace camber::calib

@@ -1,0 +1,24 @@
+#pragma once
+// Leave one trace out: each is predicted by a machine that was fitted on the others.
+#include <array>
+#include <string>
+#include <vector>
+
+#include "calib/fit_feed.h"
+
+namespace camber::calib {
+
+struct HeldOutRun {
+  std::string program_name;
+  FeedAccuracy accuracy;                 ///< of the model fitted without it
+  FeedAccuracy constant_feed;            ///< baseline: the programmed feed everywhere, no lag
+  FeedAccuracy stop_every_block;         ///< baseline: the fitted accelerations, rest at the end of every block
+  std::array<double, 3> drive_rms_mm{};  ///< drive model alone, driven by the traced command; 0: the axis rests
+  bool converged = false;
+};
+
+/// Needs at least two runs. Runs whose trace has no lines are fitted on, but not judged. Deterministic.
+std::vector<HeldOutRun> leave_one_out(std::vector<FeedRun> runs, const machine::Machine& start,
+                                      const FitFeedOptions& options);
+
+}  // namespace camber::calib

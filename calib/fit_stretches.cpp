@@ -1,0 +1,426 @@
+#include "calib/fit_stretches.h"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "calib/fit_limits.h"
+#include "feedmodel/fitted_range.h"
+#include "feedmodel/plan.h"
+
+namespace camber::calib {
+namespace {
+
+using machine::CornerLaw;
+using machine::Machine;
+
+constexpr double kTimeShare = 0.003;                // a model's error grows with the time
+constexpr double kLossScale = 3.0;                  // residuals beyond count less and less
+constexpr double kWideLossScale = 100.0;            // first, from far away
+constexpr double kGapRad = 5.0 * kPi / 180.0;       // a gap worth telling
+constexpr double kWideGapRad = 12.0 * kPi / 180.0;  // and one in which a control's stop angle may well lie
+constexpr double kBluntRad = 120.0 * kPi / 180.0;   // sharper corners are stops for every law
+constexpr double kBetterBy = 0.05;                  // share by which a richer law must lower the held-out error
+constexpr double kSlightCorner = 0.5 * kPi / 180.0;
+constexpr std::size_t kFewestTools = 3;
+constexpr int kGeometryFolds = 5;
+constexpr double kToldShare = 0.5;  // a value whose error is a larger share of it is not told
+
+/// The stretches that are fitted, from all programs, one after the other with a rest between.
+struct Data {
+  struct Item {
+    JudgedStretch judged;
+    std::size_t program = 0, move_first = 0, move_end = 0;  ///< of the shortened program
+    int fold = 0;
+  };
+  std::vector<nc::Interpretation> programs;
+  std::vector<Item> items;
+  int folds = 0;
+};
+
+void set_folds(Data& data) {
+  std::map<std::pair<std::size_t, int>, int> tools;
+  for (const auto& item : data.items)
+    tools.try_emplace({item.program, item.judged.timed.stretch.tool}, static_cast<int>(tools.size()));
+  const bool by_tool = tools.size() >= kFewestTools;
+  for (std::size_t i = 0; i < data.items.size(); ++i) {
+    auto& item = data.items[i];
+    item.fold = by_tool ? tools[{item.program, item.judged.timed.stretch.tool}] : static_cast<int>(i) % kGeometryFolds;
+  }
+  data.folds = by_tool ? static_cast<int>(tools.size()) : std::min(kGeometryFolds, static_cast<int>(data.items.size()));
+}
+
+Data shortened(const std::vector<StretchRun>& runs) {
+  Data data;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    nc::Interpretation program;
+    program.arcs = runs[r].program.arcs;
+    program.states = runs[r].program.states;
+    for (const TimedStretch& t : one_for_each_geometry(runs[r].timed, runs[r].program)) {
+      Data::Item item;
+      item.judged.timed = t;
+      item.judged.program_name = runs[r].program_name;
+      item.judged.constant_feed_s = programmed_time_s(t.stretch, runs[r].program);
+      item.program = r;
+      nc::Move rest = runs[r].program.moves[t.stretch.move_first];
+      rest.kind = nc::MoveKind::dwell;
+      rest.end_mm = rest.start_mm;
+      rest.arc = nc::Move::kNoArc;
+      rest.feed_mm_per_s = 0;
+      program.moves.push_back(rest);
+      item.move_first = program.moves.size();
+      for (std::size_t i = t.stretch.move_first; i < t.stretch.move_end; ++i)
+        program.moves.push_back(runs[r].program.moves[i]);
+      item.move_end = program.moves.size();
+      data.items.push_back(item);
+    }
+    data.programs.push_back(std::move(program));
+  }
+  set_folds(data);
+  return data;
+}
+
+/// Commanded time of each item: its segments, the waits at stops within it, half a period for each start, and the wait
+/// before the rapid that follows. Summed by hand, not read off the clock, whose whole periods a fit would stumble on.
+std::vector<double> times_s(const Data& data, const Machine& machine) {
+  std::vector<double> times(data.items.size(), machine.control.rapid_change_s);
+  std::size_t at = 0;
+  for (std::size_t p = 0; p < data.programs.size(); ++p) {
+    double end_s = 0;
+    for (const feedmodel::SegmentTime& s : feedmodel::segment_times(data.programs[p], machine)) {
+      while (at < data.items.size() && data.items[at].program == p && s.move >= data.items[at].move_end) ++at;
+      const bool counts = at < data.items.size() && data.items[at].program == p && s.move >= data.items[at].move_first;
+      if (counts) {
+        const bool waited = s.start_s > end_s + 1e-9 && s.move > data.items[at].move_first;
+        times[at] += s.duration_s + (waited ? 0.5 * machine.control.period_s : 0.0);
+      }
+      end_s = s.start_s + s.duration_s;
+    }
+    while (at < data.items.size() && data.items[at].program == p) ++at;
+  }
+  return times;
+}
+
+LimitParameter positive(const char* name, const char* unit, double (*get)(const Machine&),
+                        void (*set)(Machine&, double), double least, double most, double start) {
+  return {
+      .name = name, .unit = unit, .get = get, .set = set, .least = least, .most = most, .start = start, .fitted = {}};
+}
+
+std::vector<LimitParameter> parameters_of(const StretchLaw& law) {
+  std::vector<LimitParameter> p;
+  if (law.axis_acceleration) {
+    p.push_back(positive(
+        "axis.x.acceleration_mm_per_s2", "mm/s2", [](const Machine& m) { return m.axis[0].acceleration_mm_per_s2; },
+        [](Machine& m, double v) { m.axis[0].acceleration_mm_per_s2 = m.axis[1].acceleration_mm_per_s2 = v; }, 20,
+        50000, 500));
+    p.push_back(positive(
+        "axis.z.acceleration_mm_per_s2", "mm/s2", [](const Machine& m) { return m.axis[2].acceleration_mm_per_s2; },
+        [](Machine& m, double v) { m.axis[2].acceleration_mm_per_s2 = v; }, 20, 50000, 500));
+  } else {
+    p.push_back(positive(
+        "control.path_acceleration_mm_per_s2", "mm/s2",
+        [](const Machine& m) { return m.control.path_acceleration_mm_per_s2; },
+        [](Machine& m, double v) { m.control.path_acceleration_mm_per_s2 = v; }, 20, 50000, 500));
+  }
+  p.push_back(positive(
+      "control.arc_normal_share", "1", [](const Machine& m) { return m.control.arc_normal_share; },
+      [](Machine& m, double v) { m.control.arc_normal_share = v; }, 0.02, 50, 1.3));
+  if (law.corner == CornerLaw::angle)
+    p.push_back(positive(
+        "control.corner.time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.time_s; },
+        [](Machine& m, double v) { m.control.corner.time_s = v / 1000; }, 0.01, 1000, 8));
+  else
+    p.push_back(positive(
+        "control.corner.speed_difference_mm_per_min", "mm/min",
+        [](const Machine& m) { return 60 * m.control.corner.speed_difference_mm_per_s; },
+        [](Machine& m, double v) { m.control.corner.speed_difference_mm_per_s = v / 60; }, 1, 60000, 200));
+  if (std::isfinite(law.stop_angle_rad))
+    p.push_back(positive(
+        "control.corner.stop_time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.stop_time_s; },
+        [](Machine& m, double v) { m.control.corner.stop_time_s = v / 1000; }, 0.1, 2000, 30));
+  p.push_back(positive(
+      "control.rapid_change_ms", "ms", [](const Machine& m) { return 1000 * m.control.rapid_change_s; },
+      [](Machine& m, double v) { m.control.rapid_change_s = v / 1000; }, 0.1, 5000, 100));
+  return p;
+}
+
+Machine base_of(const Machine& start, const StretchLaw& law) {
+  Machine m = start;
+  m.control.corner.law = law.corner;
+  m.control.corner.stop_angle_rad = law.stop_angle_rad;
+  m.control.path_acceleration_mm_per_s2 = machine::kNoLimit;
+  if (!law.axis_acceleration)
+    for (machine::Axis& axis : m.axis) axis.acceleration_mm_per_s2 = machine::kNoLimit;
+  return m;
+}
+
+Machine machine_at(const Machine& base, const std::vector<LimitParameter>& parameters, const double* logs) {
+  Machine m = base;
+  for (std::size_t i = 0; i < parameters.size(); ++i) parameters[i].set(m, std::exp(logs[i]));
+  return m;
+}
+
+class StretchResiduals {
+ public:
+  StretchResiduals(const Data& data, const Machine& base, const std::vector<LimitParameter>& parameters, int left_out,
+                   double loss_scale)
+      : data_(data), base_(base), parameters_(parameters), left_out_(left_out), loss_scale_(loss_scale) {}
+
+  bool operator()(const double* const* logs, double* out) const {
+    const auto times = times_s(data_, machine_at(base_, parameters_, logs[0]));
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const TimedStretch& t = data_.items[i].judged.timed;
+      const double r =
+          data_.items[i].fold == left_out_ ? 0.0 : (times[i] - t.time_s) / std::hypot(t.sigma_s, kTimeShare * t.time_s);
+      out[i] = std::copysign(loss_scale_ * std::sqrt(std::log1p(r * r / (loss_scale_ * loss_scale_))), r);
+    }
+    return true;
+  }
+
+ private:
+  const Data& data_;
+  const Machine& base_;
+  const std::vector<LimitParameter>& parameters_;
+  int left_out_;
+  double loss_scale_;
+};
+
+struct Solution {
+  std::vector<double> logs;
+  bool converged = false;
+};
+
+Solution solve(const Data& data, const Machine& base, const std::vector<LimitParameter>& parameters, int left_out,
+               std::vector<double> logs, double loss_scale, int max_iterations) {
+  ceres::NumericDiffOptions step;
+  step.relative_step_size = 1e-3;
+  auto cost = std::make_unique<ceres::DynamicNumericDiffCostFunction<StretchResiduals, ceres::FORWARD>>(
+      new StretchResiduals(data, base, parameters, left_out, loss_scale), ceres::TAKE_OWNERSHIP, step);
+  cost->AddParameterBlock(static_cast<int>(parameters.size()));
+  cost->SetNumResiduals(static_cast<int>(data.items.size()));
+  ceres::Problem problem;
+  problem.AddResidualBlock(cost.release(), nullptr, logs.data());
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    problem.SetParameterLowerBound(logs.data(), static_cast<int>(i), std::log(parameters[i].least));
+    problem.SetParameterUpperBound(logs.data(), static_cast<int>(i), std::log(parameters[i].most));
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = max_iterations;
+  options.function_tolerance = 1e-6;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return {std::move(logs), summary.termination_type == ceres::CONVERGENCE};
+}
+
+double known_to_s(const TimedStretch& t) { return std::hypot(t.sigma_s, kTimeShare * t.time_s); }
+
+double mean_score(const Data& data, const std::vector<double>& predicted_s) {
+  double sum = 0;
+  for (std::size_t i = 0; i < predicted_s.size(); ++i) {
+    const TimedStretch& t = data.items[i].judged.timed;
+    sum += std::abs(predicted_s[i] - t.time_s) / known_to_s(t);
+  }
+  return sum / static_cast<double>(predicted_s.size());
+}
+
+std::vector<double> measured_s(const Data& data) {
+  std::vector<double> times;
+  for (const auto& item : data.items) times.push_back(item.judged.timed.time_s);
+  return times;
+}
+
+/// One law, fitted to all and to all but each fold.
+struct Trial {
+  StretchLaw law;
+  Machine machine;
+  std::vector<LimitParameter> parameters;
+  Solution whole;
+  std::vector<Solution> folds;
+  std::vector<double> fitted_s, held_out_s;
+};
+
+/// Fits again without each fold, from the whole fit.
+void hold_out(Trial& trial, const Data& data, const Machine& start, int max_iterations) {
+  const Machine base = base_of(start, trial.law);
+  trial.folds.clear();
+  trial.held_out_s = trial.fitted_s;
+  for (int fold = 0; fold < data.folds; ++fold) {
+    trial.folds.push_back(solve(data, base, trial.parameters, fold, trial.whole.logs, kLossScale, max_iterations));
+    const auto times = times_s(data, machine_at(base, trial.parameters, trial.folds.back().logs.data()));
+    for (std::size_t i = 0; i < times.size(); ++i)
+      if (data.items[i].fold == fold) trial.held_out_s[i] = times[i];
+  }
+}
+
+Trial try_law(const Data& data, const Machine& start, const StretchLaw& law, int max_iterations) {
+  Trial trial;
+  trial.law = law;
+  trial.parameters = parameters_of(law);
+  const Machine base = base_of(start, law);
+  std::vector<double> logs;
+  for (const LimitParameter& p : trial.parameters) logs.push_back(std::log(p.start));
+  const Solution rough = solve(data, base, trial.parameters, -1, logs, kWideLossScale, max_iterations);
+  trial.whole = solve(data, base, trial.parameters, -1, rough.logs, kLossScale, max_iterations);
+  trial.machine = machine_at(base, trial.parameters, trial.whole.logs.data());
+  trial.fitted_s = times_s(data, trial.machine);
+  hold_out(trial, data, start, max_iterations);
+  return trial;
+}
+
+/// Delete-a-group jackknife: s^2 = (k - 1) / k sum (p_i - mean p)^2 over the k folds, in the logarithm. It needs no
+/// independent residuals within a fold.
+double jackknife_error(const Trial& trial, std::size_t parameter) {
+  const auto k = static_cast<double>(trial.folds.size());
+  if (k < 2) return INFINITY;
+  double mean = 0, sum = 0;
+  for (const Solution& s : trial.folds) mean += s.logs[parameter] / k;
+  for (const Solution& s : trial.folds) sum += (s.logs[parameter] - mean) * (s.logs[parameter] - mean);
+  return std::sqrt((k - 1) / k * sum);
+}
+
+void add_parameters(StretchFit& fit, const Trial& trial) {
+  for (std::size_t i = 0; i < trial.parameters.size(); ++i) {
+    const double value = std::exp(trial.whole.logs[i]), error = jackknife_error(trial, i);
+    FitParameter p{trial.parameters[i].name, value, trial.parameters[i].unit, std::nullopt, "", true};
+    if (error < kToldShare)
+      p.std_error = value * error;
+    else
+      p.note = "the stretches hardly tell it (run what camber protocol writes)";
+    fit.parameters.push_back(p);
+  }
+  if (std::isfinite(trial.law.stop_angle_rad)) {
+    FitParameter p{
+        "control.corner.stop_angle_degrees", trial.law.stop_angle_rad * 180 / kPi, "deg", std::nullopt, "", true};
+    for (const auto& gap : fit.unseen_corners_rad)
+      if (gap[0] <= trial.law.stop_angle_rad && trial.law.stop_angle_rad <= gap[1])
+        p.note = fmt::format("anywhere between {:.1f} and {:.1f}: the programs have no corner in between",
+                             gap[0] * 180 / kPi, gap[1] * 180 / kPi);
+    fit.parameters.push_back(p);
+  }
+}
+
+std::vector<std::array<double, 2>> corner_gaps(const std::vector<StretchRun>& runs) {
+  std::vector<double> angles{0.0};
+  for (const StretchRun& run : runs) {
+    for (const TimedStretch& t : one_for_each_geometry(run.timed, run.program)) {
+      for (std::size_t i = t.stretch.move_first + 1; i < t.stretch.move_end; ++i) {
+        const Vec3 from = direction_at(run.program, run.program.moves[i - 1], 1.0),
+                   to = direction_at(run.program, run.program.moves[i], 0.0);
+        angles.push_back(std::acos(std::clamp(from.dot(to), -1.0, 1.0)));
+      }
+    }
+  }
+  std::sort(angles.begin(), angles.end());
+  std::vector<std::array<double, 2>> gaps;
+  for (std::size_t i = 1; i < angles.size(); ++i)
+    if (angles[i] - angles[i - 1] > kGapRad) gaps.push_back({angles[i - 1], angles[i]});
+  if (angles.back() < kPi - kGapRad) gaps.push_back({angles.back(), kPi});
+  return gaps;
+}
+
+Machine stops_at_every_block(Machine m) {
+  m.control.corner.law = CornerLaw::exact_stop;
+  m.control.corner.stop_time_s = 0;
+  return m;
+}
+
+}  // namespace
+
+StretchErrors stretch_errors(const std::vector<double>& time_s, const std::vector<double>& predicted_s) {
+  StretchErrors e;
+  std::vector<double> errors;
+  double sum = 0, predicted = 0;
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    errors.push_back(100 * std::abs(predicted_s[i] / time_s[i] - 1));
+    sum += time_s[i];
+    predicted += predicted_s[i];
+  }
+  if (errors.empty()) return e;
+  std::sort(errors.begin(), errors.end());
+  for (double x : errors) e.mean += x / static_cast<double>(errors.size());
+  e.p90 = errors[static_cast<std::size_t>(std::ceil(0.9 * static_cast<double>(errors.size()))) - 1];
+  e.worst = errors.back();
+  e.total = 100 * (predicted / sum - 1);
+  return e;
+}
+
+std::vector<StretchLaw> candidate_laws(const std::vector<StretchRun>& runs) {
+  std::vector<StretchLaw> laws;
+  std::vector<double> stops{machine::kNoLimit};
+  for (const auto& gap : corner_gaps(runs))
+    if (gap[0] > kSlightCorner && gap[1] < kBluntRad && gap[1] - gap[0] > kWideGapRad)
+      stops.push_back(0.5 * (gap[0] + gap[1]));
+  for (CornerLaw corner : {CornerLaw::angle, CornerLaw::speed_difference}) {
+    for (double stop : stops) {
+      const char* name = corner == CornerLaw::angle ? "speed change along the path" : "speed difference by axis";
+      laws.push_back({std::isfinite(stop) ? fmt::format("{}, stop above {:.0f} deg", name, stop * 180 / kPi) : name,
+                      corner, stop, false});
+    }
+  }
+  return laws;
+}
+
+StretchFit fit_stretches(const std::vector<StretchRun>& runs, const Machine& start,
+                         const FitStretchesOptions& options) {
+  StretchFit fit;
+  fit.machine = start;
+  const Data data = shortened(runs);
+  fit.folds = data.folds;
+  fit.unseen_corners_rad = corner_gaps(runs);
+  const std::vector<StretchLaw> laws = options.laws.empty() ? candidate_laws(runs) : options.laws;
+  if (data.items.size() <= parameters_of(laws.front()).size()) {
+    fit.message = fmt::format("{} geometries are too few for {} numbers; nothing was fitted", data.items.size(),
+                              parameters_of(laws.front()).size());
+    return fit;
+  }
+  const std::vector<double> measured = measured_s(data);
+  std::optional<Trial> best;
+  const auto consider = [&](const StretchLaw& law) {
+    Trial trial = try_law(data, start, law, options.max_iterations);
+    fit.laws.push_back({law, stretch_errors(measured, trial.fitted_s), stretch_errors(measured, trial.held_out_s),
+                        mean_score(data, trial.held_out_s)});
+    const double better_by = law.axis_acceleration ? kBetterBy : 0.0;
+    if (best && fit.laws.back().score >= (1 - better_by) * fit.laws[fit.chosen].score) return;
+    fit.chosen = fit.laws.size() - 1;
+    best = std::move(trial);
+  };
+  for (const StretchLaw& law : laws) consider(law);
+  if (options.laws.empty()) {
+    StretchLaw with_axes = best->law;
+    with_axes.axis_acceleration = true;
+    with_axes.name += ", acceleration by axis";
+    consider(with_axes);
+  }
+  fit.machine = best->machine;
+  std::vector<const nc::Interpretation*> programs;
+  for (const nc::Interpretation& program : data.programs) programs.push_back(&program);
+  fit.machine.fitted_range = feedmodel::range_of(programs);
+  add_parameters(fit, *best);
+  const auto stopping = times_s(data, stops_at_every_block(fit.machine));
+  std::vector<double> constant;
+  for (std::size_t i = 0; i < data.items.size(); ++i) {
+    JudgedStretch s = data.items[i].judged;
+    s.fitted_s = best->fitted_s[i];
+    s.held_out_s = best->held_out_s[i];
+    s.stop_every_block_s = stopping[i];
+    constant.push_back(s.constant_feed_s);
+    fit.stretches.push_back(s);
+  }
+  fit.fitted = fit.laws[fit.chosen].fitted;
+  fit.held_out = fit.laws[fit.chosen].held_out;
+  fit.constant_feed = stretch_errors(measured, constant);
+  fit.stop_every_block = stretch_errors(measured, stopping);
+  fit.converged = best->whole.converged;
+  fit.message = fit.converged ? "converged" : "the fit did not converge within its steps";
+  return fit;
+}
+
+}  // namespace camber::calib

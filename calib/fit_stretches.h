@@ -1,0 +1,81 @@
+#pragma once
+// fit-feed from times alone: the limits of a control from how long a machine took for stretches of feed moves
+// (machine logs, or a table of times).
+#include <string>
+#include <vector>
+
+#include "calib/fit_feed.h"
+#include "calib/stretch.h"
+#include "machine/machine.h"
+
+namespace camber::calib {
+
+/// Which laws a control is described with.
+struct StretchLaw {
+  std::string name;
+  machine::CornerLaw corner = machine::CornerLaw::angle;
+  double stop_angle_rad = machine::kNoLimit;
+  bool axis_acceleration = false;  ///< accelerations of the axes (x and y alike) instead of one along the path
+};
+
+/// Errors of stretch times, one for each geometry, in %.
+struct StretchErrors {
+  double mean = 0, p90 = 0, worst = 0;  ///< of the absolute errors
+  double total = 0;                     ///< of the sum of the times
+};
+
+/// Worst is the largest, p90 the smallest error that nine tenths do not exceed.
+StretchErrors stretch_errors(const std::vector<double>& time_s, const std::vector<double>& predicted_s);
+
+struct JudgedStretch {
+  TimedStretch timed;
+  std::string program_name;
+  double fitted_s = 0;            ///< with the numbers of the whole fit
+  double held_out_s = 0;          ///< with numbers that were fitted without this fold
+  double constant_feed_s = 0;     ///< baseline: length / programmed feed
+  double stop_every_block_s = 0;  ///< baseline: the fitted acceleration, rest at the end of every block
+};
+
+struct JudgedLaw {
+  StretchLaw law;
+  StretchErrors fitted, held_out;
+  double score = 0;  ///< mean held-out error in units of what each time is known to: what laws are chosen by
+};
+
+struct StretchFit {
+  machine::Machine machine;
+  std::vector<FitParameter> parameters;  ///< errors: jackknife over the folds
+  std::vector<JudgedLaw> laws;           ///< all that were tried
+  std::size_t chosen = 0;                ///< index into laws
+  std::vector<JudgedStretch> stretches;  ///< one for each geometry
+  StretchErrors fitted, held_out, constant_feed, stop_every_block;
+  std::vector<std::array<double, 2>> unseen_corners_rad;  ///< gaps wider than 5 degrees between corner angles
+  int folds = 0;
+  bool converged = false;
+  std::string message;
+};
+
+struct StretchRun {
+  std::string program_name;
+  nc::Interpretation program;
+  std::vector<TimedStretch> timed;
+};
+
+struct FitStretchesOptions {
+  int max_iterations = 30;
+  std::vector<StretchLaw> laws;  ///< to choose from; empty: candidate_laws
+};
+
+/// Speed difference by axis and along the path, each without and with a stop at corners sharper than the middle of
+/// each wide gap between the angles that the stretches hold; the best of them with axis accelerations as well.
+std::vector<StretchLaw> candidate_laws(const std::vector<StretchRun>& runs);
+
+/// Acceleration, corner step, time of a stop, arc limit and the wait between rapid and feed, fitted (Cauchy loss) to
+/// one time for each geometry. Each fold keeps back all stretches of one tool (of one geometry in five, where there
+/// are fewer than three tools), so that no copy of what is tested was fitted on. The law with the least mean held-out
+/// error, each in units of what its time is known to, is taken (axis accelerations, which are one number more, only
+/// where they lower it by 5 %). Deterministic.
+StretchFit fit_stretches(const std::vector<StretchRun>& runs, const machine::Machine& start,
+                         const FitStretchesOptions& options);
+
+}  // namespace camber::calib

@@ -1,0 +1,222 @@
+#include "calib/protocol.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/units.h"
+
+namespace camber::calib {
+namespace {
+
+constexpr std::array kAngles = {10.0, 20.0, 30.0, 60.0, 90.0, 120.0, 180.0};
+constexpr std::array kFeeds = {100.0, 300.0, 600.0, 1000.0, 1500.0};
+constexpr std::array kSides = {0.5, 1.0, 3.0, 6.0};
+constexpr std::array kZigzags = {5.0, 15.0, 25.0, 35.0, 40.0, 45.0, 50.0, 75.0};
+constexpr std::array kZigzagFeeds = {1000.0, 3000.0};
+constexpr std::array kRadii = {0.5, 1.0, 2.0, 5.0, 10.0, 20.0};
+constexpr std::array kCircleFeeds = {500.0, 1500.0, 4000.0};
+constexpr std::array kChords = {0.5, 0.3, 0.2, 0.1, 0.06, 0.04, 0.02, 0.01};
+constexpr std::array kRapids = {1.0, 3.0, 10.0, 30.0, 100.0};
+constexpr std::array<std::array<int, 2>, 3> kPlaneAxes = {{{0, 1}, {1, 2}, {2, 0}}};
+constexpr std::array<const char*, 3> kPlanes = {"xy", "yz", "zx"};
+constexpr std::array<const char*, 3> kPlaneCodes = {"G17", "G19", "G18"};
+constexpr double kSaturationFeed = 10000.0;  // mm/min
+constexpr double kSaturationRadius = 40.0;   // mm; chords of 0.5 mm turn by 0.7 degrees
+constexpr double kSaturationLength = 15.0;   // mm of each chord length
+constexpr double kZigzagSide = 4.0;          // mm
+constexpr int kZigzagSides = 24;
+
+class Writer {
+ public:
+  Writer(const machine::Machine& machine, std::string name, std::string tells) : machine_(machine) {
+    program_.name = name + (linuxcnc() ? ".ngc" : ".nc");
+    program_.tells = std::move(tells);
+    line("%");
+    if (!linuxcnc()) line("O0001");
+    line("(" + name + ")");
+    line(std::string("G21 G90 G94 G40 G49 G80 G17") + (linuxcnc() ? " G64 P0.01" : ""));
+    line("G0 X0 Y0 Z0");
+    rest();
+  }
+
+  ProtocolProgram finish() {
+    line(linuxcnc() ? "M2" : "M30");
+    line("%");
+    return std::move(program_);
+  }
+
+  void line(const std::string& text) {
+    program_.text += text + "\n";
+    ++lines_;
+  }
+
+  void rest() { line(linuxcnc() ? "G4 P0.2" : "G4 P200"); }
+
+  double feed_within_limits(double feed_mm_per_min) const {
+    double least = feed_mm_per_min;
+    for (const machine::Axis& axis : machine_.axis)
+      least = std::min(least, mm_per_min_from_mm_per_s(axis.max_velocity_mm_per_s));
+    return least;
+  }
+
+  /// Points of a plane as feed moves, from the origin; back to it by a rapid.
+  void part(int plane, const std::vector<std::array<double, 2>>& points, double angle_deg, double feed, double size) {
+    ProtocolPart part;
+    part.angle_deg = angle_deg;
+    part.feed_mm_per_min = feed_within_limits(feed);
+    part.plane = kPlanes[plane];
+    part.size_mm = size;
+    part.line_first = lines_ + 1;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      line("G1" + words(plane, points[i]) + (i == 0 ? fmt::format(" F{:g}", part.feed_mm_per_min) : ""));
+    part.line_last = lines_;
+    close(part);
+  }
+
+  void circle(int plane, double radius, double feed) {
+    ProtocolPart part;
+    part.feed_mm_per_min = feed_within_limits(feed);
+    part.plane = kPlanes[plane];
+    part.size_mm = radius;
+    const char* const centre[] = {"I", "J", "K"};
+    line(kPlaneCodes[plane]);
+    part.line_first = lines_ + 1;
+    line("G3" + words(plane, {0, 0}) +
+         fmt::format(" {}{:.4f} {}0 F{:g}", centre[kPlaneAxes[plane][0]], -radius, centre[kPlaneAxes[plane][1]],
+                     part.feed_mm_per_min));
+    part.line_last = lines_;
+    rest();
+    line("G17");
+    program_.parts.push_back(part);
+  }
+
+  void rapid(int axis, double to_mm) {
+    line(fmt::format("G0 {}{:g}", "XYZ"[axis], to_mm));
+    rest();
+    line("G0 X0 Y0 Z0");
+    rest();
+  }
+
+ private:
+  bool linuxcnc() const { return machine_.control.dialect == machine::Dialect::linuxcnc; }
+
+  static std::string words(int plane, const std::array<double, 2>& p) {
+    return fmt::format(" {}{:.6f} {}{:.6f}", "XYZ"[kPlaneAxes[plane][0]], p[0], "XYZ"[kPlaneAxes[plane][1]], p[1]);
+  }
+
+  void close(const ProtocolPart& part) {
+    rest();
+    line("G0 X0 Y0 Z0");
+    rest();
+    program_.parts.push_back(part);
+  }
+
+  const machine::Machine& machine_;
+  ProtocolProgram program_;
+  int lines_ = 0;
+};
+
+using Points = std::vector<std::array<double, 2>>;
+
+/// A closed polygon from the origin whose corners turn by the angle; 180: out and back, twice.
+Points polygon(double angle_deg, double side) {
+  const int sides = angle_deg == 180 ? 4 : static_cast<int>(std::lround(360 / angle_deg));
+  Points points;
+  double x = 0, y = 0;
+  for (int i = 0; i < sides; ++i) {
+    const double heading = rad_from_deg(angle_deg * i);
+    x += side * std::cos(heading);
+    y += side * std::sin(heading);
+    points.push_back({x, y});
+  }
+  return points;
+}
+
+/// Sides that turn to and fro by the angle.
+Points zigzag(double angle_deg, double side, int sides) {
+  Points points;
+  double x = 0, y = 0;
+  for (int i = 0; i < sides; ++i) {
+    const double heading = rad_from_deg(angle_deg / 2) * (i % 2 ? -1 : 1);
+    x += side * std::cos(heading);
+    y += side * std::sin(heading);
+    points.push_back({x, y});
+  }
+  return points;
+}
+
+/// Chords on a wide circle that begins along the first axis.
+Points chords(double length) {
+  Points points;
+  for (int i = 1; i <= static_cast<int>(std::lround(kSaturationLength / length)); ++i) {
+    const double phi = i * length / kSaturationRadius;
+    points.push_back({kSaturationRadius * std::sin(phi), kSaturationRadius * (1 - std::cos(phi))});
+  }
+  return points;
+}
+
+ProtocolProgram polygons(const machine::Machine& machine, int plane) {
+  Writer w(machine, std::string("protocol_") + kPlanes[plane],
+           "corner law, its tolerance or speed step, accelerations of two axes, lag of the drives");
+  for (double side : kSides)
+    for (double angle : kAngles)
+      for (double feed : kFeeds) w.part(plane, polygon(angle, side), angle, feed, side);
+  return w.finish();
+}
+
+ProtocolProgram corners(const machine::Machine& machine) {
+  Writer w(machine, "corners", "the angle above which the control stops at a corner, and for how long");
+  for (double angle : kZigzags)
+    for (double feed : kZigzagFeeds) w.part(0, zigzag(angle, kZigzagSide, kZigzagSides), angle, feed, kZigzagSide);
+  return w.finish();
+}
+
+ProtocolProgram circles(const machine::Machine& machine) {
+  Writer w(machine, "circles", "the speed that arcs allow, and the radius error of the drives");
+  for (int plane = 0; plane < 3; ++plane)
+    for (double radius : kRadii)
+      for (double feed : kCircleFeeds) w.circle(plane, radius, feed);
+  return w.finish();
+}
+
+ProtocolProgram saturation(const machine::Machine& machine) {
+  Writer w(machine, "saturation", "block processing time T_b = 60000 L_b / V_s and how far the control looks ahead");
+  for (double length : kChords) w.part(0, chords(length), 0, kSaturationFeed, length);
+  return w.finish();
+}
+
+ProtocolProgram rapids(const machine::Machine& machine) {
+  Writer w(machine, "rapids", "top speed and acceleration of each axis, and the wait between rapid and feed");
+  for (int axis = 0; axis < 3; ++axis) {
+    for (double length : kRapids) {
+      const double room = machine.axis[axis].travel_mm[1] - machine.axis[axis].travel_mm[0];
+      if (length < room / 2) w.rapid(axis, length);
+    }
+  }
+  return w.finish();
+}
+
+}  // namespace
+
+std::vector<ProtocolProgram> protocol_programs(const machine::Machine& machine) {
+  std::vector<ProtocolProgram> programs;
+  for (int plane = 0; plane < 3; ++plane) programs.push_back(polygons(machine, plane));
+  programs.push_back(corners(machine));
+  programs.push_back(circles(machine));
+  programs.push_back(saturation(machine));
+  programs.push_back(rapids(machine));
+  return programs;
+}
+
+std::string parts_csv(const ProtocolProgram& program) {
+  std::string text = "line_first,line_last,angle_deg,feed_mm_min,plane,size_mm\n";
+  for (const ProtocolPart& p : program.parts)
+    text += fmt::format("{},{},{:g},{:g},{},{:g}\n", p.line_first, p.line_last, p.angle_deg, p.feed_mm_per_min, p.plane,
+                        p.size_mm);
+  return text;
+}
+
+}  // namespace camber::calib

@@ -1,0 +1,52 @@
+#pragma once
+// Stretches of consecutive feed moves and how long a machine took for them.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "calib/trace.h"
+#include "nc/move.h"
+
+namespace camber::calib {
+
+/// Lines of the program from one rapid, dwell or tool change to the next, 1-based, both included.
+struct FeedStretch {
+  std::uint32_t line_first = 0, line_last = 0;
+  std::size_t move_first = 0, move_end = 0;  ///< of the interpretation
+  int tool = 0;
+  int geometry = 0;  ///< equal for stretches of one shape (copies at other places or depths)
+};
+
+/// A stretch and its time on the machine.
+struct TimedStretch {
+  FeedStretch stretch;
+  double time_s = 0;
+  double sigma_s = 0;  ///< what the time is known to
+};
+
+/// All stretches of feed moves of a program. Two are of one geometry, turned or mirrored, when they have as many
+/// moves, the sorted lengths of which differ by less than 9 % of their mean, their programmed times by as
+/// much, and the sorted corners by less than 0.05 rad, on average.
+std::vector<FeedStretch> feed_stretches(const nc::Interpretation& program);
+
+/// Whether a file is a table of stretch times: its header names line_first or first_line.
+bool is_stretch_table(const std::string& path);
+
+/// Reads a CSV with the columns first_line, last_line and t_measured_median_s (t_p10, t_p90 and n_parts tell the
+/// error, where they are there); lines that are no stretch of the program are errors [stretch-lines].
+/// Throws InputError: [stretch-column], [stretch-number], [stretch-lines], [file-missing].
+std::vector<TimedStretch> read_stretch_table(const std::string& path, const nc::Interpretation& program);
+
+/// The commanded times of stretches that a servo trace with lines holds without a pause.
+std::vector<TimedStretch> traced_stretches(const ServoTrace& trace, const std::vector<FeedStretch>& stretches);
+
+/// One for each geometry: the first of its stretches, with the mean time and what it is known to.
+/// The difference of a copy to the first is taken by the share of the programmed time.
+std::vector<TimedStretch> one_for_each_geometry(const std::vector<TimedStretch>& all,
+                                                const nc::Interpretation& program);
+
+/// Length / programmed feed over all moves of a stretch.
+double programmed_time_s(const FeedStretch& stretch, const nc::Interpretation& program);
+
+}  // namespace camber::calib

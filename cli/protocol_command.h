@@ -1,0 +1,17 @@
+#pragma once
+// camber protocol: programs to run on a machine so that fit-feed has what it needs.
+#include <string>
+
+#include "cli/global_options.h"
+
+namespace camber::cli {
+
+struct ProtocolArguments {
+  std::string machine;
+  std::string folder;
+};
+
+/// Writes the programs, a .parts.csv beside each, and prints what each tells. Throws InputError.
+int run_protocol(const ProtocolArguments& arguments, const GlobalOptions& options);
+
+}  // namespace camber::cli

@@ -1,0 +1,184 @@
+#include "feedmodel/fitted_range.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <numeric>
+#include <optional>
+
+#include "base/units.h"
+#include "feedmodel/limits.h"
+
+namespace camber::feedmodel {
+namespace {
+
+constexpr double kBeyond = 1.1;  // so much past the range is not called beyond it
+constexpr std::size_t kBlocksNamed = 5;
+constexpr std::size_t kRunBlocks = 8;  // so many blocks in a row make a rate
+constexpr double kMoves = 1e-6;        // mm; less is rounding of numbers
+
+/// What one feed move asks of the control.
+struct Demand {
+  double length_mm = 0, feed_mm_per_s = 0;
+  double corner_rad = 0;    ///< at its start, against the feed move before it
+  double radius_mm = 0;     ///< of curvature; 0: a line
+  double blocks_per_s = 0;  ///< over the last kRunBlocks, 0 where fewer follow each other
+  std::array<bool, 3> axis{};
+};
+
+bool is_feed(const nc::Move& move) {
+  return (move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc) && !move.reference && !move.canned;
+}
+
+double curvature_radius(const nc::Interpretation& program, const nc::Move& move) {
+  const nc::Arc& arc = program.arcs[move.arc];
+  Vec3 spoke = move.start_mm - arc.center_mm;
+  spoke -= arc.normal * arc.normal.dot(spoke);
+  const double rise = arc.normal.dot(move.end_mm - move.start_mm);
+  return helix_curvature_radius(spoke.norm(), rise / std::max(1e-12, std::abs(arc.sweep_rad)));
+}
+
+Demand demand_of(const nc::Interpretation& program, std::size_t i) {
+  const nc::Move& move = program.moves[i];
+  Demand d;
+  d.length_mm = length_mm(program, move);
+  d.feed_mm_per_s = move.feed_mm_per_s;
+  if (i > 0 && is_feed(program.moves[i - 1])) {
+    const Vec3 from = direction_at(program, program.moves[i - 1], 1.0), to = direction_at(program, move, 0.0);
+    if (!from.isZero() && !to.isZero()) d.corner_rad = std::acos(std::clamp(from.dot(to), -1.0, 1.0));
+  }
+  const bool arc = move.kind == nc::MoveKind::arc && move.arc != nc::Move::kNoArc;
+  if (arc) d.radius_mm = curvature_radius(program, move);
+  for (int k = 0; k < 3; ++k) {
+    const bool within_arc = arc && std::abs(program.arcs[move.arc].normal[k]) < 0.5;
+    d.axis[k] = within_arc || std::abs(move.end_mm[k] - move.start_mm[k]) > kMoves;
+  }
+  return d;
+}
+
+template <class Use>
+void for_each_demand(const nc::Interpretation& program, const Use& use) {
+  std::deque<double> run;  // programmed times of the last blocks
+  for (std::size_t i = 0; i < program.moves.size(); ++i) {
+    if (!is_feed(program.moves[i])) continue;
+    Demand d = demand_of(program, i);
+    if (d.length_mm <= kMoves) continue;
+    if (i == 0 || !is_feed(program.moves[i - 1])) run.clear();
+    run.push_back(d.length_mm / d.feed_mm_per_s);
+    if (run.size() > kRunBlocks) run.pop_front();
+    if (run.size() == kRunBlocks)
+      d.blocks_per_s = static_cast<double>(kRunBlocks) / std::accumulate(run.begin(), run.end(), 0.0);
+    use(program.moves[i], d);
+  }
+}
+
+/// One kind of leaving the range.
+struct Beyond {
+  double length_mm = 0;
+  std::vector<std::uint32_t> lines;
+
+  void add(const nc::Move& move, const Demand& d) {
+    length_mm += d.length_mm;
+    if (lines.empty() || lines.back() != move.block + 1) lines.push_back(move.block + 1);
+  }
+
+  void report(const std::string& path, double cutting_length_mm, const std::string& what, const char* check,
+              Diagnostics& diagnostics) const {
+    if (lines.empty()) return;
+    std::string named;
+    for (std::size_t i = 0; i < std::min(kBlocksNamed, lines.size()); ++i)
+      named += fmt::format("{}{}", i > 0 ? ", " : "", lines[i]);
+    if (lines.size() > kBlocksNamed) named += " ...";
+    diagnostics.add(
+        {.severity = Severity::warning,
+         .location = {path, lines.front(), 1},
+         .message = fmt::format("{:.1f} % of the cutting length ({} block{}: {} {}) has {}; the feed there is "
+                                "a guess",
+                                100 * length_mm / cutting_length_mm, lines.size(), lines.size() == 1 ? "" : "s",
+                                lines.size() == 1 ? "line" : "lines", named, what),
+         .check = check,
+         .source_line = {}});
+  }
+};
+
+void include(std::array<double, 2>& range, double value, bool first) {
+  range = first ? std::array<double, 2>{value, value}
+                : std::array<double, 2>{std::min(range[0], value), std::max(range[1], value)};
+}
+
+}  // namespace
+
+machine::FittedRange range_of(const std::vector<const nc::Interpretation*>& programs) {
+  machine::FittedRange range;
+  bool first = true, first_line = true, first_arc = true, first_rate = true;
+  for (const nc::Interpretation* program : programs) {
+    for_each_demand(*program, [&](const nc::Move&, const Demand& d) {
+      include(range.feed_mm_per_s, d.feed_mm_per_s, first);
+      include(range.corner_rad, d.corner_rad, first);
+      first = false;
+      if (d.radius_mm > 0) {
+        include(range.arc_radius_mm, d.radius_mm, first_arc);
+        first_arc = false;
+      } else {
+        include(range.line_mm, d.length_mm, first_line);
+        first_line = false;
+      }
+      if (d.blocks_per_s > 0) {
+        include(range.blocks_per_s, d.blocks_per_s, first_rate);
+        first_rate = false;
+      }
+      for (int k = 0; k < 3; ++k) range.axis[k] = range.axis[k] || d.axis[k];
+    });
+  }
+  range.known = !first;
+  return range;
+}
+
+void check_range(const nc::Interpretation& program, const std::string& program_path, const machine::Machine& machine,
+                 Diagnostics& diagnostics) {
+  const machine::FittedRange& r = machine.fitted_range;
+  if (!r.known) return;
+  Beyond feed, corner, line, arc, rate;
+  std::array<Beyond, 3> axis;
+  double cutting_mm = 0;
+  for_each_demand(program, [&](const nc::Move& move, const Demand& d) {
+    cutting_mm += d.length_mm;
+    if (d.feed_mm_per_s > kBeyond * r.feed_mm_per_s[1]) feed.add(move, d);
+    if (d.corner_rad > kBeyond * r.corner_rad[1]) corner.add(move, d);
+    if (d.blocks_per_s > kBeyond * r.blocks_per_s[1]) rate.add(move, d);
+    if (d.radius_mm == 0 && d.length_mm * kBeyond < r.line_mm[0]) line.add(move, d);
+    if (d.radius_mm > 0 && (r.arc_radius_mm[1] == 0 || d.radius_mm * kBeyond < r.arc_radius_mm[0])) arc.add(move, d);
+    for (int k = 0; k < 3; ++k)
+      if (d.axis[k] && !r.axis[k]) axis[k].add(move, d);
+  });
+  const auto tell = [&](const Beyond& beyond, const std::string& what, const char* check) {
+    beyond.report(program_path, cutting_mm, what, check, diagnostics);
+  };
+  tell(feed,
+       fmt::format("a feed above {:.0f} mm/min, the highest that the machine was fitted on",
+                   mm_per_min_from_mm_per_s(r.feed_mm_per_s[1])),
+       "range-feed");
+  tell(corner,
+       fmt::format("a corner sharper than {:.1f} degrees, the sharpest that the machine was fitted on",
+                   deg_from_rad(r.corner_rad[1])),
+       "range-corner");
+  tell(line, fmt::format("lines shorter than {:.3g} mm, the shortest that the machine was fitted on", r.line_mm[0]),
+       "range-line");
+  tell(arc,
+       r.arc_radius_mm[1] == 0 ? "arcs, of which the machine was fitted on none"
+                               : fmt::format("arcs tighter than {:.3g} mm, the tightest that the machine was fitted on",
+                                             r.arc_radius_mm[0]),
+       "range-arc");
+  tell(rate,
+       r.blocks_per_s[1] == 0 ? "runs of blocks, of which the machine was fitted on none"
+                              : fmt::format("more than {:.0f} blocks a second, the most that the machine was fitted on",
+                                            r.blocks_per_s[1]),
+       "range-blocks");
+  for (int k = 0; k < 3; ++k)
+    tell(axis[k], fmt::format("motion of {}, which the machine was not fitted on", "XYZ"[k]), "range-axis");
+}
+
+}  // namespace camber::feedmodel

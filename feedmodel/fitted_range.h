@@ -1,0 +1,25 @@
+#pragma once
+// What a machine's model was fitted on, and what part of a program lies beyond it.
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "machine/machine.h"
+#include "nc/move.h"
+
+namespace camber::feedmodel {
+
+/// Feeds, corners between feed moves, lengths of lines, radii of curvature of arcs and axes that feed moves of the
+/// programs have: least and greatest of each.
+machine::FittedRange range_of(const std::vector<const nc::Interpretation*>& programs);
+
+/// Where a program leaves the range that the machine was fitted on: feeds above the highest, corners sharper than the
+/// sharpest, lines shorter than the shortest, arcs tighter than the tightest (each by more than a tenth), axes that
+/// did not move, runs of more blocks a second. Longer lines, wider arcs and slower feeds hold nothing new.
+/// One warning for each [range-feed], [range-corner], [range-line], [range-arc], [range-axis],
+/// [range-blocks] with its share of the
+/// cutting length and the first blocks. Nothing where the machine file has no [fitted_range].
+void check_range(const nc::Interpretation& program, const std::string& program_path, const machine::Machine& machine,
+                 Diagnostics& diagnostics);
+
+}  // namespace camber::feedmodel

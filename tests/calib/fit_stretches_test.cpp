@@ -1,0 +1,156 @@
+#include "calib/fit_stretches.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "feedmodel/plan.h"
+#include "nc/interpreter.h"
+#include "nc/program.h"
+#include "tests/support/test_program.h"
+
+namespace camber::calib {
+namespace {
+
+std::string nist(const char* file) { return fmt::format("{}/nist/{}", CAMBER_SHARED_DATA_DIR, file); }
+
+nc::Interpretation nist_program() {
+  Diagnostics diagnostics;
+  return nc::interpret(nc::read_program(SourceText::read(nist("box_op5.nc")), diagnostics), {}, diagnostics);
+}
+
+bool have_nist() { return std::filesystem::exists(nist("box_op5.nc")); }
+
+StretchLaw stop_law() { return {"stop", machine::CornerLaw::angle, 0.6, false}; }
+
+machine::Machine known_machine() {
+  machine::Machine m;
+  m.control.corner.law = machine::CornerLaw::angle;
+  m.control.corner.time_s = 0.009;
+  m.control.corner.stop_angle_rad = 0.6;
+  m.control.corner.stop_time_s = 0.035;
+  m.control.path_acceleration_mm_per_s2 = 520;
+  m.control.arc_normal_share = 1.5;
+  m.control.rapid_change_s = 0.09;
+  return m;
+}
+
+/// A dozen figures of three tools: zigzags of many angles, facets, arcs.
+nc::Interpretation figures() {
+  tests::TestProgram p;
+  int tool = 0;
+  for (double feed : {1000.0, 2500.0, 4500.0}) {
+    p.new_state().tool = ++tool;
+    for (double turn : {0.09, 0.2, 0.35, 0.8, 1.57}) {
+      p.rapid(0, 0, 0);
+      double x = 0, y = 0, heading = 0;
+      for (int i = 0; i < 14; ++i) {
+        x += (2 + turn + i % 3) * std::cos(heading);
+        y += (2 + turn + i % 3) * std::sin(heading);
+        heading += turn;
+        p.line(x, y, 0, feed);
+      }
+    }
+    for (double r : {0.3, 1.0, 3.0}) {
+      p.rapid(0, 0, 5).rapid(0, 0, 0);
+      for (int i = 0; i < 6; ++i) p.arc_xy(0, 0, r, 0, 2 * kPi, feed);
+    }
+    p.rapid(0, 0, 10);
+  }
+  return p.program;
+}
+
+/// Times as the planner itself has them, a program's rapids and clock included.
+std::vector<TimedStretch> planned(const nc::Interpretation& program, const machine::Machine& machine) {
+  std::vector<TimedStretch> timed;
+  const auto segments = feedmodel::segment_times(program, machine);
+  for (const FeedStretch& s : feed_stretches(program)) {
+    double first = -1, end = 0;
+    for (const auto& segment : segments) {
+      if (segment.move < s.move_first || segment.move >= s.move_end) continue;
+      if (first < 0) first = segment.start_s;
+      end = segment.start_s + segment.duration_s;
+    }
+    timed.push_back({s, end - first, 0.01});
+  }
+  return timed;
+}
+
+TEST(FitStretches, GivesAKnownMachineBackFromTheTimesAlone) {
+  const machine::Machine known = known_machine();
+  StretchRun run{"figures", figures(), {}};
+  run.timed = planned(run.program, known);
+  const StretchFit fit = fit_stretches({run}, {}, {.laws = {stop_law()}});
+  EXPECT_TRUE(fit.converged) << fit.message;
+  EXPECT_EQ(fit.folds, 3);
+  const machine::Control &is = fit.machine.control, &was = known.control;
+  EXPECT_NEAR(is.path_acceleration_mm_per_s2 / was.path_acceleration_mm_per_s2, 1, 0.03);
+  EXPECT_NEAR(is.corner.time_s / was.corner.time_s, 1, 0.05);
+  EXPECT_NEAR(is.corner.stop_time_s / was.corner.stop_time_s, 1, 0.05);
+  EXPECT_NEAR(is.arc_normal_share / was.arc_normal_share, 1, 0.05);
+  EXPECT_LT(fit.held_out.mean, 0.2);
+  EXPECT_GT(fit.constant_feed.mean, 5);
+}
+
+TEST(FitStretches, PrefersTheLawThatTheTimesWereMadeWith) {
+  machine::Machine known = known_machine();
+  known.control.corner.stop_angle_rad = machine::kNoLimit;
+  StretchRun run{"figures", figures(), {}};
+  run.timed = planned(run.program, known);
+  StretchLaw without = stop_law();
+  without.name = "no stop";
+  without.stop_angle_rad = machine::kNoLimit;
+  const StretchFit fit = fit_stretches({run}, {}, {.laws = {stop_law(), without}});
+  EXPECT_EQ(fit.laws[fit.chosen].law.name, "no stop");
+}
+
+TEST(FitStretches, CountsCopiesOnceAndKeepsThemInOneFold) {
+  if (!have_nist()) GTEST_SKIP() << "no ../shared/data";
+  const nc::Interpretation program = nist_program();
+  const auto table = read_stretch_table(nist("op5_feed_runs.csv"), program);
+  ASSERT_EQ(table.size(), 82u);
+  EXPECT_EQ(table[0].stretch.line_first, 21u);
+  EXPECT_EQ(table[0].stretch.geometry, table[4].stretch.geometry);  // 21-43 again at 91-113
+  EXPECT_NE(table[0].stretch.geometry, table[1].stretch.geometry);
+  const auto once = one_for_each_geometry(table, program);
+  EXPECT_LT(once.size(), 30u);
+  EXPECT_NEAR(programmed_time_s(table[0].stretch, program), 17.24, 0.001);
+}
+
+TEST(FitStretches, PredictsToolsOfTheNistBoxThatItHasNotSeen) {
+  if (!have_nist()) GTEST_SKIP() << "no ../shared/data";
+  StretchRun run{"box_op5", nist_program(), {}};
+  run.timed = read_stretch_table(nist("op5_feed_runs.csv"), run.program);
+  StretchLaw law = stop_law();
+  const StretchFit fit = fit_stretches({run}, {}, {.laws = {law}});
+  EXPECT_TRUE(fit.converged) << fit.message;
+  EXPECT_EQ(fit.folds, 9);
+  EXPECT_LT(fit.held_out.mean, 0.5);
+  EXPECT_LT(fit.held_out.p90, 1.0);
+  EXPECT_LT(fit.held_out.worst, 1.5);
+  EXPECT_LT(std::abs(fit.held_out.total), 0.3);
+  EXPECT_GT(fit.constant_feed.worst, 20);
+  EXPECT_GT(fit.machine.fitted_range.corner_rad[1], 0.5 * kPi);
+}
+
+TEST(FitStretches, SaysThatTooFewTimesTellNothing) {
+  StretchRun run{"figures", figures(), {}};
+  run.timed = planned(run.program, known_machine());
+  run.timed.resize(3);
+  const StretchFit fit = fit_stretches({run}, {}, {.laws = {stop_law()}});
+  EXPECT_FALSE(fit.converged);
+  EXPECT_EQ(fit.message, "3 geometries are too few for 5 numbers; nothing was fitted");
+}
+
+TEST(StretchErrors, MeanPercentileWorstAndTotal) {
+  const StretchErrors e = stretch_errors({10, 10, 20}, {10.1, 9.8, 20});
+  EXPECT_NEAR(e.mean, 1.0, 1e-9);
+  EXPECT_NEAR(e.p90, 2.0, 1e-9);
+  EXPECT_NEAR(e.worst, 2.0, 1e-9);
+  EXPECT_NEAR(e.total, -0.25, 1e-9);
+}
+
+}  // namespace
+}  // namespace camber::calib

@@ -1,0 +1,90 @@
+#include "calib/protocol.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "base/units.h"
+#include "feedmodel/control_options.h"
+#include "nc/interpreter.h"
+#include "nc/program.h"
+
+namespace camber::calib {
+namespace {
+
+nc::Interpretation read_back(const ProtocolProgram& program, const machine::Machine& machine) {
+  Diagnostics diagnostics;
+  const auto text = nc::read_program(SourceText(program.name, program.text), diagnostics);
+  auto moves = nc::interpret(text, feedmodel::interpreter_options(machine, std::nullopt), diagnostics);
+  EXPECT_TRUE(diagnostics.all().empty()) << program.name << ": " << to_string(diagnostics.all().front());
+  return moves;
+}
+
+const ProtocolProgram& named(const std::vector<ProtocolProgram>& programs, const std::string& name) {
+  for (const ProtocolProgram& p : programs)
+    if (p.name == name) return p;
+  ADD_FAILURE() << "no " << name;
+  return programs.front();
+}
+
+machine::Machine machine_of(machine::Dialect dialect) {
+  machine::Machine m;
+  m.control.dialect = dialect;
+  return m;
+}
+
+TEST(Protocol, IsReadWithoutADiagnosticByItsOwnDialect) {
+  for (auto dialect : {machine::Dialect::fanuc, machine::Dialect::linuxcnc}) {
+    const machine::Machine machine = machine_of(dialect);
+    for (const ProtocolProgram& program : protocol_programs(machine))
+      EXPECT_GT(read_back(program, machine).moves.size(), 10u) << program.name;
+  }
+}
+
+TEST(Protocol, PolygonsAreThoseOfTheKakenReport) {
+  const machine::Machine machine = machine_of(machine::Dialect::fanuc);
+  const auto programs = protocol_programs(machine);
+  for (const char* name : {"protocol_xy.nc", "protocol_yz.nc", "protocol_zx.nc"}) {
+    const ProtocolProgram& program = named(programs, name);
+    EXPECT_EQ(program.parts.size(), 7u * 5u * 4u);
+    const nc::Interpretation moves = read_back(program, machine);
+    for (const ProtocolPart& part : program.parts) {
+      const nc::Move* before = nullptr;
+      for (const nc::Move& move : moves.moves) {
+        const int line = static_cast<int>(move.block) + 1;
+        if (line < part.line_first || line > part.line_last) continue;
+        EXPECT_NEAR(length_mm(moves, move), part.size_mm, 2e-6);
+        EXPECT_NEAR(move.feed_mm_per_s, mm_per_s_from_mm_per_min(part.feed_mm_per_min), 1e-9);
+        if (before) {
+          const double dot = direction_at(moves, *before, 1).dot(direction_at(moves, move, 0));
+          EXPECT_NEAR(deg_from_rad(std::acos(std::clamp(dot, -1.0, 1.0))), part.angle_deg, 0.01);
+        }
+        before = &move;
+      }
+      ASSERT_NE(before, nullptr);
+      EXPECT_NEAR(before->end_mm.norm(), 0, 1e-4);  // closed
+    }
+  }
+}
+
+TEST(Protocol, SaturationHasEveryChordAndStaysUnderTheTopSpeed) {
+  machine::Machine machine = machine_of(machine::Dialect::fanuc);
+  for (machine::Axis& axis : machine.axis) axis.max_velocity_mm_per_s = 50;
+  const ProtocolProgram program = named(protocol_programs(machine), "saturation.nc");
+  std::set<double> chords;
+  for (const ProtocolPart& part : program.parts) {
+    chords.insert(part.size_mm);
+    EXPECT_DOUBLE_EQ(part.feed_mm_per_min, 3000);
+  }
+  EXPECT_EQ(chords, (std::set<double>{0.01, 0.02, 0.04, 0.06, 0.1, 0.2, 0.3, 0.5}));
+}
+
+TEST(Protocol, PartsListNamesTheLines) {
+  const ProtocolProgram program = named(protocol_programs(machine_of(machine::Dialect::linuxcnc)), "protocol_xy.ngc");
+  EXPECT_EQ(parts_csv(program).substr(0, 85),
+            "line_first,line_last,angle_deg,feed_mm_min,plane,size_mm\n6,41,10,100,xy,0.5\n45,80,10,");
+}
+
+}  // namespace
+}  // namespace camber::calib
