@@ -8,8 +8,10 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "deflection/turn.h"
 #include "feedmodel/feed_csv.h"
 #include "nc/interpreter.h"
+#include "report/forces_at_csv.h"
 #include "report/forces_csv.h"
 #include "report/report_data.h"
 #include "report/summary.h"
@@ -56,11 +58,13 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
     const auto original = deflection::machine_program(SourceText::read(job.part.program), job, {}, of_target);
     return deflection::make_target(job, original, diagnostics);
   }();
+  deflection::PredictOptions predict_options;
+  if (arguments.forces_at > 0)
+    predict_options.turn_from = deflection::turn_at_line(program, job, arguments.forces_at, diagnostics);
   settle(diagnostics, options);
   const fs::path folder = make_folder(arguments.output_folder);
 
   ProgressLine progress(options);
-  deflection::PredictOptions predict_options;
   predict_options.progress = [&](double share) { progress.show("cutting", share); };
   const auto prediction = deflection::predict(job, target, program, predict_options);
   progress.clear();
@@ -68,6 +72,8 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
 
   auto feed = write_feed(program, job, folder / "feed.csv");
   report::write_forces_csv(folder / "forces.csv", job, program, prediction);
+  if (arguments.forces_at > 0)
+    report::write_forces_at_csv(folder / fmt::format("forces_at_{}.csv", arguments.forces_at), prediction.cut.turn);
   const auto points = report::form_error_points(program, prediction);
   report::write_form_error_csv(folder / "form_error.csv", points);
   report::write_form_error_vtp(folder / "form_error.vtp", points);
