@@ -112,7 +112,7 @@ void check_told(const ForceProblem& problem, const Eigen::VectorXd& p) {
   std::vector<std::size_t> empty;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double length = j.col(i).norm();
-    if (length <= 1e-12 * largest)
+    if (length <= 1e-8 * largest)  // what rounding leaves
       empty.push_back(static_cast<std::size_t>(i));
     else
       j.col(i) /= length;

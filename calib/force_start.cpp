@@ -47,7 +47,7 @@ struct Normal {
   /// Directions that the cuts do not tell come out as zero.
   Linear solve() const {
     Linear scale;
-    for (int i = 0; i < 6; ++i) scale[i] = a(i, i) > 0 ? 1 / std::sqrt(a(i, i)) : 0;
+    for (int i = 0; i < 6; ++i) scale[i] = a(i, i) > 1e-18 * a.diagonal().maxCoeff() ? 1 / std::sqrt(a(i, i)) : 0;
     Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * a * scale.asDiagonal();
     scaled.diagonal().array() += 1e-9;
     return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * b);

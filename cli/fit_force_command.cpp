@@ -90,7 +90,11 @@ std::string material_file(const FitForceArguments& arguments, const FitForceResu
                                 fmt::join(arguments.logs, ", "), result.residual_rms_N);
   for (const auto& p : result.parameters)
     if (p.std_error) out += fmt::format("# {}: {:.6g} +- {:.2g} {}\n", p.name, p.value, *p.std_error, p.unit);
-  return out + "[material]\n" + machine::material_text(result.material);
+  // More digits than the fit can know would only hide it.
+  machine::Material rounded = result.material;
+  for (const auto& c : machine::coefficient_fields(rounded.law))
+    rounded.*c = std::stod(fmt::format("{:.6g}", rounded.*c));
+  return out + "[material]\n" + machine::material_text(rounded);
 }
 
 }  // namespace

@@ -161,6 +161,21 @@ Material read_material_table(TomlTable table, const std::string& folder, Diagnos
   return material ? read_material(*material) : Material{};
 }
 
+std::vector<double Material::*> coefficient_fields(ForceLaw law) {
+  std::vector<double Material::*> out;
+  const auto add = [&](const auto& keys) {
+    for (const auto& k : keys) out.push_back(k.field);
+  };
+  if (law == ForceLaw::linear) {
+    add(kLinearKeys);
+  } else {
+    add(kKienzleKeys);
+    add(kKienzleSideKeys);
+  }
+  add(kEdgeKeys);
+  return out;
+}
+
 std::string material_text(const Material& m) {
   std::string out;
   if (!m.preset.empty()) {

@@ -1,6 +1,7 @@
 #pragma once
 // The [material] table of a job or of a fitted material file, in and out.
 #include <string>
+#include <vector>
 
 #include "machine/material.h"
 #include "machine/toml_table.h"
@@ -19,6 +20,9 @@ Material read_material(TomlTable table);
 /// The table itself, or the [material] of the file that it names (`file = "material.toml"`, as fit-force writes it);
 /// paths count from `folder`. Checks as above and [file-missing].
 Material read_material_table(TomlTable table, const std::string& folder, Diagnostics& diagnostics);
+
+/// The coefficients that material_text writes for a law.
+std::vector<double Material::*> coefficient_fields(ForceLaw law);
 
 /// The same table as text, every value filled in, without its header line.
 std::string material_text(const Material& material);
