@@ -68,8 +68,23 @@ void expect_near(const Vec3& got, const Vec3& want, double share) {
 TEST(ForceHistory, BallSlotMeansMatchTheClosedForm) {
   const auto tool = make_tool(machine::ToolType::ball, 8, 2, 30);
   const Row row{.y_min = -6, .y_max = 6, .depth = 1.2, .feed = 0.04};  // c/R = 0.01
-  const Vec3 closed = SteadyCutModel(tool, {row.feed, row.depth, 8, Milling::up}, 0.02).mean_N(kSteel);
+  // With the circular chip h = B + (c^2 - B^2) / 2R, by midpoints: near the tip the edge cuts behind the feed as well,
+  // and the edge terms there make 1.2 N of the axial force at this feed.
+  constexpr int kRings = 400, kAround = 720;
+  const double radius = 4, top = std::acos(1 - row.depth / radius), dk = top / kRings, dphi = 2 * kPi / kAround;
+  Vec3 closed = Vec3::Zero();
+  for (int i = 0; i < kRings; ++i)
+    for (int k = 0; k < kAround; ++k) {
+      const double kappa = (i + 0.5) * dk, phi = (k + 0.5) * dphi, sk = std::sin(kappa), ck = std::cos(kappa);
+      const double b = row.feed * sk * std::cos(phi), h = b + (row.feed * row.feed - b * b) / (2 * radius);
+      if (h <= 0) continue;
+      const double ft = 2000 * h + 15, fr = 700 * h + 12, fa = 300 * h + 5, weight = radius * dk * 2 * dphi / (2 * kPi);
+      const double s = std::sin(phi), c = std::cos(phi);
+      closed -= weight * Vec3(ft * s + (fr * sk + fa * ck) * c, -ft * c + (fr * sk + fa * ck) * s, -fr * ck + fa * sk);
+    }
   expect_near(steady(tool, kSteel, row).load.force_mean_N, closed, 0.01);
+  const Vec3 straight = SteadyCutModel(tool, {row.feed, row.depth, 8, Milling::up}, 0.02).mean_N(kSteel);
+  expect_near(straight, closed, 0.02);
 }
 
 TEST(ForceHistory, KienzleSlotMeansMatchTheIntegral) {
@@ -127,15 +142,14 @@ TEST(ForceHistory, EachToothOfATurnFollowsItsClosedForm) {
 }
 
 TEST(ForceHistory, KienzleSettlesInStaticCoupling) {
-  auto tool = make_tool(machine::ToolType::ball, 6, 2, 30);
-  tool.youngs_modulus_MPa = 210000;
-  const Row row{.y_min = -4, .y_max = 4, .depth = 0.3, .feed = 0.1, .coupling = machine::Coupling::static_};
+  const auto tool = make_tool(machine::ToolType::ball, 6, 2, 30);
+  Row row{.y_min = -3, .y_max = 3, .depth = 0.1, .feed = 0.05, .coupling = machine::Coupling::static_};
   const auto bent = steady(tool, kienzle_steel(), row);
   EXPECT_EQ(bent.all.unsettled, 0u);
-  Row stiff = row;
-  stiff.coupling = machine::Coupling::rigid;
-  // What the tool yields at first comes back later: the mean force in the steady slot is the rigid one.
-  expect_near(bent.load.force_mean_N, steady(tool, kienzle_steel(), stiff).load.force_mean_N, 0.03);
+  EXPECT_GT(bent.all.rounds_max, 1);
+  // What one tooth leaves by yielding the next one takes: in a steady slot the mean force is nearly the rigid one.
+  row.coupling = machine::Coupling::rigid;
+  expect_near(bent.load.force_mean_N, steady(tool, kienzle_steel(), row).load.force_mean_N, 0.06);
 }
 
 TEST(EdgeForce, KienzleIsThePowerLawAndItsSlope) {
