@@ -93,7 +93,7 @@ std::optional<double> only_feed_mm(const std::vector<MeasuredLog>& logs) {
   const auto feed = only_feed_mm(logs);
   const std::string why =
       axial && no_fz ? "the log has no fz, the force along the axis"
-      : alone        ? "none of the measured forces depends on it"
+      : alone        ? fmt::format("none of the measured forces depends on {}", names.size() > 1 ? "them" : "it")
       : feed ? fmt::format("all cuts have one feed per tooth, {:.4g} mm; cuts at different feeds were expected", *feed)
              : "the cuts tell a combination of them alone; cuts at other feeds, depths or widths, or the force "
                "that is not measured, were expected";
@@ -285,7 +285,12 @@ FitForceResult fit_force(const std::vector<MeasuredLog>& logs) {
   out.residual_rms_N = std::sqrt(r.squaredNorm() / static_cast<double>(r.size()));
   const bool waveforms = std::ranges::any_of(logs, [](const auto& log) { return log.how.waveform; });
   out.held_out_rms_N = waveforms ? std::optional(problem.held_out_rms_N(best.p)) : left_out_rms_N(problem, j, r);
-  out.message = best.converged ? "the fit converged" : "the fit did not converge; its values are uncertain";
+  out.plausible = out.material.ktc_MPa >= 0 && out.material.krc_MPa >= 0 && out.material.kc1_1_MPa >= 0;
+  out.message = !out.plausible
+                    ? "a tangential or radial coefficient came out negative, as no cutter has it; look at the "
+                      "axes and signs of [force_log]"
+                : best.converged ? "the fit converged"
+                                 : "the fit did not converge; its values are uncertain";
   return out;
 }
 

@@ -40,6 +40,7 @@ struct FitForceResult {
   double residual_rms_N = 0;             ///< of what was fitted: means or waveforms
   std::optional<double> held_out_rms_N;  ///< every fourth turn of waveforms; means: each cut left out in turn
   bool converged = false;
+  bool plausible = true;  ///< tangential and radial cutting coefficients are not negative
   std::string message;
 };
 

@@ -162,6 +162,9 @@ MeasuredCut measured_cut(const Signal& s, const machine::LoggedCut& logged, doub
     fail_on_file(log.path, fmt::format("the cut from {} to {} s {}", logged.from_s, logged.to_s, what), "force-log");
   };
   if (to < from + 2) fail("has no samples");
+  const double sample_s = (s.t_s.back() - s.t_s.front()) / static_cast<double>(s.t_s.size() - 1);
+  if (logged.from_s < s.t_s.front() - 1.5 * sample_s || logged.to_s > s.t_s.back() + 1.5 * sample_s)
+    fail(fmt::format("reaches beyond the log, which has {:g} to {:g} s", s.t_s.front(), s.t_s.back()));
   MeasuredCut out;
   out.name = name;
   out.spindle_speed_rpm = how.waveform ? best_speed_rpm(s, from, to, rpm) : rpm;
@@ -229,6 +232,8 @@ MeasuredLog read_measured_log(const std::string& path, const ForceLog& how, Diag
   else
     read_samples(table, log, diagnostics);
   diagnostics.throw_if_errors();
+  if (std::ranges::all_of(log.cuts, [](const MeasuredCut& c) { return c.mean_N.isZero(); }))
+    fail_on_file(path, "every force is zero; forces of cuts were expected", "force-log");
   return log;
 }
 

@@ -81,6 +81,7 @@ ordered_json report_of(const FitForceResult& result) {
                               {"measured_mean_N", components(c.has, c.measured_N)},
                               {"fitted_mean_N", components(c.has, c.model_N)}});
   report["converged"] = result.converged;
+  report["plausible"] = result.plausible;
   report["message"] = result.message;
   return report;
 }
@@ -107,8 +108,9 @@ int run_fit_force(const FitForceArguments& arguments, const GlobalOptions& optio
   if (!options.quiet) print(result);
   write_file(arguments.output, material_file(arguments, result));
   if (!arguments.json.empty()) write_file(arguments.json, report_of(result).dump(2) + "\n");
-  if (!result.converged) print_error(result.message);
-  return result.converged ? kDone : kNumbersDidNotWorkOut;
+  const bool worked = result.converged && result.plausible;
+  if (!worked) print_error(result.message);
+  return worked ? kDone : kNumbersDidNotWorkOut;
 }
 
 }  // namespace camber::cli

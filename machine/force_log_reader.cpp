@@ -99,6 +99,11 @@ void read_ranges(TomlTable& table, ForceLog& log) {
           fmt::format("the radial depth is {} mm; at most the diameter, {}, was expected", r[4], log.tool.diameter_mm),
           "value-range");
   }
+  if (cuts && cuts->empty())
+    table.error_at("cuts",
+                   "cuts is empty; at least one row [from s, to s, feed mm/min, axial depth mm, radial depth mm] "
+                   "was expected",
+                   "value-count");
   if (log.contents == LogContents::samples && !table.has("cuts"))
     table.missing("cuts", "rows [from s, to s, feed mm/min, axial depth mm, radial depth mm]");
   if (log.contents == LogContents::means)
@@ -126,6 +131,8 @@ void read_table(TomlTable table, const std::map<int, Tool>& tools, ForceLog& log
   else if (!tools.empty())
     table.error_at("tool", fmt::format("the log is of T{0}, but there is no [tool.{0}]", number), "tool-missing");
   if (tools.size() > 1 && !table.has("tool")) table.missing("tool", "the number of the tool that was logged");
+  if (log.tool.type == ToolType::drill)
+    table.error_at("tool", "the log is of a drill; ball, flat or bull was expected", "tool-type");
   log.contents = static_cast<LogContents>(table.choice("contents", kContentsWords, 1));
   log.waveform = table.choice("fit", kFitWords, 0) == 1;
   if (log.waveform && log.contents == LogContents::means)

@@ -133,7 +133,7 @@ TEST(FitForce, RefusesAFeedForceAloneInASlot) {
   const std::string without = replaced(replaced(means_job(), "fz = \"fz\"\n", ""), "fy = \"fy\"\n", "");
   const std::string job = without + "hold = [\"kac_MPa\", \"kae_N_per_mm\"]\n[material]\nktc_MPa = 1\nkrc_MPa = 1\n";
   EXPECT_EQ(fit(slot_means({0.02, 0.05, 0.1}), job).messages,
-            "log.csv: error: cannot tell ktc_MPa and kte_N_per_mm: none of the measured forces depends on it (hold = "
+            "log.csv: error: cannot tell ktc_MPa and kte_N_per_mm: none of the measured forces depends on them (hold = "
             "[\"ktc_MPa\", \"kte_N_per_mm\"] in [force_log] keeps the values of [material]) [fit-untold]");
 }
 
@@ -295,6 +295,29 @@ TEST(FitForce, NamesWhatIsWrongInItsTable) {
             "[value-type]\n"
             "    fx = 2\n"
             "         ^");
+}
+
+TEST(FitForce, RefusesLogsThatHoldNothing) {
+  EXPECT_EQ(fit("feed_mm_per_min,fx,fy,fz\n300,0,0,0\n600,0,0,0\n", means_job()).messages,
+            "log.csv: error: every force is zero; forces of cuts were expected [force-log]");
+  const std::string samples = std::string(kTool) + "[force_log]\nfx = \"a\"\nspindle_rpm = 6000\nt_s = \"t\"\n";
+  EXPECT_EQ(fit("", samples + "cuts = []\n").messages,
+            "job.toml:11:8: error: cuts is empty; at least one row [from s, to s, feed mm/min, axial depth mm, radial "
+            "depth mm] was expected [value-count]\n"
+            "    cuts = []\n"
+            "           ^");
+  EXPECT_EQ(fit("t,a\n0,1\n0.1,2\n0.2,1\n", samples + "idle_s = [[0, 0.1]]\ncuts = [[0, 1, 300, 3, 20]]\n").messages,
+            "log.csv: error: the cut from 0 to 1 s reaches beyond the log, which has 0 to 0.2 s [force-log]");
+}
+
+TEST(FitForce, DoubtsNegativeCoefficients) {
+  const auto [r, messages] =
+      fit(slot_means({0.02, 0.05, 0.1}), replaced(means_job(), "fy = \"fy\"", "fy = { column = \"fy\", scale = -1 }"));
+  EXPECT_EQ(messages, "");
+  EXPECT_FALSE(r.plausible);
+  EXPECT_EQ(r.message,
+            "a tangential or radial coefficient came out negative, as no cutter has it; look at the axes and signs of "
+            "[force_log]");
 }
 
 }  // namespace
