@@ -81,6 +81,7 @@ int run(int argc, const char* const* argv) {
   add_global_options(app, options);
   add_program_commands(app, options, chosen);
   add_job_commands(app, options, chosen);
+  add_force_commands(app, options, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

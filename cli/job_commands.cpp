@@ -38,6 +38,11 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("job", arguments->job, "job.toml")->required()->type_name("J.toml");
   command->add_option("-o,--output", arguments->output_folder, "folder for the results")->required()->type_name("DIR");
   command->add_option("--json", arguments->json, "write the figures here as well")->type_name("R.json");
+  command
+      ->add_option("--forces-at", arguments->forces_at,
+                   "write forces_at_LINE.csv: one turn of the spindle at this line, in degrees, tooth by tooth")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{2000000000}))
+      ->type_name("LINE");
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);

@@ -8,9 +8,11 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "deflection/turn.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
 #include "nc/interpreter.h"
+#include "report/forces_at_csv.h"
 #include "report/forces_csv.h"
 #include "report/report_data.h"
 #include "report/summary.h"
@@ -58,12 +60,14 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
     return deflection::make_target(job, original, diagnostics);
   }();
   feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
+  deflection::PredictOptions predict_options;
+  if (arguments.forces_at > 0)
+    predict_options.turn_from = deflection::turn_at_line(program, job, arguments.forces_at, diagnostics);
   settle(diagnostics, options);
   print_translation(job.machine.translation, options);
   const fs::path folder = make_folder(arguments.output_folder);
 
   ProgressLine progress(options);
-  deflection::PredictOptions predict_options;
   predict_options.progress = [&](double share) { progress.show("cutting", share); };
   const auto prediction = deflection::predict(job, target, program, predict_options);
   progress.clear();
@@ -71,6 +75,8 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
 
   auto feed = write_feed(program, job, folder / "feed.csv");
   report::write_forces_csv(folder / "forces.csv", job, program, prediction);
+  if (arguments.forces_at > 0)
+    report::write_forces_at_csv(folder / fmt::format("forces_at_{}.csv", arguments.forces_at), prediction.cut.turn);
   const auto points = report::form_error_points(program, prediction);
   report::write_form_error_csv(folder / "form_error.csv", points);
   report::write_form_error_vtp(folder / "form_error.vtp", points);

@@ -1,5 +1,5 @@
 #pragma once
-// camber predict J.toml -o DIR [--json R.json]
+// camber predict J.toml -o DIR [--json R.json] [--forces-at LINE]
 #include <string>
 
 #include "cli/global_options.h"
@@ -9,10 +9,12 @@ namespace camber::cli {
 struct PredictArguments {
   std::string job;
   std::string output_folder;
-  std::string json;  ///< empty: only summary.json in the folder
+  std::string json;           ///< empty: only summary.json in the folder
+  std::size_t forces_at = 0;  ///< line whose forces are written over one turn; 0: none
 };
 
-/// Writes feed.csv, forces.csv, form_error.csv, form_error.vtp, stock.vdb, report.html and summary.json. Throws
+/// Writes feed.csv, forces.csv, form_error.csv, form_error.vtp, stock.vdb, report.html and summary.json, and
+/// forces_at_LINE.csv where asked. Throws
 /// InputError. Returns kDone or kNumbersDidNotWorkOut.
 int run_predict(const PredictArguments& arguments, const GlobalOptions& options);
 

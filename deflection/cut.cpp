@@ -58,6 +58,13 @@ StampLoad summarize(const ToothPass& pass) {
     load.force_mean_N += f;
   }
   load.force_mean_N /= static_cast<double>(pass.force_N.size());
+  for (const double t : pass.torque_Nmm) {
+    load.torque_max_Nmm = std::max(load.torque_max_Nmm, t);
+    load.torque_mean_Nmm += t / static_cast<double>(pass.torque_Nmm.size());
+  }
+  load.work_Nmm = pass.work_Nmm;
+  load.chip_max_mm = pass.chip_max_mm;
+  load.chip_area_mm2 = pass.chip_area_mm2;
   return load;
 }
 
@@ -94,13 +101,16 @@ class Cutter {
       for (std::size_t at = 0; at < count; at += options_.rigid_engage_stamps) {
         const std::size_t n = std::min(options_.rigid_engage_stamps, count - at);
         Stretch straight(*undeflected_, &blank_, envelope_, all, from + at, n, {.first_id = first_id});
-        evaluate(straight.carve(nullptr), at, n, shifts, loads);
+        const Engagement engagement = straight.carve(nullptr);
+        evaluate(engagement, at, n, shifts, loads);
+        keep_turn(engagement, from + at, n, result);
         result.stock_mm3 += straight.commit();
       }
       bent.carve(&shifts);
       bent.commit();
     } else {
-      settle(bent, stamps, shifts, loads, result);
+      const Engagement engagement = settle(bent, stamps, shifts, loads, result);
+      keep_turn(engagement, from, count, result);
       result.stock_mm3 += bent.commit();
     }
     for (std::size_t k = 0; k < stamps.size(); ++k) {
@@ -146,12 +156,13 @@ class Cutter {
 
   /// Static equilibrium: delta = C F(chip(delta)) of all stamps of the stretch, by Newton steps. A shift changes this
   /// stamp's chip and, with the other sign, the next one's.
-  void settle(Stretch& bent, std::span<const Stamp> stamps, ShiftTable& shifts, std::vector<StampLoad>& loads,
-              CutResult& result) const {
+  Engagement settle(Stretch& bent, std::span<const Stamp> stamps, ShiftTable& shifts, std::vector<StampLoad>& loads,
+                    CutResult& result) const {
     double share = 1, change_before_um = std::numeric_limits<double>::infinity();
     std::vector<ToothPass> passes(stamps.size());
+    Engagement engagement;
     for (int round = 1; round <= options_.max_rounds; ++round) {
-      const Engagement engagement = bent.carve(&shifts);
+      engagement = bent.carve(&shifts);
       tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
         model_.evaluate(engagement.of(k), passes[k]);
         loads[k] = summarize(passes[k]);
@@ -159,12 +170,22 @@ class Cutter {
       });
       const Change change = newton_step(stamps, passes, share, shifts);
       result.rounds_max = std::max(result.rounds_max, round);
-      if (change.rms_um < std::max(options_.settle_um, options_.settle_share * change.size_um)) return;
+      if (change.rms_um < std::max(options_.settle_um, options_.settle_share * change.size_um)) return engagement;
       // What swings from round to round is stilled by shorter steps.
       if (change.rms_um > (1 - kFall * share) * change_before_um) share = std::max(kLeastShare, kShorter * share);
       change_before_um = change.rms_um;
     }
     ++result.unsettled;
+    return engagement;
+  }
+
+  void keep_turn(const Engagement& engagement, std::size_t from, std::size_t count, CutResult& result) const {
+    if (!options_.turn_from) return;
+    const auto teeth = static_cast<std::size_t>(envelope_.flutes);
+    for (std::size_t pass = 0; pass < teeth; ++pass) {
+      const std::size_t k = *options_.turn_from + pass;
+      if (k >= from && k < from + count) model_.add_to_turn(engagement.of(k - from), pass, result.turn);
+    }
   }
 
   /// (I - J_k) step_k + J'_k step_(k-1) = residual_k for every rotation step: forward through the stamps.

@@ -15,12 +15,21 @@ namespace camber::deflection {
 
 /// The loads of one tooth passing. Forces act on the tool, in machine axes.
 struct StampLoad {
-  Vec3 force_max_N = Vec3::Zero();            ///< per component the signed value of largest magnitude
-  double lateral_max_N = 0;                   ///< largest sqrt(Fx^2 + Fy^2)
-  Vec3 force_mean_N = Vec3::Zero();           ///< over the tooth passing
-  Vec2 contact_deflection_mm = Vec2::Zero();  ///< at the contact's height as an edge passes it
-  double chip_mm3 = 0;                        ///< volume of the chips
+  Vec3 force_max_N = Vec3::Zero();                 ///< per component the signed value of largest magnitude
+  double lateral_max_N = 0;                        ///< largest sqrt(Fx^2 + Fy^2)
+  Vec3 force_mean_N = Vec3::Zero();                ///< over the tooth passing
+  Vec2 contact_deflection_mm = Vec2::Zero();       ///< at the contact's height as an edge passes it
+  double chip_mm3 = 0;                             ///< volume of the chips
+  double torque_max_Nmm = 0, torque_mean_Nmm = 0;  ///< over the tooth passing
+  double work_Nmm = 0;                             ///< of the spindle over the tooth passing
+  double chip_max_mm = 0;                          ///< thickest chip
+  double chip_area_mm2 = 0;                        ///< chip_mm3 over it is the mean thickness
 };
+
+/// P = M 2 pi n / 60.
+constexpr double power_W(double torque_mean_Nmm, double spindle_speed_rpm) {
+  return torque_mean_Nmm / 1000 * 2 * kPi * spindle_speed_rpm / 60;
+}
 
 /// Where the envelope generates the surface: the point at which an edge leaves its mark.
 struct Contact {
@@ -40,6 +49,8 @@ struct CutOptions {
   double settle_um = 0.1;                   ///< rms change of the deflection at which a stretch is settled, or ...
   double settle_share = 0.01;               ///< ... this share of its rms
   std::function<void(double)> progress;     ///< share done, 0 to 1
+  /// First stamp of a turn whose forces are kept tooth by tooth, in CutResult::turn.
+  std::optional<std::size_t> turn_from;
 };
 
 struct CutResult {
@@ -48,6 +59,7 @@ struct CutResult {
   double stock_mm3 = 0;          ///< change of the stock that engagement reads
   int rounds_max = 0;            ///< of the static solution
   std::size_t unsettled = 0;     ///< stretches that did not settle
+  TurnForces turn;               ///< empty without CutOptions::turn_from
 };
 
 /// Cuts `stock` with the bent cutter. Rigid coupling reads engagement from a stock of its own that the undeflected

@@ -107,6 +107,8 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
       cut_options.progress = [&](double share) {
         options.progress((static_cast<double>(from) + share * static_cast<double>(stamps.size())) / all);
       };
+    if (options.turn_from && *options.turn_from >= from && *options.turn_from < from + stamps.size())
+      cut_options.turn_from = *options.turn_from - from;
     CutResult cut_run =
         cut(*out.machined, tool, job.material, stamps, contacts, static_cast<std::int32_t>(from), cut_options);
     out.cut.loads.insert(out.cut.loads.end(), cut_run.loads.begin(), cut_run.loads.end());
@@ -114,6 +116,7 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
     out.cut.stock_mm3 += cut_run.stock_mm3;
     out.cut.rounds_max = std::max(out.cut.rounds_max, cut_run.rounds_max);
     out.cut.unsettled += cut_run.unsettled;
+    if (cut_options.turn_from) out.cut.turn = std::move(cut_run.turn);
   });
   out.surface = removal::compare_surfaces(*out.machined, target.surface);
   std::vector<double> error_um, area;

@@ -55,6 +55,7 @@ struct Prediction {
 /// `contacts`: also find where each stamp touches the target (only for the deflection at the contact).
 struct PredictOptions {
   bool contacts = true;
+  std::optional<std::size_t> turn_from;  ///< first stamp of a turn to keep in Prediction::cut.turn
   std::function<void(double)> progress;
 };
 

@@ -14,11 +14,26 @@ namespace camber::deflection {
 /// One tooth passing. Sized once, filled for many stamps.
 struct ToothPass {
   std::vector<Vec3> force_N;         ///< per rotation step, on the tool, machine axes
+  std::vector<double> torque_Nmm;    ///< per rotation step, that the spindle must give
+  double work_Nmm = 0;               ///< of the spindle over the tooth passing
+  double chip_max_mm = 0;            ///< thickest chip
+  double chip_area_mm2 = 0;          ///< of the envelope that cuts; the chips' volume over it is the mean thickness
   std::vector<float> deflection_mm;  ///< [nodes][steps][2], as a row of removal::ShiftTable
   /// Per step: how a lateral shift of the tool changes the deflection through the chip, d(deflection)/d(shift).
   std::vector<Eigen::Matrix2d> feedback;
   /// The part of it that a shift of the tooth before takes back.
   std::vector<Eigen::Matrix2d> feedback_before;
+};
+
+/// One turn of the spindle, tooth by tooth. Turned clockwise by angle a from where tooth 1's edge at the tip points
+/// along +X, the edge of tooth t stands at t pitches minus a, counter-clockwise from +X.
+struct TurnForces {
+  struct Tooth {
+    Vec3 force_N = Vec3::Zero();  ///< on the tool, machine axes
+    double torque_Nmm = 0;
+    double chip_max_mm = 0;  ///< thickest along the edge at this instant
+  };
+  std::vector<std::vector<Tooth>> teeth;  ///< [flutes][rotation steps of a turn]
 };
 
 /// Turns chips into forces and deflections for one tool in one material.
@@ -30,6 +45,8 @@ class ToothPassModel {
   int steps() const { return envelope_.steps_per_pitch; }
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
   void evaluate(std::span<const removal::Chip> chips, ToothPass& out) const;
+  /// Adds the chips of one tooth passing, the turn's `pass`-th (0 ... flutes - 1), to the turn.
+  void add_to_turn(std::span<const removal::Chip> chips, std::size_t pass, TurnForces& turn) const;
 
  private:
   struct Direction {

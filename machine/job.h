@@ -9,6 +9,7 @@
 #include "base/diagnostics.h"
 #include "base/geometry.h"
 #include "machine/machine.h"
+#include "machine/material.h"
 
 namespace camber::machine {
 
@@ -27,12 +28,6 @@ struct Tool {
   double effective_diameter_ratio = 0.8;     ///< bending diameter of the fluted part / diameter
   double youngs_modulus_MPa = 600000;
   double root_stiffness_N_per_mm = kNoLimit; ///< lateral, holder and spindle
-};
-
-/// Linear edge model, N = (MPa mm + N/mm) mm.
-struct Material {
-  double ktc_MPa = 0, krc_MPa = 0, kac_MPa = 0;
-  double kte_N_per_mm = 0, kre_N_per_mm = 0, kae_N_per_mm = 0;
 };
 
 struct Box {

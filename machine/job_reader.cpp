@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "machine/job_keys.h"
+#include "machine/job_tables.h"
+#include "machine/material_reader.h"
 #include "machine/tool_reader.h"
 
 namespace camber::machine {
@@ -30,27 +32,6 @@ std::string file_at(TomlTable& table, std::string_view key, const fs::path& fold
 std::string required_file_at(TomlTable& table, std::string_view key, const fs::path& folder) {
   if (!table.has(key)) table.missing(key, "the path of a file, in quotes");
   return file_at(table, key, folder);
-}
-
-void read_tools(TomlTable table, std::map<int, Tool>& tools) {
-  for (const auto& key : table.keys()) {
-    int number = 0;
-    const auto [end, ec] = std::from_chars(key.data(), key.data() + key.size(), number);
-    const bool is_number = ec == std::errc{} && end == key.data() + key.size() && number >= 0;
-    const auto tool = table.table(key);
-    if (!is_number)
-      table.error_at_name(key, fmt::format("[tool.{}]: a tool number was expected, as in [tool.1] for T1", key),
-                          "tool-number");
-    else if (tool)
-      tools.emplace(number, read_tool(*tool, number));
-  }
-}
-
-void read_material(TomlTable table, Material& material) {
-  for (const std::string_view key : {"ktc_MPa", "krc_MPa"})
-    if (!table.has(key)) table.missing(key, kNotNegative.wanted());
-  read_numbers<Material>(table, kMaterialKeys, material);
-  table.finish();
 }
 
 std::optional<Box> read_box(TomlTable& table) {
@@ -118,12 +99,12 @@ void read_part(TomlTable table, const fs::path& folder, Part& part) {
   table.finish();
 }
 
-void read_tables(TomlTable& top, const fs::path& folder, Job& job) {
+void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& diagnostics) {
   if (auto tools = top.table("tool")) read_tools(*tools, job.tools);
   if (job.tools.empty() && !top.has("tool")) top.missing("[tool.1]", "a table for each tool of the program");
   if (auto operations = top.table("operations")) read_operations(*operations, job.tools, job.operations);
   if (auto material = top.table("material"))
-    read_material(*material, job.material);
+    job.material = read_material_table(*material, folder.string(), diagnostics);
   else if (!top.has("material"))
     top.missing("[material]", "a table with the specific cutting forces ktc_MPa, krc_MPa ...");
   if (auto stock = top.table("stock"))
@@ -137,6 +118,20 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job) {
 
 }  // namespace
 
+void read_tools(TomlTable table, std::map<int, Tool>& tools) {
+  for (const auto& key : table.keys()) {
+    int number = 0;
+    const auto [end, ec] = std::from_chars(key.data(), key.data() + key.size(), number);
+    const bool is_number = ec == std::errc{} && end == key.data() + key.size() && number >= 0;
+    const auto tool = table.table(key);
+    if (!is_number)
+      table.error_at_name(key, fmt::format("[tool.{}]: a tool number was expected, as in [tool.1] for T1", key),
+                          "tool-number");
+    else if (tool)
+      tools.emplace(number, read_tool(*tool, number));
+  }
+}
+
 Job read_job(const std::string& path, Diagnostics& diagnostics) {
   Job job;
   job.path = path;
@@ -148,7 +143,8 @@ Job read_job(const std::string& path, Diagnostics& diagnostics) {
   job.program = required_file_at(top, "program", folder);
   job.machine_path = required_file_at(top, "machine", folder);
   if (top.has("units")) job.inch = top.choice("units", kUnitWords, 0) == 1;
-  read_tables(top, folder, job);
+  read_tables(top, folder, job, diagnostics);
+  top.ignore("force_log");  // fit-force's own
   top.finish();
   std::error_code ec;
   if (fs::is_regular_file(job.machine_path, ec)) job.machine = read_machine(job.machine_path, diagnostics);

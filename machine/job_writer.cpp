@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "machine/job_keys.h"
+#include "machine/material_reader.h"
 
 namespace camber::machine {
 namespace {
@@ -52,7 +53,7 @@ std::string to_toml(const Job& job) {
   if (job.inch) out += toml_line("units", kUnitWords[*job.inch ? 1 : 0]);
   out += operations_text(job.operations);
   for (const auto& [number, tool] : job.tools) out += tool_text(tool);
-  out += "\n[material]\n" + toml_lines<Material>(kMaterialKeys, job.material);
+  out += "\n[material]\n" + material_text(job.material);
   out += stock_text(job.stock) + part_text(job.part);
   out += "\n[simulation]\n" + toml_lines<Simulation>(kSimulationKeys, job.simulation);
   out += toml_line("coupling", kCouplingWords[job.simulation.coupling == Coupling::rigid ? 0 : 1]);

@@ -107,6 +107,11 @@ const TomlNode::Entry* TomlTable::find(std::string_view key) const {
   return nullptr;
 }
 
+std::optional<TomlNode::Kind> TomlTable::kind_of(std::string_view key) const {
+  const auto* entry = find(key);
+  return entry ? std::optional(entry->value.kind) : std::nullopt;
+}
+
 const TomlNode* TomlTable::use(std::string_view key) {
   known_.emplace(key);
   const auto* entry = find(key);
@@ -237,6 +242,19 @@ std::optional<std::vector<double>> TomlTable::number_list(std::string_view key, 
     if (!number_ok(fmt::format("{}[{}]", key, i), value->items[i], range, range.wanted())) return std::nullopt;
     out.push_back(value->items[i].number);
   }
+  return out;
+}
+
+std::optional<std::vector<std::string>> TomlTable::text_list(std::string_view key, std::string_view wanted) {
+  const auto* value = use(key);
+  if (!value) return std::nullopt;
+  const auto is_text = [](const TomlNode& item) { return item.kind == TomlNode::Kind::text; };
+  if (value->kind != TomlNode::Kind::array || !std::ranges::all_of(value->items, is_text)) {
+    report(Severity::error, value->offset, fmt::format("{}: {} was expected", key, wanted), "value-type");
+    return std::nullopt;
+  }
+  std::vector<std::string> out;
+  for (const TomlNode& item : value->items) out.push_back(item.text);
   return out;
 }
 

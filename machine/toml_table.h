@@ -94,7 +94,13 @@ class TomlTable {
   std::optional<std::vector<std::vector<double>>> number_rows(std::string_view key, std::size_t rows,
                                                               std::size_t columns, const NumberRange& range,
                                                               std::string_view wanted);
+  /// Array of any number of texts.
+  std::optional<std::vector<std::string>> text_list(std::string_view key, std::string_view wanted);
   std::optional<TomlTable> table(std::string_view key);
+  /// What stands at `key`; nothing where it is missing.
+  std::optional<TomlNode::Kind> kind_of(std::string_view key) const;
+  /// Marks `key` as known without reading it.
+  void ignore(std::string_view key) { known_.emplace(key); }
   /// Keys of this table; reading them marks them as known.
   std::vector<std::string> keys() const;
 

@@ -25,20 +25,29 @@ struct Row {
     load.force_mean_N += l.force_mean_N;
     load.contact_deflection_mm += l.contact_deflection_mm;
     load.chip_mm3 += l.chip_mm3;
+    load.torque_max_Nmm = std::max(load.torque_max_Nmm, l.torque_max_Nmm);
+    load.torque_mean_Nmm += l.torque_mean_Nmm;
+    load.work_Nmm += l.work_Nmm;
+    load.chip_max_mm = std::max(load.chip_max_mm, l.chip_max_mm);
+    load.chip_area_mm2 += l.chip_area_mm2;
     ++teeth;
   }
 };
 
-void write_row(std::string& out, const Stamp& first, std::size_t line, const Row& row, double passing_s) {
+void write_row(std::string& out, const Stamp& first, std::size_t line, const Row& row, double rpm, int flutes) {
   const auto n = static_cast<double>(row.teeth);
+  const double passing_s = 60.0 / (rpm * flutes);
   const StampLoad& l = row.load;
   fmt::format_to(
       std::back_inserter(out),
-      "{:.4f},{},{:.4f},{:.4f},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.5f},{:.7f}\n",
+      "{:.4f},{},{:.4f},{:.4f},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.5f},{:.7f},"
+      "{:.6f},{:.6f},{:.4f},{:.6f},{:.6f},{:.2f}\n",
       first.t_s, line, first.tip_mm.x(), first.tip_mm.y(), first.tip_mm.z(), l.force_max_N.x(), l.force_max_N.y(),
       l.force_max_N.z(), l.lateral_max_N, l.force_mean_N.x() / n, l.force_mean_N.y() / n, l.force_mean_N.z() / n,
       1000 * l.contact_deflection_mm.x() / n, 1000 * l.contact_deflection_mm.y() / n, l.chip_mm3 / (n * passing_s),
-      l.chip_mm3);
+      l.chip_mm3, l.torque_max_Nmm / 1000, l.torque_mean_Nmm / (1000 * n),
+      deflection::power_W(l.torque_mean_Nmm / n, rpm), l.chip_max_mm,
+      l.chip_area_mm2 > 0 ? l.chip_mm3 / l.chip_area_mm2 : 0.0, l.chip_mm3 > 0 ? l.work_Nmm / l.chip_mm3 : 0.0);
 }
 
 }  // namespace
@@ -47,7 +56,8 @@ void write_forces_csv(const std::string& path, const machine::Job& job, const de
                       const deflection::Prediction& prediction) {
   OutputFile file(path);
   file.stream() << "t_s,block,x_mm,y_mm,z_mm,fx_max_N,fy_max_N,fz_max_N,f_max_N,fx_mean_N,fy_mean_N,fz_mean_N,"
-                   "dx_um,dy_um,mrr_mm3_per_s,removed_mm3\n";
+                   "dx_um,dy_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,"
+                   "specific_energy_MPa\n";
   std::string text;
   const auto& stamps = program.path.stamps;
   for (const auto& run : program.path.runs) {
@@ -61,7 +71,7 @@ void write_forces_csv(const std::string& path, const machine::Job& job, const de
              (k == from || !stamps[k].first))
         row.add(prediction.cut.loads[k++]);
       const double rpm = program.moves.state_of(move).spindle_speed_rpm;
-      write_row(text, stamps[from], move.block + 1, row, 60.0 / (rpm * static_cast<double>(flutes)));
+      write_row(text, stamps[from], move.block + 1, row, rpm, static_cast<int>(flutes));
       from = k;
     }
     file.stream() << text;

@@ -37,6 +37,32 @@ double largest_force_N(const deflection::Prediction& p) {
   return largest;
 }
 
+/// Figures of the spindle and the chips over all tooth passings.
+struct SpindleFigures {
+  double torque_max_Nm = 0, power_max_W = 0, power_mean_W = 0, chip_max_mm = 0, specific_energy_MPa = 0;
+};
+
+/// The mean power is over the time in the cut; the specific energy is all work over all chips.
+SpindleFigures spindle_figures(const deflection::MachinedProgram& program, const deflection::Prediction& p) {
+  SpindleFigures out;
+  double work_Nmm = 0, volume_mm3 = 0, time_s = 0;
+  for (std::size_t k = 0; k < p.cut.loads.size(); ++k) {
+    const auto& l = p.cut.loads[k];
+    if (l.chip_mm3 <= 0 || l.torque_mean_Nmm <= 0) continue;
+    const double rpm = program.moves.state_of(program.moves.moves[program.path.stamps[k].move]).spindle_speed_rpm;
+    const double power_W = deflection::power_W(l.torque_mean_Nmm, rpm);
+    out.torque_max_Nm = std::max(out.torque_max_Nm, l.torque_max_Nmm / 1000);
+    out.power_max_W = std::max(out.power_max_W, power_W);
+    out.chip_max_mm = std::max(out.chip_max_mm, l.chip_max_mm);
+    work_Nmm += l.work_Nmm;
+    volume_mm3 += l.chip_mm3;
+    time_s += l.work_Nmm / 1000 / power_W;
+  }
+  if (time_s > 0) out.power_mean_W = work_Nmm / 1000 / time_s;
+  if (volume_mm3 > 0) out.specific_energy_MPa = work_Nmm / volume_mm3;
+  return out;
+}
+
 }  // namespace
 
 std::string predict_json(const deflection::MachinedProgram& program, const deflection::Prediction& p,
@@ -47,6 +73,11 @@ std::string predict_json(const deflection::MachinedProgram& program, const defle
   j["compute_s"] = compute_s;
   j["stamps"] = program.path.stamps.size();
   j["force_N"] = {{"max", largest_force_N(p)}};
+  const SpindleFigures s = spindle_figures(program, p);
+  j["torque_Nm"] = {{"max", s.torque_max_Nm}};
+  j["power_W"] = {{"max", s.power_max_W}, {"mean", s.power_mean_W}};
+  j["chip_thickness_mm"] = {{"max", s.chip_max_mm}};
+  j["specific_energy_MPa"] = s.specific_energy_MPa;
   j["removed_mm3"] = {{"path", p.cut.chip_mm3}, {"stock", p.cut.stock_mm3}};
   j["form_error_um"] = figures(p.form_error_um);
   if (!p.total_error_mm.empty()) j["total_error_um"] = figures(total_error(p));
@@ -80,11 +111,15 @@ std::string predict_text(const deflection::MachinedProgram& program, const defle
                          double compute_s) {
   std::string out = fmt::format("machine time {:.1f} s, of it cutting {:.1f} s; computed in {:.1f} s\n",
                                 program.feed.time_s, program.feed.cutting_time_s, compute_s);
+  const SpindleFigures s = spindle_figures(program, p);
   const double balance = p.cut.stock_mm3 > 0 ? 100 * (p.cut.chip_mm3 / p.cut.stock_mm3 - 1) : 0;
   fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the chips, {:.3f} mm3 by the stock ({:+.2f} %)\n",
                  p.cut.chip_mm3, p.cut.stock_mm3, balance);
-  fmt::format_to(std::back_inserter(out), "greatest lateral force {:.1f} N\n{}\n{}\n", largest_force_N(p), kFiguresHead,
-                 figures_row("error", p.form_error_um));
+  fmt::format_to(std::back_inserter(out), "greatest lateral force {:.1f} N, torque {:.3f} Nm, chip {:.4f} mm\n",
+                 largest_force_N(p), s.torque_max_Nm, s.chip_max_mm);
+  fmt::format_to(std::back_inserter(out), "power {:.1f} W at most, {:.1f} W in the cut; {:.0f} J/cm3\n", s.power_max_W,
+                 s.power_mean_W, s.specific_energy_MPa);
+  fmt::format_to(std::back_inserter(out), "{}\n{}\n", kFiguresHead, figures_row("error", p.form_error_um));
   if (!p.total_error_mm.empty())
     fmt::format_to(std::back_inserter(out), "{}\n", figures_row("against part", total_error(p)));
   return out;

@@ -1,0 +1,67 @@
+#pragma once
+// The parameters of fit-force, and the residuals that they leave.
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "calib/force_signal.h"
+#include "deflection/steady_cut.h"
+
+namespace camber::calib {
+
+/// A coefficient as [material] has it.
+struct Coefficient {
+  const char* name;
+  const char* unit;
+  double machine::Material::*field;
+  double step;        ///< of numeric derivatives, as a share, and at least this much of 1
+  int axis;           ///< 0 tangential, 1 radial, 2 axial
+  bool edge = false;  ///< an edge term, or Kienzle's exponent
+};
+const std::vector<Coefficient>& coefficients_of(machine::ForceLaw law);
+
+/// One vector: coefficients that are fitted, then for every log of waveforms its run-out (x, y mm; only x, or none) and
+/// the phase of each of its cuts (rad).
+class ForceProblem {
+ public:
+  explicit ForceProblem(const std::vector<MeasuredLog>& logs);
+
+  Eigen::Index size() const { return size_; }
+  Eigen::Index residual_count() const { return residuals_; }
+  std::size_t coefficient_count() const { return free_.size(); }
+  const Coefficient& coefficient(std::size_t i) const { return *free_[i]; }
+
+  struct LogPlace {
+    Eigen::Index run_out = 0;  ///< of its first component
+    int run_out_size = 0;
+    Eigen::Index phase = 0;  ///< of the first cut
+  };
+  const std::vector<LogPlace>& places() const { return places_; }
+  const std::vector<MeasuredLog>& logs() const { return logs_; }
+  const deflection::SteadyCutModel& model(std::size_t log, std::size_t cut) const { return models_[log][cut]; }
+
+  machine::Material material_at(const Eigen::VectorXd& p) const;
+  deflection::RunOut run_out_at(std::size_t log, const Eigen::VectorXd& p) const;
+
+  /// Model minus measured, N; waveform steps weighted by the square root of their share of samples.
+  Eigen::VectorXd residuals(const Eigen::VectorXd& p) const;
+  /// By central differences; a phase touches its own cut only.
+  Eigen::MatrixXd jacobian(const Eigen::VectorXd& p) const;
+  /// Root mean square of model minus the held-out turns, over all waveforms; 0 without.
+  double held_out_rms_N(const Eigen::VectorXd& p) const;
+
+ private:
+  Eigen::VectorXd cut_residuals(std::size_t log, std::size_t cut, const Eigen::VectorXd& p) const;
+  double step_of(Eigen::Index i, double value) const;
+
+  const std::vector<MeasuredLog>& logs_;
+  machine::Material base_;
+  std::vector<const Coefficient*> free_;
+  std::vector<std::vector<deflection::SteadyCutModel>> models_;
+  std::vector<std::vector<Eigen::Index>> first_residual_;
+  std::vector<LogPlace> places_;
+  Eigen::Index size_ = 0, residuals_ = 0;
+};
+
+}  // namespace camber::calib

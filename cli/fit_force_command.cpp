@@ -1,0 +1,116 @@
+#include "cli/fit_force_command.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "base/output_file.h"
+#include "base/units.h"
+#include "calib/fit_force.h"
+#include "cli/console.h"
+#include "machine/material_reader.h"
+
+namespace camber::cli {
+namespace {
+
+using calib::FitForceResult;
+using nlohmann::ordered_json;
+
+std::vector<calib::MeasuredLog> read_logs(const FitForceArguments& arguments, Diagnostics& diagnostics) {
+  std::vector<calib::MeasuredLog> logs;
+  for (std::size_t i = 0; i < arguments.logs.size(); ++i) {
+    const auto& job = arguments.jobs.size() == 1 ? arguments.jobs.front() : arguments.jobs[i];
+    const machine::ForceLog how = machine::read_force_log(job, diagnostics);
+    logs.push_back(calib::read_measured_log(arguments.logs[i], how, diagnostics));
+  }
+  return logs;
+}
+
+std::string component(bool has, double value) {
+  return has ? fmt::format("{:>9.2f}", value) : fmt::format("{:>9}", "-");
+}
+
+void print(const FitForceResult& result) {
+  fmt::print("{:<20} {:>14} {:<6} {:>11}\n", "parameter", "value", "unit", "std error");
+  for (const auto& p : result.parameters)
+    fmt::print("{:<20} {:>14.6g} {:<6} {:>11}  {}\n", p.name, p.value, p.unit,
+               p.std_error ? fmt::format("{:.2g}", *p.std_error) : "-", p.note);
+  for (const auto& r : result.run_out)
+    if (!r.note.empty()) fmt::print("run-out of {}: {}\n", r.log, r.note);
+  fmt::print("mean force on the tool, N: x feed, y left of it, z up\n{:>27} {:>28}  cut\n", "measured", "fitted");
+  for (const auto& c : result.cuts) {
+    for (const Vec3* f : {&c.measured_N, &c.model_N})
+      for (int a = 0; a < 3; ++a)
+        fmt::print("{}{}", component(c.has[static_cast<std::size_t>(a)], (*f)[a]), a == 2 ? " " : "");
+    fmt::print(" {}\n", c.name);
+  }
+  fmt::print("residual {:.3g} N rms", result.residual_rms_N);
+  if (result.held_out_rms_N) fmt::print(", held out {:.3g} N rms", *result.held_out_rms_N);
+  fmt::print("; {}\n", result.message);
+}
+
+ordered_json components(const std::array<bool, 3>& has, const Vec3& f) {
+  ordered_json out = ordered_json::array();
+  for (int a = 0; a < 3; ++a)
+    out.push_back(has[static_cast<std::size_t>(a)] ? ordered_json(f[a]) : ordered_json(nullptr));
+  return out;
+}
+
+ordered_json report_of(const FitForceResult& result) {
+  ordered_json report;
+  for (const auto& p : result.parameters)
+    report["parameters"].push_back({{"name", p.name},
+                                    {"value", p.value},
+                                    {"unit", p.unit},
+                                    {"std_error", p.std_error ? ordered_json(*p.std_error) : ordered_json(nullptr)},
+                                    {"note", p.note}});
+  report["held_out"] = {
+      {"rms_N", result.held_out_rms_N ? ordered_json(*result.held_out_rms_N) : ordered_json(nullptr)}};
+  report["fitted"] = {{"rms_N", result.residual_rms_N}};
+  report["run_out"] = ordered_json::array();
+  for (const auto& r : result.run_out)
+    report["run_out"].push_back({{"log", r.log},
+                                 {"offset_um", 1000 * r.offset_mm},
+                                 {"angle_deg", deg_from_rad(r.angle_rad)},
+                                 {"offset_std_error_um", 1000 * r.offset_std_error_mm},
+                                 {"note", r.note}});
+  for (const auto& c : result.cuts)
+    report["cuts"].push_back({{"cut", c.name},
+                              {"measured_mean_N", components(c.has, c.measured_N)},
+                              {"fitted_mean_N", components(c.has, c.model_N)}});
+  report["converged"] = result.converged;
+  report["plausible"] = result.plausible;
+  report["message"] = result.message;
+  return report;
+}
+
+std::string material_file(const FitForceArguments& arguments, const FitForceResult& result) {
+  std::string out = fmt::format("# Fitted by camber fit-force to {}; residual {:.3g} N rms.\n",
+                                fmt::join(arguments.logs, ", "), result.residual_rms_N);
+  for (const auto& p : result.parameters)
+    if (p.std_error) out += fmt::format("# {}: {:.6g} +- {:.2g} {}\n", p.name, p.value, *p.std_error, p.unit);
+  // More digits than the fit can know would only hide it.
+  machine::Material rounded = result.material;
+  for (const auto& c : machine::coefficient_fields(rounded.law))
+    rounded.*c = std::stod(fmt::format("{:.6g}", rounded.*c));
+  return out + "[material]\n" + machine::material_text(rounded);
+}
+
+}  // namespace
+
+int run_fit_force(const FitForceArguments& arguments, const GlobalOptions& options) {
+  Diagnostics diagnostics;
+  const auto logs = read_logs(arguments, diagnostics);
+  settle(diagnostics, options);
+  const FitForceResult result = calib::fit_force(logs);
+  if (!options.quiet) print(result);
+  write_file(arguments.output, material_file(arguments, result));
+  if (!arguments.json.empty()) write_file(arguments.json, report_of(result).dump(2) + "\n");
+  const bool worked = result.converged && result.plausible;
+  if (!worked) print_error(result.message);
+  return worked ? kDone : kNumbersDidNotWorkOut;
+}
+
+}  // namespace camber::cli

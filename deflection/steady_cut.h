@@ -1,0 +1,61 @@
+#pragma once
+// Forces of a straight cut at constant depth and width, without a stock: what dynamometer tests are made of.
+#include <vector>
+
+#include "base/geometry.h"
+#include "machine/job.h"
+#include "removal/cutter.h"
+
+namespace camber::deflection {
+
+/// Where the work lies, seen along the tool's feed: under M3 up milling has it on the left, down milling on the right.
+enum class Milling { up, down };
+
+struct SteadyCut {
+  double feed_per_tooth_mm = 0;
+  double axial_depth_mm = 0;
+  double radial_depth_mm = 0;  ///< up to the diameter; at the diameter: a slot
+  Milling milling = Milling::up;
+};
+
+/// Offset of the cutter's axis from the spindle's, in the tool's frame: x towards tooth 1's edge at the tip,
+/// counter-clockwise seen from above.
+using RunOut = Vec2;
+
+/// Forces on the tool in the frame of the cut, N: x along the tool's feed, y to its left, z up (away from the work).
+///
+/// h = f_t sin(phi) sin(kappa), the circular chip of the closed forms; each edge is cut in rings of at most
+/// `ring_mm` of arc length. Run-out makes h the smallest over the teeth before, m f_t sin(phi) + e_j - e_(j-m), m = 1
+/// ... N (Kline & DeVor 1983). An element takes the share of a rotation step that it cuts in.
+class SteadyCutModel {
+ public:
+  SteadyCutModel(const machine::Tool& tool, const SteadyCut& cut, double ring_mm = 0.25);
+
+  /// Mean over whole turns, without run-out. Integrated by Gauss' rule: exact to rounding with the linear law.
+  Vec3 mean_N(const machine::Material& material) const;
+
+  /// Means over `steps` equal steps of one turn. Step i is turned clockwise from where tooth 1's edge at the tip points
+  /// along the feed by phase_rad + (i + 1/2) 2 pi / steps.
+  std::vector<Vec3> waveform_N(const machine::Material& material, const RunOut& run_out_mm, double phase_rad,
+                               int steps) const;
+
+  /// Volume that a tooth removes, mm^3, and mean torque of the spindle, N mm, without run-out.
+  double chip_mm3() const;
+  double torque_mean_Nmm(const machine::Material& material) const;
+
+ private:
+  struct Ring {
+    double radius_mm = 0, width_mm = 0, lag_rad = 0;
+    double sine = 0, cosine = 0;         ///< of the profile's normal angle
+    double entry_rad = 0, exit_rad = 0;  ///< counter-clockwise from the feed, entry < exit; equal: never cuts
+  };
+  /// f(ring, phi, h, weight) at the nodes of Gauss' rule; weights add up to the engaged angle.
+  template <class Function>
+  void integrate(Function f) const;
+
+  std::vector<Ring> rings_;
+  int flutes_ = 2;
+  double feed_per_tooth_mm_ = 0;
+};
+
+}  // namespace camber::deflection
