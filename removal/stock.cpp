@@ -131,23 +131,28 @@ std::int32_t Stock::stamp(const Index3& i) const { return impl_->stamp->tree().g
 
 namespace {
 
-/// Copies the part of a tile that lies in one leaf; a leaf that is not there has one value throughout.
+/// Copies the part of a cube of `side` voxels from `base` on that lies in one leaf; a leaf that is not there has one
+/// value throughout.
 template <class Tree, class Value>
 void copy_from(const openvdb::tree::ValueAccessor<const Tree>& access, const Coord& leaf_origin, const Coord& base,
-               Value* out) {
+               int side, Value* out) {
   const auto* leaf = access.probeConstLeaf(leaf_origin);
   const Value constant = leaf ? Value{} : access.getValue(leaf_origin);
   const Value* values = leaf ? leaf->buffer().data() : nullptr;
+  std::array<int, 3> from{}, to{};  // in the leaf
+  for (int a = 0; a < 3; ++a) {
+    from[a] = std::max(0, base[a] - leaf_origin[a]);
+    to[a] = std::min(kLeaf, base[a] + side - leaf_origin[a]);
+  }
   const Coord at = leaf_origin - base;
-  const int ni = std::min(kLeaf, Tile::kSide - at.x()), nj = std::min(kLeaf, Tile::kSide - at.y());
-  const int nk = std::min(kLeaf, Tile::kSide - at.z());
-  for (int i = 0; i < ni; ++i)
-    for (int j = 0; j < nj; ++j) {
-      Value* row = out + Tile::offset(at.x() + i, at.y() + j, at.z());
+  const int count = to[2] - from[2];
+  for (int i = from[0]; i < to[0]; ++i)
+    for (int j = from[1]; j < to[1]; ++j) {
+      Value* row = out + ((at.x() + i) * side + at.y() + j) * side + at.z() + from[2];
       if (values)
-        std::copy_n(values + (i << 6 | j << 3), nk, row);
+        std::copy_n(values + (i << 6 | j << 3 | from[2]), count, row);
       else
-        std::fill_n(row, nk, constant);
+        std::fill_n(row, count, constant);
     }
 }
 
@@ -161,15 +166,38 @@ void for_each_leaf_of_tile(const Coord& base, Function f) {
 }  // namespace
 
 void Stock::load(const Index3& tile, Tile& out) const {
-  const Coord base(tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore);
-  const openvdb::FloatGrid& distance = *impl_->distance;
-  const openvdb::Int32Grid& stamp = *impl_->stamp;
-  const auto distances = distance.getConstAccessor();
-  const auto stamps = stamp.getConstAccessor();
-  for_each_leaf_of_tile(base, [&](const Coord& leaf) {
-    copy_from(distances, leaf, base, out.distance.data());
-    copy_from(stamps, leaf, base, out.stamp.data());
-  });
+  read({tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore}, Tile::kSide, out.distance.data(),
+       out.stamp.data());
+}
+
+void Stock::read(const Index3& first, int side, float* distance, std::int32_t* stamp) const {
+  const Coord base = coord(first);
+  const openvdb::FloatGrid& distance_grid = *impl_->distance;
+  const openvdb::Int32Grid& stamp_grid = *impl_->stamp;
+  const auto distances = distance_grid.getConstAccessor();
+  const auto stamps = stamp_grid.getConstAccessor();
+  Coord lo, hi;
+  for (int a = 0; a < 3; ++a) {
+    lo[a] = floor_div(base[a], kLeaf) * kLeaf;
+    hi[a] = base[a] + side;
+  }
+  for (int i = lo.x(); i < hi.x(); i += kLeaf)
+    for (int j = lo.y(); j < hi.y(); j += kLeaf)
+      for (int k = lo.z(); k < hi.z(); k += kLeaf) {
+        copy_from(distances, {i, j, k}, base, side, distance);
+        copy_from(stamps, {i, j, k}, base, side, stamp);
+      }
+}
+
+bool Stock::is_cut(const Index3& tile) const {
+  const openvdb::Int32Grid& stamps = *impl_->stamp;
+  const auto access = stamps.getConstAccessor();
+  for (int i = 0; i < Tile::kCore; i += kLeaf)
+    for (int j = 0; j < Tile::kCore; j += kLeaf)
+      for (int k = 0; k < Tile::kCore; k += kLeaf)
+        if (access.probeConstLeaf({tile[0] * Tile::kCore + i, tile[1] * Tile::kCore + j, tile[2] * Tile::kCore + k}))
+          return true;
+  return false;
 }
 
 bool Stock::is_air(const Index3& tile) const {

@@ -26,26 +26,8 @@ struct Block {
 void fill(const Stock& stock, const Index3& tile, std::vector<float>& distance, std::vector<std::int32_t>& stamp) {
   distance.resize(static_cast<std::size_t>(kPad) * kPad * kPad);
   stamp.resize(distance.size());
-  auto part = std::make_unique<Tile>();
-  for (int ti = -1; ti <= 1; ++ti)
-    for (int tj = -1; tj <= 1; ++tj)
-      for (int tk = -1; tk <= 1; ++tk) {
-        stock.load({tile[0] + ti, tile[1] + tj, tile[2] + tk}, *part);
-        const auto range = [](int t) {
-          const int lo = t < 0 ? Tile::kCore - kMargin : 0, hi = t > 0 ? kMargin : Tile::kCore;
-          return std::pair(lo, hi);
-        };
-        const auto [i0, i1] = range(ti);
-        const auto [j0, j1] = range(tj);
-        const auto [k0, k1] = range(tk);
-        for (int i = i0; i < i1; ++i)
-          for (int j = j0; j < j1; ++j)
-            for (int k = k0; k < k1; ++k) {
-              const std::size_t to = Block::at(i + ti * Tile::kCore, j + tj * Tile::kCore, k + tk * Tile::kCore);
-              distance[to] = part->distance[static_cast<std::size_t>(Tile::offset(i, j, k))];
-              stamp[to] = part->stamp[static_cast<std::size_t>(Tile::offset(i, j, k))];
-            }
-      }
+  stock.read({tile[0] * Tile::kCore - kMargin, tile[1] * Tile::kCore - kMargin, tile[2] * Tile::kCore - kMargin}, kPad,
+             distance.data(), stamp.data());
 }
 
 Vec3 gradient(const std::vector<float>& d, int i, int j, int k) {
@@ -65,6 +47,7 @@ bool inside_cut(const Block& b, int i, int j, int k, float voxel) {
 }
 
 void collect(const Stock& machined, const Stock& target, const Index3& tile, std::vector<SurfacePoint>& out) {
+  if (!target.is_cut(tile)) return;
   Block b;
   fill(target, tile, b.target, b.target_stamp);
   fill(machined, tile, b.machined, b.machined_stamp);
