@@ -8,6 +8,7 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "deflection/collisions.h"
 #include "feedmodel/feed_csv.h"
 #include "nc/interpreter.h"
 #include "report/forces_csv.h"
@@ -56,6 +57,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
     const auto original = deflection::machine_program(SourceText::read(job.part.program), job, {}, of_target);
     return deflection::make_target(job, original, diagnostics);
   }();
+  deflection::check_collisions(job, program, target.blank, diagnostics);
   settle(diagnostics, options);
   const fs::path folder = make_folder(arguments.output_folder);
 
@@ -71,6 +73,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   const auto points = report::form_error_points(program, prediction);
   report::write_form_error_csv(folder / "form_error.csv", points);
   report::write_form_error_vtp(folder / "form_error.vtp", points);
+  report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95);
   prediction.machined->save(folder / "stock.vdb");
   report::write_html_report(folder / "report.html", report::predict_report("Predicted form error", program, prediction,
                                                                            std::move(feed), diagnostics));

@@ -72,7 +72,8 @@ class Cutter {
         top_mm_(engaged_top_mm(stock, tool, stamps)),
         envelope_(removal::make_envelope(tool, top_mm_, options.envelope_step_mm, options.rotation_step_rad)),
         model_(envelope_, material, beam_of(tool), node_heights(top_mm_),
-               options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0) {
+               options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
+               options.axis_compliance_mm_per_N) {
     removal::make_patches(envelope_, 0.6 * stock.band_mm());
     if (options.coupling == machine::Coupling::rigid) undeflected_.emplace(stock);
   }
@@ -81,6 +82,7 @@ class Cutter {
   void cut(std::span<const Stamp> all, std::size_t from, std::size_t count, std::span<const Contact> contacts,
            std::int32_t first_id, CutResult& result) {
     const std::span<const Stamp> stamps = all.subspan(from, count);
+    passings_ = from;
     ShiftTable shifts(stamps.size(), model_.steps(), model_.node_height_mm());
     if (!last_row_.empty()) std::copy(last_row_.begin(), last_row_.end(), shifts.row(-1));
     // The last loaded stamp's state is the first guess for all.
@@ -133,7 +135,7 @@ class Cutter {
                 std::vector<StampLoad>& loads) const {
     tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
       ToothPass pass;
-      model_.evaluate(engagement.of(k), pass);
+      model_.evaluate(engagement.of(k), passings_ + k, stamps[k].feed_per_tooth_mm, pass);
       loads[k] = summarize(pass);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
       std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(), shifts.row(static_cast<std::ptrdiff_t>(k)));
@@ -149,7 +151,7 @@ class Cutter {
     for (int round = 1; round <= options_.max_rounds; ++round) {
       const Engagement engagement = bent.carve(&shifts);
       tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
-        model_.evaluate(engagement.of(k), passes[k]);
+        model_.evaluate(engagement.of(k), passings_ + k, stamps[k].feed_per_tooth_mm, passes[k]);
         loads[k] = summarize(passes[k]);
         loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
       });
@@ -208,6 +210,7 @@ class Cutter {
   std::optional<Stock> undeflected_;
   std::vector<float> last_row_, guess_row_;
   double most_bent_mm_ = 0;
+  std::size_t passings_ = 0;  ///< tooth passings before the stretch
 };
 
 }  // namespace
@@ -242,7 +245,7 @@ void sweep(Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamp
 std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& tool, std::span<const Stamp> stamps) {
   const removal::CutterShape shape = removal::shape_of(tool);
   const double top = std::max(shape.corner_radius_mm, target.voxel_mm());
-  const double length = shape.bottom_length_mm() + shape.arc_length_mm() + (top - shape.corner_radius_mm);
+  const double length = shape.profile.length_to_height_mm(top);
   constexpr int kRings = 100;
   constexpr double kDepthBand_mm = 0.001;
   struct Candidate {
@@ -256,7 +259,7 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
     std::vector<Candidate> candidates;
     double deepest = -1e9;
     for (int r = 0; r < kRings; ++r) {
-      const auto p = removal::profile_at(shape, (r + 0.5) * length / kRings);
+      const auto p = shape.profile.at((r + 0.5) * length / kRings);
       const double tilt = horizontal > 0 ? f.z() / (horizontal * std::tan(p.normal_angle_rad)) : 2.0;
       if (p.normal_angle_rad > 0 && std::abs(tilt) > 1) continue;
       for (const double side : {-1.0, 1.0}) {

@@ -37,6 +37,7 @@ struct CutOptions {
   double edge_ramp_mm = 0.002;           ///< static only, see edge_force
   double settle_um = 0.1;                ///< rms change of the deflection at which a stretch is settled, or ...
   double settle_share = 0.01;            ///< ... this share of its rms
+  Vec2 axis_compliance_mm_per_N = Vec2::Zero();  ///< of the machine's x and y axes
   std::function<void(double)> progress;  ///< share done, 0 to 1
 };
 

@@ -15,8 +15,16 @@ std::vector<double> node_heights(double top_mm) {
 }
 
 ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material,
-                               const Beam& beam, std::vector<double> nodes, double edge_ramp_mm)
-    : envelope_(envelope), material_(material), edge_ramp_mm_(edge_ramp_mm), node_height_mm_(std::move(nodes)) {
+                               const Beam& beam, std::vector<double> nodes, double edge_ramp_mm,
+                               Teeth teeth, const Vec2& axis_compliance)
+    : envelope_(envelope),
+      material_(material),
+      edge_ramp_mm_(edge_ramp_mm),
+      axis_compliance_(axis_compliance),
+      teeth_(std::move(teeth)),
+      node_height_mm_(std::move(nodes)) {
+  for (int j = 0; j < teeth_.count(); ++j)
+    tooth_step_.push_back(static_cast<int>(std::lround(teeth_.offset_rad(j) * envelope.steps / (2 * kPi))));
   for (const auto& ring : envelope.rings) {
     const double z = ring.profile.height_mm;
     own_compliance_.push_back(beam.compliance_mm_per_N(z, z));
@@ -31,7 +39,41 @@ ToothPassModel::Direction ToothPassModel::direction(std::uint32_t p, const remov
   return {{s, -c, 0}, {sk * c, sk * s, -ck}, {ck * c, ck * s, sk}};
 }
 
-void ToothPassModel::evaluate(std::span<const removal::Chip> chips, ToothPass& out) const {
+double ToothPassModel::motion_chip_mm(const Direction& d, const removal::EnvelopeGrid::Ring& ring,
+                                      const Vec3& feed) const {
+  const double around = feed.dot(d.tangential), up = feed.dot(d.meridian);
+  return feed.dot(d.normal) + 0.5 * (ring.profile.meridian_curvature_per_mm * up * up +
+                                     ring.profile.parallel_curvature_per_mm * around * around);
+}
+
+void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const Direction& d, std::uint32_t r,
+                         std::size_t m, std::vector<double>& deflection, ToothPass& out) const {
+  const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
+  const std::size_t nodes = node_height_mm_.size();
+  const auto& ring = envelope_.rings[r];
+  const EdgeForce e = edge_force(material_, thickness_mm, ring.width_mm, edge_ramp_mm_);
+  const Vec3 force = -(e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian);
+  out.force_N[m] += force;
+  for (std::size_t n = 0; n < nodes; ++n) {
+    const double w = compliance_[r * nodes + n];
+    deflection[2 * (n * steps + m)] += (w + axis_compliance_.x()) * force.x();
+    deflection[2 * (n * steps + m) + 1] += (w + axis_compliance_.y()) * force.y();
+  }
+  Vec3 slope = material_.ktc_MPa * d.tangential + material_.krc_MPa * d.normal + material_.kac_MPa * d.meridian;
+  if (thickness_mm < edge_ramp_mm_)
+    slope += (material_.kte_N_per_mm * d.tangential + material_.kre_N_per_mm * d.normal +
+              material_.kae_N_per_mm * d.meridian) /
+             edge_ramp_mm_;
+  const Eigen::Matrix2d feedback = -ring.width_mm *
+                                   (axis_compliance_.array() + own_compliance_[r]).matrix().cwiseProduct(
+                                       slope.head<2>()) *
+                                   d.normal.head<2>().transpose();
+  out.feedback[m] += feedback;
+  if (chip.after_tooth) out.feedback_before[m] += feedback;
+}
+
+void ToothPassModel::evaluate(std::span<const removal::Chip> chips, std::size_t passing, const Vec3& feed,
+                              ToothPass& out) const {
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
   const std::size_t nodes = node_height_mm_.size();
   out.force_N.assign(steps, Vec3::Zero());
@@ -39,28 +81,26 @@ void ToothPassModel::evaluate(std::span<const removal::Chip> chips, ToothPass& o
   out.feedback_before.assign(steps, Eigen::Matrix2d::Zero());
   out.deflection_mm.assign(nodes * steps * 2, 0.0f);
   std::vector<double> deflection(nodes * steps * 2, 0.0);
+  const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
+  const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth_.count())) * pitch;
   for (const removal::Chip& chip : chips) {
-    const std::uint32_t r = chip.point / static_cast<std::uint32_t>(envelope_.steps);
-    const std::size_t m = chip.point % static_cast<std::uint32_t>(envelope_.steps) % steps;
+    const std::uint32_t r = chip.point / static_cast<std::uint32_t>(turn);
+    const int at = static_cast<int>(chip.point % static_cast<std::uint32_t>(turn));
     const auto& ring = envelope_.rings[r];
     const Direction d = direction(chip.point, ring);
-    const EdgeForce e = edge_force(material_, chip.thickness_mm, ring.width_mm, edge_ramp_mm_);
-    const Vec3 force = -(e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian);
-    out.force_N[m] += force;
-    for (std::size_t n = 0; n < nodes; ++n) {
-      const double w = compliance_[r * nodes + n];
-      deflection[2 * (n * steps + m)] += w * force.x();
-      deflection[2 * (n * steps + m) + 1] += w * force.y();
+    if (teeth_.even()) {
+      add(chip, chip.thickness_mm, d, r, static_cast<std::size_t>(at) % steps, deflection, out);
+      continue;
     }
-    Vec3 slope = material_.ktc_MPa * d.tangential + material_.krc_MPa * d.normal + material_.kac_MPa * d.meridian;
-    if (chip.thickness_mm < edge_ramp_mm_)
-      slope += (material_.kte_N_per_mm * d.tangential + material_.kre_N_per_mm * d.normal +
-                material_.kae_N_per_mm * d.meridian) /
-               edge_ramp_mm_;
-    const Eigen::Matrix2d feedback =
-        -own_compliance_[r] * ring.width_mm * slope.head<2>() * d.normal.head<2>().transpose();
-    out.feedback[m] += feedback;
-    if (chip.after_tooth) out.feedback_before[m] += feedback;
+    // Every tooth that passes the point during this tooth passing.
+    for (int j = 0; j < teeth_.count(); ++j) {
+      const int m = ((at - tooth_step_[static_cast<std::size_t>(j)] + gone) % turn + turn) % turn;
+      if (m >= pitch) continue;
+      const double even = chip.after_tooth ? static_cast<double>(chip.thickness_mm) : motion_chip_mm(d, ring, feed);
+      double h = teeth_.chip_mm(j, even, ring.sine, ring.lag_rad);
+      if (!chip.after_tooth) h = std::min(h, chip.thickness_mm + ring.sine * teeth_.throw_mm(j, ring.lag_rad));
+      if (h > 0) add(chip, h, d, r, static_cast<std::size_t>(m), deflection, out);
+    }
   }
   std::transform(deflection.begin(), deflection.end(), out.deflection_mm.begin(),
                  [](double v) { return static_cast<float>(v); });
