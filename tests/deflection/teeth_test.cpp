@@ -44,15 +44,16 @@ TEST(Teeth, TakeTogetherWhatEvenTeethTake) {
 
 /// Slot loads in the steady middle: per tooth passing, in order.
 std::vector<StampLoad> slot(const machine::Tool& tool, double feed) {
-  auto stock = testing::make_box({0, -6, -3}, {16, 6, 0}, 0.1);
+  // Along +Y: a tooth is in the middle of its cut in the middle of its passing.
+  auto stock = testing::make_box({-6, 0, -3}, {6, 16, 0}, 0.1);
   std::vector<removal::Stamp> stamps;
-  testing::add_row(stamps, {-6, 0, -1}, {12, 0, -1}, feed);
+  testing::add_row(stamps, {0, -6, -1}, {0, 12, -1}, feed);
   CutOptions options;
   options.coupling = machine::Coupling::rigid;
   const CutResult r = cut(stock, tool, {2000, 700, 0, 0, 0, 0}, stamps, {}, 0, options);
   std::vector<StampLoad> out;
   for (std::size_t k = 0; k < stamps.size(); ++k)
-    if (stamps[k].tip_mm.x() > 7 && stamps[k].tip_mm.x() < 10) out.push_back(r.loads[k]);
+    if (stamps[k].tip_mm.y() > 7 && stamps[k].tip_mm.y() < 10) out.push_back(r.loads[k]);
   out.resize(out.size() / 2 * 2);
   return out;
 }

@@ -17,6 +17,11 @@ using testing::make_box;
 using testing::make_tool;
 
 constexpr double kLength = 8, kDepth = 2;
+constexpr double kFeed = 0.1, kStockShare = 0.0005;
+
+/// A chip's thickness is right to the order of c / R; the volume of a slot's chips falls short by about a quarter of it.
+double balance_share(const machine::Tool& tool) { return 0.008 + 0.15 * kFeed / (tool.diameter_mm / 2); }
+
 
 struct Volumes {
   double stock_mm3, chips_mm3;
@@ -36,11 +41,6 @@ Volumes slot(const machine::Tool& tool, double rise) {
   for (std::size_t k = 0; k < stamps.size(); ++k) chips += chip_volume_mm3(envelope, e.of(k));
   return {stretch.commit(), chips};
 }
-
-constexpr double kFeed = 0.1, kStockShare = 0.0005;
-
-/// A chip's thickness is right to the order of c / R; the volume of a slot's chips falls short by about a quarter of it.
-double balance_share(const machine::Tool& tool) { return 0.008 + 0.15 * kFeed / (tool.diameter_mm / 2); }
 
 void expect_volume(const machine::Tool& tool, double area_mm2, const char* what) {
   const Volumes v = slot(tool, 0);

@@ -1,10 +1,14 @@
 #pragma once
 // A second way to chip thickness and force, slow and obvious, from the geometry alone: no field, no grid, no formula for
-// the chip. A point is material if it is in the box and in none of the cutters that stood there before; the chip is the
-// length of the ray from the edge inwards, against the normal, that runs in material.
+// the chip. A point is material if it is in the box and in none of the cutters that stood there before. Two rays start
+// at a point of the edge and run as far as there is material: one inwards, against the normal, finds what older cuts have
+// left; one back along the feed, as far as the tool came since the tooth before, times the cosine between feed and normal,
+// is what this tooth advances. The shorter is the chip.
 #include <cmath>
 #include <functional>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "base/geometry.h"
 #include "removal/stamp.h"
@@ -88,16 +92,23 @@ inline std::vector<DrawnForce> ray_traced_forces(const DrawnCutter& cutter, int 
     }
     return true;
   };
-  const auto chip = [&](const Vec3& p, const Vec3& n, std::size_t now) {
-    double h = 0;
-    if (!in_material(p - 1e-4 * n, now)) return h;
-    while (h < kLongest && in_material(p - (h + kStep) * n, now)) h += kStep;
-    double beyond = h + kStep;
+  const auto ray = [&](const Vec3& p, const Vec3& back, double longest, std::size_t now) {
+    double length = 0;
+    if (!in_material(p - 1e-4 * back, now)) return length;
+    while (length < longest && in_material(p - (length + kStep) * back, now)) length += kStep;
+    double beyond = length + kStep;
     for (int i = 0; i < 12; ++i) {
-      const double middle = (h + beyond) / 2;
-      (in_material(p - middle * n, now) ? h : beyond) = middle;
+      const double middle = (length + beyond) / 2;
+      (in_material(p - middle * back, now) ? length : beyond) = middle;
     }
-    return (h + beyond) / 2;
+    return std::min((length + beyond) / 2, longest);
+  };
+  const auto chip = [&](const Vec3& p, const Vec3& n, std::size_t now) {
+    const Vec3& feed = stamps[now].feed_per_tooth_mm;
+    const double cosine = feed.normalized().dot(n);
+    if (cosine <= 0) return 0.0;
+    const double inwards = ray(p, n, kLongest, now);
+    return inwards > 0 ? std::min(inwards, cosine * ray(p, feed.normalized(), feed.norm(), now)) : 0.0;
   };
   std::vector<DrawnForce> out(stamps.size());
   const int steps = steps_per_pitch * flutes;
