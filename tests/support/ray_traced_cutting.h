@@ -1,9 +1,9 @@
 #pragma once
 // A second way to chip thickness and force, slow and obvious, from the geometry alone: no field, no grid, no formula for
-// the chip. A point is material if it is in the box and in none of the cutters that stood there before. Two rays start
-// at a point of the edge and run as far as there is material: one inwards, against the normal, finds what older cuts have
-// left; one back along the feed, as far as the tool came since the tooth before, times the cosine between feed and normal,
-// is what this tooth advances. The shorter is the chip.
+// the chip. A point is material if it is in the box and in none of the cutters that stood there before. The chip is the
+// length of the ray from a point of the edge inwards, against the normal, that runs in material. No tooth advances by
+// more than the feed: a longer ray has passed the tooth before beside its edge (below a flat end, ahead of its corner);
+// then the ray goes back along the feed instead, and its length times the cosine between feed and normal counts.
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -83,7 +83,7 @@ struct DrawnCoefficients {
 inline std::vector<DrawnForce> ray_traced_forces(const DrawnCutter& cutter, int flutes, double helix_rad, const Vec3& lo,
                                                  const Vec3& hi, const std::vector<removal::Stamp>& stamps,
                                                  const DrawnCoefficients& k, int steps_per_pitch) {
-  constexpr double kStep = 0.004, kLongest = 0.6;
+  constexpr double kStep = 0.004;
   const auto in_material = [&](const Vec3& q, std::size_t now) {
     if ((q.array() < lo.array()).any() || (q.array() > hi.array()).any()) return false;
     for (std::size_t i = now; i-- > 0;) {
@@ -105,10 +105,9 @@ inline std::vector<DrawnForce> ray_traced_forces(const DrawnCutter& cutter, int 
   };
   const auto chip = [&](const Vec3& p, const Vec3& n, std::size_t now) {
     const Vec3& feed = stamps[now].feed_per_tooth_mm;
-    const double cosine = feed.normalized().dot(n);
-    if (cosine <= 0) return 0.0;
-    const double inwards = ray(p, n, kLongest, now);
-    return inwards > 0 ? std::min(inwards, cosine * ray(p, feed.normalized(), feed.norm(), now)) : 0.0;
+    const double inwards = ray(p, n, 2 * feed.norm(), now);
+    if (inwards <= feed.norm()) return inwards;
+    return std::max(0.0, feed.normalized().dot(n)) * ray(p, feed.normalized(), feed.norm(), now);
   };
   std::vector<DrawnForce> out(stamps.size());
   const int steps = steps_per_pitch * flutes;
