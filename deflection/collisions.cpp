@@ -121,8 +121,8 @@ class Search {
         std::size_t to = stretch_end(run, at);
         if (rapid != rapids_.end()) to = std::min(to, std::max(at + 1, rapid->before_stamp));
         feel_stretch(run.tool, at, to);
-        sweep(stock_, job_.tools.at(run.tool),
-              std::span(program_.path.stamps).subspan(at, to - at), static_cast<std::int32_t>(at), 0);
+        sweep(stock_, job_.tools.at(run.tool), std::span(program_.path.stamps).subspan(at, to - at),
+              static_cast<std::int32_t>(at), 0);
         at = to;
       }
     }
@@ -143,7 +143,8 @@ class Search {
   template <class Function>
   void for_places(const RapidCheck& r, Function f) const {
     const nc::Move& m = program_.moves.moves[r.move];
-    const int n = r.start_known ? std::max(1, static_cast<int>(std::ceil((m.end_mm - m.start_mm).norm() / kStep_mm))) : 0;
+    const int n =
+        r.start_known ? std::max(1, static_cast<int>(std::ceil((m.end_mm - m.start_mm).norm() / kStep_mm))) : 0;
     for (int i = 0; i <= n; ++i) f(n == 0 ? m.end_mm : Vec3(m.start_mm + (m.end_mm - m.start_mm) * i / n));
   }
 
@@ -234,7 +235,9 @@ void check_collisions(const machine::Job& job, const MachinedProgram& program, c
   const auto severity = kind == machine::Collisions::error ? Severity::error : Severity::warning;
   for (std::size_t i = 0; i < std::min(found.size(), kMost); ++i) {
     const Collision& c = found[i];
-    const char* part = c.part == Collision::Part::cutter ? "cutter" : c.part == Collision::Part::shank ? "shank" : "holder";
+    const char* part = c.part == Collision::Part::cutter  ? "cutter"
+                       : c.part == Collision::Part::shank ? "shank"
+                                                          : "holder";
     const std::size_t offset = program.text.blocks[program.moves.moves[c.move].block].offset;
     diagnostics.add(program.text.source.diagnostic(
         severity, offset,
@@ -243,9 +246,9 @@ void check_collisions(const machine::Job& job, const MachinedProgram& program, c
                     c.place_mm.x(), c.place_mm.y(), c.place_mm.z(), c.t_s,
                     i + 1 == kMost && found.size() > kMost ? fmt::format(" ({} more)", found.size() - kMost) : "",
                     c.rapid ? "a rapid clear of the stock" : "a longer overhang or less depth"),
-        c.rapid                                ? "collision-rapid"
+        c.rapid                            ? "collision-rapid"
         : c.part == Collision::Part::shank ? "collision-shank"
-                                               : "collision-holder"));
+                                           : "collision-holder"));
   }
 }
 

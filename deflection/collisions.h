@@ -16,8 +16,8 @@ struct Collision {
   enum class Part { cutter, shank, holder };  ///< a cutter collides in rapids only; the neck counts as shank
   Part part = Part::cutter;
   bool rapid = false;
-  double t_s = 0;                ///< a rapid: when it begins
-  std::uint32_t move = 0;        ///< index into Interpretation::moves
+  double t_s = 0;          ///< a rapid: when it begins
+  std::uint32_t move = 0;  ///< index into Interpretation::moves
   int tool = 0;
   Vec3 place_mm = Vec3::Zero();  ///< of the tool's outline, in material
 };

@@ -15,8 +15,8 @@ std::vector<double> node_heights(double top_mm) {
 }
 
 ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material,
-                               const Beam& beam, std::vector<double> nodes, double edge_ramp_mm,
-                               Teeth teeth, const Vec2& axis_compliance)
+                               const Beam& beam, std::vector<double> nodes, double edge_ramp_mm, Teeth teeth,
+                               const Vec2& axis_compliance)
     : envelope_(envelope),
       material_(material),
       edge_ramp_mm_(edge_ramp_mm),
@@ -64,10 +64,9 @@ void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const D
     slope += (material_.kte_N_per_mm * d.tangential + material_.kre_N_per_mm * d.normal +
               material_.kae_N_per_mm * d.meridian) /
              edge_ramp_mm_;
-  const Eigen::Matrix2d feedback = -ring.width_mm *
-                                   (axis_compliance_.array() + own_compliance_[r]).matrix().cwiseProduct(
-                                       slope.head<2>()) *
-                                   d.normal.head<2>().transpose();
+  const Eigen::Matrix2d feedback =
+      -ring.width_mm * (axis_compliance_.array() + own_compliance_[r]).matrix().cwiseProduct(slope.head<2>()) *
+      d.normal.head<2>().transpose();
   out.feedback[m] += feedback;
   if (chip.after_tooth) out.feedback_before[m] += feedback;
 }

@@ -26,10 +26,10 @@ void read_profile_numbers(TomlTable& table, Tool& tool, std::string_view type) {
     const auto value = table.optional_number(k.number.key, k.number.range);
     if (!k.belongs_to(type)) {
       if (table.has(k.number.key))
-        table.error_at_name(k.number.key,
-                            fmt::format("{} does not belong to type \"{}\"; it is for {}", k.number.key, type,
-                                        quoted(k.types)),
-                            "key-unused");
+        table.error_at_name(
+            k.number.key,
+            fmt::format("{} does not belong to type \"{}\"; it is for {}", k.number.key, type, quoted(k.types)),
+            "key-unused");
       continue;
     }
     if (k.must_have(type) && !table.has(k.number.key)) table.missing(k.number.key, k.number.range.wanted());
@@ -59,9 +59,9 @@ void check_profile(TomlTable& table, const Tool& tool) {
 }
 
 void read_teeth(TomlTable& table, Tool& tool) {
-  const auto degrees = table.numbers("pitch_deg", static_cast<std::size_t>(tool.flutes), kPitchDeg,
-                                     fmt::format("an angle for each of the {} flutes, as in [118, 122, 120],",
-                                                 tool.flutes));
+  const auto degrees =
+      table.numbers("pitch_deg", static_cast<std::size_t>(tool.flutes), kPitchDeg,
+                    fmt::format("an angle for each of the {} flutes, as in [118, 122, 120],", tool.flutes));
   if (!degrees) return;
   constexpr double kSum_deg = 0.01;
   double sum = 0;
@@ -80,7 +80,8 @@ void read_neck(TomlTable& table, Tool& tool) {
   if (!length) return;
   if (!table.has("flute_length_mm"))
     table.missing("flute_length_mm", "the length of the flutes, where the neck begins,");
-  else if (tool.flute_length_mm && tool.overhang_mm > 0 && *tool.flute_length_mm + tool.neck_length_mm > tool.overhang_mm)
+  else if (tool.flute_length_mm && tool.overhang_mm > 0 &&
+           *tool.flute_length_mm + tool.neck_length_mm > tool.overhang_mm)
     table.error_at("neck_length_mm",
                    fmt::format("flutes and neck are {} long; at most the overhang, {}, was expected",
                                *tool.flute_length_mm + tool.neck_length_mm, tool.overhang_mm),
@@ -111,8 +112,8 @@ void read_lengths(TomlTable& table, Tool& tool) {
 }
 
 void check_overhang(TomlTable& table, const Tool& tool) {
-  const double least = tool.type == ToolType::ball || tool.type == ToolType::tapered_ball ? tool.diameter_mm / 2
-                                                                                          : tool.corner_radius_mm;
+  const double least =
+      tool.type == ToolType::ball || tool.type == ToolType::tapered_ball ? tool.diameter_mm / 2 : tool.corner_radius_mm;
   if (tool.overhang_mm > 0 && tool.overhang_mm <= least)
     table.error_at(
         "overhang_mm",

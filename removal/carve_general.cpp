@@ -29,13 +29,16 @@ RowProfile row_profile(const Profile& profile) {
   for (const auto& p : profile.pieces()) {
     if (p.arc) {
       out.has_arc = true;
-      out.arc = {f(p.centre.x()), f(p.centre.y()),
-                 f(p.radius_mm),  f(std::sin(p.normal_from_rad)),
-                 f(-std::cos(p.normal_from_rad)), f(std::sin(p.normal_to_rad)),
+      out.arc = {f(p.centre.x()),
+                 f(p.centre.y()),
+                 f(p.radius_mm),
+                 f(std::sin(p.normal_from_rad)),
+                 f(-std::cos(p.normal_from_rad)),
+                 f(std::sin(p.normal_to_rad)),
                  f(-std::cos(p.normal_to_rad))};
     } else {
-      out.line[static_cast<std::size_t>(out.lines++)] = {f(p.start.x()), f(p.start.y()), f(p.along.x()),
-                                                         f(p.along.y()), f(p.length_mm)};
+      out.line[static_cast<std::size_t>(out.lines++)] = {f(p.start.x()), f(p.start.y()), f(p.along.x()), f(p.along.y()),
+                                                         f(p.length_mm)};
     }
   }
   return out;
@@ -130,8 +133,8 @@ void for_rows(const Tile& tile, ColumnCover& cover, const Index3& t, double voxe
 
 }  // namespace
 
-void carve_general(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band,
-                   const CutterShape& shape, const CarveStamp& stamp) {
+void carve_general(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band, const CutterShape& shape,
+                   const CarveStamp& stamp) {
   const RowProfile profile = row_profile(shape.profile);
   const auto shrink = static_cast<float>(stamp.shrink_mm), top = static_cast<float>(band);
   std::array<float, Tile::kSide> row;

@@ -42,9 +42,9 @@ class Profile {
 
   /// Where the profile is nearest to a point of the meridian plane, r >= 0.
   struct Nearest {
-    double distance_mm = 0;           ///< signed, negative inside; exact
-    Vec2 place = Vec2::Zero();        ///< on the profile
-    Vec2 normal = Vec2::Zero();       ///< outward there; in an edge the direction to the point
+    double distance_mm = 0;      ///< signed, negative inside; exact
+    Vec2 place = Vec2::Zero();   ///< on the profile
+    Vec2 normal = Vec2::Zero();  ///< outward there; in an edge the direction to the point
   };
   Nearest nearest(const Vec2& point) const;
   double distance_mm(const Vec2& point) const { return nearest(point).distance_mm; }

@@ -269,7 +269,8 @@ openvdb::FloatGrid::Ptr read_float_grid(const std::string& path) {
     file.open();
     const openvdb::GridPtrVecPtr grids = file.getGrids();
     for (const auto& grid : *grids)
-      if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid); floats && (!found || grid->getName() == "stock"))
+      if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+          floats && (!found || grid->getName() == "stock"))
         found = floats;
     file.close();
   } catch (const std::exception& e) {

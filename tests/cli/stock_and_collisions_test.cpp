@@ -15,8 +15,8 @@ using tests::TempFolder;
 
 const std::string kFlat = "[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\noverhang_mm = 30.0\n";
 
-void write_job(const TempFolder& folder, const std::string& program, const std::string& tools,
-               const std::string& stock, const std::string& simulation = "") {
+void write_job(const TempFolder& folder, const std::string& program, const std::string& tools, const std::string& stock,
+               const std::string& simulation = "") {
   folder.write("p.nc", program);
   folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n");
   folder.write("job.toml", "program = \"p.nc\"\nmachine = \"machine.toml\"\n" + tools +
@@ -72,9 +72,10 @@ TEST(SeveralTools, EachCutsWithItsOwnShapeAndSignsItsPoints) {
   const std::string program = kHead +
                               "G0 X-4 Y0 Z5\nG0 Z-2\nG1 X12 F900\nG0 Z5\nT2 M6\nS3000 M3\nG0 X-4 Y5 Z5\nG0 Z-1\n"
                               "G1 X12 F900\nG0 Z5\nM30\n";
-  write_job(folder, program,
-            kFlat + "[tool.2]\ntype = \"chamfer\"\ndiameter_mm = 6\npoint_angle_deg = 90\nflutes = 2\noverhang_mm = 30\n",
-            "box_mm = [[0, -5, -5], [8, 10, 0]]");
+  write_job(
+      folder, program,
+      kFlat + "[tool.2]\ntype = \"chamfer\"\ndiameter_mm = 6\npoint_angle_deg = 90\nflutes = 2\noverhang_mm = 30\n",
+      "box_mm = [[0, -5, -5], [8, 10, 0]]");
   const auto run = run_camber(folder, "predict job.toml -o r");
   ASSERT_EQ(run.status, 0) << run.err;
   // 4 mm wide, 2 deep; and a V of 90 degrees, 1 deep.
@@ -87,9 +88,12 @@ TEST(SeveralTools, EachCutsWithItsOwnShapeAndSignsItsPoints) {
   std::size_t of_slot = 0, of_groove = 0;
   while (std::getline(lines, line)) {
     const std::string maker = line.substr(line.find_last_of(',', line.find_last_of(',') - 1) + 1);
-    if (maker == "6,1") ++of_slot;
-    else if (maker == "12,2") ++of_groove;
-    else FAIL() << line;
+    if (maker == "6,1")
+      ++of_slot;
+    else if (maker == "12,2")
+      ++of_groove;
+    else
+      FAIL() << line;
     const double y = std::stod(line.substr(line.find(',') + 1));
     EXPECT_EQ(maker == "12,2", y > 3) << line;
   }

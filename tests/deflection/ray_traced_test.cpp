@@ -21,7 +21,8 @@ constexpr int kStepsPerPitch = 45;
 // Feeds of a thirtieth of the radius: what is left is the order of c / R (1 to 2 %) and the grid.
 constexpr double kAgreement = 0.03, kToothByTooth = 0.05;
 
-/// From a place in the block's side (its first stamp takes a cutter's worth of stock and no chip) along it, then another line at random, up to 1.4 mm deep: slots, shoulders, ramps.
+/// From a place in the block's side (its first stamp takes a cutter's worth of stock and no chip) along it, then
+/// another line at random, up to 1.4 mm deep: slots, shoulders, ramps.
 std::vector<removal::Stamp> random_path(std::mt19937& random, double radius) {
   std::uniform_real_distribution<double> y(-3, 3), depth(-1.4, -0.4), feed(0.04, 0.07);
   const double f = feed(random);
@@ -91,11 +92,12 @@ TEST(RayTraced, RandomShortPathsAgree_slow) {
         exact_chips += exact[k].chip_mm3;
         off += std::abs(ours.loads[k].lateral_max_N - exact[k].lateral_max_N);
       }
-      std::printf("%-8s path %d: %3zu stamps, mean force off %.2f %%, peak %+.2f %%, mean peak %+.2f %%, tooth by tooth "
-                  "%.2f %%, chips %+.2f %%\n",
-                  c.name, path, stamps.size(), 100 * (mean - exact_mean).norm() / exact_mean.norm(),
-                  100 * (peak / exact_peak - 1), 100 * (lateral / exact_lateral - 1), 100 * off / exact_lateral,
-                  100 * (chips / exact_chips - 1));
+      std::printf(
+          "%-8s path %d: %3zu stamps, mean force off %.2f %%, peak %+.2f %%, mean peak %+.2f %%, tooth by tooth "
+          "%.2f %%, chips %+.2f %%\n",
+          c.name, path, stamps.size(), 100 * (mean - exact_mean).norm() / exact_mean.norm(),
+          100 * (peak / exact_peak - 1), 100 * (lateral / exact_lateral - 1), 100 * off / exact_lateral,
+          100 * (chips / exact_chips - 1));
       EXPECT_LT((mean - exact_mean).norm(), kAgreement * exact_mean.norm()) << c.name;
       EXPECT_NEAR(peak / exact_peak, 1, kAgreement) << c.name;
       EXPECT_NEAR(lateral / exact_lateral, 1, kAgreement) << c.name;

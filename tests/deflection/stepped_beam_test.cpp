@@ -41,8 +41,9 @@ TEST(SteppedBeam, TipLoadOnTwoStepsHasItsTextbookForm) {
   // Flutes and shank: delta = F (a^3 / I1 + (L^3 - a^3) / I2) / 3E.
   auto tool = necked();
   tool.neck_length_mm = 0;
-  const double expected = (std::pow(kFlutes, 3) / inertia(8) +
-                           (std::pow(kOverhang, 3) - std::pow(kFlutes, 3)) / inertia(12)) / (3 * kYoung);
+  const double expected =
+      (std::pow(kFlutes, 3) / inertia(8) + (std::pow(kOverhang, 3) - std::pow(kFlutes, 3)) / inertia(12)) /
+      (3 * kYoung);
   EXPECT_NEAR(beam_of(tool).compliance_mm_per_N(0, 0) - 1 / kRoot, expected, 1e-12);
 }
 

@@ -46,8 +46,13 @@ machine::Tool general() {
 std::vector<machine::Tool> all_tools() {
   auto bull = make_tool(ToolType::bull, 10, 3, 30);
   bull.corner_radius_mm = 1.5;
-  return {make_tool(ToolType::ball, 6, 2, 30), make_tool(ToolType::flat, 10, 2, 30), bull, tapered_ball(), chamfer(),
-          drill(), general()};
+  return {make_tool(ToolType::ball, 6, 2, 30),
+          make_tool(ToolType::flat, 10, 2, 30),
+          bull,
+          tapered_ball(),
+          chamfer(),
+          drill(),
+          general()};
 }
 
 /// Lowest height of the cutter at a radius, from the meaning of its parameters alone: the solid is what lies above the
@@ -84,7 +89,7 @@ TEST(Profile, DistanceIsThatToDensePointsOfTheProfile) {
       EXPECT_NEAR(std::abs(d), least, 2e-4) << static_cast<int>(tool.type) << " at " << point.transpose();
       if (least < 1e-3) continue;
       EXPECT_EQ(d < 0, in_cutter(machine::parameters_of(tool), profile.largest_radius_mm(), point.x(), point.y()))
-            << static_cast<int>(tool.type) << " at " << point.transpose();
+          << static_cast<int>(tool.type) << " at " << point.transpose();
     }
   }
 }

@@ -1,9 +1,10 @@
 #pragma once
-// A second way to chip thickness and force, slow and obvious, from the geometry alone: no field, no grid, no formula for
-// the chip. A point is material if it is in the box and in none of the cutters that stood there before. The chip is the
-// length of the ray from a point of the edge inwards, against the normal, that runs in material. No tooth advances by
-// more than the feed: a longer ray has passed the tooth before beside its edge (below a flat end, ahead of its corner);
-// then the ray goes back along the feed instead, and its length times the cosine between feed and normal counts.
+// A second way to chip thickness and force, slow and obvious, from the geometry alone: no field, no grid, no formula
+// for the chip. A point is material if it is in the box and in none of the cutters that stood there before. The chip is
+// the length of the ray from a point of the edge inwards, against the normal, that runs in material. No tooth advances
+// by more than the feed: a longer ray has passed the tooth before beside its edge (below a flat end, ahead of its
+// corner); then the ray goes back along the feed instead, and its length times the cosine between feed and normal
+// counts.
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -80,9 +81,10 @@ struct DrawnCoefficients {
 };
 
 /// Force on the tool at each stamp.
-inline std::vector<DrawnForce> ray_traced_forces(const DrawnCutter& cutter, int flutes, double helix_rad, const Vec3& lo,
-                                                 const Vec3& hi, const std::vector<removal::Stamp>& stamps,
-                                                 const DrawnCoefficients& k, int steps_per_pitch) {
+inline std::vector<DrawnForce> ray_traced_forces(const DrawnCutter& cutter, int flutes, double helix_rad,
+                                                 const Vec3& lo, const Vec3& hi,
+                                                 const std::vector<removal::Stamp>& stamps, const DrawnCoefficients& k,
+                                                 int steps_per_pitch) {
   constexpr double kStep = 0.004;
   const auto in_material = [&](const Vec3& q, std::size_t now) {
     if ((q.array() < lo.array()).any() || (q.array() > hi.array()).any()) return false;
