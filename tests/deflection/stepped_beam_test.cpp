@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "deflection/beam.h"
+#include "deflection/tooth_pass.h"
 #include "tests/support/cutting.h"
 
 namespace camber::deflection {
@@ -86,6 +87,29 @@ TEST(SteppedBeam, ATaperedToolBendsAsAConeDoes) {
   const double d0 = 4 * (1 - std::sin(tool.taper_rad)) / std::cos(tool.taper_rad), d1 = d0 + 2 * kOverhang * tan;
   const double expected = 64 * std::pow(kOverhang, 3) / (3 * kPi * kYoung * d0 * std::pow(d1, 3));
   EXPECT_NEAR(beam_of(tool).compliance_mm_per_N(0, 0) / expected, 1, 0.002);
+}
+
+TEST(MachineAxes, AddTheirComplianceAtEveryHeight) {
+  const auto tool = necked();
+  const auto envelope = removal::make_envelope(tool, 4, 0.5, kPi / 36);
+  const machine::Material material{2000, 700, 0, 0, 0, 0};
+  const Vec2 axes(1 / 20000.0, 1 / 50000.0);
+  const ToothPassModel stiff(envelope, material, beam_of(tool), {0, 2, 4}, 0, Teeth(tool));
+  const ToothPassModel soft(envelope, material, beam_of(tool), {0, 2, 4}, 0, Teeth(tool), axes);
+  // One point of the wall, at some angle.
+  const auto point = static_cast<std::uint32_t>((envelope.rings.size() - 2) * envelope.steps + 7);
+  const std::vector<removal::Chip> chips{{point, 0.05f, false}};
+  ToothPass a, b;
+  stiff.evaluate(chips, 0, Vec3(0.05, 0, 0), a);
+  soft.evaluate(chips, 0, Vec3(0.05, 0, 0), b);
+  const auto m = static_cast<std::size_t>(7 % envelope.steps_per_pitch);
+  ASSERT_GT(a.force_N[m].norm(), 1);
+  for (std::size_t node = 0; node < 3; ++node)
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const std::size_t at = 2 * (node * static_cast<std::size_t>(envelope.steps_per_pitch) + m) + axis;
+      EXPECT_NEAR(b.deflection_mm[at] - a.deflection_mm[at],
+                  axes[static_cast<Eigen::Index>(axis)] * a.force_N[m][static_cast<Eigen::Index>(axis)], 1e-8);
+    }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "removal/mesh_distance.h"
 #include "removal/stretch.h"
 #include "removal/surface.h"
 #include "tests/support/cutting.h"
@@ -183,6 +184,22 @@ TEST(Stock, ComesBackFromItsFile) {
     EXPECT_EQ(to_string(e.diagnostics().front()),
               folder / "s.vdb" + std::string(": error: its voxels are 0.1 mm wide; 0.2 mm (voxel_mm of the job), from "
                                              "zero, were expected [vdb-voxel]"));
+  }
+}
+
+TEST(Stl, SaysHowManyEdgesAreOpen) {
+  const tests::TempFolder folder;
+  const std::string path = folder.write("open.stl",
+                                        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                                        "vertex 0 1 0\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\n"
+                                        "vertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n");
+  try {
+    const MeshDistance mesh(path, 0.1, 0.4);
+    FAIL() << "an open mesh must be refused";
+  } catch (const InputError& e) {
+    EXPECT_EQ(to_string(e.diagnostics().front()),
+              path + ": error: the mesh is not closed: 4 of its edges have no second triangle, so it has no inside "
+                     "[stl-open]");
   }
 }
 
