@@ -27,8 +27,8 @@ void check_outputs(const std::string& job_path, std::initializer_list<std::strin
   const machine::Job job = machine::read_job(job_path, diagnostics);
   for (const auto& output : outputs) {
     require_folder_of(output);
-    require_not_an_input(output,
-                         {job_path, job.program, job.machine_path, job.stock.mesh, job.part.mesh, job.part.program});
+    require_not_an_input(output, {job_path, job.program, job.machine_path, job.stock.mesh, job.stock.vdb, job.part.mesh,
+                                  job.part.program});
   }
 }
 
@@ -47,6 +47,9 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);
       check_outputs(arguments->job, {arguments->json});
+      Diagnostics diagnostics;
+      require_not_an_input(arguments->output_folder + "/stock.vdb",
+                           {machine::read_job(arguments->job, diagnostics).stock.vdb});
       return run_predict(*arguments, options);
     };
   });

@@ -8,6 +8,7 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "deflection/collisions.h"
 #include "deflection/turn.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
@@ -63,6 +64,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   deflection::PredictOptions predict_options;
   if (arguments.forces_at > 0)
     predict_options.turn_from = deflection::turn_at_line(program, job, arguments.forces_at, diagnostics);
+  deflection::check_collisions(job, program, target.blank, diagnostics);
   settle(diagnostics, options);
   print_translation(job.machine.translation, options);
   const fs::path folder = make_folder(arguments.output_folder);
@@ -80,6 +82,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   const auto points = report::form_error_points(program, prediction);
   report::write_form_error_csv(folder / "form_error.csv", points);
   report::write_form_error_vtp(folder / "form_error.vtp", points);
+  report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95);
   prediction.machined->save(folder / "stock.vdb");
   report::write_html_report(folder / "report.html", report::predict_report("Predicted form error", program, prediction,
                                                                            std::move(feed), diagnostics));

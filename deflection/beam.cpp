@@ -3,7 +3,33 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machine/cutter_parameters.h"
+
 namespace camber::deflection {
+namespace {
+
+double flute_length(const machine::Tool& tool) {
+  return std::min(tool.flute_length_mm.value_or(tool.overhang_mm), tool.overhang_mm);
+}
+
+/// Diameter that bends at a height: of the fluted part the effective one.
+double bending_diameter_mm(const machine::Tool& tool, double z) {
+  const double flutes = flute_length(tool);
+  if (z < flutes) {
+    double d = tool.diameter_mm;
+    const bool tapered = tool.type == machine::ToolType::tapered_ball || tool.type == machine::ToolType::general;
+    // A tapered wall from its own diameter at the tip up; the rounded tip itself bends nothing.
+    if (tapered) {
+      const auto p = machine::parameters_of(tool);
+      d = p.diameter_mm * (1 - std::tan(p.bottom_angle_rad) * std::tan(p.taper_rad)) + 2 * z * std::tan(p.taper_rad);
+    }
+    return d * tool.effective_diameter_ratio;
+  }
+  if (z < flutes + tool.neck_length_mm) return tool.neck_diameter_mm;
+  return tool.shank_diameter_mm > 0 ? tool.shank_diameter_mm : tool.diameter_mm;
+}
+
+}  // namespace
 
 Beam::Beam(std::vector<Section> sections, double root)
     : sections_(std::move(sections)), root_compliance_mm_per_N_(root) {}
@@ -16,7 +42,7 @@ double Beam::compliance_mm_per_N(double a, double b) const {
     if (hi <= lo) continue;
     // Antiderivative of (z - a)(z - b), taken about the lower end for accuracy.
     const double p = lo - a, q = lo - b, l = hi - lo;
-    w += (p * q * l + (p + q) * l * l / 2 + l * l * l / 3) / s.bending_stiffness_N_mm2;
+    w += (p * q * l + (p + q) * l * l / 2 + l * l * l / 3) / s.bending_stiffness_N_mm2 + l / s.shear_stiffness_N;
   }
   return w;
 }
@@ -29,9 +55,7 @@ double Beam::first_frequency_hz(const machine::Tool& tool, double density) const
   double modal_mass_kg = 0;
   for (int i = 0; i < kSlices; ++i) {
     const double z = (i + 0.5) * dz;
-    const bool fluted = !tool.flute_length_mm || z < *tool.flute_length_mm;
-    const double shank = tool.shank_diameter_mm > 0 ? tool.shank_diameter_mm : tool.diameter_mm;
-    const double d = fluted ? tool.diameter_mm * tool.effective_diameter_ratio : shank;
+    const double d = bending_diameter_mm(tool, z);
     const double y = compliance_mm_per_N(z, 0) / tip;
     modal_mass_kg += density * 1e-9 * kPi / 4 * d * d * dz * y * y;
   }
@@ -39,11 +63,22 @@ double Beam::first_frequency_hz(const machine::Tool& tool, double density) const
 }
 
 Beam beam_of(const machine::Tool& tool) {
-  const auto stiffness = [&](double d) { return tool.youngs_modulus_MPa * kPi / 64 * std::pow(d, 4); };
-  const double flute = std::min(tool.flute_length_mm.value_or(tool.overhang_mm), tool.overhang_mm);
-  std::vector<Beam::Section> sections{{0, flute, stiffness(tool.diameter_mm * tool.effective_diameter_ratio)}};
-  const double shank = tool.shank_diameter_mm > 0 ? tool.shank_diameter_mm : tool.diameter_mm;
-  if (flute < tool.overhang_mm) sections.push_back({flute, tool.overhang_mm, stiffness(shank)});
+  constexpr double kPoisson = 0.3;
+  constexpr int kTaperSlices = 50;
+  std::vector<Beam::Section> sections;
+  const auto add = [&](double from, double to) {
+    if (to - from <= 1e-9) return;
+    const double e = tool.youngs_modulus_MPa, d = bending_diameter_mm(tool, (from + to) / 2);
+    Beam::Section s{from, to, e * kPi / 64 * std::pow(d, 4)};
+    const double kappa = 6 * (1 + kPoisson) / (7 + 6 * kPoisson), shear_modulus = e / (2 * (1 + kPoisson));
+    if (tool.shear) s.shear_stiffness_N = kappa * shear_modulus * kPi / 4 * d * d;
+    sections.push_back(s);
+  };
+  const double flutes = flute_length(tool), neck = std::min(flutes + tool.neck_length_mm, tool.overhang_mm);
+  const int slices = tool.taper_rad > 0 ? kTaperSlices : 1;
+  for (int i = 0; i < slices; ++i) add(flutes * i / slices, flutes * (i + 1) / slices);
+  add(flutes, neck);
+  add(neck, tool.overhang_mm);
   return Beam(std::move(sections), 1 / tool.root_stiffness_N_per_mm);
 }
 

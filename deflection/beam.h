@@ -1,5 +1,6 @@
 #pragma once
 // The tool as a stepped cantilever on a lateral spring.
+#include <limits>
 #include <vector>
 
 #include "machine/job.h"
@@ -11,15 +12,17 @@ class Beam {
  public:
   struct Section {
     double from_mm = 0, to_mm = 0;
-    double bending_stiffness_N_mm2 = 0;  ///< E I
+    double bending_stiffness_N_mm2 = 0;                                  ///< E I
+    double shear_stiffness_N = std::numeric_limits<double>::infinity();  ///< kappa G A; infinite: no shear
   };
 
   Beam(std::vector<Section> sections, double root_compliance_mm_per_N);
 
   /// Deflection at height z_out under a unit lateral force at height z_force, mm/N:
   /// w = 1/k_root + sum over the sections of the integral of (z - z_out)(z - z_force) / (E I) dz from the higher
-  /// of the two heights to the holder. Euler-Bernoulli (Castigliano); symmetric in its arguments. Heights beyond
-  /// the holder's face count as the face.
+  /// of the two heights to the holder, and of 1 / (kappa G A) dz where shear counts. Euler-Bernoulli, with shear
+  /// Timoshenko (Castigliano; both parts exact); symmetric in its arguments (Maxwell). Heights beyond the holder's
+  /// face count as the face.
   double compliance_mm_per_N(double z_out_mm, double z_force_mm) const;
 
   /// First natural frequency of the beam alone, Hz (Rayleigh's quotient with the shape under a tip load), for the
@@ -31,7 +34,9 @@ class Beam {
   double root_compliance_mm_per_N_;
 };
 
-/// Fluted part with the effective diameter, then the shank up to the overhang.
+/// Fluted part with the effective diameter (of a tapered cutter the diameter at each height, in slices), then the neck,
+/// then the shank up to the overhang. With tool.shear, kappa = 6 (1 + nu) / (7 + 6 nu) of a round bar, nu = 0.3.
+/// Source of kappa: Cowper, The shear coefficient in Timoshenko's beam theory, J. Appl. Mech. 33 (1966) 335-340.
 Beam beam_of(const machine::Tool& tool);
 
 }  // namespace camber::deflection

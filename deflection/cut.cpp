@@ -79,7 +79,8 @@ class Cutter {
         top_mm_(engaged_top_mm(stock, tool, stamps)),
         envelope_(removal::make_envelope(tool, top_mm_, options.envelope_step_mm, options.rotation_step_rad)),
         model_(envelope_, material, beam_of(tool), node_heights(top_mm_),
-               options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0) {
+               options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
+               options.axis_compliance_mm_per_N) {
     removal::make_patches(envelope_, 0.6 * stock.band_mm());
     if (options.coupling == machine::Coupling::rigid) undeflected_.emplace(stock);
   }
@@ -88,6 +89,7 @@ class Cutter {
   void cut(std::span<const Stamp> all, std::size_t from, std::size_t count, std::span<const Contact> contacts,
            std::int32_t first_id, CutResult& result) {
     const std::span<const Stamp> stamps = all.subspan(from, count);
+    passings_ = from;
     ShiftTable shifts(stamps.size(), model_.steps(), model_.node_height_mm());
     if (!last_row_.empty()) std::copy(last_row_.begin(), last_row_.end(), shifts.row(-1));
     // The last loaded stamp's state is the first guess for all.
@@ -102,15 +104,15 @@ class Cutter {
         const std::size_t n = std::min(options_.rigid_engage_stamps, count - at);
         Stretch straight(*undeflected_, &blank_, envelope_, all, from + at, n, {.first_id = first_id});
         const Engagement engagement = straight.carve(nullptr);
-        evaluate(engagement, at, n, shifts, loads);
-        keep_turn(engagement, from + at, n, result);
+        evaluate(engagement, stamps, at, n, shifts, loads);
+        keep_turn(engagement, all, from + at, n, result);
         result.stock_mm3 += straight.commit();
       }
       bent.carve(&shifts);
       bent.commit();
     } else {
       const Engagement engagement = settle(bent, stamps, shifts, loads, result);
-      keep_turn(engagement, from, count, result);
+      keep_turn(engagement, all, from, count, result);
       result.stock_mm3 += bent.commit();
     }
     for (std::size_t k = 0; k < stamps.size(); ++k) {
@@ -142,11 +144,11 @@ class Cutter {
   };
 
   /// Deflection straight from the chips of stamps from ... from + count - 1.
-  void evaluate(const Engagement& engagement, std::size_t from, std::size_t count, ShiftTable& shifts,
-                std::vector<StampLoad>& loads) const {
+  void evaluate(const Engagement& engagement, std::span<const Stamp> stamps, std::size_t from, std::size_t count,
+                ShiftTable& shifts, std::vector<StampLoad>& loads) const {
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
       ToothPass pass;
-      model_.evaluate(engagement.of(k), pass);
+      model_.evaluate(engagement.of(k), passings_ + from + k, stamps[from + k].feed_per_tooth_mm, pass);
       loads[from + k] = summarize(pass);
       loads[from + k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
       std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(),
@@ -164,7 +166,7 @@ class Cutter {
     for (int round = 1; round <= options_.max_rounds; ++round) {
       engagement = bent.carve(&shifts);
       tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
-        model_.evaluate(engagement.of(k), passes[k]);
+        model_.evaluate(engagement.of(k), passings_ + k, stamps[k].feed_per_tooth_mm, passes[k]);
         loads[k] = summarize(passes[k]);
         loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
       });
@@ -179,12 +181,14 @@ class Cutter {
     return engagement;
   }
 
-  void keep_turn(const Engagement& engagement, std::size_t from, std::size_t count, CutResult& result) const {
+  void keep_turn(const Engagement& engagement, std::span<const Stamp> all, std::size_t from, std::size_t count,
+                 CutResult& result) const {
     if (!options_.turn_from) return;
     const auto teeth = static_cast<std::size_t>(envelope_.flutes);
     for (std::size_t pass = 0; pass < teeth; ++pass) {
       const std::size_t k = *options_.turn_from + pass;
-      if (k >= from && k < from + count) model_.add_to_turn(engagement.of(k - from), pass, result.turn);
+      if (k >= from && k < from + count)
+        model_.add_to_turn(engagement.of(k - from), pass, k, all[k].feed_per_tooth_mm, result.turn);
     }
   }
 
@@ -233,6 +237,7 @@ class Cutter {
   std::optional<Stock> undeflected_;
   std::vector<float> last_row_, guess_row_;
   double most_bent_mm_ = 0;
+  std::size_t passings_ = 0;  ///< tooth passings before the stretch
 };
 
 }  // namespace
@@ -269,7 +274,7 @@ void sweep(Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamp
 std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& tool, std::span<const Stamp> stamps) {
   const removal::CutterShape shape = removal::shape_of(tool);
   const double top = std::max(shape.corner_radius_mm, target.voxel_mm());
-  const double length = shape.bottom_length_mm() + shape.arc_length_mm() + (top - shape.corner_radius_mm);
+  const double length = shape.profile.length_to_height_mm(top);
   constexpr int kRings = 100;
   constexpr double kDepthBand_mm = 0.001;
   struct Candidate {
@@ -283,7 +288,7 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
     std::vector<Candidate> candidates;
     double deepest = -1e9;
     for (int r = 0; r < kRings; ++r) {
-      const auto p = removal::profile_at(shape, (r + 0.5) * length / kRings);
+      const auto p = shape.profile.at((r + 0.5) * length / kRings);
       const double tilt = horizontal > 0 ? f.z() / (horizontal * std::tan(p.normal_angle_rad)) : 2.0;
       if (p.normal_angle_rad > 0 && std::abs(tilt) > 1) continue;
       for (const double side : {-1.0, 1.0}) {

@@ -41,14 +41,15 @@ struct CutOptions {
   machine::Coupling coupling = machine::Coupling::static_;
   double envelope_step_mm = 0.1;
   double rotation_step_rad = kPi / 180;
-  std::size_t stretch_stamps = 400;         ///< solved and kept in memory at a time; static
-  std::size_t rigid_engage_stamps = 2000;   ///< rigid: engaged at a time
-  std::size_t rigid_stretch_stamps = 4000;  ///< rigid: bent cuts of many rows at a time hide each other's walls
-  int max_rounds = 40;                      ///< of the static solution of one stretch
-  double edge_ramp_mm = 0.002;              ///< static only, see edge_force
-  double settle_um = 0.1;                   ///< rms change of the deflection at which a stretch is settled, or ...
-  double settle_share = 0.01;               ///< ... this share of its rms
-  std::function<void(double)> progress;     ///< share done, 0 to 1
+  std::size_t stretch_stamps = 400;              ///< solved and kept in memory at a time; static
+  std::size_t rigid_engage_stamps = 2000;        ///< rigid: engaged at a time
+  std::size_t rigid_stretch_stamps = 4000;       ///< rigid: bent cuts of many rows at a time hide each other's walls
+  int max_rounds = 40;                           ///< of the static solution of one stretch
+  double edge_ramp_mm = 0.002;                   ///< static only, see edge_force
+  double settle_um = 0.1;                        ///< rms change of the deflection at which a stretch is settled, or ...
+  double settle_share = 0.01;                    ///< ... this share of its rms
+  Vec2 axis_compliance_mm_per_N = Vec2::Zero();  ///< of the machine's x and y axes
+  std::function<void(double)> progress;          ///< share done, 0 to 1
   /// First stamp of a turn whose forces are kept tooth by tooth, in CutResult::turn.
   std::optional<std::size_t> turn_from;
 };

@@ -31,8 +31,18 @@ removal::Stock raw_stock(const Job& job, double band, Diagnostics& diagnostics) 
     diagnostics.throw_if_errors();
     return {[=](const Vec3& p) { return removal::box_distance_mm(p, lo, hi); }, lo, hi, voxel, band};
   }
+  if (job.stock.cylinder) {
+    const machine::Cylinder c = *job.stock.cylinder;
+    const double r = c.diameter_mm / 2;
+    const Vec3 lo = c.base_mm - Vec3(r, r, 0), hi = c.base_mm + Vec3(r, r, c.height_mm);
+    check_memory(job, lo, hi, band, diagnostics);
+    diagnostics.throw_if_errors();
+    return {[=](const Vec3& p) { return removal::cylinder_distance_mm(p, c.base_mm, r, c.height_mm); }, lo, hi, voxel,
+            band};
+  }
+  if (!job.stock.vdb.empty()) return removal::Stock::load(job.stock.vdb, voxel, band);
   if (job.stock.mesh.empty())
-    fail_on_file(job.path, "has no stock; [stock] with box_mm or mesh was expected", "stock-missing");
+    fail_on_file(job.path, "has no stock; [stock] with box_mm, cylinder, mesh or vdb was expected", "stock-missing");
   // A leaf of voxels is skipped by the distance at its centre, so the mesh's band must hold a leaf's half diagonal.
   const removal::MeshDistance mesh(job.stock.mesh, voxel, (band + 8) * voxel);
   check_memory(job, mesh.min_mm(), mesh.max_mm(), band, diagnostics);
@@ -101,6 +111,8 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
     if (options.contacts) contacts = find_contacts(target.surface, tool, stamps);
     CutOptions cut_options;
     cut_options.coupling = job.simulation.coupling;
+    cut_options.axis_compliance_mm_per_N = {1 / job.machine.axis[0].stiffness_N_per_mm,
+                                            1 / job.machine.axis[1].stiffness_N_per_mm};
     cut_options.envelope_step_mm = envelope_step_mm(job, tool);
     cut_options.rotation_step_rad = job.simulation.rotation_step_rad;
     if (options.progress)

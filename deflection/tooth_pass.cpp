@@ -15,8 +15,16 @@ std::vector<double> node_heights(double top_mm) {
 }
 
 ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material,
-                               const Beam& beam, std::vector<double> nodes, double edge_ramp_mm)
-    : envelope_(envelope), material_(material), edge_ramp_mm_(edge_ramp_mm), node_height_mm_(std::move(nodes)) {
+                               const Beam& beam, std::vector<double> nodes, double edge_ramp_mm, Teeth teeth,
+                               const Vec2& axis_compliance)
+    : envelope_(envelope),
+      material_(material),
+      edge_ramp_mm_(edge_ramp_mm),
+      axis_compliance_(axis_compliance),
+      teeth_(std::move(teeth)),
+      node_height_mm_(std::move(nodes)) {
+  for (int j = 0; j < teeth_.count(); ++j)
+    tooth_step_.push_back(static_cast<int>(std::lround(teeth_.offset_rad(j) * envelope.steps / (2 * kPi))));
   for (const auto& ring : envelope.rings) {
     const double z = ring.profile.height_mm;
     own_compliance_.push_back(beam.compliance_mm_per_N(z, z));
@@ -38,7 +46,48 @@ double chip_area_mm2(const removal::EnvelopeGrid::Ring& ring, int steps) {
 }
 }  // namespace
 
-void ToothPassModel::evaluate(std::span<const removal::Chip> chips, ToothPass& out) const {
+double ToothPassModel::motion_chip_mm(const Direction& d, const removal::EnvelopeGrid::Ring& ring,
+                                      const Vec3& feed) const {
+  const double around = feed.dot(d.tangential), up = feed.dot(d.meridian);
+  return feed.dot(d.normal) + 0.5 * (ring.profile.meridian_curvature_per_mm * up * up +
+                                     ring.profile.parallel_curvature_per_mm * around * around);
+}
+
+double ToothPassModel::tooth_chip_mm(int j, const removal::Chip& chip, const Direction& d,
+                                     const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const {
+  const double even = chip.after_tooth ? static_cast<double>(chip.thickness_mm) : motion_chip_mm(d, ring, feed);
+  const double h = teeth_.chip_mm(j, even, ring.sine, ring.lag_rad);
+  return chip.after_tooth ? h : std::min(h, chip.thickness_mm + ring.sine * teeth_.throw_mm(j, ring.lag_rad));
+}
+
+void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const Direction& d, std::uint32_t r,
+                         std::size_t m, std::vector<double>& deflection, ToothPass& out) const {
+  const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
+  const std::size_t nodes = node_height_mm_.size();
+  const auto& ring = envelope_.rings[r];
+  const EdgeForce e = edge_force(material_, thickness_mm, ring.width_mm, edge_ramp_mm_);
+  const Vec3 force = -(e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian);
+  out.force_N[m] += force;
+  out.torque_Nmm[m] += e.tangential_N * ring.profile.radius_mm;
+  out.work_Nmm += e.tangential_N * ring.profile.radius_mm * 2 * kPi / envelope_.steps;
+  out.chip_max_mm = std::max(out.chip_max_mm, thickness_mm);
+  out.chip_area_mm2 += chip_area_mm2(ring, envelope_.steps);
+  for (std::size_t n = 0; n < nodes; ++n) {
+    const double w = compliance_[r * nodes + n];
+    deflection[2 * (n * steps + m)] += (w + axis_compliance_.x()) * force.x();
+    deflection[2 * (n * steps + m) + 1] += (w + axis_compliance_.y()) * force.y();
+  }
+  const EdgeForce k = edge_force_slope(material_, thickness_mm, edge_ramp_mm_);
+  const Vec3 slope = k.tangential_N * d.tangential + k.radial_N * d.normal + k.axial_N * d.meridian;
+  const Eigen::Matrix2d feedback =
+      -ring.width_mm * (axis_compliance_.array() + own_compliance_[r]).matrix().cwiseProduct(slope.head<2>()) *
+      d.normal.head<2>().transpose();
+  out.feedback[m] += feedback;
+  if (chip.after_tooth) out.feedback_before[m] += feedback;
+}
+
+void ToothPassModel::evaluate(std::span<const removal::Chip> chips, std::size_t passing, const Vec3& feed,
+                              ToothPass& out) const {
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
   const std::size_t nodes = node_height_mm_.size();
   out.force_N.assign(steps, Vec3::Zero());
@@ -48,51 +97,57 @@ void ToothPassModel::evaluate(std::span<const removal::Chip> chips, ToothPass& o
   out.feedback_before.assign(steps, Eigen::Matrix2d::Zero());
   out.deflection_mm.assign(nodes * steps * 2, 0.0f);
   std::vector<double> deflection(nodes * steps * 2, 0.0);
+  const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
+  const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth_.count())) * pitch;
   for (const removal::Chip& chip : chips) {
-    const std::uint32_t r = chip.point / static_cast<std::uint32_t>(envelope_.steps);
-    const std::size_t m = chip.point % static_cast<std::uint32_t>(envelope_.steps) % steps;
+    const std::uint32_t r = chip.point / static_cast<std::uint32_t>(turn);
+    const int at = static_cast<int>(chip.point % static_cast<std::uint32_t>(turn));
     const auto& ring = envelope_.rings[r];
     const Direction d = direction(chip.point, ring);
-    const EdgeForce e = edge_force(material_, chip.thickness_mm, ring.width_mm, edge_ramp_mm_);
-    const Vec3 force = -(e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian);
-    out.force_N[m] += force;
-    out.torque_Nmm[m] += e.tangential_N * ring.profile.radius_mm;
-    out.work_Nmm += e.tangential_N * ring.profile.radius_mm * 2 * kPi / envelope_.steps;
-    out.chip_max_mm = std::max(out.chip_max_mm, static_cast<double>(chip.thickness_mm));
-    out.chip_area_mm2 += chip_area_mm2(ring, envelope_.steps);
-    for (std::size_t n = 0; n < nodes; ++n) {
-      const double w = compliance_[r * nodes + n];
-      deflection[2 * (n * steps + m)] += w * force.x();
-      deflection[2 * (n * steps + m) + 1] += w * force.y();
+    if (teeth_.even()) {
+      add(chip, chip.thickness_mm, d, r, static_cast<std::size_t>(at) % steps, deflection, out);
+      continue;
     }
-    const EdgeForce k = edge_force_slope(material_, chip.thickness_mm, edge_ramp_mm_);
-    const Vec3 slope = k.tangential_N * d.tangential + k.radial_N * d.normal + k.axial_N * d.meridian;
-    const Eigen::Matrix2d feedback =
-        -own_compliance_[r] * ring.width_mm * slope.head<2>() * d.normal.head<2>().transpose();
-    out.feedback[m] += feedback;
-    if (chip.after_tooth) out.feedback_before[m] += feedback;
+    // Every tooth that passes the point during this tooth passing.
+    for (int j = 0; j < teeth_.count(); ++j) {
+      const int m = ((at - tooth_step_[static_cast<std::size_t>(j)] + gone) % turn + turn) % turn;
+      if (m >= pitch) continue;
+      const double h = tooth_chip_mm(j, chip, d, ring, feed);
+      if (h > 0) add(chip, h, d, r, static_cast<std::size_t>(m), deflection, out);
+    }
   }
   std::transform(deflection.begin(), deflection.end(), out.deflection_mm.begin(),
                  [](double v) { return static_cast<float>(v); });
 }
 
-void ToothPassModel::add_to_turn(std::span<const removal::Chip> chips, std::size_t pass, TurnForces& turn) const {
-  const auto steps = static_cast<std::size_t>(envelope_.steps);
-  const std::size_t pitch = static_cast<std::size_t>(envelope_.steps_per_pitch), teeth = steps / pitch;
-  if (turn.teeth.empty()) turn.teeth.assign(teeth, std::vector<TurnForces::Tooth>(steps));
+void ToothPassModel::add_to_turn(std::span<const removal::Chip> chips, std::size_t pass, std::size_t passing,
+                                 const Vec3& feed, TurnForces& turn) const {
+  const int steps = envelope_.steps, pitch = envelope_.steps_per_pitch, teeth = teeth_.count();
+  const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth)) * pitch;
+  if (turn.teeth.empty())
+    turn.teeth.assign(static_cast<std::size_t>(teeth), std::vector<TurnForces::Tooth>(static_cast<std::size_t>(steps)));
   for (const removal::Chip& chip : chips) {
-    const auto& ring = envelope_.rings[chip.point / steps];
-    const std::size_t column = chip.point % steps;
+    const auto& ring = envelope_.rings[chip.point / static_cast<std::uint32_t>(steps)];
+    const int column = static_cast<int>(chip.point % static_cast<std::uint32_t>(steps));
     const Direction d = direction(chip.point, ring);
-    const EdgeForce e = edge_force(material_, chip.thickness_mm, ring.width_mm, edge_ramp_mm_);
-    // Turned clockwise by `at` steps, tooth t stands at column t * pitch - at.
-    for (std::size_t t = 0; t < teeth; ++t) {
-      const std::size_t at = (t * pitch + steps - column) % steps;
-      if (at / pitch != pass) continue;
-      TurnForces::Tooth& tooth = turn.teeth[t][at];
+    for (int j = 0; j < teeth; ++j) {
+      // The tool turns clockwise, by `at` steps: rotation steps are met backwards. Even teeth: tooth 0 starts at column
+      // 0; others start where their number tells.
+      int at = ((j * pitch - column) % steps + steps) % steps;
+      double h = chip.thickness_mm;
+      if (teeth_.even()) {
+        if (at / pitch != static_cast<int>(pass)) continue;
+      } else {
+        const int m = ((column - tooth_step_[static_cast<std::size_t>(j)] + gone) % steps + steps) % steps;
+        if (m >= pitch) continue;
+        at = static_cast<int>(pass) * pitch + pitch - 1 - m;
+        h = tooth_chip_mm(j, chip, d, ring, feed);
+      }
+      TurnForces::Tooth& tooth = turn.teeth[static_cast<std::size_t>(j)][static_cast<std::size_t>(at)];
+      const EdgeForce e = edge_force(material_, h, ring.width_mm, edge_ramp_mm_);
       tooth.force_N -= e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian;
       tooth.torque_Nmm += e.tangential_N * ring.profile.radius_mm;
-      tooth.chip_max_mm = std::max(tooth.chip_max_mm, static_cast<double>(chip.thickness_mm));
+      tooth.chip_max_mm = std::max(tooth.chip_max_mm, h);
     }
   }
 }

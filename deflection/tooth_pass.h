@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "deflection/beam.h"
+#include "deflection/teeth.h"
 #include "machine/job.h"
 #include "removal/cutter.h"
 #include "removal/shift_table.h"
@@ -40,23 +41,38 @@ struct TurnForces {
 class ToothPassModel {
  public:
   ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material, const Beam& beam,
-                 std::vector<double> node_height_mm, double edge_ramp_mm);
+                 std::vector<double> node_height_mm, double edge_ramp_mm, Teeth teeth,
+                 const Vec2& axis_compliance_mm_per_N = Vec2::Zero());
 
   int steps() const { return envelope_.steps_per_pitch; }
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
-  void evaluate(std::span<const removal::Chip> chips, ToothPass& out) const;
+  /// `passing` counts tooth passings since the tool began: it tells which tooth stands where, which only matters where
+  /// the teeth are not even. feed_mm: motion in one mean pitch.
+  void evaluate(std::span<const removal::Chip> chips, std::size_t passing, const Vec3& feed_mm, ToothPass& out) const;
   /// Adds the chips of one tooth passing, the turn's `pass`-th (0 ... flutes - 1), to the turn.
-  void add_to_turn(std::span<const removal::Chip> chips, std::size_t pass, TurnForces& turn) const;
+  void add_to_turn(std::span<const removal::Chip> chips, std::size_t pass, std::size_t passing, const Vec3& feed_mm,
+                   TurnForces& turn) const;
 
  private:
   struct Direction {
     Vec3 tangential, normal, meridian;
   };
   Direction direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
+  /// What tooth j takes where even teeth would take the chip.
+  double tooth_chip_mm(int j, const removal::Chip& chip, const Direction& d, const removal::EnvelopeGrid::Ring& ring,
+                       const Vec3& feed) const;
+  /// What the motion allows at a point, along the normal (removal/stretch.h).
+  double motion_chip_mm(const Direction& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
+  /// Adds the force and deflection of one edge element at rotation step m.
+  void add(const removal::Chip& chip, double thickness_mm, const Direction& d, std::uint32_t ring, std::size_t m,
+           std::vector<double>& deflection, ToothPass& out) const;
 
   const removal::EnvelopeGrid& envelope_;
   machine::Material material_;
   double edge_ramp_mm_;
+  Vec2 axis_compliance_;  ///< of the machine's x and y axes, mm/N, the same at every height
+  Teeth teeth_;
+  std::vector<int> tooth_step_;  ///< rotation steps from tooth 0 to each tooth
   std::vector<double> node_height_mm_;
   std::vector<double> compliance_;      ///< [rings][nodes], mm/N
   std::vector<double> own_compliance_;  ///< [rings]: at the ring's own height

@@ -7,8 +7,10 @@
 
 namespace camber::machine {
 
-inline constexpr std::array<std::string_view, 4> kToolTypeWords{"ball", "flat", "bull", "drill"};
+inline constexpr std::array<std::string_view, 7> kToolTypeWords{"ball",         "flat",    "bull",   "drill",
+                                                              "tapered_ball", "chamfer", "general"};
 inline constexpr std::array<std::string_view, 2> kCouplingWords{"rigid", "static"};
+inline constexpr std::array<std::string_view, 3> kCollisionsWords{"error", "warning", "off"};
 inline constexpr std::array<std::string_view, 2> kUnitWords{"mm", "inch"};
 
 inline constexpr NumberRange kFlutes{.min = 1, .max = 100, .whole = true};
@@ -19,6 +21,11 @@ inline constexpr NumberRange kHelixDeg{.min = 0, .max = 80};
 inline constexpr NumberRange kRatio{.min = 0, .max = 1, .above_min = true};
 inline constexpr NumberRange kRotationStepDeg{.min = 0, .max = 10, .above_min = true};
 
+inline constexpr NumberRange kTaperDeg{.min = 0, .max = 80};
+inline constexpr NumberRange kPointAngleDeg{.min = 10, .max = 170};
+inline constexpr NumberRange kRunoutAngleDeg{.min = -360, .max = 360};
+inline constexpr NumberRange kPitchDeg{.min = 1, .max = 359};
+
 /// Numbers that a tool has anyway. Diameter and overhang must be given.
 inline constexpr std::array kToolKeys{
     NumberKey<Tool>{"diameter_mm", &Tool::diameter_mm, kPositive},
@@ -27,6 +34,35 @@ inline constexpr std::array kToolKeys{
     NumberKey<Tool>{"effective_diameter_ratio", &Tool::effective_diameter_ratio, kRatio},
     NumberKey<Tool>{"youngs_modulus_GPa", &Tool::youngs_modulus_MPa, kPositive, kGigapascals},
     NumberKey<Tool>{"root_stiffness_N_per_um", &Tool::root_stiffness_N_per_mm, kPositiveOrInf, kNewtonsPerMicrometre},
+    NumberKey<Tool>{"runout_um", &Tool::runout_mm, kNotNegative, kMicrometres},
+    NumberKey<Tool>{"runout_angle_deg", &Tool::runout_angle_rad, kRunoutAngleDeg, kDegrees},
+};
+
+/// Numbers of the profile and the types that have them; asked of those types unless a type has a default.
+struct ProfileKey {
+  NumberKey<Tool> number;
+  std::string_view types;  ///< their words, in message order
+  std::string_view asked_of;
+
+  static constexpr bool lists(std::string_view words, std::string_view word) {
+    for (std::size_t at = 0; at < words.size();) {
+      const std::size_t space = words.find(' ', at), end = space < words.size() ? space : words.size();
+      if (words.substr(at, end - at) == word) return true;
+      at = end + 1;
+    }
+    return false;
+  }
+  constexpr bool belongs_to(std::string_view type) const { return lists(types, type); }
+  constexpr bool must_have(std::string_view type) const { return lists(asked_of, type); }
+};
+inline constexpr std::array kProfileKeys{
+    ProfileKey{{"corner_radius_mm", &Tool::corner_radius_mm, kPositive}, "bull general", "bull"},
+    ProfileKey{{"tip_diameter_mm", &Tool::tip_diameter_mm, kNotNegative}, "chamfer", ""},
+    ProfileKey{{"point_angle_deg", &Tool::point_angle_rad, kPointAngleDeg, kDegrees}, "chamfer drill", "chamfer"},
+    ProfileKey{{"taper_deg", &Tool::taper_rad, kTaperDeg, kDegrees}, "tapered_ball general", "tapered_ball"},
+    ProfileKey{{"bottom_angle_deg", &Tool::bottom_angle_rad, kTaperDeg, kDegrees}, "general", ""},
+    ProfileKey{{"corner_centre_r_mm", &Tool::corner_centre_r_mm, kAnyNumber}, "general", ""},
+    ProfileKey{{"corner_centre_z_mm", &Tool::corner_centre_z_mm, kAnyNumber}, "general", ""},
 };
 
 inline constexpr std::array kLinearKeys{

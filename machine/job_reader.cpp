@@ -50,14 +50,35 @@ std::optional<Box> read_box(TomlTable& table) {
   return box;
 }
 
+std::optional<Cylinder> read_cylinder(TomlTable& stock) {
+  auto table = stock.table("cylinder");
+  if (!table) return std::nullopt;
+  Cylinder cylinder;
+  if (!table->has("base_mm")) table->missing("base_mm", "[x, y, z], the middle of the lower face,");
+  if (const auto base = table->numbers("base_mm", 3, kAnyNumber, "[x, y, z], the middle of the lower face,"))
+    cylinder.base_mm = {(*base)[0], (*base)[1], (*base)[2]};
+  cylinder.diameter_mm = table->required_number("diameter_mm", kPositive);
+  cylinder.height_mm = table->required_number("height_mm", kPositive);
+  table->finish();
+  return cylinder;
+}
+
 void read_stock(TomlTable table, const fs::path& folder, Stock& stock) {
   stock.box = read_box(table);
+  stock.cylinder = read_cylinder(table);
   stock.mesh = file_at(table, "mesh", folder);
+  stock.vdb = file_at(table, "vdb", folder);
   stock.allowance_mm = table.number("allowance_mm", kNotNegative, 0);
-  if (table.has("box_mm") && table.has("mesh"))
-    table.error_at_name("mesh", "the stock has box_mm and mesh; one of them was expected", "stock-shape");
-  if (!table.has("box_mm") && !table.has("mesh"))
-    table.missing("box_mm", "box_mm = [[x, y, z], [x, y, z]] or mesh = \"stock.stl\"");
+  std::string_view first;
+  for (const std::string_view key : {"box_mm", "cylinder", "mesh", "vdb"}) {
+    if (!table.has(key)) continue;
+    if (first.empty())
+      first = key;
+    else
+      table.error_at_name(key, fmt::format("the stock has {} and {}; one of them was expected", first, key),
+                          "stock-shape");
+  }
+  if (first.empty()) table.missing("box_mm", "box_mm = [[x, y, z], [x, y, z]], cylinder, mesh or vdb");
   table.finish();
 }
 
@@ -84,6 +105,10 @@ void read_simulation(TomlTable table, Simulation& simulation) {
   simulation.coupling = table.choice("coupling", kCouplingWords, simulation.coupling == Coupling::rigid ? 0 : 1) == 0
                             ? Coupling::rigid
                             : Coupling::static_;
+  if (table.has("collisions")) {
+    const std::size_t word = table.choice("collisions", kCollisionsWords, kCollisionsWords.size());
+    if (word < kCollisionsWords.size()) simulation.collisions = static_cast<Collisions>(word);
+  }
   table.finish();
 }
 
@@ -110,7 +135,7 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
   if (auto stock = top.table("stock"))
     read_stock(*stock, folder, job.stock);
   else if (!top.has("stock"))
-    top.missing("[stock]", "a table with box_mm or mesh");
+    top.missing("[stock]", "a table with box_mm, cylinder, mesh or vdb");
   if (auto part = top.table("part")) read_part(*part, folder, job.part);
   if (auto simulation = top.table("simulation")) read_simulation(*simulation, job.simulation);
   if (auto compensation = top.table("compensation")) read_compensation(*compensation, job.compensation);

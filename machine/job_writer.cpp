@@ -11,9 +11,27 @@ std::string tool_text(const Tool& tool) {
   std::string out = fmt::format("\n[tool.{}]\n", tool.number);
   out += toml_line("type", kToolTypeWords[static_cast<std::size_t>(tool.type)]);
   out += toml_line("flutes", tool.flutes, kAsIs) + toml_lines<Tool>(kToolKeys, tool);
-  if (tool.type == ToolType::bull) out += toml_line("corner_radius_mm", tool.corner_radius_mm, kAsIs);
+  const std::string_view type = kToolTypeWords[static_cast<std::size_t>(tool.type)];
+  for (const auto& k : kProfileKeys)
+    if (k.belongs_to(type)) out += toml_line(k.number.key, tool.*k.number.field, k.number.unit);
+  if (!tool.pitch_rad.empty()) {
+    std::string degrees;
+    for (const double p : tool.pitch_rad) degrees += (degrees.empty() ? "" : ", ") + toml_number(p, kDegrees);
+    out += fmt::format("pitch_deg = [{}]\n", degrees);
+  }
   if (tool.flute_length_mm) out += toml_line("flute_length_mm", *tool.flute_length_mm, kAsIs);
   if (tool.shank_diameter_mm > 0) out += toml_line("shank_diameter_mm", tool.shank_diameter_mm, kAsIs);
+  if (tool.neck_length_mm > 0)
+    out += toml_line("neck_diameter_mm", tool.neck_diameter_mm, kAsIs) +
+           toml_line("neck_length_mm", tool.neck_length_mm, kAsIs);
+  if (!tool.holder.empty()) {
+    std::string rows;
+    for (const auto& h : tool.holder)
+      rows += fmt::format("{}[{}, {}, {}]", rows.empty() ? "" : ", ", toml_number(h.lower_diameter_mm, kAsIs),
+                          toml_number(h.upper_diameter_mm, kAsIs), toml_number(h.length_mm, kAsIs));
+    out += fmt::format("holder_mm = [{}]\n", rows);
+  }
+  if (tool.shear) out += "shear = true\n";
   return out;
 }
 
@@ -25,7 +43,12 @@ std::string stock_text(const Stock& stock) {
   std::string out = "\n[stock]\n";
   if (stock.box)
     out += fmt::format("box_mm = [{}, {}]\n", point_text(stock.box->min_mm), point_text(stock.box->max_mm));
+  if (stock.cylinder)
+    out += fmt::format("cylinder = {{ base_mm = {}, diameter_mm = {}, height_mm = {} }}\n",
+                       point_text(stock.cylinder->base_mm), toml_number(stock.cylinder->diameter_mm, kAsIs),
+                       toml_number(stock.cylinder->height_mm, kAsIs));
   if (!stock.mesh.empty()) out += toml_line("mesh", stock.mesh);
+  if (!stock.vdb.empty()) out += toml_line("vdb", stock.vdb);
   return out + toml_line("allowance_mm", stock.allowance_mm, kAsIs);
 }
 
@@ -57,6 +80,8 @@ std::string to_toml(const Job& job) {
   out += stock_text(job.stock) + part_text(job.part);
   out += "\n[simulation]\n" + toml_lines<Simulation>(kSimulationKeys, job.simulation);
   out += toml_line("coupling", kCouplingWords[job.simulation.coupling == Coupling::rigid ? 0 : 1]);
+  if (job.simulation.collisions)
+    out += toml_line("collisions", kCollisionsWords[static_cast<std::size_t>(*job.simulation.collisions)]);
   out += "\n[compensation]\n" + toml_lines<Compensation>(kCompensationKeys, job.compensation);
   return out + toml_line("max_rounds", job.compensation.max_rounds, kAsIs);
 }

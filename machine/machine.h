@@ -64,6 +64,7 @@ struct Axis {
   double position_gain_per_s = kNoLimit;    ///< Kp of the position loop; infinity: no lag
   double velocity_lag_s = 0;                ///< time constant of the velocity loop inside the position loop
   double feed_forward_percent = 0;
+  double stiffness_N_per_mm = kNoLimit;     ///< static, tool against work; only across the tool (x, y)
   std::array<double, 2> travel_mm{-kNoLimit, kNoLimit};
 };
 

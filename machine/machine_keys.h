@@ -50,6 +50,7 @@ inline constexpr std::array kAxisKeys{
     NumberKey<Axis>{"position_gain_per_s", &Axis::position_gain_per_s, kPositiveOrInf},
     NumberKey<Axis>{"velocity_lag_ms", &Axis::velocity_lag_s, kNotNegative, kMilliseconds},
     NumberKey<Axis>{"feed_forward_percent", &Axis::feed_forward_percent, kPercent},
+    NumberKey<Axis>{"stiffness_N_per_um", &Axis::stiffness_N_per_mm, kPositiveOrInf, kNewtonsPerMicrometre},
     NumberKey<Axis>{"rapid_mm_per_min", &Axis::rapid_mm_per_s, kPositiveOrInf, kPerMinute},
     NumberKey<Axis>{"rapid_acceleration_mm_per_s2", &Axis::rapid_acceleration_mm_per_s2, kPositiveOrInf},
 };

@@ -21,6 +21,7 @@ inline constexpr FileUnit kPerMinute{[](double v) { return mm_per_s_from_mm_per_
 inline constexpr FileUnit kMilliseconds{[](double v) { return v / 1000.0; }, [](double v) { return v * 1000.0; }};
 inline constexpr FileUnit kDegrees{[](double v) { return rad_from_deg(v); }, [](double v) { return deg_from_rad(v); }};
 inline constexpr FileUnit kGigapascals{[](double v) { return MPa_from_GPa(v); }, [](double v) { return v / 1000.0; }};
+inline constexpr FileUnit kMicrometres{[](double v) { return mm_from_um(v); }, [](double v) { return um_from_mm(v); }};
 inline constexpr FileUnit kNewtonsPerMicrometre{[](double v) { return N_per_mm_from_N_per_um(v); },
                                                 [](double v) { return v / 1000.0; }};
 

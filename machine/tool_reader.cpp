@@ -1,35 +1,105 @@
 #include "machine/tool_reader.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
+#include "machine/cutter_parameters.h"
 #include "machine/job_keys.h"
 
 namespace camber::machine {
 namespace {
 
-/// Corner radius: asked of a bull-nose cutter, refused for the others, whose shape leaves no choice.
-void read_corner_radius(TomlTable& table, Tool& tool, std::string_view type) {
-  const auto radius = table.optional_number("corner_radius_mm", kPositive);
-  if (tool.type != ToolType::bull) {
-    if (table.has("corner_radius_mm"))
-      table.error_at_name("corner_radius_mm",
-                          fmt::format("corner_radius_mm does not belong to type \"{}\"; it is for \"bull\"", type),
-                          "key-unused");
-    return;
+/// "bull general" as `"bull" or "general"`.
+std::string quoted(std::string_view types) {
+  std::string out = "\"";
+  for (const char c : types) out += c == ' ' ? std::string("\" or \"") : std::string(1, c);
+  return out + "\"";
+}
+
+/// Numbers of the profile: asked of the types that need them, refused for the others, whose shape leaves no choice.
+void read_profile_numbers(TomlTable& table, Tool& tool, std::string_view type) {
+  constexpr double kDrillPoint_rad = rad_from_deg(118);
+  if (tool.type == ToolType::drill) tool.point_angle_rad = kDrillPoint_rad;
+  for (const auto& k : kProfileKeys) {
+    const auto value = table.optional_number(k.number.key, k.number.range);
+    if (!k.belongs_to(type)) {
+      if (table.has(k.number.key))
+        table.error_at_name(
+            k.number.key,
+            fmt::format("{} does not belong to type \"{}\"; it is for {}", k.number.key, type, quoted(k.types)),
+            "key-unused");
+      continue;
+    }
+    if (k.must_have(type) && !table.has(k.number.key)) table.missing(k.number.key, k.number.range.wanted());
+    if (value) tool.*k.number.field = k.number.unit.inside_from_file(*value);
   }
-  if (!table.has("corner_radius_mm")) table.missing("corner_radius_mm", kPositive.wanted());
-  if (!radius) return;
-  tool.corner_radius_mm = *radius;
-  if (tool.diameter_mm > 0 && *radius > tool.diameter_mm / 2)
+}
+
+/// What does not fit together in a profile.
+void check_profile(TomlTable& table, const Tool& tool) {
+  const double radius = tool.diameter_mm / 2;
+  if (!(radius > 0)) return;
+  if (tool.type == ToolType::bull && tool.corner_radius_mm > radius)
     table.error_at("corner_radius_mm",
-                   fmt::format("corner_radius_mm is {}; at most half the diameter, {}, was expected", *radius,
-                               tool.diameter_mm / 2),
+                   fmt::format("corner_radius_mm is {}; at most half the diameter, {}, was expected",
+                               tool.corner_radius_mm, radius),
                    "tool-shape");
+  if (tool.type == ToolType::chamfer && tool.tip_diameter_mm >= tool.diameter_mm)
+    table.error_at("tip_diameter_mm",
+                   fmt::format("tip_diameter_mm is {}; less than the diameter, {}, was expected", tool.tip_diameter_mm,
+                               tool.diameter_mm),
+                   "tool-shape");
+  if (tool.type == ToolType::general || tool.type == ToolType::tapered_ball) {
+    const std::string fault = profile_fault(parameters_of(tool));
+    if (!fault.empty())
+      table.error_at_name("type", fmt::format("the profile does not close: {} (docs/cutters.md)", fault), "tool-shape");
+  }
+}
+
+void read_teeth(TomlTable& table, Tool& tool) {
+  const auto degrees =
+      table.numbers("pitch_deg", static_cast<std::size_t>(tool.flutes), kPitchDeg,
+                    fmt::format("an angle for each of the {} flutes, as in [118, 122, 120],", tool.flutes));
+  if (!degrees) return;
+  constexpr double kSum_deg = 0.01;
+  double sum = 0;
+  for (const double d : *degrees) sum += d;
+  if (std::abs(sum - 360) > kSum_deg)
+    table.error_at("pitch_deg", fmt::format("pitch_deg add up to {}; 360 was expected", sum), "tool-shape");
+  for (const double d : *degrees) tool.pitch_rad.push_back(rad_from_deg(d) * 360 / sum);
+}
+
+void read_neck(TomlTable& table, Tool& tool) {
+  tool.neck_diameter_mm = table.number("neck_diameter_mm", kPositive, 0);
+  tool.neck_length_mm = table.number("neck_length_mm", kPositive, 0);
+  const bool diameter = table.has("neck_diameter_mm"), length = table.has("neck_length_mm");
+  if (diameter && !length) table.missing("neck_length_mm", "the neck's length above the flutes");
+  if (length && !diameter) table.missing("neck_diameter_mm", "the neck's diameter");
+  if (!length) return;
+  if (!table.has("flute_length_mm"))
+    table.missing("flute_length_mm", "the length of the flutes, where the neck begins,");
+  else if (tool.flute_length_mm && tool.overhang_mm > 0 &&
+           *tool.flute_length_mm + tool.neck_length_mm > tool.overhang_mm)
+    table.error_at("neck_length_mm",
+                   fmt::format("flutes and neck are {} long; at most the overhang, {}, was expected",
+                               *tool.flute_length_mm + tool.neck_length_mm, tool.overhang_mm),
+                   "tool-shape");
+}
+
+void read_holder(TomlTable& table, Tool& tool) {
+  const auto rows = table.number_rows("holder_mm", 0, 3, kPositive,
+                                      "rows of lower diameter, upper diameter, length from the holder's face up, as in "
+                                      "[[32, 32, 20], [32, 50, 15]],");
+  for (const auto& row : rows.value_or(std::vector<std::vector<double>>{}))
+    tool.holder.push_back({row[0], row[1], row[2]});
 }
 
 void read_lengths(TomlTable& table, Tool& tool) {
   tool.flute_length_mm = table.optional_number("flute_length_mm", kPositive);
   tool.shank_diameter_mm = table.number("shank_diameter_mm", kPositive, 0);
+  tool.shear = table.boolean("shear", false);
   if (tool.flute_length_mm && tool.overhang_mm > 0 && *tool.flute_length_mm > tool.overhang_mm)
     table.error_at("flute_length_mm",
                    fmt::format("flute_length_mm is {}; at most the overhang, {}, was expected", *tool.flute_length_mm,
@@ -42,7 +112,8 @@ void read_lengths(TomlTable& table, Tool& tool) {
 }
 
 void check_overhang(TomlTable& table, const Tool& tool) {
-  const double least = tool.type == ToolType::ball ? tool.diameter_mm / 2 : tool.corner_radius_mm;
+  const double least =
+      tool.type == ToolType::ball || tool.type == ToolType::tapered_ball ? tool.diameter_mm / 2 : tool.corner_radius_mm;
   if (tool.overhang_mm > 0 && tool.overhang_mm <= least)
     table.error_at(
         "overhang_mm",
@@ -62,10 +133,14 @@ Tool read_tool(TomlTable table, int number) {
   tool.flutes = static_cast<int>(table.required_number("flutes", kFlutes));
   if (type) {
     tool.type = static_cast<ToolType>(*type);
-    read_corner_radius(table, tool, kToolTypeWords[*type]);
+    read_profile_numbers(table, tool, kToolTypeWords[*type]);
   }
   read_lengths(table, tool);
+  read_neck(table, tool);
+  read_holder(table, tool);
+  if (tool.flutes > 0) read_teeth(table, tool);
   check_overhang(table, tool);
+  if (type) check_profile(table, tool);
   table.finish();
   return tool;
 }

@@ -3,21 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "removal/carve_general.h"
 #include "removal/vector_clones.h"
 
 namespace camber::removal {
 namespace {
 
 /// The envelope in single precision, as rows of voxels need it.
-struct Profile {
+struct RoundedCylinder {
   float flat, corner, shrink;
 };
 
 /// Cuts `count` voxels of a row upwards. qx: distance from the axis less the flat's radius; z: of the first voxel
 /// above the tip. True when one changed.
 CAMBER_VECTOR_CLONES
-bool carve_row(float* distance, std::int32_t* stamp, int count, float qx, float z, float voxel, float band, Profile p,
-               std::int32_t id) {
+bool carve_row(float* distance, std::int32_t* stamp, int count, float qx, float z, float voxel, float band,
+               RoundedCylinder p, std::int32_t id) {
   const float a = std::max(qx, 0.0f);
   const float a2 = a * a;
   int any = 0;
@@ -37,8 +38,8 @@ bool carve_row(float* distance, std::int32_t* stamp, int count, float qx, float 
 /// Distances of a row of voxels to the straight envelope; true where a voxel could be cut with a shift that moves the
 /// envelope outwards by no more than `slack`.
 CAMBER_VECTOR_CLONES
-bool row_may_be_cut(const float* distance, float* out, int count, float qx, float z, float voxel, float band, Profile p,
-                    float slack) {
+bool row_may_be_cut(const float* distance, float* out, int count, float qx, float z, float voxel, float band,
+                    RoundedCylinder p, float slack) {
   const float a = std::max(qx, 0.0f);
   const float a2 = a * a;
   int any = 0;
@@ -134,8 +135,9 @@ float envelope_distance(float x, float y, float z, float flat, float corner) {
 
 bool carve(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band, const CutterShape& shape,
            const CarveStamp& stamp) {
-  const Profile p{static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm),
-                  static_cast<float>(stamp.shrink_mm)};
+  if (shape.general) return carve_general(tile, cover, t, voxel, band, shape, stamp);
+  const RoundedCylinder p{static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm),
+                          static_cast<float>(stamp.shrink_mm)};
   const double z0 = t[2] * Tile::kCore * voxel;
   const int k0 = first_reached(stamp.tip_mm.z() - band, z0, voxel);
   const float reach = static_cast<float>(band) + p.corner - p.shrink;
@@ -201,8 +203,9 @@ CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std:
 bool carve_bent(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band,
                 const EnvelopeGrid& envelope, const CarveStamp& stamp, const ShiftTable& shifts,
                 const CarveBend& bend) {
-  const Profile p{static_cast<float>(envelope.shape.bottom_length_mm()),
-                  static_cast<float>(envelope.shape.corner_radius_mm), 0};
+  if (envelope.shape.general) return carve_bent_general(tile, cover, t, voxel, band, envelope, stamp, shifts, bend);
+  const RoundedCylinder p{static_cast<float>(envelope.shape.bottom_length_mm()),
+                          static_cast<float>(envelope.shape.corner_radius_mm), 0};
   const auto top = static_cast<float>(band), step = static_cast<float>(voxel);
   const auto largest = static_cast<float>(bend.largest_mm);
   const float sectors_per_rad = static_cast<float>(CarveBend::kSectors / (2 * kPi));

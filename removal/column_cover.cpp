@@ -62,7 +62,7 @@ ColumnCover::ColumnCover(const Tile& tile, const Index3& index, double voxel_mm,
     : voxel_(static_cast<float>(voxel_mm)),
       band_(static_cast<float>(band_mm)),
       radius_(static_cast<float>(shape.radius_mm)),
-      ball_(shape.bottom_length_mm() <= 0) {
+      ball_(shape.ball()) {
   for (int a = 0; a < 3; ++a) origin_mm_[a] = index[a] * Tile::kCore * voxel_mm;
   x_.fill(kNone), y_.fill(kNone), z_.fill(0), bend_.fill(0), top_mm_.fill(0), top_.fill(Tile::kSide);
   for (int c = 0; c < kColumns; ++c) {

@@ -6,6 +6,7 @@
 namespace camber::removal {
 
 double CutterShape::distance_mm(const Vec3& p) const {
+  if (general) return profile.distance_mm({std::sqrt(p.x() * p.x() + p.y() * p.y()), p.z()});
   const double qx = std::sqrt(p.x() * p.x() + p.y() * p.y()) - bottom_length_mm();
   const double qz = corner_radius_mm - p.z();
   const double a = std::max(qx, 0.0), b = std::max(qz, 0.0);
@@ -14,6 +15,10 @@ double CutterShape::distance_mm(const Vec3& p) const {
 
 Vec3 CutterShape::gradient(const Vec3& p) const {
   const double rho = std::sqrt(p.x() * p.x() + p.y() * p.y());
+  if (general) {
+    const Vec2 n = profile.nearest({rho, p.z()}).normal;
+    return {rho > 0 ? p.x() / rho * n.x() : 0, rho > 0 ? p.y() / rho * n.x() : 0, n.y()};
+  }
   const double qx = rho - bottom_length_mm(), qz = corner_radius_mm - p.z();
   double radial = 0, down = 0;
   if (qx > 0 && qz > 0) {
@@ -28,28 +33,12 @@ Vec3 CutterShape::gradient(const Vec3& p) const {
 }
 
 CutterShape shape_of(const machine::Tool& tool) {
-  const double radius = tool.diameter_mm / 2;
-  switch (tool.type) {
-    case machine::ToolType::ball:
-      return {radius, radius};
-    case machine::ToolType::bull:
-      return {radius, tool.corner_radius_mm};
-    case machine::ToolType::flat:
-    case machine::ToolType::drill:
-      break;
-  }
-  return {radius, 0};
-}
-
-ProfilePoint profile_at(const CutterShape& shape, double s) {
-  const double flat = shape.bottom_length_mm(), arc = shape.arc_length_mm(), rc = shape.corner_radius_mm;
-  if (s < flat) return {s, 0, 0, 0, 0};
-  if (s < flat + arc) {
-    const double k = (s - flat) / rc;
-    const double r = flat + rc * std::sin(k);
-    return {r, rc * (1 - std::cos(k)), k, 1 / rc, r > 0 ? std::sin(k) / r : 1 / rc};
-  }
-  return {shape.radius_mm, rc + (s - flat - arc), kPi / 2, 0, 1 / shape.radius_mm};
+  const machine::CutterParameters parameters = machine::parameters_of(tool);
+  Profile profile(parameters);
+  const bool general = tool.type != machine::ToolType::ball && tool.type != machine::ToolType::flat &&
+                       tool.type != machine::ToolType::bull;
+  const double radius = general ? profile.largest_radius_mm() : tool.diameter_mm / 2;
+  return {radius, parameters.corner_radius_mm, general, std::move(profile)};
 }
 
 namespace {
@@ -60,7 +49,7 @@ void add_rings(EnvelopeGrid& grid, double from, double to, double step) {
   const int n = std::max(1, static_cast<int>(std::ceil((to - from) / step - 1e-9)));
   const double width = (to - from) / n;
   for (int i = 0; i < n; ++i) {
-    const ProfilePoint p = profile_at(grid.shape, from + (i + 0.5) * width);
+    const ProfilePoint p = grid.shape.profile.at(from + (i + 0.5) * width);
     grid.rings.push_back({p, width, p.height_mm * grid.lag_per_mm, static_cast<float>(std::sin(p.normal_angle_rad)),
                           static_cast<float>(std::cos(p.normal_angle_rad))});
   }
@@ -72,16 +61,14 @@ EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step
   EnvelopeGrid grid;
   grid.shape = shape_of(tool);
   grid.flutes = tool.flutes;
-  grid.lag_per_mm = std::tan(tool.helix_rad) / grid.shape.radius_mm;
+  grid.lag_per_mm = std::tan(tool.helix_rad) / (tool.diameter_mm / 2);
   grid.steps_per_pitch = std::max(4, static_cast<int>(std::ceil(2 * kPi / (rotation_step_rad * tool.flutes) - 1e-9)));
   grid.steps = grid.steps_per_pitch * tool.flutes;
 
-  const double flat = grid.shape.bottom_length_mm(), rounded = flat + grid.shape.arc_length_mm();
-  const double rc = grid.shape.corner_radius_mm;
-  const double end = top_mm >= rc ? rounded + (top_mm - rc) : flat + rc * std::acos(1 - std::max(0.0, top_mm) / rc);
-  add_rings(grid, 0, flat, step_mm);
-  add_rings(grid, flat, std::min(rounded, end), step_mm);
-  add_rings(grid, rounded, end, step_mm);
+  const Profile& profile = grid.shape.profile;
+  const double end = profile.length_to_height_mm(std::max(0.0, top_mm));
+  for (const auto& piece : profile.pieces())
+    add_rings(grid, piece.from_s_mm, std::min(piece.from_s_mm + piece.length_mm, end), step_mm);
 
   for (const auto& ring : grid.rings) {
     for (int i = 0; i < grid.steps; ++i) {

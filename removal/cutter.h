@@ -4,37 +4,35 @@
 
 #include "base/geometry.h"
 #include "machine/job.h"
+#include "removal/profile.h"
 
 namespace camber::removal {
 
-/// Envelope of a ball, flat or bull-nose cutter: a cylinder of `radius_mm` whose bottom edge is rounded with
-/// `corner_radius_mm` (ball: the radius itself; flat: 0). The tip is the origin, the axis +Z; it has no top.
+/// Envelope of a turning cutter. The tip is the origin, the axis +Z; it has no top.
+///
+/// Ball, flat and bull-nose cutters are a cylinder of `radius_mm` whose bottom edge is rounded with `corner_radius_mm`
+/// (ball: the radius itself; flat: 0); their distance has a short closed form, which carving uses. Every other cutter
+/// is `general`: its profile says all, `radius_mm` is its largest and `corner_radius_mm` that of its arc.
 struct CutterShape {
   double radius_mm = 0;
   double corner_radius_mm = 0;
+  bool general = false;
+  Profile profile{};
 
-  /// Length of the flat bottom and of the rounding along the profile; the wall begins after both.
+  bool ball() const { return !general && corner_radius_mm >= radius_mm; }
+
+  /// Rounded cylinders: length of the flat bottom and of the rounding along the profile; the wall begins after both.
   double bottom_length_mm() const { return radius_mm - corner_radius_mm; }
   double arc_length_mm() const { return corner_radius_mm * kPi / 2; }
 
-  /// Signed distance to the envelope, negative inside the cutter. Exact outside, and inside as long as the
-  /// nearest point of the envelope is the bottom or the wall.
+  /// Signed distance to the envelope, negative inside the cutter. Exact outside; inside exact for a general cutter,
+  /// for the others as long as the nearest point of the envelope is the bottom or the wall.
   double distance_mm(const Vec3& point_from_tip) const;
   /// Its gradient: the envelope's outward normal at the nearest point.
   Vec3 gradient(const Vec3& point_from_tip) const;
 };
 
 CutterShape shape_of(const machine::Tool& tool);
-
-/// One point of the profile, s mm from the tip along it.
-struct ProfilePoint {
-  double radius_mm = 0;         ///< from the axis
-  double height_mm = 0;         ///< above the tip
-  double normal_angle_rad = 0;  ///< kappa: normal = (sin k cos phi, sin k sin phi, -cos k)
-  double meridian_curvature_per_mm = 0;
-  double parallel_curvature_per_mm = 0;  ///< normal curvature along the circle of latitude
-};
-ProfilePoint profile_at(const CutterShape& shape, double s_mm);
 
 /// Points of the envelope at which engagement is sampled: rings along the profile, `steps` points a turn.
 ///

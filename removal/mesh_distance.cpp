@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
@@ -19,8 +20,11 @@ struct MeshDistance::Impl {
 MeshDistance::MeshDistance(const std::string& path, double voxel_mm, double band_mm) {
   openvdb::initialize();
   const TriangleMesh mesh = read_stl(path);
-  if (!mesh.closed())
-    fail_on_file(path, "the mesh is not closed: an edge has no second triangle, so it has no inside", "stl-open");
+  if (const std::size_t open = mesh.open_edges(); open > 0)
+    fail_on_file(path,
+                 fmt::format("the mesh is not closed: {} of its edges {} no second triangle, so it has no inside", open,
+                             open == 1 ? "has" : "have"),
+                 "stl-open");
   Eigen::Vector3f lo = mesh.points.front(), hi = lo;
   std::vector<openvdb::Vec3s> points;
   for (const auto& p : mesh.points) {

@@ -32,6 +32,8 @@ void StampBuilder::add(std::span<const TimedSample> samples) {
 
 void StampBuilder::add(const TimedSample& sample) {
   const feedmodel::PathPlace place = tracker_(sample);
+  for (; next_move_ <= place.move; ++next_move_)
+    if (program_.moves[next_move_].kind == nc::MoveKind::rapid) path_.rapids.push_back({next_move_, sample.t_s});
   if (!selected_[place.move]) {
     cutting_ = false;
   } else {

@@ -19,9 +19,16 @@ struct ToolRun {
   std::size_t from = 0, count = 0;
 };
 
+/// When a rapid begins; rapids too short to hold a sample take the time of the next one.
+struct RapidStart {
+  std::uint32_t move = 0;  ///< index into Interpretation::moves
+  double t_s = 0;
+};
+
 struct StampPath {
   std::vector<Stamp> stamps;
   std::vector<ToolRun> runs;
+  std::vector<RapidStart> rapids;  ///< in order
 };
 
 /// Which moves are cut: lines and arcs of the job's operations whose place in the work frame is known.
@@ -50,6 +57,7 @@ class StampBuilder {
   feedmodel::TimedSample last_;
   bool have_last_ = false, cutting_ = false;
   double next_s_ = 0;
+  std::uint32_t next_move_ = 0;  ///< whose beginning was not met yet
 };
 
 }  // namespace camber::removal

@@ -102,14 +102,16 @@ bool looks_binary(const std::string& bytes) {
 
 }  // namespace
 
-bool TriangleMesh::closed() const {
+std::size_t TriangleMesh::open_edges() const {
+  // Per edge from its lower to its higher point: triangles one way less triangles the other way.
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& t : triangles)
-    for (std::size_t c = 0; c < 3; ++c) ++edges[{t[c], t[(c + 1) % 3]}];
-  return std::all_of(edges.begin(), edges.end(), [&](const auto& e) {
-    const auto back = edges.find({e.first.second, e.first.first});
-    return back != edges.end() && back->second == e.second;
-  });
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t from = t[c], to = t[(c + 1) % 3];
+      edges[{std::min(from, to), std::max(from, to)}] += from < to ? 1 : -1;
+    }
+  return static_cast<std::size_t>(
+      std::count_if(edges.begin(), edges.end(), [](const auto& e) { return e.second != 0; }));
 }
 
 TriangleMesh read_stl(const std::string& path) {

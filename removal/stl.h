@@ -13,7 +13,9 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3f> points;  ///< mm, equal ones joined
   std::vector<std::array<std::uint32_t, 3>> triangles;
   /// Every edge has exactly two triangles, of opposite direction.
-  bool closed() const;
+  bool closed() const { return open_edges() == 0; }
+  /// Edges that are not so.
+  std::size_t open_edges() const;
 };
 
 /// Binary or ASCII. Triangles without area are left out. Throws InputError [file-missing], [stl-format], [stl-empty].

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
 #include "base/diagnostics.h"
@@ -303,6 +304,93 @@ void Stock::save(const std::string& path) const {
     std::filesystem::remove(part, ec);
     fail_on_file(path, std::string("cannot be written: ") + e.what(), "file-unwritable");
   }
+}
+
+namespace {
+
+/// The first float grid of a file, or one named "stock".
+openvdb::FloatGrid::Ptr read_float_grid(const std::string& path) {
+  if (!std::filesystem::exists(path)) fail_on_file(path, "no such file", "file-missing");
+  openvdb::FloatGrid::Ptr found;
+  try {
+    openvdb::io::File file(path);
+    file.open();
+    const openvdb::GridPtrVecPtr grids = file.getGrids();
+    for (const auto& grid : *grids)
+      if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+          floats && (!found || grid->getName() == "stock"))
+        found = floats;
+    file.close();
+  } catch (const std::exception& e) {
+    fail_on_file(path, std::string("cannot be read as .vdb: ") + e.what(), "vdb-format");
+  }
+  if (!found || found->getGridClass() != openvdb::GRID_LEVEL_SET || !(found->background() > 0))
+    fail_on_file(path, "holds no level set of floats; a stock.vdb that predict wrote was expected", "vdb-format");
+  return found;
+}
+
+void require_voxels(const openvdb::FloatGrid& grid, const std::string& path, double voxel_mm) {
+  constexpr double kSame = 1e-6;
+  const openvdb::Vec3d origin = grid.indexToWorld(openvdb::Vec3d(0, 0, 0));
+  const openvdb::Vec3d corner = grid.indexToWorld(openvdb::Vec3d(1, 1, 1)) - origin;
+  const bool straight = origin.length() < kSame * voxel_mm && grid.transform().isLinear();
+  for (int a = 0; a < 3; ++a)
+    if (!straight || std::abs(corner[a] - voxel_mm) > kSame * voxel_mm)
+      fail_on_file(path,
+                   fmt::format("its voxels are {:g} mm wide{}; {:g} mm (voxel_mm of the job), from zero, were expected",
+                               corner[a], straight ? "" : " and shifted or turned", voxel_mm),
+                   "vdb-voxel");
+}
+
+/// Clips a leaf to the new band; what the old band had cut off ("at least this deep") is beyond the new one as well.
+void clip_leaf(openvdb::FloatTree::LeafNodeType& leaf, float old_band, float band) {
+  for (openvdb::Index n = 0; n < openvdb::FloatTree::LeafNodeType::SIZE; ++n) {
+    const float d = leaf.getValue(n);
+    const float v = std::abs(d) >= 0.9999f * old_band ? std::copysign(band, d) : std::clamp(d, -band, band);
+    leaf.setValueOnly(n, v);
+    leaf.setActiveState(n, std::abs(v) < band);
+  }
+}
+
+}  // namespace
+
+Stock::Stock(double voxel, double band, const Vec3& lo, const Vec3& hi, std::unique_ptr<Impl> impl)
+    : voxel_mm_(voxel), band_mm_(band), min_mm_(lo), max_mm_(hi), impl_(std::move(impl)) {}
+
+Stock Stock::load(const std::string& path, double voxel_mm, double band_voxels) {
+  initialize_openvdb();
+  const auto grid = read_float_grid(path);
+  require_voxels(*grid, path, voxel_mm);
+  const auto band = static_cast<float>(band_voxels * voxel_mm), old_band = grid->background();
+  const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
+  if (box.empty()) fail_on_file(path, "holds no surface: nothing is left of the stock", "vdb-format");
+  Vec3 lo, hi;
+  for (int a = 0; a < 3; ++a) {
+    lo[a] = (box.min()[a] - 1) * voxel_mm + old_band;
+    hi[a] = (box.max()[a] + 1) * voxel_mm - old_band;
+  }
+  auto impl = std::make_unique<Impl>();
+  impl->distance = openvdb::FloatGrid::create(band);
+  impl->distance->setTransform(openvdb::math::Transform::createLinearTransform(voxel_mm));
+  impl->distance->setGridClass(openvdb::GRID_LEVEL_SET);
+  impl->distance->setName("stock");
+  impl->stamp = openvdb::Int32Grid::create(kUncut);
+  auto& tree = impl->distance->tree();
+  tree.topologyUnion(grid->tree());
+  for (auto it = grid->tree().cbeginValueAll(); it; ++it)
+    if (!it.isVoxelValue() && it.getValue() < 0) tree.addTile(it.getLevel(), it.getCoord(), -band, false);
+  for (auto it = grid->tree().cbeginLeaf(); it; ++it) {
+    auto* leaf = tree.touchLeaf(it->origin());
+    std::copy_n(it->buffer().data(), openvdb::FloatTree::LeafNodeType::SIZE, leaf->buffer().data());
+    clip_leaf(*leaf, old_band, band);
+  }
+  return Stock(voxel_mm, band, lo, hi, std::move(impl));
+}
+
+double cylinder_distance_mm(const Vec3& p, const Vec3& base, double radius, double height) {
+  const double q = std::hypot(p.x() - base.x(), p.y() - base.y()) - radius;
+  const double v = std::abs(p.z() - base.z() - height / 2) - height / 2;
+  return std::hypot(std::max(q, 0.0), std::max(v, 0.0)) + std::min(std::max(q, v), 0.0);
 }
 
 double box_distance_mm(const Vec3& p, const Vec3& lo, const Vec3& hi) {

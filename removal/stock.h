@@ -35,6 +35,9 @@ class Stock {
   /// narrow band; values beyond it are cut off. Outside the box there is air.
   Stock(const std::function<double(const Vec3&)>& distance_mm, const Vec3& min_mm, const Vec3& max_mm, double voxel_mm,
         double band_voxels);
+  /// Reads what save() wrote, with its voxels; the band is widened or narrowed to `band_voxels`. Throws InputError
+  /// [file-missing], [vdb-format], [vdb-voxel] (the file's voxels are not voxel_mm wide, or are shifted or turned).
+  static Stock load(const std::string& path, double voxel_mm, double band_voxels);
   Stock(const Stock& other);
   Stock& operator=(const Stock&) = delete;
   Stock(Stock&&) noexcept;
@@ -86,6 +89,7 @@ class Stock {
 
  private:
   struct Impl;
+  Stock(double voxel_mm, double band_mm, const Vec3& min_mm, const Vec3& max_mm, std::unique_ptr<Impl> impl);
   double voxel_mm_, band_mm_;
   Vec3 min_mm_, max_mm_;
   std::unique_ptr<Impl> impl_;
@@ -93,6 +97,9 @@ class Stock {
 
 /// Share of a voxel that is material, from its distance: 1 inside, 0 outside, linear over one voxel each way.
 double material_share(double distance_mm, double voxel_mm);
+
+/// Signed distance to an upright cylinder, exact. base: middle of its lower face.
+double cylinder_distance_mm(const Vec3& point, const Vec3& base_mm, double radius_mm, double height_mm);
 
 /// Signed distance to a box, exact.
 double box_distance_mm(const Vec3& point, const Vec3& min_mm, const Vec3& max_mm);

@@ -52,10 +52,11 @@ std::string counting(std::string_view attributes, std::size_t count, std::uint32
   return data_array(attributes, bytes);
 }
 
-std::string blocks(std::span<const FormErrorPoint> points) {
+template <class Value>
+std::string whole_numbers(std::string_view attributes, std::span<const FormErrorPoint> points, Value value) {
   std::string bytes;
-  for (const auto& p : points) append_little_endian(bytes, p.block);
-  return data_array(R"(type="Int32" Name="block")", bytes);
+  for (const auto& p : points) append_little_endian(bytes, static_cast<std::uint32_t>(value(p)));
+  return data_array(attributes, bytes);
 }
 
 }  // namespace
@@ -64,12 +65,12 @@ void write_form_error_csv(const std::string& path, std::span<const FormErrorPoin
   OutputFile file(path);
   fmt::memory_buffer buffer;
   auto out = std::back_inserter(buffer);
-  fmt::format_to(out, "x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block\n");
+  fmt::format_to(out, "x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block,tool\n");
   for (const auto& p : points) {
     fmt::format_to(out, "{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},{:.3f},", p.place_mm.x(), p.place_mm.y(),
                    p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(), p.error_um);
     if (std::isfinite(p.total_error_um)) fmt::format_to(out, "{:.3f}", p.total_error_um);
-    fmt::format_to(out, ",{}\n", p.block);
+    fmt::format_to(out, ",{},{}\n", p.block, p.tool);
     flush(buffer, file, kFlushBytes);
   }
   flush(buffer, file, 0);
@@ -92,7 +93,9 @@ void write_form_error_vtp(const std::string& path, std::span<const FormErrorPoin
   if (with_total)
     out << floats(R"(type="Float32" Name="total_error_um")", points, [](const auto& p) { return p.total_error_um; });
   out << vectors(R"(type="Float32" Name="normal" NumberOfComponents="3")", points, &FormErrorPoint::normal);
-  out << blocks(points) << "</PointData>\n<Points>\n";
+  out << whole_numbers(R"(type="Int32" Name="block")", points, [](const auto& p) { return p.block; });
+  out << whole_numbers(R"(type="Int32" Name="tool")", points, [](const auto& p) { return p.tool; });
+  out << "</PointData>\n<Points>\n";
   out << vectors(R"(type="Float32" NumberOfComponents="3")", points, &FormErrorPoint::place_mm);
   out << "</Points>\n<Verts>\n" << counting(R"(type="Int32" Name="connectivity")", points.size(), 0);
   out << counting(R"(type="Int32" Name="offsets")", points.size(), 1);

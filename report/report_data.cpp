@@ -46,8 +46,12 @@ std::vector<FormErrorPoint> form_error_points(const deflection::MachinedProgram&
     const auto& p = prediction.surface[i];
     FormErrorPoint point{.place_mm = p.place_mm, .normal = p.normal, .error_um = 1000 * p.error_mm};
     if (!prediction.total_error_mm.empty()) point.total_error_um = 1000 * prediction.total_error_mm[i];
-    if (p.machined_stamp >= 0)
-      point.block = program.moves.moves[program.path.stamps[static_cast<std::size_t>(p.machined_stamp)].move].block + 1;
+    if (p.machined_stamp >= 0) {
+      const nc::Move& move =
+          program.moves.moves[program.path.stamps[static_cast<std::size_t>(p.machined_stamp)].move];
+      point.block = move.block + 1;
+      point.tool = program.moves.state_of(move).tool;
+    }
     out.push_back(point);
   }
   return out;

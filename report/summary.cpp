@@ -31,6 +31,26 @@ removal::ErrorFigures total_error(const deflection::Prediction& p) {
   return removal::error_figures(um, area);
 }
 
+/// Percentiles of the signed error and its histogram, by area.
+ordered_json spread(const removal::ErrorSpread& s) {
+  ordered_json percentiles = ordered_json::object();
+  for (std::size_t i = 0; i < s.kShares.size(); ++i)
+    percentiles[fmt::format("p{:02.0f}", 100 * s.kShares[i])] = s.percentile[i];
+  return {{"percentiles", percentiles},
+          {"histogram", {{"from", s.bin_from}, {"width", s.bin_width}, {"area_mm2", s.bin_area_mm2}}}};
+}
+
+ordered_json form_error(const deflection::Prediction& p) {
+  ordered_json j = figures(p.form_error_um);
+  std::vector<double> um, area;
+  for (const auto& point : p.surface) {
+    um.push_back(1000 * point.error_mm);
+    area.push_back(point.area_mm2);
+  }
+  j.update(spread(removal::error_spread(um, area)));
+  return j;
+}
+
 double largest_force_N(const deflection::Prediction& p) {
   double largest = 0;
   for (const auto& l : p.cut.loads) largest = std::max(largest, l.lateral_max_N);
@@ -79,7 +99,7 @@ std::string predict_json(const deflection::MachinedProgram& program, const defle
   j["chip_thickness_mm"] = {{"max", s.chip_max_mm}};
   j["specific_energy_MPa"] = s.specific_energy_MPa;
   j["removed_mm3"] = {{"path", p.cut.chip_mm3}, {"stock", p.cut.stock_mm3}};
-  j["form_error_um"] = figures(p.form_error_um);
+  j["form_error_um"] = form_error(p);
   if (!p.total_error_mm.empty()) j["total_error_um"] = figures(total_error(p));
   j["static"] = {{"rounds_max", p.cut.rounds_max}, {"unsettled_stretches", p.cut.unsettled}};
   return j.dump(2) + "\n";

@@ -203,7 +203,7 @@ TEST(JobReader, AsksForWhatIsMissing) {
             "job.toml: error: [tool.1] is missing; a table for each tool of the program was expected [key-missing]\n"
             "job.toml: error: [material] is missing; a table with the specific cutting forces ktc_MPa, krc_MPa ... "
             "was expected [key-missing]\n"
-            "job.toml: error: [stock] is missing; a table with box_mm or mesh was expected [key-missing]");
+            "job.toml: error: [stock] is missing; a table with box_mm, cylinder, mesh or vdb was expected [key-missing]");
   EXPECT_EQ(read(with("diameter_mm = 6.0\n", "")).messages,
             "job.toml:3:1: error: diameter_mm is missing in [tool.1]; a number greater than zero was expected "
             "[key-missing]\n"
@@ -230,7 +230,8 @@ TEST(JobReader, RefusesToolsThatCannotBe) {
             "    flute_length_mm = 41\n"
             "                      ^");
   EXPECT_EQ(read(with("flutes = 2", "flutes = 2\ncorner_radius_mm = 1")).messages,
-            "job.toml:7:1: error: corner_radius_mm does not belong to type \"ball\"; it is for \"bull\" [key-unused]\n"
+            "job.toml:7:1: error: corner_radius_mm does not belong to type \"ball\"; it is for \"bull\" or \"general\" "
+            "[key-unused]\n"
             "    corner_radius_mm = 1\n"
             "    ^");
   EXPECT_EQ(read(with("\"ball\"", "\"bull\"")).messages,
@@ -243,7 +244,8 @@ TEST(JobReader, RefusesToolsThatCannotBe) {
             "    corner_radius_mm = 4\n"
             "                       ^");
   EXPECT_EQ(read(with("\"ball\"", "\"tapered\"")).messages,
-            "job.toml:4:8: error: type is \"tapered\"; \"ball\", \"flat\", \"bull\" or \"drill\" was expected "
+            "job.toml:4:8: error: type is \"tapered\"; \"ball\", \"flat\", \"bull\", \"drill\", \"tapered_ball\", "
+            "\"chamfer\" or \"general\" was expected "
             "[value-choice]\n"
             "    type = \"tapered\"\n"
             "           ^");
@@ -273,8 +275,8 @@ TEST(JobReader, RefusesABoxInsideOut) {
             "    box_mm = [[0, 0, -20], [50, nan, 5]]\n"
             "                                ^");
   EXPECT_EQ(read(with("box_mm = [[0, 0, -20], [50, 40, 5]]", "allowance_mm = 0.2")).messages,
-            "job.toml:11:1: error: box_mm is missing in [stock]; box_mm = [[x, y, z], [x, y, z]] or mesh = "
-            "\"stock.stl\" was expected [key-missing]\n"
+            "job.toml:11:1: error: box_mm is missing in [stock]; box_mm = [[x, y, z], [x, y, z]], cylinder, mesh or "
+            "vdb was expected [key-missing]\n"
             "    [stock]\n"
             "    ^");
 }

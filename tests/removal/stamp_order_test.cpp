@@ -10,6 +10,14 @@
 namespace camber::removal {
 namespace {
 
+CutterShape cutter(machine::ToolType type, double diameter_mm, double corner_radius_mm = 0) {
+  machine::Tool tool;
+  tool.type = type;
+  tool.diameter_mm = diameter_mm;
+  tool.corner_radius_mm = corner_radius_mm;
+  return shape_of(tool);
+}
+
 /// Steps of `step_mm` in a heading that wanders, with a sharp corner every 25 stamps.
 std::vector<Stamp> wandering_path(std::mt19937& random, double step_mm, bool level) {
   std::normal_distribution<double> wander(0, 0.03);
@@ -46,7 +54,7 @@ void expect_that_nobody_else_counts(const CutterShape& shape, double step_mm, bo
       named += order.earlier(k).size();
       for (int r = 0; r < 12; ++r)
         for (int a = 0; a < 36; ++a) {
-          const ProfilePoint p = profile_at(shape, (r + 0.5) * length / 12);
+          const ProfilePoint p = shape.profile.at((r + 0.5) * length / 12);
           const double phi = 2 * kPi * a / 36;
           const Vec3 point = at(k) + Vec3(p.radius_mm * std::cos(phi), p.radius_mm * std::sin(phi), p.height_mm);
           const double since_before = shape.distance_mm(point - at(k - 1));
@@ -64,9 +72,15 @@ void expect_that_nobody_else_counts(const CutterShape& shape, double step_mm, bo
   EXPECT_GT(named, 0u);  // corners
 }
 
-TEST(StampOrder, NamesEveryStampThatCountsOfABall) { expect_that_nobody_else_counts({5, 5}, 0.2, false); }
-TEST(StampOrder, NamesEveryStampThatCountsOfAFlatCutter) { expect_that_nobody_else_counts({5, 0}, 0.2, true); }
-TEST(StampOrder, NamesEveryStampThatCountsOfABullNose) { expect_that_nobody_else_counts({6, 2}, 0.1, false); }
+TEST(StampOrder, NamesEveryStampThatCountsOfABall) {
+  expect_that_nobody_else_counts(cutter(machine::ToolType::ball, 10), 0.2, false);
+}
+TEST(StampOrder, NamesEveryStampThatCountsOfAFlatCutter) {
+  expect_that_nobody_else_counts(cutter(machine::ToolType::flat, 10), 0.2, true);
+}
+TEST(StampOrder, NamesEveryStampThatCountsOfABullNose) {
+  expect_that_nobody_else_counts(cutter(machine::ToolType::bull, 12, 2), 0.1, false);
+}
 
 TEST(StampOrder, StraightPathsHaveLongBatchesInWhichNobodyElseCounts) {
   std::vector<Stamp> stamps(200);
@@ -74,7 +88,7 @@ TEST(StampOrder, StraightPathsHaveLongBatchesInWhichNobodyElseCounts) {
     stamps[i].tip_mm = {0.1 * static_cast<double>(i), 0.05 * static_cast<double>(i), 0};
     stamps[i].first = i == 0;
   }
-  const StampOrder order = StampOrder::of_path(stamps, {5, 1});
+  const StampOrder order = StampOrder::of_path(stamps, cutter(machine::ToolType::bull, 10, 1));
   for (std::int32_t k = 0; k < 200; ++k) EXPECT_TRUE(order.earlier(k).empty());
   EXPECT_LE(order.batch(199), 3);
 }

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "removal/mesh_distance.h"
 #include "removal/stretch.h"
 #include "removal/surface.h"
 #include "tests/support/cutting.h"
+#include "tests/support/temp_folder.h"
 
 namespace camber::removal {
 namespace {
@@ -135,6 +137,78 @@ TEST(ErrorFigures, AreWeightedByArea) {
   EXPECT_DOUBLE_EQ(f.rms, std::sqrt((1 + 9 + 8) / 4.0));
   EXPECT_DOUBLE_EQ(f.p95, 3);
   EXPECT_DOUBLE_EQ(f.min, -3);
+}
+
+TEST(ErrorSpread, GivesPercentilesAndAHistogramByArea) {
+  std::vector<double> error, area;
+  for (int i = 0; i < 1000; ++i) {
+    error.push_back(-5 + 0.02 * ((i * 37) % 1000));  // -5 ... 14.98, in no order
+    area.push_back(0.5);
+  }
+  const ErrorSpread s = error_spread(error, area);
+  EXPECT_NEAR(s.percentile[0], -4.82, 1e-9);  // the tenth of a thousand
+  EXPECT_NEAR(s.percentile[4], 4.98, 1e-9);
+  EXPECT_NEAR(s.percentile[8], 14.78, 1e-9);
+  EXPECT_DOUBLE_EQ(s.bin_width, 1);
+  EXPECT_DOUBLE_EQ(s.bin_from, -5);
+  ASSERT_EQ(s.bin_area_mm2.size(), 20u);
+  for (const double bin : s.bin_area_mm2) EXPECT_NEAR(bin, 25, 0.6) << "one value may round over an edge";
+  EXPECT_TRUE(error_spread({}, {}).bin_area_mm2.empty());
+}
+
+TEST(Stock, ComesBackFromItsFile) {
+  const tests::TempFolder folder;
+  Stock stock = make_box({0, -5, -3}, {10, 5, 0}, 0.1);
+  std::vector<Stamp> stamps;
+  add_row(stamps, {-4, 0, -1}, {14, 0, -1}, 0.15);
+  carve_row(stock, ball_envelope(), stamps);
+  stock.save(folder / "s.vdb");
+  for (const double band : {3.0, 4.0, 6.0}) {
+    const Stock back = Stock::load(folder / "s.vdb", 0.1, band);
+    EXPECT_NEAR(back.volume_mm3(), stock.volume_mm3(), 1e-9);
+    EXPECT_NEAR(back.band_mm(), 0.1 * band, 1e-6);
+    EXPECT_NEAR((back.min_mm() - stock.min_mm()).norm(), 0, 0.4);
+    EXPECT_NEAR((back.max_mm() - stock.max_mm()).norm(), 0, 0.4);
+    for (int x = -5; x < 105; x += 3)
+      for (int y = -55; y < 55; y += 2)
+        for (int z = -33; z < 5; ++z) {
+          const float was = stock.voxel({x, y, z}), is = back.voxel({x, y, z});
+          ASSERT_TRUE(is == was || std::abs(was) >= 0.299f);
+          ASSERT_EQ(is < 0, was < 0);
+        }
+  }
+  try {
+    Stock::load(folder / "s.vdb", 0.2, 4);
+    FAIL() << "other voxels must be refused";
+  } catch (const InputError& e) {
+    EXPECT_EQ(to_string(e.diagnostics().front()),
+              folder / "s.vdb" + std::string(": error: its voxels are 0.1 mm wide; 0.2 mm (voxel_mm of the job), from "
+                                             "zero, were expected [vdb-voxel]"));
+  }
+}
+
+TEST(Stl, SaysHowManyEdgesAreOpen) {
+  const tests::TempFolder folder;
+  const std::string path = folder.write("open.stl",
+                                        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                                        "vertex 0 1 0\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\n"
+                                        "vertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n");
+  try {
+    const MeshDistance mesh(path, 0.1, 0.4);
+    FAIL() << "an open mesh must be refused";
+  } catch (const InputError& e) {
+    EXPECT_EQ(to_string(e.diagnostics().front()),
+              path + ": error: the mesh is not closed: 4 of its edges have no second triangle, so it has no inside "
+                     "[stl-open]");
+  }
+}
+
+TEST(Stock, KnowsTheVolumeOfACylinder) {
+  const Vec3 base(1, 2, -3);
+  const Stock stock([&](const Vec3& p) { return cylinder_distance_mm(p, base, 5, 4); }, {-4, -3, -3}, {6, 7, 1}, 0.1, 4);
+  EXPECT_NEAR(stock.volume_mm3() / (kPi * 25 * 4), 1, 0.002);
+  EXPECT_NEAR(cylinder_distance_mm({9, 2, 2}, base, 5, 4), std::hypot(3, 1), 1e-12);
+  EXPECT_NEAR(cylinder_distance_mm({1, 2, 0.5}, base, 5, 4), -0.5, 1e-12);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+#include "deflection/teeth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace camber::deflection {
+
+Teeth::Teeth(const machine::Tool& tool) : runout_mm_(tool.runout_mm), runout_angle_rad_(tool.runout_angle_rad) {
+  const double mean = 2 * kPi / tool.flutes;
+  double at = 0;
+  for (int j = 0; j < tool.flutes; ++j) {
+    const double pitch = tool.pitch_rad.empty() ? mean : tool.pitch_rad[static_cast<std::size_t>(j)];
+    offset_rad_.push_back(at);
+    pitch_share_.push_back(pitch / mean);
+    at += pitch;
+    even_ = even_ && std::abs(pitch - mean) < 1e-9;
+  }
+  even_ = even_ && runout_mm_ == 0;
+}
+
+double Teeth::throw_mm(int tooth, double lag_rad) const {
+  return runout_mm_ * std::cos(offset_rad(tooth) + lag_rad - runout_angle_rad_);
+}
+
+double Teeth::chip_mm(int tooth, double even_chip_mm, double sine, double lag_rad) const {
+  const int n = count();
+  const double own = throw_mm(tooth, lag_rad);
+  double chip = std::numeric_limits<double>::infinity(), pitches = 0;
+  for (int m = 1; m <= n; ++m) {
+    const int before = ((tooth - m) % n + n) % n;
+    pitches += pitch_share_[static_cast<std::size_t>(before)];
+    chip = std::min(chip, pitches * even_chip_mm + sine * (own - throw_mm(before, lag_rad)));
+  }
+  return std::max(0.0, chip);
+}
+
+}  // namespace camber::deflection

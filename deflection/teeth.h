@@ -1,0 +1,36 @@
+#pragma once
+// What makes one tooth's chip differ from the next's: unequal pitch and run-out.
+#include <vector>
+
+#include "machine/job.h"
+
+namespace camber::deflection {
+
+/// Teeth are numbered from 0 as they follow in the cut. Tooth j stands at offset_rad(j) from tooth 0, against the
+/// turning direction. The run-out moves it outwards by rho cos(offset + lag - lambda): lag of the edge at the height,
+/// lambda the run-out's direction from tooth 0.
+class Teeth {
+ public:
+  explicit Teeth(const machine::Tool& tool);
+
+  /// All teeth take the same chip.
+  bool even() const { return even_; }
+  int count() const { return static_cast<int>(offset_rad_.size()); }
+  double offset_rad(int tooth) const { return offset_rad_[static_cast<std::size_t>(tooth)]; }
+  double throw_mm(int tooth, double lag_rad) const;
+
+  /// Chip of a tooth: h = max(0, min over m = 1 ... N of (c_m + sin(kappa) (t_j - t_(j-m)))), c_m what the motion since
+  /// the m-th tooth before allows, t the throws: a tooth that stands back leaves its chip to the next. Over a turn the
+  /// teeth take as much as even ones.
+  /// even_chip_mm: what the motion in one mean pitch allows, along the normal. sine: of the normal's angle kappa.
+  /// Source: Kline & DeVor, The effect of runout on cutting geometry and forces in end milling, Int. J. Mach. Tool Des.
+  /// Res. 23 (1983) 123-140.
+  double chip_mm(int tooth, double even_chip_mm, double sine, double lag_rad) const;
+
+ private:
+  bool even_ = true;
+  std::vector<double> offset_rad_, pitch_share_;  ///< pitch to the next tooth / mean pitch
+  double runout_mm_, runout_angle_rad_;
+};
+
+}  // namespace camber::deflection

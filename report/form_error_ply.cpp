@@ -1,0 +1,44 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/output_file.h"
+#include "report/base64.h"
+#include "report/form_error.h"
+
+namespace camber::report {
+namespace {
+
+/// Blue, white, red for -1, 0, 1.
+std::array<std::uint8_t, 3> colour(double share) {
+  const double s = std::clamp(share, -1.0, 1.0), faded = 1 - std::abs(s);
+  const auto byte = [](double v) { return static_cast<std::uint8_t>(std::lround(255 * v)); };
+  return s < 0 ? std::array{byte(faded), byte(faded), byte(1)} : std::array{byte(1), byte(faded), byte(faded)};
+}
+
+}  // namespace
+
+void write_form_error_ply(const std::string& path, std::span<const FormErrorPoint> points, double full_um) {
+  OutputFile file(path);
+  std::string bytes = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment error_um: blue cut too deep, red material left, full colour at "
+      "{:g}\nelement vertex {}\n",
+      full_um, points.size());
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) bytes += fmt::format("property float {}\n", name);
+  for (const char* name : {"red", "green", "blue"}) bytes += fmt::format("property uchar {}\n", name);
+  bytes += "property float error_um\nproperty int block\nproperty int tool\nend_header\n";
+  for (const auto& p : points) {
+    for (const Vec3& v : {p.place_mm, p.normal})
+      for (int a = 0; a < 3; ++a) append_little_endian(bytes, static_cast<float>(v[a]));
+    for (const std::uint8_t c : colour(full_um > 0 ? p.error_um / full_um : 0)) bytes += static_cast<char>(c);
+    append_little_endian(bytes, static_cast<float>(p.error_um));
+    append_little_endian(bytes, p.block);
+    append_little_endian(bytes, static_cast<std::uint32_t>(p.tool));
+  }
+  file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.commit();
+}
+
+}  // namespace camber::report

@@ -1,0 +1,170 @@
+// Blanks of every kind, one job's stock as the next one's blank, several tools, and collisions, as a user meets them.
+#include <cmath>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_camber.h"
+
+namespace camber {
+namespace {
+
+using tests::run_camber;
+using tests::TempFolder;
+
+const std::string kFlat = "[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\noverhang_mm = 30.0\n";
+
+void write_job(const TempFolder& folder, const std::string& program, const std::string& tools, const std::string& stock,
+               const std::string& simulation = "") {
+  folder.write("p.nc", program);
+  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n");
+  folder.write("job.toml", "program = \"p.nc\"\nmachine = \"machine.toml\"\n" + tools +
+                               "[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n[stock]\n" + stock +
+                               "\n[simulation]\nvoxel_mm = 0.2\ncoupling = \"rigid\"\n" + simulation);
+}
+
+double removed_mm3(const TempFolder& folder, const std::string& result) {
+  return nlohmann::json::parse(tests::file_text(folder / (result + "/summary.json")))["removed_mm3"]["stock"];
+}
+
+const std::string kHead = "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\n";
+/// A slot of 2 mm along X through a block from x = 0 to 8.
+const std::string kSlot = kHead + "G0 X-4 Y0 Z5\nG0 Z-2\nG1 X12 F900\nG0 Z5\nM30\n";
+
+TEST(StockOfAJob, CylinderLosesASlot) {
+  const TempFolder folder;
+  write_job(folder, kHead + "G0 X-10 Y0 Z5\nG0 Z-2\nG1 X10 F900\nG0 Z5\nM30\n", kFlat,
+            "cylinder = { base_mm = [0, 0, -5], diameter_mm = 12, height_mm = 5 }");
+  const auto run = run_camber(folder, "predict job.toml -o r");
+  ASSERT_EQ(run.status, 0) << run.err;
+  // A strip of width 4 through a circle of radius 6, 2 mm deep.
+  const double strip = 2 * (2 * std::sqrt(32.0) + 36 * std::asin(2.0 / 6));
+  EXPECT_NEAR(removed_mm3(folder, "r") / (2 * strip), 1, 0.006);
+}
+
+TEST(StockOfAJob, WhatOneJobLeavesIsTheNextOnesBlank) {
+  const TempFolder folder;
+  write_job(folder, kSlot, kFlat, "box_mm = [[0, -5, -5], [8, 5, 0]]");
+  auto run = run_camber(folder, "predict job.toml -o r");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NEAR(removed_mm3(folder, "r"), 64, 0.4);
+  // The same slot again takes nothing; a millimetre deeper takes half as much.
+  write_job(folder, kHead + "G0 X-4 Y0 Z5\nG0 Z-2\nG1 X12 F900\nZ-3\nX-4\nG0 Z5\nM30\n", kFlat,
+            "vdb = \"r/stock.vdb\"");
+  run = run_camber(folder, "predict job.toml -o s");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NEAR(removed_mm3(folder, "s"), 32, 0.4);
+}
+
+TEST(StockOfAJob, RefusesAFileThatIsNoVdb) {
+  const TempFolder folder;
+  folder.write("x.vdb", "not a grid");
+  write_job(folder, kSlot, kFlat, "vdb = \"x.vdb\"");
+  const auto run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("x.vdb: error: cannot be read as .vdb"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("[vdb-format]"), std::string::npos) << run.err;
+}
+
+TEST(SeveralTools, EachCutsWithItsOwnShapeAndSignsItsPoints) {
+  const TempFolder folder;
+  const std::string program = kHead +
+                              "G0 X-4 Y0 Z5\nG0 Z-2\nG1 X12 F900\nG0 Z5\nT2 M6\nS3000 M3\nG0 X-4 Y5 Z5\nG0 Z-1\n"
+                              "G1 X12 F900\nG0 Z5\nM30\n";
+  write_job(
+      folder, program,
+      kFlat + "[tool.2]\ntype = \"chamfer\"\ndiameter_mm = 6\npoint_angle_deg = 90\nflutes = 2\noverhang_mm = 30\n",
+      "box_mm = [[0, -5, -5], [8, 10, 0]]");
+  const auto run = run_camber(folder, "predict job.toml -o r");
+  ASSERT_EQ(run.status, 0) << run.err;
+  // 4 mm wide, 2 deep; and a V of 90 degrees, 1 deep.
+  EXPECT_NEAR(removed_mm3(folder, "r"), 64 + 8, 0.5);
+  const std::string csv = tests::file_text(folder / "r/form_error.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block,tool");
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  std::size_t of_slot = 0, of_groove = 0;
+  while (std::getline(lines, line)) {
+    const std::string maker = line.substr(line.find_last_of(',', line.find_last_of(',') - 1) + 1);
+    if (maker == "6,1")
+      ++of_slot;
+    else if (maker == "12,2")
+      ++of_groove;
+    else
+      FAIL() << line;
+    const double y = std::stod(line.substr(line.find(',') + 1));
+    EXPECT_EQ(maker == "12,2", y > 3) << line;
+  }
+  EXPECT_GT(of_slot, 1000u);
+  EXPECT_GT(of_groove, 300u);
+}
+
+TEST(Collisions, RapidThroughMaterialIsAnErrorWithBlockAndTime) {
+  const TempFolder folder;
+  write_job(folder, kHead + "G0 X-4 Y0 Z5\nG0 Z-2\nG1 X12 F900\nG0 Y4\nG0 X-4\nG0 Z5\nM30\n", kFlat,
+            "box_mm = [[0, -8, -5], [8, 8, 0]]");
+  auto run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("p.nc:8:1: error: rapid through material: the cutter of T1 in stock at X"), std::string::npos)
+      << run.err;
+  EXPECT_NE(run.err.find("s into the program; a rapid clear of the stock was expected [collision-rapid]"),
+            std::string::npos)
+      << run.err;
+  EXPECT_EQ(run.err.find("p.nc:7"), std::string::npos) << "beside the block a rapid is free: " << run.err;
+  write_job(folder, tests::file_text(folder / "p.nc"), kFlat, "box_mm = [[0, -8, -5], [8, 8, 0]]",
+            "collisions = \"off\"\n");
+  run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 0) << run.err;
+  write_job(folder, tests::file_text(folder / "p.nc"), kFlat, "box_mm = [[0, -8, -5], [8, 8, 0]]",
+            "collisions = \"warning\"\n");
+  run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_NE(run.err.find("p.nc:8:1: warning: rapid through material"), std::string::npos) << run.err;
+}
+
+TEST(Collisions, RapidBackThroughTheSlotJustCutIsFree) {
+  const TempFolder folder;
+  write_job(folder, kHead + "G0 X-4 Y0 Z5\nG0 Z-2\nG1 X12 F900\nG0 X-4\nG0 Z5\nM30\n", kFlat,
+            "box_mm = [[0, -8, -5], [8, 8, 0]]");
+  const auto run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+}
+
+TEST(Collisions, AreWarningsWhereAPartOfTheProgramIsLeftOut) {
+  const TempFolder folder;
+  write_job(folder, kHead + "G0 X-4 Y0 Z5\nG0 Z-2\nG1 X12 F900\nG0 X-4\nY6\nG1 X12\nG0 Z5\nM30\n",
+            "operations = { blocks = [[9, 9]] }\n" + kFlat, "box_mm = [[0, -8, -5], [8, 8, 0]]");
+  const auto run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("p.nc:7:1: warning: rapid through material"), std::string::npos) << run.err;
+}
+
+TEST(Collisions, ShankAndHolderAgainstStockAreErrors) {
+  const TempFolder folder;
+  // Beside the block, cutting 1 mm of its wall 5 mm deep with flutes of 6 mm.
+  const std::string program = kHead + "G0 X-4 Y-6 Z9\nG0 Z-8\nG1 X12 F900\nG0 Z9\nM30\n";
+  const std::string stock = "box_mm = [[0, -5, -9], [8, 5, 0]]";
+  write_job(folder, program, kFlat + "flute_length_mm = 6\nshank_diameter_mm = 4\n", stock);
+  auto run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("p.nc:6:1: error: the shank of T1 in stock at X"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("a longer overhang or less depth was expected [collision-shank]"), std::string::npos);
+  // A neck clears the wall.
+  write_job(folder, program,
+            kFlat + "flute_length_mm = 6\nneck_diameter_mm = 1.5\nneck_length_mm = 20\nshank_diameter_mm = 4\n", stock);
+  run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 0) << run.err;
+  // A holder 7 mm above the tip does not.
+  std::string tool = kFlat;
+  tool.replace(tool.find("30.0"), 4, "7.0");
+  write_job(folder, program, tool + "holder_mm = [[20, 20, 10]]\n", stock);
+  run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("p.nc:6:1: error: the holder of T1 in stock at X"), std::string::npos) << run.err;
+}
+
+}  // namespace
+}  // namespace camber
