@@ -1,4 +1,5 @@
 // Which vertices are corners.
+#include <algorithm>
 #include <cmath>
 
 #include "repath/fit.h"
@@ -33,8 +34,13 @@ std::vector<bool> corners_of(std::span<const Vec2> points, const FitOptions& opt
     legs[k] = {back, ahead};
     turn[k] = turn_at(points, k, legs[k]);
   }
-  for (std::uint32_t k = 1; k + 1 < n; ++k)
-    corners[k] = turn[k] > options.corner_rad && turn[k] > 2 * std::max(turn[legs[k].back], turn[legs[k].ahead]);
+  for (std::uint32_t k = 1; k + 1 < n; ++k) {
+    if (turn[k] <= options.corner_rad || turn[k] <= 2 * std::max(turn[legs[k].back], turn[legs[k].ahead])) continue;
+    bool sharpest = true;  // its neighbours within the legs see a part of the same turn
+    for (std::uint32_t i = legs[k].back + 1; sharpest && i < legs[k].ahead; ++i)
+      sharpest = turn[i] < turn[k] || (turn[i] == turn[k] && i >= k);
+    corners[k] = sharpest;
+  }
   return corners;
 }
 

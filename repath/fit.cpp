@@ -34,6 +34,7 @@ class Search {
       fit_piece(begin, k, chain);
       begin = k;
     }
+    if (options_.tangent) move_joints(points_, fitter_, corners, chain);
     if (options_.tangent) make_tangent(points_, options_, fitter_, corners, chain);
     return chain;
   }

@@ -71,7 +71,7 @@ std::optional<ArcFit> arc_deviation(std::span<const Vec2> points, std::uint32_t 
     least = std::min(least, angle);
     from = to;
   }
-  const double end_slack = 1e-9;
+  const double end_slack = 1e-6;  // of a full turn, summed up
   if (angle <= 0 || angle > 2 * kPi + end_slack || farthest > angle + backwards_rad) return std::nullopt;
   // Past an end of the arc the nearest point is that end.
   const double past_mm = arc.radius_mm * std::max(farthest - angle, -least);

@@ -7,6 +7,7 @@ namespace camber::repath {
 namespace {
 
 constexpr int kRounds = 30;
+constexpr int kJointRounds = 3;
 constexpr double kSmoothRad = 0.5;  ///< a joint that kinks by more is left to itself
 
 double chord_angle(std::span<const Vec2> points, const Primitive& p) {
@@ -25,6 +26,50 @@ std::vector<double> kinks_of(std::span<const Vec2> points, std::span<const Primi
     kinks.push_back(std::abs(wrapped(chord_angle(points, chain[k + 1]) - 0.5 * chain[k + 1].sweep_rad -
                                      chord_angle(points, chain[k]) - 0.5 * chain[k].sweep_rad)));
   return kinks;
+}
+
+namespace {
+
+std::optional<Primitive> fitted(const Fitter& fitter, const Primitive& like, std::uint32_t first, std::uint32_t last) {
+  return like.arc ? fitter.arc(first, last) : fitter.line(first, last);
+}
+
+/// Squares of the kinks at the joints of chain[k - 1] .. chain[k + 2], with two of them replaced.
+double kinks_around(std::span<const Vec2> points, const std::vector<Primitive>& chain, const std::vector<bool>& corners,
+                    std::size_t k, const Primitive& left, const Primitive& right) {
+  std::vector<Primitive> some;
+  if (k > 0 && !corners[left.first]) some.push_back(chain[k - 1]);
+  some.push_back(left);
+  some.push_back(right);
+  if (k + 2 < chain.size() && !corners[right.last]) some.push_back(chain[k + 2]);
+  double sum = 0;
+  for (const double kink : kinks_of(points, some)) sum += kink * kink;
+  return sum;
+}
+
+}  // namespace
+
+void move_joints(std::span<const Vec2> points, const Fitter& fitter, const std::vector<bool>& corners,
+                 std::vector<Primitive>& chain) {
+  for (int round = 0; round < kJointRounds; ++round)
+    for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+      const std::uint32_t joint = chain[k].last;
+      if (corners[joint] || (!chain[k].arc && !chain[k + 1].arc)) continue;
+      double least = kinks_around(points, chain, corners, k, chain[k], chain[k + 1]);
+      for (const int shift : {-16, -6, -2, -1, 1, 2, 6, 16}) {
+        const std::int64_t there = static_cast<std::int64_t>(joint) + shift;
+        if (there <= chain[k].first || there >= chain[k + 1].last) continue;
+        const auto at = static_cast<std::uint32_t>(there);
+        const auto left = fitted(fitter, chain[k], chain[k].first, at);
+        const auto right = left ? fitted(fitter, chain[k + 1], at, chain[k + 1].last) : std::nullopt;
+        if (!right) continue;
+        const double kinks = kinks_around(points, chain, corners, k, *left, *right);
+        if (kinks >= least) continue;
+        least = kinks;
+        chain[k] = *left;
+        chain[k + 1] = *right;
+      }
+    }
 }
 
 void make_tangent(std::span<const Vec2> points, const FitOptions&, const Fitter& fitter,
