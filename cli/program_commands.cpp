@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "base/numbers.h"
 #include "cli/check_command.h"
 #include "cli/command_line.h"
 #include "cli/compress_command.h"
@@ -197,7 +198,12 @@ void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command
       ->add_option("--tolerance-mm", arguments->tolerance_mm, "the new path lies within this of the old one, and back")
       ->required()
-      ->check(CLI::Range(1e-5, 10.0))
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            const auto value = parse_number(text);  // "nan" is none
+            return value && *value >= 1e-5 && *value <= 10 ? "" : text + ": a number from 0.00001 to 10 was expected";
+          },
+          ""))
       ->type_name("X");
   command->add_option("-o,--output", arguments->output, "the new program")->required()->type_name("OUT.nc");
   command->add_option("--machine", arguments->machine, "machine.toml: tells the times before and after")

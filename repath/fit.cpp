@@ -34,12 +34,24 @@ class Search {
       fit_piece(begin, k, chain);
       begin = k;
     }
-    if (options_.tangent) move_joints(points_, fitter_, corners, chain);
-    if (options_.tangent) make_tangent(points_, options_, fitter_, corners, chain);
+    if (options_.tangent) {
+      std::vector<Primitive> smoother = chain;
+      move_joints(points_, fitter_, corners, smoother);
+      make_tangent(points_, options_, fitter_, corners, smoother);
+      if (kink_squares(smoother, corners) < kink_squares(chain, corners)) chain = std::move(smoother);
+    }
     return chain;
   }
 
  private:
+  double kink_squares(const std::vector<Primitive>& chain, const std::vector<bool>& corners) const {
+    const std::vector<double> kinks = kinks_of(points_, chain);
+    double sum = 0;
+    for (std::size_t k = 0; k < kinks.size(); ++k)
+      if (!corners[chain[k].last]) sum += kinks[k] * kinks[k];
+    return sum;
+  }
+
   void fit_piece(std::uint32_t begin, std::uint32_t end, std::vector<Primitive>& chain) {
     nodes_.assign(1, Node{begin});
     std::vector<std::int64_t> frontier{0};

@@ -36,6 +36,7 @@ std::vector<bool> corners_of(std::span<const Vec2> points, const FitOptions& opt
 /// direction. Nothing where no arc fits.
 struct ArcRoom {
   double least_sweep_rad = 0, most_sweep_rad = 0;  ///< magnitudes
+  double best_sweep_rad = 0;                       ///< goes through the points as well as it can (least squares)
   int direction = 1;
 };
 

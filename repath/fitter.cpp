@@ -112,7 +112,13 @@ std::optional<ArcRoom> Fitter::room(std::uint32_t first, std::uint32_t last) con
   const std::uint32_t count = last - first;
   for (const std::uint32_t k : {first + count / 2, first + count / 4, last - count / 4})
     if (!pencil.admit(points_[k], tolerance)) return std::nullopt;
+  // Through the points: |v|^2 - half^2 = 2 t d, least squares.
+  double upper = 0, lower = 0;
   for (std::uint32_t k = first; k < last; ++k) {
+    const Vec2 v = points_[k] - pencil.middle;
+    const double d = v.dot(pencil.across);
+    upper += (v.squaredNorm() - pencil.half * pencil.half) * d;
+    lower += 2 * d * d;
     if (k > first && !pencil.admit(points_[k], tolerance)) return std::nullopt;
     if (length_[k + 1] - length_[k] > tolerance && !pencil.admit(0.5 * (points_[k] + points_[k + 1]), tolerance))
       return std::nullopt;
@@ -121,7 +127,9 @@ std::optional<ArcRoom> Fitter::room(std::uint32_t first, std::uint32_t last) con
       std::sqrt(std::max(0.0, options_.max_radius_mm * options_.max_radius_mm - pencil.half * pencil.half));
   const double lowest = std::max(pencil.lowest, -widest), highest = std::min(pencil.highest, widest);
   if (lowest > highest) return std::nullopt;
-  return ArcRoom{sweep_of(pencil.half, highest), sweep_of(pencil.half, lowest), direction};
+  const double through = lower > 0 ? std::clamp(upper / lower, lowest, highest) : highest;
+  return ArcRoom{sweep_of(pencil.half, highest), sweep_of(pencil.half, lowest), sweep_of(pencil.half, through),
+                 direction};
 }
 
 std::optional<Primitive> Fitter::rounded_arc(std::uint32_t first, std::uint32_t last, int direction,
@@ -166,13 +174,7 @@ std::optional<Primitive> Fitter::arc(std::uint32_t first, std::uint32_t last) co
   const auto room = this->room(first, last);
   if (!room) return std::nullopt;
   const double span = room->most_sweep_rad - room->least_sweep_rad;
-  if (span > 0.5) {
-    // Shallow: no point is far from the chord. The area under a flat arc is 2/3 of chord times height.
-    const double length = (points_[last] - points_[first]).norm();
-    const double height = 0.75 * std::abs(area(first, last)) / length;
-    const double sweep = std::clamp(4 * std::atan(2 * height / length), room->least_sweep_rad, room->most_sweep_rad);
-    return arc_with_sweep(first, last, room->direction, sweep);
-  }
+  if (auto fitted = arc_with_sweep(first, last, room->direction, room->best_sweep_rad)) return fitted;
   for (const double share : {0.5, 0.25, 0.75}) {
     if (auto fitted = arc_with_sweep(first, last, room->direction, room->least_sweep_rad + share * span)) return fitted;
     if (span < 1e-9) break;

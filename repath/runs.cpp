@@ -39,8 +39,7 @@ class RunFinder {
   /// A bit for every axis that the move does not move; 0: not a block for a run.
   unsigned fits(std::uint32_t m) const {
     const nc::Move& move = moves_.moves[m];
-    if (move.kind != nc::MoveKind::linear || !move.editable || move.canned || move.reference || move.exact_stop)
-      return 0;
+    if (move.kind != nc::MoveKind::linear || !move.editable || move.canned || move.reference) return 0;
     if ((m > 0 && moves_.moves[m - 1].block == move.block) ||
         (m + 1 < moves_.moves.size() && moves_.moves[m + 1].block == move.block))
       return 0;
@@ -84,8 +83,9 @@ class RunFinder {
 
   bool continues(std::uint32_t m) const {
     const nc::Move &now = moves_.moves[m], &before = moves_.moves[m - 1];
-    return now.block == before.block + 1 && now.state == before.state && now.feed_mm_per_s == before.feed_mm_per_s &&
-           !has_feed(now.block);
+    // Where the control stops (before an M code, say) the run ends and keeps its stop.
+    return now.block == before.block + 1 && !before.exact_stop && now.state == before.state &&
+           now.feed_mm_per_s == before.feed_mm_per_s && !has_feed(now.block);
   }
 
   void close(std::uint32_t behind) {
