@@ -1,12 +1,14 @@
-// check, feed, time and fit-feed on the command line.
+// check, feed, time, compress and fit-feed on the command line.
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "base/numbers.h"
 #include "cli/check_command.h"
 #include "cli/command_line.h"
+#include "cli/compress_command.h"
 #include "cli/console.h"
 #include "cli/feed_command.h"
 #include "cli/fit_feed_command.h"
@@ -189,6 +191,39 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   });
 }
 
+void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("compress", "many G1 to few G1, G2 and G3 within a tolerance");
+  auto arguments = std::make_shared<CompressArguments>();
+  command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
+  command
+      ->add_option("--tolerance-mm", arguments->tolerance_mm, "the new path lies within this of the old one, and back")
+      ->required()
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            const auto value = parse_number(text);  // "nan" is none
+            return value && *value >= 1e-5 && *value <= 10 ? "" : text + ": a number from 0.00001 to 10 was expected";
+          },
+          ""))
+      ->type_name("X");
+  command->add_option("-o,--output", arguments->output, "the new program")->required()->type_name("OUT.nc");
+  command->add_option("--machine", arguments->machine, "machine.toml: tells the times before and after")
+      ->type_name("M.toml");
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  command->add_flag("--lines-only", arguments->lines_only, "no arcs");
+  command->add_flag("--switch-planes", arguments->switch_planes,
+                    "arcs in planes other than the program's own too, with G17 G18 G19 around them");
+  add_interpreter_options(*command, arguments->interpreter);
+  add_language_options(*command, arguments->interpreter);
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      if (options.effective_config && !arguments->machine.empty())
+        return print_effective_machine(arguments->machine, options);
+      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->machine});
+      return run_compress(*arguments, options);
+    };
+  });
+}
+
 void add_protocol(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("protocol", "programs to run on a machine so that fit-feed has what it needs");
   auto arguments = std::make_shared<ProtocolArguments>();
@@ -210,6 +245,7 @@ void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& c
   add_time(app, options, chosen);
   add_fit_feed(app, options, chosen);
   add_protocol(app, options, chosen);
+  add_compress(app, options, chosen);
 }
 
 }  // namespace camber::cli

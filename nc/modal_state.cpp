@@ -201,6 +201,8 @@ void BlockInterpreter::set_plane(const Code& code) {
         code.word->offset, "cutter-radius",
         fmt::format("{} changes the plane under G{}; G40 was expected before", code_text(code), radius_.g_tenths / 10));
   plane_ = plane;
+  state_.plane_g = static_cast<std::uint8_t>(plane == Plane::xy ? 17 : plane == Plane::zx ? 18 : 19);
+  state_changed_ = true;
 }
 
 void BlockInterpreter::set_work_offset(const Code& code) {

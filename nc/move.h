@@ -31,6 +31,7 @@ struct ModalState {
   bool coolant = false;
   bool absolute_arc_centre = false;    ///< G90.1
   bool high_speed_contouring = false;  ///< G08 P1, G05 P10000, G05.1 Q1
+  std::uint8_t plane_g = 17;           ///< 17, 18 or 19
   bool cutter_radius = false;          ///< G41, G42 with a radius other than zero: the path was computed
   std::uint32_t frame = 0;             ///< index into Interpretation::frames
   bool operator==(const ModalState&) const = default;

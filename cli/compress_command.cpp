@@ -1,0 +1,108 @@
+#include "cli/compress_command.h"
+
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/output_file.h"
+#include "base/units.h"
+#include "cli/console.h"
+#include "feedmodel/control_options.h"
+#include "feedmodel/cycle_time.h"
+#include "nc/summary.h"
+#include "repath/compress.h"
+
+namespace camber::cli {
+namespace {
+
+/// What is told of a program, before and after.
+struct Figures {
+  std::size_t blocks = 0, lines = 0, arcs = 0;
+  double length_mm = 0;
+  std::optional<double> time_s;
+};
+
+Figures figures_of(const nc::Program& program, const nc::Interpretation& moves,
+                   const std::optional<machine::Machine>& machine) {
+  Figures f;
+  for (std::size_t b = 0; b < program.blocks.size(); ++b) f.blocks += program.blocks[b].word_count > 0;
+  for (const nc::Move& move : moves.moves) {
+    if (move.kind != nc::MoveKind::linear && move.kind != nc::MoveKind::arc) continue;
+    ++(move.kind == nc::MoveKind::arc ? f.arcs : f.lines);
+    f.length_mm += nc::length_mm(moves, move);
+  }
+  if (machine) f.time_s = feedmodel::cycle_time(moves, *machine).all.time.total_s();
+  return f;
+}
+
+std::string text_report(const Figures& before, const Figures& after, const repath::Compression& result) {
+  std::string out =
+      fmt::format("                before        after\nblocks     {:>11} {:>12}   / {:.2f}\n", before.blocks,
+                  after.blocks, static_cast<double>(before.blocks) / static_cast<double>(after.blocks));
+  out += fmt::format("lines      {:>11} {:>12}\narcs       {:>11} {:>12}\n", before.lines, after.lines, before.arcs,
+                     after.arcs);
+  out += fmt::format("length     {:>8.1f} mm {:>9.1f} mm\n", before.length_mm, after.length_mm);
+  if (before.time_s) out += fmt::format("time       {:>9.1f} s {:>10.1f} s\n", *before.time_s, *after.time_s);
+  out += fmt::format("largest deviation {:.4f} mm in {} rewritten runs; largest kink beside an arc {:.1f} degrees\n",
+                     result.max_deviation_mm, result.runs.size(), deg_from_rad(result.max_kink_rad));
+  return out;
+}
+
+std::string json_report(const Figures& before, const Figures& after, const repath::Compression& result,
+                        double tolerance_mm) {
+  nlohmann::ordered_json report = {{"blocks_before", before.blocks},
+                                   {"blocks_after", after.blocks},
+                                   {"lines", after.lines},
+                                   {"arcs", after.arcs},
+                                   {"lines_before", before.lines},
+                                   {"arcs_before", before.arcs},
+                                   {"length_before_mm", before.length_mm},
+                                   {"length_after_mm", after.length_mm},
+                                   {"tolerance_mm", tolerance_mm},
+                                   {"max_deviation_mm", result.max_deviation_mm},
+                                   {"max_kink_deg", deg_from_rad(result.max_kink_rad)},
+                                   {"runs", result.runs.size()},
+                                   {"time_before_s", nullptr},
+                                   {"time_after_s", nullptr}};
+  if (before.time_s) {
+    report["time_before_s"] = *before.time_s;
+    report["time_after_s"] = *after.time_s;
+  }
+  return report.dump(2) + "\n";
+}
+
+}  // namespace
+
+int run_compress(const CompressArguments& arguments, const GlobalOptions& options) {
+  Diagnostics diagnostics;
+  std::optional<machine::Machine> machine;
+  nc::InterpreterOptions interpreter = arguments.interpreter;
+  if (!arguments.machine.empty()) {
+    machine = machine::read_machine(arguments.machine, diagnostics);
+    interpreter = feedmodel::interpreter_options(*machine, interpreter);
+  }
+  const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
+  const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
+  settle(diagnostics, options);
+
+  repath::CompressOptions compress_options;
+  compress_options.tolerance_mm = arguments.tolerance_mm;
+  compress_options.switch_planes = arguments.switch_planes;
+  compress_options.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
+  compress_options.fit.arcs = !arguments.lines_only;
+  const repath::Compression result = repath::compress(program, moves, compress_options);
+
+  Diagnostics again;  // what it says of the text was said above; an error is ours
+  const nc::Program new_program = nc::read_program(SourceText(arguments.output, result.text), again);
+  const nc::Interpretation new_moves = nc::interpret(new_program, interpreter, again);
+  again.throw_if_errors();
+  const Figures before = figures_of(program, moves, machine), after = figures_of(new_program, new_moves, machine);
+
+  write_file(arguments.output, result.text);
+  if (!arguments.json.empty()) write_file(arguments.json, json_report(before, after, result, arguments.tolerance_mm));
+  if (!options.quiet) fmt::print("{}", text_report(before, after, result));
+  return kDone;
+}
+
+}  // namespace camber::cli

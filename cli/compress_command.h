@@ -1,0 +1,23 @@
+#pragma once
+// camber compress: many G1 to few G1, G2 and G3 within a tolerance.
+#include <string>
+
+#include "cli/global_options.h"
+#include "nc/interpreter.h"
+
+namespace camber::cli {
+
+struct CompressArguments {
+  std::string program, output;
+  std::string machine;  ///< empty: no times
+  std::string json;     ///< empty: none
+  double tolerance_mm = 0;
+  bool lines_only = false;
+  bool switch_planes = false;
+  nc::InterpreterOptions interpreter;
+};
+
+/// Throws InputError. Returns kDone.
+int run_compress(const CompressArguments& arguments, const GlobalOptions& options);
+
+}  // namespace camber::cli

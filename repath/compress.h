@@ -1,0 +1,58 @@
+#pragma once
+// A program with its runs of short lines as few lines and arcs.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "nc/interpreter.h"
+#include "nc/program.h"
+#include "repath/fit.h"
+
+namespace camber::repath {
+
+struct CompressOptions {
+  double tolerance_mm = 0.01;
+  bool switch_planes = false;  ///< runs in another plane get its G17 G18 G19 and the old one behind; else lines only
+  bool whole_numbers_are_increments = false;  ///< numbers are written with a point
+  FitOptions fit{};                           ///< tolerance and increment are set from the program
+};
+
+/// A stretch of blocks that are plain straight cuts in one plane, at one feed.
+struct Run {
+  std::uint32_t first_move = 0, last_move = 0;  ///< indexes into Interpretation::moves, both included
+  int normal = 2;                               ///< the axis that stands still: 0 X, 1 Y, 2 Z
+  bool current_plane = true;                    ///< the plane is the one that the program has chosen
+};
+
+/// A block is part of a run when it makes one straight move at a feed per minute and holds nothing but N, G1, X, Y, Z
+/// (the first one of a run also F), moves in the plane, and stands directly behind the one before it. Comments, M, S, T
+/// and other words, another feed, drilling cycles, G41 and G42, exact stop, block skip, turned or scaled frames and
+/// moves that the text does not say one by one end a run. In a program with macros or subprograms blocks with a number
+/// are left alone: they may be jumped to.
+std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves);
+
+/// Points of a run as the text says them, in the plane: start and ends of its moves. Repeated points are left out;
+/// `block` tells which block ends at each (of the first point: the run's first block).
+struct RunPath {
+  std::vector<Vec2> points;
+  std::vector<std::uint32_t> block;
+};
+RunPath path_of(const nc::Interpretation& moves, const Run& run);
+
+struct RewrittenRun {
+  std::uint32_t first_block = 0, last_block = 0;
+  std::size_t lines = 0, arcs = 0;
+  double deviation_mm = 0;
+};
+
+struct Compression {
+  std::string text;
+  std::vector<RewrittenRun> runs;  ///< those that became fewer blocks
+  double max_deviation_mm = 0;     ///< over all of them
+  double max_kink_rad = 0;         ///< at joints that are no corners of the input
+};
+
+/// Linear in the number of blocks. Does not throw on a program that was read and interpreted without errors.
+Compression compress(const nc::Program& program, const nc::Interpretation& moves, const CompressOptions& options);
+
+}  // namespace camber::repath

@@ -1,0 +1,70 @@
+#pragma once
+// A polyline in a plane as a chain of few lines and arcs within a tolerance (docs/compress.md).
+#include <span>
+#include <vector>
+
+#include "repath/primitive.h"
+
+namespace camber::repath {
+
+struct FitOptions {
+  double tolerance_mm = 0.01;          ///< greater than zero
+  double increment_mm = 0.001;         ///< of the centre's words
+  bool arcs = true;                    ///< false: lines only
+  std::uint32_t arc_points = 5;        ///< an arc stands for at least so many points, its ends among them
+  double max_radius_mm = 5000;         ///< wider arcs are lines or nothing
+  double radius_agreement_mm = 0.002;  ///< the radii at start and end of an arc differ by no more
+  double corner_rad = 20 * kPi / 180;  ///< a vertex that turns by more, and alone, is a corner: no arc runs over it
+  std::uint32_t width = 6;             ///< ends that are kept of each number of primitives; see docs/compress.md
+  bool tangent = true;                 ///< arcs use their room to meet their neighbours without a kink
+};
+
+/// The chain: first primitive from points.front(), last to points.back(), each from where the one before ends. Every
+/// end is a point of the polyline, so nothing drifts. `points`: no two that follow each other are alike.
+/// Time and memory grow linearly with the number of points.
+std::vector<Primitive> fit(std::span<const Vec2> points, const FitOptions& options);
+
+/// As fit(), with every pair of points tried: the fewest primitives that this geometry allows. For tests: the time
+/// grows with the cube of the number of points.
+std::vector<Primitive> fit_exhaustively(std::span<const Vec2> points, const FitOptions& options);
+
+/// The vertices that are corners: they turn by more than corner_rad, and more than twice as much as the path beside
+/// them (a coarse circle turns everywhere alike). Turns are measured between legs of at least five tolerances.
+std::vector<bool> corners_of(std::span<const Vec2> points, const FitOptions& options);
+
+/// The room of the arc from one point to another: its sweep may lie between the two; both with the sign of the
+/// direction. Nothing where no arc fits.
+struct ArcRoom {
+  double least_sweep_rad = 0, most_sweep_rad = 0;  ///< magnitudes
+  double best_sweep_rad = 0;                       ///< goes through the points as well as it can (least squares)
+  int direction = 1;
+};
+
+/// Tries one line, one arc.
+class Fitter {
+ public:
+  Fitter(std::span<const Vec2> points, const FitOptions& options);
+  std::optional<Primitive> line(std::uint32_t first, std::uint32_t last) const;
+  std::optional<Primitive> arc(std::uint32_t first, std::uint32_t last) const;
+  /// Ends of lines from `first`, ascending: the last `most` of them up to `end`.
+  std::vector<std::uint32_t> line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t most) const;
+
+  std::optional<ArcRoom> room(std::uint32_t first, std::uint32_t last) const;
+  /// The arc with the sweep (a magnitude), rounded to increments; nothing where it does not fit then.
+  std::optional<Primitive> arc_with_sweep(std::uint32_t first, std::uint32_t last, int direction,
+                                          double sweep_rad) const;
+
+ private:
+  std::optional<Primitive> full_turn(std::uint32_t first, std::uint32_t last) const;
+  std::optional<Primitive> rounded_arc(std::uint32_t first, std::uint32_t last, int direction,
+                                       const Vec2& center_mm) const;
+  double area(std::uint32_t first, std::uint32_t last) const;
+
+  std::span<const Vec2> points_;
+  const FitOptions& options_;
+  double backwards_mm_;
+  std::vector<double> area_;    ///< twice the area swept from points[0], up to each point
+  std::vector<double> length_;  ///< along the polyline up to each point
+};
+
+}  // namespace camber::repath

@@ -1,0 +1,204 @@
+// One line, one arc: the pencil of arcs through two points.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "repath/fit.h"
+
+namespace camber::repath {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRoundingMm = 1e-9;  ///< of sums of increments
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Centres on the perpendicular bisector of a chord: middle + t * across, radius sqrt(half^2 + t^2).
+struct Pencil {
+  Vec2 middle, across;  ///< across: unit, to the side that a short arc has its centre on
+  double half = 0;
+  double lowest = -kInfinity, highest = kInfinity;  ///< of t
+
+  Vec2 center(double t) const { return middle + t * across; }
+
+  /// | |p - c(t)| - r(t) | <= tolerance. With q = |p - m|^2 - half^2 - tolerance^2 and d = (p - m) . across both sides
+  /// of it become |q - 2 t d| <= 2 tolerance sqrt(half^2 + t^2): for d beyond the tolerance t lies between the roots of
+  /// 4 (d^2 - tol^2) t^2 - 4 q d t + q^2 - 4 tol^2 half^2. Points nearer to the chord say nothing.
+  /// False where no t is left.
+  bool admit(const Vec2& p, double tolerance) {
+    const Vec2 v = p - middle;
+    const double d = v.dot(across);
+    if (d > tolerance) return false;  // the arc lies on the other side
+    if (d > -1.0001 * tolerance) return true;
+    const double q = v.squaredNorm() - half * half - tolerance * tolerance;
+    const double a = d * d - tolerance * tolerance;
+    const double root = tolerance * std::sqrt(q * q + 4 * half * half * a);
+    lowest = std::max(lowest, (q * d - root) / (2 * a));
+    highest = std::min(highest, (q * d + root) / (2 * a));
+    return lowest <= highest;
+  }
+};
+
+double sweep_of(double half, double t) { return 2 * std::atan2(half, t); }
+double offset_of(double half, double sweep) { return half / std::tan(0.5 * sweep); }
+
+}  // namespace
+
+Fitter::Fitter(std::span<const Vec2> points, const FitOptions& options)
+    : points_(points), options_(options), backwards_mm_(0.5 * options.tolerance_mm) {
+  area_.resize(points.size());
+  length_.resize(points.size());
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    area_[k] = area_[k - 1] + cross(points[k - 1] - points[0], points[k] - points[0]);
+    length_[k] = length_[k - 1] + (points[k] - points[k - 1]).norm();
+  }
+}
+
+/// Twice the area between the stretch and its chord; positive where it turns counter-clockwise.
+double Fitter::area(std::uint32_t first, std::uint32_t last) const {
+  return area_[last] - area_[first] - cross(points_[first] - points_[0], points_[last] - points_[0]);
+}
+
+std::optional<Primitive> Fitter::line(std::uint32_t first, std::uint32_t last) const {
+  if (last == first + 1) return Primitive{.first = first, .last = last};
+  const auto away = line_deviation(points_, first, last, backwards_mm_);
+  if (!away || *away > options_.tolerance_mm + kRoundingMm) return std::nullopt;
+  return Primitive{.first = first, .last = last, .deviation_mm = *away};
+}
+
+/// The wedge of directions from `first` that pass every point within the tolerance narrows from point to point; a point
+/// in the wedge is an end.
+std::vector<std::uint32_t> Fitter::line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t most) const {
+  std::vector<std::uint32_t> ends{first + 1};
+  const double tolerance = options_.tolerance_mm + kRoundingMm;
+  const Vec2 start = points_[first];
+  Vec2 left = Vec2::Zero(), right = Vec2::Zero();  // unit borders of the wedge
+  bool open = true;                                // no border yet
+  double farthest = 0;
+  for (std::uint32_t k = first + 1; k <= end; ++k) {
+    const Vec2 p = points_[k] - start;
+    const double distance = p.norm();
+    if (distance < farthest - backwards_mm_ - tolerance) break;
+    farthest = std::max(farthest, distance);
+    const bool inside = open || (cross(right, p) >= -1e-12 * distance && cross(p, left) >= -1e-12 * distance);
+    if (inside && k > first + 1 && distance > 0) ends.push_back(k);
+    if (distance <= tolerance) continue;
+    const double s = tolerance / distance, c = std::sqrt(1 - s * s);
+    const Vec2 u = p / distance, turned(-u.y(), u.x());
+    const Vec2 l = c * u + s * turned, r = c * u - s * turned;
+    if (open) {
+      left = l, right = r, open = false;
+      continue;
+    }
+    if (cross(left, l) < 0) left = l;
+    if (cross(right, r) > 0) right = r;
+    if (cross(right, left) < 0 || u.dot(left) < 0) break;
+  }
+  if (ends.size() > most) ends.erase(ends.begin(), ends.end() - most);
+  return ends;
+}
+
+std::optional<ArcRoom> Fitter::room(std::uint32_t first, std::uint32_t last) const {
+  const Vec2 start = points_[first], end = points_[last], chord = end - start;
+  const double length = chord.norm();
+  if (length < options_.increment_mm * 0.5) return std::nullopt;
+  const int direction = area(first, last) > 0 ? 1 : -1;
+  Pencil pencil;
+  pencil.middle = 0.5 * (start + end);
+  pencil.across = direction * Vec2(-chord.y(), chord.x()) / length;
+  pencil.half = 0.5 * length;
+  const double tolerance = options_.tolerance_mm;
+  // Those in the middle say most: they come first.
+  const std::uint32_t count = last - first;
+  for (const std::uint32_t k : {first + count / 2, first + count / 4, last - count / 4})
+    if (!pencil.admit(points_[k], tolerance)) return std::nullopt;
+  // Through the points: |v|^2 - half^2 = 2 t d, least squares.
+  double upper = 0, lower = 0;
+  for (std::uint32_t k = first; k < last; ++k) {
+    const Vec2 v = points_[k] - pencil.middle;
+    const double d = v.dot(pencil.across);
+    upper += (v.squaredNorm() - pencil.half * pencil.half) * d;
+    lower += 2 * d * d;
+    if (k > first && !pencil.admit(points_[k], tolerance)) return std::nullopt;
+    if (length_[k + 1] - length_[k] > tolerance && !pencil.admit(0.5 * (points_[k] + points_[k + 1]), tolerance))
+      return std::nullopt;
+  }
+  const double widest =
+      std::sqrt(std::max(0.0, options_.max_radius_mm * options_.max_radius_mm - pencil.half * pencil.half));
+  const double lowest = std::max(pencil.lowest, -widest), highest = std::min(pencil.highest, widest);
+  if (lowest > highest) return std::nullopt;
+  const double through = lower > 0 ? std::clamp(upper / lower, lowest, highest) : highest;
+  return ArcRoom{sweep_of(pencil.half, highest), sweep_of(pencil.half, lowest), sweep_of(pencil.half, through),
+                 direction};
+}
+
+std::optional<Primitive> Fitter::rounded_arc(std::uint32_t first, std::uint32_t last, int direction,
+                                             const Vec2& center_mm) const {
+  const double step = options_.increment_mm;
+  const Vec2 start = points_[first], wanted = (center_mm - start) / step;
+  const Vec2 nearest(std::round(wanted.x()), std::round(wanted.y()));
+  const double agreement = options_.radius_agreement_mm;
+  std::optional<Primitive> best;
+  std::array<std::pair<double, Vec2>, 9> grid;
+  std::size_t n = 0;
+  for (const double dx : {0.0, -1.0, 1.0})
+    for (const double dy : {0.0, -1.0, 1.0}) {
+      const Vec2 from_start = step * (nearest + Vec2(dx, dy));
+      const ArcShape shape = arc_shape(start, points_[last], start + from_start, direction);
+      grid[n++] = {shape.radius_difference_mm + (from_start + start - center_mm).norm(), from_start};
+    }
+  std::stable_sort(grid.begin(), grid.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t g = 0; g < 3; ++g) {
+    const Vec2 from_start = grid[g].second;
+    const ArcShape shape = arc_shape(start, points_[last], start + from_start, direction);
+    if (shape.radius_difference_mm > agreement || shape.radius_mm > options_.max_radius_mm ||
+        shape.radius_mm < 2 * options_.tolerance_mm)
+      continue;
+    const auto away = arc_deviation(points_, first, last, shape, options_.tolerance_mm + kRoundingMm, backwards_mm_);
+    if (away) return Primitive{first, last, true, from_start, away->sweep_rad, away->deviation_mm};
+  }
+  return std::nullopt;
+}
+
+std::optional<Primitive> Fitter::arc_with_sweep(std::uint32_t first, std::uint32_t last, int direction,
+                                                double sweep_rad) const {
+  const Vec2 start = points_[first], end = points_[last], chord = end - start;
+  const double length = chord.norm();
+  const Vec2 across = direction * Vec2(-chord.y(), chord.x()) / length;
+  return rounded_arc(first, last, direction, 0.5 * (start + end) + offset_of(0.5 * length, sweep_rad) * across);
+}
+
+std::optional<Primitive> Fitter::arc(std::uint32_t first, std::uint32_t last) const {
+  if (last - first + 1 < options_.arc_points) return std::nullopt;
+  if (points_[first] == points_[last]) return full_turn(first, last);
+  const auto room = this->room(first, last);
+  if (!room) return std::nullopt;
+  const double span = room->most_sweep_rad - room->least_sweep_rad;
+  if (auto fitted = arc_with_sweep(first, last, room->direction, room->best_sweep_rad)) return fitted;
+  for (const double share : {0.5, 0.25, 0.75}) {
+    if (auto fitted = arc_with_sweep(first, last, room->direction, room->least_sweep_rad + share * span)) return fitted;
+    if (span < 1e-9) break;
+  }
+  return std::nullopt;
+}
+
+/// The circle through the start that fits the others best: |p - s|^2 = 2 (p - s) . (c - s), least squares.
+std::optional<Primitive> Fitter::full_turn(std::uint32_t first, std::uint32_t last) const {
+  Eigen::Matrix2d m = Eigen::Matrix2d::Zero();
+  Vec2 right = Vec2::Zero();
+  for (std::uint32_t k = first + 1; k < last; ++k) {
+    const Vec2 v = points_[k] - points_[first];
+    m += 4 * v * v.transpose();
+    right += 2 * v.squaredNorm() * v;
+  }
+  const double determinant = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0);
+  if (determinant <= 1e-12 * m.trace() * m.trace()) return std::nullopt;
+  const Vec2 from_start((m(1, 1) * right.x() - m(0, 1) * right.y()) / determinant,
+                        (m(0, 0) * right.y() - m(1, 0) * right.x()) / determinant);
+  auto turn = rounded_arc(first, last, area(first, last) > 0 ? 1 : -1, points_[first] + from_start);
+  if (!turn || std::abs(turn->sweep_rad) < 6) return std::nullopt;  // it must really go round
+  turn->sweep_rad = std::copysign(2 * kPi, turn->sweep_rad);
+  return turn;
+}
+
+}  // namespace camber::repath

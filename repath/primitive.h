@@ -1,0 +1,49 @@
+#pragma once
+// A line or an arc that stands for a stretch of a polyline, and how far the two are apart.
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "base/geometry.h"
+
+namespace camber::repath {
+
+/// From points[first] to points[last]. Both ends are points of the polyline.
+struct Primitive {
+  std::uint32_t first = 0, last = 0;
+  bool arc = false;
+  Vec2 center_from_start_mm = Vec2::Zero();  ///< as the program will say it: a whole number of increments
+  double sweep_rad = 0;                      ///< counter-clockwise positive; +-2 pi: a full turn
+  double deviation_mm = 0;                   ///< Hausdorff distance to the stretch, both ways (an upper bound)
+};
+
+/// Lines. The distance holds both ways: the polyline's distance to the line is greatest at a vertex (the distance to a
+/// convex set is convex), and every point of the line is the foot of a point of the polyline, which runs from one end
+/// to the other. Nothing where the polyline runs back along the line by more than `most_backwards_mm`.
+std::optional<double> line_deviation(std::span<const Vec2> points, std::uint32_t first, std::uint32_t last,
+                                     double most_backwards_mm);
+
+/// An arc as the control runs it: centre and, for ends whose radii differ, a radius between the two.
+struct ArcShape {
+  Vec2 center_mm = Vec2::Zero();
+  double radius_mm = 0;             ///< mean of the radii at start and end
+  double radius_difference_mm = 0;  ///< |end - start|
+  int direction = 1;                ///< 1 counter-clockwise
+};
+ArcShape arc_shape(const Vec2& start, const Vec2& end, const Vec2& center_mm, int direction);
+
+struct ArcFit {
+  double deviation_mm = 0;
+  double sweep_rad = 0;  ///< signed
+};
+
+/// Arcs. Greatest difference between the arc's radius and the polyline's distance from the centre, over the vertices
+/// and the feet of the perpendiculars on the edges, and half the difference of the radii. As the polyline turns about
+/// the centre from the arc's start to its end, every point of the arc has a point of the polyline on its ray: the
+/// distance holds both ways. Nothing where a point is farther than `most_mm`, where the polyline turns back by more
+/// than `most_backwards_mm` along the arc, passes an end of the arc by more than that, or turns by more than one turn.
+std::optional<ArcFit> arc_deviation(std::span<const Vec2> points, std::uint32_t first, std::uint32_t last,
+                                    const ArcShape& arc, double most_mm, double most_backwards_mm);
+
+}  // namespace camber::repath

@@ -1,0 +1,160 @@
+#include "repath/run_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "nc/arcs.h"
+
+namespace camber::repath {
+namespace {
+
+constexpr int kMostDecimals = 6;
+constexpr char kAxis[] = "XYZ", kCentre[] = "IJK";
+
+std::string_view written(const nc::Program& program, const nc::Word& word) {
+  return std::string_view(program.source.text()).substr(word.offset, word.length);
+}
+
+const nc::Word* find(std::span<const nc::Word> words, char letter) {
+  for (const nc::Word& w : words)
+    if (w.letter == letter) return &w;
+  return nullptr;
+}
+
+/// G codes of the motion group.
+bool is_motion(const nc::Word& w) {
+  if (w.letter != 'G') return false;
+  const double g = w.value;
+  return (g >= 0 && g <= 3) || (g >= 33 && g < 34) || (g >= 38 && g < 39) || (g >= 73 && g <= 89);
+}
+
+/// Whether a block behind `block` moves axes in the mode that `block` leaves.
+bool mode_is_used_behind(const nc::Program& program, std::size_t block) {
+  for (std::size_t b = block + 1; b < program.blocks.size(); ++b) {
+    if (program.blocks[b].flow) return true;
+    const auto words = program.words_of(b);
+    if (words.empty()) continue;
+    if (program.blocks[b].skip == 0 && std::any_of(words.begin(), words.end(), is_motion)) return false;
+    for (const nc::Word& w : words) {
+      if ((w.letter >= 'X' && w.letter <= 'Z') || (w.letter >= 'I' && w.letter <= 'K') || w.letter == 'R') return true;
+      if (w.letter == 'M' && (w.value == 2 || w.value == 30)) return false;
+    }
+  }
+  return false;
+}
+
+class RunWriter {
+ public:
+  RunWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,
+            const TextStyle& style)
+      : program_(program), path_(path), run_(run), style_(style) {
+    const nc::Move& first = moves.moves[run.first_move];
+    const nc::ModalState& state = moves.state_of(first);
+    first_block_ = first.block;
+    last_block_ = moves.moves[run.last_move].block;
+    unit_mm_ = state.inch ? kMmPerInch : 1;
+    incremental_ = state.incremental;
+    absolute_centre_ = state.absolute_arc_centre;
+    plane_g_ = state.plane_g;
+    axes_ = nc::axes_of(run.normal == 2 ? nc::Plane::xy : run.normal == 1 ? nc::Plane::zx : nc::Plane::yz);
+    says_mode_first_ = says_g1(first_block_);
+    says_mode_always_ = says_g1(last_block_) && says_g1(last_block_ - 1);
+  }
+
+  std::vector<std::string> write(const std::vector<Primitive>& chain) {
+    std::vector<std::string> lines;
+    const bool arcs = std::any_of(chain.begin(), chain.end(), [](const Primitive& p) { return p.arc; });
+    const bool other_plane = arcs && !run_.current_plane;
+    int mode = says_mode_first_ ? -1 : 1;
+    for (const Primitive& p : chain) {
+      std::vector<std::string> words;
+      if (const nc::Word* n = find(program_.words_of(path_.block[p.last]), 'N'))
+        words.emplace_back(written(program_, *n));
+      if (lines.empty() && other_plane)
+        words.push_back(fmt::format("G{}", run_.normal == 2 ? 17 : run_.normal == 1 ? 18 : 19));
+      const int now = !p.arc ? 1 : p.sweep_rad < 0 ? 2 : 3;
+      if (now != mode || says_mode_always_) words.push_back(code(now));
+      mode = now;
+      add_coordinates(p, words);
+      if (const nc::Word* f = find(program_.words_of(first_block_), 'F'); f && lines.empty())
+        words.emplace_back(written(program_, *f));
+      lines.push_back(joined(words));
+    }
+    std::vector<std::string> behind;
+    if (other_plane) behind.push_back(fmt::format("G{}", plane_g_));
+    if (mode != 1 && mode_is_used_behind(program_, last_block_)) behind.push_back(code(1));
+    if (!behind.empty()) lines.push_back(joined(behind));
+    return lines;
+  }
+
+ private:
+  bool says_g1(std::uint32_t block) const { return find(program_.words_of(block), 'G') != nullptr; }
+
+  std::string code(int g) const { return fmt::format("G{}{}", style_.two_digit_codes ? "0" : "", g); }
+
+  std::string joined(const std::vector<std::string>& words) const {
+    return fmt::format("{}", fmt::join(words, style_.numbers.blanks ? " " : ""));
+  }
+
+  /// With more decimals where the program's most are not enough to say the place.
+  std::string number(char letter, double value_mm) const {
+    const double value = value_mm / unit_mm_;
+    int decimals = style_.decimals;
+    while (decimals < kMostDecimals && std::abs(nc::rounded(value, decimals) - value) * unit_mm_ > 2e-7) ++decimals;
+    return letter + nc::format_number(value, decimals, style_.numbers);
+  }
+
+  void add_coordinates(const Primitive& p, std::vector<std::string>& words) const {
+    const Vec2 from = path_.points[p.first], to = path_.points[p.last];
+    const bool full_turn = p.arc && from == to;
+    std::vector<std::string> place(3), centre(3);
+    for (int i = 0; i < 2; ++i) {
+      const auto axis = static_cast<std::size_t>(i == 0 ? axes_.first : axes_.second);
+      if ((p.arc && !full_turn) || from[i] != to[i])
+        place[axis] = number(kAxis[axis], incremental_ ? to[i] - from[i] : to[i]);
+      if (p.arc) centre[axis] = number(kCentre[axis], p.center_from_start_mm[i] + (absolute_centre_ ? from[i] : 0));
+    }
+    for (const auto* group : {&place, &centre})
+      for (const std::string& word : *group)
+        if (!word.empty()) words.push_back(word);
+  }
+
+  const nc::Program& program_;
+  const RunPath& path_;
+  const Run& run_;
+  const TextStyle& style_;
+  std::uint32_t first_block_ = 0, last_block_ = 0;
+  double unit_mm_ = 1;
+  bool incremental_ = false, absolute_centre_ = false, says_mode_first_ = false, says_mode_always_ = false;
+  int plane_g_ = 17;
+  nc::PlaneAxes axes_;
+};
+
+}  // namespace
+
+TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& moves,
+                        bool whole_numbers_are_increments) {
+  TextStyle style{.numbers = nc::style_of(program)};
+  const bool inch = std::any_of(moves.states.begin(), moves.states.end(), [](const auto& s) { return s.inch; });
+  style.decimals = inch ? 4 : 3;
+  for (const nc::Word& w : program.words) {
+    const std::string_view text = written(program, w);
+    if (w.letter == 'G' && text.size() - w.value_at == 2 && text[w.value_at] == '0') style.two_digit_codes = true;
+    if (w.letter >= 'X' && w.letter <= 'Z' && !std::isnan(w.value))
+      style.decimals = std::max(style.decimals, nc::decimals_of(text.substr(w.value_at)));
+  }
+  style.decimals = std::min(style.decimals, kMostDecimals);
+  if (whole_numbers_are_increments) style.numbers.whole = nc::WholeStyle::point;
+  return style;
+}
+
+std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
+                                 const RunPath& path, const std::vector<Primitive>& chain, const TextStyle& style) {
+  return RunWriter(program, moves, run, path, style).write(chain);
+}
+
+}  // namespace camber::repath

@@ -1,0 +1,25 @@
+#pragma once
+// A chain of primitives as blocks, in the way in which the program writes.
+#include <string>
+#include <vector>
+
+#include "nc/number_style.h"
+#include "repath/compress.h"
+
+namespace camber::repath {
+
+/// How the whole program writes; worked out once.
+struct TextStyle {
+  nc::NumberStyle numbers;
+  int decimals = 3;              ///< the most that a coordinate has; at least 3 (mm) or 4 (inch)
+  bool two_digit_codes = false;  ///< G01 rather than G1
+};
+TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& moves, bool whole_numbers_are_increments);
+
+/// The blocks of the chain: the N of the block that ended where the primitive ends, G1 G2 G3 where the mode changes (or
+/// always, where the program does so), X Y Z that change (arcs: both of the plane, but for a full turn), I J K, and the
+/// F of the run's first block. Where the blocks behind rely on G1 and the chain ends on an arc, a block `G1` follows.
+std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
+                                 const RunPath& path, const std::vector<Primitive>& chain, const TextStyle& style);
+
+}  // namespace camber::repath

@@ -1,0 +1,140 @@
+// Which blocks may be rewritten together.
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "nc/arcs.h"
+#include "repath/compress.h"
+
+namespace camber::repath {
+namespace {
+
+constexpr double kStandsStillMm = 1e-9;
+
+/// Sums of increments (G91) and inches: points at one place become equal.
+double without_noise(double mm) { return std::round(mm * 1e7) * 1e-7; }
+
+class RunFinder {
+ public:
+  RunFinder(const nc::Program& program, const nc::Interpretation& moves)
+      : program_(program), moves_(moves), jumps_(program.macro.flow()) {}
+
+  std::vector<Run> find() {
+    const auto& all = moves_.moves;
+    for (std::uint32_t m = 0; m < all.size(); ++m) {
+      const unsigned still = fits(m);
+      if (still == 0) {
+        close(m);
+        continue;
+      }
+      if (open_ && (!continues(m) || (still_ & still) == 0)) close(m);
+      still_ = open_ ? still_ & still : still;
+      if (!open_) first_ = m, open_ = true;
+    }
+    close(static_cast<std::uint32_t>(all.size()));
+    return std::move(runs_);
+  }
+
+ private:
+  /// A bit for every axis that the move does not move; 0: not a block for a run.
+  unsigned fits(std::uint32_t m) const {
+    const nc::Move& move = moves_.moves[m];
+    if (move.kind != nc::MoveKind::linear || !move.editable || move.canned || move.reference) return 0;
+    if ((m > 0 && moves_.moves[m - 1].block == move.block) ||
+        (m + 1 < moves_.moves.size() && moves_.moves[m + 1].block == move.block))
+      return 0;
+    const nc::ModalState& state = moves_.state_of(move);
+    const nc::Frame& frame = moves_.frame_of(move);
+    if (state.feed_mode != nc::FeedMode::per_minute || state.cutter_radius || !frame.shift_only || frame.polar ||
+        state.path_control == nc::PathControl::exact_stop)
+      return 0;
+    if (!plain_block(move.block)) return 0;
+    unsigned still = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::abs(move.end_mm[axis] - move.start_mm[axis]) < kStandsStillMm) still |= 1u << axis;
+    return still;
+  }
+
+  bool plain_block(std::uint32_t b) const {
+    const nc::Block& block = program_.blocks[b];
+    if (block.skip != 0 || block.flow) return false;
+    std::size_t at = block.offset;
+    const std::string& text = program_.source.text();
+    const auto blank = [&](std::size_t to) {
+      for (; at < to; ++at)
+        if (text[at] != ' ' && text[at] != '\t') return false;
+      return true;
+    };
+    for (const nc::Word& w : program_.words_of(b)) {
+      if (std::isnan(w.value) || !blank(w.offset)) return false;
+      at = w.offset + w.length;
+      const bool coordinate = w.letter >= 'X' && w.letter <= 'Z';
+      if (coordinate || w.letter == 'F' || (w.letter == 'G' && w.value == 1)) continue;
+      if (w.letter == 'N' && !jumps_) continue;
+      return false;
+    }
+    return blank(block.offset + block.length);
+  }
+
+  bool has_feed(std::uint32_t b) const {
+    const auto words = program_.words_of(b);
+    return std::any_of(words.begin(), words.end(), [](const nc::Word& w) { return w.letter == 'F'; });
+  }
+
+  bool continues(std::uint32_t m) const {
+    const nc::Move &now = moves_.moves[m], &before = moves_.moves[m - 1];
+    // Where the control stops (before an M code, say) the run ends and keeps its stop.
+    return now.block == before.block + 1 && !before.exact_stop && now.state == before.state &&
+           now.feed_mm_per_s == before.feed_mm_per_s && !has_feed(now.block);
+  }
+
+  void close(std::uint32_t behind) {
+    if (open_ && behind - first_ >= 2) {
+      const int plane_g = moves_.state_of(moves_.moves[first_]).plane_g;
+      const int current = plane_g == 17 ? 2 : plane_g == 18 ? 1 : 0;
+      Run run{.first_move = first_, .last_move = behind - 1, .normal = current};
+      run.current_plane = (still_ >> current) & 1u;
+      for (int axis = 2; !run.current_plane && axis >= 0; --axis)
+        if ((still_ >> axis) & 1u) {
+          run.normal = axis;
+          break;
+        }
+      runs_.push_back(run);
+    }
+    open_ = false;
+  }
+
+  const nc::Program& program_;
+  const nc::Interpretation& moves_;
+  bool jumps_;
+  std::vector<Run> runs_;
+  bool open_ = false;
+  std::uint32_t first_ = 0;
+  unsigned still_ = 0;
+};
+
+}  // namespace
+
+std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves) {
+  return RunFinder(program, moves).find();
+}
+
+RunPath path_of(const nc::Interpretation& moves, const Run& run) {
+  const nc::PlaneAxes axes = nc::axes_of(run.normal == 2   ? nc::Plane::xy
+                                         : run.normal == 1 ? nc::Plane::zx
+                                                           : nc::Plane::yz);
+  RunPath path;
+  const auto add = [&](const nc::Move& move, const Vec3& p) {
+    const Vec3 in_text = moves.frame_of(move).to_program(p);
+    const Vec2 point(without_noise(in_text[axes.first]), without_noise(in_text[axes.second]));
+    if (!path.points.empty() && point == path.points.back()) return;
+    path.points.push_back(point);
+    path.block.push_back(move.block);
+  };
+  const nc::Move& first = moves.moves[run.first_move];
+  add(first, first.start_mm);
+  for (std::uint32_t m = run.first_move; m <= run.last_move; ++m) add(moves.moves[m], moves.moves[m].end_mm);
+  return path;
+}
+
+}  // namespace camber::repath

@@ -1,0 +1,74 @@
+// camber compress as a user runs it.
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_camber.h"
+
+namespace camber {
+namespace {
+
+using nlohmann::json;
+using tests::file_text;
+using tests::run_camber;
+using tests::TempFolder;
+
+std::string program() {
+  std::string text = "G21 G90 G17 G94\nG0 X10. Y0. Z0.\nG1 F600\n";
+  for (int i = 1; i <= 60; ++i)
+    text += fmt::format("X{:.3f} Y{:.3f}\n", 10 * std::cos(i / 30.0), 10 * std::sin(i / 30.0));
+  return text + "M30\n";
+}
+
+TEST(CompressCommand, WritesTheProgramAndTheFigures) {
+  const TempFolder folder;
+  folder.write("p.nc", program());
+  folder.write("m.toml", "[axis.x]\nacceleration_mm_per_s2 = 1000\n[axis.y]\nacceleration_mm_per_s2 = 1000\n");
+  const auto run = run_camber(folder, "compress p.nc --tolerance-mm 0.01 -o out.nc --machine m.toml --json r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(file_text(folder / "out.nc"),
+            "G21 G90 G17 G94\nG0 X10. Y0. Z0.\nG1 F600\nG3 X-4.161 Y9.093 I-10. J0.\nM30\n");
+  const json r = json::parse(file_text(folder / "r.json"));
+  EXPECT_EQ(r["blocks_before"], 64);
+  EXPECT_EQ(r["blocks_after"], 5);
+  EXPECT_EQ(r["lines"], 0);
+  EXPECT_EQ(r["arcs"], 1);
+  EXPECT_NEAR(r["length_after_mm"], 20, 0.001);
+  EXPECT_NEAR(r["length_before_mm"], 20, 0.002);
+  EXPECT_GT(r["max_deviation_mm"], 0);
+  EXPECT_LE(r["max_deviation_mm"], 0.01);
+  EXPECT_GT(r["time_before_s"], 2.0 - 1e-3);
+  EXPECT_GT(r["time_after_s"], 2.0 - 1e-3);
+  EXPECT_EQ(run_camber(folder, "check --strict out.nc").status, 0);
+  // Nothing is left to do.
+  ASSERT_EQ(run_camber(folder, "compress out.nc --tolerance-mm 0.01 -o again.nc").status, 0);
+  EXPECT_EQ(file_text(folder / "again.nc"), file_text(folder / "out.nc"));
+}
+
+TEST(CompressCommand, WithoutAMachineThereAreNoTimes) {
+  const TempFolder folder;
+  folder.write("p.nc", program());
+  ASSERT_EQ(run_camber(folder, "compress p.nc --tolerance-mm 0.01 -o out.nc --json r.json").status, 0);
+  EXPECT_TRUE(json::parse(file_text(folder / "r.json"))["time_before_s"].is_null());
+}
+
+TEST(CompressCommand, TellsWhatIsWrong) {
+  const TempFolder folder;
+  folder.write("p.nc", program());
+  EXPECT_EQ(run_camber(folder, "compress p.nc -o out.nc").status, 2);
+  EXPECT_EQ(run_camber(folder, "compress p.nc --tolerance-mm 0 -o out.nc").status, 2);
+  EXPECT_EQ(run_camber(folder, "compress p.nc --tolerance-mm nan -o out.nc").status, 2);
+  const auto over = run_camber(folder, "compress p.nc --tolerance-mm 0.01 -o p.nc");
+  EXPECT_EQ(over.status, 1);
+  EXPECT_EQ(over.err,
+            "p.nc: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+  folder.write("bad.nc", "G21\nG1 X1. F0\nM30\n");
+  EXPECT_EQ(run_camber(folder, "compress bad.nc --tolerance-mm 0.01 -o out.nc").status, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
+}
+
+}  // namespace
+}  // namespace camber
