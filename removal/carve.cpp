@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "removal/carve_general.h"
+#include "removal/kernels.h"
 #include "removal/vector_clones.h"
 
 namespace camber::removal {
@@ -74,61 +75,6 @@ float fast_atan2(float y, float x) {
   if (ay > ax) r = static_cast<float>(kPi / 2) - r;
   if (x < 0) r = static_cast<float>(kPi) - r;
   return y < 0 ? -r : r;
-}
-
-/// Reads the shift of the envelope's point nearest to a place.
-class BendReader {
- public:
-  BendReader(const EnvelopeGrid& envelope, const ShiftTable& shifts, const float* row)
-      : row_(row),
-        steps_(shifts.steps),
-        nodes_(static_cast<int>(shifts.nodes())),
-        node_step_(nodes_ > 1 ? static_cast<float>(shifts.node_height_mm[1] - shifts.node_height_mm[0]) : 1.0f),
-        flat_(static_cast<float>(envelope.shape.bottom_length_mm())),
-        corner_(static_cast<float>(envelope.shape.corner_radius_mm)),
-        lag_per_mm_(static_cast<float>(envelope.lag_per_mm)),
-        steps_per_rad_(static_cast<float>(envelope.steps / (2 * kPi))) {}
-
-  void operator()(float x, float y, float z, float& sx, float& sy) const {
-    const float height = envelope_height(std::sqrt(x * x + y * y) - flat_, z);
-    float step = (fast_atan2(y, x) - height * lag_per_mm_) * steps_per_rad_;
-    step -= static_cast<float>(steps_) * std::floor(step / static_cast<float>(steps_));
-    int m0 = static_cast<int>(step);
-    const float fm = step - static_cast<float>(m0);
-    if (m0 >= steps_) m0 = 0;
-    const int m1 = m0 + 1 == steps_ ? 0 : m0 + 1;
-    const float at = std::clamp(height / node_step_, 0.0f, static_cast<float>(nodes_ - 1));
-    const int n0 = std::min(static_cast<int>(at), std::max(nodes_ - 2, 0));
-    const int n1 = std::min(n0 + 1, nodes_ - 1);
-    const float fn = at - static_cast<float>(n0);
-    sx = sy = 0;
-    add(n0, m0, (1 - fn) * (1 - fm), sx, sy);
-    add(n0, m1, (1 - fn) * fm, sx, sy);
-    add(n1, m0, fn * (1 - fm), sx, sy);
-    add(n1, m1, fn * fm, sx, sy);
-  }
-
- private:
-  float envelope_height(float qx, float z) const {
-    const float qz = corner_ - z;
-    if (qx > 0 && qz > 0) return corner_ - corner_ * qz / std::sqrt(qx * qx + qz * qz);
-    return qx > qz ? std::max(z, 0.0f) : 0.0f;
-  }
-  void add(int node, int step, float weight, float& sx, float& sy) const {
-    const float* v = row_ + 2 * (node * steps_ + step);
-    sx += weight * v[0];
-    sy += weight * v[1];
-  }
-
-  const float* row_;
-  int steps_, nodes_;
-  float node_step_, flat_, corner_, lag_per_mm_, steps_per_rad_;
-};
-
-float envelope_distance(float x, float y, float z, float flat, float corner) {
-  const float qx = std::sqrt(x * x + y * y) - flat, qz = corner - z;
-  const float a = std::max(qx, 0.0f), b = std::max(qz, 0.0f);
-  return std::min(std::max(qx, qz), 0.0f) + std::sqrt(a * a + b * b) - corner;
 }
 
 }  // namespace
@@ -213,7 +159,15 @@ bool carve_bent(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, d
   const float axis_zone2 = 25 * largest * largest;
   const double z0 = t[2] * Tile::kCore * voxel;
   const int k0 = first_reached(stamp.tip_mm.z() - band, z0, voxel);
-  const BendReader shift_at(envelope, shifts, bend.row);
+  BentRow row{};
+  row.voxel = step;
+  row.flat = p.flat, row.corner = p.corner, row.band = top;
+  row.shift = {bend.row, nullptr, static_cast<int>(shifts.nodes()), shifts.steps,
+               shifts.nodes() > 1 ? static_cast<float>(shifts.node_height_mm[1]) : 1.0f};
+  row.lag_per_mm = static_cast<float>(envelope.lag_per_mm);
+  row.steps_per_rad = static_cast<float>(envelope.steps / (2 * kPi));
+  const Kernels& kernel = kernels();
+  std::array<float, ColumnCover::kLine> moved;
   std::array<float, Tile::kSide> candidate;
   std::array<float, ColumnCover::kLine> changeable;
   bool any = false;
@@ -240,15 +194,17 @@ bool carve_bent(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, d
       std::int32_t* id = tile.stamp.data() + Tile::offset(i, j, k1);
       const int count = cover.top(i * Tile::kSide + j) - k1;
       if (count <= 0 || !row_may_be_cut(distance, candidate.data(), count, qx, z1, step, top, p, slack)) continue;
+      int first = 0, last = count - 1;
+      while (candidate[static_cast<std::size_t>(first)] <= distance[first]) ++first;
+      while (candidate[static_cast<std::size_t>(last)] <= distance[last]) --last;
+      row.dx = dx, row.dy = dy;
+      row.z = z1 + static_cast<float>(first) * step;
+      row.count = last - first + 1;
+      kernel.bent_row(row, moved.data());
       bool changed = false;
-      for (int k = 0; k < count; ++k) {
-        if (candidate[static_cast<std::size_t>(k)] <= distance[k]) continue;
-        const float z = z1 + static_cast<float>(k) * step;
-        float sx, sy;
-        shift_at(dx, dy, z, sx, sy);
-        shift_at(dx - sx, dy - sy, z, sx, sy);
-        const float v = std::min(-envelope_distance(dx - sx, dy - sy, z, p.flat, p.corner), top);
-        if (v <= distance[k]) continue;
+      for (int k = first; k <= last; ++k) {
+        const float v = moved[static_cast<std::size_t>(k - first)];
+        if (candidate[static_cast<std::size_t>(k)] <= distance[k] || v <= distance[k]) continue;
         distance[k] = v;
         id[k] = stamp.id;
         changed = true;

@@ -1,0 +1,199 @@
+#include "removal/chip_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace camber::removal {
+namespace {
+
+/// A depth of more than this share of what the last motion allows ends at the surface of the tooth before.
+constexpr float kNearCap = 0.8f;
+
+/// A surface that the normal meets at a grazing angle is taken at no more than four times its distance.
+constexpr float kLeastSlope = 0.25f;
+
+float slope(double along_normal) {
+  return static_cast<float>(std::clamp(along_normal, static_cast<double>(kLeastSlope), 1.0));
+}
+
+constexpr int corner(int c) { return Tile::offset(c & 1, c >> 1 & 1, c >> 2 & 1); }
+
+}  // namespace
+
+/// A point in its cell.
+struct ChipReader::Cell {
+  int at;                      ///< lowest corner, in the tile
+  std::array<float, 3> share;  ///< from there to the next voxels
+  std::array<float, 8> weight;
+  Vec3 corner_mm, point_mm;    ///< the lowest corner and the point
+
+  Cell(int cell, const std::array<float, 3>& f, const Index3& tile, double voxel_mm) : at(cell), share(f) {
+    for (int c = 0; c < 8; ++c)
+      weight[static_cast<std::size_t>(c)] =
+          (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
+    const Vec3 lowest(tile[0] * Tile::kCore + cell / (Tile::kSide * Tile::kSide),
+                      tile[1] * Tile::kCore + cell / Tile::kSide % Tile::kSide,
+                      tile[2] * Tile::kCore + cell % Tile::kSide);
+    corner_mm = voxel_mm * lowest;
+    point_mm = corner_mm + voxel_mm * Vec3(f[0], f[1], f[2]);
+  }
+
+  float trilinear(const std::array<float, Tile::kVolume>& values) const {
+    float sum = 0;
+    for (int c = 0; c < 8; ++c)
+      sum += weight[static_cast<std::size_t>(c)] * values[static_cast<std::size_t>(at + corner(c))];
+    return sum;
+  }
+
+  Vec3 gradient(const std::array<float, Tile::kVolume>& values, double voxel_mm) const {
+    Vec3 sum = Vec3::Zero();
+    for (int a = 0; a < 3; ++a)
+      for (int c = 0; c < 8; ++c) {
+        float face = c >> a & 1 ? 1.0f : -1.0f;
+        for (int b = 0; b < 3; ++b)
+          if (b != a) face *= c >> b & 1 ? share[static_cast<std::size_t>(b)] : 1 - share[static_cast<std::size_t>(b)];
+        sum[a] += static_cast<double>(face * values[static_cast<std::size_t>(at + corner(c))]);
+      }
+    return sum / voxel_mm;
+  }
+};
+
+ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
+                       std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const ShiftTable* shifts)
+    : envelope_(envelope),
+      lanes_(lanes),
+      view_(lanes.view()),
+      all_(all),
+      stamps_(stamps),
+      first_id_(first_id),
+      voxel_mm_(voxel_mm),
+      shifts_(shifts),
+      kernels_(kernels()) {}
+
+void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t k, std::uint32_t patch,
+                      std::span<const std::int32_t> earlier, std::vector<StampChip>& out) const {
+  const Stamp& stamp = stamps_[static_cast<std::size_t>(k)];
+  StampView view{};
+  TileView tile_view{stocks.now->distance.data(), {}};
+  view.per_voxel = static_cast<float>(1 / voxel_mm_);
+  for (int a = 0; a < 3; ++a) {
+    const double at = stamp.tip_mm[a] / voxel_mm_, base = std::floor(at);
+    view.fraction[a] = static_cast<float>(at - base);
+    view.feed_mm[a] = static_cast<float>(stamp.feed_per_tooth_mm[a]);
+    tile_view.from[a] = tile[static_cast<std::size_t>(a)] * Tile::kCore - static_cast<std::int32_t>(base);
+  }
+  if (shifts_) {
+    view.shift = {shifts_->row(k), stamp.first ? shifts_->row(k) : shifts_->row(k - 1),
+                  static_cast<int>(shifts_->nodes()), shifts_->steps,
+                  shifts_->nodes() > 1 ? static_cast<float>(shifts_->node_height_mm[1]) : 1.0f};
+    view.lag_per_mm = static_cast<float>(envelope_.lag_per_mm);
+    view.per_rad = static_cast<float>(envelope_.steps / (4 * kPi));
+    view.most_tilt_mm = static_cast<float>(kMostTilt * stamp.feed_per_tooth_mm.norm());
+  }
+  const float air = 0.5f * static_cast<float>(voxel_mm_);
+  const PatchLanes::Range range = lanes_.range(patch);
+  LaneReading reading;
+  for (int from = 0; from < range.count; from += LaneReading::kMost) {
+    const int count = std::min(range.count - from, LaneReading::kMost);
+    const int whole = (count + PatchLanes::kVector - 1) / PatchLanes::kVector * PatchLanes::kVector;
+    kernels_.read_points(view_, range.from + from, whole, view, tile_view, reading);
+    for (int l = 0; l < count; ++l) {
+      if (reading.cell[l] < 0) continue;
+      // The trilinear field is never below the ridge's, but for curvature: so it tells what is in air, and what is
+      // deeper than the chip.
+      const float field = reading.field[l], cap = reading.cap[l];
+      if (field > air) continue;
+      const std::uint32_t p = lanes_.point(range.from + from + l);
+      if (-field > cap && earlier.empty()) {
+        out.push_back({k, {p, cap, true}});
+        continue;
+      }
+      const Cell cell(reading.cell[l], {reading.fraction[0][l], reading.fraction[1][l], reading.fraction[2][l]}, tile,
+                      voxel_mm_);
+      const Vec3 normal(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]);
+      float depth = thickness_over(earlier, cell.point_mm, normal);
+      if (-field <= cap && depth > 0) depth = std::min(depth, thickness(stocks, cell, normal));
+      if (depth > 0) out.push_back({k, {p, std::min(depth, cap), depth > kNearCap * cap}});
+    }
+  }
+}
+
+/// Thickness of the stock below a point, against the normal, from the fields that meet in its cell (see
+/// removal/stretch.h): the thinnest of distance / slope, where slope is how fast a field falls along the normal.
+float ChipReader::thickness(const TileStocks& stocks, const Cell& cell, const Vec3& normal) const {
+  constexpr float kSolid = std::numeric_limits<float>::infinity();
+  const float below_blank = stocks.blank ? -cell.trilinear(stocks.blank->distance) : kSolid;
+  if (below_blank <= 0) return 0;
+  CornerLanes corners;
+  std::array<std::int32_t, 8> ids;
+  std::array<Vec3, 8> tip;
+  bool any = false;
+  for (std::size_t c = 0; c < 8; ++c) {
+    ids[c] = stocks.now->stamp[static_cast<std::size_t>(cell.at + corner(static_cast<int>(c)))] - first_id_;
+    corners.valid[c] = ids[c] >= 0 ? 1.0f : 0.0f;
+    tip[c] = ids[c] >= 0 ? Vec3(all_[static_cast<std::size_t>(ids[c])].tip_mm - cell.point_mm) : Vec3::Zero();
+    for (int a = 0; a < 3; ++a) corners.tip[a][c] = static_cast<float>(tip[c][a]);
+    corners.bend[c] = 0;
+    any |= ids[c] >= 0;
+  }
+  for (int a = 0; a < 3; ++a) corners.normal[a] = static_cast<float>(normal[a]);
+  if (any && shifts_) {
+    // For each stamp the mean difference between the field and the straight cutter's, weighted as the corners.
+    std::array<float, 8> difference;
+    for (std::size_t c = 0; c < 8; ++c) {
+      if (ids[c] < 0) continue;
+      const Vec3 at = cell.corner_mm - cell.point_mm + voxel_mm_ * Vec3(c & 1, c >> 1 & 1, c >> 2 & 1);
+      difference[c] = stocks.now->distance[static_cast<std::size_t>(cell.at + corner(static_cast<int>(c)))] +
+                      static_cast<float>(envelope_.shape.distance_mm(at - tip[c]));
+    }
+    for (std::size_t c = 0; c < 8; ++c) {
+      if (ids[c] < 0) continue;
+      float weight = 0, bend = 0;
+      for (std::size_t o = 0; o < 8; ++o) {
+        if (ids[o] != ids[c]) continue;
+        const float w = cell.weight[o] + 1e-6f;
+        weight += w;
+        bend += w * difference[o];
+      }
+      corners.bend[c] = bend / weight;
+    }
+  }
+  float thinnest = kSolid;
+  if (any)
+    thinnest = envelope_.shape.general
+                   ? thinnest_general(normal, tip, corners)
+                   : kernels_.thinnest(corners, static_cast<float>(envelope_.shape.bottom_length_mm()),
+                                       static_cast<float>(envelope_.shape.corner_radius_mm), kLeastSlope);
+  if (thinnest <= 0) return 0;
+  // A slope is at most 1: what is deeper than the thinnest so far cannot become thinner.
+  if (below_blank >= thinnest) return thinnest;
+  return std::min(thinnest, below_blank / slope(-cell.gradient(stocks.blank->distance, voxel_mm_).dot(normal)));
+}
+
+/// As Kernels::thinnest, for any cutter.
+float ChipReader::thinnest_general(const Vec3& normal, const std::array<Vec3, 8>& tip,
+                                   const CornerLanes& corners) const {
+  float thinnest = std::numeric_limits<float>::infinity();
+  for (std::size_t c = 0; c < 8; ++c) {
+    if (!(corners.valid[c] > 0) || (c > 0 && corners.valid[c - 1] > 0 && tip[c] == tip[c - 1])) continue;
+    const auto depth = static_cast<float>(envelope_.shape.distance_mm(-tip[c])) - corners.bend[c];
+    if (depth <= 0) return 0;
+    if (depth < thinnest) thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(-tip[c]).dot(normal)));
+  }
+  return thinnest;
+}
+
+/// The same over stamps of the batch that are not in the tile yet.
+float ChipReader::thickness_over(std::span<const std::int32_t> earlier, const Vec3& point, const Vec3& normal) const {
+  float thinnest = std::numeric_limits<float>::infinity();
+  for (const std::int32_t j : earlier) {
+    const Vec3 from_tip = point - stamps_[static_cast<std::size_t>(j)].tip_mm;
+    const auto depth = static_cast<float>(envelope_.shape.distance_mm(from_tip));
+    if (depth <= 0) return 0;
+    if (depth < thinnest) thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(from_tip).dot(normal)));
+  }
+  return thinnest;
+}
+
+}  // namespace camber::removal

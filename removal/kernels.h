@@ -1,0 +1,85 @@
+#pragma once
+// The inner loops of engagement and bent carving, in vectors as wide as the processor has them. Every lane does the
+// same operations in the same order whatever the width, so results do not depend on it.
+#include <cstdint>
+
+namespace camber::removal {
+
+/// Lateral shifts of a stamp: [node][step][2], mm, as a row of ShiftTable.
+struct ShiftRow {
+  const float* now = nullptr;     ///< null: the undeflected cutter
+  const float* before = nullptr;  ///< of the stamp before
+  int nodes = 0, steps = 0;
+  float node_step_mm = 1;
+};
+
+/// Envelope points side by side (see removal/patch_lanes.h): the arrays hold whole vectors of kLanes.
+struct PointLanes {
+  const float *x, *y, *z, *nx, *ny, *nz, *cos_phi, *sin_phi, *k1, *k2;
+  const float *sine, *cosine, *per_radius, *upper_share;
+  const std::int32_t *lower, *step;  ///< node below, rotation step
+};
+
+/// Where a stamp stands: the voxel below its tip is the origin of `fraction` and of TileView.
+struct StampView {
+  float fraction[3];  ///< of the tip in its voxel, voxels
+  float per_voxel;    ///< 1 / voxel_mm
+  float feed_mm[3];   ///< motion since the stamp before
+  ShiftRow shift;
+  float lag_per_mm;
+  float per_rad;       ///< rotation steps / (4 pi)
+  float most_tilt_mm;  ///< of the bent envelope, along the motion
+};
+
+/// A tile's voxels.
+struct TileView {
+  const float* distance;
+  std::int32_t from[3];  ///< its first voxel, from the stamp's
+};
+
+/// What is told of each point.
+struct LaneReading {
+  static constexpr int kMost = 64;
+  alignas(64) float cap[kMost];         ///< thickest chip that the motion allows, mm
+  alignas(64) float field[kMost];       ///< trilinear distance of the tile at the point, mm
+  alignas(64) float fraction[3][kMost]; ///< of the point in its cell
+  alignas(64) std::int32_t cell[kMost]; ///< its cell's lowest voxel in the tile; -1: not in the tile, or no chip
+};
+
+/// A point against the stamps whose fields meet in its cell.
+struct CornerLanes {
+  alignas(64) float tip[3][8];   ///< from the point, mm
+  alignas(64) float valid[8];    ///< 0: none
+  alignas(64) float bend[8];     ///< how much farther out than the straight cutter's the surface lies there, mm
+  float normal[3];
+};
+
+/// A row of voxels along z against a bent rounded cylinder.
+struct BentRow {
+  float dx, dy, z, voxel;  ///< of the first voxel, from the tip, mm
+  int count;               ///< at most 24; arrays hold whole vectors
+  float flat, corner, band;
+  ShiftRow shift;
+  float lag_per_mm, steps_per_rad;
+};
+
+struct Kernels {
+  int lanes;
+  /// `count`: a multiple of 8, at most LaneReading::kMost.
+  void (*read_points)(const PointLanes& points, int from, int count, const StampView& stamp, const TileView& tile,
+                      LaneReading& out);
+  /// Thickness of what a rounded cylinder left at each corner's tip, along the normal: distance over slope, the slope
+  /// at least `least_slope`; the least of them, at most 0 where one has cut the point away.
+  float (*thinnest)(const CornerLanes& corners, float flat, float corner, float least_slope);
+  /// out[k] = -distance of voxel k to the bent envelope, at most band.
+  void (*bent_row)(const BentRow& row, float* out);
+};
+
+/// Those of the widest vectors that this processor has.
+const Kernels& kernels();
+extern const Kernels kBaseKernels;  ///< on every processor
+#if defined(__x86_64__)
+extern const Kernels kAvx2Kernels;
+#endif
+
+}  // namespace camber::removal
