@@ -26,7 +26,7 @@ struct ChipReader::Cell {
   int at;                      ///< lowest corner, in the tile
   std::array<float, 3> share;  ///< from there to the next voxels
   std::array<float, 8> weight;
-  Vec3 corner_mm, point_mm;    ///< the lowest corner and the point
+  Vec3 corner_mm, point_mm;  ///< the lowest corner and the point
 
   Cell(int cell, const std::array<float, 3>& f, const Index3& tile, double voxel_mm) : at(cell), share(f) {
     for (int c = 0; c < 8; ++c)

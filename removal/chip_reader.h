@@ -35,8 +35,8 @@ class ChipReader {
   ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
              std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const ShiftTable* shifts);
 
-  /// Appends the chips that stamp k takes in this tile with the points of a patch. `earlier`: stamps of the stretch that
-  /// are not in the tile yet and may have cut what this one meets.
+  /// Appends the chips that stamp k takes in this tile with the points of a patch. `earlier`: stamps of the stretch
+  /// that are not in the tile yet and may have cut what this one meets.
   void read(const TileStocks& stocks, const Index3& tile, std::int32_t k, std::uint32_t patch,
             std::span<const std::int32_t> earlier, std::vector<StampChip>& out) const;
 

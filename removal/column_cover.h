@@ -30,6 +30,7 @@ class ColumnCover {
 
   /// First voxel of the column from which on all are air.
   int top(int column) const { return top_[static_cast<std::size_t>(column)]; }
+  const std::int16_t* tops(int i) const { return top_.data() + i * Tile::kSide; }  ///< of column (i, 0) and on
   bool all_air() const { return air_columns_ == kColumns; }
 
   /// out[j] > 0: a stamp with this tip may change column (i, j); `bend_mm` bounds how far it leans.

@@ -40,27 +40,46 @@ struct TileView {
 /// What is told of each point.
 struct LaneReading {
   static constexpr int kMost = 64;
-  alignas(64) float cap[kMost];         ///< thickest chip that the motion allows, mm
-  alignas(64) float field[kMost];       ///< trilinear distance of the tile at the point, mm
-  alignas(64) float fraction[3][kMost]; ///< of the point in its cell
-  alignas(64) std::int32_t cell[kMost]; ///< its cell's lowest voxel in the tile; -1: not in the tile, or no chip
+  alignas(64) float cap[kMost];          ///< thickest chip that the motion allows, mm
+  alignas(64) float field[kMost];        ///< trilinear distance of the tile at the point, mm
+  alignas(64) float fraction[3][kMost];  ///< of the point in its cell
+  alignas(64) std::int32_t cell[kMost];  ///< its cell's lowest voxel in the tile; -1: not in the tile, or no chip
 };
 
 /// A point against the stamps whose fields meet in its cell.
 struct CornerLanes {
-  alignas(64) float tip[3][8];   ///< from the point, mm
-  alignas(64) float valid[8];    ///< 0: none
-  alignas(64) float bend[8];     ///< how much farther out than the straight cutter's the surface lies there, mm
+  alignas(64) float tip[3][8];  ///< from the point, mm
+  alignas(64) float valid[8];   ///< 0: none
+  alignas(64) float bend[8];    ///< how much farther out than the straight cutter's the surface lies there, mm
   float normal[3];
 };
 
-/// A row of voxels along z against a bent rounded cylinder.
-struct BentRow {
-  float dx, dy, z, voxel;  ///< of the first voxel, from the tip, mm
-  int count;               ///< at most 24; arrays hold whole vectors
-  float flat, corner, band;
+/// A line of a tile's columns (removal/column_cover.h), all with the same x, against a rounded cylinder.
+struct LineCut {
+  static constexpr int kColumns = 17, kLine = 24;  ///< as Tile::kSide and ColumnCover::kLine
+  float* distance;                                 ///< [kColumns][kColumns] of the line
+  std::int32_t* stamp;                             ///< the same of the ids
+  const float* changeable;                         ///< [kLine], > 0: the column may change
+  const std::int16_t* top;                         ///< [kColumns], first voxel of the air above
+  std::int32_t id;
+  int lowest;         ///< no voxel below is reached
+  float dx, dy, z;    ///< of voxel 0 of column 0, from the tip, mm
+  float voxel, band;  ///< mm
+  float flat, corner, shrink;
+};
+
+/// What a bent cutter adds to it.
+struct LineBend {
   ShiftRow shift;
+  float largest_mm;         ///< of the row
+  const float* outward_mm;  ///< by sector, CarveBend::kSectors of them
+  int sectors;
   float lag_per_mm, steps_per_rad;
+};
+
+/// Columns of a line as bits.
+struct LineResult {
+  std::uint32_t tried = 0, changed = 0;
 };
 
 struct Kernels {
@@ -71,8 +90,9 @@ struct Kernels {
   /// Thickness of what a rounded cylinder left at each corner's tip, along the normal: distance over slope, the slope
   /// at least `least_slope`; the least of them, at most 0 where one has cut the point away.
   float (*thinnest)(const CornerLanes& corners, float flat, float corner, float least_slope);
-  /// out[k] = -distance of voxel k to the bent envelope, at most band.
-  void (*bent_row)(const BentRow& row, float* out);
+  /// stock = max(stock, -cutter), at most band; voxels that change take the id.
+  LineResult (*cut_line)(const LineCut& line);
+  LineResult (*cut_line_bent)(const LineCut& line, const LineBend& bend);
 };
 
 /// Those of the widest vectors that this processor has.

@@ -1,6 +1,8 @@
 #pragma once
 // The loops behind removal/kernels.h for one instruction set. Included by the files that are compiled for one; nothing
 // else of ours is included, as what is compiled here for wide vectors must not be linked into code for narrow ones.
+#include <cmath>
+
 #include <xsimd/xsimd.hpp>
 
 #include "removal/kernels.h"
@@ -88,8 +90,8 @@ struct Vectors {
       const F along = mx * nx + my * ny + fz * nz - tilt;
       const F tangential2 = xsimd::max(zero, mx * mx + my * my + fz * fz - along * along);
       const F around = cosine_phi * my - sine_phi * mx, around2 = around * around;
-      const F cap = along + F(0.5f) * (load(p.k1 + k) * xsimd::max(zero, tangential2 - around2) +
-                                       load(p.k2 + k) * around2);
+      const F cap =
+          along + F(0.5f) * (load(p.k1 + k) * xsimd::max(zero, tangential2 - around2) + load(p.k2 + k) * around2);
       const F per_voxel(s.per_voxel);
       const F gx = F(s.fraction[0]) + x * per_voxel, gy = F(s.fraction[1]) + y * per_voxel,
               gz = F(s.fraction[2]) + z * per_voxel;
@@ -99,7 +101,9 @@ struct Vectors {
                           (iz < I(kCore)) & (to_int(xsimd::select(cap > zero, one, zero)) == I(1));
       const I cell = xsimd::select(inside, (ix * I(kSide) + iy) * I(kSide) + iz, I(0));
       const F u = gx - bx, v = gy - by, w = gz - bz;
-      const auto d = [&](int i, int j, int m) { return Table<A>::gather(tile.distance, cell + I((i * kSide + j) * kSide + m)); };
+      const auto d = [&](int i, int j, int m) {
+        return Table<A>::gather(tile.distance, cell + I((i * kSide + j) * kSide + m));
+      };
       const auto along_z = [&](int i, int j) {
         const F a = d(i, j, 0);
         return a + w * (d(i, j, 1) - a);
@@ -156,13 +160,13 @@ struct Vectors {
   }
 
   /// Shift of the envelope's point nearest to a place.
-  static Shift shift_at(const BentRow& b, const F& x, const F& y, const F& z) {
+  static Shift shift_at(const LineCut& c, const LineBend& b, const F& x, const F& y, const F& z) {
     const F zero(0.0f);
-    const F qx = xsimd::sqrt(x * x + y * y) - F(b.flat), qz = F(b.corner) - z;
+    const F qx = xsimd::sqrt(x * x + y * y) - F(c.flat), qz = F(c.corner) - z;
     const F length = xsimd::sqrt(qx * qx + qz * qz);
-    const F rounded = F(b.corner) - F(b.corner) * qz / xsimd::max(length, F(1e-12f));
-    const F height = xsimd::select((qx > zero) & (qz > zero), rounded,
-                                   xsimd::select(qx > qz, xsimd::max(z, zero), zero));
+    const F rounded = F(c.corner) - F(c.corner) * qz / xsimd::max(length, F(1e-12f));
+    const F height =
+        xsimd::select((qx > zero) & (qz > zero), rounded, xsimd::select(qx > qz, xsimd::max(z, zero), zero));
     const F steps(static_cast<float>(b.shift.steps));
     F step = (fast_atan2(y, x) - height * F(b.lag_per_mm)) * F(b.steps_per_rad);
     step -= steps * xsimd::floor(step / steps);
@@ -171,8 +175,8 @@ struct Vectors {
     const I all(b.shift.steps);
     m0 = xsimd::select(m0 >= all, I(0), m0);
     const I m1 = xsimd::select(m0 + I(1) == all, I(0), m0 + I(1));
-    const F at_node = xsimd::min(xsimd::max(height / F(b.shift.node_step_mm), zero),
-                                 F(static_cast<float>(b.shift.nodes - 1)));
+    const F at_node =
+        xsimd::min(xsimd::max(height / F(b.shift.node_step_mm), zero), F(static_cast<float>(b.shift.nodes - 1)));
     const I n0 = xsimd::min(to_int(at_node), I(b.shift.nodes > 1 ? b.shift.nodes - 2 : 0));
     const F fn = at_node - to_float(n0);
     const I low = n0 * all, high = b.shift.nodes > 1 ? low + all : low;
@@ -183,23 +187,114 @@ struct Vectors {
             w00 * s00.y + w01 * s01.y + w10 * s10.y + w11 * s11.y};
   }
 
-  static void bent_row(const BentRow& b, float* out) {
-    alignas(64) float first[n];
-    for (int l = 0; l < n; ++l) first[l] = static_cast<float>(l);
-    const F zero(0.0f), ramp = load(first), dx(b.dx), dy(b.dy);
-    for (int k = 0; k < b.count; k += n) {
-      const F z = F(b.z) + (F(static_cast<float>(k)) + ramp) * F(b.voxel);
-      Shift s = shift_at(b, dx, dy, z);
-      s = shift_at(b, dx - s.x, dy - s.y, z);
-      const F x = dx - s.x, y = dy - s.y;
-      const F qx = xsimd::sqrt(x * x + y * y) - F(b.flat), qz = F(b.corner) - z;
-      const F a = xsimd::max(qx, zero), c = xsimd::max(qz, zero);
-      const F d = xsimd::min(xsimd::max(qx, qz), zero) + xsimd::sqrt(a * a + c * c) - F(b.corner);
-      xsimd::min(-d, F(b.band)).store_unaligned(out + k);
-    }
+  /// Calls f(first voxel of a vector) for all of a column from `low` up to `top`; the lowest vectors may overlap.
+  template <class Function>
+  static void for_vectors(int low, int top, Function f) {
+    for (int k = top - n; k > low - n; k -= n) f(k > 0 ? k : 0);
   }
 
-  static constexpr Kernels table() { return {n, &read_points, &thinnest, &bent_row}; }
+  /// Height above the tip from which on a column at qx outside the flat comes within `reach` of the envelope.
+  static float lowest_reached(float qx, float corner, float reach) {
+    if (qx <= 0) return corner - reach;
+    const float left = reach * reach - qx * qx;
+    return left > 0 ? corner - std::sqrt(left) : corner;
+  }
+
+  static F distance(const F& rho, const F& z, float flat, float corner) {
+    const F zero(0.0f), qx = rho - F(flat), qz = F(corner) - z;
+    const F a = xsimd::max(qx, zero), b = xsimd::max(qz, zero);
+    return xsimd::min(xsimd::max(qx, qz), zero) + xsimd::sqrt(a * a + b * b) - F(corner);
+  }
+
+  static F ramp() {
+    alignas(64) float first[n];
+    for (int l = 0; l < n; ++l) first[l] = static_cast<float>(l);
+    return F::load_aligned(first);
+  }
+
+  /// One vector of a column: takes v where it is more.
+  static bool take(float* distance, std::int32_t* stamp, const F& v, std::int32_t id) {
+    const F old = load(distance);
+    const auto cut = v > old;
+    if (!xsimd::any(cut)) return false;
+    xsimd::select(cut, v, old).store_unaligned(distance);
+    const auto bits = xsimd::select(cut, F(1.0f), F(0.0f));
+    const I ids = load(stamp);
+    xsimd::select(to_int(bits) == I(1), I(id), ids).store_unaligned(stamp);
+    return true;
+  }
+
+  static LineResult cut_line(const LineCut& c) {
+    LineResult result;
+    const float reach = c.band + c.corner - c.shrink, per_voxel = 1 / c.voxel, dx2 = c.dx * c.dx;
+    const F steps = ramp() * F(c.voxel), band(c.band), shrink(c.shrink);
+    for (int j = 0; j < LineCut::kColumns; ++j) {
+      if (!(c.changeable[j] > 0)) continue;
+      const float dy = c.dy + static_cast<float>(j) * c.voxel;
+      const float rho = std::sqrt(dx2 + dy * dy), qx = rho - c.flat;
+      if (qx > reach) continue;
+      const int up = static_cast<int>((lowest_reached(qx, c.corner, reach) - c.z) * per_voxel);
+      const int low = up > c.lowest ? up : c.lowest, top = c.top[j];
+      if (low >= top) continue;
+      result.tried |= 1u << j;
+      bool changed = false;
+      const F rhos(rho);
+      for_vectors(low, top, [&](int k) {
+        const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
+        const F v = xsimd::min(-(distance(rhos, z, c.flat, c.corner) + shrink), band);
+        changed |= take(c.distance + j * LineCut::kColumns + k, c.stamp + j * LineCut::kColumns + k, v, c.id);
+      });
+      if (changed) result.changed |= 1u << j;
+    }
+    return result;
+  }
+
+  static LineResult cut_line_bent(const LineCut& c, const LineBend& bend) {
+    LineResult result;
+    const float per_voxel = 1 / c.voxel, dx2 = c.dx * c.dx;
+    const F steps = ramp() * F(c.voxel), band(c.band), dx(c.dx);
+    // How far a shift moves the envelope outwards in each column; near the axis a shift turns a place into another
+    // direction.
+    alignas(64) float slack[LineCut::kLine];
+    const F largest(bend.largest_mm), axis_zone2(25 * bend.largest_mm * bend.largest_mm);
+    for (int j = 0; j < LineCut::kLine; j += n) {
+      const F dy = F(c.dy + static_cast<float>(j) * c.voxel) + steps;
+      const F at = (fast_atan2(dy, dx) + F(3.14159265f)) * F(static_cast<float>(bend.sectors) / 6.28318531f);
+      const I sector = xsimd::min(xsimd::max(to_int(at), I(0)), I(bend.sectors - 1));
+      const F outward = xsimd::min(Table<A>::gather(bend.outward_mm, sector), largest);
+      xsimd::select(F(dx2) + dy * dy > axis_zone2, outward, largest).store_aligned(slack + j);
+    }
+    for (int j = 0; j < LineCut::kColumns; ++j) {
+      if (!(c.changeable[j] > 0)) continue;
+      const float y = c.dy + static_cast<float>(j) * c.voxel, reach = c.corner + c.band + slack[j];
+      const float rho = std::sqrt(dx2 + y * y), qx = rho - c.flat;
+      if (qx > reach) continue;
+      const int up = static_cast<int>((lowest_reached(qx, c.corner, reach) - c.z) * per_voxel);
+      const int low = up > c.lowest ? up : c.lowest, top = c.top[j];
+      if (low >= top) continue;
+      const F dy(y), rhos(rho), outwards(slack[j]);
+      bool changed = false;
+      for_vectors(low, top, [&](int k) {
+        float* stock = c.distance + j * LineCut::kColumns + k;
+        const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
+        const F most = xsimd::min(outwards - distance(rhos, z, c.flat, c.corner), band);
+        const F old = load(stock);
+        if (!xsimd::any(most > old)) return;
+        result.tried |= 1u << j;
+        Shift s = shift_at(c, bend, dx, dy, z);
+        s = shift_at(c, bend, dx - s.x, dy - s.y, z);
+        const F x = dx - s.x, yy = dy - s.y;
+        const F v = xsimd::min(-distance(xsimd::sqrt(x * x + yy * yy), z, c.flat, c.corner), band);
+        // Where the bound says no, rounding must not say yes.
+        changed |=
+            take(stock, c.stamp + j * LineCut::kColumns + k, xsimd::min(v, xsimd::select(most > old, v, old)), c.id);
+      });
+      if (changed) result.changed |= 1u << j;
+    }
+    return result;
+  }
+
+  static constexpr Kernels table() { return {n, &read_points, &thinnest, &cut_line, &cut_line_bent}; }
 };
 
 }  // namespace

@@ -92,9 +92,9 @@ struct Stretch::Impl {
   double tile_mm;
   std::vector<WorkTile> tiles;
   SlotMap slots;
-  StampOrder order;                      ///< batches and who covers whom
-  std::vector<CarveBend> bends;          ///< per stamp of the stretch; empty: straight
-  std::optional<PatchLanes> lanes;       ///< made by the first carve
+  StampOrder order;                 ///< batches and who covers whom
+  std::vector<CarveBend> bends;     ///< per stamp of the stretch; empty: straight
+  std::optional<PatchLanes> lanes;  ///< made by the first carve
 
   void find_tiles(const ShiftTable* shifts);
   void list_stamps(const ShiftTable* shifts);
@@ -200,8 +200,7 @@ void Stretch::Impl::cut_tiles(const ShiftTable* shifts) {
       tiles[static_cast<std::size_t>(slot)].touches.push_back({static_cast<std::int32_t>(k), patch});
   by_stamp.clear();
   std::optional<ChipReader> reader;
-  if (options.engage)
-    reader.emplace(envelope, *lanes, all_stamps, stamps, options.first_id, stock.voxel_mm(), shifts);
+  if (options.engage) reader.emplace(envelope, *lanes, all_stamps, stamps, options.first_id, stock.voxel_mm(), shifts);
   tbb::parallel_for(std::size_t{0}, tiles.size(),
                     [&](std::size_t i) { work(tiles[i], shifts, reader ? &*reader : nullptr); });
 }
@@ -216,8 +215,7 @@ void Stretch::Impl::work(WorkTile& w, const ShiftTable* shifts, const ChipReader
   if (!w.touches.empty()) {
     blank->load(w.index, buffers->blank);
     const auto band = static_cast<float>(stock.band_mm());
-    if (std::any_of(buffers->blank.distance.begin(), buffers->blank.distance.end(),
-                    [&](float d) { return d > -band; }))
+    if (std::any_of(buffers->blank.distance.begin(), buffers->blank.distance.end(), [&](float d) { return d > -band; }))
       stocks.blank = &buffers->blank;
   }
   auto touch = w.touches.begin();

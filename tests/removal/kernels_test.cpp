@@ -1,0 +1,140 @@
+// The loops in vectors: wide and narrow ones give the same bits, and both what the closed forms give.
+#include "removal/kernels.h"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "removal/carve.h"
+#include "removal/cutter.h"
+
+using namespace camber;
+using namespace camber::removal;
+
+namespace {
+
+constexpr int kColumns = LineCut::kColumns;
+
+CutterShape bull() {
+  machine::Tool tool;
+  tool.type = machine::ToolType::bull;
+  tool.diameter_mm = 10;
+  tool.corner_radius_mm = 2;
+  tool.flutes = 2;
+  return shape_of(tool);
+}
+
+/// A line of columns around a bull-nose cutter's flank.
+struct Line {
+  std::vector<float> distance = std::vector<float>(kColumns * kColumns + 8, -0.5f);
+  std::vector<std::int32_t> stamp = std::vector<std::int32_t>(kColumns * kColumns + 8, -1);
+  std::vector<float> changeable = std::vector<float>(LineCut::kLine, 1.0f);
+  std::vector<std::int16_t> top = std::vector<std::int16_t>(kColumns, kColumns);
+
+  LineCut cut(float dx) {
+    LineCut c{};
+    c.distance = distance.data(), c.stamp = stamp.data(), c.changeable = changeable.data(), c.top = top.data();
+    c.id = 7;
+    c.dx = dx, c.dy = -0.35f, c.z = -0.3f, c.voxel = 0.1f, c.band = 0.5f;
+    c.flat = 3, c.corner = 2, c.shrink = 0.01f;
+    return c;
+  }
+};
+
+struct Bend {
+  std::vector<float> row, outward = std::vector<float>(CarveBend::kSectors, 0.03f);
+  explicit Bend(int nodes, int steps) : row(static_cast<std::size_t>(2 * nodes * steps)) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> shift(-0.02f, 0.02f);
+    for (float& v : row) v = shift(random);
+  }
+};
+
+bool has_wide_vectors() {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx2");
+#else
+  return false;
+#endif
+}
+
+}  // namespace
+
+TEST(Kernels, LinesAreCutToTheDistanceOfTheCutter) {
+  const CutterShape shape = bull();
+  for (const Kernels* kernel : {&kBaseKernels, &kernels()}) {
+    Line line;
+    const LineCut c = line.cut(4.7f);
+    line.top[3] = 0;
+    line.changeable[4] = -1;
+    const LineResult result = kernel->cut_line(c);
+    EXPECT_EQ(result.changed & (1u << 3 | 1u << 4), 0u);
+    int changed = 0;
+    for (int j = 0; j < kColumns; ++j)
+      for (int k = 0; k < kColumns; ++k) {
+        const double d = shape.distance_mm({4.7, -0.35 + 0.1 * j, -0.3 + 0.1 * k}) + 0.01;
+        const double expected = j == 3 || j == 4 ? -0.5 : std::max(-0.5, std::min(0.5, -d));
+        const auto at = static_cast<std::size_t>(j * kColumns + k);
+        ASSERT_NEAR(line.distance[at], expected, 2e-6) << j << ' ' << k;
+        ASSERT_EQ(line.stamp[at], line.distance[at] > -0.5f ? 7 : -1);
+        changed += line.stamp[at] == 7;
+      }
+    EXPECT_GT(changed, 50);
+  }
+}
+
+TEST(Kernels, WideAndNarrowVectorsCutTheSameBits) {
+  if (!has_wide_vectors()) GTEST_SKIP() << "no AVX2 here";
+  Bend bend(4, 60);
+  const LineBend lean{
+      {bend.row.data(), nullptr, 4, 60, 1.5f}, 0.03f, bend.outward.data(), CarveBend::kSectors, 0.1f, 19.1f};
+  for (const float dx : {0.0f, 2.9f, 4.6f, 5.2f}) {
+    Line narrow, wide;
+    for (Line* line : {&narrow, &wide}) line->top[5] = 9;
+    kBaseKernels.cut_line(narrow.cut(dx));
+    kernels().cut_line(wide.cut(dx));
+    EXPECT_EQ(narrow.distance, wide.distance);
+    const LineResult a = kBaseKernels.cut_line_bent(narrow.cut(dx + 0.05f), lean);
+    const LineResult b = kernels().cut_line_bent(wide.cut(dx + 0.05f), lean);
+    EXPECT_EQ(narrow.distance, wide.distance);
+    EXPECT_EQ(narrow.stamp, wide.stamp);
+    EXPECT_EQ(a.changed, b.changed);
+  }
+}
+
+TEST(Kernels, WideAndNarrowVectorsReadTheSameThicknesses) {
+  if (!has_wide_vectors()) GTEST_SKIP() << "no AVX2 here";
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> place(-1.0f, 1.0f);
+  for (int n = 0; n < 200; ++n) {
+    CornerLanes c{};
+    for (int l = 0; l < 8; ++l) {
+      for (auto& axis : c.tip) axis[l] = place(random);
+      c.tip[2][l] += 3;
+      c.valid[l] = l == n % 8 || place(random) > 0 ? 1.0f : 0.0f;
+      c.bend[l] = 0.01f * place(random);
+    }
+    c.normal[0] = 0.6f, c.normal[1] = 0, c.normal[2] = -0.8f;
+    EXPECT_EQ(kBaseKernels.thinnest(c, 3, 2, 0.25f), kernels().thinnest(c, 3, 2, 0.25f));
+  }
+}
+
+TEST(Kernels, TheThinnestIsDistanceOverSlope) {
+  const CutterShape shape = bull();
+  CornerLanes c{};
+  const Vec3 normal = Vec3(0.6, 0.2, -0.7).normalized();
+  for (int a = 0; a < 3; ++a) c.normal[a] = static_cast<float>(normal[a]);
+  double thinnest = 1e9;
+  for (int l = 0; l < 8; ++l) {
+    const Vec3 tip(-4.9 - 0.02 * l, 0.1 * l, -1 + 0.01 * l);
+    for (int a = 0; a < 3; ++a) c.tip[a][l] = static_cast<float>(tip[a]);
+    c.valid[l] = l == 2 ? 0.0f : 1.0f;
+    c.bend[l] = 0.001f * static_cast<float>(l);
+    const double slope = std::clamp(shape.gradient(-tip).dot(normal), 0.25, 1.0);
+    if (l != 2) thinnest = std::min(thinnest, (shape.distance_mm(-tip) - 0.001 * l) / slope);
+  }
+  for (const Kernels* kernel : {&kBaseKernels, &kernels()})
+    EXPECT_NEAR(kernel->thinnest(c, 3, 2, 0.25f), thinnest, 1e-5);
+}
