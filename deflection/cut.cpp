@@ -74,13 +74,14 @@ class Cutter {
   Cutter(Stock& stock, const machine::Tool& tool, const machine::Material& material, std::span<const Stamp> stamps,
          const CutOptions& options)
       : stock_(stock),
-        blank_(stock),
         options_(options),
         top_mm_(engaged_top_mm(stock, tool, stamps)),
         envelope_(removal::make_envelope(tool, top_mm_, options.envelope_step_mm, options.rotation_step_rad)),
         model_(envelope_, material, beam_of(tool), node_heights(top_mm_),
                options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
-               options.axis_compliance_mm_per_N) {
+               options.axis_compliance_mm_per_N, options.coupling == machine::Coupling::static_) {
+    if (!options.blank) own_blank_.emplace(stock);
+    blank_ = options.blank ? options.blank : &*own_blank_;
     removal::make_patches(envelope_, 0.6 * stock.band_mm());
     if (options.coupling == machine::Coupling::rigid) undeflected_.emplace(stock);
   }
@@ -97,12 +98,12 @@ class Cutter {
       for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
         std::copy(guess_row_.begin(), guess_row_.end(), shifts.row(k));
     std::vector<StampLoad> loads(stamps.size());
-    Stretch bent(stock_, &blank_, envelope_, all, from, count,
+    Stretch bent(stock_, blank_, envelope_, all, from, count,
                  {.engage = !undeflected_, .first_id = first_id, .bent_before_mm = most_bent_mm_});
     if (undeflected_) {
       for (std::size_t at = 0; at < count; at += options_.rigid_engage_stamps) {
         const std::size_t n = std::min(options_.rigid_engage_stamps, count - at);
-        Stretch straight(*undeflected_, &blank_, envelope_, all, from + at, n, {.first_id = first_id});
+        Stretch straight(*undeflected_, blank_, envelope_, all, from + at, n, {.first_id = first_id});
         const Engagement engagement = straight.carve(nullptr);
         evaluate(engagement, stamps, at, n, shifts, loads);
         keep_turn(engagement, all, from + at, n, result);
@@ -229,7 +230,8 @@ class Cutter {
   }
 
   Stock& stock_;
-  const Stock blank_;
+  std::optional<Stock> own_blank_;
+  const Stock* blank_ = nullptr;  ///< before the first stamp
   const CutOptions& options_;
   double top_mm_;
   EnvelopeGrid envelope_;

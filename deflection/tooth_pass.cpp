@@ -16,12 +16,13 @@ std::vector<double> node_heights(double top_mm) {
 
 ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material,
                                const Beam& beam, std::vector<double> nodes, double edge_ramp_mm, Teeth teeth,
-                               const Vec2& axis_compliance)
+                               const Vec2& axis_compliance, bool with_feedback)
     : envelope_(envelope),
       material_(material),
       edge_ramp_mm_(edge_ramp_mm),
       axis_compliance_(axis_compliance),
       teeth_(std::move(teeth)),
+      with_feedback_(with_feedback),
       node_height_mm_(std::move(nodes)) {
   for (int j = 0; j < teeth_.count(); ++j)
     tooth_step_.push_back(static_cast<int>(std::lround(teeth_.offset_rad(j) * envelope.steps / (2 * kPi))));
@@ -77,6 +78,7 @@ void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const D
     deflection[2 * (n * steps + m)] += (w + axis_compliance_.x()) * force.x();
     deflection[2 * (n * steps + m) + 1] += (w + axis_compliance_.y()) * force.y();
   }
+  if (!with_feedback_) return;
   const EdgeForce k = edge_force_slope(material_, thickness_mm, edge_ramp_mm_);
   const Vec3 slope = k.tangential_N * d.tangential + k.radial_N * d.normal + k.axial_N * d.meridian;
   const Eigen::Matrix2d feedback =
@@ -93,8 +95,8 @@ void ToothPassModel::evaluate(std::span<const removal::Chip> chips, std::size_t 
   out.force_N.assign(steps, Vec3::Zero());
   out.torque_Nmm.assign(steps, 0.0);
   out.work_Nmm = out.chip_max_mm = out.chip_area_mm2 = 0;
-  out.feedback.assign(steps, Eigen::Matrix2d::Zero());
-  out.feedback_before.assign(steps, Eigen::Matrix2d::Zero());
+  out.feedback.assign(with_feedback_ ? steps : 0, Eigen::Matrix2d::Zero());
+  out.feedback_before.assign(with_feedback_ ? steps : 0, Eigen::Matrix2d::Zero());
   out.deflection_mm.assign(nodes * steps * 2, 0.0f);
   std::vector<double> deflection(nodes * steps * 2, 0.0);
   const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;

@@ -20,7 +20,7 @@ struct ToothPass {
   double chip_max_mm = 0;            ///< thickest chip
   double chip_area_mm2 = 0;          ///< of the envelope that cuts; the chips' volume over it is the mean thickness
   std::vector<float> deflection_mm;  ///< [nodes][steps][2], as a row of removal::ShiftTable
-  /// Per step: how a lateral shift of the tool changes the deflection through the chip, d(deflection)/d(shift).
+  /// Per step, where the model is asked for it: how a lateral shift of the tool changes the deflection through the chip, d(deflection)/d(shift).
   std::vector<Eigen::Matrix2d> feedback;
   /// The part of it that a shift of the tooth before takes back.
   std::vector<Eigen::Matrix2d> feedback_before;
@@ -42,7 +42,7 @@ class ToothPassModel {
  public:
   ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material, const Beam& beam,
                  std::vector<double> node_height_mm, double edge_ramp_mm, Teeth teeth,
-                 const Vec2& axis_compliance_mm_per_N = Vec2::Zero());
+                 const Vec2& axis_compliance_mm_per_N = Vec2::Zero(), bool with_feedback = true);
 
   int steps() const { return envelope_.steps_per_pitch; }
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
@@ -72,6 +72,7 @@ class ToothPassModel {
   double edge_ramp_mm_;
   Vec2 axis_compliance_;  ///< of the machine's x and y axes, mm/N, the same at every height
   Teeth teeth_;
+  bool with_feedback_;
   std::vector<int> tooth_step_;  ///< rotation steps from tooth 0 to each tooth
   std::vector<double> node_height_mm_;
   std::vector<double> compliance_;      ///< [rings][nodes], mm/N

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "removal/vector_clones.h"
+
 namespace camber::removal {
 
 PatchLanes::PatchLanes(const EnvelopeGrid& e, const std::vector<double>& node_height_mm) {
@@ -32,7 +34,27 @@ PatchLanes::PatchLanes(const EnvelopeGrid& e, const std::vector<double>& node_he
       range.count += k < all;
     }
     range_.push_back(range);
+    normal_x_.push_back(static_cast<float>(patch.normal.x()));
+    normal_y_.push_back(static_cast<float>(patch.normal.y()));
+    normal_z_.push_back(static_cast<float>(patch.normal.z()));
+    normal_spread_.push_back(static_cast<float>(patch.normal_spread));
   }
+}
+
+namespace {
+
+CAMBER_VECTOR_CLONES
+void along_normals(const float* nx, const float* ny, const float* nz, const float* spread, std::size_t count, float x,
+                   float y, float z, float length, float* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = x * nx[i] + y * ny[i] + z * nz[i] + length * spread[i];
+}
+
+}  // namespace
+
+void PatchLanes::motion_into(const Vec3& motion, std::vector<float>& out) const {
+  along_normals(normal_x_.data(), normal_y_.data(), normal_z_.data(), normal_spread_.data(), out.size(),
+                static_cast<float>(motion.x()), static_cast<float>(motion.y()), static_cast<float>(motion.z()),
+                static_cast<float>(motion.norm()), out.data());
 }
 
 PointLanes PatchLanes::view() const {

@@ -102,7 +102,7 @@ struct Stretch::Impl {
                         std::vector<std::pair<std::int32_t, std::uint32_t>>& out);
   void cut_tiles(const ShiftTable* shifts);
   void work(WorkTile& tile, const ShiftTable* shifts, const ChipReader* reader) const;
-  Engagement gather() const;
+  Engagement gather();
 };
 
 void Stretch::Impl::find_tiles(const ShiftTable* shifts) {
@@ -173,9 +173,12 @@ void Stretch::Impl::touches_of_stamp(std::int32_t k, const ShiftTable* shifts,
   // What curvature, a change of shift and the bent envelope's tilt add to the chip at most.
   const double bulge =
       feed * feed / (2 * std::max(envelope.shape.corner_radius_mm, 0.1)) + slewed + (shifts ? kMostTilt * feed : 0.0);
+  std::vector<float> into(envelope.patches.size());
+  lanes->motion_into(stamp.feed_per_tooth_mm, into);
+  const auto least = static_cast<float>(-bulge - 1e-6);
   for (std::size_t i = 0; i < envelope.patches.size(); ++i) {
+    if (into[i] <= least) continue;
     const auto& patch = envelope.patches[i];
-    if (stamp.feed_per_tooth_mm.dot(patch.normal) + feed * patch.normal_spread + bulge <= 0) continue;
     const double extent = patch.radius_mm + moved;
     const double reach = std::min(extent + 0.87 * stock.voxel_mm(), 0.999 * stock.band_mm());
     const Vec3 centre = stamp.tip_mm + patch.centre_from_tip;
@@ -258,7 +261,8 @@ void Stretch::Impl::work(WorkTile& w, const ShiftTable* shifts, const ChipReader
   w.result = std::move(buffers->stock);
 }
 
-Engagement Stretch::Impl::gather() const {
+/// Hands the chips over: the tiles have none then.
+Engagement Stretch::Impl::gather() {
   Engagement out;
   out.first.assign(stamps.size() + 1, 0);
   for (const auto& tile : tiles)
@@ -266,8 +270,10 @@ Engagement Stretch::Impl::gather() const {
   for (std::size_t k = 0; k < stamps.size(); ++k) out.first[k + 1] += out.first[k];
   out.chips.resize(out.first.back());
   std::vector<std::size_t> at(out.first.begin(), out.first.end() - 1);
-  for (const auto& tile : tiles)
+  for (auto& tile : tiles) {
     for (const auto& c : tile.chips) out.chips[at[static_cast<std::size_t>(c.stamp)]++] = c.chip;
+    std::vector<StampChip>().swap(tile.chips);
+  }
   return out;
 }
 
