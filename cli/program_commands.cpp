@@ -1,4 +1,4 @@
-// check, feed, time, compress and fit-feed on the command line.
+// check, feed, time, compress, resegment and fit-feed on the command line.
 #include <iostream>
 #include <memory>
 
@@ -13,6 +13,7 @@
 #include "cli/feed_command.h"
 #include "cli/fit_feed_command.h"
 #include "cli/protocol_command.h"
+#include "cli/resegment_command.h"
 #include "cli/time_command.h"
 #include "machine/machine.h"
 
@@ -191,6 +192,16 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   });
 }
 
+/// A length in mm; "nan" is none.
+CLI::Validator length_validator() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const auto value = parse_number(text);
+        return value && *value >= 1e-5 && *value <= 10 ? "" : text + ": a number from 0.00001 to 10 was expected";
+      },
+      "");
+}
+
 void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("compress", "many G1 to few G1, G2 and G3 within a tolerance");
   auto arguments = std::make_shared<CompressArguments>();
@@ -198,12 +209,7 @@ void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command
       ->add_option("--tolerance-mm", arguments->tolerance_mm, "the new path lies within this of the old one, and back")
       ->required()
-      ->check(CLI::Validator(
-          [](std::string& text) {
-            const auto value = parse_number(text);  // "nan" is none
-            return value && *value >= 1e-5 && *value <= 10 ? "" : text + ": a number from 0.00001 to 10 was expected";
-          },
-          ""))
+      ->check(length_validator())
       ->type_name("X");
   command->add_option("-o,--output", arguments->output, "the new program")->required()->type_name("OUT.nc");
   command->add_option("--machine", arguments->machine, "machine.toml: tells the times before and after")
@@ -220,6 +226,40 @@ void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
         return print_effective_machine(arguments->machine, options);
       check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->machine});
       return run_compress(*arguments, options);
+    };
+  });
+}
+
+void add_resegment(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command =
+      app.add_subcommand("resegment", "runs of G1 laid out again, in segments just long enough for the control");
+  auto arguments = std::make_shared<ResegmentArguments>();
+  command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
+  command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
+  command
+      ->add_option("--tolerance-mm", arguments->tolerance_mm, "the new path lies within this of the old one, and back")
+      ->required()
+      ->check(length_validator())
+      ->type_name("X");
+  command->add_option("-o,--output", arguments->output, "the new program")->required()->type_name("OUT.nc");
+  command->add_option("--length-mm", arguments->length_mm, "of the segments; else the fastest is looked for")
+      ->check(length_validator())
+      ->type_name("L");
+  command
+      ->add_option(
+          "--contour-mm", arguments->contour_mm,
+          "most that the predicted axes may stray from the old path; else 5 % more than with the old blocks, or "
+          "the tolerance, whichever is more")
+      ->check(length_validator())
+      ->type_name("C");
+  command->add_option("--json", arguments->json, "the figures, of all lengths tried")->type_name("R.json");
+  add_interpreter_options(*command, arguments->interpreter);
+  add_language_options(*command, arguments->interpreter);
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      if (options.effective_config) return print_effective_machine(arguments->machine, options);
+      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->machine});
+      return run_resegment(*arguments, options);
     };
   });
 }
@@ -246,6 +286,7 @@ void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& c
   add_fit_feed(app, options, chosen);
   add_protocol(app, options, chosen);
   add_compress(app, options, chosen);
+  add_resegment(app, options, chosen);
 }
 
 }  // namespace camber::cli

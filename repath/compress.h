@@ -29,7 +29,8 @@ struct Run {
 /// and other words, another feed, drilling cycles, G41 and G42, exact stop, block skip, turned or scaled frames and
 /// moves that the text does not say one by one end a run. In a program with macros or subprograms blocks with a number
 /// are left alone: they may be jumped to.
-std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves);
+/// `in_space`: the run need not keep to a plane; its `normal` says nothing.
+std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, bool in_space = false);
 
 /// Points of a run as the text says them, in the plane: start and ends of its moves. Repeated points are left out;
 /// `block` tells which block ends at each (of the first point: the run's first block).

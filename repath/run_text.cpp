@@ -47,51 +47,25 @@ bool mode_is_used_behind(const nc::Program& program, std::size_t block) {
   return false;
 }
 
-class RunWriter {
+/// What the blocks of a run have in common.
+class BlockWriter {
  public:
-  RunWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,
-            const TextStyle& style)
-      : program_(program), path_(path), run_(run), style_(style) {
+  BlockWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const TextStyle& style)
+      : program_(program), style_(style) {
     const nc::Move& first = moves.moves[run.first_move];
     const nc::ModalState& state = moves.state_of(first);
     first_block_ = first.block;
     last_block_ = moves.moves[run.last_move].block;
     unit_mm_ = state.inch ? kMmPerInch : 1;
+    feed_mm_per_min_ = 60 * first.feed_mm_per_s;
     incremental_ = state.incremental;
     absolute_centre_ = state.absolute_arc_centre;
     plane_g_ = state.plane_g;
-    axes_ = nc::axes_of(run.normal == 2 ? nc::Plane::xy : run.normal == 1 ? nc::Plane::zx : nc::Plane::yz);
     says_mode_first_ = says_g1(first_block_);
     says_mode_always_ = says_g1(last_block_) && says_g1(last_block_ - 1);
   }
 
-  std::vector<std::string> write(const std::vector<Primitive>& chain) {
-    std::vector<std::string> lines;
-    const bool arcs = std::any_of(chain.begin(), chain.end(), [](const Primitive& p) { return p.arc; });
-    const bool other_plane = arcs && !run_.current_plane;
-    int mode = says_mode_first_ ? -1 : 1;
-    for (const Primitive& p : chain) {
-      std::vector<std::string> words;
-      if (const nc::Word* n = find(program_.words_of(path_.block[p.last]), 'N'))
-        words.emplace_back(written(program_, *n));
-      if (lines.empty() && other_plane)
-        words.push_back(fmt::format("G{}", run_.normal == 2 ? 17 : run_.normal == 1 ? 18 : 19));
-      const int now = !p.arc ? 1 : p.sweep_rad < 0 ? 2 : 3;
-      if (now != mode || says_mode_always_) words.push_back(code(now));
-      mode = now;
-      add_coordinates(p, words);
-      if (const nc::Word* f = find(program_.words_of(first_block_), 'F'); f && lines.empty())
-        words.emplace_back(written(program_, *f));
-      lines.push_back(joined(words));
-    }
-    std::vector<std::string> behind;
-    if (other_plane) behind.push_back(fmt::format("G{}", plane_g_));
-    if (mode != 1 && mode_is_used_behind(program_, last_block_)) behind.push_back(code(1));
-    if (!behind.empty()) lines.push_back(joined(behind));
-    return lines;
-  }
-
- private:
+ protected:
   bool says_g1(std::uint32_t block) const { return find(program_.words_of(block), 'G') != nullptr; }
 
   std::string code(int g) const { return fmt::format("G{}{}", style_.two_digit_codes ? "0" : "", g); }
@@ -108,6 +82,88 @@ class RunWriter {
     return letter + nc::format_number(value, decimals, style_.numbers);
   }
 
+  std::string feed(double factor) const {
+    const double value = factor * feed_mm_per_min_ / unit_mm_;
+    return 'F' + nc::format_number(value, unit_mm_ == 1 ? 1 : 2, style_.numbers);
+  }
+
+  void add_feed(std::vector<std::string>& words) const {
+    if (const nc::Word* f = find(program_.words_of(first_block_), 'F')) words.emplace_back(written(program_, *f));
+  }
+
+  const nc::Program& program_;
+  const TextStyle& style_;
+  std::uint32_t first_block_ = 0, last_block_ = 0;
+  double unit_mm_ = 1, feed_mm_per_min_ = 0;
+  bool incremental_ = false, absolute_centre_ = false, says_mode_first_ = false, says_mode_always_ = false;
+  int plane_g_ = 17;
+};
+
+class PointWriter : BlockWriter {
+ public:
+  using BlockWriter::BlockWriter;
+
+  std::vector<std::string> write(const SpacePath& path, const Layout& layout, double feed_factor) const {
+    std::vector<std::string> lines;
+    for (std::size_t k = 1; k < layout.points.size(); ++k) {
+      std::vector<std::string> words;
+      const std::uint32_t old = layout.old_point[k];
+      if (old > layout.old_point[k - 1])
+        if (const nc::Word* n = find(program_.words_of(path.block[old]), 'N'))
+          words.emplace_back(written(program_, *n));
+      if (says_mode_always_ || (lines.empty() && says_mode_first_)) words.push_back(code(1));
+      const Vec3 &from = layout.points[k - 1], &to = layout.points[k];
+      for (int a = 0; a < 3; ++a)
+        if (from[a] != to[a])
+          words.push_back(number(kAxis[static_cast<std::size_t>(a)], incremental_ ? to[a] - from[a] : to[a]));
+      if (lines.empty() && feed_factor != 1)
+        words.push_back(feed(feed_factor));
+      else if (lines.empty())
+        add_feed(words);
+      lines.push_back(joined(words));
+    }
+    if (feed_factor != 1) lines.push_back(feed(1));
+    return lines;
+  }
+};
+
+class RunWriter : BlockWriter {
+ public:
+  RunWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,
+            const TextStyle& style)
+      : BlockWriter(program, moves, run, style),
+        path_(path),
+        run_(run),
+        axes_(nc::axes_of(run.normal == 2   ? nc::Plane::xy
+                          : run.normal == 1 ? nc::Plane::zx
+                                            : nc::Plane::yz)) {}
+
+  std::vector<std::string> write(const std::vector<Primitive>& chain) {
+    std::vector<std::string> lines;
+    const bool arcs = std::any_of(chain.begin(), chain.end(), [](const Primitive& p) { return p.arc; });
+    const bool other_plane = arcs && !run_.current_plane;
+    int mode = says_mode_first_ ? -1 : 1;
+    for (const Primitive& p : chain) {
+      std::vector<std::string> words;
+      if (const nc::Word* n = find(program_.words_of(path_.block[p.last]), 'N'))
+        words.emplace_back(written(program_, *n));
+      if (lines.empty() && other_plane)
+        words.push_back(fmt::format("G{}", run_.normal == 2 ? 17 : run_.normal == 1 ? 18 : 19));
+      const int now = !p.arc ? 1 : p.sweep_rad < 0 ? 2 : 3;
+      if (now != mode || says_mode_always_) words.push_back(code(now));
+      mode = now;
+      add_coordinates(p, words);
+      if (lines.empty()) add_feed(words);
+      lines.push_back(joined(words));
+    }
+    std::vector<std::string> behind;
+    if (other_plane) behind.push_back(fmt::format("G{}", plane_g_));
+    if (mode != 1 && mode_is_used_behind(program_, last_block_)) behind.push_back(code(1));
+    if (!behind.empty()) lines.push_back(joined(behind));
+    return lines;
+  }
+
+ private:
   void add_coordinates(const Primitive& p, std::vector<std::string>& words) const {
     const Vec2 from = path_.points[p.first], to = path_.points[p.last];
     const bool full_turn = p.arc && from == to;
@@ -123,14 +179,8 @@ class RunWriter {
         if (!word.empty()) words.push_back(word);
   }
 
-  const nc::Program& program_;
   const RunPath& path_;
   const Run& run_;
-  const TextStyle& style_;
-  std::uint32_t first_block_ = 0, last_block_ = 0;
-  double unit_mm_ = 1;
-  bool incremental_ = false, absolute_centre_ = false, says_mode_first_ = false, says_mode_always_ = false;
-  int plane_g_ = 17;
   nc::PlaneAxes axes_;
 };
 
@@ -155,6 +205,12 @@ TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& mo
 std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
                                  const RunPath& path, const std::vector<Primitive>& chain, const TextStyle& style) {
   return RunWriter(program, moves, run, path, style).write(chain);
+}
+
+std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
+                                 const SpacePath& path, const Layout& layout, const TextStyle& style,
+                                 double feed_factor) {
+  return PointWriter(program, moves, run, style).write(path, layout, feed_factor);
 }
 
 }  // namespace camber::repath

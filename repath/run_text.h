@@ -5,6 +5,7 @@
 
 #include "nc/number_style.h"
 #include "repath/compress.h"
+#include "repath/resegment.h"
 
 namespace camber::repath {
 
@@ -21,5 +22,12 @@ TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& mo
 /// F of the run's first block. Where the blocks behind rely on G1 and the chain ends on an arc, a block `G1` follows.
 std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
                                  const RunPath& path, const std::vector<Primitive>& chain, const TextStyle& style);
+
+/// The blocks of straight cuts to the points of a layout but its first: X Y Z that change, the N of the old block that
+/// ended where the new one does (each once), G1 as the run has it, and the F of the run's first block, or with a
+/// feed_factor other than 1 that much of the feed, and the old one in a block of its own behind.
+std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
+                                 const SpacePath& path, const Layout& layout, const TextStyle& style,
+                                 double feed_factor);
 
 }  // namespace camber::repath

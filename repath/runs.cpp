@@ -5,6 +5,7 @@
 
 #include "nc/arcs.h"
 #include "repath/compress.h"
+#include "repath/resegment.h"
 
 namespace camber::repath {
 namespace {
@@ -16,8 +17,8 @@ double without_noise(double mm) { return std::round(mm * 1e7) * 1e-7; }
 
 class RunFinder {
  public:
-  RunFinder(const nc::Program& program, const nc::Interpretation& moves)
-      : program_(program), moves_(moves), jumps_(program.macro.flow()) {}
+  RunFinder(const nc::Program& program, const nc::Interpretation& moves, bool in_space)
+      : program_(program), moves_(moves), in_space_(in_space), jumps_(program.macro.flow()) {}
 
   std::vector<Run> find() {
     const auto& all = moves_.moves;
@@ -49,6 +50,8 @@ class RunFinder {
         state.path_control == nc::PathControl::exact_stop)
       return 0;
     if (!plain_block(move.block)) return 0;
+    constexpr unsigned kAll = 7;
+    if (in_space_) return kAll;
     unsigned still = 0;
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(move.end_mm[axis] - move.start_mm[axis]) < kStandsStillMm) still |= 1u << axis;
@@ -106,7 +109,7 @@ class RunFinder {
 
   const nc::Program& program_;
   const nc::Interpretation& moves_;
-  bool jumps_;
+  bool in_space_, jumps_;
   std::vector<Run> runs_;
   bool open_ = false;
   std::uint32_t first_ = 0;
@@ -115,8 +118,8 @@ class RunFinder {
 
 }  // namespace
 
-std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves) {
-  return RunFinder(program, moves).find();
+std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, bool in_space) {
+  return RunFinder(program, moves, in_space).find();
 }
 
 RunPath path_of(const nc::Interpretation& moves, const Run& run) {
@@ -127,6 +130,21 @@ RunPath path_of(const nc::Interpretation& moves, const Run& run) {
   const auto add = [&](const nc::Move& move, const Vec3& p) {
     const Vec3 in_text = moves.frame_of(move).to_program(p);
     const Vec2 point(without_noise(in_text[axes.first]), without_noise(in_text[axes.second]));
+    if (!path.points.empty() && point == path.points.back()) return;
+    path.points.push_back(point);
+    path.block.push_back(move.block);
+  };
+  const nc::Move& first = moves.moves[run.first_move];
+  add(first, first.start_mm);
+  for (std::uint32_t m = run.first_move; m <= run.last_move; ++m) add(moves.moves[m], moves.moves[m].end_mm);
+  return path;
+}
+
+SpacePath space_path_of(const nc::Interpretation& moves, const Run& run) {
+  SpacePath path;
+  const auto add = [&](const nc::Move& move, const Vec3& p) {
+    const Vec3 in_text = moves.frame_of(move).to_program(p);
+    const Vec3 point(without_noise(in_text.x()), without_noise(in_text.y()), without_noise(in_text.z()));
     if (!path.points.empty() && point == path.points.back()) return;
     path.points.push_back(point);
     path.block.push_back(move.block);

@@ -1,0 +1,128 @@
+#include "cli/resegment_command.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/output_file.h"
+#include "cli/console.h"
+#include "feedmodel/control_options.h"
+#include "repath/fastest.h"
+
+namespace camber::cli {
+namespace {
+
+struct Figures {
+  std::size_t blocks = 0, lines = 0, arcs = 0;
+  double length_mm = 0;
+};
+
+Figures figures_of(const nc::Program& program, const nc::Interpretation& moves) {
+  Figures f;
+  for (std::size_t b = 0; b < program.blocks.size(); ++b) f.blocks += program.blocks[b].word_count > 0;
+  for (const nc::Move& move : moves.moves) {
+    if (move.kind != nc::MoveKind::linear && move.kind != nc::MoveKind::arc) continue;
+    ++(move.kind == nc::MoveKind::arc ? f.arcs : f.lines);
+    f.length_mm += nc::length_mm(moves, move);
+  }
+  return f;
+}
+
+struct Report {
+  Figures before, after;
+  repath::ContourFigures contour_before;
+  const repath::Fastest& result;
+  double tolerance_mm;
+
+  repath::Candidate chosen() const {
+    return result.gains ? result.tried[result.chosen] : repath::Candidate{.figures = contour_before};
+  }
+
+  std::string text() const {
+    const repath::ContourFigures now = chosen().figures;
+    std::string out = "                    before        after\n";
+    out += fmt::format("blocks         {:>11} {:>12}\n", before.blocks, after.blocks);
+    out += fmt::format("length         {:>8.1f} mm {:>9.1f} mm\n", before.length_mm, after.length_mm);
+    out += fmt::format("time           {:>9.1f} s {:>10.1f} s   {:+.1f} %\n", contour_before.time_s, now.time_s,
+                       100 * (now.time_s / contour_before.time_s - 1));
+    out += fmt::format("contour error  {:>8.1f} um {:>9.1f} um   predicted, largest while cutting\n",
+                       1000 * contour_before.contour_max_mm, 1000 * now.contour_max_mm);
+    out += fmt::format("               {:>8.1f} um {:>9.1f} um   rms\n", 1000 * contour_before.contour_rms_mm,
+                       1000 * now.contour_rms_mm);
+    out += fmt::format(
+        "largest deviation {:.4f} mm in {} rewritten runs, {} corners kept; length x {:.2f}, feed x {:.2f}, "
+        "of {} tried\n",
+        result.path.max_deviation_mm, result.path.runs.size(), result.path.corners, chosen().length_factor,
+        chosen().feed_factor, result.tried.size());
+    return out;
+  }
+
+  std::string json() const {
+    nlohmann::ordered_json report = {{"blocks_before", before.blocks},
+                                     {"blocks_after", after.blocks},
+                                     {"lines", after.lines},
+                                     {"arcs", after.arcs},
+                                     {"length_before_mm", before.length_mm},
+                                     {"length_after_mm", after.length_mm},
+                                     {"tolerance_mm", tolerance_mm},
+                                     {"max_deviation_mm", result.path.max_deviation_mm},
+                                     {"time_before_s", contour_before.time_s},
+                                     {"time_after_s", chosen().figures.time_s},
+                                     {"contour_before_um", of(contour_before)},
+                                     {"contour_after_um", of(chosen().figures)},
+                                     {"contour_limit_um", 1000 * result.contour_limit_mm},
+                                     {"within_contour_limit", result.within_limit},
+                                     {"runs", result.path.runs.size()},
+                                     {"corners", result.path.corners},
+                                     {"gains", result.gains},
+                                     {"length_factor", chosen().length_factor},
+                                     {"feed_factor", chosen().feed_factor}};
+    for (const auto& c : result.tried)
+      report["tried"].push_back({{"length_factor", c.length_factor},
+                                 {"feed_factor", c.feed_factor},
+                                 {"time_s", c.figures.time_s},
+                                 {"contour_um", of(c.figures)}});
+    return report.dump(2) + "\n";
+  }
+
+ private:
+  static nlohmann::ordered_json of(const repath::ContourFigures& f) {
+    return {{"max", 1000 * f.contour_max_mm}, {"rms", 1000 * f.contour_rms_mm}};
+  }
+};
+
+}  // namespace
+
+int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& options) {
+  Diagnostics diagnostics;
+  const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
+  const nc::InterpreterOptions interpreter = feedmodel::interpreter_options(machine, arguments.interpreter);
+  const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
+  const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
+  settle(diagnostics, options);
+
+  repath::FastestOptions fastest;
+  fastest.layout.tolerance_mm = arguments.tolerance_mm;
+  fastest.layout.length_mm = arguments.length_mm;
+  fastest.layout.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
+  fastest.contour_mm = arguments.contour_mm;
+  fastest.interpreter = interpreter;
+  const repath::ContourFigures before = repath::contour_figures(moves, moves, machine);
+  const repath::Fastest result = repath::find_fastest(program, moves, machine, before, fastest);
+
+  Diagnostics again;
+  const nc::Program new_program = nc::read_program(SourceText(arguments.output, result.path.text), again);
+  const nc::Interpretation new_moves = nc::interpret(new_program, interpreter, again);
+  again.throw_if_errors();
+  const Report report{figures_of(program, moves), figures_of(new_program, new_moves), before, result,
+                      arguments.tolerance_mm};
+  write_file(arguments.output, result.path.text);
+  if (!arguments.json.empty()) write_file(arguments.json, report.json());
+  if (!options.quiet) fmt::print("{}", report.text());
+  if (!result.gains && !options.quiet) fmt::print("no length is faster: the program was left as it is\n");
+  if (result.within_limit) return kDone;
+  fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the nearest was written\n",
+             1000 * result.contour_limit_mm);
+  return kNumbersDidNotWorkOut;
+}
+
+}  // namespace camber::cli

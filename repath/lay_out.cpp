@@ -1,0 +1,186 @@
+// New points for an old path.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "repath/resegment.h"
+#include "repath/smooth_curve.h"
+
+namespace camber::repath {
+namespace {
+
+constexpr double kSmoothShare = 0.5;  ///< of the tolerance; the rest is for the chords
+constexpr double kCurveShare = 0.75;  ///< of the curve between the points
+constexpr double kSharp = kPi / 3;
+constexpr double kShorter = 0.8;
+constexpr double kRounding = 0.87;  ///< increments: half a cube's diagonal
+
+double to_segment_mm(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double t = ab.squaredNorm() > 0 ? std::clamp((p - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0) : 0.0;
+  return (p - a - t * ab).norm();
+}
+
+Vec3 rounded(const Vec3& p, double increment_mm) {
+  return {std::round(p.x() / increment_mm) * increment_mm, std::round(p.y() / increment_mm) * increment_mm,
+          std::round(p.z() / increment_mm) * increment_mm};
+}
+
+class Layouter {
+ public:
+  Layouter(std::span<const Vec3> points, const ResegmentOptions& options, double length_mm, double increment_mm)
+      : old_(points), options_(options), length_(length_mm), increment_(increment_mm) {}
+
+  Layout run() {
+    const std::vector<bool> corners = space_corners_of(old_, options_.corner_rad, 5 * options_.tolerance_mm);
+    out_.points = {old_.front()};
+    out_.old_point = {0};
+    std::size_t begin = 0;
+    for (std::size_t k = 1; k < old_.size(); ++k) {
+      if (k + 1 < old_.size() && !corners[k]) continue;
+      out_.corners += k + 1 < old_.size();
+      piece(begin, k);
+      begin = k;
+    }
+    return std::move(out_);
+  }
+
+ private:
+  /// Old points first ... last without a corner between them.
+  void piece(std::size_t first, std::size_t last) {
+    if (last == first + 1) return straight(first);
+    const SmoothCurve curve(old_.subspan(first, last - first + 1),
+                            std::max(0.0, kSmoothShare * options_.tolerance_mm - kRounding * increment_));
+    const std::vector<std::size_t> left = leaves(curve, first);
+    if (left.empty()) return along(curve, first, last);
+    // What lies between is tried anew, with its ends held.
+    std::size_t begin = first;
+    for (const std::size_t k : left) {
+      if (k > begin) piece(begin, k);
+      straight(k);
+      begin = k + 1;
+    }
+    if (begin < last) piece(begin, last);
+  }
+
+  /// The old segments from which the curve keeps farther than its share.
+  std::vector<std::size_t> leaves(const SmoothCurve& curve, std::size_t first) const {
+    const auto& knots = curve.knots_mm();
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+      for (const double share : {0.25, 0.5, 0.75})
+        if (to_path(curve.at(knots[i] + share * (knots[i + 1] - knots[i])), first + i) >
+            kCurveShare * options_.tolerance_mm) {
+          found.push_back(first + i);
+          break;
+        }
+    return found;
+  }
+
+  /// One old segment stays what it is: a line needs no points between its ends.
+  void straight(std::size_t first) { add(old_[first + 1], first + 1, 0); }
+
+  void along(const SmoothCurve& curve, std::size_t first, std::size_t last) {
+    const auto& knots = curve.knots_mm();
+    const double end = curve.length_mm();
+    double s = 0;
+    std::size_t at = 0;  // the old segment in which s lies, from `first`
+    while (s < end) {
+      // Whole lengths that fill the rest, none shorter than asked for.
+      double step = (end - s) / std::max(1.0, std::floor((end - s) / length_ + 1e-9));
+      for (;;) {
+        const bool whole = s + step > end - 1e-9;
+        const double to = whole ? end : s + step;
+        const Vec3 p = whole ? old_[last] : rounded(curve.at(to), increment_);
+        std::size_t reached = at;
+        while (reached + 2 < knots.size() && knots[reached + 1] <= to + 1e-9) ++reached;
+        const double away = deviation(out_.points.back(), p, first + at, first + reached, whole);
+        // A step within one old segment is as good as it gets.
+        if (away > options_.tolerance_mm && reached > at) {
+          step *= kShorter;
+          continue;
+        }
+        if (p != out_.points.back()) add(p, whole ? last : first + reached, away);
+        s = to;
+        at = reached;
+        break;
+      }
+    }
+  }
+
+  /// Distance between the new segment a b and the old path from segment `from`, where a lies, to `to`, where b does.
+  /// The old path's distance to a line is greatest at a vertex; and as it runs from beside a to beside b, every point
+  /// of the line is the foot of one of its points.
+  double deviation(const Vec3& a, const Vec3& b, std::size_t from, std::size_t to, bool whole) const {
+    double away = whole ? 0 : to_path(b, to);
+    for (std::size_t k = from + 1; k <= to; ++k) away = std::max(away, to_segment_mm(old_[k], a, b));
+    return away;
+  }
+
+  /// From a point to the old path near one of its segments.
+  double to_path(const Vec3& p, std::size_t segment) const {
+    double nearest = to_segment_mm(p, old_[segment], old_[segment + 1]);
+    if (segment > 0) nearest = std::min(nearest, to_segment_mm(p, old_[segment - 1], old_[segment]));
+    if (segment + 2 < old_.size()) nearest = std::min(nearest, to_segment_mm(p, old_[segment + 1], old_[segment + 2]));
+    return nearest;
+  }
+
+  void add(const Vec3& p, std::size_t old_point, double away) {
+    out_.points.push_back(p);
+    out_.old_point.push_back(static_cast<std::uint32_t>(old_point));
+    out_.deviation_mm = std::max(out_.deviation_mm, away);
+  }
+
+  std::span<const Vec3> old_;
+  const ResegmentOptions& options_;
+  double length_, increment_;
+  Layout out_;
+};
+
+}  // namespace
+
+double segment_length_mm(double feed_mm_per_s, double block_time_s) { return feed_mm_per_s * block_time_s; }
+
+std::vector<bool> space_corners_of(std::span<const Vec3> points, double corner_rad, double leg_mm) {
+  const std::size_t n = points.size();
+  std::vector<bool> corners(n, false);
+  if (n < 3) return corners;
+  std::vector<double> length(n, 0), turn(n, 0);
+  std::vector<std::size_t> back_of(n, 0), ahead_of(n, 0);
+  for (std::size_t k = 1; k < n; ++k) length[k] = length[k - 1] + (points[k] - points[k - 1]).norm();
+  for (std::size_t k = 1, back = 0, ahead = 1; k + 1 < n; ++k) {
+    while (back + 1 < k && length[k] - length[back + 1] >= leg_mm) ++back;
+    ahead = std::max(ahead, k + 1);
+    while (ahead + 1 < n && length[ahead] - length[k] < leg_mm) ++ahead;
+    back_of[k] = back, ahead_of[k] = ahead;
+    const Vec3 in = points[k] - points[back], out = points[ahead] - points[k];
+    turn[k] = std::atan2(in.cross(out).norm(), in.dot(out));
+  }
+  for (std::size_t k = 1; k + 1 < n; ++k) {
+    if (turn[k] <= corner_rad || (turn[k] <= kSharp && turn[k] <= 3 * std::max(turn[back_of[k]], turn[ahead_of[k]])))
+      continue;
+    bool sharpest = true;  // its neighbours within the legs see a part of the same turn
+    for (std::size_t i = back_of[k] + 1; sharpest && i < ahead_of[k]; ++i)
+      sharpest = turn[i] < turn[k] || (turn[i] == turn[k] && i >= k);
+    corners[k] = sharpest;
+  }
+  return corners;
+}
+
+double length_for(const SpacePath& path, double feed_mm_per_s, const ResegmentOptions& options) {
+  constexpr double kLeast = 0.01;
+  if (options.length_mm > 0) return std::max(options.length_mm, kLeast);
+  double base = segment_length_mm(feed_mm_per_s, options.block_time_s);
+  if (!(base > 0)) {
+    for (std::size_t k = 1; k < path.points.size(); ++k) base += (path.points[k] - path.points[k - 1]).norm();
+    base /= static_cast<double>(path.points.size() - 1);
+  }
+  return std::max(options.length_factor * base, kLeast);
+}
+
+Layout lay_out(std::span<const Vec3> points, const ResegmentOptions& options, double length_mm, double increment_mm) {
+  return Layouter(points, options, length_mm, increment_mm).run();
+}
+
+}  // namespace camber::repath

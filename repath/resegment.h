@@ -1,0 +1,67 @@
+#pragma once
+// A program with its runs of short lines laid out again: in segments as long as the control wants them.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "nc/interpreter.h"
+#include "nc/program.h"
+#include "repath/compress.h"
+
+namespace camber::repath {
+
+struct ResegmentOptions {
+  double tolerance_mm = 0.01;  ///< largest distance between the old and the new path, both ways
+  double length_mm = 0;        ///< of segments; 0: length_factor times what the control asks for
+  double block_time_s = 0;     ///< T_b; 0: the mean length of the old blocks stands for L_b
+  double length_factor = 1;    ///< at least 1
+  double feed_factor = 1;      ///< the runs that are laid out again get this much of their feed
+  double corner_rad = 5 * kPi / 180;
+  bool whole_numbers_are_increments = false;
+};
+
+/// L_b = F T_b: shorter blocks than that the control cannot read at the feed.
+/// Source: KAKEN report on deflection-compensated CAM, eq. 3 (there F T_b / 60000 in mm, mm/min, ms).
+double segment_length_mm(double feed_mm_per_s, double block_time_s);
+
+/// The points of a run in space, as the text says them. Repeated points are left out; `block` tells which block ends at
+/// each (of the first point: the run's first block).
+struct SpacePath {
+  std::vector<Vec3> points;
+  std::vector<std::uint32_t> block;
+};
+SpacePath space_path_of(const nc::Interpretation& moves, const Run& run);
+
+/// Vertices at which the path turns by more than 60 degrees, or by more than `corner_rad` and three times as much as
+/// beside them (a coarse circle turns everywhere alike); turns are measured between legs of at least `leg_mm`. First
+/// and last are none.
+std::vector<bool> space_corners_of(std::span<const Vec3> points, double corner_rad, double leg_mm);
+
+/// A path laid out again.
+struct Layout {
+  std::vector<Vec3> points;              ///< from the first to the last one of the old path
+  std::vector<std::uint32_t> old_point;  ///< the last old point that is not behind each
+  double deviation_mm = 0;               ///< Hausdorff distance, both ways (an upper bound)
+  std::size_t corners = 0;
+};
+
+/// Of a run's segments: options.length_mm, or length_factor times L_b at the run's feed.
+double length_for(const SpacePath& path, double feed_mm_per_s, const ResegmentOptions& options);
+
+/// Between corners a smooth curve takes the place of the points (half of the tolerance), and segments of `length_mm`
+/// are laid on it, shorter ones where the whole tolerance asks for it. Where a curve leaves the old path by more, as
+/// between points that lie far apart, the path is cut there and stays what it was. `increment_mm`: points are rounded
+/// to it.
+Layout lay_out(std::span<const Vec3> points, const ResegmentOptions& options, double length_mm, double increment_mm);
+
+struct Resegmentation {
+  std::string text;
+  std::vector<RewrittenRun> runs;
+  double max_deviation_mm = 0;
+  std::size_t corners = 0;
+};
+
+/// Linear in the number of blocks. Does not throw on a program that was read and interpreted without errors.
+Resegmentation resegment(const nc::Program& program, const nc::Interpretation& moves, const ResegmentOptions& options);
+
+}  // namespace camber::repath
