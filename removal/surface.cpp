@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <tbb/parallel_for.h>
@@ -46,11 +47,44 @@ bool inside_cut(const Block& b, int i, int j, int k, float voxel) {
   return true;
 }
 
-void collect(const Stock& machined, const Stock& target, const Index3& tile, std::vector<SurfacePoint>& out) {
+/// Share of the grid edge from voxel (i, j, k) along `axis` at which the cutters that the voxels around it name leave
+/// the surface; `u` where the trilinear field has it.
+double sharp_crossing(const Block& b, int i, int j, int k, int axis, double u, const Vec3& corner_mm, double voxel,
+                      const CutterPlaces& places) {
+  std::array<std::int32_t, 18> ids;
+  std::size_t count = 0;
+  std::array<int, 3> lo{-1, -1, -1};
+  lo[axis] = 0;
+  for (int di = lo[0]; di <= 1; ++di)
+    for (int dj = lo[1]; dj <= 1; ++dj)
+      for (int dk = lo[2]; dk <= 1; ++dk) {
+        const std::int32_t id = b.target_stamp[Block::at(i + di, j + dj, k + dk)];
+        if (std::find(ids.begin(), ids.begin() + count, id) == ids.begin() + count && places.knows(id))
+          ids[count++] = id;
+      }
+  // The field is the largest of convex ones: Newton's steps on the governing one settle at once.
+  constexpr int kSteps = 4;
+  for (int step = 0; step < kSteps && count > 0; ++step) {
+    Vec3 p = corner_mm;
+    p[axis] += u * voxel;
+    double value = -std::numeric_limits<double>::infinity();
+    std::int32_t governing = 0;
+    for (std::size_t n = 0; n < count; ++n)
+      if (const double v = -places.distance_mm(ids[n], p); v > value) value = v, governing = ids[n];
+    const double slope = -places.gradient(governing, p)[axis];
+    if (std::abs(slope) < kGrazing) return u;
+    u = std::clamp(u - value / (slope * voxel), 0.0, 1.0);
+  }
+  return u;
+}
+
+/// `places`, `machined`: null where not wanted.
+void collect(const Stock* machined, const Stock& target, const CutterPlaces* places, const Index3& tile,
+             std::vector<SurfacePoint>& out) {
   if (!target.is_cut(tile)) return;
   Block b;
   fill(target, tile, b.target, b.target_stamp);
-  fill(machined, tile, b.machined, b.machined_stamp);
+  if (machined) fill(*machined, tile, b.machined, b.machined_stamp);
   const double voxel = target.voxel_mm();
   for (int i = 0; i < Tile::kCore; ++i)
     for (int j = 0; j < Tile::kCore; ++j)
@@ -63,7 +97,7 @@ void collect(const Stock& machined, const Stock& target, const Index3& tile, std
           const std::size_t next = Block::at(ni, nj, nk);
           const float t1 = b.target[next];
           if ((t0 < 0) == (t1 < 0)) continue;
-          const double u = t0 / (static_cast<double>(t0) - t1);
+          double u = t0 / (static_cast<double>(t0) - t1);
           const Vec3 g = (1 - u) * gradient(b.target, i, j, k) + u * gradient(b.target, ni, nj, nk);
           if (std::abs(g[a]) <= kGrazing * g.norm()) continue;
           if (b.target_stamp[here] == Stock::kUncut || b.target_stamp[next] == Stock::kUncut) continue;
@@ -72,12 +106,14 @@ void collect(const Stock& machined, const Stock& target, const Index3& tile, std
             continue;
           SurfacePoint p;
           p.normal = g.normalized();
-          p.place_mm = voxel * Vec3(tile[0] * Tile::kCore + i + (a == 0) * u, tile[1] * Tile::kCore + j + (a == 1) * u,
-                                    tile[2] * Tile::kCore + k + (a == 2) * u);
-          p.error_mm = -((1 - u) * b.machined[here] + u * b.machined[next]);
+          p.place_mm =
+              voxel * Vec3(tile[0] * Tile::kCore + i, tile[1] * Tile::kCore + j, tile[2] * Tile::kCore + k);
+          if (places) u = sharp_crossing(b, i, j, k, a, u, p.place_mm, voxel, *places);
+          p.place_mm[a] += voxel * u;
+          if (machined) p.error_mm = -((1 - u) * b.machined[here] + u * b.machined[next]);
           p.area_mm2 = voxel * voxel * std::abs(p.normal[a]);
           p.target_stamp = b.target_stamp[u < 0.5 ? here : next];
-          p.machined_stamp = b.machined_stamp[u < 0.5 ? here : next];
+          if (machined) p.machined_stamp = b.machined_stamp[u < 0.5 ? here : next];
           out.push_back(p);
         }
       }
@@ -85,14 +121,26 @@ void collect(const Stock& machined, const Stock& target, const Index3& tile, std
 
 }  // namespace
 
-std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target) {
+namespace {
+
+std::vector<std::vector<SurfacePoint>> by_tile(const Stock* machined, const Stock& target, const CutterPlaces* places) {
   const std::vector<Index3> tiles = target.surface_tiles();
   std::vector<std::vector<SurfacePoint>> parts(tiles.size());
   tbb::parallel_for(std::size_t{0}, tiles.size(),
-                    [&](std::size_t i) { collect(machined, target, tiles[i], parts[i]); });
+                    [&](std::size_t i) { collect(machined, target, places, tiles[i], parts[i]); });
+  return parts;
+}
+
+}  // namespace
+
+std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target) {
   std::vector<SurfacePoint> points;
-  for (const auto& part : parts) points.insert(points.end(), part.begin(), part.end());
+  for (const auto& part : by_tile(&machined, target, nullptr)) points.insert(points.end(), part.begin(), part.end());
   return points;
+}
+
+std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places) {
+  return by_tile(nullptr, target, &places);
 }
 
 ErrorFigures error_figures(const std::vector<double>& error, const std::vector<double>& area) {
