@@ -44,14 +44,26 @@ int main(int argc, char** argv) {
     print_off("off, %", got, want);
     std::printf("%.1f s\n", double(std::clock() - t) / CLOCKS_PER_SEC);
   }
+  if (what == "shift") {
+    InclinedPlane p;
+    p.feed_mm = argc > 2 ? std::atof(argv[2]) : 0.15;
+    p.slope_deg = argc > 3 ? std::atof(argv[3]) : 45;
+    const CutFigures want = drawn_figures(p);
+    print("drawn", want);
+    const double v = p.voxel_mm;
+    for (const Vec3& o : {Vec3(0, 0, 0), Vec3(0.33, 0, 0), Vec3(0.67, 0, 0), Vec3(0, 0.37, 0), Vec3(0, 0, 0.29), Vec3(0.5, 0.5, 0.5), Vec3(0.21, 0.83, 0.62), Vec3(0.71, 0.13, 0.41)}) {
+      p.offset_mm = v * o;
+      print_off(fmt::format("grid at {:.2f} {:.2f} {:.2f} voxels", o.x(), o.y(), o.z()).c_str(), camber_figures(p), want);
+    }
+  }
   if (what == "try") {
     InclinedPlane p;
     print("drawn", drawn_figures(p));
     p.steps_per_pitch = 180;
     p.feed_mm = 0.15;
     const CutFigures want = drawn_figures(p);
-    for (const double v : {0.2, 0.1, 0.05})
-      for (const double e : {0.06, 0.03})
+    for (const double v : {0.2, 0.1})
+      for (const double e : {0.03})
         for (const int s : {180, 360}) {
           p.voxel_mm = v, p.diameter_step_mm = e, p.steps_per_pitch = s;
           print_off(fmt::format("voxel {} edge {} steps {}", v, e, s).c_str(), camber_figures(p), want);

@@ -34,7 +34,7 @@ struct CutFigures {
 };
 
 inline DrawnCut drawn(const InclinedPlane& p) {
-  constexpr double kLength = 5, kAlong = 6.3, kRun = 1.8;
+  constexpr double kLength = 7, kAlong = 6.3, kRun = 1.8;
   const double a = rad_from_deg(p.slope_deg), c = std::cos(a), s = std::sin(a);
   DrawnCut cut;
   cut.radius = cut.corner = p.radius_mm;
@@ -59,7 +59,7 @@ inline DrawnCut drawn(const InclinedPlane& p) {
 
 namespace detail {
 
-constexpr double kXFrom = 2.0, kXTo = 3.0;
+constexpr double kXFrom = 2.0, kXTo = 5.0;
 constexpr double kSFrom = 2.7, kSTo = 3.9;  ///< along the slope
 
 inline double along_slope(const InclinedPlane& p, const Vec3& tip) {
@@ -122,7 +122,7 @@ inline CutFigures drawn_figures(const InclinedPlane& p) {
     f.chip_mm3 += share * pass.chip_mm3;
   }
   const double y = detail::kSFrom * std::cos(a), z = detail::kSFrom * std::sin(a);
-  const DrawnSurface lattice(p.offset_mm + Vec3(2.2, y, z), Vec3::UnitX(), {0, std::cos(a), std::sin(a)}, 60, 120,
+  const DrawnSurface lattice(p.offset_mm + Vec3(3.2, y, z), Vec3::UnitX(), {0, std::cos(a), std::sin(a)}, 60, 120,
                              0.01, 0.01);
   const auto error = drawn_error_mm(
       cut, [&](std::size_t k) -> const DrawnPass& { return by_way.at(way(k)); }, outer, lattice, 0.1);
