@@ -11,6 +11,7 @@
 namespace camber::removal {
 namespace {
 
+constexpr double kRounding_mm = 1e-5;
 constexpr int kBlock = 4;  ///< voxels a side of the cubes whose points are passed over together
 
 /// Points first ... first + count - 1 within `radius` of `centre`.
@@ -46,11 +47,6 @@ class BentEnvelope {
  public:
   BentEnvelope(const EnvelopeGrid& envelope, const ShiftTable& shifts, const CarveBend& bend, const Vec3& tip)
       : e_(envelope), shifts_(shifts), bend_(bend), tip_(tip) {}
-
-  /// True where the envelope, moved by as much as it may be, does not come within `reach` of x.
-  bool beyond(const Vec3& x, double reach) const {
-    return e_.shape.distance_mm(x - tip_) > reach + bend_.largest_mm;
-  }
 
   /// Height above q along n at which q + height n lies on the bent envelope, if that is under `highest`; else `highest`.
   double height_mm(const Vec3& q, const Vec3& n, double highest) const {
@@ -123,6 +119,21 @@ struct SurfaceMap::Impl {
   double voxel_mm;
   std::vector<SurfacePoint> points;
   std::vector<TilePoints> tiles;
+
+  /// Lowers the points of a group to the envelope. Returns the highest that is left.
+  double mark(const Group& group, const BentEnvelope& bent, std::int32_t id) {
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+      SurfacePoint& p = points[i];
+      const double h = bent.height_mm(p.place_mm, p.normal, p.error_mm);
+      if (h < p.error_mm) {
+        p.error_mm = h;
+        p.machined_stamp = id;
+      }
+      highest = std::max(highest, p.error_mm);
+    }
+    return highest;
+  }
 };
 
 SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places)
@@ -170,25 +181,29 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
     const double reach = envelope.shape.radius_mm + tile.all.radius + tile.all.highest + most_bent;
     for (int a = 0; a < 2; ++a)
       if (tile.all.centre[a] < lo[a] - reach || tile.all.centre[a] > hi[a] + reach) return;
-    for (std::size_t k = 0; k < stamps.size(); ++k) {
-      const BentEnvelope bent(envelope, shifts, bends[k], stamps[k].tip_mm);
-      if (bent.beyond(tile.all.centre, tile.all.radius + tile.all.highest)) continue;
-      tile.all.highest = -std::numeric_limits<double>::infinity();
-      for (Group& block : tile.blocks) {
-        if (!bent.beyond(block.centre, block.radius + block.highest)) {
-          block.highest = -std::numeric_limits<double>::infinity();
-          for (std::size_t i = block.first; i < block.first + block.count; ++i) {
-            SurfacePoint& p = impl_->points[i];
-            const double h = bent.height_mm(p.place_mm, p.normal, p.error_mm);
-            if (h < p.error_mm) {
-              p.error_mm = h;
-              p.machined_stamp = first_id + static_cast<std::int32_t>(k);
-            }
-            block.highest = std::max(block.highest, p.error_mm);
-          }
-        }
-        tile.all.highest = std::max(tile.all.highest, block.highest);
-      }
+    std::vector<std::size_t> near;
+    for (std::size_t k = 0; k < stamps.size(); ++k)
+      if (envelope.shape.distance_mm(tile.all.centre - stamps[k].tip_mm) <=
+          tile.all.radius + tile.all.highest + bends[k].largest_mm)
+        near.push_back(k);
+    if (near.empty()) return;
+    std::vector<float> distance(near.size());
+    tile.all.highest = -std::numeric_limits<double>::infinity();
+    for (Group& block : tile.blocks) {
+      for (std::size_t n = 0; n < near.size(); ++n)
+        distance[n] = static_cast<float>(envelope.shape.distance_mm(block.centre - stamps[near[n]].tip_mm));
+      // The stamp that goes deepest first: most others are then too high to look at.
+      const auto deepest = static_cast<std::size_t>(std::min_element(distance.begin(), distance.end()) - distance.begin());
+      const auto take = [&](std::size_t n) {
+        const std::size_t k = near[n];
+        if (distance[n] > block.radius + block.highest + bends[k].largest_mm + kRounding_mm) return;
+        const BentEnvelope bent(envelope, shifts, bends[k], stamps[k].tip_mm);
+        block.highest = impl_->mark(block, bent, first_id + static_cast<std::int32_t>(k));
+      };
+      take(deepest);
+      for (std::size_t n = 0; n < near.size(); ++n)
+        if (n != deepest) take(n);
+      tile.all.highest = std::max(tile.all.highest, block.highest);
     }
   });
 }
