@@ -48,7 +48,8 @@ class BentEnvelope {
   BentEnvelope(const EnvelopeGrid& envelope, const ShiftTable& shifts, const CarveBend& bend, const Vec3& tip)
       : e_(envelope), shifts_(shifts), bend_(bend), tip_(tip) {}
 
-  /// Height above q along n at which q + height n lies on the bent envelope, if that is under `highest`; else `highest`.
+  /// Height above q along n at which q + height n lies on the bent envelope, if that is under `highest`; else
+  /// `highest`.
   double height_mm(const Vec3& q, const Vec3& n, double highest) const {
     constexpr int kSteps = 12;
     constexpr double kClose_mm = 1e-5, kFlattest = 0.3;
@@ -193,7 +194,8 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
       for (std::size_t n = 0; n < near.size(); ++n)
         distance[n] = static_cast<float>(envelope.shape.distance_mm(block.centre - stamps[near[n]].tip_mm));
       // The stamp that goes deepest first: most others are then too high to look at.
-      const auto deepest = static_cast<std::size_t>(std::min_element(distance.begin(), distance.end()) - distance.begin());
+      const auto deepest =
+          static_cast<std::size_t>(std::min_element(distance.begin(), distance.end()) - distance.begin());
       const auto take = [&](std::size_t n) {
         const std::size_t k = near[n];
         if (distance[n] > block.radius + block.highest + bends[k].largest_mm + kRounding_mm) return;

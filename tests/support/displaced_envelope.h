@@ -152,7 +152,9 @@ struct DrawnSurface {
       : origin(origin_mm), u(u_axis), v(v_axis), n(u_axis.cross(v_axis)), nu(n_u), nv(n_v), du(step_u), dv(step_v) {
     height.assign(static_cast<std::size_t>(nu) * static_cast<std::size_t>(nv), std::numeric_limits<double>::infinity());
   }
-  double& at(int i, int j) { return height[static_cast<std::size_t>(i) * static_cast<std::size_t>(nv) + static_cast<std::size_t>(j)]; }
+  double& at(int i, int j) {
+    return height[static_cast<std::size_t>(i) * static_cast<std::size_t>(nv) + static_cast<std::size_t>(j)];
+  }
 
   /// Lowers the lattice points that the triangle covers to it.
   void cut(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -190,23 +192,23 @@ inline void draw_envelope(const DrawnCut& c, std::size_t k, const DrawnPass* pas
   }
   const int wall = static_cast<int>(std::ceil(std::max(0.0, c.top - c.corner) / kFacet));
   for (int i = 1; i <= wall; ++i) rings.push_back({c.radius, c.corner + (c.top - c.corner) * i / wall});
-  constexpr int kAround = 1440;
+  const int around = std::max(1440, c.steps_per_pitch * c.flutes);
   struct Corner {
     Vec3 place;
     bool close;
   };
-  std::vector<Corner> last, line(kAround + 1);
+  std::vector<Corner> last, line(static_cast<std::size_t>(around) + 1);
   const Vec3 tip = c.stamps[k].tip_mm;
   for (const Ring& ring : rings) {
-    for (int i = 0; i <= kAround; ++i) {
-      const double phi = 2 * kPi * i / kAround;
+    for (int i = 0; i <= around; ++i) {
+      const double phi = 2 * kPi * i / around;
       Vec3 p = tip + Vec3(ring.r * std::cos(phi), ring.r * std::sin(phi), ring.z) - s.origin;
       const bool close = p.dot(s.n) < clearance;
       if (pass && close) p.head<2>() += pass->bend(std::min(ring.z, c.top), phi, c);
       line[static_cast<std::size_t>(i)] = {{p.dot(s.u), p.dot(s.v), p.dot(s.n)}, close};
     }
     if (!last.empty())
-      for (std::size_t i = 0; i < kAround; ++i) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(around); ++i) {
         if (!last[i].close || !last[i + 1].close || !line[i].close || !line[i + 1].close) continue;
         s.cut(last[i].place, last[i + 1].place, line[i].place);
         s.cut(last[i + 1].place, line[i + 1].place, line[i].place);
@@ -217,7 +219,8 @@ inline void draw_envelope(const DrawnCut& c, std::size_t k, const DrawnPass* pas
 
 /// Bent less straight surface, at the lattice points that both have.
 /// `pass_of(k)` gives the tooth passing whose bending stamp k has.
-inline std::vector<double> drawn_error_mm(const DrawnCut& c, const std::function<const DrawnPass&(std::size_t)>& pass_of,
+inline std::vector<double> drawn_error_mm(const DrawnCut& c,
+                                          const std::function<const DrawnPass&(std::size_t)>& pass_of,
                                           const std::vector<std::size_t>& stamps, const DrawnSurface& lattice,
                                           double clearance) {
   DrawnSurface straight = lattice, bent = lattice;
@@ -227,7 +230,8 @@ inline std::vector<double> drawn_error_mm(const DrawnCut& c, const std::function
   }
   std::vector<double> out(straight.height.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < out.size(); ++i)
-    if (std::isfinite(straight.height[i]) && std::isfinite(bent.height[i])) out[i] = bent.height[i] - straight.height[i];
+    if (std::isfinite(straight.height[i]) && std::isfinite(bent.height[i]))
+      out[i] = bent.height[i] - straight.height[i];
   return out;
 }
 

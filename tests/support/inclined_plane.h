@@ -16,8 +16,8 @@ namespace camber::testing {
 /// Rows along X over the plane z = y tan(slope), its figures read in the steady middle.
 struct InclinedPlane {
   double slope_deg = 45, feed_mm = 0.15, row_mm = 0.3, allowance_mm = 0.2;
-  bool upwards = true;    ///< rows climb; else they descend
-  double along_x = -1;    ///< direction of the feed; 0: to and fro
+  bool upwards = true;  ///< rows climb; else they descend
+  double along_x = -1;  ///< direction of the feed; 0: to and fro
   double voxel_mm = 0.1;
   Vec3 offset_mm = Vec3::Zero();  ///< of path and stock against the grid
   double radius_mm = 3, diameter_step_mm = 0.06;
@@ -29,7 +29,7 @@ struct CutFigures {
   double lateral_max_N = 0;
   Vec3 mean_N = Vec3::Zero();
   double p5_um = 0, median_um = 0, p95_um = 0, error_mean_um = 0;
-  double chip_mm3 = 0;      ///< a tooth passing
+  double chip_mm3 = 0;        ///< a tooth passing
   double chips_of_stock = 1;  ///< chips over what the stock lost
 };
 
@@ -69,7 +69,8 @@ inline double along_slope(const InclinedPlane& p, const Vec3& tip) {
 }
 
 /// Stamps whose figures are read.
-inline std::vector<std::size_t> middle(const InclinedPlane& p, const std::vector<removal::Stamp>& stamps, double margin) {
+inline std::vector<std::size_t> middle(const InclinedPlane& p, const std::vector<removal::Stamp>& stamps,
+                                       double margin) {
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k + 1 < stamps.size(); ++k) {
     const double x = stamps[k].tip_mm.x() - p.offset_mm.x(), s = along_slope(p, stamps[k].tip_mm);
@@ -110,8 +111,8 @@ inline CutFigures drawn_figures(const InclinedPlane& p) {
   for (const int w : {-1, 1}) {
     std::size_t best = cut.stamps.size();
     for (const std::size_t k : inner)
-      if (way(k) == w && (best == cut.stamps.size() || std::abs(cut.stamps[k].tip_mm.x() - x_mid) <
-                                                           std::abs(cut.stamps[best].tip_mm.x() - x_mid)))
+      if (way(k) == w && (best == cut.stamps.size() ||
+                          std::abs(cut.stamps[k].tip_mm.x() - x_mid) < std::abs(cut.stamps[best].tip_mm.x() - x_mid)))
         best = k;
     if (best < cut.stamps.size()) by_way[w] = drawn_pass(cut, best);
   }
@@ -122,8 +123,8 @@ inline CutFigures drawn_figures(const InclinedPlane& p) {
     f.chip_mm3 += share * pass.chip_mm3;
   }
   const double y = detail::kSFrom * std::cos(a), z = detail::kSFrom * std::sin(a);
-  const DrawnSurface lattice(p.offset_mm + Vec3(3.2, y, z), Vec3::UnitX(), {0, std::cos(a), std::sin(a)}, 60, 120,
-                             0.01, 0.01);
+  const DrawnSurface lattice(p.offset_mm + Vec3(3.2, y, z), Vec3::UnitX(), {0, std::cos(a), std::sin(a)}, 60, 120, 0.01,
+                             0.01);
   const auto error = drawn_error_mm(
       cut, [&](std::size_t k) -> const DrawnPass& { return by_way.at(way(k)); }, outer, lattice, 0.1);
   std::vector<std::pair<double, double>> error_area;
