@@ -51,25 +51,33 @@ class BentEnvelope {
   /// Height above q along n at which q + height n lies on the bent envelope, if that is under `highest`; else
   /// `highest`.
   double height_mm(const Vec3& q, const Vec3& n, double highest) const {
-    constexpr int kSteps = 12;
-    constexpr double kClose_mm = 1e-5, kFlattest = 0.3;
     const Vec3 above = q + highest * n - tip_;
     if (e_.shape.distance_mm(above) > outward_mm(above)) return highest;
+    // Where the deflection jumps along with the edge, two points of the envelope may lie on one line: the lower counts.
+    return std::min(settled_mm(q, n, highest, Vec3::Zero()), settled_mm(q, n, highest, shift(above - shift(above))));
+  }
+
+ private:
+  /// Where the deflection jumps against the motion of the edge, the envelope is torn, and the tooth draws the gap while
+  /// it bends: there plain steps swing between both sides, and smaller ones find the place between them.
+  static constexpr double share_of(int step) { return step < 5 ? 1.0 : step < 16 ? 0.3 : 0.1; }
+
+  /// From a guess of the deflection to the height at which place and deflection agree.
+  double settled_mm(const Vec3& q, const Vec3& n, double highest, Vec3 bend) const {
     double h = highest;
-    Vec3 bend = shift(above);
     for (int step = 0; step < kSteps; ++step) {
       const Vec3 x = q + h * n - tip_;
-      bend = shift(x - bend);
       const double s = e_.shape.distance_mm(x - bend);
       if (step == 0 && s >= 0) return highest;
       const double change = s / std::clamp(-e_.shape.gradient(x - bend).dot(n), kFlattest, 1.0);
       h += change;
-      if (std::abs(change) < kClose_mm) break;
+      const Vec3 turned = shift(q + h * n - tip_ - bend) - bend;
+      if (std::abs(change) < kClose_mm && turned.squaredNorm() < kClose_mm * kClose_mm) break;
+      bend += share_of(step) * turned;
     }
     return std::min(h, highest);
   }
 
- private:
   double outward_mm(const Vec3& from_tip) const {
     const double rho = from_tip.head<2>().norm();
     if (rho <= 5 * bend_.largest_mm) return bend_.largest_mm;  // near the axis a shift turns a place to another side
@@ -108,6 +116,8 @@ class BentEnvelope {
     return sum;
   }
 
+  static constexpr int kSteps = 32;
+  static constexpr double kClose_mm = 1e-5, kFlattest = 0.3;
   const EnvelopeGrid& e_;
   const ShiftTable& shifts_;
   const CarveBend& bend_;

@@ -137,6 +137,24 @@ int main(int argc, char** argv) {
   if (what == "plane") planes();
   if (what == "grid") grid();
   if (what == "wall") walls();
+  if (what == "fine") {
+    head_of_plane();
+    InclinedPlane p;
+    p.slope_deg = argc > 2 ? std::atof(argv[2]) : 15;
+    const CutFigures want = drawn_figures(p);
+    print_drawn(want);
+    InclinedPlane q = p;
+    q.drawn_steps = 720, q.drawn_edge = 0.015;
+    print_off("drawn finer", drawn_figures(q), want);
+    print_off("as is", camber_figures(p), want);
+    q = p;
+    q.diameter_step_mm = 0.03;
+    print_off("edge 0.03", camber_figures(q), want);
+    q.steps_per_pitch = 360;
+    print_off("edge 0.03, 0.5 deg", camber_figures(q), want);
+    q.voxel_mm = 0.05;
+    print_off("edge 0.03, 0.5 deg, voxel 0.05", camber_figures(q), want);
+  }
   if (what == "wallsteps") {
     FinishedWall w;
     w.helix_deg = argc > 2 ? std::atof(argv[2]) : 0;

@@ -22,6 +22,8 @@ struct InclinedPlane {
   Vec3 offset_mm = Vec3::Zero();  ///< of path and stock against the grid
   double radius_mm = 3, diameter_step_mm = 0.06;
   int steps_per_pitch = 180;
+  int drawn_steps = 360;
+  double drawn_edge = 0.03;
 };
 
 /// Means are per tooth passing; error: signed, of the surface's area.
@@ -43,6 +45,8 @@ inline DrawnCut drawn(const InclinedPlane& p) {
   cut.allowance = p.allowance_mm;
   cut.k = {2000, 700, 0, 15, 15, 0};
   cut.overhang = 40;
+  cut.steps_per_pitch = p.drawn_steps;
+  cut.edge_step = p.drawn_edge;
   cut.bending_stiffness_N_mm2 = 600000 * kPi / 64 * std::pow(0.8 * 2 * p.radius_mm, 4);
   cut.lo = p.offset_mm + Vec3(0, 0, -1.5);
   cut.hi = p.offset_mm + Vec3(kLength, kAlong * c, kAlong * s + 1);
