@@ -21,21 +21,21 @@ namespace {
 double off(double got, double want) { return 100 * (got / want - 1); }
 
 void head_of_plane() {
-  std::printf("%-40s %8s %8s %8s %8s %8s %8s %8s\n", "", "peak F", "mean Fx", "mean Fy", "mean Fz", "err p5", "err p50",
-              "err p95");
+  std::printf("%-40s %8s %8s %8s %8s %8s %8s %8s %8s\n", "", "peak F", "mean Fx", "mean Fy", "mean Fz", "err p5",
+              "err p50", "err p95", "err mean");
 }
 
 void print_drawn(const CutFigures& f) {
-  std::printf("%-40s %8.2f %8.3f %8.3f %8.3f %8.2f %8.2f %8.2f   N, um\n", "  drawn", f.lateral_max_N, f.mean_N.x(),
-              f.mean_N.y(), f.mean_N.z(), f.p5_um, f.median_um, f.p95_um);
+  std::printf("%-40s %8.2f %8.3f %8.3f %8.3f %8.2f %8.2f %8.2f %8.2f   N, um\n", "  drawn", f.lateral_max_N,
+              f.mean_N.x(), f.mean_N.y(), f.mean_N.z(), f.p5_um, f.median_um, f.p95_um, f.error_mean_um);
 }
 
 /// Forces' means against the mean force's length.
 void print_off(const std::string& name, const CutFigures& f, const CutFigures& want) {
   const Vec3 mean = 100 * (f.mean_N - want.mean_N) / want.mean_N.norm();
-  std::printf("%-40s %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f   %%\n", name.c_str(),
+  std::printf("%-40s %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f   %%\n", name.c_str(),
               off(f.lateral_max_N, want.lateral_max_N), mean.x(), mean.y(), mean.z(), off(f.p5_um, want.p5_um),
-              off(f.median_um, want.median_um), off(f.p95_um, want.p95_um));
+              off(f.median_um, want.median_um), off(f.p95_um, want.p95_um), off(f.error_mean_um, want.error_mean_um));
   std::fflush(stdout);
 }
 
@@ -130,6 +130,33 @@ void walls() {
   }
 }
 
+/// The inclined plane on coarser and finer voxels, the envelope's samples as fine as predict sets them.
+void voxels() {
+  const CutFigures want = drawn_figures(InclinedPlane{});
+  std::printf("%-8s %9s %9s %9s %11s %9s %9s %9s\n", "voxel mm", "peak F %", "mean F %", "chips %", "chips/stock",
+              "err p5 %", "err p95 %", "err mean %");
+  for (const double voxel : {0.4, 0.2, 0.1, 0.05}) {
+    // The mean over a few places of the grid, without sign: what a user meets.
+    double peak = 0, mean = 0, chips = 0, balance = 0, p5 = 0, p95 = 0, error = 0;
+    constexpr int kPlaces = 4;
+    for (int i = 0; i < kPlaces; ++i) {
+      InclinedPlane p;
+      p.voxel_mm = voxel;
+      p.offset_mm = voxel * Vec3(0.25 * i, 0.37 * i, 0.61 * i);
+      const CutFigures f = camber_figures(p);
+      peak += std::abs(off(f.lateral_max_N, want.lateral_max_N)) / kPlaces;
+      mean += 100 * (f.mean_N - want.mean_N).norm() / want.mean_N.norm() / kPlaces;
+      chips += std::abs(off(f.chip_mm3, p.feed_mm * p.row_mm * p.allowance_mm)) / kPlaces;
+      balance += f.chips_of_stock / kPlaces;
+      p5 += std::abs(off(f.p5_um, want.p5_um)) / kPlaces;
+      p95 += std::abs(off(f.p95_um, want.p95_um)) / kPlaces;
+      error += std::abs(off(f.error_mean_um, want.error_mean_um)) / kPlaces;
+    }
+    std::printf("%-8g %9.2f %9.2f %9.2f %11.4f %9.2f %9.2f %9.2f\n", voxel, peak, mean, chips, balance, p5, p95, error);
+    std::fflush(stdout);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -137,32 +164,5 @@ int main(int argc, char** argv) {
   if (what == "plane") planes();
   if (what == "grid") grid();
   if (what == "wall") walls();
-  if (what == "fine") {
-    head_of_plane();
-    InclinedPlane p;
-    p.slope_deg = argc > 2 ? std::atof(argv[2]) : 15;
-    const CutFigures want = drawn_figures(p);
-    print_drawn(want);
-    InclinedPlane q = p;
-    q.drawn_steps = 720, q.drawn_edge = 0.015;
-    print_off("drawn finer", drawn_figures(q), want);
-    print_off("as is", camber_figures(p), want);
-    q = p;
-    q.diameter_step_mm = 0.03;
-    print_off("edge 0.03", camber_figures(q), want);
-    q.steps_per_pitch = 360;
-    print_off("edge 0.03, 0.5 deg", camber_figures(q), want);
-    q.voxel_mm = 0.05;
-    print_off("edge 0.03, 0.5 deg, voxel 0.05", camber_figures(q), want);
-  }
-  if (what == "wallsteps") {
-    FinishedWall w;
-    w.helix_deg = argc > 2 ? std::atof(argv[2]) : 0;
-    for (int up = 0; up < 2; ++up)
-    for (int n : {360,720, 1440, 2880, 5760}) {
-      w.up = up;
-      w.drawn_steps = n, w.rotation_step_deg = 360.0 / n;
-      wall_case(w);
-    }
-  }
+  if (what == "voxels") voxels();
 }
