@@ -88,8 +88,8 @@ Vec3 gradient(const std::array<float, Tile::kVolume>& values, const Cell& cell, 
   return sum / voxel;
 }
 
-/// A surface that the normal meets at a grazing angle is taken at no more than four times its distance.
-float slope(double along_normal) { return static_cast<float>(std::clamp(along_normal, 0.25, 1.0)); }
+/// A surface that the normal meets at a grazing angle is taken at no more than twenty times its distance.
+float slope(double along_normal) { return static_cast<float>(std::clamp(along_normal, 0.05, 1.0)); }
 
 /// Material in the tile's core, in voxels.
 CAMBER_VECTOR_CLONES
