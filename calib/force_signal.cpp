@@ -177,6 +177,8 @@ MeasuredCut measured_cut(const Signal& s, const machine::LoggedCut& logged, doub
   out.mean_N /= static_cast<double>(to - from);
   out.cut = {logged.feed_mm_per_min / (out.spindle_speed_rpm * how.tool.flutes), logged.axial_depth_mm,
              std::min(logged.radial_depth_mm, how.tool.diameter_mm), milling_of(how)};
+  // Published coefficients come from means by the closed forms, whose chip is straight; a waveform shows the circles.
+  out.cut.circular_chip = how.waveform;
   if (!how.waveform) return out;
   if (out.turns < 8) fail(fmt::format("lasts {} whole turns; a waveform needs at least eight", out.turns));
   const double per_turn = turn_s / period_s;

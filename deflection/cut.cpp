@@ -116,6 +116,8 @@ class Cutter {
       keep_turn(engagement, all, from, count, result);
       result.stock_mm3 += bent.commit();
     }
+    if (options_.surface)
+      options_.surface->mark(envelope_, stamps, shifts, first_id + static_cast<std::int32_t>(from));
     for (std::size_t k = 0; k < stamps.size(); ++k) {
       if (!contacts.empty())
         loads[k].contact_deflection_mm =

@@ -10,6 +10,7 @@
 #include "machine/job.h"
 #include "removal/stamp.h"
 #include "removal/stock.h"
+#include "removal/surface_map.h"
 
 namespace camber::deflection {
 
@@ -50,7 +51,8 @@ struct CutOptions {
   double settle_share = 0.01;                    ///< ... this share of its rms
   Vec2 axis_compliance_mm_per_N = Vec2::Zero();  ///< of the machine's x and y axes
   std::function<void(double)> progress;          ///< share done, 0 to 1
-  const removal::Stock* blank = nullptr;  ///< the stock as it is before, where somebody keeps it anyway; saves a copy
+  const removal::Stock* blank = nullptr;   ///< the stock as it is before, where somebody keeps it anyway; saves a copy
+  removal::SurfaceMap* surface = nullptr;  ///< takes the marks of the bent cutter, if given
   /// First stamp of a turn whose forces are kept tooth by tooth, in CutResult::turn.
   std::optional<std::size_t> turn_from;
 };

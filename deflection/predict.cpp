@@ -96,20 +96,26 @@ Target make_target(const Job& job, const MachinedProgram& target, Diagnostics& d
   }
   removal::Stock surface(blank);
   sweep_all(surface, 0);
+  removal::CutterPlaces places;
+  for_each_run(job, target.path, [&](const machine::Tool& tool, auto stamps, std::size_t from) {
+    places.add(static_cast<std::int32_t>(from), removal::shape_of(tool), stamps);
+  });
   std::optional<removal::MeshDistance> part;
   if (!job.part.mesh.empty()) part.emplace(job.part.mesh, job.simulation.voxel_mm, 10 * job.simulation.voxel_mm);
-  return {std::move(blank), std::move(surface), std::move(part)};
+  return {std::move(blank), std::move(surface), std::move(places), std::move(part)};
 }
 
 Prediction predict(const Job& job, const Target& target, const MachinedProgram& program,
                    const PredictOptions& options) {
   Prediction out;
   out.machined = std::make_unique<removal::Stock>(target.blank);
+  removal::SurfaceMap map(target.surface, target.places);
   const auto all = static_cast<double>(program.path.stamps.size());
   for_each_run(job, program.path, [&](const machine::Tool& tool, auto stamps, std::size_t from) {
     std::vector<Contact> contacts;
     if (options.contacts) contacts = find_contacts(target.surface, tool, stamps);
     CutOptions cut_options;
+    cut_options.surface = &map;
     cut_options.coupling = job.simulation.coupling;
     cut_options.axis_compliance_mm_per_N = {1 / job.machine.axis[0].stiffness_N_per_mm,
                                             1 / job.machine.axis[1].stiffness_N_per_mm};
@@ -131,7 +137,7 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
     out.cut.unsettled += cut_run.unsettled;
     if (cut_options.turn_from) out.cut.turn = std::move(cut_run.turn);
   });
-  out.surface = removal::compare_surfaces(*out.machined, target.surface);
+  out.surface = map.take(*out.machined);
   std::vector<double> error_um, area;
   for (const auto& p : out.surface) {
     error_um.push_back(1000 * p.error_mm);

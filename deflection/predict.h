@@ -12,6 +12,7 @@
 #include "machine/job.h"
 #include "nc/move.h"
 #include "nc/program.h"
+#include "removal/cutter_places.h"
 #include "removal/mesh_distance.h"
 #include "removal/stamp_path.h"
 #include "removal/stock.h"
@@ -37,6 +38,7 @@ MachinedProgram machine_program(SourceText source, const machine::Job& job, cons
 struct Target {
   removal::Stock blank;    ///< before this job's first cut
   removal::Stock surface;  ///< after the undeflected sweep; its stamps are the target program's
+  removal::CutterPlaces places;  ///< the target program's stamps, by the ids in `surface`
   std::optional<removal::MeshDistance> part;
 };
 

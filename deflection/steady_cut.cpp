@@ -32,21 +32,35 @@ SteadyCutModel::SteadyCutModel(const machine::Tool& tool, const SteadyCut& cut, 
   const auto envelope = removal::make_envelope(tool, cut.axial_depth_mm, ring_mm, kPi / 6);
   const double wall = tool.diameter_mm / 2 - cut.radial_depth_mm;  // from the axis, towards the work's side
   for (const auto& r : envelope.rings) {
-    Ring ring{r.profile.radius_mm,
-              r.width_mm,
-              r.lag_rad,
-              std::sin(r.profile.normal_angle_rad),
-              std::cos(r.profile.normal_angle_rad),
-              0,
-              0};
+    Ring ring{.radius_mm = r.profile.radius_mm,
+              .width_mm = r.width_mm,
+              .lag_rad = r.lag_rad,
+              .sine = std::sin(r.profile.normal_angle_rad),
+              .cosine = std::cos(r.profile.normal_angle_rad)};
     // phi from the feed direction; chips where cos(phi) > 0, work where r sin(phi) > wall on the left.
     if (ring.sine > 1e-9 && wall < ring.radius_mm) {
       const double from = wall > -ring.radius_mm ? std::asin(wall / ring.radius_mm) : -kPi / 2;
       ring.entry_rad = cut.milling == Milling::up ? from : -kPi / 2;
       ring.exit_rad = cut.milling == Milling::up ? kPi / 2 : -from;
+      const bool slot = wall <= -ring.radius_mm;
+      ring.fades_in = slot || cut.milling == Milling::down;
+      ring.fades_out = slot || cut.milling == Milling::up;
+      if (cut.circular_chip) {
+        ring.meridian_curvature = r.profile.meridian_curvature_per_mm;
+        ring.parallel_curvature = r.profile.parallel_curvature_per_mm;
+        // f cos(phi) sin(kappa) + k f^2 sin^2(phi) / 2 = 0 close to a right angle.
+        const double beyond = std::asin(std::min(0.5, ring.parallel_curvature * feed_per_tooth_mm_ / (2 * ring.sine)));
+        if (ring.fades_in) ring.entry_rad -= beyond;
+        if (ring.fades_out) ring.exit_rad += beyond;
+      }
     }
     if (ring.exit_rad > ring.entry_rad) rings_.push_back(ring);
   }
+}
+
+double SteadyCutModel::chip_mm(const Ring& ring, double feed, double phi) {
+  const double ahead = feed * std::cos(phi), around = feed * std::sin(phi), up = ahead * ring.cosine;
+  return ahead * ring.sine + (ring.parallel_curvature * around * around + ring.meridian_curvature * up * up) / 2;
 }
 
 template <class Function>
@@ -57,7 +71,7 @@ void SteadyCutModel::integrate(Function f) const {
       for (int i = 0; i < 4; ++i)
         for (const double side : {-1.0, 1.0}) {
           const double phi = ring.entry_rad + half * (2 * panel + 1 + side * kNodes[i]);
-          f(ring, phi, feed_per_tooth_mm_ * std::cos(phi) * ring.sine, half * kWeights[i]);
+          f(ring, phi, chip_mm(ring, feed_per_tooth_mm_, phi), half * kWeights[i]);
         }
   }
 }
@@ -99,19 +113,37 @@ std::vector<Vec3> SteadyCutModel::waveform_N(const machine::Material& material, 
       };
       for (int m = 1; m <= flutes_; ++m)
         ahead[static_cast<std::size_t>(m - 1)] = runs_out ? offset(in_tool) - offset(in_tool - m * pitch) : 0;
+      const auto chip = [&](double phi) {
+        double h = chip_mm(ring, feed_per_tooth_mm_, phi) + ahead[0];
+        for (int m = 2; runs_out && m <= flutes_; ++m)
+          h = std::min(h, chip_mm(ring, m * feed_per_tooth_mm_, phi) + ahead[static_cast<std::size_t>(m - 1)]);
+        return h;
+      };
+      // Where a tooth that stands out or back begins and ends to cut.
+      const auto fade = [&](double in_cut, double in_air) {
+        constexpr int kHalvings = 24;
+        if (chip(in_cut) <= 0) return in_cut;
+        for (int i = 0; i < kHalvings; ++i) {
+          const double middle = (in_cut + in_air) / 2;
+          (chip(middle) > 0 ? in_cut : in_air) = middle;
+        }
+        return in_cut;
+      };
+      constexpr double kReach_rad = 0.5;
+      double entry = ring.entry_rad, exit = ring.exit_rad;
+      const double inside = std::min(kReach_rad, (exit - entry) / 2);
+      if (runs_out && ring.fades_in) entry = fade(entry + inside, entry - kReach_rad);
+      if (runs_out && ring.fades_out) exit = fade(exit - inside, exit + kReach_rad);
       // Counter-clockwise from the feed, at the middle of step 0; each step takes it back by `step`.
       const double begin = in_tool - phase_rad - step / 2;
       for (int i = 0; i < steps; ++i) {
         const double middle = std::remainder(begin - i * step, 2 * kPi);
-        const double from = std::max(middle - step / 2, ring.entry_rad),
-                     to = std::min(middle + step / 2, ring.exit_rad);
+        const double from = std::max(middle - step / 2, entry), to = std::min(middle + step / 2, exit);
         if (to <= from) continue;
-        const double phi = (from + to) / 2, b = feed_per_tooth_mm_ * std::cos(phi) * ring.sine;
-        double h = b + ahead[0];
-        for (int m = 2; runs_out && m <= flutes_; ++m) h = std::min(h, m * b + ahead[static_cast<std::size_t>(m - 1)]);
+        const double phi = (from + to) / 2;
         out[static_cast<std::size_t>(i)] +=
             (to - from) / step *
-            on_tool(edge_force(material, h, ring.width_mm), directions(ring.sine, ring.cosine, phi));
+            on_tool(edge_force(material, chip(phi), ring.width_mm), directions(ring.sine, ring.cosine, phi));
       }
     }
   return out;

@@ -16,6 +16,9 @@ struct SteadyCut {
   double axial_depth_mm = 0;
   double radial_depth_mm = 0;  ///< up to the diameter; at the diameter: a slot
   Milling milling = Milling::up;
+  /// Chips as the circles of the teeth before leave them, to second order in feed / radius (removal/stretch.h), with
+  /// the little that a tooth cuts behind the feed's quadrant; else h = f sin(phi) sin(kappa), as closed forms have it.
+  bool circular_chip = false;
 };
 
 /// Offset of the cutter's axis from the spindle's, in the tool's frame: x towards tooth 1's edge at the tip,
@@ -24,14 +27,15 @@ using RunOut = Vec2;
 
 /// Forces on the tool in the frame of the cut, N: x along the tool's feed, y to its left, z up (away from the work).
 ///
-/// h = f_t sin(phi) sin(kappa), the circular chip of the closed forms; each edge is cut in rings of at most
-/// `ring_mm` of arc length. Run-out makes h the smallest over the teeth before, m f_t sin(phi) + e_j - e_(j-m), m = 1
+/// h = f_t sin(phi) sin(kappa), the chip of the closed forms, or the circular chip; each edge is cut in rings of at
+/// most `ring_mm` of arc length. Run-out makes h the smallest over the teeth before, h(m f_t) + e_j - e_(j-m), m = 1
 /// ... N (Kline & DeVor 1983). An element takes the share of a rotation step that it cuts in.
 class SteadyCutModel {
  public:
   SteadyCutModel(const machine::Tool& tool, const SteadyCut& cut, double ring_mm = 0.25);
 
-  /// Mean over whole turns, without run-out. Integrated by Gauss' rule: exact to rounding with the linear law.
+  /// Mean over whole turns, without run-out. Integrated by Gauss' rule: exact to rounding with the linear law and the
+  /// closed forms' chip.
   Vec3 mean_N(const machine::Material& material) const;
 
   /// Means over `steps` equal steps of one turn. Step i is turned clockwise from where tooth 1's edge at the tip points
@@ -46,9 +50,13 @@ class SteadyCutModel {
  private:
   struct Ring {
     double radius_mm = 0, width_mm = 0, lag_rad = 0;
-    double sine = 0, cosine = 0;         ///< of the profile's normal angle
-    double entry_rad = 0, exit_rad = 0;  ///< counter-clockwise from the feed, entry < exit; equal: never cuts
+    double sine = 0, cosine = 0;               ///< of the profile's normal angle
+    double entry_rad = 0, exit_rad = 0;        ///< counter-clockwise from the feed, entry < exit; equal: never cuts
+    bool fades_in = false, fades_out = false;  ///< there the chip begins or ends at nothing, not at the work's side
+    double meridian_curvature = 0, parallel_curvature = 0;  ///< 1/mm; 0 with the closed forms' chip
   };
+  /// What a motion by `feed` along the feed's direction takes at phi.
+  static double chip_mm(const Ring& ring, double feed, double phi);
   /// f(ring, phi, h, weight) at the nodes of Gauss' rule; weights add up to the engaged angle.
   template <class Function>
   void integrate(Function f) const;

@@ -10,8 +10,8 @@ namespace {
 /// A depth of more than this share of what the last motion allows ends at the surface of the tooth before.
 constexpr float kNearCap = 0.8f;
 
-/// A surface that the normal meets at a grazing angle is taken at no more than four times its distance.
-constexpr float kLeastSlope = 0.25f;
+/// A surface that the normal meets at a grazing angle is taken at no more than twenty times its distance.
+constexpr float kLeastSlope = 0.05f;
 
 float slope(double along_normal) {
   return static_cast<float>(std::clamp(along_normal, static_cast<double>(kLeastSlope), 1.0));

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 
 #include <tbb/parallel_for.h>
+#include <Eigen/Geometry>
 
 namespace camber::removal {
 namespace {
@@ -46,11 +49,79 @@ bool inside_cut(const Block& b, int i, int j, int k, float voxel) {
   return true;
 }
 
-void collect(const Stock& machined, const Stock& target, const Index3& tile, std::vector<SurfacePoint>& out) {
+/// Two even numbers in -0.5 ... 0.5 that belong to a grid edge.
+Vec2 scatter_of(const Index3& voxel, int axis) {
+  // Source: splitmix64 (Steele, Lea, Flood 2014), as a hash.
+  std::uint64_t h = static_cast<std::uint64_t>(axis);
+  for (const int v : voxel) {
+    h += 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(static_cast<std::int64_t>(v));
+    h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
+    h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
+    h ^= h >> 31;
+  }
+  constexpr double kPerStep = 1.0 / 4294967296.0;
+  return {static_cast<double>(h >> 32) * kPerStep - 0.5, static_cast<double>(h & 0xffffffffu) * kPerStep - 0.5};
+}
+
+/// The cutters that the voxels around a grid edge name: the target between the voxels is the largest of their fields.
+class NamedCutters {
+ public:
+  NamedCutters(const Block& b, int i, int j, int k, int axis, const CutterPlaces& places) : places_(places) {
+    std::array<int, 3> lo{-1, -1, -1};
+    lo[axis] = 0;
+    for (int di = lo[0]; di <= 1; ++di)
+      for (int dj = lo[1]; dj <= 1; ++dj)
+        for (int dk = lo[2]; dk <= 1; ++dk) {
+          const std::int32_t id = b.target_stamp[Block::at(i + di, j + dj, k + dk)];
+          if (std::find(ids_.begin(), ids_.begin() + count_, id) == ids_.begin() + count_ && places.knows(id))
+            ids_[count_++] = id;
+        }
+  }
+
+  /// Moves p along a direction onto the surface; false where there is none within `reach`.
+  bool settle(Vec3& p, const Vec3& direction, double reach) const {
+    // The field is the largest of convex ones: Newton's steps on the governing one settle at once.
+    constexpr int kSteps = 6;
+    constexpr double kClose_mm = 1e-5;
+    const Vec3 from = p;
+    for (int step = 0; step < kSteps && count_ > 0; ++step) {
+      double value = -std::numeric_limits<double>::infinity();
+      std::int32_t governing = 0;
+      for (std::size_t n = 0; n < count_; ++n)
+        if (const double v = -places_.distance_mm(ids_[n], p); v > value) value = v, governing = ids_[n];
+      if (std::abs(value) < kClose_mm) return true;
+      const double slope = -places_.gradient(governing, p).dot(direction);
+      if (std::abs(slope) < kGrazing) return false;
+      p -= value / slope * direction;
+      if ((p - from).squaredNorm() > reach * reach) return false;
+    }
+    return false;
+  }
+
+ private:
+  const CutterPlaces& places_;
+  std::array<std::int32_t, 18> ids_{};
+  std::size_t count_ = 0;
+};
+
+/// Puts a point of the trilinear surface onto the cutters that made it, and up to half a voxel aside: rows and feed
+/// marks that are in step with the grid would else be met at the same places of every cusp.
+void sharpen(SurfacePoint& p, const NamedCutters& cutters, const Vec2& scatter, double voxel) {
+  Vec3 place = p.place_mm;
+  if (!cutters.settle(place, p.normal, voxel)) return;
+  p.place_mm = place;
+  const Vec3 across = p.normal.unitOrthogonal();
+  place += voxel * (scatter.x() * across + scatter.y() * p.normal.cross(across));
+  if (cutters.settle(place, p.normal, 0.5 * voxel)) p.place_mm = place;
+}
+
+/// `places`, `machined`: null where not wanted.
+void collect(const Stock* machined, const Stock& target, const CutterPlaces* places, const Index3& tile,
+             std::vector<SurfacePoint>& out) {
   if (!target.is_cut(tile)) return;
   Block b;
   fill(target, tile, b.target, b.target_stamp);
-  fill(machined, tile, b.machined, b.machined_stamp);
+  if (machined) fill(*machined, tile, b.machined, b.machined_stamp);
   const double voxel = target.voxel_mm();
   for (int i = 0; i < Tile::kCore; ++i)
     for (int j = 0; j < Tile::kCore; ++j)
@@ -72,12 +143,14 @@ void collect(const Stock& machined, const Stock& target, const Index3& tile, std
             continue;
           SurfacePoint p;
           p.normal = g.normalized();
-          p.place_mm = voxel * Vec3(tile[0] * Tile::kCore + i + (a == 0) * u, tile[1] * Tile::kCore + j + (a == 1) * u,
-                                    tile[2] * Tile::kCore + k + (a == 2) * u);
-          p.error_mm = -((1 - u) * b.machined[here] + u * b.machined[next]);
+          const Index3 at{tile[0] * Tile::kCore + i, tile[1] * Tile::kCore + j, tile[2] * Tile::kCore + k};
+          p.place_mm = voxel * Vec3(at[0], at[1], at[2]);
+          p.place_mm[a] += voxel * u;
+          if (places) sharpen(p, NamedCutters(b, i, j, k, a, *places), scatter_of(at, a), voxel);
+          if (machined) p.error_mm = -((1 - u) * b.machined[here] + u * b.machined[next]);
           p.area_mm2 = voxel * voxel * std::abs(p.normal[a]);
           p.target_stamp = b.target_stamp[u < 0.5 ? here : next];
-          p.machined_stamp = b.machined_stamp[u < 0.5 ? here : next];
+          if (machined) p.machined_stamp = b.machined_stamp[u < 0.5 ? here : next];
           out.push_back(p);
         }
       }
@@ -85,14 +158,26 @@ void collect(const Stock& machined, const Stock& target, const Index3& tile, std
 
 }  // namespace
 
-std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target) {
+namespace {
+
+std::vector<std::vector<SurfacePoint>> by_tile(const Stock* machined, const Stock& target, const CutterPlaces* places) {
   const std::vector<Index3> tiles = target.surface_tiles();
   std::vector<std::vector<SurfacePoint>> parts(tiles.size());
   tbb::parallel_for(std::size_t{0}, tiles.size(),
-                    [&](std::size_t i) { collect(machined, target, tiles[i], parts[i]); });
+                    [&](std::size_t i) { collect(machined, target, places, tiles[i], parts[i]); });
+  return parts;
+}
+
+}  // namespace
+
+std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target) {
   std::vector<SurfacePoint> points;
-  for (const auto& part : parts) points.insert(points.end(), part.begin(), part.end());
+  for (const auto& part : by_tile(&machined, target, nullptr)) points.insert(points.end(), part.begin(), part.end());
   return points;
+}
+
+std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places) {
+  return by_tile(nullptr, target, &places);
 }
 
 ErrorFigures error_figures(const std::vector<double>& error, const std::vector<double>& area) {

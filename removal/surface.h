@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "removal/cutter_places.h"
 #include "removal/stock.h"
 
 namespace camber::removal {
@@ -23,6 +24,11 @@ struct SurfacePoint {
 /// target's sweep has cut, leaving out one voxel along its edges. Errors are cut off at the band. Both stocks must have
 /// the same voxels.
 std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target);
+
+/// The same points of the target alone, without error, tile by tile; each moved to where the cutters that the voxels
+/// around it name have left the surface, which a trilinear field does not tell at ridges, and aside by up to half a
+/// voxel (the same for the same grid edge), so that cusps in step with the grid are met at all their places.
+std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places);
 
 /// Area-weighted figures of an error, in the unit of the values.
 struct ErrorFigures {

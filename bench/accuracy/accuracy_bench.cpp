@@ -1,0 +1,168 @@
+// Camber against the drawn cut (tests/support/displaced_envelope.h): force and form error of rigid finishing cuts.
+//   accuracy_bench plane | grid | wall | voxels
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "tests/support/finished_wall.h"
+#include "tests/support/inclined_plane.h"
+
+using namespace camber;
+using testing::CutFigures;
+using testing::FinishedWall;
+using testing::InclinedPlane;
+using testing::WallFigures;
+
+namespace {
+
+double off(double got, double want) { return 100 * (got / want - 1); }
+
+void head_of_plane() {
+  std::printf("%-40s %8s %8s %8s %8s %8s %8s %8s %8s\n", "", "peak F", "mean Fx", "mean Fy", "mean Fz", "err p5",
+              "err p50", "err p95", "err mean");
+}
+
+void print_drawn(const CutFigures& f) {
+  std::printf("%-40s %8.2f %8.3f %8.3f %8.3f %8.2f %8.2f %8.2f %8.2f   N, um\n", "  drawn", f.lateral_max_N,
+              f.mean_N.x(), f.mean_N.y(), f.mean_N.z(), f.p5_um, f.median_um, f.p95_um, f.error_mean_um);
+}
+
+/// Forces' means against the mean force's length.
+void print_off(const std::string& name, const CutFigures& f, const CutFigures& want) {
+  const Vec3 mean = 100 * (f.mean_N - want.mean_N) / want.mean_N.norm();
+  std::printf("%-40s %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f %+8.2f   %%\n", name.c_str(),
+              off(f.lateral_max_N, want.lateral_max_N), mean.x(), mean.y(), mean.z(), off(f.p5_um, want.p5_um),
+              off(f.median_um, want.median_um), off(f.p95_um, want.p95_um), off(f.error_mean_um, want.error_mean_um));
+  std::fflush(stdout);
+}
+
+void plane_case(const std::string& name, const InclinedPlane& p) {
+  const CutFigures want = drawn_figures(p);
+  std::printf("%s\n", name.c_str());
+  print_drawn(want);
+  print_off("  Camber, off by", camber_figures(p), want);
+}
+
+void planes() {
+  head_of_plane();
+  for (const double slope : {15.0, 30.0, 45.0, 60.0}) {
+    InclinedPlane p;
+    p.slope_deg = slope;
+    plane_case(fmt::format("slope {} deg", slope), p);
+  }
+  for (const double feed : {0.05, 0.1, 0.2}) {
+    InclinedPlane p;
+    p.feed_mm = feed;
+    plane_case(fmt::format("45 deg, {} mm/tooth", feed), p);
+  }
+  InclinedPlane p;
+  p.upwards = false;
+  plane_case("45 deg, rows downwards", p);
+  p.along_x = 1;
+  plane_case("45 deg, rows downwards, along +X", p);
+  p.upwards = true;
+  plane_case("45 deg, rows upwards, along +X", p);
+  p.along_x = 0;
+  plane_case("45 deg, rows upwards, to and fro", p);
+  p = {};
+  p.row_mm = 0.5;
+  plane_case("45 deg, rows 0.5 mm apart", p);
+  p = {};
+  p.allowance_mm = 0.4;
+  plane_case("45 deg, allowance 0.4 mm", p);
+}
+
+void grid() {
+  head_of_plane();
+  InclinedPlane p;
+  const CutFigures want = drawn_figures(p);
+  print_drawn(want);
+  for (const Vec3& o : {Vec3(0, 0, 0), Vec3(0.33, 0, 0), Vec3(0.67, 0, 0), Vec3(0, 0.37, 0), Vec3(0, 0, 0.29),
+                        Vec3(0.5, 0.5, 0.5), Vec3(0.21, 0.83, 0.62), Vec3(0.71, 0.13, 0.41)}) {
+    p.offset_mm = p.voxel_mm * o;
+    print_off(fmt::format("  shifted by {:.2f} {:.2f} {:.2f} voxels", o.x(), o.y(), o.z()), camber_figures(p), want);
+  }
+}
+
+void wall_case(const FinishedWall& w) {
+  const WallFigures want = drawn_figures(w), got = camber_figures(w);
+  const Vec3 mean = 100 * (got.mean_N - want.mean_N) / want.mean_N.norm();
+  std::printf(
+      "%s, helix %g, %d flutes, ae %g, %g mm/tooth: peak %.2f N %+.2f %%, mean %.3f %.3f %.3f N %+.2f %+.2f %+.2f %%\n",
+      w.up ? "up" : "down", w.helix_deg, w.flutes, w.radial_mm, w.feed_mm, want.lateral_max_N,
+      off(got.lateral_max_N, want.lateral_max_N), want.mean_N.x(), want.mean_N.y(), want.mean_N.z(), mean.x(), mean.y(),
+      mean.z());
+  double largest = 0, worst = 0;
+  for (const double e : want.error_um) largest = std::max(largest, std::abs(e));
+  for (std::size_t i = 0; i < want.error_um.size(); ++i)
+    worst = std::max(worst, std::abs(got.error_um[i] - want.error_um[i]));
+  for (const auto* f : {&want, &got}) {
+    std::printf(f == &want ? "  drawn  um" : "  Camber um");
+    for (const double e : f->error_um) std::printf(" %7.2f", e);
+    std::printf("\n");
+  }
+  std::printf("  largest difference %.3f um, %.2f %% of the largest error\n", worst, 100 * worst / largest);
+  std::fflush(stdout);
+}
+
+void walls() {
+  FinishedWall w;
+  for (const double helix : {0.0, 30.0, 45.0})
+    for (const bool up : {true, false}) {
+      w.helix_deg = helix, w.up = up;
+      wall_case(w);
+    }
+  w.helix_deg = 30;
+  w.flutes = 2;
+  for (const bool up : {true, false}) {
+    w.up = up;
+    wall_case(w);
+  }
+  w = {};
+  w.radial_mm = 2;
+  w.offset_mm = Vec3(0.037, 0.051, 0.023);
+  for (const bool up : {true, false}) {
+    w.up = up;
+    wall_case(w);
+  }
+}
+
+/// The inclined plane on coarser and finer voxels, the envelope's samples as fine as predict sets them.
+void voxels() {
+  const CutFigures want = drawn_figures(InclinedPlane{});
+  std::printf("%-8s %9s %9s %9s %11s %9s %9s %9s\n", "voxel mm", "peak F %", "mean F %", "chips %", "chips/stock",
+              "err p5 %", "err p95 %", "err mean %");
+  for (const double voxel : {0.4, 0.2, 0.1, 0.05}) {
+    // The mean over a few places of the grid, without sign: what a user meets.
+    double peak = 0, mean = 0, chips = 0, balance = 0, p5 = 0, p95 = 0, error = 0;
+    constexpr int kPlaces = 4;
+    for (int i = 0; i < kPlaces; ++i) {
+      InclinedPlane p;
+      p.voxel_mm = voxel;
+      p.offset_mm = voxel * Vec3(0.25 * i, 0.37 * i, 0.61 * i);
+      const CutFigures f = camber_figures(p);
+      peak += std::abs(off(f.lateral_max_N, want.lateral_max_N)) / kPlaces;
+      mean += 100 * (f.mean_N - want.mean_N).norm() / want.mean_N.norm() / kPlaces;
+      chips += std::abs(off(f.chip_mm3, p.feed_mm * p.row_mm * p.allowance_mm)) / kPlaces;
+      balance += f.chips_of_stock / kPlaces;
+      p5 += std::abs(off(f.p5_um, want.p5_um)) / kPlaces;
+      p95 += std::abs(off(f.p95_um, want.p95_um)) / kPlaces;
+      error += std::abs(off(f.error_mean_um, want.error_mean_um)) / kPlaces;
+    }
+    std::printf("%-8g %9.2f %9.2f %9.2f %11.4f %9.2f %9.2f %9.2f\n", voxel, peak, mean, chips, balance, p5, p95, error);
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string what = argc > 1 ? argv[1] : "";
+  if (what == "plane") planes();
+  if (what == "grid") grid();
+  if (what == "wall") walls();
+  if (what == "voxels") voxels();
+}

@@ -1,0 +1,31 @@
+#include "removal/cutter_places.h"
+
+#include <cassert>
+
+namespace camber::removal {
+
+void CutterPlaces::add(std::int32_t first_id, const CutterShape& shape, std::span<const Stamp> stamps) {
+  assert(runs_.empty() || first_id >= runs_.back().first_id + static_cast<std::int32_t>(runs_.back().tips.size()));
+  Run run{first_id, shape, {}};
+  run.tips.reserve(stamps.size());
+  for (const Stamp& s : stamps) run.tips.push_back(s.tip_mm);
+  runs_.push_back(std::move(run));
+}
+
+const CutterPlaces::Run* CutterPlaces::find(std::int32_t id) const {
+  for (const Run& run : runs_)
+    if (id >= run.first_id && id - run.first_id < static_cast<std::int32_t>(run.tips.size())) return &run;
+  return nullptr;
+}
+
+double CutterPlaces::distance_mm(std::int32_t id, const Vec3& point) const {
+  const Run* run = find(id);
+  return run->shape.distance_mm(point - run->tips[static_cast<std::size_t>(id - run->first_id)]);
+}
+
+Vec3 CutterPlaces::gradient(std::int32_t id, const Vec3& point) const {
+  const Run* run = find(id);
+  return run->shape.gradient(point - run->tips[static_cast<std::size_t>(id - run->first_id)]);
+}
+
+}  // namespace camber::removal

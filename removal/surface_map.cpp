@@ -1,0 +1,240 @@
+#include "removal/surface_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <tbb/parallel_for.h>
+
+#include "removal/carve.h"
+
+namespace camber::removal {
+namespace {
+
+constexpr double kRounding_mm = 1e-5;
+constexpr int kBlock = 4;  ///< voxels a side of the cubes whose points are passed over together
+
+/// Points first ... first + count - 1 within `radius` of `centre`.
+struct Group {
+  Vec3 centre = Vec3::Zero();
+  double radius = 0;
+  std::size_t first = 0, count = 0;
+  double highest = 0;  ///< of its points' errors
+};
+
+struct TilePoints {
+  Group all;
+  std::vector<Group> blocks;
+};
+
+Group group_of(const std::vector<SurfacePoint>& points, std::size_t first, std::size_t count, double highest) {
+  Vec3 lo = points[first].place_mm, hi = lo;
+  for (std::size_t i = first; i < first + count; ++i) {
+    lo = lo.cwiseMin(points[i].place_mm);
+    hi = hi.cwiseMax(points[i].place_mm);
+  }
+  return {(lo + hi) / 2, (hi - lo).norm() / 2, first, count, highest};
+}
+
+/// Number of the cube of `side` voxels that a point lies in.
+Index3 cube_of(const Vec3& p, double side_mm) {
+  return {static_cast<int>(std::floor(p.x() / side_mm)), static_cast<int>(std::floor(p.y() / side_mm)),
+          static_cast<int>(std::floor(p.z() / side_mm))};
+}
+
+/// One bent stamp.
+class BentEnvelope {
+ public:
+  BentEnvelope(const EnvelopeGrid& envelope, const ShiftTable& shifts, const CarveBend& bend, const Vec3& tip)
+      : e_(envelope), shifts_(shifts), bend_(bend), tip_(tip) {}
+
+  /// Height above q along n at which q + height n lies on the bent envelope, if that is under `highest`; else
+  /// `highest`.
+  double height_mm(const Vec3& q, const Vec3& n, double highest) const {
+    const Vec3 above = q + highest * n - tip_;
+    if (e_.shape.distance_mm(above) > outward_mm(above)) return highest;
+    // Where the deflection jumps along with the edge, two points of the envelope may lie on one line: the lower counts.
+    return std::min(settled_mm(q, n, highest, Vec3::Zero()), settled_mm(q, n, highest, shift(above - shift(above))));
+  }
+
+ private:
+  /// Where the deflection jumps against the motion of the edge, the envelope is torn, and the tooth draws the gap while
+  /// it bends: there plain steps swing between both sides, and smaller ones find the place between them.
+  static constexpr double share_of(int step) { return step < 5 ? 1.0 : step < 16 ? 0.3 : 0.1; }
+
+  /// From a guess of the deflection to the height at which place and deflection agree.
+  double settled_mm(const Vec3& q, const Vec3& n, double highest, Vec3 bend) const {
+    double h = highest;
+    for (int step = 0; step < kSteps; ++step) {
+      const Vec3 x = q + h * n - tip_;
+      const double s = e_.shape.distance_mm(x - bend);
+      if (step == 0 && s >= 0) return highest;
+      const double change = s / std::clamp(-e_.shape.gradient(x - bend).dot(n), kFlattest, 1.0);
+      h += change;
+      const Vec3 turned = shift(q + h * n - tip_ - bend) - bend;
+      if (std::abs(change) < kClose_mm && turned.squaredNorm() < kClose_mm * kClose_mm) break;
+      bend += share_of(step) * turned;
+    }
+    return std::min(h, highest);
+  }
+
+  double outward_mm(const Vec3& from_tip) const {
+    const double rho = from_tip.head<2>().norm();
+    if (rho <= 5 * bend_.largest_mm) return bend_.largest_mm;  // near the axis a shift turns a place to another side
+    const double sector = (std::atan2(from_tip.y(), from_tip.x()) + kPi) * CarveBend::kSectors / (2 * kPi);
+    const int i = std::clamp(static_cast<int>(sector), 0, CarveBend::kSectors - 1);
+    return std::min(bend_.largest_mm, static_cast<double>(bend_.outward_mm[static_cast<std::size_t>(i)]));
+  }
+
+  /// Height of the envelope's point nearest to a place.
+  double envelope_height_mm(const Vec3& p) const {
+    const CutterShape& shape = e_.shape;
+    const double rho = std::sqrt(p.x() * p.x() + p.y() * p.y());
+    if (shape.general) return shape.profile.nearest({rho, p.z()}).place.y();
+    const double qx = rho - shape.bottom_length_mm(), qz = shape.corner_radius_mm - p.z();
+    if (qx > 0 && qz > 0) return shape.corner_radius_mm * (1 - qz / std::sqrt(qx * qx + qz * qz));
+    return qx > qz ? std::max(p.z(), 0.0) : 0.0;
+  }
+
+  Vec3 shift(const Vec3& from_tip) const {
+    const double height = envelope_height_mm(from_tip);
+    double step = (std::atan2(from_tip.y(), from_tip.x()) - height * e_.lag_per_mm) * e_.steps / (2 * kPi);
+    step -= shifts_.steps * std::floor(step / shifts_.steps);
+    const int m0 = static_cast<int>(step) % shifts_.steps, m1 = m0 + 1 == shifts_.steps ? 0 : m0 + 1;
+    const double f = step - std::floor(step);
+    const NodeWeight w = node_weight(shifts_.node_height_mm, height);
+    Vec3 sum = Vec3::Zero();
+    const auto add = [&](int node, int m, double weight) {
+      const float* v = bend_.row + 2 * (node * shifts_.steps + m);
+      sum.x() += weight * v[0];
+      sum.y() += weight * v[1];
+    };
+    add(w.lower, m0, (1 - w.upper_share) * (1 - f));
+    add(w.lower, m1, (1 - w.upper_share) * f);
+    add(w.upper, m0, w.upper_share * (1 - f));
+    add(w.upper, m1, w.upper_share * f);
+    return sum;
+  }
+
+  static constexpr int kSteps = 32;
+  static constexpr double kClose_mm = 1e-5, kFlattest = 0.3;
+  const EnvelopeGrid& e_;
+  const ShiftTable& shifts_;
+  const CarveBend& bend_;
+  Vec3 tip_;
+};
+
+}  // namespace
+
+struct SurfaceMap::Impl {
+  double voxel_mm;
+  std::vector<SurfacePoint> points;
+  std::vector<TilePoints> tiles;
+
+  /// Lowers the points of a group to the envelope. Returns the highest that is left.
+  double mark(const Group& group, const BentEnvelope& bent, std::int32_t id) {
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+      SurfacePoint& p = points[i];
+      const double h = bent.height_mm(p.place_mm, p.normal, p.error_mm);
+      if (h < p.error_mm) {
+        p.error_mm = h;
+        p.machined_stamp = id;
+      }
+      highest = std::max(highest, p.error_mm);
+    }
+    return highest;
+  }
+};
+
+SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places)
+    : impl_(std::make_unique<Impl>(Impl{target.voxel_mm(), {}, {}})) {
+  auto& points = impl_->points;
+  const double block_mm = kBlock * target.voxel_mm();
+  const auto block_of = [&](const SurfacePoint& p) { return cube_of(p.place_mm, block_mm); };
+  auto parts = surface_points(target, places);
+  std::size_t count = 0;
+  for (const auto& part : parts) count += part.size();
+  points.reserve(count);
+  for (auto& part : parts) {
+    if (part.empty()) continue;
+    for (auto& p : part) p.error_mm = target.band_mm();
+    std::stable_sort(part.begin(), part.end(), [&](const auto& a, const auto& b) { return block_of(a) < block_of(b); });
+    const std::size_t from = points.size();
+    points.insert(points.end(), part.begin(), part.end());
+    part = {};
+    TilePoints& tile = impl_->tiles.emplace_back();
+    tile.all = group_of(points, from, points.size() - from, target.band_mm());
+    for (std::size_t at = from, next = from; at < points.size(); at = next) {
+      while (next < points.size() && block_of(points[next]) == block_of(points[at])) ++next;
+      tile.blocks.push_back(group_of(points, at, next - at, target.band_mm()));
+    }
+  }
+}
+
+SurfaceMap::~SurfaceMap() = default;
+
+void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamps, const ShiftTable& shifts,
+                      std::int32_t first_id) {
+  if (stamps.empty()) return;
+  std::vector<CarveBend> bends(stamps.size());
+  tbb::parallel_for(std::size_t{0}, stamps.size(),
+                    [&](std::size_t k) { bends[k] = make_bend(envelope, shifts, static_cast<std::ptrdiff_t>(k)); });
+  Vec3 lo = stamps.front().tip_mm, hi = lo;
+  double most_bent = 0;
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    lo = lo.cwiseMin(stamps[k].tip_mm);
+    hi = hi.cwiseMax(stamps[k].tip_mm);
+    most_bent = std::max(most_bent, bends[k].largest_mm);
+  }
+  tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
+    TilePoints& tile = impl_->tiles[t];
+    const double reach = envelope.shape.radius_mm + tile.all.radius + tile.all.highest + most_bent;
+    for (int a = 0; a < 2; ++a)
+      if (tile.all.centre[a] < lo[a] - reach || tile.all.centre[a] > hi[a] + reach) return;
+    std::vector<std::size_t> near;
+    for (std::size_t k = 0; k < stamps.size(); ++k)
+      if (envelope.shape.distance_mm(tile.all.centre - stamps[k].tip_mm) <=
+          tile.all.radius + tile.all.highest + bends[k].largest_mm)
+        near.push_back(k);
+    if (near.empty()) return;
+    std::vector<float> distance(near.size());
+    tile.all.highest = -std::numeric_limits<double>::infinity();
+    for (Group& block : tile.blocks) {
+      for (std::size_t n = 0; n < near.size(); ++n)
+        distance[n] = static_cast<float>(envelope.shape.distance_mm(block.centre - stamps[near[n]].tip_mm));
+      // The stamp that goes deepest first: most others are then too high to look at.
+      const auto deepest =
+          static_cast<std::size_t>(std::min_element(distance.begin(), distance.end()) - distance.begin());
+      const auto take = [&](std::size_t n) {
+        const std::size_t k = near[n];
+        if (distance[n] > block.radius + block.highest + bends[k].largest_mm + kRounding_mm) return;
+        const BentEnvelope bent(envelope, shifts, bends[k], stamps[k].tip_mm);
+        block.highest = impl_->mark(block, bent, first_id + static_cast<std::int32_t>(k));
+      };
+      take(deepest);
+      for (std::size_t n = 0; n < near.size(); ++n)
+        if (n != deepest) take(n);
+      tile.all.highest = std::max(tile.all.highest, block.highest);
+    }
+  });
+}
+
+std::vector<SurfacePoint> SurfaceMap::take(const Stock& machined) {
+  // Where the bent cutters do not reach, the blank itself is the surface.
+  for (auto& p : impl_->points) {
+    if (p.error_mm <= 0) continue;
+    const Index3 nearest{static_cast<int>(std::lround(p.place_mm.x() / impl_->voxel_mm)),
+                         static_cast<int>(std::lround(p.place_mm.y() / impl_->voxel_mm)),
+                         static_cast<int>(std::lround(p.place_mm.z() / impl_->voxel_mm))};
+    if (machined.stamp(nearest) != Stock::kUncut) continue;
+    const double left = -machined.distance_mm(p.place_mm);
+    if (left < p.error_mm) {
+      p.error_mm = left;
+      p.machined_stamp = Stock::kUncut;
+    }
+  }
+  return std::move(impl_->points);
+}
+
+}  // namespace camber::removal

@@ -1,0 +1,77 @@
+// Finishing cuts against the drawn ones of tests/support/displaced_envelope.h: rays for the chips, displaced facets for
+// the surface. bench/accuracy has more of them.
+#include <gtest/gtest.h>
+
+#include "tests/support/finished_wall.h"
+#include "tests/support/inclined_plane.h"
+
+namespace camber::deflection {
+namespace {
+
+using testing::CutFigures;
+using testing::FinishedWall;
+using testing::InclinedPlane;
+using testing::WallFigures;
+
+constexpr double kAgreement = 0.02, kGridAgreement = 0.01;
+
+void expect_near(const CutFigures& got, const CutFigures& want) {
+  EXPECT_NEAR(got.lateral_max_N, want.lateral_max_N, kAgreement * want.lateral_max_N);
+  EXPECT_LT((got.mean_N - want.mean_N).norm(), kAgreement * want.mean_N.norm());
+  EXPECT_NEAR(got.median_um, want.median_um, kAgreement * want.median_um);
+  EXPECT_NEAR(got.p5_um, want.p5_um, kAgreement * want.p95_um);
+  EXPECT_NEAR(got.p95_um, want.p95_um, kAgreement * want.p95_um);
+  EXPECT_NEAR(got.error_mean_um, want.error_mean_um, kAgreement * want.error_mean_um);
+}
+
+TEST(DisplacedEnvelope, InclinedPlaneAgreesWhereverTheGridLies_slow) {
+  InclinedPlane p;
+  const CutFigures want = drawn_figures(p);
+  std::vector<CutFigures> all;
+  for (const Vec3& voxels : {Vec3(0, 0, 0), Vec3(0.33, 0.67, 0.21), Vec3(0.71, 0.13, 0.41)}) {
+    p.offset_mm = p.voxel_mm * voxels;
+    all.push_back(camber_figures(p));
+    expect_near(all.back(), want);
+  }
+  CutFigures mean;
+  for (const auto& f : all) {
+    const double share = 1.0 / static_cast<double>(all.size());
+    mean.lateral_max_N += share * f.lateral_max_N;
+    mean.mean_N += share * f.mean_N;
+    mean.error_mean_um += share * f.error_mean_um;
+    mean.p95_um += share * f.p95_um;
+  }
+  for (const auto& f : all) {
+    EXPECT_NEAR(f.lateral_max_N, mean.lateral_max_N, kGridAgreement * mean.lateral_max_N);
+    EXPECT_LT((f.mean_N - mean.mean_N).norm(), kGridAgreement * mean.mean_N.norm());
+    EXPECT_NEAR(f.error_mean_um, mean.error_mean_um, kGridAgreement * mean.error_mean_um);
+    EXPECT_NEAR(f.p95_um, mean.p95_um, kGridAgreement * mean.p95_um);
+  }
+}
+
+TEST(DisplacedEnvelope, FlatterPlaneWithRowsDownwardsAgrees_slow) {
+  InclinedPlane p;
+  p.slope_deg = 30, p.feed_mm = 0.1, p.upwards = false, p.along_x = 1;
+  expect_near(camber_figures(p), drawn_figures(p));
+}
+
+void expect_wall(const FinishedWall& w) {
+  const WallFigures want = drawn_figures(w), got = camber_figures(w);
+  EXPECT_NEAR(got.lateral_max_N, want.lateral_max_N, kAgreement * want.lateral_max_N);
+  EXPECT_LT((got.mean_N - want.mean_N).norm(), kAgreement * want.mean_N.norm());
+  double largest = 0;
+  for (const double e : want.error_um) largest = std::max(largest, std::abs(e));
+  ASSERT_GT(largest, 1);
+  ASSERT_EQ(got.error_um.size(), want.error_um.size());
+  for (std::size_t i = 0; i < want.error_um.size(); ++i)
+    EXPECT_NEAR(got.error_um[i], want.error_um[i], kAgreement * largest) << i;
+}
+
+TEST(DisplacedEnvelope, HelicalMillAlongAWallAgreesUpMilling_slow) { expect_wall({.up = true}); }
+
+TEST(DisplacedEnvelope, HelicalMillAlongAWallAgreesDownMilling_slow) {
+  expect_wall({.up = false, .offset_mm = Vec3(0.037, 0.051, 0.023)});
+}
+
+}  // namespace
+}  // namespace camber::deflection

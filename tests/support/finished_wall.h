@@ -1,0 +1,151 @@
+#pragma once
+// A helical flat end mill along a wall: Camber's rigid cut and the drawn one (displaced_envelope.h), over the height.
+#include <cmath>
+#include <vector>
+
+#include "base/units.h"
+#include "deflection/cut.h"
+#include "removal/surface_map.h"
+#include "tests/support/cutting.h"
+#include "tests/support/displaced_envelope.h"
+
+namespace camber::testing {
+
+namespace detail {
+constexpr double kMiddle = 6;   ///< of the block
+constexpr double kEdge = 0.25;  ///< above and below: the map leaves out the blank's edges
+}
+
+
+/// One pass along the wall y = 0 of a block at y > 0, by a tool at y < 0.
+struct FinishedWall {
+  double diameter_mm = 10, helix_deg = 30, height_mm = 6, radial_mm = 0.5, feed_mm = 0.05;
+  int flutes = 4;
+  bool up = true;  ///< up (conventional) or down (climb) milling
+  double voxel_mm = 0.1;
+  Vec3 offset_mm = Vec3::Zero();  ///< of path and stock against the grid
+  double edge_step_mm = 0.1;      ///< Camber's
+  double slice_mm = 0.5;          ///< of the height, over which the error is averaged
+  int drawn_steps = 1440;         ///< a turn
+  double rotation_step_deg = 1;   ///< Camber's
+};
+
+struct WallFigures {
+  double lateral_max_N = 0;
+  Vec3 mean_N = Vec3::Zero();
+  std::vector<double> error_um;  ///< by slices of the height, upwards
+};
+
+inline DrawnCut drawn(const FinishedWall& w) {
+  constexpr double kBelow = 0.53, kLength = 12;  // the tip runs below the block
+  DrawnCut c;
+  c.radius = w.diameter_mm / 2, c.corner = 0;
+  c.flutes = w.flutes;
+  c.helix_rad = rad_from_deg(w.helix_deg);
+  c.top = w.height_mm + kBelow;
+  c.k = {2000, 700, 300, 15, 12, 3};
+  c.overhang = 40;
+  c.bending_stiffness_N_mm2 = 600000 * kPi / 64 * std::pow(0.8 * w.diameter_mm, 4);
+  c.lo = w.offset_mm + Vec3(0, -w.radial_mm, 0);
+  c.hi = w.offset_mm + Vec3(kLength, 2, w.height_mm);
+  c.steps_per_pitch = w.drawn_steps / w.flutes;
+  const double from = -c.radius - 0.2, to = kLength + c.radius + 0.2;
+  const Vec3 tip = w.offset_mm + Vec3(0, -c.radius, -kBelow);
+  const Vec3 a = tip + Vec3(w.up ? from : to, 0, 0), b = tip + Vec3(w.up ? to : from, 0, 0);
+  add_row(c.stamps, a, b, w.feed_mm);
+  return c;
+}
+
+namespace detail {
+
+struct Slices {
+  std::vector<double> sum, area;
+  double width;
+  explicit Slices(const FinishedWall& w) : width(w.slice_mm) {
+    sum.assign(static_cast<std::size_t>(std::lround((w.height_mm - 2 * kEdge) / w.slice_mm)), 0.0);
+    area = sum;
+  }
+  void add(double z, double error_mm, double weight) {
+    z -= kEdge;
+    const auto i = static_cast<std::size_t>(std::max(0.0, z / width));
+    if (z < 0 || i >= sum.size()) return;
+    sum[i] += weight * 1000 * error_mm;
+    area[i] += weight;
+  }
+  std::vector<double> means() const {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < sum.size(); ++i) out.push_back(sum[i] / area[i]);
+    return out;
+  }
+};
+
+/// The stamp that stands in the middle of the block.
+inline std::size_t middle_stamp(const FinishedWall& w, const DrawnCut& c) {
+  std::size_t best = 0;
+  const auto off = [&](std::size_t k) { return std::abs(c.stamps[k].tip_mm.x() - w.offset_mm.x() - detail::kMiddle); };
+  for (std::size_t k = 1; k < c.stamps.size(); ++k)
+    if (off(k) < off(best)) best = k;
+  return best;
+}
+
+}  // namespace detail
+
+inline WallFigures drawn_figures(const FinishedWall& w) {
+  const DrawnCut cut = drawn(w);
+  const std::size_t middle = detail::middle_stamp(w, cut);
+  const DrawnPass pass = drawn_pass(cut, middle);
+  WallFigures f{pass.lateral_max_N, pass.mean_N, {}};
+  constexpr int kAlong = 20;
+  const double step = 0.05;
+  const DrawnSurface lattice(w.offset_mm + Vec3(detail::kMiddle, 0, step / 2), Vec3::UnitX(), Vec3::UnitZ(), kAlong,
+                             static_cast<int>(std::lround(w.height_mm / step)), w.feed_mm / kAlong, step);
+  std::vector<std::size_t> stamps;
+  for (std::size_t k = 0; k < cut.stamps.size(); ++k)
+    if (std::abs(cut.stamps[k].tip_mm.x() - w.offset_mm.x() - detail::kMiddle) < 1.3) stamps.push_back(k);
+  // In the steady middle every stamp bends alike.
+  const auto error = drawn_error_mm(
+      cut, [&](std::size_t) -> const DrawnPass& { return pass; }, stamps, lattice, 0.1);
+  detail::Slices slices(w);
+  for (int i = 0; i < lattice.nu; ++i)
+    for (int j = 0; j < lattice.nv; ++j) {
+      const double e =
+          error[static_cast<std::size_t>(i) * static_cast<std::size_t>(lattice.nv) + static_cast<std::size_t>(j)];
+      if (std::isfinite(e)) slices.add((j + 0.5) * step, e, 1);
+    }
+  f.error_um = slices.means();
+  return f;
+}
+
+inline WallFigures camber_figures(const FinishedWall& w) {
+  const DrawnCut cut = drawn(w);
+  const auto tool = make_tool(machine::ToolType::flat, w.diameter_mm, w.flutes, w.helix_deg);
+  const machine::Material material{cut.k.ktc, cut.k.krc, cut.k.kac, cut.k.kte, cut.k.kre, cut.k.kae};
+  removal::Stock stock = make_box(cut.lo, cut.hi, w.voxel_mm);
+  removal::Stock target(stock);
+  deflection::sweep(target, tool, cut.stamps, 0, 0);
+  removal::CutterPlaces places;
+  places.add(0, removal::shape_of(tool), cut.stamps);
+  removal::SurfaceMap map(target, places);
+  deflection::CutOptions options;
+  options.coupling = machine::Coupling::rigid;
+  options.envelope_step_mm = w.edge_step_mm;
+  options.rotation_step_rad = rad_from_deg(w.rotation_step_deg);
+  options.surface = &map;
+  const auto result = deflection::cut(stock, tool, material, cut.stamps, {}, 0, options);
+  WallFigures f;
+  const std::size_t middle = detail::middle_stamp(w, cut);
+  constexpr std::size_t kAround = 10;
+  for (std::size_t k = middle - kAround; k <= middle + kAround; ++k) {
+    f.lateral_max_N += result.loads[k].lateral_max_N / (2 * kAround + 1);
+    f.mean_N += result.loads[k].force_mean_N / (2 * kAround + 1);
+  }
+  detail::Slices slices(w);
+  for (const auto& p : map.take(stock)) {
+    const Vec3 q = p.place_mm - w.offset_mm;
+    if (std::abs(q.y()) < 0.05 && std::abs(q.x() - detail::kMiddle) < 1) slices.add(q.z(), p.error_mm, p.area_mm2);
+  }
+  f.error_um = slices.means();
+  return f;
+}
+
+}  // namespace camber::testing
