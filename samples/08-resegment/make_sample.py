@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A finishing program as a CAM system writes it, of a surface with a character line, to be laid out again.
 
-    samples/05-resegment/make_sample.py > character_line.nc
+    samples/08-resegment/make_sample.py > character_line.nc
 
 Surface 60 x 30 mm: two gentle bows that meet in a sharp edge (the character line) which runs aslant over the part.
 Rows along X, 0.3 mm apart, zigzag. Points as a CAM system with a chord tolerance of 0.005 mm lays them: where the next
