@@ -76,7 +76,8 @@ class Cutter {
       : stock_(stock),
         options_(options),
         top_mm_(engaged_top_mm(stock, tool, stamps)),
-        envelope_(removal::make_envelope(tool, top_mm_, options.envelope_step_mm, options.rotation_step_rad)),
+        envelope_(removal::make_envelope(tool, std::max(0.0, top_mm_ - stock.voxel_mm()), options.envelope_step_mm,
+                                         options.rotation_step_rad, stock.voxel_mm())),
         model_(envelope_, material, beam_of(tool), node_heights(top_mm_),
                options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
                options.axis_compliance_mm_per_N, options.coupling == machine::Coupling::static_) {
@@ -116,8 +117,7 @@ class Cutter {
       keep_turn(engagement, all, from, count, result);
       result.stock_mm3 += bent.commit();
     }
-    if (options_.surface)
-      options_.surface->mark(envelope_, stamps, shifts, first_id + static_cast<std::int32_t>(from));
+    if (options_.surface) options_.surface->mark(envelope_, stamps, shifts, first_id + static_cast<std::int32_t>(from));
     for (std::size_t k = 0; k < stamps.size(); ++k) {
       if (!contacts.empty())
         loads[k].contact_deflection_mm =

@@ -57,7 +57,8 @@ void add_rings(EnvelopeGrid& grid, double from, double to, double step) {
 
 }  // namespace
 
-EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step_mm, double rotation_step_rad) {
+EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step_mm, double rotation_step_rad,
+                           double above_mm) {
   EnvelopeGrid grid;
   grid.shape = shape_of(tool);
   grid.flutes = tool.flutes;
@@ -66,9 +67,13 @@ EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step
   grid.steps = grid.steps_per_pitch * tool.flutes;
 
   const Profile& profile = grid.shape.profile;
-  const double end = profile.length_to_height_mm(std::max(0.0, top_mm));
-  for (const auto& piece : profile.pieces())
-    add_rings(grid, piece.from_s_mm, std::min(piece.from_s_mm + piece.length_mm, end), step_mm);
+  const double top = profile.length_to_height_mm(std::max(0.0, top_mm));
+  const double end = profile.length_to_height_mm(std::max(0.0, top_mm + above_mm));
+  for (const auto& piece : profile.pieces()) {
+    const double to = piece.from_s_mm + piece.length_mm;
+    add_rings(grid, piece.from_s_mm, std::min(to, top), step_mm);
+    add_rings(grid, std::max(piece.from_s_mm, top), std::min(to, end), step_mm);
+  }
 
   for (const auto& ring : grid.rings) {
     for (int i = 0; i < grid.steps; ++i) {

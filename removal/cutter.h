@@ -76,7 +76,10 @@ struct EnvelopeGrid {
 void make_patches(EnvelopeGrid& grid, double size_mm);
 
 /// Rings `step_mm` apart (the last one narrower) from the tip to `top_mm` above it; at least
-/// `2 pi / rotation_step_rad` points a ring, rounded up to a multiple of the flutes.
-EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step_mm, double rotation_step_rad);
+/// `2 pi / rotation_step_rad` points a ring, rounded up to a multiple of the flutes. More rings reach `above_mm`
+/// higher; none lies across top_mm: a ring counts whole or not at all, and where top_mm is the blank's face none is cut
+/// in two.
+EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step_mm, double rotation_step_rad,
+                           double above_mm = 0);
 
 }  // namespace camber::removal
