@@ -58,9 +58,17 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
     print_error(unsettled);
     return kNumbersDidNotWorkOut;
   }
+  if (!result.within_part) {
+    print_error(fmt::format("the compensated program cuts {:.2f} um into the part at X{:.3f} Y{:.3f} Z{:.3f}; no more than "
+                            "tolerance_um = {:g} was expected",
+                            result.depth_after.deepest_um, result.depth_after.place_mm.x(),
+                            result.depth_after.place_mm.y(), result.depth_after.place_mm.z(),
+                            job.compensation.tolerance_um));
+    return kNumbersDidNotWorkOut;
+  }
   if (result.stop == compensate::Stop::tolerance) return kDone;
-  print_error(fmt::format("the residual of {:.2f} um (95th percentile) is over tolerance_um = {:g}",
-                          result.after_um.p95, job.compensation.tolerance_um));
+  print_error(fmt::format("of what a shift can correct {:.2f} um (95th percentile) are left; tolerance_um = {:g}",
+                          result.split_after.correctable_p95_um, job.compensation.tolerance_um));
   return kNumbersDidNotWorkOut;
 }
 

@@ -18,10 +18,11 @@ struct System {
 void add_observation(System& s, const ShiftPath& path, const Observation& o) {
   const std::size_t i = o.place.lower;
   const double v = o.place.upper_share, u = 1 - v;
-  const Matrix3d nn = o.area_mm2 * o.normal * o.normal.transpose();
+  const double a = o.weight * o.area_mm2;
+  const Matrix3d nn = a * o.normal * o.normal.transpose();
   const auto& points = path.points();
   const Vec3 old = u * points[i].shift_mm + v * points[i + 1].shift_mm;
-  const Vec3 pull = o.area_mm2 * (o.normal.dot(old) - o.error_mm) * o.normal;
+  const Vec3 pull = a * (o.normal.dot(old) - o.error_mm / o.gain) * o.normal;
   s.diagonal[i] += u * u * nn;
   s.diagonal[i + 1] += v * v * nn;
   s.upper[i] += u * v * nn;
@@ -29,10 +30,12 @@ void add_observation(System& s, const ShiftPath& path, const Observation& o) {
   s.right[i + 1] += v * pull;
 }
 
-void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double mu, double kappa) {
+void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double soft_mu, double kappa,
+                   std::span<const double> stiffness) {
   const auto& points = path.points();
   for (std::size_t i = chain.from; i + 1 < chain.from + chain.count; ++i) {
     const double length = std::max(points[i + 1].along_mm - points[i].along_mm, 1e-6);
+    const double mu = soft_mu * (stiffness.empty() ? 1.0 : stiffness[i]);
     s.diagonal[i] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
     s.diagonal[i + 1] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
     s.upper[i] -= mu / length * Matrix3d::Identity();
@@ -83,7 +86,7 @@ std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations
   const double mu = rho * options.smoothing_mm * options.smoothing_mm;
   const double kappa = mu / (options.decay_mm * options.decay_mm);
   for (const Chain& c : path.chains()) {
-    add_stiffness(s, path, c, mu, kappa);
+    add_stiffness(s, path, c, mu, kappa, options.stiffness);
     solve_chain(s, c, points);
   }
   std::size_t limited = 0;

@@ -5,8 +5,19 @@
 
 namespace camber::compensate {
 
-ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm)
-    : program_(program), first_of_move_(program.moves.size(), 0) {
+namespace {
+
+int pieces_of(double length_mm, double spacing_mm, double shortest_mm) {
+  const int wanted = std::max(1, static_cast<int>(std::ceil(length_mm / spacing_mm - 1e-9)));
+  if (shortest_mm <= 0) return wanted;
+  return std::max(1, static_cast<int>(std::min<double>(wanted, std::floor(length_mm / shortest_mm + 1e-9))));
+}
+
+}  // namespace
+
+ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm,
+                     double block_time_s)
+    : program_(&program), first_of_move_(program.moves.size(), kNone) {
   bool open = false;
   for (std::uint32_t m = 0; m < program.moves.size(); ++m) {
     const nc::Move& move = program.moves[m];
@@ -24,8 +35,9 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
     first_of_move_[m] = points_.size() - 1;
     if (!move.editable) points_.back().fixed = true;
     const double along = points_.back().along_mm;
-    const int pieces =
-        move.kind == nc::MoveKind::linear ? std::max(1, static_cast<int>(std::ceil(length / spacing_mm - 1e-9))) : 1;
+    const int pieces = move.kind == nc::MoveKind::linear
+                           ? pieces_of(length, spacing_mm, move.feed_mm_per_s * block_time_s)
+                           : 1;
     for (int i = 1; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
       points_.push_back({.move = m,
@@ -47,6 +59,22 @@ ShiftPath::Place ShiftPath::find(std::uint32_t move, double share) const {
   }
   const double to = points_[i + 1].share;
   return {i, std::clamp((share - from) / (to - from), 0.0, 1.0)};
+}
+
+Vec3 ShiftPath::shift_at(const Place& place) const {
+  return (1 - place.upper_share) * points_[place.lower].shift_mm +
+         place.upper_share * points_[place.lower + 1].shift_mm;
+}
+
+std::vector<Vec3> ShiftPath::shifts() const {
+  std::vector<Vec3> out;
+  out.reserve(points_.size());
+  for (const auto& p : points_) out.push_back(p.shift_mm);
+  return out;
+}
+
+void ShiftPath::set_shifts(std::span<const Vec3> shifts) {
+  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].shift_mm = shifts[i];
 }
 
 namespace {
@@ -87,9 +115,9 @@ nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, double tole
   nc::MoveEdit edit;
   edit.move = end.move;
   edit.end_mm = end.place_mm + end.shift_mm;
-  const nc::Move& move = program_.moves[end.move];
+  const nc::Move& move = program_->moves[end.move];
   if (move.kind == nc::MoveKind::arc) {
-    const nc::Arc& arc = program_.arcs[move.arc];
+    const nc::Arc& arc = program_->arcs[move.arc];
     const Vec3 start = points_[first].place_mm + points_[first].shift_mm;
     edit.center_mm =
         agreeing_centre(arc, start, edit.end_mm, arc.center_mm + 0.5 * (points_[first].shift_mm + end.shift_mm));

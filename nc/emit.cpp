@@ -60,7 +60,7 @@ class Emitter {
     }
     write_replaced_blocks();
     copy_until(program_.source.text().size());
-    return {std::move(out_), std::move(not_made_)};
+    return {std::move(out_), std::move(not_made_), block_of_lines()};
   }
 
  private:
@@ -84,7 +84,28 @@ class Emitter {
     const std::size_t at = block < program_.blocks.size() ? program_.blocks[block].offset : text.size();
     copy_until(at);
     if (!out_.empty() && out_.back() != '\n') out_ += line_end_;
-    out_ += "(" + options_.header_comment + ")" + line_end_;
+    std::size_t from = 0;
+    while (from < options_.header_comment.size()) {
+      const std::size_t end = std::min(options_.header_comment.find('\n', from), options_.header_comment.size());
+      out_ += "(" + options_.header_comment.substr(from, end - from) + ")" + line_end_;
+      from = end + 1;
+      ++header_lines_;
+    }
+    header_before_ = block;
+  }
+
+  /// The header, then every block's own lines.
+  std::vector<std::uint32_t> block_of_lines() const {
+    std::vector<std::uint32_t> out;
+    std::size_t next = 0;
+    for (std::uint32_t block = 0; block < program_.blocks.size(); ++block) {
+      if (block == header_before_) out.insert(out.end(), header_lines_, Emission::kNoBlock);
+      std::size_t lines = 1;
+      for (; next < replaced_.size() && replaced_[next].first == block; ++next)
+        lines += static_cast<std::size_t>(std::count(replaced_[next].second.begin(), replaced_[next].second.end(), '\n'));
+      out.insert(out.end(), lines, block);
+    }
+    return out;
   }
 
   /// All moves [first, end) are of one block.
@@ -426,6 +447,7 @@ class Emitter {
   std::vector<EditNotMade> not_made_;
   std::size_t copied_ = 0;                                       ///< bytes of the source that are in out_ or replaced
   std::vector<std::pair<std::uint32_t, std::string>> replaced_;  ///< blocks and their new text
+  std::size_t header_before_ = 0, header_lines_ = 0;             ///< the header stands before this block
   std::size_t next_edit_ = 0;
   Vec3 at_ = Vec3::Zero();  ///< where the emitted program has taken the tool
   double unit_mm_ = 1;

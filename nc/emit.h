@@ -1,6 +1,7 @@
 #pragma once
 // Re-emission: the user's program with new end points for some of its moves and nothing else changed.
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,7 +25,7 @@ struct MoveEdit {
 struct EmitOptions {
   int decimals_mm = 4;  ///< at least as many as the word had
   int decimals_inch = 5;
-  std::string header_comment{};  ///< one line without brackets; empty: none. Goes after % and the O word.
+  std::string header_comment{};  ///< lines without brackets; empty: none. Go after % and the O word.
 };
 
 /// The new text. Blocks without an edit come out byte for byte, except where an unedited cutting move would otherwise
@@ -68,6 +69,10 @@ std::string to_string(EmitGap why);
 struct Emission {
   std::string text;
   std::vector<EditNotMade> not_made;  ///< ascending
+  /// One entry a line of `text`: index of the block of the given program that the line stands for; kNoBlock: new.
+  std::vector<std::uint32_t> block_of_line;
+
+  static constexpr std::uint32_t kNoBlock = std::numeric_limits<std::uint32_t>::max();
 };
 
 /// As emit(), and says which edits are not in the text.
