@@ -30,7 +30,7 @@ std::string to_string(Stop stop) {
 
 namespace {
 
-constexpr double kSpacing_mm = 0.5;       // between points of a long line
+constexpr double kSpacing_mm = 0.4;       // between points of a long line
 constexpr double kLeastGain = 0.03;       // a round that lowers the rms by less has stalled
 constexpr int kPatience = 2;              // rounds without that gain before it counts
 constexpr double kWorse = 1.02;           // a round whose rms is over the best one's by this has over-corrected
@@ -69,13 +69,12 @@ double overcorrected_share(const Observed& before, const Observed& now, double t
   return area > 0 ? over / area : 0;
 }
 
-}  // namespace
-
-struct Compensator::Loop {
-  Loop(const machine::Job& job, Diagnostics& diagnostics, CompensateOptions options)
+class Loop {
+ public:
+  Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options)
       : job_(job),
         diagnostics_(diagnostics),
-        options_(std::move(options)),
+        options_(options),
         program_(deflection::machine_program(SourceText::read(job.program), job, {}, diagnostics)),
         own_target_(job.part.program.empty()) {
     // What is known to be refused is refused before the long work.
@@ -84,10 +83,10 @@ struct Compensator::Loop {
       check_compensated(program_, early.moves, diagnostics_);
     check_travel(job_, program_.text, program_.moves, diagnostics_);
     diagnostics_.throw_if_errors();
-    target_.emplace(own_target_ ? deflection::make_target(job, program_, diagnostics)
-                                : deflection::make_target(job, read_target(), diagnostics));
+    if (!own_target_)
+      target_program_.emplace(deflection::machine_program(SourceText::read(job.part.program), job, {}, diagnostics));
+    target_.emplace(deflection::make_target(job, target_program(), diagnostics));
     workshop_.emplace(job_, program_, *target_, own_target_);
-    workshop_->header = options_.header;
   }
 
   Compensation run() {
@@ -96,13 +95,12 @@ struct Compensator::Loop {
     converge(out);
     stay_out_of_part(out);
     finish(out);
+    check(out);
     return out;
   }
 
  private:
-  MachinedProgram read_target() {
-    return deflection::machine_program(SourceText::read(job_.part.program), job_, {}, diagnostics_);
-  }
+  const MachinedProgram& target_program() const { return target_program_ ? *target_program_ : program_; }
 
   double tolerance_mm() const { return job_.compensation.tolerance_um / 1000; }
 
@@ -156,6 +154,7 @@ struct Compensator::Loop {
     if (out.best == 0) return;  // nothing was moved
     Guard guard(tolerance_mm());
     last_ = best_;
+    free_correctable_um_ = out.rounds[out.best].split.correctable_um;
     for (int i = 0; i < kGuardRounds && guard.learn(last_.observed) > 0; ++i) {
       step(out, 1, &guard);
       if (out.rounds.back().deepest_um < out.rounds[out.best].deepest_um) take(out);
@@ -208,6 +207,11 @@ struct Compensator::Loop {
   void record(Compensation& out, Round round) const {
     round.error_um = last_.error_um;
     round.split = split_error(*path_, last_.observed, fit_options());
+    if (round.guard) {  // what it leaves beyond the best round without it
+      const double all = round.split.correctable_um, free = std::min(all, free_correctable_um_);
+      round.split.correctable_um = free;
+      round.split.guard_um = std::sqrt(all * all - free * free);
+    }
     round.deepest_um = depth_of(last_.surface, last_.observed, job_.compensation.tolerance_um, true).deepest_um;
     round.static_rounds = last_.static_rounds;
     round.unsettled = last_.unsettled;
@@ -237,7 +241,6 @@ struct Compensator::Loop {
     path_->set_shifts(best_.shifts);
     const Round &first = out.rounds[0], &best = out.rounds[out.best];
     const MachinedProgram& program = best_.emitted ? best_.emitted->program : program_;
-    out.text = program.text.source.text();
     out.before_um = first.error_um;
     out.after_um = best.error_um;
     out.split_before = first.split;
@@ -259,15 +262,36 @@ struct Compensator::Loop {
     diagnostics_.throw_if_errors();
     out.blocks_before = program_.text.source.line_count();
     out.blocks_after = program.text.source.line_count();
-    out.blocks_changed = count_changed(program_.text, out.text);
+    out.blocks_changed = count_changed(program_.text, program.text.source.text());
     out.settled = first.unsettled == 0 && best.unsettled == 0;
+  }
+
+  /// The other grid and the uncertainty; the text last, since its header may tell of them.
+  void check(Compensation& out) {
+    const Emitted* emitted = best_.emitted.get();
+    if (options_.recheck_voxel_mm)
+      out.recheck = recheck(job_, *options_.recheck_voxel_mm, target_program(), program_, emitted, *path_, fit_options(),
+                            own_target_, options_.progress);
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> changes;
+    for (const ParameterGroup& group : options_.uncertainty) {
+      names.push_back(group.name);
+      changes.push_back(changes_mm(job_, group, *target_, program_, emitted, out.surface_after, out.unknown_parameters,
+                                   options_.progress));
+    }
+    if (!names.empty()) out.band = band_of(out.surface_before, out.surface_after, names, changes, tolerance_mm());
+    out.text = emitted ? emitted->emission.text : program_.text.source.text();
+    if (!options_.header || !emitted) return;
+    workshop_->header = options_.header(out);
+    out.text = workshop_->text_of(*path_);
   }
 
   const machine::Job& job_;
   Diagnostics& diagnostics_;
-  const CompensateOptions options_;
+  const CompensateOptions& options_;
   MachinedProgram program_;
   bool own_target_;
+  std::optional<MachinedProgram> target_program_;  ///< [part] program
   std::optional<deflection::Target> target_;
   std::optional<Workshop> workshop_;
   std::vector<bool> compensated_;
@@ -275,15 +299,13 @@ struct Compensator::Loop {
   std::optional<Sensitivity> sensitivity_;
   std::vector<double> stiffness_;  ///< of the path, one a point
   Trial last_, best_;
+  double free_correctable_um_ = 0;  ///< of the best round before the guard
 };
 
-Compensator::Compensator(const machine::Job& job, Diagnostics& diagnostics, CompensateOptions options)
-    : loop_(std::make_unique<Loop>(job, diagnostics, std::move(options))) {}
-Compensator::~Compensator() = default;
-Compensation Compensator::run() { return loop_->run(); }
+}  // namespace
 
 Compensation compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options) {
-  return Compensator(job, diagnostics, options).run();
+  return Loop(job, diagnostics, options).run();
 }
 
 }  // namespace camber::compensate

@@ -1,7 +1,6 @@
 #pragma once
 // The fixed-point loop: predict, move each point against its error, predict the emitted program again.
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,9 +8,12 @@
 #include "base/diagnostics.h"
 #include "compensate/error_split.h"
 #include "compensate/finishing.h"
+#include "compensate/measured.h"
 #include "compensate/path_quality.h"
+#include "compensate/recheck.h"
 #include "compensate/safety.h"
 #include "compensate/trial.h"
+#include "compensate/uncertainty.h"
 #include "deflection/predict.h"
 #include "machine/job.h"
 
@@ -54,29 +56,21 @@ struct Compensation {
   Depth depth_others;               ///< of moves that are not compensated
   Depth depth_without_bending;      ///< of the emitted program
   bool within_part = true;          ///< depth_after is within the tolerance
+  std::optional<Recheck> recheck;
+  std::optional<Band> band;
+  std::vector<std::string> unknown_parameters;  ///< with a standard error, but not of this job
+  std::optional<MeasuredFit> measured;
 };
 
 struct CompensateOptions {
   std::function<void(const std::string& what, double share)> progress;
-  std::string header{};  ///< comment lines for the emitted program; empty: none
+  std::optional<double> recheck_voxel_mm{};     ///< predict both programs on this grid as well
+  std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
+  /// Comment lines for the emitted program, asked for when all else is known; empty: none.
+  std::function<std::string(const Compensation&)> header{};
 };
 
-/// One program's compensation; holds what its checks need afterwards.
-class Compensator {
- public:
-  /// Reads the programs, builds blank and target. Throws InputError.
-  Compensator(const machine::Job& job, Diagnostics& diagnostics, CompensateOptions options);
-  ~Compensator();
-
-  /// The rounds. Throws InputError. The program's text is not written anywhere.
-  Compensation run();
-
- private:
-  struct Loop;
-  std::unique_ptr<Loop> loop_;
-};
-
-/// The whole at once.
+/// Throws InputError. The program's text is not written anywhere.
 Compensation compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options);
 
 }  // namespace camber::compensate

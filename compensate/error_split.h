@@ -10,7 +10,7 @@ namespace camber::compensate {
 
 /// Root mean squares over the whole surface, um: squares add up to the error's,
 ///
-///   rms^2 = correctable^2 + limited^2 + short_range^2 + opposed^2 + tip^2 + bow^2 + not_compensated^2
+///   rms^2 = correctable^2 + guard^2 + limited^2 + short_range^2 + opposed^2 + tip^2 + bow^2 + not_compensated^2
 ///
 /// The parts come from least squares of the error against shifts of the path, each one with less freedom:
 /// any shift at every point of the path; then smooth along the path; then within the largest shift.
@@ -18,6 +18,7 @@ struct ErrorSplit {
   double correctable_um = 0;      ///< a shift within the limits takes it away
   double correctable_p95_um = 0;  ///< 95th percentile of its magnitude
   double correctable_max_um = 0;
+  double guard_um = 0;            ///< given up by the guard, so as not to cut into the part
   double limited_um = 0;          ///< a shift over max_shift_mm would take it away
   double short_range_um = 0;      ///< changes along the path in less than a smooth path can
   double opposed_um = 0;          ///< surfaces that face each other, made at one place (a slot)

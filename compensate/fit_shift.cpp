@@ -2,12 +2,16 @@
 
 #include <algorithm>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace camber::compensate {
 namespace {
 
 using Eigen::Matrix3d;
+
+/// Directions with less than this share of the best told one's observations are held at rest.
+constexpr double kToldShare = 0.05;
 
 /// Normal equations of one path: diagonal[i] s_i + upper[i] s_(i+1) + upper[i-1]^T s_(i-1) = right[i].
 struct System {
@@ -40,6 +44,25 @@ void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double 
     s.diagonal[i + 1] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
     s.upper[i] -= mu / length * Matrix3d::Identity();
   }
+}
+
+/// Holds at rest what hardly any surface faces: along a row of a ball the normals differ by a few degrees, and a shift of
+/// several times the error along the surface would explain what little the error varies across the row.
+void add_rest(System& s, const Chain& chain) {
+  std::vector<Matrix3d> rest(chain.count);
+  for (std::size_t k = 0; k < chain.count; ++k) {
+    Matrix3d about = s.diagonal[chain.from + k];
+    if (k > 0) about += s.diagonal[chain.from + k - 1];
+    if (k + 1 < chain.count) about += s.diagonal[chain.from + k + 1];
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(about);
+    const double told = kToldShare * eigen.eigenvalues()[2];
+    rest[k].setZero();
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 v = eigen.eigenvectors().col(i);
+      rest[k] += std::max(0.0, told - eigen.eigenvalues()[i]) * v * v.transpose();
+    }
+  }
+  for (std::size_t k = 0; k < chain.count; ++k) s.diagonal[chain.from + k] += rest[k];
 }
 
 /// Block Thomas elimination over one chain; the chain's fixed points are held at zero.
@@ -86,6 +109,7 @@ std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations
   const double mu = rho * options.smoothing_mm * options.smoothing_mm;
   const double kappa = mu / (options.decay_mm * options.decay_mm);
   for (const Chain& c : path.chains()) {
+    add_rest(s, c);
     add_stiffness(s, path, c, mu, kappa, options.stiffness);
     solve_chain(s, c, points);
   }

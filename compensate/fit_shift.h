@@ -21,7 +21,7 @@ struct Observation {
 };
 
 struct FitShiftOptions {
-  double smoothing_mm = 0.3;  ///< features of the shift shorter than this along the path are smoothed
+  double smoothing_mm = 0.2;  ///< features of the shift shorter than this along the path are smoothed
   double decay_mm = 10;       ///< without surface to correct, the shift dies away over this length
   double max_shift_mm = 0.1;
   /// One a point of the path: mu between it and the next is larger by this factor; empty: 1.
@@ -34,7 +34,7 @@ struct FitShiftOptions {
 ///
 /// with a the area, w the weight, e the error, g the gain, n the normal of each observation, s the shift at its place (linear between the
 /// points), mu = rho smoothing^2, kappa = mu / decay^2 and rho the mean area per path length: a block tridiagonal
-/// system of 3 x 3 blocks. Directions in which no surface faces stay at rest; where surfaces face each other (a
+/// system of 3 x 3 blocks. Directions in which hardly any surface faces stay at rest; where surfaces face each other (a
 /// slot) the least squares between them results. Shifts longer than max_shift_mm are cut to it. Returns how many
 /// points were.
 std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options);

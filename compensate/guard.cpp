@@ -9,7 +9,7 @@ std::size_t Guard::learn(const Observed& observed) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < observed.points.size(); ++i) {
     if (!observed.compensated[i] || observed.points[i].error_mm >= -tolerance_mm_) continue;
-    weight_[i] = std::min(kGreatest, kGrowth * std::max(weight_[i], kGrowth));
+    weight_[i] = weight_[i] > 1 ? std::min(kGreatest, kGrowth * weight_[i]) : kFirst;
     ++count;
   }
   return count;

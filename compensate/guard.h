@@ -20,7 +20,7 @@ class Guard {
   bool active() const { return !weight_.empty(); }
 
  private:
-  static constexpr double kGrowth = 4, kGreatest = 1024, kWanted = 0.5;
+  static constexpr double kFirst = 50, kGrowth = 5, kGreatest = 10000, kWanted = 0.5;
   double tolerance_mm_;
   std::vector<double> weight_;
 };

@@ -39,17 +39,22 @@ Workshop::Workshop(const machine::Job& job, const deflection::MachinedProgram& g
 
 std::shared_ptr<const Emitted> Workshop::emit(const ShiftPath& path, const std::vector<bool>& compensated) const {
   auto out = std::make_shared<Emitted>();
-  nc::EmitOptions options;
-  options.header_comment = header;
-  out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(kViaTolerance_mm), options);
+  out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(kViaTolerance_mm), {});
   Diagnostics repeated;  // the emitted program's warnings are the given one's
   machine::Job job = job_;
-  job.operations = moved_ranges(job_.operations, out->emission.block_of_line);
+  out->operations = moved_ranges(job_.operations, out->emission.block_of_line);
+  job.operations = out->operations;
   out->program = deflection::machine_program(SourceText(job_.program, out->emission.text), job, {}, repeated);
   out->map = MoveMap(given_.moves, out->program.moves, out->emission.block_of_line);
   out->quality = path_quality(given_.moves, compensated, out->program.moves, out->map,
                               job_.machine.control.block_time_s, job_.compensation.max_angle_growth_rad);
   return out;
+}
+
+std::string Workshop::text_of(const ShiftPath& path) const {
+  nc::EmitOptions options;
+  options.header_comment = header;
+  return nc::emit(given_.text, given_.moves, path.edits(kViaTolerance_mm), options);
 }
 
 deflection::Prediction Workshop::predict(const deflection::MachinedProgram& program,

@@ -17,6 +17,7 @@ struct Emitted {
   deflection::MachinedProgram program;
   MoveMap map;
   PathQuality quality;
+  machine::Operations operations;  ///< the job's, with the emitted program's lines
 };
 
 struct Trial {
@@ -41,6 +42,8 @@ class Workshop {
   static constexpr double kViaTolerance_mm = 0.0005;
 
   std::shared_ptr<const Emitted> emit(const ShiftPath& path, const std::vector<bool>& compensated) const;
+  /// Only the text, with the header.
+  std::string text_of(const ShiftPath& path) const;
   /// Does not throw for what the given program was warned of already.
   deflection::Prediction predict(const deflection::MachinedProgram& program,
                                  const std::function<void(double)>& progress) const;

@@ -113,6 +113,7 @@ ordered_json split(const compensate::ErrorSplit& s) {
   return {{"correctable", s.correctable_um},
           {"correctable_p95", s.correctable_p95_um},
           {"correctable_max", s.correctable_max_um},
+          {"guard", s.guard_um},
           {"limited", s.limited_um},
           {"not_correctable", s.not_correctable_um()},
           {"short_range", s.short_range_um},
@@ -145,6 +146,32 @@ ordered_json rounds(const compensate::Compensation& c) {
     out.push_back(std::move(row));
   }
   return out;
+}
+
+ordered_json recheck(const compensate::Recheck& r) {
+  return {{"voxel_mm", r.voxel_mm},
+          {"before_um", figures(r.before_um)},
+          {"after_um", figures(r.after_um)},
+          {"split_before_um", split(r.split_before)},
+          {"split_after_um", split(r.split_after)},
+          {"deepest_um", r.deepest_um}};
+}
+
+ordered_json band(const compensate::Band& b) {
+  ordered_json groups = ordered_json::array();
+  for (const auto& g : b.groups) groups.push_back({{"name", g.name}, {"rms_um", g.rms_um}});
+  return {{"groups", groups},        {"sigma_rms_um", b.sigma_rms_um}, {"rms_um", b.rms_um},
+          {"p95_um", b.p95_um}, {"deepest_um", b.deepest_um},     {"safe_share", b.safe_share}};
+}
+
+ordered_json measured(const compensate::MeasuredFit& m) {
+  return {{"deflection_scale", m.scale},
+          {"std_error", m.std_error},
+          {"points", m.points},
+          {"left_out", m.left_out},
+          {"rms_before_um", m.rms_before_um},
+          {"rms_after_um", m.rms_after_um},
+          {"predictions", m.predictions}};
 }
 
 ordered_json operations(const compensate::Compensation& c) {
@@ -181,6 +208,9 @@ std::string compensate_json(const compensate::Compensation& c, double compute_s)
                {"row_step_p95_um", 1000 * c.row_steps.p95_mm},
                {"row_step_max_um", 1000 * c.row_steps.max_mm}};
   j["operations"] = operations(c);
+  if (c.recheck) j["check"] = recheck(*c.recheck);
+  if (c.band) j["uncertainty"] = band(*c.band);
+  if (c.measured) j["measured"] = measured(*c.measured);
   j["blocks"] = {{"before", c.blocks_before}, {"after", c.blocks_after}, {"changed", c.blocks_changed}};
   j["max_shift_um"] = 1000 * c.max_shift_mm;
   j["machine_time_s"] = {{"before", c.feed_before.time_s}, {"after", c.feed_after.time_s}};
@@ -216,6 +246,7 @@ std::string split_text(const compensate::ErrorSplit& before, const compensate::E
     if (b >= 0.005 || a >= 0.005) fmt::format_to(std::back_inserter(out), "{:<34}{:>9.2f}{:>9.2f}\n", name, b, a);
   };
   row("  a shift can correct", before.correctable_um, after.correctable_um);
+  row("  left so as not to cut too deep", before.guard_um, after.guard_um);
   row("  held back by max_shift_mm", before.limited_um, after.limited_um);
   row("  no shift can correct", before.not_correctable_um(), after.not_correctable_um());
   row("    along the cutter: helix bow", before.bow_um, after.bow_um);
@@ -256,6 +287,25 @@ std::string path_text(const compensate::Compensation& c) {
   return out + "\n";
 }
 
+std::string checks_text(const compensate::Compensation& c) {
+  std::string out;
+  const auto add = [&](fmt::string_view format, auto... a) {
+    fmt::vformat_to(std::back_inserter(out), format, fmt::make_format_args(a...));
+  };
+  if (c.measured)
+    add("measured: the deflection is {:.3f} +- {:.3f} of the model's ({} points)\n", c.measured->scale,
+        c.measured->std_error, c.measured->points);
+  if (c.recheck)
+    add("on voxels of {:g} mm: rms {:.2f} um before, {:.2f} after; of what a shift can\ncorrect {:.2f} before, {:.2f} after\n",
+        c.recheck->voxel_mm, c.recheck->before_um.rms, c.recheck->after_um.rms, c.recheck->split_before.correctable_um,
+        c.recheck->split_after.correctable_um);
+  if (!c.band) return out;
+  add("with the model's uncertainty: rms {:.2f} um, 95 % within {:.2f} um\n", c.band->rms_um, c.band->p95_um);
+  for (const auto& g : c.band->groups) add("  {:<12}{:>8.2f} um rms for one standard error\n", g.name, g.rms_um);
+  add("safe share of the compensation: {:.0f} %\n", 100 * c.band->safe_share);
+  return out;
+}
+
 }  // namespace
 
 std::string compensate_text(const compensate::Compensation& c, double compute_s) {
@@ -264,7 +314,7 @@ std::string compensate_text(const compensate::Compensation& c, double compute_s)
                     : c.stop == compensate::Stop::stalled ? "the error no longer falls"
                                                           : "the largest number of rounds was reached";
   fmt::format_to(std::back_inserter(out), "stopped: {}\n", why);
-  out += split_text(c.split_before, c.split_after) + safety_text(c) + path_text(c);
+  out += split_text(c.split_before, c.split_after) + safety_text(c) + path_text(c) + checks_text(c);
   for (const auto& o : c.finishing.operations)
     if (c.finishing.operations.size() > 1)
       fmt::format_to(std::back_inserter(out), "T{}, lines {} to {}: {}, {:.0f} % of the surface\n", o.tool, o.first_line,
