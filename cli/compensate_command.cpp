@@ -88,10 +88,11 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   }
   if (!result.within_part) {
     print_error(fmt::format("the compensated program cuts {:.2f} um into the part at X{:.3f} Y{:.3f} Z{:.3f}; no more than "
-                            "tolerance_um = {:g} was expected",
+                            "{:g} um ({}) were expected",
                             result.depth_after.deepest_um, result.depth_after.place_mm.x(),
                             result.depth_after.place_mm.y(), result.depth_after.place_mm.z(),
-                            job.compensation.tolerance_um));
+                            job.compensation.overcut_um(),
+                            job.compensation.max_overcut_um > 0 ? "max_overcut_um" : "tolerance_um"));
     return kNumbersDidNotWorkOut;
   }
   if (result.stop == compensate::Stop::tolerance) return kDone;

@@ -103,6 +103,7 @@ class Loop {
   const MachinedProgram& target_program() const { return target_program_ ? *target_program_ : program_; }
 
   double tolerance_mm() const { return job_.compensation.tolerance_um / 1000; }
+  double overcut_um() const { return job_.compensation.overcut_um(); }
 
   FitShiftOptions fit_options() const {
     return {.max_shift_mm = job_.compensation.max_shift_mm, .stiffness = stiffness_};
@@ -129,7 +130,7 @@ class Loop {
     out.feed_before = program_.feed;
     out.surface_before = last_.surface;
     record(out, {});
-    out.depth_before = depth_of(last_.surface, last_.observed, job_.compensation.tolerance_um, true);
+    out.depth_before = depth_of(last_.surface, last_.observed, overcut_um(), true);
     best_ = last_;
   }
 
@@ -152,7 +153,7 @@ class Loop {
   /// Where the best round's surface lies deeper than the tolerance, further rounds lift the path there.
   void stay_out_of_part(Compensation& out) {
     if (out.best == 0) return;  // nothing was moved
-    Guard guard(tolerance_mm());
+    Guard guard(overcut_um() / 1000);
     last_ = best_;
     free_correctable_um_ = out.rounds[out.best].split.correctable_um;
     for (int i = 0; i < kGuardRounds && guard.learn(last_.observed) > 0; ++i) {
@@ -212,7 +213,7 @@ class Loop {
       round.split.correctable_um = free;
       round.split.guard_um = std::sqrt(all * all - free * free);
     }
-    round.deepest_um = depth_of(last_.surface, last_.observed, job_.compensation.tolerance_um, true).deepest_um;
+    round.deepest_um = depth_of(last_.surface, last_.observed, overcut_um(), true).deepest_um;
     round.static_rounds = last_.static_rounds;
     round.unsettled = last_.unsettled;
     out.rounds.push_back(round);
@@ -253,11 +254,11 @@ class Loop {
       out.quality = best_.emitted->quality;
     }
     out.row_steps = row_steps(*path_, kRowReach_mm);
-    const double tolerance_um = job_.compensation.tolerance_um;
-    out.depth_after = depth_of(out.surface_after, best_.observed, tolerance_um, true);
-    out.depth_others = depth_of(out.surface_after, best_.observed, tolerance_um, false);
-    out.depth_without_bending = depth_without_bending(job_, *target_, program, tolerance_um);
-    out.within_part = out.depth_after.deepest_um <= tolerance_um;
+    const double most_um = overcut_um();
+    out.depth_after = depth_of(out.surface_after, best_.observed, most_um, true);
+    out.depth_others = depth_of(out.surface_after, best_.observed, most_um, false);
+    out.depth_without_bending = depth_without_bending(job_, *target_, program, most_um);
+    out.within_part = out.depth_after.deepest_um <= most_um;
     check_travel(job_, program.text, program.moves, diagnostics_);
     diagnostics_.throw_if_errors();
     out.blocks_before = program_.text.source.line_count();
@@ -279,7 +280,7 @@ class Loop {
       changes.push_back(changes_mm(job_, group, *target_, program_, emitted, out.surface_after, out.unknown_parameters,
                                    options_.progress));
     }
-    if (!names.empty()) out.band = band_of(out.surface_before, out.surface_after, names, changes, tolerance_mm());
+    if (!names.empty()) out.band = band_of(out.surface_before, out.surface_after, names, changes, overcut_um() / 1000);
     out.text = emitted ? emitted->emission.text : program_.text.source.text();
     if (!options_.header || !emitted) return;
     workshop_->header = options_.header(out);

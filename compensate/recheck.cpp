@@ -37,7 +37,7 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const deflection::Mach
   out.after_um = after.form_error_um;
   const Observed observed = observe(path, job, given, program, map, after.surface, own_target);
   out.split_after = split_error(path, observed, options);
-  out.deepest_um = depth_of(after.surface, observed, job.compensation.tolerance_um, true).deepest_um;
+  out.deepest_um = depth_of(after.surface, observed, job.compensation.overcut_um(), true).deepest_um;
   return out;
 }
 

@@ -50,12 +50,14 @@ class ShiftPath {
   void set_shifts(std::span<const Vec3> shifts);
 
   /// The moves whose points are shifted. Points between the ends of a line are kept where the path without them
-  /// would stray by more than tolerance_mm.
+  /// would stray by more than tolerance_mm; an arc stays one where one passes the shifted points within it, else it
+  /// becomes the fewest arcs that do.
   std::vector<nc::MoveEdit> edits(double tolerance_mm) const;
   double largest_shift_mm() const;
 
  private:
   nc::MoveEdit edit_of(std::size_t first_point, std::size_t last_point, double tolerance_mm) const;
+  void edit_arc(std::size_t first_point, std::size_t last_point, double tolerance_mm, nc::MoveEdit& edit) const;
 
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 

@@ -17,7 +17,9 @@ namespace camber::nc {
 /// New geometry for one move (a linear or an arc move that is editable and not canned).
 struct MoveEdit {
   std::uint32_t move = 0;      ///< index into Interpretation::moves; ascending in the list
-  std::vector<Vec3> via_mm{};  ///< points to pass before the end, in order: the block becomes several (linear only)
+  std::vector<Vec3> via_mm{};  ///< points to pass before the end, in order: the block becomes several
+  /// Arcs only: the centre of the arc that ends at each via point, in the sense of the block's arc; as many.
+  std::vector<Vec3> via_center_mm{};
   Vec3 end_mm = Vec3::Zero();
   Vec3 center_mm = Vec3::Zero();  ///< arcs only: the new centre; the emitter makes it agree with the rounded ends
 };
@@ -34,7 +36,7 @@ struct EmitOptions {
 /// corrected, so an axis that a rapid does not name stays where the edited move left it until the next cutting move.
 ///
 /// A block with via points becomes several: the first keeps its words and comment and goes to the first via point, the
-/// others hold coordinates only. Words that act at the end of the move (M0 M1 M2 M5 M9 M30 M60, G9) go to the last.
+/// others hold coordinates only (arcs: and their centre or R). Words that act at the end of the move (M0 M1 M2 M5 M9 M30 M60, G9) go to the last.
 /// A full turn stays closed: it ends where the emitted program starts it. Arcs get as many decimals as it takes for the
 /// radii at start and end to agree within one unit of the last decimal.
 ///

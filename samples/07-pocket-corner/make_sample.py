@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Makes finish.nc of this sample: the walls of a pocket's corner, finished in one pass of 4 mm depth.
+"""Makes finish.nc of this sample: the walls of a pocket's corner, finished in one pass of 1.5 mm depth.
 
 The tool comes along the first wall, stops for the corner and leaves along the second one. In the corner the feed drops and
 the cutter is engaged over more than a quarter turn. Needs nothing but Python 3.
 """
 import os
 
-RADIUS, LENGTH, PASSES, DEPTH = 3.0, 12.0, 1, 4.0
+RADIUS, LENGTH, PASSES, DEPTH = 3.0, 12.0, 1, 1.5
 
 
 def main():
