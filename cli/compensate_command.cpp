@@ -72,7 +72,8 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
 
   for (const auto& name : result.unknown_parameters)
     if (!options.quiet)
-      fmt::print(stderr, "camber: warning: --uncertainty: {} is no parameter of the job; left out [uncertainty]\n", name);
+      fmt::print(stderr, "camber: warning: --uncertainty: {} is no parameter of the job; left out [uncertainty]\n",
+                 name);
   if (!arguments.dry_run) write_file(arguments.output, result.text);
   if (!arguments.json.empty()) write_file(arguments.json, report::compensate_json(result, compute_s));
   if (!arguments.report.empty())
@@ -87,12 +88,12 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
     return kNumbersDidNotWorkOut;
   }
   if (!result.within_part) {
-    print_error(fmt::format("the compensated program cuts {:.2f} um into the part at X{:.3f} Y{:.3f} Z{:.3f}; no more than "
-                            "{:g} um ({}) were expected",
-                            result.depth_after.deepest_um, result.depth_after.place_mm.x(),
-                            result.depth_after.place_mm.y(), result.depth_after.place_mm.z(),
-                            job.compensation.overcut_um(),
-                            job.compensation.max_overcut_um > 0 ? "max_overcut_um" : "tolerance_um"));
+    print_error(
+        fmt::format("the compensated program cuts {:.2f} um into the part at X{:.3f} Y{:.3f} Z{:.3f}; no more than "
+                    "{:g} um ({}) were expected",
+                    result.depth_after.deepest_um, result.depth_after.place_mm.x(), result.depth_after.place_mm.y(),
+                    result.depth_after.place_mm.z(), job.compensation.overcut_um(),
+                    job.compensation.max_overcut_um > 0 ? "max_overcut_um" : "tolerance_um"));
     return kNumbersDidNotWorkOut;
   }
   if (result.stop == compensate::Stop::tolerance) return kDone;

@@ -11,9 +11,9 @@ namespace camber::cli {
 struct CompensateArguments {
   std::string job;
   std::string output;
-  std::string report;  ///< empty: none
-  std::string json;    ///< empty: none
-  bool dry_run = false;                  ///< write no program
+  std::string report;    ///< empty: none
+  std::string json;      ///< empty: none
+  bool dry_run = false;  ///< write no program
   bool header = false, header_hash = false;
   std::vector<std::string> uncertainty;  ///< files or percentages
   std::string measured, measured_program;

@@ -66,16 +66,22 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
                    "what fit-force or fit-feed wrote, or a percentage: how sure the residual error is")
       ->type_name("FILE|PERCENT")
       ->take_all();
-  auto* measured = command->add_option("--measured", arguments->measured,
-                                       "points measured on a part (x_mm y_mm z_mm nx ny nz error_um): sets the model right first");
+  auto* measured =
+      command->add_option("--measured", arguments->measured,
+                          "points measured on a part (x_mm y_mm z_mm nx ny nz error_um): sets the model right first");
   measured->type_name("POINTS.csv");
-  command->add_option("--measured-program", arguments->measured_program, "what the measured part was cut with, if not the job's program")
+  command
+      ->add_option("--measured-program", arguments->measured_program,
+                   "what the measured part was cut with, if not the job's program")
       ->type_name("P.nc")
       ->needs(measured);
-  command->add_option("--check-voxel", arguments->check_voxel_mm, "predict both programs again on a grid of this voxel, mm")
+  command
+      ->add_option("--check-voxel", arguments->check_voxel_mm,
+                   "predict both programs again on a grid of this voxel, mm")
       ->check(CLI::PositiveNumber)
       ->type_name("MM");
-  command->add_flag("--header", arguments->header, "comment lines at the program's head: what was done, with what model");
+  command->add_flag("--header", arguments->header,
+                    "comment lines at the program's head: what was done, with what model");
   command->add_flag("--header-hash", arguments->header_hash, "the same, with a hash of everything that was read");
   command->add_option("--report", arguments->report, "a page with pictures of before and after")->type_name("R.html");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");

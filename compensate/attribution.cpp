@@ -20,8 +20,8 @@ void mark_opposed(Observed& observed) {
     if (observed.compensated[i]) of_place[observed.points[i].place.lower].push_back(i);
   for (const auto& [place, members] : of_place) {
     const Vec3 first = observed.points[members.front()].normal;
-    const bool faced = std::ranges::any_of(
-        members, [&](std::size_t i) { return observed.points[i].normal.dot(first) < kOpposed; });
+    const bool faced =
+        std::ranges::any_of(members, [&](std::size_t i) { return observed.points[i].normal.dot(first) < kOpposed; });
     if (!faced) continue;
     for (const std::size_t i : members)
       if (std::abs(observed.points[i].normal.dot(first)) > -kOpposed) observed.points[i].opposed = true;

@@ -30,13 +30,13 @@ std::string to_string(Stop stop) {
 
 namespace {
 
-constexpr double kSpacing_mm = 0.4;       // between points of a long line
-constexpr double kLeastGain = 0.03;       // a round that lowers the rms by less has stalled
-constexpr int kPatience = 2;              // rounds without that gain before it counts
-constexpr double kWorse = 1.02;           // a round whose rms is over the best one's by this has over-corrected
-constexpr double kShorter = 0.5;          // then the next step starts at the best one's shifts, shorter
-constexpr int kGuardRounds = 5;           // beyond max_rounds, to stay out of the part
-constexpr int kStiffenings = 12;          // of the path where its angles grow by more than the bound
+constexpr double kSpacing_mm = 0.4;  // between points of a long line
+constexpr double kLeastGain = 0.03;  // a round that lowers the rms by less has stalled
+constexpr int kPatience = 2;         // rounds without that gain before it counts
+constexpr double kWorse = 1.02;      // a round whose rms is over the best one's by this has over-corrected
+constexpr double kShorter = 0.5;     // then the next step starts at the best one's shifts, shorter
+constexpr int kGuardRounds = 5;      // beyond max_rounds, to stay out of the part
+constexpr int kStiffenings = 12;     // of the path where its angles grow by more than the bound
 constexpr double kStiffer = 2.5;
 constexpr double kRowReach_mm = 1.0;
 
@@ -271,8 +271,8 @@ class Loop {
   void check(Compensation& out) {
     const Emitted* emitted = best_.emitted.get();
     if (options_.recheck_voxel_mm)
-      out.recheck = recheck(job_, *options_.recheck_voxel_mm, target_program(), program_, emitted, *path_, fit_options(),
-                            own_target_, options_.progress);
+      out.recheck = recheck(job_, *options_.recheck_voxel_mm, target_program(), program_, emitted, *path_,
+                            fit_options(), own_target_, options_.progress);
     std::vector<std::string> names;
     std::vector<std::vector<double>> changes;
     for (const ParameterGroup& group : options_.uncertainty) {

@@ -64,7 +64,7 @@ struct Compensation {
 
 struct CompensateOptions {
   std::function<void(const std::string& what, double share)> progress;
-  std::optional<double> recheck_voxel_mm{};     ///< predict both programs on this grid as well
+  std::optional<double> recheck_voxel_mm{};   ///< predict both programs on this grid as well
   std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.
   std::function<std::string(const Compensation&)> header{};

@@ -119,10 +119,11 @@ void check_compensated(const MachinedProgram& program, const std::vector<bool>& 
   if (!first) return;
   diagnostics.add(program.text.source.diagnostic(
       Severity::error, program.text.blocks[first->block].offset,
-      fmt::format("{} move{} to compensate run{} under cutter radius compensation (G41, G42), from here on: the control "
-                  "makes their path, the text has no words for it; a program for the cutter's centre, or [compensation] "
-                  "operations without these blocks, was expected",
-                  count, count == 1 ? "" : "s", count == 1 ? "s" : ""),
+      fmt::format(
+          "{} move{} to compensate run{} under cutter radius compensation (G41, G42), from here on: the control "
+          "makes their path, the text has no words for it; a program for the cutter's centre, or [compensation] "
+          "operations without these blocks, was expected",
+          count, count == 1 ? "" : "s", count == 1 ? "s" : ""),
       "cutter-radius"));
 }
 

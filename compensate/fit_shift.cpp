@@ -46,8 +46,8 @@ void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double 
   }
 }
 
-/// Holds at rest what hardly any surface faces: along a row of a ball the normals differ by a few degrees, and a shift of
-/// several times the error along the surface would explain what little the error varies across the row.
+/// Holds at rest what hardly any surface faces: along a row of a ball the normals differ by a few degrees, and a shift
+/// of several times the error along the surface would explain what little the error varies across the row.
 void add_rest(System& s, const Chain& chain) {
   std::vector<Matrix3d> rest(chain.count);
   for (std::size_t k = 0; k < chain.count; ++k) {

@@ -32,11 +32,11 @@ struct FitShiftOptions {
 ///
 ///   sum w a (e / g + n . (s - s_old))^2 + mu integral |ds/dl|^2 dl + kappa integral |s|^2 dl
 ///
-/// with a the area, w the weight, e the error, g the gain, n the normal of each observation, s the shift at its place (linear between the
-/// points), mu = rho smoothing^2, kappa = mu / decay^2 and rho the mean area per path length: a block tridiagonal
-/// system of 3 x 3 blocks. Directions in which hardly any surface faces stay at rest; where surfaces face each other (a
-/// slot) the least squares between them results. Shifts longer than max_shift_mm are cut to it. Returns how many
-/// points were.
+/// with a the area, w the weight, e the error, g the gain, n the normal of each observation, s the shift at its place
+/// (linear between the points), mu = rho smoothing^2, kappa = mu / decay^2 and rho the mean area per path length: a
+/// block tridiagonal system of 3 x 3 blocks. Directions in which hardly any surface faces stay at rest; where surfaces
+/// face each other (a slot) the least squares between them results. Shifts longer than max_shift_mm are cut to it.
+/// Returns how many points were.
 std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options);
 
 }  // namespace camber::compensate

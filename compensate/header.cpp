@@ -27,14 +27,15 @@ std::string plain(std::string text) {
     const auto u = static_cast<unsigned char>(c);
     if (c == '\n') continue;
     c = std::isalnum(u) || c == '.' || c == '-' || c == '+' || c == ',' || c == '/' ? static_cast<char>(std::toupper(u))
-                                                                                     : ' ';
+                                                                                    : ' ';
   }
   return text;
 }
 
 /// Paths say where a file lies, not what it holds.
 machine::Job without_paths(machine::Job job) {
-  for (std::string* path : {&job.program, &job.machine_path, &job.stock.mesh, &job.stock.vdb, &job.part.mesh, &job.part.program})
+  for (std::string* path :
+       {&job.program, &job.machine_path, &job.stock.mesh, &job.stock.vdb, &job.part.mesh, &job.part.program})
     if (!path->empty()) *path = std::filesystem::path(*path).filename().string();
   return job;
 }
@@ -45,8 +46,8 @@ std::string header_lines(const machine::Job& job, const Compensation& c, const s
   std::string out = fmt::format("CAMBER {} - PATH COMPENSATED FOR THE BENDING OF THE TOOL\n", version);
   fmt::format_to(std::back_inserter(out), "PREDICTED ERROR RMS {:.1f} UM BEFORE, {:.1f} UM AFTER\n", c.before_um.rms,
                  c.after_um.rms);
-  fmt::format_to(std::back_inserter(out), "LARGEST SHIFT {:.4f} MM OF {:g} ALLOWED, TOLERANCE {:g} UM\n", c.max_shift_mm,
-                 job.compensation.max_shift_mm, job.compensation.tolerance_um);
+  fmt::format_to(std::back_inserter(out), "LARGEST SHIFT {:.4f} MM OF {:g} ALLOWED, TOLERANCE {:g} UM\n",
+                 c.max_shift_mm, job.compensation.max_shift_mm, job.compensation.tolerance_um);
   for (const auto& o : c.finishing.operations) {
     if (o.compensated_moves == 0) continue;
     const machine::Tool& t = job.tools.at(o.tool);
@@ -55,8 +56,8 @@ std::string header_lines(const machine::Job& job, const Compensation& c, const s
   }
   const machine::Material& m = job.material;
   if (m.law == machine::ForceLaw::linear)
-    fmt::format_to(std::back_inserter(out), "KTC {:g} KRC {:g} KAC {:g} MPA, KTE {:g} KRE {:g} KAE {:g} N/MM\n", m.ktc_MPa,
-                   m.krc_MPa, m.kac_MPa, m.kte_N_per_mm, m.kre_N_per_mm, m.kae_N_per_mm);
+    fmt::format_to(std::back_inserter(out), "KTC {:g} KRC {:g} KAC {:g} MPA, KTE {:g} KRE {:g} KAE {:g} N/MM\n",
+                   m.ktc_MPa, m.krc_MPa, m.kac_MPa, m.kte_N_per_mm, m.kre_N_per_mm, m.kae_N_per_mm);
   else
     fmt::format_to(std::back_inserter(out), "KC1.1 {:g} MPA MC {:g}, KTE {:g} KRE {:g} N/MM\n", m.kc1_1_MPa, m.mc,
                    m.kte_N_per_mm, m.kre_N_per_mm);

@@ -12,8 +12,8 @@ namespace camber::compensate {
 std::string header_lines(const machine::Job& job, const Compensation& result, const std::string& version);
 
 /// 16 hexadecimal digits over everything the result depends on: the contents of the program, the machine and of every
-/// file that the job reads, and the job with every default (FNV-1a, 64 bits: it tells versions apart, it proves nothing).
-/// Throws InputError where a file cannot be read.
+/// file that the job reads, and the job with every default (FNV-1a, 64 bits: it tells versions apart, it proves
+/// nothing). Throws InputError where a file cannot be read.
 std::string hash_of_inputs(const machine::Job& job);
 
 }  // namespace camber::compensate

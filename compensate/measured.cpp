@@ -48,21 +48,23 @@ class MeasuredReader {
   std::vector<MeasuredPoint> read() {
     std::size_t line = 1;
     while (line <= source_.line_count() && fields_of(source_.line(line), ',').front().text.empty()) ++line;
-    if (line > source_.line_count()) fail_on_file(source_.name(), "is empty; measured points were expected", "measured-empty");
+    if (line > source_.line_count())
+      fail_on_file(source_.name(), "is empty; measured points were expected", "measured-empty");
     read_header(line);
     std::vector<MeasuredPoint> out;
     for (++line; line <= source_.line_count(); ++line)
       if (const auto p = read_row(line)) out.push_back(*p);
     diagnostics_.throw_if_errors();
     if (out.empty())
-      fail_on_file(source_.name(), "has a header, but no row below it; measured points were expected", "measured-empty");
+      fail_on_file(source_.name(), "has a header, but no row below it; measured points were expected",
+                   "measured-empty");
     return out;
   }
 
  private:
   void error(std::size_t line, std::size_t column, std::string message, const char* check) {
-    diagnostics_.add({Severity::error, {source_.name(), line, column}, std::move(message), check,
-                      std::string(source_.line(line))});
+    diagnostics_.add(
+        {Severity::error, {source_.name(), line, column}, std::move(message), check, std::string(source_.line(line))});
   }
 
   void read_header(std::size_t line) {
@@ -75,7 +77,8 @@ class MeasuredReader {
       const auto at = std::ranges::find_if(
           names, [&](const Field& f) { return f.text == kColumns[c][0] || f.text == kColumns[c][1]; });
       if (at == names.end())
-        error(line, 1, fmt::format("no column {}; a header with x_mm y_mm z_mm nx ny nz error_um was expected", kColumns[c][0]),
+        error(line, 1,
+              fmt::format("no column {}; a header with x_mm y_mm z_mm nx ny nz error_um was expected", kColumns[c][0]),
               "measured-column");
       else
         column_[c] = static_cast<std::size_t>(at - names.begin());
@@ -95,7 +98,8 @@ class MeasuredReader {
       const auto number = parse_number(fields[column_[c]].text);
       if (!number) {
         error(line, fields[column_[c]].column,
-              fmt::format("{} is \"{}\"; a number was expected", kColumns[c][0], fields[column_[c]].text), "measured-number");
+              fmt::format("{} is \"{}\"; a number was expected", kColumns[c][0], fields[column_[c]].text),
+              "measured-number");
         return std::nullopt;
       }
       v[c] = *number;
@@ -118,7 +122,8 @@ class MeasuredReader {
 /// The surface points about each measured one.
 class Neighbours {
  public:
-  Neighbours(const std::vector<removal::SurfacePoint>& surface, const std::vector<MeasuredPoint>& points, double reach) {
+  Neighbours(const std::vector<removal::SurfacePoint>& surface, const std::vector<MeasuredPoint>& points,
+             double reach) {
     using Cell = std::array<long, 3>;
     const auto cell_of = [&](const Vec3& p) {
       return Cell{std::lround(p.x() / reach), std::lround(p.y() / reach), std::lround(p.z() / reach)};
@@ -176,7 +181,8 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
   const auto machined = [&](const std::string& file, Diagnostics& into) {
     return deflection::machine_program(SourceText::read(file), job, {}, into);
   };
-  const MachinedProgram cut = machined(program.empty() ? job.program : program, program.empty() ? repeated : diagnostics);
+  const MachinedProgram cut =
+      machined(program.empty() ? job.program : program, program.empty() ? repeated : diagnostics);
   const MachinedProgram wanted = machined(job.part.program.empty() ? job.program : job.part.program, repeated);
   const deflection::Target target = deflection::make_target(job, wanted, repeated);
 
@@ -186,7 +192,10 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
   const auto predicted_at = [&](double scale) {
     deflection::PredictOptions options;
     options.contacts = false;
-    if (progress) options.progress = [&](double share) { progress(fmt::format("measured points, deflection x {:.3f}", scale), share); };
+    if (progress)
+      options.progress = [&](double share) {
+        progress(fmt::format("measured points, deflection x {:.3f}", scale), share);
+      };
     const auto prediction = deflection::predict(softened(job, scale), target, cut, options);
     ++out.predictions;
     if (!near) {
@@ -201,7 +210,8 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
   };
   const auto rms_um = [&](const std::vector<double>& predicted) {
     double sum = 0;
-    for (std::size_t i = 0; i < predicted.size(); ++i) sum += (measured[i] - predicted[i]) * (measured[i] - predicted[i]);
+    for (std::size_t i = 0; i < predicted.size(); ++i)
+      sum += (measured[i] - predicted[i]) * (measured[i] - predicted[i]);
     return 1000 * std::sqrt(sum / static_cast<double>(predicted.size()));
   };
   const auto refuse = [&](const std::string& why) { fail_on_file(path, why, "measured-untold"); };
@@ -226,8 +236,9 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
     }
     constexpr double kFlat_mm = 1e-4;  // a deflection twice as large would move the surface by less
     if (std::sqrt(jj / static_cast<double>(e1.size())) < kFlat_mm)
-      refuse("the predicted error at the points hardly depends on the deflection; points where the tool bends across the "
-             "surface were expected");
+      refuse(
+          "the predicted error at the points hardly depends on the deflection; points where the tool bends across the "
+          "surface were expected");
     const double next = std::clamp(c1 + jr / jj, kLeast, kMost);
     double left = 0;
     for (std::size_t i = 0; i < e1.size(); ++i) {
@@ -244,9 +255,10 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
     e1 = predicted_at(c1);
   }
   if (out.std_error > kVague * out.scale)
-    refuse(fmt::format("the points do not tell the deflection: {:.2f} +- {:.2f} of the model's; a standard error below a "
-                       "quarter of it was expected",
-                       out.scale, out.std_error));
+    refuse(
+        fmt::format("the points do not tell the deflection: {:.2f} +- {:.2f} of the model's; a standard error below a "
+                    "quarter of it was expected",
+                    out.scale, out.std_error));
   return out;
 }
 

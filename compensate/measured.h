@@ -24,7 +24,7 @@ std::vector<MeasuredPoint> read_measured(const std::string& path);
 struct MeasuredFit {
   double scale = 1;      ///< of the deflection: the forces are so much greater, or the tool so much softer
   double std_error = 0;  ///< from the points' scatter about the fit
-  std::size_t points = 0, left_out = 0;  ///< left out: no machined surface of the job there
+  std::size_t points = 0, left_out = 0;        ///< left out: no machined surface of the job there
   double rms_before_um = 0, rms_after_um = 0;  ///< measured less predicted, with the scale 1 and the fitted one
   int predictions = 0;
 };

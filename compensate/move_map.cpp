@@ -17,7 +17,9 @@ std::size_t end_of_block(const std::vector<nc::Move>& moves, std::size_t first, 
 MoveMap::MoveMap(const nc::Interpretation& given, const nc::Interpretation& emitted,
                  std::span<const std::uint32_t> block_of_line) {
   const auto own_block = [](const nc::Move& m) { return m.block; };
-  const auto given_block = [&](const nc::Move& m) { return m.block < block_of_line.size() ? block_of_line[m.block] : 0; };
+  const auto given_block = [&](const nc::Move& m) {
+    return m.block < block_of_line.size() ? block_of_line[m.block] : 0;
+  };
   parts_.resize(emitted.moves.size());
   std::size_t g = 0;
   for (std::size_t e = 0; e < emitted.moves.size();) {

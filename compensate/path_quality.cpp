@@ -32,7 +32,8 @@ PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool
   PathQuality out;
   out.shortest_mm = std::numeric_limits<double>::infinity();
   const auto split = [&](std::size_t m) {
-    const MoveMap::Place first = map.given(static_cast<std::uint32_t>(m), 0), last = map.given(static_cast<std::uint32_t>(m), 1);
+    const MoveMap::Place first = map.given(static_cast<std::uint32_t>(m), 0),
+                         last = map.given(static_cast<std::uint32_t>(m), 1);
     return last.share - first.share < 1 - 1e-9;
   };
   for (std::size_t m = 0; m < emitted.moves.size(); ++m) {

@@ -17,8 +17,8 @@ struct PathQuality {
   std::vector<MoveMap::Place> over;  ///< places of the given program where the angle grows by more than the bound
 };
 
-/// Between consecutive moves that may be shifted (`selected`, of the given program). Moves shorter than kShort_mm in the
-/// given program turn freely and are left out.
+/// Between consecutive moves that may be shifted (`selected`, of the given program). Moves shorter than kShort_mm in
+/// the given program turn freely and are left out.
 PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool>& selected,
                          const nc::Interpretation& emitted, const MoveMap& map, double block_time_s,
                          double angle_bound_rad);

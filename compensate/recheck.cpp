@@ -29,8 +29,7 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const deflection::Mach
   out.voxel_mm = voxel_mm;
   const auto before = predict(other, target, given, fmt::format("as given, voxels of {:g} mm", voxel_mm), progress);
   out.before_um = before.form_error_um;
-  out.split_before =
-      split_error(path, observe(path, job, given, given, {}, before.surface, own_target), options);
+  out.split_before = split_error(path, observe(path, job, given, given, {}, before.surface, own_target), options);
   const auto& program = emitted ? emitted->program : given;
   const MoveMap map = emitted ? emitted->map : MoveMap();
   const auto after = predict(other, target, program, fmt::format("compensated, voxels of {:g} mm", voxel_mm), progress);

@@ -78,8 +78,8 @@ void check_travel(const machine::Job& job, const nc::Program& program, const nc:
       least = std::min(least, low);
       greatest = std::max(greatest, high);
       const double zero = offset ? (*offset)[axis] : 0;
-      const bool out = offset ? low + zero < travel[0] || high + zero > travel[1]
-                              : greatest - least > travel[1] - travel[0];
+      const bool out =
+          offset ? low + zero < travel[0] || high + zero > travel[1] : greatest - least > travel[1] - travel[0];
       if (!out) continue;
       diagnostics.add(program.source.diagnostic(
           Severity::error, program.blocks[m.block].offset,

@@ -13,9 +13,9 @@ namespace camber::compensate {
 
 /// How far the surface lies inside the part (inside the target's undeflected sweep).
 struct Depth {
-  double deepest_um = 0;     ///< not negative
+  double deepest_um = 0;  ///< not negative
   Vec3 place_mm = Vec3::Zero();
-  double over_share = 0;     ///< of the area that lies deeper than the tolerance
+  double over_share = 0;  ///< of the area that lies deeper than the tolerance
 };
 
 /// Of the points that compensated moves made (`compensated` false: of the others).
@@ -29,7 +29,8 @@ Depth depth_without_bending(const machine::Job& job, const deflection::Target& t
 
 /// Where the moves of a program take the axes, machine coordinates, against Axis::travel_mm. Needs
 /// [compensation] work_offset_mm; without it only the extent is checked against the length of the travel.
-/// Errors [travel], at the first move of each axis that leaves; nothing is said of axes without travel_mm. Rapids count.
+/// Errors [travel], at the first move of each axis that leaves; nothing is said of axes without travel_mm. Rapids
+/// count.
 void check_travel(const machine::Job& job, const nc::Program& program, const nc::Interpretation& moves,
                   Diagnostics& diagnostics);
 

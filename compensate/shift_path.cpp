@@ -198,6 +198,10 @@ nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, double tole
   return edit;
 }
 
+namespace {
+constexpr double kNothing_mm = 0.0002;  // a move whose shifts are all smaller is left as it is
+}
+
 std::vector<nc::MoveEdit> ShiftPath::edits(double tolerance_mm) const {
   std::vector<nc::MoveEdit> out;
   for (const Chain& chain : chains_) {
@@ -206,7 +210,7 @@ std::vector<nc::MoveEdit> ShiftPath::edits(double tolerance_mm) const {
       std::size_t last = first + 1;
       while (last + 1 < end && points_[last + 1].move == points_[first + 1].move) ++last;
       bool shifted = false;
-      for (std::size_t i = first; i <= last; ++i) shifted = shifted || !points_[i].shift_mm.isZero();
+      for (std::size_t i = first; i <= last; ++i) shifted = shifted || points_[i].shift_mm.norm() > kNothing_mm;
       if (shifted) out.push_back(edit_of(first, last, tolerance_mm));
       first = last;
     }

@@ -22,7 +22,7 @@ struct Emitted {
 
 struct Trial {
   std::vector<Vec3> shifts;
-  std::shared_ptr<const Emitted> emitted;  ///< none: the program as given
+  std::shared_ptr<const Emitted> emitted;      ///< none: the program as given
   std::vector<removal::SurfacePoint> surface;  ///< the same points in the same order, whatever the shifts
   removal::ErrorFigures error_um;
   int static_rounds = 0;

@@ -71,8 +71,8 @@ std::vector<ParameterGroup> read_uncertainty(const std::string& given) {
   }
   const std::string text = SourceText::read(given).text();
   const std::size_t first = text.find_first_not_of(" \t\r\n");
-  const auto parameters = first != std::string::npos && text[first] == '{' ? parameters_of_json(given, text)
-                                                                           : parameters_of_toml(text);
+  const auto parameters =
+      first != std::string::npos && text[first] == '{' ? parameters_of_json(given, text) : parameters_of_toml(text);
   std::map<std::string, ParameterGroup> groups;
   for (const auto& p : parameters) {
     if (!(p.std_error > 0) || !std::isfinite(p.std_error)) continue;
@@ -81,8 +81,9 @@ std::vector<ParameterGroup> read_uncertainty(const std::string& given) {
     g.parameters.push_back(p);
   }
   if (groups.empty())
-    fail(given, "holds no standard error; what fit-force or fit-feed wrote (with -o or --json), or a percentage, was "
-                "expected");
+    fail(given,
+         "holds no standard error; what fit-force or fit-feed wrote (with -o or --json), or a percentage, was "
+         "expected");
   std::vector<ParameterGroup> out;
   for (auto& [name, group] : groups) out.push_back(std::move(group));
   return out;

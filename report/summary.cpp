@@ -160,17 +160,13 @@ ordered_json recheck(const compensate::Recheck& r) {
 ordered_json band(const compensate::Band& b) {
   ordered_json groups = ordered_json::array();
   for (const auto& g : b.groups) groups.push_back({{"name", g.name}, {"rms_um", g.rms_um}});
-  return {{"groups", groups},        {"sigma_rms_um", b.sigma_rms_um}, {"rms_um", b.rms_um},
+  return {{"groups", groups},   {"sigma_rms_um", b.sigma_rms_um}, {"rms_um", b.rms_um},
           {"p95_um", b.p95_um}, {"deepest_um", b.deepest_um},     {"safe_share", b.safe_share}};
 }
 
 ordered_json measured(const compensate::MeasuredFit& m) {
-  return {{"deflection_scale", m.scale},
-          {"std_error", m.std_error},
-          {"points", m.points},
-          {"left_out", m.left_out},
-          {"rms_before_um", m.rms_before_um},
-          {"rms_after_um", m.rms_after_um},
+  return {{"deflection_scale", m.scale}, {"std_error", m.std_error},         {"points", m.points},
+          {"left_out", m.left_out},      {"rms_before_um", m.rms_before_um}, {"rms_after_um", m.rms_after_um},
           {"predictions", m.predictions}};
 }
 
@@ -274,14 +270,14 @@ std::string rounds_text(const compensate::Compensation& c) {
 std::string safety_text(const compensate::Compensation& c) {
   std::string out = fmt::format("into the part: {:.2f} um before, {:.2f} um after", c.depth_before.deepest_um,
                                 c.depth_after.deepest_um);
-  if (c.depth_others.deepest_um > 0)
-    out += fmt::format("; {:.2f} um by other moves", c.depth_others.deepest_um);
+  if (c.depth_others.deepest_um > 0) out += fmt::format("; {:.2f} um by other moves", c.depth_others.deepest_um);
   return out + fmt::format("\nif the tool did not bend at all: {:.2f} um into the part\n",
                            c.depth_without_bending.deepest_um);
 }
 
 std::string path_text(const compensate::Compensation& c) {
-  std::string out = fmt::format("angles between blocks grow by {:.2f} degrees at most", deg_from_rad(c.quality.angle_growth_rad));
+  std::string out =
+      fmt::format("angles between blocks grow by {:.2f} degrees at most", deg_from_rad(c.quality.angle_growth_rad));
   if (c.row_steps.pairs > 0) out += fmt::format("; row to row {:.1f} um (95 %)", 1000 * c.row_steps.p95_mm);
   if (c.quality.shortest_mm > 0) out += fmt::format("\nshortest block of a split: {:.3f} mm", c.quality.shortest_mm);
   return out + "\n";
@@ -296,7 +292,8 @@ std::string checks_text(const compensate::Compensation& c) {
     add("measured: the deflection is {:.3f} +- {:.3f} of the model's ({} points)\n", c.measured->scale,
         c.measured->std_error, c.measured->points);
   if (c.recheck)
-    add("on voxels of {:g} mm: rms {:.2f} um before, {:.2f} after; of what a shift can\ncorrect {:.2f} before, {:.2f} after\n",
+    add("on voxels of {:g} mm: rms {:.2f} um before, {:.2f} after; of what a shift can\ncorrect {:.2f} before, {:.2f} "
+        "after\n",
         c.recheck->voxel_mm, c.recheck->before_um.rms, c.recheck->after_um.rms, c.recheck->split_before.correctable_um,
         c.recheck->split_after.correctable_um);
   if (!c.band) return out;
@@ -310,15 +307,17 @@ std::string checks_text(const compensate::Compensation& c) {
 
 std::string compensate_text(const compensate::Compensation& c, double compute_s) {
   std::string out = rounds_text(c);
-  const char* why = c.stop == compensate::Stop::tolerance ? "the 95th percentile of what a shift can correct is within the tolerance"
+  const char* why = c.stop == compensate::Stop::tolerance
+                        ? "the 95th percentile of what a shift can correct is within the tolerance"
                     : c.stop == compensate::Stop::stalled ? "the error no longer falls"
                                                           : "the largest number of rounds was reached";
   fmt::format_to(std::back_inserter(out), "stopped: {}\n", why);
   out += split_text(c.split_before, c.split_after) + safety_text(c) + path_text(c) + checks_text(c);
   for (const auto& o : c.finishing.operations)
     if (c.finishing.operations.size() > 1)
-      fmt::format_to(std::back_inserter(out), "T{}, lines {} to {}: {}, {:.0f} % of the surface\n", o.tool, o.first_line,
-                     o.last_line, o.compensated_moves > 0 ? "compensated" : "simulated only", 100 * o.surface_share);
+      fmt::format_to(std::back_inserter(out), "T{}, lines {} to {}: {}, {:.0f} % of the surface\n", o.tool,
+                     o.first_line, o.last_line, o.compensated_moves > 0 ? "compensated" : "simulated only",
+                     100 * o.surface_share);
   fmt::format_to(std::back_inserter(out),
                  "largest shift {:.1f} um; {} of {} blocks changed, {} blocks after\n"
                  "machine time {:.1f} s before, {:.1f} s after; computed in {:.1f} s\n",

@@ -9,7 +9,8 @@ namespace camber::compensate {
 namespace {
 
 const char* const kTwoTools =
-    "G21 G90\nG0 X0. Y0. Z5.\n(ROUGHING)\nT1 M6\nS1000 M3\nG1 X10. F100\nX20.\n(FINISH WALLS)\nT2 M6\nG1 X30.\nX40.\n(CHAMFER)\nX50.\nM30\n";
+    "G21 G90\nG0 X0. Y0. Z5.\n(ROUGHING)\nT1 M6\nS1000 M3\nG1 X10. F100\nX20.\n(FINISH WALLS)\nT2 M6\nG1 "
+    "X30.\nX40.\n(CHAMFER)\nX50.\nM30\n";
 
 deflection::MachinedProgram machined(const std::string& text) {
   deflection::MachinedProgram p;
@@ -67,10 +68,11 @@ TEST(Finishing, RefusesCutterRadiusCompensation) {
   Diagnostics diagnostics;
   check_compensated(moved, {false, false, true, false}, diagnostics);
   ASSERT_EQ(diagnostics.all().size(), 1u);
-  EXPECT_EQ(to_string(diagnostics.all()[0]),
-            "two.nc:4:1: error: 1 move to compensate runs under cutter radius compensation (G41, G42), from here on: the "
-            "control makes their path, the text has no words for it; a program for the cutter's centre, or "
-            "[compensation] operations without these blocks, was expected [cutter-radius]\n    G1 Y10. F100\n    ^");
+  EXPECT_EQ(
+      to_string(diagnostics.all()[0]),
+      "two.nc:4:1: error: 1 move to compensate runs under cutter radius compensation (G41, G42), from here on: the "
+      "control makes their path, the text has no words for it; a program for the cutter's centre, or "
+      "[compensation] operations without these blocks, was expected [cutter-radius]\n    G1 Y10. F100\n    ^");
 }
 
 TEST(Finishing, SaysWhereNothingIsLeftToCompensate) {

@@ -79,8 +79,9 @@ TEST(ShiftedArc, BecomesFewArcsWhereTheShiftVaries) {
 }
 
 TEST(ShiftedArc, KeepsRadiusWordsAndFullTurns) {
-  for (const char* text : {"G21 G17 G90\nG0 X10. Y0.\nG3 X0. Y10. R10. F300\nM30\n",
-                           "G21 G17 G90\nG0 X10. Y0.\nG3 I-10. F300\nM30\n", "G21 G17 G91\nG0 X10. Y0.\nG2 X-10. Y-10. I-10. J0. F300\nM30\n"}) {
+  for (const char* text :
+       {"G21 G17 G90\nG0 X10. Y0.\nG3 X0. Y10. R10. F300\nM30\n", "G21 G17 G90\nG0 X10. Y0.\nG3 I-10. F300\nM30\n",
+        "G21 G17 G91\nG0 X10. Y0.\nG2 X-10. Y-10. I-10. J0. F300\nM30\n"}) {
     const Arcs given(text);
     ShiftPath path(given.moves, {false, true}, 0.4);
     const auto out = [](double angle) { return 0.01 * (1 - std::cos(2 * angle)); };
