@@ -24,7 +24,11 @@ class OutputFile {
   std::string path_, part_path_;
   std::ofstream stream_;
   bool committed_ = false;
+  int slot_ = -1;  ///< among the parts that a signal removes
 };
+
+/// From now on SIGINT, SIGTERM and SIGHUP remove the parts of files that are not whole before they end the process.
+void remove_parts_on_signals();
 
 /// The whole of a small file at once.
 void write_file(const std::string& path, std::string_view content);

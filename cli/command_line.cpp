@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 
+#include "base/output_file.h"
 #include "cli/console.h"
 
 namespace camber::cli {
@@ -87,6 +88,7 @@ int run(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& problem) {
     return app.exit(problem) == 0 ? kDone : kCommandLineWrong;
   }
+  remove_parts_on_signals();
   const auto limit = thread_limit(options.threads);
   return guarded(chosen, options);
 }

@@ -7,6 +7,9 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "compensate/header.h"
+#include "compensate/measured.h"
+#include "compensate/recheck.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/fitted_range.h"
 #include "nc/interpreter.h"
@@ -29,23 +32,49 @@ std::vector<report::FeedSample> feed_of(SourceText source, const machine::Job& j
   return collector.take();
 }
 
+/// The job as it was measured; the fit goes to `fit`.
+machine::Job as_measured(const machine::Job& job, const CompensateArguments& arguments, Diagnostics& diagnostics,
+                         const compensate::Progress& progress, std::optional<compensate::MeasuredFit>& fit) {
+  if (arguments.measured.empty()) return job;
+  const auto points = compensate::read_measured(arguments.measured);
+  fit = compensate::fit_measured(job, arguments.measured, points, arguments.measured_program, diagnostics, progress);
+  return compensate::softened(job, fit->scale);
+}
+
+std::string header_of(const machine::Job& job, const compensate::Compensation& c, bool hash) {
+  const std::string lines = compensate::header_lines(job, c, CAMBER_VERSION);
+  return hash ? lines + "\nINPUTS " + compensate::hash_of_inputs(job) : lines;
+}
+
 }  // namespace
 
 int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
-  const machine::Job job = machine::read_job(arguments.job, diagnostics);
+  const machine::Job told = machine::read_job(arguments.job, diagnostics);
   ProgressLine progress(options);
   compensate::CompensateOptions compensate_options;
   compensate_options.progress = [&](const std::string& what, double share) { progress.show(what, share); };
-  const compensate::Compensation result = compensate::compensate(job, diagnostics, compensate_options);
+  for (const auto& u : arguments.uncertainty)
+    for (auto& group : compensate::read_uncertainty(u)) compensate_options.uncertainty.push_back(std::move(group));
+  compensate_options.recheck_voxel_mm = arguments.check_voxel_mm;
+  std::optional<compensate::MeasuredFit> fit;
+  const machine::Job job = as_measured(told, arguments, diagnostics, compensate_options.progress, fit);
+  if (arguments.header || arguments.header_hash)
+    compensate_options.header = [&](const auto& c) { return header_of(job, c, arguments.header_hash); };
+  compensate::Compensation result = compensate::compensate(job, diagnostics, compensate_options);
+  result.measured = fit;
   progress.clear();
   feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
   settle(diagnostics, options);
   print_translation(job.machine.translation, options);
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
-  write_file(arguments.output, result.text);
+  for (const auto& name : result.unknown_parameters)
+    if (!options.quiet)
+      fmt::print(stderr, "camber: warning: --uncertainty: {} is no parameter of the job; left out [uncertainty]\n",
+                 name);
+  if (!arguments.dry_run) write_file(arguments.output, result.text);
   if (!arguments.json.empty()) write_file(arguments.json, report::compensate_json(result, compute_s));
   if (!arguments.report.empty())
     report::write_html_report(
@@ -58,9 +87,18 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
     print_error(unsettled);
     return kNumbersDidNotWorkOut;
   }
+  if (!result.within_part) {
+    print_error(
+        fmt::format("the compensated program cuts {:.2f} um into the part at X{:.3f} Y{:.3f} Z{:.3f}; no more than "
+                    "{:g} um ({}) were expected",
+                    result.depth_after.deepest_um, result.depth_after.place_mm.x(), result.depth_after.place_mm.y(),
+                    result.depth_after.place_mm.z(), job.compensation.overcut_um(),
+                    job.compensation.max_overcut_um > 0 ? "max_overcut_um" : "tolerance_um"));
+    return kNumbersDidNotWorkOut;
+  }
   if (result.stop == compensate::Stop::tolerance) return kDone;
-  print_error(fmt::format("the residual of {:.2f} um (95th percentile) is over tolerance_um = {:g}",
-                          result.after_um.p95, job.compensation.tolerance_um));
+  print_error(fmt::format("of what a shift can correct {:.2f} um (95th percentile) are left; tolerance_um = {:g}",
+                          result.split_after.correctable_p95_um, job.compensation.tolerance_um));
   return kNumbersDidNotWorkOut;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 // camber compensate J.toml -o OUT.nc [--report R.html] [--json R.json]
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/global_options.h"
 
@@ -9,8 +11,13 @@ namespace camber::cli {
 struct CompensateArguments {
   std::string job;
   std::string output;
-  std::string report;  ///< empty: none
-  std::string json;    ///< empty: none
+  std::string report;    ///< empty: none
+  std::string json;      ///< empty: none
+  bool dry_run = false;  ///< write no program
+  bool header = false, header_hash = false;
+  std::vector<std::string> uncertainty;  ///< files or percentages
+  std::string measured, measured_program;
+  std::optional<double> check_voxel_mm;
 };
 
 /// Throws InputError. Returns kDone or kNumbersDidNotWorkOut (a static solution did not settle, or the residual is

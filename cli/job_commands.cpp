@@ -59,13 +59,39 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
   auto* command = app.add_subcommand("compensate", "move the path of a job against its form error");
   auto arguments = std::make_shared<CompensateArguments>();
   command->add_option("job", arguments->job, "job.toml")->required()->type_name("J.toml");
-  command->add_option("-o,--output", arguments->output, "the new program")->required()->type_name("OUT.nc");
+  auto* output = command->add_option("-o,--output", arguments->output, "the new program")->type_name("OUT.nc");
+  auto* dry_run = command->add_flag("--dry-run", arguments->dry_run, "do everything, but write no program");
+  command
+      ->add_option("--uncertainty", arguments->uncertainty,
+                   "what fit-force or fit-feed wrote, or a percentage: how sure the residual error is")
+      ->type_name("FILE|PERCENT")
+      ->take_all();
+  auto* measured =
+      command->add_option("--measured", arguments->measured,
+                          "points measured on a part (x_mm y_mm z_mm nx ny nz error_um): sets the model right first");
+  measured->type_name("POINTS.csv");
+  command
+      ->add_option("--measured-program", arguments->measured_program,
+                   "what the measured part was cut with, if not the job's program")
+      ->type_name("P.nc")
+      ->needs(measured);
+  command
+      ->add_option("--check-voxel", arguments->check_voxel_mm,
+                   "predict both programs again on a grid of this voxel, mm")
+      ->check(CLI::PositiveNumber)
+      ->type_name("MM");
+  command->add_flag("--header", arguments->header,
+                    "comment lines at the program's head: what was done, with what model");
+  command->add_flag("--header-hash", arguments->header_hash, "the same, with a hash of everything that was read");
   command->add_option("--report", arguments->report, "a page with pictures of before and after")->type_name("R.html");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
-  command->callback([arguments, &options, &chosen] {
+  command->callback([arguments, output, dry_run, &options, &chosen] {
+    if (output->empty() && dry_run->empty()) throw CLI::RequiredError("-o OUT.nc or --dry-run");
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);
       check_outputs(arguments->job, {arguments->output, arguments->report, arguments->json});
+      for (const auto& output : {arguments->output, arguments->report, arguments->json})
+        require_not_an_input(output, {arguments->measured, arguments->measured_program});
       return run_compensate(*arguments, options);
     };
   });

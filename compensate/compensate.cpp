@@ -1,18 +1,20 @@
 #include "compensate/compensate.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "compensate/fit_shift.h"
+#include "compensate/guard.h"
 #include "compensate/not_emitted.h"
+#include "compensate/sensitivity.h"
 #include "compensate/shift_path.h"
 #include "nc/emit.h"
 
 namespace camber::compensate {
 
 using deflection::MachinedProgram;
-using deflection::Prediction;
 
 std::string to_string(Stop stop) {
   switch (stop) {
@@ -28,41 +30,15 @@ std::string to_string(Stop stop) {
 
 namespace {
 
-constexpr double kSpacing_mm = 1.0;          // between points of a long line
-constexpr double kViaTolerance_mm = 0.0005;  // a split of a line must be worth half a micrometre
-constexpr double kLeastGain = 0.03;          // a round that lowers the 95th percentile by less has stalled
-constexpr int kPatience = 2;                 // rounds without that gain before it counts
-
-/// Points no closer than the control can process blocks.
-double spacing_mm(const machine::Job& job, const MachinedProgram& program) {
-  double fastest = 0;
-  for (const auto& m : program.moves.moves) fastest = std::max(fastest, m.feed_mm_per_s);
-  return std::max(kSpacing_mm, fastest * job.machine.control.block_time_s);
-}
-
-/// Which place of the path made each point of the surface; does not change from round to round.
-class Attribution {
- public:
-  Attribution(const ShiftPath& path, const MachinedProgram& program, const Prediction& first, bool own_target) {
-    for (const auto& p : first.surface) {
-      const std::int32_t id = own_target ? p.target_stamp : p.machined_stamp;
-      const bool known = id >= 0 && static_cast<std::size_t>(id) < program.path.stamps.size();
-      known_.push_back(known);
-      const auto& stamp = program.path.stamps[known ? static_cast<std::size_t>(id) : 0];
-      places_.push_back(known ? path.find(stamp.move, stamp.share) : ShiftPath::Place{});
-    }
-  }
-  std::vector<Observation> observe(const std::vector<removal::SurfacePoint>& surface) const {
-    std::vector<Observation> out;
-    for (std::size_t i = 0; i < surface.size(); ++i)
-      if (known_[i]) out.push_back({places_[i], surface[i].normal, surface[i].error_mm, surface[i].area_mm2});
-    return out;
-  }
-
- private:
-  std::vector<bool> known_;
-  std::vector<ShiftPath::Place> places_;
-};
+constexpr double kSpacing_mm = 0.4;  // between points of a long line
+constexpr double kLeastGain = 0.03;  // a round that lowers the rms by less has stalled
+constexpr int kPatience = 2;         // rounds without that gain before it counts
+constexpr double kWorse = 1.02;      // a round whose rms is over the best one's by this has over-corrected
+constexpr double kShorter = 0.5;     // then the next step starts at the best one's shifts, shorter
+constexpr int kGuardRounds = 5;      // beyond max_rounds, to stay out of the part
+constexpr int kStiffenings = 12;     // of the path where its angles grow by more than the bound
+constexpr double kStiffer = 2.5;
+constexpr double kRowReach_mm = 1.0;
 
 std::size_t count_changed(const nc::Program& program, const std::string& text) {
   // Lines of the original that do not stand in the new text, in order; new lines lie between them.
@@ -81,6 +57,18 @@ std::size_t count_changed(const nc::Program& program, const std::string& text) {
   return changed;
 }
 
+/// Share of the area whose error changed its sign and is still over the tolerance.
+double overcorrected_share(const Observed& before, const Observed& now, double tolerance_mm) {
+  double over = 0, area = 0;
+  for (std::size_t i = 0; i < now.points.size(); ++i) {
+    const double a = before.points[i].error_mm, b = now.points[i].error_mm;
+    area += now.points[i].area_mm2;
+    if (now.compensated[i] && a * b < 0 && std::abs(a) > tolerance_mm && std::abs(b) > tolerance_mm)
+      over += now.points[i].area_mm2;
+  }
+  return area > 0 ? over / area : 0;
+}
+
 class Loop {
  public:
   Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options)
@@ -88,79 +76,157 @@ class Loop {
         diagnostics_(diagnostics),
         options_(options),
         program_(deflection::machine_program(SourceText::read(job.program), job, {}, diagnostics)),
-        own_target_(job.part.program.empty()),
-        target_(own_target_ ? deflection::make_target(job, program_, diagnostics)
-                            : deflection::make_target(job, read_target(), diagnostics)),
-        path_(program_.moves, program_.selected, spacing_mm(job, program_)) {
-    nc::warn_of_uneditable(program_.text, program_.moves, program_.selected, diagnostics);
+        own_target_(job.part.program.empty()) {
+    // What is known to be refused is refused before the long work.
+    const Finishing early = find_finishing(job_, program_, {});
+    if (early.operations.size() == 1 || job_.compensation.operations.given())
+      check_compensated(program_, early.moves, diagnostics_);
+    check_travel(job_, program_.text, program_.moves, diagnostics_);
+    diagnostics_.throw_if_errors();
+    if (!own_target_)
+      target_program_.emplace(deflection::machine_program(SourceText::read(job.part.program), job, {}, diagnostics));
+    target_.emplace(deflection::make_target(job, target_program(), diagnostics));
+    workshop_.emplace(job_, program_, *target_, own_target_);
   }
 
   Compensation run() {
     Compensation out;
-    Prediction first = predict(program_, 0);
-    out.feed_before = program_.feed;
-    record(first, 0, out);
-    out.before_um = first.form_error_um;
-    out.surface_before = first.surface;
-    out.text = program_.text.source.text();
-    const Attribution attribution(path_, program_, first, own_target_);
-    take(out, first, program_.feed, out.text, 0);
-    std::vector<removal::SurfacePoint> surface = std::move(first.surface);
-    int without_gain = 0;
-    while (!done(out, without_gain)) {
-      const std::size_t limited =
-          fit_shift(path_, attribution.observe(surface), {.max_shift_mm = job_.compensation.max_shift_mm});
-      const nc::Emission emission = nc::emit_edits(program_.text, program_.moves, path_.edits(kViaTolerance_mm), {});
-      const std::string& text = emission.text;
-      Diagnostics repeated;  // the emitted program's warnings are the original's
-      const MachinedProgram shifted = deflection::machine_program(SourceText(job_.program, text), job_, {}, repeated);
-      Prediction prediction = predict(shifted, out.rounds.size());
-      record(prediction, limited, out);
-      const double best = out.rounds[out.best].error_um.p95, now = prediction.form_error_um.p95;
-      without_gain = now < (1 - kLeastGain) * best ? 0 : without_gain + 1;
-      if (now < best) {
-        take(out, prediction, shifted.feed, text, out.rounds.size() - 1);
-        not_made_ = emission.not_made;
-      }
-      surface = std::move(prediction.surface);
-    }
-    warn_of_not_emitted(program_.text, program_.moves, not_made_, diagnostics_);
+    start(out);
+    converge(out);
+    stay_out_of_part(out);
     finish(out);
+    check(out);
     return out;
   }
 
  private:
-  MachinedProgram read_target() {
-    return deflection::machine_program(SourceText::read(job_.part.program), job_, {}, diagnostics_);
+  const MachinedProgram& target_program() const { return target_program_ ? *target_program_ : program_; }
+
+  double tolerance_mm() const { return job_.compensation.tolerance_um / 1000; }
+  double overcut_um() const { return job_.compensation.overcut_um(); }
+
+  FitShiftOptions fit_options() const {
+    return {.max_shift_mm = job_.compensation.max_shift_mm, .stiffness = stiffness_};
   }
 
-  Prediction predict(const MachinedProgram& program, std::size_t round) const {
-    deflection::PredictOptions options;
-    options.contacts = false;
-    if (options_.progress)
-      options.progress = [&](double share) {
-        options_.progress(round == 0 ? std::string("as given") : fmt::format("round {}", round), share);
-      };
-    return deflection::predict(job_, target_, program, options);
+  std::function<void(double)> progress(const std::string& what) const {
+    if (!options_.progress) return {};
+    return [this, what](double share) { options_.progress(what, share); };
   }
 
-  void record(const Prediction& p, std::size_t limited, Compensation& out) const {
-    out.rounds.push_back({p.form_error_um, path_.largest_shift_mm(), limited, p.cut.rounds_max, p.cut.unsettled});
+  /// The program as given: its error, what of it is compensated, and the points of the path.
+  void start(Compensation& out) {
+    last_.keep(workshop_->predict(program_, progress("as given")));
+    out.finishing = find_finishing(job_, program_, last_.surface);
+    check_compensated(program_, out.finishing.moves, diagnostics_);
+    diagnostics_.throw_if_errors();
+    nc::warn_of_uneditable(program_.text, program_.moves, out.finishing.moves, diagnostics_);
+    compensated_ = out.finishing.moves;
+    path_.emplace(program_.moves, compensated_, kSpacing_mm, job_.machine.control.block_time_s);
+    sensitivity_.emplace(*path_);
+    stiffness_.assign(path_->points().size(), 1.0);
+    last_.shifts = path_->shifts();
+    last_.observed = workshop_->observe(*path_, nullptr, last_.surface);
+    out.feed_before = program_.feed;
+    out.surface_before = last_.surface;
+    record(out, {});
+    out.depth_before = depth_of(last_.surface, last_.observed, overcut_um(), true);
+    best_ = last_;
   }
 
-  static void take(Compensation& out, const Prediction& p, const feedmodel::FeedSummary& feed, const std::string& text,
-                   std::size_t round) {
-    out.best = round;
-    out.text = text;
-    out.after_um = p.form_error_um;
-    out.surface_after = p.surface;
-    out.feed_after = feed;
-    out.max_shift_mm = out.rounds[round].largest_shift_mm;
+  void converge(Compensation& out) {
+    double share = 1;
+    int without_gain = 0;
+    while (!done(out, without_gain)) {
+      step(out, share, nullptr);
+      const double best = out.rounds[out.best].error_um.rms, now = out.rounds.back().error_um.rms;
+      without_gain = now < (1 - kLeastGain) * best ? 0 : without_gain + 1;
+      if (now < best) {
+        take(out);
+      } else if (now > kWorse * best) {
+        last_ = best_;
+        share *= kShorter;
+      }
+    }
+  }
+
+  /// Where the best round's surface lies deeper than the tolerance, further rounds lift the path there.
+  void stay_out_of_part(Compensation& out) {
+    if (out.best == 0) return;  // nothing was moved
+    Guard guard(overcut_um() / 1000);
+    last_ = best_;
+    free_correctable_um_ = out.rounds[out.best].split.correctable_um;
+    for (int i = 0; i < kGuardRounds && guard.learn(last_.observed) > 0; ++i) {
+      step(out, 1, &guard);
+      if (out.rounds.back().deepest_um < out.rounds[out.best].deepest_um) take(out);
+    }
+  }
+
+  /// New shifts from the last trial's error, and their prediction.
+  void step(Compensation& out, double share, const Guard* guard) {
+    const Observed before = last_.observed;
+    Observed wanted = before;
+    if (guard) guard->apply_to(wanted);
+    std::vector<Observation> observations = wanted.of_path();
+    sensitivity_->apply_to(observations);
+    Round round;
+    round.gain = sensitivity_->mean();
+    round.step_share = share;
+    round.guard = guard != nullptr;
+    const std::vector<Vec3> from = last_.shifts;
+    Trial next;
+    for (int i = 0; i <= kStiffenings; ++i) {
+      path_->set_shifts(from);
+      round.limited_points = fit_shift(*path_, observations, fit_options());
+      for (std::size_t p = 0; p < from.size(); ++p) {
+        Vec3& shift = path_->points()[p].shift_mm;
+        shift = from[p] + share * (shift - from[p]);
+      }
+      next.emitted = workshop_->emit(*path_, compensated_);
+      if (next.emitted->quality.over.empty()) break;
+      stiffen(next.emitted->quality.over);
+    }
+    next.shifts = path_->shifts();
+    round.largest_shift_mm = path_->largest_shift_mm();
+    const std::size_t number = out.rounds.size();
+    next.keep(workshop_->predict(next.emitted->program, progress(fmt::format("round {}", number))));
+    next.observed = workshop_->observe(*path_, next.emitted.get(), next.surface);
+    last_ = std::move(next);
+    sensitivity_->learn(*path_, from, before, last_.observed);
+    round.overcorrected_share = overcorrected_share(before, last_.observed, tolerance_mm());
+    record(out, round);
+  }
+
+  void stiffen(const std::vector<MoveMap::Place>& places) {
+    for (const auto& place : places) {
+      if (!path_->contains(place.move)) continue;
+      const std::size_t at = path_->find(place.move, place.share).lower;
+      for (std::size_t i = at > 0 ? at - 1 : 0; i < std::min(at + 3, stiffness_.size()); ++i) stiffness_[i] *= kStiffer;
+    }
+  }
+
+  void record(Compensation& out, Round round) const {
+    round.error_um = last_.error_um;
+    round.split = split_error(*path_, last_.observed, fit_options());
+    if (round.guard) {  // what it leaves beyond the best round without it
+      const double all = round.split.correctable_um, free = std::min(all, free_correctable_um_);
+      round.split.correctable_um = free;
+      round.split.guard_um = std::sqrt(all * all - free * free);
+    }
+    round.deepest_um = depth_of(last_.surface, last_.observed, overcut_um(), true).deepest_um;
+    round.static_rounds = last_.static_rounds;
+    round.unsettled = last_.unsettled;
+    out.rounds.push_back(round);
+  }
+
+  void take(Compensation& out) {
+    out.best = out.rounds.size() - 1;
+    best_ = last_;
   }
 
   bool done(Compensation& out, int without_gain) const {
     const auto& c = job_.compensation;
-    if (out.rounds[out.best].error_um.p95 <= c.tolerance_um) {
+    if (out.rounds[out.best].split.correctable_p95_um <= c.tolerance_um) {
       out.stop = Stop::tolerance;
       return true;
     }
@@ -172,11 +238,53 @@ class Loop {
     return static_cast<int>(out.rounds.size()) > c.max_rounds;
   }
 
-  void finish(Compensation& out) const {
+  void finish(Compensation& out) {
+    path_->set_shifts(best_.shifts);
+    const Round &first = out.rounds[0], &best = out.rounds[out.best];
+    const MachinedProgram& program = best_.emitted ? best_.emitted->program : program_;
+    out.before_um = first.error_um;
+    out.after_um = best.error_um;
+    out.split_before = first.split;
+    out.split_after = best.split;
+    out.surface_after = best_.surface;
+    out.feed_after = program.feed;
+    out.max_shift_mm = best.largest_shift_mm;
+    if (best_.emitted) {
+      warn_of_not_emitted(program_.text, program_.moves, best_.emitted->emission.not_made, diagnostics_);
+      out.quality = best_.emitted->quality;
+    }
+    out.row_steps = row_steps(*path_, kRowReach_mm);
+    const double most_um = overcut_um();
+    out.depth_after = depth_of(out.surface_after, best_.observed, most_um, true);
+    out.depth_others = depth_of(out.surface_after, best_.observed, most_um, false);
+    out.depth_without_bending = depth_without_bending(job_, *target_, program, most_um);
+    out.within_part = out.depth_after.deepest_um <= most_um;
+    check_travel(job_, program.text, program.moves, diagnostics_);
+    diagnostics_.throw_if_errors();
     out.blocks_before = program_.text.source.line_count();
-    out.blocks_after = SourceText("", out.text).line_count();
-    out.blocks_changed = count_changed(program_.text, out.text);
-    out.settled = out.rounds[0].unsettled == 0 && out.rounds[out.best].unsettled == 0;
+    out.blocks_after = program.text.source.line_count();
+    out.blocks_changed = count_changed(program_.text, program.text.source.text());
+    out.settled = first.unsettled == 0 && best.unsettled == 0;
+  }
+
+  /// The other grid and the uncertainty; the text last, since its header may tell of them.
+  void check(Compensation& out) {
+    const Emitted* emitted = best_.emitted.get();
+    if (options_.recheck_voxel_mm)
+      out.recheck = recheck(job_, *options_.recheck_voxel_mm, target_program(), program_, emitted, *path_,
+                            fit_options(), own_target_, options_.progress);
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> changes;
+    for (const ParameterGroup& group : options_.uncertainty) {
+      names.push_back(group.name);
+      changes.push_back(changes_mm(job_, group, *target_, program_, emitted, out.surface_after, out.unknown_parameters,
+                                   options_.progress));
+    }
+    if (!names.empty()) out.band = band_of(out.surface_before, out.surface_after, names, changes, overcut_um() / 1000);
+    out.text = emitted ? emitted->emission.text : program_.text.source.text();
+    if (!options_.header || !emitted) return;
+    workshop_->header = options_.header(out);
+    out.text = workshop_->text_of(*path_);
   }
 
   const machine::Job& job_;
@@ -184,9 +292,15 @@ class Loop {
   const CompensateOptions& options_;
   MachinedProgram program_;
   bool own_target_;
-  deflection::Target target_;
-  ShiftPath path_;
-  std::vector<nc::EditNotMade> not_made_;  ///< of the best round
+  std::optional<MachinedProgram> target_program_;  ///< [part] program
+  std::optional<deflection::Target> target_;
+  std::optional<Workshop> workshop_;
+  std::vector<bool> compensated_;
+  std::optional<ShiftPath> path_;
+  std::optional<Sensitivity> sensitivity_;
+  std::vector<double> stiffness_;  ///< of the path, one a point
+  Trial last_, best_;
+  double free_correctable_um_ = 0;  ///< of the best round before the guard
 };
 
 }  // namespace

@@ -1,22 +1,38 @@
 #pragma once
 // The fixed-point loop: predict, move each point against its error, predict the emitted program again.
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "compensate/error_split.h"
+#include "compensate/finishing.h"
+#include "compensate/measured.h"
+#include "compensate/path_quality.h"
+#include "compensate/recheck.h"
+#include "compensate/safety.h"
+#include "compensate/trial.h"
+#include "compensate/uncertainty.h"
 #include "deflection/predict.h"
 #include "machine/job.h"
 
 namespace camber::compensate {
 
+/// tolerance: the 95th percentile of what the cutter can reach is within it; stalled: the rms no longer falls.
 enum class Stop { tolerance, stalled, rounds };
 std::string to_string(Stop stop);
 
 struct Round {
   removal::ErrorFigures error_um;  ///< of the program that this round emitted
+  ErrorSplit split;
   double largest_shift_mm = 0;
   std::size_t limited_points = 0;  ///< cut to max_shift_mm
+  double gain = 1;                 ///< error over shift, the mean that the round's step divided by
+  double step_share = 1;           ///< of the step that was taken; less than 1 after an over-correction
+  double overcorrected_share = 0;  ///< of the area: the error changed its sign and is still over the tolerance
+  double deepest_um = 0;           ///< into the part, where compensated moves cut
+  bool guard = false;              ///< a round of the guard against cutting into the part
   int static_rounds = 0;
   std::size_t unsettled = 0;
 };
@@ -24,6 +40,7 @@ struct Round {
 struct Compensation {
   std::string text;  ///< the emitted program of the best round
   removal::ErrorFigures before_um, after_um;
+  ErrorSplit split_before, split_after;
   std::vector<Round> rounds;  ///< rounds[0]: the program as given
   std::size_t best = 0;       ///< index into rounds
   Stop stop = Stop::rounds;
@@ -32,10 +49,25 @@ struct Compensation {
   std::vector<removal::SurfacePoint> surface_before, surface_after;  ///< the same points, in the same order
   feedmodel::FeedSummary feed_before, feed_after;
   bool settled = true;  ///< every static solution of the first and the best round did
+  Finishing finishing;
+  PathQuality quality;  ///< of the emitted program
+  RowSteps row_steps;
+  Depth depth_before, depth_after;  ///< into the part, compensated moves
+  Depth depth_others;               ///< of moves that are not compensated
+  Depth depth_without_bending;      ///< of the emitted program
+  bool within_part = true;          ///< depth_after is within the tolerance
+  std::optional<Recheck> recheck;
+  std::optional<Band> band;
+  std::vector<std::string> unknown_parameters;  ///< with a standard error, but not of this job
+  std::optional<MeasuredFit> measured;
 };
 
 struct CompensateOptions {
   std::function<void(const std::string& what, double share)> progress;
+  std::optional<double> recheck_voxel_mm{};   ///< predict both programs on this grid as well
+  std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
+  /// Comment lines for the emitted program, asked for when all else is known; empty: none.
+  std::function<std::string(const Compensation&)> header{};
 };
 
 /// Throws InputError. The program's text is not written anywhere.

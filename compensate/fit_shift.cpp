@@ -2,12 +2,16 @@
 
 #include <algorithm>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace camber::compensate {
 namespace {
 
 using Eigen::Matrix3d;
+
+/// Directions with less than this share of the best told one's observations are held at rest.
+constexpr double kToldShare = 0.05;
 
 /// Normal equations of one path: diagonal[i] s_i + upper[i] s_(i+1) + upper[i-1]^T s_(i-1) = right[i].
 struct System {
@@ -18,10 +22,11 @@ struct System {
 void add_observation(System& s, const ShiftPath& path, const Observation& o) {
   const std::size_t i = o.place.lower;
   const double v = o.place.upper_share, u = 1 - v;
-  const Matrix3d nn = o.area_mm2 * o.normal * o.normal.transpose();
+  const double a = o.weight * o.area_mm2;
+  const Matrix3d nn = a * o.normal * o.normal.transpose();
   const auto& points = path.points();
   const Vec3 old = u * points[i].shift_mm + v * points[i + 1].shift_mm;
-  const Vec3 pull = o.area_mm2 * (o.normal.dot(old) - o.error_mm) * o.normal;
+  const Vec3 pull = a * (o.normal.dot(old) - o.error_mm / o.gain) * o.normal;
   s.diagonal[i] += u * u * nn;
   s.diagonal[i + 1] += v * v * nn;
   s.upper[i] += u * v * nn;
@@ -29,14 +34,35 @@ void add_observation(System& s, const ShiftPath& path, const Observation& o) {
   s.right[i + 1] += v * pull;
 }
 
-void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double mu, double kappa) {
+void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double soft_mu, double kappa,
+                   std::span<const double> stiffness) {
   const auto& points = path.points();
   for (std::size_t i = chain.from; i + 1 < chain.from + chain.count; ++i) {
     const double length = std::max(points[i + 1].along_mm - points[i].along_mm, 1e-6);
+    const double mu = soft_mu * (stiffness.empty() ? 1.0 : stiffness[i]);
     s.diagonal[i] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
     s.diagonal[i + 1] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
     s.upper[i] -= mu / length * Matrix3d::Identity();
   }
+}
+
+/// Holds at rest what hardly any surface faces: along a row of a ball the normals differ by a few degrees, and a shift
+/// of several times the error along the surface would explain what little the error varies across the row.
+void add_rest(System& s, const Chain& chain) {
+  std::vector<Matrix3d> rest(chain.count);
+  for (std::size_t k = 0; k < chain.count; ++k) {
+    Matrix3d about = s.diagonal[chain.from + k];
+    if (k > 0) about += s.diagonal[chain.from + k - 1];
+    if (k + 1 < chain.count) about += s.diagonal[chain.from + k + 1];
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(about);
+    const double told = kToldShare * eigen.eigenvalues()[2];
+    rest[k].setZero();
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 v = eigen.eigenvectors().col(i);
+      rest[k] += std::max(0.0, told - eigen.eigenvalues()[i]) * v * v.transpose();
+    }
+  }
+  for (std::size_t k = 0; k < chain.count; ++k) s.diagonal[chain.from + k] += rest[k];
 }
 
 /// Block Thomas elimination over one chain; the chain's fixed points are held at zero.
@@ -83,7 +109,8 @@ std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations
   const double mu = rho * options.smoothing_mm * options.smoothing_mm;
   const double kappa = mu / (options.decay_mm * options.decay_mm);
   for (const Chain& c : path.chains()) {
-    add_stiffness(s, path, c, mu, kappa);
+    add_rest(s, c);
+    add_stiffness(s, path, c, mu, kappa, options.stiffness);
     solve_chain(s, c, points);
   }
   std::size_t limited = 0;

@@ -14,23 +14,29 @@ struct Observation {
   Vec3 normal = Vec3::UnitZ();  ///< outward
   double error_mm = 0;
   double area_mm2 = 0;
+  double gain = 1;       ///< by how much the error changes with the shift along the normal
+  double weight = 1;     ///< of its area in the fit
+  bool at_tip = false;   ///< on the axis of a round tip, where the edges hardly move
+  bool opposed = false;  ///< made at the same place as surface that faces the other way
 };
 
 struct FitShiftOptions {
-  double smoothing_mm = 0.3;  ///< features of the shift shorter than this along the path are smoothed
+  double smoothing_mm = 0.2;  ///< features of the shift shorter than this along the path are smoothed
   double decay_mm = 10;       ///< without surface to correct, the shift dies away over this length
   double max_shift_mm = 0.1;
+  /// One a point of the path: mu between it and the next is larger by this factor; empty: 1.
+  std::span<const double> stiffness{};
 };
 
 /// Shifts that minimize, chain by chain,
 ///
-///   sum a (e + n . (s - s_old))^2 + mu integral |ds/dl|^2 dl + kappa integral |s|^2 dl
+///   sum w a (e / g + n . (s - s_old))^2 + mu integral |ds/dl|^2 dl + kappa integral |s|^2 dl
 ///
-/// with a the area, e the error, n the normal of each observation, s the shift at its place (linear between the
-/// points), mu = rho smoothing^2, kappa = mu / decay^2 and rho the mean area per path length: a block tridiagonal
-/// system of 3 x 3 blocks. Directions in which no surface faces stay at rest; where surfaces face each other (a
-/// slot) the least squares between them results. Shifts longer than max_shift_mm are cut to it. Returns how many
-/// points were.
+/// with a the area, w the weight, e the error, g the gain, n the normal of each observation, s the shift at its place
+/// (linear between the points), mu = rho smoothing^2, kappa = mu / decay^2 and rho the mean area per path length: a
+/// block tridiagonal system of 3 x 3 blocks. Directions in which hardly any surface faces stay at rest; where surfaces
+/// face each other (a slot) the least squares between them results. Shifts longer than max_shift_mm are cut to it.
+/// Returns how many points were.
 std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options);
 
 }  // namespace camber::compensate

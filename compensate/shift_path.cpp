@@ -2,11 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include <Eigen/Geometry>
 
 namespace camber::compensate {
 
-ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm)
-    : program_(program), first_of_move_(program.moves.size(), 0) {
+namespace {
+
+int pieces_of(double length_mm, double spacing_mm, double shortest_mm) {
+  const int wanted = std::max(1, static_cast<int>(std::ceil(length_mm / spacing_mm - 1e-9)));
+  if (shortest_mm <= 0) return wanted;
+  return std::max(1, static_cast<int>(std::min<double>(wanted, std::floor(length_mm / shortest_mm + 1e-9))));
+}
+
+}  // namespace
+
+ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm,
+                     double block_time_s)
+    : program_(&program), first_of_move_(program.moves.size(), kNone) {
   bool open = false;
   for (std::uint32_t m = 0; m < program.moves.size(); ++m) {
     const nc::Move& move = program.moves[m];
@@ -24,8 +38,8 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
     first_of_move_[m] = points_.size() - 1;
     if (!move.editable) points_.back().fixed = true;
     const double along = points_.back().along_mm;
-    const int pieces =
-        move.kind == nc::MoveKind::linear ? std::max(1, static_cast<int>(std::ceil(length / spacing_mm - 1e-9))) : 1;
+    const bool several_turns = move.kind == nc::MoveKind::arc && std::abs(program.arcs[move.arc].sweep_rad) > 6.4;
+    const int pieces = several_turns ? 1 : pieces_of(length, spacing_mm, move.feed_mm_per_s * block_time_s);
     for (int i = 1; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
       points_.push_back({.move = m,
@@ -47,6 +61,22 @@ ShiftPath::Place ShiftPath::find(std::uint32_t move, double share) const {
   }
   const double to = points_[i + 1].share;
   return {i, std::clamp((share - from) / (to - from), 0.0, 1.0)};
+}
+
+Vec3 ShiftPath::shift_at(const Place& place) const {
+  return (1 - place.upper_share) * points_[place.lower].shift_mm +
+         place.upper_share * points_[place.lower + 1].shift_mm;
+}
+
+std::vector<Vec3> ShiftPath::shifts() const {
+  std::vector<Vec3> out;
+  out.reserve(points_.size());
+  for (const auto& p : points_) out.push_back(p.shift_mm);
+  return out;
+}
+
+void ShiftPath::set_shifts(std::span<const Vec3> shifts) {
+  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].shift_mm = shifts[i];
 }
 
 namespace {
@@ -82,17 +112,82 @@ Vec3 agreeing_centre(const nc::Arc& arc, const Vec3& start, const Vec3& end, con
 
 }  // namespace
 
+namespace {
+
+constexpr double kMostSweep = 5.5;  // rad, of one piece of an arc that is not shifted evenly
+
+/// Centre of the circle through three points in the plane across `normal`; nothing where they lie on a line.
+std::optional<Vec3> circle_centre(const Vec3& normal, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(normal) * normal); };
+  const Vec3 ab = flat(b - a), ac = flat(c - a);
+  const Vec3 across = ab.cross(ac);
+  const double twice = 2 * across.squaredNorm();
+  if (twice < 1e-18) return std::nullopt;
+  return a + (ab.squaredNorm() * ac.cross(across) + ac.squaredNorm() * across.cross(ab)) / twice;
+}
+
+/// Centre of an arc from points[a] to points[b] that passes those between within the tolerance, also along the normal,
+/// in the sense of `arc`; nothing where there is none. Two neighbours always have one.
+std::optional<Vec3> piece_centre(const nc::Arc& arc, const std::vector<Vec3>& points, std::size_t a, std::size_t b,
+                                 const Vec3& wished, double tolerance_mm) {
+  if (b == a + 1) return agreeing_centre(arc, points[a], points[b], wished);
+  const auto centre = circle_centre(arc.normal, points[a], points[(a + b) / 2], points[b]);
+  if (!centre) return std::nullopt;
+  const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(arc.normal) * arc.normal); };
+  const double radius = flat(points[a] - *centre).norm(), sense = arc.sweep_rad > 0 ? 1 : -1;
+  double before = 0;
+  for (std::size_t i = a; i <= b; ++i) {
+    const Vec3 from = flat(points[a] - *centre), to = flat(points[i] - *centre);
+    if (std::abs(to.norm() - radius) > tolerance_mm) return std::nullopt;
+    double turned = sense * std::atan2(from.cross(to).dot(arc.normal), from.dot(to));
+    while (turned < before - kPi) turned += 2 * kPi;
+    if (i > a && turned <= before) return std::nullopt;
+    before = turned;
+    const double share = static_cast<double>(i - a) / static_cast<double>(b - a);
+    const double level = (points[a] + share * (points[b] - points[a]) - points[i]).dot(arc.normal);
+    if (std::abs(level) > tolerance_mm) return std::nullopt;
+  }
+  return centre;
+}
+
+}  // namespace
+
+void ShiftPath::edit_arc(std::size_t first, std::size_t last, double tolerance_mm, nc::MoveEdit& edit) const {
+  const nc::Arc& arc = program_->arcs[program_->moves[edit.move].arc];
+  std::vector<Vec3> shifted;
+  for (std::size_t i = first; i <= last; ++i) shifted.push_back(points_[i].place_mm + points_[i].shift_mm);
+  const double step_rad = std::abs(arc.sweep_rad) / static_cast<double>(last - first);
+  const std::size_t most = std::max<std::size_t>(1, static_cast<std::size_t>(kMostSweep / std::max(step_rad, 1e-9)));
+  const auto piece = [&](std::size_t a, std::size_t b) {
+    const Vec3 wished = arc.center_mm + 0.5 * (points_[first + a].shift_mm + points_[first + b].shift_mm);
+    return piece_centre(arc, shifted, a, b, wished, tolerance_mm);
+  };
+  bool evenly = true;
+  for (std::size_t i = first; i < last; ++i)
+    evenly = evenly && (points_[i + 1].shift_mm - points_[i].shift_mm).norm() < 1e-9;
+  const std::size_t end = shifted.size() - 1;
+  for (std::size_t a = 0; a < end;) {
+    std::size_t b = evenly ? end : std::min(a + most, end);
+    std::optional<Vec3> centre;
+    while (!(centre = evenly ? std::optional<Vec3>(arc.center_mm + points_[first].shift_mm) : piece(a, b))) --b;
+    if (b == end) {
+      edit.center_mm = *centre;
+    } else {
+      edit.via_mm.push_back(shifted[b]);
+      edit.via_center_mm.push_back(*centre);
+    }
+    a = b;
+  }
+}
+
 nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, double tolerance_mm) const {
   const ControlPoint& end = points_[last];
   nc::MoveEdit edit;
   edit.move = end.move;
   edit.end_mm = end.place_mm + end.shift_mm;
-  const nc::Move& move = program_.moves[end.move];
+  const nc::Move& move = program_->moves[end.move];
   if (move.kind == nc::MoveKind::arc) {
-    const nc::Arc& arc = program_.arcs[move.arc];
-    const Vec3 start = points_[first].place_mm + points_[first].shift_mm;
-    edit.center_mm =
-        agreeing_centre(arc, start, edit.end_mm, arc.center_mm + 0.5 * (points_[first].shift_mm + end.shift_mm));
+    edit_arc(first, last, tolerance_mm, edit);
     return edit;
   }
   std::vector<Vec3> path;
@@ -103,6 +198,10 @@ nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, double tole
   return edit;
 }
 
+namespace {
+constexpr double kNothing_mm = 0.0002;  // a move whose shifts are all smaller is left as it is
+}
+
 std::vector<nc::MoveEdit> ShiftPath::edits(double tolerance_mm) const {
   std::vector<nc::MoveEdit> out;
   for (const Chain& chain : chains_) {
@@ -111,7 +210,7 @@ std::vector<nc::MoveEdit> ShiftPath::edits(double tolerance_mm) const {
       std::size_t last = first + 1;
       while (last + 1 < end && points_[last + 1].move == points_[first + 1].move) ++last;
       bool shifted = false;
-      for (std::size_t i = first; i <= last; ++i) shifted = shifted || !points_[i].shift_mm.isZero();
+      for (std::size_t i = first; i <= last; ++i) shifted = shifted || points_[i].shift_mm.norm() > kNothing_mm;
       if (shifted) out.push_back(edit_of(first, last, tolerance_mm));
       first = last;
     }

@@ -27,8 +27,10 @@ struct Chain {
 
 class ShiftPath {
  public:
-  /// Lines longer than spacing_mm get points between their ends; arcs have none but their ends.
-  ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm);
+  /// Lines and arcs longer than spacing_mm get points between their ends, but none closer than the control can process
+  /// blocks at the move's feed, F T_b.
+  ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm,
+            double block_time_s = 0);
 
   std::vector<ControlPoint>& points() { return points_; }
   const std::vector<ControlPoint>& points() const { return points_; }
@@ -39,18 +41,27 @@ class ShiftPath {
     std::size_t lower = 0;
     double upper_share = 0;
   };
-  /// `move` must be selected.
+  /// The move is one whose points may be shifted.
+  bool contains(std::uint32_t move) const { return move < first_of_move_.size() && first_of_move_[move] != kNone; }
+  /// `move` must be contained.
   Place find(std::uint32_t move, double share) const;
+  Vec3 shift_at(const Place& place) const;
+  std::vector<Vec3> shifts() const;
+  void set_shifts(std::span<const Vec3> shifts);
 
   /// The moves whose points are shifted. Points between the ends of a line are kept where the path without them
-  /// would stray by more than tolerance_mm.
+  /// would stray by more than tolerance_mm; an arc stays one where one passes the shifted points within it, else it
+  /// becomes the fewest arcs that do.
   std::vector<nc::MoveEdit> edits(double tolerance_mm) const;
   double largest_shift_mm() const;
 
  private:
   nc::MoveEdit edit_of(std::size_t first_point, std::size_t last_point, double tolerance_mm) const;
+  void edit_arc(std::size_t first_point, std::size_t last_point, double tolerance_mm, nc::MoveEdit& edit) const;
 
-  const nc::Interpretation& program_;
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  const nc::Interpretation* program_;
   std::vector<ControlPoint> points_;
   std::vector<Chain> chains_;
   std::vector<std::size_t> first_of_move_;  ///< index of the point at each selected move's start

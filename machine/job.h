@@ -89,10 +89,21 @@ struct Simulation {
   double envelope_step_mm = 0;  ///< of the samples along the profile; 0: the voxel
 };
 
+/// Of the simulated moves, those that are compensated; nothing given: the finishing ones.
+struct CompensatedOperations : Operations {
+  std::string comments;  ///< regular expression (ECMAScript, case does not count); empty: not given
+  bool given() const { return !tools.empty() || !blocks.empty() || !comments.empty(); }
+};
+
 struct Compensation {
   double tolerance_um = 1.0;
   double max_shift_mm = 0.1;
   int max_rounds = 8;
+  double max_overcut_um = 0;  ///< into the part, with the predicted deflection; 0: tolerance_um
+  double overcut_um() const { return max_overcut_um > 0 ? max_overcut_um : tolerance_um; }
+  double max_angle_growth_rad = 3 * kPi / 180;  ///< between blocks of the path
+  CompensatedOperations operations;
+  std::optional<Vec3> work_offset_mm;  ///< of the program's zero, in machine coordinates: for the travel limits
 };
 
 struct Job {

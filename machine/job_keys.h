@@ -19,6 +19,7 @@ inline constexpr NumberRange kLineNumber{.min = 1, .max = 2e9, .whole = true};
 inline constexpr NumberRange kRounds{.min = 1, .max = 1000, .whole = true};
 inline constexpr NumberRange kHelixDeg{.min = 0, .max = 80};
 inline constexpr NumberRange kRatio{.min = 0, .max = 1, .above_min = true};
+inline constexpr NumberRange kAngleGrowthDeg{.min = 0, .max = 90, .above_min = true};
 inline constexpr NumberRange kRotationStepDeg{.min = 0, .max = 10, .above_min = true};
 
 inline constexpr NumberRange kTaperDeg{.min = 0, .max = 80};
@@ -99,6 +100,8 @@ inline constexpr std::array kSimulationKeys{
 inline constexpr std::array kCompensationKeys{
     NumberKey<Compensation>{"tolerance_um", &Compensation::tolerance_um, kPositive},
     NumberKey<Compensation>{"max_shift_mm", &Compensation::max_shift_mm, kPositive},
+    NumberKey<Compensation>{"max_overcut_um", &Compensation::max_overcut_um, kNotNegative},
+    NumberKey<Compensation>{"max_angle_growth_deg", &Compensation::max_angle_growth_rad, kAngleGrowthDeg, kDegrees},
 };
 
 }  // namespace camber::machine

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <regex>
 
 #include <fmt/format.h>
 
@@ -82,7 +83,7 @@ void read_stock(TomlTable table, const fs::path& folder, Stock& stock) {
   table.finish();
 }
 
-void read_operations(TomlTable table, const std::map<int, Tool>& tools, Operations& operations) {
+void read_operations(TomlTable& table, const std::map<int, Tool>& tools, Operations& operations) {
   for (const double t :
        table.number_list("tools", kToolNumber, "tool numbers, as in [1, 9],").value_or(std::vector<double>{})) {
     operations.tools.push_back(static_cast<int>(t));
@@ -96,6 +97,20 @@ void read_operations(TomlTable table, const std::map<int, Tool>& tools, Operatio
       table.error_at("blocks",
                      fmt::format("blocks go from line {} to line {}; the first must not be greater", row[0], row[1]),
                      "value-range");
+  }
+}
+
+void read_compensated(TomlTable table, const std::map<int, Tool>& tools, CompensatedOperations& operations) {
+  read_operations(table, tools, operations);
+  operations.comments = table.text("comments", "");
+  try {
+    const std::regex check(operations.comments, std::regex::ECMAScript | std::regex::icase);
+  } catch (const std::regex_error&) {
+    table.error_at("comments",
+                   fmt::format("comments = \"{}\" is no regular expression; one as in \"finish|contour\" was expected",
+                               operations.comments),
+                   "regular-expression");
+    operations.comments.clear();
   }
   table.finish();
 }
@@ -112,9 +127,13 @@ void read_simulation(TomlTable table, Simulation& simulation) {
   table.finish();
 }
 
-void read_compensation(TomlTable table, Compensation& compensation) {
+void read_compensation(TomlTable table, const std::map<int, Tool>& tools, Compensation& compensation) {
   read_numbers<Compensation>(table, kCompensationKeys, compensation);
   compensation.max_rounds = static_cast<int>(table.number("max_rounds", kRounds, compensation.max_rounds));
+  if (auto operations = table.table("operations")) read_compensated(*operations, tools, compensation.operations);
+  constexpr std::string_view kOffset = "[x, y, z], the program's zero in machine coordinates,";
+  if (const auto offset = table.numbers("work_offset_mm", 3, kAnyNumber, kOffset))
+    compensation.work_offset_mm = Vec3((*offset)[0], (*offset)[1], (*offset)[2]);
   table.finish();
 }
 
@@ -127,7 +146,10 @@ void read_part(TomlTable table, const fs::path& folder, Part& part) {
 void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& diagnostics) {
   if (auto tools = top.table("tool")) read_tools(*tools, job.tools);
   if (job.tools.empty() && !top.has("tool")) top.missing("[tool.1]", "a table for each tool of the program");
-  if (auto operations = top.table("operations")) read_operations(*operations, job.tools, job.operations);
+  if (auto operations = top.table("operations")) {
+    read_operations(*operations, job.tools, job.operations);
+    operations->finish();
+  }
   if (auto material = top.table("material"))
     job.material = read_material_table(*material, folder.string(), diagnostics);
   else if (!top.has("material"))
@@ -138,7 +160,7 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
     top.missing("[stock]", "a table with box_mm, cylinder, mesh or vdb");
   if (auto part = top.table("part")) read_part(*part, folder, job.part);
   if (auto simulation = top.table("simulation")) read_simulation(*simulation, job.simulation);
-  if (auto compensation = top.table("compensation")) read_compensation(*compensation, job.compensation);
+  if (auto compensation = top.table("compensation")) read_compensation(*compensation, job.tools, job.compensation);
 }
 
 }  // namespace

@@ -60,13 +60,26 @@ std::string part_text(const Part& part) {
   return out;
 }
 
-std::string operations_text(const Operations& operations) {
-  if (operations.tools.empty() && operations.blocks.empty()) return {};
-  std::string out = "\n[operations]\n";
+std::string operations_lines(const Operations& operations) {
+  std::string out;
   if (!operations.tools.empty()) out += fmt::format("tools = [{}]\n", fmt::join(operations.tools, ", "));
   std::string rows;
   for (const auto& b : operations.blocks) rows += fmt::format("{}[{}, {}]", rows.empty() ? "" : ", ", b[0], b[1]);
   return rows.empty() ? out : out + fmt::format("blocks = [{}]\n", rows);
+}
+
+std::string operations_text(const Operations& operations) {
+  const std::string lines = operations_lines(operations);
+  return lines.empty() ? lines : "\n[operations]\n" + lines;
+}
+
+std::string compensation_text(const Compensation& c) {
+  std::string out = "\n[compensation]\n" + toml_lines<Compensation>(kCompensationKeys, c);
+  out += toml_line("max_rounds", c.max_rounds, kAsIs);
+  if (c.work_offset_mm) out += fmt::format("work_offset_mm = {}\n", point_text(*c.work_offset_mm));
+  if (!c.operations.given()) return out;
+  out += "\n[compensation.operations]\n" + operations_lines(c.operations);
+  return c.operations.comments.empty() ? out : out + toml_line("comments", c.operations.comments);
 }
 
 }  // namespace
@@ -82,8 +95,7 @@ std::string to_toml(const Job& job) {
   out += toml_line("coupling", kCouplingWords[job.simulation.coupling == Coupling::rigid ? 0 : 1]);
   if (job.simulation.collisions)
     out += toml_line("collisions", kCollisionsWords[static_cast<std::size_t>(*job.simulation.collisions)]);
-  out += "\n[compensation]\n" + toml_lines<Compensation>(kCompensationKeys, job.compensation);
-  return out + toml_line("max_rounds", job.compensation.max_rounds, kAsIs);
+  return out + compensation_text(job.compensation);
 }
 
 }  // namespace camber::machine

@@ -60,7 +60,7 @@ class Emitter {
     }
     write_replaced_blocks();
     copy_until(program_.source.text().size());
-    return {std::move(out_), std::move(not_made_)};
+    return {std::move(out_), std::move(not_made_), block_of_lines()};
   }
 
  private:
@@ -84,7 +84,28 @@ class Emitter {
     const std::size_t at = block < program_.blocks.size() ? program_.blocks[block].offset : text.size();
     copy_until(at);
     if (!out_.empty() && out_.back() != '\n') out_ += line_end_;
-    out_ += "(" + options_.header_comment + ")" + line_end_;
+    std::size_t from = 0;
+    while (from < options_.header_comment.size()) {
+      const std::size_t end = std::min(options_.header_comment.find('\n', from), options_.header_comment.size());
+      out_ += "(" + options_.header_comment.substr(from, end - from) + ")" + line_end_;
+      from = end + 1;
+      ++header_lines_;
+    }
+    header_before_ = block;
+  }
+
+  /// The header, then every block's own lines.
+  std::vector<std::uint32_t> block_of_lines() const {
+    std::vector<std::uint32_t> out;
+    std::size_t next = 0;
+    for (std::uint32_t block = 0; block < program_.blocks.size(); ++block) {
+      if (block == header_before_) out.insert(out.end(), header_lines_, Emission::kNoBlock);
+      std::size_t lines = 1;
+      for (; next < replaced_.size() && replaced_[next].first == block; ++next)
+        lines += static_cast<std::size_t>(std::count(replaced_[next].second.begin(), replaced_[next].second.end(), '\n'));
+      out.insert(out.end(), lines, block);
+    }
+    return out;
   }
 
   /// All moves [first, end) are of one block.
@@ -115,6 +136,7 @@ class Emitter {
       wish.end_mm = frame.to_program(wish.end_mm);
       wish.center_mm = frame.to_program(wish.center_mm);
       for (Vec3& via : wish.via_mm) via = frame.to_program(via);
+      for (Vec3& centre : wish.via_center_mm) centre = frame.to_program(centre);
     }
     at_ = frame.to_program(at_);
     run_block_in_program(there, edit ? &wish : nullptr, frame.to_program(last_end), cycle_normal(first, end));
@@ -356,6 +378,12 @@ class Emitter {
       at_ = move.end_mm;
       return;
     }
+    if (edit && !edit->via_mm.empty()) {
+      for (int more = 0; more <= kMoreDecimals; ++more)
+        if (write_arc_pieces(move, *edit, wanted, more)) return;
+      if (has_code(program_.words_of(move.block), 'M', {96, 97, 98, 99}))
+        not_made_.push_back({edit->move, EmitGap::subprogram});
+    }
     for (int more = 0; more <= kMoreDecimals; ++more)
       if (write_arc(move, wanted, more)) return;
     // No room between the ends: the old arc, moved to where the tool stands.
@@ -404,6 +432,83 @@ class Emitter {
     return true;
   }
 
+  /// The sweep from start to end about a centre, in the sense of `like`.
+  static double sweep_about(const Vec3& centre, const Vec3& start, const Vec3& end, const PlaneAxes& axes, double like) {
+    const auto angle = [&](const Vec3& p) {
+      return std::atan2(p[axes.second] - centre[axes.second], p[axes.first] - centre[axes.first]);
+    };
+    double sweep = angle(end) - angle(start);
+    while (sweep * like <= 0) sweep += like > 0 ? 2 * kPi : -2 * kPi;
+    while (std::abs(sweep) > 2 * kPi) sweep -= like > 0 ? 2 * kPi : -2 * kPi;
+    return sweep;
+  }
+
+  /// Several arcs in place of one; false, and nothing is written, where the words of one of them do not close.
+  bool write_arc_pieces(const Move& move, const MoveEdit& edit, const WantedArc& whole, int more_decimals) {
+    const auto words = program_.words_of(move.block);
+    if (edit.via_center_mm.size() != edit.via_mm.size() || whole.turns != 1 ||
+        moves_.state_of(move).feed_mode == FeedMode::inverse_time || has_code(words, 'M', {96, 97, 98, 99}))
+      return false;
+    const PlaneAxes axes = axes_of(whole.plane);
+    const char letter[2] = {kCentre[axes.first], kCentre[axes.second]};
+    const int decimals = least_decimals_ + more_decimals;
+    const Vec3 start = at_;
+    BlockWriter writer(program_, move.block, style_);
+    const auto at_end = words_at_end(words);
+    std::string more;
+    for (std::size_t i = 0; i <= edit.via_mm.size(); ++i) {
+      const bool last = i == edit.via_mm.size();
+      WantedArc piece = whole;
+      piece.full_turn = false;
+      piece.start_mm = at_;
+      piece.center_mm = last ? edit.center_mm : edit.via_center_mm[i];
+      Vec3 end = last ? edit.end_mm : edit.via_mm[i];
+      if (last && whole.full_turn)
+        for (const int axis : {axes.first, axes.second}) end[axis] = start[axis];
+      std::string letters;
+      std::vector<double> values;
+      if (i == 0) {
+        piece.end_mm = set_end(writer, move, end, more_decimals, true);
+      } else {
+        piece.end_mm = at_;
+        for (int axis = 0; axis < 3; ++axis) {
+          const double value = rounded(word_for(move, axis, end[axis]), decimals);
+          const double place = place_after(move, axis, value);
+          if (std::abs(place - at_[axis]) < 0.5 * step_mm(decimals)) continue;
+          letters += kAxis[axis];
+          values.push_back(value);
+          piece.end_mm[axis] = place;
+        }
+      }
+      piece.sweep_rad = sweep_about(piece.center_mm, piece.start_mm, piece.end_mm, axes, whole.sweep_rad);
+      const auto arc = round_arc(piece, unit_mm_, decimals);
+      if (!arc) {
+        at_ = start;
+        return false;
+      }
+      if (i == 0 && piece.by_radius) {
+        writer.set('R', arc->r_mm / unit_mm_, decimals);
+      } else if (i == 0) {
+        set_centre(writer, letter[0], arc->first_mm, decimals);
+        set_centre(writer, letter[1], arc->second_mm, decimals);
+      } else {
+        letters += piece.by_radius ? std::string("R") : std::string(letter, 2);
+        if (piece.by_radius) {
+          values.push_back(arc->r_mm / unit_mm_);
+        } else {
+          values.push_back(arc->first_mm / unit_mm_);
+          values.push_back(arc->second_mm / unit_mm_);
+        }
+        more += line_end_of(move.block) +
+                writer.further_block(letters, values, decimals, last ? at_end : std::vector<Word>{});
+      }
+      at_ = piece.end_mm;
+    }
+    for (const Word& word : at_end) writer.take_out(word);
+    replace_block(move.block, writer.text() + more);
+    return true;
+  }
+
   void set_centre(BlockWriter& writer, char letter, double value_mm, int decimals) const {
     if (writer.find(letter) || value_mm != 0) writer.set(letter, value_mm / unit_mm_, decimals);
   }
@@ -426,6 +531,7 @@ class Emitter {
   std::vector<EditNotMade> not_made_;
   std::size_t copied_ = 0;                                       ///< bytes of the source that are in out_ or replaced
   std::vector<std::pair<std::uint32_t, std::string>> replaced_;  ///< blocks and their new text
+  std::size_t header_before_ = 0, header_lines_ = 0;             ///< the header stands before this block
   std::size_t next_edit_ = 0;
   Vec3 at_ = Vec3::Zero();  ///< where the emitted program has taken the tool
   double unit_mm_ = 1;

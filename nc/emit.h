@@ -1,6 +1,7 @@
 #pragma once
 // Re-emission: the user's program with new end points for some of its moves and nothing else changed.
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,7 +17,9 @@ namespace camber::nc {
 /// New geometry for one move (a linear or an arc move that is editable and not canned).
 struct MoveEdit {
   std::uint32_t move = 0;      ///< index into Interpretation::moves; ascending in the list
-  std::vector<Vec3> via_mm{};  ///< points to pass before the end, in order: the block becomes several (linear only)
+  std::vector<Vec3> via_mm{};  ///< points to pass before the end, in order: the block becomes several
+  /// Arcs only: the centre of the arc that ends at each via point, in the sense of the block's arc; as many.
+  std::vector<Vec3> via_center_mm{};
   Vec3 end_mm = Vec3::Zero();
   Vec3 center_mm = Vec3::Zero();  ///< arcs only: the new centre; the emitter makes it agree with the rounded ends
 };
@@ -24,7 +27,7 @@ struct MoveEdit {
 struct EmitOptions {
   int decimals_mm = 4;  ///< at least as many as the word had
   int decimals_inch = 5;
-  std::string header_comment{};  ///< one line without brackets; empty: none. Goes after % and the O word.
+  std::string header_comment{};  ///< lines without brackets; empty: none. Go after % and the O word.
 };
 
 /// The new text. Blocks without an edit come out byte for byte, except where an unedited cutting move would otherwise
@@ -33,7 +36,7 @@ struct EmitOptions {
 /// corrected, so an axis that a rapid does not name stays where the edited move left it until the next cutting move.
 ///
 /// A block with via points becomes several: the first keeps its words and comment and goes to the first via point, the
-/// others hold coordinates only. Words that act at the end of the move (M0 M1 M2 M5 M9 M30 M60, G9) go to the last.
+/// others hold coordinates only (arcs: and their centre or R). Words that act at the end of the move (M0 M1 M2 M5 M9 M30 M60, G9) go to the last.
 /// A full turn stays closed: it ends where the emitted program starts it. Arcs get as many decimals as it takes for the
 /// radii at start and end to agree within one unit of the last decimal.
 ///
@@ -68,6 +71,10 @@ std::string to_string(EmitGap why);
 struct Emission {
   std::string text;
   std::vector<EditNotMade> not_made;  ///< ascending
+  /// One entry a line of `text`: index of the block of the given program that the line stands for; kNoBlock: new.
+  std::vector<std::uint32_t> block_of_line;
+
+  static constexpr std::uint32_t kNoBlock = std::numeric_limits<std::uint32_t>::max();
 };
 
 /// As emit(), and says which edits are not in the text.

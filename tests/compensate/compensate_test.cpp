@@ -48,6 +48,7 @@ machine::Job plane_job(const tests::TempFolder& folder) {
   job.simulation.coupling = machine::Coupling::rigid;
   job.compensation.max_rounds = 2;
   job.compensation.tolerance_um = 0.1;
+  job.compensation.max_overcut_um = 50;
   return job;
 }
 
@@ -69,6 +70,11 @@ TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates_slow) {
   EXPECT_LT(c.max_shift_mm, 0.05);
   EXPECT_EQ(c.rounds.size(), 3u);
   EXPECT_EQ(c.stop, Stop::rounds);
+
+  EXPECT_GT(c.split_before.correctable_um, 8);
+  EXPECT_LT(c.split_after.correctable_um, 0.15 * c.split_before.correctable_um);  // in two rounds
+  EXPECT_LE(c.quality.angle_growth_rad, job.compensation.max_angle_growth_rad);
+  EXPECT_TRUE(c.within_part);
 
   // Lines that only split a block hold nothing but coordinates.
   std::string left = without_coordinates(c.text);
@@ -106,6 +112,49 @@ TEST(Compensate, HoldsToTheLargestShift_slow) {
   const Compensation c = compensate(job, diagnostics, {});
   EXPECT_LE(c.max_shift_mm, 0.004 + 1e-12);
   EXPECT_GT(c.rounds.back().limited_points, 0u);
+  EXPECT_GT(c.split_after.limited_um, 5);
+  EXPECT_LE(c.depth_without_bending.deepest_um, 4.0 + 1.0);  // and what a grid of 0.15 mm shows of cusps
+}
+
+TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth_slow) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  Diagnostics diagnostics;
+  job.compensation.max_rounds = 1;
+  const Compensation free = compensate(job, diagnostics, {});
+  ASSERT_GT(free.depth_after.deepest_um, 1.5);
+  EXPECT_TRUE(free.within_part);  // 50 um are allowed
+  job.compensation.max_overcut_um = 0.5 * free.depth_after.deepest_um;
+  const Compensation guarded = compensate(job, diagnostics, {});
+  EXPECT_TRUE(guarded.rounds.back().guard);
+  EXPECT_LT(guarded.depth_after.deepest_um, 0.9 * free.depth_after.deepest_um);
+  EXPECT_EQ(guarded.within_part, guarded.depth_after.deepest_um <= job.compensation.max_overcut_um);
+  double deepest = 0;
+  for (const auto& p : guarded.surface_after) deepest = std::max(deepest, -1000 * p.error_mm);
+  EXPECT_NEAR(std::max(guarded.depth_after.deepest_um, guarded.depth_others.deepest_um), deepest, 1e-9);
+}
+
+TEST(Compensate, JudgesOnAnotherGridAndMovesTheParameters_slow) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  job.compensation.max_rounds = 1;
+  CompensateOptions options;
+  options.recheck_voxel_mm = 0.19;
+  options.uncertainty = read_uncertainty("10 %");
+  options.header = [](const Compensation&) { return std::string("TOLD"); };
+  Diagnostics diagnostics;
+  const Compensation c = compensate(job, diagnostics, options);
+  ASSERT_TRUE(c.recheck);
+  EXPECT_NEAR(c.recheck->before_um.rms / c.before_um.rms, 1, 0.1);
+  EXPECT_LT(c.recheck->split_after.correctable_um, 0.15 * c.recheck->split_before.correctable_um);
+  ASSERT_TRUE(c.band);
+  // Rigid coupling: the deflection is force times compliance, ten per cent of either are the same and move the surface
+  // by about ten per cent of what the tool bends (not all of the error at the plane's edges comes from that).
+  ASSERT_EQ(c.band->groups.size(), 2u);
+  EXPECT_NEAR(c.band->groups[0].rms_um, c.band->groups[1].rms_um, 1e-3 * c.band->groups[0].rms_um);
+  EXPECT_GT(c.band->groups[0].rms_um / c.before_um.rms, 0.04);
+  EXPECT_LT(c.band->groups[0].rms_um / c.before_um.rms, 0.12);
+  EXPECT_NE(c.text.find("(PLANE)\n(TOLD)\nG21"), std::string::npos);
 }
 
 }  // namespace

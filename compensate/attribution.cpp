@@ -1,0 +1,75 @@
+#include "compensate/attribution.h"
+
+#include <cmath>
+#include <map>
+
+namespace camber::compensate {
+namespace {
+
+constexpr double kTipNormal = 0.985;  // cosine of ten degrees about the axis
+constexpr double kOpposed = -0.5;     // cosine between normals that face each other
+
+bool round_tip(const machine::Tool& tool) {
+  return tool.type == machine::ToolType::ball || tool.type == machine::ToolType::tapered_ball;
+}
+
+/// Marks what was made between the same two points of the path as surface that faces it.
+void mark_opposed(Observed& observed) {
+  std::map<std::size_t, std::vector<std::size_t>> of_place;
+  for (std::size_t i = 0; i < observed.points.size(); ++i)
+    if (observed.compensated[i]) of_place[observed.points[i].place.lower].push_back(i);
+  for (const auto& [place, members] : of_place) {
+    const Vec3 first = observed.points[members.front()].normal;
+    const bool faced =
+        std::ranges::any_of(members, [&](std::size_t i) { return observed.points[i].normal.dot(first) < kOpposed; });
+    if (!faced) continue;
+    for (const std::size_t i : members)
+      if (std::abs(observed.points[i].normal.dot(first)) > -kOpposed) observed.points[i].opposed = true;
+  }
+}
+
+}  // namespace
+
+std::vector<Observation> Observed::of_path() const {
+  std::vector<Observation> out;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (compensated[i]) out.push_back(points[i]);
+  return out;
+}
+
+Observed observe(const ShiftPath& path, const machine::Job& job, const deflection::MachinedProgram& given,
+                 const deflection::MachinedProgram& emitted, const MoveMap& map,
+                 std::span<const removal::SurfacePoint> surface, bool own_target) {
+  Observed out;
+  out.points.resize(surface.size());
+  out.compensated.assign(surface.size(), false);
+  const auto known = [](std::int32_t id, const deflection::MachinedProgram& p) {
+    return id >= 0 && static_cast<std::size_t>(id) < p.path.stamps.size();
+  };
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const auto& p = surface[i];
+    Observation& o = out.points[i];
+    o.normal = p.normal;
+    o.error_mm = p.error_mm;
+    o.area_mm2 = p.area_mm2;
+    MoveMap::Place at;
+    if (known(p.machined_stamp, emitted)) {
+      const auto& stamp = emitted.path.stamps[static_cast<std::size_t>(p.machined_stamp)];
+      at = map.given(stamp.move, stamp.share);
+    } else if (own_target && known(p.target_stamp, given)) {
+      const auto& stamp = given.path.stamps[static_cast<std::size_t>(p.target_stamp)];
+      at = {stamp.move, stamp.share};
+    } else {
+      continue;
+    }
+    if (!path.contains(at.move)) continue;
+    out.compensated[i] = true;
+    o.place = path.find(at.move, at.share);
+    const auto tool = job.tools.find(given.moves.state_of(given.moves.moves[at.move]).tool);
+    o.at_tip = tool != job.tools.end() && round_tip(tool->second) && p.normal.z() > kTipNormal;
+  }
+  mark_opposed(out);
+  return out;
+}
+
+}  // namespace camber::compensate

@@ -1,0 +1,85 @@
+#include "compensate/error_split.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "removal/surface.h"
+
+namespace camber::compensate {
+namespace {
+
+constexpr double kStiff = 0.02;  // smoothing of a fit that may do almost anything, mm
+
+/// error + n . (change of the shift), one an observation.
+std::vector<double> left_by(const ShiftPath& old, std::span<const Observation> observations,
+                            const FitShiftOptions& options) {
+  ShiftPath path = old;
+  fit_shift(path, observations, options);
+  std::vector<double> left;
+  left.reserve(observations.size());
+  for (const Observation& o : observations)
+    left.push_back(o.error_mm + o.gain * o.normal.dot(path.shift_at(o.place) - old.shift_at(o.place)));
+  return left;
+}
+
+double mean_square(const std::vector<double>& values, std::span<const Observation> observations, double area_mm2,
+                   auto wanted) {
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (wanted(observations[i])) sum += observations[i].area_mm2 * values[i] * values[i];
+  return area_mm2 > 0 ? sum / area_mm2 : 0;
+}
+
+double um(double mean_square_mm2) { return 1000 * std::sqrt(std::max(0.0, mean_square_mm2)); }
+
+}  // namespace
+
+double ErrorSplit::not_correctable_um() const {
+  return std::sqrt(short_range_um * short_range_um + opposed_um * opposed_um + tip_um * tip_um + bow_um * bow_um);
+}
+
+ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options) {
+  ErrorSplit out;
+  double area = 0, others = 0;
+  for (std::size_t i = 0; i < observed.points.size(); ++i) {
+    const Observation& o = observed.points[i];
+    area += o.area_mm2;
+    if (!observed.compensated[i]) others += o.area_mm2 * o.error_mm * o.error_mm;
+  }
+  std::vector<Observation> all = observed.of_path();
+  for (Observation& o : all) o.weight = 1;
+  if (area <= 0) return out;
+  out.not_compensated_um = um(others / area);
+
+  FitShiftOptions free = options;
+  free.max_shift_mm = std::numeric_limits<double>::infinity();
+  FitShiftOptions stiff = free;
+  stiff.smoothing_mm = std::min(kStiff, options.smoothing_mm);
+  const std::vector<double> at_one_place = left_by(path, all, stiff), smooth = left_by(path, all, free),
+                            limited = left_by(path, all, options);
+  const auto every = [](const Observation&) { return true; };
+  std::vector<double> error;
+  for (const Observation& o : all) error.push_back(o.error_mm);
+  const double total = mean_square(error, all, area, every), left = mean_square(at_one_place, all, area, every),
+               left_smooth = std::max(left, mean_square(smooth, all, area, every)),
+               left_limited = std::max(left_smooth, mean_square(limited, all, area, every));
+  out.opposed_um = um(mean_square(at_one_place, all, area, [](const Observation& o) { return o.opposed; }));
+  out.tip_um = um(mean_square(at_one_place, all, area, [](const Observation& o) { return o.at_tip && !o.opposed; }));
+  out.bow_um = um(mean_square(at_one_place, all, area, [](const Observation& o) { return !o.at_tip && !o.opposed; }));
+  out.short_range_um = um(left_smooth - left);
+  out.limited_um = um(left_limited - left_smooth);
+  out.correctable_um = um(total - left_limited);
+
+  std::vector<double> taken_um, areas;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    taken_um.push_back(1000 * (error[i] - limited[i]));
+    areas.push_back(all[i].area_mm2);
+  }
+  const removal::ErrorFigures f = removal::error_figures(taken_um, areas);
+  out.correctable_p95_um = f.p95;
+  out.correctable_max_um = std::max(std::abs(f.min), std::abs(f.max));
+  return out;
+}
+
+}  // namespace camber::compensate

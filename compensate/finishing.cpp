@@ -1,0 +1,130 @@
+#include "compensate/finishing.h"
+
+#include <algorithm>
+#include <numeric>
+#include <regex>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "removal/stamp_path.h"
+
+namespace camber::compensate {
+namespace {
+
+using deflection::MachinedProgram;
+
+/// Operations in order, and for each move the index of its own (the moves that are not simulated: nonsense).
+std::vector<Operation> operations_of(const MachinedProgram& program, std::vector<std::size_t>& of_move) {
+  std::vector<Operation> out;
+  of_move.assign(program.moves.moves.size(), 0);
+  for (std::size_t m = 0; m < program.moves.moves.size(); ++m) {
+    if (!program.selected[m]) continue;
+    const nc::Move& move = program.moves.moves[m];
+    const int tool = program.moves.state_of(move).tool;
+    const std::size_t line = move.block + 1;
+    if (out.empty() || out.back().tool != tool) out.push_back({tool, line, line, 0, 0, 0});
+    out.back().first_line = std::min(out.back().first_line, line);
+    out.back().last_line = std::max(out.back().last_line, line);
+    ++out.back().moves;
+    of_move[m] = out.size() - 1;
+  }
+  return out;
+}
+
+void share_surface(const MachinedProgram& program, const std::vector<removal::SurfacePoint>& surface,
+                   const std::vector<std::size_t>& of_move, std::vector<Operation>& operations) {
+  double area = 0;
+  for (const auto& p : surface) {
+    area += p.area_mm2;
+    if (p.machined_stamp < 0 || static_cast<std::size_t>(p.machined_stamp) >= program.path.stamps.size()) continue;
+    operations[of_move[program.path.stamps[static_cast<std::size_t>(p.machined_stamp)].move]].surface_share +=
+        p.area_mm2;
+  }
+  for (Operation& o : operations) o.surface_share = area > 0 ? o.surface_share / area : 0;
+}
+
+/// Text in round brackets or behind a semicolon; empty: none.
+std::string comment_of(std::string_view line) {
+  const std::size_t open = line.find_first_of("(;");
+  if (open == std::string_view::npos) return {};
+  const std::size_t close = line[open] == '(' ? line.find(')', open) : line.size();
+  return std::string(line.substr(open + 1, (close == std::string_view::npos ? line.size() : close) - open - 1));
+}
+
+/// For each line whether the heading above it matches.
+std::vector<bool> lines_under(const MachinedProgram& program, const std::string& pattern) {
+  const std::regex wanted(pattern, std::regex::ECMAScript | std::regex::icase);
+  const std::size_t lines = program.text.blocks.size();
+  std::vector<bool> moves_here(lines, false), out(lines, false);
+  for (const nc::Move& m : program.moves.moves) moves_here[m.block] = true;
+  bool in = false, heading = false;
+  for (std::size_t i = 0; i < lines; ++i) {
+    const auto words = program.text.words_of(i);
+    const bool change = std::ranges::any_of(words, [](const nc::Word& w) { return w.letter == 'M' && w.value == 6; });
+    const std::string comment = comment_of(program.text.source.line(i + 1));
+    if (change && !heading) in = false;
+    if (!comment.empty()) {
+      const bool matches = std::regex_search(comment, wanted);
+      in = heading ? in || matches : matches;
+      heading = true;
+    }
+    if (moves_here[i]) heading = false;
+    out[i] = in;
+  }
+  return out;
+}
+
+}  // namespace
+
+Finishing find_finishing(const machine::Job& job, const MachinedProgram& program,
+                         const std::vector<removal::SurfacePoint>& surface) {
+  Finishing out;
+  std::vector<std::size_t> of_move;
+  out.operations = operations_of(program, of_move);
+  share_surface(program, surface, of_move, out.operations);
+  const auto& wanted = job.compensation.operations;
+  out.moves = removal::selected_moves(program.moves, wanted);
+  std::vector<bool> under;
+  if (!wanted.comments.empty()) under = lines_under(program, wanted.comments);
+  for (std::size_t m = 0; m < out.moves.size(); ++m) {
+    out.moves[m] = out.moves[m] && program.selected[m];
+    if (!out.moves[m]) continue;
+    Operation& operation = out.operations[of_move[m]];
+    if (!under.empty()) out.moves[m] = under[program.moves.moves[m].block];
+    if (!wanted.given() && !surface.empty()) out.moves[m] = operation.surface_share >= kFinishingShare;
+    if (out.moves[m]) ++operation.compensated_moves;
+  }
+  return out;
+}
+
+void check_compensated(const MachinedProgram& program, const std::vector<bool>& moves, Diagnostics& diagnostics) {
+  const nc::Move* first = nullptr;
+  std::size_t count = 0, all = 0;
+  for (std::size_t m = 0; m < moves.size(); ++m) {
+    if (!moves[m]) continue;
+    ++all;
+    const nc::Move& move = program.moves.moves[m];
+    if (!program.moves.state_of(move).cutter_radius) continue;
+    if (!first) first = &move;
+    ++count;
+  }
+  if (all == 0)
+    diagnostics.add({Severity::error,
+                     {program.text.source.name(), 0, 0},
+                     "[compensation] operations names no move that is simulated; a tool, lines or a comment of "
+                     "cutting moves was expected",
+                     "nothing-to-compensate",
+                     {}});
+  if (!first) return;
+  diagnostics.add(program.text.source.diagnostic(
+      Severity::error, program.text.blocks[first->block].offset,
+      fmt::format(
+          "{} move{} to compensate run{} under cutter radius compensation (G41, G42), from here on: the control "
+          "makes their path, the text has no words for it; a program for the cutter's centre, or [compensation] "
+          "operations without these blocks, was expected",
+          count, count == 1 ? "" : "s", count == 1 ? "s" : ""),
+      "cutter-radius"));
+}
+
+}  // namespace camber::compensate

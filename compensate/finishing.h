@@ -1,0 +1,42 @@
+#pragma once
+// Which of the simulated moves are compensated.
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "deflection/predict.h"
+#include "machine/job.h"
+#include "removal/surface.h"
+
+namespace camber::compensate {
+
+/// The simulated moves of one tool between two tool changes.
+struct Operation {
+  int tool = 0;
+  std::size_t first_line = 0, last_line = 0;  ///< 1-based
+  double surface_share = 0;                   ///< of the machined surface that it made
+  std::size_t moves = 0, compensated_moves = 0;
+};
+
+struct Finishing {
+  std::vector<bool> moves;  ///< one a move of the program: compensated
+  std::vector<Operation> operations;
+};
+
+/// An operation that makes less of the surface than this is no finishing.
+inline constexpr double kFinishingShare = 0.05;
+
+/// Of the moves that the job simulates: those that [compensation] operations names by tool, by lines and by comments;
+/// where it names none, the operations that made at least kFinishingShare of the surface (`surface`: of the program as
+/// given; empty: all operations).
+///
+/// A comment names the moves behind it, up to the next tool change or the next comment; comments on lines behind each
+/// other, without a move between them, are one heading.
+Finishing find_finishing(const machine::Job& job, const deflection::MachinedProgram& program,
+                         const std::vector<removal::SurfacePoint>& surface);
+
+/// Error [cutter-radius] at the first of `moves` that runs under G41 or G42: its path is made by the control, the text
+/// has no words for it. Error [nothing-to-compensate] where there is no move.
+void check_compensated(const deflection::MachinedProgram& program, const std::vector<bool>& moves,
+                       Diagnostics& diagnostics);
+
+}  // namespace camber::compensate

@@ -1,0 +1,78 @@
+#include "compensate/header.h"
+
+#include <cctype>
+#include <cstdint>
+#include <filesystem>
+#include <iterator>
+
+#include <fmt/format.h>
+
+namespace camber::compensate {
+namespace {
+
+constexpr std::uint64_t kBasis = 14695981039346656037ull, kPrime = 1099511628211ull;
+
+void add(std::uint64_t& hash, std::string_view text) {
+  for (const char c : text) {
+    hash ^= static_cast<unsigned char>(c);
+    hash *= kPrime;
+  }
+  hash ^= 0xff;  // an end, so that two files are not one
+  hash *= kPrime;
+}
+
+/// What every control accepts within a comment.
+std::string plain(std::string text) {
+  for (char& c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if (c == '\n') continue;
+    c = std::isalnum(u) || c == '.' || c == '-' || c == '+' || c == ',' || c == '/' ? static_cast<char>(std::toupper(u))
+                                                                                    : ' ';
+  }
+  return text;
+}
+
+/// Paths say where a file lies, not what it holds.
+machine::Job without_paths(machine::Job job) {
+  for (std::string* path :
+       {&job.program, &job.machine_path, &job.stock.mesh, &job.stock.vdb, &job.part.mesh, &job.part.program})
+    if (!path->empty()) *path = std::filesystem::path(*path).filename().string();
+  return job;
+}
+
+}  // namespace
+
+std::string header_lines(const machine::Job& job, const Compensation& c, const std::string& version) {
+  std::string out = fmt::format("CAMBER {} - PATH COMPENSATED FOR THE BENDING OF THE TOOL\n", version);
+  fmt::format_to(std::back_inserter(out), "PREDICTED ERROR RMS {:.1f} UM BEFORE, {:.1f} UM AFTER\n", c.before_um.rms,
+                 c.after_um.rms);
+  fmt::format_to(std::back_inserter(out), "LARGEST SHIFT {:.4f} MM OF {:g} ALLOWED, TOLERANCE {:g} UM\n",
+                 c.max_shift_mm, job.compensation.max_shift_mm, job.compensation.tolerance_um);
+  for (const auto& o : c.finishing.operations) {
+    if (o.compensated_moves == 0) continue;
+    const machine::Tool& t = job.tools.at(o.tool);
+    fmt::format_to(std::back_inserter(out), "T{} D{:g} OVERHANG {:g} E {:g} GPA, {} FLUTES\n", t.number, t.diameter_mm,
+                   t.overhang_mm, t.youngs_modulus_MPa / 1000, t.flutes);
+  }
+  const machine::Material& m = job.material;
+  if (m.law == machine::ForceLaw::linear)
+    fmt::format_to(std::back_inserter(out), "KTC {:g} KRC {:g} KAC {:g} MPA, KTE {:g} KRE {:g} KAE {:g} N/MM\n",
+                   m.ktc_MPa, m.krc_MPa, m.kac_MPa, m.kte_N_per_mm, m.kre_N_per_mm, m.kae_N_per_mm);
+  else
+    fmt::format_to(std::back_inserter(out), "KC1.1 {:g} MPA MC {:g}, KTE {:g} KRE {:g} N/MM\n", m.kc1_1_MPa, m.mc,
+                   m.kte_N_per_mm, m.kre_N_per_mm);
+  out.pop_back();
+  return plain(out);
+}
+
+std::string hash_of_inputs(const machine::Job& job) {
+  std::uint64_t hash = kBasis;
+  const machine::Job plain_job = without_paths(job);
+  add(hash, machine::to_toml(plain_job));
+  add(hash, machine::to_toml(job.machine));
+  for (const auto& path : {job.program, job.stock.mesh, job.stock.vdb, job.part.mesh, job.part.program})
+    if (!path.empty()) add(hash, SourceText::read(path).text());
+  return fmt::format("{:016X}", hash);
+}
+
+}  // namespace camber::compensate

@@ -1,0 +1,43 @@
+#pragma once
+// The model set right by what was measured on a part: one scale of the deflection.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/geometry.h"
+#include "machine/job.h"
+
+namespace camber::compensate {
+
+struct MeasuredPoint {
+  Vec3 place_mm = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();
+  double error_mm = 0;  ///< along the normal, positive where material is left
+};
+
+/// A table with a header; columns x_mm y_mm z_mm nx ny nz error_um (or x y z nx ny nz error, error in um), in any order
+/// among others, separated by commas, semicolons, tabs or blanks: form_error.csv is one. Normals are made unit.
+/// Throws InputError: [measured-column], [measured-number], [measured-normal], [measured-empty], with the place.
+std::vector<MeasuredPoint> read_measured(const std::string& path);
+
+struct MeasuredFit {
+  double scale = 1;      ///< of the deflection: the forces are so much greater, or the tool so much softer
+  double std_error = 0;  ///< from the points' scatter about the fit
+  std::size_t points = 0, left_out = 0;        ///< left out: no machined surface of the job there
+  double rms_before_um = 0, rms_after_um = 0;  ///< measured less predicted, with the scale 1 and the fitted one
+  int predictions = 0;
+};
+
+/// The job with tools and axes so much softer: deflection is compliance times force, a scale of either is the same.
+machine::Job softened(const machine::Job& job, double scale);
+
+/// Least squares of the points against the prediction of `program` (what the measured part was cut with; empty: the
+/// job's program), by Newton steps with the secant between predictions. Throws InputError [measured-untold]: fewer than
+/// three points lie on the job's surface, their predicted error hardly depends on the deflection, or the standard
+/// error of the scale is over a quarter of it.
+MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const std::vector<MeasuredPoint>& points,
+                         const std::string& program, Diagnostics& diagnostics,
+                         const std::function<void(const std::string&, double)>& progress);
+
+}  // namespace camber::compensate

@@ -1,0 +1,36 @@
+#pragma once
+// Which move of the given program a move of the emitted one stands for.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "nc/move.h"
+
+namespace camber::compensate {
+
+class MoveMap {
+ public:
+  /// A place on a move: the share of its length.
+  struct Place {
+    std::uint32_t move = 0;
+    double share = 0;
+  };
+
+  /// The given program to itself.
+  MoveMap() = default;
+  /// `block_of_line`: of the emission. Both programs run through the same blocks in the same order; a block that was
+  /// split makes several moves out of one.
+  MoveMap(const nc::Interpretation& given, const nc::Interpretation& emitted,
+          std::span<const std::uint32_t> block_of_line);
+
+  Place given(std::uint32_t emitted_move, double share) const;
+
+ private:
+  struct Part {
+    std::uint32_t move = 0;
+    double from = 0, to = 1;  ///< shares of the given move
+  };
+  std::vector<Part> parts_;  ///< one an emitted move; empty: the same program
+};
+
+}  // namespace camber::compensate

@@ -1,0 +1,35 @@
+#pragma once
+// Is the emitted path as good a path as the given one: no new facets, no crumbs.
+#include <span>
+#include <vector>
+
+#include "compensate/move_map.h"
+#include "compensate/shift_path.h"
+#include "nc/move.h"
+
+namespace camber::compensate {
+
+struct PathQuality {
+  double angle_growth_rad = 0;  ///< by how much the path turns more between two blocks than it did, the worst place
+  std::size_t angle_line = 0;   ///< of the emitted program; 0: it grows nowhere
+  double shortest_mm = 0;       ///< of the blocks that came out of a split; 0: none was split
+  std::size_t too_short = 0;    ///< of them, shorter than the control can process: F T_b
+  std::vector<MoveMap::Place> over;  ///< places of the given program where the angle grows by more than the bound
+};
+
+/// Between consecutive moves that may be shifted (`selected`, of the given program). Moves shorter than kShort_mm in
+/// the given program turn freely and are left out.
+PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool>& selected,
+                         const nc::Interpretation& emitted, const MoveMap& map, double block_time_s,
+                         double angle_bound_rad);
+inline constexpr double kShort_mm = 0.02;
+
+/// How the shift changes from a row to the next: the 95th percentile and the largest |difference| between each point
+/// of the path and the nearest one that is not its neighbour along the path, within `reach_mm`.
+struct RowSteps {
+  double p95_mm = 0, max_mm = 0;
+  std::size_t pairs = 0;
+};
+RowSteps row_steps(const ShiftPath& path, double reach_mm);
+
+}  // namespace camber::compensate

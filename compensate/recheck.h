@@ -1,0 +1,34 @@
+#pragma once
+// The emitted program predicted again under other conditions: another grid, other parameters.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "compensate/error_split.h"
+#include "compensate/trial.h"
+#include "compensate/uncertainty.h"
+
+namespace camber::compensate {
+
+using Progress = std::function<void(const std::string& what, double share)>;
+
+/// Both programs on a grid of its own: other voxels, which lie elsewhere.
+struct Recheck {
+  double voxel_mm = 0;
+  removal::ErrorFigures before_um, after_um;
+  ErrorSplit split_before, split_after;
+  double deepest_um = 0;  ///< into the part, compensated moves, of the emitted program
+};
+
+/// `target`: the program that the part is judged against. `path`: of the given program.
+Recheck recheck(const machine::Job& job, double voxel_mm, const deflection::MachinedProgram& target,
+                const deflection::MachinedProgram& given, const Emitted* emitted, const ShiftPath& path,
+                const FitShiftOptions& options, bool own_target, const Progress& progress);
+
+/// By how much each point of the emitted program's surface (`after`) moves when a group does.
+std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const deflection::Target& target,
+                               const deflection::MachinedProgram& given, const Emitted* emitted,
+                               const std::vector<removal::SurfacePoint>& after, std::vector<std::string>& unknown,
+                               const Progress& progress);
+
+}  // namespace camber::compensate

@@ -1,0 +1,37 @@
+#pragma once
+// What must never happen on the machine, checked on the emitted program.
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "compensate/attribution.h"
+#include "deflection/predict.h"
+#include "machine/job.h"
+
+namespace camber::compensate {
+
+/// How far the surface lies inside the part (inside the target's undeflected sweep).
+struct Depth {
+  double deepest_um = 0;  ///< not negative
+  Vec3 place_mm = Vec3::Zero();
+  double over_share = 0;  ///< of the area that lies deeper than the tolerance
+};
+
+/// Of the points that compensated moves made (`compensated` false: of the others).
+Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed& observed, double tolerance_um,
+               bool compensated);
+
+/// The emitted program carved by a tool that does not bend at all. Bounded by the largest shift and, where rows cross
+/// other rows, by what their shifts add.
+Depth depth_without_bending(const machine::Job& job, const deflection::Target& target,
+                            const deflection::MachinedProgram& emitted, double tolerance_um);
+
+/// Where the moves of a program take the axes, machine coordinates, against Axis::travel_mm. Needs
+/// [compensation] work_offset_mm; without it only the extent is checked against the length of the travel.
+/// Errors [travel], at the first move of each axis that leaves; nothing is said of axes without travel_mm. Rapids
+/// count.
+void check_travel(const machine::Job& job, const nc::Program& program, const nc::Interpretation& moves,
+                  Diagnostics& diagnostics);
+
+}  // namespace camber::compensate

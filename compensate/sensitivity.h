@@ -1,0 +1,34 @@
+#pragma once
+// How much the error really changes with a shift, place by place: what a Newton step divides by.
+#include <span>
+#include <vector>
+
+#include "compensate/attribution.h"
+#include "compensate/shift_path.h"
+
+namespace camber::compensate {
+
+/// A cutter that is moved into the work takes a thicker chip, bends more and moves the surface by less than the
+/// shift; one that is moved across rows may move it by more. From two predictions,
+///
+///   g = sum a (n . ds) de / sum a (n . ds)^2
+///
+/// with a the area, ds the change of the shift and de that of the error at the same points of the surface, averaged
+/// along the path over a few millimetres and drawn to the whole path's g where the shift hardly changed. A gain over
+/// one is what an over-correction looks like: the next step is shorter by it.
+class Sensitivity {
+ public:
+  static constexpr double kLeast = 0.4, kGreatest = 1.6;
+
+  explicit Sensitivity(const ShiftPath& path) : gain_(path.points().size(), 1.0) {}
+
+  /// `before`, `now`: the same points of the surface, predicted with the shifts `shifts_before` and the path's.
+  void learn(const ShiftPath& path, std::span<const Vec3> shifts_before, const Observed& before, const Observed& now);
+  void apply_to(std::vector<Observation>& observations) const;
+  double mean() const;
+
+ private:
+  std::vector<double> gain_;  ///< one a point of the path
+};
+
+}  // namespace camber::compensate

@@ -1,0 +1,74 @@
+#include "compensate/trial.h"
+
+#include <algorithm>
+
+namespace camber::compensate {
+namespace {
+
+/// The job's ranges of lines where the emitted program has them.
+machine::Operations moved_ranges(const machine::Operations& operations,
+                                 const std::vector<std::uint32_t>& block_of_line) {
+  machine::Operations out = operations;
+  for (auto& [first, last] : out.blocks) {
+    const auto from = static_cast<std::uint32_t>(first - 1), to = static_cast<std::uint32_t>(last - 1);
+    int new_first = 0, new_last = 0;
+    for (std::size_t line = 0; line < block_of_line.size(); ++line) {
+      if (block_of_line[line] == nc::Emission::kNoBlock) continue;
+      if (block_of_line[line] < from || block_of_line[line] > to) continue;
+      if (new_first == 0) new_first = static_cast<int>(line) + 1;
+      new_last = static_cast<int>(line) + 1;
+    }
+    first = new_first;
+    last = new_last;
+  }
+  return out;
+}
+
+}  // namespace
+
+void Trial::keep(deflection::Prediction prediction) {
+  surface = std::move(prediction.surface);
+  error_um = prediction.form_error_um;
+  static_rounds = prediction.cut.rounds_max;
+  unsettled = prediction.cut.unsettled;
+}
+
+Workshop::Workshop(const machine::Job& job, const deflection::MachinedProgram& given, const deflection::Target& target,
+                   bool own_target)
+    : job_(job), given_(given), target_(target), own_target_(own_target) {}
+
+std::shared_ptr<const Emitted> Workshop::emit(const ShiftPath& path, const std::vector<bool>& compensated) const {
+  auto out = std::make_shared<Emitted>();
+  out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(kViaTolerance_mm), {});
+  Diagnostics repeated;  // the emitted program's warnings are the given one's
+  machine::Job job = job_;
+  out->operations = moved_ranges(job_.operations, out->emission.block_of_line);
+  job.operations = out->operations;
+  out->program = deflection::machine_program(SourceText(job_.program, out->emission.text), job, {}, repeated);
+  out->map = MoveMap(given_.moves, out->program.moves, out->emission.block_of_line);
+  out->quality = path_quality(given_.moves, compensated, out->program.moves, out->map,
+                              job_.machine.control.block_time_s, job_.compensation.max_angle_growth_rad);
+  return out;
+}
+
+std::string Workshop::text_of(const ShiftPath& path) const {
+  nc::EmitOptions options;
+  options.header_comment = header;
+  return nc::emit(given_.text, given_.moves, path.edits(kViaTolerance_mm), options);
+}
+
+deflection::Prediction Workshop::predict(const deflection::MachinedProgram& program,
+                                         const std::function<void(double)>& progress) const {
+  deflection::PredictOptions options;
+  options.contacts = false;
+  options.progress = progress;
+  return deflection::predict(job_, target_, program, options);
+}
+
+Observed Workshop::observe(const ShiftPath& path, const Emitted* emitted,
+                           const std::vector<removal::SurfacePoint>& surface) const {
+  if (!emitted) return compensate::observe(path, job_, given_, given_, {}, surface, own_target_);
+  return compensate::observe(path, job_, given_, emitted->program, emitted->map, surface, own_target_);
+}
+
+}  // namespace camber::compensate

@@ -1,0 +1,62 @@
+#pragma once
+// One shifted path: emitted, read again as the control will read it, and predicted.
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compensate/attribution.h"
+#include "compensate/path_quality.h"
+#include "nc/emit.h"
+
+namespace camber::compensate {
+
+/// The emitted program of some shifts.
+struct Emitted {
+  nc::Emission emission;
+  deflection::MachinedProgram program;
+  MoveMap map;
+  PathQuality quality;
+  machine::Operations operations;  ///< the job's, with the emitted program's lines
+};
+
+struct Trial {
+  std::vector<Vec3> shifts;
+  std::shared_ptr<const Emitted> emitted;      ///< none: the program as given
+  std::vector<removal::SurfacePoint> surface;  ///< the same points in the same order, whatever the shifts
+  removal::ErrorFigures error_um;
+  int static_rounds = 0;
+  std::size_t unsettled = 0;
+  Observed observed;
+
+  void keep(deflection::Prediction prediction);
+};
+
+/// What all trials have in common. Everything passed must outlive the object.
+class Workshop {
+ public:
+  Workshop(const machine::Job& job, const deflection::MachinedProgram& given, const deflection::Target& target,
+           bool own_target);
+
+  /// A split of a line must be worth this.
+  static constexpr double kViaTolerance_mm = 0.0005;
+
+  std::shared_ptr<const Emitted> emit(const ShiftPath& path, const std::vector<bool>& compensated) const;
+  /// Only the text, with the header.
+  std::string text_of(const ShiftPath& path) const;
+  /// Does not throw for what the given program was warned of already.
+  deflection::Prediction predict(const deflection::MachinedProgram& program,
+                                 const std::function<void(double)>& progress) const;
+  Observed observe(const ShiftPath& path, const Emitted* emitted,
+                   const std::vector<removal::SurfacePoint>& surface) const;
+
+  std::string header{};  ///< comment lines for the emitted program
+
+ private:
+  const machine::Job& job_;
+  const deflection::MachinedProgram& given_;
+  const deflection::Target& target_;
+  bool own_target_;
+};
+
+}  // namespace camber::compensate

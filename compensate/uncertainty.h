@@ -1,0 +1,57 @@
+#pragma once
+// How sure a residual error is, when the model's parameters are known so well and no better.
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "machine/job.h"
+#include "removal/surface.h"
+
+namespace camber::compensate {
+
+/// One parameter with its standard error, in the unit of the file that it came from.
+struct UncertainParameter {
+  std::string name;  ///< as fit-force and fit-feed name it: "ktc_MPa", "axis.x.position_gain_per_s"
+  double value = 0, std_error = 0;
+};
+
+/// Parameters that are moved together by one standard error each.
+struct ParameterGroup {
+  std::string name;  ///< "cutting", "edge", "stiffness", "force", "drives", "limits"
+  std::vector<UncertainParameter> parameters;
+  double share = 0;  ///< instead of parameters: a relative standard error of the whole group
+};
+
+/// A percentage ("10", "10 %"): the forces and the tool's stiffness, each uncertain by so much, two groups. Otherwise
+/// the name of what fit-force or fit-feed wrote: the JSON report, or the TOML file with its comments
+/// "# NAME: VALUE +- ERROR UNIT". Errors [uncertainty]: neither, or a file without a standard error.
+std::vector<ParameterGroup> read_uncertainty(const std::string& file_or_percent);
+
+/// The job with one group moved by one standard error. Parameters that the job has not are named in `unknown`.
+machine::Job moved(const machine::Job& job, const ParameterGroup& group, std::vector<std::string>& unknown);
+
+struct Band {
+  struct Group {
+    std::string name;
+    double rms_um = 0;  ///< of the change of the error over the surface
+  };
+  std::vector<Group> groups;
+  double sigma_rms_um = 0;  ///< rms over the surface of the standard error of the error
+  double rms_um = 0;        ///< of the residual to be expected: sqrt(rms^2 + sigma^2)
+  double p95_um = 0;        ///< 95th percentile of |error| + 1.96 sigma
+  double deepest_um = 0;    ///< into the part, of the error less 1.64 sigma, at the 99th percentile of the area
+  double safe_share = 1;    ///< see band_of
+};
+
+/// First-order propagation: the standard error of each point of the surface is the root of the sum of squares of the
+/// groups' changes (`changes_mm`, one list a group, of the surface of the compensated program).
+///
+/// safe_share: the largest share of the compensation with which, at 95 % confidence in each point, no more of the area
+/// is cut deeper into the part than the tolerance than one twentieth; the error goes linearly from before to after.
+Band band_of(const std::vector<removal::SurfacePoint>& before, const std::vector<removal::SurfacePoint>& after,
+             const std::vector<std::string>& names, const std::vector<std::vector<double>>& changes_mm,
+             double tolerance_mm);
+
+}  // namespace camber::compensate

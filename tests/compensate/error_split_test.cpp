@@ -1,0 +1,142 @@
+// The parts of an error whose truth is known.
+#include "compensate/error_split.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "compensate/guard.h"
+#include "compensate/sensitivity.h"
+
+namespace camber::compensate {
+namespace {
+
+constexpr double kEnds_um = 0.15;  // the chain's first point is fixed and the fit smooth
+
+nc::Interpretation line_program(int n) {
+  nc::Interpretation p;
+  p.states.emplace_back();
+  for (int i = 0; i < n; ++i) {
+    nc::Move m;
+    m.kind = nc::MoveKind::linear;
+    m.start_mm = {static_cast<double>(i), 0, 0};
+    m.end_mm = {i + 1.0, 0, 0};
+    m.block = static_cast<std::uint32_t>(i);
+    p.moves.push_back(m);
+  }
+  return p;
+}
+
+struct Wall {
+  nc::Interpretation program = line_program(40);
+  ShiftPath path{program, std::vector<bool>(40, true), 1.0};
+  Observed observed;
+
+  /// A wall that faces +Y, from x = 2 on, ten points high.
+  void add(auto error_of, const Vec3& normal = Vec3::UnitY()) {
+    for (int i = 2; i < 40; ++i)
+      for (int k = 0; k < 10; ++k)
+        for (double u = 0.1; u < 1; u += 0.2) {
+          Observation o;
+          o.place = path.find(static_cast<std::uint32_t>(i), u);
+          o.normal = normal;
+          o.error_mm = error_of(i + u, 0.1 * k + 0.05);
+          o.area_mm2 = 0.02;
+          observed.points.push_back(o);
+          observed.compensated.push_back(true);
+        }
+  }
+};
+
+TEST(ErrorSplit, AnEvenErrorIsCorrectable) {
+  Wall wall;
+  wall.add([](double, double) { return 0.01; });
+  const ErrorSplit s = split_error(wall.path, wall.observed, {});
+  EXPECT_NEAR(s.correctable_um, 10, kEnds_um);
+  EXPECT_LT(s.not_correctable_um(), 1.0);
+}
+
+TEST(ErrorSplit, WhatVariesAlongTheCutterIsBow) {
+  Wall wall;  // the best constant shift leaves a line's rms: range / sqrt(12)
+  wall.add([](double, double height) { return 0.01 + 0.006 * (height - 0.5); });
+  const ErrorSplit s = split_error(wall.path, wall.observed, {});
+  EXPECT_NEAR(s.correctable_um, 10, kEnds_um);
+  EXPECT_NEAR(s.bow_um, 6 * std::sqrt((1 - 0.01) / 12), 0.05);
+  EXPECT_NEAR(s.opposed_um, 0, 1e-6);
+}
+
+TEST(ErrorSplit, BothSidesOfASlotAreOpposed) {
+  Wall wall;  // material left on both sides: no shift helps
+  wall.add([](double, double) { return 0.01; });
+  wall.add([](double, double) { return 0.01; }, -Vec3::UnitY());
+  for (auto& o : wall.observed.points) o.opposed = true;  // as observe() finds them
+  const ErrorSplit s = split_error(wall.path, wall.observed, {});
+  EXPECT_NEAR(s.opposed_um, 10, 0.05);
+  EXPECT_LT(s.correctable_um, 0.5);
+}
+
+TEST(ErrorSplit, SaysWhatTheLimitHoldsBack) {
+  Wall wall;
+  wall.add([](double, double) { return 0.01; });
+  const ErrorSplit s = split_error(wall.path, wall.observed, {.max_shift_mm = 0.004});
+  EXPECT_NEAR(s.correctable_um, std::sqrt(10 * 10 - 6 * 6), 0.3);
+  EXPECT_NEAR(s.limited_um, 6, 0.3);
+}
+
+TEST(ErrorSplit, SquaresAddUpWithOtherMoves) {
+  Wall wall;
+  wall.add([](double x, double height) { return 0.01 * std::sin(x) + 0.004 * height; });
+  for (std::size_t i = 0; i < wall.observed.points.size(); i += 3) wall.observed.compensated[i] = false;
+  double sum = 0, area = 0;
+  for (const auto& o : wall.observed.points) {
+    sum += o.area_mm2 * o.error_mm * o.error_mm;
+    area += o.area_mm2;
+  }
+  const ErrorSplit s = split_error(wall.path, wall.observed, {});
+  EXPECT_GT(s.not_compensated_um, 1);
+  EXPECT_NEAR(std::sqrt(s.correctable_um * s.correctable_um + s.limited_um * s.limited_um +
+                        s.not_correctable_um() * s.not_correctable_um() + s.not_compensated_um * s.not_compensated_um),
+              1000 * std::sqrt(sum / area), 1e-6);
+}
+
+TEST(Guard, LiftsWhatLiesTooDeepAndLeavesTheRest) {
+  Wall wall;
+  wall.add([](double, double height) { return 0.010 * (height - 0.5); });  // -4.5 ... 4.5 um
+  Guard guard(0.002);
+  const std::vector<Vec3> from = wall.path.shifts();
+  Observed now = wall.observed;
+  for (int round = 0; round < 6 && guard.learn(now) > 0; ++round) {
+    Observed wanted = now;
+    guard.apply_to(wanted);
+    const std::vector<Vec3> before = wall.path.shifts();
+    fit_shift(wall.path, wanted.of_path(), {});
+    for (std::size_t i = 0; i < now.points.size(); ++i)  // the surface follows the shift
+      now.points[i].error_mm =
+          wall.observed.points[i].error_mm + now.points[i].normal.dot(wall.path.shift_at(now.points[i].place));
+  }
+  double deepest = 0;
+  for (const auto& o : now.points) deepest = std::min(deepest, o.error_mm);
+  EXPECT_GE(deepest, -0.002);
+  EXPECT_LT(deepest, -0.0005) << "no farther out than asked for";
+}
+
+TEST(Sensitivity, LearnsTheGainOfEveryStretch) {
+  Wall wall;
+  wall.add([](double, double) { return 0.02; });
+  const std::vector<Vec3> none = wall.path.shifts();
+  fit_shift(wall.path, wall.observed.of_path(), {});
+  Observed now = wall.observed;
+  const auto truth = [&](const Observation& o) { return o.place.lower < 20 ? 0.6 : 1.2; };
+  for (auto& o : now.points) o.error_mm += truth(o) * o.normal.dot(wall.path.shift_at(o.place));
+  Sensitivity sensitivity(wall.path);
+  sensitivity.learn(wall.path, none, wall.observed, now);
+  std::vector<Observation> asked = now.of_path();
+  sensitivity.apply_to(asked);
+  for (const auto& o : asked) {
+    if (o.place.lower > 12 && o.place.lower < 28) continue;  // averaged over a few millimetres
+    EXPECT_NEAR(o.gain, truth(o), 0.06);
+  }
+}
+
+}  // namespace
+}  // namespace camber::compensate

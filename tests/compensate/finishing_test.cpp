@@ -1,0 +1,87 @@
+#include "compensate/finishing.h"
+
+#include <gtest/gtest.h>
+
+#include "nc/interpreter.h"
+#include "removal/stamp_path.h"
+
+namespace camber::compensate {
+namespace {
+
+const char* const kTwoTools =
+    "G21 G90\nG0 X0. Y0. Z5.\n(ROUGHING)\nT1 M6\nS1000 M3\nG1 X10. F100\nX20.\n(FINISH WALLS)\nT2 M6\nG1 "
+    "X30.\nX40.\n(CHAMFER)\nX50.\nM30\n";
+
+deflection::MachinedProgram machined(const std::string& text) {
+  deflection::MachinedProgram p;
+  Diagnostics diagnostics;
+  p.text = nc::read_program(SourceText("two.nc", text), diagnostics);
+  p.moves = nc::interpret(p.text, {}, diagnostics);
+  p.selected = removal::selected_moves(p.moves, {});
+  for (std::uint32_t m = 0; m < p.moves.moves.size(); ++m) {
+    removal::Stamp stamp;
+    stamp.move = m;
+    p.path.stamps.push_back(stamp);
+  }
+  return p;
+}
+
+std::vector<removal::SurfacePoint> surface_of(std::initializer_list<int> stamps) {
+  std::vector<removal::SurfacePoint> out;
+  for (const int s : stamps) {
+    removal::SurfacePoint p;
+    p.area_mm2 = 1;
+    p.machined_stamp = s;
+    out.push_back(p);
+  }
+  return out;
+}
+
+TEST(Finishing, IsWhatMakesTheSurface) {
+  const auto program = machined(kTwoTools);
+  const auto f = find_finishing({}, program, surface_of({3, 3, 4, 5}));
+  ASSERT_EQ(f.operations.size(), 2u);
+  EXPECT_EQ(f.operations[0].tool, 1);
+  EXPECT_EQ(f.operations[0].compensated_moves, 0u);
+  EXPECT_EQ(f.operations[1].compensated_moves, 3u);
+  EXPECT_DOUBLE_EQ(f.operations[1].surface_share, 1);
+  EXPECT_EQ(f.moves, (std::vector<bool>{false, false, false, true, true, true}));
+}
+
+TEST(Finishing, GoesByToolLinesAndComments) {
+  const auto program = machined(kTwoTools);
+  machine::Job job;
+  job.compensation.operations.tools = {1};
+  EXPECT_EQ(find_finishing(job, program, {}).moves, (std::vector<bool>{false, true, true, false, false, false}));
+  job.compensation.operations = {};
+  job.compensation.operations.blocks = {{7, 10}};
+  EXPECT_EQ(find_finishing(job, program, {}).moves, (std::vector<bool>{false, false, true, true, false, false}));
+  job.compensation.operations = {};
+  job.compensation.operations.comments = "finish";
+  EXPECT_EQ(find_finishing(job, program, {}).moves, (std::vector<bool>{false, false, false, true, true, false}));
+}
+
+TEST(Finishing, RefusesCutterRadiusCompensation) {
+  const auto program = machined("G21 G90\nG0 X0. Y0.\nG41 D1 X5.\nG1 Y10. F100\nG40 X0.\nM30\n");
+  auto moved = program;
+  for (auto& s : moved.moves.states) s.cutter_radius = true;
+  Diagnostics diagnostics;
+  check_compensated(moved, {false, false, true, false}, diagnostics);
+  ASSERT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(
+      to_string(diagnostics.all()[0]),
+      "two.nc:4:1: error: 1 move to compensate runs under cutter radius compensation (G41, G42), from here on: the "
+      "control makes their path, the text has no words for it; a program for the cutter's centre, or "
+      "[compensation] operations without these blocks, was expected [cutter-radius]\n    G1 Y10. F100\n    ^");
+}
+
+TEST(Finishing, SaysWhereNothingIsLeftToCompensate) {
+  const auto program = machined(kTwoTools);
+  Diagnostics diagnostics;
+  check_compensated(program, std::vector<bool>(6, false), diagnostics);
+  ASSERT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(diagnostics.all()[0].check, "nothing-to-compensate");
+}
+
+}  // namespace
+}  // namespace camber::compensate
