@@ -72,7 +72,8 @@ std::string histogram_svg(const std::vector<SurfaceSample>& samples, bool compar
   for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     fmt::format_to(std::back_inserter(out), "<path stroke=\"#e3e8ee\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", x_at(0),
                    y_at(share), x_at(1));
-    text(out, kLeft - 6, y_at(share) + 4, "end", fmt::format("{:g}", share * most));
+    if (share != 0.25 && share != 0.75)
+      text(out, kLeft - 6, y_at(share) + 4, "end", fmt::format("{:g}", share * most));
   }
   if (compared) {
     bars(out, before, most, kGrey);

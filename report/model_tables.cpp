@@ -141,16 +141,23 @@ TextTable material_table(const Job& job) {
 }
 
 TextTable tools_table(const Job& job) {
-  TextTable table{"Tools",
-                  {"tool", "type", "diameter, mm", "flutes", "helix, °", "overhang, mm", "effective diameter",
-                   "E, GPa", "root stiffness, N/µm"},
-                  {},
-                  {}};
-  for (const auto& [number, t] : job.tools)
-    table.rows.push_back({fmt::format("T{}", number), type_name(t.type), value_text(t.diameter_mm),
-                          std::to_string(t.flutes), value_text(deg_from_rad(t.helix_rad), 4), value_text(t.overhang_mm),
-                          value_text(t.effective_diameter_ratio), value_text(t.youngs_modulus_MPa / 1000),
-                          t.root_stiffness_N_per_mm == kAny ? "rigid" : value_text(t.root_stiffness_N_per_mm / 1000)});
+  TextTable table{"Tools", {""}, {}, {}};
+  const auto add = [&](const char* name, auto text_of) {
+    std::vector<std::string> row{name};
+    for (const auto& [number, tool] : job.tools) row.push_back(text_of(tool));
+    table.rows.push_back(std::move(row));
+  };
+  for (const auto& [number, tool] : job.tools) table.columns.push_back(fmt::format("T{}", number));
+  add("type", [](const Tool& t) { return std::string(type_name(t.type)); });
+  add("diameter, mm", [](const Tool& t) { return value_text(t.diameter_mm); });
+  add("flutes", [](const Tool& t) { return std::to_string(t.flutes); });
+  add("helix, °", [](const Tool& t) { return value_text(deg_from_rad(t.helix_rad), 4); });
+  add("overhang, mm", [](const Tool& t) { return value_text(t.overhang_mm); });
+  add("effective diameter / diameter", [](const Tool& t) { return value_text(t.effective_diameter_ratio); });
+  add("modulus of elasticity, GPa", [](const Tool& t) { return value_text(t.youngs_modulus_MPa / 1000); });
+  add("root stiffness, N/µm", [](const Tool& t) {
+    return t.root_stiffness_N_per_mm == kAny ? std::string("rigid") : value_text(t.root_stiffness_N_per_mm / 1000);
+  });
   return table;
 }
 

@@ -9,6 +9,7 @@ namespace camber::report {
 namespace {
 
 constexpr std::size_t kTiles = 4;
+constexpr double kMostChange_percent = 200;  // of something next to nothing: a percentage says nothing
 
 std::string unit_text(const std::string& unit) {
   if (unit == "um") return "µm";
@@ -37,8 +38,19 @@ std::string tile(const Figure& f) {
 std::string change_text(const Figure& f) {
   if (!f.after || !std::isfinite(f.before) || !std::isfinite(*f.after) || std::abs(f.before) < 1e-12) return {};
   const double percent = 100 * (std::abs(*f.after) / std::abs(f.before) - 1);
+  if (percent > kMostChange_percent) return {};
   const std::string text = number_text(percent, 1);
   return (percent > 0 && text != "0.0" ? "+" : "") + text + " %";
+}
+
+/// Paths may be broken after a slash.
+std::string breakable(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    out += c;
+    if (c == '/') out += "<wbr>";
+  }
+  return out;
 }
 
 std::string figure_row(const Figure& f, bool with_after) {
@@ -108,7 +120,7 @@ std::string table_html(const TextTable& table) {
   out += "<tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
-    for (const auto& cell : row) out += "<td>" + html_text(cell) + "</td>";
+    for (const auto& cell : row) out += "<td>" + breakable(html_text(cell)) + "</td>";
     out += "</tr>\n";
   }
   out += "</tbody></table></div>\n";

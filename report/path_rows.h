@@ -65,8 +65,7 @@ void add_errors(std::vector<PathRow>& rows, const removal::StampPath& path,
                 std::span<const removal::SurfacePoint> surface);
 
 /// Gives each cutting row of a changed program how far that program's path lies there from the path of the program as
-/// given: exact at the ends of moves (arcs: every tenth of a micrometre of sagitta), straight in between; what the control
-/// does to corners is in neither. Both paths are followed together, so that a neighbouring row of a raster is not taken
+/// given, worked out every half millimetre; what the control does to corners is in neither. Both paths are followed together, so that a neighbouring row of a raster is not taken
 /// for the way.
 void add_shifts(std::vector<PathRow>& rows, const nc::Interpretation& program, const nc::Interpretation& as_given);
 

@@ -8,10 +8,11 @@ namespace camber::report {
 namespace {
 
 constexpr double kArcChord_mm = 0.0001;  // arcs are taken as chords within a tenth of a micrometre
+constexpr double kPiece_mm = 0.5;        // of lines
 constexpr double kReach_mm = 2.0;        // both ways along the path from where the next place is expected
 constexpr double kReachShare = 0.05;     // of the way to it
 
-/// The path as given: corners and the length up to each.
+/// A path: corners, on lines at most kPiece_mm apart, and the length up to each.
 struct Polyline {
   std::vector<Vec3> corner;
   std::vector<double> length_mm;
@@ -35,7 +36,9 @@ Polyline polyline_of(const nc::Interpretation& program) {
       const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(arc.sweep_rad) / std::max(step_rad, 1e-4))));
       for (int i = 1; i < steps; ++i) out.add(nc::point_at(program, move, static_cast<double>(i) / steps));
     }
-    out.add(move.end_mm);
+    const Vec3 from = out.corner.back();
+    const int pieces = std::max(1, static_cast<int>(std::ceil((move.end_mm - from).norm() / kPiece_mm)));
+    for (int i = 1; i <= pieces; ++i) out.add(from + static_cast<double>(i) / pieces * (move.end_mm - from));
   }
   return out;
 }
@@ -74,23 +77,34 @@ class Follower {
   double at_mm_ = 0;
 };
 
-/// Distance of every corner of a path from another.
-std::vector<double> distances_mm(const Polyline& path, const Polyline& from) {
-  Follower follower(from);
-  std::vector<double> out;
-  for (std::size_t i = 0; i < path.corner.size(); ++i)
-    out.push_back(
-        follower.nearest(path.corner[i], i == 0 ? 0.0 : path.length_mm[i] - path.length_mm[i - 1]).distance_mm);
-  return out;
-}
+/// A path's distance from another in the middle of each of its pieces.
+struct Shifts {
+  std::vector<double> at_mm, distance_mm;
 
-double interpolated(const Polyline& path, const std::vector<double>& values, double at_mm) {
-  const auto above = std::upper_bound(path.length_mm.begin(), path.length_mm.end(), at_mm);
-  if (above == path.length_mm.end()) return values.back();
-  if (above == path.length_mm.begin()) return values.front();
-  const auto i = static_cast<std::size_t>(above - path.length_mm.begin());
-  const double u = (at_mm - path.length_mm[i - 1]) / (path.length_mm[i] - path.length_mm[i - 1]);
-  return (1 - u) * values[i - 1] + u * values[i];
+  double interpolated(double place_mm) const {
+    const auto above = std::upper_bound(at_mm.begin(), at_mm.end(), place_mm);
+    if (above == at_mm.end()) return distance_mm.back();
+    if (above == at_mm.begin()) return distance_mm.front();
+    const auto i = static_cast<std::size_t>(above - at_mm.begin());
+    const double u = (place_mm - at_mm[i - 1]) / (at_mm[i] - at_mm[i - 1]);
+    return (1 - u) * distance_mm[i - 1] + u * distance_mm[i];
+  }
+};
+
+/// Middles, not corners: a corner that was moved along the next line still lies on the old path.
+Shifts shifts_of(const Polyline& path, const Polyline& from) {
+  Follower follower(from);
+  Shifts out;
+  double before_mm = 0;
+  for (std::size_t i = 0; i + 1 < path.corner.size(); ++i) {
+    if (path.length_mm[i + 1] <= path.length_mm[i]) continue;
+    const double at_mm = 0.5 * (path.length_mm[i] + path.length_mm[i + 1]);
+    out.at_mm.push_back(at_mm);
+    out.distance_mm.push_back(
+        follower.nearest(0.5 * (path.corner[i] + path.corner[i + 1]), at_mm - before_mm).distance_mm);
+    before_mm = at_mm;
+  }
+  return out;
 }
 
 }  // namespace
@@ -98,13 +112,14 @@ double interpolated(const Polyline& path, const std::vector<double>& values, dou
 void add_shifts(std::vector<PathRow>& rows, const nc::Interpretation& program, const nc::Interpretation& as_given) {
   const Polyline path = polyline_of(program), given = polyline_of(as_given);
   if (path.corner.size() < 2 || given.corner.size() < 2 || rows.empty()) return;
-  const std::vector<double> shift_mm = distances_mm(path, given);
+  const Shifts shifts = shifts_of(path, given);
+  if (shifts.at_mm.empty()) return;
   Follower follower(path);
   Vec3 before = rows.front().command_mm;
   for (PathRow& row : rows) {
     const double at_mm = follower.nearest(row.command_mm, (row.command_mm - before).norm()).at_mm;
     before = row.command_mm;
-    if (row.cutting) row.shift_um = 1000 * interpolated(path, shift_mm, at_mm);
+    if (row.cutting) row.shift_um = 1000 * shifts.interpolated(at_mm);
   }
 }
 

@@ -1,18 +1,19 @@
 // Curves along the program's time, one below the other with one time axis.
 import uPlot from 'uplot';
 import { QUANTITIES, present } from './quantities.js';
-import { element, fixed } from './text.js';
+import { element, fixed, niceLimit } from './text.js';
 
 const COLOURS = ['#1668b8', '#d9622b'], GREY = '#9aa5b1', MARK = '#1d2733';
-const HEIGHT = 128, AXIS_HEIGHT = 34;
+const HEIGHT = 132, AXIS_HEIGHT = 46;
 
-const holes = values => Array.from(values, v => Number.isFinite(v) ? v : null);
+// No line where nothing is cut. Where a cutting tooth has left no surface of its own, the line goes on.
+const holes = (values, cutting) => Array.from(values, (v, i) => Number.isFinite(v) ? v : cutting[i] > 0.5 ? undefined : null);
 
 // Rapids go far above the cutting feed, which is what the picture is for.
 function feedTop(runs) {
   let top = 1;
   for (const r of runs) for (let i = 0; i < r.t.length; i++) if (r.cutting[i] > 0.5) top = Math.max(top, r.feed[i], r.command[i]);
-  return top * 1.08;
+  return niceLimit(top);
 }
 
 function seriesOf(runs, quantity) {
@@ -21,7 +22,7 @@ function seriesOf(runs, quantity) {
     if (quantity === 'feed' && i === 0) out.push({ run: 0, name: 'commanded', colour: GREY, values: Array.from(r.command) });
     if (!r[quantity]) return;
     const name = quantity === 'feed' ? (several ? 'actual ' + r.name : 'actual') : several ? r.name : '';
-    out.push({ run: i, name, colour: COLOURS[i], values: holes(r[quantity]) });
+    out.push({ run: i, name, colour: COLOURS[i], values: holes(r[quantity], quantity === 'error' ? r.cutting : []) });
   });
   return out;
 }
@@ -48,6 +49,7 @@ export class Plots {
     const live = series.map(s => element('b'));
     const head = element('div', { className: 'plot-head' }, element('span', { className: 'plot-title', textContent: `${title}, ${unit}` }),
       ...series.map((s, i) => {
+        if (!s.name) return element('span', { className: 'key' }, live[i]);
         const swatch = element('i');
         swatch.style.background = s.colour;
         return element('span', { className: 'key' }, swatch, s.name + ' ', live[i]);
@@ -61,7 +63,8 @@ export class Plots {
       width: this.width(), height: HEIGHT + (last ? AXIS_HEIGHT : 0), legend: { show: false },
       cursor: { sync: { key: 'path' }, drag: { x: true, y: false }, points: { size: 6 }, focus: { prox: -1 } },
       scales: { x: { time: false }, y: { range: top ? [0, top] : (_, low, high) => uPlot.rangeNum(Math.min(low, 0), Math.max(high, 0), 0.08, true) } },
-      axes: [{ ...axis, show: true, size: last ? AXIS_HEIGHT : 4, values: last ? undefined : () => [], label: undefined },
+      axes: [{ ...axis, show: true, size: last ? AXIS_HEIGHT - 18 : 4, values: last ? undefined : () => [],
+        ...(last ? { label: 'machine time, s', labelSize: 18, labelFont: '12px system-ui, sans-serif' } : {}) },
         { ...axis, size: 56 }],
       series: [{}, ...series.map(s => ({ stroke: s.colour, width: s.name === 'commanded' ? 1 : 1.4, points: { show: false }, spanGaps: false }))],
       hooks: {

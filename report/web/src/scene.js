@@ -39,7 +39,7 @@ void main() {
   gl_FragColor = vec4(base * light, 1.0);
 }`;
 
-const VIEWS = { oblique: [-0.75, -1, 0.8], top: [0, -1e-4, 1], front: [0, -1, 0], right: [1, 0, 0] };
+const VIEWS = { oblique: [-0.6, -1, 1.25], top: [0, -1e-4, 1], front: [0, -1, 0], right: [1, 0, 0] };
 const CLICK_PX = 4, PATH_PX = 6;
 
 function bounds(arrays) {
