@@ -25,7 +25,7 @@ std::string deflated(std::string_view bytes) {
   std::string out(size, '\0');
   const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
                                reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()),
-                               Z_BEST_COMPRESSION);
+                               Z_DEFAULT_COMPRESSION);
   if (status != Z_OK) throw std::runtime_error("zlib could not deflate the data of the page");
   out.resize(size);
   return out;

@@ -118,7 +118,7 @@ const CHECKS = {
 const webgl = check === 'without_webgl' ? ['--disable-gpu', '--disable-3d-apis'] : ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', ...webgl] });
 try {
-  const context = await browser.newContext({ offline: true, viewport: { width: 1280, height: 900 }, javaScriptEnabled: check !== 'without_script' });
+  const context = await browser.newContext({ offline: true, viewport: { width: 900, height: 700 }, javaScriptEnabled: check !== 'without_script' });
   const page = await context.newPage();
   page.setDefaultTimeout(20000);
   page.on('console', m => { if (m.type() === 'error') problems.push(`console: ${m.text()}`); });

@@ -139,7 +139,9 @@ export class PartScene {
 
   resize() {
     const w = Math.max(1, this.box.clientWidth), h = Math.max(1, this.box.clientHeight), r = this.radius;
+    if (matchMedia('print').matches) return;  // paper shows the picture of the window, smaller
     this.renderer.setSize(w, h);
+    this.box.style.setProperty('--ratio', w / h);
     Object.assign(this.camera, { left: -r * w / h, right: r * w / h, top: r, bottom: -r });
     this.camera.updateProjectionMatrix();
     if (this.path) this.path.material.resolution = new Vector2(w, h);
@@ -180,7 +182,7 @@ export class PartScene {
     this.path.frustumCulled = false;
     const thin = new BufferGeometry();
     thin.setAttribute('position', new BufferAttribute(new Float32Array(rapids), 3));
-    this.rapids = new LineSegments(thin, new LineBasicMaterial({ color: new Color('#aab4c0').convertLinearToSRGB() }));
+    this.rapids = new LineSegments(thin, new LineBasicMaterial({ color: new Color('#aab4c0').convertLinearToSRGB(), transparent: true, opacity: 0.5 }));
     this.scene.add(this.path, this.rapids);
     this.render();
   }
@@ -240,8 +242,8 @@ export class PartScene {
     this.marker.hidden = !this.marked;
     if (!this.marked) return;
     const p = this.projected(this.marked, 0);
-    this.marker.style.left = `${(p.x + 1) / 2 * this.box.clientWidth}px`;
-    this.marker.style.top = `${(1 - p.y) / 2 * this.box.clientHeight}px`;
+    this.marker.style.left = `${(p.x + 1) * 50}%`;
+    this.marker.style.top = `${(1 - p.y) * 50}%`;
   }
 
   drawTriad() {
@@ -257,7 +259,7 @@ export class PartScene {
   drawBar() {
     const mm = this.mmPerPixel(), raw = 110 * mm, decade = 10 ** Math.floor(Math.log10(raw));
     const length = decade * [5, 2, 1].find(s => s * decade <= raw);
-    this.bar.style.width = `${length / mm}px`;
+    this.bar.style.width = `${100 * length / mm / this.box.clientWidth}%`;
     this.bar.textContent = `${+length.toPrecision(3)} mm`;
   }
 }
