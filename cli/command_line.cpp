@@ -80,6 +80,7 @@ int run(int argc, const char* const* argv) {
   Action chosen;
   add_global_options(app, options);
   add_program_commands(app, options, chosen);
+  add_init_command(app, options, chosen);
   add_job_commands(app, options, chosen);
   add_force_commands(app, options, chosen);
   try {

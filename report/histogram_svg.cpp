@@ -64,16 +64,16 @@ std::string histogram_svg(const std::vector<SurfaceSample>& samples, bool compar
   constexpr const char *kGrey = "#9aa5b1", *kBlue = "#1668b8";
   const auto before = error_histogram(samples, &SurfaceSample::error_um, limit_um, kBins);
   const auto after = compared ? error_histogram(samples, &SurfaceSample::error_after_um, limit_um, kBins) : before;
-  const double most = nice_limit(std::max(*std::max_element(before.begin(), before.end()),
-                                          *std::max_element(after.begin(), after.end())));
+  const double most = nice_limit(
+      std::max(*std::max_element(before.begin(), before.end()), *std::max_element(after.begin(), after.end())));
   std::string out = fmt::format(
-      "<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Histogram of the form error\">\n",
+      "<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Histogram of the form "
+      "error\">\n",
       kWidth, kHeight);
   for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     fmt::format_to(std::back_inserter(out), "<path stroke=\"#e3e8ee\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", x_at(0),
                    y_at(share), x_at(1));
-    if (share != 0.25 && share != 0.75)
-      text(out, kLeft - 6, y_at(share) + 4, "end", fmt::format("{:g}", share * most));
+    if (share != 0.25 && share != 0.75) text(out, kLeft - 6, y_at(share) + 4, "end", fmt::format("{:g}", share * most));
   }
   if (compared) {
     bars(out, before, most, kGrey);
@@ -84,7 +84,10 @@ std::string histogram_svg(const std::vector<SurfaceSample>& samples, bool compar
     bars(out, before, most, kBlue);
   }
   for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-    text(out, x_at(share), kHeight - kBottom + 17, share == 0 ? "start" : share == 1 ? "end" : "middle",
+    text(out, x_at(share), kHeight - kBottom + 17,
+         share == 0   ? "start"
+         : share == 1 ? "end"
+                      : "middle",
          signed_text((2 * share - 1) * limit_um));
   }
   text(out, kLeft - 36, 16, "start", "% of the surface");

@@ -25,7 +25,8 @@ constexpr const char* kPartFrame =
     "<div class=\"scene\" id=\"scene\"></div>\n"
     "<div class=\"bar legends\" id=\"legends\"></div>\n"
     "<p class=\"note\">Form error: machined surface minus the undeflected sweep of the target program, along the "
-    "surface’s normal; red where material is left, blue where the cutter went too deep. Beyond the scale a colour stays "
+    "surface’s normal; red where material is left, blue where the cutter went too deep. Beyond the scale a colour "
+    "stays "
     "as at its end.</p>\n</div>\n";
 
 constexpr const char* kPlotsFrame =
@@ -43,8 +44,8 @@ std::string head_html(const ReportData& data) {
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   out += kPolicy;
   out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  out += fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle,
-                     kReportStyle);
+  out +=
+      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);
   out += fmt::format("<header><div><h1>{}</h1>\n<p class=\"sub\">{}</p></div>\n", title, html_text(data.subtitle));
   if (!data.download_name.empty())
     out += fmt::format("<a class=\"download\" id=\"download\" hidden download=\"{0}\">Download {0}</a>\n",

@@ -43,7 +43,8 @@ void add_file(TextTable& table, const std::string& what, const std::string& path
 std::string corner_text(const machine::Corner& c) {
   switch (c.law) {
     case machine::CornerLaw::speed_difference:
-      return fmt::format("speed difference, {} mm/min", value_text(mm_per_min_from_mm_per_s(c.speed_difference_mm_per_s)));
+      return fmt::format("speed difference, {} mm/min",
+                         value_text(mm_per_min_from_mm_per_s(c.speed_difference_mm_per_s)));
     case machine::CornerLaw::angle:
       return fmt::format("angle, {} ms", value_text(1000 * c.time_s));
     case machine::CornerLaw::blend:

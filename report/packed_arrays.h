@@ -12,9 +12,9 @@ namespace camber::report {
 /// The zlib format (RFC 1950), which browsers call "deflate". The same bytes in give the same bytes out.
 std::string deflated(std::string_view bytes);
 
-/// Collects arrays; each is described by {at, n, kind, ...}: where its bytes begin, how many values it has, how they are
-/// written. Within an array the bytes of a value stand apart: first all least significant bytes, then the next ones,
-/// which deflate shrinks better.
+/// Collects arrays; each is described by {at, n, kind, ...}: where its bytes begin, how many values it has, how they
+/// are written. Within an array the bytes of a value stand apart: first all least significant bytes, then the next
+/// ones, which deflate shrinks better.
 class PackedArrays {
  public:
   /// "f4": floats. NaN is "nothing here".

@@ -95,11 +95,13 @@ json run_json(const PathRun& run, const ReportOptions& options, PackedArrays& ar
   out["place"] = triple(arrays, rows, [](const PathRow& r) -> const Vec3& { return r.place_mm; });
   out["block"] = whole(arrays, rows, &PathRow::block);
   out["cutting"] = arrays.add_quantised(column(rows, [](const PathRow& r) { return r.cutting ? 1.0 : 0.0; }));
-  constexpr std::pair<const char*, double PathRow::*> kColumns[] = {
-      {"command", &PathRow::feed_command_mm_per_min}, {"feed", &PathRow::feed_mm_per_min},
-      {"force", &PathRow::force_N},                   {"deflection", &PathRow::deflection_um},
-      {"chip", &PathRow::chip_um},                    {"error", &PathRow::error_um},
-      {"shift", &PathRow::shift_um}};
+  constexpr std::pair<const char*, double PathRow::*> kColumns[] = {{"command", &PathRow::feed_command_mm_per_min},
+                                                                    {"feed", &PathRow::feed_mm_per_min},
+                                                                    {"force", &PathRow::force_N},
+                                                                    {"deflection", &PathRow::deflection_um},
+                                                                    {"chip", &PathRow::chip_um},
+                                                                    {"error", &PathRow::error_um},
+                                                                    {"shift", &PathRow::shift_um}};
   for (const auto& [name, field] : kColumns) {
     const auto values = column(rows, [&](const PathRow& r) { return r.*field; });
     if (std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
@@ -116,9 +118,10 @@ void add_programs(const ReportData& data, const ReportOptions& options, PageData
     if (data.path[i].program_text.empty()) continue;
     const std::string small = deflated(data.path[i].program_text);
     if (small.size() > room) {
-      page.left_out.push_back(fmt::format("The text of the program{} is too large for this page; lines are named by "
-                                          "their numbers.",
-                                          data.path[i].name.empty() ? "" : " " + data.path[i].name));
+      page.left_out.push_back(
+          fmt::format("The text of the program{} is too large for this page; lines are named by "
+                      "their numbers.",
+                      data.path[i].name.empty() ? "" : " " + data.path[i].name));
       continue;
     }
     room -= small.size();

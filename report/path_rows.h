@@ -21,12 +21,12 @@ struct PathRow {
   std::uint32_t block = 0;  ///< 1-based line being commanded
   bool cutting = false;     ///< G1, G2, G3
   double feed_command_mm_per_min = 0;
-  double feed_mm_per_min = 0;  ///< actual
-  double force_N = kNothingHere;          ///< greatest lateral force
-  double deflection_um = kNothingHere;    ///< at the contact's height
-  double chip_um = kNothingHere;          ///< thickest chip
-  double error_um = kNothingHere;         ///< of greatest magnitude of the surface made here
-  double shift_um = kNothingHere;         ///< distance from the path of the program as given
+  double feed_mm_per_min = 0;           ///< actual
+  double force_N = kNothingHere;        ///< greatest lateral force
+  double deflection_um = kNothingHere;  ///< at the contact's height
+  double chip_um = kNothingHere;        ///< thickest chip
+  double error_um = kNothingHere;       ///< of greatest magnitude of the surface made here
+  double shift_um = kNothingHere;       ///< distance from the path of the program as given
 };
 
 /// One run of the program: as given, or compensated.
@@ -65,8 +65,8 @@ void add_errors(std::vector<PathRow>& rows, const removal::StampPath& path,
                 std::span<const removal::SurfacePoint> surface);
 
 /// Gives each cutting row of a changed program how far that program's path lies there from the path of the program as
-/// given, worked out every half millimetre; what the control does to corners is in neither. Both paths are followed together, so that a neighbouring row of a raster is not taken
-/// for the way.
+/// given, worked out every half millimetre; what the control does to corners is in neither. Both paths are followed
+/// together, so that a neighbouring row of a raster is not taken for the way.
 void add_shifts(std::vector<PathRow>& rows, const nc::Interpretation& program, const nc::Interpretation& as_given);
 
 /// Indices, ascending, of at most about `most` rows: of each run of neighbours the first and, for every quantity, those

@@ -24,8 +24,7 @@ std::vector<SurfaceSample> surface_samples(const std::vector<removal::SurfacePoi
   std::vector<SurfaceSample> out;
   out.reserve(points.size());
   for (const auto& p : points)
-    out.push_back(
-        {p.place_mm, p.normal, 1000 * p.error_mm, 0, p.area_mm2, line_of(program, p.machined_stamp), 0});
+    out.push_back({p.place_mm, p.normal, 1000 * p.error_mm, 0, p.area_mm2, line_of(program, p.machined_stamp), 0});
   return out;
 }
 
@@ -33,8 +32,8 @@ std::vector<SurfaceSample> surface_samples(const std::vector<removal::SurfacePoi
 void add_figures(ReportData& data, const removal::ErrorFigures& before, const removal::ErrorFigures* after,
                  const std::string& key) {
   const auto add = [&](const char* name, double removal::ErrorFigures::*which, const char* last) {
-    data.figures.push_back({name, before.*which, after ? std::optional<double>(after->*which) : std::nullopt, "um", 2,
-                            key + "." + last});
+    data.figures.push_back(
+        {name, before.*which, after ? std::optional<double>(after->*which) : std::nullopt, "um", 2, key + "." + last});
   };
   add("form error, 95th percentile", &removal::ErrorFigures::p95, "p95");
   add("form error, rms", &removal::ErrorFigures::rms, "rms");
@@ -49,8 +48,8 @@ void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& dia
   if (!unsettled.empty()) data.warnings.push_back(unsettled);
   data.notes.push_back(
       "Left out of the model: bending of the work, chatter, heat and wear; the deflection of the tool is static.");
-  for (TextTable table : {material_table(job), tools_table(job), machine_table(job.machine), simulation_table(job),
-                          inputs_table(job)})
+  for (TextTable table :
+       {material_table(job), tools_table(job), machine_table(job.machine), simulation_table(job), inputs_table(job)})
     data.tables.push_back(std::move(table));
 }
 
@@ -131,8 +130,8 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   add_figures(data, c.before_um, &c.after_um, "{}_um");
   data.figures.insert(data.figures.begin() + 2,
                       {"largest shift", 1000 * c.max_shift_mm, std::nullopt, "um", 1, "max_shift_um"});
-  data.figures.insert(data.figures.begin() + 3, {"machine time", c.feed_before.time_s, c.feed_after.time_s, "s", 1,
-                                                 "machine_time_s.{}"});
+  data.figures.insert(data.figures.begin() + 3,
+                      {"machine time", c.feed_before.time_s, c.feed_after.time_s, "s", 1, "machine_time_s.{}"});
   data.surface = surface_samples(c.surface_before, before.program);
   data.voxel_mm = job.simulation.voxel_mm;
   data.compared = c.surface_after.size() == data.surface.size();

@@ -37,8 +37,8 @@ std::vector<SurfaceSample> slope(double length_mm = 30, double width_mm = 10, st
 PathRun run_of(const std::string& name, double shift_mm) {
   PathRun run{name, "%\r\nO1\r\n", {}};
   for (int n = 0; n < 30; ++n) {
-    run.program_text += fmt::format("N{} G1 X{:.{}f}{}\r\n", n + 3, n + shift_mm, shift_mm > 0 ? 3 : 0,
-                                    shift_mm > 0 ? "" : ".");
+    run.program_text +=
+        fmt::format("N{} G1 X{:.{}f}{}\r\n", n + 3, n + shift_mm, shift_mm > 0 ? 3 : 0, shift_mm > 0 ? "" : ".");
     for (int k = 0; k < 10; ++k) {
       PathRow row;
       row.t_s = n + 0.1 * k;
@@ -62,7 +62,8 @@ PathRun run_of(const std::string& name, double shift_mm) {
 ReportData example() {
   ReportData data;
   data.title = "Compensation of p.nc";
-  data.figures = {{"form error, rms", 12.0, 0.6, "um", 2, ""}, {"largest shift", 1.0, std::nullopt, "um", 1, ""},
+  data.figures = {{"form error, rms", 12.0, 0.6, "um", 2, ""},
+                  {"largest shift", 1.0, std::nullopt, "um", 1, ""},
                   {"machine time", 30, 30, "s", 1, ""}};
   data.surface = slope();
   data.compared = true;

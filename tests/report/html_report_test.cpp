@@ -76,8 +76,9 @@ bool holds(const std::string& page, const std::string& text) { return page.find(
 
 TEST(HtmlReport, NeedsNoNetwork) {
   const std::string page = html_report(example());
-  EXPECT_TRUE(holds(page, "content=\"default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
-                          "img-src data: blob:\""));
+  EXPECT_TRUE(holds(page,
+                    "content=\"default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+                    "img-src data: blob:\""));
   for (const char* word : {"http://", "https://", "src=", "@import", "url("})
     EXPECT_FALSE(holds(without_scripts(page), word)) << word;
 }
@@ -94,18 +95,20 @@ TEST(HtmlReport, ShowsTextAsText) {
 
 TEST(HtmlReport, ListsEveryFigure) {
   const std::string page = html_report(example());
-  EXPECT_TRUE(holds(page, "<tr><td>95 % of the form error</td><td><span data-key=\"before_um.p95\">24.3</span></td>"
-                          "<td><span data-key=\"after_um.p95\">1.2</span></td><td>−95.1 %</td>"
-                          "<td class=\"unit\">µm</td></tr>"));
+  EXPECT_TRUE(holds(page,
+                    "<tr><td>95 % of the form error</td><td><span data-key=\"before_um.p95\">24.3</span></td>"
+                    "<td><span data-key=\"after_um.p95\">1.2</span></td><td>−95.1 %</td>"
+                    "<td class=\"unit\">µm</td></tr>"));
   EXPECT_TRUE(holds(page, "<tr><td>least</td><td>−31.04</td><td>0.00</td><td>−100.0 %</td><td class=\"unit\">µm</td>"));
   EXPECT_TRUE(holds(page, "<tr><td>points</td><td>900</td><td></td><td></td><td class=\"unit\"></td></tr>"));
 }
 
 TEST(HtmlReport, ListsEveryTable) {
   const std::string page = html_report(example());
-  EXPECT_TRUE(holds(page, "<h2>Rounds</h2>\n<div class=\"wide\"><table><thead><tr><th>round</th><th>rms, µm</th></tr>"
-                          "</thead><tbody>\n<tr><td>as given</td><td>12.00</td></tr>\n<tr><td>1</td><td>0.60</td></tr>\n"
-                          "</tbody></table></div>\n<p class=\"note\">Stopped: tolerance.</p>"));
+  EXPECT_TRUE(holds(page,
+                    "<h2>Rounds</h2>\n<div class=\"wide\"><table><thead><tr><th>round</th><th>rms, µm</th></tr>"
+                    "</thead><tbody>\n<tr><td>as given</td><td>12.00</td></tr>\n<tr><td>1</td><td>0.60</td></tr>\n"
+                    "</tbody></table></div>\n<p class=\"note\">Stopped: tolerance.</p>"));
   EXPECT_TRUE(holds(page, "<table><tbody>\n<tr><td>job</td><td>a/<wbr>job.toml</td></tr>"));
 }
 
@@ -123,15 +126,18 @@ TEST(HtmlReport, HoldsTheProgramsAsLongAsThereIsRoom) {
     for (auto& run : data.path) run.program_text += "N" + std::to_string(i * 7919) + "\n";
   const std::string page = html_report(data, {.most_program_bytes = 10000});
   EXPECT_EQ(count(page), std::pair(false, true));
-  EXPECT_TRUE(holds(page, "The text of the program before is too large for this page; lines are named by their numbers."));
+  EXPECT_TRUE(
+      holds(page, "The text of the program before is too large for this page; lines are named by their numbers."));
 }
 
 TEST(HtmlReport, SaysWhenSomethingWasLeftOut) {
   const std::string page = html_report(example(), {.most_vertices = 300, .most_rows = 300});
-  EXPECT_TRUE(holds(page, "The surface is drawn in cells of 1.5 mm (176 vertices for 900 points); each shows the error of "
-                          "greatest magnitude in it."));
-  EXPECT_TRUE(holds(page, " of 5000 moments: of each run of neighbours the first and, of every quantity, the least and "
-                          "the greatest."));
+  EXPECT_TRUE(holds(page,
+                    "The surface is drawn in cells of 1.5 mm (176 vertices for 900 points); each shows the error of "
+                    "greatest magnitude in it."));
+  EXPECT_TRUE(holds(page,
+                    " of 5000 moments: of each run of neighbours the first and, of every quantity, the least and "
+                    "the greatest."));
   EXPECT_FALSE(holds(without_scripts(html_report(example())), " drawn "));
 }
 

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <zlib.h>
+#include <nlohmann/json.hpp>
 
 namespace camber::report {
 namespace {
@@ -50,7 +50,8 @@ TEST(PackedArrays, GiveTheValuesBack) {
   const std::vector<double> values{-6.44, nan, 0, 23.456, 1e-3};
   const std::vector<std::uint32_t> lines{7, 7, 8, 1154, 3, 0};
   PackedArrays arrays;
-  const auto floats = arrays.add_floats(values), quantised = arrays.add_quantised(values), blocks = arrays.add_whole(lines);
+  const auto floats = arrays.add_floats(values), quantised = arrays.add_quantised(values),
+             blocks = arrays.add_whole(lines);
   const std::string bytes = inflated(from_base64(arrays.text()), 5 * 4 + 5 * 2 + 6 * 4);
   ASSERT_EQ(bytes.size(), 54u);
 
@@ -85,9 +86,7 @@ TEST(PackedArrays, TakeConstantsAndNothing) {
   EXPECT_FALSE(PackedArrays().text().empty());
 }
 
-TEST(PackedArrays, DeflateWhatRepeats) {
-  EXPECT_LT(deflated(std::string(100000, 'G')).size(), 200u);
-}
+TEST(PackedArrays, DeflateWhatRepeats) { EXPECT_LT(deflated(std::string(100000, 'G')).size(), 200u); }
 
 }  // namespace
 }  // namespace camber::report

@@ -117,10 +117,12 @@ TEST(PathShift, IsTheDistanceOfTheTwoPaths) {
   const auto given = moves_of("G21 G90\nG0 X0. Y0. Z0.\nG1 X10. F600\nG2 X20. Y-10. R10.\nG1 Y-20.\nM30\n");
   // From nothing up by 20 um along the line, out by 30 um around the arc, then back to none.
   const auto moved = moves_of(
-      "G21 G90\nG0 X0. Y0. Z0.\nG1 X0. Y0.02 F600\nG1 X10. Y0.02\nG1 X10. Y0.03\nG2 X20.03 Y-10. R10.03\nG1 X20. Y-20.\n"
+      "G21 G90\nG0 X0. Y0. Z0.\nG1 X0. Y0.02 F600\nG1 X10. Y0.02\nG1 X10. Y0.03\nG2 X20.03 Y-10. R10.03\nG1 X20. "
+      "Y-20.\n"
       "M30\n");
   const double s = std::sqrt(0.5);
-  auto rows = rows_at({{0, 0.02, 0}, {1, 0.02, 0}, {5, 0.02, 0}, {10 + 10.03 * s, -10 + 10.03 * s, 0}, {20.015, -15, 0}, {20, -20, 0}});
+  auto rows = rows_at(
+      {{0, 0.02, 0}, {1, 0.02, 0}, {5, 0.02, 0}, {10 + 10.03 * s, -10 + 10.03 * s, 0}, {20.015, -15, 0}, {20, -20, 0}});
   add_shifts(rows, moved, given);
   const std::vector<double> expected_um{10, 20, 20, 30, 15, 0};
   for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_NEAR(rows[i].shift_um, expected_um[i], 1) << i;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 namespace camber::report {
 namespace {
@@ -37,7 +37,8 @@ double area_of(const SurfaceMesh& mesh, double* outward_share = nullptr) {
   double area = 0, outward = 0;
   for (const auto& q : mesh.quads)
     for (const auto& t : {std::array{q[0], q[1], q[2]}, std::array{q[0], q[2], q[3]}}) {
-      const Vec3 &a = mesh.vertices[t[0]].place_mm, &b = mesh.vertices[t[1]].place_mm, &c = mesh.vertices[t[2]].place_mm;
+      const Vec3 &a = mesh.vertices[t[0]].place_mm, &b = mesh.vertices[t[1]].place_mm,
+                 &c = mesh.vertices[t[2]].place_mm;
       area += 0.5 * (b - a).cross(c - a).norm();
     }
   for (const auto& v : mesh.vertices) outward += v.normal.dot(v.place_mm.normalized()) > 0.99 ? 1 : 0;

@@ -29,6 +29,6 @@ inline std::string open_page(const std::string& check, const std::string& page, 
 
 }  // namespace camber::tests
 
-#define CAMBER_NEEDS_BROWSER()          \
+#define CAMBER_NEEDS_BROWSER()         \
   if (!::camber::tests::has_browser()) \
   GTEST_SKIP() << "needs chromium and playwright-core (scripts/install-packages --oracles)"

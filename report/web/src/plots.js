@@ -1,7 +1,7 @@
 // Curves along the program's time, one below the other with one time axis.
 import uPlot from 'uplot';
 import { QUANTITIES, present } from './quantities.js';
-import { element, fixed, niceLimit } from './text.js';
+import { MINUS, element, fixed, niceLimit } from './text.js';
 
 const COLOURS = ['#1668b8', '#d9622b'], GREY = '#9aa5b1', MARK = '#1d2733';
 const HEIGHT = 132, AXIS_HEIGHT = 46;
@@ -61,11 +61,11 @@ export class Plots {
     const axis = { stroke: '#5c6877', grid: { stroke: '#e3e8ee', width: 1 }, ticks: { show: false }, font: '12px system-ui, sans-serif' };
     const u = new uPlot({
       width: this.width(), height: HEIGHT + (last ? AXIS_HEIGHT : 0), legend: { show: false },
-      cursor: { sync: { key: 'path' }, drag: { x: true, y: false }, points: { size: 6 }, focus: { prox: -1 } },
+      cursor: { sync: { key: 'path' }, y: false, drag: { x: true, y: false }, points: { size: 6 }, focus: { prox: -1 } },
       scales: { x: { time: false }, y: { range: top ? [0, top] : (_, low, high) => uPlot.rangeNum(Math.min(low, 0), Math.max(high, 0), 0.08, true) } },
       axes: [{ ...axis, show: true, size: last ? AXIS_HEIGHT - 18 : 4, values: last ? undefined : () => [],
         ...(last ? { label: 'machine time, s', labelSize: 18, labelFont: '12px system-ui, sans-serif' } : {}) },
-        { ...axis, size: 56 }],
+        { ...axis, size: 56, values: (_, values) => values.map(v => String(v).replace('-', MINUS)) }],
       series: [{}, ...series.map(s => ({ stroke: s.colour, width: s.name === 'commanded' ? 1 : 1.4, points: { show: false }, spanGaps: false }))],
       hooks: {
         setCursor: [p => series.forEach((s, i) => { live[i].textContent = this.valueAt(p, i + 1, decimals); })],
