@@ -83,6 +83,7 @@ int run(int argc, const char* const* argv) {
   add_init_command(app, options, chosen);
   add_job_commands(app, options, chosen);
   add_force_commands(app, options, chosen);
+  add_help(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

@@ -1,9 +1,9 @@
 // build.mjs SOURCES PACKAGES OUT.cpp: bundles main.js and writes script and style as C++ text.
 import { createRequire } from 'node:module';
 import { renameSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 
-const [sources, packages, out] = process.argv.slice(2);
+const [sources, packages, out] = process.argv.slice(2).map(path => resolve(path));
 const esbuild = createRequire(join(packages, 'package.json'))('esbuild');
 const result = await esbuild.build({
   entryPoints: [join(sources, 'main.js')],

@@ -70,10 +70,10 @@ TEST(CommandLine, PutsNoColourInAPipe) {
 }
 
 TEST(Progress, TellsShareAndTimeLeft) {
-  EXPECT_EQ(cli::progress_text("cutting", 0.02, 10), "  2 %  cutting");
-  EXPECT_EQ(cli::progress_text("cutting", 0.25, 10), " 25 %  cutting, 30 s left");
-  EXPECT_EQ(cli::progress_text("round 2", 0.1, 60), " 10 %  round 2, 9 min left");
-  EXPECT_EQ(cli::progress_text("round 2", 1.2, 60), "100 %  round 2, 0 s left");
+  EXPECT_EQ(cli::progress_text("cutting", 0.02, 10), "  2 % [........................] cutting");
+  EXPECT_EQ(cli::progress_text("cutting", 0.25, 10), " 25 % [######..................] cutting, 30 s left");
+  EXPECT_EQ(cli::progress_text("round 2", 0.1, 60), " 10 % [##......................] round 2, 9 min left");
+  EXPECT_EQ(cli::progress_text("round 2", 1.2, 60), "100 % [########################] round 2, 0 s left");
 }
 
 }  // namespace
