@@ -13,7 +13,7 @@ function(camber_report_bundle target)
   add_custom_command(OUTPUT ${installed}
     COMMAND ${CMAKE_COMMAND} -E copy ${source}/package.json ${source}/package-lock.json ${CAMBER_WEB_DIR}
     # playwright-core, which only the tests need, is a development dependency. No package's install script is run.
-    COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --loglevel=error $<$<NOT:$<BOOL:${CAMBER_TESTS}>>:--omit=dev>
+    COMMAND ${NPM} ci --ignore-scripts --prefer-offline --no-audit --no-fund --loglevel=error $<$<NOT:$<BOOL:${CAMBER_TESTS}>>:--omit=dev>
     COMMAND ${CMAKE_COMMAND} -E touch ${installed}
     WORKING_DIRECTORY ${CAMBER_WEB_DIR}
     DEPENDS ${source}/package.json ${source}/package-lock.json
