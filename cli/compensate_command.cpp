@@ -23,10 +23,12 @@ nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
 }
 
 /// Reads both programs once more, for their stamps and their feed.
-void write_report(const CompensateArguments& arguments, const machine::Job& job,
-                  const compensate::Compensation& result, const Diagnostics& diagnostics) {
+void write_report(const CompensateArguments& arguments, const machine::Job& job, const compensate::Compensation& result,
+                  const Diagnostics& diagnostics) {
   Diagnostics ignored;  // said already
-  const auto machined = [&](SourceText source) { return deflection::machine_program(std::move(source), job, {}, ignored); };
+  const auto machined = [&](SourceText source) {
+    return deflection::machine_program(std::move(source), job, {}, ignored);
+  };
   const auto rows = [&](const deflection::MachinedProgram& program) {
     report::PathCollector collector(program.moves);
     feedmodel::predict_feed(program.moves, job.machine,

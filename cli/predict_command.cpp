@@ -36,7 +36,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 /// Times the program once more to write feed.csv, a sample a period.
 std::vector<report::PathRow> write_feed(const deflection::MachinedProgram& program, const machine::Job& job,
-                                           const std::string& path) {
+                                        const std::string& path) {
   feedmodel::FeedCsv csv(program.moves, path);
   report::PathCollector collector(program.moves);
   feedmodel::predict_feed(program.moves, job.machine, [&](std::span<const feedmodel::TimedSample> samples) {
