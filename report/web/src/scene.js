@@ -66,9 +66,11 @@ export class PartScene {
     this.camera.up.set(0, 0, 1);
     const { surface, runs } = page;
     const cutting = runs.map(r => r.place.filter((_, i) => r.cutting[Math.floor(i / 3)] > 0.5));
-    Object.assign(this, bounds(surface ? [surface.place] : cutting));
+    this.shown = surface ? [surface.place] : cutting.some(c => c.length) ? cutting : runs.map(r => r.place);
+    Object.assign(this, bounds(this.shown));
     if (surface) this.scene.add(this.surface = this.meshOf(surface));
     this.renderer.domElement.tabIndex = 0;
+    this.renderer.domElement.setAttribute('aria-label', 'The part in three dimensions');
     box.append(this.renderer.domElement);
     this.triad = box.appendChild(element('div', { className: 'triad' }));
     this.bar = box.appendChild(element('div', { className: 'scalebar' }));
@@ -125,13 +127,13 @@ export class PartScene {
 
   // As large as the box allows.
   fit() {
-    const corners = this.page.surface ? this.page.surface.place : this.page.runs[0].place;
     this.camera.updateMatrixWorld();
     let most = 0;
-    for (let i = 0; i < corners.length; i += 3) {
-      const p = this.projected(corners, i);
-      most = Math.max(most, Math.abs(p.x), Math.abs(p.y));
-    }
+    for (const places of this.shown)
+      for (let i = 0; i < places.length; i += 3) {
+        const p = this.projected(places, i);
+        most = Math.max(most, Math.abs(p.x), Math.abs(p.y));
+      }
     this.camera.zoom = 0.88 / (most || 1);
     this.camera.updateProjectionMatrix();
     this.render();
