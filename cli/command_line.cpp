@@ -81,8 +81,10 @@ int run(int argc, const char* const* argv) {
   Action chosen;
   add_global_options(app, options);
   add_program_commands(app, options, chosen);
+  add_init_command(app, options, chosen);
   add_job_commands(app, options, chosen);
   add_force_commands(app, options, chosen);
+  add_help(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

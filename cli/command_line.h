@@ -18,7 +18,10 @@ using Action = std::function<int()>;
 /// Adds the subcommands. The one that is given sets `chosen`.
 void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< check, feed, fit-feed
 void add_force_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);      ///< predict, compensate
+/// completion, and an example for each of the subcommands that are there; to be called last.
+void add_help(CLI::App& app, Action& chosen);
 
 /// Throws InputError [file-unwritable] when the folder that `path` lies in does not exist: said before the work,
 /// not after it. An empty path is fine.

@@ -25,11 +25,25 @@ nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
   return nc::interpret(text, feedmodel::interpreter_options(job.machine, job.inch), ignored);
 }
 
-std::vector<report::FeedSample> feed_of(SourceText source, const machine::Job& job) {
-  const auto moves = moves_of(std::move(source), job);
-  report::FeedCollector collector;
-  feedmodel::predict_feed(moves, job.machine, [&](std::span<const feedmodel::TimedSample> s) { collector.add(s); });
-  return collector.take();
+/// Reads both programs once more, for their stamps and their feed.
+void write_report(const CompensateArguments& arguments, const machine::Job& job, const compensate::Compensation& result,
+                  const Diagnostics& diagnostics) {
+  Diagnostics ignored;  // said already
+  const auto machined = [&](SourceText source) {
+    return deflection::machine_program(std::move(source), job, {}, ignored);
+  };
+  const auto rows = [&](const deflection::MachinedProgram& program) {
+    report::PathCollector collector(program.moves);
+    feedmodel::predict_feed(program.moves, job.machine,
+                            [&](std::span<const feedmodel::TimedSample> s) { collector.add(s); });
+    return collector.take();
+  };
+  const auto before = machined(SourceText::read(job.program));
+  const auto after = machined(SourceText(job.program, result.text));
+  report::write_html_report(
+      arguments.report,
+      report::compensate_report(job, result, {before, rows(before), result.loads_before},
+                                {after, rows(after), result.loads_after}, arguments.output, diagnostics));
 }
 
 /// The job as it was measured; the fit goes to `fit`.
@@ -76,11 +90,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
                  name);
   if (!arguments.dry_run) write_file(arguments.output, result.text);
   if (!arguments.json.empty()) write_file(arguments.json, report::compensate_json(result, compute_s));
-  if (!arguments.report.empty())
-    report::write_html_report(
-        arguments.report, report::compensate_report("Form error before and after compensation", result,
-                                                    feed_of(SourceText::read(job.program), job),
-                                                    feed_of(SourceText(job.program, result.text), job), diagnostics));
+  if (!arguments.report.empty()) write_report(arguments, job, result, diagnostics);
 
   if (!options.quiet) fmt::print("{}", report::compensate_text(result, compute_s));
   if (const std::string unsettled = report::unsettled_sentence(result); !unsettled.empty()) {

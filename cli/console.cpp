@@ -10,7 +10,8 @@
 namespace camber::cli {
 namespace {
 
-constexpr std::string_view kRed = "\033[1;31m", kMagenta = "\033[1;35m", kPlain = "\033[0m";
+constexpr std::string_view kRed = "\033[1;31m", kMagenta = "\033[1;35m", kGreen = "\033[1;32m", kBold = "\033[1m",
+                           kPlain = "\033[0m";
 
 std::string coloured(std::string_view text, std::string_view colour) {
   return fmt::format("{}{}{}", colour, text, kPlain);
@@ -30,9 +31,11 @@ std::string diagnostic_text(const Diagnostic& diagnostic, bool colour) {
   if (!colour) return text;
   const bool error = diagnostic.severity == Severity::error;
   const std::string_view word = error ? "error:" : "warning:";
+  // The caret is the text's last character where there is one.
+  if (!diagnostic.source_line.empty() && text.back() == '^') text.replace(text.size() - 1, 1, coloured("^", kGreen));
   const std::size_t at = text.find(word, diagnostic.location.file.size());
-  if (at != std::string::npos) text.replace(at, word.size(), coloured(word, error ? kRed : kMagenta));
-  return text;
+  if (at == std::string::npos) return text;
+  return coloured(text.substr(0, at), kBold) + coloured(word, error ? kRed : kMagenta) + text.substr(at + word.size());
 }
 
 void print_diagnostics(std::span<const Diagnostic> diagnostics, const GlobalOptions& options) {

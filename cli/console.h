@@ -12,7 +12,7 @@ bool stderr_is_terminal();
 /// A terminal, and no NO_COLOR in the environment (https://no-color.org).
 bool colour_wanted();
 
-/// As to_string, with the word error in red and warning in magenta where `colour`.
+/// As to_string; where `colour` with the place in bold, the word error in red or warning in magenta, and a green caret.
 std::string diagnostic_text(const Diagnostic& diagnostic, bool colour);
 
 /// Prints all of them to stderr; with -q only the errors.

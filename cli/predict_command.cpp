@@ -35,10 +35,10 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }
 
 /// Times the program once more to write feed.csv, a sample a period.
-std::vector<report::FeedSample> write_feed(const deflection::MachinedProgram& program, const machine::Job& job,
-                                           const std::string& path) {
+std::vector<report::PathRow> write_feed(const deflection::MachinedProgram& program, const machine::Job& job,
+                                        const std::string& path) {
   feedmodel::FeedCsv csv(program.moves, path);
-  report::FeedCollector collector;
+  report::PathCollector collector(program.moves);
   feedmodel::predict_feed(program.moves, job.machine, [&](std::span<const feedmodel::TimedSample> samples) {
     csv.write(samples);
     collector.add(samples);
@@ -84,8 +84,8 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   report::write_form_error_vtp(folder / "form_error.vtp", points);
   report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95);
   prediction.machined->save(folder / "stock.vdb");
-  report::write_html_report(folder / "report.html", report::predict_report("Predicted form error", program, prediction,
-                                                                           std::move(feed), diagnostics));
+  report::write_html_report(folder / "report.html",
+                            report::predict_report(job, program, prediction, std::move(feed), diagnostics));
   const std::string json = report::predict_json(program, prediction, compute_s);
   write_file(folder / "summary.json", json);
   if (!arguments.json.empty()) write_file(arguments.json, json);

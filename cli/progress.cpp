@@ -14,12 +14,15 @@ namespace {
 constexpr std::chrono::milliseconds kRedrawEvery{200};
 /// Below this share the time left is anybody's guess.
 constexpr double kLeastShareForTime = 0.05;
+constexpr int kBarWidth = 24;
 
 }  // namespace
 
 std::string progress_text(std::string_view what, double share, double seconds_so_far) {
   share = std::clamp(share, 0.0, 1.0);
-  std::string out = fmt::format("{:3.0f} %  {}", std::floor(100 * share), what);
+  const auto filled = static_cast<std::size_t>(share * kBarWidth);
+  std::string out = fmt::format("{:3.0f} % [{}{}] {}", std::floor(100 * share), std::string(filled, '#'),
+                                std::string(kBarWidth - filled, '.'), what);
   if (share < kLeastShareForTime || seconds_so_far < 1) return out;
   const double left_s = seconds_so_far * (1 - share) / share;
   return out + (left_s < 100 ? fmt::format(", {:.0f} s left", left_s) : fmt::format(", {:.0f} min left", left_s / 60));

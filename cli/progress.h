@@ -34,7 +34,7 @@ class ProgressLine {
   Clock::time_point begin_, last_;
 };
 
-/// "  43 %  round 2: carving, 12 s left": seconds_so_far were needed for the share.
+/// " 43 % [##########..............] round 2: carving, 12 s left": seconds_so_far were needed for the share.
 std::string progress_text(std::string_view what, double share, double seconds_so_far);
 
 }  // namespace camber::cli

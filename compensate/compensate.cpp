@@ -129,6 +129,7 @@ class Loop {
     last_.observed = workshop_->observe(*path_, nullptr, last_.surface);
     out.feed_before = program_.feed;
     out.surface_before = last_.surface;
+    out.loads_before = last_.loads;
     record(out, {});
     out.depth_before = depth_of(last_.surface, last_.observed, overcut_um(), true);
     best_ = last_;
@@ -247,6 +248,7 @@ class Loop {
     out.split_before = first.split;
     out.split_after = best.split;
     out.surface_after = best_.surface;
+    out.loads_after = best_.loads;
     out.feed_after = program.feed;
     out.max_shift_mm = best.largest_shift_mm;
     if (best_.emitted) {

@@ -47,6 +47,7 @@ struct Compensation {
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double max_shift_mm = 0;
   std::vector<removal::SurfacePoint> surface_before, surface_after;  ///< the same points, in the same order
+  std::vector<deflection::StampLoad> loads_before, loads_after;      ///< of the given and of the emitted program
   feedmodel::FeedSummary feed_before, feed_after;
   bool settled = true;  ///< every static solution of the first and the best round did
   Finishing finishing;

@@ -28,6 +28,7 @@ machine::Operations moved_ranges(const machine::Operations& operations,
 
 void Trial::keep(deflection::Prediction prediction) {
   surface = std::move(prediction.surface);
+  loads = std::move(prediction.cut.loads);
   error_um = prediction.form_error_um;
   static_rounds = prediction.cut.rounds_max;
   unsettled = prediction.cut.unsettled;
@@ -60,7 +61,7 @@ std::string Workshop::text_of(const ShiftPath& path) const {
 deflection::Prediction Workshop::predict(const deflection::MachinedProgram& program,
                                          const std::function<void(double)>& progress) const {
   deflection::PredictOptions options;
-  options.contacts = false;
+  options.contacts = true;
   options.progress = progress;
   return deflection::predict(job_, target_, program, options);
 }

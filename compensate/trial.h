@@ -24,6 +24,7 @@ struct Trial {
   std::vector<Vec3> shifts;
   std::shared_ptr<const Emitted> emitted;      ///< none: the program as given
   std::vector<removal::SurfacePoint> surface;  ///< the same points in the same order, whatever the shifts
+  std::vector<deflection::StampLoad> loads;
   removal::ErrorFigures error_um;
   int static_rounds = 0;
   std::size_t unsettled = 0;

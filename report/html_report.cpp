@@ -1,124 +1,62 @@
 #include "report/html_report.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "base/output_file.h"
-#include "report/base64.h"
-#include "report/decimate.h"
+#include "report/histogram_svg.h"
+#include "report/page_data.h"
 #include "report/page_parts.h"
 #include "report/page_tables.h"
 
 namespace camber::report {
 namespace {
 
-using nlohmann::json;
-using Samples = std::vector<SurfaceSample>;
+/// Nothing is fetched from anywhere: the browser itself refuses.
+constexpr const char* kPolicy =
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
+    "style-src 'unsafe-inline'; img-src data: blob:\">\n";
 
-/// Share of the surface whose error the colour scale is to hold.
-constexpr double kScaleShare = 0.995;
-constexpr int kHistogramBins = 80;
+constexpr const char* kPartFrame =
+    "<div class=\"card\" id=\"part\"><h2>The part</h2>\n"
+    "<noscript><p class=\"note\">The pictures need JavaScript; the tables below do without.</p></noscript>\n"
+    "<div class=\"bar\" id=\"part-controls\"></div>\n"
+    "<div class=\"scene\" id=\"scene\"></div>\n"
+    "<div class=\"bar legends\" id=\"legends\"></div>\n"
+    "<p class=\"note\">Form error: machined surface minus the undeflected sweep of the target program, along the "
+    "surface’s normal; red where material is left, blue where the cutter went too deep. Beyond the scale a colour "
+    "stays "
+    "as at its end.</p>\n</div>\n";
 
-std::vector<double> errors_of(const Samples& samples) {
-  std::vector<double> out(samples.size());
-  std::transform(samples.begin(), samples.end(), out.begin(), [](const auto& s) { return s.error_um; });
-  return out;
+constexpr const char* kPlotsFrame =
+    "<div class=\"card\" id=\"along\"><h2>Along the path</h2>\n<div id=\"selected\" class=\"selected\"></div>\n"
+    "<div id=\"plots\"></div>\n"
+    "<p class=\"note screen\">Click a plot to see the place on the part and the line of the program; drag to zoom, "
+    "double-click for the whole.</p></div>\n";
+
+bool has_rows(const ReportData& data) {
+  return std::any_of(data.path.begin(), data.path.end(), [](const auto& run) { return !run.rows.empty(); });
 }
 
-/// Half of a symmetric scale that holds kScaleShare of the points, a round number of um.
-double scale_um(const Samples& samples) {
-  if (samples.empty()) return 1;
-  std::vector<double> size(samples.size());
-  std::transform(samples.begin(), samples.end(), size.begin(), [](const auto& s) { return std::abs(s.error_um); });
-  const auto at = size.begin() + static_cast<std::ptrdiff_t>(kScaleShare * static_cast<double>(size.size() - 1));
-  std::nth_element(size.begin(), at, size.end());
-  return nice_limit(*at);
+std::string head_html(const ReportData& data) {
+  const std::string title = html_text(data.title);
+  std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  out += kPolicy;
+  out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  out +=
+      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);
+  out += fmt::format("<header><div><h1>{}</h1>\n<p class=\"sub\">{}</p></div>\n", title, html_text(data.subtitle));
+  if (!data.download_name.empty())
+    out += fmt::format("<a class=\"download\" id=\"download\" hidden download=\"{0}\">Download {0}</a>\n",
+                       html_text(data.download_name));
+  return out + "</header>\n";
 }
 
-bool same_places(const Samples& a, const Samples& b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& p, const auto& q) {
-           return p.x == q.x && p.y == q.y && p.z == q.z;
-         });
-}
-
-template <class Field>
-std::string packed(const Samples& samples, const std::vector<std::size_t>& kept, std::initializer_list<Field> fields) {
-  std::string bytes;
-  bytes.reserve(kept.size() * fields.size() * sizeof(float));
-  for (const std::size_t i : kept)
-    for (const Field f : fields) append_little_endian(bytes, static_cast<float>(samples[i].*f));
-  return base64(bytes);
-}
-
-/// Side of the square that each drawn point stands for.
-double spacing_mm(const Samples& samples, std::size_t drawn) {
-  double area = 0;
-  for (const auto& s : samples) area += s.area_mm2;
-  return drawn > 0 ? std::sqrt(area / static_cast<double>(drawn)) : 1;
-}
-
-json map_json(const Samples& samples, const std::vector<std::size_t>& kept, bool with_places) {
-  using S = SurfaceSample;
-  json map;
-  map["spacing"] = spacing_mm(samples, kept.size());
-  map["error"] = packed(samples, kept, {&S::error_um});
-  if (!with_places) return map;
-  map["xyz"] = packed(samples, kept, {&S::x, &S::y, &S::z});
-  map["normal"] = packed(samples, kept, {&S::nx, &S::ny, &S::nz});
-  return map;
-}
-
-json maps_json(const ReportData& data, std::size_t most) {
-  json maps = json::array();
-  if (data.before.empty()) return maps;
-  const auto kept = keep_extremes(errors_of(data.before), most);
-  maps.push_back(map_json(data.before, kept, true));
-  if (data.after.empty()) return maps;
-  if (same_places(data.before, data.after))
-    maps.push_back(map_json(data.after, kept, false));
-  else
-    maps.push_back(map_json(data.after, keep_extremes(errors_of(data.after), most), true));
-  return maps;
-}
-
-/// Per cent of the area in each bin from -limit to limit; what lies beyond is in the first and the last.
-std::vector<double> histogram(const Samples& samples, double limit_um) {
-  std::vector<double> bins(kHistogramBins, 0.0);
-  double area = 0;
-  for (const auto& s : samples) {
-    const double at = std::floor((s.error_um / limit_um + 1) / 2 * kHistogramBins);
-    bins[static_cast<std::size_t>(std::clamp(at, 0.0, kHistogramBins - 1.0))] += s.area_mm2;
-    area += s.area_mm2;
-  }
-  for (double& b : bins) b = area > 0 ? std::round(1e5 * b / area) / 1e3 : 0;
-  return bins;
-}
-
-json feed_json(const std::vector<FeedSample>& samples, std::size_t most) {
-  std::vector<double> feed(samples.size());
-  std::transform(samples.begin(), samples.end(), feed.begin(), [](const auto& s) { return s.feed_mm_per_min; });
-  std::string t, command, actual;
-  for (const std::size_t i : keep_extremes(feed, most)) {
-    append_little_endian(t, static_cast<float>(samples[i].t_s));
-    append_little_endian(command, static_cast<float>(samples[i].feed_command_mm_per_min));
-    append_little_endian(actual, static_cast<float>(samples[i].feed_mm_per_min));
-  }
-  return {{"t", base64(t)}, {"command", base64(command)}, {"feed", base64(actual)}};
-}
-
-json page_data(const ReportData& data, const ReportOptions& options, const std::vector<double>& scales) {
-  json out;
-  out["maps"] = maps_json(data, options.most_points);
-  out["scales"] = scales;
-  out["histogram"] = {{"limit", scales.front()}, {"before", histogram(data.before, scales.front())}};
-  if (!data.after.empty()) out["histogram"]["after"] = histogram(data.after, scales.front());
-  out["feed"] = json::array();
-  for (const auto* run : {&data.feed, &data.feed_after})
-    if (!run->empty()) out["feed"].push_back(feed_json(*run, options.most_feed_samples));
-  return out;
+std::string histogram_html(const ReportData& data, const PageData& page) {
+  if (data.surface.empty()) return {};
+  return "<div class=\"card\"><h2>How the error is spread</h2>\n" +
+         histogram_svg(data.surface, data.compared, page.scale_um) + "</div>\n";
 }
 
 /// What a script element may hold: no end tag inside.
@@ -128,22 +66,31 @@ std::string script_safe(std::string text) {
   return text;
 }
 
+std::string scripts_html(const PageData& page) {
+  std::string out = "<script type=\"application/json\" id=\"index\">" + script_safe(page.index) + "</script>\n";
+  out += "<script type=\"text/plain\" id=\"arrays\">" + page.arrays + "</script>\n";
+  for (std::size_t i = 0; i < page.programs.size(); ++i)
+    if (!page.programs[i].empty())
+      out += fmt::format("<script type=\"text/plain\" id=\"program{}\">{}</script>\n", i, page.programs[i]);
+  return out + fmt::format("<script>{}</script>\n", kReportScript);
+}
+
 }  // namespace
 
 std::string html_report(const ReportData& data, const ReportOptions& options) {
-  std::vector<double> scales{scale_um(data.before)};
-  if (!data.after.empty() && scale_um(data.after) < scales.front()) scales.push_back(scale_um(data.after));
-  const std::string title = html_text(data.title);
-  std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  out += fmt::format("<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle);
-  out += fmt::format("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", title, html_text(data.subtitle));
-  out += tiles_html(data) + map_html(data, options, scales) + charts_html(data, options) + tables_html(data);
-  out += "</main>\n<script type=\"application/json\" id=\"data\">";
-  out += script_safe(page_data(data, options, scales).dump(-1, ' ', false, json::error_handler_t::replace));
-  out += fmt::format("</script>\n<script>'use strict';\n{}{}{}</script>\n</body>\n</html>\n", kMapScript, kPlotScript,
-                     kPageScript);
-  return out;
+  const PageData page = page_data(data, options);
+  std::string out = head_html(data) + tiles_html(data);
+  out += list_html("Warnings", "warnings", data.warnings);
+  const bool pictures = !data.surface.empty() || has_rows(data);
+  if (pictures) out += kPartFrame;
+  if (has_rows(data)) out += kPlotsFrame;
+  out += "<div class=\"columns\">\n" + histogram_html(data, page) + figures_html(data);
+  for (const auto& table : data.tables) out += table_html(table);
+  std::vector<std::string> notes = data.notes;
+  notes.insert(notes.end(), page.left_out.begin(), page.left_out.end());
+  out += list_html("Notes", "notes", notes) + "</div>\n</main>\n";
+  if (pictures) out += scripts_html(page);
+  return out + "</body>\n</html>\n";
 }
 
 void write_html_report(const std::string& path, const ReportData& data, const ReportOptions& options) {

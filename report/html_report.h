@@ -1,8 +1,11 @@
 #pragma once
-// report.html: one self-contained page that opens without a network.
+// report.html: one self-contained page that opens without a network. Pictures are drawn by report/web.
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "report/path_rows.h"
+#include "report/surface_mesh.h"
 
 namespace camber::report {
 
@@ -13,47 +16,42 @@ struct Figure {
   std::optional<double> after;
   std::string unit;
   int decimals = 1;
+  /// Where summary.json or compensate's --json has it, "form_error_um.rms"; {} stands for before or after where
+  /// both are shown ("{}_um.rms"). Empty: nowhere.
+  std::string key;
 };
 
-/// A point of the machined surface, mm, with its unit normal and its form error.
-struct SurfaceSample {
-  double x = 0, y = 0, z = 0;
-  double nx = 0, ny = 0, nz = 1;
-  double error_um = 0;  ///< positive: material is left
-  double area_mm2 = 1;  ///< weight in the histogram
-};
-
-struct FeedSample {
-  double t_s = 0;
-  double feed_command_mm_per_min = 0;
-  double feed_mm_per_min = 0;
-};
-
-/// One round of the compensation; round 0 is the program as given.
-struct RoundRow {
-  int round = 0;
-  double p95_um = 0, rms_um = 0, min_um = 0, max_um = 0;
-  double largest_shift_um = 0;
+/// Any table of text: a first row of names, then rows of as many cells. Shown in the order given.
+struct TextTable {
+  std::string title;
+  std::vector<std::string> columns;  ///< empty: no head
+  std::vector<std::vector<std::string>> rows;
+  std::string note;  ///< below the table; empty: none
 };
 
 struct ReportData {
   std::string title;
   std::string subtitle;         ///< e.g. the files that the page is about
   std::vector<Figure> figures;  ///< the first four are shown large
-  std::vector<SurfaceSample> before;
-  std::vector<SurfaceSample> after;    ///< empty: one map only. At the points of `before` in their order, or at others.
-  std::vector<FeedSample> feed;        ///< in time order; empty: no plot
-  std::vector<FeedSample> feed_after;  ///< of the compensated program; empty: none
-  std::vector<RoundRow> rounds;        ///< empty: no table
-  std::vector<std::string> notes;      ///< warnings and what could not be done
+  std::vector<SurfaceSample> surface;
+  bool compared = false;      ///< the surface's error_after_um and block_after count
+  double voxel_mm = 0.1;      ///< of the grid that the surface's points lie on
+  std::vector<PathRun> path;  ///< none, one, or before and after
+  std::vector<TextTable> tables;
+  std::vector<std::string> warnings;
+  std::vector<std::string> notes;
+  /// File name under which the last run's program is offered; empty: not offered.
+  std::string download_name;
 };
 
 struct ReportOptions {
-  /// Above this, of each run of neighbouring points only the first and those with the least and the greatest error
-  /// are drawn; the page says so. The histogram always holds all points.
-  std::size_t most_points = 120000;
-  /// Above this, of each run of samples only the slowest and the fastest are drawn.
-  std::size_t most_feed_samples = 40000;
+  /// Above this many vertices, cells of the grid are taken together, each with its error of greatest magnitude; the
+  /// page says so. Histogram and figures always hold all points.
+  std::size_t most_vertices = 120000;
+  /// Above this many rows a run, only those with the extremes of their neighbourhood are drawn; the page says so.
+  std::size_t most_rows = 80000;
+  /// Above this, deflated and both together, programs are left out, the one before first; the page says so.
+  std::size_t most_program_bytes = 3'500'000;
 };
 
 /// The page's text, UTF-8. The same data give the same bytes. Does not throw.

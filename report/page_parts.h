@@ -1,12 +1,13 @@
 #pragma once
-// The fixed parts of the report page.
+// The fixed parts of the pages.
 #include <string_view>
 
 namespace camber::report {
 
-extern const std::string_view kPageStyle;   ///< CSS
-extern const std::string_view kMapScript;   ///< JavaScript: the form-error map, drawn point by point
-extern const std::string_view kPlotScript;  ///< JavaScript: histogram and feed along time
-extern const std::string_view kPageScript;  ///< JavaScript: reads the data and starts the views
+extern const std::string_view kPageStyle;  ///< CSS of every page
+
+/// The script of the report page and the style of its pictures: report/web, bundled while Camber is built.
+extern const std::string_view kReportScript;
+extern const std::string_view kReportStyle;
 
 }  // namespace camber::report

@@ -1,5 +1,5 @@
 #pragma once
-// The parts of the report page that are plain HTML: figures, rounds, notes and the frames of the pictures.
+// The parts of the report page that are plain HTML: they are read without a script, and on paper.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,9 +11,13 @@ namespace camber::report {
 /// Text with &, <, > and quotes made harmless.
 std::string html_text(std::string_view text);
 
+/// A number of the page: `decimals` behind the point, a true minus sign; a dash where it is not finite.
+std::string number_text(double value, int decimals);
+
 std::string tiles_html(const ReportData& data);
-std::string map_html(const ReportData& data, const ReportOptions& options, const std::vector<double>& scales_um);
-std::string charts_html(const ReportData& data, const ReportOptions& options);
-std::string tables_html(const ReportData& data);
+std::string figures_html(const ReportData& data);
+std::string table_html(const TextTable& table);
+/// A card with a list; empty without items.
+std::string list_html(const std::string& title, const std::string& css_class, const std::vector<std::string>& items);
 
 }  // namespace camber::report

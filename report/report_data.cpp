@@ -1,44 +1,88 @@
 #include "report/report_data.h"
+#include "report/compensation_tables.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
+#include "report/model_tables.h"
+#include "report/page_tables.h"
 #include "report/summary.h"
 
 namespace camber::report {
 namespace {
 
-std::vector<SurfaceSample> surface_samples(const std::vector<removal::SurfacePoint>& points) {
+using deflection::MachinedProgram;
+
+std::uint32_t line_of(const MachinedProgram& program, std::int32_t stamp) {
+  if (stamp < 0 || static_cast<std::size_t>(stamp) >= program.path.stamps.size()) return 0;
+  return program.moves.moves[program.path.stamps[static_cast<std::size_t>(stamp)].move].block + 1;
+}
+
+std::vector<SurfaceSample> surface_samples(const std::vector<removal::SurfacePoint>& points,
+                                           const MachinedProgram& program) {
   std::vector<SurfaceSample> out;
   out.reserve(points.size());
   for (const auto& p : points)
-    out.push_back({p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(),
-                   1000 * p.error_mm, p.area_mm2});
+    out.push_back({p.place_mm, p.normal, 1000 * p.error_mm, 0, p.area_mm2, line_of(program, p.machined_stamp), 0});
   return out;
 }
 
-void add_figures(ReportData& data, const removal::ErrorFigures& before, const removal::ErrorFigures* after) {
-  const auto add = [&](const char* name, double removal::ErrorFigures::*which) {
-    data.figures.push_back({name, before.*which, after ? std::optional<double>(after->*which) : std::nullopt, "um", 2});
+/// `key`: of the group in the JSON, with {} for before and after.
+void add_figures(ReportData& data, const removal::ErrorFigures& before, const removal::ErrorFigures* after,
+                 const std::string& key) {
+  const auto add = [&](const char* name, double removal::ErrorFigures::*which, const char* last) {
+    data.figures.push_back(
+        {name, before.*which, after ? std::optional<double>(after->*which) : std::nullopt, "um", 2, key + "." + last});
   };
-  add("form error, 95th percentile", &removal::ErrorFigures::p95);
-  add("form error, rms", &removal::ErrorFigures::rms);
-  add("form error, greatest (material left)", &removal::ErrorFigures::max);
-  add("form error, least (cut too deep)", &removal::ErrorFigures::min);
-  add("form error, mean", &removal::ErrorFigures::mean);
+  add("form error, 95th percentile", &removal::ErrorFigures::p95, "p95");
+  add("form error, rms", &removal::ErrorFigures::rms, "rms");
+  add("form error, greatest (material left)", &removal::ErrorFigures::max, "max");
+  add("form error, least (cut too deep)", &removal::ErrorFigures::min, "min");
+  add("form error, mean", &removal::ErrorFigures::mean, "mean");
 }
 
-void add_notes(ReportData& data, const Diagnostics& diagnostics, const std::string& unsettled) {
-  for (const auto& d : diagnostics.all()) data.notes.push_back(to_string(d));
-  if (!unsettled.empty()) data.notes.push_back(unsettled);
+void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& diagnostics,
+               const std::string& unsettled) {
+  for (const auto& d : diagnostics.all()) data.warnings.push_back(to_string(d));
+  if (!unsettled.empty()) data.warnings.push_back(unsettled);
   data.notes.push_back(
       "Left out of the model: bending of the work, chatter, heat and wear; the deflection of the tool is static.");
+  for (TextTable table :
+       {material_table(job), tools_table(job), machine_table(job.machine), simulation_table(job), inputs_table(job)})
+    data.tables.push_back(std::move(table));
+}
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+TextTable rounds_table(const compensate::Compensation& c) {
+  TextTable table{"Rounds of the compensation",
+                  {"round", "95 %, µm", "rms, µm", "mean, µm", "least, µm", "greatest, µm", "largest shift, µm"},
+                  {},
+                  fmt::format("Stopped: {}. Round {} was written.", compensate::to_string(c.stop), c.best)};
+  for (std::size_t i = 0; i < c.rounds.size(); ++i) {
+    const auto& e = c.rounds[i].error_um;
+    table.rows.push_back({i == 0 ? "as given" : std::to_string(i), number_text(e.p95, 2), number_text(e.rms, 2),
+                          number_text(e.mean, 2), number_text(e.min, 2), number_text(e.max, 2),
+                          number_text(1000 * c.rounds[i].largest_shift_mm, 1)});
+  }
+  return table;
+}
+
+TextTable limits_table(const machine::Job& job, const compensate::Compensation& c) {
+  TextTable table{"Limits and changes", {}, {}, {}};
+  table.rows = {{"tolerance", fmt::format("{:g} µm", job.compensation.tolerance_um)},
+                {"largest shift allowed", fmt::format("{:g} µm", 1000 * job.compensation.max_shift_mm)},
+                {"points of the path held at it", std::to_string(c.rounds[c.best].limited_points)},
+                {"blocks", fmt::format("{} before, {} after", c.blocks_before, c.blocks_after)},
+                {"blocks changed", std::to_string(c.blocks_changed)}};
+  return table;
 }
 
 }  // namespace
 
-std::vector<FormErrorPoint> form_error_points(const deflection::MachinedProgram& program,
+std::vector<FormErrorPoint> form_error_points(const MachinedProgram& program,
                                               const deflection::Prediction& prediction) {
   std::vector<FormErrorPoint> out;
   out.reserve(prediction.surface.size());
@@ -47,8 +91,7 @@ std::vector<FormErrorPoint> form_error_points(const deflection::MachinedProgram&
     FormErrorPoint point{.place_mm = p.place_mm, .normal = p.normal, .error_um = 1000 * p.error_mm};
     if (!prediction.total_error_mm.empty()) point.total_error_um = 1000 * prediction.total_error_mm[i];
     if (p.machined_stamp >= 0) {
-      const nc::Move& move =
-          program.moves.moves[program.path.stamps[static_cast<std::size_t>(p.machined_stamp)].move];
+      const nc::Move& move = program.moves.moves[program.path.stamps[static_cast<std::size_t>(p.machined_stamp)].move];
       point.block = move.block + 1;
       point.tool = program.moves.state_of(move).tool;
     }
@@ -57,52 +100,56 @@ std::vector<FormErrorPoint> form_error_points(const deflection::MachinedProgram&
   return out;
 }
 
-void FeedCollector::add(std::span<const feedmodel::TimedSample> samples) {
-  for (const auto& s : samples) {
-    if (s.t_s < next_s_) continue;
-    next_s_ = s.t_s + period_s_ * 0.999;
-    samples_.push_back({s.t_s, 60 * s.feed_command_mm_per_s, 60 * s.velocity_mm_per_s.norm()});
-  }
-}
-
-ReportData predict_report(const std::string& title, const deflection::MachinedProgram& program,
-                          const deflection::Prediction& p, std::vector<FeedSample> feed,
-                          const Diagnostics& diagnostics) {
+ReportData predict_report(const machine::Job& job, const MachinedProgram& program, const deflection::Prediction& p,
+                          std::vector<PathRow> rows, const Diagnostics& diagnostics) {
   ReportData data;
-  data.title = title;
-  data.subtitle = program.text.source.name();
-  add_figures(data, p.form_error_um, nullptr);
+  data.title = "Predicted form error of " + file_name(job.program);
+  data.subtitle = job.path;
+  add_figures(data, p.form_error_um, nullptr, "form_error_um");
   double force = 0;
   for (const auto& l : p.cut.loads) force = std::max(force, l.lateral_max_N);
-  data.figures.push_back({"greatest lateral force", force, std::nullopt, "N", 1});
-  data.figures.push_back({"removed, by the chips", p.cut.chip_mm3, std::nullopt, "mm3", 2});
-  data.figures.push_back({"removed, by the stock", p.cut.stock_mm3, std::nullopt, "mm3", 2});
-  data.figures.push_back({"machine time", program.feed.time_s, std::nullopt, "s", 1});
-  data.before = surface_samples(p.surface);
-  data.feed = std::move(feed);
-  add_notes(data, diagnostics, unsettled_sentence(p));
+  // Shown large: two of the error, the force, the time.
+  data.figures.insert(data.figures.begin() + 2, {"greatest lateral force", force, std::nullopt, "N", 1, "force_N.max"});
+  data.figures.insert(data.figures.begin() + 3,
+                      {"machine time", program.feed.time_s, std::nullopt, "s", 1, "machine_time_s"});
+  data.figures.push_back({"removed, by the chips", p.cut.chip_mm3, std::nullopt, "mm3", 2, "removed_mm3.path"});
+  data.figures.push_back({"removed, by the stock", p.cut.stock_mm3, std::nullopt, "mm3", 2, "removed_mm3.stock"});
+  data.surface = surface_samples(p.surface, program);
+  data.voxel_mm = job.simulation.voxel_mm;
+  add_loads(rows, program.path, p.cut.loads);
+  add_errors(rows, program.path, p.surface);
+  data.path.push_back({"", program.text.source.text(), std::move(rows)});
+  add_texts(data, job, diagnostics, unsettled_sentence(p));
   return data;
 }
 
-ReportData compensate_report(const std::string& title, const compensate::Compensation& c,
-                             std::vector<FeedSample> feed_before, std::vector<FeedSample> feed_after,
-                             const Diagnostics& diagnostics) {
+ReportData compensate_report(const machine::Job& job, const compensate::Compensation& c, CompensatedRun before,
+                             CompensatedRun after, const std::string& output, const Diagnostics& diagnostics) {
   ReportData data;
-  data.title = title;
-  add_figures(data, c.before_um, &c.after_um);
-  data.figures.push_back({"machine time", c.feed_before.time_s, c.feed_after.time_s, "s", 1});
-  data.figures.push_back({"largest shift", 1000 * c.max_shift_mm, std::nullopt, "um", 1});
-  data.before = surface_samples(c.surface_before);
-  data.after = surface_samples(c.surface_after);
-  data.feed = std::move(feed_before);
-  data.feed_after = std::move(feed_after);
-  for (std::size_t i = 0; i < c.rounds.size(); ++i) {
-    const auto& e = c.rounds[i].error_um;
-    data.rounds.push_back({static_cast<int>(i), e.p95, e.rms, e.min, e.max, 1000 * c.rounds[i].largest_shift_mm});
+  data.title = "Compensation of " + file_name(job.program);
+  data.subtitle = job.path;
+  add_figures(data, c.before_um, &c.after_um, "{}_um");
+  data.figures.insert(data.figures.begin() + 2,
+                      {"largest shift", 1000 * c.max_shift_mm, std::nullopt, "um", 1, "max_shift_um"});
+  data.figures.insert(data.figures.begin() + 3,
+                      {"machine time", c.feed_before.time_s, c.feed_after.time_s, "s", 1, "machine_time_s.{}"});
+  data.surface = surface_samples(c.surface_before, before.program);
+  data.voxel_mm = job.simulation.voxel_mm;
+  data.compared = c.surface_after.size() == data.surface.size();
+  for (std::size_t i = 0; data.compared && i < data.surface.size(); ++i) {
+    data.surface[i].error_after_um = 1000 * c.surface_after[i].error_mm;
+    data.surface[i].block_after = line_of(after.program, c.surface_after[i].machined_stamp);
   }
-  data.notes.push_back(fmt::format("Stopped: {}. {} of {} blocks changed.", compensate::to_string(c.stop),
-                                   c.blocks_changed, c.blocks_before));
-  add_notes(data, diagnostics, unsettled_sentence(c));
+  add_shifts(after.rows, after.program.moves, before.program.moves);
+  for (CompensatedRun* run : {&before, &after}) {
+    add_loads(run->rows, run->program.path, run->loads);
+    add_errors(run->rows, run->program.path, run == &before ? c.surface_before : c.surface_after);
+    data.path.push_back({run == &before ? "before" : "after", run->program.text.source.text(), std::move(run->rows)});
+  }
+  data.download_name = file_name(output);
+  data.tables = {rounds_table(c), limits_table(job, c)};
+  for (TextTable& table : compensation_tables(c)) data.tables.push_back(std::move(table));
+  add_texts(data, job, diagnostics, unsettled_sentence(c));
   return data;
 }
 

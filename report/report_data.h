@@ -1,5 +1,6 @@
 #pragma once
 // From the results of a run to what the page and the exports show.
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,23 +15,20 @@ namespace camber::report {
 std::vector<FormErrorPoint> form_error_points(const deflection::MachinedProgram& program,
                                               const deflection::Prediction& prediction);
 
-/// Commanded and actual feed about every `period_s`.
-class FeedCollector {
- public:
-  explicit FeedCollector(double period_s = 0.01) : period_s_(period_s) {}
-  void add(std::span<const feedmodel::TimedSample> samples);
-  std::vector<FeedSample> take() { return std::move(samples_); }
+ReportData predict_report(const machine::Job& job, const deflection::MachinedProgram& program,
+                          const deflection::Prediction& prediction, std::vector<PathRow> rows,
+                          const Diagnostics& diagnostics);
 
- private:
-  double period_s_, next_s_ = 0;
-  std::vector<FeedSample> samples_;
+/// One of the two programs of a compensation.
+struct CompensatedRun {
+  const deflection::MachinedProgram& program;
+  std::vector<PathRow> rows;
+  /// One a stamp of `program`; none: the page has no forces of this run.
+  std::span<const deflection::StampLoad> loads{};
 };
 
-ReportData predict_report(const std::string& title, const deflection::MachinedProgram& program,
-                          const deflection::Prediction& prediction, std::vector<FeedSample> feed,
-                          const Diagnostics& diagnostics);
-ReportData compensate_report(const std::string& title, const compensate::Compensation& result,
-                             std::vector<FeedSample> feed_before, std::vector<FeedSample> feed_after,
-                             const Diagnostics& diagnostics);
+/// `output`: where the compensated program was written; the page offers it under that name.
+ReportData compensate_report(const machine::Job& job, const compensate::Compensation& result, CompensatedRun before,
+                             CompensatedRun after, const std::string& output, const Diagnostics& diagnostics);
 
 }  // namespace camber::report

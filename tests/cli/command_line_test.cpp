@@ -1,6 +1,7 @@
 // Options, exit status and what is said about a wrong command line.
 #include <gtest/gtest.h>
 
+#include "cli/console.h"
 #include "cli/progress.h"
 #include "tests/support/run_camber.h"
 
@@ -69,11 +70,19 @@ TEST(CommandLine, PutsNoColourInAPipe) {
   EXPECT_EQ(run.err, "nothing.nc: error: no such file [file-missing]\n");
 }
 
+TEST(CommandLine, ColoursADiagnosticAsCompilersDo) {
+  const Diagnostic d{Severity::error, {"p.nc", 2, 4}, "F0; more was expected", "feed-zero", "G1 F0"};
+  EXPECT_EQ(cli::diagnostic_text(d, true),
+            "\033[1mp.nc:2:4: \033[0m\033[1;31merror:\033[0m F0; more was expected [feed-zero]\n    G1 F0\n       "
+            "\033[1;32m^\033[0m");
+  EXPECT_EQ(cli::diagnostic_text(d, false), to_string(d));
+}
+
 TEST(Progress, TellsShareAndTimeLeft) {
-  EXPECT_EQ(cli::progress_text("cutting", 0.02, 10), "  2 %  cutting");
-  EXPECT_EQ(cli::progress_text("cutting", 0.25, 10), " 25 %  cutting, 30 s left");
-  EXPECT_EQ(cli::progress_text("round 2", 0.1, 60), " 10 %  round 2, 9 min left");
-  EXPECT_EQ(cli::progress_text("round 2", 1.2, 60), "100 %  round 2, 0 s left");
+  EXPECT_EQ(cli::progress_text("cutting", 0.02, 10), "  2 % [........................] cutting");
+  EXPECT_EQ(cli::progress_text("cutting", 0.25, 10), " 25 % [######..................] cutting, 30 s left");
+  EXPECT_EQ(cli::progress_text("round 2", 0.1, 60), " 10 % [##......................] round 2, 9 min left");
+  EXPECT_EQ(cli::progress_text("round 2", 1.2, 60), "100 % [########################] round 2, 0 s left");
 }
 
 }  // namespace

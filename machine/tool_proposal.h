@@ -1,0 +1,48 @@
+#pragma once
+// What can be told of a tool from a comment, a tool table or a tool library, to begin a job file with.
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "machine/job.h"
+
+namespace camber::machine {
+
+/// Not given: the source does not say. Lengths are in mm, whatever the source's unit.
+struct ToolProposal {
+  int number = 0;
+  std::string what;  ///< the source's own words
+  std::string from;  ///< where they stand, "p.nc:3", "tool.tbl:7"
+  std::optional<ToolType> type;
+  std::optional<double> diameter_mm, corner_radius_mm, flute_length_mm, shank_diameter_mm, overhang_mm;
+  std::optional<int> flutes;
+  std::optional<double> youngs_modulus_GPa;
+  std::string doubt;  ///< what should be looked at; empty: nothing
+};
+
+/// Tools that a program's comments name, one a number, the first mention first: "(T3 D=0.125 CR=0.0625 - ZMIN=-0.54 -
+/// BALL END MILL)" (Fusion), "(T1| 3/4 FLAT ENDMILL|H0)" (Mastercam), "(T02 ID=002  DIA-0.5000  TOOL END MILL)"
+/// (SolidWorks CAM), and a comment beside T and M6. Sizes are in the program's unit; a bare size of 3 or more in a
+/// program in inches is taken as millimetres, with a doubt (a mill of 6 inches is rarer than one of 6 mm).
+std::vector<ToolProposal> tools_in_comments(const SourceText& program, bool inch);
+
+/// LinuxCNC's tool table: "T1 P17 Z0.511 D0.125 ;remark" a line. D is in the machine's unit. Throws InputError
+/// [tool-table] for a line that is none, [file-missing].
+std::vector<ToolProposal> read_tool_table(const std::string& path, bool inch);
+
+/// A Fusion tool library as JSON; each tool names its unit. Throws InputError [tool-library], [file-missing].
+std::vector<ToolProposal> read_tool_library(const std::string& path);
+
+/// By the name's ending: .json a Fusion library, all others a tool table. Throws InputError [tool-library] for .tools,
+/// which is a zip file.
+std::vector<ToolProposal> read_tools(const std::string& path, bool inch);
+
+/// Type, size, corner radius and flutes as far as the words tell, "1/2 BULL ENDMILL 0.125 RAD".
+ToolProposal tool_of_words(std::string_view words, bool inch);
+
+/// Fills what `tool` does not know from `other`.
+void complete(ToolProposal& tool, const ToolProposal& other);
+
+}  // namespace camber::machine

@@ -1,0 +1,13 @@
+#pragma once
+// What compensation could and could not do, as tables of text.
+#include <vector>
+
+#include "compensate/compensate.h"
+#include "report/html_report.h"
+
+namespace camber::report {
+
+/// The error apart; the depth into the part; the second prediction and the band, where they were asked for.
+std::vector<TextTable> compensation_tables(const compensate::Compensation& result);
+
+}  // namespace camber::report

@@ -1,0 +1,151 @@
+#include "report/page_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "report/base64.h"
+#include "report/decimate.h"
+#include "report/packed_arrays.h"
+
+namespace camber::report {
+namespace {
+
+using nlohmann::json;
+
+/// Share of the surface whose error the colour scale is to hold.
+constexpr double kScaleShare = 0.995;
+
+/// Half of a symmetric scale that holds kScaleShare of the points, a round number of um.
+double scale_um(const std::vector<SurfaceSample>& samples, double SurfaceSample::*error) {
+  if (samples.empty()) return 1;
+  std::vector<double> size(samples.size());
+  std::transform(samples.begin(), samples.end(), size.begin(), [&](const auto& s) { return std::abs(s.*error); });
+  const auto at = size.begin() + static_cast<std::ptrdiff_t>(kScaleShare * static_cast<double>(size.size() - 1));
+  std::nth_element(size.begin(), at, size.end());
+  return nice_limit(*at);
+}
+
+template <class Row, class Get>
+std::vector<double> column(const std::vector<Row>& rows, Get get) {
+  std::vector<double> out(rows.size());
+  std::transform(rows.begin(), rows.end(), out.begin(), get);
+  return out;
+}
+
+template <class Row, class Get>
+json triple(PackedArrays& arrays, const std::vector<Row>& rows, Get get) {
+  json out = json::array();
+  for (int a = 0; a < 3; ++a)
+    out.push_back(arrays.add_quantised(column(rows, [&](const Row& r) { return get(r)[a]; })));
+  return out;
+}
+
+template <class Row>
+json whole(PackedArrays& arrays, const std::vector<Row>& rows, std::uint32_t Row::*field) {
+  std::vector<std::uint32_t> values(rows.size());
+  std::transform(rows.begin(), rows.end(), values.begin(), [&](const Row& r) { return r.*field; });
+  return arrays.add_whole(values);
+}
+
+json surface_json(const ReportData& data, const ReportOptions& options, PackedArrays& arrays, PageData& page) {
+  const SurfaceMesh mesh = surface_mesh(data.surface, data.voxel_mm, options.most_vertices);
+  if (mesh.cell_mm > 1.5 * data.voxel_mm)
+    page.left_out.push_back(
+        fmt::format("The surface is drawn in cells of {:.3g} mm ({} vertices for {} points); each shows the error of "
+                    "greatest magnitude in it.",
+                    mesh.cell_mm, mesh.vertices.size(), data.surface.size()));
+  using S = SurfaceSample;
+  json out;
+  out["place"] = triple(arrays, mesh.vertices, [](const S& s) -> const Vec3& { return s.place_mm; });
+  out["normal"] = triple(arrays, mesh.vertices, [](const S& s) -> const Vec3& { return s.normal; });
+  out["error"] = json::array({arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.error_um; }))});
+  out["block"] = json::array({whole(arrays, mesh.vertices, &S::block)});
+  if (data.compared) {
+    out["error"].push_back(arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.error_after_um; })));
+    out["block"].push_back(whole(arrays, mesh.vertices, &S::block_after));
+  }
+  // The first corner as a step from the quadrangle before, the others as steps from the first.
+  out["quad"] = json::array();
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    std::vector<std::uint32_t> values;
+    values.reserve(mesh.quads.size());
+    for (const auto& q : mesh.quads) values.push_back(corner == 0 ? q[0] : q[corner] - q[0]);
+    out["quad"].push_back(arrays.add_whole(values));
+  }
+  out["cell"] = mesh.cell_mm;
+  out["points"] = data.surface.size();
+  return out;
+}
+
+json run_json(const PathRun& run, const ReportOptions& options, PackedArrays& arrays, PageData& page) {
+  const auto kept = rows_to_draw(run.rows, options.most_rows);
+  if (kept.size() < run.rows.size())
+    page.left_out.push_back(
+        fmt::format("Path and plots{} are drawn through {} of {} moments: of each run of neighbours the first and, of "
+                    "every quantity, the least and the greatest.",
+                    run.name.empty() ? "" : " " + run.name, kept.size(), run.rows.size()));
+  std::vector<PathRow> rows;
+  rows.reserve(kept.size());
+  for (const std::size_t i : kept) rows.push_back(run.rows[i]);
+  json out{{"name", run.name}};
+  out["t"] = arrays.add_floats(column(rows, [](const PathRow& r) { return r.t_s; }));
+  out["place"] = triple(arrays, rows, [](const PathRow& r) -> const Vec3& { return r.place_mm; });
+  out["block"] = whole(arrays, rows, &PathRow::block);
+  out["cutting"] = arrays.add_quantised(column(rows, [](const PathRow& r) { return r.cutting ? 1.0 : 0.0; }));
+  constexpr std::pair<const char*, double PathRow::*> kColumns[] = {{"command", &PathRow::feed_command_mm_per_min},
+                                                                    {"feed", &PathRow::feed_mm_per_min},
+                                                                    {"force", &PathRow::force_N},
+                                                                    {"deflection", &PathRow::deflection_um},
+                                                                    {"chip", &PathRow::chip_um},
+                                                                    {"error", &PathRow::error_um},
+                                                                    {"shift", &PathRow::shift_um}};
+  for (const auto& [name, field] : kColumns) {
+    const auto values = column(rows, [&](const PathRow& r) { return r.*field; });
+    if (std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
+      out[name] = arrays.add_quantised(values);
+  }
+  return out;
+}
+
+/// The last program matters most: it is the one that is offered.
+void add_programs(const ReportData& data, const ReportOptions& options, PageData& page) {
+  page.programs.assign(data.path.size(), {});
+  std::size_t room = options.most_program_bytes;
+  for (std::size_t i = data.path.size(); i-- > 0;) {
+    if (data.path[i].program_text.empty()) continue;
+    const std::string small = deflated(data.path[i].program_text);
+    if (small.size() > room) {
+      page.left_out.push_back(
+          fmt::format("The text of the program{} is too large for this page; lines are named by "
+                      "their numbers.",
+                      data.path[i].name.empty() ? "" : " " + data.path[i].name));
+      continue;
+    }
+    room -= small.size();
+    page.programs[i] = base64(small);
+  }
+}
+
+}  // namespace
+
+PageData page_data(const ReportData& data, const ReportOptions& options) {
+  PageData page;
+  PackedArrays arrays;
+  json index;
+  page.scale_um = scale_um(data.surface, &SurfaceSample::error_um);
+  page.scale_after_um = data.compared ? scale_um(data.surface, &SurfaceSample::error_after_um) : page.scale_um;
+  index["scales"] = {page.scale_um, page.scale_after_um};
+  if (!data.surface.empty()) index["surface"] = surface_json(data, options, arrays, page);
+  index["runs"] = json::array();
+  for (const auto& run : data.path) index["runs"].push_back(run_json(run, options, arrays, page));
+  add_programs(data, options, page);
+  if (!data.download_name.empty()) index["download"] = data.download_name;
+  page.index = index.dump(-1, ' ', false, json::error_handler_t::replace);
+  page.arrays = arrays.text();
+  return page;
+}
+
+}  // namespace camber::report

@@ -1,0 +1,127 @@
+#include "report/surface_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camber::report {
+namespace {
+
+using Cell = std::array<std::int32_t, 3>;
+
+struct Crossing {
+  Cell edge{};   ///< lower end of the grid edge
+  int axis = 0;  ///< that the edge runs along
+};
+
+/// On a grid edge two coordinates are whole; the one farthest from a whole number runs along it.
+Crossing crossing_of(const SurfaceSample& s, double grid_mm) {
+  Crossing out;
+  double farthest = -1;
+  for (int a = 0; a < 3; ++a) {
+    const double at = s.place_mm[a] / grid_mm, off = std::abs(at - std::round(at));
+    out.edge[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(std::lround(at));
+    const double rank = off > 1e-6 ? 1 + off : std::abs(s.normal[a]);  // on a corner of the grid the normal decides
+    if (rank <= farthest) continue;
+    farthest = rank;
+    out.axis = a;
+  }
+  const double at = s.place_mm[out.axis] / grid_mm;
+  out.edge[static_cast<std::size_t>(out.axis)] = static_cast<std::int32_t>(std::floor(at));
+  return out;
+}
+
+std::int32_t floor_share(std::int32_t value, std::int32_t by) {
+  return value >= 0 ? value / by : -((-value + by - 1) / by);
+}
+
+/// The four cells around an edge, in order around it.
+std::array<Cell, 4> cells_around(const Crossing& c, std::int32_t factor) {
+  const auto b = static_cast<std::size_t>((c.axis + 1) % 3), d = static_cast<std::size_t>((c.axis + 2) % 3);
+  std::array<Cell, 4> out{c.edge, c.edge, c.edge, c.edge};
+  out[1][b] -= 1;
+  out[2][b] -= 1;
+  out[2][d] -= 1;
+  out[3][d] -= 1;
+  for (Cell& cell : out)
+    for (auto& v : cell) v = floor_share(v, factor);
+  return out;
+}
+
+std::vector<Cell> all_cells(const std::vector<Crossing>& crossings, std::int32_t factor) {
+  std::vector<Cell> cells;
+  cells.reserve(4 * crossings.size());
+  for (const auto& c : crossings)
+    for (const Cell& cell : cells_around(c, factor)) cells.push_back(cell);
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
+void add_to(SurfaceSample& vertex, const SurfaceSample& s, bool first) {
+  vertex.place_mm += s.place_mm;
+  vertex.normal += s.normal;
+  if (first || std::abs(s.error_um) > std::abs(vertex.error_um)) {
+    vertex.error_um = s.error_um;
+    vertex.block = s.block;
+  }
+  if (first || std::abs(s.error_after_um) > std::abs(vertex.error_after_um)) {
+    vertex.error_after_um = s.error_after_um;
+    vertex.block_after = s.block_after;
+  }
+}
+
+/// Without indices that repeat; false where fewer than three are left.
+bool tidy(std::array<std::uint32_t, 4>& quad) {
+  const auto end = std::unique(quad.begin(), quad.end());
+  auto count = static_cast<std::size_t>(end - quad.begin());
+  if (count > 1 && quad[count - 1] == quad[0]) --count;
+  if (count < 3 || (count == 4 && (quad[0] == quad[2] || quad[1] == quad[3]))) return false;
+  if (count == 3) quad[3] = quad[0];
+  return true;
+}
+
+}  // namespace
+
+SurfaceMesh surface_mesh(std::span<const SurfaceSample> samples, double grid_mm, std::size_t most_vertices) {
+  SurfaceMesh mesh;
+  if (samples.empty()) return mesh;
+  std::vector<Crossing> crossings;
+  crossings.reserve(samples.size());
+  for (const auto& s : samples) crossings.push_back(crossing_of(s, grid_mm));
+  std::int32_t factor = 1;
+  std::vector<Cell> cells = all_cells(crossings, factor);
+  while (cells.size() > std::max<std::size_t>(1, most_vertices)) {
+    const double over = std::sqrt(static_cast<double>(cells.size()) / static_cast<double>(most_vertices));
+    factor = std::max(factor + 1, static_cast<std::int32_t>(std::floor(factor * over)));
+    cells = all_cells(crossings, factor);
+  }
+
+  mesh.cell_mm = factor * grid_mm;
+  SurfaceSample nothing;
+  nothing.normal = Vec3::Zero();
+  mesh.vertices.assign(cells.size(), nothing);
+  std::vector<std::uint32_t> points(cells.size(), 0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    std::array<std::uint32_t, 4> quad{};
+    const auto around = cells_around(crossings[i], factor);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto v = static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), around[k]) - cells.begin());
+      quad[k] = static_cast<std::uint32_t>(v);
+      if (std::find(quad.begin(), quad.begin() + static_cast<std::ptrdiff_t>(k), quad[k]) !=
+          quad.begin() + static_cast<std::ptrdiff_t>(k))
+        continue;
+      add_to(mesh.vertices[v], samples[i], points[v] == 0);
+      ++points[v];
+    }
+    if (tidy(quad)) mesh.quads.push_back(quad);
+  }
+  std::sort(mesh.quads.begin(), mesh.quads.end());  // neighbours deflate well
+  for (std::size_t v = 0; v < cells.size(); ++v) {
+    SurfaceSample& vertex = mesh.vertices[v];
+    vertex.place_mm /= points[v];
+    vertex.normal = vertex.normal.norm() > 0 ? Vec3(vertex.normal.normalized()) : Vec3(Vec3::UnitZ());
+  }
+  return mesh;
+}
+
+}  // namespace camber::report

@@ -1,0 +1,37 @@
+#pragma once
+// The machined surface as a mesh for the page, made of the points at which grid lines cross it.
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/geometry.h"
+
+namespace camber::report {
+
+/// A point of the machined surface with its unit normal and its form error, and the lines that made it.
+struct SurfaceSample {
+  Vec3 place_mm = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();
+  double error_um = 0;            ///< positive: material is left
+  double error_after_um = 0;      ///< of the compensated program, where there is one
+  double area_mm2 = 1;            ///< weight in the histogram
+  std::uint32_t block = 0;        ///< 1-based line that made the surface here; 0: unknown
+  std::uint32_t block_after = 0;  ///< the same in the compensated program
+};
+
+struct SurfaceMesh {
+  /// Places and normals are means over a cell's points. The errors (and their lines) are those of greatest magnitude,
+  /// before and after each for itself.
+  std::vector<SurfaceSample> vertices;
+  std::vector<std::array<std::uint32_t, 4>> quads;  ///< indices into vertices; the last may repeat the first (triangle)
+  double cell_mm = 0;                               ///< of the cells that a vertex stands for
+};
+
+/// Surface nets: a vertex for every cell of the grid that the surface passes, a quadrangle for every grid edge that it
+/// crosses. The samples must lie on the lines of a grid of `grid_mm` through the origin (removal::compare_surfaces).
+/// Where that would be more than `most_vertices`, cells are taken together in cubes of 2, 3, ... a side.
+/// Source: Gibson, Constrained elastic surface nets, MICCAI 1998 (without the relaxation).
+SurfaceMesh surface_mesh(std::span<const SurfaceSample> samples, double grid_mm, std::size_t most_vertices);
+
+}  // namespace camber::report

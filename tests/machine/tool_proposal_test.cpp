@@ -1,0 +1,146 @@
+#include "machine/tool_proposal.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temp_folder.h"
+
+namespace camber::machine {
+namespace {
+
+struct WordsCase {
+  const char* words;
+  bool inch;
+  std::optional<ToolType> type;
+  std::optional<double> diameter_mm, corner_radius_mm;
+};
+
+TEST(ToolWords, AreReadAsTheirCamSystemsWriteThem) {
+  const std::optional<double> none;
+  const WordsCase cases[] = {
+      // Fusion; Mastercam (NIST's box programs); SolidWorks CAM.
+      {" D=0.125 CR=0.0625 - ZMIN=-0.54 - BALL END MILL", true, ToolType::ball, 3.175, none},
+      {" D=10. CR=1. - ZMIN=-5. - bullnose end mill", false, ToolType::bull, 10.0, 1.0},
+      {"| 3/4 FLAT ENDMILL|H0|XY STOCK TO LEAVE - .005|Z STOCK TO LEAVE - 0.", true, ToolType::flat, 19.05, none},
+      {"| 1/2 BULL ENDMILL 0.125 RAD|H0", true, ToolType::bull, 12.7, 3.175},
+      {"|.093 FLAT ENDMILL|H0", true, ToolType::flat, 2.3622, none},
+      {"|1-1/4 FACE MILL|H0", true, ToolType::flat, 31.75, none},
+      {"|2\"  FACE MILL|H0", true, ToolType::flat, 50.8, none},
+      {"|    6. BALL END MILL CRB|H47|XY STOCK TO LEAVE - .0001", true, ToolType::ball, 6.0, none},
+      {" ID=002  DIA-0.5000  TOOL END MILL", true, ToolType::flat, 12.7, none},
+      {"| 1/8 SPOTDRILL|H0", true, ToolType::drill, 3.175, none},
+      {"| NO. 33 DRILL|H0", true, ToolType::drill, none, none},
+      {"|   4.00-0.7 TAP RH|H0", true, std::nullopt, none, none},
+      {" 6MM 4 FLUTE BALL", false, ToolType::ball, 6.0, none},
+      {" 3/0 BALL", false, ToolType::ball, none, none},
+      {"", false, std::nullopt, none, none},
+  };
+  for (const auto& c : cases) {
+    const ToolProposal tool = tool_of_words(c.words, c.inch);
+    EXPECT_EQ(tool.type, c.type) << c.words;
+    ASSERT_EQ(tool.diameter_mm.has_value(), c.diameter_mm.has_value()) << c.words;
+    if (c.diameter_mm) {
+      EXPECT_NEAR(*tool.diameter_mm, *c.diameter_mm, 1e-9) << c.words;
+    }
+    ASSERT_EQ(tool.corner_radius_mm.has_value(), c.corner_radius_mm.has_value()) << c.words;
+    if (c.corner_radius_mm) {
+      EXPECT_NEAR(*tool.corner_radius_mm, *c.corner_radius_mm, 1e-9) << c.words;
+    }
+  }
+  EXPECT_EQ(tool_of_words(" 6MM 4 FLUTE BALL", false).flutes, 4);
+  EXPECT_EQ(tool_of_words("|    6. BALL END MILL", true).doubt,
+            "the size 6. stands without a unit in a program in inches; taken as mm");
+  EXPECT_EQ(tool_of_words("|    6. BALL END MILL", false).doubt, "");
+}
+
+TEST(ToolComments, AreFoundAnywhereInAProgram) {
+  const auto tools = tools_in_comments(
+      SourceText("p.nc",
+                 "%\n(T03 D=8. - FLAT END MILL)\n(SETUP)\nT1 M6 (6. BALL END MILL)\nN5 T7 M06 ; 10. DRILL\n"
+                 "(T3 2 FLUTES)\nG1 X1. (T4 M6 IS LATER)\n"),
+      false);
+  ASSERT_EQ(tools.size(), 4u);
+  EXPECT_EQ(tools[0].number, 3);
+  EXPECT_EQ(tools[0].from, "p.nc:2");
+  EXPECT_EQ(tools[0].diameter_mm, 8.0);
+  EXPECT_EQ(tools[0].flutes, 2);  // from the second comment
+  EXPECT_EQ(tools[1].number, 1);
+  EXPECT_EQ(tools[1].type, ToolType::ball);
+  EXPECT_EQ(tools[2].number, 7);
+  EXPECT_EQ(tools[2].type, ToolType::drill);
+  EXPECT_EQ(tools[3].number, 4);
+  EXPECT_FALSE(tools[3].type.has_value());
+}
+
+TEST(ToolTable, OfLinuxCncIsRead) {
+  const tests::TempFolder folder;
+  const auto path = folder.write(
+      "tool.tbl", "; a comment\nT1 P17 X0 Y0 Z0.511 D0.125 I0 J0 Q0 ;1/8 flat end mill\n\nT2 P2 Z+1.5 ;ball 6mm\n");
+  const auto tools = read_tools(path, true);
+  ASSERT_EQ(tools.size(), 2u);
+  EXPECT_NEAR(*tools[0].diameter_mm, 3.175, 1e-9);
+  EXPECT_EQ(tools[0].type, ToolType::flat);
+  EXPECT_EQ(tools[0].from, path + ":2");
+  EXPECT_EQ(tools[1].number, 2);
+  EXPECT_EQ(tools[1].type, ToolType::ball);
+}
+
+template <class Function>
+std::string message_of(Function f, const tests::TempFolder& folder) {
+  try {
+    f();
+  } catch (const InputError& e) {
+    return tests::replaced(e.what(), folder.path() + "/", "");
+  }
+  return "no error";
+}
+
+TEST(ToolTable, NamesTheWordThatIsNone) {
+  const tests::TempFolder folder;
+  const auto path = folder.write("tool.tbl", "T1 P1 D6\nT2 Px D8\n");
+  EXPECT_EQ(
+      message_of([&] { read_tools(path, false); }, folder),
+      "tool.tbl:2:4: error: \"Px\" in a tool table; a letter with a number was expected, as in T1 P1 D6.0 ;remark "
+      "[tool-table]\n    T2 Px D8\n       ^");
+}
+
+TEST(ToolLibrary, OfFusionIsRead) {
+  const tests::TempFolder folder;
+  const auto path = folder.write("lib.json", R"({"version": 2, "data": [
+    {"description": "1/4 ball", "type": "ball end mill", "unit": "inches", "BMC": "carbide",
+     "geometry": {"DC": 0.25, "RE": 0.125, "LCF": 0.75, "LB": 1.5, "SFDM": 0.25, "NOF": 2},
+     "post-process": {"number": 9}},
+    {"type": "bull nose end mill", "unit": "millimeters", "BMC": "hss",
+     "geometry": {"DC": 10, "RE": 1, "NOF": 4}, "post-process": {"number": 2}},
+    {"type": "holder"}, 7]})");
+  const auto tools = read_tools(path, false);
+  ASSERT_EQ(tools.size(), 2u);
+  EXPECT_EQ(tools[0].number, 9);
+  EXPECT_EQ(tools[0].what, "1/4 ball");
+  EXPECT_EQ(tools[0].type, ToolType::ball);
+  EXPECT_NEAR(*tools[0].diameter_mm, 6.35, 1e-9);
+  EXPECT_NEAR(*tools[0].overhang_mm, 38.1, 1e-9);
+  EXPECT_EQ(tools[0].flutes, 2);
+  EXPECT_EQ(tools[0].youngs_modulus_GPa, 600);
+  EXPECT_EQ(tools[1].corner_radius_mm, 1);
+  EXPECT_EQ(tools[1].youngs_modulus_GPa, 210);
+  EXPECT_FALSE(tools[1].overhang_mm.has_value());
+}
+
+TEST(ToolLibrary, SaysWhatWasExpected) {
+  const tests::TempFolder folder;
+  const auto broken = folder.write("a.json", "{\"data\": [\n}"), other = folder.write("b.json", "[1]"),
+             zip = folder.write("c.tools", "PK");
+  EXPECT_EQ(message_of([&] { read_tools(broken, false); }, folder),
+            "a.json:2:1: error: this is no JSON; a tool library of Fusion (File, Export, JSON) was expected "
+            "[tool-library]\n    }\n    ^");
+  EXPECT_EQ(message_of([&] { read_tools(other, false); }, folder),
+            "b.json: error: has no list \"data\"; a tool library of Fusion (File, Export, JSON) was expected "
+            "[tool-library]");
+  EXPECT_EQ(message_of([&] { read_tools(zip, false); }, folder),
+            "c.tools: error: is a library that camber does not read; its export as .json was expected [tool-library]");
+  EXPECT_NE(message_of([&] { read_tools(folder / "none.json", false); }, folder).find("[file-missing]"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace camber::machine

@@ -1,0 +1,136 @@
+// page_test.mjs PACKAGES CHECK PAGE [JSON]: opens a report page in headless Chromium, as a shop would without a network.
+// Prints what went wrong and ends with status 1, or ends with 0.
+import { createRequire } from 'node:module';
+import { existsSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+const [packages, check, file, json] = process.argv.slice(2);
+const { chromium } = createRequire(join(packages, 'package.json'))('playwright-core');
+const executablePath = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
+
+const problems = [];
+function expect(condition, sentence) {
+  if (!condition) problems.push(sentence);
+}
+
+// How many of the picture's pixels are not the background, and how many are red or blue.
+const pixels = page => page.evaluate(() => {
+  const canvas = document.querySelector('#scene canvas'), gl = canvas.getContext('webgl2');
+  const { drawingBufferWidth: w, drawingBufferHeight: h } = gl, px = new Uint8Array(4 * w * h);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, px);
+  const out = { drawn: 0, red: 0, blue: 0, all: w * h };
+  for (let i = 0; i < px.length; i += 4) {
+    const [r, g, b] = [px[i], px[i + 1], px[i + 2]];
+    if (r !== px[0] || g !== px[1] || b !== px[2]) out.drawn++;
+    if (r > b + 40) out.red++;
+    if (b > r + 40) out.blue++;
+  }
+  return out;
+});
+
+async function selected(page) {
+  const box = page.locator('#selected');
+  await box.locator('.facts').waitFor();
+  return { line: await box.getAttribute('data-line'), text: await box.locator('.nc').textContent(), facts: await box.locator('.facts').textContent() };
+}
+
+const CHECKS = {
+  // A page with both programs: pictures, switches, clicks both ways, the download.
+  async compared(page) {
+    const before = await pixels(page);
+    expect(before.drawn > 0.05 * before.all, `the picture is blank: ${JSON.stringify(before)}`);
+    expect(before.red > 0.02 * before.all && before.blue > 0.02 * before.all, `before is neither red nor blue: ${JSON.stringify(before)}`);
+    await page.click('button[data-value=after]');
+    const after = await pixels(page);
+    expect(after.red + after.blue < 0.1 * (before.red + before.blue), `after is as coloured as before: ${JSON.stringify(after)}`);
+    await page.click('button[data-value=before]');
+    await page.click('button[data-value=plain]');
+    await page.getByLabel('Path').selectOption('force');
+    const path = await pixels(page);
+    expect(path.drawn > 0.05 * path.all, 'the path does not appear');
+    await page.click('button[data-value=before]');
+    await page.getByLabel('Path').selectOption('');
+
+    // The test's path spends a second on each line from line 3 on; plots run to the last second.
+    const plot = page.locator('[data-quantity=feed] .u-over');
+    const { width, height } = await plot.boundingBox();
+    await plot.click({ position: { x: width * 10.5 / 30, y: height / 2 } });
+    const chosen = await selected(page);
+    expect(chosen.line === '13', `a click at 10.5 s selects line ${chosen.line}, not 13`);
+    expect(chosen.text === 'line 13 before N13 G1 X10.', `the line reads "${chosen.text}"`);
+    expect(/feed 600 of 900 mm\/min/.test(chosen.facts), `its facts are "${chosen.facts}"`);
+    expect(await page.locator('.marker').isVisible(), 'the place is not marked on the part');
+
+    // Back from the part: its middle is at X15, where lines 17 and 18 meet.
+    const scene = page.locator('#scene canvas');
+    await page.getByRole('button', { name: 'Top', exact: true }).click();
+    const box = await scene.boundingBox();
+    await scene.hover({ position: { x: box.width / 2 + 3, y: box.height / 2 } });
+    await page.locator('.tip').waitFor();
+    const tip = await page.locator('.tip').textContent();
+    expect(/^[+\u2212][\d.]+ \u00b5m before, .*\u00b5m after.*X15\.\d+.*line \d+:\s+N\d+ G1 X/.test(tip), `the cursor reads "${tip}"`);
+    await scene.click({ position: { x: box.width / 2 + 3, y: box.height / 2 } });
+    await page.waitForFunction(() => document.querySelector('#selected').dataset.line !== '13');
+    const found = await selected(page);
+    expect(['17', '18'].includes(found.line), `a click on the part selects line ${found.line}, not 17 or 18`);
+
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download')]);
+    expect(download.suggestedFilename() === 'out.nc', `the download is called ${download.suggestedFilename()}`);
+    const text = readFileSync(await download.path(), 'utf8');
+    expect(text.startsWith('%\r\nO1\r\n') && text.endsWith('N32 G1 X29.001\r\nM30\r\n%\r\n'), `the download holds ${JSON.stringify(text.slice(0, 40))} ...`);
+  },
+
+  // Every number that names its place in the JSON is the JSON's.
+  async numbers(page) {
+    const figures = JSON.parse(readFileSync(json, 'utf8'));
+    const shown = await page.$$eval('[data-key]', all => all.map(e => [e.dataset.key, e.textContent]));
+    expect(shown.length >= 9, `only ${shown.length} numbers name their place`);
+    for (const [key, text] of shown) {
+      const value = key.split('.').reduce((at, name) => at?.[name], figures);
+      const decimals = (text.split('.')[1] || '').length;
+      const expected = typeof value === 'number' ? value.toFixed(decimals).replace(/^-(?=.*[1-9])/, '\u2212').replace(/^-/, '') : `nothing (${value})`;
+      expect(text === expected, `${key} is ${text} on the page and ${expected} in the JSON`);
+    }
+    expect((await pixels(page)).drawn > 0, 'the picture is blank');
+  },
+
+  async large(page) {
+    expect((await pixels(page)).drawn > 1000, 'the picture is blank');
+    expect(await page.locator('.u-over').count() >= 5, 'plots are missing');
+  },
+
+  async without_webgl(page) {
+    const text = await page.locator('#scene').textContent();
+    expect(/WebGL 2 is missing/.test(text), `the page says "${text}"`);
+    expect(await page.locator('.u-over').count() >= 3, 'the plots are missing as well');
+    expect(await page.locator('#figures tr').count() > 3, 'the figures are missing');
+  },
+
+  async without_script(page) {
+    expect(/The pictures need JavaScript/.test(await page.locator('#part').innerText()), 'the page does not say what it needs');
+    expect(await page.locator('#figures tr').count() > 3, 'the figures are missing');
+    expect(await page.locator('svg.histogram path').count() > 3, 'the histogram is missing');
+  },
+};
+
+const webgl = check === 'without_webgl' ? ['--disable-gpu', '--disable-3d-apis'] : ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', ...webgl] });
+try {
+  const context = await browser.newContext({ offline: true, viewport: { width: 900, height: 700 }, javaScriptEnabled: check !== 'without_script' });
+  const page = await context.newPage();
+  page.setDefaultTimeout(20000);
+  page.on('console', m => { if (m.type() === 'error') problems.push(`console: ${m.text()}`); });
+  page.on('pageerror', e => problems.push(`error on the page: ${e.message}`));
+  page.on('request', r => { if (!/^(file|blob|data):/.test(r.url())) problems.push(`asks for ${r.url()}`); });
+  await page.goto(pathToFileURL(file).href);
+  if (check !== 'without_script') await page.waitForFunction(() => document.documentElement.dataset.ready === 'yes');
+  await CHECKS[check](page);
+} catch (e) {
+  problems.push(e.message);
+} finally {
+  await browser.close();
+}
+for (const p of problems) console.log(p);
+process.exit(problems.length ? 1 : 0);
