@@ -130,7 +130,7 @@ class Neighbours {
     };
     std::map<Cell, std::vector<std::size_t>> cells;
     for (std::size_t i = 0; i < surface.size(); ++i) cells[cell_of(surface[i].place_mm)].push_back(i);
-    constexpr double kSameWay = 0.8;
+    constexpr double kSameWay = 0.8, kNear = 0.25;  // a point counts 1/e at this share of the reach
     of_.resize(points.size());
     for (std::size_t m = 0; m < points.size(); ++m) {
       const Cell c = cell_of(points[m].place_mm);
@@ -139,25 +139,31 @@ class Neighbours {
           for (long k = -1; k <= 1; ++k) {
             const auto near = cells.find({c[0] + i, c[1] + j, c[2] + k});
             if (near == cells.end()) continue;
-            for (const std::size_t s : near->second)
-              if ((surface[s].place_mm - points[m].place_mm).norm() < reach &&
-                  surface[s].normal.dot(points[m].normal) > kSameWay)
-                of_[m].push_back(s);
+            for (const std::size_t s : near->second) {
+              const double away = (surface[s].place_mm - points[m].place_mm).norm() / (kNear * reach);
+              if (away < 1 / kNear && surface[s].normal.dot(points[m].normal) > kSameWay)
+                of_[m].push_back({s, surface[s].area_mm2 * std::exp(-away * away)});
+            }
           }
     }
   }
   bool has(std::size_t m) const { return !of_[m].empty(); }
+  /// Mean of the errors about the point; the nearest ones count most, so that bow and cusps are not smoothed away.
   double error_mm(std::size_t m, const std::vector<removal::SurfacePoint>& surface) const {
-    double sum = 0, area = 0;
-    for (const std::size_t s : of_[m]) {
-      sum += surface[s].area_mm2 * surface[s].error_mm;
-      area += surface[s].area_mm2;
+    double sum = 0, weights = 0;
+    for (const auto& [s, weight] : of_[m]) {
+      sum += weight * surface[s].error_mm;
+      weights += weight;
     }
-    return sum / area;
+    return sum / weights;
   }
 
  private:
-  std::vector<std::vector<std::size_t>> of_;
+  struct Near {
+    std::size_t point;
+    double weight;
+  };
+  std::vector<std::vector<Near>> of_;
 };
 
 }  // namespace

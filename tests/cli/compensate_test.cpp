@@ -105,21 +105,23 @@ TEST(CompensateCommand, RefusesWhatLeavesTheTravel) {
   const auto run = run_camber(folder, "compensate job.toml -o a.nc");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err,
-            folder.path() +
-                "/p.nc:9:1: error: X goes to 103.0000 in machine coordinates here; the axis travels from -100 to "
-                "100 [travel]\n    X8.\n    ^\n");
+            "p.nc:9:1: error: X goes to 103.0000 in machine coordinates here; the axis travels from -100 to "
+            "100 [travel]\n    X8.\n    ^\n");
   EXPECT_EQ(files_of(folder), kInputs);
 }
 
 TEST(CompensateCommand, RefusesBlocksUnderCutterRadiusCompensation) {
   const TempFolder folder;
   std::string program = kWall;
-  program.replace(program.find("G1 X2."), 6, "G1 G42 D1 X2.");
+  program.replace(program.find("G1 X2."), 6, "G10 L12 P1 R0.5\nG1 G42 D1 X2.");
+  program.replace(program.find("G0 Z5.\nM30"), 6, "G1 G40 X16.\nG0 Z5.");
   write_job(folder, "", program);
-  folder.write("p.nc", "(D1 = 0.5)\n" + program);
   const auto run = run_camber(folder, "compensate job.toml -o a.nc");
   EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.err.find("error"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("p.nc:9:1: error: 3 moves to compensate run under cutter radius compensation (G41, G42), from "
+                         "here on: the control makes their path"),
+            std::string::npos)
+      << run.err;
   EXPECT_EQ(files_of(folder), kInputs);
 }
 
@@ -160,7 +162,7 @@ TEST(CompensateCommand, MeasuredPointsSetTheModelRight) {
   const auto run = run_camber(folder, "compensate job.toml -o a.nc --json a.json --measured t/form_error.csv");
   ASSERT_EQ(run.status, 0) << run.err << run.out;
   const auto measured = nlohmann::json::parse(file_text(folder / "a.json"))["measured"];
-  EXPECT_NEAR(measured["deflection_scale"], 1.3, 0.01);
+  EXPECT_NEAR(measured["deflection_scale"], 1.3, 0.02);
   EXPECT_LT(measured["std_error"], 0.01);
   // Points beside the part tell nothing; neither does a table without normals.
   folder.write("far.csv", "x y z nx ny nz error\n50 0 0 0 0 1 5\n51 0 0 0 0 1 5\n");
