@@ -99,10 +99,10 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   }
   if (!result.within_part) {
     print_error(
-        fmt::format("the compensated program cuts {:.2f} um into the part at X{:.3f} Y{:.3f} Z{:.3f}; no more than "
-                    "{:g} um ({}) were expected",
-                    result.depth_after.deepest_um, result.depth_after.place_mm.x(), result.depth_after.place_mm.y(),
-                    result.depth_after.place_mm.z(), job.compensation.overcut_um(),
+        fmt::format("more than a thousandth of the surface lies {:.2f} um or more in the part, deepest ({:.2f} um) at "
+                    "X{:.3f} Y{:.3f} Z{:.3f}; no more than {:g} um ({}) were expected",
+                    result.depth_after.held_um, result.depth_after.deepest_um, result.depth_after.place_mm.x(),
+                    result.depth_after.place_mm.y(), result.depth_after.place_mm.z(), job.compensation.overcut_um(),
                     job.compensation.max_overcut_um > 0 ? "max_overcut_um" : "tolerance_um"));
     return kNumbersDidNotWorkOut;
   }

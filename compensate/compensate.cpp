@@ -157,7 +157,8 @@ class Loop {
     Guard guard(overcut_um() / 1000);
     last_ = best_;
     free_correctable_um_ = out.rounds[out.best].split.correctable_um;
-    for (int i = 0; i < kGuardRounds && guard.learn(last_.observed) > 0; ++i) {
+    for (int i = 0; i < kGuardRounds && out.rounds[out.best].deepest_um > overcut_um(); ++i) {
+      guard.learn(last_.observed);
       step(out, 1, &guard);
       if (out.rounds.back().deepest_um < out.rounds[out.best].deepest_um) take(out);
     }
@@ -214,7 +215,7 @@ class Loop {
       round.split.correctable_um = free;
       round.split.guard_um = std::sqrt(all * all - free * free);
     }
-    round.deepest_um = depth_of(last_.surface, last_.observed, overcut_um(), true).deepest_um;
+    round.deepest_um = depth_of(last_.surface, last_.observed, overcut_um(), true).held_um;
     round.static_rounds = last_.static_rounds;
     round.unsettled = last_.unsettled;
     out.rounds.push_back(round);
@@ -260,7 +261,7 @@ class Loop {
     out.depth_after = depth_of(out.surface_after, best_.observed, most_um, true);
     out.depth_others = depth_of(out.surface_after, best_.observed, most_um, false);
     out.depth_without_bending = depth_without_bending(job_, *target_, program, most_um);
-    out.within_part = out.depth_after.deepest_um <= most_um;
+    out.within_part = out.depth_after.held_um <= most_um;
     check_travel(job_, program.text, program.moves, diagnostics_);
     diagnostics_.throw_if_errors();
     out.blocks_before = program_.text.source.line_count();

@@ -31,7 +31,7 @@ struct Round {
   double gain = 1;                 ///< error over shift, the mean that the round's step divided by
   double step_share = 1;           ///< of the step that was taken; less than 1 after an over-correction
   double overcorrected_share = 0;  ///< of the area: the error changed its sign and is still over the tolerance
-  double deepest_um = 0;           ///< into the part, where compensated moves cut
+  double deepest_um = 0;           ///< into the part, where compensated moves cut, but for a thousandth of the surface
   bool guard = false;              ///< a round of the guard against cutting into the part
   int static_rounds = 0;
   std::size_t unsettled = 0;

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -34,16 +37,30 @@ std::array<double, 2> extent_of(const nc::Interpretation& moves, const nc::Move&
   return out;
 }
 
+/// Depth that kSpared of the whole area exceeds at most.
+double held_um(std::vector<std::pair<double, double>> depth_and_area, double whole_area) {
+  constexpr double kSpared = 0.001;
+  std::sort(depth_and_area.begin(), depth_and_area.end(), std::greater<>());
+  double spared = kSpared * whole_area;
+  for (const auto& [depth, area] : depth_and_area)
+    if ((spared -= area) < 0) return std::max(0.0, depth);
+  return 0;
+}
+
 }  // namespace
 
 Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed& observed, double tolerance_um,
                bool compensated) {
   Depth out;
   double over = 0, area = 0;
+  std::vector<std::pair<double, double>> depths;
   for (std::size_t i = 0; i < surface.size(); ++i) {
     area += surface[i].area_mm2;
-    if (observed.compensated[i] == compensated) add_point(out, surface[i], tolerance_um, over);
+    if (observed.compensated[i] != compensated) continue;
+    add_point(out, surface[i], tolerance_um, over);
+    depths.emplace_back(-1000 * surface[i].error_mm, surface[i].area_mm2);
   }
+  out.held_um = held_um(std::move(depths), area);
   out.over_share = area > 0 ? over / area : 0;
   return out;
 }

@@ -13,7 +13,8 @@ namespace camber::compensate {
 
 /// How far the surface lies inside the part (inside the target's undeflected sweep).
 struct Depth {
-  double deepest_um = 0;  ///< not negative
+  double deepest_um = 0;  ///< of single points; not negative
+  double held_um = 0;     ///< a thousandth of the surface at most lies deeper: what is held against the limit
   Vec3 place_mm = Vec3::Zero();
   double over_share = 0;  ///< of the area that lies deeper than the tolerance
 };

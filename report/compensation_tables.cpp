@@ -29,9 +29,9 @@ TextTable split_table(const compensate::Compensation& c) {
 std::string place(const Vec3& p) { return fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", p.x(), p.y(), p.z()); }
 
 TextTable depth_table(const compensate::Compensation& c) {
-  TextTable table{"Into the part", {"", "deepest, um", "where"}, {}, {}};
+  TextTable table{"Into the part", {"", "all but a thousandth, um", "deepest point, um", "where"}, {}, {}};
   const auto add = [&](const char* name, const compensate::Depth& d) {
-    table.rows.push_back({name, um(d.deepest_um), d.deepest_um > 0 ? place(d.place_mm) : ""});
+    table.rows.push_back({name, um(d.held_um), um(d.deepest_um), d.deepest_um > 0 ? place(d.place_mm) : ""});
   };
   add("before", c.depth_before);
   add("after", c.depth_after);

@@ -125,6 +125,7 @@ ordered_json split(const compensate::ErrorSplit& s) {
 
 ordered_json depth(const compensate::Depth& d) {
   return {{"deepest_um", d.deepest_um},
+          {"held_um", d.held_um},
           {"at_mm", {d.place_mm.x(), d.place_mm.y(), d.place_mm.z()}},
           {"area_over_tolerance", d.over_share}};
 }
@@ -268,9 +269,9 @@ std::string rounds_text(const compensate::Compensation& c) {
 }
 
 std::string safety_text(const compensate::Compensation& c) {
-  std::string out = fmt::format("into the part: {:.2f} um before, {:.2f} um after", c.depth_before.deepest_um,
-                                c.depth_after.deepest_um);
-  if (c.depth_others.deepest_um > 0) out += fmt::format("; {:.2f} um by other moves", c.depth_others.deepest_um);
+  std::string out = fmt::format("into the part: {:.2f} um before, {:.2f} um after (single points {:.2f} um)",
+                                c.depth_before.held_um, c.depth_after.held_um, c.depth_after.deepest_um);
+  if (c.depth_others.deepest_um > 0) out += fmt::format("\n  by other moves: {:.2f} um", c.depth_others.deepest_um);
   return out + fmt::format("\nif the tool did not bend at all: {:.2f} um into the part\n",
                            c.depth_without_bending.deepest_um);
 }

@@ -34,7 +34,7 @@ void write_job(const TempFolder& folder, const std::string& more = "", const std
       "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\n"
       "overhang_mm = 30.0\nhelix_deg = 30\n[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n[stock]\n"
       "box_mm = [[0, -0.5, -2], [8, 2, 0]]\nallowance_mm = 0.1\n[simulation]\nvoxel_mm = 0.2\n"
-      "coupling = \"rigid\"\n[compensation]\ntolerance_um = 3.0\nmax_overcut_um = 6.0\nmax_rounds = 3\n" +
+      "coupling = \"rigid\"\n[compensation]\ntolerance_um = 2.5\nmax_overcut_um = 6.0\nmax_rounds = 3\n" +
           more);
 }
 
