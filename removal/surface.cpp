@@ -146,6 +146,7 @@ void collect(const Stock* machined, const Stock& target, const CutterPlaces* pla
           const Index3 at{tile[0] * Tile::kCore + i, tile[1] * Tile::kCore + j, tile[2] * Tile::kCore + k};
           p.place_mm = voxel * Vec3(at[0], at[1], at[2]);
           p.place_mm[a] += voxel * u;
+          p.crossing_mm = p.place_mm;
           if (places) sharpen(p, NamedCutters(b, i, j, k, a, *places), scatter_of(at, a), voxel);
           if (machined) p.error_mm = -((1 - u) * b.machined[here] + u * b.machined[next]);
           p.area_mm2 = voxel * voxel * std::abs(p.normal[a]);

@@ -12,6 +12,7 @@ namespace camber::removal {
 
 struct SurfacePoint {
   Vec3 place_mm = Vec3::Zero();      ///< on the target's surface
+  Vec3 crossing_mm = Vec3::Zero();   ///< where a grid line crosses the target's field, beside it
   Vec3 normal = Vec3::UnitZ();       ///< outward, unit
   double error_mm = 0;               ///< machined minus target along the normal; positive: material is left
   double area_mm2 = 0;               ///< of the target's surface that the point stands for

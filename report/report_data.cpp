@@ -25,7 +25,7 @@ std::vector<SurfaceSample> surface_samples(const std::vector<removal::SurfacePoi
   std::vector<SurfaceSample> out;
   out.reserve(points.size());
   for (const auto& p : points)
-    out.push_back({p.place_mm, p.normal, 1000 * p.error_mm, 0, p.area_mm2, line_of(program, p.machined_stamp), 0});
+    out.push_back({p.crossing_mm, p.normal, 1000 * p.error_mm, 0, p.area_mm2, line_of(program, p.machined_stamp), 0});
   return out;
 }
 

@@ -34,7 +34,7 @@ void write_job(const TempFolder& folder, const std::string& more = "", const std
       "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\n"
       "overhang_mm = 30.0\nhelix_deg = 30\n[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n[stock]\n"
       "box_mm = [[0, -0.5, -2], [8, 2, 0]]\nallowance_mm = 0.1\n[simulation]\nvoxel_mm = 0.2\n"
-      "coupling = \"rigid\"\n[compensation]\ntolerance_um = 2.5\nmax_overcut_um = 6.0\nmax_rounds = 3\n" +
+      "coupling = \"rigid\"\n[compensation]\ntolerance_um = 3.0\nmax_overcut_um = 6.0\nmax_rounds = 3\n" +
           more);
 }
 
@@ -57,7 +57,7 @@ TEST(CompensateCommand, WritesProgramAndFiguresAndTheSameBytesAgain) {
   EXPECT_NE(file_text(folder / "a.nc"), kWall);
   const auto json = nlohmann::json::parse(file_text(folder / "a.json"));
   EXPECT_LT(json["after_um"]["rms"], json["before_um"]["rms"]);
-  EXPECT_LT(json["split_after_um"]["correctable"], 0.3 * json["split_before_um"]["correctable"].get<double>());
+  EXPECT_LT(json["split_after_um"]["correctable"], 0.5 * json["split_before_um"]["correctable"].get<double>());
   EXPECT_EQ(json["into_part"]["within_tolerance"], true);
   EXPECT_LE(json["into_part"]["without_bending"]["deepest_um"], 100);
   for (const char* row : {"a shift can correct", "if the tool did not bend at all", "stopped: "})
