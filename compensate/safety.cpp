@@ -74,10 +74,13 @@ Depth depth_without_bending(const machine::Job& job, const deflection::Target& t
   }
   Depth out;
   double over = 0, area = 0;
+  std::vector<std::pair<double, double>> depths;
   for (const auto& p : removal::compare_surfaces(stock, target.surface)) {
     area += p.area_mm2;
     add_point(out, p, tolerance_um, over);
+    depths.emplace_back(-1000 * p.error_mm, p.area_mm2);
   }
+  out.held_um = held_um(std::move(depths), area);
   out.over_share = area > 0 ? over / area : 0;
   return out;
 }

@@ -113,6 +113,7 @@ TEST(Compensate, HoldsToTheLargestShift_slow) {
   EXPECT_LE(c.max_shift_mm, 0.004 + 1e-12);
   EXPECT_GT(c.rounds.back().limited_points, 0u);
   EXPECT_GT(c.split_after.limited_um, 5);
+  EXPECT_GT(c.depth_without_bending.held_um, 0.5 * c.depth_without_bending.deepest_um);
   EXPECT_LE(c.depth_without_bending.deepest_um, 4.0 + 1.0);  // and what a grid of 0.15 mm shows of cusps
 }
 
