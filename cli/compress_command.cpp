@@ -8,6 +8,7 @@
 #include "base/output_file.h"
 #include "base/units.h"
 #include "cli/console.h"
+#include "cli/program_figures.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
 #include "nc/summary.h"
@@ -16,22 +17,13 @@
 namespace camber::cli {
 namespace {
 
-/// What is told of a program, before and after.
-struct Figures {
-  std::size_t blocks = 0, lines = 0, arcs = 0;
-  double length_mm = 0;
+struct Figures : ProgramFigures {
   std::optional<double> time_s;
 };
 
-Figures figures_of(const nc::Program& program, const nc::Interpretation& moves,
-                   const std::optional<machine::Machine>& machine) {
-  Figures f;
-  for (std::size_t b = 0; b < program.blocks.size(); ++b) f.blocks += program.blocks[b].word_count > 0;
-  for (const nc::Move& move : moves.moves) {
-    if (move.kind != nc::MoveKind::linear && move.kind != nc::MoveKind::arc) continue;
-    ++(move.kind == nc::MoveKind::arc ? f.arcs : f.lines);
-    f.length_mm += nc::length_mm(moves, move);
-  }
+Figures with_time(const nc::Program& program, const nc::Interpretation& moves,
+                  const std::optional<machine::Machine>& machine) {
+  Figures f{figures_of(program, moves), std::nullopt};
   if (machine) f.time_s = feedmodel::cycle_time(moves, *machine).all.time.total_s();
   return f;
 }
@@ -97,7 +89,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   const nc::Program new_program = nc::read_program(SourceText(arguments.output, result.text), again);
   const nc::Interpretation new_moves = nc::interpret(new_program, interpreter, again);
   again.throw_if_errors();
-  const Figures before = figures_of(program, moves, machine), after = figures_of(new_program, new_moves, machine);
+  const Figures before = with_time(program, moves, machine), after = with_time(new_program, new_moves, machine);
 
   write_file(arguments.output, result.text);
   if (!arguments.json.empty()) write_file(arguments.json, json_report(before, after, result, arguments.tolerance_mm));

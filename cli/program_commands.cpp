@@ -202,16 +202,22 @@ CLI::Validator length_validator() {
       "");
 }
 
+/// What every command takes that writes a path anew.
+template <class Arguments>
+void add_rewriting(CLI::App& command, Arguments& arguments) {
+  command
+      .add_option("--tolerance-mm", arguments.tolerance_mm, "the new path lies within this of the old one, and back")
+      ->required()
+      ->check(length_validator())
+      ->type_name("X");
+  command.add_option("-o,--output", arguments.output, "the new program")->required()->type_name("OUT.nc");
+}
+
 void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("compress", "many G1 to few G1, G2 and G3 within a tolerance");
   auto arguments = std::make_shared<CompressArguments>();
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
-  command
-      ->add_option("--tolerance-mm", arguments->tolerance_mm, "the new path lies within this of the old one, and back")
-      ->required()
-      ->check(length_validator())
-      ->type_name("X");
-  command->add_option("-o,--output", arguments->output, "the new program")->required()->type_name("OUT.nc");
+  add_rewriting(*command, *arguments);
   command->add_option("--machine", arguments->machine, "machine.toml: tells the times before and after")
       ->type_name("M.toml");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
@@ -236,12 +242,7 @@ void add_resegment(CLI::App& app, const GlobalOptions& options, Action& chosen) 
   auto arguments = std::make_shared<ResegmentArguments>();
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
-  command
-      ->add_option("--tolerance-mm", arguments->tolerance_mm, "the new path lies within this of the old one, and back")
-      ->required()
-      ->check(length_validator())
-      ->type_name("X");
-  command->add_option("-o,--output", arguments->output, "the new program")->required()->type_name("OUT.nc");
+  add_rewriting(*command, *arguments);
   command->add_option("--length-mm", arguments->length_mm, "of the segments; else the fastest is looked for")
       ->check(length_validator())
       ->type_name("L");

@@ -5,30 +5,15 @@
 
 #include "base/output_file.h"
 #include "cli/console.h"
+#include "cli/program_figures.h"
 #include "feedmodel/control_options.h"
 #include "repath/fastest.h"
 
 namespace camber::cli {
 namespace {
 
-struct Figures {
-  std::size_t blocks = 0, lines = 0, arcs = 0;
-  double length_mm = 0;
-};
-
-Figures figures_of(const nc::Program& program, const nc::Interpretation& moves) {
-  Figures f;
-  for (std::size_t b = 0; b < program.blocks.size(); ++b) f.blocks += program.blocks[b].word_count > 0;
-  for (const nc::Move& move : moves.moves) {
-    if (move.kind != nc::MoveKind::linear && move.kind != nc::MoveKind::arc) continue;
-    ++(move.kind == nc::MoveKind::arc ? f.arcs : f.lines);
-    f.length_mm += nc::length_mm(moves, move);
-  }
-  return f;
-}
-
 struct Report {
-  Figures before, after;
+  ProgramFigures before, after;
   repath::ContourFigures contour_before;
   const repath::Fastest& result;
   double tolerance_mm;

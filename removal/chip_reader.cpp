@@ -69,35 +69,45 @@ ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, st
       first_id_(first_id),
       voxel_mm_(voxel_mm),
       shifts_(shifts),
-      kernels_(kernels()) {}
+      kernels_(kernels()) {
+  places_.reserve(stamps.size());
+  for (std::size_t k = 0; k < stamps.size(); ++k) places_.push_back(place_of(k));
+}
+
+ChipReader::Place ChipReader::place_of(std::size_t k) const {
+  const Stamp& stamp = stamps_[k];
+  Place place{};
+  place.view.per_voxel = static_cast<float>(1 / voxel_mm_);
+  for (int a = 0; a < 3; ++a) {
+    const double at = stamp.tip_mm[a] / voxel_mm_, base = std::floor(at);
+    place.view.fraction[a] = static_cast<float>(at - base);
+    place.view.feed_mm[a] = static_cast<float>(stamp.feed_per_tooth_mm[a]);
+    place.base[static_cast<std::size_t>(a)] = static_cast<int>(base);
+  }
+  if (shifts_) {
+    const auto row = static_cast<std::ptrdiff_t>(k);
+    place.view.shift = {shifts_->row(row), stamp.first ? shifts_->row(row) : shifts_->row(row - 1),
+                        static_cast<int>(shifts_->nodes()), shifts_->steps,
+                        shifts_->nodes() > 1 ? static_cast<float>(shifts_->node_height_mm[1]) : 1.0f};
+    place.view.lag_per_mm = static_cast<float>(envelope_.lag_per_mm);
+    place.view.per_rad = static_cast<float>(envelope_.steps / (4 * kPi));
+    place.view.most_tilt_mm = static_cast<float>(kMostTilt * stamp.feed_per_tooth_mm.norm());
+  }
+  return place;
+}
 
 void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t k, std::uint32_t patch,
                       std::span<const std::int32_t> earlier, std::vector<StampChip>& out) const {
-  const Stamp& stamp = stamps_[static_cast<std::size_t>(k)];
-  StampView view{};
+  const Place& place = places_[static_cast<std::size_t>(k)];
   TileView tile_view{stocks.now->distance.data(), {}};
-  view.per_voxel = static_cast<float>(1 / voxel_mm_);
-  for (int a = 0; a < 3; ++a) {
-    const double at = stamp.tip_mm[a] / voxel_mm_, base = std::floor(at);
-    view.fraction[a] = static_cast<float>(at - base);
-    view.feed_mm[a] = static_cast<float>(stamp.feed_per_tooth_mm[a]);
-    tile_view.from[a] = tile[static_cast<std::size_t>(a)] * Tile::kCore - static_cast<std::int32_t>(base);
-  }
-  if (shifts_) {
-    view.shift = {shifts_->row(k), stamp.first ? shifts_->row(k) : shifts_->row(k - 1),
-                  static_cast<int>(shifts_->nodes()), shifts_->steps,
-                  shifts_->nodes() > 1 ? static_cast<float>(shifts_->node_height_mm[1]) : 1.0f};
-    view.lag_per_mm = static_cast<float>(envelope_.lag_per_mm);
-    view.per_rad = static_cast<float>(envelope_.steps / (4 * kPi));
-    view.most_tilt_mm = static_cast<float>(kMostTilt * stamp.feed_per_tooth_mm.norm());
-  }
+  for (std::size_t a = 0; a < 3; ++a) tile_view.from[a] = tile[a] * Tile::kCore - place.base[a];
   const float air = 0.5f * static_cast<float>(voxel_mm_);
   const PatchLanes::Range range = lanes_.range(patch);
   LaneReading reading;
   for (int from = 0; from < range.count; from += LaneReading::kMost) {
     const int count = std::min(range.count - from, LaneReading::kMost);
     const int whole = (count + PatchLanes::kVector - 1) / PatchLanes::kVector * PatchLanes::kVector;
-    kernels_.read_points(view_, range.from + from, whole, view, tile_view, reading);
+    kernels_.read_points(view_, range.from + from, whole, place.view, tile_view, reading);
     for (int l = 0; l < count; ++l) {
       if (reading.cell[l] < 0) continue;
       // The trilinear field is never below the ridge's, but for curvature: so it tells what is in air, and what is

@@ -42,6 +42,12 @@ class ChipReader {
 
  private:
   struct Cell;
+  /// What the kernels ask of a stamp, and the voxel from which it is told.
+  struct Place {
+    StampView view;
+    Index3 base;
+  };
+  Place place_of(std::size_t k) const;
   float thickness(const TileStocks& stocks, const Cell& cell, const Vec3& normal) const;
   float thickness_over(std::span<const std::int32_t> earlier, const Vec3& point, const Vec3& normal) const;
   float thinnest_general(const Vec3& normal, const std::array<Vec3, 8>& tip, const CornerLanes& corners) const;
@@ -54,6 +60,7 @@ class ChipReader {
   double voxel_mm_;
   const ShiftTable* shifts_;
   const Kernels& kernels_;
+  std::vector<Place> places_;  ///< of the stretch's stamps
 };
 
 }  // namespace camber::removal

@@ -1,8 +1,5 @@
 #pragma once
 // What a machine makes of a path: how long it takes and how far it strays from the one that was meant.
-#include <string>
-#include <vector>
-
 #include "feedmodel/timed_path.h"
 #include "machine/machine.h"
 #include "nc/interpreter.h"

@@ -2,8 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
+#include "repath/corners.h"
 #include "repath/resegment.h"
 #include "repath/smooth_curve.h"
 
@@ -33,7 +32,10 @@ class Layouter {
       : old_(points), options_(options), length_(length_mm), increment_(increment_mm) {}
 
   Layout run() {
-    const std::vector<bool> corners = space_corners_of(old_, options_.corner_rad, 5 * options_.tolerance_mm);
+    const std::vector<bool> corners = corners_of(old_, {.least_rad = options_.corner_rad,
+                                                        .times_beside = 3,
+                                                        .always_rad = kSharp,
+                                                        .leg_mm = 5 * options_.tolerance_mm});
     out_.points = {old_.front()};
     out_.old_point = {0};
     std::size_t begin = 0;
@@ -141,32 +143,6 @@ class Layouter {
 }  // namespace
 
 double segment_length_mm(double feed_mm_per_s, double block_time_s) { return feed_mm_per_s * block_time_s; }
-
-std::vector<bool> space_corners_of(std::span<const Vec3> points, double corner_rad, double leg_mm) {
-  const std::size_t n = points.size();
-  std::vector<bool> corners(n, false);
-  if (n < 3) return corners;
-  std::vector<double> length(n, 0), turn(n, 0);
-  std::vector<std::size_t> back_of(n, 0), ahead_of(n, 0);
-  for (std::size_t k = 1; k < n; ++k) length[k] = length[k - 1] + (points[k] - points[k - 1]).norm();
-  for (std::size_t k = 1, back = 0, ahead = 1; k + 1 < n; ++k) {
-    while (back + 1 < k && length[k] - length[back + 1] >= leg_mm) ++back;
-    ahead = std::max(ahead, k + 1);
-    while (ahead + 1 < n && length[ahead] - length[k] < leg_mm) ++ahead;
-    back_of[k] = back, ahead_of[k] = ahead;
-    const Vec3 in = points[k] - points[back], out = points[ahead] - points[k];
-    turn[k] = std::atan2(in.cross(out).norm(), in.dot(out));
-  }
-  for (std::size_t k = 1; k + 1 < n; ++k) {
-    if (turn[k] <= corner_rad || (turn[k] <= kSharp && turn[k] <= 3 * std::max(turn[back_of[k]], turn[ahead_of[k]])))
-      continue;
-    bool sharpest = true;  // its neighbours within the legs see a part of the same turn
-    for (std::size_t i = back_of[k] + 1; sharpest && i < ahead_of[k]; ++i)
-      sharpest = turn[i] < turn[k] || (turn[i] == turn[k] && i >= k);
-    corners[k] = sharpest;
-  }
-  return corners;
-}
 
 double length_for(const SpacePath& path, double feed_mm_per_s, const ResegmentOptions& options) {
   constexpr double kLeast = 0.01;

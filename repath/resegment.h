@@ -32,11 +32,6 @@ struct SpacePath {
 };
 SpacePath space_path_of(const nc::Interpretation& moves, const Run& run);
 
-/// Vertices at which the path turns by more than 60 degrees, or by more than `corner_rad` and three times as much as
-/// beside them (a coarse circle turns everywhere alike); turns are measured between legs of at least `leg_mm`. First
-/// and last are none.
-std::vector<bool> space_corners_of(std::span<const Vec3> points, double corner_rad, double leg_mm);
-
 /// A path laid out again.
 struct Layout {
   std::vector<Vec3> points;              ///< from the first to the last one of the old path

@@ -116,6 +116,22 @@ class RunFinder {
   unsigned still_ = 0;
 };
 
+/// The points of a run as `to_point` makes them of places in the text's frame.
+template <class Path, class ToPoint>
+Path path_with(const nc::Interpretation& moves, const Run& run, ToPoint to_point) {
+  Path path;
+  const auto add = [&](const nc::Move& move, const Vec3& p) {
+    const auto point = to_point(moves.frame_of(move).to_program(p));
+    if (!path.points.empty() && point == path.points.back()) return;
+    path.points.push_back(point);
+    path.block.push_back(move.block);
+  };
+  const nc::Move& first = moves.moves[run.first_move];
+  add(first, first.start_mm);
+  for (std::uint32_t m = run.first_move; m <= run.last_move; ++m) add(moves.moves[m], moves.moves[m].end_mm);
+  return path;
+}
+
 }  // namespace
 
 std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, bool in_space) {
@@ -126,33 +142,13 @@ RunPath path_of(const nc::Interpretation& moves, const Run& run) {
   const nc::PlaneAxes axes = nc::axes_of(run.normal == 2   ? nc::Plane::xy
                                          : run.normal == 1 ? nc::Plane::zx
                                                            : nc::Plane::yz);
-  RunPath path;
-  const auto add = [&](const nc::Move& move, const Vec3& p) {
-    const Vec3 in_text = moves.frame_of(move).to_program(p);
-    const Vec2 point(without_noise(in_text[axes.first]), without_noise(in_text[axes.second]));
-    if (!path.points.empty() && point == path.points.back()) return;
-    path.points.push_back(point);
-    path.block.push_back(move.block);
-  };
-  const nc::Move& first = moves.moves[run.first_move];
-  add(first, first.start_mm);
-  for (std::uint32_t m = run.first_move; m <= run.last_move; ++m) add(moves.moves[m], moves.moves[m].end_mm);
-  return path;
+  return path_with<RunPath>(
+      moves, run, [&](const Vec3& p) { return Vec2(without_noise(p[axes.first]), without_noise(p[axes.second])); });
 }
 
 SpacePath space_path_of(const nc::Interpretation& moves, const Run& run) {
-  SpacePath path;
-  const auto add = [&](const nc::Move& move, const Vec3& p) {
-    const Vec3 in_text = moves.frame_of(move).to_program(p);
-    const Vec3 point(without_noise(in_text.x()), without_noise(in_text.y()), without_noise(in_text.z()));
-    if (!path.points.empty() && point == path.points.back()) return;
-    path.points.push_back(point);
-    path.block.push_back(move.block);
-  };
-  const nc::Move& first = moves.moves[run.first_move];
-  add(first, first.start_mm);
-  for (std::uint32_t m = run.first_move; m <= run.last_move; ++m) add(moves.moves[m], moves.moves[m].end_mm);
-  return path;
+  return path_with<SpacePath>(
+      moves, run, [](const Vec3& p) { return Vec3(without_noise(p.x()), without_noise(p.y()), without_noise(p.z())); });
 }
 
 }  // namespace camber::repath
