@@ -75,6 +75,7 @@ class Cutter {
          const CutOptions& options)
       : stock_(stock),
         options_(options),
+        rigid_(options.coupling == machine::Coupling::rigid),
         top_mm_(engaged_top_mm(stock, tool, stamps)),
         envelope_(removal::make_envelope(tool, std::max(0.0, top_mm_ - stock.voxel_mm()), options.envelope_step_mm,
                                          options.rotation_step_rad, stock.voxel_mm())),
@@ -84,7 +85,6 @@ class Cutter {
     if (!options.blank) own_blank_.emplace(stock);
     blank_ = options.blank ? options.blank : &*own_blank_;
     removal::make_patches(envelope_, 0.6 * stock.band_mm());
-    if (options.coupling == machine::Coupling::rigid) undeflected_.emplace(stock);
   }
 
   /// Cuts stamps from ... from + count - 1 of all.
@@ -95,28 +95,21 @@ class Cutter {
     ShiftTable shifts(stamps.size(), model_.steps(), model_.node_height_mm());
     if (!last_row_.empty()) std::copy(last_row_.begin(), last_row_.end(), shifts.row(-1));
     // The last loaded stamp's state is the first guess for all.
-    if (!undeflected_ && !guess_row_.empty())
+    if (!rigid_ && !guess_row_.empty())
       for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
         std::copy(guess_row_.begin(), guess_row_.end(), shifts.row(k));
     std::vector<StampLoad> loads(stamps.size());
-    Stretch bent(stock_, blank_, envelope_, all, from, count,
-                 {.engage = !undeflected_, .first_id = first_id, .bent_before_mm = most_bent_mm_});
-    if (undeflected_) {
-      for (std::size_t at = 0; at < count; at += options_.rigid_engage_stamps) {
-        const std::size_t n = std::min(options_.rigid_engage_stamps, count - at);
-        Stretch straight(*undeflected_, blank_, envelope_, all, from + at, n, {.first_id = first_id});
-        const Engagement engagement = straight.carve(nullptr);
-        evaluate(engagement, stamps, at, n, shifts, loads);
-        keep_turn(engagement, all, from + at, n, result);
-        result.stock_mm3 += straight.commit();
-      }
-      bent.carve(&shifts);
-      bent.commit();
+    Stretch stretch(stock_, blank_, envelope_, all, from, count,
+                    {.first_id = first_id, .bent_before_mm = most_bent_mm_});
+    Engagement engagement;
+    if (rigid_) {
+      engagement = stretch.carve(nullptr);
+      evaluate(engagement, stamps, shifts, loads);
     } else {
-      const Engagement engagement = settle(bent, stamps, shifts, loads, result);
-      keep_turn(engagement, all, from, count, result);
-      result.stock_mm3 += bent.commit();
+      engagement = settle(stretch, stamps, shifts, loads, result);
     }
+    keep_turn(engagement, all, from, count, result);
+    result.stock_mm3 += stretch.commit();
     if (options_.surface) options_.surface->mark(envelope_, stamps, shifts, first_id + static_cast<std::int32_t>(from));
     for (std::size_t k = 0; k < stamps.size(); ++k) {
       if (!contacts.empty())
@@ -125,7 +118,7 @@ class Cutter {
       result.chip_mm3 += loads[k].chip_mm3;
     }
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
-    for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
+    for (std::ptrdiff_t k = 0; !rigid_ && k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
       most_bent_mm_ = std::max(most_bent_mm_, shifts.largest_mm(k));
     const float* last = shifts.row(static_cast<std::ptrdiff_t>(stamps.size()) - 1);
     last_row_.assign(last, last + shifts.row_size());
@@ -146,16 +139,15 @@ class Cutter {
     double rms_um = 0, size_um = 0;
   };
 
-  /// Deflection straight from the chips of stamps from ... from + count - 1.
-  void evaluate(const Engagement& engagement, std::span<const Stamp> stamps, std::size_t from, std::size_t count,
-                ShiftTable& shifts, std::vector<StampLoad>& loads) const {
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+  /// Deflection straight from the chips.
+  void evaluate(const Engagement& engagement, std::span<const Stamp> stamps, ShiftTable& shifts,
+                std::vector<StampLoad>& loads) const {
+    tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
       ToothPass pass;
-      model_.evaluate(engagement.of(k), passings_ + from + k, stamps[from + k].feed_per_tooth_mm, pass);
-      loads[from + k] = summarize(pass);
-      loads[from + k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
-      std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(),
-                shifts.row(static_cast<std::ptrdiff_t>(from + k)));
+      model_.evaluate(engagement.of(k), passings_ + k, stamps[k].feed_per_tooth_mm, pass);
+      loads[k] = summarize(pass);
+      loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
+      std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(), shifts.row(static_cast<std::ptrdiff_t>(k)));
     });
   }
 
@@ -235,10 +227,10 @@ class Cutter {
   std::optional<Stock> own_blank_;
   const Stock* blank_ = nullptr;  ///< before the first stamp
   const CutOptions& options_;
+  bool rigid_;
   double top_mm_;
   EnvelopeGrid envelope_;
   ToothPassModel model_;
-  std::optional<Stock> undeflected_;
   std::vector<float> last_row_, guess_row_;
   double most_bent_mm_ = 0;
   std::size_t passings_ = 0;  ///< tooth passings before the stretch
@@ -263,7 +255,7 @@ CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& 
 
 void sweep(Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps, std::int32_t first_id,
            double shrink_mm) {
-  constexpr std::size_t kStretch = 2000;
+  constexpr std::size_t kStretch = 10000;
   EnvelopeGrid envelope;
   envelope.shape = removal::shape_of(tool);
   for (std::size_t from = 0; from < stamps.size(); from += kStretch) {

@@ -43,8 +43,7 @@ struct CutOptions {
   double envelope_step_mm = 0.1;
   double rotation_step_rad = kPi / 180;
   std::size_t stretch_stamps = 400;              ///< solved and kept in memory at a time; static
-  std::size_t rigid_engage_stamps = 2000;        ///< rigid: engaged at a time
-  std::size_t rigid_stretch_stamps = 4000;       ///< rigid: bent cuts of many rows at a time hide each other's walls
+  std::size_t rigid_stretch_stamps = 2000;       ///< rigid: engaged and kept in memory at a time
   int max_rounds = 40;                           ///< of the static solution of one stretch
   double edge_ramp_mm = 0.002;                   ///< static only, see edge_force
   double settle_um = 0.1;                        ///< rms change of the deflection at which a stretch is settled, or ...
@@ -66,9 +65,9 @@ struct CutResult {
   TurnForces turn;               ///< empty without CutOptions::turn_from
 };
 
-/// Cuts `stock` with the bent cutter. Rigid coupling reads engagement from a stock of its own that the undeflected
-/// cutter carves. `contacts` (one a stamp, or empty) only serves StampLoad::contact_deflection_mm.
-/// Stamp ids in the stock are first_id + index.
+/// Cuts `stock`: with the bent cutter, or in rigid coupling, where no bending feeds back, with the undeflected one;
+/// what the bent one leaves is then in `surface` only. `contacts` (one a stamp, or empty) only serves
+/// StampLoad::contact_deflection_mm. Stamp ids in the stock are first_id + index.
 CutResult cut(removal::Stock& stock, const machine::Tool& tool, const machine::Material& material,
               std::span<const removal::Stamp> stamps, std::span<const Contact> contacts, std::int32_t first_id,
               const CutOptions& options);

@@ -78,7 +78,7 @@ void check_cutting(const machine::Job& job, const nc::Program& program, const nc
 }
 
 double field_bytes(const Vec3& size, double voxel, double band_voxels) {
-  constexpr double kCopies = 5;         // blank, target, machined, its blank, its undeflected twin
+  constexpr double kCopies = 4;         // blank, target, machined, blank of a later tool
   constexpr double kBytesPerVoxel = 8;  // distance and stamp
   constexpr double kLeaf = 8;
   const double area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());

@@ -137,7 +137,7 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
     out.cut.unsettled += cut_run.unsettled;
     if (cut_options.turn_from) out.cut.turn = std::move(cut_run.turn);
   });
-  out.surface = map.take(*out.machined);
+  out.surface = map.take(target.blank);
   std::vector<double> error_um, area;
   for (const auto& p : out.surface) {
     error_um.push_back(1000 * p.error_mm);

@@ -8,34 +8,39 @@
 namespace camber::removal {
 namespace {
 
-/// `reach`: no voxel farther from a ball's centre, or from a cutter's axis, is changed. `low`: nor one below.
-struct NewTip {
-  float x, y, z, bend, reach, low;
+/// Places of stamps, one for all columns or one for each. `reach`: no voxel farther from a ball's centre, or from a
+/// cutter's axis, is changed; nor one by more than `under` below the tip.
+struct NewTips {
+  const float *x, *y, *z;
+  float bend, reach, under;
 };
 
-/// One line of columns: out > 0 where the stamp may change one. Written without branches, for vectors.
-template <bool ball>
+/// A line of columns: out > 0 where the stamp may change one. Written without branches, for vectors.
+template <bool ball, bool each>
 inline bool test_line(const float* cx, const float* cy, const float* cz, const float* cbend, const float* top_mm,
-                      float px, float voxel, const NewTip& tip, float radius, float* out) {
-  const float dx2 = (px - tip.x) * (px - tip.x);
-  const float per_reach = 1 / (2 * tip.reach);
+                      int first, int end, float px, float voxel, const NewTips& tips, float radius, float* out) {
+  const float reach2 = tips.reach * tips.reach;
+  const float x = tips.x[0], y = tips.y[0], z = tips.z[0];
   int any = 0;
-  for (int j = 0; j < ColumnCover::kLine; ++j) {
+  for (int j = first; j < end; ++j) {
+    const float tx = each ? tips.x[j] : x, ty = each ? tips.y[j] : y, tz = each ? tips.z[j] : z;
     const float py = static_cast<float>(j) * voxel;
-    const float dx = tip.x - cx[j], dy = tip.y - cy[j], dz = tip.z - cz[j];
-    const float flat = (px - 0.5f * (tip.x + cx[j])) * dx + (py - 0.5f * (tip.y + cy[j])) * dy;
-    const float slack = tip.bend + cbend[j];
-    const float threshold = -slack * (tip.reach + slack);
+    const float dx = tx - cx[j], dy = ty - cy[j], dz = tz - cz[j];
+    const float flat = (px - 0.5f * (tx + cx[j])) * dx + (py - 0.5f * (ty + cy[j])) * dy;
+    const float slack = tips.bend + cbend[j];
+    const float threshold = -slack * (tips.reach + slack);
     const float highest = top_mm[j] - voxel;
-    float lowest = tip.low;
+    float lowest = tz - tips.under;
     float margin = std::max(flat - threshold, -dz);
     if constexpr (ball) {
-      // A sphere of radius r is at least rho^2 / 2r above its lowest point.
-      lowest += (dx2 + (py - tip.y) * (py - tip.y)) * per_reach;
-      const float z = dz > 0 ? highest : lowest;
-      const float space = flat + (z - radius - 0.5f * (tip.z + cz[j])) * dz - threshold;
-      const float below = radius + std::min(tip.z, cz[j]) - highest;
-      margin = below >= 0 ? space : margin;
+      // The sphere of all that a stamp may change.
+      const float left = reach2 - (px - tx) * (px - tx) - (py - ty) * (py - ty);
+      lowest = tz + radius - std::sqrt(std::max(left, 0.0f));
+      // Of two balls on their shanks: half the difference of the squared distances from where the axes begin.
+      const float level = (dz > 0 ? highest : lowest) - radius;
+      const float before = std::min(level - cz[j], 0.0f), now = std::min(level - tz, 0.0f);
+      margin = flat + 0.5f * (before * before - now * now) - threshold;
+      margin = left >= 0 ? margin : -1.0f;
     }
     margin = lowest <= highest ? margin : -1.0f;
     out[j] = margin;
@@ -45,10 +50,18 @@ inline bool test_line(const float* cx, const float* cy, const float* cz, const f
 }
 
 CAMBER_VECTOR_CLONES
-bool test_columns(const float* cx, const float* cy, const float* cz, const float* cbend, const float* top_mm, float px,
-                  float voxel, NewTip tip, float radius, bool ball, float* __restrict out) {
-  return ball ? test_line<true>(cx, cy, cz, cbend, top_mm, px, voxel, tip, radius, out)
-              : test_line<false>(cx, cy, cz, cbend, top_mm, px, voxel, tip, radius, out);
+bool test_columns(const float* cx, const float* cy, const float* cz, const float* cbend, const float* top_mm, int first,
+                  int end, float px, float voxel, NewTips tips, float radius, bool ball, float* __restrict out) {
+  return ball ? test_line<true, false>(cx, cy, cz, cbend, top_mm, first, end, px, voxel, tips, radius, out)
+              : test_line<false, false>(cx, cy, cz, cbend, top_mm, first, end, px, voxel, tips, radius, out);
+}
+
+CAMBER_VECTOR_CLONES
+bool test_columns_each(const float* cx, const float* cy, const float* cz, const float* cbend, const float* top_mm,
+                       int first, int end, float px, float voxel, NewTips tips, float radius, bool ball,
+                       float* __restrict out) {
+  return ball ? test_line<true, true>(cx, cy, cz, cbend, top_mm, first, end, px, voxel, tips, radius, out)
+              : test_line<false, true>(cx, cy, cz, cbend, top_mm, first, end, px, voxel, tips, radius, out);
 }
 
 std::size_t line_at(int column) {
@@ -64,7 +77,7 @@ ColumnCover::ColumnCover(const Tile& tile, const Index3& index, double voxel_mm,
       radius_(static_cast<float>(shape.radius_mm)),
       ball_(shape.ball()) {
   for (int a = 0; a < 3; ++a) origin_mm_[a] = index[a] * Tile::kCore * voxel_mm;
-  x_.fill(kNone), y_.fill(kNone), z_.fill(0), bend_.fill(0), top_mm_.fill(0), top_.fill(Tile::kSide);
+  x_.fill(kNone), y_.fill(kNone), z_.fill(0), bend_.fill(0), top_mm_.fill(-kNone), top_.fill(Tile::kSide);
   for (int c = 0; c < kColumns; ++c) {
     lower_top(tile, c);
     // The stamp that set the voxel nearest to the surface.
@@ -92,18 +105,25 @@ void ColumnCover::lower_top(const Tile& tile, int column) {
   std::int16_t& top = top_[static_cast<std::size_t>(column)];
   if (top == 0) return;
   while (top > 0 && distance[top - 1] >= band_) --top;
-  top_mm_[line_at(column)] = static_cast<float>(top) * voxel_;
+  top_mm_[line_at(column)] = top > 0 ? static_cast<float>(top) * voxel_ : -kNone;
   air_columns_ += top == 0;
 }
 
-bool ColumnCover::changeable(int i, const Vec3& tip_mm, double bend_mm, std::array<float, kLine>& out) const {
-  const Eigen::Vector3f tip = (tip_mm - origin_mm_).cast<float>();
-  const auto bend = static_cast<float>(bend_mm);
+bool ColumnCover::changeable(int i, int first, int end, const Eigen::Vector3f& tip, float bend,
+                             std::array<float, kLine>& out) const {
   const auto at = static_cast<std::size_t>(i * kLine);
-  return test_columns(x_.data() + at, y_.data() + at, z_.data() + at, bend_.data() + at, top_mm_.data() + at,
-                      static_cast<float>(i) * voxel_, voxel_,
-                      {tip.x(), tip.y(), tip.z(), bend, radius_ + band_ + bend, tip.z() - band_ - bend}, radius_, ball_,
+  return test_columns(x_.data() + at, y_.data() + at, z_.data() + at, bend_.data() + at, top_mm_.data() + at, first,
+                      end, static_cast<float>(i) * voxel_, voxel_,
+                      {&tip.x(), &tip.y(), &tip.z(), bend, radius_ + band_ + bend, band_ + bend}, radius_, ball_,
                       out.data());
+}
+
+bool ColumnCover::changeable_each(int i, int first, int end, const float* x, const float* y, const float* z,
+                                  std::array<float, kLine>& out) const {
+  const auto at = static_cast<std::size_t>(i * kLine);
+  return test_columns_each(x_.data() + at, y_.data() + at, z_.data() + at, bend_.data() + at, top_mm_.data() + at,
+                           first, end, static_cast<float>(i) * voxel_, voxel_, {x, y, z, 0.0f, radius_ + band_, band_},
+                           radius_, ball_, out.data());
 }
 
 bool ColumnCover::changeable_after(const Vec3& before_mm, double before_bend_mm, const Vec3& tip_mm,
@@ -114,18 +134,20 @@ bool ColumnCover::changeable_after(const Vec3& before_mm, double before_bend_mm,
   const double flat = std::max(-mid.x() * step.x(), (side - mid.x()) * step.x()) +
                       std::max(-mid.y() * step.y(), (side - mid.y()) * step.y());
   const double threshold = -slack * (radius_ + band_ + 2 * slack);
-  if (ball_ && side <= radius_ + std::min(tip_mm.z(), before_mm.z()) - origin_mm_.z())
-    return flat + (step.z() > 0 ? side - radius_ - mid.z() : -radius_ - mid.z()) * step.z() > threshold;
+  if (ball_) {
+    const double level = (step.z() > 0 ? side : 0) + origin_mm_.z() - radius_;
+    const double before = std::min(level - before_mm.z(), 0.0), now = std::min(level - tip_mm.z(), 0.0);
+    return flat + 0.5 * (before * before - now * now) > threshold;
+  }
   return flat > threshold || step.z() < 0;
 }
 
-void ColumnCover::cut(const Tile& tile, int i, int j, const Vec3& tip_mm, double bend_mm, bool changed) {
+void ColumnCover::cut(const Tile& tile, int i, int j, const Eigen::Vector3f& tip, float bend_mm, bool changed) {
   const int column = i * Tile::kSide + j;
   const std::size_t at = line_at(column);
   if (!changed && x_[at] < kNone) return;
-  const Eigen::Vector3f tip = (tip_mm - origin_mm_).cast<float>();
   x_[at] = tip.x(), y_[at] = tip.y(), z_[at] = tip.z();
-  bend_[at] = static_cast<float>(bend_mm);
+  bend_[at] = bend_mm;
   lower_top(tile, column);
 }
 

@@ -14,8 +14,8 @@ namespace camber::removal {
 /// Columns are the tile's rows of voxels along z, numbered i * kSide + j. Places count from the tile's voxel (0, 0, 0).
 ///
 /// Each column remembers one stamp that has cut it. Another stamp of the same cutter changes no voxel that is not
-/// nearer to it than to the first: for a ball, below both centres, that is a plane between the two; for every cutter
-/// a tip that is neither lower nor nearer in the plane changes nothing.
+/// nearer to it than to the first: for a ball on its shank nearer to the axis from the centre on upwards; for every
+/// other cutter a tip that is neither lower nor nearer in the plane changes nothing.
 class ColumnCover {
  public:
   static constexpr int kColumns = Tile::kSide * Tile::kSide;
@@ -31,17 +31,43 @@ class ColumnCover {
   /// First voxel of the column from which on all are air.
   int top(int column) const { return top_[static_cast<std::size_t>(column)]; }
   const std::int16_t* tops(int i) const { return top_.data() + i * Tile::kSide; }  ///< of column (i, 0) and on
+  const float* tops_mm(int i) const {
+    return top_mm_.data() + i * kLine;
+  }  ///< the same, from voxel 0, mm; far below past the last
   bool all_air() const { return air_columns_ == kColumns; }
+  Eigen::Vector3f from_origin(const Vec3& place_mm) const { return (place_mm - origin_mm_).cast<float>(); }
+
+  /// What a column remembers.
+  struct Remembered {
+    bool known;
+    Eigen::Vector3f tip;
+    float bend_mm;
+  };
+  Remembered remembered(int i, int j) const {
+    const auto at = static_cast<std::size_t>(i * kLine + j);
+    return {x_[at] < kNone, {x_[at], y_[at], z_[at]}, bend_[at]};
+  }
 
   /// out[j] > 0: a stamp with this tip may change column (i, j); `bend_mm` bounds how far it leans.
   /// False when none of them may.
-  bool changeable(int i, const Vec3& tip_mm, double bend_mm, std::array<float, kLine>& out) const;
+  bool changeable(int i, const Vec3& tip_mm, double bend_mm, std::array<float, kLine>& out) const {
+    return changeable(i, 0, kLine, from_origin(tip_mm), static_cast<float>(bend_mm), out);
+  }
+  /// For columns j = first ... end - 1, whole vectors of 8; tips from the tile's voxel (0, 0, 0).
+  bool changeable(int i, int first, int end, const Eigen::Vector3f& tip, float bend_mm,
+                  std::array<float, kLine>& out) const;
+  /// With a stamp of its own for every column.
+  bool changeable_each(int i, int first, int end, const float* x, const float* y, const float* z,
+                       std::array<float, kLine>& out) const;
 
   /// False when this stamp, coming right after the one given, can change nothing in the tile.
   bool changeable_after(const Vec3& before_mm, double before_bend_mm, const Vec3& tip_mm, double bend_mm) const;
 
   /// After the stamp has been cut into the column: `changed` tells whether a voxel did.
-  void cut(const Tile& tile, int i, int j, const Vec3& tip_mm, double bend_mm, bool changed);
+  void cut(const Tile& tile, int i, int j, const Vec3& tip_mm, double bend_mm, bool changed) {
+    cut(tile, i, j, from_origin(tip_mm), static_cast<float>(bend_mm), changed);
+  }
+  void cut(const Tile& tile, int i, int j, const Eigen::Vector3f& tip, float bend_mm, bool changed);
 
  private:
   static constexpr float kNone = 1e9f;

@@ -61,11 +61,31 @@ struct LineCut {
   std::int32_t* stamp;                             ///< the same of the ids
   const float* changeable;                         ///< [kLine], > 0: the column may change
   const std::int16_t* top;                         ///< [kColumns], first voxel of the air above
+  int first = 0, end = kColumns;                   ///< columns
   std::int32_t id;
   int lowest;         ///< no voxel below is reached
   float dx, dy, z;    ///< of voxel 0 of column 0, from the tip, mm
   float voxel, band;  ///< mm
   float flat, corner, shrink;
+};
+
+/// Places of stamps in a tile, from its voxel (0, 0, 0), mm.
+struct TipLanes {
+  const float *x, *y, *z;
+};
+
+/// A line of columns, from column `first` up to `end` (whole vectors of 8), and for each of them the stamp that goes
+/// deepest at `z`.
+struct LineSearch {
+  int first, end;
+  TipLanes tips;
+  const std::int32_t* which;  ///< [count] of the tips
+  int count;
+  float x, voxel;  ///< mm, of the line; between columns
+  const float* z;  ///< [LineCut::kLine], mm
+  float flat, corner;
+  float *tip_x, *tip_y, *tip_z;  ///< [LineCut::kLine], out
+  std::int32_t* winner;          ///< [LineCut::kLine], out: index of a tip
 };
 
 /// What a bent cutter adds to it.
@@ -93,6 +113,10 @@ struct Kernels {
   /// stock = max(stock, -cutter), at most band; voxels that change take the id.
   LineResult (*cut_line)(const LineCut& line);
   LineResult (*cut_line_bent)(const LineCut& line, const LineBend& bend);
+  /// The same with a stamp of its own for every column, as LineSearch has found them; `x` of the line; ids are
+  /// line.id + winner.
+  LineResult (*cut_winners)(const LineCut& line, const LineSearch& search, const std::int32_t* id_of_tip);
+  void (*find_winners)(const LineSearch& search);
 };
 
 /// Those of the widest vectors that this processor has.

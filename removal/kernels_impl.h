@@ -224,29 +224,72 @@ struct Vectors {
     return true;
   }
 
+  /// Column j with the straight cutter, its axis at rho, voxel 0 at z0 above its tip.
+  static void cut_column(const LineCut& c, int j, float rho, float z0, int lowest, std::int32_t id,
+                         LineResult& result) {
+    const float reach = c.band + c.corner - c.shrink, qx = rho - c.flat;
+    if (qx > reach) return;
+    const int up = static_cast<int>((lowest_reached(qx, c.corner, reach) - z0) / c.voxel);
+    const int low = up > lowest ? up : lowest, top = c.top[j];
+    if (low >= top) return;
+    result.tried |= 1u << j;
+    bool changed = false;
+    const F rhos(rho), steps = ramp() * F(c.voxel), band(c.band), shrink(c.shrink);
+    for_vectors(low, top, [&](int k) {
+      const F z = F(z0 + static_cast<float>(k) * c.voxel) + steps;
+      const F v = xsimd::min(-(distance(rhos, z, c.flat, c.corner) + shrink), band);
+      changed |= take(c.distance + j * LineCut::kColumns + k, c.stamp + j * LineCut::kColumns + k, v, id);
+    });
+    if (changed) result.changed |= 1u << j;
+  }
+
   static LineResult cut_line(const LineCut& c) {
     LineResult result;
-    const float reach = c.band + c.corner - c.shrink, per_voxel = 1 / c.voxel, dx2 = c.dx * c.dx;
-    const F steps = ramp() * F(c.voxel), band(c.band), shrink(c.shrink);
-    for (int j = 0; j < LineCut::kColumns; ++j) {
+    const float dx2 = c.dx * c.dx;
+    for (int j = c.first; j < c.end; ++j) {
       if (!(c.changeable[j] > 0)) continue;
       const float dy = c.dy + static_cast<float>(j) * c.voxel;
-      const float rho = std::sqrt(dx2 + dy * dy), qx = rho - c.flat;
-      if (qx > reach) continue;
-      const int up = static_cast<int>((lowest_reached(qx, c.corner, reach) - c.z) * per_voxel);
-      const int low = up > c.lowest ? up : c.lowest, top = c.top[j];
-      if (low >= top) continue;
-      result.tried |= 1u << j;
-      bool changed = false;
-      const F rhos(rho);
-      for_vectors(low, top, [&](int k) {
-        const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
-        const F v = xsimd::min(-(distance(rhos, z, c.flat, c.corner) + shrink), band);
-        changed |= take(c.distance + j * LineCut::kColumns + k, c.stamp + j * LineCut::kColumns + k, v, c.id);
-      });
-      if (changed) result.changed |= 1u << j;
+      cut_column(c, j, std::sqrt(dx2 + dy * dy), c.z, c.lowest, c.id, result);
     }
     return result;
+  }
+
+  static LineResult cut_winners(const LineCut& c, const LineSearch& s, const std::int32_t* id_of_tip) {
+    LineResult result;
+    for (int j = c.first; j < c.end; ++j) {
+      if (!(c.changeable[j] > 0)) continue;
+      const float dx = s.x - s.tip_x[j], dy = static_cast<float>(j) * c.voxel - s.tip_y[j];
+      const int lowest = static_cast<int>((s.tip_z[j] - c.band) / c.voxel);  // below 0: not cut off downwards, but so
+      cut_column(c, j, std::sqrt(dx * dx + dy * dy), -s.tip_z[j], lowest > 0 ? lowest : 0,
+                 c.id + id_of_tip[s.winner[j]], result);
+    }
+    return result;
+  }
+
+  static void find_winners(const LineSearch& s) {
+    const bool ball = s.flat <= 0;
+    const F zero(0.0f), steps = ramp() * F(s.voxel);
+    for (int j = s.first; j < s.end; j += n) {
+      const F y = F(static_cast<float>(j) * s.voxel) + steps, z = load(s.z + j);
+      F best(1e30f), best_x(zero), best_y(zero), best_z(zero), winner(zero);
+      for (int c = 0; c < s.count; ++c) {
+        const int t = s.which[c];
+        const F tx(s.tips.x[t]), ty(s.tips.y[t]), tz(s.tips.z[t]);
+        const F dx = F(s.x) - tx, dy = y - ty, up = z - tz;
+        const F rho2 = dx * dx + dy * dy;
+        // Of balls the nearest centre.
+        const F below = xsimd::min(up - F(s.corner), zero);
+        const F rank = ball ? rho2 + below * below : distance(xsimd::sqrt(rho2), up, s.flat, s.corner);
+        const auto nearer = rank < best;
+        best = xsimd::select(nearer, rank, best);
+        best_x = xsimd::select(nearer, tx, best_x);
+        best_y = xsimd::select(nearer, ty, best_y);
+        best_z = xsimd::select(nearer, tz, best_z);
+        winner = xsimd::select(nearer, F(static_cast<float>(t)), winner);
+      }
+      best_x.store_unaligned(s.tip_x + j), best_y.store_unaligned(s.tip_y + j), best_z.store_unaligned(s.tip_z + j);
+      to_int(winner).store_unaligned(s.winner + j);
+    }
   }
 
   static LineResult cut_line_bent(const LineCut& c, const LineBend& bend) {
@@ -294,7 +337,9 @@ struct Vectors {
     return result;
   }
 
-  static constexpr Kernels table() { return {n, &read_points, &thinnest, &cut_line, &cut_line_bent}; }
+  static constexpr Kernels table() {
+    return {n, &read_points, &thinnest, &cut_line, &cut_line_bent, &cut_winners, &find_winners};
+  }
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "removal/batch_cut.h"
 #include "removal/carve.h"
 #include "removal/chip_reader.h"
 #include "removal/patch_lanes.h"
@@ -229,6 +230,7 @@ void Stretch::Impl::work(WorkTile& w, const ShiftTable* shifts, const ChipReader
                       bend_mm = options.bent_before_mm;
                       return true;
                     });
+  BatchCut batch_cut(envelope.shape, stock.voxel_mm(), stock.band_mm(), options.shrink_mm);
   const auto bend_of = [&](std::int32_t k) { return shifts ? bends[static_cast<std::size_t>(k)].largest_mm : 0.0; };
   const auto covers = [&](std::int32_t last, std::int32_t k) {
     return last >= 0 && !cover.changeable_after(stamps[static_cast<std::size_t>(last)].tip_mm, bend_of(last),
@@ -240,6 +242,11 @@ void Stretch::Impl::work(WorkTile& w, const ShiftTable* shifts, const ChipReader
     for (; touch != w.touches.end() && touch->stamp <= w.stamps[end - 1]; ++touch)
       reader->read(stocks, w.index, touch->stamp, touch->patch, order.earlier(touch->stamp), w.chips);
     const std::int32_t* batch = w.stamps.data() + from;
+    if (!shifts && !envelope.shape.general) {
+      changed |= batch_cut.cut(tile, cover, stamps, {batch, end - from}, first_id);
+      from = end;
+      continue;
+    }
     for_each_coarse_to_fine(
         static_cast<std::int32_t>(end - from), [&](std::int32_t i, std::int32_t left, std::int32_t right) {
           const std::int32_t k = batch[i];

@@ -127,7 +127,6 @@ class BentEnvelope {
 }  // namespace
 
 struct SurfaceMap::Impl {
-  double voxel_mm;
   std::vector<SurfacePoint> points;
   std::vector<TilePoints> tiles;
 
@@ -147,8 +146,7 @@ struct SurfaceMap::Impl {
   }
 };
 
-SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places)
-    : impl_(std::make_unique<Impl>(Impl{target.voxel_mm(), {}, {}})) {
+SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places) : impl_(std::make_unique<Impl>(Impl{{}, {}})) {
   auto& points = impl_->points;
   const double block_mm = kBlock * target.voxel_mm();
   const auto block_of = [&](const SurfacePoint& p) { return cube_of(p.place_mm, block_mm); };
@@ -220,15 +218,11 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
   });
 }
 
-std::vector<SurfacePoint> SurfaceMap::take(const Stock& machined) {
+std::vector<SurfacePoint> SurfaceMap::take(const Stock& blank) {
   // Where the bent cutters do not reach, the blank itself is the surface.
   for (auto& p : impl_->points) {
     if (p.error_mm <= 0) continue;
-    const Index3 nearest{static_cast<int>(std::lround(p.place_mm.x() / impl_->voxel_mm)),
-                         static_cast<int>(std::lround(p.place_mm.y() / impl_->voxel_mm)),
-                         static_cast<int>(std::lround(p.place_mm.z() / impl_->voxel_mm))};
-    if (machined.stamp(nearest) != Stock::kUncut) continue;
-    const double left = -machined.distance_mm(p.place_mm);
+    const double left = -blank.distance_mm(p.place_mm);
     if (left < p.error_mm) {
       p.error_mm = left;
       p.machined_stamp = Stock::kUncut;

@@ -33,8 +33,8 @@ class SurfaceMap {
   void mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamps, const ShiftTable& shifts,
             std::int32_t first_id);
 
-  /// The points with what the marks and, where the blank still stands, `machined` say. Ends the map.
-  std::vector<SurfacePoint> take(const Stock& machined);
+  /// The points with what the marks and, where it still stands, the blank say. Ends the map.
+  std::vector<SurfacePoint> take(const Stock& blank);
 
  private:
   struct Impl;

@@ -137,6 +137,7 @@ TEST(ClosedForms, BallPassTakesItsAreaAndLeavesItsCusps) {
   CutOptions options;
   options.coupling = machine::Coupling::rigid;
   options.envelope_step_mm = 0.03;
+  const removal::Stock blank(stock);
   const auto result = cut(stock, tool, kSteel, stamps, {}, 0, options);
   double chips = 0, count = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k)
@@ -161,7 +162,7 @@ TEST(ClosedForms, BallPassTakesItsAreaAndLeavesItsCusps) {
   EXPECT_NEAR(chips / count / kStep, area, kOnePercent * area);
 
   double lowest = 1, highest = -1;
-  for (const auto& p : map.take(stock))
+  for (const auto& p : map.take(blank))
     if (p.place_mm.x() > 1 && p.place_mm.x() < 5 && p.place_mm.y() > 2 && p.place_mm.y() < 4) {
       lowest = std::min(lowest, p.place_mm.z());
       highest = std::max(highest, p.place_mm.z());
