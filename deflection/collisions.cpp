@@ -179,7 +179,7 @@ class Search {
   /// Within a stretch the tip rises and falls by less than half the flutes: what stands at the shank's height was not
   /// for the cutter of the same stretch to remove.
   std::size_t stretch_end(const removal::ToolRun& run, std::size_t from) const {
-    constexpr std::size_t kMost = 2000;
+    constexpr std::size_t kMost = 10000;
     const double range = 0.5 * cutter_end_mm(job_.tools.at(run.tool));
     const auto& stamps = program_.path.stamps;
     double lo = stamps[from].tip_mm.z(), hi = lo;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "removal/rounded_distance.h"
 #include "removal/vector_clones.h"
 
 namespace camber::removal {
@@ -56,18 +57,6 @@ void test_stamps(const float* x, const float* y, const float* z, const float* lo
     test_after<true>(x, y, z, low, count, box, rx, ry, rz, radius, threshold, out);
   else
     test_after<false>(x, y, z, low, count, box, rx, ry, rz, radius, threshold, out);
-}
-
-/// Distance of a place to every cutter.
-CAMBER_VECTOR_CLONES
-void distances(const float* x, const float* y, const float* z, std::size_t count, float px, float py, float pz,
-               float flat, float corner, float* __restrict out) {
-  for (std::size_t k = 0; k < count; ++k) {
-    const float dx = px - x[k], dy = py - y[k];
-    const float qx = std::sqrt(dx * dx + dy * dy) - flat, qz = corner - (pz - z[k]);
-    const float a = std::max(qx, 0.0f), b = std::max(qz, 0.0f);
-    out[k] = std::min(std::max(qx, qz), 0.0f) + std::sqrt(a * a + b * b);
-  }
 }
 
 }  // namespace
@@ -133,8 +122,8 @@ void BatchCut::find_candidates(const ColumnCover& cover, const Block& b, float z
     keep_positive();
   }
   if (candidates_.size() < 3) return;
-  distances(cx_.data(), cy_.data(), cz_.data(), cx_.size(), static_cast<float>(i) * voxel_,
-            static_cast<float>(j) * voxel_, z_mm, flat, corner, margin_.data());
+  rounded_distances(cx_.data(), cy_.data(), cz_.data(), cx_.size(), static_cast<float>(i) * voxel_,
+                    static_cast<float>(j) * voxel_, z_mm, flat, corner, margin_.data());
   const auto deepest = static_cast<std::size_t>(
       std::min_element(margin_.begin(), margin_.begin() + static_cast<std::ptrdiff_t>(candidates_.size())) -
       margin_.begin());

@@ -19,6 +19,8 @@ struct Stock::Impl {
   openvdb::Int32Grid::Ptr stamp;
 };
 
+// Readers use accessors that the tree does not know of ("unsafe"): making one known takes a lock, and no reader lives
+// while the tree changes.
 namespace {
 
 constexpr int kLeaf = 8;
@@ -98,7 +100,7 @@ double Stock::distance_mm(const Vec3& p) const {
   const Vec3 g = p / voxel_mm_;
   const Index3 b{static_cast<int>(std::floor(g.x())), static_cast<int>(std::floor(g.y())),
                  static_cast<int>(std::floor(g.z()))};
-  const auto access = impl_->distance->getConstAccessor();
+  const auto access = impl_->distance->getConstUnsafeAccessor();
   double sum = 0;
   for (int c = 0; c < 8; ++c) {
     double w = 1;
@@ -115,10 +117,10 @@ double Stock::distance_mm(const Vec3& p) const {
 }
 
 struct Stock::Probe::Access {
-  openvdb::FloatGrid::ConstAccessor accessor;
+  openvdb::FloatGrid::ConstUnsafeAccessor accessor;
 };
 Stock::Probe::Probe(const Stock& stock)
-    : access_(std::make_unique<Access>(Access{stock.impl_->distance->getConstAccessor()})),
+    : access_(std::make_unique<Access>(Access{stock.impl_->distance->getConstUnsafeAccessor()})),
       per_mm_(1 / stock.voxel_mm()) {}
 Stock::Probe::~Probe() = default;
 float Stock::Probe::nearest(const Vec3& p) const {
@@ -134,8 +136,8 @@ namespace {
 
 /// Copies the part of a cube of `side` voxels from `base` on that lies in one leaf; a leaf that is not there has one
 /// value throughout.
-template <class Tree, class Value>
-void copy_from(const openvdb::tree::ValueAccessor<const Tree>& access, const Coord& leaf_origin, const Coord& base,
+template <class Accessor, class Value>
+void copy_from(const Accessor& access, const Coord& leaf_origin, const Coord& base,
                int side, Value* out) {
   const auto* leaf = access.probeConstLeaf(leaf_origin);
   const Value constant = leaf ? Value{} : access.getValue(leaf_origin);
@@ -175,8 +177,8 @@ void Stock::read(const Index3& first, int side, float* distance, std::int32_t* s
   const Coord base = coord(first);
   const openvdb::FloatGrid& distance_grid = *impl_->distance;
   const openvdb::Int32Grid& stamp_grid = *impl_->stamp;
-  const auto distances = distance_grid.getConstAccessor();
-  const auto stamps = stamp_grid.getConstAccessor();
+  const auto distances = distance_grid.getConstUnsafeAccessor();
+  const auto stamps = stamp_grid.getConstUnsafeAccessor();
   Coord lo, hi;
   for (int a = 0; a < 3; ++a) {
     lo[a] = floor_div(base[a], kLeaf) * kLeaf;
@@ -192,7 +194,7 @@ void Stock::read(const Index3& first, int side, float* distance, std::int32_t* s
 
 bool Stock::is_cut(const Index3& tile) const {
   const openvdb::Int32Grid& stamps = *impl_->stamp;
-  const auto access = stamps.getConstAccessor();
+  const auto access = stamps.getConstUnsafeAccessor();
   for (int i = 0; i < Tile::kCore; i += kLeaf)
     for (int j = 0; j < Tile::kCore; j += kLeaf)
       for (int k = 0; k < Tile::kCore; k += kLeaf)
@@ -204,7 +206,7 @@ bool Stock::is_cut(const Index3& tile) const {
 bool Stock::is_air(const Index3& tile) const {
   const Coord base(tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore);
   const openvdb::FloatGrid& distance = *impl_->distance;
-  const auto access = distance.getConstAccessor();
+  const auto access = distance.getConstUnsafeAccessor();
   bool air = true;
   for_each_leaf_of_tile(
       base, [&](const Coord& leaf) { air = air && !access.probeConstLeaf(leaf) && access.getValue(leaf) > 0; });

@@ -183,7 +183,7 @@ void Stretch::Impl::touches_of_stamp(std::int32_t k, const ShiftTable* shifts,
     const double extent = patch.radius_mm + moved;
     const double reach = std::min(extent + 0.87 * stock.voxel_mm(), 0.999 * stock.band_mm());
     const Vec3 centre = stamp.tip_mm + patch.centre_from_tip;
-    if (probe.nearest(centre) > reach) continue;
+    if (centre.z() - reach > stock.max_mm().z() || probe.nearest(centre) > reach) continue;
     const Vec3 margin = Vec3::Constant(extent + 1e-3 * stock.voxel_mm());
     const Index3 lo = tile_of(centre - margin, tile_mm), hi = tile_of(centre + margin, tile_mm);
     for (int a = lo[0]; a <= hi[0]; ++a)

@@ -7,12 +7,13 @@
 #include <tbb/parallel_for.h>
 
 #include "removal/carve.h"
+#include "removal/rounded_distance.h"
 
 namespace camber::removal {
 namespace {
 
-constexpr double kRounding_mm = 1e-5;
-constexpr int kBlock = 4;  ///< voxels a side of the cubes whose points are passed over together
+constexpr double kRounding_mm = 3e-4;  ///< of distances in single precision, within a metre
+constexpr int kBlock = 4;              ///< voxels a side of the cubes whose points are passed over together
 
 /// Points first ... first + count - 1 within `radius` of `centre`.
 struct Group {
@@ -42,6 +43,33 @@ Index3 cube_of(const Vec3& p, double side_mm) {
           static_cast<int>(std::floor(p.z() / side_mm))};
 }
 
+/// Tips of stamps, from the first one, side by side.
+class Tips {
+ public:
+  void add(const Vec3& tip) {
+    if (x_.empty()) origin_ = tip;
+    x_.push_back(static_cast<float>(tip.x() - origin_.x()));
+    y_.push_back(static_cast<float>(tip.y() - origin_.y()));
+    z_.push_back(static_cast<float>(tip.z() - origin_.z()));
+  }
+  /// How far a place is from the straight cutter at each.
+  void distances(const CutterShape& shape, const Vec3& place, std::vector<float>& out) const {
+    const Eigen::Vector3f p = (place - origin_).cast<float>();
+    if (!shape.general) {
+      rounded_distances(x_.data(), y_.data(), z_.data(), x_.size(), p.x(), p.y(), p.z(),
+                        static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm),
+                        out.data());
+      return;
+    }
+    for (std::size_t k = 0; k < x_.size(); ++k)
+      out[k] = static_cast<float>(shape.distance_mm((p - Eigen::Vector3f(x_[k], y_[k], z_[k])).cast<double>()));
+  }
+
+ private:
+  Vec3 origin_ = Vec3::Zero();
+  std::vector<float> x_, y_, z_;
+};
+
 /// One bent stamp.
 class BentEnvelope {
  public:
@@ -52,7 +80,8 @@ class BentEnvelope {
   /// `highest`.
   double height_mm(const Vec3& q, const Vec3& n, double highest) const {
     const Vec3 above = q + highest * n - tip_;
-    if (e_.shape.distance_mm(above) > outward_mm(above)) return highest;
+    const double outside = e_.shape.distance_mm(above);
+    if (outside > bend_.largest_mm || (outside > 0 && outside > outward_mm(above))) return highest;
     // Where the deflection jumps along with the edge, two points of the envelope may lie on one line: the lower counts.
     return std::min(settled_mm(q, n, highest, Vec3::Zero()), settled_mm(q, n, highest, shift(above - shift(above))));
   }
@@ -180,7 +209,9 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
                     [&](std::size_t k) { bends[k] = make_bend(envelope, shifts, static_cast<std::ptrdiff_t>(k)); });
   Vec3 lo = stamps.front().tip_mm, hi = lo;
   double most_bent = 0;
+  Tips tips;
   for (std::size_t k = 0; k < stamps.size(); ++k) {
+    tips.add(stamps[k].tip_mm);
     lo = lo.cwiseMin(stamps[k].tip_mm);
     hi = hi.cwiseMax(stamps[k].tip_mm);
     most_bent = std::max(most_bent, bends[k].largest_mm);
@@ -190,17 +221,20 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
     const double reach = envelope.shape.radius_mm + tile.all.radius + tile.all.highest + most_bent;
     for (int a = 0; a < 2; ++a)
       if (tile.all.centre[a] < lo[a] - reach || tile.all.centre[a] > hi[a] + reach) return;
+    std::vector<float> distance(stamps.size());
+    tips.distances(envelope.shape, tile.all.centre, distance);
+    Tips near_tips;
     std::vector<std::size_t> near;
     for (std::size_t k = 0; k < stamps.size(); ++k)
-      if (envelope.shape.distance_mm(tile.all.centre - stamps[k].tip_mm) <=
-          tile.all.radius + tile.all.highest + bends[k].largest_mm)
+      if (distance[k] <= tile.all.radius + tile.all.highest + bends[k].largest_mm + kRounding_mm) {
         near.push_back(k);
+        near_tips.add(stamps[k].tip_mm);
+      }
     if (near.empty()) return;
-    std::vector<float> distance(near.size());
+    distance.resize(near.size());
     tile.all.highest = -std::numeric_limits<double>::infinity();
     for (Group& block : tile.blocks) {
-      for (std::size_t n = 0; n < near.size(); ++n)
-        distance[n] = static_cast<float>(envelope.shape.distance_mm(block.centre - stamps[near[n]].tip_mm));
+      near_tips.distances(envelope.shape, block.centre, distance);
       // The stamp that goes deepest first: most others are then too high to look at.
       const auto deepest =
           static_cast<std::size_t>(std::min_element(distance.begin(), distance.end()) - distance.begin());

@@ -173,7 +173,7 @@ TEST(BadInput, VoxelsThatNeedMoreMemoryThanThereIs) {
   const std::string message = predict_error(folder);
   // How much is free differs from computer to computer.
   const std::string begin =
-      "job.toml: error: voxel_mm = 0.0001 needs about 51200000.0 GB for a stock of 400 x 200 x 200 mm, but ";
+      "job.toml: error: voxel_mm = 0.0001 needs about 40960000.0 GB for a stock of 400 x 200 x 200 mm, but ";
   EXPECT_EQ(message.substr(0, begin.size()), begin);
   EXPECT_NE(message.find(" GB are free; voxel_mm = "), std::string::npos);
   EXPECT_NE(message.find(" or a smaller stock was expected [voxel-memory]\n"), std::string::npos);
