@@ -36,6 +36,14 @@ class Feeler {
            tip.x() - widest_mm_ < hi.x() && tip.y() + widest_mm_ > lo.y() && tip.y() - widest_mm_ < hi.y();
   }
 
+  /// Whether the tool, drawn up along its axis, stays in the space that it and its shank take or have taken.
+  bool widens_upwards() const {
+    constexpr double kRounding_mm = 1e-9;
+    return std::ranges::adjacent_find(rings_, [](const auto& below, const auto& above) {
+             return above.radius_mm < below.radius_mm - kRounding_mm;
+           }) == rings_.end();
+  }
+
   /// A point of the outline that is in material by more than a voxel.
   std::optional<std::pair<Part, Vec3>> touch(const removal::Stock::Probe& probe, const Vec3& tip,
                                              bool with_cutter) const {
@@ -135,6 +143,8 @@ class Search {
     const nc::Move& m = program_.moves.moves[r.move];
     const auto feeler = feelers_.find(program_.moves.state_of(m).tool);
     if (feeler == feelers_.end()) return false;
+    const Vec3 way = m.end_mm - m.start_mm;
+    if (r.start_known && way.x() == 0 && way.y() == 0 && way.z() >= 0 && feeler->second.widens_upwards()) return false;
     bool near = false;
     for_places(r, [&](const Vec3& tip) { near = near || feeler->second.near(tip, true); });
     return near;
