@@ -11,6 +11,7 @@ struct CompressArguments {
   std::string program, output;
   std::string machine;  ///< empty: no times
   std::string json;     ///< empty: none
+  std::string report;   ///< the page; empty: none
   double tolerance_mm = 0;
   bool lines_only = false;
   bool switch_planes = false;

@@ -211,6 +211,8 @@ void add_rewriting(CLI::App& command, Arguments& arguments) {
       ->check(length_validator())
       ->type_name("X");
   command.add_option("-o,--output", arguments.output, "the new program")->required()->type_name("OUT.nc");
+  command.add_option("--report", arguments.report, "the page: before and after, deviation, picture")
+      ->type_name("R.html");
 }
 
 void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
@@ -230,7 +232,7 @@ void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
     chosen = [arguments, &options] {
       if (options.effective_config && !arguments->machine.empty())
         return print_effective_machine(arguments->machine, options);
-      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->machine});
+      check_outputs({arguments->output, arguments->json, arguments->report}, {arguments->program, arguments->machine});
       return run_compress(*arguments, options);
     };
   });
@@ -259,7 +261,7 @@ void add_resegment(CLI::App& app, const GlobalOptions& options, Action& chosen) 
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);
-      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->machine});
+      check_outputs({arguments->output, arguments->json, arguments->report}, {arguments->program, arguments->machine});
       return run_resegment(*arguments, options);
     };
   });

@@ -4,11 +4,21 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "nc/replace_blocks.h"
 #include "repath/run_text.h"
 #include "repath/tangent.h"
 
 namespace camber::repath {
+
+void place_after(std::vector<RewrittenRun>& runs, const std::vector<nc::BlockReplacement>& replacements) {
+  std::int64_t shift = 0;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const nc::BlockReplacement& r = replacements[k];
+    const auto lines = static_cast<std::int64_t>(r.lines.size());
+    runs[k].first_block_after = static_cast<std::uint32_t>(r.first + shift);
+    runs[k].last_block_after = static_cast<std::uint32_t>(r.first + shift + lines - 1);
+    shift += lines - (static_cast<std::int64_t>(r.last) - r.first + 1);
+  }
+}
 
 Compression compress(const nc::Program& program, const nc::Interpretation& moves, const CompressOptions& options) {
   const TextStyle style = text_style_of(program, moves, options.whole_numbers_are_increments);
@@ -40,6 +50,7 @@ Compression compress(const nc::Program& program, const nc::Interpretation& moves
     out.runs.push_back(rewritten);
     replacements.push_back(std::move(replacement));
   }
+  place_after(out.runs, replacements);
   out.text = nc::replace_blocks(program, replacements);
   return out;
 }

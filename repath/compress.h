@@ -6,6 +6,7 @@
 
 #include "nc/interpreter.h"
 #include "nc/program.h"
+#include "nc/replace_blocks.h"
 #include "repath/fit.h"
 
 namespace camber::repath {
@@ -44,7 +45,11 @@ struct RewrittenRun {
   std::uint32_t first_block = 0, last_block = 0;
   std::size_t lines = 0, arcs = 0;
   double deviation_mm = 0;
+  std::uint32_t first_block_after = 0, last_block_after = 0;  ///< of the new text
 };
+
+/// Where the runs' blocks are in the new text.
+void place_after(std::vector<RewrittenRun>& runs, const std::vector<nc::BlockReplacement>& replacements);
 
 struct Compression {
   std::string text;

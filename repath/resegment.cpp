@@ -27,6 +27,7 @@ Resegmentation resegment(const nc::Program& program, const nc::Interpretation& m
     out.max_deviation_mm = std::max(out.max_deviation_mm, layout.deviation_mm);
     out.corners += layout.corners;
   }
+  place_after(out.runs, replacements);
   out.text = nc::replace_blocks(program, replacements);
   return out;
 }
