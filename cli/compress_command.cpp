@@ -95,6 +95,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   repath::CompressOptions compress_options;
   compress_options.tolerance_mm = arguments.tolerance_mm;
   compress_options.switch_planes = arguments.switch_planes;
+  compress_options.helices = arguments.helices;
   compress_options.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
   compress_options.fit.arcs = !arguments.lines_only;
   const repath::Compression result = repath::compress(program, moves, compress_options);

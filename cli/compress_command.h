@@ -15,6 +15,7 @@ struct CompressArguments {
   double tolerance_mm = 0;
   bool lines_only = false;
   bool switch_planes = false;
+  bool helices = false;
   nc::InterpreterOptions interpreter;
 };
 

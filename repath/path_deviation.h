@@ -19,7 +19,7 @@ struct DeviationFigures {
 /// Neither uses nor trusts what the fitters say. Points of the new path, at most half of the old blocks' mean length
 /// apart, against the old one, and ends and middles of the old blocks against the new one, whose arcs are chords with a
 /// sagitta of at most a five hundredth of the tolerance: figures are right to within that. The nearest point is looked
-/// for along the way, so that a neighbouring row does not count. Linear in the number of blocks.
+/// for along the way, a few steps ahead of the one before. Linear in the number of blocks.
 DeviationFigures measure_deviation(const nc::Interpretation& before, const nc::Interpretation& after,
                                    std::span<const RewrittenRun> runs, double tolerance_mm);
 

@@ -206,7 +206,7 @@ TEST(Fit, SmoothPathsHaveSmallKinks) {
   as_fitted.tangent = false;
   const auto rms = [&](const std::vector<Primitive>& chain) {
     double sum = 0;
-    const auto kinks = kinks_of(points, chain);
+    const auto kinks = kinks_of(Polyline{points}, chain);
     for (const double k : kinks) sum += k * k;
     return std::sqrt(sum / static_cast<double>(kinks.size()));
   };
