@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "repath/shorten_lines.h"
 #include "repath/tangent.h"
 
 namespace camber::repath {
@@ -34,6 +35,7 @@ class Search {
       fit_piece(begin, k, chain);
       begin = k;
     }
+    if (options_.arcs) shorten_lines(path_, options_, fitter_, corners, chain);
     if (options_.tangent) {
       std::vector<Primitive> smoother = chain;
       move_joints(path_, fitter_, corners, smoother);
@@ -156,18 +158,17 @@ std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& 
   if (n < 2) return {};
   const Fitter fitter(path, options);
   const std::vector<bool> corners = corners_of(path, options);
-  std::vector<std::uint32_t> count(n, n);
+  std::vector<ChainCost> cost(n, ChainCost{n, 0});
   std::vector<Primitive> best(n);
-  count[0] = 0;
+  cost[0] = {};
   for (std::uint32_t i = 0; i + 1 < n; ++i)
     for (std::uint32_t j = i + 1; j < n; ++j) {
-      if (count[i] + 1 < count[j]) {
-        auto fitted = fitter.line(i, j);
-        if (!fitted && options.arcs) fitted = fitter.arc(i, j);
-        if (fitted) {
-          count[j] = count[i] + 1;
-          best[j] = *fitted;
-        }
+      for (const auto& fitted : line_or_arc(fitter, options, i, j)) {
+        if (!fitted) continue;
+        const ChainCost now = cost[i].with(path, *fitted);
+        if (!(now < cost[j])) continue;
+        cost[j] = now;
+        best[j] = *fitted;
       }
       if (corners[j]) break;
     }

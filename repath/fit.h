@@ -36,8 +36,8 @@ inline std::vector<Primitive> fit(std::span<const Vec2> points, const FitOptions
   return fit(Polyline{points}, options);
 }
 
-/// As fit(), with every pair of points tried: the fewest primitives that this geometry allows. For tests: the time
-/// grows with the cube of the number of points.
+/// As fit(), with every pair of points tried: the fewest primitives that this geometry allows, and among chains of as
+/// many the one with the shortest lines. For tests: the time grows with the cube of the number of points.
 std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& options);
 inline std::vector<Primitive> fit_exhaustively(std::span<const Vec2> points, const FitOptions& options) {
   return fit_exhaustively(Polyline{points}, options);
