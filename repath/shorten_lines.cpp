@@ -9,7 +9,8 @@ namespace {
 constexpr std::size_t kBefore = 2, kBehind = 2;  ///< primitives beside a line that are laid out anew with it
 constexpr std::uint32_t kMostPoints = 64;
 constexpr double kNearer = 0.7;
-constexpr int kFailures = 4;  ///< ends in a row that nothing reaches
+constexpr double kExact = 0.25;  ///< of the tolerance: so near lies only what was drawn so
+constexpr int kFailures = 4;     ///< ends in a row that nothing reaches
 
 class Window {
  public:
@@ -17,7 +18,8 @@ class Window {
       : path_(path), options_(options), fitter_(fitter) {}
 
   /// The best chain from one point to another without a corner between them.
-  std::vector<Primitive> best(std::uint32_t begin, std::uint32_t end, ChainCost& cost) {
+  std::vector<Primitive> best(std::uint32_t begin, std::uint32_t end, double most_deviation_mm, ChainCost& cost) {
+    most_deviation_ = most_deviation_mm;
     const std::size_t n = end - begin + 1;
     costs_.assign(n, {std::numeric_limits<std::size_t>::max() / 2, 0});
     via_.assign(n, {});
@@ -38,7 +40,7 @@ class Window {
   bool reach(std::uint32_t begin, std::uint32_t from, std::uint32_t to) {
     bool reached = false;
     for (const auto& p : line_or_arc(fitter_, options_, from, to)) {
-      if (!p) continue;
+      if (!p || p->deviation_mm > most_deviation_) continue;
       reached = true;
       const ChainCost cost = costs_[from - begin].with(path_, *p);
       if (!(cost < costs_[to - begin])) continue;
@@ -51,6 +53,7 @@ class Window {
   const Polyline& path_;
   const FitOptions& options_;
   const Fitter& fitter_;
+  double most_deviation_ = 0;
   std::vector<ChainCost> costs_;
   std::vector<Primitive> via_;
 };
@@ -89,10 +92,22 @@ void shorten_lines(const Polyline& path, const FitOptions& options, const Fitter
     const std::uint32_t begin = out[first].first, end = chain[last].last;
     if (end - begin >= kMostPoints || out.size() - first + (last - k) < 2) continue;
     ChainCost was, now;
-    for (std::size_t i = first; i < out.size(); ++i) was = was.with(path, out[i]);
-    for (std::size_t i = k + 1; i <= last; ++i) was = was.with(path, chain[i]);
-    const std::vector<Primitive> better = window.best(begin, end, now);
-    if (!(now < was)) continue;
+    double deviation = 0;
+    const auto count = [&](const Primitive& p) {
+      was = was.with(path, p);
+      deviation = std::max(deviation, p.deviation_mm);
+    };
+    for (std::size_t i = first; i < out.size(); ++i) count(out[i]);
+    for (std::size_t i = k + 1; i <= last; ++i) count(chain[i]);
+    // A line and an arc as they were drawn; else fewer; else shorter lines.
+    const double exact = std::max(options.increment_mm, kExact * options.tolerance_mm);
+    std::vector<Primitive> better = window.best(begin, end, exact, now);
+    const bool drawn = now.primitives <= was.primitives && deviation > exact;
+    if (!drawn) {
+      better = window.best(begin, end, options.tolerance_mm, now);
+      if (now.primitives == was.primitives && now < was) better = window.best(begin, end, deviation, now);
+      if (!(now < was)) continue;
+    }
     out.resize(first);
     out.insert(out.end(), better.begin(), better.end());
     k = last;

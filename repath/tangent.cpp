@@ -50,6 +50,11 @@ std::optional<Primitive> fitted(const Fitter& fitter, const Primitive& like, std
   return like.arc ? fitter.arc(first, last) : fitter.line(first, last);
 }
 
+bool short_arc(const Primitive& p) {
+  constexpr std::uint32_t kBlocks = 8;
+  return p.arc && p.last - p.first <= kBlocks;
+}
+
 /// Squares of the kinks at the joints of chain[k - 1] .. chain[k + 2], with two of them replaced.
 double kinks_around(const Polyline& path, const std::vector<Primitive>& chain, const std::vector<bool>& corners,
                     std::size_t k, const Primitive& left, const Primitive& right) {
@@ -72,18 +77,28 @@ void move_joints(const Polyline& path, const Fitter& fitter, const std::vector<b
       const std::uint32_t joint = chain[k].last;
       if (corners[joint] || (!chain[k].arc && !chain[k + 1].arc)) continue;
       double least = kinks_around(path, chain, corners, k, chain[k], chain[k + 1]);
-      for (const int shift : {-16, -6, -2, -1, 1, 2, 6, 16}) {
+      for (const int shift : {-16, -6, -3, -2, -1, 1, 2, 3, 6, 16}) {
         const std::int64_t there = static_cast<std::int64_t>(joint) + shift;
         if (there <= chain[k].first || there >= chain[k + 1].last) continue;
         const auto at = static_cast<std::uint32_t>(there);
-        const auto left = fitted(fitter, chain[k], chain[k].first, at);
-        const auto right = left ? fitted(fitter, chain[k + 1], at, chain[k + 1].last) : std::nullopt;
-        if (!right) continue;
-        const double kinks = kinks_around(path, chain, corners, k, *left, *right);
-        if (kinks >= least) continue;
-        least = kinks;
-        chain[k] = *left;
-        chain[k + 1] = *right;
+        // An arc of a few blocks may have been a straight one and its neighbour's begin.
+        for (const bool left_straight : {false, true})
+          for (const bool right_straight : {false, true}) {
+            if ((left_straight && !short_arc(chain[k])) || (right_straight && !short_arc(chain[k + 1])) ||
+                (left_straight && right_straight))
+              continue;
+            const auto left =
+                left_straight ? fitter.line(chain[k].first, at) : fitted(fitter, chain[k], chain[k].first, at);
+            if (!left) continue;
+            const auto right = right_straight ? fitter.line(at, chain[k + 1].last)
+                                              : fitted(fitter, chain[k + 1], at, chain[k + 1].last);
+            if (!right) continue;
+            const double kinks = kinks_around(path, chain, corners, k, *left, *right);
+            if (kinks >= least) continue;
+            least = kinks;
+            chain[k] = *left;
+            chain[k + 1] = *right;
+          }
       }
     }
 }

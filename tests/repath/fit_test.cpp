@@ -313,13 +313,17 @@ TEST(Fit, NoLineIsLongerThanItMustBeAndStraightSidesStay) {
   std::cout << fmt::format("lines: {:.0f} of {:.0f} mm, {:.0f} at least\n", found_mm, plain_mm, least_mm);
   EXPECT_LT(found_mm, 1.05 * least_mm);
   // A rounded rectangle: arcs do not eat what is straight, even where they could within the tolerance.
-  Points sides = circle(5, 0, kPi / 2, 20);
-  for (int i = 1; i <= 10; ++i) sides.emplace_back(-1.5 * i, 5);
-  const auto chain = fit(sides, options);
-  ASSERT_EQ(chain.size(), 2u);
-  EXPECT_TRUE(chain[0].arc);
-  EXPECT_LE(chain[0].last, 21u);
-  EXPECT_FALSE(chain[1].arc);
+  for (const int blocks : {1, 10})
+    for (const bool line_first : {false, true}) {
+      Points sides = circle(5, 0, kPi / 2, 40);
+      for (int k = 1; k <= blocks; ++k) sides.emplace_back(-1.5 * k, 5);
+      if (line_first) std::reverse(sides.begin(), sides.end());
+      const auto chain = fit(sides, {});
+      ASSERT_EQ(chain.size(), 2u);
+      EXPECT_NE(chain[0].arc, line_first);
+      EXPECT_EQ(chain[0].last, line_first ? static_cast<std::uint32_t>(blocks) : 40u);
+      EXPECT_EQ(chain[1].arc, line_first);
+    }
 }
 
 }  // namespace
