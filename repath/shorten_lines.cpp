@@ -17,20 +17,24 @@ class Window {
   Window(const Polyline& path, const FitOptions& options, const Fitter& fitter)
       : path_(path), options_(options), fitter_(fitter) {}
 
-  /// The best chain from one point to another without a corner between them.
-  std::vector<Primitive> best(std::uint32_t begin, std::uint32_t end, double most_deviation_mm, ChainCost& cost) {
+  /// The best chain from one point to another without a corner between them, of no more primitives than `most`; a cost
+  /// beyond that where there is none.
+  std::vector<Primitive> best(std::uint32_t begin, std::uint32_t end, double most_deviation_mm, std::size_t most,
+                              ChainCost& cost) {
     most_deviation_ = most_deviation_mm;
     const std::size_t n = end - begin + 1;
     costs_.assign(n, {std::numeric_limits<std::size_t>::max() / 2, 0});
     via_.assign(n, {});
     costs_[0] = {};
     for (std::uint32_t from = begin; from < end; ++from) {
+      if (costs_[from - begin].primitives >= most) continue;
       int failures = 0;
       for (std::uint32_t to = from + 1; to <= end && failures < kFailures; ++to)
         failures = reach(begin, from, to) || to - from < options_.arc_points ? 0 : failures + 1;
     }
     cost = costs_[n - 1];
     std::vector<Primitive> chain;
+    if (cost.primitives > most) return chain;
     for (std::uint32_t at = end; at > begin; at = chain.back().first) chain.push_back(via_[at - begin]);
     std::reverse(chain.begin(), chain.end());
     return chain;
@@ -101,11 +105,12 @@ void shorten_lines(const Polyline& path, const FitOptions& options, const Fitter
     for (std::size_t i = k + 1; i <= last; ++i) count(chain[i]);
     // A line and an arc as they were drawn; else fewer; else shorter lines.
     const double exact = std::max(options.increment_mm, kExact * options.tolerance_mm);
-    std::vector<Primitive> better = window.best(begin, end, exact, now);
+    std::vector<Primitive> better = window.best(begin, end, exact, was.primitives, now);
     const bool drawn = now.primitives <= was.primitives && deviation > exact;
     if (!drawn) {
-      better = window.best(begin, end, options.tolerance_mm, now);
-      if (now.primitives == was.primitives && now < was) better = window.best(begin, end, deviation, now);
+      better = window.best(begin, end, options.tolerance_mm, was.primitives, now);
+      if (now.primitives == was.primitives && now < was)
+        better = window.best(begin, end, deviation, was.primitives, now);
       if (!(now < was)) continue;
     }
     out.resize(first);
