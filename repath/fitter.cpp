@@ -185,7 +185,12 @@ std::optional<Primitive> Fitter::rounded_arc(std::uint32_t first, std::uint32_t 
       const ArcShape shape = arc_shape(start, points_[last], start + from_start, direction);
       grid[n++] = {shape.radius_difference_mm + (from_start + start - center_mm).norm(), from_start};
     }
-  std::stable_sort(grid.begin(), grid.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  // The three that agree best come first, equal ones in the order of the grid.
+  for (std::size_t g = 0; g < 3; ++g) {
+    const auto least = std::min_element(grid.begin() + static_cast<std::ptrdiff_t>(g), grid.end(),
+                                        [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::rotate(grid.begin() + static_cast<std::ptrdiff_t>(g), least, least + 1);
+  }
   for (std::size_t g = 0; g < 3; ++g) {
     const Vec2 from_start = grid[g].second;
     const ArcShape shape = arc_shape(start, points_[last], start + from_start, direction);
