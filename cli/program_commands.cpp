@@ -223,9 +223,11 @@ void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("--machine", arguments->machine, "machine.toml: tells the times before and after")
       ->type_name("M.toml");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
-  command->add_flag("--lines-only", arguments->lines_only, "no arcs");
-  command->add_flag("--helices", arguments->helices,
-                    "arcs along which the third axis moves evenly too, where the path is one in space");
+  auto* lines_only = command->add_flag("--lines-only", arguments->lines_only, "no arcs");
+  command
+      ->add_flag("--helices", arguments->helices,
+                 "arcs along which the third axis moves evenly too, where the path is one in space")
+      ->excludes(lines_only);
   command->add_flag("--switch-planes", arguments->switch_planes,
                     "arcs in planes other than the program's own too, with G17 G18 G19 around them");
   add_interpreter_options(*command, arguments->interpreter);
