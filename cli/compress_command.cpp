@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "cli/console.h"
 #include "cli/program_figures.h"
+#include "cli/rewrite_report.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
 #include "nc/summary.h"
@@ -42,7 +43,7 @@ std::string text_report(const Figures& before, const Figures& after, const repat
 }
 
 std::string json_report(const Figures& before, const Figures& after, const repath::Compression& result,
-                        double tolerance_mm) {
+                        double tolerance_mm, const repath::DeviationFigures& measured) {
   nlohmann::ordered_json report = {{"blocks_before", before.blocks},
                                    {"blocks_after", after.blocks},
                                    {"lines", after.lines},
@@ -53,6 +54,7 @@ std::string json_report(const Figures& before, const Figures& after, const repat
                                    {"length_after_mm", after.length_mm},
                                    {"tolerance_mm", tolerance_mm},
                                    {"max_deviation_mm", result.max_deviation_mm},
+                                   {"measured_deviation_mm", measured.max_mm},
                                    {"max_kink_deg", deg_from_rad(result.max_kink_rad)},
                                    {"runs", result.runs.size()},
                                    {"time_before_s", nullptr},
@@ -62,6 +64,18 @@ std::string json_report(const Figures& before, const Figures& after, const repat
     report["time_after_s"] = *after.time_s;
   }
   return report.dump(2) + "\n";
+}
+
+std::vector<report::Figure> page_figures(const Figures& before, const Figures& after) {
+  const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  std::vector<report::Figure> out = {
+      {"blocks", count(before.blocks), count(after.blocks), "", 0, "blocks_{}"},
+      {"straight cuts", count(before.lines), count(after.lines), "", 0, "lines_before", "lines"},
+      {"arcs", count(before.arcs), count(after.arcs), "", 0, "arcs_before", "arcs"},
+      {"length of the cuts", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
+  if (before.time_s && after.time_s)
+    out.insert(out.begin() + 1, {"time", *before.time_s, *after.time_s, "s", 1, "time_{}_s"});
+  return out;
 }
 
 }  // namespace
@@ -81,6 +95,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   repath::CompressOptions compress_options;
   compress_options.tolerance_mm = arguments.tolerance_mm;
   compress_options.switch_planes = arguments.switch_planes;
+  compress_options.helices = arguments.helices;
   compress_options.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
   compress_options.fit.arcs = !arguments.lines_only;
   const repath::Compression result = repath::compress(program, moves, compress_options);
@@ -92,7 +107,19 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   const Figures before = with_time(program, moves, machine), after = with_time(new_program, new_moves, machine);
 
   write_file(arguments.output, result.text);
-  if (!arguments.json.empty()) write_file(arguments.json, json_report(before, after, result, arguments.tolerance_mm));
+  if (!arguments.json.empty() || !arguments.report.empty()) {
+    const auto measured = repath::measure_deviation(moves, new_moves, result.runs, arguments.tolerance_mm);
+    if (!arguments.json.empty())
+      write_file(arguments.json, json_report(before, after, result, arguments.tolerance_mm, measured));
+    if (!arguments.report.empty()) {
+      report::RewritePage page =
+          rewrite_page_of({moves, new_moves, result.runs, arguments.tolerance_mm, result.max_deviation_mm, measured},
+                          page_figures(before, after));
+      page.title = "Compression of " + arguments.program;
+      page.subtitle = rewrite_subtitle(arguments.program, arguments.output, arguments.tolerance_mm);
+      write_file(arguments.report, report::rewrite_page(page));
+    }
+  }
   if (!options.quiet) fmt::print("{}", text_report(before, after, result));
   return kDone;
 }

@@ -11,9 +11,11 @@ struct CompressArguments {
   std::string program, output;
   std::string machine;  ///< empty: no times
   std::string json;     ///< empty: none
+  std::string report;   ///< the page; empty: none
   double tolerance_mm = 0;
   bool lines_only = false;
   bool switch_planes = false;
+  bool helices = false;
   nc::InterpreterOptions interpreter;
 };
 

@@ -211,6 +211,8 @@ void add_rewriting(CLI::App& command, Arguments& arguments) {
       ->check(length_validator())
       ->type_name("X");
   command.add_option("-o,--output", arguments.output, "the new program")->required()->type_name("OUT.nc");
+  command.add_option("--report", arguments.report, "the page: before and after, deviation, picture")
+      ->type_name("R.html");
 }
 
 void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
@@ -221,7 +223,11 @@ void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("--machine", arguments->machine, "machine.toml: tells the times before and after")
       ->type_name("M.toml");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
-  command->add_flag("--lines-only", arguments->lines_only, "no arcs");
+  auto* lines_only = command->add_flag("--lines-only", arguments->lines_only, "no arcs");
+  command
+      ->add_flag("--helices", arguments->helices,
+                 "arcs along which the third axis moves evenly too, where the path is one in space")
+      ->excludes(lines_only);
   command->add_flag("--switch-planes", arguments->switch_planes,
                     "arcs in planes other than the program's own too, with G17 G18 G19 around them");
   add_interpreter_options(*command, arguments->interpreter);
@@ -230,7 +236,7 @@ void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
     chosen = [arguments, &options] {
       if (options.effective_config && !arguments->machine.empty())
         return print_effective_machine(arguments->machine, options);
-      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->machine});
+      check_outputs({arguments->output, arguments->json, arguments->report}, {arguments->program, arguments->machine});
       return run_compress(*arguments, options);
     };
   });
@@ -259,7 +265,7 @@ void add_resegment(CLI::App& app, const GlobalOptions& options, Action& chosen) 
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);
-      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->machine});
+      check_outputs({arguments->output, arguments->json, arguments->report}, {arguments->program, arguments->machine});
       return run_resegment(*arguments, options);
     };
   });

@@ -6,6 +6,7 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/program_figures.h"
+#include "cli/rewrite_report.h"
 #include "feedmodel/control_options.h"
 #include "repath/fastest.h"
 
@@ -17,6 +18,7 @@ struct Report {
   repath::ContourFigures contour_before;
   const repath::Fastest& result;
   double tolerance_mm;
+  const repath::DeviationFigures& measured;
 
   repath::Candidate chosen() const {
     return result.gains ? result.tried[result.chosen] : repath::Candidate{.figures = contour_before};
@@ -50,6 +52,9 @@ struct Report {
                                      {"length_after_mm", after.length_mm},
                                      {"tolerance_mm", tolerance_mm},
                                      {"max_deviation_mm", result.path.max_deviation_mm},
+                                     {"measured_deviation_mm", measured.max_mm},
+                                     {"lines_before", before.lines},
+                                     {"arcs_before", before.arcs},
                                      {"time_before_s", contour_before.time_s},
                                      {"time_after_s", chosen().figures.time_s},
                                      {"contour_before_um", of(contour_before)},
@@ -67,6 +72,30 @@ struct Report {
                                  {"time_s", c.figures.time_s},
                                  {"contour_um", of(c.figures)}});
     return report.dump(2) + "\n";
+  }
+
+  std::vector<report::Figure> figures() const {
+    const repath::ContourFigures now = chosen().figures;
+    const auto count = [](std::size_t n) { return static_cast<double>(n); };
+    return {{"blocks", count(before.blocks), count(after.blocks), "", 0, "blocks_{}"},
+            {"time", contour_before.time_s, now.time_s, "s", 1, "time_{}_s"},
+            {"contour error, largest", 1000 * contour_before.contour_max_mm, 1000 * now.contour_max_mm, "um", 1,
+             "contour_{}_um.max"},
+            {"contour error, rms", 1000 * contour_before.contour_rms_mm, 1000 * now.contour_rms_mm, "um", 1,
+             "contour_{}_um.rms"},
+            {"straight cuts", count(before.lines), count(after.lines), "", 0, "lines_before", "lines"},
+            {"arcs", count(before.arcs), count(after.arcs), "", 0, "arcs_before", "arcs"},
+            {"length of the cuts", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
+  }
+
+  report::TextTable tried() const {
+    report::TextTable table{"Lengths tried", {"length x L_b", "feed x", "time, s", "contour error, um", "rms"}, {}, {}};
+    for (const auto& c : result.tried)
+      table.rows.push_back({fmt::format("{:.2f}", c.length_factor), fmt::format("{:.2f}", c.feed_factor),
+                            fmt::format("{:.1f}", c.figures.time_s),
+                            fmt::format("{:.1f}", 1000 * c.figures.contour_max_mm),
+                            fmt::format("{:.1f}", 1000 * c.figures.contour_rms_mm)});
+    return table;
   }
 
  private:
@@ -98,10 +127,20 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   const nc::Program new_program = nc::read_program(SourceText(arguments.output, result.path.text), again);
   const nc::Interpretation new_moves = nc::interpret(new_program, interpreter, again);
   again.throw_if_errors();
-  const Report report{figures_of(program, moves), figures_of(new_program, new_moves), before, result,
-                      arguments.tolerance_mm};
+  const auto measured = repath::measure_deviation(moves, new_moves, result.path.runs, arguments.tolerance_mm);
+  const Report report{
+      figures_of(program, moves), figures_of(new_program, new_moves), before, result, arguments.tolerance_mm, measured};
   write_file(arguments.output, result.path.text);
   if (!arguments.json.empty()) write_file(arguments.json, report.json());
+  if (!arguments.report.empty()) {
+    report::RewritePage page = rewrite_page_of(
+        {moves, new_moves, result.path.runs, arguments.tolerance_mm, result.path.max_deviation_mm, measured},
+        report.figures());
+    page.title = "Segments of " + arguments.program;
+    page.subtitle = rewrite_subtitle(arguments.program, arguments.output, arguments.tolerance_mm);
+    page.tables.push_back(report.tried());
+    write_file(arguments.report, report::rewrite_page(page));
+  }
   if (!options.quiet) fmt::print("{}", report.text());
   if (!result.gains && !options.quiet) fmt::print("no length is faster: the program was left as it is\n");
   if (result.within_limit) return kDone;

@@ -11,6 +11,7 @@ struct ResegmentArguments {
   std::string program, output;
   std::string machine;
   std::string json;  ///< empty: none
+  std::string report;  ///< the page; empty: none
   double tolerance_mm = 0;
   double length_mm = 0;  ///< 0: the fastest is looked for
   double contour_mm =

@@ -4,25 +4,37 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "nc/replace_blocks.h"
 #include "repath/run_text.h"
 #include "repath/tangent.h"
 
 namespace camber::repath {
 
+void place_after(std::vector<RewrittenRun>& runs, const std::vector<nc::BlockReplacement>& replacements) {
+  std::int64_t shift = 0;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const nc::BlockReplacement& r = replacements[k];
+    const auto lines = static_cast<std::int64_t>(r.lines.size());
+    runs[k].first_block_after = static_cast<std::uint32_t>(r.first + shift);
+    runs[k].last_block_after = static_cast<std::uint32_t>(r.first + shift + lines - 1);
+    shift += lines - (static_cast<std::int64_t>(r.last) - r.first + 1);
+  }
+}
+
 Compression compress(const nc::Program& program, const nc::Interpretation& moves, const CompressOptions& options) {
   const TextStyle style = text_style_of(program, moves, options.whole_numbers_are_increments);
   Compression out;
   std::vector<nc::BlockReplacement> replacements;
-  for (const Run& run : find_runs(program, moves)) {
+  for (const Run& run : runs_to_compress(program, moves, options.switch_planes && options.fit.arcs)) {
     const RunPath path = path_of(moves, run);
     if (path.points.size() < 2) continue;
     const nc::Move& first = moves.moves[run.first_move];
     FitOptions fit_options = options.fit;
     fit_options.tolerance_mm = options.tolerance_mm;
     fit_options.increment_mm = (moves.state_of(first).inch ? kMmPerInch : 1) * std::pow(10.0, -style.decimals);
+    fit_options.helices = options.helices;
     fit_options.arcs = fit_options.arcs && (run.current_plane || options.switch_planes);
-    const std::vector<Primitive> chain = fit(path.points, fit_options);
+    const Polyline polyline{path.points, path.heights};
+    const std::vector<Primitive> chain = fit(polyline, fit_options);
     nc::BlockReplacement replacement{first.block, moves.moves[run.last_move].block,
                                      text_of(program, moves, run, path, chain, style)};
     if (replacement.lines.size() >= replacement.last - replacement.first + 1) continue;
@@ -32,14 +44,15 @@ Compression compress(const nc::Program& program, const nc::Interpretation& moves
       rewritten.deviation_mm = std::max(rewritten.deviation_mm, p.deviation_mm);
     }
     out.max_deviation_mm = std::max(out.max_deviation_mm, rewritten.deviation_mm);
-    const std::vector<bool> corners = corners_of(path.points, fit_options);
-    const std::vector<double> kinks = kinks_of(path.points, chain);
+    const std::vector<bool> corners = corners_of(polyline, fit_options);
+    const std::vector<double> kinks = kinks_of(polyline, chain);
     for (std::size_t k = 0; k < kinks.size(); ++k)
       if (!corners[chain[k].last] && (chain[k].arc || chain[k + 1].arc))
         out.max_kink_rad = std::max(out.max_kink_rad, kinks[k]);
     out.runs.push_back(rewritten);
     replacements.push_back(std::move(replacement));
   }
+  place_after(out.runs, replacements);
   out.text = nc::replace_blocks(program, replacements);
   return out;
 }

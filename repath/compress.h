@@ -6,22 +6,25 @@
 
 #include "nc/interpreter.h"
 #include "nc/program.h"
+#include "nc/replace_blocks.h"
 #include "repath/fit.h"
 
 namespace camber::repath {
 
 struct CompressOptions {
   double tolerance_mm = 0.01;
+  bool helices = false;        ///< arcs whose third axis moves evenly with the angle, where the path does
   bool switch_planes = false;  ///< runs in another plane get its G17 G18 G19 and the old one behind; else lines only
   bool whole_numbers_are_increments = false;  ///< numbers are written with a point
   FitOptions fit{};                           ///< tolerance and increment are set from the program
 };
 
-/// A stretch of blocks that are plain straight cuts in one plane, at one feed.
+/// A stretch of blocks that are plain straight cuts at one feed, in one plane or in space.
 struct Run {
   std::uint32_t first_move = 0, last_move = 0;  ///< indexes into Interpretation::moves, both included
   int normal = 2;                               ///< the axis that stands still: 0 X, 1 Y, 2 Z
   bool current_plane = true;                    ///< the plane is the one that the program has chosen
+  bool in_space = false;                        ///< it need not keep to a plane; `normal` is that of the chosen one
 };
 
 /// A block is part of a run when it makes one straight move at a feed per minute and holds nothing but N, G1, X, Y, Z
@@ -29,13 +32,17 @@ struct Run {
 /// and other words, another feed, drilling cycles, G41 and G42, exact stop, block skip, turned or scaled frames and
 /// moves that the text does not say one by one end a run. In a program with macros or subprograms blocks with a number
 /// are left alone: they may be jumped to.
-/// `in_space`: the run need not keep to a plane; its `normal` says nothing.
+/// `in_space`: the runs need not keep to a plane.
 std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, bool in_space = false);
+
+/// Runs in space; with `apart` those in a plane other than the chosen one, if long enough for an arc, on their own.
+std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart);
 
 /// Points of a run as the text says them, in the plane: start and ends of its moves. Repeated points are left out;
 /// `block` tells which block ends at each (of the first point: the run's first block).
 struct RunPath {
   std::vector<Vec2> points;
+  std::vector<double> heights;  ///< of runs in space, along `normal`
   std::vector<std::uint32_t> block;
 };
 RunPath path_of(const nc::Interpretation& moves, const Run& run);
@@ -44,7 +51,11 @@ struct RewrittenRun {
   std::uint32_t first_block = 0, last_block = 0;
   std::size_t lines = 0, arcs = 0;
   double deviation_mm = 0;
+  std::uint32_t first_block_after = 0, last_block_after = 0;  ///< of the new text
 };
+
+/// Where the runs' blocks are in the new text.
+void place_after(std::vector<RewrittenRun>& runs, const std::vector<nc::BlockReplacement>& replacements);
 
 struct Compression {
   std::string text;

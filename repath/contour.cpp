@@ -23,27 +23,36 @@ std::vector<std::uint32_t> chains_of(const nc::Interpretation& program) {
   return out;
 }
 
-/// Follows the chains of a program, each with the rapid that leads to it, and tells how far a place that moves along
-/// them is away.
+}  // namespace
+
+MeantPath::MeantPath(const nc::Interpretation& meant) {
+  const auto add = [&](const Vec3& p) {
+    const bool starts = points_.size() == first_.back();
+    if (!starts && p == points_.back()) return;
+    along_.push_back(starts ? 0 : along_.back() + (p - points_.back()).norm());
+    points_.push_back(p);
+  };
+  const auto chains = chains_of(meant);
+  for (std::size_t k = 0; k < chains.size(); ++k) {
+    const nc::Move& m = meant.moves[k];
+    if (chains[k] == 0) continue;
+    if (first_.size() < chains[k]) {
+      first_.push_back(points_.size());
+      if (k > 0 && meant.moves[k - 1].kind == nc::MoveKind::rapid && !meant.moves[k - 1].reference)
+        add(meant.moves[k - 1].start_mm);
+      add(m.start_mm);
+    }
+    const double length = nc::length_mm(meant, m);
+    const int n = m.kind == nc::MoveKind::arc ? std::max(1, static_cast<int>(std::ceil(length / kArcStepMm))) : 1;
+    for (int i = 1; i <= n; ++i) add(nc::point_at(meant, m, static_cast<double>(i) / n));
+  }
+  first_.push_back(points_.size());
+}
+
+/// Tells how far a place that moves along the chains is away from them.
 class Follower {
  public:
-  explicit Follower(const nc::Interpretation& meant) {
-    const auto chains = chains_of(meant);
-    for (std::size_t k = 0; k < chains.size(); ++k) {
-      const nc::Move& m = meant.moves[k];
-      if (chains[k] == 0) continue;
-      if (first_.size() < chains[k]) {
-        first_.push_back(points_.size());
-        if (k > 0 && meant.moves[k - 1].kind == nc::MoveKind::rapid && !meant.moves[k - 1].reference)
-          add(meant.moves[k - 1].start_mm);
-        add(m.start_mm);
-      }
-      const double length = nc::length_mm(meant, m);
-      const int n = m.kind == nc::MoveKind::arc ? std::max(1, static_cast<int>(std::ceil(length / kArcStepMm))) : 1;
-      for (int i = 1; i <= n; ++i) add(nc::point_at(meant, m, static_cast<double>(i) / n));
-    }
-    first_.push_back(points_.size());
-  }
+  explicit Follower(const MeantPath& meant) : first_(meant.first_), points_(meant.points_), along_(meant.along_) {}
 
   /// `chain`: from 1, never less than the time before.
   double distance_mm(const Vec3& p, std::uint32_t chain) {
@@ -59,13 +68,6 @@ class Follower {
   }
 
  private:
-  void add(const Vec3& p) {
-    const bool starts = points_.size() == first_.back();
-    if (!starts && p == points_.back()) return;
-    along_.push_back(starts ? 0 : along_.back() + (p - points_.back()).norm());
-    points_.push_back(p);
-  }
-
   /// The nearest point of segment k.
   struct Foot {
     double distance_mm, along_mm;
@@ -76,16 +78,19 @@ class Follower {
     return {(p - a - t * ab).norm(), along_[k] + t * (along_[k + 1] - along_[k])};
   }
 
-  std::vector<std::size_t> first_;  ///< of each chain's points; behind the last one their number
-  std::vector<Vec3> points_;
-  std::vector<double> along_;
+  const std::vector<std::size_t>& first_;
+  const std::vector<Vec3>& points_;
+  const std::vector<double>& along_;
   std::size_t at_ = 0;
   std::uint32_t chain_ = 0;
 };
 
-}  // namespace
-
 ContourFigures contour_figures(const nc::Interpretation& program, const nc::Interpretation& meant,
+                               const machine::Machine& machine) {
+  return contour_figures(program, MeantPath(meant), machine);
+}
+
+ContourFigures contour_figures(const nc::Interpretation& program, const MeantPath& meant,
                                const machine::Machine& machine) {
   ContourFigures out;
   Follower follower(meant);

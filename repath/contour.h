@@ -1,5 +1,7 @@
 #pragma once
 // What a machine makes of a path: how long it takes and how far it strays from the one that was meant.
+#include <vector>
+
 #include "feedmodel/timed_path.h"
 #include "machine/machine.h"
 #include "nc/interpreter.h"
@@ -13,9 +15,22 @@ struct ContourFigures {
   double contour_rms_mm = 0;  ///< over time
 };
 
-/// Predicts `program` on the machine, against the moves of `meant` (which may be the same). Both have the same chains
-/// of cutting moves, one after another; the nearest point is looked for along the chain, no farther than a few
-/// millimetres ahead.
+/// The path that was meant: its chains of cutting moves, each with the rapid that leads to it.
+class MeantPath {
+ public:
+  explicit MeantPath(const nc::Interpretation& meant);
+
+ private:
+  friend class Follower;
+  std::vector<std::size_t> first_;  ///< of each chain's points; behind the last one their number
+  std::vector<Vec3> points_;
+  std::vector<double> along_;  ///< up to each point, from its chain's first
+};
+
+/// Predicts `program` on the machine, against the path that was meant. Both have the same chains of cutting moves, one
+/// after another; the nearest point is looked for along the chain, no farther than a few millimetres ahead.
+ContourFigures contour_figures(const nc::Interpretation& program, const MeantPath& meant,
+                               const machine::Machine& machine);
 ContourFigures contour_figures(const nc::Interpretation& program, const nc::Interpretation& meant,
                                const machine::Machine& machine);
 

@@ -39,10 +39,10 @@ std::vector<bool> corners_of(std::span<const Vec3> points, const CornerRule& rul
   return corners;
 }
 
-std::vector<bool> corners_of(std::span<const Vec2> points, const FitOptions& options) {
+std::vector<bool> corners_of(const Polyline& path, const FitOptions& options) {
   std::vector<Vec3> in_space;
-  in_space.reserve(points.size());
-  for (const Vec2& p : points) in_space.emplace_back(p.x(), p.y(), 0.0);
+  in_space.reserve(path.points.size());
+  for (std::size_t k = 0; k < path.points.size(); ++k) in_space.push_back(path.at(k));
   return corners_of(in_space, {.least_rad = options.corner_rad, .leg_mm = 5 * options.tolerance_mm});
 }
 

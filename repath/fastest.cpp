@@ -1,12 +1,17 @@
 #include "repath/fastest.h"
 
 #include <algorithm>
+#include <iterator>
+
+#include "repath/smoothed_path.h"
 
 namespace camber::repath {
 namespace {
 
-constexpr double kLengths[] = {1, 1.25, 1.6, 2, 2.5, 3.2, 4, 6.3, 10};
+constexpr double kLengths[] = {10, 6.3, 4, 3.2, 2.5, 2, 1.6, 1.25, 1};  ///< longest first: they are rarely slower
 constexpr double kFeeds[] = {1, 0.85, 0.7, 0.6, 0.5};
+constexpr int kNoBetter = 2;                    ///< lengths in a row that keep to the contour and are no better: enough
+constexpr std::size_t kLengthsAtLowerFeed = 3;  ///< those that strayed least at the feed before
 constexpr double kMoreContour = 1.05;  ///< that the old blocks' contour error may grow by, unless told otherwise
 constexpr double kLeastGain = 1.002;   ///< less is not worth another program
 constexpr double kSameTime = 1.001;    ///< what is no faster than this has no say: the path with the smaller error has
@@ -25,6 +30,18 @@ bool better(const ContourFigures& a, const ContourFigures& b) {
   return a.contour_max_mm < b.contour_max_mm;
 }
 
+/// Lengths for a lower feed, longest first.
+std::vector<double> straying_least(std::vector<Candidate> tried) {
+  std::stable_sort(tried.begin(), tried.end(), [](const Candidate& a, const Candidate& b) {
+    return a.figures.contour_max_mm < b.figures.contour_max_mm;
+  });
+  std::vector<double> lengths;
+  for (const Candidate& c : tried)
+    if (lengths.size() < kLengthsAtLowerFeed) lengths.push_back(c.length_factor);
+  std::sort(lengths.rbegin(), lengths.rend());
+  return lengths;
+}
+
 }  // namespace
 
 Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves, const machine::Machine& machine,
@@ -35,20 +52,25 @@ Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves
                              : std::max(kMoreContour * before.contour_max_mm, options.layout.tolerance_mm);
   out.within_limit = false;
   std::size_t nearest = 0;
+  const Resegmenter resegmenter(program, moves, options.layout);
+  const MeantPath meant(moves);
   ResegmentOptions layout = options.layout;
   layout.block_time_s = machine.control.block_time_s;
+  std::vector<double> lengths(std::begin(kLengths), std::end(kLengths));
+  if (options.layout.length_mm > 0) lengths = {1};
   for (const double feed : kFeeds) {
-    for (const double length : kLengths) {
+    const std::size_t first_of_feed = out.tried.size();
+    int no_better = 0;
+    for (const double length : lengths) {
       layout.length_factor = length;
       layout.feed_factor = feed;
-      Resegmentation path = resegment(program, moves, layout);
+      Resegmentation path = resegmenter.lay_out(layout);
       const ContourFigures figures =
-          contour_figures(interpreted(program.source.name(), path.text, options.interpreter), moves, machine);
+          contour_figures(interpreted(program.source.name(), path.text, options.interpreter), meant, machine);
       out.tried.push_back({length, feed, figures});
       const std::size_t now = out.tried.size() - 1;
       const bool keeps = figures.contour_max_mm <= out.contour_limit_mm;
-      const bool first = now == 0;
-      const bool strays_least = first || figures.contour_max_mm < out.tried[nearest].figures.contour_max_mm;
+      const bool strays_least = now == 0 || figures.contour_max_mm < out.tried[nearest].figures.contour_max_mm;
       if (strays_least) nearest = now;
       const bool take = keeps ? !out.within_limit || better(figures, out.tried[out.chosen].figures)
                               : !out.within_limit && strays_least;
@@ -57,9 +79,11 @@ Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves
         out.chosen = now;
         out.path = std::move(path);
       }
-      if (options.layout.length_mm > 0) break;
+      if (keeps) no_better = take ? 0 : no_better + 1;
+      if (no_better >= kNoBetter) break;
     }
     if (out.within_limit) break;
+    lengths = straying_least({out.tried.begin() + static_cast<std::ptrdiff_t>(first_of_feed), out.tried.end()});
   }
   const bool asked_for = options.layout.length_mm > 0;
   out.gains = asked_for || out.tried[out.chosen].figures.time_s * kLeastGain < before.time_s;

@@ -30,9 +30,10 @@ struct Fastest {
   bool within_limit = true;  ///< false: no candidate keeps to it; the one that strays least is chosen
 };
 
-/// Lays the program out with lengths from L_b to ten times as much and predicts each on the machine; the fastest of
-/// those that keep to the contour is chosen. Lower feeds (down to half) are tried only where none does at the
-/// programmed one. `before`: the figures of the old program.
+/// Lays the program out with lengths from ten times L_b down to L_b and predicts each on the machine; the fastest of
+/// those that keep to the contour is chosen. After two in a row that keep to it and are no better the shorter ones are
+/// not tried. Lower feeds (down to half) are tried only where none keeps to it at the programmed one, with the three
+/// lengths that strayed least. `before`: the figures of the old program.
 Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves, const machine::Machine& machine,
                      const ContourFigures& before, const FastestOptions& options);
 

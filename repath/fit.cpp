@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "repath/shorten_lines.h"
 #include "repath/tangent.h"
 
 namespace camber::repath {
@@ -21,12 +22,12 @@ struct Node {
 /// pinned at its ends, so an end a few points short may carry farther. That is what the width is for.
 class Search {
  public:
-  Search(std::span<const Vec2> points, const FitOptions& options)
-      : points_(points), options_(options), fitter_(points, options) {}
+  Search(const Polyline& path, const FitOptions& options)
+      : path_(path), points_(path.points), options_(options), fitter_(path, options) {}
 
   std::vector<Primitive> run() {
     const auto n = static_cast<std::uint32_t>(points_.size());
-    const std::vector<bool> corners = corners_of(points_, options_);
+    const std::vector<bool> corners = corners_of(path_, options_);
     std::vector<Primitive> chain;
     std::uint32_t begin = 0;
     for (std::uint32_t k = 1; k < n; ++k) {
@@ -34,9 +35,10 @@ class Search {
       fit_piece(begin, k, chain);
       begin = k;
     }
+    if (options_.arcs) shorten_lines(path_, options_, fitter_, corners, chain);
     if (options_.tangent) {
       std::vector<Primitive> smoother = chain;
-      move_joints(points_, fitter_, corners, smoother);
+      move_joints(path_, fitter_, corners, smoother);
       make_tangent(points_, options_, fitter_, corners, smoother);
       if (kink_squares(smoother, corners) < kink_squares(chain, corners)) chain = std::move(smoother);
     }
@@ -45,7 +47,7 @@ class Search {
 
  private:
   double kink_squares(const std::vector<Primitive>& chain, const std::vector<bool>& corners) const {
-    const std::vector<double> kinks = kinks_of(points_, chain);
+    const std::vector<double> kinks = kinks_of(path_, chain);
     double sum = 0;
     for (std::size_t k = 0; k < kinks.size(); ++k)
       if (!corners[chain[k].last]) sum += kinks[k] * kinks[k];
@@ -134,6 +136,7 @@ class Search {
       if (const auto arc = fitter_.arc(vertex, e)) add(from, *arc);
   }
 
+  Polyline path_;
   std::span<const Vec2> points_;
   const FitOptions& options_;
   Fitter fitter_;
@@ -143,29 +146,29 @@ class Search {
 
 }  // namespace
 
-std::vector<Primitive> fit(std::span<const Vec2> points, const FitOptions& options) {
+std::vector<Primitive> fit(const Polyline& path, const FitOptions& options) {
   assert(options.tolerance_mm > 0 && options.increment_mm > 0 && options.width > 0);
-  if (points.size() < 2) return {};
-  return Search(points, options).run();
+  assert(path.heights.empty() || path.heights.size() == path.points.size());
+  if (path.points.size() < 2) return {};
+  return Search(path, options).run();
 }
 
-std::vector<Primitive> fit_exhaustively(std::span<const Vec2> points, const FitOptions& options) {
-  const auto n = static_cast<std::uint32_t>(points.size());
+std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& options) {
+  const auto n = static_cast<std::uint32_t>(path.points.size());
   if (n < 2) return {};
-  const Fitter fitter(points, options);
-  const std::vector<bool> corners = corners_of(points, options);
-  std::vector<std::uint32_t> count(n, n);
+  const Fitter fitter(path, options);
+  const std::vector<bool> corners = corners_of(path, options);
+  std::vector<ChainCost> cost(n, ChainCost{n, 0});
   std::vector<Primitive> best(n);
-  count[0] = 0;
+  cost[0] = {};
   for (std::uint32_t i = 0; i + 1 < n; ++i)
     for (std::uint32_t j = i + 1; j < n; ++j) {
-      if (count[i] + 1 < count[j]) {
-        auto fitted = fitter.line(i, j);
-        if (!fitted && options.arcs) fitted = fitter.arc(i, j);
-        if (fitted) {
-          count[j] = count[i] + 1;
-          best[j] = *fitted;
-        }
+      for (const auto& fitted : line_or_arc(fitter, options, i, j)) {
+        if (!fitted) continue;
+        const ChainCost now = cost[i].with(path, *fitted);
+        if (!(now < cost[j])) continue;
+        cost[j] = now;
+        best[j] = *fitted;
       }
       if (corners[j]) break;
     }

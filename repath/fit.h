@@ -16,21 +16,36 @@ struct FitOptions {
   double radius_agreement_mm = 0.002;  ///< the radii at start and end of an arc differ by no more
   double corner_rad = 20 * kPi / 180;  ///< a vertex that turns by more, and alone, is a corner: no arc runs over it
   std::uint32_t width = 6;             ///< ends that are kept of each number of primitives; see docs/compress.md
+  bool helices = false;                ///< in space: arcs whose third axis moves evenly with the angle
   bool tangent = true;                 ///< arcs use their room to meet their neighbours without a kink
+};
+
+/// A polyline, and the third coordinate of each point where it is one in space; else `heights` is empty. In space arcs
+/// lie where the height stands still, or with FitOptions::helices are helices about the third axis.
+struct Polyline {
+  std::span<const Vec2> points;
+  std::span<const double> heights{};
+  Vec3 at(std::size_t k) const { return {points[k].x(), points[k].y(), heights.empty() ? 0.0 : heights[k]}; }
 };
 
 /// The chain: first primitive from points.front(), last to points.back(), each from where the one before ends. Every
 /// end is a point of the polyline, so nothing drifts. `points`: no two that follow each other are alike.
 /// Time and memory grow linearly with the number of points.
-std::vector<Primitive> fit(std::span<const Vec2> points, const FitOptions& options);
+std::vector<Primitive> fit(const Polyline& path, const FitOptions& options);
+inline std::vector<Primitive> fit(std::span<const Vec2> points, const FitOptions& options) {
+  return fit(Polyline{points}, options);
+}
 
-/// As fit(), with every pair of points tried: the fewest primitives that this geometry allows. For tests: the time
-/// grows with the cube of the number of points.
-std::vector<Primitive> fit_exhaustively(std::span<const Vec2> points, const FitOptions& options);
+/// As fit(), with every pair of points tried: the fewest primitives that this geometry allows, and among chains of as
+/// many the one with the shortest lines. For tests: the time grows with the cube of the number of points.
+std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& options);
+inline std::vector<Primitive> fit_exhaustively(std::span<const Vec2> points, const FitOptions& options) {
+  return fit_exhaustively(Polyline{points}, options);
+}
 
 /// The vertices that are corners: they turn by more than corner_rad, and more than twice as much as the path beside
 /// them (a coarse circle turns everywhere alike). Turns are measured between legs of at least five tolerances.
-std::vector<bool> corners_of(std::span<const Vec2> points, const FitOptions& options);
+std::vector<bool> corners_of(const Polyline& path, const FitOptions& options);
 
 /// The room of the arc from one point to another: its sweep may lie between the two; both with the sign of the
 /// direction. Nothing where no arc fits.
@@ -43,10 +58,10 @@ struct ArcRoom {
 /// Tries one line, one arc.
 class Fitter {
  public:
-  Fitter(std::span<const Vec2> points, const FitOptions& options);
+  Fitter(const Polyline& path, const FitOptions& options);
   std::optional<Primitive> line(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> arc(std::uint32_t first, std::uint32_t last) const;
-  /// Ends of lines from `first`, ascending: the last `most` of them up to `end`.
+  /// Ends of lines from `first`, ascending: the last `most` of them up to `end`. In space some of them may be none.
   std::vector<std::uint32_t> line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t most) const;
 
   std::optional<ArcRoom> room(std::uint32_t first, std::uint32_t last) const;
@@ -59,12 +74,15 @@ class Fitter {
   std::optional<Primitive> rounded_arc(std::uint32_t first, std::uint32_t last, int direction,
                                        const Vec2& center_mm) const;
   double area(std::uint32_t first, std::uint32_t last) const;
+  bool flat(std::uint32_t first, std::uint32_t last) const;
 
+  Polyline path_;
   std::span<const Vec2> points_;
   const FitOptions& options_;
   double backwards_mm_;
-  std::vector<double> area_;    ///< twice the area swept from points[0], up to each point
-  std::vector<double> length_;  ///< along the polyline up to each point
+  std::vector<double> area_;          ///< twice the area swept from points[0], up to each point
+  std::vector<double> length_;        ///< along the polyline up to each point
+  std::vector<std::uint32_t> level_;  ///< in space: the point from which on each point's height stands still
 };
 
 }  // namespace camber::repath

@@ -44,15 +44,21 @@ double offset_of(double half, double sweep) { return half / std::tan(0.5 * sweep
 
 }  // namespace
 
-Fitter::Fitter(std::span<const Vec2> points, const FitOptions& options)
-    : points_(points), options_(options), backwards_mm_(0.5 * options.tolerance_mm) {
+Fitter::Fitter(const Polyline& path, const FitOptions& options)
+    : path_(path), points_(path.points), options_(options), backwards_mm_(0.5 * options.tolerance_mm) {
+  const auto points = points_;
   area_.resize(points.size());
   length_.resize(points.size());
   for (std::size_t k = 1; k < points.size(); ++k) {
     area_[k] = area_[k - 1] + cross(points[k - 1] - points[0], points[k] - points[0]);
     length_[k] = length_[k - 1] + (points[k] - points[k - 1]).norm();
   }
+  level_.assign(path.heights.size(), 0);
+  for (std::size_t k = 1; k < level_.size(); ++k)
+    level_[k] = path.heights[k] == path.heights[k - 1] ? level_[k - 1] : static_cast<std::uint32_t>(k);
 }
+
+bool Fitter::flat(std::uint32_t first, std::uint32_t last) const { return level_.empty() || level_[last] <= first; }
 
 /// Twice the area between the stretch and its chord; positive where it turns counter-clockwise.
 double Fitter::area(std::uint32_t first, std::uint32_t last) const {
@@ -61,38 +67,70 @@ double Fitter::area(std::uint32_t first, std::uint32_t last) const {
 
 std::optional<Primitive> Fitter::line(std::uint32_t first, std::uint32_t last) const {
   if (last == first + 1) return Primitive{.first = first, .last = last};
-  const auto away = line_deviation(points_, first, last, backwards_mm_);
+  const auto away = flat(first, last) ? line_deviation(points_, first, last, backwards_mm_)
+                                      : line_deviation(points_, path_.heights, first, last, backwards_mm_);
   if (!away || *away > options_.tolerance_mm + kRoundingMm) return std::nullopt;
   return Primitive{.first = first, .last = last, .deviation_mm = *away};
 }
 
-/// The wedge of directions from `first` that pass every point within the tolerance narrows from point to point; a point
-/// in the wedge is an end.
+namespace {
+
+/// The wedge of directions from a place in a plane that pass every point within the tolerance.
+class Wedge {
+ public:
+  explicit Wedge(double tolerance_mm) : tolerance_(tolerance_mm) {}
+
+  bool holds(const Vec2& p) const {
+    const double slack = -1e-12 * p.norm();
+    return open_ || (cross(right_, p) >= slack && cross(p, left_) >= slack);
+  }
+
+  /// False where no direction is left.
+  bool narrow(const Vec2& p) {
+    const double distance = p.norm();
+    if (distance <= tolerance_) return true;
+    const double s = tolerance_ / distance, c = std::sqrt(1 - s * s);
+    const Vec2 u = p / distance, turned(-u.y(), u.x());
+    const Vec2 l = c * u + s * turned, r = c * u - s * turned;
+    if (open_) {
+      left_ = l, right_ = r, open_ = false;
+      return true;
+    }
+    if (cross(left_, l) < 0) left_ = l;
+    if (cross(right_, r) > 0) right_ = r;
+    return cross(right_, left_) >= 0 && u.dot(left_) >= 0;
+  }
+
+ private:
+  double tolerance_;
+  Vec2 left_ = Vec2::Zero(), right_ = Vec2::Zero();  ///< unit borders
+  bool open_ = true;                                 ///< no border yet
+};
+
+}  // namespace
+
+/// The wedge narrows from point to point; a point in it is an end. In space a line that passes within the tolerance
+/// does so in every projection: what lies in the wedges of all three planes may be an end.
 std::vector<std::uint32_t> Fitter::line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t most) const {
   std::vector<std::uint32_t> ends{first + 1};
   const double tolerance = options_.tolerance_mm + kRoundingMm;
-  const Vec2 start = points_[first];
-  Vec2 left = Vec2::Zero(), right = Vec2::Zero();  // unit borders of the wedge
-  bool open = true;                                // no border yet
+  const Vec3 start = path_.at(first);
+  std::array<Wedge, 3> wedges{Wedge(tolerance), Wedge(tolerance), Wedge(tolerance)};
+  const std::size_t planes = path_.heights.empty() ? 1 : 3;
   double farthest = 0;
   for (std::uint32_t k = first + 1; k <= end; ++k) {
-    const Vec2 p = points_[k] - start;
+    const Vec3 p = path_.at(k) - start;
     const double distance = p.norm();
     if (distance < farthest - backwards_mm_ - tolerance) break;
     farthest = std::max(farthest, distance);
-    const bool inside = open || (cross(right, p) >= -1e-12 * distance && cross(p, left) >= -1e-12 * distance);
-    if (inside && k > first + 1 && distance > 0) ends.push_back(k);
-    if (distance <= tolerance) continue;
-    const double s = tolerance / distance, c = std::sqrt(1 - s * s);
-    const Vec2 u = p / distance, turned(-u.y(), u.x());
-    const Vec2 l = c * u + s * turned, r = c * u - s * turned;
-    if (open) {
-      left = l, right = r, open = false;
-      continue;
+    const std::array<Vec2, 3> seen{Vec2(p.x(), p.y()), Vec2(p.y(), p.z()), Vec2(p.z(), p.x())};
+    bool inside = k > first + 1 && distance > 0, open = true;
+    for (std::size_t i = 0; i < planes; ++i) {
+      inside = inside && wedges[i].holds(seen[i]);
+      open = wedges[i].narrow(seen[i]) && open;
     }
-    if (cross(left, l) < 0) left = l;
-    if (cross(right, r) > 0) right = r;
-    if (cross(right, left) < 0 || u.dot(left) < 0) break;
+    if (inside) ends.push_back(k);
+    if (!open) break;
   }
   if (ends.size() > most) ends.erase(ends.begin(), ends.end() - most);
   return ends;
@@ -147,7 +185,12 @@ std::optional<Primitive> Fitter::rounded_arc(std::uint32_t first, std::uint32_t 
       const ArcShape shape = arc_shape(start, points_[last], start + from_start, direction);
       grid[n++] = {shape.radius_difference_mm + (from_start + start - center_mm).norm(), from_start};
     }
-  std::stable_sort(grid.begin(), grid.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  // The three that agree best come first, equal ones in the order of the grid.
+  for (std::size_t g = 0; g < 3; ++g) {
+    const auto least = std::min_element(grid.begin() + static_cast<std::ptrdiff_t>(g), grid.end(),
+                                        [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::rotate(grid.begin() + static_cast<std::ptrdiff_t>(g), least, least + 1);
+  }
   for (std::size_t g = 0; g < 3; ++g) {
     const Vec2 from_start = grid[g].second;
     const ArcShape shape = arc_shape(start, points_[last], start + from_start, direction);
@@ -155,7 +198,13 @@ std::optional<Primitive> Fitter::rounded_arc(std::uint32_t first, std::uint32_t 
         shape.radius_mm < 2 * options_.tolerance_mm)
       continue;
     const auto away = arc_deviation(points_, first, last, shape, options_.tolerance_mm + kRoundingMm, backwards_mm_);
-    if (away) return Primitive{first, last, true, from_start, away->sweep_rad, away->deviation_mm};
+    if (!away) continue;
+    double deviation = away->deviation_mm;
+    if (!flat(first, last))
+      deviation =
+          std::hypot(deviation, helix_deviation(points_, path_.heights, first, last, shape.center_mm, away->sweep_rad));
+    if (deviation <= options_.tolerance_mm + kRoundingMm)
+      return Primitive{first, last, true, from_start, away->sweep_rad, deviation};
   }
   return std::nullopt;
 }
@@ -169,7 +218,7 @@ std::optional<Primitive> Fitter::arc_with_sweep(std::uint32_t first, std::uint32
 }
 
 std::optional<Primitive> Fitter::arc(std::uint32_t first, std::uint32_t last) const {
-  if (last - first + 1 < options_.arc_points) return std::nullopt;
+  if (last - first + 1 < options_.arc_points || (!options_.helices && !flat(first, last))) return std::nullopt;
   if (points_[first] == points_[last]) return full_turn(first, last);
   const auto room = this->room(first, last);
   if (!room) return std::nullopt;

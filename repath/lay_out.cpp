@@ -1,10 +1,11 @@
 // New points for an old path.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "repath/corners.h"
-#include "repath/resegment.h"
 #include "repath/smooth_curve.h"
+#include "repath/smoothed_path.h"
 
 namespace camber::repath {
 namespace {
@@ -26,63 +27,93 @@ Vec3 rounded(const Vec3& p, double increment_mm) {
           std::round(p.z() / increment_mm) * increment_mm};
 }
 
-class Layouter {
+}  // namespace
+
+/// One old segment that stays what it is, or the curve that takes the place of old points first ... last.
+struct SmoothedPath::Piece {
+  std::size_t first = 0, last = 0;
+  std::optional<SmoothCurve> curve;
+};
+
+SmoothedPath::SmoothedPath(std::vector<Vec3> points, const ResegmentOptions& options, double increment_mm)
+    : old_(std::move(points)), tolerance_(options.tolerance_mm), increment_(increment_mm) {
+  const std::vector<bool> corners = corners_of(
+      old_,
+      {.least_rad = options.corner_rad, .times_beside = 3, .always_rad = kSharp, .leg_mm = 5 * options.tolerance_mm});
+  std::size_t begin = 0;
+  for (std::size_t k = 1; k < old_.size(); ++k) {
+    if (k + 1 < old_.size() && !corners[k]) continue;
+    corners_ += k + 1 < old_.size();
+    smooth(begin, k);
+    begin = k;
+  }
+}
+
+SmoothedPath::~SmoothedPath() = default;
+SmoothedPath::SmoothedPath(SmoothedPath&&) noexcept = default;
+
+/// Old points first ... last without a corner between them.
+void SmoothedPath::smooth(std::size_t first, std::size_t last) {
+  if (last == first + 1) return straight(first);
+  SmoothCurve curve(std::span<const Vec3>(old_).subspan(first, last - first + 1),
+                    std::max(0.0, kSmoothShare * tolerance_ - kRounding * increment_));
+  const std::vector<std::size_t> left = leaves(curve, first);
+  if (left.empty()) {
+    pieces_.push_back({first, last, std::move(curve)});
+    return;
+  }
+  // What lies between is tried anew, with its ends held.
+  std::size_t begin = first;
+  for (const std::size_t k : left) {
+    if (k > begin) smooth(begin, k);
+    straight(k);
+    begin = k + 1;
+  }
+  if (begin < last) smooth(begin, last);
+}
+
+void SmoothedPath::straight(std::size_t first) { pieces_.push_back({first, first + 1, std::nullopt}); }
+
+/// The old segments from which the curve keeps farther than its share.
+std::vector<std::size_t> SmoothedPath::leaves(const SmoothCurve& curve, std::size_t first) const {
+  const auto& knots = curve.knots_mm();
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+    for (const double share : {0.25, 0.5, 0.75})
+      if (to_path_mm(curve.at(knots[i] + share * (knots[i + 1] - knots[i])), first + i) > kCurveShare * tolerance_) {
+        found.push_back(first + i);
+        break;
+      }
+  return found;
+}
+
+/// From a point to the old path near one of its segments.
+double SmoothedPath::to_path_mm(const Vec3& p, std::size_t segment) const {
+  double nearest = to_segment_mm(p, old_[segment], old_[segment + 1]);
+  if (segment > 0) nearest = std::min(nearest, to_segment_mm(p, old_[segment - 1], old_[segment]));
+  if (segment + 2 < old_.size()) nearest = std::min(nearest, to_segment_mm(p, old_[segment + 1], old_[segment + 2]));
+  return nearest;
+}
+
+class SmoothedPath::Layouter {
  public:
-  Layouter(std::span<const Vec3> points, const ResegmentOptions& options, double length_mm, double increment_mm)
-      : old_(points), options_(options), length_(length_mm), increment_(increment_mm) {}
+  Layouter(const SmoothedPath& path, double length_mm)
+      : path_(path), old_(path.old_), tolerance_(path.tolerance_), increment_(path.increment_), length_(length_mm) {}
 
   Layout run() {
-    const std::vector<bool> corners = corners_of(old_, {.least_rad = options_.corner_rad,
-                                                        .times_beside = 3,
-                                                        .always_rad = kSharp,
-                                                        .leg_mm = 5 * options_.tolerance_mm});
+    out_.corners = path_.corners_;
     out_.points = {old_.front()};
     out_.old_point = {0};
-    std::size_t begin = 0;
-    for (std::size_t k = 1; k < old_.size(); ++k) {
-      if (k + 1 < old_.size() && !corners[k]) continue;
-      out_.corners += k + 1 < old_.size();
-      piece(begin, k);
-      begin = k;
+    for (const Piece& piece : path_.pieces_) {
+      if (piece.curve)
+        along(*piece.curve, piece.first, piece.last);
+      else  // a line needs no points between its ends
+        add(old_[piece.last], piece.last, 0);
     }
     return std::move(out_);
   }
 
  private:
-  /// Old points first ... last without a corner between them.
-  void piece(std::size_t first, std::size_t last) {
-    if (last == first + 1) return straight(first);
-    const SmoothCurve curve(old_.subspan(first, last - first + 1),
-                            std::max(0.0, kSmoothShare * options_.tolerance_mm - kRounding * increment_));
-    const std::vector<std::size_t> left = leaves(curve, first);
-    if (left.empty()) return along(curve, first, last);
-    // What lies between is tried anew, with its ends held.
-    std::size_t begin = first;
-    for (const std::size_t k : left) {
-      if (k > begin) piece(begin, k);
-      straight(k);
-      begin = k + 1;
-    }
-    if (begin < last) piece(begin, last);
-  }
-
-  /// The old segments from which the curve keeps farther than its share.
-  std::vector<std::size_t> leaves(const SmoothCurve& curve, std::size_t first) const {
-    const auto& knots = curve.knots_mm();
-    std::vector<std::size_t> found;
-    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
-      for (const double share : {0.25, 0.5, 0.75})
-        if (to_path(curve.at(knots[i] + share * (knots[i + 1] - knots[i])), first + i) >
-            kCurveShare * options_.tolerance_mm) {
-          found.push_back(first + i);
-          break;
-        }
-    return found;
-  }
-
-  /// One old segment stays what it is: a line needs no points between its ends.
-  void straight(std::size_t first) { add(old_[first + 1], first + 1, 0); }
-
   void along(const SmoothCurve& curve, std::size_t first, std::size_t last) {
     const auto& knots = curve.knots_mm();
     const double end = curve.length_mm();
@@ -99,7 +130,7 @@ class Layouter {
         while (reached + 2 < knots.size() && knots[reached + 1] <= to + 1e-9) ++reached;
         const double away = deviation(out_.points.back(), p, first + at, first + reached, whole);
         // A step within one old segment is as good as it gets.
-        if (away > options_.tolerance_mm && reached > at) {
+        if (away > tolerance_ && reached > at) {
           step *= kShorter;
           continue;
         }
@@ -115,17 +146,9 @@ class Layouter {
   /// The old path's distance to a line is greatest at a vertex; and as it runs from beside a to beside b, every point
   /// of the line is the foot of one of its points.
   double deviation(const Vec3& a, const Vec3& b, std::size_t from, std::size_t to, bool whole) const {
-    double away = whole ? 0 : to_path(b, to);
+    double away = whole ? 0 : path_.to_path_mm(b, to);
     for (std::size_t k = from + 1; k <= to; ++k) away = std::max(away, to_segment_mm(old_[k], a, b));
     return away;
-  }
-
-  /// From a point to the old path near one of its segments.
-  double to_path(const Vec3& p, std::size_t segment) const {
-    double nearest = to_segment_mm(p, old_[segment], old_[segment + 1]);
-    if (segment > 0) nearest = std::min(nearest, to_segment_mm(p, old_[segment - 1], old_[segment]));
-    if (segment + 2 < old_.size()) nearest = std::min(nearest, to_segment_mm(p, old_[segment + 1], old_[segment + 2]));
-    return nearest;
   }
 
   void add(const Vec3& p, std::size_t old_point, double away) {
@@ -134,13 +157,13 @@ class Layouter {
     out_.deviation_mm = std::max(out_.deviation_mm, away);
   }
 
-  std::span<const Vec3> old_;
-  const ResegmentOptions& options_;
-  double length_, increment_;
+  const SmoothedPath& path_;
+  const std::vector<Vec3>& old_;
+  double tolerance_, increment_, length_;
   Layout out_;
 };
 
-}  // namespace
+Layout SmoothedPath::lay_out(double length_mm) const { return Layouter(*this, length_mm).run(); }
 
 double segment_length_mm(double feed_mm_per_s, double block_time_s) { return feed_mm_per_s * block_time_s; }
 
@@ -156,7 +179,7 @@ double length_for(const SpacePath& path, double feed_mm_per_s, const ResegmentOp
 }
 
 Layout lay_out(std::span<const Vec3> points, const ResegmentOptions& options, double length_mm, double increment_mm) {
-  return Layouter(points, options, length_mm, increment_mm).run();
+  return SmoothedPath({points.begin(), points.end()}, options, increment_mm).lay_out(length_mm);
 }
 
 }  // namespace camber::repath

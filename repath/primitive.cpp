@@ -21,22 +21,64 @@ double angle_between(const Vec2& a, const Vec2& b) {
 
 }  // namespace
 
-std::optional<double> line_deviation(std::span<const Vec2> points, std::uint32_t first, std::uint32_t last,
-                                     double most_backwards_mm) {
-  const Vec2 start = points[first], chord = points[last] - start;
+namespace {
+
+/// Points as `at` tells them, two coordinates or three.
+template <class Point, class At>
+std::optional<double> deviation_of_line(std::uint32_t first, std::uint32_t last, double most_backwards_mm, At at) {
+  const Point start = at(first), chord = at(last) - start;
   const double length = chord.norm();
   if (length == 0) return std::nullopt;
-  const Vec2 along = chord / length;
+  const Point along = chord / length;
   double worst = 0, farthest = 0;
   for (std::uint32_t k = first + 1; k < last; ++k) {
-    const Vec2 p = points[k] - start;
-    const double u = p.dot(along), across = std::abs(cross(along, p));
+    const Point p = at(k) - start;
+    const double u = p.dot(along);
     if (u < farthest - most_backwards_mm) return std::nullopt;
     farthest = std::max(farthest, u);
-    const double beyond = u < 0 ? -u : u > length ? u - length : 0;
-    worst = std::max(worst, beyond > 0 ? std::hypot(across, beyond) : across);
+    worst = std::max(worst, (p - std::clamp(u, 0.0, length) * along).norm());
   }
   if (farthest > length + most_backwards_mm) return std::nullopt;
+  return worst;
+}
+
+}  // namespace
+
+std::optional<double> line_deviation(std::span<const Vec2> points, std::uint32_t first, std::uint32_t last,
+                                     double most_backwards_mm) {
+  return deviation_of_line<Vec2>(first, last, most_backwards_mm,
+                                 [&](std::uint32_t k) -> const Vec2& { return points[k]; });
+}
+
+std::optional<double> line_deviation(std::span<const Vec2> points, std::span<const double> heights, std::uint32_t first,
+                                     std::uint32_t last, double most_backwards_mm) {
+  return deviation_of_line<Vec3>(first, last, most_backwards_mm,
+                                 [&](std::uint32_t k) { return Vec3(points[k].x(), points[k].y(), heights[k]); });
+}
+
+double helix_deviation(std::span<const Vec2> points, std::span<const double> heights, std::uint32_t first,
+                       std::uint32_t last, const Vec2& center_mm, double sweep_rad) {
+  const double pitch = (heights[last] - heights[first]) / sweep_rad;  // mm a radian, with the sweep's sign
+  const double low = std::min(0.0, sweep_rad), high = std::max(0.0, sweep_rad);
+  double worst = 0, angle = 0;
+  Vec2 from = points[first] - center_mm;
+  for (std::uint32_t k = first; k < last; ++k) {
+    const Vec2 to = points[k + 1] - center_mm, edge = to - from;
+    const double rise = heights[k + 1] - heights[k], turn = cross(from, to);
+    const auto away = [&](double at_angle, double height) {
+      return std::abs(height - heights[first] - pitch * std::clamp(at_angle, low, high));
+    };
+    // |from + t edge|^2 = pitch turn / rise
+    const double a = edge.squaredNorm(), b = from.dot(edge), wanted = rise != 0 ? pitch * turn / rise : 0;
+    const double root = b * b - a * (from.squaredNorm() - wanted);
+    if (a > 0 && wanted > 0 && root >= 0)
+      for (const double t : {(-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a})
+        if (t > 0 && t < 1)
+          worst = std::max(worst, away(angle + angle_between(from, from + t * edge), heights[k] + t * rise));
+    angle += angle_between(from, to);
+    if (k + 1 < last) worst = std::max(worst, away(angle, heights[k + 1]));
+    from = to;
+  }
   return worst;
 }
 

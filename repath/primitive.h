@@ -24,6 +24,10 @@ struct Primitive {
 std::optional<double> line_deviation(std::span<const Vec2> points, std::uint32_t first, std::uint32_t last,
                                      double most_backwards_mm);
 
+/// In space: `heights` is the third coordinate of each point. The same holds.
+std::optional<double> line_deviation(std::span<const Vec2> points, std::span<const double> heights, std::uint32_t first,
+                                     std::uint32_t last, double most_backwards_mm);
+
 /// An arc as the control runs it: centre and, for ends whose radii differ, a radius between the two.
 struct ArcShape {
   Vec2 center_mm = Vec2::Zero();
@@ -45,5 +49,13 @@ struct ArcFit {
 /// than `most_backwards_mm` along the arc, passes an end of the arc by more than that, or turns by more than one turn.
 std::optional<ArcFit> arc_deviation(std::span<const Vec2> points, std::uint32_t first, std::uint32_t last,
                                     const ArcShape& arc, double most_mm, double most_backwards_mm);
+
+/// How far the heights of the polyline, taken at its angle about the centre, are from those of a helix of constant
+/// pitch from the first point to the last (controls move the third axis evenly with the angle). Greatest value over
+/// whole edges: height is linear along an edge and the angle is not, so between its ends it is looked for where the
+/// difference stands still, r^2 = pitch (from x to) / rise. With the arc's deviation beside it, hypot of the two bounds
+/// the Hausdorff distance: points at one angle belong to each other. `sweep_rad` as arc_deviation says it.
+double helix_deviation(std::span<const Vec2> points, std::span<const double> heights, std::uint32_t first,
+                       std::uint32_t last, const Vec2& center_mm, double sweep_rad);
 
 }  // namespace camber::repath

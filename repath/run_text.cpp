@@ -174,6 +174,12 @@ class RunWriter : BlockWriter {
         place[axis] = number(kAxis[axis], incremental_ ? to[i] - from[i] : to[i]);
       if (p.arc) centre[axis] = number(kCentre[axis], p.center_from_start_mm[i] + (absolute_centre_ ? from[i] : 0));
     }
+    if (!path_.heights.empty()) {
+      const double from_height = path_.heights[p.first], to_height = path_.heights[p.last];
+      const auto axis = static_cast<std::size_t>(axes_.normal);
+      if (from_height != to_height)
+        place[axis] = number(kAxis[axis], incremental_ ? to_height - from_height : to_height);
+    }
     for (const auto* group : {&place, &centre})
       for (const std::string& word : *group)
         if (!word.empty()) words.push_back(word);

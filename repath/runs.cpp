@@ -1,6 +1,7 @@
 // Which blocks may be rewritten together.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "nc/arcs.h"
@@ -95,7 +96,7 @@ class RunFinder {
     if (open_ && behind - first_ >= 2) {
       const int plane_g = moves_.state_of(moves_.moves[first_]).plane_g;
       const int current = plane_g == 17 ? 2 : plane_g == 18 ? 1 : 0;
-      Run run{.first_move = first_, .last_move = behind - 1, .normal = current};
+      Run run{.first_move = first_, .last_move = behind - 1, .normal = current, .in_space = in_space_};
       run.current_plane = (still_ >> current) & 1u;
       for (int axis = 2; !run.current_plane && axis >= 0; --axis)
         if ((still_ >> axis) & 1u) {
@@ -116,20 +117,20 @@ class RunFinder {
   unsigned still_ = 0;
 };
 
-/// The points of a run as `to_point` makes them of places in the text's frame.
-template <class Path, class ToPoint>
-Path path_with(const nc::Interpretation& moves, const Run& run, ToPoint to_point) {
-  Path path;
-  const auto add = [&](const nc::Move& move, const Vec3& p) {
-    const auto point = to_point(moves.frame_of(move).to_program(p));
-    if (!path.points.empty() && point == path.points.back()) return;
-    path.points.push_back(point);
-    path.block.push_back(move.block);
+/// The points of a run, repeated ones left out.
+template <class Add>
+void for_each_point(const nc::Interpretation& moves, const Run& run, Add add) {
+  std::optional<Vec3> before;
+  const auto reach = [&](const nc::Move& move, const Vec3& p) {
+    const Vec3 place = moves.frame_of(move).to_program(p);
+    const Vec3 point(without_noise(place.x()), without_noise(place.y()), without_noise(place.z()));
+    if (before && *before == point) return;
+    before = point;
+    add(point, move.block);
   };
   const nc::Move& first = moves.moves[run.first_move];
-  add(first, first.start_mm);
-  for (std::uint32_t m = run.first_move; m <= run.last_move; ++m) add(moves.moves[m], moves.moves[m].end_mm);
-  return path;
+  reach(first, first.start_mm);
+  for (std::uint32_t m = run.first_move; m <= run.last_move; ++m) reach(moves.moves[m], moves.moves[m].end_mm);
 }
 
 }  // namespace
@@ -138,17 +139,46 @@ std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation&
   return RunFinder(program, moves, in_space).find();
 }
 
+std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart) {
+  constexpr std::uint32_t kLeastMoves = 4;
+  std::vector<Run> out, in_space = find_runs(program, moves, true), planar;
+  if (apart) planar = find_runs(program, moves);
+  auto next = planar.begin();
+  for (Run run : in_space) {
+    for (; next != planar.end() && next->last_move <= run.last_move; ++next) {
+      if (next->current_plane || next->last_move - next->first_move + 1 < kLeastMoves) continue;
+      if (next->first_move > run.first_move + 1) {
+        out.push_back(run);
+        out.back().last_move = next->first_move - 1;
+      }
+      out.push_back(*next);
+      run.first_move = next->last_move + 1;
+    }
+    if (run.last_move > run.first_move) out.push_back(run);
+  }
+  return out;
+}
+
 RunPath path_of(const nc::Interpretation& moves, const Run& run) {
   const nc::PlaneAxes axes = nc::axes_of(run.normal == 2   ? nc::Plane::xy
                                          : run.normal == 1 ? nc::Plane::zx
                                                            : nc::Plane::yz);
-  return path_with<RunPath>(
-      moves, run, [&](const Vec3& p) { return Vec2(without_noise(p[axes.first]), without_noise(p[axes.second])); });
+  RunPath path;
+  for_each_point(moves, run, [&](const Vec3& p, std::uint32_t block) {
+    path.points.emplace_back(p[axes.first], p[axes.second]);
+    if (run.in_space) path.heights.push_back(p[axes.normal]);
+    path.block.push_back(block);
+  });
+  return path;
 }
 
 SpacePath space_path_of(const nc::Interpretation& moves, const Run& run) {
-  return path_with<SpacePath>(
-      moves, run, [](const Vec3& p) { return Vec3(without_noise(p.x()), without_noise(p.y()), without_noise(p.z())); });
+  SpacePath path;
+  for_each_point(moves, run, [&](const Vec3& p, std::uint32_t block) {
+    path.points.push_back(p);
+    path.block.push_back(block);
+  });
+  return path;
 }
 
 }  // namespace camber::repath

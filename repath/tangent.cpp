@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace camber::repath {
 namespace {
 
@@ -12,7 +14,10 @@ constexpr double kSmoothRad = 0.5;  ///< a joint that kinks by more is left to i
 
 double chord_angle(std::span<const Vec2> points, const Primitive& p) {
   Vec2 chord = points[p.last] - points[p.first];
-  if (chord.norm() == 0) chord = Vec2(p.center_from_start_mm.y(), -p.center_from_start_mm.x());  // a full turn
+  if (chord.norm() == 0) {  // a full turn: half a turn behind the direction at its start
+    chord = Vec2(p.center_from_start_mm.y(), -p.center_from_start_mm.x());
+    if (p.sweep_rad > 0) chord = -chord;
+  }
   return std::atan2(chord.y(), chord.x());
 }
 
@@ -20,11 +25,22 @@ double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
 }  // namespace
 
-std::vector<double> kinks_of(std::span<const Vec2> points, std::span<const Primitive> chain) {
+std::vector<double> kinks_of(const Polyline& path, std::span<const Primitive> chain) {
+  const auto direction = [&](const Primitive& p, double side) {
+    const double rise = path.heights.empty() ? 0 : path.heights[p.last] - path.heights[p.first];
+    if (!p.arc) {
+      const Vec2 chord = path.points[p.last] - path.points[p.first];
+      return Vec3(chord.x(), chord.y(), rise);
+    }
+    const double angle = chord_angle(path.points, p) + side * 0.5 * p.sweep_rad;
+    const double length = p.center_from_start_mm.norm() * std::abs(p.sweep_rad);
+    return Vec3(length * std::cos(angle), length * std::sin(angle), rise);
+  };
   std::vector<double> kinks;
-  for (std::size_t k = 0; k + 1 < chain.size(); ++k)
-    kinks.push_back(std::abs(wrapped(chord_angle(points, chain[k + 1]) - 0.5 * chain[k + 1].sweep_rad -
-                                     chord_angle(points, chain[k]) - 0.5 * chain[k].sweep_rad)));
+  for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+    const Vec3 in = direction(chain[k], 1), out = direction(chain[k + 1], -1);
+    kinks.push_back(std::atan2(in.cross(out).norm(), in.dot(out)));
+  }
   return kinks;
 }
 
@@ -34,8 +50,13 @@ std::optional<Primitive> fitted(const Fitter& fitter, const Primitive& like, std
   return like.arc ? fitter.arc(first, last) : fitter.line(first, last);
 }
 
+bool short_arc(const Primitive& p) {
+  constexpr std::uint32_t kBlocks = 8;
+  return p.arc && p.last - p.first <= kBlocks;
+}
+
 /// Squares of the kinks at the joints of chain[k - 1] .. chain[k + 2], with two of them replaced.
-double kinks_around(std::span<const Vec2> points, const std::vector<Primitive>& chain, const std::vector<bool>& corners,
+double kinks_around(const Polyline& path, const std::vector<Primitive>& chain, const std::vector<bool>& corners,
                     std::size_t k, const Primitive& left, const Primitive& right) {
   std::vector<Primitive> some;
   if (k > 0 && !corners[left.first]) some.push_back(chain[k - 1]);
@@ -43,31 +64,41 @@ double kinks_around(std::span<const Vec2> points, const std::vector<Primitive>& 
   some.push_back(right);
   if (k + 2 < chain.size() && !corners[right.last]) some.push_back(chain[k + 2]);
   double sum = 0;
-  for (const double kink : kinks_of(points, some)) sum += kink * kink;
+  for (const double kink : kinks_of(path, some)) sum += kink * kink;
   return sum;
 }
 
 }  // namespace
 
-void move_joints(std::span<const Vec2> points, const Fitter& fitter, const std::vector<bool>& corners,
+void move_joints(const Polyline& path, const Fitter& fitter, const std::vector<bool>& corners,
                  std::vector<Primitive>& chain) {
   for (int round = 0; round < kJointRounds; ++round)
     for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
       const std::uint32_t joint = chain[k].last;
       if (corners[joint] || (!chain[k].arc && !chain[k + 1].arc)) continue;
-      double least = kinks_around(points, chain, corners, k, chain[k], chain[k + 1]);
-      for (const int shift : {-16, -6, -2, -1, 1, 2, 6, 16}) {
+      double least = kinks_around(path, chain, corners, k, chain[k], chain[k + 1]);
+      for (const int shift : {-16, -6, -3, -2, -1, 1, 2, 3, 6, 16}) {
         const std::int64_t there = static_cast<std::int64_t>(joint) + shift;
         if (there <= chain[k].first || there >= chain[k + 1].last) continue;
         const auto at = static_cast<std::uint32_t>(there);
-        const auto left = fitted(fitter, chain[k], chain[k].first, at);
-        const auto right = left ? fitted(fitter, chain[k + 1], at, chain[k + 1].last) : std::nullopt;
-        if (!right) continue;
-        const double kinks = kinks_around(points, chain, corners, k, *left, *right);
-        if (kinks >= least) continue;
-        least = kinks;
-        chain[k] = *left;
-        chain[k + 1] = *right;
+        // An arc of a few blocks may have been a straight one and its neighbour's begin.
+        for (const bool left_straight : {false, true})
+          for (const bool right_straight : {false, true}) {
+            if ((left_straight && !short_arc(chain[k])) || (right_straight && !short_arc(chain[k + 1])) ||
+                (left_straight && right_straight))
+              continue;
+            const auto left =
+                left_straight ? fitter.line(chain[k].first, at) : fitted(fitter, chain[k], chain[k].first, at);
+            if (!left) continue;
+            const auto right = right_straight ? fitter.line(at, chain[k + 1].last)
+                                              : fitted(fitter, chain[k + 1], at, chain[k + 1].last);
+            if (!right) continue;
+            const double kinks = kinks_around(path, chain, corners, k, *left, *right);
+            if (kinks >= least) continue;
+            least = kinks;
+            chain[k] = *left;
+            chain[k + 1] = *right;
+          }
       }
     }
 }

@@ -13,11 +13,6 @@
 namespace camber::report {
 namespace {
 
-/// Nothing is fetched from anywhere: the browser itself refuses.
-constexpr const char* kPolicy =
-    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
-    "style-src 'unsafe-inline'; img-src data: blob:\">\n";
-
 constexpr const char* kPartFrame =
     "<div class=\"card\" id=\"part\"><h2>The part</h2>\n"
     "<noscript><p class=\"note\">The pictures need JavaScript; the tables below do without.</p></noscript>\n"
@@ -42,7 +37,7 @@ bool has_rows(const ReportData& data) {
 std::string head_html(const ReportData& data) {
   const std::string title = html_text(data.title);
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  out += kPolicy;
+  out += kPagePolicy;
   out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   out +=
       fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);

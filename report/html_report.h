@@ -19,6 +19,7 @@ struct Figure {
   /// Where summary.json or compensate's --json has it, "form_error_um.rms"; {} stands for before or after where
   /// both are shown ("{}_um.rms"). Empty: nowhere.
   std::string key;
+  std::string key_after{};  ///< of the second value where {} does not do; empty: as `key` says
 };
 
 /// Any table of text: a first row of names, then rows of as many cells. Shown in the order given.

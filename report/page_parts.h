@@ -4,10 +4,12 @@
 
 namespace camber::report {
 
-extern const std::string_view kPageStyle;  ///< CSS of every page
+extern const std::string_view kPageStyle;   ///< CSS of every page
+extern const std::string_view kPagePolicy;  ///< nothing is fetched from anywhere: the browser itself refuses
 
 /// The script of the report page and the style of its pictures: report/web, bundled while Camber is built.
 extern const std::string_view kReportScript;
 extern const std::string_view kReportStyle;
+extern const std::string_view kPathScript;  ///< of the page of compress and resegment
 
 }  // namespace camber::report

@@ -2,6 +2,10 @@
 
 namespace camber::report {
 
+const std::string_view kPagePolicy =
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
+    "style-src 'unsafe-inline'; img-src data: blob:\">\n";
+
 const std::string_view kPageStyle = R"css(
 :root { --ink: #1d2733; --soft: #5c6877; --line: #d9dfe6; --card: #ffffff; --page: #f2f4f7; --blue: #1668b8; }
 * { box-sizing: border-box; }

@@ -21,7 +21,7 @@ std::string unit_text(const std::string& unit) {
 std::string value_html(const Figure& f, double value, const char* which) {
   const std::string text = number_text(value, f.decimals);
   if (f.key.empty()) return text;
-  std::string key = f.key;
+  std::string key = which == std::string_view("after") && !f.key_after.empty() ? f.key_after : f.key;
   if (const std::size_t at = key.find("{}"); at != std::string::npos) key.replace(at, 2, which);
   return fmt::format("<span data-key=\"{}\">{}</span>", html_text(key), text);
 }

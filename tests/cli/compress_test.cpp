@@ -55,12 +55,28 @@ TEST(CompressCommand, WithoutAMachineThereAreNoTimes) {
   EXPECT_TRUE(json::parse(file_text(folder / "r.json"))["time_before_s"].is_null());
 }
 
+TEST(CompressCommand, ARampBecomesOneArcThatChecksClean) {
+  const TempFolder folder;
+  std::string text = "G21 G90 G17 G94\nG0 X10. Y0. Z0.\nG1 F600\n";
+  for (int i = 1; i <= 60; ++i)
+    text += fmt::format("X{:.3f} Y{:.3f} Z{:.3f}\n", 10 * std::cos(i / 30.0), 10 * std::sin(i / 30.0), -i / 30.0);
+  folder.write("p.nc", text + "M30\n");
+  ASSERT_EQ(run_camber(folder, "compress p.nc --tolerance-mm 0.01 --helices -o out.nc --json r.json").status, 0);
+  EXPECT_EQ(file_text(folder / "out.nc"),
+            "G21 G90 G17 G94\nG0 X10. Y0. Z0.\nG1 F600\nG3 X-4.161 Y9.093 Z-2. I-10. J0.\nM30\n");
+  EXPECT_EQ(run_camber(folder, "check --strict out.nc").status, 0);
+  const json r = json::parse(file_text(folder / "r.json"));
+  EXPECT_EQ(r["arcs"], 1);
+  EXPECT_NEAR(r["length_after_mm"], std::hypot(20, 2), 0.001);
+}
+
 TEST(CompressCommand, TellsWhatIsWrong) {
   const TempFolder folder;
   folder.write("p.nc", program());
   EXPECT_EQ(run_camber(folder, "compress p.nc -o out.nc").status, 2);
   EXPECT_EQ(run_camber(folder, "compress p.nc --tolerance-mm 0 -o out.nc").status, 2);
   EXPECT_EQ(run_camber(folder, "compress p.nc --tolerance-mm nan -o out.nc").status, 2);
+  EXPECT_EQ(run_camber(folder, "compress p.nc --tolerance-mm 0.01 --lines-only --helices -o out.nc").status, 2);
   const auto over = run_camber(folder, "compress p.nc --tolerance-mm 0.01 -o p.nc");
   EXPECT_EQ(over.status, 1);
   EXPECT_EQ(over.err,

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <random>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "repath/fit.h"
@@ -206,7 +207,7 @@ TEST(Fit, SmoothPathsHaveSmallKinks) {
   as_fitted.tangent = false;
   const auto rms = [&](const std::vector<Primitive>& chain) {
     double sum = 0;
-    const auto kinks = kinks_of(points, chain);
+    const auto kinks = kinks_of(Polyline{points}, chain);
     for (const double k : kinks) sum += k * k;
     return std::sqrt(sum / static_cast<double>(kinks.size()));
   };
@@ -280,6 +281,49 @@ TEST(Fit, RandomPathsTakeTheFewestPrimitivesButForOneInAHundred) {
   std::cout << worse << " of " << kPaths << " paths take " << more << " primitives more than the fewest, " << primitives
             << "\n";
   EXPECT_LE(worse, kPaths / 100);
+}
+
+/// A gentle curve with straight blocks where it bends the other way: lines that arcs could take the place of.
+TEST(Fit, NoLineIsLongerThanItMustBeAndStraightSidesStay) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> u(0, 1);
+  double found_mm = 0, least_mm = 0, plain_mm = 0;
+  const auto lines_mm = [](const Points& points, const std::vector<Primitive>& chain) {
+    double sum = 0;
+    for (const Primitive& p : chain) sum += p.arc ? 0 : (points[p.last] - points[p.first]).norm();
+    return sum;
+  };
+  FitOptions options;
+  options.tangent = false;
+  for (int i = 0; i < 100; ++i) {
+    Points points;
+    const double a = 10 + 20 * u(random), b = 5 + 5 * u(random), phase = 6 * u(random);
+    for (double x = 0; x < 60;) {
+      points.push_back(rounded(Vec2(x, 3 * std::sin(x / a) + 0.5 * std::sin(x / b + phase))));
+      const double bend = std::abs(3 / (a * a) * std::sin(x / a) + 0.5 / (b * b) * std::sin(x / b + phase));
+      x += std::min(4.0, std::sqrt(8 * 0.005 / bend));  // chords of 0.005 mm
+    }
+    const auto chain = fit(points, options);
+    const auto best = fit_exhaustively(points, options);
+    EXPECT_EQ(chain.size(), best.size());
+    found_mm += lines_mm(points, chain);
+    least_mm += lines_mm(points, best);
+    plain_mm += 60;
+  }
+  std::cout << fmt::format("lines: {:.0f} of {:.0f} mm, {:.0f} at least\n", found_mm, plain_mm, least_mm);
+  EXPECT_LT(found_mm, 1.05 * least_mm);
+  // A rounded rectangle: arcs do not eat what is straight, even where they could within the tolerance.
+  for (const int blocks : {1, 10})
+    for (const bool line_first : {false, true}) {
+      Points sides = circle(5, 0, kPi / 2, 40);
+      for (int k = 1; k <= blocks; ++k) sides.emplace_back(-1.5 * k, 5);
+      if (line_first) std::reverse(sides.begin(), sides.end());
+      const auto chain = fit(sides, {});
+      ASSERT_EQ(chain.size(), 2u);
+      EXPECT_NE(chain[0].arc, line_first);
+      EXPECT_EQ(chain[0].last, line_first ? static_cast<std::uint32_t>(blocks) : 40u);
+      EXPECT_EQ(chain[1].arc, line_first);
+    }
 }
 
 }  // namespace

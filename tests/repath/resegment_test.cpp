@@ -3,10 +3,12 @@
 #include <cmath>
 #include <random>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
 #include "repath/contour.h"
+#include "repath/fastest.h"
 #include "repath/smooth_curve.h"
 #include "tests/support/path_distance.h"
 
@@ -193,6 +195,64 @@ TEST(Resegment, ReadsAndWritesIncrementsAndInches) {
     EXPECT_LE(tests::hausdorff_mm(old.moves, now.moves, 0.005), 0.0102) << head;
     EXPECT_LT((now.moves.moves.back().end_mm - old.moves.moves.back().end_mm).norm(), 1e-9);
   }
+}
+
+/// Rows over a bow in blocks of 0.1 mm, F8000.
+std::string bow() {
+  std::string text = "G21 G90 G17\nG0 X0. Y0. Z5.\nG1 F8000\n";
+  for (int row = 0; row < 4; ++row)
+    for (int k = 0; k <= 300; ++k) {
+      const double x = 0.1 * (row % 2 ? 300 - k : k);
+      text += fmt::format("X{:.3f} Y{:.3f} Z{:.3f}\n", x, 0.5 * row, 3 * std::sin(x / 7));
+    }
+  return text + "M30\n";
+}
+
+TEST(Fastest, IsAsFastAsTheBestOfAllLengths) {
+  const Read old = read(bow());
+  for (const double block_time_s : {0.002, 0.0})
+    for (const double position_gain : {0.0, 60.0}) {
+      machine::Machine machine;
+      machine.control.block_time_s = block_time_s;
+      for (auto& axis : machine.axis) {
+        axis.acceleration_mm_per_s2 = 3000;
+        if (position_gain > 0) axis.position_gain_per_s = position_gain;
+      }
+      const ContourFigures before = contour_figures(old.moves, old.moves, machine);
+      FastestOptions options;
+      options.layout = within(0.01);
+      options.contour_mm = 1;  // every length keeps to it
+      const Fastest found = find_fastest(old.program, old.moves, machine, before, options);
+      EXPECT_LT(found.tried.size(), 9u);
+      double least = 1e9;
+      for (const double factor : {1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 6.3, 10.0}) {
+        ResegmentOptions layout = options.layout;
+        layout.block_time_s = block_time_s;
+        layout.length_factor = factor;
+        const Read now = read(resegment(old.program, old.moves, layout).text);
+        least = std::min(least, contour_figures(now.moves, old.moves, machine).time_s);
+      }
+      EXPECT_LE(found.tried[found.chosen].figures.time_s, 1.001 * least) << block_time_s << ' ' << position_gain;
+    }
+}
+
+TEST(Fastest, WhereNoLengthKeepsToTheContourLowerFeedsAreTriedWithThree) {
+  const Read old = read(bow());
+  machine::Machine machine;
+  machine.control.block_time_s = 0.002;
+  for (auto& axis : machine.axis) {
+    axis.acceleration_mm_per_s2 = 3000;
+    axis.position_gain_per_s = 40;
+  }
+  FastestOptions options;
+  options.layout = within(0.01);
+  options.contour_mm = 1e-4;
+  const Fastest found =
+      find_fastest(old.program, old.moves, machine, contour_figures(old.moves, old.moves, machine), options);
+  EXPECT_FALSE(found.within_limit);
+  EXPECT_EQ(found.tried.size(), 9u + 4 * 3);
+  for (const Candidate& c : found.tried)
+    EXPECT_GE(c.figures.contour_max_mm, found.tried[found.chosen].figures.contour_max_mm);
 }
 
 TEST(Contour, ACircleShrinksAsThePositionLoopSays) {

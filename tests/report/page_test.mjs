@@ -30,6 +30,34 @@ const pixels = page => page.evaluate(() => {
   return out;
 });
 
+// Every number that names its place in the JSON is the JSON's.
+async function expectNumbersOfJson(page) {
+  const figures = JSON.parse(readFileSync(json, 'utf8'));
+  const shown = await page.$$eval('[data-key]', all => all.map(e => [e.dataset.key, e.textContent]));
+  expect(shown.length >= 9, `only ${shown.length} numbers name their place`);
+  for (const [key, text] of shown) {
+    const value = key.split('.').reduce((at, name) => at?.[name], figures);
+    const decimals = (text.split('.')[1] || '').length;
+    const expected = typeof value === 'number' ? value.toFixed(decimals).replace(/^-(?=.*[1-9])/, '\u2212').replace(/^-/, '') : `nothing (${value})`;
+    expect(text === expected, `${key} is ${text} on the page and ${expected} in the JSON`);
+  }
+}
+
+// Of the path's canvas: how many pixels have the colour of lines and how many that of arcs.
+const strokes = page => page.evaluate(() => {
+  const canvas = document.querySelector('#scene canvas'), { width, height } = canvas;
+  const px = canvas.getContext('2d').getImageData(0, 0, width, height).data, out = { drawn: 0, lines: 0, arcs: 0 };
+  for (let i = 0; i < px.length; i += 4) {
+    if (px[i + 3] < 128) continue;
+    out.drawn++;
+    if (px[i + 2] > px[i] + 60) out.lines++;
+    if (px[i] > px[i + 2] + 60) out.arcs++;
+  }
+  return out;
+});
+
+const painted = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+
 async function selected(page) {
   const box = page.locator('#selected');
   await box.locator('.facts').waitFor();
@@ -82,18 +110,42 @@ const CHECKS = {
     expect(text.startsWith('%\r\nO1\r\n') && text.endsWith('N32 G1 X29.001\r\nM30\r\n%\r\n'), `the download holds ${JSON.stringify(text.slice(0, 40))} ...`);
   },
 
-  // Every number that names its place in the JSON is the JSON's.
   async numbers(page) {
-    const figures = JSON.parse(readFileSync(json, 'utf8'));
-    const shown = await page.$$eval('[data-key]', all => all.map(e => [e.dataset.key, e.textContent]));
-    expect(shown.length >= 9, `only ${shown.length} numbers name their place`);
-    for (const [key, text] of shown) {
-      const value = key.split('.').reduce((at, name) => at?.[name], figures);
-      const decimals = (text.split('.')[1] || '').length;
-      const expected = typeof value === 'number' ? value.toFixed(decimals).replace(/^-(?=.*[1-9])/, '\u2212').replace(/^-/, '') : `nothing (${value})`;
-      expect(text === expected, `${key} is ${text} on the page and ${expected} in the JSON`);
-    }
+    await expectNumbersOfJson(page);
     expect((await pixels(page)).drawn > 0, 'the picture is blank');
+  },
+
+  // A page of compress: rows of lines before, lines and arcs after; of resegment (no arcs): lines.
+  async path(page) {
+    await expectNumbersOfJson(page);
+    const figures = JSON.parse(readFileSync(json, 'utf8'));
+    await page.getByRole('button', { name: 'Top', exact: true }).click();
+    await painted(page);
+    const after = await strokes(page);
+    expect(after.lines > 100, `no lines after: ${JSON.stringify(after)}`);
+    expect(figures.arcs > 0 ? after.arcs > 100 : after.arcs === 0, `${figures.arcs} arcs after are ${JSON.stringify(after)}`);
+    await page.click('button[data-value=before]');
+    await painted(page);
+    const before = await strokes(page);
+    expect(before.lines > 100 && before.arcs === 0, `before: ${JSON.stringify(before)}`);
+    const box = await page.locator('#scene canvas').boundingBox();
+    let tip = '';
+    for (let y = 4; y < box.height && !tip; y += 6) {
+      await page.locator('#scene canvas').hover({ position: { x: box.width / 2, y } });
+      if (await page.locator('.tip').isVisible()) tip = await page.locator('.tip').textContent();
+    }
+    expect(/^line \d+ before: line to X-?[\d.]+ Y-?[\d.]+ Z-?[\d.]+$/.test(tip), `the cursor reads "${tip}"`);
+    await page.mouse.wheel(0, -2000);
+    await painted(page);
+    expect((await strokes(page)).drawn > 0, 'nothing is seen after zooming in');
+    await page.locator('#scene canvas').dblclick();
+    await painted(page);
+    expect(await page.locator('svg.histogram path').count() > 3, 'the histogram is missing');
+  },
+
+  async large_path(page) {
+    expect((await strokes(page)).drawn > 1000, 'the picture is blank');
+    expect(/those left out lie within/.test(await page.locator('.notes').innerText()), 'the page does not say that points were left out');
   },
 
   async large(page) {

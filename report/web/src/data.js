@@ -29,7 +29,7 @@ const READERS = {
   },
 };
 
-const read = (bytes, a) => READERS[a.kind](bytes, a);
+export const read = (bytes, a) => READERS[a.kind](bytes, a);
 
 function triples(bytes, arrays) {
   const [x, y, z] = arrays.map(a => read(bytes, a)), out = new Float32Array(3 * x.length);

@@ -1,0 +1,33 @@
+#include "cli/rewrite_report.h"
+
+#include <fmt/format.h>
+
+#include "base/numbers.h"
+
+namespace camber::cli {
+
+report::RewritePage rewrite_page_of(const Rewriting& rewriting, std::vector<report::Figure> figures) {
+  report::RewritePage page;
+  page.figures = std::move(figures);
+  page.tolerance_mm = rewriting.tolerance_mm;
+  page.max_deviation_mm = rewriting.max_deviation_mm;
+  page.measured_deviation_mm = rewriting.measured.max_mm;
+  page.worst_place_mm = rewriting.measured.worst_place_mm;
+  page.length_by_deviation_mm = rewriting.measured.length_by_deviation_mm;
+  page.runs = rewriting.runs.size();
+  report::BlockRanges old_blocks, new_blocks;
+  for (const repath::RewrittenRun& run : rewriting.runs) {
+    old_blocks.emplace_back(run.first_block, run.last_block);
+    new_blocks.emplace_back(run.first_block_after, run.last_block_after);
+  }
+  page.before = report::path_picture(rewriting.before, old_blocks, report::kMostPicturePoints);
+  page.after = report::path_picture(rewriting.after, new_blocks, report::kMostPicturePoints);
+  return page;
+}
+
+std::string rewrite_subtitle(const std::string& program, const std::string& output, double tolerance_mm) {
+  return fmt::format("{} to {}, tolerance {} mm, camber {}", program, output, format_trimmed(tolerance_mm, 5),
+                     CAMBER_VERSION);
+}
+
+}  // namespace camber::cli

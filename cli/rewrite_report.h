@@ -1,0 +1,27 @@
+#pragma once
+// The page that compress and resegment write.
+#include <span>
+#include <string>
+#include <vector>
+
+#include "nc/interpreter.h"
+#include "repath/compress.h"
+#include "repath/path_deviation.h"
+#include "report/rewrite_page.h"
+
+namespace camber::cli {
+
+struct Rewriting {
+  const nc::Interpretation &before, &after;
+  std::span<const repath::RewrittenRun> runs;
+  double tolerance_mm = 0, max_deviation_mm = 0;
+  const repath::DeviationFigures& measured;
+};
+
+/// Pictures, deviations and the figures given; title and tables are the caller's.
+report::RewritePage rewrite_page_of(const Rewriting& rewriting, std::vector<report::Figure> figures);
+
+/// "p.nc to out.nc, tolerance 0.01 mm, camber 0.1.0"
+std::string rewrite_subtitle(const std::string& program, const std::string& output, double tolerance_mm);
+
+}  // namespace camber::cli

@@ -1,0 +1,55 @@
+#pragma once
+// What laying out a path again needs and what does not depend on the length of the segments.
+#include <vector>
+
+#include "repath/resegment.h"
+#include "repath/run_text.h"
+
+namespace camber::repath {
+
+class SmoothCurve;
+
+/// Corners and curves of a path, made once; then laid out with as many lengths as wanted. See lay_out().
+class SmoothedPath {
+ public:
+  /// At least two points, no two that follow each other alike.
+  SmoothedPath(std::vector<Vec3> points, const ResegmentOptions& options, double increment_mm);
+  ~SmoothedPath();
+  SmoothedPath(SmoothedPath&&) noexcept;
+
+  const std::vector<Vec3>& points() const { return old_; }
+  Layout lay_out(double length_mm) const;
+
+ private:
+  struct Piece;
+  class Layouter;
+  void smooth(std::size_t first, std::size_t last);
+  void straight(std::size_t first);
+  std::vector<std::size_t> leaves(const SmoothCurve& curve, std::size_t first) const;
+  double to_path_mm(const Vec3& p, std::size_t segment) const;
+
+  std::vector<Vec3> old_;
+  double tolerance_, increment_;
+  std::size_t corners_ = 0;
+  std::vector<Piece> pieces_;
+};
+
+/// The runs of a program, ready to be laid out with several lengths and feeds.
+class Resegmenter {
+ public:
+  /// `program` and `moves` must outlive it. Of the options tolerance, corners and number style count.
+  Resegmenter(const nc::Program& program, const nc::Interpretation& moves, const ResegmentOptions& options);
+  ~Resegmenter();
+
+  /// Of `options` length, block time and factors count.
+  Resegmentation lay_out(const ResegmentOptions& options) const;
+
+ private:
+  struct Prepared;
+  const nc::Program& program_;
+  const nc::Interpretation& moves_;
+  std::vector<Prepared> runs_;
+  TextStyle style_;
+};
+
+}  // namespace camber::repath

@@ -1,0 +1,145 @@
+#include "report/rewrite_page.h"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/numbers.h"
+#include "report/decimate.h"
+#include "report/packed_arrays.h"
+#include "report/page_parts.h"
+#include "report/page_tables.h"
+
+namespace camber::report {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kWidth = 560, kHeight = 250, kLeft = 44, kRight = 10, kTop = 26, kBottom = 40;
+
+constexpr const char* kPictureFrame =
+    "<div class=\"card\" id=\"path\"><h2>The path</h2>\n"
+    "<noscript><p class=\"note\">The picture needs JavaScript; the tables below do without.</p></noscript>\n"
+    "<div class=\"bar\" id=\"path-controls\"></div>\n<div class=\"scene\" id=\"scene\"></div>\n"
+    "<div class=\"bar\" id=\"path-legend\"></div>\n"
+    "<p class=\"note screen\">Drag to turn, with the right button or Shift to move, wheel to zoom, double-click for "
+    "the "
+    "whole. Dots mark the ends of blocks where they are far enough apart; the ring marks the largest deviation.</p>\n"
+    "</div>\n";
+
+json picture_json(PackedArrays& arrays, const PathPicture& picture, const char* name) {
+  json out = {{"name", name}, {"place", json::array()}, {"thinned", picture.thinned}};
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values(picture.points.size());
+    std::transform(picture.points.begin(), picture.points.end(), values.begin(),
+                   [&](const Vec3& p) { return p[axis]; });
+    out["place"].push_back(arrays.add_quantised(values));
+  }
+  std::vector<std::uint32_t> values(picture.points.size());
+  for (std::size_t k = 0; k < values.size(); ++k)
+    values[k] = 2 * static_cast<std::uint32_t>(picture.kind[k]) + picture.ends[k];
+  out["kind"] = arrays.add_whole(values);
+  out["block"] = arrays.add_whole(picture.block);
+  return out;
+}
+
+std::string thinned_note(const PathPicture& picture, const char* name) {
+  if (!picture.thinned) return {};
+  return fmt::format("The picture of the program {} shows {} points; those left out lie within {:.2g} mm of it.", name,
+                     picture.points.size(), picture.chord_mm);
+}
+
+std::string row(const std::string& name, const std::string& value, const char* unit, const char* key = nullptr) {
+  const std::string shown = key != nullptr ? fmt::format("<span data-key=\"{}\">{}</span>", key, value) : value;
+  return fmt::format("<tr><td>{}</td><td>{}</td><td class=\"unit\">{}</td></tr>\n", html_text(name), shown, unit);
+}
+
+std::string deviation_html(const RewritePage& page) {
+  std::string out = "<div class=\"card\"><h2>How far the new path lies from the old one</h2>\n" + deviation_svg(page);
+  out += "<table><tbody>\n" + row("tolerance", number_text(page.tolerance_mm, 4), "mm", "tolerance_mm");
+  out += row("largest, as the fit bounds it", number_text(page.max_deviation_mm, 4), "mm", "max_deviation_mm");
+  out += row("largest, of points laid densely on both paths", number_text(page.measured_deviation_mm, 4), "mm",
+             "measured_deviation_mm");
+  out += row("where that is",
+             fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", page.worst_place_mm.x() + 0.0, page.worst_place_mm.y() + 0.0,
+                         page.worst_place_mm.z() + 0.0),
+             "");
+  out += row("rewritten runs of blocks", fmt::format("{}", page.runs), "", "runs");
+  return out + "</tbody></table></div>\n";
+}
+
+}  // namespace
+
+std::string deviation_svg(const RewritePage& page) {
+  const auto& length = page.length_by_deviation_mm;
+  const double all = std::accumulate(length.begin(), length.end(), 0.0);
+  if (!(all > 0)) return "<p class=\"note\">Nothing was rewritten.</p>\n";
+  const double most = nice_limit(100 * *std::max_element(length.begin(), length.end()) / all);
+  const auto x = [](double share) { return kLeft + share * (kWidth - kLeft - kRight); };
+  const auto y = [](double share) { return kHeight - kBottom - share * (kHeight - kTop - kBottom); };
+  std::string out = fmt::format(
+      "<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Histogram of the "
+      "deviation\">\n",
+      kWidth, kHeight);
+  const auto text = [&](double at_x, double at_y, const char* anchor, const std::string& what) {
+    fmt::format_to(std::back_inserter(out), "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", at_x,
+                   at_y, anchor, what);
+  };
+  for (const double share : {0.0, 0.5, 1.0}) {
+    fmt::format_to(std::back_inserter(out), "<path stroke=\"#e3e8ee\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", x(0), y(share),
+                   x(1));
+    text(kLeft - 6, y(share) + 4, "end", fmt::format("{:g}", share * most));
+  }
+  out += "<path fill=\"#1668b8\" d=\"";
+  const double bins = static_cast<double>(length.size());
+  for (std::size_t i = 0; i < length.size(); ++i)
+    if (length[i] > 0)
+      fmt::format_to(std::back_inserter(out), "M{:.1f} {:.1f}V{:.2f}H{:.1f}V{:.1f}Z", x(static_cast<double>(i) / bins),
+                     y(0), y(100 * length[i] / all / most), x((static_cast<double>(i) + 0.9) / bins), y(0));
+  out += "\"/>\n";
+  for (const double share : {0.0, 0.5, 1.0})
+    text(x(share), kHeight - kBottom + 17,
+         share == 0   ? "start"
+         : share == 1 ? "end"
+                      : "middle",
+         format_trimmed(1000 * share * page.tolerance_mm, 3));
+  text(kLeft - 36, 16, "start", "% of the rewritten length");
+  text(x(0.5), kHeight - 6, "middle", "deviation, µm");
+  return out + "</svg>\n";
+}
+
+std::string rewrite_page(const RewritePage& page) {
+  const std::string title = html_text(page.title);
+  std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  out += kPagePolicy;
+  out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  out +=
+      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);
+  out += fmt::format("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", title, html_text(page.subtitle));
+  constexpr std::size_t kLarge = 3;
+  ReportData figures, tiles;
+  figures.figures = page.figures;
+  tiles.figures.assign(page.figures.begin(),
+                       page.figures.begin() + static_cast<std::ptrdiff_t>(std::min(kLarge, page.figures.size())));
+  tiles.figures.push_back({"largest deviation", page.max_deviation_mm, std::nullopt, "mm", 4, "max_deviation_mm"});
+  out += tiles_html(tiles) + kPictureFrame;
+  out += "<div class=\"columns\">\n" + deviation_html(page) + figures_html(figures);
+  for (const auto& table : page.tables) out += table_html(table);
+  std::vector<std::string> notes = page.notes;
+  for (const std::string& note : {thinned_note(page.before, "before"), thinned_note(page.after, "after")})
+    if (!note.empty()) notes.push_back(note);
+  out += list_html("Notes", "notes", notes) + "</div>\n</main>\n";
+  PackedArrays arrays;
+  json index = {
+      {"paths", json::array({picture_json(arrays, page.before, "before"), picture_json(arrays, page.after, "after")})}};
+  if (page.measured_deviation_mm > 0)
+    index["worst"] = {page.worst_place_mm.x(), page.worst_place_mm.y(), page.worst_place_mm.z()};
+  out += "<script type=\"application/json\" id=\"index\">" + index.dump() + "</script>\n";
+  out += "<script type=\"text/plain\" id=\"arrays\">" + arrays.text() + "</script>\n";
+  return out + fmt::format("<script>{}</script>\n</body>\n</html>\n", kPathScript);
+}
+
+}  // namespace camber::report
