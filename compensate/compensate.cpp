@@ -273,9 +273,9 @@ class Loop {
   /// The other grid and the uncertainty; the text last, since its header may tell of them.
   void check(Compensation& out) {
     const Emitted* emitted = best_.emitted.get();
-    if (options_.recheck_voxel_mm)
-      out.recheck = recheck(job_, *options_.recheck_voxel_mm, target_program(), program_, emitted, *path_,
-                            fit_options(), own_target_, options_.progress);
+    for (const double voxel_mm : options_.recheck_voxels_mm)
+      out.rechecks.push_back(recheck(job_, voxel_mm, target_program(), program_, emitted, *path_, fit_options(),
+                                     own_target_, options_.progress));
     std::vector<std::string> names;
     std::vector<std::vector<double>> changes;
     for (const ParameterGroup& group : options_.uncertainty) {
