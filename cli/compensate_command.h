@@ -1,6 +1,5 @@
 #pragma once
 // camber compensate J.toml -o OUT.nc [--report R.html] [--json R.json]
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,8 @@
 #include "compensate/fit_shift.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -34,12 +36,48 @@ void add_observation(System& s, const ShiftPath& path, const Observation& o) {
   s.right[i + 1] += v * pull;
 }
 
+/// Mean weight of the observations about each point of a path, at least one: smoothing keeps its length where a few
+/// of them weigh a thousand times as much as the others, else those few would make a path of their scatter.
+std::vector<double> weight_about(const ShiftPath& path, std::span<const Observation> observations) {
+  constexpr double kAbout_mm = 1.0;
+  struct Sums {
+    double weighted = 0, area = 0;
+  };
+  const auto& points = path.points();
+  std::vector<Sums> own(points.size());
+  for (const Observation& o : observations)
+    for (const auto& [at, share] :
+         {std::pair{o.place.lower, 1 - o.place.upper_share}, std::pair{o.place.lower + 1, o.place.upper_share}}) {
+      own[at].weighted += share * o.area_mm2 * o.weight;
+      own[at].area += share * o.area_mm2;
+    }
+  std::vector<Sums> about = own;
+  for (const Chain& c : path.chains()) {
+    const std::size_t end = c.from + c.count;
+    const auto fade = [&](std::size_t i) {
+      return std::exp(-(points[i].along_mm - points[i - 1].along_mm) / kAbout_mm);
+    };
+    const auto carry = [&](Sums& carried, std::size_t from, std::size_t to, double keep) {
+      carried = {keep * (carried.weighted + own[from].weighted), keep * (carried.area + own[from].area)};
+      about[to] = {about[to].weighted + carried.weighted, about[to].area + carried.area};
+    };
+    Sums carried;
+    for (std::size_t i = c.from + 1; i < end; ++i) carry(carried, i - 1, i, fade(i));
+    carried = {};
+    for (std::size_t i = end - 1; i > c.from; --i) carry(carried, i, i - 1, fade(i));
+  }
+  std::vector<double> out;
+  out.reserve(about.size());
+  for (const Sums& a : about) out.push_back(a.area > 0 ? std::max(1.0, a.weighted / a.area) : 1.0);
+  return out;
+}
+
 void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double soft_mu, double kappa,
-                   std::span<const double> stiffness) {
+                   std::span<const double> weight, std::span<const double> stiffness) {
   const auto& points = path.points();
   for (std::size_t i = chain.from; i + 1 < chain.from + chain.count; ++i) {
     const double length = std::max(points[i + 1].along_mm - points[i].along_mm, 1e-6);
-    const double mu = soft_mu * (stiffness.empty() ? 1.0 : stiffness[i]);
+    const double mu = soft_mu * (weight[i] + weight[i + 1]) / 2 * (stiffness.empty() ? 1.0 : stiffness[i]);
     s.diagonal[i] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
     s.diagonal[i + 1] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
     s.upper[i] -= mu / length * Matrix3d::Identity();
@@ -108,9 +146,10 @@ std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations
   const double rho = std::max(area, 1e-9) / std::max(length, 1e-9);
   const double mu = rho * options.smoothing_mm * options.smoothing_mm;
   const double kappa = mu / (options.decay_mm * options.decay_mm);
+  const std::vector<double> weight = weight_about(path, observations);
   for (const Chain& c : path.chains()) {
     add_rest(s, c);
-    add_stiffness(s, path, c, mu, kappa, options.stiffness);
+    add_stiffness(s, path, c, mu, kappa, weight, options.stiffness);
     solve_chain(s, c, points);
   }
   std::size_t limited = 0;
