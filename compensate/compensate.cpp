@@ -107,7 +107,10 @@ class Loop {
   double overcut_um() const { return job_.compensation.overcut_um(); }
 
   FitShiftOptions fit_options() const {
-    return {.max_shift_mm = job_.compensation.max_shift_mm, .stiffness = stiffness_};
+    return {.max_shift_mm = job_.compensation.max_shift_mm,
+            .stiffness = stiffness_,
+            .links = links_,
+            .link_stiffness = link_stiffness_};
   }
 
   std::function<void(double)> progress(const std::string& what) const {
@@ -126,6 +129,8 @@ class Loop {
     path_.emplace(program_.moves, compensated_, kSpacing_mm, job_.machine.control.block_time_s);
     sensitivity_.emplace(*path_);
     stiffness_.assign(path_->points().size(), 1.0);
+    links_ = row_links(*path_, kRowReach_mm);
+    link_stiffness_.assign(links_.size(), 1.0);
     last_.shifts = path_->shifts();
     last_.observed = workshop_->observe(*path_, nullptr, last_.surface);
     out.feed_before = program_.feed;
@@ -188,8 +193,10 @@ class Loop {
         shift = from[p] + share * (shift - from[p]);
       }
       next.emitted = workshop_->emit(*path_, compensated_);
-      if (next.emitted->quality.over.empty()) break;
+      const RowTurn turn = row_turn(*path_, links_, job_.compensation.max_angle_growth_rad);
+      if (next.emitted->quality.over.empty() && turn.over.empty()) break;
       stiffen(next.emitted->quality.over);
+      for (const std::size_t link : turn.over) link_stiffness_[link] *= kStiffer;
     }
     next.shifts = path_->shifts();
     round.largest_shift_mm = path_->largest_shift_mm();
@@ -260,6 +267,7 @@ class Loop {
       out.quality = best_.emitted->quality;
     }
     out.row_steps = row_steps(*path_, kRowReach_mm);
+    out.row_turn_rad = row_turn(*path_, links_, job_.compensation.max_angle_growth_rad).max_rad;
     const double most_um = overcut_um();
     out.depth_after = depth_of(out.surface_after, best_.observed, most_um, true);
     out.depth_others = depth_of(out.surface_after, best_.observed, most_um, false);
@@ -305,6 +313,8 @@ class Loop {
   std::optional<ShiftPath> path_;
   std::optional<Sensitivity> sensitivity_;
   std::vector<double> stiffness_;  ///< of the path, one a point
+  std::vector<RowLink> links_;
+  std::vector<double> link_stiffness_;  ///< one a link
   Trial last_, best_;
   double free_correctable_um_ = 0;  ///< of the best round before the guard
 };

@@ -53,6 +53,7 @@ struct Compensation {
   Finishing finishing;
   PathQuality quality;  ///< of the emitted program
   RowSteps row_steps;
+  double row_turn_rad = 0;          ///< between neighbouring rows of one sense, held like the angles between blocks
   Depth depth_before, depth_after;  ///< into the part, compensated moves
   Depth depth_others;               ///< of moves that are not compensated
   Depth depth_without_bending;      ///< of the emitted program

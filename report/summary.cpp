@@ -202,6 +202,7 @@ std::string compensate_json(const compensate::Compensation& c, double compute_s)
                {"angle_growth_line", c.quality.angle_line},
                {"shortest_split_mm", c.quality.shortest_mm},
                {"too_short_splits", c.quality.too_short},
+               {"row_turn_deg", deg_from_rad(c.row_turn_rad)},
                {"row_step_p95_um", 1000 * c.row_steps.p95_mm},
                {"row_step_max_um", 1000 * c.row_steps.max_mm}};
   j["operations"] = operations(c);
