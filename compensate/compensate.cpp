@@ -38,7 +38,6 @@ constexpr double kShorter = 0.5;     // then the next step starts at the best on
 constexpr int kGuardRounds = 5;      // beyond max_rounds, to stay out of the part
 constexpr int kStiffenings = 12;     // of the path where its angles grow by more than the bound
 constexpr double kStiffer = 2.5;
-constexpr double kGuardSmoothing_mm = 0.5;  // of the lift, that no grid's points show in the path
 constexpr double kRowReach_mm = 1.0;
 
 std::size_t count_changed(const nc::Program& program, const std::string& text) {
@@ -185,9 +184,7 @@ class Loop {
     Trial next;
     for (int i = 0; i <= kStiffenings; ++i) {
       path_->set_shifts(from);
-      FitShiftOptions fit = fit_options();
-      if (guard) fit.smoothing_mm = kGuardSmoothing_mm;
-      round.limited_points = fit_shift(*path_, observations, fit);
+      round.limited_points = fit_shift(*path_, observations, fit_options());
       for (std::size_t p = 0; p < from.size(); ++p) {
         Vec3& shift = path_->points()[p].shift_mm;
         shift = from[p] + share * (shift - from[p]);

@@ -39,7 +39,7 @@ void add_observation(System& s, const ShiftPath& path, const Observation& o) {
 /// Mean weight of the observations about each point of a path, at least one: smoothing keeps its length where a few
 /// of them weigh a thousand times as much as the others, else those few would make a path of their scatter.
 std::vector<double> weight_about(const ShiftPath& path, std::span<const Observation> observations) {
-  constexpr double kAbout_mm = 1.0;
+  constexpr double kAbout_mm = 0.5;
   struct Sums {
     double weighted = 0, area = 0;
   };
