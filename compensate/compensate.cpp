@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -69,6 +70,13 @@ double overcorrected_share(const Observed& before, const Observed& now, double t
   return area > 0 ? over / area : 0;
 }
 
+/// Where the control stops at every corner, a split would be a stop: the feed falls to nothing there, and the mark that
+/// this leaves is a new error, which the next round answers with new splits.
+double spacing_mm(const machine::Machine& machine) {
+  const bool stops = machine.control.corner.law == machine::CornerLaw::exact_stop;
+  return stops ? std::numeric_limits<double>::infinity() : kSpacing_mm;
+}
+
 class Loop {
  public:
   Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options)
@@ -125,7 +133,7 @@ class Loop {
     diagnostics_.throw_if_errors();
     nc::warn_of_uneditable(program_.text, program_.moves, out.finishing.moves, diagnostics_);
     compensated_ = out.finishing.moves;
-    path_.emplace(program_.moves, compensated_, kSpacing_mm, job_.machine.control.block_time_s);
+    path_.emplace(program_.moves, compensated_, spacing_mm(job_.machine), job_.machine.control.block_time_s);
     sensitivity_.emplace(*path_);
     stiffness_.assign(path_->points().size(), 1.0);
     links_ = row_links(*path_, kRowReach_mm);
