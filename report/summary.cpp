@@ -284,6 +284,8 @@ std::string path_text(const compensate::Compensation& c) {
   std::string out =
       fmt::format("angles between blocks grow by {:.2f} degrees at most", deg_from_rad(c.quality.angle_growth_rad));
   if (c.row_steps.pairs > 0) out += fmt::format("; row to row {:.1f} um (95 %)", 1000 * c.row_steps.p95_mm);
+  if (c.row_turn_rad > 0)
+    out += fmt::format("\nfrom row to row the shifts turn by {:.2f} degrees at most", deg_from_rad(c.row_turn_rad));
   if (c.quality.shortest_mm > 0) out += fmt::format("\nshortest block of a split: {:.3f} mm", c.quality.shortest_mm);
   return out + "\n";
 }

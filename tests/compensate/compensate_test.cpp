@@ -60,9 +60,13 @@ std::string without_coordinates(const std::string& text) {
 
 TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates_slow) {
   const tests::TempFolder folder;
-  const machine::Job job = plane_job(folder);
+  machine::Job job = plane_job(folder);
+  job.machine.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01};
   Diagnostics diagnostics;
   const Compensation c = compensate(job, diagnostics, {});
+  EXPECT_GT(c.quality.shortest_mm, 0) << "blocks were split";
+  EXPECT_LE(c.row_turn_rad, job.compensation.max_angle_growth_rad);
+  EXPECT_GT(c.row_turn_rad, 0);
   EXPECT_GT(c.before_um.mean, 8);
   EXPECT_LT(std::abs(c.after_um.mean), 1.0);
   EXPECT_LT(c.after_um.p95, 0.35 * c.before_um.p95);
@@ -93,6 +97,18 @@ TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates_slow) {
       EXPECT_DOUBLE_EQ(m.feed_mm_per_s, 15);
     }
   }
+}
+
+TEST(Compensate, MakesNoNewCornersWhereTheControlStopsAtEveryOne_slow) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  ASSERT_EQ(job.machine.control.corner.law, machine::CornerLaw::exact_stop);
+  job.compensation.max_rounds = 1;
+  Diagnostics diagnostics;
+  const Compensation c = compensate(job, diagnostics, {});
+  EXPECT_EQ(c.blocks_after, c.blocks_before);
+  EXPECT_EQ(c.quality.shortest_mm, 0);
+  EXPECT_LT(c.split_after.correctable_um, 0.3 * c.split_before.correctable_um);
 }
 
 TEST(Compensate, GivesTheSameProgramTwice_slow) {
