@@ -61,7 +61,7 @@ Judged judge(const machine::Job& job, const deflection::MachinedProgram& program
   const double du = (kTo_mm - kFrom_mm) / (kAlong - 1), dv = (kHeight_mm - 2 * kEdge_mm) / (kUp - 1);
   const Vec3 origin(kFrom_mm, 0, -kHeight_mm + kEdge_mm);
   DrawnSurface bent(origin, Vec3::UnitX(), Vec3::UnitZ(), kAlong, kUp, du, dv), straight = bent;
-  constexpr double kReach_mm = 1.3, kClearance_mm = 0.1, kPassEvery_mm = 0.5;
+  constexpr double kReach_mm = 1.3, kClearance_mm = 0.1, kPassEvery_mm = 1;
   std::map<int, DrawnPass> passes;
   for (std::size_t k = 0; k < cut.stamps.size(); ++k) {
     const double x = cut.stamps[k].tip_mm.x();
