@@ -71,7 +71,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   compensate_options.progress = [&](const std::string& what, double share) { progress.show(what, share); };
   for (const auto& u : arguments.uncertainty)
     for (auto& group : compensate::read_uncertainty(u)) compensate_options.uncertainty.push_back(std::move(group));
-  compensate_options.recheck_voxel_mm = arguments.check_voxel_mm;
+  compensate_options.recheck_voxels_mm = arguments.check_voxels_mm;
   std::optional<compensate::MeasuredFit> fit;
   const machine::Job job = as_measured(told, arguments, diagnostics, compensate_options.progress, fit);
   if (arguments.header || arguments.header_hash)

@@ -1,6 +1,5 @@
 #pragma once
 // camber compensate J.toml -o OUT.nc [--report R.html] [--json R.json]
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +16,7 @@ struct CompensateArguments {
   bool header = false, header_hash = false;
   std::vector<std::string> uncertainty;  ///< files or percentages
   std::string measured, measured_program;
-  std::optional<double> check_voxel_mm;
+  std::vector<double> check_voxels_mm;
 };
 
 /// Throws InputError. Returns kDone or kNumbersDidNotWorkOut (a static solution did not settle, or the residual is

@@ -76,8 +76,8 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
       ->type_name("P.nc")
       ->needs(measured);
   command
-      ->add_option("--check-voxel", arguments->check_voxel_mm,
-                   "predict both programs again on a grid of this voxel, mm")
+      ->add_option("--check-voxel", arguments->check_voxels_mm,
+                   "predict both programs again on a grid of this voxel, mm; may be repeated")
       ->check(CLI::PositiveNumber)
       ->type_name("MM");
   command->add_flag("--header", arguments->header,

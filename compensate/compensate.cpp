@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -69,6 +70,13 @@ double overcorrected_share(const Observed& before, const Observed& now, double t
   return area > 0 ? over / area : 0;
 }
 
+/// Where the control stops at every corner, a split would be a stop: the feed falls to nothing there, and the mark that
+/// this leaves is a new error, which the next round answers with new splits.
+double spacing_mm(const machine::Machine& machine) {
+  const bool stops = machine.control.corner.law == machine::CornerLaw::exact_stop;
+  return stops ? std::numeric_limits<double>::infinity() : kSpacing_mm;
+}
+
 class Loop {
  public:
   Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options)
@@ -106,7 +114,10 @@ class Loop {
   double overcut_um() const { return job_.compensation.overcut_um(); }
 
   FitShiftOptions fit_options() const {
-    return {.max_shift_mm = job_.compensation.max_shift_mm, .stiffness = stiffness_};
+    return {.max_shift_mm = job_.compensation.max_shift_mm,
+            .stiffness = stiffness_,
+            .links = links_,
+            .link_stiffness = link_stiffness_};
   }
 
   std::function<void(double)> progress(const std::string& what) const {
@@ -122,9 +133,11 @@ class Loop {
     diagnostics_.throw_if_errors();
     nc::warn_of_uneditable(program_.text, program_.moves, out.finishing.moves, diagnostics_);
     compensated_ = out.finishing.moves;
-    path_.emplace(program_.moves, compensated_, kSpacing_mm, job_.machine.control.block_time_s);
+    path_.emplace(program_.moves, compensated_, spacing_mm(job_.machine), job_.machine.control.block_time_s);
     sensitivity_.emplace(*path_);
     stiffness_.assign(path_->points().size(), 1.0);
+    links_ = row_links(*path_, kRowReach_mm);
+    link_stiffness_.assign(links_.size(), 1.0);
     last_.shifts = path_->shifts();
     last_.observed = workshop_->observe(*path_, nullptr, last_.surface);
     out.feed_before = program_.feed;
@@ -185,8 +198,10 @@ class Loop {
         shift = from[p] + share * (shift - from[p]);
       }
       next.emitted = workshop_->emit(*path_, compensated_);
-      if (next.emitted->quality.over.empty()) break;
+      const RowTurn turn = row_turn(*path_, links_, job_.compensation.max_angle_growth_rad);
+      if (next.emitted->quality.over.empty() && turn.over.empty()) break;
       stiffen(next.emitted->quality.over);
+      for (const std::size_t link : turn.over) link_stiffness_[link] *= kStiffer;
     }
     next.shifts = path_->shifts();
     round.largest_shift_mm = path_->largest_shift_mm();
@@ -257,6 +272,7 @@ class Loop {
       out.quality = best_.emitted->quality;
     }
     out.row_steps = row_steps(*path_, kRowReach_mm);
+    out.row_turn_rad = row_turn(*path_, links_, job_.compensation.max_angle_growth_rad).max_rad;
     const double most_um = overcut_um();
     out.depth_after = depth_of(out.surface_after, best_.observed, most_um, true);
     out.depth_others = depth_of(out.surface_after, best_.observed, most_um, false);
@@ -273,9 +289,9 @@ class Loop {
   /// The other grid and the uncertainty; the text last, since its header may tell of them.
   void check(Compensation& out) {
     const Emitted* emitted = best_.emitted.get();
-    if (options_.recheck_voxel_mm)
-      out.recheck = recheck(job_, *options_.recheck_voxel_mm, target_program(), program_, emitted, *path_,
-                            fit_options(), own_target_, options_.progress);
+    for (const double voxel_mm : options_.recheck_voxels_mm)
+      out.rechecks.push_back(recheck(job_, voxel_mm, target_program(), program_, emitted, *path_, fit_options(),
+                                     own_target_, options_.progress));
     std::vector<std::string> names;
     std::vector<std::vector<double>> changes;
     for (const ParameterGroup& group : options_.uncertainty) {
@@ -302,6 +318,8 @@ class Loop {
   std::optional<ShiftPath> path_;
   std::optional<Sensitivity> sensitivity_;
   std::vector<double> stiffness_;  ///< of the path, one a point
+  std::vector<RowLink> links_;
+  std::vector<double> link_stiffness_;  ///< one a link
   Trial last_, best_;
   double free_correctable_um_ = 0;  ///< of the best round before the guard
 };

@@ -53,11 +53,12 @@ struct Compensation {
   Finishing finishing;
   PathQuality quality;  ///< of the emitted program
   RowSteps row_steps;
+  double row_turn_rad = 0;          ///< between neighbouring rows of one sense, held like the angles between blocks
   Depth depth_before, depth_after;  ///< into the part, compensated moves
   Depth depth_others;               ///< of moves that are not compensated
   Depth depth_without_bending;      ///< of the emitted program
   bool within_part = true;          ///< depth_after is within the tolerance
-  std::optional<Recheck> recheck;
+  std::vector<Recheck> rechecks;    ///< one a voxel asked for
   std::optional<Band> band;
   std::vector<std::string> unknown_parameters;  ///< with a standard error, but not of this job
   std::optional<MeasuredFit> measured;
@@ -65,7 +66,7 @@ struct Compensation {
 
 struct CompensateOptions {
   std::function<void(const std::string& what, double share)> progress;
-  std::optional<double> recheck_voxel_mm{};   ///< predict both programs on this grid as well
+  std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.
   std::function<std::string(const Compensation&)> header{};

@@ -1,6 +1,8 @@
 #include "compensate/fit_shift.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -34,12 +36,48 @@ void add_observation(System& s, const ShiftPath& path, const Observation& o) {
   s.right[i + 1] += v * pull;
 }
 
+/// Mean weight of the observations about each point of a path, at least one: smoothing keeps its length where a few
+/// of them weigh a thousand times as much as the others, else those few would make a path of their scatter.
+std::vector<double> weight_about(const ShiftPath& path, std::span<const Observation> observations) {
+  constexpr double kAbout_mm = 0.5;
+  struct Sums {
+    double weighted = 0, area = 0;
+  };
+  const auto& points = path.points();
+  std::vector<Sums> own(points.size());
+  for (const Observation& o : observations)
+    for (const auto& [at, share] :
+         {std::pair{o.place.lower, 1 - o.place.upper_share}, std::pair{o.place.lower + 1, o.place.upper_share}}) {
+      own[at].weighted += share * o.area_mm2 * o.weight;
+      own[at].area += share * o.area_mm2;
+    }
+  std::vector<Sums> about = own;
+  for (const Chain& c : path.chains()) {
+    const std::size_t end = c.from + c.count;
+    const auto fade = [&](std::size_t i) {
+      return std::exp(-(points[i].along_mm - points[i - 1].along_mm) / kAbout_mm);
+    };
+    const auto carry = [&](Sums& carried, std::size_t from, std::size_t to, double keep) {
+      carried = {keep * (carried.weighted + own[from].weighted), keep * (carried.area + own[from].area)};
+      about[to] = {about[to].weighted + carried.weighted, about[to].area + carried.area};
+    };
+    Sums carried;
+    for (std::size_t i = c.from + 1; i < end; ++i) carry(carried, i - 1, i, fade(i));
+    carried = {};
+    for (std::size_t i = end - 1; i > c.from; --i) carry(carried, i, i - 1, fade(i));
+  }
+  std::vector<double> out;
+  out.reserve(about.size());
+  for (const Sums& a : about) out.push_back(a.area > 0 ? std::max(1.0, a.weighted / a.area) : 1.0);
+  return out;
+}
+
 void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double soft_mu, double kappa,
-                   std::span<const double> stiffness) {
+                   std::span<const double> weight, std::span<const double> stiffness) {
   const auto& points = path.points();
   for (std::size_t i = chain.from; i + 1 < chain.from + chain.count; ++i) {
     const double length = std::max(points[i + 1].along_mm - points[i].along_mm, 1e-6);
-    const double mu = soft_mu * (stiffness.empty() ? 1.0 : stiffness[i]);
+    const double mu = soft_mu * (weight[i] + weight[i + 1]) / 2 * (stiffness.empty() ? 1.0 : stiffness[i]);
     s.diagonal[i] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
     s.diagonal[i + 1] += (mu / length + kappa * length / 2) * Matrix3d::Identity();
     s.upper[i] -= mu / length * Matrix3d::Identity();
@@ -65,32 +103,107 @@ void add_rest(System& s, const Chain& chain) {
   for (std::size_t k = 0; k < chain.count; ++k) s.diagonal[chain.from + k] += rest[k];
 }
 
-/// Block Thomas elimination over one chain; the chain's fixed points are held at zero.
-void solve_chain(const System& s, const Chain& chain, std::vector<ControlPoint>& points) {
-  const std::size_t n = chain.count, o = chain.from;
-  std::vector<Matrix3d> gain(n);
-  std::vector<Vec3> value(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (points[o + i].fixed) {
-      gain[i].setZero();
-      value[i].setZero();
-      continue;
-    }
-    Matrix3d d = s.diagonal[o + i];
-    Vec3 r = s.right[o + i];
-    if (i > 0) {
-      const Matrix3d below = s.upper[o + i - 1].transpose();
-      d -= below * gain[i - 1];
-      r -= below * value[i - 1];
-    }
-    const Matrix3d inverse = d.inverse();
-    gain[i] = inverse * s.upper[o + i];
-    value[i] = inverse * r;
+/// Adds the links' stiffness. Returns each link's own, for the terms between its ends.
+std::vector<double> add_links(System& s, double soft_mu, std::span<const double> weight,
+                              const FitShiftOptions& options) {
+  std::vector<double> out;
+  out.reserve(options.links.size());
+  for (std::size_t i = 0; i < options.links.size(); ++i) {
+    const RowLink& l = options.links[i];
+    const double mu =
+        soft_mu * (weight[l.a] + weight[l.b]) / 2 * (options.link_stiffness.empty() ? 1.0 : options.link_stiffness[i]);
+    out.push_back(mu * l.along_mm / (l.distance_mm * l.distance_mm));
+    s.diagonal[l.a] += out.back() * Matrix3d::Identity();
+    s.diagonal[l.b] += out.back() * Matrix3d::Identity();
   }
-  for (std::size_t i = n; i-- > 0;) {
-    if (i + 1 < n) value[i] -= gain[i] * value[i + 1];
-    points[o + i].shift_mm = value[i];
+  return out;
+}
+
+/// Block Thomas elimination over the chains, factored once; fixed points are held at zero.
+class Chains {
+ public:
+  Chains(const System& s, const ShiftPath& path) : s_(s), path_(path) {
+    const auto& points = path.points();
+    gain_.assign(points.size(), Matrix3d::Zero());
+    inverse_.assign(points.size(), Matrix3d::Zero());
+    for (const Chain& c : path.chains())
+      for (std::size_t i = c.from; i < c.from + c.count; ++i) {
+        if (points[i].fixed) continue;
+        Matrix3d d = s.diagonal[i];
+        if (i > c.from) d -= s.upper[i - 1].transpose() * gain_[i - 1];
+        inverse_[i] = d.inverse();
+        gain_[i] = inverse_[i] * s.upper[i];
+      }
   }
+
+  std::vector<Vec3> solve(const std::vector<Vec3>& right) const {
+    std::vector<Vec3> x(right.size(), Vec3::Zero());
+    for (const Chain& c : path_.chains()) {
+      for (std::size_t i = c.from; i < c.from + c.count; ++i)
+        x[i] = inverse_[i] * (i > c.from ? Vec3(right[i] - s_.upper[i - 1].transpose() * x[i - 1]) : right[i]);
+      for (std::size_t i = c.from + c.count - 1; i-- > c.from;) x[i] -= gain_[i] * x[i + 1];
+    }
+    return x;
+  }
+
+ private:
+  const System& s_;
+  const ShiftPath& path_;
+  std::vector<Matrix3d> gain_, inverse_;
+};
+
+double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+/// The system's left side, fixed points left out.
+std::vector<Vec3> applied(const System& s, const ShiftPath& path, std::span<const RowLink> links,
+                          const std::vector<double>& stiffness, const std::vector<Vec3>& x) {
+  std::vector<Vec3> out(x.size());
+  for (const Chain& c : path.chains())
+    for (std::size_t i = c.from; i < c.from + c.count; ++i) {
+      out[i] = s.diagonal[i] * x[i];
+      if (i > c.from) out[i] += s.upper[i - 1].transpose() * x[i - 1];
+      if (i + 1 < c.from + c.count) out[i] += s.upper[i] * x[i + 1];
+    }
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    out[links[i].a] -= stiffness[i] * x[links[i].b];
+    out[links[i].b] -= stiffness[i] * x[links[i].a];
+  }
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (path.points()[i].fixed) out[i].setZero();
+  return out;
+}
+
+/// Preconditioned conjugate gradients; without links the first step is the solution.
+std::vector<Vec3> solve(const System& s, const ShiftPath& path, std::span<const RowLink> links,
+                        const std::vector<double>& stiffness) {
+  constexpr int kSteps = 300;
+  constexpr double kClose = 1e-6;
+  const Chains chains(s, path);
+  std::vector<Vec3> x = chains.solve(s.right);
+  if (links.empty()) return x;
+  const double whole = dot(s.right, x);
+  std::vector<Vec3> r = applied(s, path, links, stiffness, x);
+  for (std::size_t i = 0; i < r.size(); ++i)
+    r[i] = path.points()[i].fixed ? Vec3(Vec3::Zero()) : Vec3(s.right[i] - r[i]);
+  std::vector<Vec3> z = chains.solve(r), p = z;
+  double rz = dot(r, z);
+  for (int step = 0; step < kSteps && rz > kClose * kClose * whole; ++step) {
+    const std::vector<Vec3> ap = applied(s, path, links, stiffness, p);
+    const double alpha = rz / dot(p, ap);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] += alpha * p[i];
+      r[i] -= alpha * ap[i];
+    }
+    z = chains.solve(r);
+    const double next = dot(r, z);
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] = z[i] + next / rz * p[i];
+    rz = next;
+  }
+  return x;
 }
 
 }  // namespace
@@ -108,11 +221,14 @@ std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations
   const double rho = std::max(area, 1e-9) / std::max(length, 1e-9);
   const double mu = rho * options.smoothing_mm * options.smoothing_mm;
   const double kappa = mu / (options.decay_mm * options.decay_mm);
+  const std::vector<double> weight = weight_about(path, observations);
   for (const Chain& c : path.chains()) {
     add_rest(s, c);
-    add_stiffness(s, path, c, mu, kappa, options.stiffness);
-    solve_chain(s, c, points);
+    add_stiffness(s, path, c, mu, kappa, weight, options.stiffness);
   }
+  const std::vector<double> between = add_links(s, mu, weight, options);
+  const std::vector<Vec3> shifts = solve(s, path, options.links, between);
+  path.set_shifts(shifts);
   std::size_t limited = 0;
   for (auto& p : points) {
     const double shift = p.shift_mm.norm();

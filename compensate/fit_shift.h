@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "compensate/row_links.h"
 #include "compensate/shift_path.h"
 
 namespace camber::compensate {
@@ -26,17 +27,22 @@ struct FitShiftOptions {
   double max_shift_mm = 0.1;
   /// One a point of the path: mu between it and the next is larger by this factor; empty: 1.
   std::span<const double> stiffness{};
+  std::span<const RowLink> links{};          ///< between rows
+  std::span<const double> link_stiffness{};  ///< one a link, as `stiffness`
 };
 
-/// Shifts that minimize, chain by chain,
+/// Shifts that minimize
 ///
 ///   sum w a (e / g + n . (s - s_old))^2 + mu integral |ds/dl|^2 dl + kappa integral |s|^2 dl
+///     + mu sum_links l |s_a - s_b|^2 / d^2
 ///
-/// with a the area, w the weight, e the error, g the gain, n the normal of each observation, s the shift at its place
-/// (linear between the points), mu = rho smoothing^2, kappa = mu / decay^2 and rho the mean area per path length: a
-/// block tridiagonal system of 3 x 3 blocks. Directions in which hardly any surface faces stay at rest; where surfaces
-/// face each other (a slot) the least squares between them results. Shifts longer than max_shift_mm are cut to it.
-/// Returns how many points were.
+/// (d: distance of two rows, l: length of path that a link stands for; so the shift is as smooth across rows as along
+/// them) with a the area, w the weight, e the error, g the gain, n the normal of each observation, s the shift at its
+/// place (linear between the points), mu = rho smoothing^2, kappa = mu / decay^2 and rho the mean area per path length;
+/// mu is larger by the mean weight about a place. Along a chain that is a block tridiagonal system of 3 x 3 blocks;
+/// with links, conjugate gradients with the chains' exact solution as preconditioner. Directions in which hardly any
+/// surface faces stay at rest; where surfaces face each other (a slot) the least squares between them results. Shifts
+/// longer than max_shift_mm are cut to it. Returns how many points were.
 std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options);
 
 }  // namespace camber::compensate

@@ -202,10 +202,14 @@ std::string compensate_json(const compensate::Compensation& c, double compute_s)
                {"angle_growth_line", c.quality.angle_line},
                {"shortest_split_mm", c.quality.shortest_mm},
                {"too_short_splits", c.quality.too_short},
+               {"row_turn_deg", deg_from_rad(c.row_turn_rad)},
                {"row_step_p95_um", 1000 * c.row_steps.p95_mm},
                {"row_step_max_um", 1000 * c.row_steps.max_mm}};
   j["operations"] = operations(c);
-  if (c.recheck) j["check"] = recheck(*c.recheck);
+  if (!c.rechecks.empty()) {
+    j["check"] = recheck(c.rechecks.front());
+    for (const auto& r : c.rechecks) j["checks"].push_back(recheck(r));
+  }
   if (c.band) j["uncertainty"] = band(*c.band);
   if (c.measured) j["measured"] = measured(*c.measured);
   j["blocks"] = {{"before", c.blocks_before}, {"after", c.blocks_after}, {"changed", c.blocks_changed}};
@@ -280,6 +284,8 @@ std::string path_text(const compensate::Compensation& c) {
   std::string out =
       fmt::format("angles between blocks grow by {:.2f} degrees at most", deg_from_rad(c.quality.angle_growth_rad));
   if (c.row_steps.pairs > 0) out += fmt::format("; row to row {:.1f} um (95 %)", 1000 * c.row_steps.p95_mm);
+  if (c.row_turn_rad > 0)
+    out += fmt::format("\nfrom row to row the shifts turn by {:.2f} degrees at most", deg_from_rad(c.row_turn_rad));
   if (c.quality.shortest_mm > 0) out += fmt::format("\nshortest block of a split: {:.3f} mm", c.quality.shortest_mm);
   return out + "\n";
 }
@@ -292,11 +298,10 @@ std::string checks_text(const compensate::Compensation& c) {
   if (c.measured)
     add("measured: the deflection is {:.3f} +- {:.3f} of the model's ({} points)\n", c.measured->scale,
         c.measured->std_error, c.measured->points);
-  if (c.recheck)
+  for (const auto& r : c.rechecks)
     add("on voxels of {:g} mm: rms {:.2f} um before, {:.2f} after; of what a shift can\ncorrect {:.2f} before, {:.2f} "
         "after\n",
-        c.recheck->voxel_mm, c.recheck->before_um.rms, c.recheck->after_um.rms, c.recheck->split_before.correctable_um,
-        c.recheck->split_after.correctable_um);
+        r.voxel_mm, r.before_um.rms, r.after_um.rms, r.split_before.correctable_um, r.split_after.correctable_um);
   if (!c.band) return out;
   add("with the model's uncertainty: rms {:.2f} um, 95 % within {:.2f} um\n", c.band->rms_um, c.band->p95_um);
   for (const auto& g : c.band->groups) add("  {:<12}{:>8.2f} um rms for one standard error\n", g.name, g.rms_um);

@@ -26,6 +26,7 @@ struct DrawnCut {
   Vec3 lo = Vec3::Constant(-1e9), hi = Vec3::Constant(1e9);  ///< of the blank's box
   /// What the pass before has left: the same stamps with the cutter smaller by this; 0: the whole box.
   double allowance = 0;
+  std::vector<removal::Stamp> pass_before{};  ///< where that pass went, if not along `stamps`
   DrawnCoefficients k{};
   /// A straight bar of one diameter, held at `overhang`: its bending stiffness E I, and the stiffness at its root.
   double overhang = 40, bending_stiffness_N_mm2 = 1, root_stiffness_N_per_mm = 1e300;
@@ -74,9 +75,11 @@ inline DrawnPass drawn_pass(const DrawnCut& c, std::size_t now) {
   for (std::size_t i = 0; i < c.stamps.size(); ++i) {
     const Vec3 d = c.stamps[i].tip_mm - tip;
     if (d.norm() > 2 * c.radius + 0.1) continue;
-    any.push_back(c.stamps[i].tip_mm);
+    if (c.pass_before.empty()) any.push_back(c.stamps[i].tip_mm);
     if (i < now) before.push_back(c.stamps[i].tip_mm);
   }
+  for (const removal::Stamp& s : c.pass_before)
+    if ((s.tip_mm - tip).norm() <= 2 * c.radius + 0.1) any.push_back(s.tip_mm);
   const auto nearer = [&](const Vec3& a, const Vec3& b) { return (a - tip).norm() < (b - tip).norm(); };
   std::sort(before.begin(), before.end(), nearer);
   std::sort(any.begin(), any.end(), nearer);
