@@ -20,8 +20,10 @@ nc::Interpretation interpreted(const std::string& name, const std::string& text,
   return moves;
 }
 
-bool better(const ContourFigures& a, const ContourFigures& b) {
+bool better(const Candidate& one, const Candidate& other, bool fewest_blocks) {
+  const ContourFigures &a = one.figures, &b = other.figures;
   if (a.time_s * kSameTime < b.time_s || b.time_s * kSameTime < a.time_s) return a.time_s < b.time_s;
+  if (fewest_blocks) return one.length_factor > other.length_factor;
   return a.contour_max_mm < b.contour_max_mm;
 }
 
@@ -50,8 +52,9 @@ Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves
       const bool first = now == 0;
       const bool strays_least = first || figures.contour_max_mm < out.tried[nearest].figures.contour_max_mm;
       if (strays_least) nearest = now;
-      const bool take = keeps ? !out.within_limit || better(figures, out.tried[out.chosen].figures)
-                              : !out.within_limit && strays_least;
+      const bool take = keeps
+                            ? !out.within_limit || better(out.tried[now], out.tried[out.chosen], options.fewest_blocks)
+                            : !out.within_limit && strays_least;
       out.within_limit |= keeps;
       if (take) {
         out.chosen = now;
@@ -61,7 +64,7 @@ Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves
     }
     if (out.within_limit) break;
   }
-  const bool asked_for = options.layout.length_mm > 0;
+  const bool asked_for = options.layout.length_mm > 0 || !options.keep_old;
   out.gains = asked_for || out.tried[out.chosen].figures.time_s * kLeastGain < before.time_s;
   if (!out.gains) {
     out.path = {};

@@ -1,0 +1,244 @@
+#include "repath/scallop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace camber::repath {
+namespace {
+
+constexpr double kBorderMm = 1e-6;
+
+bool in(const Rectangle& r, const Vec2& p, double room) {
+  return p.x() >= r.min.x() - room && p.x() <= r.max.x() + room && p.y() >= r.min.y() - room &&
+         p.y() <= r.max.y() + room;
+}
+
+/// A row as it is at one place along it.
+struct Groove {
+  double v_mm, tip_mm, slope;
+  /// Height of what it leaves; infinity beside it.
+  double at(const removal::Underside& cutter, double v) const {
+    const auto rise = removal::rise_on_line(cutter, v - v_mm, slope);
+    return rise ? tip_mm - *rise : std::numeric_limits<double>::infinity();
+  }
+};
+
+std::optional<Groove> groove(const RowHeights& row, std::size_t k, double step_mm) {
+  if (k == 0 || k + 1 >= row.tip_mm.size()) return std::nullopt;
+  const auto &before = row.tip_mm[k - 1], &here = row.tip_mm[k], &behind = row.tip_mm[k + 1];
+  if (!before || !here || !behind) return std::nullopt;
+  return Groove{row.v_mm, *here, (*behind - *before) / (2 * step_mm)};
+}
+
+struct Cusp {
+  double v_mm, height_mm;
+};
+
+/// Where the grooves cross: left of it a lies lower, right of it b.
+std::optional<Cusp> cusp_of(const removal::Underside& cutter, const Groove& a, const Groove& b) {
+  double left = b.v_mm - cutter.radius_mm(), right = a.v_mm + cutter.radius_mm();
+  if (!(left < right)) return std::nullopt;
+  for (int i = 0; i < 44; ++i) {
+    const double middle = 0.5 * (left + right);
+    (a.at(cutter, middle) <= b.at(cutter, middle) ? left : right) = middle;
+  }
+  // Where one ends upright, the cusp is as high as the other is there.
+  const double on_left = a.at(cutter, left), on_right = b.at(cutter, right);
+  const double height = std::isinf(on_left) ? on_right : std::isinf(on_right) ? on_left : std::max(on_left, on_right);
+  return Cusp{on_left > on_right ? left : right, height};
+}
+
+}  // namespace
+
+bool works_inside(const removal::Underside& cutter, const Rectangle& boundary, const Vec2& axis,
+                  const removal::Contact& contact) {
+  const Vec2 at = contact.point.head<2>();
+  if (!in(boundary, at, kBorderMm)) return false;
+  if ((at - axis).norm() <= cutter.flat_mm + 1e-9) return in(boundary, axis, kBorderMm);
+  return contact.kind == removal::ContactKind::facet || in(boundary, at, -kBorderMm);
+}
+
+bool RowHeights::any_inside() const {
+  return std::any_of(inside.begin(), inside.end(), [](char i) { return i != 0; });
+}
+
+RowSampler::RowSampler(const removal::DropCutter& part, const RowFrame& frame, const Rectangle& boundary,
+                       double step_mm)
+    : part_(part), frame_(frame), boundary_(boundary) {
+  u_min_ = v_min_ = std::numeric_limits<double>::infinity();
+  u_max_ = v_max_ = -u_min_;
+  for (const double x : {boundary.min.x(), boundary.max.x()})
+    for (const double y : {boundary.min.y(), boundary.max.y()}) {
+      const double u = frame.along.dot(Vec2(x, y)), v = frame.across.dot(Vec2(x, y));
+      u_min_ = std::min(u_min_, u), u_max_ = std::max(u_max_, u);
+      v_min_ = std::min(v_min_, v), v_max_ = std::max(v_max_, v);
+    }
+  const double width = u_max_ - u_min_ + 2 * part.cutter().radius_mm();
+  step_ = width / std::max(4.0, std::ceil(width / step_mm));
+}
+
+RowHeights RowSampler::row(double v_mm) const {
+  RowHeights out;
+  out.v_mm = v_mm;
+  const double from = u_min_ - part_.cutter().radius_mm();
+  const auto n = static_cast<std::size_t>(std::lround((u_max_ - u_min_ + 2 * part_.cutter().radius_mm()) / step_)) + 1;
+  out.tip_mm.reserve(n), out.inside.reserve(n);
+  std::optional<std::uint32_t> near;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec2 at = frame_.place(from + static_cast<double>(k) * step_, v_mm);
+    const auto contact = part_.at(at, near);
+    if (contact) near = contact->triangle;
+    out.tip_mm.push_back(contact ? std::optional(contact->tip_mm) : std::nullopt);
+    out.inside.push_back(contact && works_inside(part_.cutter(), boundary_, at, *contact));
+  }
+  return out;
+}
+
+double scallop_mm(const RowSampler& sampler, const removal::Underside& cutter, const RowHeights& a,
+                  const RowHeights& b) {
+  const bool ball = cutter.flat_mm == 0;
+  const int between = ball ? 1 : 7;
+  const double missed = ball ? 1 : 8.0 / 7;
+  const double width = b.v_mm - a.v_mm;
+  std::vector<RowHeights> rows;
+  for (int i = 1; i <= between; ++i) rows.push_back(sampler.row(a.v_mm + width * i / (between + 1)));
+  double worst = 0;
+  for (std::size_t k = 0; k < a.tip_mm.size(); ++k) {
+    if (!a.inside[k] && !b.inside[k]) continue;
+    const auto one = groove(a, k, sampler.step_mm()), other = groove(b, k, sampler.step_mm());
+    if (!one || !other) continue;
+    const auto cusp = cusp_of(cutter, *one, *other);
+    double lowest = std::numeric_limits<double>::infinity(), slope = 0;
+    for (const RowHeights& row : rows) {
+      const auto middle = groove(row, k, sampler.step_mm());
+      if (!middle) continue;
+      slope = middle->slope;
+      lowest = std::min(lowest, cusp ? middle->at(cutter, cusp->v_mm) : middle->tip_mm);
+    }
+    if (std::isinf(lowest)) continue;
+    const double rise = (other->tip_mm - one->tip_mm) / width;
+    const double height = cusp ? cusp->height_mm : std::max(one->tip_mm, other->tip_mm);
+    worst = std::max(worst, missed * (height - lowest) / std::sqrt(1 + rise * rise + slope * slope));
+  }
+  return worst;
+}
+
+namespace {
+
+class Spacer {
+ public:
+  Spacer(const RowSampler& sampler, const removal::Underside& cutter, double scallop, double increment)
+      : sampler_(sampler), cutter_(cutter), scallop_(scallop), increment_(increment) {
+    const double sag = std::min(scallop, cutter.corner_mm);
+    const double level = 2 * std::sqrt(sag * (2 * cutter.corner_mm - sag));
+    const double most = 1.5 * cutter.radius_mm();
+    level_ = std::clamp(2 * cutter.flat_mm + level, 2 * increment, most);
+    farthest_ = std::min(2 * cutter.flat_mm + 2 * level, most);
+    farthest_ = std::max(farthest_, level_);
+    closest_ = std::max(2 * increment, 0.1 * std::min(level_, 2 * std::sqrt(2 * cutter.radius_mm() * scallop)));
+  }
+
+  RowSpacing run() {
+    RowSpacing out;
+    out.closest_mm = closest_;
+    RowHeights row = first();
+    double space = level_;
+    std::size_t steep = 0;
+    while (row.any_inside() || row.v_mm < sampler_.v_max_mm()) {
+      if (row.any_inside()) out.rows_mm.push_back(row.v_mm);
+      auto [next, height] = next_row(row, space);
+      // A row on the border, where none beyond it would touch all along it.
+      if (row.v_mm < sampler_.v_max_mm() - increment_ && next.v_mm > sampler_.v_max_mm()) {
+        next = sampler_.row(sampler_.v_max_mm());
+        height = scallop_mm(sampler_, cutter_, row, next);
+      } else {
+        space = next.v_mm - row.v_mm;
+      }
+      if (row.any_inside() && !next.any_inside()) {
+        if (auto last = last_inside(row, next.v_mm, space); last.v_mm > row.v_mm) out.rows_mm.push_back(last.v_mm);
+      }
+      if (next.any_inside() && row.any_inside()) {
+        out.largest_scallop_mm = std::max(out.largest_scallop_mm, height);
+        steep += height > scallop_;
+      }
+      row = std::move(next);
+    }
+    if (out.rows_mm.size() > 1)
+      out.steep_share = static_cast<double>(steep) / static_cast<double>(out.rows_mm.size() - 1);
+    return out;
+  }
+
+ private:
+  double rounded(double v) const { return std::floor(v / increment_ + 1e-6) * increment_; }
+
+  /// The first one that touches inside, sought from outside.
+  RowHeights first() const {
+    const double step = std::max(closest_, 0.25 * std::min(level_, cutter_.radius_mm()));
+    double v = sampler_.v_min_mm() - cutter_.radius_mm();
+    for (; v < sampler_.v_min_mm(); v += step)
+      if (RowHeights row = sampler_.row(rounded(v)); row.any_inside()) return row;
+    return sampler_.row(sampler_.v_min_mm());
+  }
+
+  /// The last one that touches inside between a row and a place where none does, where it lies a quarter of a space
+  /// behind the row; else the row.
+  RowHeights last_inside(const RowHeights& row, double outside, double space) const {
+    RowHeights last = row;
+    while (outside - last.v_mm > std::max(0.1 * space, 2 * increment_)) {
+      RowHeights middle = sampler_.row(rounded(0.5 * (last.v_mm + outside)));
+      if (middle.any_inside())
+        last = std::move(middle);
+      else
+        outside = middle.v_mm;
+    }
+    return last.v_mm - row.v_mm > 0.25 * space ? last : row;
+  }
+
+  std::pair<RowHeights, double> at(const RowHeights& row, double space) const {
+    RowHeights next = sampler_.row(row.v_mm + space);
+    const double height = scallop_mm(sampler_, cutter_, row, next);
+    return {std::move(next), height};
+  }
+
+  /// The farthest row that keeps the scallop, sought from the last space. The height grows with a power of the space
+  /// between 1 (steps) and 2 (a ball's cusps).
+  std::pair<RowHeights, double> next_row(const RowHeights& row, double space) const {
+    constexpr int kTries = 12;
+    constexpr double kEnough = 0.95;
+    double low = 0, high = std::numeric_limits<double>::infinity();
+    std::optional<std::pair<RowHeights, double>> best;
+    for (int i = 0; i < kTries; ++i) {
+      space = std::max(closest_, rounded(std::min(space, farthest_)));
+      auto tried = at(row, space);
+      const double height = tried.second;
+      if (height <= scallop_) {
+        low = space;
+        best = std::move(tried);
+        if (height > kEnough * scallop_ || space >= farthest_ - increment_) break;
+      } else {
+        high = space;
+        if (space <= closest_) return best ? std::move(*best) : std::move(tried);
+      }
+      double guess = space * std::clamp(std::sqrt(0.98 * scallop_ / std::max(height, 1e-12)), 0.4, 1.6);
+      if (guess <= low || guess >= high) guess = std::isinf(high) ? 1.5 * low : 0.5 * (low + high);
+      if (high - low < 2 * increment_) break;
+      space = guess;
+    }
+    return best ? std::move(*best) : at(row, closest_);
+  }
+
+  const RowSampler& sampler_;
+  const removal::Underside& cutter_;
+  double scallop_, increment_;
+  double level_ = 0, farthest_ = 0, closest_ = 0;
+};
+
+}  // namespace
+
+RowSpacing space_rows(const RowSampler& sampler, const removal::Underside& cutter, double scallop_mm,
+                      double increment_mm) {
+  return Spacer(sampler, cutter, scallop_mm, increment_mm).run();
+}
+
+}  // namespace camber::repath
