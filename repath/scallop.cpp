@@ -35,6 +35,26 @@ struct Cusp {
   double v_mm, height_mm;
 };
 
+/// Of a point above a groove, at right angles to it. The foot lies no farther beside it than the point lies above.
+double distance_mm(const removal::Underside& cutter, const Groove& groove, const Cusp& point) {
+  const double above = point.height_mm - groove.at(cutter, point.v_mm);
+  if (!(above > 0)) return above;
+  const double flatten = 1 / std::sqrt(1 + groove.slope * groove.slope);  // in the plane at right angles to the row
+  const auto away = [&](double v) {
+    return std::hypot(v - point.v_mm, flatten * (point.height_mm - groove.at(cutter, v)));
+  };
+  constexpr double kGolden = 0.6180339887498949;
+  double low = point.v_mm - above, high = point.v_mm + above;
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low), at_a = away(a), at_b = away(b);
+  for (int i = 0; i < 24; ++i) {
+    if (at_a < at_b)
+      high = b, b = a, at_b = at_a, a = high - kGolden * (high - low), at_a = away(a);
+    else
+      low = a, a = b, at_a = at_b, b = low + kGolden * (high - low), at_b = away(b);
+  }
+  return std::min(std::min(at_a, at_b), flatten * above);
+}
+
 /// Where the grooves cross: left of it a lies lower, right of it b.
 std::optional<Cusp> cusp_of(const removal::Underside& cutter, const Groove& a, const Groove& b) {
   double left = b.v_mm - cutter.radius_mm(), right = a.v_mm + cutter.radius_mm();
@@ -55,7 +75,8 @@ bool works_inside(const removal::Underside& cutter, const Rectangle& boundary, c
                   const removal::Contact& contact) {
   const Vec2 at = contact.point.head<2>();
   if (!in(boundary, at, kBorderMm)) return false;
-  if ((at - axis).norm() <= cutter.flat_mm + 1e-9) return in(boundary, axis, kBorderMm);
+  const double under_flat = std::max(cutter.flat_mm - 1e-9, 1e-9);  // the rim is not
+  if ((at - axis).norm() < under_flat) return in(boundary, axis, kBorderMm);
   return contact.kind == removal::ContactKind::facet || in(boundary, at, -kBorderMm);
 }
 
@@ -109,17 +130,20 @@ double scallop_mm(const RowSampler& sampler, const removal::Underside& cutter, c
     const auto one = groove(a, k, sampler.step_mm()), other = groove(b, k, sampler.step_mm());
     if (!one || !other) continue;
     const auto cusp = cusp_of(cutter, *one, *other);
-    double lowest = std::numeric_limits<double>::infinity(), slope = 0;
-    for (const RowHeights& row : rows) {
-      const auto middle = groove(row, k, sampler.step_mm());
-      if (!middle) continue;
-      slope = middle->slope;
-      lowest = std::min(lowest, cusp ? middle->at(cutter, cusp->v_mm) : middle->tip_mm);
-    }
-    if (std::isinf(lowest)) continue;
+    // Where one row lies wholly above the other's reach, the wall between them stands.
+    const Cusp top = cusp.value_or(Cusp{0.5 * (a.v_mm + b.v_mm), std::max(one->tip_mm, other->tip_mm)});
+    std::optional<Groove> lowest;
+    for (const RowHeights& row : rows)
+      if (const auto middle = groove(row, k, sampler.step_mm());
+          middle && (!lowest || middle->at(cutter, top.v_mm) < lowest->at(cutter, top.v_mm)))
+        lowest = middle;
+    if (!lowest) continue;
+    // The steps of a flat lie one above the other: their height is that over the slope through their edges.
     const double rise = (other->tip_mm - one->tip_mm) / width;
-    const double height = cusp ? cusp->height_mm : std::max(one->tip_mm, other->tip_mm);
-    worst = std::max(worst, missed * (height - lowest) / std::sqrt(1 + rise * rise + slope * slope));
+    const double height = ball ? distance_mm(cutter, *lowest, top)
+                               : (top.height_mm - lowest->at(cutter, top.v_mm)) /
+                                     std::sqrt(1 + rise * rise + lowest->slope * lowest->slope);
+    worst = std::max(worst, missed * height);
   }
   return worst;
 }
@@ -175,10 +199,23 @@ class Spacer {
   /// The first one that touches inside, sought from outside.
   RowHeights first() const {
     const double step = std::max(closest_, 0.25 * std::min(level_, cutter_.radius_mm()));
-    double v = sampler_.v_min_mm() - cutter_.radius_mm();
-    for (; v < sampler_.v_min_mm(); v += step)
-      if (RowHeights row = sampler_.row(rounded(v)); row.any_inside()) return row;
-    return sampler_.row(sampler_.v_min_mm());
+    double outside = sampler_.v_min_mm() - cutter_.radius_mm() - step;
+    for (double v = outside + step; v < sampler_.v_max_mm(); v += step) {
+      RowHeights row = sampler_.row(v < sampler_.v_min_mm() ? rounded(v) : std::max(sampler_.v_min_mm(), rounded(v)));
+      if (!row.any_inside()) {
+        outside = row.v_mm;
+        continue;
+      }
+      while (row.v_mm - outside > 3 * increment_) {
+        RowHeights middle = sampler_.row(rounded(0.5 * (row.v_mm + outside)));
+        if (middle.any_inside())
+          row = std::move(middle);
+        else
+          outside = middle.v_mm;
+      }
+      return row;
+    }
+    return sampler_.row(sampler_.v_max_mm());
   }
 
   /// The last one that touches inside between a row and a place where none does, where it lies a quarter of a space
