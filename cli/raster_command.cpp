@@ -1,6 +1,7 @@
 #include "cli/raster_command.h"
 
-#include <chrono>
+#include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/program_figures.h"
+#include "cli/progress.h"
 #include "feedmodel/control_options.h"
 #include "machine/unprogrammed_job.h"
 #include "repath/fastest.h"
@@ -21,6 +23,7 @@ namespace {
 constexpr double kComparedStepMm = 0.1;  ///< of the raster that it is set against
 constexpr double kAboveAllMm = 5;
 constexpr double kLeadInMm = 1;
+constexpr double kLargestPartMm = 1e5;
 constexpr double kFineToleranceMm = 0.004;  ///< below, coordinates have four decimals
 
 removal::TriangleMesh read_part(const std::string& path) {
@@ -56,9 +59,13 @@ const machine::Tool& chosen_tool(const machine::Job& job, const RasterArguments&
   return found->second;
 }
 
+/// Of the rectangle that was asked for, what lies over the part.
 repath::Rectangle boundary_of(const RasterArguments& arguments, const std::string& part,
                               const removal::DropCutter& drop) {
   const Vec2 low = drop.min_mm().head<2>(), high = drop.max_mm().head<2>();
+  if (const double size = (high - low).maxCoeff(); size > kLargestPartMm)
+    fail_on_file(part, fmt::format("the part is {:g} mm long; no more than {:g} mm was expected", size, kLargestPartMm),
+                 "part-size");
   const auto& b = arguments.boundary_mm;
   if (b.empty()) return {low, high};
   const repath::Rectangle out{{b[0], b[1]}, {b[2], b[3]}};
@@ -68,7 +75,7 @@ repath::Rectangle boundary_of(const RasterArguments& arguments, const std::strin
                              "Y{:g} to X{:g} Y{:g}",
                              b[0], b[1], b[2], b[3], low.x(), low.y(), high.x(), high.y()),
                  "boundary-empty");
-  return out;
+  return {out.min.cwiseMax(low), out.max.cwiseMin(high)};
 }
 
 /// Nothing for a field of another job: where its stock ends is not known here.
@@ -184,7 +191,6 @@ struct Report {
                                   {"time_after_s", now.time_s},
                                   {"contour_before_um", um(compared)},
                                   {"contour_after_um", um(now)},
-                                  {"contour_limit_um", 1000 * result.contour_limit_mm},
                                   {"within_contour_limit", result.within_limit},
                                   {"length_factor", chosen().length_factor},
                                   {"feed_factor", chosen().feed_factor}};
@@ -234,7 +240,10 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
                                        .tolerance_mm = arguments.tolerance_mm};
   const int decimals = arguments.tolerance_mm < kFineToleranceMm ? 4 : 3;
   if (decimals == 4) raster_options.increment_mm = 0.0001;
+  ProgressLine progress(options);
+  raster_options.progress = [&](double share) { progress.show("laying rows", std::clamp(share, 0.0, 1.0)); };
   const repath::Raster raster = repath::make_raster(drop, raster_options);
+  progress.clear();
   if (raster.chains.empty()) fail_on_file(part, "the cutter touches nothing inside the boundary", "boundary-empty");
 
   const repath::RasterProgram program = program_of(arguments, job, tool, drop.max_mm().z(), decimals);
@@ -251,7 +260,7 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
   repath::FastestOptions fastest;
   fastest.layout.tolerance_mm = repath::tolerance_left_mm(raster_options);
   fastest.layout.length_mm = arguments.length_mm;
-  fastest.contour_mm = arguments.contour_mm;
+  fastest.contour_mm = arguments.contour_mm > 0 ? arguments.contour_mm : std::numeric_limits<double>::infinity();
   fastest.keep_old = false;
   fastest.fewest_blocks = true;
   fastest.interpreter = interpreter;

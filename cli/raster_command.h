@@ -18,7 +18,7 @@ struct RasterArguments {
   std::vector<double> boundary_mm;     ///< X0 Y0 X1 Y1; empty: the part's own
   std::optional<double> clearance_mm;  ///< Z; not given: 5 mm above stock and part
   double length_mm = 0;                ///< 0: the fastest is looked for
-  double contour_mm = 0;               ///< 0: see repath/fastest.h
+  double contour_mm = 0;               ///< most that the predicted axes may stray; 0: no limit
 };
 
 /// Throws InputError. Returns kDone, or kNumbersDidNotWorkOut where scallops stay higher than asked for, or no length

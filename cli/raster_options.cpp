@@ -12,6 +12,8 @@
 namespace camber::cli {
 namespace {
 
+constexpr double kFinestToleranceMm = 0.0005;
+
 /// "nan" and "inf" are none.
 CLI::Validator number_from_to(double least, double most) {
   return CLI::Validator(
@@ -107,6 +109,11 @@ Action RasterOptions::action(const ResegmentArguments& shared, const GlobalOptio
   if (!options.effective_config)
     for (const CLI::Option* option : required_)
       if (option->empty()) throw CLI::RequiredError(option->get_name());
+  if (shared.tolerance_mm < kFinestToleranceMm)
+    throw CLI::ValidationError("--tolerance-mm",
+                               fmt::format("{:g}: at least {:g} was expected for a raster, whose points are rounded to "
+                                           "0.0001 mm",
+                                           shared.tolerance_mm, kFinestToleranceMm));
   RasterArguments arguments = arguments_;
   arguments.output = shared.output;
   arguments.json = shared.json;

@@ -25,7 +25,7 @@ class RasterMaker {
         sampler_(part, frame_, options.boundary, std::min(kSampleMm, 0.25 * part.cutter().radius_mm())) {}
 
   Raster run() {
-    out_.spacing = space_rows(sampler_, part_.cutter(), options_.scallop_mm, options_.increment_mm);
+    out_.spacing = space_rows(sampler_, part_.cutter(), options_.scallop_mm, options_.increment_mm, options_.progress);
     bool back = false;
     for (const double v : out_.spacing.rows_mm) {
       std::vector<Interval> pieces = pieces_of(v);

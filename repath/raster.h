@@ -11,8 +11,9 @@ struct RasterOptions {
   Rectangle boundary;        ///< in X and Y; where the cutter touches
   double direction_rad = 0;  ///< of the rows, from +X
   double scallop_mm = 0.005;
-  double tolerance_mm = 0.005;  ///< of the program's path from the offset surface
-  double increment_mm = 0.001;  ///< that the points are rounded to
+  double tolerance_mm = 0.005;             ///< of the program's path from the offset surface
+  double increment_mm = 0.001;             ///< that the points are rounded to
+  std::function<void(double)> progress{};  ///< told the share of the rows that is laid; may be empty
 };
 
 /// A stretch of the raster as seen from above; the tip's height follows from the part.

@@ -163,7 +163,7 @@ class Spacer {
     closest_ = std::max(2 * increment, 0.1 * std::min(level_, 2 * std::sqrt(2 * cutter.radius_mm() * scallop)));
   }
 
-  RowSpacing run() {
+  RowSpacing run(const std::function<void(double)>& progress) {
     RowSpacing out;
     out.closest_mm = closest_;
     RowHeights row = first();
@@ -171,6 +171,7 @@ class Spacer {
     std::size_t steep = 0;
     while (row.any_inside() || row.v_mm < sampler_.v_max_mm()) {
       if (row.any_inside()) out.rows_mm.push_back(row.v_mm);
+      if (progress) progress((row.v_mm - sampler_.v_min_mm()) / (sampler_.v_max_mm() - sampler_.v_min_mm()));
       auto [next, height] = next_row(row, space);
       // A row on the border, where none beyond it would touch all along it.
       if (row.v_mm < sampler_.v_max_mm() - increment_ && next.v_mm > sampler_.v_max_mm()) {
@@ -274,8 +275,8 @@ class Spacer {
 }  // namespace
 
 RowSpacing space_rows(const RowSampler& sampler, const removal::Underside& cutter, double scallop_mm,
-                      double increment_mm) {
-  return Spacer(sampler, cutter, scallop_mm, increment_mm).run();
+                      double increment_mm, const std::function<void(double)>& progress) {
+  return Spacer(sampler, cutter, scallop_mm, increment_mm).run(progress);
 }
 
 }  // namespace camber::repath

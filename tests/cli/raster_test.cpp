@@ -178,6 +178,12 @@ TEST(RasterCommand, TellsWhatIsWrongWithThePart) {
   EXPECT_EQ(said(folder, fmt::format("--part open.stl --job job.toml {}", kCut)),
             "open.stl: error: the mesh is not closed: 3 of its edges have no second triangle, and the cutter could "
             "fall through; a closed one was expected [stl-open]\n");
+  folder.write("large.stl",
+               "solid s\n"
+               "facet\nouter loop\nvertex 0 0 0\nvertex 2e7 0 0\nvertex 0 0 6\nendloop\nendfacet\n"
+               "facet\nouter loop\nvertex 0 0 0\nvertex 0 0 6\nvertex 2e7 0 0\nendloop\nendfacet\nendsolid\n");
+  EXPECT_EQ(said(folder, fmt::format("--part large.stl --job job.toml {}", kCut)),
+            "large.stl: error: the part is 2e+07 mm long; no more than 100000 mm was expected [part-size]\n");
   copy_sample(folder, {{"[part]\nmesh = \"part.stl\"", ""}});
   EXPECT_EQ(said(folder, fmt::format("--job job.toml {}", kCut)),
             "job.toml: error: has no [part] mesh, and there is no --part; one of them was expected [part-missing]\n");
@@ -227,6 +233,13 @@ TEST(RasterCommand, TellsWhatIsWrongOnTheCommandLine) {
             "--boundary: 5,0,1,2: X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1 was expected\n" + hint);
   EXPECT_EQ(said(folder, fmt::format("--job job.toml --direction-deg nan {}", kCut), 2),
             "--direction-deg: nan: a number from -360 to 360 was expected\n" + hint);
+  EXPECT_EQ(
+      said(folder,
+           "--job job.toml --scallop-mm 0.005 --tolerance-mm 0.0001 --feed-mm-per-min 9 --spindle-rpm 9 "
+           "-o raster.nc",
+           2),
+      "--tolerance-mm: 0.0001: at least 0.0005 was expected for a raster, whose points are rounded to 0.0001 mm\n" +
+          hint);
   EXPECT_EQ(said(folder, fmt::format("p.nc --job job.toml {}", kCut), 2), "program excludes --job\n" + hint);
   EXPECT_EQ(said(folder, fmt::format("--part part.stl {}", kCut), 2), "--part requires --job\n" + hint);
 }
