@@ -1,6 +1,7 @@
 #include "repath/fastest.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace camber::repath {
 namespace {
@@ -10,6 +11,7 @@ constexpr double kFeeds[] = {1, 0.85, 0.7, 0.6, 0.5};
 constexpr double kMoreContour = 1.05;  ///< that the old blocks' contour error may grow by, unless told otherwise
 constexpr double kLeastGain = 1.002;   ///< less is not worth another program
 constexpr double kSameTime = 1.001;    ///< what is no faster than this has no say: the path with the smaller error has
+constexpr double kAlmostSameTime = 1.005;  ///< is worth fewer blocks
 
 nc::Interpretation interpreted(const std::string& name, const std::string& text,
                                const nc::InterpreterOptions& options) {
@@ -20,10 +22,8 @@ nc::Interpretation interpreted(const std::string& name, const std::string& text,
   return moves;
 }
 
-bool better(const Candidate& one, const Candidate& other, bool fewest_blocks) {
-  const ContourFigures &a = one.figures, &b = other.figures;
+bool better(const ContourFigures& a, const ContourFigures& b) {
   if (a.time_s * kSameTime < b.time_s || b.time_s * kSameTime < a.time_s) return a.time_s < b.time_s;
-  if (fewest_blocks) return one.length_factor > other.length_factor;
   return a.contour_max_mm < b.contour_max_mm;
 }
 
@@ -37,6 +37,7 @@ Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves
                              : std::max(kMoreContour * before.contour_max_mm, options.layout.tolerance_mm);
   out.within_limit = false;
   std::size_t nearest = 0;
+  double fastest_s = std::numeric_limits<double>::infinity();
   ResegmentOptions layout = options.layout;
   layout.block_time_s = machine.control.block_time_s;
   for (const double feed : kFeeds) {
@@ -52,9 +53,13 @@ Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves
       const bool first = now == 0;
       const bool strays_least = first || figures.contour_max_mm < out.tried[nearest].figures.contour_max_mm;
       if (strays_least) nearest = now;
-      const bool take = keeps
-                            ? !out.within_limit || better(out.tried[now], out.tried[out.chosen], options.fewest_blocks)
-                            : !out.within_limit && strays_least;
+      // The lengths ascend.
+      const auto beats_chosen = [&] {
+        return options.fewest_blocks ? figures.time_s <= kAlmostSameTime * fastest_s
+                                     : better(figures, out.tried[out.chosen].figures);
+      };
+      const bool take = keeps ? !out.within_limit || beats_chosen() : !out.within_limit && strays_least;
+      if (keeps) fastest_s = std::min(fastest_s, figures.time_s);
       out.within_limit |= keeps;
       if (take) {
         out.chosen = now;

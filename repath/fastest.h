@@ -19,7 +19,7 @@ struct FastestOptions {
   double contour_mm = 0;  ///< most that the predicted axes may stray from the old path; 0: 5 % more than they do with
                           ///< the old blocks, or the tolerance, whichever is more
   bool keep_old = true;   ///< where nothing is faster than the old program, that is what comes out
-  bool fewest_blocks = false;  ///< of lengths that are equally fast the longest, not the one with the smallest error
+  bool fewest_blocks = false;  ///< of lengths that cost no more than 0.5 % of the time the longest, not the fastest
   nc::InterpreterOptions interpreter;
 };
 

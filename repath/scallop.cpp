@@ -24,11 +24,14 @@ struct Groove {
   }
 };
 
+/// Where the row ends, the slope is that of its one side.
 std::optional<Groove> groove(const RowHeights& row, std::size_t k, double step_mm) {
-  if (k == 0 || k + 1 >= row.tip_mm.size()) return std::nullopt;
-  const auto &before = row.tip_mm[k - 1], &here = row.tip_mm[k], &behind = row.tip_mm[k + 1];
-  if (!before || !here || !behind) return std::nullopt;
-  return Groove{row.v_mm, *here, (*behind - *before) / (2 * step_mm)};
+  const auto& here = row.tip_mm[k];
+  if (!here) return std::nullopt;
+  const bool before = k > 0 && row.tip_mm[k - 1], behind = k + 1 < row.tip_mm.size() && row.tip_mm[k + 1];
+  if (!before && !behind) return Groove{row.v_mm, *here, 0};
+  const double from = before ? *row.tip_mm[k - 1] : *here, to = behind ? *row.tip_mm[k + 1] : *here;
+  return Groove{row.v_mm, *here, (to - from) / (step_mm * (before + behind))};
 }
 
 struct Cusp {

@@ -121,7 +121,7 @@ TEST(RasterCommand, PredictFindsOnThePartWhatTheScallopsSay) {
 
 TEST(RasterCommand, RowsTurnAndAreCutOffAtABoundary) {
   const TempFolder folder;
-  copy_sample(folder);
+  copy_sample(folder, {{"program = \"raster.nc\"", ""}});  // the program that is made needs no name in the job
   const auto run = run_camber(folder, fmt::format("-q resegment --job job.toml --direction-deg 90 --boundary 1,1,5,4 "
                                                   "--clearance-mm 30 {}",
                                                   kCut));
