@@ -23,7 +23,7 @@ namespace {
 constexpr double kComparedStepMm = 0.1;  ///< of the raster that it is set against
 constexpr double kAboveAllMm = 5;
 constexpr double kLeadInMm = 1;
-constexpr double kLargestPartMm = 1e5;
+constexpr double kLargestPartMm = 1e4;
 constexpr double kFineToleranceMm = 0.004;  ///< below, coordinates have four decimals
 
 removal::TriangleMesh read_part(const std::string& path) {
@@ -69,7 +69,7 @@ repath::Rectangle boundary_of(const RasterArguments& arguments, const std::strin
   const auto& b = arguments.boundary_mm;
   if (b.empty()) return {low, high};
   const repath::Rectangle out{{b[0], b[1]}, {b[2], b[3]}};
-  if ((out.min.array() > high.array()).any() || (out.max.array() < low.array()).any())
+  if ((out.min.array() >= high.array()).any() || (out.max.array() <= low.array()).any())
     fail_on_file(part,
                  fmt::format("nothing of the part lies inside --boundary {:g},{:g},{:g},{:g}; it reaches from X{:g} "
                              "Y{:g} to X{:g} Y{:g}",

@@ -54,6 +54,8 @@ int print_job(const std::string& path, const GlobalOptions& options) {
 }  // namespace
 
 RasterOptions::RasterOptions(CLI::App& command, CLI::Option& program) {
+  for (const char* of_programs : {"--units", "--block-skip", "--skip-switch", "--dialect", "--least-increments"})
+    command.get_option(of_programs)->needs(&program);
   const std::string group = "A raster on a part instead of a program";
   part_ = command.add_option("--part", arguments_.part, "the part as STL; not given: the job's [part] mesh")
               ->type_name("part.stl")

@@ -14,6 +14,7 @@ namespace camber::cli {
 
 class RasterOptions {
  public:
+  /// To be called when the command has the options of reading programs.
   RasterOptions(CLI::App& command, CLI::Option& program);
   /// --job or --part was given.
   bool asked_for() const;

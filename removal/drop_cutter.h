@@ -11,14 +11,14 @@ namespace camber::removal {
 
 /// The tip's lowest place above a point, over all triangles: exact but for rounding (some 1e-12 mm), nothing is
 /// sampled. The triangles stand in a tree of boxes as seen from above, each with its highest point; a box that could
-/// not lift the cutter any higher is passed over, so that a place costs some microseconds, whatever their number.
+/// not lift the cutter any higher is passed over, so that time grows with the logarithm of their number.
 class DropCutter {
  public:
   /// Requires a shape that is not general. Memory: about 150 bytes a triangle.
   DropCutter(const TriangleMesh& mesh, const CutterShape& shape);
 
   /// Nothing where no triangle lies under the cutter. `near`: a triangle to begin with, as that of the place before;
-  /// saves time and changes nothing.
+  /// saves time and changes no height (of places that it touches at once it may name another).
   std::optional<Contact> at(const Vec2& axis, std::optional<std::uint32_t> near = std::nullopt) const;
 
   const Underside& cutter() const { return cutter_; }
