@@ -7,7 +7,9 @@
 namespace camber::removal {
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;
+constexpr std::uint32_t kLeaf = 2;
+constexpr double kSteepest = 5;     ///< of the planes over the boxes
+constexpr double kRounding = 1e-9;  ///< mm, of what a box could lift the cutter to
 constexpr double kNothing = -std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -27,15 +29,23 @@ DropCutter::DropCutter(const TriangleMesh& mesh, const CutterShape& shape) : cut
 
 void DropCutter::build(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
   Vec2 low = Vec2::Constant(-kNothing), high = Vec2::Constant(kNothing);
-  double top = kNothing;
+  double top = kNothing, bottom = -kNothing, plane = kNothing;
+  Vec3 normal = Vec3::Zero();
+  for (std::uint32_t k = begin; k < end; ++k) normal += facets_[k].normal;
+  const double level = std::max(normal.z(), normal.head<2>().norm() / kSteepest);
+  const Vec2 slope = level > 0 ? Vec2(-normal.head<2>() / level) : Vec2(0, 0);
   for (std::uint32_t k = begin; k < end; ++k)
     for (const Vec3& p : facets_[k].corner) {
       low = low.cwiseMin(p.head<2>()), high = high.cwiseMax(p.head<2>());
-      top = std::max(top, p.z());
+      top = std::max(top, p.z()), bottom = std::min(bottom, p.z());
+      plane = std::max(plane, p.z() - slope.dot(p.head<2>()));
     }
-  nodes_[node] = {low, high, top, begin, end};
+  nodes_[node] = {low, high, top, slope, plane, begin, end};
   if (end - begin <= kLeaf) return;
-  const int axis = high.x() - low.x() > high.y() - low.y() ? 0 : 1;
+  // Across the longest side; across Z too, which parts a block's top from its bottom.
+  const Vec3 size(high.x() - low.x(), high.y() - low.y(), top - bottom);
+  int axis = 0;
+  size.maxCoeff(&axis);
   const std::uint32_t middle = begin + (end - begin) / 2;
   std::nth_element(facets_.begin() + begin, facets_.begin() + middle, facets_.begin() + end,
                    [axis](const Facet& a, const Facet& b) {
@@ -49,11 +59,28 @@ void DropCutter::build(std::uint32_t node, std::uint32_t begin, std::uint32_t en
   build(children + 1, middle, end);
 }
 
-/// What the box could lift the tip to, were its highest point the one that is nearest to the axis.
+/// No less than what the box could lift the tip to. Its highest point may be the one that is nearest to the axis; and
+/// under the plane, height less underside is concave, so that it lies below its tangent at any place of the box.
 double DropCutter::most(const Node& node, const Vec2& axis) const {
-  const Vec2 away = (node.min - axis).cwiseMax(axis - node.max).cwiseMax(0.0);
-  const double r = away.norm();
-  return r < cutter_.radius_mm() ? node.top - cutter_.height_mm(r) : kNothing;
+  const Vec2 nearest = axis.cwiseMax(node.min).cwiseMin(node.max);
+  const double r = (nearest - axis).norm(), radius = cutter_.radius_mm();
+  if (!(r < radius)) return kNothing;
+  const double by_top = node.top - cutter_.height_mm(r);
+  // Where the cutter would touch the plane, or what of the box is nearest to that.
+  const double steep = node.slope.norm();
+  const Vec2 uphill = steep > 0 ? Vec2(node.slope / steep) : Vec2(0, 0);
+  const double reach = steep > 0 ? cutter_.flat_mm + cutter_.corner_mm * steep / std::sqrt(1 + steep * steep) : 0.0;
+  Vec2 at = (axis + reach * uphill).cwiseMax(node.min).cwiseMin(node.max);
+  double out = (at - axis).norm();
+  if (!(out < 0.999 * radius)) at = nearest, out = r;
+  const double beyond = out - cutter_.flat_mm;
+  const double steepness =
+      beyond > 0 ? beyond / std::sqrt(std::max(1e-300, (cutter_.corner_mm - beyond) * (cutter_.corner_mm + beyond)))
+                 : 0;
+  const Vec2 gradient = out > 0 ? Vec2(node.slope - steepness / out * (at - axis)) : node.slope;
+  const Vec2 rest = (gradient.array() > 0).select(node.max - at, node.min - at);
+  const double by_plane = node.plane + node.slope.dot(at) - cutter_.height_mm(out) + gradient.dot(rest);
+  return std::min(by_top, by_plane) + kRounding;
 }
 
 void DropCutter::offer(std::uint32_t facet, const Vec2& axis, std::optional<Contact>& best) const {

@@ -10,11 +10,11 @@
 namespace camber::removal {
 
 /// The tip's lowest place above a point, over all triangles: exact but for rounding (some 1e-12 mm), nothing is
-/// sampled. The triangles stand in a tree of boxes as seen from above, each with its highest point; a box that could
-/// not lift the cutter any higher is passed over, so that time grows with the logarithm of their number.
+/// sampled. The triangles stand in a tree of boxes as seen from above, each with a plane that lies over its points; a
+/// box that could not lift the cutter any higher is passed over.
 class DropCutter {
  public:
-  /// Requires a shape that is not general. Memory: about 150 bytes a triangle.
+  /// Requires a shape that is not general. Memory: about 200 bytes a triangle.
   DropCutter(const TriangleMesh& mesh, const CutterShape& shape);
 
   /// Nothing where no triangle lies under the cutter. `near`: a triangle to begin with, as that of the place before;
@@ -28,7 +28,9 @@ class DropCutter {
  private:
   struct Node {
     Vec2 min = Vec2::Zero(), max = Vec2::Zero();
-    double top = 0;
+    double top = 0;                    ///< highest point
+    Vec2 slope = Vec2::Zero();         ///< of the plane, which rises with the facets
+    double plane = 0;                  ///< its height above the origin
     std::uint32_t begin = 0, end = 0;  ///< of a leaf's facets; an inner node's end is 0 and its children are begin and
                                        ///< begin + 1
   };
