@@ -22,7 +22,10 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"predict", "camber predict job.toml -o predicted"},
     {"compensate", "camber compensate job.toml -o finish_compensated.nc --report report.html --json figures.json"},
     {"compress", "camber compress finish.nc --tolerance-mm 0.002 -o finish_arcs.nc"},
-    {"resegment", "camber resegment finish.nc --machine machine.toml --tolerance-mm 0.002 -o finish_even.nc"},
+    {"resegment",
+     "camber resegment finish.nc --machine machine.toml --tolerance-mm 0.002 -o finish_even.nc\n"
+     "  camber resegment --part part.stl --job job.toml --scallop-mm 0.005 --tolerance-mm 0.005 --feed-mm-per-min 8000 "
+     "--spindle-rpm 12000 -o raster.nc"},
     {"completion", "camber completion bash > ~/.local/share/bash-completion/completions/camber"}};
 
 std::string names_of(const CLI::App& app) {

@@ -13,6 +13,7 @@
 #include "cli/feed_command.h"
 #include "cli/fit_feed_command.h"
 #include "cli/protocol_command.h"
+#include "cli/raster_options.h"
 #include "cli/resegment_command.h"
 #include "cli/time_command.h"
 #include "machine/machine.h"
@@ -246,8 +247,9 @@ void add_resegment(CLI::App& app, const GlobalOptions& options, Action& chosen) 
   auto* command =
       app.add_subcommand("resegment", "runs of G1 laid out again, in segments just long enough for the control");
   auto arguments = std::make_shared<ResegmentArguments>();
-  command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
-  command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
+  auto* program = command->add_option("program", arguments->program, "NC program")->type_name("P.nc");
+  auto* machine =
+      command->add_option("--machine", arguments->machine, "machine.toml")->type_name("M.toml")->needs(program);
   add_rewriting(*command, *arguments);
   command->add_option("--length-mm", arguments->length_mm, "of the segments; else the fastest is looked for")
       ->check(length_validator())
@@ -256,13 +258,20 @@ void add_resegment(CLI::App& app, const GlobalOptions& options, Action& chosen) 
       ->add_option(
           "--contour-mm", arguments->contour_mm,
           "most that the predicted axes may stray from the old path; else 5 % more than with the old blocks, or "
-          "the tolerance, whichever is more")
+          "the tolerance, whichever is more; a raster has no limit unless it is given")
       ->check(length_validator())
       ->type_name("C");
   command->add_option("--json", arguments->json, "the figures, of all lengths tried")->type_name("R.json");
   add_interpreter_options(*command, arguments->interpreter);
   add_language_options(*command, arguments->interpreter);
-  command->callback([arguments, &options, &chosen] {
+  const auto raster = add_raster_options(*command, *program);
+  command->callback([arguments, machine, raster, &options, &chosen] {
+    if (raster->asked_for()) {
+      chosen = raster->action(*arguments, options);
+      return;
+    }
+    if (arguments->program.empty()) throw CLI::RequiredError("program, or --job with --part,");
+    if (machine->empty()) throw CLI::RequiredError("--machine");
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);
       check_outputs({arguments->output, arguments->json, arguments->report}, {arguments->program, arguments->machine});

@@ -10,6 +10,7 @@
 #include "machine/job_tables.h"
 #include "machine/material_reader.h"
 #include "machine/tool_reader.h"
+#include "machine/unprogrammed_job.h"
 
 namespace camber::machine {
 namespace {
@@ -179,7 +180,9 @@ void read_tools(TomlTable table, std::map<int, Tool>& tools) {
   }
 }
 
-Job read_job(const std::string& path, Diagnostics& diagnostics) {
+namespace {
+
+Job read(const std::string& path, Diagnostics& diagnostics, bool programmed) {
   Job job;
   job.path = path;
   const auto file =
@@ -187,7 +190,10 @@ Job read_job(const std::string& path, Diagnostics& diagnostics) {
   diagnostics.throw_if_errors();
   const fs::path folder = fs::path(path).parent_path();
   TomlTable top = TomlTable::top(*file, diagnostics);
-  job.program = required_file_at(top, "program", folder);
+  if (programmed)
+    job.program = required_file_at(top, "program", folder);
+  else if (const std::string made = top.text("program", ""); !made.empty())
+    job.program = (folder / made).lexically_normal().string();
   job.machine_path = required_file_at(top, "machine", folder);
   if (top.has("units")) job.inch = top.choice("units", kUnitWords, 0) == 1;
   read_tables(top, folder, job, diagnostics);
@@ -198,5 +204,11 @@ Job read_job(const std::string& path, Diagnostics& diagnostics) {
   diagnostics.throw_if_errors();
   return job;
 }
+
+}  // namespace
+
+Job read_job(const std::string& path, Diagnostics& diagnostics) { return read(path, diagnostics, true); }
+
+Job read_unprogrammed_job(const std::string& path, Diagnostics& diagnostics) { return read(path, diagnostics, false); }
 
 }  // namespace camber::machine

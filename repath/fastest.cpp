@@ -15,6 +15,7 @@ constexpr std::size_t kLengthsAtLowerFeed = 3;  ///< those that strayed least at
 constexpr double kMoreContour = 1.05;  ///< that the old blocks' contour error may grow by, unless told otherwise
 constexpr double kLeastGain = 1.002;   ///< less is not worth another program
 constexpr double kSameTime = 1.001;    ///< what is no faster than this has no say: the path with the smaller error has
+constexpr double kAlmostSameTime = 1.005;  ///< is worth fewer blocks
 
 nc::Interpretation interpreted(const std::string& name, const std::string& text,
                                const nc::InterpreterOptions& options) {
@@ -72,8 +73,12 @@ Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves
       const bool keeps = figures.contour_max_mm <= out.contour_limit_mm;
       const bool strays_least = now == 0 || figures.contour_max_mm < out.tried[nearest].figures.contour_max_mm;
       if (strays_least) nearest = now;
-      const bool take = keeps ? !out.within_limit || better(figures, out.tried[out.chosen].figures)
-                              : !out.within_limit && strays_least;
+      // The lengths descend: what follows has more blocks.
+      const auto beats_chosen = [&] {
+        const ContourFigures& chosen = out.tried[out.chosen].figures;
+        return options.fewest_blocks ? figures.time_s * kAlmostSameTime < chosen.time_s : better(figures, chosen);
+      };
+      const bool take = keeps ? !out.within_limit || beats_chosen() : !out.within_limit && strays_least;
       out.within_limit |= keeps;
       if (take) {
         out.chosen = now;
@@ -85,7 +90,7 @@ Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves
     if (out.within_limit) break;
     lengths = straying_least({out.tried.begin() + static_cast<std::ptrdiff_t>(first_of_feed), out.tried.end()});
   }
-  const bool asked_for = options.layout.length_mm > 0;
+  const bool asked_for = options.layout.length_mm > 0 || !options.keep_old;
   out.gains = asked_for || out.tried[out.chosen].figures.time_s * kLeastGain < before.time_s;
   if (!out.gains) {
     out.path = {};

@@ -18,6 +18,8 @@ struct FastestOptions {
   ResegmentOptions layout{};  ///< with length_mm > 0 no length is looked for
   double contour_mm = 0;  ///< most that the predicted axes may stray from the old path; 0: 5 % more than they do with
                           ///< the old blocks, or the tolerance, whichever is more
+  bool keep_old = true;   ///< where nothing is faster than the old program, that is what comes out
+  bool fewest_blocks = false;  ///< of lengths that cost no more than 0.5 % of the time the longest, not the fastest
   nc::InterpreterOptions interpreter;
 };
 

@@ -1,0 +1,80 @@
+#pragma once
+// Height of the scallops that neighbouring rows leave, measured on the offset surface itself.
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "removal/drop_cutter.h"
+
+namespace camber::repath {
+
+/// Where rows lie: along a direction, side by side across it.
+struct RowFrame {
+  Vec2 along = Vec2(1, 0), across = Vec2(0, 1);  ///< unit, at right angles
+  Vec2 place(double u, double v) const { return u * along + v * across; }
+};
+
+/// The part that is worked: a rectangle in X and Y.
+struct Rectangle {
+  Vec2 min = Vec2::Zero(), max = Vec2::Zero();
+};
+
+/// A contact counts where it lies in the rectangle; on its border only where the cutter does not roll over it, and
+/// under a flat bottom, which touches anywhere, only with the axis inside.
+bool works_inside(const removal::Underside& cutter, const Rectangle& boundary, const Vec2& axis,
+                  const removal::Contact& contact);
+
+/// Heights of the tip along a row, at equal steps.
+struct RowHeights {
+  double v_mm = 0;
+  std::vector<std::optional<double>> tip_mm;
+  std::vector<char> inside;  ///< works_inside()
+  bool any_inside() const;
+};
+
+/// Samples rows, always at the same places along them.
+class RowSampler {
+ public:
+  RowSampler(const removal::DropCutter& part, const RowFrame& frame, const Rectangle& boundary, double step_mm);
+  RowHeights row(double v_mm) const;
+  double step_mm() const { return step_; }
+  double v_min_mm() const { return v_min_; }  ///< of the boundary
+  double v_max_mm() const { return v_max_; }
+  double u_min_mm() const { return u_min_; }
+  double u_max_mm() const { return u_max_; }
+
+ private:
+  const removal::DropCutter& part_;
+  RowFrame frame_;
+  Rectangle boundary_;
+  double step_;
+  double u_min_ = 0, u_max_ = 0, v_min_ = 0, v_max_ = 0;
+};
+
+/// The largest height, along the normal, of what two rows leave standing between them and rows in between would take.
+///
+/// At each place along the rows the cutter's groove in the plane across them is the row's height minus rise_on_line()
+/// at the row's slope; the scallop's tip is where the grooves of both rows cross (at one point only, as the cutter is
+/// convex), and what the rows between leave there is the finished surface: one row, halfway, for a ball; seven for a
+/// cutter with a flat, whose steps on a slope the nearest of them still misses by an eighth, which is added.
+/// On a plane of any slope that gives R - sqrt(R^2 - (w/2)^2), w the distance of the rows along it, for a ball, and the
+/// step's w sin(slope) for a flat cutter; on a curved surface the curvature is in it to second order.
+double scallop_mm(const RowSampler& sampler, const removal::Underside& cutter, const RowHeights& a,
+                  const RowHeights& b);
+
+struct RowSpacing {
+  std::vector<double> rows_mm;  ///< v of each, ascending
+  double largest_scallop_mm = 0;
+  double steep_share = 0;  ///< of the spaces between rows: where the scallop asked for would need closer rows than
+                           ///< closest_mm
+  double closest_mm = 0;
+};
+
+/// Rows over the boundary, as far apart as the scallop allows at the worst place along each, but no closer than a tenth
+/// of what it allows on a level plane; no farther than twice that and three quarters of the diameter. One row on either
+/// side lies on the border or beyond, as far as the cutter touches inside. `increment_mm`: v is rounded to it.
+/// `progress`: told the share of the boundary that is done; may be empty.
+RowSpacing space_rows(const RowSampler& sampler, const removal::Underside& cutter, double scallop_mm,
+                      double increment_mm, const std::function<void(double)>& progress = {});
+
+}  // namespace camber::repath
