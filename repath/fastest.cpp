@@ -85,7 +85,7 @@ Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves
         out.path = std::move(path);
       }
       if (keeps) no_better = take ? 0 : no_better + 1;
-      if (no_better >= kNoBetter) break;
+      if (no_better >= kNoBetter && !options.fewest_blocks) break;
     }
     if (out.within_limit) break;
     lengths = straying_least({out.tried.begin() + static_cast<std::ptrdiff_t>(first_of_feed), out.tried.end()});

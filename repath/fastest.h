@@ -19,7 +19,7 @@ struct FastestOptions {
   double contour_mm = 0;  ///< most that the predicted axes may stray from the old path; 0: 5 % more than they do with
                           ///< the old blocks, or the tolerance, whichever is more
   bool keep_old = true;   ///< where nothing is faster than the old program, that is what comes out
-  bool fewest_blocks = false;  ///< of lengths that cost no more than 0.5 % of the time the longest, not the fastest
+  bool fewest_blocks = false;  ///< a shorter length is only taken where it saves more than 0.5 % of the time
   nc::InterpreterOptions interpreter;
 };
 
@@ -34,8 +34,8 @@ struct Fastest {
 
 /// Lays the program out with lengths from ten times L_b down to L_b and predicts each on the machine; the fastest of
 /// those that keep to the contour is chosen. After two in a row that keep to it and are no better the shorter ones are
-/// not tried. Lower feeds (down to half) are tried only where none keeps to it at the programmed one, with the three
-/// lengths that strayed least. `before`: the figures of the old program.
+/// not tried (with fewest_blocks all are). Lower feeds (down to half) are tried only where none keeps to it at the
+/// programmed one, with the three lengths that strayed least. `before`: the figures of the old program.
 Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves, const machine::Machine& machine,
                      const ContourFigures& before, const FastestOptions& options);
 

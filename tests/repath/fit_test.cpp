@@ -41,7 +41,10 @@ Points sampled(const Points& points, const std::vector<Primitive>& chain, double
     const Vec2 a = points[p.first], b = points[p.last], c = a + p.center_from_start_mm;
     const double r0 = (a - c).norm(), r1 = (b - c).norm(), angle = std::atan2(a.y() - c.y(), a.x() - c.x());
     const double length = p.arc ? std::abs(p.sweep_rad) * r0 : (b - a).norm();
-    const int n = std::max(2, static_cast<int>(std::ceil(length / step)));
+    // Also so many that a chord leaves its arc by no more than this.
+    constexpr double kSagitta = 1e-6;
+    const double chords = p.arc ? std::abs(p.sweep_rad) * std::sqrt(r0 / (8 * kSagitta)) : 0;
+    const int n = std::max(2, static_cast<int>(std::ceil(std::max(length / step, chords))));
     for (int i = 0; i <= n; ++i) {
       const double u = static_cast<double>(i) / n, r = r0 + u * (r1 - r0), f = angle + u * p.sweep_rad;
       out.push_back(p.arc ? Vec2(c + r * Vec2(std::cos(f), std::sin(f))) : Vec2(a + u * (b - a)));
