@@ -11,6 +11,7 @@
 #include "compensate/not_emitted.h"
 #include "compensate/sensitivity.h"
 #include "compensate/shift_path.h"
+#include "deflection/collisions.h"
 #include "nc/emit.h"
 
 namespace camber::compensate {
@@ -94,6 +95,8 @@ class Loop {
     if (!own_target_)
       target_program_.emplace(deflection::machine_program(SourceText::read(job.part.program), job, {}, diagnostics));
     target_.emplace(deflection::make_target(job, target_program(), diagnostics));
+    deflection::check_collisions(job_, program_, target_->blank, diagnostics_);
+    diagnostics_.throw_if_errors();
     workshop_.emplace(job_, program_, *target_, own_target_);
   }
 

@@ -28,7 +28,8 @@ struct Collision {
 /// and holder before the stretch of path is cut that takes them there: the cutter below them must have made room long
 /// before. What lies above the stock, or beside it, is not looked at, and nothing is swept where no part of a tool
 /// ever comes so low. Rapids count as straight lines; leading rapids, those after a tool change and after a reference
-/// point whose start is not known count at their end. Less than a voxel of depth is no collision; places every half
+/// point whose start is not known count at their end; a rapid straight up is free where no part of the tool is narrower
+/// than what is below it. Less than a voxel of depth is no collision; places every half
 /// millimetre of path, half a millimetre apart on the outline.
 std::vector<Collision> find_collisions(const machine::Job& job, const MachinedProgram& program,
                                        const removal::Stock& blank);

@@ -1,5 +1,6 @@
 // Blanks of every kind, one job's stock as the next one's blank, several tools, and collisions, as a user meets them.
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -122,6 +123,17 @@ TEST(Collisions, RapidThroughMaterialIsAnErrorWithBlockAndTime) {
   run = run_camber(folder, "predict job.toml -o r");
   EXPECT_EQ(run.status, 0);
   EXPECT_NE(run.err.find("p.nc:8:1: warning: rapid through material"), std::string::npos) << run.err;
+}
+
+TEST(Collisions, ThatThePathHasAreNotCompensatedOver) {
+  const TempFolder folder;
+  write_job(folder, kHead + "G0 X-4 Y0 Z5\nG0 Z-2\nG1 X12 F900\nG0 Y4\nG0 X-4\nG0 Z5\nM30\n", kFlat,
+            "box_mm = [[0, -8, -5], [8, 8, 0]]");
+  const auto run = run_camber(folder, "compensate job.toml -o moved.nc");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("p.nc:8:1: error: rapid through material: the cutter of T1 in stock at X"), std::string::npos)
+      << run.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "moved.nc"));
 }
 
 TEST(Collisions, RapidBackThroughTheSlotJustCutIsFree) {
