@@ -243,7 +243,8 @@ Vec3 BlockInterpreter::polar_target(Vec3 end) {
 
 void BlockInterpreter::set_data() {
   const std::size_t at = request_.frame_code.word->offset;
-  const int kind = words_.has('L') ? static_cast<int>(words_.value('L')) : -1;
+  const double written = words_.has('L') ? words_.value('L') : -1;
+  const int kind = !words_.has('L') ? -1 : is_whole(written) ? static_cast<int>(written) : -2;
   switch (kind) {
     case 2:
       set_work_offset_data(false);
@@ -263,7 +264,7 @@ void BlockInterpreter::set_data() {
       error(at, "not-read",
             fmt::format("G10 L{} is not read; L2, L20 (work offsets) or L1, L10 to L13 (tool offsets) was "
                         "expected",
-                        words_.value('L')),
+                        written),
             "G10");
       words_.use("XYZIJKPQR");
       break;

@@ -36,7 +36,7 @@ Eigen::Matrix3d rotation_in(Plane plane, double angle_rad) {
   const double quarters = angle_rad / (kPi / 2), whole = std::round(quarters);
   double c = std::cos(angle_rad), s = std::sin(angle_rad);
   if (std::abs(quarters - whole) < 1e-12) {
-    const int q = ((static_cast<int>(whole) % 4) + 4) % 4;
+    const int q = (static_cast<int>(std::fmod(whole, 4)) + 4) % 4;  // a program may write any angle
     c = q == 0 ? 1 : q == 2 ? -1 : 0;
     s = q == 1 ? 1 : q == 3 ? -1 : 0;
   }

@@ -108,6 +108,7 @@ TEST(Frames, RotationInThreePlanes) {
   expect_ends("G0 X3 Y4\nG68 R180\nX4 Y4\nG69\n", {{3, 4, 0}, {2, 4, 0}});  // about where the tool stands
   const double c = std::cos(kPi / 6), s = std::sin(kPi / 6);
   expect_ends("G68 X0 Y0 R30\nG91 G1 X10\nY10\nG69\n", {{10 * c, 10 * s, 0}, {10 * c - 10 * s, 10 * s + 10 * c, 0}});
+  expect_ends("G68 X0 Y0 R900000000090\nG1 X10\n", {{0, 10, 0}});  // more quarter turns than an int holds
   InterpreterOptions haas = fanuc();
   haas.control = ControlKind::haas;
   expect_ends("G68 X0 Y0 R30\nG91 G68 X0 Y0 R60\nG90 G1 X10\n", {{0, 10, 0}}, haas);
@@ -202,6 +203,9 @@ TEST(Frames, SayWhatIsMissing) {
             Messages{"p.nc:1:1: error: G51 has no scale; P, or I J K, was expected [frame]"});
   EXPECT_EQ(read_text("G51.1").messages,
             Messages{"p.nc:1:1: error: G51.1 has no axis; X, Y or Z was expected [frame]"});
+  EXPECT_EQ(read_text("G10 L5000000000 P1 X1").messages,
+            Messages{"p.nc:1:1: error: G10 L5000000000 is not read; L2, L20 (work offsets) or L1, L10 to L13 (tool "
+                     "offsets) was expected [not-read]"});
   EXPECT_EQ(read_text("G10 L2 X1").messages,
             Messages{"p.nc:1:1: error: G10 L2 needs a P with the number of the offset [work-offset]"});
   EXPECT_EQ(read_text("G10 L2 P44 X1").messages,
