@@ -61,7 +61,8 @@ class Fitter {
   Fitter(const Polyline& path, const FitOptions& options);
   std::optional<Primitive> line(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> arc(std::uint32_t first, std::uint32_t last) const;
-  /// Ends of lines from `first`, ascending: the last `most` of them up to `end`. In space some of them may be none.
+  /// Ends of lines from `first`, ascending: the next point and the last `most` up to `end`. In space some of them may be
+  /// none, the next point always is one.
   std::vector<std::uint32_t> line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t most) const;
 
   std::optional<ArcRoom> room(std::uint32_t first, std::uint32_t last) const;

@@ -132,7 +132,8 @@ std::vector<std::uint32_t> Fitter::line_ends(std::uint32_t first, std::uint32_t 
     if (inside) ends.push_back(k);
     if (!open) break;
   }
-  if (ends.size() > most) ends.erase(ends.begin(), ends.end() - most);
+  // The next point stays: of the others a wedge is no proof, and there is always a line to it.
+  if (ends.size() > most + 1) ends.erase(ends.begin() + 1, ends.end() - most);
   return ends;
 }
 

@@ -239,6 +239,16 @@ TEST(FitInSpace, RandomPathsStayWithinTheTolerance) {
   }));
 }
 
+TEST(FitInSpace, RandomPathsOfLinesAloneStayWithinTheTolerance) {
+  for (std::uint32_t seed = 0; seed < 3000; ++seed) {
+    std::mt19937 random(seed);
+    const Points points = random_path(random);
+    const FitOptions options{.tolerance_mm = std::array{0.003, 0.01, 0.05}[seed % 3]};
+    expect_sound(points, fit(points.line(), options), options);
+    if (HasFailure()) FAIL() << "seed " << seed;
+  }
+}
+
 /// Against every chain whose ends are points of the path.
 TEST(FitInSpace, RandomPathsTakeTheFewestPrimitivesButForOneInAHundred) {
   std::mt19937 random(9);
