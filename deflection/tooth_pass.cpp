@@ -66,13 +66,14 @@ void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const D
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
   const std::size_t nodes = node_height_mm_.size();
   const auto& ring = envelope_.rings[r];
-  const EdgeForce e = edge_force(material_, thickness_mm, ring.width_mm, edge_ramp_mm_);
+  const double width_mm = chip.width_share() * ring.width_mm;
+  const EdgeForce e = edge_force(material_, thickness_mm, width_mm, edge_ramp_mm_);
   const Vec3 force = -(e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian);
   out.force_N[m] += force;
   out.torque_Nmm[m] += e.tangential_N * ring.profile.radius_mm;
   out.work_Nmm += e.tangential_N * ring.profile.radius_mm * 2 * kPi / envelope_.steps;
   out.chip_max_mm = std::max(out.chip_max_mm, thickness_mm);
-  out.chip_area_mm2 += chip_area_mm2(ring, envelope_.steps);
+  out.chip_area_mm2 += chip.width_share() * chip_area_mm2(ring, envelope_.steps);
   for (std::size_t n = 0; n < nodes; ++n) {
     const double w = compliance_[r * nodes + n];
     deflection[2 * (n * steps + m)] += (w + axis_compliance_.x()) * force.x();
@@ -82,7 +83,7 @@ void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const D
   const EdgeForce k = edge_force_slope(material_, thickness_mm, edge_ramp_mm_);
   const Vec3 slope = k.tangential_N * d.tangential + k.radial_N * d.normal + k.axial_N * d.meridian;
   const Eigen::Matrix2d feedback =
-      -ring.width_mm * (axis_compliance_.array() + own_compliance_[r]).matrix().cwiseProduct(slope.head<2>()) *
+      -width_mm * (axis_compliance_.array() + own_compliance_[r]).matrix().cwiseProduct(slope.head<2>()) *
       d.normal.head<2>().transpose();
   out.feedback[m] += feedback;
   if (chip.after_tooth) out.feedback_before[m] += feedback;
@@ -146,7 +147,7 @@ void ToothPassModel::add_to_turn(std::span<const removal::Chip> chips, std::size
         h = tooth_chip_mm(j, chip, d, ring, feed);
       }
       TurnForces::Tooth& tooth = turn.teeth[static_cast<std::size_t>(j)][static_cast<std::size_t>(at)];
-      const EdgeForce e = edge_force(material_, h, ring.width_mm, edge_ramp_mm_);
+      const EdgeForce e = edge_force(material_, h, chip.width_share() * ring.width_mm, edge_ramp_mm_);
       tooth.force_N -= e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian;
       tooth.torque_Nmm += e.tangential_N * ring.profile.radius_mm;
       tooth.chip_max_mm = std::max(tooth.chip_max_mm, h);

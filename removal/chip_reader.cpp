@@ -17,6 +17,9 @@ float slope(double along_normal) {
   return static_cast<float>(std::clamp(along_normal, static_cast<double>(kLeastSlope), 1.0));
 }
 
+/// Rings whose normal leans by less count as upright, faces whose normal does as level.
+constexpr double kUpright = 0.1;
+
 constexpr int corner(int c) { return Tile::offset(c & 1, c >> 1 & 1, c >> 2 & 1); }
 
 }  // namespace
@@ -27,6 +30,7 @@ struct ChipReader::Cell {
   std::array<float, 3> share;  ///< from there to the next voxels
   std::array<float, 8> weight;
   Vec3 corner_mm, point_mm;  ///< the lowest corner and the point
+  double up_mm = 0;          ///< of point_mm, from where `share` tells
 
   Cell(int cell, const std::array<float, 3>& f, const Index3& tile, double voxel_mm) : at(cell), share(f) {
     for (int c = 0; c < 8; ++c)
@@ -37,6 +41,11 @@ struct ChipReader::Cell {
                       tile[2] * Tile::kCore + cell % Tile::kSide);
     corner_mm = voxel_mm * lowest;
     point_mm = corner_mm + voxel_mm * Vec3(f[0], f[1], f[2]);
+  }
+
+  void move_up(double mm) {
+    up_mm += mm;
+    point_mm.z() += mm;
   }
 
   float trilinear(const std::array<float, Tile::kVolume>& values) const {
@@ -72,6 +81,8 @@ ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, st
       kernels_(kernels()) {
   places_.reserve(stamps.size());
   for (std::size_t k = 0; k < stamps.size(); ++k) places_.push_back(place_of(k));
+  for (const auto& ring : envelope.rings)
+    wall_half_mm_.push_back(std::abs(ring.cosine) < kUpright ? static_cast<float>(ring.width_mm / 2) : 0.0f);
 }
 
 ChipReader::Place ChipReader::place_of(std::size_t k) const {
@@ -113,27 +124,65 @@ void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t
       // The trilinear field is never below the ridge's, but for curvature: so it tells what is in air, and what is
       // deeper than the chip.
       const float field = reading.field[l], cap = reading.cap[l];
-      if (field > air) continue;
       const std::uint32_t p = lanes_.point(range.from + from + l);
-      if (-field > cap && earlier.empty()) {
+      const float half = wall_half_mm_[p / static_cast<std::uint32_t>(envelope_.steps)];
+      if (field > std::max(air, half)) continue;
+      if (-field > std::max(cap, half) && earlier.empty()) {
         out.push_back({k, {p, cap, true}});
         continue;
       }
-      const Cell cell(reading.cell[l], {reading.fraction[0][l], reading.fraction[1][l], reading.fraction[2][l]}, tile,
-                      voxel_mm_);
+      Cell cell(reading.cell[l], {reading.fraction[0][l], reading.fraction[1][l], reading.fraction[2][l]}, tile,
+                voxel_mm_);
       const Vec3 normal(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]);
+      std::uint8_t share = 255;
+      if (std::abs(field) < half) {
+        const Span span = between_levels(stocks, cell, normal, static_cast<double>(half));
+        share = static_cast<std::uint8_t>(std::lround(255 * std::max(0.0, span.to - span.from) / (2 * half)));
+        if (share == 0) continue;
+        cell.move_up((span.from + span.to) / 2);
+      }
       float depth = thickness_over(earlier, cell.point_mm, normal);
-      if (-field <= cap && depth > 0) depth = std::min(depth, thickness(stocks, cell, normal));
-      if (depth > 0) out.push_back({k, {p, std::min(depth, cap), depth > kNearCap * cap}});
+      if ((-field <= cap || share < 255) && depth > 0) depth = std::min(depth, thickness(stocks, cell, normal));
+      if (depth > 0) out.push_back({k, {p, std::min(depth, cap), depth > kNearCap * cap, share}});
     }
   }
+}
+
+/// Which part of a wall's ring at the point lies between level faces: of the blank, and of the floors that its cell's
+/// stamps have cut.
+ChipReader::Span ChipReader::between_levels(const TileStocks& stocks, const Cell& cell, const Vec3& normal,
+                                            double half_width_mm) const {
+  Span span{-half_width_mm, half_width_mm};
+  if (stocks.blank) {
+    const auto height = static_cast<double>(cell.trilinear(stocks.blank->distance));  // above the face
+    if (std::abs(height) < half_width_mm) {
+      const Vec3 up = cell.gradient(stocks.blank->distance, voxel_mm_);
+      if (std::abs(up.dot(normal)) < kUpright * std::abs(up.z())) {
+        const double face = -height / up.z();
+        if (up.z() > 0)
+          span.to = std::min(span.to, face);
+        else
+          span.from = std::max(span.from, face);
+      }
+    }
+  }
+  for (int c = 0; c < 8; ++c) {
+    const std::int32_t id = stocks.now->stamp[static_cast<std::size_t>(cell.at + corner(c))] - first_id_;
+    if (id < 0) continue;
+    const Vec3 from_tip = cell.point_mm - all_[static_cast<std::size_t>(id)].tip_mm;
+    if (std::abs(from_tip.z()) >= half_width_mm || envelope_.shape.gradient(from_tip).z() > -1 + kUpright) continue;
+    span.to = std::min(span.to, -from_tip.z());
+  }
+  return span;
 }
 
 /// Thickness of the stock below a point, against the normal, from the fields that meet in its cell (see
 /// removal/stretch.h): the thinnest of distance / slope, where slope is how fast a field falls along the normal.
 float ChipReader::thickness(const TileStocks& stocks, const Cell& cell, const Vec3& normal) const {
   constexpr float kSolid = std::numeric_limits<float>::infinity();
-  const float below_blank = stocks.blank ? -cell.trilinear(stocks.blank->distance) : kSolid;
+  float below_blank = stocks.blank ? -cell.trilinear(stocks.blank->distance) : kSolid;
+  if (stocks.blank && cell.up_mm != 0)
+    below_blank -= static_cast<float>(cell.up_mm * cell.gradient(stocks.blank->distance, voxel_mm_).z());
   if (below_blank <= 0) return 0;
   CornerLanes corners;
   std::array<std::int32_t, 8> ids;

@@ -325,7 +325,8 @@ double chip_volume_mm3(const EnvelopeGrid& e, std::span<const Chip> chips) {
     const auto& ring = e.rings[c.point / static_cast<std::uint32_t>(e.steps)];
     const double k1 = ring.profile.meridian_curvature_per_mm, k2 = ring.profile.parallel_curvature_per_mm;
     const double h = c.thickness_mm;
-    volume += (h - 0.5 * (k1 + k2) * h * h + k1 * k2 * h * h * h / 3) * ring.width_mm * ring.profile.radius_mm * turn;
+    volume += (h - 0.5 * (k1 + k2) * h * h + k1 * k2 * h * h * h / 3) * c.width_share() * ring.width_mm *
+              ring.profile.radius_mm * turn;
   }
   return volume;
 }

@@ -14,9 +14,11 @@ namespace camber::removal {
 
 /// What one envelope point takes at one stamp.
 struct Chip {
-  std::uint32_t point = 0;   ///< index into EnvelopeGrid
-  float thickness_mm = 0;    ///< uncut, along the envelope normal, > 0
-  bool after_tooth = false;  ///< bounded below by what the tooth before left, not by older surface
+  std::uint32_t point = 0;     ///< index into EnvelopeGrid
+  float thickness_mm = 0;      ///< uncut, along the envelope normal, > 0
+  bool after_tooth = false;    ///< bounded below by what the tooth before left, not by older surface
+  std::uint8_t cut_255 = 255;  ///< how much of the ring's width is in the cut, in 255ths
+  double width_share() const { return cut_255 / 255.0; }
 };
 
 /// Chips of stamp k: chips[first[k]] ... chips[first[k + 1] - 1].
@@ -45,6 +47,10 @@ struct StretchOptions {
 /// A chip is h = min(d, max(0, B + (k1 f_m^2 + k2 f_t^2) / 2)): d the depth of the point in the stock as
 /// the stamp before left it, f the point's motion since then, B, f_m, f_t its parts along the normal, the meridian
 /// and the circle of latitude, k1 and k2 the curvatures there.
+///
+/// A level face of the stock (the blank's top, the floor of an earlier pass, an allowance on a floor) cuts a whole ring
+/// of a cutter's wall in two at once: there the chip tells which share of the ring's width lies in the material, and
+/// its thickness is that in the middle of the share.
 class Stretch {
  public:
   /// stamps[0] ... stamps[from - 1] are in the stock already; this stretch cuts stamps[from] ... stamps[from +

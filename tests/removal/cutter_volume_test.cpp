@@ -124,6 +124,32 @@ TEST(CutterVolume, ChipsAreTheStocksLossOnARampDownAndUp) {
     }
 }
 
+/// A flat cutter's second pass, `deeper` below one that has made a floor (or below the block's top): what a layer that
+/// is no multiple of the rings' width holds, over its exact volume.
+double layer_share(double deeper, bool below_top) {
+  const auto tool = make_tool(ToolType::flat, 10, 2, 30);
+  Stock stock = make_box({0, -9, -4}, {kLength, 9, 0}, 0.1);
+  const Stock blank(stock);
+  EnvelopeGrid envelope = make_envelope(tool, kDepth + 1.5, 0.06, rad_from_deg(2));
+  make_patches(envelope, 0.24);
+  const double floor = below_top ? 0 : -1.013;
+  std::vector<Stamp> stamps;
+  if (!below_top) add_row(stamps, {-8, 0.013, floor}, {kLength + 8, 0.013, floor}, kFeed);
+  const std::size_t second = stamps.size();
+  add_row(stamps, {-8, 0.013, floor - deeper}, {kLength + 8, 0.013, floor - deeper}, kFeed);
+  Stretch stretch(stock, &blank, envelope, stamps, 0, stamps.size(), {});
+  const Engagement e = stretch.carve(nullptr);
+  double chips = 0;
+  for (std::size_t k = second; k < stamps.size(); ++k) chips += chip_volume_mm3(envelope, e.of(k));
+  return chips / (10 * deeper * kLength);
+}
+
+TEST(CutterVolume, LevelFacesCutRingsInTwo) {
+  for (const bool below_top : {true, false})
+    for (const double deeper : {0.1, 0.13, 0.15, 0.17, 0.2, 0.21})
+      EXPECT_NEAR(layer_share(deeper, below_top), 1, 0.006) << deeper << (below_top ? " below the top" : "");
+}
+
 TEST(CutterVolume, PlungingDrillTakesItsPointAndItsCylinder) {
   auto tool = make_tool(ToolType::drill, 6, 2, 30);
   tool.point_angle_rad = rad_from_deg(118);
