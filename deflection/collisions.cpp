@@ -102,6 +102,18 @@ class HoleWatch {
   Vec2 place_ = Vec2::Zero();
 };
 
+/// G28, G30, G53: its words are no places of the work frame.
+bool goes_to_reference(const MachinedProgram& program, const nc::Move& m) {
+  return std::ranges::any_of(program.text.words_of(m.block), [](const nc::Word& word) {
+    return word.letter == 'G' && (word.value == 28 || word.value == 30 || word.value == 53);
+  });
+}
+
+void learn_words(const MachinedProgram& program, const nc::Move& m, std::array<bool, 3>& known) {
+  for (const auto& word : program.text.words_of(m.block))
+    if (word.letter >= 'X' && word.letter <= 'Z') known[static_cast<std::size_t>(word.letter - 'X')] = true;
+}
+
 std::vector<RapidCheck> rapids_of(const MachinedProgram& program) {
   std::vector<RapidCheck> out;
   HoleWatch watch;
@@ -114,15 +126,18 @@ std::vector<RapidCheck> rapids_of(const MachinedProgram& program) {
     while (next < stamps.size() && stamps[next].move < i) ++next;
     bool start_known = known[0] && known[1] && known[2];
     if (m.reference) {
-      known = {};
+      if (goes_to_reference(program, m))
+        known = {};
+      else  // on the way back the words tell the end
+        learn_words(program, m, known);
+      tool = program.moves.state_of(m).tool;
       continue;
     }
     // A tool change may take the axes anywhere.
     if (program.moves.state_of(m).tool != tool) start_known = false;
     tool = program.moves.state_of(m).tool;
     for (std::size_t a = 0; a < 3; ++a) known[a] = known[a] || m.start_mm[a] != m.end_mm[a];
-    for (const auto& word : program.text.words_of(m.block))
-      if (word.letter >= 'X' && word.letter <= 'Z') known[static_cast<std::size_t>(word.letter - 'X')] = true;
+    learn_words(program, m, known);
     if (m.kind != nc::MoveKind::rapid) known = {true, true, true};
     if (watch.in_hole(m) || m.kind != nc::MoveKind::rapid || !(known[0] && known[1] && known[2])) continue;
     const double t = next < stamps.size() ? stamps[next].t_s : stamps.empty() ? 0 : stamps.back().t_s;

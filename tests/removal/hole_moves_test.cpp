@@ -111,9 +111,9 @@ TEST(HoleStamps, EndAtTheProgrammedBottomHoweverFarTheAxisLags) {
         const auto& s = h.path.stamps[k];
         EXPECT_TRUE(s.tip_mm.head<2>() == Vec2(1, 2) || s.tip_mm.head<2>() == Vec2(8, 9));
         EXPECT_LE(s.feed_per_tooth_mm.norm(), 1.02 * feed / 6000);
-        if (k > 0) EXPECT_GE(s.t_s, h.path.stamps[k - 1].t_s);
+        EXPECT_GE(s.t_s, h.path.stamps[k > 0 ? k - 1 : 0].t_s);
         if (k + 1 == h.path.stamps.size() || h.path.stamps[k + 1].first) bottoms.push_back(s.tip_mm.z());
-        if (!s.first) EXPECT_LT(s.tip_mm.z(), h.path.stamps[k - 1].tip_mm.z());
+        EXPECT_TRUE(s.first || s.tip_mm.z() < h.path.stamps[k - 1].tip_mm.z());
       }
       ASSERT_EQ(bottoms.size(), 8u);
       for (std::size_t i = 0; i < bottoms.size(); ++i)
