@@ -99,10 +99,14 @@ void StampBuilder::drill(const TimedSample& sample, const feedmodel::PathPlace& 
     hole_share_ = place.u;
     cutting_ = false;
   }
+  // After a rapid the following error of the feed model still shrinks; a cycle has waited for it.
+  const nc::Move& m = program_.moves[place.move];
   const double passing = passing_s(place.move), span = have_last_ ? sample.t_s - last_.t_s : 0;
+  const double feed_share = m.feed_mm_per_s * passing / (m.end_mm - m.start_mm).norm();
   for (; next_s_ <= sample.t_s; next_s_ += passing) {
     const double u = span > 0 ? std::clamp((next_s_ - last_.t_s) / span, 0.0, 1.0) : 1.0;
-    hole_stamp(place.move, (1 - u) * hole_share_ + u * place.u, next_s_);
+    const double share = (1 - u) * hole_share_ + u * place.u;
+    hole_stamp(place.move, cutting_ ? std::min(share, path_.stamps.back().share + feed_share) : share, next_s_);
   }
   hole_share_ = place.u;
 }
