@@ -38,8 +38,8 @@ void share_surface(const MachinedProgram& program, const std::vector<removal::Su
   for (const auto& p : surface) {
     area += p.area_mm2;
     if (p.machined_stamp < 0 || static_cast<std::size_t>(p.machined_stamp) >= program.path.stamps.size()) continue;
-    operations[of_move[program.path.stamps[static_cast<std::size_t>(p.machined_stamp)].move]].surface_share +=
-        p.area_mm2;
+    const auto move = program.path.stamps[static_cast<std::size_t>(p.machined_stamp)].move;
+    if (program.selected[move]) operations[of_move[move]].surface_share += p.area_mm2;
   }
   for (Operation& o : operations) o.surface_share = area > 0 ? o.surface_share / area : 0;
 }

@@ -75,7 +75,9 @@ Depth depth_without_bending(const machine::Job& job, const deflection::Target& t
   Depth out;
   double over = 0, area = 0;
   std::vector<std::pair<double, double>> depths;
-  for (const auto& p : removal::compare_surfaces(stock, target.surface)) {
+  auto surface = removal::compare_surfaces(stock, target.surface);
+  target.holes.drop_from(surface);
+  for (const auto& p : surface) {
     area += p.area_mm2;
     add_point(out, p, tolerance_um, over);
     depths.emplace_back(-1000 * p.error_mm, p.area_mm2);

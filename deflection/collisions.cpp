@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -76,8 +77,46 @@ struct RapidCheck {
   bool start_known = true;
 };
 
+/// Tells the rapids of cycles that stay in their hole, where the tool has been just before; there G76 also leaves the
+/// hole's axis, which its tool, as a turning outline, could not.
+class HoleWatch {
+ public:
+  bool in_hole(const nc::Move& m) {
+    if (m.cycle == 0) return false;
+    if (m.cycle == 87) return true;  // beside the axis all the way
+    if (m.kind == nc::MoveKind::linear && m.end_mm.z() < m.start_mm.z() && (m.block != block_ || !reaches(m))) {
+      block_ = m.block;
+      entry_z_mm_ = m.start_mm.z();
+      place_ = m.start_mm.head<2>();
+    }
+    constexpr double kRounding_mm = 1e-6;
+    if (m.block != block_ || (m.cycle != 76 && m.start_mm.head<2>() != place_)) return false;
+    return std::min(m.start_mm.z(), m.end_mm.z()) < entry_z_mm_ - kRounding_mm;
+  }
+
+ private:
+  /// Another peck of the hole.
+  bool reaches(const nc::Move& m) const { return m.start_mm.head<2>() == place_; }
+  std::uint32_t block_ = std::numeric_limits<std::uint32_t>::max();
+  double entry_z_mm_ = 0;
+  Vec2 place_ = Vec2::Zero();
+};
+
+/// G28, G30, G53: its words are no places of the work frame.
+bool goes_to_reference(const MachinedProgram& program, const nc::Move& m) {
+  return std::ranges::any_of(program.text.words_of(m.block), [](const nc::Word& word) {
+    return word.letter == 'G' && (word.value == 28 || word.value == 30 || word.value == 53);
+  });
+}
+
+void learn_words(const MachinedProgram& program, const nc::Move& m, std::array<bool, 3>& known) {
+  for (const auto& word : program.text.words_of(m.block))
+    if (word.letter >= 'X' && word.letter <= 'Z') known[static_cast<std::size_t>(word.letter - 'X')] = true;
+}
+
 std::vector<RapidCheck> rapids_of(const MachinedProgram& program) {
   std::vector<RapidCheck> out;
+  HoleWatch watch;
   std::array<bool, 3> known{};
   int tool = -1;
   const auto& stamps = program.path.stamps;
@@ -87,17 +126,20 @@ std::vector<RapidCheck> rapids_of(const MachinedProgram& program) {
     while (next < stamps.size() && stamps[next].move < i) ++next;
     bool start_known = known[0] && known[1] && known[2];
     if (m.reference) {
-      known = {};
+      if (goes_to_reference(program, m))
+        known = {};
+      else  // on the way back the words tell the end
+        learn_words(program, m, known);
+      tool = program.moves.state_of(m).tool;
       continue;
     }
     // A tool change may take the axes anywhere.
     if (program.moves.state_of(m).tool != tool) start_known = false;
     tool = program.moves.state_of(m).tool;
     for (std::size_t a = 0; a < 3; ++a) known[a] = known[a] || m.start_mm[a] != m.end_mm[a];
-    for (const auto& word : program.text.words_of(m.block))
-      if (word.letter >= 'X' && word.letter <= 'Z') known[static_cast<std::size_t>(word.letter - 'X')] = true;
+    learn_words(program, m, known);
     if (m.kind != nc::MoveKind::rapid) known = {true, true, true};
-    if (m.kind != nc::MoveKind::rapid || m.canned || !(known[0] && known[1] && known[2])) continue;
+    if (watch.in_hole(m) || m.kind != nc::MoveKind::rapid || !(known[0] && known[1] && known[2])) continue;
     const double t = next < stamps.size() ? stamps[next].t_s : stamps.empty() ? 0 : stamps.back().t_s;
     const auto timed = std::ranges::lower_bound(program.path.rapids, i, {}, &removal::RapidStart::move);
     const bool found = timed != program.path.rapids.end() && timed->move == i;
@@ -223,7 +265,9 @@ bool motion_left_out(const MachinedProgram& program) {
   for (std::size_t i = 0; i < program.moves.moves.size(); ++i) {
     const nc::Move& m = program.moves.moves[i];
     const bool cuts = m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc;
-    if (cuts && !m.reference && !program.selected[i]) return true;
+    const removal::HoleMove hole = program.holes[i];
+    const bool carved = removal::makes_hole(hole) || hole == removal::HoleMove::way_out;
+    if (cuts && !m.reference && !program.selected[i] && !carved) return true;
   }
   return false;
 }

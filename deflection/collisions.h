@@ -30,13 +30,14 @@ struct Collision {
 /// ever comes so low. Rapids count as straight lines; leading rapids, those after a tool change and after a reference
 /// point whose start is not known count at their end; a rapid straight up is free where no part of the tool is narrower
 /// than what is below it. Less than a voxel of depth is no collision; places every half
-/// millimetre of path, half a millimetre apart on the outline.
+/// millimetre of path, half a millimetre apart on the outline. Rapids of a cycle within its hole are free: the tool has
+/// just been there.
 std::vector<Collision> find_collisions(const machine::Job& job, const MachinedProgram& program,
                                        const removal::Stock& blank);
 
 /// The same as diagnostics at the blocks: [collision-rapid], [collision-shank], [collision-holder]. What they are the
 /// job says; where it does not, errors, or warnings if a part of the program's motion was left out (operations,
-/// drilling cycles): material may stand that would be gone.
+/// cycles that are not carved): material may stand that would be gone.
 void check_collisions(const machine::Job& job, const MachinedProgram& program, const removal::Stock& blank,
                       Diagnostics& diagnostics);
 

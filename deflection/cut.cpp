@@ -29,6 +29,24 @@ double engaged_top_mm(const Stock& stock, const machine::Tool& tool, std::span<c
   return std::clamp(stock.max_mm().z() - lowest + stock.voxel_mm(), stock.voxel_mm(), cutting);
 }
 
+/// Height above the tip at which the profile turns upright: above it nothing cuts straight down.
+double wall_height_mm(const machine::Tool& tool) {
+  constexpr double kUpright = 1e-9;
+  const removal::Profile& profile = removal::shape_of(tool).profile;
+  for (const auto& piece : profile.pieces())
+    if (!piece.arc && piece.normal.x() > 1 - kUpright) return piece.start.y();
+  return std::numeric_limits<double>::infinity();
+}
+
+/// The envelope at which chips are sampled.
+EnvelopeGrid sampled_envelope(const Stock& stock, const machine::Tool& tool, double top_mm, const CutOptions& options) {
+  if (options.drilling)
+    return removal::make_envelope(tool, std::min(top_mm, wall_height_mm(tool)), options.envelope_step_mm,
+                                  options.rotation_step_rad);
+  return removal::make_envelope(tool, std::max(0.0, top_mm - stock.voxel_mm()), options.envelope_step_mm,
+                                options.rotation_step_rad, stock.voxel_mm());
+}
+
 Vec2 deflection_at(const ToothPassModel& model, const EnvelopeGrid& envelope, const float* row, const Contact& c) {
   const double step_rad = 2 * kPi / envelope.steps;
   const int steps = envelope.steps_per_pitch;
@@ -77,8 +95,7 @@ class Cutter {
         options_(options),
         rigid_(options.coupling == machine::Coupling::rigid),
         top_mm_(engaged_top_mm(stock, tool, stamps)),
-        envelope_(removal::make_envelope(tool, std::max(0.0, top_mm_ - stock.voxel_mm()), options.envelope_step_mm,
-                                         options.rotation_step_rad, stock.voxel_mm())),
+        envelope_(sampled_envelope(stock, tool, top_mm_, options)),
         model_(envelope_, material, beam_of(tool), node_heights(top_mm_),
                options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
                options.axis_compliance_mm_per_N, options.coupling == machine::Coupling::static_) {
@@ -110,7 +127,7 @@ class Cutter {
     }
     keep_turn(engagement, all, from, count, result);
     result.stock_mm3 += stretch.commit();
-    if (options_.surface) options_.surface->mark(envelope_, stamps, shifts, first_id + static_cast<std::int32_t>(from));
+    if (options_.surface) mark(stamps, shifts, first_id + static_cast<std::int32_t>(from));
     for (std::size_t k = 0; k < stamps.size(); ++k) {
       if (!contacts.empty())
         loads[k].contact_deflection_mm =
@@ -147,8 +164,21 @@ class Cutter {
       model_.evaluate(engagement.of(k), passings_ + k, stamps[k].feed_per_tooth_mm, pass);
       loads[k] = summarize(pass);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
+      if (options_.drilling) return;
       std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(), shifts.row(static_cast<std::ptrdiff_t>(k)));
     });
+  }
+
+  /// Of a hole its deepest stamp says all.
+  void mark(std::span<const Stamp> stamps, const ShiftTable& shifts, std::int32_t first_id) const {
+    if (!options_.drilling) return options_.surface->mark(envelope_, stamps, shifts, first_id);
+    const ShiftTable straight(1, model_.steps(), model_.node_height_mm());
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+      const bool deeper = k + 1 < stamps.size() && stamps[k + 1].tip_mm.head<2>() == stamps[k].tip_mm.head<2>() &&
+                          stamps[k + 1].move >= stamps[k].move;
+      if (!deeper)
+        options_.surface->mark(envelope_, stamps.subspan(k, 1), straight, first_id + static_cast<std::int32_t>(k));
+    }
   }
 
   /// Static equilibrium: delta = C F(chip(delta)) of all stamps of the stretch, by Newton steps. A shift changes this
@@ -253,9 +283,10 @@ CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& 
   return result;
 }
 
-void sweep(Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps, std::int32_t first_id,
-           double shrink_mm) {
+double sweep(Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps, std::int32_t first_id,
+             double shrink_mm) {
   constexpr std::size_t kStretch = 10000;
+  double removed = 0;
   EnvelopeGrid envelope;
   envelope.shape = removal::shape_of(tool);
   for (std::size_t from = 0; from < stamps.size(); from += kStretch) {
@@ -263,8 +294,9 @@ void sweep(Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamp
     Stretch stretch(stock, nullptr, envelope, stamps, from, n,
                     {.engage = false, .shrink_mm = shrink_mm, .first_id = first_id});
     stretch.carve(nullptr);
-    stretch.commit();
+    removed += stretch.commit();
   }
+  return removed;
 }
 
 std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& tool, std::span<const Stamp> stamps) {

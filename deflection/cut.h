@@ -49,6 +49,7 @@ struct CutOptions {
   double settle_um = 0.1;                        ///< rms change of the deflection at which a stretch is settled, or ...
   double settle_share = 0.01;                    ///< ... this share of its rms
   Vec2 axis_compliance_mm_per_N = Vec2::Zero();  ///< of the machine's x and y axes
+  bool drilling = false;                         ///< straight down: see deflection/holes.h; with rigid coupling
   std::function<void(double)> progress;          ///< share done, 0 to 1
   const removal::Stock* blank = nullptr;   ///< the stock as it is before, where somebody keeps it anyway; saves a copy
   removal::SurfaceMap* surface = nullptr;  ///< takes the marks of the bent cutter, if given
@@ -72,9 +73,10 @@ CutResult cut(removal::Stock& stock, const machine::Tool& tool, const machine::M
               std::span<const removal::Stamp> stamps, std::span<const Contact> contacts, std::int32_t first_id,
               const CutOptions& options);
 
-/// Cuts `stock` with the undeflected cutter, made smaller by shrink_mm along its normal.
-void sweep(removal::Stock& stock, const machine::Tool& tool, std::span<const removal::Stamp> stamps,
-           std::int32_t first_id, double shrink_mm);
+/// Cuts `stock` with the undeflected cutter, made smaller by shrink_mm along its normal. Returns the
+/// volume that it took, mm^3.
+double sweep(removal::Stock& stock, const machine::Tool& tool, std::span<const removal::Stamp> stamps,
+             std::int32_t first_id, double shrink_mm);
 
 /// The contact of every stamp with a target surface: of the points at which the envelope moves tangentially
 /// (f . n = 0), the middle of those that lie deepest in the target, within 1 um.

@@ -18,7 +18,9 @@ namespace {
 /// Half width of the narrow band: three voxels for the field's sake, and the thickest chip with room for bending.
 double band_voxels(const Job& job, const removal::StampPath& path) {
   double thickest = 0;
-  for (const auto& s : path.stamps) thickest = std::max(thickest, s.feed_per_tooth_mm.norm());
+  for (const auto& run : path.runs)
+    for (std::size_t k = run.from; k < run.from + run.count && run.kind != removal::RunKind::tapping; ++k)
+      thickest = std::max(thickest, path.stamps[k].feed_per_tooth_mm.norm());
   constexpr double kLeast = 4, kMost = 12, kBending_mm = 0.1;
   return std::clamp(std::ceil((thickest + kBending_mm) / job.simulation.voxel_mm) + 1, kLeast, kMost);
 }
@@ -54,7 +56,15 @@ template <class Function>
 void for_each_run(const Job& job, const removal::StampPath& path, Function f) {
   for (const auto& run : path.runs) {
     const std::span<const removal::Stamp> stamps(path.stamps.data() + run.from, run.count);
-    f(job.tools.at(run.tool), stamps, run.from);
+    f(run, job.tools.at(run.tool), stamps);
+  }
+}
+
+void add_holes(removal::RunKind kind, const CutResult& run, HoleFigures& holes) {
+  (kind == removal::RunKind::tapping ? holes.tapped_mm3 : holes.drilled_mm3) += run.stock_mm3;
+  for (const StampLoad& load : run.loads) {
+    holes.thrust_max_N = std::max(holes.thrust_max_N, load.force_max_N.z());
+    holes.torque_max_Nmm = std::max(holes.torque_max_Nmm, load.torque_max_Nmm);
   }
 }
 
@@ -72,9 +82,12 @@ MachinedProgram machine_program(SourceText source, const Job& job, const feedmod
   out.moves = nc::interpret(out.text, feedmodel::interpreter_options(job.machine, job.inch), diagnostics);
   diagnostics.throw_if_errors();
   out.selected = removal::selected_moves(out.moves, job.operations);
-  check_cutting(job, out.text, out.moves, out.selected, diagnostics);
+  out.holes = removal::hole_moves(out.moves, job.operations, job.tools);
+  for (std::size_t i = 0; i < out.holes.size(); ++i)
+    if (out.holes[i] != removal::HoleMove::none) out.selected[i] = false;
+  check_cutting(job, out.text, out.moves, out.selected, out.holes, diagnostics);
   diagnostics.throw_if_errors();
-  removal::StampBuilder builder(out.moves, job.tools, out.selected);
+  removal::StampBuilder builder(out.moves, job.tools, out.selected, out.holes);
   out.feed = feedmodel::predict_feed(out.moves, job.machine, [&](std::span<const feedmodel::TimedSample> run) {
     builder.add(run);
     if (samples) samples(run);
@@ -86,8 +99,10 @@ MachinedProgram machine_program(SourceText source, const Job& job, const feedmod
 Target make_target(const Job& job, const MachinedProgram& target, Diagnostics& diagnostics) {
   removal::Stock blank = raw_stock(job, band_voxels(job, target.path), diagnostics);
   const auto sweep_all = [&](removal::Stock& stock, double shrink_mm) {
-    for_each_run(job, target.path, [&](const machine::Tool& tool, auto stamps, std::size_t from) {
-      sweep(stock, tool, stamps, static_cast<std::int32_t>(from), shrink_mm);
+    for_each_run(job, target.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+      // An allowance lies on milled surface; holes are made from solid.
+      if (shrink_mm > 0 && run.kind != removal::RunKind::milling) return;
+      sweep(stock, tool, stamps, static_cast<std::int32_t>(run.from), shrink_mm);
     });
   };
   if (job.stock.allowance_mm > 0) {
@@ -97,12 +112,12 @@ Target make_target(const Job& job, const MachinedProgram& target, Diagnostics& d
   removal::Stock surface(blank);
   sweep_all(surface, 0);
   removal::CutterPlaces places;
-  for_each_run(job, target.path, [&](const machine::Tool& tool, auto stamps, std::size_t from) {
-    places.add(static_cast<std::int32_t>(from), removal::shape_of(tool), stamps);
+  for_each_run(job, target.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    places.add(static_cast<std::int32_t>(run.from), removal::shape_of(tool), stamps);
   });
   std::optional<removal::MeshDistance> part;
   if (!job.part.mesh.empty()) part.emplace(job.part.mesh, job.simulation.voxel_mm, 10 * job.simulation.voxel_mm);
-  return {std::move(blank), std::move(surface), std::move(places), std::move(part)};
+  return {std::move(blank), std::move(surface), std::move(places), std::move(part), HoleStamps(target.path)};
 }
 
 Prediction predict(const Job& job, const Target& target, const MachinedProgram& program,
@@ -111,9 +126,12 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
   out.machined = std::make_unique<removal::Stock>(target.blank);
   removal::SurfaceMap map(target.surface, target.places);
   const auto all = static_cast<double>(program.path.stamps.size());
-  for_each_run(job, program.path, [&](const machine::Tool& tool, auto stamps, std::size_t from) {
+  out.holes.count = removal::count_holes(program.moves, program.holes);
+  for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    const std::size_t from = run.from;
+    const bool milling = run.kind == removal::RunKind::milling;
     std::vector<Contact> contacts;
-    if (options.contacts) contacts = find_contacts(target.surface, tool, stamps);
+    if (options.contacts && milling) contacts = find_contacts(target.surface, tool, stamps);
     CutOptions cut_options;
     cut_options.surface = &map;
     cut_options.coupling = job.simulation.coupling;
@@ -128,16 +146,21 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
       };
     if (options.turn_from && *options.turn_from >= from && *options.turn_from < from + stamps.size())
       cut_options.turn_from = *options.turn_from - from;
-    CutResult cut_run =
-        cut(*out.machined, tool, job.material, stamps, contacts, static_cast<std::int32_t>(from), cut_options);
+    const auto first_id = static_cast<std::int32_t>(from);
+    CutResult cut_run = milling ? cut(*out.machined, tool, job.material, stamps, contacts, first_id, cut_options)
+                        : run.kind == removal::RunKind::drilling
+                            ? drill(*out.machined, tool, job.material, stamps, first_id, cut_options)
+                            : tap(*out.machined, tool, stamps, first_id, cut_options);
+    if (!milling) add_holes(run.kind, cut_run, out.holes);
     out.cut.loads.insert(out.cut.loads.end(), cut_run.loads.begin(), cut_run.loads.end());
     out.cut.chip_mm3 += cut_run.chip_mm3;
-    out.cut.stock_mm3 += cut_run.stock_mm3;
+    if (run.kind != removal::RunKind::tapping) out.cut.stock_mm3 += cut_run.stock_mm3;
     out.cut.rounds_max = std::max(out.cut.rounds_max, cut_run.rounds_max);
     out.cut.unsettled += cut_run.unsettled;
     if (cut_options.turn_from) out.cut.turn = std::move(cut_run.turn);
   });
   out.surface = map.take(target.blank);
+  out.holes.surface_mm2 = target.holes.drop_from(out.surface);
   std::vector<double> error_um, area;
   for (const auto& p : out.surface) {
     error_um.push_back(1000 * p.error_mm);

@@ -8,6 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "deflection/cut.h"
+#include "deflection/holes.h"
 #include "feedmodel/timed_path.h"
 #include "machine/job.h"
 #include "nc/move.h"
@@ -24,7 +25,8 @@ namespace camber::deflection {
 struct MachinedProgram {
   nc::Program text;
   nc::Interpretation moves;
-  std::vector<bool> selected;  ///< per move: cut by the job's operations
+  std::vector<bool> selected;            ///< per move: milled by the job's operations
+  std::vector<removal::HoleMove> holes;  ///< per move
   removal::StampPath path;
   feedmodel::FeedSummary feed;
 };
@@ -36,10 +38,11 @@ MachinedProgram machine_program(SourceText source, const machine::Job& job, cons
 
 /// What the part is judged against: the undeflected sweep of the target program through the blank.
 struct Target {
-  removal::Stock blank;    ///< before this job's first cut
-  removal::Stock surface;  ///< after the undeflected sweep; its stamps are the target program's
+  removal::Stock blank;          ///< before this job's first cut
+  removal::Stock surface;        ///< after the undeflected sweep; its stamps are the target program's
   removal::CutterPlaces places;  ///< the target program's stamps, by the ids in `surface`
   std::optional<removal::MeshDistance> part;
+  HoleStamps holes;  ///< of the target program
 };
 
 /// Builds the blank (box or mesh, less what the target program leaves with the cutter shrunk by the allowance) and
@@ -47,9 +50,10 @@ struct Target {
 Target make_target(const machine::Job& job, const MachinedProgram& target, Diagnostics& diagnostics);
 
 struct Prediction {
-  CutResult cut;  ///< loads: one a stamp of the program
-  std::vector<removal::SurfacePoint> surface;
-  std::vector<double> total_error_mm;  ///< against the part's mesh, one a point; empty without a mesh
+  CutResult cut;  ///< loads: one a stamp of the program; the volumes are without tapping, which has no chips
+  HoleFigures holes;
+  std::vector<removal::SurfacePoint> surface;  ///< of the target, but for what its holes made
+  std::vector<double> total_error_mm;          ///< against the part's mesh, one a point; empty without a mesh
   removal::ErrorFigures form_error_um;
   std::unique_ptr<removal::Stock> machined;
 };

@@ -23,7 +23,10 @@ void report(const MachinedProgram& program, std::size_t line, Severity severity,
 std::size_t turn_at_line(const MachinedProgram& program, const machine::Job& job, std::size_t line,
                          Diagnostics& diagnostics) {
   const auto& stamps = program.path.stamps;
-  const auto on_line = [&](std::size_t k) { return program.moves.moves[stamps[k].move].block + 1 == line; };
+  const auto on_line = [&](std::size_t k) {
+    return program.moves.moves[stamps[k].move].block + 1 == line &&
+           program.holes[stamps[k].move] != removal::HoleMove::tapped;
+  };
   std::size_t first = stamps.size(), last = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k)
     if (on_line(k)) {

@@ -128,6 +128,7 @@ void BlockInterpreter::drill(const Vec3& place) {
                           frame_.from_program(step.end_mm));
     ++cycle_moves_;
     move.canned = true;
+    move.cycle = static_cast<std::uint8_t>(cycle_.g);
     move.dwell_s = step.dwell_s;
     if (move.kind == MoveKind::linear) move.feed_mm_per_s = *feed;
     for (int axis = 0; axis < 3; ++axis)

@@ -54,6 +54,7 @@ struct Move {
   std::uint32_t state = 0;     ///< index into Interpretation::states
   std::uint32_t arc = kNoArc;  ///< index into Interpretation::arcs
   MoveKind kind = MoveKind::rapid;
+  std::uint8_t cycle = 0;       ///< G of the drilling cycle that made it (73, 74, 76, 81 ... 89); 0: none
   bool exact_stop : 1 = false;  ///< G9 or a control that must stop at the end of this move
   /// Part of a move to or from the reference point (G28, G30, G53) whose place in the work frame is not
   /// known: counts for nothing in material.

@@ -61,6 +61,7 @@ void write_forces_csv(const std::string& path, const machine::Job& job, const de
   std::string text;
   const auto& stamps = program.path.stamps;
   for (const auto& run : program.path.runs) {
+    if (run.kind == removal::RunKind::tapping) continue;  // no chips, no forces
     const auto flutes = static_cast<std::size_t>(job.tools.at(run.tool).flutes);
     const std::size_t end = run.from + run.count;
     for (std::size_t from = run.from; from < end;) {

@@ -85,6 +85,30 @@ SpindleFigures spindle_figures(const deflection::MachinedProgram& program, const
   return out;
 }
 
+ordered_json holes(const deflection::HoleFigures& h) {
+  return {{"drilled", h.count.drilled},
+          {"tapped", h.count.tapped},
+          {"drilled_mm3", h.drilled_mm3},
+          {"tapped_mm3", h.tapped_mm3},
+          {"thrust_N", {{"max", h.thrust_max_N}}},
+          {"torque_Nm", {{"max", h.torque_max_Nmm / 1000}}},
+          {"not_judged_mm2", h.surface_mm2}};
+}
+
+std::string holes_text(const deflection::HoleFigures& h) {
+  std::string out;
+  if (h.count.drilled > 0)
+    fmt::format_to(std::back_inserter(out),
+                   "{} holes drilled: {:.3f} mm3, thrust {:.1f} N without the chisel edge, torque {:.3f} Nm\n",
+                   h.count.drilled, h.drilled_mm3, h.thrust_max_N, h.torque_max_Nmm / 1000);
+  if (h.count.tapped > 0)
+    fmt::format_to(std::back_inserter(out), "{} holes tapped: {:.3f} mm3, carved without chips or forces\n",
+                   h.count.tapped, h.tapped_mm3);
+  fmt::format_to(std::back_inserter(out), "surface that holes made, not in the form error: {:.1f} mm2\n",
+                 h.surface_mm2);
+  return out;
+}
+
 }  // namespace
 
 std::string predict_json(const deflection::MachinedProgram& program, const deflection::Prediction& p,
@@ -101,6 +125,7 @@ std::string predict_json(const deflection::MachinedProgram& program, const defle
   j["chip_thickness_mm"] = {{"max", s.chip_max_mm}};
   j["specific_energy_MPa"] = s.specific_energy_MPa;
   j["removed_mm3"] = {{"path", p.cut.chip_mm3}, {"stock", p.cut.stock_mm3}};
+  if (p.holes.any()) j["holes"] = holes(p.holes);
   j["form_error_um"] = form_error(p);
   if (!p.total_error_mm.empty()) j["total_error_um"] = figures(total_error(p));
   j["static"] = {{"rounds_max", p.cut.rounds_max}, {"unsettled_stretches", p.cut.unsettled}};
@@ -231,6 +256,7 @@ std::string predict_text(const deflection::MachinedProgram& program, const defle
                  largest_force_N(p), s.torque_max_Nm, s.chip_max_mm);
   fmt::format_to(std::back_inserter(out), "power {:.1f} W at most, {:.1f} W in the cut; {:.0f} J/cm3\n", s.power_max_W,
                  s.power_mean_W, s.specific_energy_MPa);
+  if (p.holes.any()) out += holes_text(p.holes);
   fmt::format_to(std::back_inserter(out), "{}\n{}\n", kFiguresHead, figures_row("error", p.form_error_um));
   if (!p.total_error_mm.empty())
     fmt::format_to(std::back_inserter(out), "{}\n", figures_row("against part", total_error(p)));
