@@ -5,6 +5,7 @@
 
 #include "removal/carve_general.h"
 #include "removal/kernels.h"
+#include "removal/vector_clones.h"
 
 namespace camber::removal {
 namespace {
@@ -106,6 +107,21 @@ bool carve_bent(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, d
   const auto cut = kernels().cut_line_bent;
   return cut_lines(tile, cover, t, voxel, line_cut(t, voxel, band, envelope.shape, {stamp.tip_mm, stamp.id}), stamp,
                    bend.largest_mm, [&](const LineCut& line) { return cut(line, line_bend); });
+}
+
+CAMBER_VECTOR_CLONES
+double material_voxels(const Tile& tile, double voxel_mm) {
+  const auto scale = static_cast<float>(0.5 / voxel_mm);
+  double sum = 0;
+  for (int i = 0; i < Tile::kCore; ++i) {
+    std::array<float, Tile::kCore> share{};
+    for (int j = 0; j < Tile::kCore; ++j) {
+      const float* d = tile.distance.data() + Tile::offset(i, j, 0);
+      for (int k = 0; k < Tile::kCore; ++k) share[k] += std::min(std::max(0.5f - scale * d[k], 0.0f), 1.0f);
+    }
+    for (const float v : share) sum += static_cast<double>(v);
+  }
+  return sum;
 }
 
 double tile_distance_mm(const Index3& t, double voxel, const CutterShape& shape, const Vec3& tip) {

@@ -188,7 +188,7 @@ void Stock::read(const Index3& first, int side, float* distance, std::int32_t* s
     for (int j = lo.y(); j < hi.y(); j += kLeaf)
       for (int k = lo.z(); k < hi.z(); k += kLeaf) {
         copy_from(distances, {i, j, k}, base, side, distance);
-        copy_from(stamps, {i, j, k}, base, side, stamp);
+        if (stamp) copy_from(stamps, {i, j, k}, base, side, stamp);
       }
 }
 
@@ -211,6 +211,16 @@ bool Stock::is_air(const Index3& tile) const {
   for_each_leaf_of_tile(
       base, [&](const Coord& leaf) { air = air && !access.probeConstLeaf(leaf) && access.getValue(leaf) > 0; });
   return air;
+}
+
+bool Stock::is_solid(const Index3& tile) const {
+  const Coord base(tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore);
+  const openvdb::FloatGrid& distance = *impl_->distance;
+  const auto access = distance.getConstUnsafeAccessor();
+  bool solid = true;
+  for_each_leaf_of_tile(
+      base, [&](const Coord& leaf) { solid = solid && !access.probeConstLeaf(leaf) && access.getValue(leaf) < 0; });
+  return solid;
 }
 
 namespace {

@@ -68,12 +68,14 @@ class Stock {
 
   /// Tiles are numbered so that tile t owns the voxels t * kCore ... t * kCore + kCore - 1. Thread safe.
   void load(const Index3& tile, Tile& out) const;
-  /// A cube of side^3 voxels from `first` on, rows along z, then y, then x. Thread safe.
+  /// A cube of side^3 voxels from `first` on, rows along z, then y, then x; `stamp` null where not wanted. Thread safe.
   void read(const Index3& first, int side, float* distance, std::int32_t* stamp) const;
   /// False where no stamp has set a voxel of the tile's core. Thread safe.
   bool is_cut(const Index3& tile) const;
   /// True where the tile and its upper layer hold nothing but air. Thread safe.
   bool is_air(const Index3& tile) const;
+  /// True where the tile and its upper layer are deeper in material than the band. Thread safe.
+  bool is_solid(const Index3& tile) const;
   /// Writes the core of a tile back. Not thread safe.
   void store(const Index3& tile, const Tile& in);
   /// Forgets which stamps cut what: the stock is a blank.
