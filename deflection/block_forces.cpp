@@ -71,7 +71,8 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
   const std::size_t nodes = node_height_mm_.size(), row = (steps + kSteps - 1) / kSteps * kSteps;
   const int last = static_cast<int>(envelope_.rings.size()) - 1;
-  std::vector<double> sums((4 + 2 * nodes) * row, 0.0);
+  thread_local std::vector<double> sums;
+  sums.assign((4 + 2 * nodes) * row, 0.0);
   Sums s{};
   s.nodes = static_cast<int>(nodes), s.row = static_cast<int>(row);
   s.axis_x = axis_compliance_.x(), s.axis_y = axis_compliance_.y();

@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <Eigen/LU>
 
@@ -147,8 +148,9 @@ class Cutter {
     const auto& blocks = engager_->blocks();
     std::map<std::size_t, std::vector<removal::Chip>> turn;  // what the turn needs
     std::mutex turn_lock;
+    tbb::enumerable_thread_specific<ToothPass> passes;
     engager_->engage(from, loads.size(), [&](std::size_t k, std::span<const removal::ChipBlock> chips) {
-      ToothPass pass;
+      ToothPass& pass = passes.local();
       model_.evaluate(blocks, chips, from + k, all[from + k].feed_per_tooth_mm, pass);
       loads[k] = summarize(pass);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
@@ -289,8 +291,8 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
   tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
     const Vec3& f = stamps[k].feed_per_tooth_mm;
     const double along = std::atan2(f.y(), f.x()), horizontal = f.head<2>().norm();
-    std::vector<Candidate> candidates;
-    double deepest = -1e9;
+    const Stock::Probe probe(target);
+    std::vector<Candidate> candidates;  // depth: of the nearest voxel
     for (int r = 0; r < kRings; ++r) {
       const auto p = shape.profile.at((r + 0.5) * length / kRings);
       const double tilt = horizontal > 0 ? f.z() / (horizontal * std::tan(p.normal_angle_rad)) : 2.0;
@@ -298,10 +300,23 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
       for (const double side : {-1.0, 1.0}) {
         const double phi = along + side * (p.normal_angle_rad > 0 ? std::acos(tilt) : kPi / 2);
         const Vec3 place(p.radius_mm * std::cos(phi), p.radius_mm * std::sin(phi), p.height_mm);
-        const double depth = -target.distance_mm(stamps[k].tip_mm + place);
-        candidates.push_back({depth, place});
-        deepest = std::max(deepest, depth);
+        candidates.push_back({-static_cast<double>(probe.nearest(stamps[k].tip_mm + place)), place});
       }
+    }
+    // A trilinear value differs from the nearest voxel's by no more than the mean distance of its corners from it.
+    const double blur = std::sqrt(1.5) * target.voxel_mm();
+    double deepest = -1e9;
+    const auto read = [&](Candidate& c) {
+      c.depth = -probe.distance_mm(stamps[k].tip_mm + c.place);
+      deepest = std::max(deepest, c.depth);
+    };
+    const auto first = std::ranges::max_element(candidates, {}, &Candidate::depth);
+    if (first != candidates.end()) std::swap(*first, candidates.front()), read(candidates.front());
+    for (std::size_t c = 1; c < candidates.size(); ++c) {
+      if (candidates[c].depth + blur >= deepest - kDepthBand_mm)
+        read(candidates[c]);
+      else
+        candidates[c].depth = -1e9;
     }
     Vec3 sum = Vec3::Zero();
     double count = 0;

@@ -111,9 +111,15 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
   out.machined = std::make_unique<removal::Stock>(target.blank);
   removal::SurfaceMap map(target.surface, target.places);
   const auto all = static_cast<double>(program.path.stamps.size());
+  std::vector<std::vector<Contact>> contacts_of_runs;
+  for_each_run(job, program.path, [&](const machine::Tool& tool, auto stamps, std::size_t) {
+    if (options.contacts) contacts_of_runs.push_back(find_contacts(target.surface, tool, stamps));
+  });
+  if (options.surface_read) options.surface_read();
+  auto next_contacts = contacts_of_runs.begin();
   for_each_run(job, program.path, [&](const machine::Tool& tool, auto stamps, std::size_t from) {
     std::vector<Contact> contacts;
-    if (options.contacts) contacts = find_contacts(target.surface, tool, stamps);
+    if (options.contacts) contacts = std::move(*next_contacts++);
     CutOptions cut_options;
     cut_options.surface = &map;
     cut_options.coupling = job.simulation.coupling;

@@ -36,8 +36,8 @@ MachinedProgram machine_program(SourceText source, const machine::Job& job, cons
 
 /// What the part is judged against: the undeflected sweep of the target program through the blank.
 struct Target {
-  removal::Stock blank;    ///< before this job's first cut
-  removal::Stock surface;  ///< after the undeflected sweep; its stamps are the target program's
+  removal::Stock blank;          ///< before this job's first cut
+  removal::Stock surface;        ///< after the undeflected sweep; its stamps are the target program's
   removal::CutterPlaces places;  ///< the target program's stamps, by the ids in `surface`
   std::optional<removal::MeshDistance> part;
 };
@@ -59,6 +59,7 @@ struct PredictOptions {
   bool contacts = true;
   std::optional<std::size_t> turn_from;  ///< first stamp of a turn to keep in Prediction::cut.turn
   std::function<void(double)> progress;
+  std::function<void()> surface_read;  ///< called when Target::surface is no longer needed
 };
 
 Prediction predict(const machine::Job& job, const Target& target, const MachinedProgram& program,

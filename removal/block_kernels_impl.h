@@ -133,10 +133,10 @@ struct BlockVectors {
       for (int c = 0; c < kCorners; ++c) {
         ids[c] = T::gather(arena.stamp, cell + I(((c >> 2) * kSide + (c >> 1 & 1)) * kSide + (c & 1)));
         // Neighbouring corners mostly name the same stamps.
-        bool known = false;
-        for (int other = 1; other < kCorners && !known; other *= 2)
-          known = (c & other) != 0 && xsimd::all(ids[c] == ids[c ^ other]);
-        if (known) continue;
+        auto known = ids[c] != ids[c];
+        for (int other = 1; other < kCorners; other *= 2)
+          if ((c & other) != 0) known = known | (ids[c] == ids[c ^ other]);
+        if (xsimd::all(known)) continue;
         const I index = ids[c] - I(tips.first_id);
         const auto named = index >= I(0);
         const I at = xsimd::select(named, index, I(0));

@@ -43,8 +43,8 @@ Vec3 gradient(const float* lowest, const std::array<float, 3>& f, double voxel_m
 }  // namespace
 
 BlockReader::BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const Stamp> stamps,
-                         std::int32_t first_id, double voxel_mm)
-    : envelope_(envelope), blocks_(blocks), stamps_(stamps), first_id_(first_id), voxel_mm_(voxel_mm) {
+                         std::int32_t first_id, double voxel_mm, double top_mm)
+    : envelope_(envelope), blocks_(blocks), stamps_(stamps), first_id_(first_id), voxel_mm_(voxel_mm), top_mm_(top_mm) {
   Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
   for (const auto& s : stamps) {
     lo = lo.cwiseMin(s.tip_mm);
@@ -83,7 +83,9 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
   const double bulge = stamp.feed_per_tooth_mm.squaredNorm() / (2 * std::max(shape.corner_radius_mm, 0.1));
   const StampPlace place = arena.place_of(stamp, -bulge - 1e-6);
   const BlockKernels& kernels = block_kernels();
-  const int found = kernels.find_blocks(blocks_.bounds(), place, arena.view(), b.blocks.data());
+  BlockBounds bounds = blocks_.bounds();
+  bounds.count = std::min(bounds.count, blocks_.up_to(top_mm_ - stamp.tip_mm.z()));
+  const int found = kernels.find_blocks(bounds, place, arena.view(), b.blocks.data());
   BlockHits hits{0, b.hit_block.data(), b.hit_deep.data(), b.hit_thickness.data()};
   ShallowPoints shallow{0,
                         b.lane.data(),

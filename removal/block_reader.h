@@ -27,9 +27,9 @@ class BlockReader {
     std::vector<ChipBlock> chips;
   };
 
-  /// Ids in the stock are first_id + index into `stamps`; smaller ids count as blank.
+  /// Ids in the stock are first_id + index into `stamps`; smaller ids count as blank. Above `top_mm` there is air.
   BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const Stamp> stamps,
-              std::int32_t first_id, double voxel_mm);
+              std::int32_t first_id, double voxel_mm, double top_mm);
 
   /// Chips of stamps[k]. `earlier`: stamps that the arena does not hold yet and that may have cut what this one meets.
   std::span<const ChipBlock> read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> earlier,
@@ -50,7 +50,7 @@ class BlockReader {
   const EnvelopeBlocks& blocks_;
   std::span<const Stamp> stamps_;
   std::int32_t first_id_;
-  double voxel_mm_;
+  double voxel_mm_, top_mm_;
   std::array<std::vector<std::int32_t>, 3> tip_;  ///< of all stamps, in steps that are a billionth of their range
   float tip_step_mm_;
 };

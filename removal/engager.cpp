@@ -36,11 +36,12 @@ struct Engager::Impl {
   std::int32_t first_id;
   EnvelopeBlocks blocks;
   BlockReader reader;
-  std::size_t from = 0;             ///< the stretch's first stamp
+  bool loaded = false;              ///< a stretch that is not committed
+  std::size_t from = 0;             ///< its first stamp
   std::span<const Stamp> stamps{};  ///< of the stretch
   StampOrder order{};
-  std::optional<TileArena> arena{};
-  std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
+  TileArena arena{};
+  std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena; more may be left from before
   tbb::enumerable_thread_specific<BlockReader::Buffers> buffers{};
 
   Impl(Stock& stock_, const Stock& blank_, const EnvelopeGrid& envelope_, std::span<const Stamp> stamps_,
@@ -51,7 +52,7 @@ struct Engager::Impl {
         all(stamps_),
         first_id(first_id_),
         blocks(envelope_, stock_.voxel_mm(), stock_.band_mm()),
-        reader(envelope_, blocks, stamps_, first_id_, stock_.voxel_mm()) {}
+        reader(envelope_, blocks, stamps_, first_id_, stock_.voxel_mm(), stock_.max_mm().z() + stock_.band_mm()) {}
 
   void start_tiles();
   void read_batch(std::size_t begin, std::size_t end, const ChipSink& sink);
@@ -61,18 +62,17 @@ struct Engager::Impl {
 };
 
 void Engager::Impl::start_tiles() {
-  tiles.clear();
-  tiles.resize(arena->size());
+  if (tiles.size() < arena.size()) tiles.resize(arena.size());
   const ColumnCover::TipOf tip_of = [&](std::int32_t id, Vec3& tip_mm, double& bend_mm) {
     if (id < first_id) return false;
     tip_mm = all[static_cast<std::size_t>(id - first_id)].tip_mm;
     bend_mm = 0;
     return true;
   };
-  tbb::parallel_for(std::size_t{1}, tiles.size(), [&](std::size_t t) {
-    const Tile& tile = (*arena)[t];
+  tbb::parallel_for(std::size_t{1}, arena.size(), [&](std::size_t t) {
+    const Tile& tile = arena[t];
     tiles[t].emplace(
-        CutTile{ColumnCover(tile, arena->index(t), stock.voxel_mm(), stock.band_mm(), envelope.shape, tip_of),
+        CutTile{ColumnCover(tile, arena.index(t), stock.voxel_mm(), stock.band_mm(), envelope.shape, tip_of),
                 material_voxels(tile, stock.voxel_mm())});
   });
 }
@@ -82,14 +82,14 @@ void Engager::Impl::read_batch(std::size_t begin, std::size_t end, const ChipSin
     std::vector<std::int32_t> earlier;
     for (const std::int32_t j : order.earlier(static_cast<std::int32_t>(k)))
       earlier.push_back(j + static_cast<std::int32_t>(from));
-    sink(k, reader.read(*arena, from + k, earlier, buffers.local()));
+    sink(k, reader.read(arena, from + k, earlier, buffers.local()));
   });
 }
 
 void Engager::Impl::cut_batch(std::size_t begin, std::size_t end) {
   std::vector<std::size_t> reached;
   for (std::size_t k = begin; k < end; ++k)
-    for (const std::int32_t t : arena->reached_by(k)) {
+    for (const std::int32_t t : arena.reached_by(k)) {
       CutTile& tile = *tiles[static_cast<std::size_t>(t)];
       if (tile.cover.all_air()) continue;
       if (tile.batch.empty()) reached.push_back(static_cast<std::size_t>(t));
@@ -111,8 +111,7 @@ void Engager::Impl::cut_batch(std::size_t begin, std::size_t end) {
 
 void Engager::Impl::cut(std::size_t t, BatchCut& batch_cut) {
   CutTile& tile = *tiles[t];
-  tile.changed |=
-      batch_cut.cut((*arena)[t], tile.cover, stamps, tile.batch, first_id + static_cast<std::int32_t>(from));
+  tile.changed |= batch_cut.cut(arena[t], tile.cover, stamps, tile.batch, first_id + static_cast<std::int32_t>(from));
 }
 
 void Engager::Impl::cut_general(std::size_t t) {
@@ -127,8 +126,8 @@ void Engager::Impl::cut_general(std::size_t t) {
         const std::int32_t k = stamp(i);
         // The neighbours of the batch are in the tile already; in the first of a batch the one before it.
         if (covers(left >= 0 ? stamp(left) : tile.last, k) || (right >= 0 && covers(stamp(right), k))) return;
-        tile.changed |= carve((*arena)[t], tile.cover, arena->index(t), stock.voxel_mm(), stock.band_mm(),
-                              envelope.shape, {tip(k), first_id + static_cast<std::int32_t>(from) + k, 0});
+        tile.changed |= carve(arena[t], tile.cover, arena.index(t), stock.voxel_mm(), stock.band_mm(), envelope.shape,
+                              {tip(k), first_id + static_cast<std::int32_t>(from) + k, 0});
       });
 }
 
@@ -143,11 +142,10 @@ void Engager::engage(std::size_t from, std::size_t count, const ChipSink& sink) 
   Impl& m = *impl_;
   m.from = from;
   m.stamps = m.all.subspan(from, count);
-  m.arena.reset();
-  m.tiles.clear();
-  if (count == 0) return;
+  m.loaded = count > 0;
+  if (!m.loaded) return;
   m.order = StampOrder::of_path(m.stamps, m.envelope.shape);
-  m.arena.emplace(m.stock, m.blank, m.envelope.shape, m.stamps);
+  m.arena.load(m.stock, m.blank, m.envelope.shape, m.stamps);
   m.start_tiles();
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
     const std::int32_t batch = m.order.batch(static_cast<std::int32_t>(begin));
@@ -161,13 +159,12 @@ double Engager::commit() {
   Impl& m = *impl_;
   double removed = 0;
   const double voxel = m.stock.voxel_mm();
-  for (std::size_t t = 1; t < m.tiles.size(); ++t) {
+  for (std::size_t t = 1; m.loaded && t < m.arena.size(); ++t) {
     if (!m.tiles[t]->changed) continue;
-    removed += (m.tiles[t]->material - material_voxels((*m.arena)[t], voxel)) * std::pow(voxel, 3);
-    m.stock.store(m.arena->index(t), (*m.arena)[t]);
+    removed += (m.tiles[t]->material - material_voxels(m.arena[t], voxel)) * std::pow(voxel, 3);
+    m.stock.store(m.arena.index(t), m.arena[t]);
   }
-  m.tiles.clear();
-  m.arena.reset();
+  m.loaded = false;
   return removed;
 }
 

@@ -1,6 +1,7 @@
 #include "removal/envelope_blocks.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace camber::removal {
 
@@ -10,6 +11,12 @@ EnvelopeBlocks::EnvelopeBlocks(const EnvelopeGrid& e, double voxel_mm, double ba
     for (int pitch = 0; pitch < e.flutes; ++pitch)
       for (int step = 0; step < e.steps_per_pitch; step += kSteps)
         add(e, ring, step, pitch * e.steps_per_pitch, voxel_mm, band_mm);
+  lowest_.resize(block_.size());
+  float lowest = std::numeric_limits<float>::infinity();
+  for (std::size_t b = block_.size(); b-- > 0;) {
+    for (std::size_t l = 0; l < kLanes; ++l) lowest = std::min(lowest, z_[b * kLanes + l]);
+    lowest_[b] = lowest;
+  }
   // Whole vectors; what fills the last one moves into nothing.
   for (std::size_t n = block_.size(); n % kLanes != 0; ++n) {
     for (auto* v : {&centre_x_, &centre_y_, &centre_z_, &reach_, &normal_x_, &normal_y_, &normal_z_}) v->push_back(0);
@@ -57,6 +64,11 @@ void EnvelopeBlocks::add(const EnvelopeGrid& e, int ring, int step, int first_of
   normal_y_.push_back(static_cast<float>(mean.y()));
   normal_z_.push_back(static_cast<float>(mean.z()));
   spread_.push_back(static_cast<float>(spread));
+}
+
+int EnvelopeBlocks::up_to(double height_mm) const {
+  const auto at = std::upper_bound(lowest_.begin(), lowest_.end(), static_cast<float>(height_mm)) - lowest_.begin();
+  return (static_cast<int>(at) + kLanes - 1) / kLanes * kLanes;
 }
 
 BlockPoints EnvelopeBlocks::points() const {

@@ -30,6 +30,8 @@ class EnvelopeBlocks {
   }
   const float* cos_phi(std::uint32_t block) const { return cos_phi_.data() + kLanes * block; }
   const float* sin_phi(std::uint32_t block) const { return sin_phi_.data() + kLanes * block; }
+  /// Blocks from here on lie higher above the tip.
+  int up_to(double height_mm) const;
   BlockPoints points() const;
   BlockBounds bounds() const;
 
@@ -37,6 +39,7 @@ class EnvelopeBlocks {
   void add(const EnvelopeGrid& envelope, int ring, int step, int first_of_pitch, double voxel_mm, double band_mm);
 
   std::vector<Block> block_;
+  std::vector<float> lowest_;  ///< of the points of each block and all after it
   std::vector<std::uint32_t> point_;
   std::vector<float> x_, y_, z_, nx_, ny_, nz_, cos_phi_, sin_phi_, k1_, k2_;
   std::vector<float> centre_x_, centre_y_, centre_z_, reach_, normal_x_, normal_y_, normal_z_, spread_;

@@ -53,17 +53,20 @@ class Stock {
   float voxel(const Index3& index) const;
   std::int32_t stamp(const Index3& index) const;
 
-  /// Many readings by one thread: the value of the voxel nearest to a point, clipped to the band.
+  /// Many readings by one thread.
   class Probe {
    public:
     explicit Probe(const Stock& stock);
     ~Probe();
+    /// The value of the voxel nearest to a point, clipped to the band.
     float nearest(const Vec3& point) const;
+    /// As Stock::distance_mm.
+    double distance_mm(const Vec3& point) const;
 
    private:
     struct Access;
     std::unique_ptr<Access> access_;
-    double per_mm_;
+    double voxel_mm_, per_mm_;
   };
 
   /// Tiles are numbered so that tile t owns the voxels t * kCore ... t * kCore + kCore - 1. Thread safe.
@@ -80,6 +83,8 @@ class Stock {
   void store(const Index3& tile, const Tile& in);
   /// Forgets which stamps cut what: the stock is a blank.
   void clear_stamps();
+  /// Leaves air everywhere, and gives the memory back.
+  void clear();
 
   /// Volume of material in the box, mm^3 (first-order smeared step over one voxel each way).
   double volume_mm3() const;

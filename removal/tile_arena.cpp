@@ -14,14 +14,15 @@ Index3 first_voxel(const Index3& tile) { return {tile[0] * Tile::kCore, tile[1] 
 
 }  // namespace
 
-TileArena::TileArena(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps)
-    : voxel_(stock.voxel_mm()) {
+void TileArena::load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps) {
+  voxel_ = stock.voxel_mm();
   list_tiles(stock, shape, stamps);
-  load(stock, blank);
+  load_tiles(stock, blank);
 }
 
 void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps) {
   reached_.resize(stamps.size());
+  for (auto& tiles : reached_) tiles.clear();
   const double tile_mm = Tile::kCore * voxel_, band = stock.band_mm(), reach = shape.radius_mm + band;
   Vec3 lo = stamps.front().tip_mm, hi = lo;
   for (const auto& s : stamps) {
@@ -50,7 +51,7 @@ void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::sp
   auto& slot = slots_.all();
   for (const auto& places : reached_)
     for (const std::int32_t p : places) slot[static_cast<std::size_t>(p)] = 0;
-  index_.push_back({});
+  index_.assign(1, {});
   for (std::size_t p = 0; p < slot.size(); ++p) {
     if (slot[p] == 0 && !stock.is_air(slots_.tile_at(p))) {
       slot[p] = static_cast<std::int32_t>(index_.size());
@@ -66,9 +67,13 @@ void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::sp
   });
 }
 
-void TileArena::load(const Stock& stock, const Stock& blank) {
+void TileArena::load_tiles(const Stock& stock, const Stock& blank) {
   count_ = index_.size();
-  tiles_.reset(new Tile[count_]);
+  if (count_ > room_) {
+    room_ = count_ + count_ / 8;
+    tiles_.reset();
+    tiles_.reset(new Tile[room_]);
+  }
   tiles_[0].distance.fill(static_cast<float>(stock.band_mm()));
   tiles_[0].stamp.fill(Stock::kUncut);
   blank_.assign(count_, -1);

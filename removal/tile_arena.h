@@ -15,9 +15,9 @@ namespace camber::removal {
 
 class TileArena {
  public:
-  /// Loads what is not air. Tile 0 is air all over and stands for all others. `blank`: the stock before the first
-  /// stamp.
-  TileArena(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps);
+  /// Loads what is not air, instead of what was loaded before. Tile 0 is air all over and stands for all others.
+  /// `blank`: the stock before the first stamp.
+  void load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps);
 
   std::size_t size() const { return count_; }  ///< with tile 0
   const Index3& index(std::size_t tile) const { return index_[tile]; }
@@ -37,14 +37,14 @@ class TileArena {
 
  private:
   void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps);
-  void load(const Stock& stock, const Stock& blank);
+  void load_tiles(const Stock& stock, const Stock& blank);
 
-  double voxel_;
+  double voxel_ = 0;
   SlotMap slots_;
   std::vector<std::vector<std::int32_t>> reached_;
   std::vector<Index3> index_;
-  std::size_t count_ = 0;
-  std::unique_ptr<Tile[]> tiles_;
+  std::size_t count_ = 0, room_ = 0;
+  std::unique_ptr<Tile[]> tiles_;  ///< not cleared
   std::vector<std::int32_t> blank_;
   std::vector<float> blanks_;
 };
