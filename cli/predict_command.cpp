@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <tbb/task_group.h>
 
 #include "base/output_file.h"
 #include "cli/console.h"
@@ -47,6 +48,30 @@ std::vector<report::PathRow> write_feed(const deflection::MachinedProgram& progr
   return collector.take();
 }
 
+/// What the folder holds but summary.json, side by side.
+void write_files(const machine::Job& job, const deflection::MachinedProgram& program,
+                 const deflection::Prediction& prediction, std::size_t forces_at, const fs::path& folder,
+                 const Diagnostics& diagnostics) {
+  tbb::task_group others;
+  others.run([&] {
+    report::write_forces_csv(folder / "forces.csv", job, program, prediction);
+    if (forces_at > 0)
+      report::write_forces_at_csv(folder / fmt::format("forces_at_{}.csv", forces_at), prediction.cut.turn);
+    prediction.machined->save(folder / "stock.vdb");
+  });
+  others.run([&] {
+    const auto points = report::form_error_points(program, prediction);
+    report::write_form_error_csv(folder / "form_error.csv", points);
+    report::write_form_error_vtp(folder / "form_error.vtp", points);
+    report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95);
+  });
+  others.run_and_wait([&] {
+    auto feed = write_feed(program, job, folder / "feed.csv");
+    report::write_html_report(folder / "report.html",
+                              report::predict_report(job, program, prediction, std::move(feed), diagnostics));
+  });
+}
+
 }  // namespace
 
 int run_predict(const PredictArguments& arguments, const GlobalOptions& options) {
@@ -54,7 +79,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   Diagnostics diagnostics;
   const machine::Job job = machine::read_job(arguments.job, diagnostics);
   const auto program = deflection::machine_program(SourceText::read(job.program), job, {}, diagnostics);
-  const deflection::Target target = [&] {
+  deflection::Target target = [&] {
     if (job.part.program.empty()) return deflection::make_target(job, program, diagnostics);
     Diagnostics of_target;
     const auto original = deflection::machine_program(SourceText::read(job.part.program), job, {}, of_target);
@@ -71,21 +96,12 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
 
   ProgressLine progress(options);
   predict_options.progress = [&](double share) { progress.show("cutting", share); };
+  predict_options.surface_read = [&] { target.surface.clear(); };
   const auto prediction = deflection::predict(job, target, program, predict_options);
   progress.clear();
   const double compute_s = seconds_since(begin);
 
-  auto feed = write_feed(program, job, folder / "feed.csv");
-  report::write_forces_csv(folder / "forces.csv", job, program, prediction);
-  if (arguments.forces_at > 0)
-    report::write_forces_at_csv(folder / fmt::format("forces_at_{}.csv", arguments.forces_at), prediction.cut.turn);
-  const auto points = report::form_error_points(program, prediction);
-  report::write_form_error_csv(folder / "form_error.csv", points);
-  report::write_form_error_vtp(folder / "form_error.vtp", points);
-  report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95);
-  prediction.machined->save(folder / "stock.vdb");
-  report::write_html_report(folder / "report.html",
-                            report::predict_report(job, program, prediction, std::move(feed), diagnostics));
+  write_files(job, program, prediction, arguments.forces_at, folder, diagnostics);
   const std::string json = report::predict_json(program, prediction, compute_s);
   write_file(folder / "summary.json", json);
   if (!arguments.json.empty()) write_file(arguments.json, json);

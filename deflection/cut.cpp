@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <mutex>
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <Eigen/LU>
 
 #include "deflection/beam.h"
+#include "removal/engager.h"
 #include "removal/stretch.h"
 
 namespace camber::deflection {
@@ -101,7 +105,7 @@ class Cutter {
                options.axis_compliance_mm_per_N, options.coupling == machine::Coupling::static_) {
     if (!options.blank) own_blank_.emplace(stock);
     blank_ = options.blank ? options.blank : &*own_blank_;
-    removal::make_patches(envelope_, 0.6 * stock.band_mm());
+    if (!rigid_) removal::make_patches(envelope_, 0.6 * stock.band_mm());
   }
 
   /// Cuts stamps from ... from + count - 1 of all.
@@ -116,17 +120,15 @@ class Cutter {
       for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
         std::copy(guess_row_.begin(), guess_row_.end(), shifts.row(k));
     std::vector<StampLoad> loads(stamps.size());
-    Stretch stretch(stock_, blank_, envelope_, all, from, count,
-                    {.first_id = first_id, .bent_before_mm = most_bent_mm_});
-    Engagement engagement;
     if (rigid_) {
-      engagement = stretch.carve(nullptr);
-      evaluate(engagement, stamps, shifts, loads);
+      engage(all, from, shifts, loads, first_id, result);
     } else {
-      engagement = settle(stretch, stamps, shifts, loads, result);
+      Stretch stretch(stock_, blank_, envelope_, all, from, count,
+                      {.first_id = first_id, .bent_before_mm = most_bent_mm_});
+      const Engagement engagement = settle(stretch, stamps, shifts, loads, result);
+      for (std::size_t k = 0; k < count; ++k) keep_turn(engagement.of(k), stamps[k], from + k, result);
+      result.stock_mm3 += stretch.commit();
     }
-    keep_turn(engagement, all, from, count, result);
-    result.stock_mm3 += stretch.commit();
     if (options_.surface) mark(stamps, shifts, first_id + static_cast<std::int32_t>(from));
     for (std::size_t k = 0; k < stamps.size(); ++k) {
       if (!contacts.empty())
@@ -157,16 +159,26 @@ class Cutter {
   };
 
   /// Deflection straight from the chips.
-  void evaluate(const Engagement& engagement, std::span<const Stamp> stamps, ShiftTable& shifts,
-                std::vector<StampLoad>& loads) const {
-    tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
-      ToothPass pass;
-      model_.evaluate(engagement.of(k), passings_ + k, stamps[k].feed_per_tooth_mm, pass);
+  void engage(std::span<const Stamp> all, std::size_t from, ShiftTable& shifts, std::vector<StampLoad>& loads,
+              std::int32_t first_id, CutResult& result) {
+    if (!engager_) engager_.emplace(stock_, *blank_, envelope_, all, first_id);
+    const auto& blocks = engager_->blocks();
+    std::map<std::size_t, std::vector<removal::Chip>> turn;  // what the turn needs
+    std::mutex turn_lock;
+    tbb::enumerable_thread_specific<ToothPass> passes;
+    engager_->engage(from, loads.size(), [&](std::size_t k, std::span<const removal::ChipBlock> chips) {
+      ToothPass& pass = passes.local();
+      model_.evaluate(blocks, chips, from + k, all[from + k].feed_per_tooth_mm, pass);
       loads[k] = summarize(pass);
-      loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
-      if (options_.drilling) return;
-      std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(), shifts.row(static_cast<std::ptrdiff_t>(k)));
+      loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
+      if (!options_.drilling)
+        std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(), shifts.row(static_cast<std::ptrdiff_t>(k)));
+      if (!in_turn(from + k)) return;
+      const std::scoped_lock lock(turn_lock);
+      turn[k] = removal::chips_of(blocks, chips);
     });
+    for (const auto& [k, chips] : turn) keep_turn(chips, all[from + k], from + k, result);
+    result.stock_mm3 += engager_->commit();
   }
 
   /// Of a hole its deepest stamp says all.
@@ -206,15 +218,12 @@ class Cutter {
     return engagement;
   }
 
-  void keep_turn(const Engagement& engagement, std::span<const Stamp> all, std::size_t from, std::size_t count,
-                 CutResult& result) const {
-    if (!options_.turn_from) return;
-    const auto teeth = static_cast<std::size_t>(envelope_.flutes);
-    for (std::size_t pass = 0; pass < teeth; ++pass) {
-      const std::size_t k = *options_.turn_from + pass;
-      if (k >= from && k < from + count)
-        model_.add_to_turn(engagement.of(k - from), pass, k, all[k].feed_per_tooth_mm, result.turn);
-    }
+  bool in_turn(std::size_t k) const {
+    return options_.turn_from && k >= *options_.turn_from &&
+           k < *options_.turn_from + static_cast<std::size_t>(envelope_.flutes);
+  }
+  void keep_turn(std::span<const removal::Chip> chips, const Stamp& stamp, std::size_t k, CutResult& result) const {
+    if (in_turn(k)) model_.add_to_turn(chips, k - *options_.turn_from, k, stamp.feed_per_tooth_mm, result.turn);
   }
 
   /// (I - J_k) step_k + J'_k step_(k-1) = residual_k for every rotation step: forward through the stamps.
@@ -261,6 +270,7 @@ class Cutter {
   double top_mm_;
   EnvelopeGrid envelope_;
   ToothPassModel model_;
+  std::optional<removal::Engager> engager_;  ///< rigid
   std::vector<float> last_row_, guess_row_;
   double most_bent_mm_ = 0;
   std::size_t passings_ = 0;  ///< tooth passings before the stretch
@@ -313,8 +323,8 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
   tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
     const Vec3& f = stamps[k].feed_per_tooth_mm;
     const double along = std::atan2(f.y(), f.x()), horizontal = f.head<2>().norm();
-    std::vector<Candidate> candidates;
-    double deepest = -1e9;
+    const Stock::Probe probe(target);
+    std::vector<Candidate> candidates;  // depth: of the nearest voxel
     for (int r = 0; r < kRings; ++r) {
       const auto p = shape.profile.at((r + 0.5) * length / kRings);
       const double tilt = horizontal > 0 ? f.z() / (horizontal * std::tan(p.normal_angle_rad)) : 2.0;
@@ -322,10 +332,23 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
       for (const double side : {-1.0, 1.0}) {
         const double phi = along + side * (p.normal_angle_rad > 0 ? std::acos(tilt) : kPi / 2);
         const Vec3 place(p.radius_mm * std::cos(phi), p.radius_mm * std::sin(phi), p.height_mm);
-        const double depth = -target.distance_mm(stamps[k].tip_mm + place);
-        candidates.push_back({depth, place});
-        deepest = std::max(deepest, depth);
+        candidates.push_back({-static_cast<double>(probe.nearest(stamps[k].tip_mm + place)), place});
       }
+    }
+    // A trilinear value differs from the nearest voxel's by no more than the mean distance of its corners from it.
+    const double blur = std::sqrt(1.5) * target.voxel_mm();
+    double deepest = -1e9;
+    const auto read = [&](Candidate& c) {
+      c.depth = -probe.distance_mm(stamps[k].tip_mm + c.place);
+      deepest = std::max(deepest, c.depth);
+    };
+    const auto first = std::ranges::max_element(candidates, {}, &Candidate::depth);
+    if (first != candidates.end()) std::swap(*first, candidates.front()), read(candidates.front());
+    for (std::size_t c = 1; c < candidates.size(); ++c) {
+      if (candidates[c].depth + blur >= deepest - kDepthBand_mm)
+        read(candidates[c]);
+      else
+        candidates[c].depth = -1e9;
     }
     Vec3 sum = Vec3::Zero();
     double count = 0;

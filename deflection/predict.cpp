@@ -126,12 +126,19 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
   out.machined = std::make_unique<removal::Stock>(target.blank);
   removal::SurfaceMap map(target.surface, target.places);
   const auto all = static_cast<double>(program.path.stamps.size());
+  std::vector<std::vector<Contact>> contacts_of_runs;
+  for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    auto& contacts = contacts_of_runs.emplace_back();
+    if (options.contacts && run.kind == removal::RunKind::milling)
+      contacts = find_contacts(target.surface, tool, stamps);
+  });
+  if (options.surface_read) options.surface_read();
+  auto next_contacts = contacts_of_runs.begin();
   out.holes.count = removal::count_holes(program.moves, program.holes);
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     const std::size_t from = run.from;
     const bool milling = run.kind == removal::RunKind::milling;
-    std::vector<Contact> contacts;
-    if (options.contacts && milling) contacts = find_contacts(target.surface, tool, stamps);
+    const std::vector<Contact> contacts = std::move(*next_contacts++);
     CutOptions cut_options;
     cut_options.surface = &map;
     cut_options.coupling = job.simulation.coupling;

@@ -63,6 +63,7 @@ struct PredictOptions {
   bool contacts = true;
   std::optional<std::size_t> turn_from;  ///< first stamp of a turn to keep in Prediction::cut.turn
   std::function<void(double)> progress;
+  std::function<void()> surface_read;  ///< called when Target::surface is no longer needed
 };
 
 Prediction predict(const machine::Job& job, const Target& target, const MachinedProgram& program,

@@ -7,6 +7,7 @@
 #include "deflection/teeth.h"
 #include "machine/job.h"
 #include "removal/cutter.h"
+#include "removal/envelope_blocks.h"
 #include "removal/shift_table.h"
 #include "removal/stretch.h"
 
@@ -20,7 +21,8 @@ struct ToothPass {
   double chip_max_mm = 0;            ///< thickest chip
   double chip_area_mm2 = 0;          ///< of the envelope that cuts; the chips' volume over it is the mean thickness
   std::vector<float> deflection_mm;  ///< [nodes][steps][2], as a row of removal::ShiftTable
-  /// Per step, where the model is asked for it: how a lateral shift of the tool changes the deflection through the chip, d(deflection)/d(shift).
+  /// Per step, where the model is asked for it: how a lateral shift of the tool changes the deflection through the
+  /// chip, d(deflection)/d(shift).
   std::vector<Eigen::Matrix2d> feedback;
   /// The part of it that a shift of the tooth before takes back.
   std::vector<Eigen::Matrix2d> feedback_before;
@@ -49,6 +51,8 @@ class ToothPassModel {
   /// `passing` counts tooth passings since the tool began: it tells which tooth stands where, which only matters where
   /// the teeth are not even. feed_mm: motion in one mean pitch.
   void evaluate(std::span<const removal::Chip> chips, std::size_t passing, const Vec3& feed_mm, ToothPass& out) const;
+  void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
+                const Vec3& feed_mm, ToothPass& out) const;
   /// Adds the chips of one tooth passing, the turn's `pass`-th (0 ... flutes - 1), to the turn.
   void add_to_turn(std::span<const removal::Chip> chips, std::size_t pass, std::size_t passing, const Vec3& feed_mm,
                    TurnForces& turn) const;

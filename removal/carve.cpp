@@ -5,6 +5,7 @@
 
 #include "removal/carve_general.h"
 #include "removal/kernels.h"
+#include "removal/vector_clones.h"
 
 namespace camber::removal {
 namespace {
@@ -60,19 +61,36 @@ bool carve(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double
   return cut_lines(tile, cover, t, voxel, line_cut(t, voxel, band, shape, stamp), stamp, 0, kernels().cut_line);
 }
 
+namespace {
+
+/// Middles of the sectors, half a turn more on both sides.
+struct SectorTable {
+  static_assert((CarveBend::kSectors & (CarveBend::kSectors - 1)) == 0);
+  static constexpr int kPadded = 2 * CarveBend::kSectors + 1;
+  std::array<float, kPadded> cosine, sine;
+  SectorTable() {
+    const double sector = 2 * kPi / CarveBend::kSectors;
+    for (int o = 0; o < kPadded; ++o) {
+      const int i = (o + CarveBend::kSectors / 2) & (CarveBend::kSectors - 1);
+      cosine[o] = static_cast<float>(std::cos(-kPi + (i + 0.5) * sector));
+      sine[o] = static_cast<float>(std::sin(-kPi + (i + 0.5) * sector));
+    }
+  }
+};
+
+}  // namespace
+
 CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std::ptrdiff_t stamp) {
   CarveBend bend{shifts.row(stamp), shifts.largest_mm(stamp), {}};
   const int nodes = static_cast<int>(shifts.nodes());
   const double node_step = nodes > 1 ? shifts.node_height_mm[1] : 0.0;
   const double sector = 2 * kPi / CarveBend::kSectors;
   // A shift between two nodes belongs to a range of lags; one sector more for interpolation between steps.
-  const int spread = 1 + static_cast<int>(std::ceil(envelope.lag_per_mm * node_step / sector));
+  const int spread =
+      std::min(1 + static_cast<int>(std::ceil(envelope.lag_per_mm * node_step / sector)), CarveBend::kSectors / 2);
   const float half_sector = static_cast<float>(sector / 2);
-  std::array<float, CarveBend::kSectors> cosine, sine;
-  for (int i = 0; i < CarveBend::kSectors; ++i) {
-    cosine[i] = static_cast<float>(std::cos(-kPi + (i + 0.5) * sector));
-    sine[i] = static_cast<float>(std::sin(-kPi + (i + 0.5) * sector));
-  }
+  static const SectorTable table;
+  std::array<float, SectorTable::kPadded> outward{};  // from sector -kSectors / 2 on
   for (int n = 0; n < nodes; ++n)
     for (int m = 0; m < shifts.steps; ++m) {
       const float* v = bend.row + 2 * (n * shifts.steps + m);
@@ -81,14 +99,16 @@ CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std:
       for (int j = 0; j < envelope.flutes; ++j) {
         const double phi =
             2 * kPi * (m + j * shifts.steps) / envelope.steps + shifts.node_height_mm[n] * envelope.lag_per_mm;
-        const int centre = static_cast<int>(std::floor((phi + kPi) / sector));
-        for (int o = centre - spread; o <= centre + spread; ++o) {
-          const int i = (o % CarveBend::kSectors + CarveBend::kSectors) % CarveBend::kSectors;
-          const float outward = v[0] * cosine[i] + v[1] * sine[i] + half_sector * length;
-          bend.outward_mm[i] = std::max(bend.outward_mm[i], outward);
-        }
+        const int centre = static_cast<int>(std::floor((phi + kPi) / sector)) & (CarveBend::kSectors - 1);
+        const int first = centre - spread + CarveBend::kSectors / 2;
+        for (int o = first; o <= first + 2 * spread; ++o)
+          outward[o] = std::max(outward[o], v[0] * table.cosine[o] + v[1] * table.sine[o] + half_sector * length);
       }
     }
+  for (int o = 0; o < SectorTable::kPadded; ++o) {
+    float& of_sector = bend.outward_mm[(o + CarveBend::kSectors / 2) & (CarveBend::kSectors - 1)];
+    of_sector = std::max(of_sector, outward[o]);
+  }
   return bend;
 }
 
@@ -106,6 +126,21 @@ bool carve_bent(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, d
   const auto cut = kernels().cut_line_bent;
   return cut_lines(tile, cover, t, voxel, line_cut(t, voxel, band, envelope.shape, {stamp.tip_mm, stamp.id}), stamp,
                    bend.largest_mm, [&](const LineCut& line) { return cut(line, line_bend); });
+}
+
+CAMBER_VECTOR_CLONES
+double material_voxels(const Tile& tile, double voxel_mm) {
+  const auto scale = static_cast<float>(0.5 / voxel_mm);
+  double sum = 0;
+  for (int i = 0; i < Tile::kCore; ++i) {
+    std::array<float, Tile::kCore> share{};
+    for (int j = 0; j < Tile::kCore; ++j) {
+      const float* d = tile.distance.data() + Tile::offset(i, j, 0);
+      for (int k = 0; k < Tile::kCore; ++k) share[k] += std::min(std::max(0.5f - scale * d[k], 0.0f), 1.0f);
+    }
+    for (const float v : share) sum += static_cast<double>(v);
+  }
+  return sum;
 }
 
 double tile_distance_mm(const Index3& t, double voxel, const CutterShape& shape, const Vec3& tip) {

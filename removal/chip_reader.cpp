@@ -4,25 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "removal/cell.h"
+
 namespace camber::removal {
-namespace {
-
-/// A depth of more than this share of what the last motion allows ends at the surface of the tooth before.
-constexpr float kNearCap = 0.8f;
-
-/// A surface that the normal meets at a grazing angle is taken at no more than twenty times its distance.
-constexpr float kLeastSlope = 0.05f;
-
-float slope(double along_normal) {
-  return static_cast<float>(std::clamp(along_normal, static_cast<double>(kLeastSlope), 1.0));
-}
-
-/// Rings whose normal leans by less count as upright, faces whose normal does as level.
-constexpr double kUpright = 0.1;
-
-constexpr int corner(int c) { return Tile::offset(c & 1, c >> 1 & 1, c >> 2 & 1); }
-
-}  // namespace
 
 /// A point in its cell.
 struct ChipReader::Cell {
@@ -49,22 +33,10 @@ struct ChipReader::Cell {
   }
 
   float trilinear(const std::array<float, Tile::kVolume>& values) const {
-    float sum = 0;
-    for (int c = 0; c < 8; ++c)
-      sum += weight[static_cast<std::size_t>(c)] * values[static_cast<std::size_t>(at + corner(c))];
-    return sum;
+    return removal::trilinear(values.data() + at, share);
   }
-
   Vec3 gradient(const std::array<float, Tile::kVolume>& values, double voxel_mm) const {
-    Vec3 sum = Vec3::Zero();
-    for (int a = 0; a < 3; ++a)
-      for (int c = 0; c < 8; ++c) {
-        float face = c >> a & 1 ? 1.0f : -1.0f;
-        for (int b = 0; b < 3; ++b)
-          if (b != a) face *= c >> b & 1 ? share[static_cast<std::size_t>(b)] : 1 - share[static_cast<std::size_t>(b)];
-        sum[a] += static_cast<double>(face * values[static_cast<std::size_t>(at + corner(c))]);
-      }
-    return sum / voxel_mm;
+    return trilinear_gradient(values.data() + at, share, voxel_mm);
   }
 };
 
@@ -78,11 +50,10 @@ ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, st
       first_id_(first_id),
       voxel_mm_(voxel_mm),
       shifts_(shifts),
-      kernels_(kernels()) {
+      kernels_(kernels()),
+      wall_half_mm_(wall_half_widths_mm(envelope)) {
   places_.reserve(stamps.size());
   for (std::size_t k = 0; k < stamps.size(); ++k) places_.push_back(place_of(k));
-  for (const auto& ring : envelope.rings)
-    wall_half_mm_.push_back(std::abs(ring.cosine) < kUpright ? static_cast<float>(ring.width_mm / 2) : 0.0f);
 }
 
 ChipReader::Place ChipReader::place_of(std::size_t k) const {
@@ -136,44 +107,19 @@ void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t
       const Vec3 normal(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]);
       std::uint8_t share = 255;
       if (std::abs(field) < half) {
-        const Span span = between_levels(stocks, cell, normal, static_cast<double>(half));
-        share = static_cast<std::uint8_t>(std::lround(255 * std::max(0.0, span.to - span.from) / (2 * half)));
+        const RingPart part = part_in_material(
+            {stocks.blank ? stocks.blank->distance.data() + cell.at : nullptr, stocks.now->stamp.data() + cell.at,
+             cell.share, cell.point_mm, normal, static_cast<double>(half)},
+            all_, first_id_, envelope_.shape, voxel_mm_);
+        share = part.cut_255(static_cast<double>(half));
         if (share == 0) continue;
-        cell.move_up((span.from + span.to) / 2);
+        cell.move_up(part.middle_mm());
       }
       float depth = thickness_over(earlier, cell.point_mm, normal);
       if ((-field <= cap || share < 255) && depth > 0) depth = std::min(depth, thickness(stocks, cell, normal));
       if (depth > 0) out.push_back({k, {p, std::min(depth, cap), depth > kNearCap * cap, share}});
     }
   }
-}
-
-/// Which part of a wall's ring at the point lies between level faces: of the blank, and of the floors that its cell's
-/// stamps have cut.
-ChipReader::Span ChipReader::between_levels(const TileStocks& stocks, const Cell& cell, const Vec3& normal,
-                                            double half_width_mm) const {
-  Span span{-half_width_mm, half_width_mm};
-  if (stocks.blank) {
-    const auto height = static_cast<double>(cell.trilinear(stocks.blank->distance));  // above the face
-    if (std::abs(height) < half_width_mm) {
-      const Vec3 up = cell.gradient(stocks.blank->distance, voxel_mm_);
-      if (std::abs(up.dot(normal)) < kUpright * std::abs(up.z())) {
-        const double face = -height / up.z();
-        if (up.z() > 0)
-          span.to = std::min(span.to, face);
-        else
-          span.from = std::max(span.from, face);
-      }
-    }
-  }
-  for (int c = 0; c < 8; ++c) {
-    const std::int32_t id = stocks.now->stamp[static_cast<std::size_t>(cell.at + corner(c))] - first_id_;
-    if (id < 0) continue;
-    const Vec3 from_tip = cell.point_mm - all_[static_cast<std::size_t>(id)].tip_mm;
-    if (std::abs(from_tip.z()) >= half_width_mm || envelope_.shape.gradient(from_tip).z() > -1 + kUpright) continue;
-    span.to = std::min(span.to, -from_tip.z());
-  }
-  return span;
 }
 
 /// Thickness of the stock below a point, against the normal, from the fields that meet in its cell (see
@@ -189,7 +135,7 @@ float ChipReader::thickness(const TileStocks& stocks, const Cell& cell, const Ve
   std::array<Vec3, 8> tip;
   bool any = false;
   for (std::size_t c = 0; c < 8; ++c) {
-    ids[c] = stocks.now->stamp[static_cast<std::size_t>(cell.at + corner(static_cast<int>(c)))] - first_id_;
+    ids[c] = stocks.now->stamp[static_cast<std::size_t>(cell.at + cell_corner(static_cast<int>(c)))] - first_id_;
     corners.valid[c] = ids[c] >= 0 ? 1.0f : 0.0f;
     tip[c] = ids[c] >= 0 ? Vec3(all_[static_cast<std::size_t>(ids[c])].tip_mm - cell.point_mm) : Vec3::Zero();
     for (int a = 0; a < 3; ++a) corners.tip[a][c] = static_cast<float>(tip[c][a]);
@@ -203,7 +149,7 @@ float ChipReader::thickness(const TileStocks& stocks, const Cell& cell, const Ve
     for (std::size_t c = 0; c < 8; ++c) {
       if (ids[c] < 0) continue;
       const Vec3 at = cell.corner_mm - cell.point_mm + voxel_mm_ * Vec3(c & 1, c >> 1 & 1, c >> 2 & 1);
-      difference[c] = stocks.now->distance[static_cast<std::size_t>(cell.at + corner(static_cast<int>(c)))] +
+      difference[c] = stocks.now->distance[static_cast<std::size_t>(cell.at + cell_corner(static_cast<int>(c)))] +
                       static_cast<float>(envelope_.shape.distance_mm(at - tip[c]));
     }
     for (std::size_t c = 0; c < 8; ++c) {

@@ -49,11 +49,6 @@ class ChipReader {
   };
   Place place_of(std::size_t k) const;
   float thickness(const TileStocks& stocks, const Cell& cell, const Vec3& normal) const;
-  /// Up and down from a cell's point, mm.
-  struct Span {
-    double from, to;
-  };
-  Span between_levels(const TileStocks& stocks, const Cell& cell, const Vec3& normal, double half_width_mm) const;
   float thickness_over(std::span<const std::int32_t> earlier, const Vec3& point, const Vec3& normal) const;
   float thinnest_general(const Vec3& normal, const std::array<Vec3, 8>& tip, const CornerLanes& corners) const;
 
@@ -66,7 +61,7 @@ class ChipReader {
   const ShiftTable* shifts_;
   const Kernels& kernels_;
   std::vector<Place> places_;        ///< of the stretch's stamps
-  std::vector<float> wall_half_mm_;  ///< half the width of each ring that stands upright; 0: of others
+  std::vector<float> wall_half_mm_;  ///< of the rings (removal/cell.h)
 };
 
 }  // namespace camber::removal

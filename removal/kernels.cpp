@@ -1,13 +1,16 @@
 #include "removal/kernels.h"
 
+#include "removal/block_kernels_impl.h"
 #include "removal/kernels_impl.h"
 
 namespace camber::removal {
 
 #if defined(__x86_64__)
 const Kernels kBaseKernels = Vectors<xsimd::sse2>::table();
+const BlockKernels kBaseBlockKernels = BlockVectors<xsimd::sse2>::table();
 #else
 const Kernels kBaseKernels = Vectors<xsimd::default_arch>::table();
+const BlockKernels kBaseBlockKernels = BlockVectors<xsimd::default_arch>::table();
 #endif
 
 const Kernels& kernels() {
@@ -16,6 +19,15 @@ const Kernels& kernels() {
   return widest;
 #else
   return kBaseKernels;
+#endif
+}
+
+const BlockKernels& block_kernels() {
+#if defined(__x86_64__)
+  static const BlockKernels& widest = __builtin_cpu_supports("avx2") ? kAvx2BlockKernels : kBaseBlockKernels;
+  return widest;
+#else
+  return kBaseBlockKernels;
 #endif
 }
 

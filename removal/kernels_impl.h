@@ -6,26 +6,10 @@
 #include <xsimd/xsimd.hpp>
 
 #include "removal/kernels.h"
+#include "removal/vector_table.h"
 
 namespace camber::removal {
 namespace {
-
-/// Values of a table by index. (xsimd 8 gathers whole numbers only by the processor's instruction.)
-template <class A>
-struct Table {
-  static xsimd::batch<float, A> gather(const float* from, const xsimd::batch<std::int32_t, A>& index) {
-    return xsimd::batch<float, A>::gather(from, index);
-  }
-};
-#if defined(__AVX2__)
-template <>
-struct Table<xsimd::avx2> {
-  static xsimd::batch<float, xsimd::avx2> gather(const float* from,
-                                                 const xsimd::batch<std::int32_t, xsimd::avx2>& index) {
-    return _mm256_i32gather_ps(from, index, sizeof(float));
-  }
-};
-#endif
 
 template <class A>
 struct Vectors {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
+#include <tbb/parallel_for.h>
 
 #include "base/diagnostics.h"
 
@@ -34,16 +35,14 @@ void initialize_openvdb() {
   (void)done;
 }
 
-/// Fills one leaf with the distance; returns false when it lies beyond the band.
+/// Fills one leaf with the distance.
 template <class Distance>
-void sample_leaf(openvdb::FloatGrid::Accessor& access, const Coord& origin, double voxel, double band,
-                 const Distance& distance) {
-  auto* leaf = access.touchLeaf(origin);
+void sample_leaf(openvdb::FloatTree::LeafNodeType& leaf, double voxel, double band, const Distance& distance) {
   for (openvdb::Index n = 0; n < openvdb::FloatTree::LeafNodeType::SIZE; ++n) {
-    const Coord c = leaf->offsetToGlobalCoord(n);
+    const Coord c = leaf.offsetToGlobalCoord(n);
     const double d = std::clamp(distance(Vec3(c.x() * voxel, c.y() * voxel, c.z() * voxel)), -band, band);
-    leaf->setValueOnly(n, static_cast<float>(d));
-    leaf->setActiveState(n, std::abs(d) < band);
+    leaf.setValueOnly(n, static_cast<float>(d));
+    leaf.setActiveState(n, std::abs(d) < band);
   }
 }
 
@@ -71,6 +70,7 @@ Stock::Stock(const std::function<double(const Vec3&)>& distance, const Vec3& min
   }
   auto access = impl_->distance->getAccessor();
   const double reach = band_mm_ + 0.5 * std::sqrt(3.0) * kLeaf * voxel_mm;
+  std::vector<openvdb::FloatTree::LeafNodeType*> leaves;
   for (int i = lo.x(); i <= hi.x(); ++i)
     for (int j = lo.y(); j <= hi.y(); ++j)
       for (int k = lo.z(); k <= hi.z(); ++k) {
@@ -82,8 +82,10 @@ Stock::Stock(const std::function<double(const Vec3&)>& distance, const Vec3& min
         if (d < -reach)
           access.addTile(1, origin, -band, false);
         else
-          sample_leaf(access, origin, voxel_mm, band_mm_, distance);
+          leaves.push_back(access.touchLeaf(origin));
       }
+  tbb::parallel_for(std::size_t{0}, leaves.size(),
+                    [&](std::size_t i) { sample_leaf(*leaves[i], voxel_mm, band_mm_, distance); });
   impl_->distance->pruneGrid(0.0f);
 }
 
@@ -96,11 +98,12 @@ Stock::Stock(const Stock& o)
 Stock::Stock(Stock&&) noexcept = default;
 Stock::~Stock() = default;
 
-double Stock::distance_mm(const Vec3& p) const {
-  const Vec3 g = p / voxel_mm_;
+namespace {
+
+template <class Accessor>
+double trilinear(const Accessor& access, const Vec3& g) {
   const Index3 b{static_cast<int>(std::floor(g.x())), static_cast<int>(std::floor(g.y())),
                  static_cast<int>(std::floor(g.z()))};
-  const auto access = impl_->distance->getConstUnsafeAccessor();
   double sum = 0;
   for (int c = 0; c < 8; ++c) {
     double w = 1;
@@ -116,11 +119,18 @@ double Stock::distance_mm(const Vec3& p) const {
   return sum;
 }
 
+}  // namespace
+
+double Stock::distance_mm(const Vec3& p) const {
+  return trilinear(impl_->distance->getConstUnsafeAccessor(), p / voxel_mm_);
+}
+
 struct Stock::Probe::Access {
   openvdb::FloatGrid::ConstUnsafeAccessor accessor;
 };
 Stock::Probe::Probe(const Stock& stock)
     : access_(std::make_unique<Access>(Access{stock.impl_->distance->getConstUnsafeAccessor()})),
+      voxel_mm_(stock.voxel_mm()),
       per_mm_(1 / stock.voxel_mm()) {}
 Stock::Probe::~Probe() = default;
 float Stock::Probe::nearest(const Vec3& p) const {
@@ -128,6 +138,8 @@ float Stock::Probe::nearest(const Vec3& p) const {
                                      static_cast<int>(std::floor(p.y() * per_mm_ + 0.5)),
                                      static_cast<int>(std::floor(p.z() * per_mm_ + 0.5))});
 }
+
+double Stock::Probe::distance_mm(const Vec3& p) const { return trilinear(access_->accessor, p / voxel_mm_); }
 
 float Stock::voxel(const Index3& i) const { return impl_->distance->tree().getValue(coord(i)); }
 std::int32_t Stock::stamp(const Index3& i) const { return impl_->stamp->tree().getValue(coord(i)); }
@@ -137,8 +149,7 @@ namespace {
 /// Copies the part of a cube of `side` voxels from `base` on that lies in one leaf; a leaf that is not there has one
 /// value throughout.
 template <class Accessor, class Value>
-void copy_from(const Accessor& access, const Coord& leaf_origin, const Coord& base,
-               int side, Value* out) {
+void copy_from(const Accessor& access, const Coord& leaf_origin, const Coord& base, int side, Value* out) {
   const auto* leaf = access.probeConstLeaf(leaf_origin);
   const Value constant = leaf ? Value{} : access.getValue(leaf_origin);
   const Value* values = leaf ? leaf->buffer().data() : nullptr;
@@ -188,7 +199,7 @@ void Stock::read(const Index3& first, int side, float* distance, std::int32_t* s
     for (int j = lo.y(); j < hi.y(); j += kLeaf)
       for (int k = lo.z(); k < hi.z(); k += kLeaf) {
         copy_from(distances, {i, j, k}, base, side, distance);
-        copy_from(stamps, {i, j, k}, base, side, stamp);
+        if (stamp) copy_from(stamps, {i, j, k}, base, side, stamp);
       }
 }
 
@@ -211,6 +222,16 @@ bool Stock::is_air(const Index3& tile) const {
   for_each_leaf_of_tile(
       base, [&](const Coord& leaf) { air = air && !access.probeConstLeaf(leaf) && access.getValue(leaf) > 0; });
   return air;
+}
+
+bool Stock::is_solid(const Index3& tile) const {
+  const Coord base(tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore);
+  const openvdb::FloatGrid& distance = *impl_->distance;
+  const auto access = distance.getConstUnsafeAccessor();
+  bool solid = true;
+  for_each_leaf_of_tile(
+      base, [&](const Coord& leaf) { solid = solid && !access.probeConstLeaf(leaf) && access.getValue(leaf) < 0; });
+  return solid;
 }
 
 namespace {
@@ -268,6 +289,11 @@ void Stock::store(const Index3& tile, const Tile& in) {
 }
 
 void Stock::clear_stamps() { impl_->stamp = openvdb::Int32Grid::create(kUncut); }
+
+void Stock::clear() {
+  impl_->distance->clear();
+  clear_stamps();
+}
 
 double material_share(double d, double voxel) { return std::clamp(0.5 - 0.5 * d / voxel, 0.0, 1.0); }
 

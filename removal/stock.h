@@ -53,31 +53,38 @@ class Stock {
   float voxel(const Index3& index) const;
   std::int32_t stamp(const Index3& index) const;
 
-  /// Many readings by one thread: the value of the voxel nearest to a point, clipped to the band.
+  /// Many readings by one thread.
   class Probe {
    public:
     explicit Probe(const Stock& stock);
     ~Probe();
+    /// The value of the voxel nearest to a point, clipped to the band.
     float nearest(const Vec3& point) const;
+    /// As Stock::distance_mm.
+    double distance_mm(const Vec3& point) const;
 
    private:
     struct Access;
     std::unique_ptr<Access> access_;
-    double per_mm_;
+    double voxel_mm_, per_mm_;
   };
 
   /// Tiles are numbered so that tile t owns the voxels t * kCore ... t * kCore + kCore - 1. Thread safe.
   void load(const Index3& tile, Tile& out) const;
-  /// A cube of side^3 voxels from `first` on, rows along z, then y, then x. Thread safe.
+  /// A cube of side^3 voxels from `first` on, rows along z, then y, then x; `stamp` null where not wanted. Thread safe.
   void read(const Index3& first, int side, float* distance, std::int32_t* stamp) const;
   /// False where no stamp has set a voxel of the tile's core. Thread safe.
   bool is_cut(const Index3& tile) const;
   /// True where the tile and its upper layer hold nothing but air. Thread safe.
   bool is_air(const Index3& tile) const;
+  /// True where the tile and its upper layer are deeper in material than the band. Thread safe.
+  bool is_solid(const Index3& tile) const;
   /// Writes the core of a tile back. Not thread safe.
   void store(const Index3& tile, const Tile& in);
   /// Forgets which stamps cut what: the stock is a blank.
   void clear_stamps();
+  /// Leaves air everywhere, and gives the memory back.
+  void clear();
 
   /// Volume of material in the box, mm^3 (first-order smeared step over one voxel each way).
   double volume_mm3() const;

@@ -10,9 +10,10 @@
 #include "removal/batch_cut.h"
 #include "removal/carve.h"
 #include "removal/chip_reader.h"
+#include "removal/engager.h"
 #include "removal/patch_lanes.h"
+#include "removal/slot_map.h"
 #include "removal/stamp_order.h"
-#include "removal/vector_clones.h"
 
 namespace camber::removal {
 namespace {
@@ -38,48 +39,6 @@ struct WorkBuffers {
   Tile blank;
 };
 
-Index3 tile_of(const Vec3& p, double tile_mm) {
-  return {static_cast<int>(std::floor(p.x() / tile_mm)), static_cast<int>(std::floor(p.y() / tile_mm)),
-          static_cast<int>(std::floor(p.z() / tile_mm))};
-}
-
-/// Material in the tile's core, in voxels.
-CAMBER_VECTOR_CLONES
-double material_voxels(const Tile& tile, double voxel_mm) {
-  const auto scale = static_cast<float>(0.5 / voxel_mm);
-  double sum = 0;
-  for (int i = 0; i < Tile::kCore; ++i) {
-    std::array<float, Tile::kCore> share{};
-    for (int j = 0; j < Tile::kCore; ++j) {
-      const float* d = tile.distance.data() + Tile::offset(i, j, 0);
-      for (int k = 0; k < Tile::kCore; ++k) share[k] += std::min(std::max(0.5f - scale * d[k], 0.0f), 1.0f);
-    }
-    for (const float v : share) sum += static_cast<double>(v);
-  }
-  return sum;
-}
-
-/// Tiles of a box of space, numbered; -1 where there is nothing to cut.
-class SlotMap {
- public:
-  void reset(const Index3& lo, const Index3& hi) {
-    lo_ = lo;
-    for (int a = 0; a < 3; ++a) n_[a] = std::max(0, hi[a] - lo[a] + 1);
-    slots_.assign(static_cast<std::size_t>(n_[0]) * n_[1] * n_[2], -1);
-  }
-  bool contains(int i, int j, int k) const {
-    return i >= lo_[0] && j >= lo_[1] && k >= lo_[2] && i < lo_[0] + n_[0] && j < lo_[1] + n_[1] && k < lo_[2] + n_[2];
-  }
-  std::int32_t& at(int i, int j, int k) {
-    return slots_[(static_cast<std::size_t>(i - lo_[0]) * n_[1] + (j - lo_[1])) * n_[2] + (k - lo_[2])];
-  }
-  std::int32_t find(int i, int j, int k) { return contains(i, j, k) ? at(i, j, k) : -1; }
-
- private:
-  Index3 lo_{}, n_{};
-  std::vector<std::int32_t> slots_;
-};
-
 }  // namespace
 
 struct Stretch::Impl {
@@ -93,9 +52,10 @@ struct Stretch::Impl {
   double tile_mm;
   std::vector<WorkTile> tiles;
   SlotMap slots;
-  StampOrder order;                 ///< batches and who covers whom
-  std::vector<CarveBend> bends;     ///< per stamp of the stretch; empty: straight
-  std::optional<PatchLanes> lanes;  ///< made by the first carve
+  StampOrder order;                    ///< batches and who covers whom
+  std::vector<CarveBend> bends;        ///< per stamp of the stretch; empty: straight
+  std::optional<PatchLanes> lanes;     ///< made by the first carve
+  std::unique_ptr<Engager> engager{};  ///< of undeflected stamps
 
   void find_tiles(const ShiftTable* shifts);
   void list_stamps(const ShiftTable* shifts);
@@ -104,6 +64,7 @@ struct Stretch::Impl {
   void cut_tiles(const ShiftTable* shifts);
   void work(WorkTile& tile, const ShiftTable* shifts, const ChipReader* reader) const;
   Engagement gather();
+  Engagement engage();
 };
 
 void Stretch::Impl::find_tiles(const ShiftTable* shifts) {
@@ -284,6 +245,22 @@ Engagement Stretch::Impl::gather() {
   return out;
 }
 
+/// Undeflected, and all chips kept.
+Engagement Stretch::Impl::engage() {
+  engager = std::make_unique<Engager>(stock, *blank, envelope, all_stamps, options.first_id);
+  std::vector<std::vector<Chip>> by_stamp(stamps.size());
+  engager->engage(
+      static_cast<std::size_t>(stamps.data() - all_stamps.data()), stamps.size(),
+      [&](std::size_t k, std::span<const ChipBlock> chips) { by_stamp[k] = chips_of(engager->blocks(), chips); });
+  Engagement out;
+  out.first.push_back(0);
+  for (const auto& chips : by_stamp) {
+    out.chips.insert(out.chips.end(), chips.begin(), chips.end());
+    out.first.push_back(out.chips.size());
+  }
+  return out;
+}
+
 Stretch::Stretch(Stock& stock, const Stock* blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
                  std::size_t from, std::size_t count, const StretchOptions& options)
     : impl_(std::make_unique<Impl>(Impl{stock,
@@ -302,6 +279,8 @@ Stretch::Stretch(Stock& stock, const Stock* blank, const EnvelopeGrid& envelope,
 Stretch::~Stretch() = default;
 
 Engagement Stretch::carve(const ShiftTable* shifts) {
+  impl_->engager.reset();
+  if (!shifts && impl_->options.engage && impl_->options.shrink_mm == 0) return impl_->engage();
   impl_->list_stamps(shifts);
   impl_->cut_tiles(shifts);
   return impl_->gather();
@@ -309,6 +288,7 @@ Engagement Stretch::carve(const ShiftTable* shifts) {
 
 double Stretch::commit() {
   Impl& m = *impl_;
+  if (m.engager) return m.engager->commit();
   double removed = 0;
   for (auto& w : m.tiles) {
     if (w.result) m.stock.store(w.index, *w.result);
@@ -316,19 +296,6 @@ double Stretch::commit() {
   }
   m.tiles.clear();
   return removed;
-}
-
-double chip_volume_mm3(const EnvelopeGrid& e, std::span<const Chip> chips) {
-  const double turn = 2 * kPi / e.steps;
-  double volume = 0;
-  for (const Chip& c : chips) {
-    const auto& ring = e.rings[c.point / static_cast<std::uint32_t>(e.steps)];
-    const double k1 = ring.profile.meridian_curvature_per_mm, k2 = ring.profile.parallel_curvature_per_mm;
-    const double h = c.thickness_mm;
-    volume += (h - 0.5 * (k1 + k2) * h * h + k1 * k2 * h * h * h / 3) * c.width_share() * ring.width_mm *
-              ring.profile.radius_mm * turn;
-  }
-  return volume;
 }
 
 }  // namespace camber::removal

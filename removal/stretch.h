@@ -5,21 +5,13 @@
 #include <span>
 #include <vector>
 
+#include "removal/chip.h"
 #include "removal/cutter.h"
 #include "removal/shift_table.h"
 #include "removal/stamp.h"
 #include "removal/stock.h"
 
 namespace camber::removal {
-
-/// What one envelope point takes at one stamp.
-struct Chip {
-  std::uint32_t point = 0;     ///< index into EnvelopeGrid
-  float thickness_mm = 0;      ///< uncut, along the envelope normal, > 0
-  bool after_tooth = false;    ///< bounded below by what the tooth before left, not by older surface
-  std::uint8_t cut_255 = 255;  ///< how much of the ring's width is in the cut, in 255ths
-  double width_share() const { return cut_255 / 255.0; }
-};
 
 /// Chips of stamp k: chips[first[k]] ... chips[first[k + 1] - 1].
 struct Engagement {
@@ -72,9 +64,5 @@ class Stretch {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Volume that the chips of one stamp hold, mm^3: sum of (h - H h^2 + K h^3 / 3) dA, with the mean and Gaussian
-/// curvature of the envelope. Source: parallel surfaces (Steiner).
-double chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const Chip> chips);
 
 }  // namespace camber::removal

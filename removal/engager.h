@@ -1,0 +1,40 @@
+#pragma once
+// The undeflected cutter against the stock, batch by batch: the chips of a batch's stamps are read from the tiles as
+// they stand, then the batch is cut.
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "removal/chip.h"
+#include "removal/cutter.h"
+#include "removal/envelope_blocks.h"
+#include "removal/stamp.h"
+#include "removal/stock.h"
+
+namespace camber::removal {
+
+/// Takes the chips of stamp `from` + k. Called by several threads at once, once for every k, in any order; what the
+/// span holds is gone afterwards.
+using ChipSink = std::function<void(std::size_t k, std::span<const ChipBlock>)>;
+
+/// For one run of one tool. How depth and chip are defined: removal/stretch.h.
+class Engager {
+ public:
+  /// As removal::Stretch; everything passed must outlive the object.
+  Engager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
+          std::int32_t first_id);
+  ~Engager();
+
+  const EnvelopeBlocks& blocks() const;
+  /// Cuts stamps[from] ... stamps[from + count - 1]; the stock is written by commit() only.
+  void engage(std::size_t from, std::size_t count, const ChipSink& sink);
+  /// Returns the volume that the last engage() took, mm^3.
+  double commit();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace camber::removal

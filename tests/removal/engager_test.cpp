@@ -1,0 +1,159 @@
+// Chips read in blocks against those read patch by patch, one stamp at a time.
+#include "removal/engager.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "removal/block_kernels.h"
+#include "removal/stretch.h"
+#include "removal/tile_arena.h"
+
+namespace camber::removal {
+namespace {
+
+machine::Tool tool_of(machine::ToolType type) {
+  machine::Tool tool;
+  tool.type = type;
+  tool.diameter_mm = 4;
+  tool.corner_radius_mm = type == machine::ToolType::bull ? 1 : 0;
+  tool.flutes = 3;
+  tool.helix_rad = 0.5;
+  tool.overhang_mm = 20;
+  return tool;
+}
+
+/// Two wavy rows side by side, out and back: corners and thin chips as well.
+std::vector<Stamp> wavy_rows() {
+  std::vector<Stamp> out;
+  for (int row = 0; row < 2; ++row)
+    for (int i = 0; i <= 60; ++i) {
+      const double x = -1 + 0.15 * (row % 2 ? 60 - i : i);
+      Stamp s;
+      s.tip_mm = {x, 0.4 * row + 0.2 * std::sin(x), -1.0 + 0.3 * std::sin(0.9 * x)};
+      s.first = out.empty();
+      s.feed_per_tooth_mm = out.empty() ? Vec3(0.15, 0, 0) : Vec3(s.tip_mm - out.back().tip_mm);
+      out.push_back(s);
+    }
+  return out;
+}
+
+Stock box() {
+  const Vec3 lo(0, -4, -3), hi(7, 4, 0);
+  return {[=](const Vec3& p) { return box_distance_mm(p, lo, hi); }, lo, hi, 0.1, 5};
+}
+
+void expect_the_chips_of_stamps_one_by_one(machine::ToolType type) {
+  EnvelopeGrid envelope = make_envelope(tool_of(type), 2.0, 0.1, kPi / 90);
+  make_patches(envelope, 0.24);
+  const std::vector<Stamp> stamps = wavy_rows();
+  const Stock blank = box();
+  Stock one_by_one = box(), in_batches = box();
+  // A table of shifts that are zero takes the other way through the code.
+  const ShiftTable none(stamps.size(), envelope.steps_per_pitch, {0.0, 2.0});
+  Stretch slow(one_by_one, &blank, envelope, stamps, 0, stamps.size(), {});
+  const Engagement expected = slow.carve(&none);
+  Engager fast(in_batches, blank, envelope, stamps, 0);
+  std::vector<std::vector<Chip>> found(stamps.size());
+  fast.engage(0, stamps.size(), [&](std::size_t k, std::span<const ChipBlock> chips) {
+    found[k] = chips_of(fast.blocks(), chips);
+    EXPECT_NEAR(chip_volume_mm3(envelope, fast.blocks(), chips), chip_volume_mm3(envelope, found[k]), 1e-9);
+  });
+  double volume = 0, expected_volume = 0, difference = 0;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    std::map<std::uint32_t, float> there;
+    for (const Chip& c : expected.of(k)) there[c.point] = c.thickness_mm;
+    for (const Chip& c : found[k]) {
+      const auto other = there.find(c.point);
+      difference += std::abs(c.thickness_mm - (other == there.end() ? 0.0f : other->second));
+      ++count;
+    }
+    volume += chip_volume_mm3(envelope, found[k]);
+    expected_volume += chip_volume_mm3(envelope, expected.of(k));
+  }
+  ASSERT_GT(count, 10000u);
+  EXPECT_NEAR(volume / expected_volume, 1, 1e-3);
+  EXPECT_LT(difference / static_cast<double>(count), 2e-4);  // of chips of 0.05 to 0.15 mm
+  EXPECT_NEAR(fast.commit() / slow.commit(), 1, 1e-5);
+  for (int x = -3; x < 75; x += 2)
+    for (int y = -42; y < 42; y += 3)
+      for (int z = -20; z < 3; ++z)
+        ASSERT_NEAR(one_by_one.voxel({x, y, z}), in_batches.voxel({x, y, z}), 2e-6) << x << ' ' << y << ' ' << z;
+}
+
+}  // namespace
+
+TEST(Engager, ABallsChipsAreThoseOfStampsOneByOne) { expect_the_chips_of_stamps_one_by_one(machine::ToolType::ball); }
+
+TEST(Engager, ABullNosesChipsAreThoseOfStampsOneByOne) {
+  expect_the_chips_of_stamps_one_by_one(machine::ToolType::bull);
+}
+
+TEST(EnvelopeBlocks, HoldEveryPointOnce) {
+  // 3 x 31 steps and an odd number of rings leave places over.
+  const EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::bull), 1.5, 0.1, 2 * kPi / 93);
+  const EnvelopeBlocks blocks(envelope, 0.1, 0.5);
+  std::vector<int> seen(envelope.size());
+  for (std::uint32_t b = 0; b < blocks.size(); ++b)
+    for (int l = 0; l < EnvelopeBlocks::kLanes; ++l) {
+      const std::uint32_t p = blocks.point(b, l);
+      if (p == EnvelopeBlocks::kNoPoint) continue;
+      ++seen[p];
+      EXPECT_EQ(static_cast<int>(p) / envelope.steps, blocks.block(b).ring + l / EnvelopeBlocks::kSteps);
+      EXPECT_EQ(static_cast<int>(p) % envelope.steps_per_pitch, blocks.block(b).step + l % EnvelopeBlocks::kSteps);
+    }
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(seen.size()));
+  EXPECT_EQ(blocks.up_to(100), blocks.bounds().count);
+}
+
+TEST(BlockKernels, WideAndNarrowVectorsReadTheSame) {
+  const EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::ball), 2.0, 0.1, kPi / 90);
+  const EnvelopeBlocks blocks(envelope, 0.1, 0.5);
+  const std::vector<Stamp> stamps = wavy_rows();
+  const Stock stock = box();
+  TileArena arena;
+  arena.load(stock, stock, envelope.shape, stamps);
+  // Voxels as if stamps had cut them.
+  std::mt19937 random(3);
+  for (std::size_t t = 1; t < arena.size(); ++t)
+    for (auto& id : arena[t].stamp) id = static_cast<std::int32_t>(random() % 8) - 2;
+  const std::size_t room = blocks.size() + 8, k = 30;
+  std::vector<std::int32_t> x(stamps.size()), y(stamps.size()), z(stamps.size());
+  for (std::size_t s = 0; s < stamps.size(); ++s) {
+    x[s] = static_cast<std::int32_t>(1e6 * stamps[s].tip_mm.x());
+    y[s] = static_cast<std::int32_t>(1e6 * stamps[s].tip_mm.y());
+    z[s] = static_cast<std::int32_t>(1e6 * stamps[s].tip_mm.z());
+  }
+  struct Reading {
+    std::vector<std::int32_t> found, lane, cell, hit;
+    std::vector<std::uint32_t> block, deep;
+    std::vector<float> thickness, cap, u, v, w, thin;
+    bool operator==(const Reading&) const = default;
+  };
+  const auto read = [&](const BlockKernels& kernels) {
+    Reading r;
+    r.found.resize(room), r.block.resize(room), r.deep.resize(room);
+    for (auto* v : {&r.lane, &r.cell, &r.hit}) v->resize(8 * room);
+    for (auto* v : {&r.thickness, &r.cap, &r.u, &r.v, &r.w, &r.thin}) v->resize(8 * room);
+    const StampPlace place = arena.place_of(stamps[k], -0.01);
+    const int found = kernels.find_blocks(blocks.bounds(), place, arena.view(), r.found.data());
+    BlockHits hits{0, r.block.data(), r.deep.data(), r.thickness.data()};
+    ShallowPoints shallow{0,           r.lane.data(), r.cell.data(), r.cap.data(), {r.u.data(), r.v.data(), r.w.data()},
+                          r.hit.data()};
+    kernels.read_blocks(blocks.points(), r.found.data(), found, place, arena.view(), 0.05f, hits, shallow);
+    EXPECT_GT(hits.count, 30);
+    EXPECT_GT(shallow.count, 30);
+    shallow.count = shallow.count / 8 * 8;
+    const FixedTips tips{x.data(), y.data(), z.data(), {x[k], y[k], z[k]}, 1e-6f, 0};
+    kernels.thin_points(blocks.points(), shallow, arena.view(), tips, 0, 2, 0.05f, r.thin.data());
+    return r;
+  };
+  EXPECT_EQ(read(kBaseBlockKernels), read(block_kernels()));
+}
+
+}  // namespace camber::removal
