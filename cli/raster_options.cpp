@@ -7,24 +7,13 @@
 
 #include "base/numbers.h"
 #include "cli/console.h"
+#include "cli/validators.h"
 #include "machine/unprogrammed_job.h"
 
 namespace camber::cli {
 namespace {
 
 constexpr double kFinestToleranceMm = 0.0005;
-
-/// "nan" and "inf" are none.
-CLI::Validator number_from_to(double least, double most) {
-  return CLI::Validator(
-      [least, most](std::string& text) {
-        const auto value = parse_number(text);
-        return value && *value >= least && *value <= most
-                   ? std::string()
-                   : fmt::format("{}: a number from {:g} to {:g} was expected", text, least, most);
-      },
-      "");
-}
 
 CLI::Validator rectangle_validator() {
   return CLI::Validator(
