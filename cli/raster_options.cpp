@@ -108,6 +108,7 @@ Action RasterOptions::action(const ResegmentArguments& shared, const GlobalOptio
   RasterArguments arguments = arguments_;
   arguments.output = shared.output;
   arguments.json = shared.json;
+  arguments.report = shared.report;
   arguments.tolerance_mm = shared.tolerance_mm;
   arguments.length_mm = shared.length_mm;
   arguments.contour_mm = shared.contour_mm;
@@ -115,6 +116,7 @@ Action RasterOptions::action(const ResegmentArguments& shared, const GlobalOptio
     if (options.effective_config) return print_job(arguments.job, options);
     require_folder_of(arguments.output);
     require_folder_of(arguments.json);
+    require_folder_of(arguments.report);
     return run_raster(arguments, options);
   };
 }
