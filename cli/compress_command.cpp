@@ -56,6 +56,7 @@ std::string json_report(const Figures& before, const Figures& after, const repat
                                    {"max_deviation_mm", result.max_deviation_mm},
                                    {"measured_deviation_mm", measured.max_mm},
                                    {"max_kink_deg", deg_from_rad(result.max_kink_rad)},
+                                   {"rms_kink_deg", deg_from_rad(result.rms_kink_rad)},
                                    {"runs", result.runs.size()},
                                    {"time_before_s", nullptr},
                                    {"time_after_s", nullptr}};
@@ -97,6 +98,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   compress_options.switch_planes = arguments.switch_planes;
   compress_options.helices = arguments.helices;
   compress_options.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
+  compress_options.fit.most_kink_rad = rad_from_deg(arguments.tangent_deg);
   compress_options.fit.arcs = !arguments.lines_only;
   const repath::Compression result = repath::compress(program, moves, compress_options);
 

@@ -13,6 +13,7 @@ struct CompressArguments {
   std::string json;     ///< empty: none
   std::string report;   ///< the page; empty: none
   double tolerance_mm = 0;
+  double tangent_deg = 1;  ///< most that arcs may kink against what is beside them; 180: not bounded
   bool lines_only = false;
   bool switch_planes = false;
   bool helices = false;

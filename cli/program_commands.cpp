@@ -16,6 +16,7 @@
 #include "cli/raster_options.h"
 #include "cli/resegment_command.h"
 #include "cli/time_command.h"
+#include "cli/validators.h"
 #include "machine/machine.h"
 
 namespace camber::cli {
@@ -225,6 +226,11 @@ void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->type_name("M.toml");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
   auto* lines_only = command->add_flag("--lines-only", arguments->lines_only, "no arcs");
+  command
+      ->add_option("--tangent-deg", arguments->tangent_deg,
+                   "most that an arc may kink against its neighbour where the program is smooth; else 1; 180: any kink")
+      ->check(number_from_to(0.05, 180))
+      ->type_name("A");
   command
       ->add_flag("--helices", arguments->helices,
                  "arcs along which the third axis moves evenly too, where the path is one in space")

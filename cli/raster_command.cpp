@@ -11,6 +11,8 @@
 #include "cli/console.h"
 #include "cli/program_figures.h"
 #include "cli/progress.h"
+#include "cli/raster_report.h"
+#include "cli/rewrite_report.h"
 #include "feedmodel/control_options.h"
 #include "machine/unprogrammed_job.h"
 #include "repath/fastest.h"
@@ -137,16 +139,8 @@ struct Report {
   const repath::Candidate& chosen() const { return result.tried[result.chosen]; }
   bool scallops_too_high() const { return raster.spacing.steep_share > 0; }
 
-  std::pair<double, double> spaces() const {
-    const auto& rows = raster.spacing.rows_mm;
-    double least = rows.size() > 1 ? rows[1] - rows[0] : 0, most = least;
-    for (std::size_t k = 1; k < rows.size(); ++k)
-      least = std::min(least, rows[k] - rows[k - 1]), most = std::max(most, rows[k] - rows[k - 1]);
-    return {least, most};
-  }
-
   std::string text() const {
-    const auto [least, most] = spaces();
+    const auto [least, most] = row_spaces_mm(raster.spacing);
     const repath::ContourFigures& now = chosen().figures;
     std::string out = fmt::format(
         "rows {}, {:.3f} to {:.3f} mm apart, in {} pieces, {} links along the surface; scallops up to {:.4f} mm\n",
@@ -165,7 +159,7 @@ struct Report {
   }
 
   std::string json() const {
-    const auto [least, most] = spaces();
+    const auto [least, most] = row_spaces_mm(raster.spacing);
     const repath::ContourFigures& now = chosen().figures;
     const auto um = [](const repath::ContourFigures& f) {
       return nlohmann::ordered_json{{"max", 1000 * f.contour_max_mm}, {"rms", 1000 * f.contour_rms_mm}};
@@ -223,7 +217,7 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
   const std::string part = arguments.part.empty() ? job.part.mesh : arguments.part;
   if (part.empty())
     fail_on_file(job.path, "has no [part] mesh, and there is no --part; one of them was expected", "part-missing");
-  for (const auto& output : {arguments.output, arguments.json})
+  for (const auto& output : {arguments.output, arguments.json, arguments.report})
     require_not_an_input(output, {job.path, job.machine_path, part, job.stock.mesh, job.stock.vdb});
   const machine::Tool& tool = chosen_tool(job, arguments);
   if (arguments.spindle_rpm > job.machine.spindle.max_rpm)
@@ -233,7 +227,8 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
                  "spindle-speed");
   settle(diagnostics, options);
 
-  const removal::DropCutter drop(read_part(part), removal::shape_of(tool));
+  const removal::TriangleMesh mesh = read_part(part);
+  const removal::DropCutter drop(mesh, removal::shape_of(tool));
   repath::RasterOptions raster_options{.boundary = boundary_of(arguments, part, drop),
                                        .direction_rad = arguments.direction_deg * kPi / 180,
                                        .scallop_mm = arguments.scallop_mm,
@@ -275,6 +270,14 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
                       figures_of(now.program, now.moves)};
   write_file(arguments.output, result.path.text);
   if (!arguments.json.empty()) write_file(arguments.json, report.json());
+  if (!arguments.report.empty()) {
+    report::RewritePage page =
+        raster_page({mesh, raster, result, constant.moves, now.moves, report.before, report.after, before,
+                     report.chosen().figures, arguments.scallop_mm, arguments.tolerance_mm, kComparedStepMm});
+    page.title = "Raster on " + part;
+    page.subtitle = rewrite_subtitle(part, arguments.output, arguments.tolerance_mm);
+    write_file(arguments.report, report::rewrite_page(page));
+  }
   if (!options.quiet) fmt::print("{}", report.text());
   return status_of(report, result);
 }

@@ -11,6 +11,7 @@ namespace camber::cli {
 struct RasterArguments {
   std::string part, job, output;
   std::string json;         ///< empty: none
+  std::string report;       ///< the page; empty: none
   std::optional<int> tool;  ///< not given: the job's only one
   double tolerance_mm = 0, scallop_mm = 0;
   double feed_mm_per_min = 0, spindle_rpm = 0;

@@ -7,24 +7,13 @@
 
 #include "base/numbers.h"
 #include "cli/console.h"
+#include "cli/validators.h"
 #include "machine/unprogrammed_job.h"
 
 namespace camber::cli {
 namespace {
 
 constexpr double kFinestToleranceMm = 0.0005;
-
-/// "nan" and "inf" are none.
-CLI::Validator number_from_to(double least, double most) {
-  return CLI::Validator(
-      [least, most](std::string& text) {
-        const auto value = parse_number(text);
-        return value && *value >= least && *value <= most
-                   ? std::string()
-                   : fmt::format("{}: a number from {:g} to {:g} was expected", text, least, most);
-      },
-      "");
-}
 
 CLI::Validator rectangle_validator() {
   return CLI::Validator(
@@ -119,6 +108,7 @@ Action RasterOptions::action(const ResegmentArguments& shared, const GlobalOptio
   RasterArguments arguments = arguments_;
   arguments.output = shared.output;
   arguments.json = shared.json;
+  arguments.report = shared.report;
   arguments.tolerance_mm = shared.tolerance_mm;
   arguments.length_mm = shared.length_mm;
   arguments.contour_mm = shared.contour_mm;
@@ -126,6 +116,7 @@ Action RasterOptions::action(const ResegmentArguments& shared, const GlobalOptio
     if (options.effective_config) return print_job(arguments.job, options);
     require_folder_of(arguments.output);
     require_folder_of(arguments.json);
+    require_folder_of(arguments.report);
     return run_raster(arguments, options);
   };
 }

@@ -88,16 +88,6 @@ struct Report {
             {"length of the cuts", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
   }
 
-  report::TextTable tried() const {
-    report::TextTable table{"Lengths tried", {"length x L_b", "feed x", "time, s", "contour error, um", "rms"}, {}, {}};
-    for (const auto& c : result.tried)
-      table.rows.push_back({fmt::format("{:.2f}", c.length_factor), fmt::format("{:.2f}", c.feed_factor),
-                            fmt::format("{:.1f}", c.figures.time_s),
-                            fmt::format("{:.1f}", 1000 * c.figures.contour_max_mm),
-                            fmt::format("{:.1f}", 1000 * c.figures.contour_rms_mm)});
-    return table;
-  }
-
  private:
   static nlohmann::ordered_json of(const repath::ContourFigures& f) {
     return {{"max", 1000 * f.contour_max_mm}, {"rms", 1000 * f.contour_rms_mm}};
@@ -138,7 +128,7 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
         report.figures());
     page.title = "Segments of " + arguments.program;
     page.subtitle = rewrite_subtitle(arguments.program, arguments.output, arguments.tolerance_mm);
-    page.tables.push_back(report.tried());
+    page.tables.push_back(tried_table(result.tried));
     write_file(arguments.report, report::rewrite_page(page));
   }
   if (!options.quiet) fmt::print("{}", report.text());

@@ -25,6 +25,16 @@ report::RewritePage rewrite_page_of(const Rewriting& rewriting, std::vector<repo
   return page;
 }
 
+report::TextTable tried_table(std::span<const repath::Candidate> tried) {
+  report::TextTable table{"Lengths tried", {"length x L_b", "feed x", "time, s", "contour error, um", "rms"}, {}, {}};
+  for (const auto& c : tried)
+    table.rows.push_back({fmt::format("{:.2f}", c.length_factor), fmt::format("{:.2f}", c.feed_factor),
+                          fmt::format("{:.1f}", c.figures.time_s),
+                          fmt::format("{:.1f}", 1000 * c.figures.contour_max_mm),
+                          fmt::format("{:.1f}", 1000 * c.figures.contour_rms_mm)});
+  return table;
+}
+
 std::string rewrite_subtitle(const std::string& program, const std::string& output, double tolerance_mm) {
   return fmt::format("{} to {}, tolerance {} mm, camber {}", program, output, format_trimmed(tolerance_mm, 5),
                      CAMBER_VERSION);

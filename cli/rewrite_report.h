@@ -6,6 +6,7 @@
 
 #include "nc/interpreter.h"
 #include "repath/compress.h"
+#include "repath/fastest.h"
 #include "repath/path_deviation.h"
 #include "report/rewrite_page.h"
 
@@ -20,6 +21,9 @@ struct Rewriting {
 
 /// Pictures, deviations and the figures given; title and tables are the caller's.
 report::RewritePage rewrite_page_of(const Rewriting& rewriting, std::vector<report::Figure> figures);
+
+/// The lengths that were tried, and what each came to.
+report::TextTable tried_table(std::span<const repath::Candidate> tried);
 
 /// "p.nc to out.nc, tolerance 0.01 mm, camber 0.1.0"
 std::string rewrite_subtitle(const std::string& program, const std::string& output, double tolerance_mm);

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "repath/joints.h"
 #include "repath/run_text.h"
-#include "repath/tangent.h"
 
 namespace camber::repath {
 
@@ -24,6 +24,8 @@ Compression compress(const nc::Program& program, const nc::Interpretation& moves
   const TextStyle style = text_style_of(program, moves, options.whole_numbers_are_increments);
   Compression out;
   std::vector<nc::BlockReplacement> replacements;
+  double kink_squares = 0;
+  std::size_t joints = 0;
   for (const Run& run : runs_to_compress(program, moves, options.switch_planes && options.fit.arcs)) {
     const RunPath path = path_of(moves, run);
     if (path.points.size() < 2) continue;
@@ -44,14 +46,15 @@ Compression compress(const nc::Program& program, const nc::Interpretation& moves
       rewritten.deviation_mm = std::max(rewritten.deviation_mm, p.deviation_mm);
     }
     out.max_deviation_mm = std::max(out.max_deviation_mm, rewritten.deviation_mm);
-    const std::vector<bool> corners = corners_of(polyline, fit_options);
-    const std::vector<double> kinks = kinks_of(polyline, chain);
-    for (std::size_t k = 0; k < kinks.size(); ++k)
-      if (!corners[chain[k].last] && (chain[k].arc || chain[k + 1].arc))
-        out.max_kink_rad = std::max(out.max_kink_rad, kinks[k]);
+    for (const double kink : smooth_kinks_of(polyline, fit_options, chain)) {
+      out.max_kink_rad = std::max(out.max_kink_rad, kink);
+      kink_squares += kink * kink;
+      ++joints;
+    }
     out.runs.push_back(rewritten);
     replacements.push_back(std::move(replacement));
   }
+  if (joints > 0) out.rms_kink_rad = std::sqrt(kink_squares / static_cast<double>(joints));
   place_after(out.runs, replacements);
   out.text = nc::replace_blocks(program, replacements);
   return out;

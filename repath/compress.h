@@ -61,7 +61,8 @@ struct Compression {
   std::string text;
   std::vector<RewrittenRun> runs;  ///< those that became fewer blocks
   double max_deviation_mm = 0;     ///< over all of them
-  double max_kink_rad = 0;         ///< at joints that are no corners of the input
+  double max_kink_rad = 0;         ///< at joints beside an arc that are no corners of the input
+  double rms_kink_rad = 0;         ///< over these joints
 };
 
 /// Linear in the number of blocks. Does not throw on a program that was read and interpreted without errors.

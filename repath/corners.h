@@ -20,4 +20,7 @@ struct CornerRule {
 /// One value a vertex, true for corners; the first and the last are none. Time grows linearly with their number.
 std::vector<bool> corners_of(std::span<const Vec3> points, const CornerRule& rule);
 
+/// How much the path turns at each vertex, rad, between legs of at least `leg_mm`; zero at its ends.
+std::vector<double> turns_of(std::span<const Vec3> points, double leg_mm);
+
 }  // namespace camber::repath

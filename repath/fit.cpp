@@ -5,7 +5,10 @@
 #include <cassert>
 #include <cmath>
 
+#include "repath/chain_window.h"
+#include "repath/joints.h"
 #include "repath/shorten_lines.h"
+#include "repath/smooth_joints.h"
 #include "repath/tangent.h"
 
 namespace camber::repath {
@@ -42,6 +45,7 @@ class Search {
       make_tangent(points_, options_, fitter_, corners, smoother);
       if (kink_squares(smoother, corners) < kink_squares(chain, corners)) chain = std::move(smoother);
     }
+    smooth_joints(path_, options_, fitter_, corners, chain);
     return chain;
   }
 
@@ -157,18 +161,21 @@ std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& 
   const auto n = static_cast<std::uint32_t>(path.points.size());
   if (n < 2) return {};
   const Fitter fitter(path, options);
+  assert(!(options.most_kink_rad < kPi));
   const std::vector<bool> corners = corners_of(path, options);
+  const Joints joints(path, options, corners);
+  const Bends bends(path, options, fitter, joints);
   std::vector<ChainCost> cost(n, ChainCost{n, 0});
   std::vector<Primitive> best(n);
   cost[0] = {};
   for (std::uint32_t i = 0; i + 1 < n; ++i)
     for (std::uint32_t j = i + 1; j < n; ++j) {
-      for (const auto& fitted : line_or_arc(fitter, options, i, j)) {
+      for (const auto& fitted : line_or_arc(bends, fixed({.first = i, .last = i}), bends.stretch(i, j))) {
         if (!fitted) continue;
-        const ChainCost now = cost[i].with(path, *fitted);
+        const ChainCost now = cost[i].with(path, fitted->primitive);
         if (!(now < cost[j])) continue;
         cost[j] = now;
-        best[j] = *fitted;
+        best[j] = fitted->primitive;
       }
       if (corners[j]) break;
     }

@@ -18,6 +18,10 @@ struct FitOptions {
   std::uint32_t width = 6;             ///< ends that are kept of each number of primitives; see docs/compress.md
   bool helices = false;                ///< in space: arcs whose third axis moves evenly with the angle
   bool tangent = true;                 ///< arcs use their room to meet their neighbours without a kink
+  /// Where the path has no corner and no edge an arc meets an arc with a kink of no more than this, or an eighth of
+  /// what the path itself turns there; a line it meets with no more than this, or 0.6 of that turn (a chord leaves its
+  /// curve by half of it). Half a turn: not bounded. See repath/joints.h.
+  double most_kink_rad = 1 * kPi / 180;
 };
 
 /// A polyline, and the third coordinate of each point where it is one in space; else `heights` is empty. In space arcs
@@ -28,6 +32,9 @@ struct Polyline {
   Vec3 at(std::size_t k) const { return {points[k].x(), points[k].y(), heights.empty() ? 0.0 : heights[k]}; }
 };
 
+/// All three coordinates of each point.
+std::vector<Vec3> in_space(const Polyline& path);
+
 /// The chain: first primitive from points.front(), last to points.back(), each from where the one before ends. Every
 /// end is a point of the polyline, so nothing drifts. `points`: no two that follow each other are alike.
 /// Time and memory grow linearly with the number of points.
@@ -37,7 +44,8 @@ inline std::vector<Primitive> fit(std::span<const Vec2> points, const FitOptions
 }
 
 /// As fit(), with every pair of points tried: the fewest primitives that this geometry allows, and among chains of as
-/// many the one with the shortest lines. For tests: the time grows with the cube of the number of points.
+/// many the one with the shortest lines. Kinks are not bounded. For tests: the time grows with the cube of the number
+/// of points.
 std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& options);
 inline std::vector<Primitive> fit_exhaustively(std::span<const Vec2> points, const FitOptions& options) {
   return fit_exhaustively(Polyline{points}, options);
@@ -46,6 +54,7 @@ inline std::vector<Primitive> fit_exhaustively(std::span<const Vec2> points, con
 /// The vertices that are corners: they turn by more than corner_rad, and more than twice as much as the path beside
 /// them (a coarse circle turns everywhere alike). Turns are measured between legs of at least five tolerances.
 std::vector<bool> corners_of(const Polyline& path, const FitOptions& options);
+double corner_leg_mm(const FitOptions& options);
 
 /// The room of the arc from one point to another: its sweep may lie between the two; both with the sign of the
 /// direction. Nothing where no arc fits.
@@ -66,6 +75,10 @@ class Fitter {
   std::vector<std::uint32_t> line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t most) const;
 
   std::optional<ArcRoom> room(std::uint32_t first, std::uint32_t last) const;
+  /// As room(), and nothing where the stretch has too few points or is not flat.
+  std::optional<ArcRoom> arc_room(std::uint32_t first, std::uint32_t last) const;
+  /// The first that holds of the best sweep and others in the room.
+  std::optional<Primitive> arc_in(std::uint32_t first, std::uint32_t last, const ArcRoom& room) const;
   /// The arc with the sweep (a magnitude), rounded to increments; nothing where it does not fit then.
   std::optional<Primitive> arc_with_sweep(std::uint32_t first, std::uint32_t last, int direction,
                                           double sweep_rad) const;
@@ -76,6 +89,7 @@ class Fitter {
                                        const Vec2& center_mm) const;
   double area(std::uint32_t first, std::uint32_t last) const;
   bool flat(std::uint32_t first, std::uint32_t last) const;
+  bool may_be_arc(std::uint32_t first, std::uint32_t last) const;  ///< points enough, and flat where it must be
 
   Polyline path_;
   std::span<const Vec2> points_;

@@ -218,18 +218,28 @@ std::optional<Primitive> Fitter::arc_with_sweep(std::uint32_t first, std::uint32
   return rounded_arc(first, last, direction, 0.5 * (start + end) + offset_of(0.5 * length, sweep_rad) * across);
 }
 
-std::optional<Primitive> Fitter::arc(std::uint32_t first, std::uint32_t last) const {
-  if (last - first + 1 < options_.arc_points || (!options_.helices && !flat(first, last))) return std::nullopt;
-  if (points_[first] == points_[last]) return full_turn(first, last);
-  const auto room = this->room(first, last);
-  if (!room) return std::nullopt;
-  const double span = room->most_sweep_rad - room->least_sweep_rad;
-  if (auto fitted = arc_with_sweep(first, last, room->direction, room->best_sweep_rad)) return fitted;
+bool Fitter::may_be_arc(std::uint32_t first, std::uint32_t last) const {
+  return last - first + 1 >= options_.arc_points && (options_.helices || flat(first, last));
+}
+
+std::optional<ArcRoom> Fitter::arc_room(std::uint32_t first, std::uint32_t last) const {
+  return may_be_arc(first, last) ? room(first, last) : std::nullopt;
+}
+
+std::optional<Primitive> Fitter::arc_in(std::uint32_t first, std::uint32_t last, const ArcRoom& room) const {
+  const double span = room.most_sweep_rad - room.least_sweep_rad;
+  if (auto fitted = arc_with_sweep(first, last, room.direction, room.best_sweep_rad)) return fitted;
   for (const double share : {0.5, 0.25, 0.75}) {
-    if (auto fitted = arc_with_sweep(first, last, room->direction, room->least_sweep_rad + share * span)) return fitted;
+    if (auto fitted = arc_with_sweep(first, last, room.direction, room.least_sweep_rad + share * span)) return fitted;
     if (span < 1e-9) break;
   }
   return std::nullopt;
+}
+
+std::optional<Primitive> Fitter::arc(std::uint32_t first, std::uint32_t last) const {
+  if (points_[first] == points_[last]) return may_be_arc(first, last) ? full_turn(first, last) : std::nullopt;
+  const auto room = arc_room(first, last);
+  return room ? arc_in(first, last, *room) : std::nullopt;
 }
 
 /// The circle through the start that fits the others best: |p - s|^2 = 2 (p - s) . (c - s), least squares.

@@ -1,25 +1,10 @@
 #pragma once
 // Of the chains with as few primitives the one with the shortest lines.
-#include <array>
-#include <optional>
 #include <vector>
 
 #include "repath/fit.h"
 
 namespace camber::repath {
-
-struct ChainCost {
-  std::size_t primitives = 0;
-  double lines_mm = 0;
-
-  bool operator<(const ChainCost& other) const;
-  ChainCost with(const Polyline& path, const Primitive& p) const;
-};
-
-/// What may stand for a stretch: a line; an arc where no line does, or where it lies nearer to the points by a third.
-/// What is straight to an increment stays a line.
-std::array<std::optional<Primitive>, 2> line_or_arc(const Fitter& fitter, const FitOptions& options,
-                                                    std::uint32_t first, std::uint32_t last);
 
 /// Around each line the primitives beside it, up to the next corners and as long as they are no more than a few dozen
 /// points, are laid out anew: every chain between the same two ends is tried, and the one with the fewest primitives,

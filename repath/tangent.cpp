@@ -5,21 +5,14 @@
 
 #include <Eigen/Geometry>
 
+#include "repath/joints.h"
+
 namespace camber::repath {
 namespace {
 
 constexpr int kRounds = 30;
 constexpr int kJointRounds = 3;
 constexpr double kSmoothRad = 0.5;  ///< a joint that kinks by more is left to itself
-
-double chord_angle(std::span<const Vec2> points, const Primitive& p) {
-  Vec2 chord = points[p.last] - points[p.first];
-  if (chord.norm() == 0) {  // a full turn: half a turn behind the direction at its start
-    chord = Vec2(p.center_from_start_mm.y(), -p.center_from_start_mm.x());
-    if (p.sweep_rad > 0) chord = -chord;
-  }
-  return std::atan2(chord.y(), chord.x());
-}
 
 double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
@@ -32,7 +25,7 @@ std::vector<double> kinks_of(const Polyline& path, std::span<const Primitive> ch
       const Vec2 chord = path.points[p.last] - path.points[p.first];
       return Vec3(chord.x(), chord.y(), rise);
     }
-    const double angle = chord_angle(path.points, p) + side * 0.5 * p.sweep_rad;
+    const double angle = chord_angle_rad(path.points, p) + side * 0.5 * p.sweep_rad;
     const double length = p.center_from_start_mm.norm() * std::abs(p.sweep_rad);
     return Vec3(length * std::cos(angle), length * std::sin(angle), rise);
   };
@@ -113,7 +106,7 @@ void make_tangent(std::span<const Vec2> points, const FitOptions&, const Fitter&
   std::vector<Bounds> bounds(n);
   std::vector<double> angle(n), sweep(n);
   for (std::size_t k = 0; k < n; ++k) {
-    angle[k] = chord_angle(points, chain[k]);
+    angle[k] = chord_angle_rad(points, chain[k]);
     sweep[k] = chain[k].sweep_rad;
     if (!chain[k].arc || points[chain[k].first] == points[chain[k].last]) continue;
     const auto room = fitter.room(chain[k].first, chain[k].last);

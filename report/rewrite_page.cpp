@@ -27,7 +27,7 @@ constexpr const char* kPictureFrame =
     "<div class=\"bar\" id=\"path-legend\"></div>\n"
     "<p class=\"note screen\">Drag to turn, with the right button or Shift to move, wheel to zoom, double-click for "
     "the "
-    "whole. Dots mark the ends of blocks where they are far enough apart; the ring marks the largest deviation.</p>\n"
+    "whole. Dots mark the ends of blocks where they are far enough apart; a ring marks the largest deviation.</p>\n"
     "</div>\n";
 
 json picture_json(PackedArrays& arrays, const PathPicture& picture, const char* name) {
@@ -58,7 +58,9 @@ std::string row(const std::string& name, const std::string& value, const char* u
 }
 
 std::string deviation_html(const RewritePage& page) {
-  std::string out = "<div class=\"card\"><h2>How far the new path lies from the old one</h2>\n" + deviation_svg(page);
+  std::string out = "<div class=\"card\"><h2>How far the new path lies from the old one</h2>\n" +
+                    shares_svg({"Histogram of the deviation", "% of the rewritten length", "deviation, µm", 0,
+                                1000 * page.tolerance_mm, 3, page.length_by_deviation_mm});
   out += "<table><tbody>\n" + row("tolerance", number_text(page.tolerance_mm, 4), "mm", "tolerance_mm");
   out += row("largest, as the fit bounds it", number_text(page.max_deviation_mm, 4), "mm", "max_deviation_mm");
   out += row("largest, of points laid densely on both paths", number_text(page.measured_deviation_mm, 4), "mm",
@@ -73,17 +75,16 @@ std::string deviation_html(const RewritePage& page) {
 
 }  // namespace
 
-std::string deviation_svg(const RewritePage& page) {
-  const auto& length = page.length_by_deviation_mm;
+std::string shares_svg(const ShareHistogram& histogram) {
+  const auto& length = histogram.amounts;
   const double all = std::accumulate(length.begin(), length.end(), 0.0);
   if (!(all > 0)) return "<p class=\"note\">Nothing was rewritten.</p>\n";
   const double most = nice_limit(100 * *std::max_element(length.begin(), length.end()) / all);
   const auto x = [](double share) { return kLeft + share * (kWidth - kLeft - kRight); };
   const auto y = [](double share) { return kHeight - kBottom - share * (kHeight - kTop - kBottom); };
-  std::string out = fmt::format(
-      "<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Histogram of the "
-      "deviation\">\n",
-      kWidth, kHeight);
+  std::string out =
+      fmt::format("<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n", kWidth,
+                  kHeight, html_text(histogram.title));
   const auto text = [&](double at_x, double at_y, const char* anchor, const std::string& what) {
     fmt::format_to(std::back_inserter(out), "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", at_x,
                    at_y, anchor, what);
@@ -105,9 +106,9 @@ std::string deviation_svg(const RewritePage& page) {
          share == 0   ? "start"
          : share == 1 ? "end"
                       : "middle",
-         format_trimmed(1000 * share * page.tolerance_mm, 3));
-  text(kLeft - 36, 16, "start", "% of the rewritten length");
-  text(x(0.5), kHeight - 6, "middle", "deviation, µm");
+         format_trimmed(histogram.from + share * (histogram.to - histogram.from), histogram.decimals));
+  text(kLeft - 36, 16, "start", html_text(histogram.share_of));
+  text(x(0.5), kHeight - 6, "middle", html_text(histogram.axis));
   return out + "</svg>\n";
 }
 
@@ -126,7 +127,11 @@ std::string rewrite_page(const RewritePage& page) {
                        page.figures.begin() + static_cast<std::ptrdiff_t>(std::min(kLarge, page.figures.size())));
   tiles.figures.push_back({"largest deviation", page.max_deviation_mm, std::nullopt, "mm", 4, "max_deviation_mm"});
   out += tiles_html(tiles) + kPictureFrame;
-  out += "<div class=\"columns\">\n" + deviation_html(page) + figures_html(figures);
+  out += "<div class=\"columns\">\n";
+  if (page.deviation) out += deviation_html(page);
+  for (const ShareHistogram& h : page.histograms)
+    out += "<div class=\"card\"><h2>" + html_text(h.title) + "</h2>\n" + shares_svg(h) + "</div>\n";
+  out += figures_html(figures);
   for (const auto& table : page.tables) out += table_html(table);
   std::vector<std::string> notes = page.notes;
   for (const std::string& note : {thinned_note(page.before, "before"), thinned_note(page.after, "after")})
@@ -137,6 +142,7 @@ std::string rewrite_page(const RewritePage& page) {
       {"paths", json::array({picture_json(arrays, page.before, "before"), picture_json(arrays, page.after, "after")})}};
   if (page.measured_deviation_mm > 0)
     index["worst"] = {page.worst_place_mm.x(), page.worst_place_mm.y(), page.worst_place_mm.z()};
+  if (!page.part.points.empty()) index["part"] = picture_json(arrays, page.part, "part");
   out += "<script type=\"application/json\" id=\"index\">" + index.dump() + "</script>\n";
   out += "<script type=\"text/plain\" id=\"arrays\">" + arrays.text() + "</script>\n";
   return out + fmt::format("<script>{}</script>\n</body>\n</html>\n", kPathScript);

@@ -70,6 +70,23 @@ TEST(CompressCommand, ARampBecomesOneArcThatChecksClean) {
   EXPECT_NEAR(r["length_after_mm"], std::hypot(20, 2), 0.001);
 }
 
+TEST(CompressCommand, KinksAreBoundedUnlessAskedOtherwise) {
+  const TempFolder folder;
+  std::string text = "G21 G90 G17 G94\nG0 X0. Y0. Z0.\nG1 F600\n";
+  for (int i = 1; i <= 1400; ++i) text += fmt::format("X{:.3f} Y{:.3f}\n", 0.05 * i, 3 * std::sin(0.05 * i / 4));
+  folder.write("p.nc", text + "M30\n");
+  const auto figures = [&](const std::string& more) {
+    EXPECT_EQ(run_camber(folder, "compress p.nc --tolerance-mm 0.01 -o out.nc --json r.json" + more).status, 0);
+    return json::parse(file_text(folder / "r.json"));
+  };
+  const json any = figures(" --tangent-deg 180"), usual = figures(""), fine = figures(" --tangent-deg 0.2");
+  EXPECT_GT(any["max_kink_deg"], 1.5);
+  EXPECT_LE(usual["max_kink_deg"], 1);
+  EXPECT_LE(fine["max_kink_deg"], 0.2);
+  EXPECT_LT(usual["rms_kink_deg"], any["rms_kink_deg"]);
+  EXPECT_LT(fine["rms_kink_deg"], usual["rms_kink_deg"]);
+}
+
 TEST(CompressCommand, TellsWhatIsWrong) {
   const TempFolder folder;
   folder.write("p.nc", program());
@@ -77,6 +94,10 @@ TEST(CompressCommand, TellsWhatIsWrong) {
   EXPECT_EQ(run_camber(folder, "compress p.nc --tolerance-mm 0 -o out.nc").status, 2);
   EXPECT_EQ(run_camber(folder, "compress p.nc --tolerance-mm nan -o out.nc").status, 2);
   EXPECT_EQ(run_camber(folder, "compress p.nc --tolerance-mm 0.01 --lines-only --helices -o out.nc").status, 2);
+  const auto angle = run_camber(folder, "compress p.nc --tolerance-mm 0.01 --tangent-deg 0 -o out.nc");
+  EXPECT_EQ(angle.status, 2);
+  EXPECT_EQ(angle.err,
+            "--tangent-deg: 0: a number from 0.05 to 180 was expected\nRun with --help for more information.\n");
   const auto over = run_camber(folder, "compress p.nc --tolerance-mm 0.01 -o p.nc");
   EXPECT_EQ(over.status, 1);
   EXPECT_EQ(over.err,

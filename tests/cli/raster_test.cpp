@@ -10,6 +10,7 @@
 #include "nc/interpreter.h"
 #include "removal/drop_cutter.h"
 #include "tests/nc/rs274_oracle.h"
+#include "tests/support/read_text.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -17,6 +18,8 @@ namespace {
 
 using nlohmann::json;
 using tests::file_text;
+using tests::Read;
+using tests::read;
 using tests::replaced;
 using tests::run_camber;
 using tests::TempFolder;
@@ -40,20 +43,6 @@ std::string said(const TempFolder& folder, const std::string& arguments, int sta
   EXPECT_EQ(run.out, "");
   EXPECT_FALSE(std::filesystem::exists(folder / "raster.nc"));
   return run.err;
-}
-
-struct Read {
-  nc::Program program;
-  nc::Interpretation moves;
-};
-
-Read read(const std::string& text) {
-  Diagnostics diagnostics;
-  Read out;
-  out.program = nc::read_program(SourceText("raster.nc", text), diagnostics);
-  out.moves = nc::interpret(out.program, {}, diagnostics);
-  diagnostics.throw_if_errors();
-  return out;
 }
 
 TEST(RasterCommand, LaysRowsThatKeepToTheOffsetSurface) {

@@ -41,6 +41,15 @@ std::string rows(bool arcs, int count = 20, int blocks = 120) {
   return text + "G0 Z5.\nM30\n";
 }
 
+void copy_raster_sample(const TempFolder& folder) {
+  for (const char* name : {"job.toml", "machine.toml", "part.stl"})
+    folder.write(name, file_text(std::string(CAMBER_SOURCE_DIR "/samples/10-raster/") + name));
+}
+
+constexpr char kRaster[] =
+    "resegment --job job.toml --scallop-mm 0.02 --tolerance-mm 0.003 --feed-mm-per-min 1200 --spindle-rpm 12000 "
+    "-o out.nc ";
+
 TEST(RewritePage, OfCompressShowsLinesAndArcsAndTheNumbersOfTheJson) {
   CAMBER_NEEDS_BROWSER();
   const TempFolder folder;
@@ -68,6 +77,16 @@ TEST(RewritePage, OfResegmentShowsLinesAndTheNumbersOfTheJson) {
   EXPECT_NE(file_text(folder / "r.html").find("Lengths tried"), std::string::npos);
 }
 
+TEST(RewritePage, OfARasterShowsRowsOnThePartAndTheNumbersOfTheJson) {
+  CAMBER_NEEDS_BROWSER();
+  const TempFolder folder;
+  copy_raster_sample(folder);
+  const auto run = run_camber(folder, std::string(kRaster) + "--json r.json --report r.html");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(tests::open_page("raster", folder / "r.html", folder / "r.json"), "");
+  EXPECT_NE(file_text(folder / "r.html").find("Lengths tried"), std::string::npos);
+}
+
 TEST(RewritePage, OfALargeProgramIsThinnedAndStaysSmall) {
   CAMBER_NEEDS_BROWSER();
   const TempFolder folder;
@@ -91,6 +110,11 @@ TEST(RewritePage, IsNotWrittenOverWhatIsRead) {
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err,
             "p.nc: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+  copy_raster_sample(folder);
+  const auto raster = run_camber(folder, std::string(kRaster) + "--report part.stl");
+  EXPECT_EQ(raster.status, 1);
+  EXPECT_EQ(raster.err,
+            "part.stl: error: would be written over, but it is read; another name was expected [output-is-input]\n");
 }
 
 }  // namespace

@@ -11,25 +11,14 @@
 #include "repath/fastest.h"
 #include "repath/smooth_curve.h"
 #include "tests/support/path_distance.h"
+#include "tests/support/read_text.h"
 
 using namespace camber;
 using namespace camber::repath;
+using camber::tests::Read;
+using camber::tests::read;
 
 namespace {
-
-struct Read {
-  nc::Program program;
-  nc::Interpretation moves;
-};
-
-Read read(const std::string& text) {
-  Diagnostics diagnostics;
-  Read out;
-  out.program = nc::read_program(SourceText("p.nc", text), diagnostics);
-  out.moves = nc::interpret(out.program, {}, diagnostics);
-  diagnostics.throw_if_errors();
-  return out;
-}
 
 /// Greatest distance between two polylines, both ways, by dense points.
 double apart_mm(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {

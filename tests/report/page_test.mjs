@@ -56,6 +56,18 @@ const strokes = page => page.evaluate(() => {
   return out;
 });
 
+// How often lines are crossed down a column of the canvas, a third from the left, and how many pixels show the part.
+const rowsDown = page => page.evaluate(() => {
+  const canvas = document.querySelector('#scene canvas'), { width, height } = canvas, out = { lines: 0, part: 0 };
+  const px = canvas.getContext('2d').getImageData(0, 0, width, height).data, column = Math.floor(width / 3);
+  const isLine = i => px[i + 3] >= 100 && px[i + 2] > px[i] + 60;
+  for (let i = 0; i < px.length; i += 4)
+    if (px[i + 3] >= 128 && px[i] < 110 && px[i + 2] < 130) out.part++;
+  for (let y = 1; y < height; y++)
+    if (isLine(4 * (y * width + column)) && !isLine(4 * ((y - 1) * width + column))) out.lines++;
+  return out;
+});
+
 const painted = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 async function selected(page) {
@@ -141,6 +153,22 @@ const CHECKS = {
     await page.locator('#scene canvas').dblclick();
     await painted(page);
     expect(await page.locator('svg.histogram path').count() > 3, 'the histogram is missing');
+  },
+
+  // A raster: opens from the top, rows on the part's outline, two histograms.
+  async raster(page) {
+    await expectNumbersOfJson(page);
+    const figures = JSON.parse(readFileSync(json, 'utf8'));
+    const after = await strokes(page), rows = await rowsDown(page);
+    expect(after.lines > 100 && after.arcs === 0, `no rows: ${JSON.stringify(after)}`);
+    expect(rows.lines > 0.8 * figures.rows && rows.lines < 1.3 * figures.rows, `${figures.rows} rows are drawn as ${JSON.stringify(rows)}`);
+    expect(rows.part > 500, `the part is drawn as ${JSON.stringify(rows)}`);
+    await page.click('button[data-value=before]');
+    await painted(page);
+    expect((await strokes(page)).lines > 100, 'the raster of constant steps is missing');
+    expect(await page.locator('svg.histogram').count() === 2, 'not two histograms');
+    expect(/part/.test(await page.locator('#path-legend').innerText()), 'the legend does not name the part');
+    expect(/every 0.1 mm/.test(await page.locator('.notes').innerText()), 'the page does not say what before is');
   },
 
   async large_path(page) {

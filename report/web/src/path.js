@@ -1,4 +1,4 @@
-// The page of compress and resegment: the path before and after on a plain canvas, lines and arcs in two colours.
+// The page of compress, resegment and rasters: the path before and after on a plain canvas, lines and arcs in two colours.
 import { bytesOf, inflate, read } from './data.js';
 import { choice, element } from './text.js';
 
@@ -10,27 +10,28 @@ const STYLES = {
   [LINE]: { name: 'line', colour: '#1668b8', width: 1.3 },
   [ARC]: { name: 'arc', colour: '#d9622b', width: 1.3 },
 };
+const PART_COLOUR = '#3b4652';
 const MOST_DOTS = 6000, DOT_PIXELS = 5, REACH = 12;
 const VIEWS = { oblique: [-0.6, 1.0], top: [0, 0], front: [0, Math.PI / 2], right: [-Math.PI / 2, Math.PI / 2] };
 
 class PathView {
-  constructor(box, paths, worst) {
-    Object.assign(this, { box, paths, worst, path: paths[1], drag: null });
+  constructor(box, paths, worst, part) {
+    Object.assign(this, { box, paths, worst, part, path: paths[1], drag: null });
     this.canvas = element('canvas', { tabIndex: 0 });
     this.tip = element('div', { className: 'tip', hidden: true });
     box.append(this.canvas, this.tip);
     this.bounds();
-    this.look('oblique');
+    this.look(part ? 'top' : 'oblique');
     this.listen();
     new ResizeObserver(() => { this.resize(); this.draw(); }).observe(box);
     this.resize();
     this.draw();
   }
 
-  // Of all cutting moves of both paths.
+  // Of all cutting moves of both paths, and the part.
   bounds() {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-    for (const { place: [x, y, z], kind } of this.paths)
+    for (const { place: [x, y, z], kind } of this.part ? [...this.paths, this.part] : this.paths)
       for (let i = 0; i < x.length; i++) {
         if (kind[i] <= RAPID) continue;
         for (const j of i > 0 ? [i - 1, i] : [i])
@@ -75,8 +76,8 @@ class PathView {
   }
 
   // Screen places of all points.
-  project() {
-    const [[a, b, c], [d, e, f]] = this.axes(), [mx, my, mz] = this.middle, { place: [x, y, z] } = this.path;
+  project({ place: [x, y, z] } = this.path) {
+    const [[a, b, c], [d, e, f]] = this.axes(), [mx, my, mz] = this.middle;
     const sx = new Float32Array(x.length), sy = new Float32Array(x.length), k = this.scale, [px, py] = this.shift;
     for (let i = 0; i < x.length; i++) {
       const [vx, vy, vz] = [x[i] - mx, y[i] - my, z[i] - mz];
@@ -97,6 +98,7 @@ class PathView {
     g.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     g.clearRect(0, 0, this.width, this.height);
     g.lineJoin = 'miter';
+    if (this.part) this.outline(g);
     const away = i => Math.max(x[i - 1], x[i]) < 0 || Math.min(x[i - 1], x[i]) > this.width || Math.max(y[i - 1], y[i]) < 0 || Math.min(y[i - 1], y[i]) > this.height;
     for (const k of [RAPID, KEPT_LINE, KEPT_ARC, LINE, ARC]) {
       const { colour, width, dash = [] } = STYLES[k];
@@ -114,6 +116,15 @@ class PathView {
     g.setLineDash([]);
     this.dots(g, x, y, kind, ends);
     if (this.worst) this.ring(g);
+  }
+
+  outline(g) {
+    const [x, y] = this.project(this.part), { kind } = this.part;
+    Object.assign(g, { strokeStyle: PART_COLOUR, lineWidth: 1.2 });
+    g.setLineDash([]);
+    g.beginPath();
+    for (let i = 0; i < x.length; i++) kind[i] === 0 ? g.moveTo(x[i], y[i]) : g.lineTo(x[i], y[i]);
+    g.stroke();
   }
 
   // Ends of blocks, where they are few enough and far enough apart to be told from each other.
@@ -193,9 +204,11 @@ class PathView {
   }
 }
 
-function legend(paths) {
+function legend(paths, part) {
   const used = new Set(paths.flatMap(p => [...new Set(p.kind)]));
-  return Object.entries(STYLES).filter(([k]) => used.has(Number(k))).reverse().map(([, style]) => {
+  const styles = Object.entries(STYLES).filter(([k]) => used.has(Number(k))).reverse().map(([, style]) => style);
+  if (part) styles.push({ name: 'part', colour: PART_COLOUR });
+  return styles.map(style => {
     const line = element('i');
     line.style.background = style.colour;
     return element('span', { className: 'key' }, line, style.name);
@@ -204,11 +217,12 @@ function legend(paths) {
 
 async function start() {
   const index = JSON.parse(document.getElementById('index').textContent), bytes = await inflate(bytesOf('arrays'));
-  const paths = index.paths.map(p => {
+  const picture = p => {
     const packed = read(bytes, p.kind);
     return { name: p.name, thinned: p.thinned, place: p.place.map(a => read(bytes, a)), block: read(bytes, p.block), kind: packed.map(v => v >> 1), ends: packed.map(v => v & 1) };
-  });
-  const view = new PathView(document.getElementById('scene'), paths, index.worst);
+  };
+  const paths = index.paths.map(picture), part = index.part && picture(index.part);
+  const view = new PathView(document.getElementById('scene'), paths, index.worst, part);
   const program = choice('Program', [['after', 'After'], ['before', 'Before']], which => { view.path = paths[which === 'after' ? 1 : 0]; view.draw(); });
   const looks = element('span', { className: 'choice' }, element('span', { className: 'label', textContent: 'View' }));
   for (const name of Object.keys(VIEWS)) {
@@ -217,7 +231,7 @@ async function start() {
     looks.append(button);
   }
   document.getElementById('path-controls').append(program.box, looks);
-  document.getElementById('path-legend').append(...legend(paths));
+  document.getElementById('path-legend').append(...legend(paths, part));
   requestAnimationFrame(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = 'yes'; }));
 }
 

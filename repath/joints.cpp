@@ -1,0 +1,162 @@
+#include "repath/joints.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "repath/corners.h"
+#include "repath/tangent.h"
+
+namespace camber::repath {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRoundingRad = 1e-9;
+/// An edge below the angle of corners: the rule of resegment for what it keeps.
+constexpr double kEdgeRad = 5 * kPi / 180;
+constexpr double kEdgeTimesBeside = 3;
+/// Of what the program turns at a point: how well its chords say the direction there.
+constexpr double kShareOfArcs = 0.125, kShareOfLines = 0.6;
+constexpr double kTimesOfBlocks = 2;
+constexpr double kClimb = 0.5;  ///< of the bound: slopes that differ by more
+
+double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
+
+bool rises(const Polyline& path, const Primitive& p) {
+  return !path.heights.empty() && path.heights[p.last] != path.heights[p.first];
+}
+
+/// Steepness of a primitive along the third axis, rad.
+double slope_rad(const Polyline& path, const Primitive& p) {
+  if (path.heights.empty()) return 0;
+  const double flat = p.arc ? p.center_from_start_mm.norm() * std::abs(p.sweep_rad)
+                            : (path.points[p.last] - path.points[p.first]).norm();
+  return std::atan2(path.heights[p.last] - path.heights[p.first], flat);
+}
+
+}  // namespace
+
+std::vector<bool> edges_of(const Polyline& path, const FitOptions& options) {
+  return corners_of(in_space(path),
+                    {.least_rad = kEdgeRad, .times_beside = kEdgeTimesBeside, .leg_mm = corner_leg_mm(options)});
+}
+
+std::vector<double> smooth_kinks_of(const Polyline& path, const FitOptions& options, std::span<const Primitive> chain) {
+  const std::vector<bool> corners = corners_of(path, options), edges = edges_of(path, options);
+  const std::vector<double> kinks = kinks_of(path, chain);
+  std::vector<double> out;
+  for (std::size_t k = 0; k < kinks.size(); ++k)
+    if ((chain[k].arc || chain[k + 1].arc) && !corners[chain[k].last] && !edges[chain[k].last]) out.push_back(kinks[k]);
+  return out;
+}
+
+double chord_angle_rad(std::span<const Vec2> points, const Primitive& p) {
+  Vec2 chord = points[p.last] - points[p.first];
+  if (chord.norm() == 0) {
+    chord = Vec2(p.center_from_start_mm.y(), -p.center_from_start_mm.x());
+    if (p.sweep_rad > 0) chord = -chord;
+  }
+  return std::atan2(chord.y(), chord.x());
+}
+
+Joints::Joints(const Polyline& path, const FitOptions& options, const std::vector<bool>& corners)
+    : path_(path),
+      corners_(corners),
+      most_kink_rad_(options.most_kink_rad),
+      increment_mm_(options.increment_mm),
+      bounded_(options.arcs && options.most_kink_rad < kPi) {
+  if (!bounded_) return;
+  const std::vector<Vec3> points = in_space(path);
+  turn_ = turns_of(points, corner_leg_mm(options));
+  blocks_turn_ = turns_of(points, 0);
+  edges_ = edges_of(path, options);
+}
+
+double Joints::most_kink_rad(const Primitive& before, const Primitive& p) const {
+  const std::uint32_t at = p.first;
+  if (!bounded_ || at == 0 || at + 1 == corners_.size() || corners_[at]) return kInfinity;
+  if (!before.arc && !p.arc)
+    return rises(path_, before) || rises(path_, p) ? kInfinity
+                                                   : std::max(most_kink_rad_, kTimesOfBlocks * blocks_turn_[at]);
+  // Where a level path begins to climb it turns there, and what joins there turns as much.
+  const bool climbs = std::abs(slope_rad(path_, p) - slope_rad(path_, before)) > kClimb * most_kink_rad_;
+  const double share = edges_[at] || climbs ? 1 : before.arc && p.arc ? kShareOfArcs : kShareOfLines;
+  return std::max(most_kink_rad_, share * std::min(turn_[at], blocks_turn_[at]));
+}
+
+/// What rounding of the centre may change of the direction at an end.
+double Joints::rounding_rad(const Primitive& p) const {
+  return p.arc ? 0.5 * increment_mm_ / p.center_from_start_mm.norm() : 0;
+}
+
+std::optional<Sweeps> Joints::behind(const Primitive& before, const Sweeps& of_before, const Primitive& p,
+                                     const Sweeps& of_p) const {
+  const double most = most_kink_rad(before, p);
+  if (most == kInfinity) return of_p;
+  const double climb = slope_rad(path_, p) - slope_rad(path_, before);
+  if (std::abs(climb) > most) return std::nullopt;
+  const double share = before.arc && p.arc ? share_tried_ : 1;
+  const double room =
+      std::max(0.0, share * std::sqrt(most * most - climb * climb) - rounding_rad(before) - rounding_rad(p));
+  // Directions behind the joint less the direction of the chord before it.
+  const double chords = wrapped(chord_angle_rad(path_.points, p) - chord_angle_rad(path_.points, before));
+  const double low = 0.5 * of_before.low_rad - room, high = 0.5 * of_before.high_rad + room;
+  // Sweeps of p whose begin, chords - s / 2, lies between the two, in one of the turns in which it may be meant.
+  std::optional<Sweeps> out;
+  for (const double turn : {0.0, 2 * kPi, -2 * kPi}) {
+    const Sweeps some{std::max(of_p.low_rad, 2 * (chords + turn - high)),
+                      std::min(of_p.high_rad, 2 * (chords + turn - low))};
+    if (some.low_rad > some.high_rad + kRoundingRad) continue;
+    if (!out || some.high_rad - some.low_rad > out->high_rad - out->low_rad)
+      out = {some.low_rad, std::max(some.low_rad, some.high_rad)};
+  }
+  return out;
+}
+
+double Joints::sweep_towards(const Primitive& p, const Sweeps& of_p, const Primitive& behind) const {
+  const double begin = chord_angle_rad(path_.points, behind) - 0.5 * behind.sweep_rad;
+  const double middle = 0.25 * (of_p.low_rad + of_p.high_rad);
+  const double half = middle + wrapped(begin - chord_angle_rad(path_.points, p) - middle);
+  return std::clamp(2 * half, of_p.low_rad, of_p.high_rad);
+}
+
+bool Joints::keep(const Primitive& before, const Primitive& p) const {
+  const double most = most_kink_rad(before, p);
+  return most == kInfinity || kinks_of(path_, std::array{before, p}).front() <= most + kRoundingRad;
+}
+
+bool Joints::keep(std::span<const Primitive> chain) const {
+  for (std::size_t k = 0; k + 1 < chain.size(); ++k)
+    if (!keep(chain[k], chain[k + 1])) return false;
+  return true;
+}
+
+void give_way(const Joints& joints, std::vector<Primitive>& chain) {
+  if (!joints.bounded()) return;
+  for (bool kept = false; !kept;) {
+    std::vector<bool> gives(chain.size(), false);
+    kept = true;
+    for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+      if (joints.keep(chain[k], chain[k + 1])) continue;
+      kept = false;
+      // What is a block as it was stays; of two arcs the shorter one gives way.
+      const auto size = [&](const Primitive& p) {
+        return is_block(p) ? std::numeric_limits<std::uint32_t>::max() : p.last - p.first;
+      };
+      gives[size(chain[k]) < size(chain[k + 1]) ? k : k + 1] = true;
+    }
+    if (kept) return;
+    std::vector<Primitive> out;
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+      if (!gives[k]) {
+        out.push_back(chain[k]);
+        continue;
+      }
+      for (std::uint32_t at = chain[k].first; at < chain[k].last; ++at) out.push_back({.first = at, .last = at + 1});
+    }
+    chain = std::move(out);
+  }
+}
+
+}  // namespace camber::repath

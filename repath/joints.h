@@ -1,0 +1,74 @@
+#pragma once
+// How much a chain may kink where one primitive meets the next, and the sweeps of arcs that keep to it.
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "repath/fit.h"
+
+namespace camber::repath {
+
+/// Signed sweeps that a primitive may have, low to high; of a line both are zero. Over a chord of direction c a sweep s
+/// begins at c - s/2 and ends at c + s/2, so an interval of sweeps is an interval of directions at either end.
+struct Sweeps {
+  double low_rad = 0, high_rad = 0;
+};
+
+/// A block of the path as it was.
+inline bool is_block(const Primitive& p) { return !p.arc && p.last == p.first + 1; }
+
+/// The rule of FitOptions::most_kink_rad at the joints of one path.
+class Joints {
+ public:
+  /// `corners`: as corners_of says. Both must outlive this.
+  Joints(const Polyline& path, const FitOptions& options, const std::vector<bool>& corners);
+
+  /// Whether any joint is bounded at all.
+  bool bounded() const { return bounded_; }
+
+  /// Most that two primitives may kink where they meet, rad; infinite at corners and where nothing is bounded. The
+  /// blocks of the path as they were may always follow each other.
+  double most_kink_rad(const Primitive& before, const Primitive& p) const;
+
+  /// Of a kink between arcs the share that behind() gives away; rounding of centres takes from the rest.
+  void give_away(double share) { share_tried_ = share; }
+
+  /// Of the sweeps of `p` those that some sweep of the primitive before can be joined to; nothing where there is none.
+  /// In space what the slopes leave of the kink is left to the directions from above.
+  std::optional<Sweeps> behind(const Primitive& before, const Sweeps& of_before, const Primitive& p,
+                               const Sweeps& of_p) const;
+
+  /// The sweep among `of_p` that kinks least against the begin of the primitive behind, as that one is.
+  double sweep_towards(const Primitive& p, const Sweeps& of_p, const Primitive& behind) const;
+
+  /// Whether two primitives as they are kink no more than they may.
+  bool keep(const Primitive& before, const Primitive& p) const;
+  bool keep(std::span<const Primitive> chain) const;
+
+ private:
+  double rounding_rad(const Primitive& p) const;
+
+  const Polyline path_;
+  const std::vector<bool>& corners_;
+  double most_kink_rad_, increment_mm_;
+  bool bounded_;
+  double share_tried_ = 1;
+  std::vector<double> turn_;         ///< of the path at each of its points, between legs as for corners
+  std::vector<double> blocks_turn_;  ///< between the two blocks that meet there
+  std::vector<bool> edges_;          ///< points at which it turns more than a little, and much more than beside them
+};
+
+/// Direction of the chord; of a full turn half a turn behind the direction at its start.
+double chord_angle_rad(std::span<const Vec2> points, const Primitive& p);
+
+/// Edges too gentle for a corner: vertices that turn by more than 5 degrees and three times as much as beside them.
+/// Arcs may meet there with a kink, as large as the path's.
+std::vector<bool> edges_of(const Polyline& path, const FitOptions& options);
+
+/// The kinks at the joints beside an arc that are neither corners nor edges of the path, rad.
+std::vector<double> smooth_kinks_of(const Polyline& path, const FitOptions& options, std::span<const Primitive> chain);
+
+/// Where joints of a chain kink too much, as after rounding, arcs give way to the blocks as they were, until none does.
+void give_way(const Joints& joints, std::vector<Primitive>& chain);
+
+}  // namespace camber::repath

@@ -1,0 +1,162 @@
+// How much arcs kink against their neighbours: measured on the moves of the programs that come out.
+#include <rapidcheck.h>
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "base/units.h"
+#include "repath/compress.h"
+#include "tests/nc/rs274_oracle.h"
+#include "tests/support/path_distance.h"
+#include "tests/support/path_kinks.h"
+
+namespace camber::repath {
+namespace {
+
+using tests::kinks_between_moves;
+
+constexpr double kAnyKink_deg = 180;
+/// What ends whose radii differ by up to 0.002 mm change of a direction, and the differences taken.
+constexpr double kMeasured_deg = 0.02;
+
+std::string compressed(const std::string& text, double most_kink_deg, bool helices = false,
+                       double tolerance_mm = 0.01) {
+  const nc::Read r = nc::read_clean(text);
+  CompressOptions options{.tolerance_mm = tolerance_mm, .helices = helices};
+  options.fit.most_kink_rad = rad_from_deg(most_kink_deg);
+  return compress(r.program, r.moves, options).text;
+}
+
+/// The largest and the rms kink of a program, degrees, and its blocks.
+struct Kinks {
+  double most_deg = 0, rms_deg = 0;
+  std::size_t blocks = 0;
+};
+
+Kinks kinks_of_text(const std::string& text) {
+  const nc::Read r = nc::read_clean(text);
+  Kinks out{.blocks = r.moves.moves.size()};
+  const auto kinks = kinks_between_moves(r.moves);
+  for (const auto& k : kinks) {
+    out.most_deg = std::max(out.most_deg, deg_from_rad(k.rad));
+    out.rms_deg += k.rad * k.rad;
+  }
+  out.rms_deg = deg_from_rad(std::sqrt(out.rms_deg / static_cast<double>(kinks.size())));
+  return out;
+}
+
+constexpr char kHead[] = "G21 G90 G94 G17\nG0 X0. Y0. Z0.\nG1 F600.\n";
+
+template <class Curve>
+std::string program_of(int points, Curve curve) {
+  std::string text = kHead;
+  for (int i = 0; i <= points; ++i) {
+    const Vec3 p = curve(i);
+    text += fmt::format("X{:.3f} Y{:.3f} Z{:.3f}\n", p.x(), p.y(), p.z());
+  }
+  return text + "M2\n";
+}
+
+Vec3 sine(int i) { return {0.05 * i, 3 * std::sin(0.05 * i / 4), 0}; }
+
+TEST(Kinks, OfASmoothPathAreWithinTheBound) {
+  const std::string text = program_of(1400, sine);
+  const Kinks any = kinks_of_text(compressed(text, kAnyKink_deg));
+  EXPECT_GT(any.most_deg, 2);  // or there is nothing to bound
+  for (const double bound : {2.0, 1.0, 0.5, 0.2}) {
+    SCOPED_TRACE(bound);
+    const std::string out = compressed(text, bound);
+    const Kinks kinks = kinks_of_text(out);
+    EXPECT_LE(kinks.most_deg, bound + kMeasured_deg);
+    EXPECT_LE(kinks.blocks, any.blocks * 1.15);
+    EXPECT_LE(tests::hausdorff_mm(nc::read_clean(text).moves, nc::read_clean(out).moves, 0.002), 0.0101);
+    EXPECT_NE(out.find("G3"), std::string::npos);
+  }
+}
+
+TEST(Kinks, OfHelicesAreWithinTheBound) {
+  // A ramp along a spiral: nothing of it is an arc for long.
+  const std::string text = program_of(1500, [](int i) {
+    const double a = 0.01 * i, r = 8 + 0.4 * a;
+    return Vec3(r * std::cos(a) - 8, r * std::sin(a), -0.3 * a);
+  });
+  const std::string out = compressed(text, 0.5, true);
+  const Kinks kinks = kinks_of_text(out);
+  EXPECT_LE(kinks.most_deg, 0.5 + kMeasured_deg);
+  EXPECT_LT(kinks.blocks, 60u);
+  EXPECT_LE(tests::hausdorff_mm(nc::read_clean(text).moves, nc::read_clean(out).moves, 0.002), 0.0101);
+}
+
+TEST(Kinks, CornersAndGentleEdgesStaySharpWhereTheyWere) {
+  for (const double edge_deg : {8.0, 12.0, 18.0, 30.0, 60.0}) {
+    SCOPED_TRACE(edge_deg);
+    // Two bows of 30 mm that meet in the edge.
+    std::vector<Vec2> points{{0, 0}};
+    double heading = 0;
+    std::size_t edge = 0;
+    for (int i = 0; i < 200; ++i) {
+      if (i == 100) heading += rad_from_deg(edge_deg), edge = points.size() - 1;
+      heading -= 0.1 / 30;
+      points.emplace_back(points.back() + 0.1 * Vec2(std::cos(heading), std::sin(heading)));
+    }
+    const std::string text = program_of(200, [&](int i) {
+      const Vec2& p = points[static_cast<std::size_t>(i)];
+      return Vec3(p.x(), p.y(), 0);
+    });
+    const nc::Read out = nc::read_clean(compressed(text, 1));
+    int sharp = 0;
+    for (const auto& kink : kinks_between_moves(out.moves)) {
+      if (deg_from_rad(kink.rad) < 1 + kMeasured_deg) continue;
+      ++sharp;
+      EXPECT_LT((kink.at_mm.head<2>() - points[edge]).norm(), 0.001);
+      EXPECT_NEAR(deg_from_rad(kink.rad), edge_deg, 1.0);
+    }
+    EXPECT_EQ(sharp, 1);
+  }
+}
+
+/// Lines, bows, edges and turns, of many blocks.
+std::string random_program(std::mt19937& random) {
+  std::uniform_real_distribution<double> u(0, 1);
+  double heading = 6 * u(random);
+  Vec2 at = Vec2::Zero();
+  std::string text = kHead;
+  for (int piece = 0; piece < 6; ++piece) {
+    if (random() % 3 == 0) heading += 1.5 * (u(random) - 0.5);
+    const double curvature = random() % 3 == 0 ? 0 : (random() % 2 ? 1 : -1) / std::exp(std::log(0.5) + 5 * u(random));
+    const double step = 0.07 + 0.4 * u(random) * u(random);
+    for (int i = 0; i < 30; ++i) {
+      heading += step * curvature * (1 + 0.5 * std::sin(0.3 * i));
+      at += step * Vec2(std::cos(heading), std::sin(heading));
+      text += fmt::format("X{:.3f} Y{:.3f}\n", at.x(), at.y());
+    }
+  }
+  return text + "M2\n";
+}
+
+TEST(Kinks, OfRandomPathsAreWithinTheBoundOrWhatThePathTurnsThere) {
+  int beside_arcs = 0;
+  EXPECT_TRUE(rc::check([&] {
+    std::mt19937 random(*rc::gen::arbitrary<std::uint32_t>());
+    const std::string text = random_program(random);
+    const double bound = random() % 2 ? 1.0 : 0.5;
+    const nc::Read before = nc::read_clean(text), after = nc::read_clean(compressed(text, bound));
+    const auto turns = kinks_between_moves(before.moves);
+    std::size_t at = 0;
+    for (const auto& kink : kinks_between_moves(after.moves)) {
+      while (turns.at(at).at_mm != kink.at_mm) ++at;  // throws where the end is no point of the program
+      if (!kink.arc_before && !kink.arc_behind) continue;
+      const double turn = deg_from_rad(turns[at].rad), is = deg_from_rad(kink.rad);
+      if (turn > 20) continue;  // a corner
+      ++beside_arcs;
+      const bool gentle = turn <= 5;  // no edge either
+      const double share = !gentle ? 1 : kink.arc_before && kink.arc_behind ? 0.125 : 0.6;
+      RC_ASSERT(is <= std::max(bound, share * turn) + kMeasured_deg);
+    }
+  }));
+  EXPECT_GT(beside_arcs, 200);
+}
+
+}  // namespace
+}  // namespace camber::repath
