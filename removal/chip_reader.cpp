@@ -79,7 +79,7 @@ ChipReader::Place ChipReader::place_of(std::size_t k) const {
 }
 
 void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t k, std::uint32_t patch,
-                      std::span<const std::int32_t> earlier, std::vector<StampChip>& out) const {
+                      std::vector<StampChip>& out) const {
   const Place& place = places_[static_cast<std::size_t>(k)];
   TileView tile_view{stocks.now->distance.data(), {}};
   for (std::size_t a = 0; a < 3; ++a) tile_view.from[a] = tile[a] * Tile::kCore - place.base[a];
@@ -98,7 +98,7 @@ void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t
       const std::uint32_t p = lanes_.point(range.from + from + l);
       const float half = wall_half_mm_[p / static_cast<std::uint32_t>(envelope_.steps)];
       if (field > std::max(air, half)) continue;
-      if (-field > std::max(cap, half) && earlier.empty()) {
+      if (-field > std::max(cap, half)) {
         out.push_back({k, {p, cap, true}});
         continue;
       }
@@ -115,8 +115,7 @@ void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t
         if (share == 0) continue;
         cell.move_up(part.middle_mm());
       }
-      float depth = thickness_over(earlier, cell.point_mm, normal);
-      if ((-field <= cap || share < 255) && depth > 0) depth = std::min(depth, thickness(stocks, cell, normal));
+      const float depth = -field > cap && share == 255 ? cap : thickness(stocks, cell, normal);
       if (depth > 0) out.push_back({k, {p, std::min(depth, cap), depth > kNearCap * cap, share}});
     }
   }
@@ -185,18 +184,6 @@ float ChipReader::thinnest_general(const Vec3& normal, const std::array<Vec3, 8>
     const auto depth = static_cast<float>(envelope_.shape.distance_mm(-tip[c])) - corners.bend[c];
     if (depth <= 0) return 0;
     if (depth < thinnest) thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(-tip[c]).dot(normal)));
-  }
-  return thinnest;
-}
-
-/// The same over stamps of the batch that are not in the tile yet.
-float ChipReader::thickness_over(std::span<const std::int32_t> earlier, const Vec3& point, const Vec3& normal) const {
-  float thinnest = std::numeric_limits<float>::infinity();
-  for (const std::int32_t j : earlier) {
-    const Vec3 from_tip = point - stamps_[static_cast<std::size_t>(j)].tip_mm;
-    const auto depth = static_cast<float>(envelope_.shape.distance_mm(from_tip));
-    if (depth <= 0) return 0;
-    if (depth < thinnest) thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(from_tip).dot(normal)));
   }
   return thinnest;
 }

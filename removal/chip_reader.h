@@ -35,10 +35,9 @@ class ChipReader {
   ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
              std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const ShiftTable* shifts);
 
-  /// Appends the chips that stamp k takes in this tile with the points of a patch. `earlier`: stamps of the stretch
-  /// that are not in the tile yet and may have cut what this one meets.
+  /// Appends the chips that stamp k takes in this tile with the points of a patch.
   void read(const TileStocks& stocks, const Index3& tile, std::int32_t k, std::uint32_t patch,
-            std::span<const std::int32_t> earlier, std::vector<StampChip>& out) const;
+            std::vector<StampChip>& out) const;
 
  private:
   struct Cell;
@@ -49,7 +48,6 @@ class ChipReader {
   };
   Place place_of(std::size_t k) const;
   float thickness(const TileStocks& stocks, const Cell& cell, const Vec3& normal) const;
-  float thickness_over(std::span<const std::int32_t> earlier, const Vec3& point, const Vec3& normal) const;
   float thinnest_general(const Vec3& normal, const std::array<Vec3, 8>& tip, const CornerLanes& corners) const;
 
   const EnvelopeGrid& envelope_;

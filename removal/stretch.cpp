@@ -87,9 +87,7 @@ void Stretch::Impl::find_tiles(const ShiftTable* shifts) {
 
 void Stretch::Impl::list_stamps(const ShiftTable* shifts) {
   tiles.clear();
-  order = !options.engage ? StampOrder::one_batch(stamps.size())
-          : shifts        ? StampOrder::one_by_one(stamps.size())
-                          : StampOrder::of_path(stamps, envelope.shape);
+  order = !options.engage ? StampOrder::one_batch(stamps.size()) : StampOrder::one_by_one(stamps.size());
   find_tiles(shifts);
   bends.assign(shifts ? stamps.size() : 0, {});
   tbb::parallel_for(std::size_t{0}, bends.size(),
@@ -201,7 +199,7 @@ void Stretch::Impl::work(WorkTile& w, const ShiftTable* shifts, const ChipReader
     std::size_t end = from + 1;
     while (end < w.stamps.size() && order.batch(w.stamps[end]) == order.batch(w.stamps[from])) ++end;
     for (; touch != w.touches.end() && touch->stamp <= w.stamps[end - 1]; ++touch)
-      reader->read(stocks, w.index, touch->stamp, touch->patch, order.earlier(touch->stamp), w.chips);
+      reader->read(stocks, w.index, touch->stamp, touch->patch, w.chips);
     const std::int32_t* batch = w.stamps.data() + from;
     if (!shifts && !envelope.shape.general) {
       changed |= batch_cut.cut(tile, cover, stamps, {batch, end - from}, first_id);
