@@ -122,6 +122,38 @@ TEST(ClosedForms, MeanForcesAtAnyImmersionWhateverTheHelix) {
     }
 }
 
+/// Slots in a layer on a floor that an earlier pass has made: the force grows with the layer, not with whole rings.
+TEST(ClosedForms, MeanForcesInALayerOfAnyThickness) {
+  constexpr int kNodes = 20000;
+  const Shoulder slot{2 * kRadius, true};
+  Vec3 closed = Vec3::Zero();
+  for (int i = 0; i < kNodes; ++i)
+    closed +=
+        edge_N(slot, slot.from() + (i + 0.5) * (slot.to() - slot.from()) / kNodes) * (slot.to() - slot.from()) / kNodes;
+  closed *= 3 / (2 * kPi);
+  auto tool = make_tool(machine::ToolType::flat, 2 * kRadius, 3, 30);
+  tool.overhang_mm = 5;  // hardly bends
+  for (const auto coupling : {machine::Coupling::rigid, machine::Coupling::static_})
+    for (const double layer : {0.1, 0.13, 0.17, 0.22}) {
+      auto stock = make_box({-0.5, -kRadius - 1, -2}, {8, kRadius + 1, 0}, 0.1);
+      std::vector<removal::Stamp> stamps;
+      add_row(stamps, {-2, 0, -1.013}, {6, 0, -1.013}, 0.5);
+      CutOptions options;
+      options.coupling = coupling;
+      options.envelope_step_mm = 0.06;
+      deflection::cut(stock, tool, kSteel, stamps, {}, 0, options);
+      stock.clear_stamps();
+      stamps.clear();
+      add_row(stamps, {-2, 0, -1.013 - layer}, {-0.5, 0, -1.013 - layer}, kFeed);
+      const auto result = deflection::cut(stock, tool, kSteel, stamps, {}, 0, options);
+      Vec3 mean = Vec3::Zero();
+      constexpr std::size_t kOver = 6;
+      for (std::size_t k = stamps.size() - kOver; k < stamps.size(); ++k) mean += result.loads[k].force_mean_N / kOver;
+      EXPECT_LT((mean - layer * closed).norm(), kOnePercent * layer * closed.norm())
+          << layer << ": " << mean.transpose() << " / " << layer * closed.transpose();
+    }
+}
+
 TEST(ClosedForms, BallPassTakesItsAreaAndLeavesItsCusps) {
   // Rows p apart on a level plane, d below the blank: p d in the steady state; cusps of R - sqrt(R^2 - p^2 / 4).
   constexpr double kRow = 1, kDepth = 0.3, kBall = 3, kStep = 0.03;
