@@ -8,7 +8,7 @@ namespace camber::removal {
 /// Envelope points side by side, eight a block (removal/envelope_blocks.h).
 struct BlockPoints {
   const float *x, *y, *z, *nx, *ny, *nz, *cos_phi, *sin_phi, *k1, *k2;
-  const float* wall_half;  ///< of the ring's width (removal/cell.h), mm
+  const float* wall_half;  ///< of the ring's width (removal/level_faces.h), mm
 };
 
 /// The blocks: their points lie around the centre, with normals that differ from the mean one by no more than `spread`.

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "removal/cell.h"
 #include "removal/chip.h"
 #include "removal/cutter.h"
 #include "removal/envelope_blocks.h"
+#include "removal/level_faces.h"
 #include "removal/stamp.h"
 #include "removal/tile_arena.h"
 

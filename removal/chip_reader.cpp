@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "removal/cell.h"
+#include "removal/level_faces.h"
 
 namespace camber::removal {
 
@@ -17,9 +18,7 @@ struct ChipReader::Cell {
   double up_mm = 0;          ///< of point_mm, from where `share` tells
 
   Cell(int cell, const std::array<float, 3>& f, const Index3& tile, double voxel_mm) : at(cell), share(f) {
-    for (int c = 0; c < 8; ++c)
-      weight[static_cast<std::size_t>(c)] =
-          (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
+    for (int c = 0; c < 8; ++c) weight[static_cast<std::size_t>(c)] = corner_weight(c, f);
     const Vec3 lowest(tile[0] * Tile::kCore + cell / (Tile::kSide * Tile::kSide),
                       tile[1] * Tile::kCore + cell / Tile::kSide % Tile::kSide,
                       tile[2] * Tile::kCore + cell % Tile::kSide);

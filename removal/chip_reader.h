@@ -59,7 +59,7 @@ class ChipReader {
   const ShiftTable* shifts_;
   const Kernels& kernels_;
   std::vector<Place> places_;        ///< of the stretch's stamps
-  std::vector<float> wall_half_mm_;  ///< of the rings (removal/cell.h)
+  std::vector<float> wall_half_mm_;  ///< of the rings (removal/level_faces.h)
 };
 
 }  // namespace camber::removal

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "removal/cell.h"
+#include "removal/level_faces.h"
 
 namespace camber::removal {
 

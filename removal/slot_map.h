@@ -1,5 +1,6 @@
 #pragma once
 // Numbers of the tiles in a box of space.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

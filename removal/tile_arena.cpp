@@ -115,12 +115,4 @@ StampPlace TileArena::place_of(const Stamp& stamp, double least_mm) const {
   return place;
 }
 
-Vec3 TileArena::voxel_mm(std::int32_t cell) const {
-  const Index3& tile = index_[static_cast<std::size_t>(cell / (2 * Tile::kVolume))];
-  const int in = cell % (2 * Tile::kVolume);
-  return voxel_ * Vec3(tile[0] * Tile::kCore + in / (Tile::kSide * Tile::kSide),
-                       tile[1] * Tile::kCore + in / Tile::kSide % Tile::kSide,
-                       tile[2] * Tile::kCore + in % Tile::kSide);
-}
-
 }  // namespace camber::removal

@@ -32,8 +32,6 @@ class TileArena {
   ArenaView view() const;
   /// Of a stamp that moves at most by its feed; see StampPlace::least_mm.
   StampPlace place_of(const Stamp& stamp, double least_mm) const;
-  /// Place of the lowest voxel of a cell of the view, mm.
-  Vec3 voxel_mm(std::int32_t cell) const;
 
  private:
   void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps);
