@@ -28,4 +28,25 @@ Vec3 CutterPlaces::gradient(std::int32_t id, const Vec3& point) const {
   return run->shape.gradient(point - run->tips[static_cast<std::size_t>(id - run->first_id)]);
 }
 
+CutterPlaces::Depth CutterPlaces::deepest_from(std::int32_t id, const Vec3& point) const {
+  const Run* run = find(id);
+  const auto depth = [&](std::ptrdiff_t k) {
+    return -run->shape.distance_mm(point - run->tips[static_cast<std::size_t>(k)]);
+  };
+  const auto last = static_cast<std::ptrdiff_t>(run->tips.size()) - 1;
+  std::ptrdiff_t at = id - run->first_id;
+  double deepest = depth(at);
+  for (const std::ptrdiff_t way : {-1, 1}) {
+    const std::ptrdiff_t start = at;
+    for (std::ptrdiff_t k = start + way; k >= 0 && k <= last; k += way) {
+      const double d = depth(k);
+      if (!(d > deepest)) break;
+      deepest = d;
+      at = k;
+    }
+    if (at != start) break;
+  }
+  return {run->first_id + static_cast<std::int32_t>(at), deepest};
+}
+
 }  // namespace camber::removal

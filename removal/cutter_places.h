@@ -19,6 +19,13 @@ class CutterPlaces {
   /// Of a known stamp's envelope, mm, negative inside the cutter.
   double distance_mm(std::int32_t id, const Vec3& point) const;
   Vec3 gradient(std::int32_t id, const Vec3& point) const;
+  struct Depth {
+    std::int32_t id;
+    double depth_mm;  ///< of the point inside that cutter
+  };
+  /// The stamp that the point lies deepest in, of those met going from a known stamp along its run while it grows
+  /// deeper.
+  Depth deepest_from(std::int32_t id, const Vec3& point) const;
 
  private:
   struct Run {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
@@ -63,23 +64,25 @@ Vec2 scatter_of(const Index3& voxel, int axis) {
   return {static_cast<double>(h >> 32) * kPerStep - 0.5, static_cast<double>(h & 0xffffffffu) * kPerStep - 0.5};
 }
 
-/// The cutters that the voxels around a grid edge name: the target between the voxels is the largest of their fields.
+/// The cutters that the voxels around a grid edge name, and those before and after them that lie deeper between the
+/// voxels (a feed below the voxel's size leaves stamps that no voxel names): the target is the largest of their fields.
 class NamedCutters {
  public:
-  NamedCutters(const Block& b, int i, int j, int k, int axis, const CutterPlaces& places) : places_(places) {
-    std::array<int, 3> lo{-1, -1, -1};
+  NamedCutters(const Block& b, const Index3& from, int axis, const CutterPlaces& places) : places_(places) {
+    Index3 lo{-1, -1, -1};
     lo[axis] = 0;
     for (int di = lo[0]; di <= 1; ++di)
       for (int dj = lo[1]; dj <= 1; ++dj)
         for (int dk = lo[2]; dk <= 1; ++dk) {
-          const std::int32_t id = b.target_stamp[Block::at(i + di, j + dj, k + dk)];
+          const std::int32_t id = b.target_stamp[Block::at(from[0] + di, from[1] + dj, from[2] + dk)];
           if (std::find(ids_.begin(), ids_.begin() + count_, id) == ids_.begin() + count_ && places.knows(id))
             ids_[count_++] = id;
         }
   }
 
-  /// Moves p along a direction onto the surface; false where there is none within `reach`.
-  bool settle(Vec3& p, const Vec3& direction, double reach) const {
+  /// Moves p along a direction onto the surface, and gives the surface's own normal there; nothing where there is none
+  /// within `reach`.
+  std::optional<Vec3> settle(Vec3& p, const Vec3& direction, double reach) const {
     // The field is the largest of convex ones: Newton's steps on the governing one settle at once.
     constexpr int kSteps = 6;
     constexpr double kClose_mm = 1e-5;
@@ -87,15 +90,18 @@ class NamedCutters {
     for (int step = 0; step < kSteps && count_ > 0; ++step) {
       double value = -std::numeric_limits<double>::infinity();
       std::int32_t governing = 0;
-      for (std::size_t n = 0; n < count_; ++n)
-        if (const double v = -places_.distance_mm(ids_[n], p); v > value) value = v, governing = ids_[n];
-      if (std::abs(value) < kClose_mm) return true;
-      const double slope = -places_.gradient(governing, p).dot(direction);
-      if (std::abs(slope) < kGrazing) return false;
+      for (std::size_t n = 0; n < count_; ++n) {
+        const auto [id, v] = places_.deepest_from(ids_[n], p);
+        if (v > value) value = v, governing = id;
+      }
+      const Vec3 normal = -places_.gradient(governing, p);
+      if (std::abs(value) < kClose_mm) return normal;
+      const double slope = normal.dot(direction);
+      if (std::abs(slope) < kGrazing) return std::nullopt;
       p -= value / slope * direction;
-      if ((p - from).squaredNorm() > reach * reach) return false;
+      if ((p - from).squaredNorm() > reach * reach) return std::nullopt;
     }
-    return false;
+    return std::nullopt;
   }
 
  private:
@@ -104,15 +110,25 @@ class NamedCutters {
   std::size_t count_ = 0;
 };
 
-/// Puts a point of the trilinear surface onto the cutters that made it, and up to half a voxel aside: rows and feed
-/// marks that are in step with the grid would else be met at the same places of every cusp.
-void sharpen(SurfacePoint& p, const NamedCutters& cutters, const Vec2& scatter, double voxel) {
+/// Puts a point of the trilinear surface, on a grid line along `axis`, onto the cutters that made it, and aside within
+/// the square that the line stands for: those squares together cover the surface once, and rows and feed marks that are
+/// in step with the grid are met at all their places.
+void sharpen(SurfacePoint& p, const NamedCutters& cutters, int axis, const Vec2& scatter, double voxel) {
+  constexpr double kFarthest = 0.9;  // voxels; where the line grazes the surface, its square is wider than that
+  constexpr double kOneFace = 0.94;  // cosine; neighbouring cusps differ by less, a wall and a floor by more
   Vec3 place = p.place_mm;
-  if (!cutters.settle(place, p.normal, voxel)) return;
+  const auto normal = cutters.settle(place, p.normal, voxel);
+  if (!normal) return;
   p.place_mm = place;
-  const Vec3 across = p.normal.unitOrthogonal();
-  place += voxel * (scatter.x() * across + scatter.y() * p.normal.cross(across));
-  if (cutters.settle(place, p.normal, 0.5 * voxel)) p.place_mm = place;
+  const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+  Vec3 aside = Vec3::Zero();
+  aside[b] = scatter.x();
+  aside[c] = scatter.y();
+  aside[axis] = -(aside[b] * p.normal[b] + aside[c] * p.normal[c]) / p.normal[axis];
+  if (const double length = aside.norm(); length > kFarthest) aside *= kFarthest / length;
+  place += voxel * aside;
+  const auto normal_aside = cutters.settle(place, p.normal, 0.5 * voxel);
+  if (normal_aside && normal_aside->dot(*normal) > kOneFace) p.place_mm = place;
 }
 
 /// `places`, `machined`: null where not wanted.
@@ -147,7 +163,7 @@ void collect(const Stock* machined, const Stock& target, const CutterPlaces* pla
           p.place_mm = voxel * Vec3(at[0], at[1], at[2]);
           p.place_mm[a] += voxel * u;
           p.crossing_mm = p.place_mm;
-          if (places) sharpen(p, NamedCutters(b, i, j, k, a, *places), scatter_of(at, a), voxel);
+          if (places) sharpen(p, NamedCutters(b, {i, j, k}, a, *places), a, scatter_of(at, a), voxel);
           if (machined) p.error_mm = -((1 - u) * b.machined[here] + u * b.machined[next]);
           p.area_mm2 = voxel * voxel * std::abs(p.normal[a]);
           p.target_stamp = b.target_stamp[u < 0.5 ? here : next];

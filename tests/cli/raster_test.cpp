@@ -109,7 +109,7 @@ TEST(RasterCommand, PredictFindsOnThePartWhatTheScallopsSay) {
   const auto& error = r["total_error_um"];
   EXPECT_GT(error["mean"], 6.0 / 3 - 0.7);
   EXPECT_LT(error["mean"], 6.0 / 3 + 0.7);
-  EXPECT_LT(error["max"], 6 + 3 + 1.5);  // the grid shows cusps to 1.5 um at this voxel
+  EXPECT_LT(error["max"], 6 + 3 + 2);  // in the corner of the part the outermost row has no neighbour
   EXPECT_GT(error["min"], -3.0);
   EXPECT_GT(error["p95"], 0.6 * 6);
   EXPECT_LT(error["p95"], 6 + 1);

@@ -69,6 +69,11 @@ void expect_wall(const FinishedWall& w) {
 
 TEST(DisplacedEnvelope, HelicalMillAlongAWallAgreesUpMilling_slow) { expect_wall({.up = true}); }
 
+TEST(DisplacedEnvelope, SteepHelixAlongAWallAgrees_slow) {
+  // Errors of 1 to 3 um: what the map of the surface itself loses shows.
+  expect_wall({.helix_deg = 45, .up = true});
+}
+
 TEST(DisplacedEnvelope, HelicalMillAlongAWallAgreesDownMilling_slow) {
   expect_wall({.up = false, .offset_mm = Vec3(0.037, 0.051, 0.023)});
 }

@@ -131,6 +131,53 @@ TEST(Surface, PointsStandForTheWholeArea) {
   EXPECT_NEAR(area, 2 * kPi * 3 * 1.55, 0.002 * 2 * kPi * 3 * 1.55);
 }
 
+TEST(Surface, PointsLieOnTheDeepestCutterAlsoOfStampsThatNoVoxelNames) {
+  // Three stamps a voxel at most places: the voxels name every third.
+  Stock target = make_box({0, -5, -3}, {10, 5, 0}, 0.1);
+  std::vector<Stamp> stamps;
+  add_row(stamps, {-4, 0.03, -1}, {14, 0.03, -1}, 0.035);
+  carve_row(target, ball_envelope(), stamps);
+  const CutterShape ball = shape_of(make_tool(machine::ToolType::ball, 6, 2, 30));
+  CutterPlaces places;
+  places.add(0, ball, stamps);
+  std::size_t count = 0;
+  for (const auto& part : surface_points(target, places))
+    for (const auto& p : part) {
+      double deepest = 1;
+      for (const Stamp& s : stamps) deepest = std::min(deepest, ball.distance_mm(p.place_mm - s.tip_mm));
+      EXPECT_NEAR(deepest, 0, 1e-5) << p.place_mm.transpose();
+      ++count;
+    }
+  EXPECT_GT(count, 1000u);
+}
+
+TEST(Surface, PointsCoverAnInclinedSurfaceOnceAtEveryPhaseOfTheGrid) {
+  // Rows of a ball close enough for a plane at 45 degrees, which the grid meets every sqrt(2)/2 of a diagonal.
+  Stock target = make_box({0, 0, -1}, {8, 8, 9}, 0.1);
+  std::vector<Stamp> stamps;
+  for (int r = -20; r < 140; ++r) {
+    const Vec3 tip(-4, 0.05 * r - 3 * std::sqrt(0.5), 0.05 * r + 3 * std::sqrt(0.5) - 3 + 0.037);
+    add_row(stamps, tip, tip + Vec3(16, 0, 0), 0.1);
+  }
+  carve_row(target, ball_envelope(), stamps);
+  CutterPlaces places;
+  places.add(0, shape_of(make_tool(machine::ToolType::ball, 6, 2, 30)), stamps);
+  constexpr int kPhases = 8;
+  std::array<double, kPhases> area{};
+  double all = 0;
+  const double period = 0.1 * std::sqrt(2.0), from = 15 * period, to = 55 * period;
+  for (const auto& part : surface_points(target, places))
+    for (const auto& p : part) {
+      const double s = (p.place_mm.y() + p.place_mm.z()) / std::sqrt(2.0);
+      if (p.place_mm.x() < 2 || p.place_mm.x() > 6 || s < from || s > to) continue;
+      const double phase = s / period - std::floor(s / period);
+      area[static_cast<std::size_t>(phase * kPhases)] += p.area_mm2;
+      all += p.area_mm2;
+    }
+  EXPECT_NEAR(all, 4 * (to - from), 0.03 * 4 * (to - from));
+  for (const double a : area) EXPECT_NEAR(a / all, 1.0 / kPhases, 0.15 / kPhases) << "400 points";
+}
+
 TEST(ErrorFigures, AreWeightedByArea) {
   const ErrorFigures f = error_figures({1, -3, 2}, {1, 1, 2});
   EXPECT_DOUBLE_EQ(f.mean, 0.5);
@@ -198,14 +245,16 @@ TEST(Stl, SaysHowManyEdgesAreOpen) {
     FAIL() << "an open mesh must be refused";
   } catch (const InputError& e) {
     EXPECT_EQ(to_string(e.diagnostics().front()),
-              path + ": error: the mesh is not closed: 4 of its edges have no second triangle, so it has no inside "
-                     "[stl-open]");
+              path +
+                  ": error: the mesh is not closed: 4 of its edges have no second triangle, so it has no inside "
+                  "[stl-open]");
   }
 }
 
 TEST(Stock, KnowsTheVolumeOfACylinder) {
   const Vec3 base(1, 2, -3);
-  const Stock stock([&](const Vec3& p) { return cylinder_distance_mm(p, base, 5, 4); }, {-4, -3, -3}, {6, 7, 1}, 0.1, 4);
+  const Stock stock([&](const Vec3& p) { return cylinder_distance_mm(p, base, 5, 4); }, {-4, -3, -3}, {6, 7, 1}, 0.1,
+                    4);
   EXPECT_NEAR(stock.volume_mm3() / (kPi * 25 * 4), 1, 0.002);
   EXPECT_NEAR(cylinder_distance_mm({9, 2, 2}, base, 5, 4), std::hypot(3, 1), 1e-12);
   EXPECT_NEAR(cylinder_distance_mm({1, 2, 0.5}, base, 5, 4), -0.5, 1e-12);
