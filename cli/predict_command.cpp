@@ -60,7 +60,7 @@ void write_files(const machine::Job& job, const deflection::MachinedProgram& pro
     prediction.machined->save(folder / "stock.vdb");
   });
   others.run([&] {
-    const auto points = report::form_error_points(program, prediction);
+    const report::FormErrorPoints points = report::form_error_points(program, prediction);
     report::write_form_error_csv(folder / "form_error.csv", points);
     report::write_form_error_vtp(folder / "form_error.vtp", points);
     report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95);
@@ -98,6 +98,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   predict_options.progress = [&](double share) { progress.show("cutting", share); };
   predict_options.surface_read = [&] { target.surface.clear(); };
   const auto prediction = deflection::predict(job, target, program, predict_options);
+  target.blank.clear();  // nothing reads it any more, and the files need room
   progress.clear();
   const double compute_s = seconds_since(begin);
 

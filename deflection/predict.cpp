@@ -123,8 +123,7 @@ Target make_target(const Job& job, const MachinedProgram& target, Diagnostics& d
 Prediction predict(const Job& job, const Target& target, const MachinedProgram& program,
                    const PredictOptions& options) {
   Prediction out;
-  out.machined = std::make_unique<removal::Stock>(target.blank);
-  removal::SurfaceMap map(target.surface, target.places);
+  removal::SurfaceMap map(target.surface, target.places, target.blank);
   const auto all = static_cast<double>(program.path.stamps.size());
   std::vector<std::vector<Contact>> contacts_of_runs;
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
@@ -133,6 +132,7 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
       contacts = find_contacts(target.surface, tool, stamps);
   });
   if (options.surface_read) options.surface_read();
+  out.machined = std::make_unique<removal::Stock>(target.blank);
   auto next_contacts = contacts_of_runs.begin();
   out.holes.count = removal::count_holes(program.moves, program.holes);
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
@@ -166,7 +166,7 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
     out.cut.unsettled += cut_run.unsettled;
     if (cut_options.turn_from) out.cut.turn = std::move(cut_run.turn);
   });
-  out.surface = map.take(target.blank);
+  out.surface = map.take();
   out.holes.surface_mm2 = target.holes.drop_from(out.surface);
   std::vector<double> error_um, area;
   for (const auto& p : out.surface) {

@@ -80,31 +80,40 @@ struct SectorTable {
 
 }  // namespace
 
-CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std::ptrdiff_t stamp) {
-  CarveBend bend{shifts.row(stamp), shifts.largest_mm(stamp), {}};
+Bends::Bends(const EnvelopeGrid& envelope, const ShiftTable& shifts) : shifts_(shifts), flutes_(envelope.flutes) {
   const int nodes = static_cast<int>(shifts.nodes());
   const double node_step = nodes > 1 ? shifts.node_height_mm[1] : 0.0;
   const double sector = 2 * kPi / CarveBend::kSectors;
   // A shift between two nodes belongs to a range of lags; one sector more for interpolation between steps.
-  const int spread =
+  spread_ =
       std::min(1 + static_cast<int>(std::ceil(envelope.lag_per_mm * node_step / sector)), CarveBend::kSectors / 2);
-  const float half_sector = static_cast<float>(sector / 2);
-  static const SectorTable table;
-  std::array<float, SectorTable::kPadded> outward{};  // from sector -kSectors / 2 on
   for (int n = 0; n < nodes; ++n)
-    for (int m = 0; m < shifts.steps; ++m) {
-      const float* v = bend.row + 2 * (n * shifts.steps + m);
-      if (v[0] == 0 && v[1] == 0) continue;
-      const float length = std::sqrt(v[0] * v[0] + v[1] * v[1]);
-      for (int j = 0; j < envelope.flutes; ++j) {
+    for (int m = 0; m < shifts.steps; ++m)
+      for (int j = 0; j < flutes_; ++j) {
         const double phi =
             2 * kPi * (m + j * shifts.steps) / envelope.steps + shifts.node_height_mm[n] * envelope.lag_per_mm;
         const int centre = static_cast<int>(std::floor((phi + kPi) / sector)) & (CarveBend::kSectors - 1);
-        const int first = centre - spread + CarveBend::kSectors / 2;
-        for (int o = first; o <= first + 2 * spread; ++o)
-          outward[o] = std::max(outward[o], v[0] * table.cosine[o] + v[1] * table.sine[o] + half_sector * length);
+        centre_.push_back(static_cast<std::uint8_t>(centre));
       }
+}
+
+CarveBend Bends::of(std::ptrdiff_t stamp) const {
+  CarveBend bend{shifts_.row(stamp), shifts_.largest_mm(stamp), {}};
+  const auto half_sector = static_cast<float>(kPi / CarveBend::kSectors);
+  static const SectorTable table;
+  std::array<float, SectorTable::kPadded> outward{};  // from sector -kSectors / 2 on
+  const std::uint8_t* centre = centre_.data();
+  const std::size_t count = shifts_.row_size() / 2;
+  for (std::size_t i = 0; i < count; ++i, centre += flutes_) {
+    const float* v = bend.row + 2 * i;
+    if (v[0] == 0 && v[1] == 0) continue;
+    const float more = half_sector * std::sqrt(v[0] * v[0] + v[1] * v[1]);
+    for (int j = 0; j < flutes_; ++j) {
+      const int first = centre[j] - spread_ + CarveBend::kSectors / 2;
+      for (int o = first; o <= first + 2 * spread_; ++o)
+        outward[o] = std::max(outward[o], v[0] * table.cosine[o] + v[1] * table.sine[o] + more);
     }
+  }
   for (int o = 0; o < SectorTable::kPadded; ++o) {
     float& of_sector = bend.outward_mm[(o + CarveBend::kSectors / 2) & (CarveBend::kSectors - 1)];
     of_sector = std::max(of_sector, outward[o]);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "removal/column_cover.h"
 #include "removal/cutter.h"
@@ -25,7 +26,19 @@ struct CarveBend {
   /// By the direction from the axis, sector 0 from -pi: bounds how far a shift moves the envelope outwards there.
   std::array<float, kSectors> outward_mm{};
 };
-CarveBend make_bend(const EnvelopeGrid& envelope, const ShiftTable& shifts, std::ptrdiff_t stamp);
+
+/// Bends of the stamps of one table.
+class Bends {
+ public:
+  /// Both must outlive it.
+  Bends(const EnvelopeGrid& envelope, const ShiftTable& shifts);
+  CarveBend of(std::ptrdiff_t stamp) const;
+
+ private:
+  const ShiftTable& shifts_;
+  int flutes_, spread_;
+  std::vector<std::uint8_t> centre_;  ///< [node][step][flute]: the sector that the edge passes then
+};
 
 /// Carves with the undeflected cutter; true where a voxel changed. Values are clipped to +-band_mm.
 bool carve(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,

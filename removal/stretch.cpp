@@ -90,8 +90,11 @@ void Stretch::Impl::list_stamps(const ShiftTable* shifts) {
   order = !options.engage ? StampOrder::one_batch(stamps.size()) : StampOrder::one_by_one(stamps.size());
   find_tiles(shifts);
   bends.assign(shifts ? stamps.size() : 0, {});
-  tbb::parallel_for(std::size_t{0}, bends.size(),
-                    [&](std::size_t k) { bends[k] = make_bend(envelope, *shifts, static_cast<std::ptrdiff_t>(k)); });
+  if (shifts) {
+    const Bends all(envelope, *shifts);
+    tbb::parallel_for(std::size_t{0}, bends.size(),
+                      [&](std::size_t k) { bends[k] = all.of(static_cast<std::ptrdiff_t>(k)); });
+  }
   constexpr std::int32_t kAir = -2;
   const double band = stock.band_mm();
   for (std::size_t k = 0; k < stamps.size(); ++k) {

@@ -24,6 +24,8 @@ struct Group {
 };
 
 struct TilePoints {
+  std::vector<SurfacePoint> points;
+  std::vector<float> left_mm;  ///< of the blank above each
   Group all;
   std::vector<Group> blocks;
 };
@@ -153,50 +155,83 @@ class BentEnvelope {
   Vec3 tip_;
 };
 
+/// Bent stamps that may lower points of one block.
+class CloseStamps {
+ public:
+  CloseStamps(const EnvelopeGrid& envelope, const ShiftTable& shifts) : e_(envelope), shifts_(shifts) {}
+  void clear() {
+    tips_ = {};
+    stamps_.clear();
+  }
+  void add(const Vec3& tip, const CarveBend& bend, std::int32_t id) {
+    tips_.add(tip);
+    stamps_.push_back({BentEnvelope(e_, shifts_, bend, tip), static_cast<float>(bend.largest_mm + kRounding_mm), id});
+  }
+  bool empty() const { return stamps_.empty(); }
+
+  /// Lowers a point to the deepest of them.
+  void mark(SurfacePoint& p) {
+    distance_.resize(stamps_.size());
+    measure(p);
+    // The stamp that goes deepest first: most others are then too high to look at.
+    const auto first =
+        static_cast<std::size_t>(std::min_element(distance_.begin(), distance_.end()) - distance_.begin());
+    lower(p, first);
+    if (!e_.shape.general) measure(p);
+    for (std::size_t k = 0; k < stamps_.size(); ++k)
+      if (k != first) lower(p, k);
+  }
+
+ private:
+  struct Bent {
+    BentEnvelope envelope;
+    float reach_mm;
+    std::int32_t id;
+  };
+
+  void measure(const SurfacePoint& p) { tips_.distances(e_.shape, p.place_mm + p.error_mm * p.normal, distance_); }
+  void lower(SurfacePoint& p, std::size_t k) const {
+    if (distance_[k] > stamps_[k].reach_mm) return;
+    const double h = stamps_[k].envelope.height_mm(p.place_mm, p.normal, p.error_mm);
+    if (h >= p.error_mm) return;
+    p.error_mm = h;
+    p.machined_stamp = stamps_[k].id;
+  }
+
+  const EnvelopeGrid& e_;
+  const ShiftTable& shifts_;
+  Tips tips_;
+  std::vector<Bent> stamps_;
+  std::vector<float> distance_;
+};
+
 }  // namespace
 
 struct SurfaceMap::Impl {
-  std::vector<SurfacePoint> points;
   std::vector<TilePoints> tiles;
-
-  /// Lowers the points of a group to the envelope. Returns the highest that is left.
-  double mark(const Group& group, const BentEnvelope& bent, std::int32_t id) {
-    double highest = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = group.first; i < group.first + group.count; ++i) {
-      SurfacePoint& p = points[i];
-      const double h = bent.height_mm(p.place_mm, p.normal, p.error_mm);
-      if (h < p.error_mm) {
-        p.error_mm = h;
-        p.machined_stamp = id;
-      }
-      highest = std::max(highest, p.error_mm);
-    }
-    return highest;
-  }
 };
 
-SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places) : impl_(std::make_unique<Impl>(Impl{{}, {}})) {
-  auto& points = impl_->points;
-  const double block_mm = kBlock * target.voxel_mm();
+SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank)
+    : impl_(std::make_unique<Impl>()) {
+  const double block_mm = kBlock * target.voxel_mm(), band = target.band_mm();
   const auto block_of = [&](const SurfacePoint& p) { return cube_of(p.place_mm, block_mm); };
-  auto parts = surface_points(target, places);
-  std::size_t count = 0;
-  for (const auto& part : parts) count += part.size();
-  points.reserve(count);
-  for (auto& part : parts) {
-    if (part.empty()) continue;
-    for (auto& p : part) p.error_mm = target.band_mm();
-    std::stable_sort(part.begin(), part.end(), [&](const auto& a, const auto& b) { return block_of(a) < block_of(b); });
-    const std::size_t from = points.size();
-    points.insert(points.end(), part.begin(), part.end());
-    part = {};
-    TilePoints& tile = impl_->tiles.emplace_back();
-    tile.all = group_of(points, from, points.size() - from, target.band_mm());
-    for (std::size_t at = from, next = from; at < points.size(); at = next) {
+  for (auto& part : surface_points(target, places))
+    if (!part.empty()) impl_->tiles.emplace_back().points = std::move(part);
+  tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
+    TilePoints& tile = impl_->tiles[t];
+    auto& points = tile.points;
+    points.shrink_to_fit();
+    for (auto& p : points) p.error_mm = band;
+    std::stable_sort(points.begin(), points.end(),
+                     [&](const auto& a, const auto& b) { return block_of(a) < block_of(b); });
+    const Stock::Probe probe(blank);
+    for (const auto& p : points) tile.left_mm.push_back(static_cast<float>(-probe.distance_mm(p.place_mm)));
+    tile.all = group_of(points, 0, points.size(), band);
+    for (std::size_t at = 0, next = 0; at < points.size(); at = next) {
       while (next < points.size() && block_of(points[next]) == block_of(points[at])) ++next;
-      tile.blocks.push_back(group_of(points, at, next - at, target.band_mm()));
+      tile.blocks.push_back(group_of(points, at, next - at, band));
     }
-  }
+  });
 }
 
 SurfaceMap::~SurfaceMap() = default;
@@ -205,8 +240,9 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
                       std::int32_t first_id) {
   if (stamps.empty()) return;
   std::vector<CarveBend> bends(stamps.size());
+  const Bends all(envelope, shifts);
   tbb::parallel_for(std::size_t{0}, stamps.size(),
-                    [&](std::size_t k) { bends[k] = make_bend(envelope, shifts, static_cast<std::ptrdiff_t>(k)); });
+                    [&](std::size_t k) { bends[k] = all.of(static_cast<std::ptrdiff_t>(k)); });
   Vec3 lo = stamps.front().tip_mm, hi = lo;
   double most_bent = 0;
   Tips tips;
@@ -233,36 +269,43 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
     if (near.empty()) return;
     distance.resize(near.size());
     tile.all.highest = -std::numeric_limits<double>::infinity();
+    CloseStamps close(envelope, shifts);
     for (Group& block : tile.blocks) {
       near_tips.distances(envelope.shape, block.centre, distance);
-      // The stamp that goes deepest first: most others are then too high to look at.
-      const auto deepest =
-          static_cast<std::size_t>(std::min_element(distance.begin(), distance.end()) - distance.begin());
-      const auto take = [&](std::size_t n) {
-        const std::size_t k = near[n];
-        if (distance[n] > block.radius + block.highest + bends[k].largest_mm + kRounding_mm) return;
-        const BentEnvelope bent(envelope, shifts, bends[k], stamps[k].tip_mm);
-        block.highest = impl_->mark(block, bent, first_id + static_cast<std::int32_t>(k));
-      };
-      take(deepest);
-      for (std::size_t n = 0; n < near.size(); ++n)
-        if (n != deepest) take(n);
+      close.clear();
+      for (std::size_t n = 0; n < near.size(); ++n) {
+        const CarveBend& bend = bends[near[n]];
+        if (distance[n] <= block.radius + block.highest + bend.largest_mm + kRounding_mm)
+          close.add(stamps[near[n]].tip_mm, bend, first_id + static_cast<std::int32_t>(near[n]));
+      }
+      if (!close.empty()) {
+        block.highest = -std::numeric_limits<double>::infinity();
+        for (std::size_t i = block.first; i < block.first + block.count; ++i) {
+          close.mark(tile.points[i]);
+          block.highest = std::max(block.highest, tile.points[i].error_mm);
+        }
+      }
       tile.all.highest = std::max(tile.all.highest, block.highest);
     }
   });
 }
 
-std::vector<SurfacePoint> SurfaceMap::take(const Stock& blank) {
-  // Where the bent cutters do not reach, the blank itself is the surface.
-  for (auto& p : impl_->points) {
-    if (p.error_mm <= 0) continue;
-    const double left = -blank.distance_mm(p.place_mm);
-    if (left < p.error_mm) {
-      p.error_mm = left;
+std::vector<SurfacePoint> SurfaceMap::take() {
+  std::size_t count = 0;
+  for (const TilePoints& tile : impl_->tiles) count += tile.points.size();
+  std::vector<SurfacePoint> out;
+  out.reserve(count);
+  for (TilePoints& tile : impl_->tiles) {
+    for (std::size_t i = 0; i < tile.points.size(); ++i) {
+      SurfacePoint& p = out.emplace_back(tile.points[i]);
+      // Where the bent cutters do not reach, the blank itself is the surface.
+      if (p.error_mm <= 0 || static_cast<double>(tile.left_mm[i]) >= p.error_mm) continue;
+      p.error_mm = static_cast<double>(tile.left_mm[i]);
       p.machined_stamp = Stock::kUncut;
     }
+    tile = {};
   }
-  return std::move(impl_->points);
+  return out;
 }
 
 }  // namespace camber::removal

@@ -25,8 +25,9 @@ namespace camber::removal {
 /// to x; the least height of all stamps stays. Nothing depends on the number of threads.
 class SurfaceMap {
  public:
-  /// `places`: the cutters of the target's sweep, by the ids that its voxels name.
-  SurfaceMap(const Stock& target, const CutterPlaces& places);
+  /// `places`: the cutters of the target's sweep, by the ids that its voxels name. `blank`: the surface wherever no
+  /// mark is deeper. Nothing of them is needed afterwards.
+  SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank);
   ~SurfaceMap();
 
   /// Takes the marks of `stamps`, bent by the rows of `shifts`; ids are first_id + index.
@@ -34,7 +35,7 @@ class SurfaceMap {
             std::int32_t first_id);
 
   /// The points with what the marks and, where it still stands, the blank say. Ends the map.
-  std::vector<SurfacePoint> take(const Stock& blank);
+  std::vector<SurfacePoint> take();
 
  private:
   struct Impl;

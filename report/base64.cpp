@@ -1,5 +1,7 @@
 #include "report/base64.h"
 
+#include <ostream>
+
 namespace camber::report {
 
 std::string base64(std::string_view bytes) {
@@ -14,6 +16,20 @@ std::string base64(std::string_view bytes) {
     for (std::size_t k = 0; k < 4; ++k) out += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
   }
   return out;
+}
+
+std::string& Base64Stream::bytes() {
+  if (bytes_.size() >= kMost) {
+    const std::size_t whole = bytes_.size() - bytes_.size() % 3;
+    out_ << base64(std::string_view(bytes_).substr(0, whole));
+    bytes_.erase(0, whole);
+  }
+  return bytes_;
+}
+
+void Base64Stream::finish() {
+  out_ << base64(bytes_);
+  bytes_.clear();
 }
 
 }  // namespace camber::report

@@ -2,6 +2,7 @@
 // Arrays of numbers as base64 of little-endian bytes, for pages and XML files.
 #include <bit>
 #include <cstdint>
+#include <iosfwd>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,21 @@ namespace camber::report {
 
 /// RFC 4648, with padding.
 std::string base64(std::string_view bytes);
+
+/// Base64 of bytes that come piece by piece.
+class Base64Stream {
+ public:
+  explicit Base64Stream(std::ostream& out) : out_(out) {}
+  /// Room for more bytes; what is whole is written when there are many.
+  std::string& bytes();
+  /// Writes the rest, with padding.
+  void finish();
+
+ private:
+  static constexpr std::size_t kMost = 3 << 18;  ///< whole groups of three
+  std::ostream& out_;
+  std::string bytes_;
+};
 
 /// Appends the little-endian bytes of an integer or a float.
 template <class T>

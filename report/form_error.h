@@ -1,8 +1,9 @@
 #pragma once
 // form_error.csv and form_error.vtp: the error at every point of the machined surface.
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
-#include <span>
 #include <string>
 
 #include "base/geometry.h"
@@ -18,17 +19,23 @@ struct FormErrorPoint {
   int tool = 0;             ///< whose stamp made it; 0: unknown
 };
 
+/// Points made as they are asked for: there are millions of them.
+struct FormErrorPoints {
+  std::size_t count = 0;
+  std::function<FormErrorPoint(std::size_t)> at;
+};
+
 /// Columns x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block,tool; total_error_um is empty where there is none.
 /// Throws InputError [file-unwritable].
-void write_form_error_csv(const std::string& path, std::span<const FormErrorPoint> points);
+void write_form_error_csv(const std::string& path, const FormErrorPoints& points);
 
 /// The same points for ParaView (VTK PolyData, XML, base64): normals, error_um, block, tool and, where there is one,
 /// total_error_um. Throws InputError [file-unwritable].
-void write_form_error_vtp(const std::string& path, std::span<const FormErrorPoint> points);
+void write_form_error_vtp(const std::string& path, const FormErrorPoints& points);
 
 /// The same points as binary PLY with colours: blue where the cutter went too deep, white at zero, red where material
 /// is left; full colour at `full_um` and beyond. Properties x y z nx ny nz red green blue error_um block tool.
 /// Throws InputError [file-unwritable].
-void write_form_error_ply(const std::string& path, std::span<const FormErrorPoint> points, double full_um);
+void write_form_error_ply(const std::string& path, const FormErrorPoints& points, double full_um);
 
 }  // namespace camber::report

@@ -20,16 +20,23 @@ std::array<std::uint8_t, 3> colour(double share) {
 
 }  // namespace
 
-void write_form_error_ply(const std::string& path, std::span<const FormErrorPoint> points, double full_um) {
+void write_form_error_ply(const std::string& path, const FormErrorPoints& points, double full_um) {
   OutputFile file(path);
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment error_um: blue cut too deep, red material left, full colour at "
       "{:g}\nelement vertex {}\n",
-      full_um, points.size());
+      full_um, points.count);
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) bytes += fmt::format("property float {}\n", name);
   for (const char* name : {"red", "green", "blue"}) bytes += fmt::format("property uchar {}\n", name);
   bytes += "property float error_um\nproperty int block\nproperty int tool\nend_header\n";
-  for (const auto& p : points) {
+  constexpr std::size_t kFlushBytes = 1 << 20;
+  const auto flush = [&] {
+    file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.clear();
+  };
+  for (std::size_t i = 0; i < points.count; ++i) {
+    if (bytes.size() > kFlushBytes) flush();
+    const FormErrorPoint p = points.at(i);
     for (const Vec3& v : {p.place_mm, p.normal})
       for (int a = 0; a < 3; ++a) append_little_endian(bytes, static_cast<float>(v[a]));
     for (const std::uint8_t c : colour(full_um > 0 ? p.error_um / full_um : 0)) bytes += static_cast<char>(c);
@@ -37,7 +44,7 @@ void write_form_error_ply(const std::string& path, std::span<const FormErrorPoin
     append_little_endian(bytes, p.block);
     append_little_endian(bytes, static_cast<std::uint32_t>(p.tool));
   }
-  file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  flush();
   file.commit();
 }
 

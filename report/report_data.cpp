@@ -82,22 +82,19 @@ TextTable limits_table(const machine::Job& job, const compensate::Compensation& 
 
 }  // namespace
 
-std::vector<FormErrorPoint> form_error_points(const MachinedProgram& program,
-                                              const deflection::Prediction& prediction) {
-  std::vector<FormErrorPoint> out;
-  out.reserve(prediction.surface.size());
-  for (std::size_t i = 0; i < prediction.surface.size(); ++i) {
-    const auto& p = prediction.surface[i];
-    FormErrorPoint point{.place_mm = p.place_mm, .normal = p.normal, .error_um = 1000 * p.error_mm};
-    if (!prediction.total_error_mm.empty()) point.total_error_um = 1000 * prediction.total_error_mm[i];
-    if (p.machined_stamp >= 0) {
-      const nc::Move& move = program.moves.moves[program.path.stamps[static_cast<std::size_t>(p.machined_stamp)].move];
-      point.block = move.block + 1;
-      point.tool = program.moves.state_of(move).tool;
-    }
-    out.push_back(point);
-  }
-  return out;
+FormErrorPoints form_error_points(const MachinedProgram& program, const deflection::Prediction& prediction) {
+  return {prediction.surface.size(), [&program, &prediction](std::size_t i) {
+            const auto& p = prediction.surface[i];
+            FormErrorPoint point{.place_mm = p.place_mm, .normal = p.normal, .error_um = 1000 * p.error_mm};
+            if (!prediction.total_error_mm.empty()) point.total_error_um = 1000 * prediction.total_error_mm[i];
+            if (p.machined_stamp >= 0) {
+              const auto stamp = static_cast<std::size_t>(p.machined_stamp);
+              const nc::Move& move = program.moves.moves[program.path.stamps[stamp].move];
+              point.block = move.block + 1;
+              point.tool = program.moves.state_of(move).tool;
+            }
+            return point;
+          }};
 }
 
 ReportData predict_report(const machine::Job& job, const MachinedProgram& program, const deflection::Prediction& p,

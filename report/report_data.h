@@ -12,8 +12,8 @@
 
 namespace camber::report {
 
-std::vector<FormErrorPoint> form_error_points(const deflection::MachinedProgram& program,
-                                              const deflection::Prediction& prediction);
+/// Both must outlive what comes back.
+FormErrorPoints form_error_points(const deflection::MachinedProgram& program, const deflection::Prediction& prediction);
 
 ReportData predict_report(const machine::Job& job, const deflection::MachinedProgram& program,
                           const deflection::Prediction& prediction, std::vector<PathRow> rows,

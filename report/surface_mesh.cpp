@@ -49,9 +49,12 @@ std::array<Cell, 4> cells_around(const Crossing& c, std::int32_t factor) {
 
 std::vector<Cell> all_cells(const std::vector<Crossing>& crossings, std::int32_t factor) {
   std::vector<Cell> cells;
-  cells.reserve(4 * crossings.size());
-  for (const auto& c : crossings)
-    for (const Cell& cell : cells_around(c, factor)) cells.push_back(cell);
+  for (const auto& c : crossings) {
+    const auto around = cells_around(c, factor);
+    for (auto cell = around.begin(); cell != around.end(); ++cell)
+      if (std::find(around.begin(), cell, *cell) == cell && (cells.empty() || cells.back() != *cell))
+        cells.push_back(*cell);
+  }
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   return cells;
@@ -88,10 +91,14 @@ SurfaceMesh surface_mesh(std::span<const SurfaceSample> samples, double grid_mm,
   std::vector<Crossing> crossings;
   crossings.reserve(samples.size());
   for (const auto& s : samples) crossings.push_back(crossing_of(s, grid_mm));
-  std::int32_t factor = 1;
+  // A grid edge that the surface crosses belongs to four cells, and a cell that it passes has four such edges or six.
+  constexpr double kFewest = 0.5;  // cells for a crossing, with room
+  const auto most = static_cast<double>(std::max<std::size_t>(1, most_vertices));
+  const double crossed = static_cast<double>(crossings.size());
+  auto factor = std::max(std::int32_t{1}, static_cast<std::int32_t>(std::sqrt(kFewest * crossed / most)));
   std::vector<Cell> cells = all_cells(crossings, factor);
-  while (cells.size() > std::max<std::size_t>(1, most_vertices)) {
-    const double over = std::sqrt(static_cast<double>(cells.size()) / static_cast<double>(most_vertices));
+  while (static_cast<double>(cells.size()) > most) {
+    const double over = std::sqrt(static_cast<double>(cells.size()) / most);
     factor = std::max(factor + 1, static_cast<std::int32_t>(std::floor(factor * over)));
     cells = all_cells(crossings, factor);
   }

@@ -1,6 +1,7 @@
 // Carving, engagement and force on a finishing workload that other programs were measured on, without NC text and feed
-// model: surface z = 4 sin(kx) cos(ky), k = 2 pi / 50 mm, ball R5 on the exact offset surface, zigzag rows 0.3 mm
-// apart, points 0.2 mm apart (one tooth passing each), stock the box [0,100]^2 x [-10, 4.5].
+// model: surface z = 4 sin(kx) cos(ky), k = 2 pi / 50 mm, ball R5, its tip on the exact offset surface, zigzag rows
+// 0.3 mm apart, points 0.2 mm apart (one tooth passing each), stock the box [0,100]^2 x [-10, 4.5].
+// The path sweeps 44 971.98 mm3, its stamps alone 44 968.4 (a height field of 0.05 mm).
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -22,7 +23,8 @@ namespace {
 constexpr double kSide_mm = 100, kRadius_mm = 5, kRow_mm = 0.3, kStep_mm = 0.2;
 constexpr int kRows = 334, kPoints = 501;
 
-Vec3 tip_over(double x, double y) {
+/// The tip of the ball that touches the surface above (x, y).
+Vec3 tip_touching(double x, double y) {
   const double k = 2 * kPi / 50;
   const double z = 4 * std::sin(k * x) * std::cos(k * y);
   const Vec3 n =
@@ -30,12 +32,19 @@ Vec3 tip_over(double x, double y) {
   return Vec3(x, y, z) + kRadius_mm * n - Vec3(0, 0, kRadius_mm);
 }
 
+/// The tip at (x, y), on the offset surface.
+Vec3 tip_at(double x, double y) {
+  Vec2 touched(x, y);
+  for (int step = 0; step < 60; ++step) touched -= tip_touching(touched.x(), touched.y()).head<2>() - Vec2(x, y);
+  return tip_touching(touched.x(), touched.y());
+}
+
 std::vector<removal::Stamp> stamps_of(int from_row, int rows, double lift_mm) {
   std::vector<removal::Stamp> out;
   for (int r = from_row; r < from_row + rows; ++r)
     for (int i = 0; i < kPoints; ++i) {
       removal::Stamp s;
-      s.tip_mm = tip_over((r % 2 ? kPoints - 1 - i : i) * kStep_mm, r * kRow_mm) + Vec3(0, 0, lift_mm);
+      s.tip_mm = tip_at((r % 2 ? kPoints - 1 - i : i) * kStep_mm, r * kRow_mm) + Vec3(0, 0, lift_mm);
       s.first = out.empty();
       if (!out.empty()) s.feed_per_tooth_mm = s.tip_mm - out.back().tip_mm;
       s.t_s = static_cast<double>(out.size()) * 0.004;

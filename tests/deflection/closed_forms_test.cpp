@@ -165,11 +165,10 @@ TEST(ClosedForms, BallPassTakesItsAreaAndLeavesItsCusps) {
   sweep(target, tool, stamps, 0, 0);
   removal::CutterPlaces places;
   places.add(0, removal::shape_of(tool), stamps);
-  removal::SurfaceMap map(target, places);
+  removal::SurfaceMap map(target, places, stock);
   CutOptions options;
   options.coupling = machine::Coupling::rigid;
   options.envelope_step_mm = 0.03;
-  const removal::Stock blank(stock);
   const auto result = cut(stock, tool, kSteel, stamps, {}, 0, options);
   double chips = 0, count = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k)
@@ -194,7 +193,7 @@ TEST(ClosedForms, BallPassTakesItsAreaAndLeavesItsCusps) {
   EXPECT_NEAR(chips / count / kStep, area, kOnePercent * area);
 
   double lowest = 1, highest = -1;
-  for (const auto& p : map.take(blank))
+  for (const auto& p : map.take())
     if (p.place_mm.x() > 1 && p.place_mm.x() < 5 && p.place_mm.y() > 2 && p.place_mm.y() < 4) {
       lowest = std::min(lowest, p.place_mm.z());
       highest = std::max(highest, p.place_mm.z());

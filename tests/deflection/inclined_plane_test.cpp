@@ -53,9 +53,8 @@ Result simulate(machine::Coupling coupling, double width, double y_from, double 
   const auto contacts = find_contacts(target, tool, stamps);
   removal::CutterPlaces places;
   places.add(0, removal::shape_of(tool), stamps);
-  removal::SurfaceMap map(target, places);
+  removal::SurfaceMap map(target, places, stock);
   options.surface = &map;
-  const removal::Stock blank(stock);
   const CutResult cut_result = cut(stock, tool, material, stamps, contacts, 0, options);
   EXPECT_EQ(cut_result.unsettled, 0u);
 
@@ -74,7 +73,7 @@ Result simulate(machine::Coupling coupling, double width, double y_from, double 
   r.force_mean_N /= n;
   r.deflection_um /= n;
   std::vector<double> error;
-  for (const auto& p : map.take(blank))
+  for (const auto& p : map.take())
     if (p.place_mm.x() > 3 && p.place_mm.x() < 5 && p.place_mm.y() > y_from && p.place_mm.y() < y_to)
       error.push_back(1000 * p.error_mm);
   std::sort(error.begin(), error.end());

@@ -1,5 +1,7 @@
 #include "report/form_error.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "report/base64.h"
@@ -9,13 +11,18 @@
 namespace camber::report {
 namespace {
 
+FormErrorPoints those(std::vector<FormErrorPoint> points) {
+  const std::size_t count = points.size();
+  return {count, [points = std::move(points)](std::size_t i) { return points[i]; }};
+}
+
 std::vector<FormErrorPoint> two_points() {
   return {{{1, 2, -3.25}, {0, 0, 1}, 12.3456, 13.5, 42, 3}, {{0, 0, 0}, {0, 0.6, 0.8}, -0.5, std::nan(""), 0}};
 }
 
 TEST(FormErrorCsv, HasARowAPoint) {
   const tests::TempFolder folder;
-  write_form_error_csv(folder / "e.csv", two_points());
+  write_form_error_csv(folder / "e.csv", those(two_points()));
   EXPECT_EQ(tests::file_text(folder / "e.csv"),
             "x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block,tool\n"
             "1.0000,2.0000,-3.2500,0.00000,0.00000,1.00000,12.346,13.500,42,3\n"
@@ -24,7 +31,7 @@ TEST(FormErrorCsv, HasARowAPoint) {
 
 TEST(FormErrorVtp, HoldsEveryArray) {
   const tests::TempFolder folder;
-  write_form_error_vtp(folder / "e.vtp", two_points());
+  write_form_error_vtp(folder / "e.vtp", those(two_points()));
   const std::string text = tests::file_text(folder / "e.vtp");
   EXPECT_NE(text.find("<Piece NumberOfPoints=\"2\" NumberOfVerts=\"2\""), std::string::npos);
   for (const char* name : {"error_um", "total_error_um", "normal", "block", "tool", "connectivity", "offsets"})
@@ -41,13 +48,13 @@ TEST(FormErrorVtp, LeavesTheTotalOutWhereThereIsNoMesh) {
   const tests::TempFolder folder;
   auto points = two_points();
   points[0].total_error_um = std::nan("");
-  write_form_error_vtp(folder / "e.vtp", points);
+  write_form_error_vtp(folder / "e.vtp", those(points));
   EXPECT_EQ(tests::file_text(folder / "e.vtp").find("total_error_um"), std::string::npos);
 }
 
 TEST(FormErrorPly, HoldsPlacesColoursAndWhatMadeThem) {
   const tests::TempFolder folder;
-  write_form_error_ply(folder / "e.ply", two_points(), 1.0);
+  write_form_error_ply(folder / "e.ply", those(two_points()), 1.0);
   const std::string text = tests::file_text(folder / "e.ply");
   const std::size_t end = text.find("end_header\n") + 11;
   EXPECT_EQ(text.substr(0, 36), "ply\nformat binary_little_endian 1.0\n");

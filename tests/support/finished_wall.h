@@ -125,13 +125,12 @@ inline WallFigures camber_figures(const FinishedWall& w) {
   deflection::sweep(target, tool, cut.stamps, 0, 0);
   removal::CutterPlaces places;
   places.add(0, removal::shape_of(tool), cut.stamps);
-  removal::SurfaceMap map(target, places);
+  removal::SurfaceMap map(target, places, stock);
   deflection::CutOptions options;
   options.coupling = machine::Coupling::rigid;
   options.envelope_step_mm = w.edge_step_mm;
   options.rotation_step_rad = rad_from_deg(w.rotation_step_deg);
   options.surface = &map;
-  const removal::Stock blank(stock);
   const auto result = deflection::cut(stock, tool, material, cut.stamps, {}, 0, options);
   WallFigures f;
   const std::size_t middle = detail::middle_stamp(w, cut);
@@ -141,7 +140,7 @@ inline WallFigures camber_figures(const FinishedWall& w) {
     f.mean_N += result.loads[k].force_mean_N / (2 * kAround + 1);
   }
   detail::Slices slices(w);
-  for (const auto& p : map.take(blank)) {
+  for (const auto& p : map.take()) {
     const Vec3 q = p.place_mm - w.offset_mm;
     if (std::abs(q.y()) < 0.05 && std::abs(q.x() - detail::kMiddle) < 1) slices.add(q.z(), p.error_mm, p.area_mm2);
   }

@@ -154,9 +154,8 @@ inline CutFigures camber_figures(const InclinedPlane& p) {
   options.rotation_step_rad = kPi / p.steps_per_pitch;
   removal::CutterPlaces places;
   places.add(0, removal::shape_of(tool), cut.stamps);
-  removal::SurfaceMap map(target, places);
+  removal::SurfaceMap map(target, places, stock);
   options.surface = &map;
-  const removal::Stock blank(stock);
   const auto result = deflection::cut(stock, tool, material, cut.stamps, {}, 0, options);
   CutFigures f;
   f.chips_of_stock = result.chip_mm3 / result.stock_mm3;
@@ -169,7 +168,7 @@ inline CutFigures camber_figures(const InclinedPlane& p) {
   }
   const double a = rad_from_deg(p.slope_deg);
   std::vector<std::pair<double, double>> error_area;
-  for (const auto& s : map.take(blank)) {
+  for (const auto& s : map.take()) {
     const Vec3 q = s.place_mm - p.offset_mm;
     const double along = q.y() * std::cos(a) + q.z() * std::sin(a);
     if (q.x() > detail::kXFrom && q.x() < detail::kXTo && along > detail::kSFrom && along < detail::kSTo)
