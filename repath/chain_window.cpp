@@ -14,11 +14,17 @@ constexpr int kFailures = 4;        ///< ends in a row that nothing reaches
 
 bool ChainCost::operator<(const ChainCost& other) const {
   constexpr double kSame = 1e-6;
+  if (primitives_per_line_mm > 0) {
+    const auto sum = [&](const ChainCost& c) {
+      return static_cast<double>(c.primitives) + primitives_per_line_mm * c.lines_mm;
+    };
+    return sum(*this) < sum(other) - kSame;
+  }
   return primitives != other.primitives ? primitives < other.primitives : lines_mm < other.lines_mm - kSame;
 }
 
 ChainCost ChainCost::with(const Polyline& path, const Primitive& p) const {
-  return {primitives + 1, lines_mm + (p.arc ? 0 : (path.at(p.last) - path.at(p.first)).norm())};
+  return {primitives + 1, lines_mm + (p.arc ? 0 : (path.at(p.last) - path.at(p.first)).norm()), primitives_per_line_mm};
 }
 
 std::array<std::optional<Bent>, 2> line_or_arc(const Bends& bends, const Bent& before, const Bends::Stretch& stretch) {
@@ -29,7 +35,7 @@ std::array<std::optional<Bent>, 2> line_or_arc(const Bends& bends, const Bent& b
 
 std::vector<Primitive> ChainWindow::best(const Primitive& before, const Primitive* behind,
                                          std::span<const std::uint32_t> ends, const Limits& limits, ChainCost& cost) {
-  states_.assign(1, State{{}, fixed(before), 0});
+  states_.assign(1, State{{.primitives_per_line_mm = limits.primitives_per_line_mm}, fixed(before), 0});
   at_.assign(ends.size() + 1, {});
   at_[0] = {0};
   for (std::size_t from = 0; from < ends.size(); ++from) {
@@ -79,7 +85,7 @@ void ChainWindow::keep(std::vector<std::size_t>& here, const State& state) {
 
 std::vector<Primitive> ChainWindow::chain_to(const std::vector<std::size_t>& here, const Primitive* behind,
                                              ChainCost& cost) const {
-  cost = {std::numeric_limits<std::size_t>::max() / 2, 0};
+  cost = {std::numeric_limits<std::size_t>::max() / 2, 0, states_[0].cost.primitives_per_line_mm};
   std::size_t last = 0;
   for (const std::size_t s : here) {
     const State& state = states_[s];

@@ -20,6 +20,26 @@ void place_after(std::vector<RewrittenRun>& runs, const std::vector<nc::BlockRep
   }
 }
 
+double cutting_time_s(const nc::Interpretation& moves, const FeedsByKind& feeds) {
+  double time_s = 0;
+  for (const nc::Move& move : moves.moves) {
+    const bool arc = move.kind == nc::MoveKind::arc;
+    if (!arc && move.kind != nc::MoveKind::linear) continue;
+    time_s += nc::length_mm(moves, move) / (arc ? feeds.arc_mm_per_s : feeds.line_mm_per_s) + feeds.block_s;
+  }
+  return time_s;
+}
+
+namespace {
+
+/// How many blocks more may be had for a millimetre of lines that becomes one of arcs.
+double blocks_per_line_mm(const FeedsByKind& feeds) {
+  constexpr double kMost = 1e4;
+  return std::min(kMost, (1 / feeds.line_mm_per_s - 1 / feeds.arc_mm_per_s) / std::max(feeds.block_s, 1e-9));
+}
+
+}  // namespace
+
 Compression compress(const nc::Program& program, const nc::Interpretation& moves, const CompressOptions& options) {
   const TextStyle style = text_style_of(program, moves, options.whole_numbers_are_increments);
   Compression out;
@@ -34,6 +54,7 @@ Compression compress(const nc::Program& program, const nc::Interpretation& moves
     fit_options.tolerance_mm = options.tolerance_mm;
     fit_options.increment_mm = (moves.state_of(first).inch ? kMmPerInch : 1) * std::pow(10.0, -style.decimals);
     fit_options.helices = options.helices;
+    if (options.feeds) fit_options.primitives_per_line_mm = blocks_per_line_mm(*options.feeds);
     fit_options.arcs = fit_options.arcs && (run.current_plane || options.switch_planes);
     const Polyline polyline{path.points, path.heights};
     const std::vector<Primitive> chain = fit(polyline, fit_options);

@@ -9,6 +9,7 @@
 #include "repath/joints.h"
 #include "repath/shorten_lines.h"
 #include "repath/smooth_joints.h"
+#include "repath/spare_lines.h"
 #include "repath/tangent.h"
 
 namespace camber::repath {
@@ -46,6 +47,7 @@ class Search {
       if (kink_squares(smoother, corners) < kink_squares(chain, corners)) chain = std::move(smoother);
     }
     smooth_joints(path_, options_, fitter_, corners, chain);
+    if (options_.arcs && options_.primitives_per_line_mm > 0) spare_lines(path_, options_, fitter_, corners, chain);
     return chain;
   }
 
@@ -165,9 +167,10 @@ std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& 
   const std::vector<bool> corners = corners_of(path, options);
   const Joints joints(path, options, corners);
   const Bends bends(path, options, fitter, joints);
-  std::vector<ChainCost> cost(n, ChainCost{n, 0});
+  constexpr double kFar = 1e12;
+  std::vector<ChainCost> cost(n, ChainCost{n, kFar, options.primitives_per_line_mm});
   std::vector<Primitive> best(n);
-  cost[0] = {};
+  cost[0] = {.primitives_per_line_mm = options.primitives_per_line_mm};
   for (std::uint32_t i = 0; i + 1 < n; ++i)
     for (std::uint32_t j = i + 1; j < n; ++j) {
       for (const auto& fitted : line_or_arc(bends, fixed({.first = i, .last = i}), bends.stretch(i, j))) {

@@ -22,6 +22,9 @@ struct FitOptions {
   /// what the path itself turns there; a line it meets with no more than this, or 0.6 of that turn (a chord leaves its
   /// curve by half of it). Half a turn: not bounded. See repath/joints.h.
   double most_kink_rad = 1 * kPi / 180;
+  /// For controls that run arcs faster than lines: primitives that a millimetre of lines is worth. Zero: the fewest
+  /// primitives, and among as many the shortest lines.
+  double primitives_per_line_mm = 0;
 };
 
 /// A polyline, and the third coordinate of each point where it is one in space; else `heights` is empty. In space arcs
@@ -70,8 +73,8 @@ class Fitter {
   Fitter(const Polyline& path, const FitOptions& options);
   std::optional<Primitive> line(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> arc(std::uint32_t first, std::uint32_t last) const;
-  /// Ends of lines from `first`, ascending: the next point and the last `most` up to `end`. In space some of them may be
-  /// none, the next point always is one.
+  /// Ends of lines from `first`, ascending: the next point and the last `most` up to `end`. In space some of them may
+  /// be none, the next point always is one.
   std::vector<std::uint32_t> line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t most) const;
 
   std::optional<ArcRoom> room(std::uint32_t first, std::uint32_t last) const;
