@@ -42,9 +42,11 @@ std::vector<Primitive> ChainWindow::best(const Primitive& before, const Primitiv
     std::erase_if(at_[from], [&](std::size_t s) { return states_[s].cost.primitives >= limits.most_primitives; });
     if (at_[from].empty()) continue;
     const std::uint32_t begin = from == 0 ? before.last : ends[from - 1];
+    const auto limit = std::upper_bound(path_.ends.begin(), path_.ends.end(), begin);
     int failures = 0;
     for (std::size_t to = from + 1; to <= ends.size() && failures < kFailures; ++to) {
       const std::uint32_t end = ends[to - 1];
+      if (limit != path_.ends.end() && end > *limit) break;
       failures = reach(from, to, begin, end, limits) || end - begin < options_.arc_points ? 0 : failures + 1;
     }
   }

@@ -31,18 +31,18 @@ class Search {
 
   std::vector<Primitive> run() {
     const auto n = static_cast<std::uint32_t>(points_.size());
-    const std::vector<bool> corners = corners_of(path_, options_);
+    const std::vector<bool> corners = corners_of(path_, options_), ends = ends_of(path_, corners);
     std::vector<Primitive> chain;
     std::uint32_t begin = 0;
     for (std::uint32_t k = 1; k < n; ++k) {
-      if (k + 1 < n && !corners[k]) continue;
+      if (k + 1 < n && !ends[k]) continue;
       fit_piece(begin, k, chain);
       begin = k;
     }
-    if (options_.arcs) shorten_lines(path_, options_, fitter_, corners, chain);
+    if (options_.arcs) shorten_lines(path_, options_, fitter_, ends, chain);
     if (options_.tangent) {
       std::vector<Primitive> smoother = chain;
-      move_joints(path_, fitter_, corners, smoother);
+      move_joints(path_, fitter_, ends, smoother);
       make_tangent(points_, options_, fitter_, corners, smoother);
       if (kink_squares(smoother, corners) < kink_squares(chain, corners)) chain = std::move(smoother);
     }
@@ -164,7 +164,7 @@ std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& 
   if (n < 2) return {};
   const Fitter fitter(path, options);
   assert(!(options.most_kink_rad < kPi));
-  const std::vector<bool> corners = corners_of(path, options);
+  const std::vector<bool> corners = corners_of(path, options), ends = ends_of(path, corners);
   const Joints joints(path, options, corners);
   const Bends bends(path, options, fitter, joints);
   constexpr double kFar = 1e12;
@@ -180,7 +180,7 @@ std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& 
         cost[j] = now;
         best[j] = fitted->primitive;
       }
-      if (corners[j]) break;
+      if (ends[j]) break;
     }
   std::vector<Primitive> chain;
   for (std::uint32_t j = n - 1; j > 0; j = best[j].first) chain.push_back(best[j]);

@@ -29,9 +29,11 @@ struct FitOptions {
 
 /// A polyline, and the third coordinate of each point where it is one in space; else `heights` is empty. In space arcs
 /// lie where the height stands still, or with FitOptions::helices are helices about the third axis.
+/// `ends`, ascending: points over which nothing runs, as where the feed changes. Kinks are bounded there as elsewhere.
 struct Polyline {
   std::span<const Vec2> points;
   std::span<const double> heights{};
+  std::span<const std::uint32_t> ends{};
   Vec3 at(std::size_t k) const { return {points[k].x(), points[k].y(), heights.empty() ? 0.0 : heights[k]}; }
 };
 
@@ -57,6 +59,8 @@ inline std::vector<Primitive> fit_exhaustively(std::span<const Vec2> points, con
 /// The vertices that are corners: they turn by more than corner_rad, and more than twice as much as the path beside
 /// them (a coarse circle turns everywhere alike). Turns are measured between legs of at least five tolerances.
 std::vector<bool> corners_of(const Polyline& path, const FitOptions& options);
+/// The vertices where primitives must end: corners, and Polyline::ends.
+std::vector<bool> ends_of(const Polyline& path, const std::vector<bool>& corners);
 double corner_leg_mm(const FitOptions& options);
 
 /// The room of the arc from one point to another: its sweep may lie between the two; both with the sign of the

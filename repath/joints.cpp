@@ -19,7 +19,8 @@ constexpr double kEdgeTimesBeside = 3;
 /// Of what the program turns at a point: how well its chords say the direction there.
 constexpr double kShareOfArcs = 0.125, kShareOfLines = 0.6;
 constexpr double kTimesOfBlocks = 2;
-constexpr double kClimb = 0.5;  ///< of the bound: slopes that differ by more
+constexpr double kAlwaysSharpRad = 60 * kPi / 180;  ///< also where the path turns as much beside it; as in resegment
+constexpr double kClimb = 0.5;                      ///< of the bound: slopes that differ by more
 
 double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
@@ -75,7 +76,9 @@ Joints::Joints(const Polyline& path, const FitOptions& options, const std::vecto
 
 double Joints::most_kink_rad(const Primitive& before, const Primitive& p) const {
   const std::uint32_t at = p.first;
-  if (!bounded_ || at == 0 || at + 1 == corners_.size() || corners_[at]) return kInfinity;
+  if (!bounded_ || at == 0 || at + 1 == corners_.size() || corners_[at] ||
+      std::min(turn_[at], blocks_turn_[at]) > kAlwaysSharpRad)
+    return kInfinity;
   if (!before.arc && !p.arc)
     return rises(path_, before) || rises(path_, p) ? kInfinity
                                                    : std::max(most_kink_rad_, kTimesOfBlocks * blocks_turn_[at]);

@@ -19,7 +19,7 @@ class LineSparer {
   LineSparer(const Polyline& path, const FitOptions& options, const Fitter& fitter, const std::vector<bool>& corners)
       : path_(path),
         options_(options),
-        corners_(corners),
+        ends_at_(ends_of(path, corners)),
         joints_(path, options, corners),
         window_(path, options, fitter, joints_) {}
 
@@ -33,9 +33,9 @@ class LineSparer {
       out_straight.push_back(straight[k]);
       if (chain[k].arc || straight[k]) continue;
       std::size_t first = out.size() - 1, last = k;
-      while (first > 0 && out.size() - 1 - first < kBeside && !corners_[out[first].first] && !out_straight[first - 1])
+      while (first > 0 && out.size() - 1 - first < kBeside && !ends_at_[out[first].first] && !out_straight[first - 1])
         --first;
-      while (last + 1 < chain.size() && last - k < kBeside && !corners_[chain[last].last] && !straight[last + 1])
+      while (last + 1 < chain.size() && last - k < kBeside && !ends_at_[chain[last].last] && !straight[last + 1])
         ++last;
       std::vector<Primitive> old(out.begin() + static_cast<std::ptrdiff_t>(first), out.end());
       old.insert(old.end(), chain.begin() + static_cast<std::ptrdiff_t>(k) + 1,
@@ -100,7 +100,7 @@ class LineSparer {
 
   const Polyline path_;
   const FitOptions& options_;
-  const std::vector<bool>& corners_;
+  const std::vector<bool> ends_at_;
   Joints joints_;
   ChainWindow window_;
   std::vector<std::uint32_t> ends_;
