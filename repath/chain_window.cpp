@@ -36,8 +36,9 @@ std::array<std::optional<Bent>, 2> line_or_arc(const Bends& bends, const Bent& b
 std::vector<Primitive> ChainWindow::best(const Primitive& before, const Primitive* behind,
                                          std::span<const std::uint32_t> ends, const Limits& limits, ChainCost& cost) {
   states_.assign(1, State{{.primitives_per_line_mm = limits.primitives_per_line_mm}, fixed(before), 0});
-  at_.assign(ends.size() + 1, {});
-  at_[0] = {0};
+  if (at_.size() < ends.size() + 1) at_.resize(ends.size() + 1);
+  for (std::size_t k = 0; k <= ends.size(); ++k) at_[k].clear();
+  at_[0].push_back(0);
   for (std::size_t from = 0; from < ends.size(); ++from) {
     std::erase_if(at_[from], [&](std::size_t s) { return states_[s].cost.primitives >= limits.most_primitives; });
     if (at_[from].empty()) continue;
@@ -50,7 +51,7 @@ std::vector<Primitive> ChainWindow::best(const Primitive& before, const Primitiv
       failures = reach(from, to, begin, end, limits) || end - begin < options_.arc_points ? 0 : failures + 1;
     }
   }
-  return chain_to(at_.back(), behind, cost);
+  return chain_to(at_[ends.size()], behind, cost);
 }
 
 bool ChainWindow::reach(std::size_t from, std::size_t to, std::uint32_t begin, std::uint32_t end,
@@ -58,8 +59,8 @@ bool ChainWindow::reach(std::size_t from, std::size_t to, std::uint32_t begin, s
   const Bends::Stretch stretch = bends_.stretch(begin, end);
   bool reached = stretch.room.has_value();
   for (const std::size_t s : at_[from]) {
-    const Bent before = states_[s].bent;
-    for (const auto& bent : line_or_arc(bends_, before, stretch)) {
+    const std::array<std::optional<Bent>, 2> bents = line_or_arc(bends_, states_[s].bent, stretch);
+    for (const auto& bent : bents) {
       if (!bent || bent->primitive.deviation_mm > limits.most_deviation_mm) continue;
       reached = true;
       keep(at_[to], {states_[s].cost.with(path_, bent->primitive), *bent, s});

@@ -56,7 +56,7 @@ class Compressor {
     // A run that does not become shorter stays as it is, and so must what its neighbours were joined to.
     for (bool again = true; again;) {
       const Polyline polyline{runs.path.points, runs.path.heights, ends};
-      const std::vector<Primitive> chain = fit(polyline, options);
+      const std::vector<Primitive> chain = fit(polyline, options, &memory_);
       std::vector<Rewrite> rewrites;
       again = false;
       for (const RunChain::Part& part : runs.parts) {
@@ -137,6 +137,7 @@ class Compressor {
   const nc::Interpretation& moves_;
   const CompressOptions& options_;
   const TextStyle style_;
+  FitMemory memory_;
   Compression out_;
   std::vector<nc::BlockReplacement> replacements_;
   double kink_squares_ = 0;

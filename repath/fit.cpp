@@ -26,8 +26,8 @@ struct Node {
 /// pinned at its ends, so an end a few points short may carry farther. That is what the width is for.
 class Search {
  public:
-  Search(const Polyline& path, const FitOptions& options)
-      : path_(path), points_(path.points), options_(options), fitter_(path, options) {}
+  Search(const Polyline& path, const FitOptions& options, FitMemory* memory)
+      : path_(path), points_(path.points), options_(options), fitter_(path, options, memory) {}
 
   std::vector<Primitive> run() {
     const auto n = static_cast<std::uint32_t>(points_.size());
@@ -152,11 +152,11 @@ class Search {
 
 }  // namespace
 
-std::vector<Primitive> fit(const Polyline& path, const FitOptions& options) {
+std::vector<Primitive> fit(const Polyline& path, const FitOptions& options, FitMemory* memory) {
   assert(options.tolerance_mm > 0 && options.increment_mm > 0 && options.width > 0);
   assert(path.heights.empty() || path.heights.size() == path.points.size());
   if (path.points.size() < 2) return {};
-  return Search(path, options).run();
+  return Search(path, options, memory).run();
 }
 
 std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& options) {

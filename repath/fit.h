@@ -40,10 +40,13 @@ struct Polyline {
 /// All three coordinates of each point.
 std::vector<Vec3> in_space(const Polyline& path);
 
+class FitMemory;
+
 /// The chain: first primitive from points.front(), last to points.back(), each from where the one before ends. Every
 /// end is a point of the polyline, so nothing drifts. `points`: no two that follow each other are alike.
 /// Time and memory grow linearly with the number of points.
-std::vector<Primitive> fit(const Polyline& path, const FitOptions& options);
+/// `memory`: used again from path to path where given; never by two threads at once.
+std::vector<Primitive> fit(const Polyline& path, const FitOptions& options, FitMemory* memory = nullptr);
 inline std::vector<Primitive> fit(std::span<const Vec2> points, const FitOptions& options) {
   return fit(Polyline{points}, options);
 }
@@ -71,10 +74,47 @@ struct ArcRoom {
   int direction = 1;
 };
 
+/// What fits between two points, whatever lies beside it: no arc where the line is straight to an increment.
+struct Tried {
+  std::optional<Primitive> line, arc;
+  std::optional<ArcRoom> room;  ///< as Fitter::arc_room(): not where the two points are one
+  bool best_sweep = false;      ///< the arc has the room's best sweep
+};
+
+/// What was tried between pairs of points of one path, in room for a few thousand of them.
+class FitMemory {
+ public:
+  void forget();
+  /// What is kept of a pair; else makes it.
+  template <class Make>
+  const Tried& at(std::uint32_t first, std::uint32_t last, Make make) {
+    std::uint32_t& slot = slots_[(first * 67u + last) % kSlots];
+    if (slot == 0) {
+      kept_.push_back({first, last, make()});
+      slot = static_cast<std::uint32_t>(kept_.size());
+    }
+    Kept& kept = kept_[slot - 1];
+    if (kept.first != first || kept.last != last) kept = {first, last, make()};
+    return kept.tried;
+  }
+
+ private:
+  static constexpr std::uint32_t kSlots = 4096;  ///< a power of two, more than one window of a search asks for
+  struct Kept {
+    std::uint32_t first = 0, last = 0;
+    Tried tried;
+  };
+  std::vector<std::uint32_t> slots_;  ///< by a hash of the two points: 1 + index into kept_; 0 none
+  std::vector<Kept> kept_;
+};
+
 /// Tries one line, one arc.
 class Fitter {
  public:
-  Fitter(const Polyline& path, const FitOptions& options);
+  /// As line(), arc_room(), arc(). Kept for a while: asked again it costs nothing.
+  const Tried& tried(std::uint32_t first, std::uint32_t last) const;
+
+  Fitter(const Polyline& path, const FitOptions& options, FitMemory* memory = nullptr);
   std::optional<Primitive> line(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> arc(std::uint32_t first, std::uint32_t last) const;
   /// Ends of lines from `first`, ascending: the next point and the last `most` up to `end`. In space some of them may
@@ -91,6 +131,7 @@ class Fitter {
                                           double sweep_rad) const;
 
  private:
+  Tried try_out(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> full_turn(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> rounded_arc(std::uint32_t first, std::uint32_t last, int direction,
                                        const Vec2& center_mm) const;
@@ -105,6 +146,8 @@ class Fitter {
   std::vector<double> area_;          ///< twice the area swept from points[0], up to each point
   std::vector<double> length_;        ///< along the polyline up to each point
   std::vector<std::uint32_t> level_;  ///< in space: the point from which on each point's height stands still
+  mutable FitMemory own_memory_;
+  FitMemory* memory_;  ///< none: the fitter's own
 };
 
 }  // namespace camber::repath
