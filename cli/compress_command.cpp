@@ -19,14 +19,22 @@ namespace camber::cli {
 namespace {
 
 struct Figures : ProgramFigures {
-  std::optional<double> time_s;
+  std::optional<double> time_s;           ///< on the machine
+  std::optional<double> time_at_feeds_s;  ///< of the cuts, at the feeds of lines and arcs
 };
 
 Figures with_time(const nc::Program& program, const nc::Interpretation& moves,
-                  const std::optional<machine::Machine>& machine) {
-  Figures f{figures_of(program, moves), std::nullopt};
+                  const std::optional<machine::Machine>& machine, const std::optional<repath::FeedsByKind>& feeds) {
+  Figures f{figures_of(program, moves), std::nullopt, std::nullopt};
   if (machine) f.time_s = feedmodel::cycle_time(moves, *machine).all.time.total_s();
+  if (feeds) f.time_at_feeds_s = repath::cutting_time_s(moves, *feeds);
   return f;
+}
+
+std::optional<repath::FeedsByKind> feeds_of(const CompressArguments& arguments) {
+  if (!arguments.line_feed_mm_per_min) return std::nullopt;
+  return repath::FeedsByKind{mm_per_s_from_mm_per_min(*arguments.line_feed_mm_per_min),
+                             mm_per_s_from_mm_per_min(*arguments.arc_feed_mm_per_min), arguments.block_s};
 }
 
 std::string text_report(const Figures& before, const Figures& after, const repath::Compression& result) {
@@ -37,6 +45,10 @@ std::string text_report(const Figures& before, const Figures& after, const repat
                      after.arcs);
   out += fmt::format("length     {:>8.1f} mm {:>9.1f} mm\n", before.length_mm, after.length_mm);
   if (before.time_s) out += fmt::format("time       {:>9.1f} s {:>10.1f} s\n", *before.time_s, *after.time_s);
+  if (before.time_at_feeds_s)
+    out +=
+        fmt::format("at the feeds given {:>5.1f} s {:>10.1f} s   / {:.2f}, without rapids\n", *before.time_at_feeds_s,
+                    *after.time_at_feeds_s, *before.time_at_feeds_s / *after.time_at_feeds_s);
   out += fmt::format("largest deviation {:.4f} mm in {} rewritten runs; largest kink beside an arc {:.1f} degrees\n",
                      result.max_deviation_mm, result.runs.size(), deg_from_rad(result.max_kink_rad));
   return out;
@@ -64,6 +76,10 @@ std::string json_report(const Figures& before, const Figures& after, const repat
     report["time_before_s"] = *before.time_s;
     report["time_after_s"] = *after.time_s;
   }
+  if (before.time_at_feeds_s) {
+    report["time_at_feeds_before_s"] = *before.time_at_feeds_s;
+    report["time_at_feeds_after_s"] = *after.time_at_feeds_s;
+  }
   return report.dump(2) + "\n";
 }
 
@@ -74,6 +90,9 @@ std::vector<report::Figure> page_figures(const Figures& before, const Figures& a
       {"straight cuts", count(before.lines), count(after.lines), "", 0, "lines_before", "lines"},
       {"arcs", count(before.arcs), count(after.arcs), "", 0, "arcs_before", "arcs"},
       {"length of the cuts", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
+  if (before.time_at_feeds_s)
+    out.insert(out.begin() + 1, {"cuts at the feeds given", *before.time_at_feeds_s, *after.time_at_feeds_s, "s", 1,
+                                 "time_at_feeds_{}_s"});
   if (before.time_s && after.time_s)
     out.insert(out.begin() + 1, {"time", *before.time_s, *after.time_s, "s", 1, "time_{}_s"});
   return out;
@@ -95,6 +114,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
 
   repath::CompressOptions compress_options;
   compress_options.tolerance_mm = arguments.tolerance_mm;
+  compress_options.feeds = feeds_of(arguments);
   compress_options.switch_planes = arguments.switch_planes;
   compress_options.helices = arguments.helices;
   compress_options.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
@@ -106,7 +126,8 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   const nc::Program new_program = nc::read_program(SourceText(arguments.output, result.text), again);
   const nc::Interpretation new_moves = nc::interpret(new_program, interpreter, again);
   again.throw_if_errors();
-  const Figures before = with_time(program, moves, machine), after = with_time(new_program, new_moves, machine);
+  const Figures before = with_time(program, moves, machine, compress_options.feeds),
+                after = with_time(new_program, new_moves, machine, compress_options.feeds);
 
   write_file(arguments.output, result.text);
   if (!arguments.json.empty() || !arguments.report.empty()) {

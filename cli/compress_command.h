@@ -1,5 +1,6 @@
 #pragma once
 // camber compress: many G1 to few G1, G2 and G3 within a tolerance.
+#include <optional>
 #include <string>
 
 #include "cli/global_options.h"
@@ -14,6 +15,9 @@ struct CompressArguments {
   std::string report;   ///< the page; empty: none
   double tolerance_mm = 0;
   double tangent_deg = 1;  ///< most that arcs may kink against what is beside them; 180: not bounded
+  /// Of a control that runs arcs faster than lines: the least time instead of the fewest blocks.
+  std::optional<double> line_feed_mm_per_min, arc_feed_mm_per_min;
+  double block_s = 0.005;
   bool lines_only = false;
   bool switch_planes = false;
   bool helices = false;

@@ -217,6 +217,25 @@ void add_rewriting(CLI::App& command, Arguments& arguments) {
       ->type_name("R.html");
 }
 
+void add_feeds_by_kind(CLI::App& command, CompressArguments& arguments, CLI::Option* lines_only) {
+  auto* line = command
+                   .add_option("--line-feed-mm-per-min", arguments.line_feed_mm_per_min,
+                               "what the control reaches on lines where it runs arcs faster: the least time instead of "
+                               "the fewest blocks")
+                   ->check(number_from_to(0.1, 1e6))
+                   ->excludes(lines_only)
+                   ->type_name("V");
+  auto* arc = command.add_option("--arc-feed-mm-per-min", arguments.arc_feed_mm_per_min, "what it reaches on arcs")
+                  ->check(number_from_to(0.1, 1e6))
+                  ->needs(line)
+                  ->type_name("W");
+  line->needs(arc);
+  command.add_option("--block-s", arguments.block_s, "what a block costs it beside its way; else 0.005")
+      ->check(number_from_to(0, 10))
+      ->needs(line)
+      ->type_name("S");
+}
+
 void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("compress", "many G1 to few G1, G2 and G3 within a tolerance");
   auto arguments = std::make_shared<CompressArguments>();
@@ -235,11 +254,17 @@ void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->add_flag("--helices", arguments->helices,
                  "arcs along which the third axis moves evenly too, where the path is one in space")
       ->excludes(lines_only);
+  add_feeds_by_kind(*command, *arguments, lines_only);
   command->add_flag("--switch-planes", arguments->switch_planes,
                     "arcs in planes other than the program's own too, with G17 G18 G19 around them");
   add_interpreter_options(*command, arguments->interpreter);
   add_language_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
+    if (arguments->line_feed_mm_per_min && *arguments->arc_feed_mm_per_min <= *arguments->line_feed_mm_per_min)
+      throw CLI::ValidationError("--arc-feed-mm-per-min",
+                                 fmt::format("{:g}: more than --line-feed-mm-per-min {:g} was "
+                                             "expected",
+                                             *arguments->arc_feed_mm_per_min, *arguments->line_feed_mm_per_min));
     chosen = [arguments, &options] {
       if (options.effective_config && !arguments->machine.empty())
         return print_effective_machine(arguments->machine, options);

@@ -19,13 +19,12 @@ std::optional<Bent> Bends::behind(const Bent& before, const std::optional<Primit
 }
 
 Bends::Stretch Bends::stretch(std::uint32_t first, std::uint32_t last) const {
-  Stretch out{first, last, fitter_.line(first, last), std::nullopt, std::nullopt};
-  if (!options_.arcs || (out.line && out.line->deviation_mm <= options_.increment_mm)) return out;
-  if (!joints_.bounded() || path_.points[first] == path_.points[last])
-    out.arc = fitter_.arc(first, last);
-  else
-    out.room = fitter_.arc_room(first, last);
-  if (out.room && !fitter_.arc_in(first, last, *out.room)) out.room.reset();
+  const Tried& tried = fitter_.tried(first, last);
+  Stretch out{first, last, tried.line, std::nullopt, std::nullopt};
+  if (!tried.arc) return out;
+  out.arc = tried.arc;
+  out.best_sweep = tried.best_sweep;
+  if (joints_.bounded()) out.room = tried.room;
   return out;
 }
 
@@ -48,6 +47,7 @@ std::optional<Bent> Bends::arc(const Bent& before, const Stretch& stretch) const
   room.least_sweep_rad = std::min(std::abs(sweeps->low_rad), std::abs(sweeps->high_rad));
   room.most_sweep_rad = std::max(std::abs(sweeps->low_rad), std::abs(sweeps->high_rad));
   room.best_sweep_rad = std::clamp(room.best_sweep_rad, room.least_sweep_rad, room.most_sweep_rad);
+  if (stretch.best_sweep && room.best_sweep_rad == stretch.room->best_sweep_rad) return Bent{*stretch.arc, *sweeps};
   const auto arc = fitter_.arc_in(first, last, room);
   if (!arc) return std::nullopt;
   return Bent{*arc, *sweeps};
@@ -59,7 +59,7 @@ bool Bends::covers(const Bent& kept, const Bent& other) const {
   if (a.last != b.last) return false;
   if (!joints_.bounded()) return true;
   if (a.arc != b.arc || (is_block(b) && !is_block(a))) return false;
-  const double turn = std::remainder(chord_angle_rad(path_.points, b) - chord_angle_rad(path_.points, a), 2 * kPi);
+  const double turn = std::remainder(joints_.chord_angle_rad(b) - joints_.chord_angle_rad(a), 2 * kPi);
   return 0.5 * kept.sweeps.low_rad <= turn + 0.5 * other.sweeps.low_rad + kSameRad &&
          turn + 0.5 * other.sweeps.high_rad <= 0.5 * kept.sweeps.high_rad + kSameRad;
 }

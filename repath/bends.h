@@ -26,8 +26,9 @@ class Bends {
   /// What lies between two points, whatever comes before it: no arc where the line is straight to an increment.
   struct Stretch {
     std::uint32_t first = 0, last = 0;
-    std::optional<Primitive> line, arc;  ///< `arc` where its sweep is not open
-    std::optional<ArcRoom> room;
+    std::optional<Primitive> line, arc;
+    std::optional<ArcRoom> room;  ///< where the arc's sweep is open
+    bool best_sweep = false;      ///< the arc has the room's best sweep
   };
   Stretch stretch(std::uint32_t first, std::uint32_t last) const;
 

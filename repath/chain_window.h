@@ -9,10 +9,12 @@
 
 namespace camber::repath {
 
-/// Fewer primitives are better, among as many shorter lines.
+/// Fewer primitives are better, among as many shorter lines; or, where primitives_per_line_mm is more than zero, the
+/// lesser sum of primitives and lines.
 struct ChainCost {
   std::size_t primitives = 0;
   double lines_mm = 0;
+  double primitives_per_line_mm = 0;
 
   bool operator<(const ChainCost& other) const;
   ChainCost with(const Polyline& path, const Primitive& p) const;
@@ -31,6 +33,7 @@ class ChainWindow {
   struct Limits {
     double most_deviation_mm = 0;
     std::size_t most_primitives = 0;
+    double primitives_per_line_mm = 0;  ///< see ChainCost
   };
 
   /// The best chain from the end of `before` to the last of the points, `ends`, ascending, at which primitives may end;

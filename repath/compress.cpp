@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 #include "base/units.h"
 #include "repath/joints.h"
@@ -20,44 +22,135 @@ void place_after(std::vector<RewrittenRun>& runs, const std::vector<nc::BlockRep
   }
 }
 
-Compression compress(const nc::Program& program, const nc::Interpretation& moves, const CompressOptions& options) {
-  const TextStyle style = text_style_of(program, moves, options.whole_numbers_are_increments);
-  Compression out;
-  std::vector<nc::BlockReplacement> replacements;
-  double kink_squares = 0;
-  std::size_t joints = 0;
-  for (const Run& run : runs_to_compress(program, moves, options.switch_planes && options.fit.arcs)) {
-    const RunPath path = path_of(moves, run);
-    if (path.points.size() < 2) continue;
-    const nc::Move& first = moves.moves[run.first_move];
-    FitOptions fit_options = options.fit;
-    fit_options.tolerance_mm = options.tolerance_mm;
-    fit_options.increment_mm = (moves.state_of(first).inch ? kMmPerInch : 1) * std::pow(10.0, -style.decimals);
-    fit_options.helices = options.helices;
-    fit_options.arcs = fit_options.arcs && (run.current_plane || options.switch_planes);
-    const Polyline polyline{path.points, path.heights};
-    const std::vector<Primitive> chain = fit(polyline, fit_options);
-    nc::BlockReplacement replacement{first.block, moves.moves[run.last_move].block,
-                                     text_of(program, moves, run, path, chain, style)};
-    if (replacement.lines.size() >= replacement.last - replacement.first + 1) continue;
-    RewrittenRun rewritten{replacement.first, replacement.last};
-    for (const Primitive& p : chain) {
-      ++(p.arc ? rewritten.arcs : rewritten.lines);
-      rewritten.deviation_mm = std::max(rewritten.deviation_mm, p.deviation_mm);
-    }
-    out.max_deviation_mm = std::max(out.max_deviation_mm, rewritten.deviation_mm);
-    for (const double kink : smooth_kinks_of(polyline, fit_options, chain)) {
-      out.max_kink_rad = std::max(out.max_kink_rad, kink);
-      kink_squares += kink * kink;
-      ++joints;
-    }
-    out.runs.push_back(rewritten);
-    replacements.push_back(std::move(replacement));
+double cutting_time_s(const nc::Interpretation& moves, const FeedsByKind& feeds) {
+  double time_s = 0;
+  for (const nc::Move& move : moves.moves) {
+    const bool arc = move.kind == nc::MoveKind::arc;
+    if (!arc && move.kind != nc::MoveKind::linear) continue;
+    time_s += nc::length_mm(moves, move) / (arc ? feeds.arc_mm_per_s : feeds.line_mm_per_s) + feeds.block_s;
   }
-  if (joints > 0) out.rms_kink_rad = std::sqrt(kink_squares / static_cast<double>(joints));
-  place_after(out.runs, replacements);
-  out.text = nc::replace_blocks(program, replacements);
-  return out;
+  return time_s;
+}
+
+namespace {
+
+/// How many blocks more may be had for a millimetre of lines that becomes one of arcs.
+double blocks_per_line_mm(const FeedsByKind& feeds) {
+  constexpr double kMost = 1e4;
+  return std::min(kMost, (1 / feeds.line_mm_per_s - 1 / feeds.arc_mm_per_s) / std::max(feeds.block_s, 1e-9));
+}
+
+/// Rewrites the runs of a program, one chain of runs after the other.
+class Compressor {
+ public:
+  Compressor(const nc::Program& program, const nc::Interpretation& moves, const CompressOptions& options)
+      : program_(program),
+        moves_(moves),
+        options_(options),
+        style_(text_style_of(program, moves, options.whole_numbers_are_increments)) {}
+
+  void rewrite(const RunChain& runs) {
+    if (runs.path.points.size() < 2) return;
+    const FitOptions options = fit_options(runs.parts.front().run);
+    std::vector<std::uint32_t> ends = runs.ends;
+    // A run that does not become shorter stays as it is, and so must what its neighbours were joined to.
+    for (bool again = true; again;) {
+      const Polyline polyline{runs.path.points, runs.path.heights, ends};
+      const std::vector<Primitive> chain = fit(polyline, options, &memory_);
+      std::vector<Rewrite> rewrites;
+      again = false;
+      for (const RunChain::Part& part : runs.parts) {
+        if (part.last_point == part.first_point) continue;
+        Rewrite now = rewritten(runs, part, chain);
+        const bool stays = now.text.lines.size() >= now.text.last - now.text.first + 1;
+        if (!stays) rewrites.push_back(std::move(now));
+        again |= stays && now.primitives.size() < part.last_point - part.first_point && runs.parts.size() > 1 &&
+                 keep_blocks(part, ends);
+      }
+      if (!again) take(std::move(rewrites), smooth_kinks_of(polyline, options, chain));
+    }
+  }
+
+  Compression result() {
+    if (joints_ > 0) out_.rms_kink_rad = std::sqrt(kink_squares_ / static_cast<double>(joints_));
+    place_after(out_.runs, replacements_);
+    out_.text = nc::replace_blocks(program_, replacements_);
+    return std::move(out_);
+  }
+
+ private:
+  struct Rewrite {
+    std::vector<Primitive> primitives;
+    nc::BlockReplacement text;
+  };
+
+  FitOptions fit_options(const Run& run) const {
+    FitOptions out = options_.fit;
+    out.tolerance_mm = options_.tolerance_mm;
+    out.increment_mm =
+        (moves_.state_of(moves_.moves[run.first_move]).inch ? kMmPerInch : 1) * std::pow(10.0, -style_.decimals);
+    out.helices = options_.helices;
+    if (options_.feeds) out.primitives_per_line_mm = blocks_per_line_mm(*options_.feeds);
+    out.arcs = out.arcs && (run.current_plane || options_.switch_planes);
+    return out;
+  }
+
+  Rewrite rewritten(const RunChain& runs, const RunChain::Part& part, const std::vector<Primitive>& chain) const {
+    const auto from = [](const Primitive& p, std::uint32_t point) { return p.first < point; };
+    const auto begin = std::lower_bound(chain.begin(), chain.end(), part.first_point, from);
+    Rewrite out{{begin, std::lower_bound(begin, chain.end(), part.last_point, from)}, {}};
+    out.text = {moves_.moves[part.run.first_move].block, moves_.moves[part.run.last_move].block,
+                text_of(program_, moves_, part.run, runs.path, out.primitives, style_)};
+    return out;
+  }
+
+  /// Makes every point of the run an end. False where they all were.
+  static bool keep_blocks(const RunChain::Part& part, std::vector<std::uint32_t>& ends) {
+    std::vector<std::uint32_t> points(part.last_point - part.first_point - 1), all;
+    std::iota(points.begin(), points.end(), part.first_point + 1);
+    std::set_union(ends.begin(), ends.end(), points.begin(), points.end(), std::back_inserter(all));
+    const bool more = all.size() > ends.size();
+    ends = std::move(all);
+    return more;
+  }
+
+  void take(std::vector<Rewrite> rewrites, const std::vector<double>& kinks) {
+    if (rewrites.empty()) return;
+    for (Rewrite& r : rewrites) {
+      RewrittenRun run{r.text.first, r.text.last};
+      for (const Primitive& p : r.primitives) {
+        ++(p.arc ? run.arcs : run.lines);
+        run.deviation_mm = std::max(run.deviation_mm, p.deviation_mm);
+      }
+      out_.max_deviation_mm = std::max(out_.max_deviation_mm, run.deviation_mm);
+      out_.runs.push_back(run);
+      replacements_.push_back(std::move(r.text));
+    }
+    for (const double kink : kinks) {
+      out_.max_kink_rad = std::max(out_.max_kink_rad, kink);
+      kink_squares_ += kink * kink;
+      ++joints_;
+    }
+  }
+
+  const nc::Program& program_;
+  const nc::Interpretation& moves_;
+  const CompressOptions& options_;
+  const TextStyle style_;
+  FitMemory memory_;
+  Compression out_;
+  std::vector<nc::BlockReplacement> replacements_;
+  double kink_squares_ = 0;
+  std::size_t joints_ = 0;
+};
+
+}  // namespace
+
+Compression compress(const nc::Program& program, const nc::Interpretation& moves, const CompressOptions& options) {
+  Compressor compressor(program, moves, options);
+  const std::vector<Run> runs = runs_to_compress(program, moves, options.switch_planes && options.fit.arcs);
+  for_each_chain(moves, runs, [&](const RunChain& chain) { compressor.rewrite(chain); });
+  return compressor.result();
 }
 
 }  // namespace camber::repath

@@ -1,6 +1,9 @@
 #pragma once
 // A program with its runs of short lines as few lines and arcs.
 #include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,9 +14,19 @@
 
 namespace camber::repath {
 
+/// A control that runs arcs faster than lines, whatever is programmed.
+struct FeedsByKind {
+  double line_mm_per_s = 0, arc_mm_per_s = 0;  ///< greater than zero, the second greater than the first
+  double block_s = 0.005;                      ///< what a block costs beside its way; zero or more
+};
+
+/// Seconds of all cuts at these feeds: lines_mm / line + arcs_mm / arc + cuts * block_s. Rapids are not counted.
+double cutting_time_s(const nc::Interpretation& moves, const FeedsByKind& feeds);
+
 struct CompressOptions {
   double tolerance_mm = 0.01;
-  bool helices = false;        ///< arcs whose third axis moves evenly with the angle, where the path does
+  std::optional<FeedsByKind> feeds{};  ///< the least time at these; without them the fewest blocks
+  bool helices = false;                ///< arcs whose third axis moves evenly with the angle, where the path does
   bool switch_planes = false;  ///< runs in another plane get its G17 G18 G19 and the old one behind; else lines only
   bool whole_numbers_are_increments = false;  ///< numbers are written with a point
   FitOptions fit{};                           ///< tolerance and increment are set from the program
@@ -38,14 +51,27 @@ std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation&
 /// Runs in space; with `apart` those in a plane other than the chosen one, if long enough for an arc, on their own.
 std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart);
 
-/// Points of a run as the text says them, in the plane: start and ends of its moves. Repeated points are left out;
-/// `block` tells which block ends at each (of the first point: the run's first block).
+/// Points of runs as the text says them, in the plane: start and ends of their moves. Repeated points are left out;
+/// `block` tells which block ends at each (of the first point: the first block).
 struct RunPath {
   std::vector<Vec2> points;
   std::vector<double> heights;  ///< of runs in space, along `normal`
   std::vector<std::uint32_t> block;
 };
-RunPath path_of(const nc::Interpretation& moves, const Run& run);
+/// Runs that follow each other without a stop, in one plane, as where the feed or the spindle speed changes: one path,
+/// over whose joints nothing runs.
+struct RunChain {
+  struct Part {
+    Run run;
+    std::uint32_t first_point = 0, last_point = 0;
+  };
+  RunPath path;
+  std::vector<std::uint32_t> ends;  ///< points at which one part follows another; see Polyline
+  std::vector<Part> parts;
+};
+/// One after the other; the path of one is in memory at a time.
+void for_each_chain(const nc::Interpretation& moves, std::span<const Run> runs,
+                    const std::function<void(const RunChain&)>& take);
 
 struct RewrittenRun {
   std::uint32_t first_block = 0, last_block = 0;

@@ -68,6 +68,12 @@ std::vector<Vec3> in_space(const Polyline& path) {
   return out;
 }
 
+std::vector<bool> ends_of(const Polyline& path, const std::vector<bool>& corners) {
+  std::vector<bool> out = corners;
+  for (const std::uint32_t end : path.ends) out[end] = true;
+  return out;
+}
+
 std::vector<bool> corners_of(const Polyline& path, const FitOptions& options) {
   return corners_of(in_space(path), {.least_rad = options.corner_rad, .leg_mm = corner_leg_mm(options)});
 }

@@ -9,6 +9,7 @@
 #include "repath/joints.h"
 #include "repath/shorten_lines.h"
 #include "repath/smooth_joints.h"
+#include "repath/spare_lines.h"
 #include "repath/tangent.h"
 
 namespace camber::repath {
@@ -25,27 +26,28 @@ struct Node {
 /// pinned at its ends, so an end a few points short may carry farther. That is what the width is for.
 class Search {
  public:
-  Search(const Polyline& path, const FitOptions& options)
-      : path_(path), points_(path.points), options_(options), fitter_(path, options) {}
+  Search(const Polyline& path, const FitOptions& options, FitMemory* memory)
+      : path_(path), points_(path.points), options_(options), fitter_(path, options, memory) {}
 
   std::vector<Primitive> run() {
     const auto n = static_cast<std::uint32_t>(points_.size());
-    const std::vector<bool> corners = corners_of(path_, options_);
+    const std::vector<bool> corners = corners_of(path_, options_), ends = ends_of(path_, corners);
     std::vector<Primitive> chain;
     std::uint32_t begin = 0;
     for (std::uint32_t k = 1; k < n; ++k) {
-      if (k + 1 < n && !corners[k]) continue;
+      if (k + 1 < n && !ends[k]) continue;
       fit_piece(begin, k, chain);
       begin = k;
     }
-    if (options_.arcs) shorten_lines(path_, options_, fitter_, corners, chain);
+    if (options_.arcs) shorten_lines(path_, options_, fitter_, ends, chain);
     if (options_.tangent) {
       std::vector<Primitive> smoother = chain;
-      move_joints(path_, fitter_, corners, smoother);
+      move_joints(path_, fitter_, ends, smoother);
       make_tangent(points_, options_, fitter_, corners, smoother);
       if (kink_squares(smoother, corners) < kink_squares(chain, corners)) chain = std::move(smoother);
     }
     smooth_joints(path_, options_, fitter_, corners, chain);
+    if (options_.arcs && options_.primitives_per_line_mm > 0) spare_lines(path_, options_, fitter_, corners, chain);
     return chain;
   }
 
@@ -150,11 +152,11 @@ class Search {
 
 }  // namespace
 
-std::vector<Primitive> fit(const Polyline& path, const FitOptions& options) {
+std::vector<Primitive> fit(const Polyline& path, const FitOptions& options, FitMemory* memory) {
   assert(options.tolerance_mm > 0 && options.increment_mm > 0 && options.width > 0);
   assert(path.heights.empty() || path.heights.size() == path.points.size());
   if (path.points.size() < 2) return {};
-  return Search(path, options).run();
+  return Search(path, options, memory).run();
 }
 
 std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& options) {
@@ -162,12 +164,13 @@ std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& 
   if (n < 2) return {};
   const Fitter fitter(path, options);
   assert(!(options.most_kink_rad < kPi));
-  const std::vector<bool> corners = corners_of(path, options);
+  const std::vector<bool> corners = corners_of(path, options), ends = ends_of(path, corners);
   const Joints joints(path, options, corners);
   const Bends bends(path, options, fitter, joints);
-  std::vector<ChainCost> cost(n, ChainCost{n, 0});
+  constexpr double kFar = 1e12;
+  std::vector<ChainCost> cost(n, ChainCost{n, kFar, options.primitives_per_line_mm});
   std::vector<Primitive> best(n);
-  cost[0] = {};
+  cost[0] = {.primitives_per_line_mm = options.primitives_per_line_mm};
   for (std::uint32_t i = 0; i + 1 < n; ++i)
     for (std::uint32_t j = i + 1; j < n; ++j) {
       for (const auto& fitted : line_or_arc(bends, fixed({.first = i, .last = i}), bends.stretch(i, j))) {
@@ -177,7 +180,7 @@ std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& 
         cost[j] = now;
         best[j] = fitted->primitive;
       }
-      if (corners[j]) break;
+      if (ends[j]) break;
     }
   std::vector<Primitive> chain;
   for (std::uint32_t j = n - 1; j > 0; j = best[j].first) chain.push_back(best[j]);

@@ -22,23 +22,31 @@ struct FitOptions {
   /// what the path itself turns there; a line it meets with no more than this, or 0.6 of that turn (a chord leaves its
   /// curve by half of it). Half a turn: not bounded. See repath/joints.h.
   double most_kink_rad = 1 * kPi / 180;
+  /// For controls that run arcs faster than lines: primitives that a millimetre of lines is worth. Zero: the fewest
+  /// primitives, and among as many the shortest lines.
+  double primitives_per_line_mm = 0;
 };
 
 /// A polyline, and the third coordinate of each point where it is one in space; else `heights` is empty. In space arcs
 /// lie where the height stands still, or with FitOptions::helices are helices about the third axis.
+/// `ends`, ascending: points over which nothing runs, as where the feed changes. Kinks are bounded there as elsewhere.
 struct Polyline {
   std::span<const Vec2> points;
   std::span<const double> heights{};
+  std::span<const std::uint32_t> ends{};
   Vec3 at(std::size_t k) const { return {points[k].x(), points[k].y(), heights.empty() ? 0.0 : heights[k]}; }
 };
 
 /// All three coordinates of each point.
 std::vector<Vec3> in_space(const Polyline& path);
 
+class FitMemory;
+
 /// The chain: first primitive from points.front(), last to points.back(), each from where the one before ends. Every
 /// end is a point of the polyline, so nothing drifts. `points`: no two that follow each other are alike.
 /// Time and memory grow linearly with the number of points.
-std::vector<Primitive> fit(const Polyline& path, const FitOptions& options);
+/// `memory`: used again from path to path where given; never by two threads at once.
+std::vector<Primitive> fit(const Polyline& path, const FitOptions& options, FitMemory* memory = nullptr);
 inline std::vector<Primitive> fit(std::span<const Vec2> points, const FitOptions& options) {
   return fit(Polyline{points}, options);
 }
@@ -54,6 +62,8 @@ inline std::vector<Primitive> fit_exhaustively(std::span<const Vec2> points, con
 /// The vertices that are corners: they turn by more than corner_rad, and more than twice as much as the path beside
 /// them (a coarse circle turns everywhere alike). Turns are measured between legs of at least five tolerances.
 std::vector<bool> corners_of(const Polyline& path, const FitOptions& options);
+/// The vertices where primitives must end: corners, and Polyline::ends.
+std::vector<bool> ends_of(const Polyline& path, const std::vector<bool>& corners);
 double corner_leg_mm(const FitOptions& options);
 
 /// The room of the arc from one point to another: its sweep may lie between the two; both with the sign of the
@@ -64,14 +74,51 @@ struct ArcRoom {
   int direction = 1;
 };
 
+/// What fits between two points, whatever lies beside it: no arc where the line is straight to an increment.
+struct Tried {
+  std::optional<Primitive> line, arc;
+  std::optional<ArcRoom> room;  ///< as Fitter::arc_room(): not where the two points are one
+  bool best_sweep = false;      ///< the arc has the room's best sweep
+};
+
+/// What was tried between pairs of points of one path, in room for a few thousand of them.
+class FitMemory {
+ public:
+  void forget();
+  /// What is kept of a pair; else makes it.
+  template <class Make>
+  const Tried& at(std::uint32_t first, std::uint32_t last, Make make) {
+    std::uint32_t& slot = slots_[(first * 67u + last) % kSlots];
+    if (slot == 0) {
+      kept_.push_back({first, last, make()});
+      slot = static_cast<std::uint32_t>(kept_.size());
+    }
+    Kept& kept = kept_[slot - 1];
+    if (kept.first != first || kept.last != last) kept = {first, last, make()};
+    return kept.tried;
+  }
+
+ private:
+  static constexpr std::uint32_t kSlots = 4096;  ///< a power of two, more than one window of a search asks for
+  struct Kept {
+    std::uint32_t first = 0, last = 0;
+    Tried tried;
+  };
+  std::vector<std::uint32_t> slots_;  ///< by a hash of the two points: 1 + index into kept_; 0 none
+  std::vector<Kept> kept_;
+};
+
 /// Tries one line, one arc.
 class Fitter {
  public:
-  Fitter(const Polyline& path, const FitOptions& options);
+  /// As line(), arc_room(), arc(). Kept for a while: asked again it costs nothing.
+  const Tried& tried(std::uint32_t first, std::uint32_t last) const;
+
+  Fitter(const Polyline& path, const FitOptions& options, FitMemory* memory = nullptr);
   std::optional<Primitive> line(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> arc(std::uint32_t first, std::uint32_t last) const;
-  /// Ends of lines from `first`, ascending: the next point and the last `most` up to `end`. In space some of them may be
-  /// none, the next point always is one.
+  /// Ends of lines from `first`, ascending: the next point and the last `most` up to `end`. In space some of them may
+  /// be none, the next point always is one.
   std::vector<std::uint32_t> line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t most) const;
 
   std::optional<ArcRoom> room(std::uint32_t first, std::uint32_t last) const;
@@ -84,6 +131,7 @@ class Fitter {
                                           double sweep_rad) const;
 
  private:
+  Tried try_out(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> full_turn(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> rounded_arc(std::uint32_t first, std::uint32_t last, int direction,
                                        const Vec2& center_mm) const;
@@ -98,6 +146,8 @@ class Fitter {
   std::vector<double> area_;          ///< twice the area swept from points[0], up to each point
   std::vector<double> length_;        ///< along the polyline up to each point
   std::vector<std::uint32_t> level_;  ///< in space: the point from which on each point's height stands still
+  mutable FitMemory own_memory_;
+  FitMemory* memory_;  ///< none: the fitter's own
 };
 
 }  // namespace camber::repath

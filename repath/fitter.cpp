@@ -44,8 +44,9 @@ double offset_of(double half, double sweep) { return half / std::tan(0.5 * sweep
 
 }  // namespace
 
-Fitter::Fitter(const Polyline& path, const FitOptions& options)
-    : path_(path), points_(path.points), options_(options), backwards_mm_(0.5 * options.tolerance_mm) {
+Fitter::Fitter(const Polyline& path, const FitOptions& options, FitMemory* memory)
+    : path_(path), points_(path.points), options_(options), backwards_mm_(0.5 * options.tolerance_mm), memory_(memory) {
+  (memory_ != nullptr ? *memory_ : own_memory_).forget();
   const auto points = points_;
   area_.resize(points.size());
   length_.resize(points.size());
@@ -177,23 +178,26 @@ std::optional<Primitive> Fitter::rounded_arc(std::uint32_t first, std::uint32_t 
   const Vec2 start = points_[first], wanted = (center_mm - start) / step;
   const Vec2 nearest(std::round(wanted.x()), std::round(wanted.y()));
   const double agreement = options_.radius_agreement_mm;
-  std::optional<Primitive> best;
-  std::array<std::pair<double, Vec2>, 9> grid;
-  std::size_t n = 0;
-  for (const double dx : {0.0, -1.0, 1.0})
-    for (const double dy : {0.0, -1.0, 1.0}) {
-      const Vec2 from_start = step * (nearest + Vec2(dx, dy));
-      const ArcShape shape = arc_shape(start, points_[last], start + from_start, direction);
-      grid[n++] = {shape.radius_difference_mm + (from_start + start - center_mm).norm(), from_start};
-    }
-  // The three that agree best come first, equal ones in the order of the grid.
-  for (std::size_t g = 0; g < 3; ++g) {
-    const auto least = std::min_element(grid.begin() + static_cast<std::ptrdiff_t>(g), grid.end(),
-                                        [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::rotate(grid.begin() + static_cast<std::ptrdiff_t>(g), least, least + 1);
+  // Nine centres about the wanted one; by how much their radii disagree and how far off they are.
+  const Vec2 end = points_[last];
+  std::array<double, 3> x{}, y{}, start_x{}, start_y{}, end_x{}, end_y{}, off_x{}, off_y{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    constexpr std::array kSteps{0.0, -1.0, 1.0};
+    const auto square = [](double v) { return v * v; };
+    x[i] = step * (nearest.x() + kSteps[i]), y[i] = step * (nearest.y() + kSteps[i]);
+    start_x[i] = square(start.x() - (start.x() + x[i])), start_y[i] = square(start.y() - (start.y() + y[i]));
+    end_x[i] = square(end.x() - (start.x() + x[i])), end_y[i] = square(end.y() - (start.y() + y[i]));
+    off_x[i] = square(x[i] + start.x() - center_mm.x()), off_y[i] = square(y[i] + start.y() - center_mm.y());
   }
-  for (std::size_t g = 0; g < 3; ++g) {
-    const Vec2 from_start = grid[g].second;
+  std::array<double, 9> badness{};
+  for (std::size_t g = 0; g < 9; ++g)
+    badness[g] = std::abs(std::sqrt(end_x[g / 3] + end_y[g % 3]) - std::sqrt(start_x[g / 3] + start_y[g % 3])) +
+                 std::sqrt(off_x[g / 3] + off_y[g % 3]);
+  // The three that agree best, equal ones in the order of the grid.
+  for (int tries = 0; tries < 3; ++tries) {
+    const auto least = static_cast<std::size_t>(std::min_element(badness.begin(), badness.end()) - badness.begin());
+    badness[least] = kInfinity;
+    const Vec2 from_start(x[least / 3], y[least % 3]);
     const ArcShape shape = arc_shape(start, points_[last], start + from_start, direction);
     if (shape.radius_difference_mm > agreement || shape.radius_mm > options_.max_radius_mm ||
         shape.radius_mm < 2 * options_.tolerance_mm)
@@ -234,6 +238,31 @@ std::optional<Primitive> Fitter::arc_in(std::uint32_t first, std::uint32_t last,
     if (span < 1e-9) break;
   }
   return std::nullopt;
+}
+
+void FitMemory::forget() {
+  slots_.assign(kSlots, 0);
+  kept_.clear();
+}
+
+const Tried& Fitter::tried(std::uint32_t first, std::uint32_t last) const {
+  return (memory_ != nullptr ? *memory_ : own_memory_).at(first, last, [&] { return try_out(first, last); });
+}
+
+Tried Fitter::try_out(std::uint32_t first, std::uint32_t last) const {
+  Tried out;
+  out.line = line(first, last);
+  if (!options_.arcs || (out.line && out.line->deviation_mm <= options_.increment_mm)) return out;
+  if (points_[first] == points_[last]) {
+    out.arc = arc(first, last);
+    return out;
+  }
+  out.room = arc_room(first, last);
+  if (!out.room) return out;
+  out.arc = arc_with_sweep(first, last, out.room->direction, out.room->best_sweep_rad);
+  out.best_sweep = out.arc.has_value();
+  if (!out.arc) out.arc = arc_in(first, last, *out.room);
+  return out;
 }
 
 std::optional<Primitive> Fitter::arc(std::uint32_t first, std::uint32_t last) const {

@@ -19,9 +19,10 @@ constexpr double kEdgeTimesBeside = 3;
 /// Of what the program turns at a point: how well its chords say the direction there.
 constexpr double kShareOfArcs = 0.125, kShareOfLines = 0.6;
 constexpr double kTimesOfBlocks = 2;
-constexpr double kClimb = 0.5;  ///< of the bound: slopes that differ by more
+constexpr double kAlwaysSharpRad = 60 * kPi / 180;  ///< also where the path turns as much beside it; as in resegment
+constexpr double kClimb = 0.5;                      ///< of the bound: slopes that differ by more
 
-double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
+double wrapped(double angle) { return std::abs(angle) <= kPi ? angle : std::remainder(angle, 2 * kPi); }
 
 bool rises(const Polyline& path, const Primitive& p) {
   return !path.heights.empty() && path.heights[p.last] != path.heights[p.first];
@@ -29,7 +30,7 @@ bool rises(const Polyline& path, const Primitive& p) {
 
 /// Steepness of a primitive along the third axis, rad.
 double slope_rad(const Polyline& path, const Primitive& p) {
-  if (path.heights.empty()) return 0;
+  if (!rises(path, p)) return 0;
   const double flat = p.arc ? p.center_from_start_mm.norm() * std::abs(p.sweep_rad)
                             : (path.points[p.last] - path.points[p.first]).norm();
   return std::atan2(path.heights[p.last] - path.heights[p.first], flat);
@@ -75,7 +76,9 @@ Joints::Joints(const Polyline& path, const FitOptions& options, const std::vecto
 
 double Joints::most_kink_rad(const Primitive& before, const Primitive& p) const {
   const std::uint32_t at = p.first;
-  if (!bounded_ || at == 0 || at + 1 == corners_.size() || corners_[at]) return kInfinity;
+  if (!bounded_ || at == 0 || at + 1 == corners_.size() || corners_[at] ||
+      std::min(turn_[at], blocks_turn_[at]) > kAlwaysSharpRad)
+    return kInfinity;
   if (!before.arc && !p.arc)
     return rises(path_, before) || rises(path_, p) ? kInfinity
                                                    : std::max(most_kink_rad_, kTimesOfBlocks * blocks_turn_[at]);
@@ -83,6 +86,15 @@ double Joints::most_kink_rad(const Primitive& before, const Primitive& p) const 
   const bool climbs = std::abs(slope_rad(path_, p) - slope_rad(path_, before)) > kClimb * most_kink_rad_;
   const double share = edges_[at] || climbs ? 1 : before.arc && p.arc ? kShareOfArcs : kShareOfLines;
   return std::max(most_kink_rad_, share * std::min(turn_[at], blocks_turn_[at]));
+}
+
+double Joints::chord_angle_rad(const Primitive& p) const {
+  if (path_.points[p.first] == path_.points[p.last]) return repath::chord_angle_rad(path_.points, p);
+  constexpr std::uint32_t kSlots = 1024;
+  if (angles_.empty()) angles_.resize(kSlots);
+  KeptAngle& kept = angles_[(p.first * 67u + p.last) % kSlots];
+  if (kept.first != p.first || kept.last != p.last) kept = {p.first, p.last, repath::chord_angle_rad(path_.points, p)};
+  return kept.angle_rad;
 }
 
 /// What rounding of the centre may change of the direction at an end.
@@ -100,7 +112,7 @@ std::optional<Sweeps> Joints::behind(const Primitive& before, const Sweeps& of_b
   const double room =
       std::max(0.0, share * std::sqrt(most * most - climb * climb) - rounding_rad(before) - rounding_rad(p));
   // Directions behind the joint less the direction of the chord before it.
-  const double chords = wrapped(chord_angle_rad(path_.points, p) - chord_angle_rad(path_.points, before));
+  const double chords = wrapped(chord_angle_rad(p) - chord_angle_rad(before));
   const double low = 0.5 * of_before.low_rad - room, high = 0.5 * of_before.high_rad + room;
   // Sweeps of p whose begin, chords - s / 2, lies between the two, in one of the turns in which it may be meant.
   std::optional<Sweeps> out;
@@ -115,9 +127,9 @@ std::optional<Sweeps> Joints::behind(const Primitive& before, const Sweeps& of_b
 }
 
 double Joints::sweep_towards(const Primitive& p, const Sweeps& of_p, const Primitive& behind) const {
-  const double begin = chord_angle_rad(path_.points, behind) - 0.5 * behind.sweep_rad;
+  const double begin = chord_angle_rad(behind) - 0.5 * behind.sweep_rad;
   const double middle = 0.25 * (of_p.low_rad + of_p.high_rad);
-  const double half = middle + wrapped(begin - chord_angle_rad(path_.points, p) - middle);
+  const double half = middle + wrapped(begin - chord_angle_rad(p) - middle);
   return std::clamp(2 * half, of_p.low_rad, of_p.high_rad);
 }
 

@@ -41,6 +41,9 @@ class Joints {
   /// The sweep among `of_p` that kinks least against the begin of the primitive behind, as that one is.
   double sweep_towards(const Primitive& p, const Sweeps& of_p, const Primitive& behind) const;
 
+  /// As the function of that name. Kept for a while: searches ask again and again for the same.
+  double chord_angle_rad(const Primitive& p) const;
+
   /// Whether two primitives as they are kink no more than they may.
   bool keep(const Primitive& before, const Primitive& p) const;
   bool keep(std::span<const Primitive> chain) const;
@@ -55,7 +58,12 @@ class Joints {
   double share_tried_ = 1;
   std::vector<double> turn_;         ///< of the path at each of its points, between legs as for corners
   std::vector<double> blocks_turn_;  ///< between the two blocks that meet there
-  std::vector<bool> edges_;          ///< points at which it turns more than a little, and much more than beside them
+  struct KeptAngle {
+    std::uint32_t first = 0, last = 0;
+    double angle_rad = 0;
+  };
+  mutable std::vector<KeptAngle> angles_;  ///< by a hash of the two points
+  std::vector<bool> edges_;  ///< points at which it turns more than a little, and much more than beside them
 };
 
 /// Direction of the chord; of a full turn half a turn behind the direction at its start.

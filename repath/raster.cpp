@@ -22,7 +22,9 @@ class RasterMaker {
         options_(options),
         frame_{{std::cos(options.direction_rad), std::sin(options.direction_rad)},
                {-std::sin(options.direction_rad), std::cos(options.direction_rad)}},
-        sampler_(part, frame_, options.boundary, std::min(kSampleMm, 0.25 * part.cutter().radius_mm())) {}
+        sampler_(part, frame_, options.boundary,
+                 part.cutter().flat_mm > 0 ? std::min(kSampleMm / 3, 0.05 * part.cutter().radius_mm())
+                                           : std::min(kSampleMm, 0.25 * part.cutter().radius_mm())) {}
 
   Raster run() {
     out_.spacing = space_rows(sampler_, part_.cutter(), options_.scallop_mm, options_.increment_mm, options_.progress);

@@ -117,9 +117,10 @@ class RunFinder {
   unsigned still_ = 0;
 };
 
-/// The points of a run, repeated ones left out.
-template <class Add>
-void for_each_point(const nc::Interpretation& moves, const Run& run, Add add) {
+/// The points of moves from first to last, repeated ones left out: add(point, block); behind each move reached(move).
+template <class Add, class Reached>
+void for_each_point(const nc::Interpretation& moves, std::uint32_t first, std::uint32_t last, Add add,
+                    Reached reached) {
   std::optional<Vec3> before;
   const auto reach = [&](const nc::Move& move, const Vec3& p) {
     const Vec3 place = moves.frame_of(move).to_program(p);
@@ -128,9 +129,22 @@ void for_each_point(const nc::Interpretation& moves, const Run& run, Add add) {
     before = point;
     add(point, move.block);
   };
-  const nc::Move& first = moves.moves[run.first_move];
-  reach(first, first.start_mm);
-  for (std::uint32_t m = run.first_move; m <= run.last_move; ++m) reach(moves.moves[m], moves.moves[m].end_mm);
+  reach(moves.moves[first], moves.moves[first].start_mm);
+  for (std::uint32_t m = first; m <= last; ++m) {
+    reach(moves.moves[m], moves.moves[m].end_mm);
+    reached(m);
+  }
+}
+
+/// Whether the path goes on from one run to the next without a stop, and both may be seen as one.
+bool goes_on(const nc::Interpretation& moves, const Run& run, const Run& next) {
+  const nc::Move &last = moves.moves[run.last_move], &first = moves.moves[next.first_move];
+  if (next.first_move != run.last_move + 1 || last.exact_stop || run.normal != next.normal ||
+      run.current_plane != next.current_plane || run.in_space != next.in_space)
+    return false;
+  const nc::ModalState &before = moves.state_of(last), &behind = moves.state_of(first);
+  return before.frame == behind.frame && before.plane_g == behind.plane_g && before.inch == behind.inch &&
+         before.tool == behind.tool;
 }
 
 }  // namespace
@@ -159,25 +173,51 @@ std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpre
   return out;
 }
 
-RunPath path_of(const nc::Interpretation& moves, const Run& run) {
-  const nc::PlaneAxes axes = nc::axes_of(run.normal == 2   ? nc::Plane::xy
-                                         : run.normal == 1 ? nc::Plane::zx
-                                                           : nc::Plane::yz);
-  RunPath path;
-  for_each_point(moves, run, [&](const Vec3& p, std::uint32_t block) {
+namespace {
+
+RunChain chain_of(const nc::Interpretation& moves, std::span<const Run> runs) {
+  const Run& first = runs.front();
+  const nc::PlaneAxes axes = nc::axes_of(first.normal == 2   ? nc::Plane::xy
+                                         : first.normal == 1 ? nc::Plane::zx
+                                                             : nc::Plane::yz);
+  RunChain out;
+  RunPath& path = out.path;
+  const auto add = [&](const Vec3& p, std::uint32_t block) {
     path.points.emplace_back(p[axes.first], p[axes.second]);
-    if (run.in_space) path.heights.push_back(p[axes.normal]);
+    if (first.in_space) path.heights.push_back(p[axes.normal]);
     path.block.push_back(block);
+  };
+  for_each_point(moves, first.first_move, runs.back().last_move, add, [&](std::uint32_t m) {
+    const Run& run = runs[out.parts.size()];
+    if (m != run.last_move) return;
+    const auto here = static_cast<std::uint32_t>(path.points.size() - 1);
+    out.parts.push_back({run, out.parts.empty() ? 0 : out.parts.back().last_point, here});
   });
-  return path;
+  for (const RunChain::Part& part : out.parts)
+    if (part.last_point > 0 && (out.ends.empty() || out.ends.back() < part.last_point))
+      out.ends.push_back(part.last_point);
+  if (!out.ends.empty()) out.ends.pop_back();
+  return out;
+}
+
+}  // namespace
+
+void for_each_chain(const nc::Interpretation& moves, std::span<const Run> runs,
+                    const std::function<void(const RunChain&)>& take) {
+  for (std::size_t k = 0, first = 0; k < runs.size(); ++k) {
+    if (k + 1 < runs.size() && goes_on(moves, runs[k], runs[k + 1])) continue;
+    take(chain_of(moves, runs.subspan(first, k + 1 - first)));
+    first = k + 1;
+  }
 }
 
 SpacePath space_path_of(const nc::Interpretation& moves, const Run& run) {
   SpacePath path;
-  for_each_point(moves, run, [&](const Vec3& p, std::uint32_t block) {
+  const auto add = [&](const Vec3& p, std::uint32_t block) {
     path.points.push_back(p);
     path.block.push_back(block);
-  });
+  };
+  for_each_point(moves, run.first_move, run.last_move, add, [](std::uint32_t) {});
   return path;
 }
 

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "repath/swept_row.h"
+
 namespace camber::repath {
 namespace {
 
 constexpr double kBorderMm = 1e-6;
+constexpr std::size_t kEverySwept = 3;  ///< of the samples along rows: where a cutter with a flat is measured
 
 bool in(const Rectangle& r, const Vec2& p, double room) {
   return p.x() >= r.min.x() - room && p.x() <= r.max.x() + room && p.y() >= r.min.y() - room &&
@@ -102,6 +105,11 @@ RowSampler::RowSampler(const removal::DropCutter& part, const RowFrame& frame, c
   step_ = width / std::max(4.0, std::ceil(width / step_mm));
 }
 
+bool RowSampler::covers(std::size_t k, double v_mm) const {
+  const double u = u_min_ - part_.cutter().radius_mm() + static_cast<double>(k) * step_;
+  return in(boundary_, frame_.place(u, v_mm), 0);
+}
+
 RowHeights RowSampler::row(double v_mm) const {
   RowHeights out;
   out.v_mm = v_mm;
@@ -128,8 +136,14 @@ double scallop_mm(const RowSampler& sampler, const removal::Underside& cutter, c
   std::vector<RowHeights> rows;
   for (int i = 1; i <= between; ++i) rows.push_back(sampler.row(a.v_mm + width * i / (between + 1)));
   double worst = 0;
-  for (std::size_t k = 0; k < a.tip_mm.size(); ++k) {
+  for (std::size_t k = 0; k < a.tip_mm.size(); k += ball ? 1 : kEverySwept) {
     if (!a.inside[k] && !b.inside[k]) continue;
+    if (!ball) {
+      if (const auto height = swept_scallop_mm(sampler, cutter, a, b, rows, k)) {
+        worst = std::max(worst, missed * *height);
+        continue;
+      }
+    }
     const auto one = groove(a, k, sampler.step_mm()), other = groove(b, k, sampler.step_mm());
     if (!one || !other) continue;
     const auto cusp = cusp_of(cutter, *one, *other);

@@ -37,6 +37,8 @@ class RowSampler {
  public:
   RowSampler(const removal::DropCutter& part, const RowFrame& frame, const Rectangle& boundary, double step_mm);
   RowHeights row(double v_mm) const;
+  /// Whether the place beside the k-th sample of a row lies in the boundary.
+  bool covers(std::size_t k, double v_mm) const;
   double step_mm() const { return step_; }
   double v_min_mm() const { return v_min_; }  ///< of the boundary
   double v_max_mm() const { return v_max_; }
@@ -56,7 +58,8 @@ class RowSampler {
 /// At each place along the rows the cutter's groove in the plane across them is the row's height minus rise_on_line()
 /// at the row's slope; the scallop's tip is where the grooves of both rows cross (at one point only, as the cutter is
 /// convex), and what the rows between leave there is the finished surface: one row, halfway, for a ball; seven for a
-/// cutter with a flat, whose steps on a slope the nearest of them still misses by an eighth, which is added.
+/// cutter with a flat, whose steps on a slope the nearest of them still misses by an eighth, which is added; for these
+/// swept_scallop_mm() measures, wherever it can.
 /// On a plane of any slope that gives R - sqrt(R^2 - (w/2)^2), w the distance of the rows along it, for a ball, and the
 /// step's w sin(slope) for a flat cutter; on a curved surface the curvature is in it to second order.
 double scallop_mm(const RowSampler& sampler, const removal::Underside& cutter, const RowHeights& a,

@@ -65,8 +65,13 @@ double kinks_around(const Polyline& path, const std::vector<Primitive>& chain, c
 
 void move_joints(const Polyline& path, const Fitter& fitter, const std::vector<bool>& corners,
                  std::vector<Primitive>& chain) {
+  // A joint beside which nothing changed since it was found to lie best is not tried again.
+  std::size_t now = 0;
+  std::vector<std::size_t> changed(chain.size() + 2, 1), settled(chain.size(), 0);
   for (int round = 0; round < kJointRounds; ++round)
     for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+      if (settled[k] > std::max({changed[k > 0 ? k - 1 : 0], changed[k], changed[k + 1], changed[k + 2]})) continue;
+      settled[k] = ++now + 1;
       const std::uint32_t joint = chain[k].last;
       if (corners[joint] || (!chain[k].arc && !chain[k + 1].arc)) continue;
       double least = kinks_around(path, chain, corners, k, chain[k], chain[k + 1]);
@@ -91,6 +96,7 @@ void move_joints(const Polyline& path, const Fitter& fitter, const std::vector<b
             least = kinks;
             chain[k] = *left;
             chain[k + 1] = *right;
+            changed[k] = changed[k + 1] = settled[k];
           }
       }
     }

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Three programs of the character of Sakai & Kondo's: scan lines over a gentle surface, mixed, contour lines of a round
-part. Points as CAM lays them: on the curve, so far apart that chords stay within 0.005 mm, three decimals.
+"""Three programs of the character of Sakai & Kondo's: scan lines over a gentle surface, mixed (scan lines and contour
+lines), contour lines of a round part; and one with pockets of straight sides. Points as CAM lays them: on the curve, so
+far apart that chords stay within 0.005 mm, three decimals.
 
-    make_sample.py DIR        writes scan.nc, mixed.nc, contour.nc
+    make_sample.py DIR        writes scan.nc, mixed.nc, contour.nc, pockets.nc
 """
 import math
 import sys
@@ -11,14 +12,16 @@ CHORD_MM = 0.005
 
 
 def chords(curve, begin, end):
-    """Parameters such that the chord's middle is CHORD_MM from the curve, at most (curve: u -> (a, b))."""
+    """Parameters such that chords stay within CHORD_MM of the curve (curve: u -> (a, b)): measured at three points, as at
+    an inflection the middle alone says nothing."""
     us, u, step = [begin], begin, (end - begin) / 50
     while u < end - 1e-12:
         step = min(step * 2, end - u)
         while True:
-            (a, b), (c, d), (e, f) = curve(u), curve(u + step / 2), curve(u + step)
+            (a, b), (e, f) = curve(u), curve(u + step)
             length = math.hypot(e - a, f - b)
-            if length < 1e-9 or abs((e - a) * (d - b) - (f - b) * (c - a)) / length <= CHORD_MM:
+            between = [curve(u + step * i / 4) for i in (1, 2, 3)]
+            if length < 1e-9 or all(abs((e - a) * (d - b) - (f - b) * (c - a)) <= CHORD_MM * length for c, d in between):
                 break
             step *= 0.8
         u += step
@@ -79,6 +82,22 @@ def ring(p, cx, cy, radius, z, wave=0.0, lobes=5):
     p.up()
 
 
+def cushion(p, cx, cy, half, z):
+    """A contour line of a cushion: its sides bow all along, x^4 + y^4 = half^4."""
+    def at(a):
+        c, s = math.cos(a), math.sin(a)
+        r = half / (c ** 4 + s ** 4) ** 0.25
+        return cx + r * c, cy + r * s
+    us = chords(at, 0.0, 2 * math.pi)
+    p.rapid(*at(0.0), z)
+    for u in us[1:-1]:
+        x, y = at(u)
+        p.add(X=x, Y=y)
+    x, y = at(0.0)
+    p.add(X=x, Y=y)
+    p.up()
+
+
 def pocket(p, cx, cy, half, corner, z):
     """A rounded rectangle: long straight sides, four corners."""
     def at(u):
@@ -109,13 +128,17 @@ def main(folder):
     scan_rows(p, 40, 0.0, 90.0, 0.8)
     p.write(f"{folder}/scan.nc")
 
-    p = Program("G18")
-    scan_rows(p, 15, 0.0, 90.0, 2.0)
-    p.lines.append("G17")
-    for level in range(15):
-        ring(p, 45, 70, 22 - 0.7 * level, -0.8 * level)
-        pocket(p, 45, 130, 20 - 0.5 * level, 6 - 0.2 * level, -0.8 * level)
-    p.write(f"{folder}/mixed.nc")
+    for name in ("mixed", "pockets"):
+        p = Program("G18")
+        scan_rows(p, 15, 0.0, 90.0, 2.0)
+        p.lines.append("G17")
+        for level in range(15):
+            ring(p, 45, 70, 22 - 0.7 * level, -0.8 * level)
+            if name == "mixed":
+                cushion(p, 45, 130, 20 - 0.5 * level, -0.8 * level)
+            else:
+                pocket(p, 45, 130, 20 - 0.5 * level, 6 - 0.2 * level, -0.8 * level)
+        p.write(f"{folder}/{name}.nc")
 
     p = Program("G17")
     for level in range(40):

@@ -70,6 +70,34 @@ TEST(CompressCommand, ARampBecomesOneArcThatChecksClean) {
   EXPECT_NEAR(r["length_after_mm"], std::hypot(20, 2), 0.001);
 }
 
+TEST(CompressCommand, TheLeastTimeWhereArcsAreFaster) {
+  const TempFolder folder;
+  std::string text = "G21 G90 G17 G94\nG0 X0. Y0. Z0.\nG1 F600\n";
+  for (int i = 1; i <= 30; ++i) text += fmt::format("X{:.3f} Y{:.3f}\n", 1.5 * i, 4 * std::sin(1.5 * i / 10));
+  folder.write("p.nc", text + "M30\n");
+  const std::string feeds = " --line-feed-mm-per-min 270 --arc-feed-mm-per-min 1000";
+  const auto figures = [&](const std::string& more) {
+    const auto run = run_camber(folder, "compress p.nc --tolerance-mm 0.03 -o out.nc --json r.json" + more);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return std::pair(json::parse(file_text(folder / "r.json")), run.out);
+  };
+  EXPECT_FALSE(figures("").first.contains("time_at_feeds_after_s"));
+  const auto [r, out] = figures(feeds + " --block-s 0");
+  EXPECT_NEAR(r["time_at_feeds_before_s"], r["length_before_mm"].get<double>() / 4.5, 1e-6);
+  EXPECT_LT(r["time_at_feeds_after_s"], 0.6 * r["time_at_feeds_before_s"].get<double>());
+  EXPECT_NE(out.find("at the feeds given"), std::string::npos) << out;
+  for (const auto& [wrong, message] : std::vector<std::pair<std::string, std::string>>{
+           {" --line-feed-mm-per-min 270", "--line-feed-mm-per-min requires --arc-feed-mm-per-min"},
+           {" --block-s 1", "--block-s requires --line-feed-mm-per-min"},
+           {feeds + " --lines-only", "--lines-only excludes --line-feed-mm-per-min"},
+           {" --line-feed-mm-per-min 270 --arc-feed-mm-per-min 200",
+            "--arc-feed-mm-per-min: 200: more than --line-feed-mm-per-min 270 was expected"}}) {
+    const auto run = run_camber(folder, "compress p.nc --tolerance-mm 0.01 -o no.nc" + wrong);
+    EXPECT_EQ(run.status, 2) << wrong;
+    EXPECT_NE(run.err.find(message), std::string::npos) << run.err;
+  }
+}
+
 TEST(CompressCommand, KinksAreBoundedUnlessAskedOtherwise) {
   const TempFolder folder;
   std::string text = "G21 G90 G17 G94\nG0 X0. Y0. Z0.\nG1 F600\n";

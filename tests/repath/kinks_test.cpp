@@ -75,6 +75,38 @@ TEST(Kinks, OfASmoothPathAreWithinTheBound) {
   }
 }
 
+TEST(Kinks, BetweenRunsAreWithinTheBoundWhereThePathIsSmooth) {
+  // Where the feed changes, in a block of its own or in the next cut, or the spindle speed changes, or nothing does.
+  for (const char* change : {"F300.\n", "S3000\n", " F300.", "(note)\n"}) {
+    SCOPED_TRACE(change);
+    const std::string what = change;
+    std::string text = "S2000 M3\n" + std::string(kHead);
+    int changes = 0;
+    for (int i = 0; i <= 1400; ++i) {
+      const Vec3 p = sine(i);
+      const bool here = i % 97 == 50;
+      changes += here;
+      // every other time another value, or it were no change
+      const std::string now =
+          changes % 2 ? what : tests::replaced(tests::replaced(what, "300.", "500."), "3000", "2000");
+      if (here && what.ends_with('\n')) text += now;
+      text += fmt::format("X{:.3f} Y{:.3f}{}\n", p.x(), p.y(), here && !what.ends_with('\n') ? now : "");
+    }
+    text += "M2\n";
+    const Kinks any = kinks_of_text(compressed(text, kAnyKink_deg));
+    EXPECT_GT(any.most_deg, 2);
+    for (const double bound : {1.0, 0.5}) {
+      const std::string out = compressed(text, bound);
+      EXPECT_LE(kinks_of_text(out).most_deg, bound + kMeasured_deg);
+      EXPECT_LE(kinks_of_text(out).blocks, any.blocks * 1.3);
+      EXPECT_LE(tests::hausdorff_mm(nc::read_clean(text).moves, nc::read_clean(out).moves, 0.002), 0.0101);
+      std::size_t kept = 0;
+      for (std::size_t at = 0; (at = out.find(what, at)) != std::string::npos; ++at) ++kept;
+      EXPECT_GE(kept, 7u);
+    }
+  }
+}
+
 TEST(Kinks, OfHelicesAreWithinTheBound) {
   // A ramp along a spiral: nothing of it is an arc for long.
   const std::string text = program_of(1500, [](int i) {
