@@ -175,11 +175,12 @@ struct SurfaceMap::Impl {
   }
 };
 
-SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places) : impl_(std::make_unique<Impl>(Impl{{}, {}})) {
+SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock* solid)
+    : impl_(std::make_unique<Impl>(Impl{{}, {}})) {
   auto& points = impl_->points;
   const double block_mm = kBlock * target.voxel_mm();
   const auto block_of = [&](const SurfacePoint& p) { return cube_of(p.place_mm, block_mm); };
-  auto parts = surface_points(target, places);
+  auto parts = surface_points(target, places, solid);
   std::size_t count = 0;
   for (const auto& part : parts) count += part.size();
   points.reserve(count);

@@ -25,8 +25,8 @@ namespace camber::removal {
 /// to x; the least height of all stamps stays. Nothing depends on the number of threads.
 class SurfaceMap {
  public:
-  /// `places`: the cutters of the target's sweep, by the ids that its voxels name.
-  SurfaceMap(const Stock& target, const CutterPlaces& places);
+  /// `places`: the cutters of the target's sweep, by the ids that its voxels name. `solid`: see surface_points.
+  SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock* solid = nullptr);
   ~SurfaceMap();
 
   /// Takes the marks of `stamps`, bent by the rows of `shifts`; ids are first_id + index.
