@@ -38,9 +38,11 @@ Workshop::Workshop(const machine::Job& job, const deflection::MachinedProgram& g
                    bool own_target)
     : job_(job), given_(given), target_(target), own_target_(own_target) {}
 
+double Workshop::via_tolerance_mm() const { return std::clamp(0.25 * job_.compensation.tolerance_um, 0.1, 0.5) / 1000; }
+
 std::shared_ptr<const Emitted> Workshop::emit(const ShiftPath& path, const std::vector<bool>& compensated) const {
   auto out = std::make_shared<Emitted>();
-  out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(kViaTolerance_mm), {});
+  out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(via_tolerance_mm()), {});
   Diagnostics repeated;  // the emitted program's warnings are the given one's
   machine::Job job = job_;
   out->operations = moved_ranges(job_.operations, out->emission.block_of_line);
@@ -55,7 +57,7 @@ std::shared_ptr<const Emitted> Workshop::emit(const ShiftPath& path, const std::
 std::string Workshop::text_of(const ShiftPath& path) const {
   nc::EmitOptions options;
   options.header_comment = header;
-  return nc::emit(given_.text, given_.moves, path.edits(kViaTolerance_mm), options);
+  return nc::emit(given_.text, given_.moves, path.edits(via_tolerance_mm()), options);
 }
 
 deflection::Prediction Workshop::predict(const deflection::MachinedProgram& program,

@@ -40,7 +40,8 @@ class Workshop {
            bool own_target);
 
   /// A split of a line must be worth this.
-  static constexpr double kViaTolerance_mm = 0.0005;
+  /// The emitted path strays from the shifted one by no more: a quarter of the tolerance, 0.1 to 0.5 um.
+  double via_tolerance_mm() const;
 
   std::shared_ptr<const Emitted> emit(const ShiftPath& path, const std::vector<bool>& compensated) const;
   /// Only the text, with the header.
