@@ -173,6 +173,7 @@ class Loop {
     Guard guard(overcut_um() / 1000);
     last_ = best_;
     free_correctable_um_ = out.rounds[out.best].split.correctable_um;
+    free_ = best_.emitted;
     for (int i = 0; i < kGuardRounds && out.rounds[out.best].deepest_um > overcut_um(); ++i) {
       guard.learn(last_.observed);
       step(out, 1, &guard);
@@ -228,11 +229,7 @@ class Loop {
   void record(Compensation& out, Round round) const {
     round.error_um = last_.error_um;
     round.split = split_error(*path_, last_.observed, fit_options());
-    if (round.guard) {  // what it leaves beyond the best round without it
-      const double all = round.split.correctable_um, free = std::min(all, free_correctable_um_);
-      round.split.correctable_um = free;
-      round.split.guard_um = std::sqrt(all * all - free * free);
-    }
+    if (round.guard) round.split.give_to_guard(free_correctable_um_);
     round.deepest_um = depth_of(last_.surface, last_.observed, overcut_um(), true).held_um;
     round.static_rounds = last_.static_rounds;
     round.unsettled = last_.unsettled;
@@ -292,9 +289,11 @@ class Loop {
   /// The other grid and the uncertainty; the text last, since its header may tell of them.
   void check(Compensation& out) {
     const Emitted* emitted = best_.emitted.get();
+    const bool guarded = out.rounds[out.best].guard;
     for (const double voxel_mm : options_.recheck_voxels_mm)
-      out.rechecks.push_back(recheck(job_, voxel_mm, target_program(), program_, emitted, *path_, fit_options(),
-                                     own_target_, options_.progress));
+      out.rechecks.push_back(recheck(job_, voxel_mm, target_program(), program_,
+                                     {emitted, guarded ? free_.get() : nullptr}, *path_, fit_options(), own_target_,
+                                     options_.progress));
     std::vector<std::string> names;
     std::vector<std::vector<double>> changes;
     for (const ParameterGroup& group : options_.uncertainty) {
@@ -324,7 +323,8 @@ class Loop {
   std::vector<RowLink> links_;
   std::vector<double> link_stiffness_;  ///< one a link
   Trial last_, best_;
-  double free_correctable_um_ = 0;  ///< of the best round before the guard
+  double free_correctable_um_ = 0;       ///< of the best round before the guard
+  std::shared_ptr<const Emitted> free_;  ///< its program
 };
 
 }  // namespace

@@ -39,6 +39,12 @@ double ErrorSplit::not_correctable_um() const {
   return std::sqrt(short_range_um * short_range_um + opposed_um * opposed_um + tip_um * tip_um + bow_um * bow_um);
 }
 
+void ErrorSplit::give_to_guard(double free_correctable_um) {
+  const double all = correctable_um;
+  correctable_um = std::min(all, free_correctable_um);
+  guard_um = std::sqrt(all * all - correctable_um * correctable_um);
+}
+
 ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options) {
   ErrorSplit out;
   double area = 0, others = 0;

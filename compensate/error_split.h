@@ -27,6 +27,9 @@ struct ErrorSplit {
   double not_compensated_um = 0;  ///< made by moves that are not compensated
 
   double not_correctable_um() const;  ///< short_range, opposed, tip and bow together
+
+  /// Of a surface that the guard has lifted: what is left beyond that of the best program without it was given up.
+  void give_to_guard(double free_correctable_um);
 };
 
 ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options);

@@ -19,24 +19,35 @@ deflection::Prediction predict(const machine::Job& job, const deflection::Target
 }  // namespace
 
 Recheck recheck(const machine::Job& job, double voxel_mm, const deflection::MachinedProgram& target_program,
-                const deflection::MachinedProgram& given, const Emitted* emitted, const ShiftPath& path,
+                const deflection::MachinedProgram& given, const EmittedPair& emitted, const ShiftPath& path,
                 const FitShiftOptions& options, bool own_target, const Progress& progress) {
   machine::Job other = job;
   other.simulation.voxel_mm = voxel_mm;
   Diagnostics diagnostics;
   const deflection::Target target = deflection::make_target(other, target_program, diagnostics);
+  struct Judged {
+    deflection::Prediction prediction;
+    Observed observed;
+    ErrorSplit split;
+  };
+  const auto judge = [&](const Emitted* program, const std::string& what) {
+    const auto& machined = program ? program->program : given;
+    auto prediction = predict(other, target, machined, fmt::format("{}, voxels of {:g} mm", what, voxel_mm), progress);
+    Observed observed =
+        observe(path, job, given, machined, program ? program->map : MoveMap(), prediction.surface, own_target);
+    const ErrorSplit split = split_error(path, observed, options);
+    return Judged{std::move(prediction), std::move(observed), split};
+  };
   Recheck out;
   out.voxel_mm = voxel_mm;
-  const auto before = predict(other, target, given, fmt::format("as given, voxels of {:g} mm", voxel_mm), progress);
-  out.before_um = before.form_error_um;
-  out.split_before = split_error(path, observe(path, job, given, given, {}, before.surface, own_target), options);
-  const auto& program = emitted ? emitted->program : given;
-  const MoveMap map = emitted ? emitted->map : MoveMap();
-  const auto after = predict(other, target, program, fmt::format("compensated, voxels of {:g} mm", voxel_mm), progress);
-  out.after_um = after.form_error_um;
-  const Observed observed = observe(path, job, given, program, map, after.surface, own_target);
-  out.split_after = split_error(path, observed, options);
-  out.deepest_um = depth_of(after.surface, observed, job.compensation.overcut_um(), true).deepest_um;
+  const Judged before = judge(nullptr, "as given");
+  out.before_um = before.prediction.form_error_um;
+  out.split_before = before.split;
+  const Judged after = judge(emitted.last, "compensated");
+  out.after_um = after.prediction.form_error_um;
+  out.split_after = after.split;
+  if (emitted.free) out.split_after.give_to_guard(judge(emitted.free, "without the guard").split.correctable_um);
+  out.deepest_um = depth_of(after.prediction.surface, after.observed, job.compensation.overcut_um(), true).deepest_um;
   return out;
 }
 

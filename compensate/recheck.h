@@ -20,9 +20,15 @@ struct Recheck {
   double deepest_um = 0;  ///< into the part, compensated moves, of the emitted program
 };
 
-/// `target`: the program that the part is judged against. `path`: of the given program.
+struct EmittedPair {
+  const Emitted* last = nullptr;  ///< null: the given program
+  const Emitted* free = nullptr;  ///< the best one before the guard; null: the guard did nothing
+};
+
+/// `target`: the program that the part is judged against. `path`: of the given program. What the guard gives up is
+/// told by the same rule as in the rounds: what is left beyond that of the best program without it, on this grid.
 Recheck recheck(const machine::Job& job, double voxel_mm, const deflection::MachinedProgram& target,
-                const deflection::MachinedProgram& given, const Emitted* emitted, const ShiftPath& path,
+                const deflection::MachinedProgram& given, const EmittedPair& emitted, const ShiftPath& path,
                 const FitShiftOptions& options, bool own_target, const Progress& progress);
 
 /// By how much each point of the emitted program's surface (`after`) moves when a group does.

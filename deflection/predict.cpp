@@ -105,7 +105,9 @@ Target make_target(const Job& job, const MachinedProgram& target, Diagnostics& d
       sweep(stock, tool, stamps, static_cast<std::int32_t>(run.from), shrink_mm);
     });
   };
+  std::optional<removal::Stock> whole;
   if (job.stock.allowance_mm > 0) {
+    whole.emplace(blank);
     sweep_all(blank, job.stock.allowance_mm);
     blank.clear_stamps();
   }
@@ -117,13 +119,14 @@ Target make_target(const Job& job, const MachinedProgram& target, Diagnostics& d
   });
   std::optional<removal::MeshDistance> part;
   if (!job.part.mesh.empty()) part.emplace(job.part.mesh, job.simulation.voxel_mm, 10 * job.simulation.voxel_mm);
-  return {std::move(blank), std::move(surface), std::move(places), std::move(part), HoleStamps(target.path)};
+  return {std::move(blank), std::move(surface),      std::move(places),
+          std::move(part),  HoleStamps(target.path), std::move(whole)};
 }
 
 Prediction predict(const Job& job, const Target& target, const MachinedProgram& program,
                    const PredictOptions& options) {
   Prediction out;
-  removal::SurfaceMap map(target.surface, target.places, target.blank);
+  removal::SurfaceMap map(target.surface, target.places, target.blank, &target.solid());
   const auto all = static_cast<double>(program.path.stamps.size());
   std::vector<std::vector<Contact>> contacts_of_runs;
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {

@@ -42,7 +42,9 @@ struct Target {
   removal::Stock surface;        ///< after the undeflected sweep; its stamps are the target program's
   removal::CutterPlaces places;  ///< the target program's stamps, by the ids in `surface`
   std::optional<removal::MeshDistance> part;
-  HoleStamps holes;  ///< of the target program
+  HoleStamps holes;                       ///< of the target program
+  std::optional<removal::Stock> whole{};  ///< the stock before the allowance was taken off; empty: `blank`
+  const removal::Stock& solid() const { return whole ? *whole : blank; }
 };
 
 /// Builds the blank (box or mesh, less what the target program leaves with the cutter shrunk by the allowance) and

@@ -8,6 +8,7 @@
 #include "base/numbers.h"
 #include "base/units.h"
 #include "machine/tool_proposal.h"
+#include "machine/zip_entry.h"
 
 namespace camber::machine {
 namespace {
@@ -118,7 +119,8 @@ std::vector<ToolProposal> read_tool_table(const std::string& path, bool inch) {
 }
 
 std::vector<ToolProposal> read_tool_library(const std::string& path) {
-  const SourceText source = SourceText::read(path);
+  const bool packed = std::filesystem::path(path).extension() == ".tools";
+  const SourceText source = packed ? read_zip_entry(path, "tools.json", "tool-library") : SourceText::read(path);
   json library;
   try {
     library = json::parse(source.text());
@@ -138,9 +140,10 @@ std::vector<ToolProposal> read_tool_library(const std::string& path) {
 
 std::vector<ToolProposal> read_tools(const std::string& path, bool inch) {
   const std::string ending = std::filesystem::path(path).extension().string();
-  if (ending == ".tools" || ending == ".hsmlib")
-    fail_on_file(path, "is a library that camber does not read; its export as .json was expected", "tool-library");
-  return ending == ".json" ? read_tool_library(path) : read_tool_table(path, inch);
+  if (ending == ".hsmlib")
+    fail_on_file(path, "is a library that camber does not read; its export as .json or .tools was expected",
+                 "tool-library");
+  return ending == ".json" || ending == ".tools" ? read_tool_library(path) : read_tool_table(path, inch);
 }
 
 }  // namespace camber::machine

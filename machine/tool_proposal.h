@@ -32,11 +32,12 @@ std::vector<ToolProposal> tools_in_comments(const SourceText& program, bool inch
 /// [tool-table] for a line that is none, [file-missing].
 std::vector<ToolProposal> read_tool_table(const std::string& path, bool inch);
 
-/// A Fusion tool library as JSON; each tool names its unit. Throws InputError [tool-library], [file-missing].
+/// A Fusion tool library, as JSON or as .tools, a zip file with that JSON in tools.json; each tool names its unit.
+/// Throws InputError [tool-library], [file-missing].
 std::vector<ToolProposal> read_tool_library(const std::string& path);
 
-/// By the name's ending: .json a Fusion library, all others a tool table. Throws InputError [tool-library] for .tools,
-/// which is a zip file.
+/// By the name's ending: .json and .tools a Fusion library, all others a tool table. Throws InputError [tool-library] for
+/// .hsmlib, the format before.
 std::vector<ToolProposal> read_tools(const std::string& path, bool inch);
 
 /// Type, size, corner radius and flutes as far as the words tell, "1/2 BULL ENDMILL 0.125 RAD".

@@ -26,10 +26,16 @@ struct SurfacePoint {
 /// the same voxels.
 std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target);
 
-/// The same points of the target alone, without error, tile by tile; each moved to where the cutters that the voxels
-/// around it name have left the surface, which a trilinear field does not tell at ridges, and aside by up to half a
-/// voxel (the same for the same grid edge), so that cusps in step with the grid are met at all their places.
-std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places);
+/// The same points of the target alone, without error, tile by tile; each moved along its grid line to where the
+/// cutters that the voxels around it name have left the surface, which a trilinear field does not tell at ridges and
+/// edges, with the normal of the cutter that governs there, and aside by up to half a voxel (the same for the same grid
+/// edge), so that cusps in step with the grid are met at all their places.
+///
+/// `solid`: the stock that the target was cut from, before any allowance was taken off. With it the points reach up to
+/// the edges with the stock's faces: the last one of a row stands for what is left up to the edge, so that what part of
+/// a low wall is seen does not depend on where the grid lies. Without it (null) one voxel along the edges is left out.
+std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places,
+                                                      const Stock* solid = nullptr);
 
 /// Area-weighted figures of an error, in the unit of the values.
 struct ErrorFigures {

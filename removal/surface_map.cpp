@@ -211,11 +211,11 @@ struct SurfaceMap::Impl {
   std::vector<TilePoints> tiles;
 };
 
-SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank)
+SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank, const Stock* solid)
     : impl_(std::make_unique<Impl>()) {
   const double block_mm = kBlock * target.voxel_mm(), band = target.band_mm();
   const auto block_of = [&](const SurfacePoint& p) { return cube_of(p.place_mm, block_mm); };
-  for (auto& part : surface_points(target, places))
+  for (auto& part : surface_points(target, places, solid))
     if (!part.empty()) impl_->tiles.emplace_back().points = std::move(part);
   tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
     TilePoints& tile = impl_->tiles[t];

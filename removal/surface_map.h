@@ -25,9 +25,9 @@ namespace camber::removal {
 /// to x; the least height of all stamps stays. Nothing depends on the number of threads.
 class SurfaceMap {
  public:
-  /// `places`: the cutters of the target's sweep, by the ids that its voxels name. `blank`: the surface wherever no
-  /// mark is deeper. Nothing of them is needed afterwards.
-  SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank);
+  /// `places`: the cutters of the target's sweep, by the ids that its voxels name. `blank`: the surface wherever no mark
+  /// is deeper. `solid`: see surface_points. Nothing of them is needed afterwards.
+  SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank, const Stock* solid = nullptr);
   ~SurfaceMap();
 
   /// Takes the marks of `stamps`, bent by the rows of `shifts`; ids are first_id + index.

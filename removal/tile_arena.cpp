@@ -94,10 +94,11 @@ void TileArena::load_tiles(const Stock& stock, const Stock& blank) {
 
 ArenaView TileArena::view() const {
   static_assert(sizeof(Tile) == 2 * sizeof(float) * Tile::kVolume);
+  static constexpr std::int32_t kAir = 0;  // read, and not used, where no stamp comes near the stock
   return {tiles_[0].distance.data(),
           tiles_[0].stamp.data(),
           2 * Tile::kVolume,
-          slots_.all().data(),
+          slots_.all().empty() ? &kAir : slots_.all().data(),
           {slots_.extent()[0], slots_.extent()[1], slots_.extent()[2]}};
 }
 

@@ -1,6 +1,7 @@
 #include "machine/tool_proposal.h"
 
 #include <gtest/gtest.h>
+#include <zip.h>
 
 #include "tests/support/temp_folder.h"
 
@@ -126,6 +127,43 @@ TEST(ToolLibrary, OfFusionIsRead) {
   EXPECT_FALSE(tools[1].overhang_mm.has_value());
 }
 
+/// A zip file with one entry.
+std::string zipped(const tests::TempFolder& folder, const std::string& file, const std::string& entry,
+                   const std::string& text) {
+  const std::string path = folder / file;
+  zip_t* zip = zip_open(path.c_str(), ZIP_CREATE, nullptr);
+  zip_source_t* source = zip_source_buffer(zip, text.data(), text.size(), 0);
+  EXPECT_GE(zip_file_add(zip, entry.c_str(), source, 0), 0);
+  EXPECT_EQ(zip_close(zip), 0);
+  return path;
+}
+
+TEST(ToolLibrary, ReadsTheZipFileThatFusionExports) {
+  const tests::TempFolder folder;
+  const std::string text =
+      R"({"data": [{"type": "ball end mill", "unit": "millimeters", "description": "6 mm ball", "BMC": "carbide",
+          "geometry": {"DC": 6, "NOF": 2, "LB": 40}, "post-process": {"number": 9}}]})";
+  const auto packed = read_tools(zipped(folder, "shop.tools", "library/tools.json", text), false),
+             plain = read_tools(folder.write("shop.json", text), false);
+  ASSERT_EQ(packed.size(), 1u);
+  EXPECT_EQ(packed[0].number, 9);
+  EXPECT_EQ(packed[0].type, ToolType::ball);
+  EXPECT_EQ(packed[0].diameter_mm, plain[0].diameter_mm);
+  EXPECT_EQ(packed[0].overhang_mm, 40);
+}
+
+TEST(ToolLibrary, SaysWhatIsWrongInAZipFile) {
+  const tests::TempFolder folder;
+  EXPECT_EQ(message_of([&] { read_tools(zipped(folder, "a.tools", "other.json", "{}"), false); }, folder),
+            "a.tools: error: is a zip file without tools.json [tool-library]");
+  EXPECT_EQ(
+      message_of([&] { read_tools(zipped(folder, "b.tools", "tools.json", "[\n}"), false); }, folder),
+      "b.tools/tools.json:2:1: error: this is no JSON; a tool library of Fusion (File, Export, JSON) was expected "
+      "[tool-library]\n    }\n    ^");
+  EXPECT_NE(message_of([&] { read_tools(folder / "none.tools", false); }, folder).find("[file-missing]"),
+            std::string::npos);
+}
+
 TEST(ToolLibrary, SaysWhatWasExpected) {
   const tests::TempFolder folder;
   const auto broken = folder.write("a.json", "{\"data\": [\n}"), other = folder.write("b.json", "[1]"),
@@ -137,7 +175,10 @@ TEST(ToolLibrary, SaysWhatWasExpected) {
             "b.json: error: has no list \"data\"; a tool library of Fusion (File, Export, JSON) was expected "
             "[tool-library]");
   EXPECT_EQ(message_of([&] { read_tools(zip, false); }, folder),
-            "c.tools: error: is a library that camber does not read; its export as .json was expected [tool-library]");
+            "c.tools: error: is no zip file; one with tools.json in it was expected [tool-library]");
+  EXPECT_EQ(message_of([&] { read_tools(folder.write("d.hsmlib", "<"), false); }, folder),
+            "d.hsmlib: error: is a library that camber does not read; its export as .json or .tools was expected "
+            "[tool-library]");
   EXPECT_NE(message_of([&] { read_tools(folder / "none.json", false); }, folder).find("[file-missing]"),
             std::string::npos);
 }

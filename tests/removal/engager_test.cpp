@@ -94,6 +94,20 @@ TEST(Engager, ABullNosesChipsAreThoseOfStampsOneByOne) {
   expect_the_chips_of_stamps_one_by_one(machine::ToolType::bull);
 }
 
+TEST(Engager, StampsAwayFromTheStockTakeNothing) {
+  EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::ball), 2.0, 0.1, kPi / 90);
+  make_patches(envelope, 0.24);
+  std::vector<Stamp> stamps = wavy_rows();
+  for (Stamp& s : stamps) s.tip_mm.y() += 40;
+  const Stock blank = box();
+  Stock stock = box();
+  Engager engager(stock, blank, envelope, stamps, 0);
+  std::size_t chips_found = 0;
+  engager.engage(0, stamps.size(), [&](std::size_t, std::span<const ChipBlock> chips) { chips_found += chips.size(); });
+  EXPECT_EQ(chips_found, 0u);
+  EXPECT_EQ(engager.commit(), 0);
+}
+
 TEST(EnvelopeBlocks, HoldEveryPointOnce) {
   // 3 x 31 steps and an odd number of rings leave places over.
   const EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::bull), 1.5, 0.1, 2 * kPi / 93);
