@@ -94,8 +94,6 @@ TEST(DrawnJudge, FindsWhatAShiftCanCorrectGoneFromTheWallOfSample06_slow) {
   machine::Job job = machine::read_job(CAMBER_SOURCE_DIR "/samples/06-wall/job.toml", diagnostics);
   job.simulation.coupling = machine::Coupling::rigid;  // the judge cuts with a tool whose bending does not thin chips
   job.compensation.tolerance_um = 0.2;  // under what the judge is asked for, or the tolerance would be judged
-  job.simulation.voxel_mm =
-      0.1;  // at the sample's 0.15 mm the wall's mean is predicted 4 % under the drawn one, here 2 %
   const Compensation c = compensate(job, diagnostics, {});
   const auto program = [&](const std::string& text) {
     return deflection::machine_program(SourceText(job.program, text), job, {}, diagnostics);
