@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include <tbb/parallel_for.h>
@@ -391,32 +390,6 @@ std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& t
 std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places,
                                                       const Stock* solid) {
   return by_tile(nullptr, target, &places, solid);
-}
-
-ErrorFigures error_figures(const std::vector<double>& error, const std::vector<double>& area) {
-  ErrorFigures f;
-  if (error.empty()) return f;
-  f.min = *std::min_element(error.begin(), error.end());
-  f.max = *std::max_element(error.begin(), error.end());
-  double sum = 0, squares = 0;
-  for (std::size_t i = 0; i < error.size(); ++i) {
-    f.area_mm2 += area[i];
-    sum += area[i] * error[i];
-    squares += area[i] * error[i] * error[i];
-  }
-  f.mean = sum / f.area_mm2;
-  f.rms = std::sqrt(squares / f.area_mm2);
-  std::vector<std::size_t> order(error.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return std::abs(error[a]) < std::abs(error[b]); });
-  double below = 0;
-  for (const std::size_t i : order) {
-    below += area[i];
-    f.p95 = std::abs(error[i]);
-    if (below >= 0.95 * f.area_mm2) break;
-  }
-  return f;
 }
 
 }  // namespace camber::removal
