@@ -28,8 +28,9 @@ std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& t
 
 /// The same points of the target alone, without error, tile by tile; each moved along its grid line to where the
 /// cutters that the voxels around it name have left the surface, which a trilinear field does not tell at ridges and
-/// edges, with the normal of the cutter that governs there, and aside by up to half a voxel (the same for the same grid
-/// edge), so that cusps in step with the grid are met at all their places.
+/// edges, with the normal of the cutter that governs there, and aside within the square that the grid line stands for
+/// (the same for the same grid edge): those squares cover the surface once, and cusps in step with the grid are met at
+/// all their places.
 ///
 /// `solid`: the stock that the target was cut from, before any allowance was taken off. With it the points reach up to
 /// the edges with the stock's faces: the last one of a row stands for what is left up to the edge, so that what part of

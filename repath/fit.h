@@ -111,7 +111,7 @@ class FitMemory {
 /// Tries one line, one arc.
 class Fitter {
  public:
-  /// As line(), arc_room(), arc(). Kept for a while: asked again it costs nothing.
+  /// As line(), arc_room(), arc(). Kept for a while: asked again it costs nothing. Valid until the next call.
   const Tried& tried(std::uint32_t first, std::uint32_t last) const;
 
   Fitter(const Polyline& path, const FitOptions& options, FitMemory* memory = nullptr);

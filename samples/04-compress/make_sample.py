@@ -66,20 +66,21 @@ def scan_rows(p, rows, begin, end, pitch, y0=0.0):
         p.up()
 
 
+def contour(p, at, us, z):
+    """The closed line through at(u), u ascending from where it begins and ends."""
+    p.rapid(*at(us[0]), z)
+    for u in us[1:] + us[:1]:
+        x, y = at(u)
+        p.add(X=x, Y=y)
+    p.up()
+
+
 def ring(p, cx, cy, radius, z, wave=0.0, lobes=5):
     """A contour line: a circle, or a wavy one."""
     def at(a):
         r = radius + wave * math.cos(lobes * a)
         return cx + r * math.cos(a), cy + r * math.sin(a)
-    us = chords(at, 0.0, 2 * math.pi)
-    x, y = at(0.0)
-    p.rapid(x, y, z)
-    for u in us[1:-1]:
-        x, y = at(u)
-        p.add(X=x, Y=y)
-    x, y = at(0.0)
-    p.add(X=x, Y=y)
-    p.up()
+    contour(p, at, chords(at, 0.0, 2 * math.pi)[:-1], z)
 
 
 def cushion(p, cx, cy, half, z):
@@ -88,14 +89,7 @@ def cushion(p, cx, cy, half, z):
         c, s = math.cos(a), math.sin(a)
         r = half / (c ** 4 + s ** 4) ** 0.25
         return cx + r * c, cy + r * s
-    us = chords(at, 0.0, 2 * math.pi)
-    p.rapid(*at(0.0), z)
-    for u in us[1:-1]:
-        x, y = at(u)
-        p.add(X=x, Y=y)
-    x, y = at(0.0)
-    p.add(X=x, Y=y)
-    p.up()
+    contour(p, at, chords(at, 0.0, 2 * math.pi)[:-1], z)
 
 
 def pocket(p, cx, cy, half, corner, z):
@@ -113,14 +107,7 @@ def pocket(p, cx, cy, half, corner, z):
             a, b = -b, a
         return cx + a, cy + b
     us = sorted({side + v for side in range(4) for v in chords(lambda w: at(side + w * 0.999999), 0.0, 1.0)[:-1]})
-    x, y = at(0.0)
-    p.rapid(x, y, z)
-    for u in us[1:]:
-        x, y = at(u)
-        p.add(X=x, Y=y)
-    x, y = at(0.0)
-    p.add(X=x, Y=y)
-    p.up()
+    contour(p, at, us, z)
 
 
 def main(folder):

@@ -52,6 +52,47 @@ TEST(FormErrorVtp, LeavesTheTotalOutWhereThereIsNoMesh) {
   EXPECT_EQ(tests::file_text(folder / "e.vtp").find("total_error_um"), std::string::npos);
 }
 
+/// More than is written at once.
+FormErrorPoints many_points(std::size_t count) {
+  return {
+      count, [](std::size_t i) {
+        const double v = static_cast<double>(i);
+        return FormErrorPoint{{v, -v, 0.5 * v}, {0, 0, 1}, 0.25 * v, std::nan(""), static_cast<std::uint32_t>(i), 7};
+      }};
+}
+
+TEST(FormErrorVtp, OfManyPointsIsBase64OfAllBytesInOrder) {
+  constexpr std::size_t kCount = 150'001;  // 1.8 MB of places, no whole groups of three bytes
+  const tests::TempFolder folder;
+  const FormErrorPoints points = many_points(kCount);
+  write_form_error_vtp(folder / "e.vtp", points);
+  const std::string text = tests::file_text(folder / "e.vtp");
+  std::string places, errors;
+  append_little_endian(places, std::uint64_t{12 * kCount});
+  append_little_endian(errors, std::uint64_t{4 * kCount});
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const FormErrorPoint p = points.at(i);
+    for (int a = 0; a < 3; ++a) append_little_endian(places, static_cast<float>(p.place_mm[a]));
+    append_little_endian(errors, static_cast<float>(p.error_um));
+  }
+  EXPECT_NE(text.find(">" + base64(places) + "<"), std::string::npos);
+  EXPECT_NE(text.find(">" + base64(errors) + "<"), std::string::npos);
+}
+
+TEST(FormErrorPly, OfManyPointsHoldsEachOnce) {
+  constexpr std::size_t kCount = 60'000, kEach = 24 + 3 + 12;
+  const tests::TempFolder folder;
+  write_form_error_ply(folder / "e.ply", many_points(kCount), 1.0);
+  const std::string text = tests::file_text(folder / "e.ply");
+  const std::size_t end = text.find("end_header\n") + 11;
+  ASSERT_EQ(text.size(), end + kCount * kEach);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{26'887}, kCount - 1}) {
+    std::string x;
+    append_little_endian(x, static_cast<float>(i));
+    EXPECT_EQ(text.substr(end + i * kEach, 4), x) << i;
+  }
+}
+
 TEST(FormErrorPly, HoldsPlacesColoursAndWhatMadeThem) {
   const tests::TempFolder folder;
   write_form_error_ply(folder / "e.ply", those(two_points()), 1.0);
