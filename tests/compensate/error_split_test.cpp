@@ -99,6 +99,16 @@ TEST(ErrorSplit, SquaresAddUpWithOtherMoves) {
               1000 * std::sqrt(sum / area), 1e-6);
 }
 
+TEST(ErrorSplit, TheGuardGetsWhatIsLeftBeyondTheBestWithoutIt) {
+  ErrorSplit lifted{.correctable_um = 5}, lower{.correctable_um = 2};
+  lifted.give_to_guard(3);
+  EXPECT_NEAR(lifted.correctable_um, 3, 1e-12);
+  EXPECT_NEAR(lifted.guard_um, 4, 1e-12) << "squares add up";
+  lower.give_to_guard(3);
+  EXPECT_NEAR(lower.correctable_um, 2, 1e-12);
+  EXPECT_NEAR(lower.guard_um, 0, 1e-12);
+}
+
 TEST(Guard, LiftsWhatLiesTooDeepAndLeavesTheRest) {
   Wall wall;
   wall.add([](double, double height) { return 0.010 * (height - 0.5); });  // -4.5 ... 4.5 um
