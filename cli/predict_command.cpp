@@ -48,16 +48,17 @@ std::vector<report::PathRow> write_feed(const deflection::MachinedProgram& progr
   return collector.take();
 }
 
-/// What the folder holds but summary.json, side by side.
+/// What the folder holds but summary.json, side by side. The machined stock is given up once it is saved.
 void write_files(const machine::Job& job, const deflection::MachinedProgram& program,
-                 const deflection::Prediction& prediction, std::size_t forces_at, const fs::path& folder,
+                 deflection::Prediction& prediction, std::size_t forces_at, const fs::path& folder,
                  const Diagnostics& diagnostics) {
   tbb::task_group others;
   others.run([&] {
+    prediction.machined->save(folder / "stock.vdb");
+    prediction.machined.reset();
     report::write_forces_csv(folder / "forces.csv", job, program, prediction);
     if (forces_at > 0)
       report::write_forces_at_csv(folder / fmt::format("forces_at_{}.csv", forces_at), prediction.cut.turn);
-    prediction.machined->save(folder / "stock.vdb");
   });
   others.run([&] {
     const report::FormErrorPoints points = report::form_error_points(program, prediction);
@@ -97,7 +98,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   ProgressLine progress(options);
   predict_options.progress = [&](double share) { progress.show("cutting", share); };
   predict_options.surface_read = [&] { target.surface.clear(); };
-  const auto prediction = deflection::predict(job, target, program, predict_options);
+  auto prediction = deflection::predict(job, target, program, predict_options);
   target.blank.clear();  // nothing reads it any more, and the files need room
   progress.clear();
   const double compute_s = seconds_since(begin);

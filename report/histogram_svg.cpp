@@ -47,11 +47,11 @@ void key(std::string& out, double x, const char* colour, const char* name) {
 
 }  // namespace
 
-std::vector<double> error_histogram(const std::vector<SurfaceSample>& samples, double SurfaceSample::*error,
-                                    double limit_um, int bins) {
+std::vector<double> error_histogram(const SurfaceSamples& samples, double SurfaceSample::*error, double limit_um,
+                                    int bins) {
   std::vector<double> out(static_cast<std::size_t>(bins), 0.0);
   double area = 0;
-  for (const auto& s : samples) {
+  for (const SurfaceSample& s : samples.all()) {
     const double at = std::floor((s.*error / limit_um + 1) / 2 * bins);
     out[static_cast<std::size_t>(std::clamp(at, 0.0, bins - 1.0))] += s.area_mm2;
     area += s.area_mm2;
@@ -60,7 +60,7 @@ std::vector<double> error_histogram(const std::vector<SurfaceSample>& samples, d
   return out;
 }
 
-std::string histogram_svg(const std::vector<SurfaceSample>& samples, bool compared, double limit_um) {
+std::string histogram_svg(const SurfaceSamples& samples, bool compared, double limit_um) {
   constexpr const char *kGrey = "#9aa5b1", *kBlue = "#1668b8";
   const auto before = error_histogram(samples, &SurfaceSample::error_um, limit_um, kBins);
   const auto after = compared ? error_histogram(samples, &SurfaceSample::error_after_um, limit_um, kBins) : before;

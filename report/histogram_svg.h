@@ -3,15 +3,15 @@
 #include <string>
 #include <vector>
 
-#include "report/surface_mesh.h"
+#include "report/surface_samples.h"
 
 namespace camber::report {
 
 /// Per cent of the area in each of `bins` from -limit to limit; what lies beyond is in the first and the last.
-std::vector<double> error_histogram(const std::vector<SurfaceSample>& samples, double SurfaceSample::*error,
-                                    double limit_um, int bins);
+std::vector<double> error_histogram(const SurfaceSamples& samples, double SurfaceSample::*error, double limit_um,
+                                    int bins);
 
 /// Bars of the error; with `compared` before in grey and after in blue on one axis.
-std::string histogram_svg(const std::vector<SurfaceSample>& samples, bool compared, double limit_um);
+std::string histogram_svg(const SurfaceSamples& samples, bool compared, double limit_um);
 
 }  // namespace camber::report

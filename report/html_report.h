@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "report/path_rows.h"
-#include "report/surface_mesh.h"
+#include "report/surface_samples.h"
 
 namespace camber::report {
 
@@ -34,7 +34,7 @@ struct ReportData {
   std::string title;
   std::string subtitle;         ///< e.g. the files that the page is about
   std::vector<Figure> figures;  ///< the first four are shown large
-  std::vector<SurfaceSample> surface;
+  SurfaceSamples surface;
   bool compared = false;      ///< the surface's error_after_um and block_after count
   double voxel_mm = 0.1;      ///< of the grid that the surface's points lie on
   std::vector<PathRun> path;  ///< none, one, or before and after

@@ -9,6 +9,7 @@
 #include "report/base64.h"
 #include "report/decimate.h"
 #include "report/packed_arrays.h"
+#include "report/surface_mesh.h"
 
 namespace camber::report {
 namespace {
@@ -19,10 +20,11 @@ using nlohmann::json;
 constexpr double kScaleShare = 0.995;
 
 /// Half of a symmetric scale that holds kScaleShare of the points, a round number of um.
-double scale_um(const std::vector<SurfaceSample>& samples, double SurfaceSample::*error) {
+double scale_um(const SurfaceSamples& samples, double SurfaceSample::*error) {
   if (samples.empty()) return 1;
-  std::vector<double> size(samples.size());
-  std::transform(samples.begin(), samples.end(), size.begin(), [&](const auto& s) { return std::abs(s.*error); });
+  std::vector<double> size;
+  size.reserve(samples.size());
+  for (const SurfaceSample& s : samples.all()) size.push_back(std::abs(s.*error));
   const auto at = size.begin() + static_cast<std::ptrdiff_t>(kScaleShare * static_cast<double>(size.size() - 1));
   std::nth_element(size.begin(), at, size.end());
   return nice_limit(*at);

@@ -20,13 +20,8 @@ std::uint32_t line_of(const MachinedProgram& program, std::int32_t stamp) {
   return program.moves.moves[program.path.stamps[static_cast<std::size_t>(stamp)].move].block + 1;
 }
 
-std::vector<SurfaceSample> surface_samples(const std::vector<removal::SurfacePoint>& points,
-                                           const MachinedProgram& program) {
-  std::vector<SurfaceSample> out;
-  out.reserve(points.size());
-  for (const auto& p : points)
-    out.push_back({p.crossing_mm, p.normal, 1000 * p.error_mm, 0, p.area_mm2, line_of(program, p.machined_stamp), 0});
-  return out;
+SurfaceSample sample_of(const removal::SurfacePoint& p, const MachinedProgram& program) {
+  return {p.crossing_mm, p.normal, 1000 * p.error_mm, 0, p.area_mm2, line_of(program, p.machined_stamp), 0};
 }
 
 /// `key`: of the group in the JSON, with {} for before and after.
@@ -111,7 +106,7 @@ ReportData predict_report(const machine::Job& job, const MachinedProgram& progra
                       {"machine time", program.feed.time_s, std::nullopt, "s", 1, "machine_time_s"});
   data.figures.push_back({"removed, by the chips", p.cut.chip_mm3, std::nullopt, "mm3", 2, "removed_mm3.path"});
   data.figures.push_back({"removed, by the stock", p.cut.stock_mm3, std::nullopt, "mm3", 2, "removed_mm3.stock"});
-  data.surface = surface_samples(p.surface, program);
+  data.surface = {p.surface.size(), [&](std::size_t i) { return sample_of(p.surface[i], program); }};
   data.voxel_mm = job.simulation.voxel_mm;
   add_loads(rows, program.path, p.cut.loads);
   add_errors(rows, program.path, p.surface);
@@ -130,13 +125,16 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
                       {"largest shift", 1000 * c.max_shift_mm, std::nullopt, "um", 1, "max_shift_um"});
   data.figures.insert(data.figures.begin() + 3,
                       {"machine time", c.feed_before.time_s, c.feed_after.time_s, "s", 1, "machine_time_s.{}"});
-  data.surface = surface_samples(c.surface_before, before.program);
   data.voxel_mm = job.simulation.voxel_mm;
-  data.compared = c.surface_after.size() == data.surface.size();
-  for (std::size_t i = 0; data.compared && i < data.surface.size(); ++i) {
-    data.surface[i].error_after_um = 1000 * c.surface_after[i].error_mm;
-    data.surface[i].block_after = line_of(after.program, c.surface_after[i].machined_stamp);
-  }
+  data.compared = c.surface_after.size() == c.surface_before.size();
+  data.surface = {c.surface_before.size(),
+                  [&c, &given = before.program, &written = after.program, compared = data.compared](std::size_t i) {
+                    SurfaceSample sample = sample_of(c.surface_before[i], given);
+                    if (!compared) return sample;
+                    sample.error_after_um = 1000 * c.surface_after[i].error_mm;
+                    sample.block_after = line_of(written, c.surface_after[i].machined_stamp);
+                    return sample;
+                  }};
   add_shifts(after.rows, after.program.moves, before.program.moves);
   for (CompensatedRun* run : {&before, &after}) {
     add_loads(run->rows, run->program.path, run->loads);

@@ -15,6 +15,7 @@ namespace camber::report {
 /// Both must outlive what comes back.
 FormErrorPoints form_error_points(const deflection::MachinedProgram& program, const deflection::Prediction& prediction);
 
+/// Program and prediction must outlive what comes back.
 ReportData predict_report(const machine::Job& job, const deflection::MachinedProgram& program,
                           const deflection::Prediction& prediction, std::vector<PathRow> rows,
                           const Diagnostics& diagnostics);
@@ -27,6 +28,7 @@ struct CompensatedRun {
   std::span<const deflection::StampLoad> loads{};
 };
 
+/// `result` and both programs must outlive what comes back.
 /// `output`: where the compensated program was written; the page offers it under that name.
 ReportData compensate_report(const machine::Job& job, const compensate::Compensation& result, CompensatedRun before,
                              CompensatedRun after, const std::string& output, const Diagnostics& diagnostics);

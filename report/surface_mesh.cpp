@@ -47,16 +47,25 @@ std::array<Cell, 4> cells_around(const Crossing& c, std::int32_t factor) {
   return out;
 }
 
+void keep_each_once(std::vector<Cell>& cells) {
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+}
+
 std::vector<Cell> all_cells(const std::vector<Crossing>& crossings, std::int32_t factor) {
+  constexpr std::size_t kRoom = 1 << 16;
   std::vector<Cell> cells;
+  std::size_t full = kRoom;  // each cell is met many times
   for (const auto& c : crossings) {
     const auto around = cells_around(c, factor);
     for (auto cell = around.begin(); cell != around.end(); ++cell)
       if (std::find(around.begin(), cell, *cell) == cell && (cells.empty() || cells.back() != *cell))
         cells.push_back(*cell);
+    if (cells.size() < full) continue;
+    keep_each_once(cells);
+    full = std::max(kRoom, 2 * cells.size());
   }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  keep_each_once(cells);
   return cells;
 }
 
@@ -85,12 +94,12 @@ bool tidy(std::array<std::uint32_t, 4>& quad) {
 
 }  // namespace
 
-SurfaceMesh surface_mesh(std::span<const SurfaceSample> samples, double grid_mm, std::size_t most_vertices) {
+SurfaceMesh surface_mesh(const SurfaceSamples& samples, double grid_mm, std::size_t most_vertices) {
   SurfaceMesh mesh;
   if (samples.empty()) return mesh;
   std::vector<Crossing> crossings;
   crossings.reserve(samples.size());
-  for (const auto& s : samples) crossings.push_back(crossing_of(s, grid_mm));
+  for (const SurfaceSample& s : samples.all()) crossings.push_back(crossing_of(s, grid_mm));
   // A grid edge that the surface crosses belongs to four cells, and a cell that it passes has four such edges or six.
   constexpr double kFewest = 0.5;  // cells for a crossing, with room
   const auto most = static_cast<double>(std::max<std::size_t>(1, most_vertices));
@@ -110,6 +119,7 @@ SurfaceMesh surface_mesh(std::span<const SurfaceSample> samples, double grid_mm,
   std::vector<std::uint32_t> points(cells.size(), 0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     std::array<std::uint32_t, 4> quad{};
+    const SurfaceSample sample = samples[i];
     const auto around = cells_around(crossings[i], factor);
     for (std::size_t k = 0; k < 4; ++k) {
       const auto v = static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), around[k]) - cells.begin());
@@ -117,7 +127,7 @@ SurfaceMesh surface_mesh(std::span<const SurfaceSample> samples, double grid_mm,
       if (std::find(quad.begin(), quad.begin() + static_cast<std::ptrdiff_t>(k), quad[k]) !=
           quad.begin() + static_cast<std::ptrdiff_t>(k))
         continue;
-      add_to(mesh.vertices[v], samples[i], points[v] == 0);
+      add_to(mesh.vertices[v], sample, points[v] == 0);
       ++points[v];
     }
     if (tidy(quad)) mesh.quads.push_back(quad);

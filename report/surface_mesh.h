@@ -2,23 +2,11 @@
 // The machined surface as a mesh for the page, made of the points at which grid lines cross it.
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "base/geometry.h"
+#include "report/surface_samples.h"
 
 namespace camber::report {
-
-/// A point of the machined surface with its unit normal and its form error, and the lines that made it.
-struct SurfaceSample {
-  Vec3 place_mm = Vec3::Zero();
-  Vec3 normal = Vec3::UnitZ();
-  double error_um = 0;            ///< positive: material is left
-  double error_after_um = 0;      ///< of the compensated program, where there is one
-  double area_mm2 = 1;            ///< weight in the histogram
-  std::uint32_t block = 0;        ///< 1-based line that made the surface here; 0: unknown
-  std::uint32_t block_after = 0;  ///< the same in the compensated program
-};
 
 struct SurfaceMesh {
   /// Places and normals are means over a cell's points. The errors (and their lines) are those of greatest magnitude,
@@ -33,6 +21,6 @@ struct SurfaceMesh {
 /// (removal::SurfacePoint::crossing_mm).
 /// Where that would be more than `most_vertices`, cells are taken together in cubes of 2, 3, ... a side.
 /// Source: Gibson, Constrained elastic surface nets, MICCAI 1998 (without the relaxation).
-SurfaceMesh surface_mesh(std::span<const SurfaceSample> samples, double grid_mm, std::size_t most_vertices);
+SurfaceMesh surface_mesh(const SurfaceSamples& samples, double grid_mm, std::size_t most_vertices);
 
 }  // namespace camber::report

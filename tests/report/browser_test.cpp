@@ -93,13 +93,14 @@ TEST_F(ReportPage, IsReadWithoutScripts) { EXPECT_EQ(checked("without_script", e
 /// 200 000 blocks of half a millimetre at 2000 mm/min: 50 minutes, and a surface of a million points.
 ReportData large() {
   ReportData data = example();
-  data.surface = slope(500, 125, 400);
+  std::vector<SurfaceSample> surface = slope(500, 125, 400);
   unsigned noise = 1;  // so that nothing deflates better than real data would
   const auto random = [&noise] { return (noise = noise * 1664525u + 1013904223u) / 4294967296.0; };
-  for (auto& s : data.surface) {
+  for (auto& s : surface) {
     s.error_um += random();
     s.error_after_um += random();
   }
+  data.surface = std::move(surface);
   data.path.clear();
   for (const char* name : {"before", "after"}) {
     PathRun run{name, {}, {}};
