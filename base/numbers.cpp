@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -32,6 +33,15 @@ std::string format_trimmed(double value, int decimals) {
     if (out.back() == '.') out.pop_back();
   }
   return out == "-0" ? "0" : out;
+}
+
+// std::to_chars takes half of fmt's time, and files have tens of millions of numbers.
+void append_cells(std::string& row, int decimals, std::initializer_list<double> values) {
+  char cell[400];  // the largest double has 309 digits
+  for (const double value : values) {
+    row.append(cell, std::to_chars(std::begin(cell), std::end(cell), value, std::chars_format::fixed, decimals).ptr);
+    row += ',';
+  }
 }
 
 }  // namespace camber

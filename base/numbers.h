@@ -1,5 +1,6 @@
 #pragma once
 // Numbers in text, without a locale.
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,5 +13,8 @@ std::optional<double> parse_number(std::string_view text);
 
 /// Fixed notation with at most `decimals` decimals and no trailing zeros; never "-0".
 std::string format_trimmed(double value, int decimals);
+
+/// Adds cells to a row of CSV: each value in fixed notation, rounded correctly to `decimals` decimals, and a comma.
+void append_cells(std::string& row, int decimals, std::initializer_list<double> values);
 
 }  // namespace camber

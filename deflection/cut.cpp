@@ -1,6 +1,7 @@
 #include "deflection/cut.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -315,23 +316,37 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
   const double length = shape.profile.length_to_height_mm(top);
   constexpr int kRings = 100;
   constexpr double kDepthBand_mm = 0.001;
+  struct Ring {
+    double radius, height;
+    double slope;  ///< tangent of the normal's angle; 0: the normal points down
+  };
+  std::array<Ring, kRings> rings;
+  for (int r = 0; r < kRings; ++r) {
+    const auto p = shape.profile.at((r + 0.5) * length / kRings);
+    rings[static_cast<std::size_t>(r)] = {p.radius_mm, p.height_mm,
+                                          p.normal_angle_rad > 0 ? std::tan(p.normal_angle_rad) : 0.0};
+  }
   struct Candidate {
     double depth;
     Vec3 place;
   };
   std::vector<Contact> out(stamps.size());
+  tbb::enumerable_thread_specific<std::vector<Candidate>> buffers;
   tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
     const Vec3& f = stamps[k].feed_per_tooth_mm;
-    const double along = std::atan2(f.y(), f.x()), horizontal = f.head<2>().norm();
+    const double horizontal = f.head<2>().norm();
+    const Vec2 along = horizontal > 0 ? Vec2(f.head<2>() / horizontal) : Vec2::UnitX(), aside(-along.y(), along.x());
     const Stock::Probe probe(target);
-    std::vector<Candidate> candidates;  // depth: of the nearest voxel
-    for (int r = 0; r < kRings; ++r) {
-      const auto p = shape.profile.at((r + 0.5) * length / kRings);
-      const double tilt = horizontal > 0 ? f.z() / (horizontal * std::tan(p.normal_angle_rad)) : 2.0;
-      if (p.normal_angle_rad > 0 && std::abs(tilt) > 1) continue;
+    std::vector<Candidate>& candidates = buffers.local();  // depth: of the nearest voxel
+    candidates.clear();
+    for (const Ring& ring : rings) {
+      // The cosine of the angle from the motion at which the normal stands across it.
+      const double cosine = ring.slope == 0 ? 0.0 : horizontal > 0 ? f.z() / (horizontal * ring.slope) : 2.0;
+      if (std::abs(cosine) > 1) continue;
+      const Vec2 ahead = ring.radius * cosine * along, beside = ring.radius * std::sqrt(1 - cosine * cosine) * aside;
       for (const double side : {-1.0, 1.0}) {
-        const double phi = along + side * (p.normal_angle_rad > 0 ? std::acos(tilt) : kPi / 2);
-        const Vec3 place(p.radius_mm * std::cos(phi), p.radius_mm * std::sin(phi), p.height_mm);
+        const Vec2 flat = ahead + side * beside;
+        const Vec3 place(flat.x(), flat.y(), ring.height);
         candidates.push_back({-static_cast<double>(probe.nearest(stamps[k].tip_mm + place)), place});
       }
     }

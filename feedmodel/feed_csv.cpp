@@ -1,9 +1,6 @@
 #include "feedmodel/feed_csv.h"
 
-#include <fmt/format.h>
-
-#include <iterator>
-
+#include "base/numbers.h"
 #include "base/units.h"
 
 namespace camber::feedmodel {
@@ -24,10 +21,13 @@ void FeedCsv::write(std::span<const TimedSample> samples) {
   for (const TimedSample& s : samples) {
     const auto position = [&](int i) { return clean(s.position_mm[i], 0.5e-5); };
     const auto speed = [&](int i) { return clean(mm_per_min_from_mm_per_s(s.velocity_mm_per_s[i]), 0.5e-3); };
-    fmt::format_to(std::back_inserter(text_), "{:.6f},{},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}\n",
-                   s.t_s, program_.moves[s.move].block + 1, position(0), position(1), position(2), speed(0), speed(1),
-                   speed(2), mm_per_min_from_mm_per_s(s.feed_command_mm_per_s),
-                   mm_per_min_from_mm_per_s(s.velocity_mm_per_s.norm()));
+    append_cells(text_, 6, {s.t_s});
+    append_cells(text_, 0, {static_cast<double>(program_.moves[s.move].block + 1)});
+    append_cells(text_, 5, {position(0), position(1), position(2)});
+    append_cells(text_, 3,
+                 {speed(0), speed(1), speed(2), mm_per_min_from_mm_per_s(s.feed_command_mm_per_s),
+                  mm_per_min_from_mm_per_s(s.velocity_mm_per_s.norm())});
+    text_.back() = '\n';
   }
   file_.stream() << text_;
 }

@@ -1,10 +1,8 @@
 #include "report/forces_csv.h"
 
 #include <cmath>
-#include <iterator>
 
-#include <fmt/format.h>
-
+#include "base/numbers.h"
 #include "base/output_file.h"
 
 namespace camber::report {
@@ -38,16 +36,20 @@ void write_row(std::string& out, const Stamp& first, std::size_t line, const Row
   const auto n = static_cast<double>(row.teeth);
   const double passing_s = 60.0 / (rpm * flutes);
   const StampLoad& l = row.load;
-  fmt::format_to(
-      std::back_inserter(out),
-      "{:.4f},{},{:.4f},{:.4f},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.5f},{:.7f},"
-      "{:.6f},{:.6f},{:.4f},{:.6f},{:.6f},{:.2f}\n",
-      first.t_s, line, first.tip_mm.x(), first.tip_mm.y(), first.tip_mm.z(), l.force_max_N.x(), l.force_max_N.y(),
-      l.force_max_N.z(), l.lateral_max_N, l.force_mean_N.x() / n, l.force_mean_N.y() / n, l.force_mean_N.z() / n,
-      1000 * l.contact_deflection_mm.x() / n, 1000 * l.contact_deflection_mm.y() / n, l.chip_mm3 / (n * passing_s),
-      l.chip_mm3, l.torque_max_Nmm / 1000, l.torque_mean_Nmm / (1000 * n),
-      deflection::power_W(l.torque_mean_Nmm / n, rpm), l.chip_max_mm,
-      l.chip_area_mm2 > 0 ? l.chip_mm3 / l.chip_area_mm2 : 0.0, l.chip_mm3 > 0 ? l.work_Nmm / l.chip_mm3 : 0.0);
+  append_cells(out, 4, {first.t_s});
+  append_cells(out, 0, {static_cast<double>(line)});
+  append_cells(out, 4, {first.tip_mm.x(), first.tip_mm.y(), first.tip_mm.z()});
+  append_cells(out, 3,
+               {l.force_max_N.x(), l.force_max_N.y(), l.force_max_N.z(), l.lateral_max_N, l.force_mean_N.x() / n,
+                l.force_mean_N.y() / n, l.force_mean_N.z() / n});
+  append_cells(out, 2, {1000 * l.contact_deflection_mm.x() / n, 1000 * l.contact_deflection_mm.y() / n});
+  append_cells(out, 5, {l.chip_mm3 / (n * passing_s)});
+  append_cells(out, 7, {l.chip_mm3});
+  append_cells(out, 6, {l.torque_max_Nmm / 1000, l.torque_mean_Nmm / (1000 * n)});
+  append_cells(out, 4, {deflection::power_W(l.torque_mean_Nmm / n, rpm)});
+  append_cells(out, 6, {l.chip_max_mm, l.chip_area_mm2 > 0 ? l.chip_mm3 / l.chip_area_mm2 : 0.0});
+  append_cells(out, 2, {l.chip_mm3 > 0 ? l.work_Nmm / l.chip_mm3 : 0.0});
+  out.back() = '\n';
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 #include "report/form_error.h"
 
 #include <cmath>
-#include <iterator>
 #include <ostream>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "base/numbers.h"
 #include "base/output_file.h"
 #include "report/base64.h"
 
@@ -15,12 +15,6 @@ namespace camber::report {
 namespace {
 
 constexpr std::size_t kFlushBytes = 1 << 20;
-
-void flush(fmt::memory_buffer& buffer, OutputFile& file, std::size_t when_above) {
-  if (buffer.size() <= when_above) return;
-  file.stream().write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-  buffer.clear();
-}
 
 /// One array of the file: the byte count, then the bytes, in base64. `append(bytes, i)` adds those of the i-th of
 /// `count`, `each` bytes.
@@ -60,18 +54,23 @@ void write_whole_numbers(std::ostream& out, std::string_view attributes, std::si
 
 void write_form_error_csv(const std::string& path, const FormErrorPoints& points) {
   OutputFile file(path);
-  fmt::memory_buffer buffer;
-  auto out = std::back_inserter(buffer);
-  fmt::format_to(out, "x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block,tool\n");
+  std::string text = "x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block,tool\n";
   for (std::size_t i = 0; i < points.count; ++i) {
     const FormErrorPoint p = points.at(i);
-    fmt::format_to(out, "{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},{:.3f},", p.place_mm.x(), p.place_mm.y(),
-                   p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(), p.error_um);
-    if (std::isfinite(p.total_error_um)) fmt::format_to(out, "{:.3f}", p.total_error_um);
-    fmt::format_to(out, ",{},{}\n", p.block, p.tool);
-    flush(buffer, file, kFlushBytes);
+    append_cells(text, 4, {p.place_mm.x(), p.place_mm.y(), p.place_mm.z()});
+    append_cells(text, 5, {p.normal.x(), p.normal.y(), p.normal.z()});
+    append_cells(text, 3, {p.error_um});
+    if (std::isfinite(p.total_error_um))
+      append_cells(text, 3, {p.total_error_um});
+    else
+      text += ',';
+    append_cells(text, 0, {static_cast<double>(p.block), static_cast<double>(p.tool)});
+    text.back() = '\n';
+    if (text.size() < kFlushBytes) continue;
+    file.stream() << text;
+    text.clear();
   }
-  flush(buffer, file, 0);
+  file.stream() << text;
   file.commit();
 }
 

@@ -23,5 +23,15 @@ TEST(Numbers, AreWrittenWithoutTrailingZerosOrMinusZero) {
   EXPECT_EQ(format_trimmed(200.0, 3), "200");
 }
 
+TEST(Numbers, CellsAreRoundedCorrectlyAndEndWithCommas) {
+  std::string row = "N1,";
+  append_cells(row, 3, {0.0005, -0.0625, 1234567.0, -0.0});
+  append_cells(row, 0, {2.5, 3.5, 99999.7});
+  append_cells(row, 1, {1e300});
+  EXPECT_EQ(row.substr(0, 55), "N1,0.001,-0.062,1234567.000,-0.000,2,4,100000,100000000");
+  EXPECT_EQ(row.size(), 46u + 301 + 3);
+  EXPECT_TRUE(row.ends_with(".0,")) << row;
+}
+
 }  // namespace
 }  // namespace camber
