@@ -1,5 +1,6 @@
 // Rounds of the static solution: slots and shoulders of stiff and slender tools, both laws.
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
 #include "deflection/cut.h"
@@ -30,7 +31,9 @@ int main() {
         tool.overhang_mm = t.overhang;
         tool.youngs_modulus_MPa = t.young;
         const double depth = slot ? 0.3 : 0.5, r = t.diameter / 2;
-        auto stock = make_box({0, slot ? -r - 1 : r - 0.4, -depth - 0.7}, {6, r + 1.5, 0}, 0.1);
+        // A ball is narrower than its diameter at the top of what it cuts.
+        const double half = t.type == machine::ToolType::ball ? std::sqrt(depth * (t.diameter - depth)) : r;
+        auto stock = make_box({0, slot ? -r - 1 : half - 0.4, -depth - 0.7}, {6, r + 1.5, 0}, 0.1);
         std::vector<removal::Stamp> stamps;
         add_row(stamps, {-r - 0.1, 0, -depth}, {6 + r, 0, -depth}, 0.05);
         deflection::CutOptions options;
