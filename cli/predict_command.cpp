@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <tbb/task_group.h>
 
+#include "base/freed_memory.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
@@ -97,7 +98,10 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
 
   ProgressLine progress(options);
   predict_options.progress = [&](double share) { progress.show("cutting", share); };
-  predict_options.surface_read = [&] { target.surface.clear(); };
+  predict_options.surface_read = [&] {
+    target.surface.clear();
+    return_freed_memory();
+  };
   auto prediction = deflection::predict(job, target, program, predict_options);
   target.blank.clear();  // nothing reads it any more, and the files need room
   progress.clear();

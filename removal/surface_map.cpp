@@ -23,14 +23,13 @@ struct Group {
   double highest = 0;  ///< of its points' errors
 };
 
+/// The points of one of the stock's tiles.
 struct TilePoints {
-  std::vector<SurfacePoint> points;
-  std::vector<float> left_mm;  ///< of the blank above each
   Group all;
   std::vector<Group> blocks;
 };
 
-Group group_of(const std::vector<SurfacePoint>& points, std::size_t first, std::size_t count, double highest) {
+Group group_of(std::span<const SurfacePoint> points, std::size_t first, std::size_t count, double highest) {
   Vec3 lo = points[first].place_mm, hi = lo;
   for (std::size_t i = first; i < first + count; ++i) {
     lo = lo.cwiseMin(points[i].place_mm);
@@ -208,6 +207,8 @@ class CloseStamps {
 }  // namespace
 
 struct SurfaceMap::Impl {
+  std::vector<SurfacePoint> points;  ///< tile by tile
+  std::vector<float> left_mm;        ///< of the blank above each
   std::vector<TilePoints> tiles;
 };
 
@@ -215,20 +216,30 @@ SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const St
     : impl_(std::make_unique<Impl>()) {
   const double block_mm = kBlock * target.voxel_mm(), band = target.band_mm();
   const auto block_of = [&](const SurfacePoint& p) { return cube_of(p.place_mm, block_mm); };
-  for (auto& part : surface_points(target, places, solid))
-    if (!part.empty()) impl_->tiles.emplace_back().points = std::move(part);
+  auto& points = impl_->points;
+  auto parts = surface_points(target, places, solid);
+  std::size_t count = 0;
+  for (const auto& part : parts) count += part.size();
+  points.reserve(count);
+  for (auto& part : parts) {
+    if (part.empty()) continue;
+    impl_->tiles.emplace_back().all = {.first = points.size(), .count = part.size()};
+    points.insert(points.end(), part.begin(), part.end());
+    part = {};
+  }
+  impl_->left_mm.resize(count);
   tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
     TilePoints& tile = impl_->tiles[t];
-    auto& points = tile.points;
-    points.shrink_to_fit();
-    for (auto& p : points) p.error_mm = band;
-    std::stable_sort(points.begin(), points.end(),
-                     [&](const auto& a, const auto& b) { return block_of(a) < block_of(b); });
+    const std::size_t first = tile.all.first, end = first + tile.all.count;
+    const std::span<SurfacePoint> own(points.data() + first, tile.all.count);
+    for (auto& p : own) p.error_mm = band;
+    std::stable_sort(own.begin(), own.end(), [&](const auto& a, const auto& b) { return block_of(a) < block_of(b); });
     const Stock::Probe probe(blank);
-    for (const auto& p : points) tile.left_mm.push_back(static_cast<float>(-probe.distance_mm(p.place_mm)));
-    tile.all = group_of(points, 0, points.size(), band);
-    for (std::size_t at = 0, next = 0; at < points.size(); at = next) {
-      while (next < points.size() && block_of(points[next]) == block_of(points[at])) ++next;
+    for (std::size_t i = first; i < end; ++i)
+      impl_->left_mm[i] = static_cast<float>(-probe.distance_mm(points[i].place_mm));
+    tile.all = group_of(points, first, own.size(), band);
+    for (std::size_t at = first, next = first; at < end; at = next) {
+      while (next < end && block_of(points[next]) == block_of(points[at])) ++next;
       tile.blocks.push_back(group_of(points, at, next - at, band));
     }
   });
@@ -281,8 +292,8 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
       if (!close.empty()) {
         block.highest = -std::numeric_limits<double>::infinity();
         for (std::size_t i = block.first; i < block.first + block.count; ++i) {
-          close.mark(tile.points[i]);
-          block.highest = std::max(block.highest, tile.points[i].error_mm);
+          close.mark(impl_->points[i]);
+          block.highest = std::max(block.highest, impl_->points[i].error_mm);
         }
       }
       tile.all.highest = std::max(tile.all.highest, block.highest);
@@ -291,20 +302,15 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
 }
 
 std::vector<SurfacePoint> SurfaceMap::take() {
-  std::size_t count = 0;
-  for (const TilePoints& tile : impl_->tiles) count += tile.points.size();
-  std::vector<SurfacePoint> out;
-  out.reserve(count);
-  for (TilePoints& tile : impl_->tiles) {
-    for (std::size_t i = 0; i < tile.points.size(); ++i) {
-      SurfacePoint& p = out.emplace_back(tile.points[i]);
-      // Where the bent cutters do not reach, the blank itself is the surface.
-      if (p.error_mm <= 0 || static_cast<double>(tile.left_mm[i]) >= p.error_mm) continue;
-      p.error_mm = static_cast<double>(tile.left_mm[i]);
-      p.machined_stamp = Stock::kUncut;
-    }
-    tile = {};
+  for (std::size_t i = 0; i < impl_->points.size(); ++i) {
+    SurfacePoint& p = impl_->points[i];
+    // Where the bent cutters do not reach, the blank itself is the surface.
+    if (p.error_mm <= 0 || static_cast<double>(impl_->left_mm[i]) >= p.error_mm) continue;
+    p.error_mm = static_cast<double>(impl_->left_mm[i]);
+    p.machined_stamp = Stock::kUncut;
   }
+  std::vector<SurfacePoint> out = std::move(impl_->points);
+  *impl_ = {};
   return out;
 }
 
