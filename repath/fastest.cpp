@@ -53,7 +53,7 @@ Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves
                              : std::max(kMoreContour * before.contour_max_mm, options.layout.tolerance_mm);
   out.within_limit = false;
   std::size_t nearest = 0;
-  const Resegmenter resegmenter(program, moves, options.layout);
+  Resegmenter resegmenter(program, moves, options.layout);
   const MeantPath meant(moves);
   ResegmentOptions layout = options.layout;
   layout.block_time_s = machine.control.block_time_s;

@@ -165,19 +165,6 @@ class SmoothedPath::Layouter {
 
 Layout SmoothedPath::lay_out(double length_mm) const { return Layouter(*this, length_mm).run(); }
 
-double segment_length_mm(double feed_mm_per_s, double block_time_s) { return feed_mm_per_s * block_time_s; }
-
-double length_for(const SpacePath& path, double feed_mm_per_s, const ResegmentOptions& options) {
-  constexpr double kLeast = 0.01;
-  if (options.length_mm > 0) return std::max(options.length_mm, kLeast);
-  double base = segment_length_mm(feed_mm_per_s, options.block_time_s);
-  if (!(base > 0)) {
-    for (std::size_t k = 1; k < path.points.size(); ++k) base += (path.points[k] - path.points[k - 1]).norm();
-    base /= static_cast<double>(path.points.size() - 1);
-  }
-  return std::max(options.length_factor * base, kLeast);
-}
-
 Layout lay_out(std::span<const Vec3> points, const ResegmentOptions& options, double length_mm, double increment_mm) {
   return SmoothedPath({points.begin(), points.end()}, options, increment_mm).lay_out(length_mm);
 }

@@ -1,6 +1,7 @@
 #pragma once
 // A program with its runs of short lines laid out again: in segments as long as the control wants them.
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,13 +25,16 @@ struct ResegmentOptions {
 /// Source: KAKEN report on deflection-compensated CAM, eq. 3 (there F T_b / 60000 in mm, mm/min, ms).
 double segment_length_mm(double feed_mm_per_s, double block_time_s);
 
-/// The points of a run in space, as the text says them. Repeated points are left out; `block` tells which block ends at
-/// each (of the first point: the run's first block).
+/// The points of a run in space, as the text says them, of arcs also points between their ends. Repeated points are
+/// left out; `block` tells which block ends at each (of the first point: the run's first block).
 struct SpacePath {
+  static constexpr std::uint32_t kInside = std::numeric_limits<std::uint32_t>::max();  ///< an arc: no block ends there
   std::vector<Vec3> points;
   std::vector<std::uint32_t> block;
+  double sagitta_mm = 0;  ///< how far the lines between the points may be from arcs; 0: there is none
 };
-SpacePath space_path_of(const nc::Interpretation& moves, const Run& run);
+/// `sagitta_mm`: of the lines that stand for arcs, greater than zero.
+SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double sagitta_mm);
 
 /// A path laid out again.
 struct Layout {
@@ -40,8 +44,9 @@ struct Layout {
   std::size_t corners = 0;
 };
 
-/// Of a run's segments: options.length_mm, or length_factor times L_b at the run's feed.
-double length_for(const SpacePath& path, double feed_mm_per_s, const ResegmentOptions& options);
+/// Of a run's segments: options.length_mm, or length_factor times L_b at the run's feed, or where the control has no
+/// block time times the mean length of its blocks.
+double length_for(const nc::Interpretation& moves, const Run& run, const ResegmentOptions& options);
 
 /// Between corners a smooth curve takes the place of the points (half of the tolerance), and segments of `length_mm`
 /// are laid on it, shorter ones where the whole tolerance asks for it. Where a curve leaves the old path by more, as

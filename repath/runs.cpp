@@ -6,20 +6,17 @@
 
 #include "nc/arcs.h"
 #include "repath/compress.h"
-#include "repath/resegment.h"
+#include "repath/program_point.h"
 
 namespace camber::repath {
 namespace {
 
 constexpr double kStandsStillMm = 1e-9;
 
-/// Sums of increments (G91) and inches: points at one place become equal.
-double without_noise(double mm) { return std::round(mm * 1e7) * 1e-7; }
-
 class RunFinder {
  public:
-  RunFinder(const nc::Program& program, const nc::Interpretation& moves, bool in_space)
-      : program_(program), moves_(moves), in_space_(in_space), jumps_(program.macro.flow()) {}
+  RunFinder(const nc::Program& program, const nc::Interpretation& moves, RunKind kind)
+      : program_(program), moves_(moves), kind_(kind), jumps_(program.macro.flow()) {}
 
   std::vector<Run> find() {
     const auto& all = moves_.moves;
@@ -41,7 +38,8 @@ class RunFinder {
   /// A bit for every axis that the move does not move; 0: not a block for a run.
   unsigned fits(std::uint32_t m) const {
     const nc::Move& move = moves_.moves[m];
-    if (move.kind != nc::MoveKind::linear || !move.editable || move.canned || move.reference) return 0;
+    const bool arc = move.kind == nc::MoveKind::arc && kind_ == RunKind::with_arcs;
+    if ((move.kind != nc::MoveKind::linear && !arc) || !move.editable || move.canned || move.reference) return 0;
     if ((m > 0 && moves_.moves[m - 1].block == move.block) ||
         (m + 1 < moves_.moves.size() && moves_.moves[m + 1].block == move.block))
       return 0;
@@ -52,7 +50,7 @@ class RunFinder {
       return 0;
     if (!plain_block(move.block)) return 0;
     constexpr unsigned kAll = 7;
-    if (in_space_) return kAll;
+    if (in_space()) return kAll;
     unsigned still = 0;
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(move.end_mm[axis] - move.start_mm[axis]) < kStandsStillMm) still |= 1u << axis;
@@ -74,11 +72,19 @@ class RunFinder {
       at = w.offset + w.length;
       const bool coordinate = w.letter >= 'X' && w.letter <= 'Z';
       if (coordinate || w.letter == 'F' || (w.letter == 'G' && w.value == 1)) continue;
+      if (kind_ == RunKind::with_arcs && of_arc(w)) continue;
       if (w.letter == 'N' && !jumps_) continue;
       return false;
     }
     return blank(block.offset + block.length);
   }
+
+  static bool of_arc(const nc::Word& w) {
+    return (w.letter >= 'I' && w.letter <= 'K') || w.letter == 'R' ||
+           (w.letter == 'G' && (w.value == 2 || w.value == 3));
+  }
+
+  bool in_space() const { return kind_ != RunKind::in_plane; }
 
   bool has_feed(std::uint32_t b) const {
     const auto words = program_.words_of(b);
@@ -96,7 +102,7 @@ class RunFinder {
     if (open_ && behind - first_ >= 2) {
       const int plane_g = moves_.state_of(moves_.moves[first_]).plane_g;
       const int current = plane_g == 17 ? 2 : plane_g == 18 ? 1 : 0;
-      Run run{.first_move = first_, .last_move = behind - 1, .normal = current, .in_space = in_space_};
+      Run run{.first_move = first_, .last_move = behind - 1, .normal = current, .in_space = in_space()};
       run.current_plane = (still_ >> current) & 1u;
       for (int axis = 2; !run.current_plane && axis >= 0; --axis)
         if ((still_ >> axis) & 1u) {
@@ -110,7 +116,8 @@ class RunFinder {
 
   const nc::Program& program_;
   const nc::Interpretation& moves_;
-  bool in_space_, jumps_;
+  RunKind kind_;
+  bool jumps_;
   std::vector<Run> runs_;
   bool open_ = false;
   std::uint32_t first_ = 0;
@@ -123,8 +130,7 @@ void for_each_point(const nc::Interpretation& moves, std::uint32_t first, std::u
                     Reached reached) {
   std::optional<Vec3> before;
   const auto reach = [&](const nc::Move& move, const Vec3& p) {
-    const Vec3 place = moves.frame_of(move).to_program(p);
-    const Vec3 point(without_noise(place.x()), without_noise(place.y()), without_noise(place.z()));
+    const Vec3 point = program_point(moves, move, p);
     if (before && *before == point) return;
     before = point;
     add(point, move.block);
@@ -149,14 +155,14 @@ bool goes_on(const nc::Interpretation& moves, const Run& run, const Run& next) {
 
 }  // namespace
 
-std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, bool in_space) {
-  return RunFinder(program, moves, in_space).find();
+std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, RunKind kind) {
+  return RunFinder(program, moves, kind).find();
 }
 
 std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart) {
   constexpr std::uint32_t kLeastMoves = 4;
-  std::vector<Run> out, in_space = find_runs(program, moves, true), planar;
-  if (apart) planar = find_runs(program, moves);
+  std::vector<Run> out, in_space = find_runs(program, moves, RunKind::in_space), planar;
+  if (apart) planar = find_runs(program, moves, RunKind::in_plane);
   auto next = planar.begin();
   for (Run run : in_space) {
     for (; next != planar.end() && next->last_move <= run.last_move; ++next) {
@@ -209,16 +215,6 @@ void for_each_chain(const nc::Interpretation& moves, std::span<const Run> runs,
     take(chain_of(moves, runs.subspan(first, k + 1 - first)));
     first = k + 1;
   }
-}
-
-SpacePath space_path_of(const nc::Interpretation& moves, const Run& run) {
-  SpacePath path;
-  const auto add = [&](const Vec3& p, std::uint32_t block) {
-    path.points.push_back(p);
-    path.block.push_back(block);
-  };
-  for_each_point(moves, run.first_move, run.last_move, add, [](std::uint32_t) {});
-  return path;
 }
 
 }  // namespace camber::repath

@@ -1,5 +1,7 @@
 #pragma once
 // What laying out a path again needs and what does not depend on the length of the segments.
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "repath/resegment.h"
@@ -42,14 +44,19 @@ class Resegmenter {
   ~Resegmenter();
 
   /// Of `options` length, block time and factors count.
-  Resegmentation lay_out(const ResegmentOptions& options) const;
+  Resegmentation lay_out(const ResegmentOptions& options);
 
  private:
   struct Prepared;
+  class Writer;
+  const Prepared& prepared(const Run& stretch);
+
   const nc::Program& program_;
   const nc::Interpretation& moves_;
-  std::vector<Prepared> runs_;
+  ResegmentOptions options_;
   TextStyle style_;
+  std::vector<Run> runs_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Prepared> prepared_;  ///< by a stretch's first and last move
 };
 
 }  // namespace camber::repath
