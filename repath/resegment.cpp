@@ -67,7 +67,7 @@ class Resegmenter::Writer {
   void add(const Run& stretch, double length_mm) {
     const Prepared& now = of_.prepared(stretch);
     if (!now.smoothed) return;
-    const Layout layout = now.smoothed->lay_out(length_mm);
+    const Layout layout = now.smoothed->lay_out(length_mm, options_.corners.any());
     const bool arcs = now.path.sagitta_mm > 0;
     if (arcs && layout.points.size() - 1 >= stretch.last_move - stretch.first_move + 1) {
       for (const Run& lines : between_arcs(of_.program_, of_.moves_, stretch, {})) add(lines, length_mm);
@@ -77,8 +77,9 @@ class Resegmenter::Writer {
     const std::uint32_t first = of_.moves_.moves[stretch.first_move].block;
     const std::uint32_t last = of_.moves_.moves[stretch.last_move].block;
     const double deviation = layout.deviation_mm + now.path.sagitta_mm;
-    replacements_.push_back(
-        {first, last, text_of(of_.program_, of_.moves_, stretch, now.path, layout, of_.style_, options_.feed_factor)});
+    replacements_.push_back({first, last,
+                             text_of(of_.program_, of_.moves_, stretch, now.path, layout, of_.style_,
+                                     {options_.feed_factor, options_.corners})});
     out_.runs.push_back({first, last, layout.points.size() - 1, 0, deviation});
     out_.max_deviation_mm = std::max(out_.max_deviation_mm, deviation);
     out_.corners += layout.corners;

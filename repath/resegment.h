@@ -11,12 +11,22 @@
 
 namespace camber::repath {
 
+/// Lower feeds about the corners that are kept, where axes that lag cut them off or leave them late: in the last 0.8 mm
+/// before a corner and the first 0.4 mm behind it. Figures of trial: they are where the seconds buy most.
+struct CornerFeeds {
+  double share = 1;     ///< of the feed; 1: as elsewhere
+  double settle_s = 0;  ///< what lies between two sharp corners (60 degrees) that are no farther apart, as the step
+                        ///< from row to row, takes at least so long: the axes catch up
+  bool any() const { return share != 1 || settle_s > 0; }
+};
+
 struct ResegmentOptions {
   double tolerance_mm = 0.01;  ///< largest distance between the old and the new path, both ways
   double length_mm = 0;        ///< of segments; 0: length_factor times what the control asks for
   double block_time_s = 0;     ///< T_b; 0: the mean length of the old blocks stands for L_b
   double length_factor = 1;    ///< at least 1
   double feed_factor = 1;      ///< the runs that are laid out again get this much of their feed
+  CornerFeeds corners{};       ///< of that feed
   double corner_rad = 5 * kPi / 180;
   bool whole_numbers_are_increments = false;
 };
@@ -36,12 +46,19 @@ struct SpacePath {
 /// `sagitta_mm`: of the lines that stand for arcs, greater than zero.
 SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double sagitta_mm);
 
+/// Where a segment lies.
+struct SegmentPlace {
+  bool near_corner = false;
+  double between_corners_mm = 0;  ///< greater than zero: it is part of a step of that length between sharp corners
+};
+
 /// A path laid out again.
 struct Layout {
   std::vector<Vec3> points;              ///< from the first to the last one of the old path
   std::vector<std::uint32_t> old_point;  ///< the last old point that is not behind each
   double deviation_mm = 0;               ///< Hausdorff distance, both ways (an upper bound)
   std::size_t corners = 0;
+  std::vector<SegmentPlace> place;  ///< of the segment that ends at each point; empty: not asked for
 };
 
 /// Of a run's segments: options.length_mm, or length_factor times L_b at the run's feed, or where the control has no

@@ -13,6 +13,7 @@ namespace camber::repath {
 namespace {
 
 constexpr int kMostDecimals = 6;
+constexpr double kLeastFeedFactor = 0.005;
 constexpr char kAxis[] = "XYZ", kCentre[] = "IJK";
 
 std::string_view written(const nc::Program& program, const nc::Word& word) {
@@ -91,8 +92,9 @@ class PointWriter : BlockWriter {
  public:
   using BlockWriter::BlockWriter;
 
-  std::vector<std::string> write(const SpacePath& path, const Layout& layout, double feed_factor) const {
+  std::vector<std::string> write(const SpacePath& path, const Layout& layout, const LayoutFeeds& feeds) const {
     std::vector<std::string> lines;
+    double feed_now = 1;
     std::uint32_t before = 0;  // the old point whose block ended last
     for (std::size_t k = 1; k < layout.points.size(); ++k) {
       std::vector<std::string> words;
@@ -107,14 +109,27 @@ class PointWriter : BlockWriter {
       for (int a = 0; a < 3; ++a)
         if (from[a] != to[a])
           words.push_back(number(kAxis[static_cast<std::size_t>(a)], incremental_ ? to[a] - from[a] : to[a]));
-      if (lines.empty() && feed_factor != 1)
-        words.push_back(feed(feed_factor));
+      const double factor = feed_factor(layout, k, feeds);
+      if (factor != feed_now)
+        words.push_back(feed(factor));
       else if (lines.empty())
         add_feed(words);
+      feed_now = factor;
       lines.push_back(joined(words));
     }
-    if (feed_factor != 1) lines.push_back(feed(1));
+    if (feed_now != 1) lines.push_back(feed(1));
     return lines;
+  }
+
+ private:
+  double feed_factor(const Layout& layout, std::size_t k, const LayoutFeeds& feeds) const {
+    double out = feeds.factor;
+    if (layout.place.empty()) return out;
+    const SegmentPlace& place = layout.place[k];
+    if (place.near_corner) out *= feeds.corners.share;
+    if (place.between_corners_mm > 0 && feeds.corners.settle_s > 0)
+      out = std::min(out, 60 * place.between_corners_mm / feeds.corners.settle_s / feed_mm_per_min_);
+    return std::max(out, kLeastFeedFactor);
   }
 };
 
@@ -220,8 +235,8 @@ std::vector<std::string> text_of(const nc::Program& program, const nc::Interpret
 
 std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
                                  const SpacePath& path, const Layout& layout, const TextStyle& style,
-                                 double feed_factor) {
-  return PointWriter(program, moves, run, style).write(path, layout, feed_factor);
+                                 const LayoutFeeds& feeds) {
+  return PointWriter(program, moves, run, style).write(path, layout, feeds);
 }
 
 }  // namespace camber::repath

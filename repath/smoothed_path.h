@@ -20,7 +20,8 @@ class SmoothedPath {
   SmoothedPath(SmoothedPath&&) noexcept;
 
   const std::vector<Vec3>& points() const { return old_; }
-  Layout lay_out(double length_mm) const;
+  /// `mark_corners`: segments end where the reach of a corner begins and ends, and Layout::place is filled.
+  Layout lay_out(double length_mm, bool mark_corners = false) const;
 
  private:
   struct Piece;
@@ -33,6 +34,7 @@ class SmoothedPath {
   std::vector<Vec3> old_;
   double tolerance_, increment_;
   std::size_t corners_ = 0;
+  std::vector<char> corner_at_;  ///< of each old point: 0 none, 1 an edge, 2 a sharp corner
   std::vector<Piece> pieces_;
 };
 
