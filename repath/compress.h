@@ -70,6 +70,9 @@ struct RunChain {
   RunPath path;
   std::vector<std::uint32_t> ends;  ///< points at which one part follows another; see Polyline
   std::vector<Part> parts;
+  /// The cuts before and behind the chain, where the path goes on without a stop, are part of the path but of no part:
+  /// a line as it is, of an arc a piece of its tangent.
+  bool arc_before = false, arc_behind = false;
 };
 /// One after the other; the path of one is in memory at a time.
 void for_each_chain(const nc::Interpretation& moves, std::span<const Run> runs,

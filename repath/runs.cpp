@@ -181,6 +181,32 @@ std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpre
 
 namespace {
 
+struct Beside {
+  Vec3 place_mm;  ///< in the text's coordinates
+  bool arc = false;
+};
+
+/// The far end of the cut before or behind a run, or of a piece of its tangent where it is an arc; nothing where the
+/// path does not go on smoothly for all that the text says, or not in the run's plane.
+std::optional<Beside> beside(const nc::Interpretation& moves, const Run& run, bool before) {
+  const std::size_t at = before ? run.first_move : run.last_move, next = before ? at - 1 : at + 1;
+  if ((before && at == 0) || next >= moves.moves.size()) return std::nullopt;
+  const nc::Move &own = moves.moves[at], &other = moves.moves[next];
+  const bool arc = other.kind == nc::MoveKind::arc;
+  if ((other.kind != nc::MoveKind::linear && !arc) || other.canned || other.reference ||
+      (before ? other : own).exact_stop)
+    return std::nullopt;
+  const nc::ModalState &here = moves.state_of(own), &there = moves.state_of(other);
+  if (here.frame != there.frame || here.tool != there.tool) return std::nullopt;
+  constexpr double kTangentMm = 1;
+  Vec3 place = before ? other.start_mm : other.end_mm;
+  const Vec3 joint = before ? other.end_mm : other.start_mm;
+  if (arc) place = joint + (before ? -kTangentMm : kTangentMm) * nc::direction_at(moves, other, before ? 1 : 0);
+  const Vec3 way = program_point(moves, other, place) - program_point(moves, other, joint);
+  if (way.norm() == 0 || (!run.in_space && std::abs(way[run.normal]) > kStandsStillMm)) return std::nullopt;
+  return Beside{program_point(moves, other, joint) + way, arc};
+}
+
 RunChain chain_of(const nc::Interpretation& moves, std::span<const Run> runs) {
   const Run& first = runs.front();
   const nc::PlaneAxes axes = nc::axes_of(first.normal == 2   ? nc::Plane::xy
@@ -188,21 +214,28 @@ RunChain chain_of(const nc::Interpretation& moves, std::span<const Run> runs) {
                                                              : nc::Plane::yz);
   RunChain out;
   RunPath& path = out.path;
+  const auto before = beside(moves, first, true), behind = beside(moves, runs.back(), false);
   const auto add = [&](const Vec3& p, std::uint32_t block) {
     path.points.emplace_back(p[axes.first], p[axes.second]);
     if (first.in_space) path.heights.push_back(p[axes.normal]);
     path.block.push_back(block);
   };
+  if (before) add(before->place_mm, moves.moves[first.first_move].block);
+  const auto begin = static_cast<std::uint32_t>(path.points.size());
   for_each_point(moves, first.first_move, runs.back().last_move, add, [&](std::uint32_t m) {
     const Run& run = runs[out.parts.size()];
     if (m != run.last_move) return;
     const auto here = static_cast<std::uint32_t>(path.points.size() - 1);
-    out.parts.push_back({run, out.parts.empty() ? 0 : out.parts.back().last_point, here});
+    out.parts.push_back({run, out.parts.empty() ? begin : out.parts.back().last_point, here});
   });
+  if (behind) add(behind->place_mm, moves.moves[runs.back().last_move].block);
+  out.arc_before = before && before->arc;
+  out.arc_behind = behind && behind->arc;
+  if (begin > 0) out.ends.push_back(begin);
   for (const RunChain::Part& part : out.parts)
-    if (part.last_point > 0 && (out.ends.empty() || out.ends.back() < part.last_point))
+    if (part.last_point > begin && (out.ends.empty() || out.ends.back() < part.last_point))
       out.ends.push_back(part.last_point);
-  if (!out.ends.empty()) out.ends.pop_back();
+  if (!behind && !out.ends.empty() && out.ends.back() + 1 == path.points.size()) out.ends.pop_back();
   return out;
 }
 
