@@ -40,6 +40,7 @@ struct Report {
     out += fmt::format("largest deviation {:.4f} mm in {} rewritten runs, {} corners kept; {}, of {} tried\n",
                        result.path.max_deviation_mm, result.path.runs.size(), result.path.corners, feeds_text(chosen()),
                        result.tried.size());
+    if (result.tried.empty()) return out;
     const repath::Candidate& fastest = result.tried[result.unbounded];
     if (!result.limit.holds(fastest.figures) && fastest.figures.time_s < now.time_s)
       out += fmt::format("{:.1f} s ({:+.1f} %) with a contour error of {:.1f} um, {:.1f} rms: --contour-mm {:.3f}\n",
@@ -74,8 +75,9 @@ struct Report {
                                      {"length_factor", chosen().length_factor},
                                      {"feed_factor", chosen().feed_factor},
                                      {"corner_feed_share", chosen().corners.share},
-                                     {"settle_s", chosen().corners.settle_s},
-                                     {"fastest_unbounded", of(result.tried[result.unbounded])}};
+                                     {"settle_s", chosen().corners.settle_s}};
+    if (!result.tried.empty()) report["fastest_unbounded"] = of(result.tried[result.unbounded]);
+    report["tried"] = nlohmann::ordered_json::array();
     for (const auto& c : result.tried) report["tried"].push_back(of(c));
     return report.dump(2) + "\n";
   }

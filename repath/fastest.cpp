@@ -67,7 +67,13 @@ class Search {
     out_.within_limit = false;
   }
 
-  Fastest run(const nc::Program& program) {
+  Fastest run(const nc::Program& program, const nc::Interpretation& moves) {
+    if (nothing_to_gain(moves)) {
+      out_.gains = false;
+      out_.within_limit = true;
+      out_.path.text = program.source.text();
+      return std::move(out_);
+    }
     const std::size_t best = best_length();
     out_.unbounded = best;
     const bool may_gain = out_.tried[best].figures.time_s * kLeastGain < before_.time_s;
@@ -87,6 +93,28 @@ class Search {
   }
 
  private:
+  /// What is laid out again can be no faster than its length over the feed.
+  bool nothing_to_gain(const nc::Interpretation& moves) {
+    if (options_.layout.length_mm > 0 || !options_.keep_old || !out_.limit.holds(before_) ||
+        before_.move_s.size() != moves.moves.size())
+      return false;
+    double most_s = 0;
+    for (const double length : {kLengths[0], 1.0}) {
+      const std::vector<RewrittenRun> runs = resegmenter_.lay_out(layout_of({.length_factor = length})).runs;
+      double gain_s = 0;
+      auto run = runs.begin();
+      for (std::size_t m = 0; m < moves.moves.size(); ++m) {
+        const nc::Move& move = moves.moves[m];
+        while (run != runs.end() && run->last_block < move.block) ++run;
+        if (run == runs.end()) break;
+        if (move.editable && move.feed_mm_per_s > 0 && move.block >= run->first_block)
+          gain_s += std::max(0.0, before_.move_s[m] - nc::length_mm(moves, move) / move.feed_mm_per_s);
+      }
+      most_s = std::max(most_s, gain_s);
+    }
+    return before_.time_s < kLeastGain * (before_.time_s - most_s);
+  }
+
   ResegmentOptions layout_of(const Candidate& c) const {
     ResegmentOptions out = options_.layout;
     out.block_time_s = machine_.control.block_time_s;
@@ -217,7 +245,7 @@ double ContourLimit::share(const ContourFigures& f) const {
 
 Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves, const machine::Machine& machine,
                      const ContourFigures& before, const FastestOptions& options) {
-  return Search(program, moves, machine, before, options).run(program);
+  return Search(program, moves, machine, before, options).run(program, moves);
 }
 
 }  // namespace camber::repath

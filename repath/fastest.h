@@ -35,9 +35,9 @@ struct FastestOptions {
 
 struct Fastest {
   Resegmentation path;
-  std::vector<Candidate> tried;
-  std::size_t chosen = 0;     ///< of `tried`
-  std::size_t unbounded = 0;  ///< of `tried`: the fastest one, whatever its contour
+  std::vector<Candidate> tried;  ///< empty where the old program is so near to its feed that nothing can be gained
+  std::size_t chosen = 0;        ///< of `tried`
+  std::size_t unbounded = 0;     ///< of `tried`: the fastest one, whatever its contour
   ContourLimit limit;
   bool gains = true;         ///< false: nothing is faster than the old program, which `path` then is
   bool within_limit = true;  ///< false: no candidate keeps to it; the one that strays least is chosen
