@@ -77,7 +77,7 @@ Joints::Joints(const Polyline& path, const FitOptions& options, const std::vecto
 double Joints::most_kink_rad(const Primitive& before, const Primitive& p) const {
   const std::uint32_t at = p.first;
   if (!bounded_ || at == 0 || at + 1 == corners_.size() || corners_[at] ||
-      std::min(turn_[at], blocks_turn_[at]) > kAlwaysSharpRad)
+      std::min(turn_[at], blocks_turn_[at]) > kAlwaysSharpRad || (is_block(before) && is_block(p)))
     return kInfinity;
   const bool arc_before = before.arc || (path_.arc_before && at == 1);
   const bool arc_behind = p.arc || (path_.arc_behind && at + 2 == corners_.size());

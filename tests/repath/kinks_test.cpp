@@ -190,6 +190,24 @@ TEST(Kinks, BesideArcsOfTheProgramAreWithinTheBound) {
   }
 }
 
+TEST(Kinks, BlocksThatTurnAwayFromAnArcOfTheProgramStay) {
+  // By 2 to 50 degrees, and back again: nothing can be tangent there, and what is drawn so is no fault.
+  for (int turn_deg = 2; turn_deg <= 50; turn_deg += 4) {
+    std::string text = kHead;
+    text += "G3 X1. Y1. I0. J1.\nG1\n";
+    double heading = rad_from_deg(90.0 + turn_deg);
+    Vec2 at(1, 1);
+    for (int i = 0; i < 9; ++i) {
+      heading -= rad_from_deg(i % 3 == 0 ? turn_deg : 3);
+      at += 0.3 * Vec2(std::cos(heading), std::sin(heading));
+      text += fmt::format("X{:.3f} Y{:.3f}\n", at.x(), at.y());
+    }
+    text += fmt::format("G2 X{:.3f} Y{:.3f} I0.5 J0.\nM2\n", at.x() + 1, at.y());
+    const std::string out = compressed(text, 1);
+    EXPECT_LE(tests::hausdorff_mm(nc::read_clean(text).moves, nc::read_clean(out).moves, 0.002), 0.0101);
+  }
+}
+
 TEST(Kinks, OfHelicesAreWithinTheBound) {
   // A ramp along a spiral: nothing of it is an arc for long.
   const std::string text = program_of(1500, [](int i) {
