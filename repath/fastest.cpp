@@ -22,7 +22,8 @@ constexpr double kAlmostSameTime = 1.005;  ///< is worth fewer blocks
 constexpr double kPredictedBlocks = 3e6;  ///< by all trials of feeds together
 constexpr double kFewestTrials = 12, kMostTrials = 70;
 constexpr double kFirstFeed = 0.7, kLeastFeed = 0.25, kLeastShare = 0.1;
-constexpr double kAim = 0.998;  ///< of the limit
+constexpr double kAim = 0.998;    ///< of the limit
+constexpr double kNearer = 0.99;  ///< than the old program, by so much: worth another one where none keeps to the limit
 
 nc::Interpretation interpreted(const std::string& name, const std::string& text,
                                const nc::InterpreterOptions& options) {
@@ -81,8 +82,10 @@ class Search {
     const bool asked_for = options_.layout.length_mm > 0 || !options_.keep_old;
     const bool old_keeps = out_.limit.holds(before_);
     const Candidate& chosen = out_.tried[out_.chosen];
-    out_.gains = asked_for ||
-                 (out_.within_limit ? !old_keeps || chosen.figures.time_s * kLeastGain < before_.time_s : !old_keeps);
+    if (out_.within_limit)
+      out_.gains = asked_for || !old_keeps || chosen.figures.time_s * kLeastGain < before_.time_s;
+    else  // the old program may be the nearest that there is
+      out_.gains = asked_for || out_.limit.share(chosen.figures) < kNearer * out_.limit.share(before_);
     if (out_.gains) {
       out_.path = resegmenter_.lay_out(layout_of(chosen));
     } else {
