@@ -86,7 +86,9 @@ double Joints::most_kink_rad(const Primitive& before, const Primitive& p) const 
                                                    : std::max(most_kink_rad_, kTimesOfBlocks * blocks_turn_[at]);
   // Where a level path begins to climb it turns there, and what joins there turns as much.
   const bool climbs = std::abs(slope_rad(path_, p) - slope_rad(path_, before)) > kClimb * most_kink_rad_;
-  const double share = edges_[at] || climbs ? 1 : arc_before && arc_behind ? kShareOfArcs : kShareOfLines;
+  // Beside an arc of the program a line may turn as the block did that lay there.
+  const bool as_drawn = !before.arc && !p.arc;
+  const double share = edges_[at] || climbs || as_drawn ? 1 : arc_before && arc_behind ? kShareOfArcs : kShareOfLines;
   return std::max(most_kink_rad_, share * std::min(turn_[at], blocks_turn_[at]));
 }
 
