@@ -153,9 +153,8 @@ struct Report {
                        1000 * compared.contour_max_mm, 1000 * now.contour_max_mm);
     out += fmt::format("                 {:>16.1f} um {:>11.1f} um   rms\n", 1000 * compared.contour_rms_mm,
                        1000 * now.contour_rms_mm);
-    return out + fmt::format("largest deviation {:.4f} mm; length x {:.2f}, feed x {:.2f}, of {} tried\n",
-                             result.path.max_deviation_mm, chosen().length_factor, chosen().feed_factor,
-                             result.tried.size());
+    return out + fmt::format("largest deviation {:.4f} mm; {}, of {} tried\n", result.path.max_deviation_mm,
+                             feeds_text(chosen()), result.tried.size());
   }
 
   std::string json() const {
@@ -191,6 +190,8 @@ struct Report {
     for (const auto& c : result.tried)
       out["tried"].push_back({{"length_factor", c.length_factor},
                               {"feed_factor", c.feed_factor},
+                              {"corner_feed_share", c.corners.share},
+                              {"settle_s", c.corners.settle_s},
                               {"time_s", c.figures.time_s},
                               {"contour_um", um(c.figures)}});
     return out.dump(2) + "\n";
@@ -205,7 +206,7 @@ int status_of(const Report& report, const repath::Fastest& result) {
                report.raster.spacing.largest_scallop_mm, report.raster.spacing.closest_mm);
   if (!result.within_limit)
     fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the nearest was written\n",
-               1000 * result.contour_limit_mm);
+               1000 * result.limit.max_mm);
   return report.scallops_too_high() || !result.within_limit ? kNumbersDidNotWorkOut : kDone;
 }
 

@@ -1,5 +1,7 @@
 #include "cli/resegment_command.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -35,11 +37,16 @@ struct Report {
                        1000 * contour_before.contour_max_mm, 1000 * now.contour_max_mm);
     out += fmt::format("               {:>8.1f} um {:>9.1f} um   rms\n", 1000 * contour_before.contour_rms_mm,
                        1000 * now.contour_rms_mm);
-    out += fmt::format(
-        "largest deviation {:.4f} mm in {} rewritten runs, {} corners kept; length x {:.2f}, feed x {:.2f}, "
-        "of {} tried\n",
-        result.path.max_deviation_mm, result.path.runs.size(), result.path.corners, chosen().length_factor,
-        chosen().feed_factor, result.tried.size());
+    out += fmt::format("largest deviation {:.4f} mm in {} rewritten runs, {} corners kept; {}, of {} tried\n",
+                       result.path.max_deviation_mm, result.path.runs.size(), result.path.corners, feeds_text(chosen()),
+                       result.tried.size());
+    if (result.tried.empty()) return out;
+    const repath::Candidate& fastest = result.tried[result.unbounded];
+    if (!result.limit.holds(fastest.figures) && fastest.figures.time_s < now.time_s)
+      out += fmt::format("{:.1f} s ({:+.1f} %) with a contour error of {:.1f} um, {:.1f} rms: --contour-mm {:.3f}\n",
+                         fastest.figures.time_s, 100 * (fastest.figures.time_s / contour_before.time_s - 1),
+                         1000 * fastest.figures.contour_max_mm, 1000 * fastest.figures.contour_rms_mm,
+                         fastest.figures.contour_max_mm + 0.0005);
     return out;
   }
 
@@ -59,18 +66,19 @@ struct Report {
                                      {"time_after_s", chosen().figures.time_s},
                                      {"contour_before_um", of(contour_before)},
                                      {"contour_after_um", of(chosen().figures)},
-                                     {"contour_limit_um", 1000 * result.contour_limit_mm},
+                                     {"contour_limit_um", 1000 * result.limit.max_mm},
+                                     {"contour_limit_rms_um", rms_limit()},
                                      {"within_contour_limit", result.within_limit},
                                      {"runs", result.path.runs.size()},
                                      {"corners", result.path.corners},
                                      {"gains", result.gains},
                                      {"length_factor", chosen().length_factor},
-                                     {"feed_factor", chosen().feed_factor}};
-    for (const auto& c : result.tried)
-      report["tried"].push_back({{"length_factor", c.length_factor},
-                                 {"feed_factor", c.feed_factor},
-                                 {"time_s", c.figures.time_s},
-                                 {"contour_um", of(c.figures)}});
+                                     {"feed_factor", chosen().feed_factor},
+                                     {"corner_feed_share", chosen().corners.share},
+                                     {"settle_s", chosen().corners.settle_s}};
+    if (!result.tried.empty()) report["fastest_unbounded"] = of(result.tried[result.unbounded]);
+    report["tried"] = nlohmann::ordered_json::array();
+    for (const auto& c : result.tried) report["tried"].push_back(of(c));
     return report.dump(2) + "\n";
   }
 
@@ -89,6 +97,16 @@ struct Report {
   }
 
  private:
+  nlohmann::ordered_json rms_limit() const {
+    if (std::isinf(result.limit.rms_mm)) return nullptr;
+    return 1000 * result.limit.rms_mm;
+  }
+
+  static nlohmann::ordered_json of(const repath::Candidate& c) {
+    return {{"length_factor", c.length_factor}, {"feed_factor", c.feed_factor}, {"corner_feed_share", c.corners.share},
+            {"settle_s", c.corners.settle_s},   {"time_s", c.figures.time_s},   {"contour_um", of(c.figures)}};
+  }
+
   static nlohmann::ordered_json of(const repath::ContourFigures& f) {
     return {{"max", 1000 * f.contour_max_mm}, {"rms", 1000 * f.contour_rms_mm}};
   }
@@ -135,7 +153,7 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   if (!result.gains && !options.quiet) fmt::print("no length is faster: the program was left as it is\n");
   if (result.within_limit) return kDone;
   fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the nearest was written\n",
-             1000 * result.contour_limit_mm);
+             1000 * result.limit.max_mm);
   return kNumbersDidNotWorkOut;
 }
 

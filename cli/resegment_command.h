@@ -10,12 +10,11 @@ namespace camber::cli {
 struct ResegmentArguments {
   std::string program, output;
   std::string machine;
-  std::string json;  ///< empty: none
+  std::string json;    ///< empty: none
   std::string report;  ///< the page; empty: none
   double tolerance_mm = 0;
-  double length_mm = 0;  ///< 0: the fastest is looked for
-  double contour_mm =
-      0;  ///< most that the predicted axes may stray; 0: see repath/fastest.h
+  double length_mm = 0;   ///< 0: the fastest is looked for
+  double contour_mm = 0;  ///< most that the predicted axes may stray; 0: see repath/fastest.h
   nc::InterpreterOptions interpreter;
 };
 

@@ -25,6 +25,9 @@ report::RewritePage rewrite_page_of(const Rewriting& rewriting, std::vector<repo
 /// The lengths that were tried, and what each came to.
 report::TextTable tried_table(std::span<const repath::Candidate> tried);
 
+/// "length x 2.00, feed x 0.70, x 0.50 about corners, 0.150 s between them": the last two where they are asked for.
+std::string feeds_text(const repath::Candidate& c);
+
 /// "p.nc to out.nc, tolerance 0.01 mm, camber 0.1.0"
 std::string rewrite_subtitle(const std::string& program, const std::string& output, double tolerance_mm);
 

@@ -73,7 +73,8 @@ NumberStyle style_of(const Program& program) {
   for (std::size_t i = 0; i < count; ++i) {
     const Word& w = program.words[i];
     if (!is_coordinate(w.letter) || std::isnan(w.value)) continue;
-    if (w.offset > 0) ++(text[w.offset - 1] == ' ' ? c.blank : c.no_blank);
+    const bool first_of_line = w.offset == 0 || text[w.offset - 1] == '\n';
+    if (!first_of_line) ++(text[w.offset - 1] == ' ' ? c.blank : c.no_blank);
     if (w.length > w.value_at)
       c.add(text.substr(w.offset + w.value_at, static_cast<std::size_t>(w.length - w.value_at)), w.value);
   }

@@ -55,7 +55,7 @@ class Compressor {
     std::vector<std::uint32_t> ends = runs.ends;
     // A run that does not become shorter stays as it is, and so must what its neighbours were joined to.
     for (bool again = true; again;) {
-      const Polyline polyline{runs.path.points, runs.path.heights, ends};
+      const Polyline polyline{runs.path.points, runs.path.heights, ends, runs.arc_before, runs.arc_behind};
       const std::vector<Primitive> chain = fit(polyline, options, &memory_);
       std::vector<Rewrite> rewrites;
       again = false;

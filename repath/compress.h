@@ -40,13 +40,15 @@ struct Run {
   bool in_space = false;                        ///< it need not keep to a plane; `normal` is that of the chosen one
 };
 
+/// What a run may hold: lines in one plane; lines anywhere; lines and arcs anywhere.
+enum class RunKind { in_plane, in_space, with_arcs };
+
 /// A block is part of a run when it makes one straight move at a feed per minute and holds nothing but N, G1, X, Y, Z
 /// (the first one of a run also F), moves in the plane, and stands directly behind the one before it. Comments, M, S, T
 /// and other words, another feed, drilling cycles, G41 and G42, exact stop, block skip, turned or scaled frames and
 /// moves that the text does not say one by one end a run. In a program with macros or subprograms blocks with a number
-/// are left alone: they may be jumped to.
-/// `in_space`: the runs need not keep to a plane.
-std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, bool in_space = false);
+/// are left alone: they may be jumped to. With arcs G2, G3, I, J, K and R may stand in a block too.
+std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, RunKind kind);
 
 /// Runs in space; with `apart` those in a plane other than the chosen one, if long enough for an arc, on their own.
 std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart);
@@ -68,6 +70,9 @@ struct RunChain {
   RunPath path;
   std::vector<std::uint32_t> ends;  ///< points at which one part follows another; see Polyline
   std::vector<Part> parts;
+  /// The cuts before and behind the chain, where the path goes on without a stop, are part of the path but of no part:
+  /// a line as it is, of an arc a piece of its tangent.
+  bool arc_before = false, arc_behind = false;
 };
 /// One after the other; the path of one is in memory at a time.
 void for_each_chain(const nc::Interpretation& moves, std::span<const Run> runs,

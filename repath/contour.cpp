@@ -87,18 +87,20 @@ class Follower {
 
 ContourFigures contour_figures(const nc::Interpretation& program, const nc::Interpretation& meant,
                                const machine::Machine& machine) {
-  return contour_figures(program, MeantPath(meant), machine);
+  return contour_figures(program, MeantPath(meant), machine, &program == &meant);
 }
 
 ContourFigures contour_figures(const nc::Interpretation& program, const MeantPath& meant,
-                               const machine::Machine& machine) {
+                               const machine::Machine& machine, bool moves) {
   ContourFigures out;
+  if (moves) out.move_s.assign(program.moves.size(), 0.0F);
   Follower follower(meant);
   const auto chains = chains_of(program);
   double squares = 0;
   std::size_t count = 0;
   const auto summary = feedmodel::predict_feed(program, machine, [&](std::span<const feedmodel::TimedSample> run) {
     for (const auto& sample : run) {
+      if (moves) out.move_s[sample.move] += static_cast<float>(machine.control.period_s);
       if (chains[sample.move] == 0) continue;
       const double away = follower.distance_mm(sample.position_mm, chains[sample.move]);
       out.contour_max_mm = std::max(out.contour_max_mm, away);

@@ -13,6 +13,7 @@ struct ContourFigures {
   double cutting_time_s = 0;
   double contour_max_mm = 0;  ///< distance of the predicted axes from the path that was meant, while cutting
   double contour_rms_mm = 0;  ///< over time
+  std::vector<float> move_s;  ///< how long each move takes, to within the control's period; of a program against itself
 };
 
 /// The path that was meant: its chains of cutting moves, each with the rapid that leads to it.
@@ -29,8 +30,9 @@ class MeantPath {
 
 /// Predicts `program` on the machine, against the path that was meant. Both have the same chains of cutting moves, one
 /// after another; the nearest point is looked for along the chain, no farther than a few millimetres ahead.
+/// `moves`: ContourFigures::move_s is wanted.
 ContourFigures contour_figures(const nc::Interpretation& program, const MeantPath& meant,
-                               const machine::Machine& machine);
+                               const machine::Machine& machine, bool moves = false);
 ContourFigures contour_figures(const nc::Interpretation& program, const nc::Interpretation& meant,
                                const machine::Machine& machine);
 

@@ -1,7 +1,12 @@
 #include "repath/fastest.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
+#include <limits>
+#include <optional>
+#include <span>
 
 #include "repath/smoothed_path.h"
 
@@ -9,13 +14,16 @@ namespace camber::repath {
 namespace {
 
 constexpr double kLengths[] = {10, 6.3, 4, 3.2, 2.5, 2, 1.6, 1.25, 1};  ///< longest first: they are rarely slower
-constexpr double kFeeds[] = {1, 0.85, 0.7, 0.6, 0.5};
-constexpr int kNoBetter = 2;                    ///< lengths in a row that keep to the contour and are no better: enough
-constexpr std::size_t kLengthsAtLowerFeed = 3;  ///< those that strayed least at the feed before
-constexpr double kMoreContour = 1.05;  ///< that the old blocks' contour error may grow by, unless told otherwise
-constexpr double kLeastGain = 1.002;   ///< less is not worth another program
-constexpr double kSameTime = 1.001;    ///< what is no faster than this has no say: the path with the smaller error has
+constexpr int kNoBetter = 2;                                            ///< lengths in a row that are no faster: enough
+constexpr double kLeastGain = 1.002;                                    ///< less is not worth another program
+constexpr double kSameTime = 1.001;  ///< what is no faster than this has no say: the path with the smaller error has
 constexpr double kAlmostSameTime = 1.005;  ///< is worth fewer blocks
+
+constexpr double kPredictedBlocks = 3e6;  ///< by all trials of feeds together
+constexpr double kFewestTrials = 12, kMostTrials = 70;
+constexpr double kFirstFeed = 0.7, kLeastFeed = 0.25, kLeastShare = 0.1;
+constexpr double kAim = 0.998;    ///< of the limit
+constexpr double kNearer = 0.99;  ///< than the old program, by so much: worth another one where none keeps to the limit
 
 nc::Interpretation interpreted(const std::string& name, const std::string& text,
                                const nc::InterpreterOptions& options) {
@@ -31,73 +39,216 @@ bool better(const ContourFigures& a, const ContourFigures& b) {
   return a.contour_max_mm < b.contour_max_mm;
 }
 
-/// Lengths for a lower feed, longest first.
-std::vector<double> straying_least(std::vector<Candidate> tried) {
-  std::stable_sort(tried.begin(), tried.end(), [](const Candidate& a, const Candidate& b) {
-    return a.figures.contour_max_mm < b.figures.contour_max_mm;
-  });
-  std::vector<double> lengths;
-  for (const Candidate& c : tried)
-    if (lengths.size() < kLengthsAtLowerFeed) lengths.push_back(c.length_factor);
-  std::sort(lengths.rbegin(), lengths.rend());
-  return lengths;
+ContourLimit limit_of(const ContourFigures& before, const FastestOptions& options) {
+  if (options.contour_mm > 0) return {options.contour_mm, std::numeric_limits<double>::infinity()};
+  const double tolerance = options.layout.tolerance_mm;
+  return {std::max(before.contour_max_mm, tolerance), std::max(before.contour_rms_mm, tolerance)};
 }
+
+/// How long the slowest axis is behind the command: half of a moving average, and the position loop.
+double lag_s(const machine::Machine& machine) {
+  double lag = 0;
+  for (const machine::Axis& axis : machine.axis)
+    lag =
+        std::max(lag, 0.5 * axis.filter_s + axis.exponential_1_s + axis.exponential_2_s + 1 / axis.position_gain_per_s);
+  return lag;
+}
+
+class Search {
+ public:
+  Search(const nc::Program& program, const nc::Interpretation& moves, const machine::Machine& machine,
+         const ContourFigures& before, const FastestOptions& options)
+      : name_(program.source.name()),
+        machine_(machine),
+        options_(options),
+        resegmenter_(program, moves, options.layout),
+        meant_(moves),
+        before_(before) {
+    out_.limit = limit_of(before, options);
+    out_.within_limit = false;
+  }
+
+  Fastest run(const nc::Program& program, const nc::Interpretation& moves) {
+    if (nothing_to_gain(moves)) {
+      out_.gains = false;
+      out_.within_limit = true;
+      out_.path.text = program.source.text();
+      return std::move(out_);
+    }
+    const std::size_t best = best_length();
+    out_.unbounded = best;
+    const bool may_gain = out_.tried[best].figures.time_s * kLeastGain < before_.time_s;
+    if (!out_.limit.holds(out_.tried[best].figures) && (may_gain || !options_.keep_old)) look_for_feeds(best);
+    const bool asked_for = options_.layout.length_mm > 0 || !options_.keep_old;
+    const bool old_keeps = out_.limit.holds(before_);
+    const Candidate& chosen = out_.tried[out_.chosen];
+    if (out_.within_limit)
+      out_.gains = asked_for || !old_keeps || chosen.figures.time_s * kLeastGain < before_.time_s;
+    else  // the old program may be the nearest that there is
+      out_.gains = asked_for || out_.limit.share(chosen.figures) < kNearer * out_.limit.share(before_);
+    if (out_.gains) {
+      out_.path = resegmenter_.lay_out(layout_of(chosen));
+    } else {
+      out_.path.text = program.source.text();
+      out_.within_limit = old_keeps;
+    }
+    return std::move(out_);
+  }
+
+ private:
+  /// What is laid out again can be no faster than its length over the feed.
+  bool nothing_to_gain(const nc::Interpretation& moves) {
+    if (options_.layout.length_mm > 0 || !options_.keep_old || !out_.limit.holds(before_) ||
+        before_.move_s.size() != moves.moves.size())
+      return false;
+    double most_s = 0;
+    for (const double length : {kLengths[0], 1.0}) {
+      const std::vector<RewrittenRun> runs = resegmenter_.lay_out(layout_of({.length_factor = length})).runs;
+      double gain_s = 0;
+      auto run = runs.begin();
+      for (std::size_t m = 0; m < moves.moves.size(); ++m) {
+        const nc::Move& move = moves.moves[m];
+        while (run != runs.end() && run->last_block < move.block) ++run;
+        if (run == runs.end()) break;
+        if (move.editable && move.feed_mm_per_s > 0 && move.block >= run->first_block)
+          gain_s += std::max(0.0, before_.move_s[m] - nc::length_mm(moves, move) / move.feed_mm_per_s);
+      }
+      most_s = std::max(most_s, gain_s);
+    }
+    return before_.time_s < kLeastGain * (before_.time_s - most_s);
+  }
+
+  ResegmentOptions layout_of(const Candidate& c) const {
+    ResegmentOptions out = options_.layout;
+    out.block_time_s = machine_.control.block_time_s;
+    out.length_factor = c.length_factor;
+    out.feed_factor = c.feed_factor;
+    out.corners = c.corners;
+    return out;
+  }
+
+  /// Its number among those tried.
+  std::size_t predict(Candidate c) {
+    const std::string text = resegmenter_.lay_out(layout_of(c)).text;
+    const nc::Interpretation moves = interpreted(name_, text, options_.interpreter);
+    predicted_blocks_ = static_cast<double>(moves.moves.size());
+    c.figures = contour_figures(moves, meant_, machine_);
+    out_.tried.push_back(c);
+    const std::size_t now = out_.tried.size() - 1;
+    const bool keeps = out_.limit.holds(c.figures);
+    if (now == 0 || choose(c, keeps)) out_.chosen = now;
+    out_.within_limit |= keeps;
+    return now;
+  }
+
+  /// Whether it is to be taken rather than the one chosen so far.
+  bool choose(const Candidate& c, bool keeps) const {
+    const Candidate& chosen = out_.tried[out_.chosen];
+    if (keeps != out_.within_limit) return keeps;
+    return keeps ? beats(c, chosen) : out_.limit.share(c.figures) < out_.limit.share(chosen.figures);
+  }
+
+  bool beats(const Candidate& c, const Candidate& other) const {
+    return options_.fewest_blocks ? c.figures.time_s * kAlmostSameTime < other.figures.time_s
+                                  : better(c.figures, other.figures);
+  }
+
+  /// At the programmed feed: the fastest one.
+  std::size_t best_length() {
+    if (options_.layout.length_mm > 0) return predict({});
+    std::size_t best = predict({.length_factor = kLengths[0]});
+    int no_better = 0;
+    for (const double length : std::span(kLengths).subspan(1)) {
+      const std::size_t now = predict({.length_factor = length});
+      const bool take = beats(out_.tried[now], out_.tried[best]);
+      if (take) best = now;
+      no_better = take ? 0 : no_better + 1;
+      if (no_better >= kNoBetter && !options_.fewest_blocks) break;
+    }
+    return best;
+  }
+
+  /// Times of steps between corners first, three lags of the axes before others, then shares about corners; for each
+  /// the highest feed that keeps to the limit. Without a gain from one kind of corner the next is not tried.
+  void look_for_feeds(std::size_t at_length) {
+    const auto trials = static_cast<std::size_t>(
+        std::clamp(kPredictedBlocks / std::max(1.0, predicted_blocks_), kFewestTrials, kMostTrials));
+    last_trial_ = out_.tried.size() + trials;
+    const double lag = lag_s(machine_);
+    Candidate best = out_.tried[at_length];
+    best.feed_factor = kFirstFeed;
+    double best_time = std::numeric_limits<double>::infinity();
+    const auto take = [&](const CornerFeeds& corners) {
+      Candidate c = best;
+      c.corners = corners;
+      const std::optional<Candidate> found = highest_feed(c);
+      if (!found || !(found->figures.time_s < best_time)) return false;
+      best = *found;
+      best_time = found->figures.time_s;
+      return true;
+    };
+    // Long segments keep farther from the curve, on the side to which axes that lag cut it off.
+    best.corners = {1, 3 * lag};
+    std::vector<double> lengths{best.length_factor};
+    if (options_.layout.length_mm == 0) lengths.insert(lengths.end(), {4.0, 2.0, 1.0});
+    for (const double length : lengths) {
+      Candidate c = best;
+      c.length_factor = length;
+      if (length == best.length_factor && length != lengths.front()) continue;
+      if (const auto found = highest_feed(c); found && found->figures.time_s < best_time)
+        best = *found, best_time = found->figures.time_s;
+    }
+    for (const double lags : {0.0, 2.0, 4.5}) take({1, lags * lag});
+    for (double share = 0.7; share > kLeastShare && take({share, best.corners.settle_s}); share *= 0.7) {
+    }
+    for (const double finer : {1.2, 1 / 1.2, 1.1, 1 / 1.1})
+      if (best.corners.settle_s > 0) take({best.corners.share, finer * best.corners.settle_s});
+    for (const double finer : {1.15, 1 / 1.15})
+      if (best.corners.share < 1) take({std::min(1.0, finer * best.corners.share), best.corners.settle_s});
+  }
+
+  /// With the candidate's corners, from its feed on: how far the axes stray grows with a power of the feed, which two
+  /// trials tell. Nothing where no trial keeps to the limit.
+  std::optional<Candidate> highest_feed(Candidate c) {
+    constexpr int kSteps = 5;
+    constexpr double kNear = 0.995, kFirstPower = 1.4;
+    std::optional<Candidate> out;
+    double power = kFirstPower, feed_before = 0, strays_before = 0;
+    for (int step = 0; step < kSteps && out_.tried.size() < last_trial_; ++step) {
+      const Candidate now = out_.tried[predict(c)];
+      const double strays = out_.limit.share(now.figures);
+      if (strays <= 1 && (!out || now.figures.time_s < out->figures.time_s)) out = now;
+      if (strays <= 1 && (strays > kNear || c.feed_factor == 1)) break;
+      if (step > 0 && feed_before != c.feed_factor)
+        power = std::clamp(std::log(strays / strays_before) / std::log(c.feed_factor / feed_before), 0.3, 4.0);
+      feed_before = c.feed_factor;
+      strays_before = strays;
+      c.feed_factor = std::clamp(c.feed_factor * std::pow(kAim / std::max(strays, 1e-3), 1 / power), kLeastFeed, 1.0);
+      if (c.feed_factor == feed_before) break;
+    }
+    return out;
+  }
+
+  std::string name_;
+  const machine::Machine& machine_;
+  const FastestOptions& options_;
+  Resegmenter resegmenter_;
+  const MeantPath meant_;
+  const ContourFigures& before_;
+  double predicted_blocks_ = 0;  ///< of the last one
+  std::size_t last_trial_ = 0;
+  Fastest out_;
+};
 
 }  // namespace
 
+double ContourLimit::share(const ContourFigures& f) const {
+  return std::max(f.contour_max_mm / max_mm, f.contour_rms_mm / rms_mm);
+}
+
 Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves, const machine::Machine& machine,
                      const ContourFigures& before, const FastestOptions& options) {
-  Fastest out;
-  out.contour_limit_mm = options.contour_mm > 0
-                             ? options.contour_mm
-                             : std::max(kMoreContour * before.contour_max_mm, options.layout.tolerance_mm);
-  out.within_limit = false;
-  std::size_t nearest = 0;
-  const Resegmenter resegmenter(program, moves, options.layout);
-  const MeantPath meant(moves);
-  ResegmentOptions layout = options.layout;
-  layout.block_time_s = machine.control.block_time_s;
-  std::vector<double> lengths(std::begin(kLengths), std::end(kLengths));
-  if (options.layout.length_mm > 0) lengths = {1};
-  for (const double feed : kFeeds) {
-    const std::size_t first_of_feed = out.tried.size();
-    int no_better = 0;
-    for (const double length : lengths) {
-      layout.length_factor = length;
-      layout.feed_factor = feed;
-      Resegmentation path = resegmenter.lay_out(layout);
-      const ContourFigures figures =
-          contour_figures(interpreted(program.source.name(), path.text, options.interpreter), meant, machine);
-      out.tried.push_back({length, feed, figures});
-      const std::size_t now = out.tried.size() - 1;
-      const bool keeps = figures.contour_max_mm <= out.contour_limit_mm;
-      const bool strays_least = now == 0 || figures.contour_max_mm < out.tried[nearest].figures.contour_max_mm;
-      if (strays_least) nearest = now;
-      // The lengths descend: what follows has more blocks.
-      const auto beats_chosen = [&] {
-        const ContourFigures& chosen = out.tried[out.chosen].figures;
-        return options.fewest_blocks ? figures.time_s * kAlmostSameTime < chosen.time_s : better(figures, chosen);
-      };
-      const bool take = keeps ? !out.within_limit || beats_chosen() : !out.within_limit && strays_least;
-      out.within_limit |= keeps;
-      if (take) {
-        out.chosen = now;
-        out.path = std::move(path);
-      }
-      if (keeps) no_better = take ? 0 : no_better + 1;
-      if (no_better >= kNoBetter && !options.fewest_blocks) break;
-    }
-    if (out.within_limit) break;
-    lengths = straying_least({out.tried.begin() + static_cast<std::ptrdiff_t>(first_of_feed), out.tried.end()});
-  }
-  const bool asked_for = options.layout.length_mm > 0 || !options.keep_old;
-  out.gains = asked_for || out.tried[out.chosen].figures.time_s * kLeastGain < before.time_s;
-  if (!out.gains) {
-    out.path = {};
-    out.path.text = program.source.text();
-    out.within_limit = true;
-  }
-  return out;
+  return Search(program, moves, machine, before, options).run(program, moves);
 }
 
 }  // namespace camber::repath

@@ -11,13 +11,23 @@ namespace camber::repath {
 struct Candidate {
   double length_factor = 1;  ///< of L_b, or of the old mean length
   double feed_factor = 1;
+  CornerFeeds corners{};
   ContourFigures figures{};
+};
+
+/// Most that the predicted axes may stray from the path that was meant.
+struct ContourLimit {
+  double max_mm = 0, rms_mm = 0;
+
+  bool holds(const ContourFigures& f) const { return f.contour_max_mm <= max_mm && f.contour_rms_mm <= rms_mm; }
+  /// How much of it is used, of the one that is nearer to it: 1 at the limit.
+  double share(const ContourFigures& f) const;
 };
 
 struct FastestOptions {
   ResegmentOptions layout{};  ///< with length_mm > 0 no length is looked for
-  double contour_mm = 0;  ///< most that the predicted axes may stray from the old path; 0: 5 % more than they do with
-                          ///< the old blocks, or the tolerance, whichever is more
+  double contour_mm = 0;  ///< most that the predicted axes may stray from the old path, rms as they like; 0: neither in
+                          ///< the largest nor in the rms more than they do with the old blocks (or the tolerance)
   bool keep_old = true;   ///< where nothing is faster than the old program, that is what comes out
   bool fewest_blocks = false;  ///< a shorter length is only taken where it saves more than 0.5 % of the time
   nc::InterpreterOptions interpreter;
@@ -25,17 +35,20 @@ struct FastestOptions {
 
 struct Fastest {
   Resegmentation path;
-  std::vector<Candidate> tried;
-  std::size_t chosen = 0;  ///< of `tried`
-  double contour_limit_mm = 0;
+  std::vector<Candidate> tried;  ///< empty where the old program is so near to its feed that nothing can be gained
+  std::size_t chosen = 0;        ///< of `tried`
+  std::size_t unbounded = 0;     ///< of `tried`: the fastest one, whatever its contour
+  ContourLimit limit;
   bool gains = true;         ///< false: nothing is faster than the old program, which `path` then is
   bool within_limit = true;  ///< false: no candidate keeps to it; the one that strays least is chosen
 };
 
-/// Lays the program out with lengths from ten times L_b down to L_b and predicts each on the machine; the fastest of
-/// those that keep to the contour is chosen. After two in a row that keep to it and are no better the shorter ones are
-/// not tried (with fewest_blocks all are). Lower feeds (down to half) are tried only where none keeps to it at the
-/// programmed one, with the three lengths that strayed least. `before`: the figures of the old program.
+/// Lays the program out with lengths from ten times L_b down to L_b at the programmed feed and predicts each on the
+/// machine; after two in a row that are no faster the shorter ones are not tried (with fewest_blocks all are). Where
+/// the fastest does not keep to the limit, feeds are looked for at that length: for some times of steps between corners
+/// and some shares about corners the highest feed that keeps to it, which two or three trials find. The number of
+/// trials is bounded by the length of the program, such that about three million blocks are predicted. The fastest
+/// candidate that keeps to the limit is chosen. `before`: the figures of the old program.
 Fastest find_fastest(const nc::Program& program, const nc::Interpretation& moves, const machine::Machine& machine,
                      const ContourFigures& before, const FastestOptions& options);
 

@@ -34,6 +34,8 @@ struct Polyline {
   std::span<const Vec2> points;
   std::span<const double> heights{};
   std::span<const std::uint32_t> ends{};
+  bool arc_before = false,
+       arc_behind = false;  ///< the first, the last segment is the tangent of an arc beside the path
   Vec3 at(std::size_t k) const { return {points[k].x(), points[k].y(), heights.empty() ? 0.0 : heights[k]}; }
 };
 

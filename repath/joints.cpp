@@ -77,14 +77,18 @@ Joints::Joints(const Polyline& path, const FitOptions& options, const std::vecto
 double Joints::most_kink_rad(const Primitive& before, const Primitive& p) const {
   const std::uint32_t at = p.first;
   if (!bounded_ || at == 0 || at + 1 == corners_.size() || corners_[at] ||
-      std::min(turn_[at], blocks_turn_[at]) > kAlwaysSharpRad)
+      std::min(turn_[at], blocks_turn_[at]) > kAlwaysSharpRad || (is_block(before) && is_block(p)))
     return kInfinity;
-  if (!before.arc && !p.arc)
+  const bool arc_before = before.arc || (path_.arc_before && at == 1);
+  const bool arc_behind = p.arc || (path_.arc_behind && at + 2 == corners_.size());
+  if (!arc_before && !arc_behind)
     return rises(path_, before) || rises(path_, p) ? kInfinity
                                                    : std::max(most_kink_rad_, kTimesOfBlocks * blocks_turn_[at]);
   // Where a level path begins to climb it turns there, and what joins there turns as much.
   const bool climbs = std::abs(slope_rad(path_, p) - slope_rad(path_, before)) > kClimb * most_kink_rad_;
-  const double share = edges_[at] || climbs ? 1 : before.arc && p.arc ? kShareOfArcs : kShareOfLines;
+  // Beside an arc of the program a line may turn as the block did that lay there.
+  const bool as_drawn = !before.arc && !p.arc;
+  const double share = edges_[at] || climbs || as_drawn ? 1 : arc_before && arc_behind ? kShareOfArcs : kShareOfLines;
   return std::max(most_kink_rad_, share * std::min(turn_[at], blocks_turn_[at]));
 }
 

@@ -10,6 +10,7 @@ constexpr double kChordShare = 0.15;  ///< of the tolerance
 constexpr double kRounding = 0.87;    ///< increments: half a cube's diagonal
 constexpr double kSampleMm = 0.5;     ///< along the rows, for the scallops
 constexpr double kShortestRowMm = 0.05;
+constexpr double kBeyond = 0.1;  ///< radii
 
 struct Interval {
   double from, to;
@@ -58,6 +59,17 @@ class RasterMaker {
     return in;
   }
 
+  /// Where a row ends that runs on over the border as long as it touches nothing outside: what lies at the border
+  /// between the contacts of two rows is cut from there.
+  double beyond(double end, int direction, double v) const {
+    for (const double share : {1.0, 0.5, 0.25}) {
+      const double u = end + direction * share * kBeyond * part_.cutter().radius_mm();
+      const auto contact = part_.at(frame_.place(u, v), near_);
+      if (contact && touches(options_.boundary, *contact)) return u;
+    }
+    return end;
+  }
+
   std::vector<Interval> pieces_of(double v) {
     const double radius = part_.cutter().radius_mm(), begin = sampler_.u_min_mm() - radius;
     const double width = sampler_.u_max_mm() - sampler_.u_min_mm() + 2 * radius;
@@ -85,6 +97,7 @@ class RasterMaker {
       was = now;
     }
     std::erase_if(out, [](const Interval& i) { return i.to - i.from < kShortestRowMm; });
+    for (Interval& i : out) i = {beyond(i.from, -1, v), beyond(i.to, 1, v)};
     return out;
   }
 

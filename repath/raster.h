@@ -30,7 +30,8 @@ struct Raster {
   std::size_t links = 0;   ///< along the surface
 };
 
-/// Rows by space_rows(), each cut where the cutter touches inside the boundary; gaps shorter than the diameter are
+/// Rows by space_rows(), each cut where the cutter touches inside the boundary, and a tenth of the radius farther where
+/// it touches nothing outside there; gaps shorter than the diameter are
 /// passed along the surface. Neighbouring rows are cut in opposite directions. From the end of a piece to the next one
 /// it goes along the surface too where that is no farther than a diameter and does not dip by more than a radius below
 /// its ends; else over the clearance plane. Empty chains: nothing of the part lies inside the boundary.

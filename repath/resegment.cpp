@@ -2,51 +2,99 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/units.h"
 #include "nc/replace_blocks.h"
 #include "repath/run_text.h"
+#include "repath/short_arcs.h"
 #include "repath/smoothed_path.h"
 
 namespace camber::repath {
 
+namespace {
+
+constexpr double kSagittaShare = 0.02;  ///< of the tolerance: lines that stand for arcs
+
+}  // namespace
+
+/// A stretch of a run between arcs that stay.
 struct Resegmenter::Prepared {
-  Run run;
   SpacePath path;
-  SmoothedPath smoothed;
+  std::optional<SmoothedPath> smoothed;  ///< none: too few points
 };
 
 Resegmenter::Resegmenter(const nc::Program& program, const nc::Interpretation& moves, const ResegmentOptions& options)
-    : program_(program), moves_(moves), style_(text_style_of(program, moves, options.whole_numbers_are_increments)) {
-  for (const Run& run : find_runs(program, moves, true)) {
-    SpacePath path = space_path_of(moves, run);
-    if (path.points.size() < 3) continue;
-    const bool inch = moves.state_of(moves.moves[run.first_move]).inch;
-    const double increment = (inch ? kMmPerInch : 1) * std::pow(10.0, -style_.decimals);
-    SmoothedPath smoothed(path.points, options, increment);
-    runs_.push_back({run, std::move(path), std::move(smoothed)});
-  }
-}
+    : program_(program),
+      moves_(moves),
+      options_(options),
+      style_(text_style_of(program, moves, options.whole_numbers_are_increments)),
+      runs_(find_runs(program, moves, RunKind::with_arcs)) {}
 
 Resegmenter::~Resegmenter() = default;
 
-Resegmentation Resegmenter::lay_out(const ResegmentOptions& options) const {
-  Resegmentation out;
-  std::vector<nc::BlockReplacement> replacements;
-  for (const auto& [run, path, smoothed] : runs_) {
-    const nc::Move& first = moves_.moves[run.first_move];
-    const Layout layout = smoothed.lay_out(length_for(path, first.feed_mm_per_s, options));
-    if (layout.points == path.points) continue;
-    replacements.push_back({first.block, moves_.moves[run.last_move].block,
-                            text_of(program_, moves_, run, path, layout, style_, options.feed_factor)});
-    out.runs.push_back(
-        {replacements.back().first, replacements.back().last, layout.points.size() - 1, 0, layout.deviation_mm});
-    out.max_deviation_mm = std::max(out.max_deviation_mm, layout.deviation_mm);
-    out.corners += layout.corners;
-  }
-  place_after(out.runs, replacements);
-  out.text = nc::replace_blocks(program_, replacements);
+const Resegmenter::Prepared& Resegmenter::prepared(const Run& stretch) {
+  const auto [at, is_new] = prepared_.try_emplace({stretch.first_move, stretch.last_move});
+  Prepared& out = at->second;
+  if (!is_new) return out;
+  out.path = space_path_of(moves_, stretch, kSagittaShare * options_.tolerance_mm);
+  if (out.path.points.size() < 3) return out;
+  const bool inch = moves_.state_of(moves_.moves[stretch.first_move]).inch;
+  ResegmentOptions options = options_;
+  options.tolerance_mm -= out.path.sagitta_mm;
+  out.smoothed.emplace(out.path.points, options, (inch ? kMmPerInch : 1) * std::pow(10.0, -style_.decimals));
   return out;
+}
+
+/// One way of laying the program out.
+class Resegmenter::Writer {
+ public:
+  Writer(Resegmenter& resegmenter, const ResegmentOptions& options) : of_(resegmenter), options_(options) {}
+
+  void add(const Run& run) {
+    const double length = length_for(of_.moves_, run, options_);
+    for (const Run& stretch : between_arcs(of_.program_, of_.moves_, run, {length, of_.options_.tolerance_mm}))
+      add(stretch, length);
+  }
+
+  Resegmentation result() {
+    place_after(out_.runs, replacements_);
+    out_.text = nc::replace_blocks(of_.program_, replacements_);
+    return std::move(out_);
+  }
+
+ private:
+  void add(const Run& stretch, double length_mm) {
+    const Prepared& now = of_.prepared(stretch);
+    if (!now.smoothed) return;
+    const Layout layout = now.smoothed->lay_out(length_mm, options_.corners.any());
+    const bool arcs = now.path.sagitta_mm > 0;
+    if (arcs && layout.points.size() - 1 >= stretch.last_move - stretch.first_move + 1) {
+      for (const Run& lines : between_arcs(of_.program_, of_.moves_, stretch, {})) add(lines, length_mm);
+      return;
+    }
+    if (layout.points == now.path.points) return;
+    const std::uint32_t first = of_.moves_.moves[stretch.first_move].block;
+    const std::uint32_t last = of_.moves_.moves[stretch.last_move].block;
+    const double deviation = layout.deviation_mm + now.path.sagitta_mm;
+    replacements_.push_back({first, last,
+                             text_of(of_.program_, of_.moves_, stretch, now.path, layout, of_.style_,
+                                     {options_.feed_factor, options_.corners})});
+    out_.runs.push_back({first, last, layout.points.size() - 1, 0, deviation});
+    out_.max_deviation_mm = std::max(out_.max_deviation_mm, deviation);
+    out_.corners += layout.corners;
+  }
+
+  Resegmenter& of_;
+  const ResegmentOptions& options_;
+  Resegmentation out_;
+  std::vector<nc::BlockReplacement> replacements_;
+};
+
+Resegmentation Resegmenter::lay_out(const ResegmentOptions& options) {
+  Writer writer(*this, options);
+  for (const Run& run : runs_) writer.add(run);
+  return writer.result();
 }
 
 Resegmentation resegment(const nc::Program& program, const nc::Interpretation& moves, const ResegmentOptions& options) {

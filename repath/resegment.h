@@ -1,6 +1,7 @@
 #pragma once
 // A program with its runs of short lines laid out again: in segments as long as the control wants them.
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,12 +11,22 @@
 
 namespace camber::repath {
 
+/// Lower feeds about the corners that are kept, where axes that lag cut them off or leave them late: in the last 0.8 mm
+/// before a corner and the first 0.4 mm behind it. Figures of trial: they are where the seconds buy most.
+struct CornerFeeds {
+  double share = 1;     ///< of the feed; 1: as elsewhere
+  double settle_s = 0;  ///< what lies between two sharp corners (60 degrees) that are no farther apart, as the step
+                        ///< from row to row, takes at least so long: the axes catch up
+  bool any() const { return share != 1 || settle_s > 0; }
+};
+
 struct ResegmentOptions {
   double tolerance_mm = 0.01;  ///< largest distance between the old and the new path, both ways
   double length_mm = 0;        ///< of segments; 0: length_factor times what the control asks for
   double block_time_s = 0;     ///< T_b; 0: the mean length of the old blocks stands for L_b
   double length_factor = 1;    ///< at least 1
   double feed_factor = 1;      ///< the runs that are laid out again get this much of their feed
+  CornerFeeds corners{};       ///< of that feed
   double corner_rad = 5 * kPi / 180;
   bool whole_numbers_are_increments = false;
 };
@@ -24,13 +35,22 @@ struct ResegmentOptions {
 /// Source: KAKEN report on deflection-compensated CAM, eq. 3 (there F T_b / 60000 in mm, mm/min, ms).
 double segment_length_mm(double feed_mm_per_s, double block_time_s);
 
-/// The points of a run in space, as the text says them. Repeated points are left out; `block` tells which block ends at
-/// each (of the first point: the run's first block).
+/// The points of a run in space, as the text says them, of arcs also points between their ends. Repeated points are
+/// left out; `block` tells which block ends at each (of the first point: the run's first block).
 struct SpacePath {
+  static constexpr std::uint32_t kInside = std::numeric_limits<std::uint32_t>::max();  ///< an arc: no block ends there
   std::vector<Vec3> points;
   std::vector<std::uint32_t> block;
+  double sagitta_mm = 0;  ///< how far the lines between the points may be from arcs; 0: there is none
 };
-SpacePath space_path_of(const nc::Interpretation& moves, const Run& run);
+/// `sagitta_mm`: of the lines that stand for arcs, greater than zero.
+SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double sagitta_mm);
+
+/// Where a segment lies.
+struct SegmentPlace {
+  bool near_corner = false;
+  double between_corners_mm = 0;  ///< greater than zero: it is part of a step of that length between sharp corners
+};
 
 /// A path laid out again.
 struct Layout {
@@ -38,10 +58,12 @@ struct Layout {
   std::vector<std::uint32_t> old_point;  ///< the last old point that is not behind each
   double deviation_mm = 0;               ///< Hausdorff distance, both ways (an upper bound)
   std::size_t corners = 0;
+  std::vector<SegmentPlace> place;  ///< of the segment that ends at each point; empty: not asked for
 };
 
-/// Of a run's segments: options.length_mm, or length_factor times L_b at the run's feed.
-double length_for(const SpacePath& path, double feed_mm_per_s, const ResegmentOptions& options);
+/// Of a run's segments: options.length_mm, or length_factor times L_b at the run's feed, or where the control has no
+/// block time times the mean length of its blocks.
+double length_for(const nc::Interpretation& moves, const Run& run, const ResegmentOptions& options);
 
 /// Between corners a smooth curve takes the place of the points (half of the tolerance), and segments of `length_mm`
 /// are laid on it, shorter ones where the whole tolerance asks for it. Where a curve leaves the old path by more, as

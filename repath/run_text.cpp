@@ -13,6 +13,7 @@ namespace camber::repath {
 namespace {
 
 constexpr int kMostDecimals = 6;
+constexpr double kLeastFeedFactor = 0.005;
 constexpr char kAxis[] = "XYZ", kCentre[] = "IJK";
 
 std::string_view written(const nc::Program& program, const nc::Word& word) {
@@ -32,21 +33,6 @@ bool is_motion(const nc::Word& w) {
   return (g >= 0 && g <= 3) || (g >= 33 && g < 34) || (g >= 38 && g < 39) || (g >= 73 && g <= 89);
 }
 
-/// Whether a block behind `block` moves axes in the mode that `block` leaves.
-bool mode_is_used_behind(const nc::Program& program, std::size_t block) {
-  for (std::size_t b = block + 1; b < program.blocks.size(); ++b) {
-    if (program.blocks[b].flow) return true;
-    const auto words = program.words_of(b);
-    if (words.empty()) continue;
-    if (program.blocks[b].skip == 0 && std::any_of(words.begin(), words.end(), is_motion)) return false;
-    for (const nc::Word& w : words) {
-      if ((w.letter >= 'X' && w.letter <= 'Z') || (w.letter >= 'I' && w.letter <= 'K') || w.letter == 'R') return true;
-      if (w.letter == 'M' && (w.value == 2 || w.value == 30)) return false;
-    }
-  }
-  return false;
-}
-
 /// What the blocks of a run have in common.
 class BlockWriter {
  public:
@@ -61,12 +47,15 @@ class BlockWriter {
     incremental_ = state.incremental;
     absolute_centre_ = state.absolute_arc_centre;
     plane_g_ = state.plane_g;
-    says_mode_first_ = says_g1(first_block_);
+    says_mode_first_ = first.kind == nc::MoveKind::arc || says_g1(first_block_);
     says_mode_always_ = says_g1(last_block_) && says_g1(last_block_ - 1);
   }
 
  protected:
-  bool says_g1(std::uint32_t block) const { return find(program_.words_of(block), 'G') != nullptr; }
+  bool says_g1(std::uint32_t block) const {
+    const nc::Word* g = find(program_.words_of(block), 'G');
+    return g != nullptr && g->value == 1;
+  }
 
   std::string code(int g) const { return fmt::format("G{}{}", style_.two_digit_codes ? "0" : "", g); }
 
@@ -103,27 +92,44 @@ class PointWriter : BlockWriter {
  public:
   using BlockWriter::BlockWriter;
 
-  std::vector<std::string> write(const SpacePath& path, const Layout& layout, double feed_factor) const {
+  std::vector<std::string> write(const SpacePath& path, const Layout& layout, const LayoutFeeds& feeds) const {
     std::vector<std::string> lines;
+    double feed_now = 1;
+    std::uint32_t before = 0;  // the old point whose block ended last
     for (std::size_t k = 1; k < layout.points.size(); ++k) {
       std::vector<std::string> words;
-      const std::uint32_t old = layout.old_point[k];
-      if (old > layout.old_point[k - 1])
+      std::uint32_t old = layout.old_point[k];
+      while (path.block[old] == SpacePath::kInside) --old;
+      if (old > before)
         if (const nc::Word* n = find(program_.words_of(path.block[old]), 'N'))
           words.emplace_back(written(program_, *n));
+      before = old;
       if (says_mode_always_ || (lines.empty() && says_mode_first_)) words.push_back(code(1));
       const Vec3 &from = layout.points[k - 1], &to = layout.points[k];
       for (int a = 0; a < 3; ++a)
         if (from[a] != to[a])
           words.push_back(number(kAxis[static_cast<std::size_t>(a)], incremental_ ? to[a] - from[a] : to[a]));
-      if (lines.empty() && feed_factor != 1)
-        words.push_back(feed(feed_factor));
+      const double factor = feed_factor(layout, k, feeds);
+      if (factor != feed_now)
+        words.push_back(feed(factor));
       else if (lines.empty())
         add_feed(words);
+      feed_now = factor;
       lines.push_back(joined(words));
     }
-    if (feed_factor != 1) lines.push_back(feed(1));
+    if (feed_now != 1) lines.push_back(feed(1));
     return lines;
+  }
+
+ private:
+  double feed_factor(const Layout& layout, std::size_t k, const LayoutFeeds& feeds) const {
+    double out = feeds.factor;
+    if (layout.place.empty()) return out;
+    const SegmentPlace& place = layout.place[k];
+    if (place.near_corner) out *= feeds.corners.share;
+    if (place.between_corners_mm > 0 && feeds.corners.settle_s > 0)
+      out = std::min(out, 60 * place.between_corners_mm / feeds.corners.settle_s / feed_mm_per_min_);
+    return std::max(out, kLeastFeedFactor);
   }
 };
 
@@ -192,6 +198,20 @@ class RunWriter : BlockWriter {
 
 }  // namespace
 
+bool mode_is_used_behind(const nc::Program& program, std::size_t block) {
+  for (std::size_t b = block + 1; b < program.blocks.size(); ++b) {
+    if (program.blocks[b].flow) return true;
+    const auto words = program.words_of(b);
+    if (words.empty()) continue;
+    if (program.blocks[b].skip == 0 && std::any_of(words.begin(), words.end(), is_motion)) return false;
+    for (const nc::Word& w : words) {
+      if ((w.letter >= 'X' && w.letter <= 'Z') || (w.letter >= 'I' && w.letter <= 'K') || w.letter == 'R') return true;
+      if (w.letter == 'M' && (w.value == 2 || w.value == 30)) return false;
+    }
+  }
+  return false;
+}
+
 TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& moves,
                         bool whole_numbers_are_increments) {
   TextStyle style{.numbers = nc::style_of(program)};
@@ -215,8 +235,8 @@ std::vector<std::string> text_of(const nc::Program& program, const nc::Interpret
 
 std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
                                  const SpacePath& path, const Layout& layout, const TextStyle& style,
-                                 double feed_factor) {
-  return PointWriter(program, moves, run, style).write(path, layout, feed_factor);
+                                 const LayoutFeeds& feeds) {
+  return PointWriter(program, moves, run, style).write(path, layout, feeds);
 }
 
 }  // namespace camber::repath

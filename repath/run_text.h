@@ -23,11 +23,20 @@ TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& mo
 std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
                                  const RunPath& path, const std::vector<Primitive>& chain, const TextStyle& style);
 
+/// What the segments of a layout get of the programmed feed; see ResegmentOptions.
+struct LayoutFeeds {
+  double factor = 1;
+  CornerFeeds corners{};
+};
+
+/// Whether a block behind `block` moves axes in the mode (G1 G2 ..) that `block` leaves.
+bool mode_is_used_behind(const nc::Program& program, std::size_t block);
+
 /// The blocks of straight cuts to the points of a layout but its first: X Y Z that change, the N of the old block that
-/// ended where the new one does (each once), G1 as the run has it, and the F of the run's first block, or with a
-/// feed_factor other than 1 that much of the feed, and the old one in a block of its own behind.
+/// ended where the new one does (each once), G1 as the run has it (and where it begins with an arc), and the F of the
+/// run's first block; where the feed is another one, that, and the programmed one in a block of its own behind.
 std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
                                  const SpacePath& path, const Layout& layout, const TextStyle& style,
-                                 double feed_factor);
+                                 const LayoutFeeds& feeds);
 
 }  // namespace camber::repath

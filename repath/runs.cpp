@@ -6,20 +6,17 @@
 
 #include "nc/arcs.h"
 #include "repath/compress.h"
-#include "repath/resegment.h"
+#include "repath/program_point.h"
 
 namespace camber::repath {
 namespace {
 
 constexpr double kStandsStillMm = 1e-9;
 
-/// Sums of increments (G91) and inches: points at one place become equal.
-double without_noise(double mm) { return std::round(mm * 1e7) * 1e-7; }
-
 class RunFinder {
  public:
-  RunFinder(const nc::Program& program, const nc::Interpretation& moves, bool in_space)
-      : program_(program), moves_(moves), in_space_(in_space), jumps_(program.macro.flow()) {}
+  RunFinder(const nc::Program& program, const nc::Interpretation& moves, RunKind kind)
+      : program_(program), moves_(moves), kind_(kind), jumps_(program.macro.flow()) {}
 
   std::vector<Run> find() {
     const auto& all = moves_.moves;
@@ -41,7 +38,8 @@ class RunFinder {
   /// A bit for every axis that the move does not move; 0: not a block for a run.
   unsigned fits(std::uint32_t m) const {
     const nc::Move& move = moves_.moves[m];
-    if (move.kind != nc::MoveKind::linear || !move.editable || move.canned || move.reference) return 0;
+    const bool arc = move.kind == nc::MoveKind::arc && kind_ == RunKind::with_arcs;
+    if ((move.kind != nc::MoveKind::linear && !arc) || !move.editable || move.canned || move.reference) return 0;
     if ((m > 0 && moves_.moves[m - 1].block == move.block) ||
         (m + 1 < moves_.moves.size() && moves_.moves[m + 1].block == move.block))
       return 0;
@@ -52,7 +50,7 @@ class RunFinder {
       return 0;
     if (!plain_block(move.block)) return 0;
     constexpr unsigned kAll = 7;
-    if (in_space_) return kAll;
+    if (in_space()) return kAll;
     unsigned still = 0;
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(move.end_mm[axis] - move.start_mm[axis]) < kStandsStillMm) still |= 1u << axis;
@@ -74,11 +72,19 @@ class RunFinder {
       at = w.offset + w.length;
       const bool coordinate = w.letter >= 'X' && w.letter <= 'Z';
       if (coordinate || w.letter == 'F' || (w.letter == 'G' && w.value == 1)) continue;
+      if (kind_ == RunKind::with_arcs && of_arc(w)) continue;
       if (w.letter == 'N' && !jumps_) continue;
       return false;
     }
     return blank(block.offset + block.length);
   }
+
+  static bool of_arc(const nc::Word& w) {
+    return (w.letter >= 'I' && w.letter <= 'K') || w.letter == 'R' ||
+           (w.letter == 'G' && (w.value == 2 || w.value == 3));
+  }
+
+  bool in_space() const { return kind_ != RunKind::in_plane; }
 
   bool has_feed(std::uint32_t b) const {
     const auto words = program_.words_of(b);
@@ -96,7 +102,7 @@ class RunFinder {
     if (open_ && behind - first_ >= 2) {
       const int plane_g = moves_.state_of(moves_.moves[first_]).plane_g;
       const int current = plane_g == 17 ? 2 : plane_g == 18 ? 1 : 0;
-      Run run{.first_move = first_, .last_move = behind - 1, .normal = current, .in_space = in_space_};
+      Run run{.first_move = first_, .last_move = behind - 1, .normal = current, .in_space = in_space()};
       run.current_plane = (still_ >> current) & 1u;
       for (int axis = 2; !run.current_plane && axis >= 0; --axis)
         if ((still_ >> axis) & 1u) {
@@ -110,7 +116,8 @@ class RunFinder {
 
   const nc::Program& program_;
   const nc::Interpretation& moves_;
-  bool in_space_, jumps_;
+  RunKind kind_;
+  bool jumps_;
   std::vector<Run> runs_;
   bool open_ = false;
   std::uint32_t first_ = 0;
@@ -123,8 +130,7 @@ void for_each_point(const nc::Interpretation& moves, std::uint32_t first, std::u
                     Reached reached) {
   std::optional<Vec3> before;
   const auto reach = [&](const nc::Move& move, const Vec3& p) {
-    const Vec3 place = moves.frame_of(move).to_program(p);
-    const Vec3 point(without_noise(place.x()), without_noise(place.y()), without_noise(place.z()));
+    const Vec3 point = program_point(moves, move, p);
     if (before && *before == point) return;
     before = point;
     add(point, move.block);
@@ -149,14 +155,14 @@ bool goes_on(const nc::Interpretation& moves, const Run& run, const Run& next) {
 
 }  // namespace
 
-std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, bool in_space) {
-  return RunFinder(program, moves, in_space).find();
+std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, RunKind kind) {
+  return RunFinder(program, moves, kind).find();
 }
 
 std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart) {
   constexpr std::uint32_t kLeastMoves = 4;
-  std::vector<Run> out, in_space = find_runs(program, moves, true), planar;
-  if (apart) planar = find_runs(program, moves);
+  std::vector<Run> out, in_space = find_runs(program, moves, RunKind::in_space), planar;
+  if (apart) planar = find_runs(program, moves, RunKind::in_plane);
   auto next = planar.begin();
   for (Run run : in_space) {
     for (; next != planar.end() && next->last_move <= run.last_move; ++next) {
@@ -175,6 +181,32 @@ std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpre
 
 namespace {
 
+struct Beside {
+  Vec3 place_mm;  ///< in the text's coordinates
+  bool arc = false;
+};
+
+/// The far end of the cut before or behind a run, or of a piece of its tangent where it is an arc; nothing where the
+/// path does not go on smoothly for all that the text says, or not in the run's plane.
+std::optional<Beside> beside(const nc::Interpretation& moves, const Run& run, bool before) {
+  const std::size_t at = before ? run.first_move : run.last_move, next = before ? at - 1 : at + 1;
+  if ((before && at == 0) || next >= moves.moves.size()) return std::nullopt;
+  const nc::Move &own = moves.moves[at], &other = moves.moves[next];
+  const bool arc = other.kind == nc::MoveKind::arc;
+  if ((other.kind != nc::MoveKind::linear && !arc) || other.canned || other.reference ||
+      (before ? other : own).exact_stop)
+    return std::nullopt;
+  const nc::ModalState &here = moves.state_of(own), &there = moves.state_of(other);
+  if (here.frame != there.frame || here.tool != there.tool) return std::nullopt;
+  constexpr double kTangentMm = 1;
+  Vec3 place = before ? other.start_mm : other.end_mm;
+  const Vec3 joint = before ? other.end_mm : other.start_mm;
+  if (arc) place = joint + (before ? -kTangentMm : kTangentMm) * nc::direction_at(moves, other, before ? 1 : 0);
+  const Vec3 way = program_point(moves, other, place) - program_point(moves, other, joint);
+  if (way.norm() == 0 || (!run.in_space && std::abs(way[run.normal]) > kStandsStillMm)) return std::nullopt;
+  return Beside{program_point(moves, other, joint) + way, arc};
+}
+
 RunChain chain_of(const nc::Interpretation& moves, std::span<const Run> runs) {
   const Run& first = runs.front();
   const nc::PlaneAxes axes = nc::axes_of(first.normal == 2   ? nc::Plane::xy
@@ -182,21 +214,28 @@ RunChain chain_of(const nc::Interpretation& moves, std::span<const Run> runs) {
                                                              : nc::Plane::yz);
   RunChain out;
   RunPath& path = out.path;
+  const auto before = beside(moves, first, true), behind = beside(moves, runs.back(), false);
   const auto add = [&](const Vec3& p, std::uint32_t block) {
     path.points.emplace_back(p[axes.first], p[axes.second]);
     if (first.in_space) path.heights.push_back(p[axes.normal]);
     path.block.push_back(block);
   };
+  if (before) add(before->place_mm, moves.moves[first.first_move].block);
+  const auto begin = static_cast<std::uint32_t>(path.points.size());
   for_each_point(moves, first.first_move, runs.back().last_move, add, [&](std::uint32_t m) {
     const Run& run = runs[out.parts.size()];
     if (m != run.last_move) return;
     const auto here = static_cast<std::uint32_t>(path.points.size() - 1);
-    out.parts.push_back({run, out.parts.empty() ? 0 : out.parts.back().last_point, here});
+    out.parts.push_back({run, out.parts.empty() ? begin : out.parts.back().last_point, here});
   });
+  if (behind) add(behind->place_mm, moves.moves[runs.back().last_move].block);
+  out.arc_before = before && before->arc;
+  out.arc_behind = behind && behind->arc;
+  if (begin > 0) out.ends.push_back(begin);
   for (const RunChain::Part& part : out.parts)
-    if (part.last_point > 0 && (out.ends.empty() || out.ends.back() < part.last_point))
+    if (part.last_point > begin && (out.ends.empty() || out.ends.back() < part.last_point))
       out.ends.push_back(part.last_point);
-  if (!out.ends.empty()) out.ends.pop_back();
+  if (!behind && !out.ends.empty() && out.ends.back() + 1 == path.points.size()) out.ends.pop_back();
   return out;
 }
 
@@ -209,16 +248,6 @@ void for_each_chain(const nc::Interpretation& moves, std::span<const Run> runs,
     take(chain_of(moves, runs.subspan(first, k + 1 - first)));
     first = k + 1;
   }
-}
-
-SpacePath space_path_of(const nc::Interpretation& moves, const Run& run) {
-  SpacePath path;
-  const auto add = [&](const Vec3& p, std::uint32_t block) {
-    path.points.push_back(p);
-    path.block.push_back(block);
-  };
-  for_each_point(moves, run.first_move, run.last_move, add, [](std::uint32_t) {});
-  return path;
 }
 
 }  // namespace camber::repath

@@ -77,10 +77,14 @@ std::optional<Cusp> cusp_of(const removal::Underside& cutter, const Groove& a, c
 
 }  // namespace
 
+bool touches(const Rectangle& boundary, const removal::Contact& contact) {
+  return in(boundary, contact.point.head<2>(), kBorderMm);
+}
+
 bool works_inside(const removal::Underside& cutter, const Rectangle& boundary, const Vec2& axis,
                   const removal::Contact& contact) {
   const Vec2 at = contact.point.head<2>();
-  if (!in(boundary, at, kBorderMm)) return false;
+  if (!touches(boundary, contact)) return false;
   const double under_flat = std::max(cutter.flat_mm - 1e-9, 1e-9);  // the rim is not
   if ((at - axis).norm() < under_flat) return in(boundary, axis, kBorderMm);
   return contact.kind == removal::ContactKind::facet || in(boundary, at, -kBorderMm);

@@ -24,6 +24,9 @@ struct Rectangle {
 bool works_inside(const removal::Underside& cutter, const Rectangle& boundary, const Vec2& axis,
                   const removal::Contact& contact);
 
+/// Whether a contact lies in the rectangle or on its border.
+bool touches(const Rectangle& boundary, const removal::Contact& contact);
+
 /// Heights of the tip along a row, at equal steps.
 struct RowHeights {
   double v_mm = 0;

@@ -1,5 +1,7 @@
 #pragma once
 // What laying out a path again needs and what does not depend on the length of the segments.
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "repath/resegment.h"
@@ -18,7 +20,8 @@ class SmoothedPath {
   SmoothedPath(SmoothedPath&&) noexcept;
 
   const std::vector<Vec3>& points() const { return old_; }
-  Layout lay_out(double length_mm) const;
+  /// `mark_corners`: segments end where the reach of a corner begins and ends, and Layout::place is filled.
+  Layout lay_out(double length_mm, bool mark_corners = false) const;
 
  private:
   struct Piece;
@@ -31,6 +34,7 @@ class SmoothedPath {
   std::vector<Vec3> old_;
   double tolerance_, increment_;
   std::size_t corners_ = 0;
+  std::vector<char> corner_at_;  ///< of each old point: 0 none, 1 an edge, 2 a sharp corner
   std::vector<Piece> pieces_;
 };
 
@@ -42,14 +46,19 @@ class Resegmenter {
   ~Resegmenter();
 
   /// Of `options` length, block time and factors count.
-  Resegmentation lay_out(const ResegmentOptions& options) const;
+  Resegmentation lay_out(const ResegmentOptions& options);
 
  private:
   struct Prepared;
+  class Writer;
+  const Prepared& prepared(const Run& stretch);
+
   const nc::Program& program_;
   const nc::Interpretation& moves_;
-  std::vector<Prepared> runs_;
+  ResegmentOptions options_;
   TextStyle style_;
+  std::vector<Run> runs_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Prepared> prepared_;  ///< by a stretch's first and last move
 };
 
 }  // namespace camber::repath

@@ -79,7 +79,7 @@ TEST(Compress, FeedSpindleCommentAndCodesAreBoundaries) {
 
 TEST(Compress, AFeedInABlockBeginsARun) {
   std::string text = kHead + "X11.\nX12.\nX13. F300\nX14.\nX15.\nM30\n";
-  EXPECT_EQ(compressed(text), kHead + "X12.\nX15.F300\nM30\n");
+  EXPECT_EQ(compressed(text), kHead + "X12.\nX15. F300\nM30\n");
 }
 
 TEST(Compress, AnotherPlaneGetsLinesOnlyUnlessItMaySwitch) {

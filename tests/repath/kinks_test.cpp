@@ -107,6 +107,107 @@ TEST(Kinks, BetweenRunsAreWithinTheBoundWhereThePathIsSmooth) {
   }
 }
 
+/// Of the joints beside an arc those that kink by more than the bound, or by the share of what the program turns there
+/// that joints of arcs, and of arcs and lines, may have.
+int too_sharp(const std::string& before, const std::string& after, double bound_deg, int& beside_arcs) {
+  const nc::Read old = nc::read_clean(before), now = nc::read_clean(after);
+  const auto turns = kinks_between_moves(old.moves);
+  int out = 0;
+  std::size_t at = 0;
+  for (const auto& kink : kinks_between_moves(now.moves)) {
+    while (turns.at(at).at_mm != kink.at_mm) ++at;  // throws where the end is no point of the program
+    if (!kink.arc_before && !kink.arc_behind) continue;
+    ++beside_arcs;
+    const double share = kink.arc_before && kink.arc_behind ? 0.125 : 0.6;
+    out += deg_from_rad(kink.rad) > std::max(bound_deg, share * deg_from_rad(turns[at].rad)) + kMeasured_deg;
+  }
+  return out;
+}
+
+TEST(Kinks, BesideSingleBlocksThatStayAreWithinTheBound) {
+  // Two cuts that carry an S, one after the other: neither is a run.
+  for (const bool in_space : {false, true}) {
+    std::string text = kHead;
+    for (int i = 0; i <= 700; ++i) {
+      const Vec3 p = sine(2 * i);
+      text += fmt::format("X{:.3f} Y{:.3f} Z{:.3f}{}\n", p.x(), p.y(), in_space ? 0.1 * p.x() : 0.0,
+                          i % 47 == 20   ? " S2000"
+                          : i % 47 == 21 ? " S3000"
+                                         : "");
+    }
+    text += "M2\n";
+    for (const double bound : {1.0, 0.5}) {
+      SCOPED_TRACE(fmt::format("{} {}", bound, in_space));
+      int beside_arcs = 0;
+      const int unbounded = too_sharp(text, compressed(text, kAnyKink_deg, in_space), bound, beside_arcs);
+      EXPECT_GT(unbounded, bound < 0.6 ? 4 : -1);
+      beside_arcs = 0;
+      const std::string out = compressed(text, bound, in_space);
+      // Where slopes differ by more than half of the bound a joint may turn as the path does.
+      EXPECT_LE(too_sharp(text, out, bound, beside_arcs), in_space && bound < 0.6 ? 3 : 0);
+      EXPECT_GT(beside_arcs, 25);
+      EXPECT_LT(kinks_of_text(out).blocks, 170u);
+      EXPECT_LE(tests::hausdorff_mm(nc::read_clean(text).moves, nc::read_clean(out).moves, 0.002), 0.0101);
+      EXPECT_NE(out.find("S3000"), std::string::npos);
+    }
+  }
+}
+
+TEST(Kinks, BesideArcsOfTheProgramAreWithinTheBound) {
+  std::string text = kHead;
+  int arcs = 0;
+  for (int i = 0; i <= 700; ++i) {
+    const Vec2 from = sine(2 * i - 2).head<2>(), to = sine(2 * i + 8).head<2>();
+    const double bow = std::abs(std::sin(0.05 * (2 * i + 3) / 4));
+    if (i % 47 < 20 || bow < 0.5) {
+      text += fmt::format("G1 X{:.3f} Y{:.3f}\n", sine(2 * i).x(), sine(2 * i).y());
+      continue;
+    }
+    // Five steps as one arc of the program's own, through the middle.
+    const Vec2 middle = sine(2 * i + 3).head<2>(), a = middle - from, b = to - from;
+    const double twice = 2 * (a.x() * b.y() - a.y() * b.x());
+    const Vec2 centre(std::round(1e3 * (b.y() * a.squaredNorm() - a.y() * b.squaredNorm()) / twice) / 1e3,
+                      std::round(1e3 * (a.x() * b.squaredNorm() - b.x() * a.squaredNorm()) / twice) / 1e3);
+    text += fmt::format("{} X{:.3f} Y{:.3f} I{:.3f} J{:.3f}\n", twice > 0 ? "G3" : "G2", to.x(), to.y(), centre.x(),
+                        centre.y());
+    i += 23;  // past it, and then lines for a while
+    for (int k = i - 18; k <= i; ++k) text += fmt::format("G1 X{:.3f} Y{:.3f}\n", sine(2 * k).x(), sine(2 * k).y());
+    ++arcs;
+  }
+  text += "M2\n";
+  EXPECT_GT(arcs, 6);
+  for (const double bound : {1.0, 0.6}) {
+    SCOPED_TRACE(bound);
+    int beside_arcs = 0;
+    EXPECT_GT(too_sharp(text, compressed(text, kAnyKink_deg), bound, beside_arcs), 4);
+    beside_arcs = 0;
+    const std::string out = compressed(text, bound);
+    // The program's own joints, of its arcs with lines that stay, are what they were.
+    EXPECT_EQ(too_sharp(text, out, bound, beside_arcs), 0);
+    EXPECT_GT(beside_arcs, 20);
+    EXPECT_LT(kinks_of_text(out).blocks, 150u);
+    EXPECT_LE(tests::hausdorff_mm(nc::read_clean(text).moves, nc::read_clean(out).moves, 0.002), 0.0101);
+  }
+}
+
+TEST(Kinks, BlocksThatTurnAwayFromAnArcOfTheProgramStay) {
+  // By 2 to 50 degrees, and back again: nothing can be tangent there, and what is drawn so is no fault.
+  for (int turn_deg = 2; turn_deg <= 50; turn_deg += 4) {
+    std::string text = kHead;
+    text += "G3 X1. Y1. I0. J1.\nG1\n";
+    double heading = rad_from_deg(90.0 + turn_deg);
+    Vec2 at(1, 1);
+    for (int i = 0; i < 9; ++i) {
+      heading -= rad_from_deg(i % 3 == 0 ? turn_deg : 3);
+      at += 0.3 * Vec2(std::cos(heading), std::sin(heading));
+      text += fmt::format("X{:.3f} Y{:.3f}\n", at.x(), at.y());
+    }
+    text += fmt::format("G2 X{:.3f} Y{:.3f} I0.5 J0.\nM2\n", at.x() + 1, at.y());
+    const std::string out = compressed(text, 1);
+    EXPECT_LE(tests::hausdorff_mm(nc::read_clean(text).moves, nc::read_clean(out).moves, 0.002), 0.0101);
+  }
+}
+
 TEST(Kinks, OfHelicesAreWithinTheBound) {
   // A ramp along a spiral: nothing of it is an arc for long.
   const std::string text = program_of(1500, [](int i) {
