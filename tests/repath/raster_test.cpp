@@ -219,13 +219,15 @@ TEST(Scallop, OfAFlatCutterOnASlopeIsTheStepsHeight) {
   EXPECT_NEAR(scallop_mm(sampler, level.cutter(), sampler.row(8), sampler.row(12)), 0, 1e-12);
 }
 
+constexpr double kRim = 0.1;
+
 struct Case {
   const char* name;
   CutterShape cutter;
   Height height;
   double degrees;
-  double least_share;   ///< of the scallop asked for that is used up at the worst place
-  double rim_mm = 0.1;  ///< beside the border that is left out
+  double least_share;    ///< of the scallop asked for that is used up at the worst place
+  double rim_mm = kRim;  ///< beside the border that is left out
 };
 
 TEST(Raster, LeavesTheScallopsThatWereAskedForAndNoMore) {
@@ -259,7 +261,13 @@ TEST(Raster, LeavesTheScallopsThatWereAskedForAndNoMore) {
     EXPECT_GE(left.most, c.least_share * kScallop) << c.name;
     EXPECT_GE(left.least, -kTolerance - 0.0005) << c.name;
     RecordProperty(c.name, fmt::format("{:.4f}", left.most));
-    std::cout << fmt::format("{:<36} {:3} rows, most {:.4f} mm\n", c.name, raster.spacing.rows_mm.size(), left.most);
+    std::cout << fmt::format("{:<36} {:3} rows, most {:.4f} mm", c.name, raster.spacing.rows_mm.size(), left.most);
+    if (c.rim_mm > kRim) {
+      const Left to_border = left_standing(paths_of(part, raster, options), c.cutter, c.height, kX, kY, kRim, 0.05);
+      EXPECT_LE(to_border.most, 0.021) << c.name;
+      std::cout << fmt::format(", {:.4f} mm with the strip along the border", to_border.most);
+    }
+    std::cout << '\n';
   }
 }
 
