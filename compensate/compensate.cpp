@@ -150,6 +150,7 @@ class Loop {
     splits_.emplace(*path_);
     last_.shifts = path_->shifts();
     last_.observed = workshop_->observe(*path_, nullptr, last_.surface);
+    first_observed_ = last_.observed;
     out.feed_before = program_.feed;
     out.surface_before = last_.surface;
     out.loads_before = last_.loads;
@@ -306,6 +307,8 @@ class Loop {
       warn_of_not_emitted(program_.text, program_.moves, best_.emitted->emission.not_made, diagnostics_);
       out.quality = best_.emitted->quality;
     }
+    out.surface_steps =
+        surface_steps(*path_, row_links(*path_, kRowReach_mm, RowSense::any), first_observed_, best_.observed);
     out.row_steps = row_steps(*path_, kRowReach_mm);
     const ThinPath thin(*path_, splits_->kept());
     out.row_turn_rad =
@@ -362,6 +365,7 @@ class Loop {
   bool split_once_ = false;
   std::vector<double> link_stiffness_;  ///< one a link of the path that the splits leave
   Trial last_, best_;
+  Observed first_observed_;              ///< of the program as given
   double free_correctable_um_ = 0;       ///< of the best round before the guard
   std::shared_ptr<const Emitted> free_;  ///< its program
 };
