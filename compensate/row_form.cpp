@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kTerms = 4;            // of a cubic
 constexpr double kMany = 40;         // points across and along, whose mean needs no help
+constexpr double kOneFace = 0.97;    // mean normal of a ball's row of 40 degrees
 constexpr double kTold = 1e-3;       // share of the moments below which a term is not told
 constexpr double kLeast_mm = 0.005;  // rows narrower than this have no form
 
@@ -39,6 +40,16 @@ void spread_along(std::vector<Sums>& sums, const ShiftPath& path) {
   }
 }
 
+/// Sum of the normals about a point of the path, each by its area.
+struct Facing {
+  Vec3 normal = Vec3::Zero();
+  double area = 0;
+  Facing operator*(double f) const { return {normal * f, area * f}; }
+  Facing operator+(const Facing& o) const { return {normal + o.normal, area + o.area}; }
+  /// One face, not a wall and the floor beside it.
+  bool one() const { return normal.norm() > kOneFace * area; }
+};
+
 struct Moments {
   Square square = Square::Zero();
   Terms right = Terms::Zero();
@@ -52,25 +63,26 @@ void share_out(const ShiftPath::Place& place, auto add) {
   add(place.lower + 1, place.upper_share);
 }
 
-/// Mean normal about each point of the path.
-std::vector<Vec3> mean_normals(const ShiftPath& path, std::span<const Observation> observations) {
-  std::vector<Vec3> out(path.points().size(), Vec3::Zero());
+std::vector<Facing> facing(const ShiftPath& path, std::span<const Observation> observations) {
+  std::vector<Facing> out(path.points().size());
   for (const Observation& o : observations)
-    share_out(o.place, [&](std::size_t i, double share) { out[i] += share * o.area_mm2 * o.normal; });
+    share_out(o.place, [&](std::size_t i, double share) {
+      out[i] = out[i] + Facing{o.normal, 1} * (share * o.area_mm2);
+    });
   spread_along(out, path);
   return out;
 }
 
 /// Where each observation lies across its row, mm.
-std::vector<double> places_across(const ShiftPath& path, std::span<const Observation> observations) {
-  const std::vector<Vec3> normals = mean_normals(path, observations);
+std::vector<double> places_across(const ShiftPath& path, std::span<const Observation> observations,
+                                  const std::vector<Facing>& faces) {
   std::vector<double> out;
   out.reserve(observations.size());
   for (const Observation& o : observations) {
     const auto &a = path.points()[o.place.lower], &b = path.points()[o.place.lower + 1];
     const double v = o.place.upper_share;
     const Vec3 across =
-        (b.place_mm - a.place_mm).cross((1 - v) * normals[o.place.lower] + v * normals[o.place.lower + 1]);
+        (b.place_mm - a.place_mm).cross((1 - v) * faces[o.place.lower].normal + v * faces[o.place.lower + 1].normal);
     out.push_back(across.norm() > 0 ? o.from_centre_mm.dot(across.normalized()) : 0);
   }
   return out;
@@ -82,7 +94,8 @@ Terms terms_of(double t) { return {1, t, t * t, t * t * t}; }
 
 std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observation> observations,
                                 const std::vector<double>& left_mm, double smoothing_mm) {
-  std::vector<double> across = places_across(path, observations);
+  const std::vector<Facing> faces = facing(path, observations);
+  std::vector<double> across = places_across(path, observations, faces);
   double squares = 0, area = 0;
   for (std::size_t i = 0; i < across.size(); ++i) {
     squares += observations[i].area_mm2 * across[i] * across[i];
@@ -106,7 +119,7 @@ std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observati
   std::vector<Terms> form(moments.size(), Terms::Zero());
   for (std::size_t i = 0; i < form.size(); ++i) {
     Square& m = moments[i].square;
-    if (m(0, 0) <= 0) continue;
+    if (m(0, 0) <= 0 || !faces[i].one()) continue;
     m.diagonal() *= 1 + kTold;
     const double points = moments[i].points * smoothing_mm / kFormAlong_mm / kMany;  // the weights' sum is 2 kFormAlong
     form[i] = m.ldlt().solve(moments[i].right) / (1 + points * points);

@@ -114,6 +114,14 @@ TEST(RowForm, SquaresAddUpWithIt) {
   EXPECT_NEAR(s.bow_um, 1000 * std::sqrt(bow_squares / area), kAtRandom_um);
 }
 
+TEST(RowForm, IsNothingWhereAWallStandsOnAFloor) {
+  const auto program = row(60);
+  const ShiftPath path(program, std::vector<bool>(60, true), 1.0);
+  auto points = observed(path, 3);
+  for (std::size_t i = 0; i < points.size(); i += 2) points[i].normal = {0, -std::cos(0.7), std::sin(0.7)};
+  for (const double f : row_form_mm(path, points, std::vector<double>(points.size(), 0.001), 0.2)) EXPECT_EQ(f, 0);
+}
+
 TEST(RowForm, IsNothingWhereTheRowHasNoWidth) {
   const auto program = row(60);
   const ShiftPath path(program, std::vector<bool>(60, true), 1.0);
