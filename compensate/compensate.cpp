@@ -45,21 +45,19 @@ constexpr double kRowReach_mm = 1.0;
 constexpr double kSplit_mm = 0.0005;     // a split of a line in the first round must be worth this, ...
 constexpr double kLateSplit_mm = 0.002;  // ... a later one this
 
-std::size_t count_changed(const nc::Program& program, const std::string& text) {
-  // Lines of the original that do not stand in the new text, in order; new lines lie between them.
-  const SourceText emitted("", text);
-  std::size_t at = 1, changed = 0;
-  for (std::size_t line = 1; line <= program.source.line_count(); ++line) {
-    std::size_t seek = at;
-    constexpr std::size_t kWindow = 200;
-    while (seek <= emitted.line_count() && seek < at + kWindow && emitted.line(seek) != program.source.line(line))
-      ++seek;
-    if (seek <= emitted.line_count() && seek < at + kWindow)
-      at = seek + 1;
-    else
-      ++changed;
+/// Lines of the given program that do not stand in the emitted one as they were.
+std::size_t count_changed(const nc::Program& program, const Emitted& emitted) {
+  const SourceText text("", emitted.emission.text);
+  const auto& given_of = emitted.emission.block_of_line;
+  const std::size_t count = program.source.line_count();
+  std::vector<bool> same(count, false), met(count, false);
+  for (std::size_t line = 0; line < std::min(given_of.size(), text.line_count()); ++line) {
+    const std::size_t given = given_of[line];
+    if (given >= count) continue;
+    same[given] = !met[given] && text.line(line + 1) == program.source.line(given + 1);
+    met[given] = true;
   }
-  return changed;
+  return static_cast<std::size_t>(std::count(same.begin(), same.end(), false));
 }
 
 /// Share of the area whose error changed its sign and is still over the tolerance.
@@ -322,7 +320,7 @@ class Loop {
     diagnostics_.throw_if_errors();
     out.blocks_before = program_.text.source.line_count();
     out.blocks_after = program.text.source.line_count();
-    out.blocks_changed = count_changed(program_.text, program.text.source.text());
+    out.blocks_changed = best_.emitted ? count_changed(program_.text, *best_.emitted) : 0;
     out.settled = first.unsettled == 0 && best.unsettled == 0;
   }
 
