@@ -40,7 +40,7 @@ class Workshop {
   Workshop(const machine::Job& job, const deflection::MachinedProgram& given, const deflection::Target& target,
            bool own_target);
 
-  /// A split of a line must be worth this.
+  /// How near the arcs that an arc becomes pass its shifted points.
   static constexpr double kViaTolerance_mm = 0.0005;
 
   /// `splits`: points of the path at which lines are split.
