@@ -21,8 +21,8 @@ inline constexpr double kFormAlong_mm = 1.5;
 /// voxel; a shift that is fitted to the error less this form does not follow which ones.
 ///
 /// Where the grid shows many points across (n within 2 smoothing_mm of path: a wall) their mean is told well enough,
-/// and a form that changes along the path would do harm: the form is less by 1 / (1 + (n / 40)^2). Where the surface faces
-/// more than one way (a wall and its floor, a corner) it is none. One an observation.
+/// and a form that changes along the path would do harm: the form is less by 1 / (1 + (n / 40)^2). Where the surface
+/// faces more than one way (a wall and its floor, a corner) it is none. One an observation.
 std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observation> observations,
                                 const std::vector<double>& left_mm, double smoothing_mm);
 
