@@ -3,6 +3,8 @@
 #include <cmath>
 #include <map>
 
+#include "removal/cutter.h"
+
 namespace camber::compensate {
 namespace {
 
@@ -66,6 +68,10 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const deflectio
     out.compensated[i] = true;
     o.place = path.find(at.move, at.share);
     const auto tool = job.tools.find(given.moves.state_of(given.moves.moves[at.move]).tool);
+    const ControlPoint &from = path.points()[o.place.lower], &to = path.points()[o.place.lower + 1];
+    const Vec3 tip = from.place_mm + o.place.upper_share * (to.place_mm - from.place_mm);
+    const double corner_mm = tool != job.tools.end() ? removal::shape_of(tool->second).corner_radius_mm : 0;
+    o.from_centre_mm = p.place_mm - tip - corner_mm * Vec3::UnitZ();
     o.at_tip = tool != job.tools.end() && round_tip(tool->second) && p.normal.z() > kTipNormal;
   }
   mark_opposed(out);

@@ -11,6 +11,7 @@
 #include "compensate/not_emitted.h"
 #include "compensate/sensitivity.h"
 #include "compensate/shift_path.h"
+#include "compensate/splits.h"
 #include "deflection/collisions.h"
 #include "nc/emit.h"
 
@@ -41,22 +42,22 @@ constexpr int kGuardRounds = 5;      // beyond max_rounds, to stay out of the pa
 constexpr int kStiffenings = 12;     // of the path where its angles grow by more than the bound
 constexpr double kStiffer = 2.5;
 constexpr double kRowReach_mm = 1.0;
+constexpr double kSplit_mm = 0.0005;     // a split of a line in the first round must be worth this, ...
+constexpr double kLateSplit_mm = 0.002;  // ... a later one this
 
-std::size_t count_changed(const nc::Program& program, const std::string& text) {
-  // Lines of the original that do not stand in the new text, in order; new lines lie between them.
-  const SourceText emitted("", text);
-  std::size_t at = 1, changed = 0;
-  for (std::size_t line = 1; line <= program.source.line_count(); ++line) {
-    std::size_t seek = at;
-    constexpr std::size_t kWindow = 200;
-    while (seek <= emitted.line_count() && seek < at + kWindow && emitted.line(seek) != program.source.line(line))
-      ++seek;
-    if (seek <= emitted.line_count() && seek < at + kWindow)
-      at = seek + 1;
-    else
-      ++changed;
+/// Lines of the given program that do not stand in the emitted one as they were.
+std::size_t count_changed(const nc::Program& program, const Emitted& emitted) {
+  const SourceText text("", emitted.emission.text);
+  const auto& given_of = emitted.emission.block_of_line;
+  const std::size_t count = program.source.line_count();
+  std::vector<bool> same(count, false), met(count, false);
+  for (std::size_t line = 0; line < std::min(given_of.size(), text.line_count()); ++line) {
+    const std::size_t given = given_of[line];
+    if (given >= count) continue;
+    same[given] = !met[given] && text.line(line + 1) == program.source.line(given + 1);
+    met[given] = true;
   }
-  return changed;
+  return static_cast<std::size_t>(std::count(same.begin(), same.end(), false));
 }
 
 /// Share of the area whose error changed its sign and is still over the tolerance.
@@ -116,12 +117,16 @@ class Loop {
   double tolerance_mm() const { return job_.compensation.tolerance_um / 1000; }
   double overcut_um() const { return job_.compensation.overcut_um(); }
 
-  FitShiftOptions fit_options() const {
-    return {.max_shift_mm = job_.compensation.max_shift_mm,
-            .stiffness = stiffness_,
-            .links = links_,
-            .link_stiffness = link_stiffness_};
+  FitShiftOptions fit_options(std::span<const double> stiffness, std::span<const RowLink> links,
+                              std::span<const double> link_stiffness) const {
+    return {.smoothing_mm = smoothing_mm(job_.simulation.voxel_mm),
+            .max_shift_mm = job_.compensation.max_shift_mm,
+            .stiffness = stiffness,
+            .links = links,
+            .link_stiffness = link_stiffness};
   }
+  /// Of the path with all its points, by which errors are judged.
+  FitShiftOptions fit_options() const { return fit_options(stiffness_, links_, {}); }
 
   std::function<void(double)> progress(const std::string& what) const {
     if (!options_.progress) return {};
@@ -140,9 +145,10 @@ class Loop {
     sensitivity_.emplace(*path_);
     stiffness_.assign(path_->points().size(), 1.0);
     links_ = row_links(*path_, kRowReach_mm);
-    link_stiffness_.assign(links_.size(), 1.0);
+    splits_.emplace(*path_);
     last_.shifts = path_->shifts();
     last_.observed = workshop_->observe(*path_, nullptr, last_.surface);
+    first_observed_ = last_.observed;
     out.feed_before = program_.feed;
     out.surface_before = last_.surface;
     out.loads_before = last_.loads;
@@ -184,25 +190,31 @@ class Loop {
   /// New shifts from the last trial's error, and their prediction.
   void step(Compensation& out, double share, const Guard* guard) {
     const Observed before = last_.observed;
-    Observed wanted = before;
-    if (guard) guard->apply_to(wanted);
-    std::vector<Observation> observations = wanted.of_path();
-    sensitivity_->apply_to(observations);
+    std::vector<Observation> observations = wanted_of(before, guard);
     Round round;
     round.gain = sensitivity_->mean();
     round.step_share = share;
     round.guard = guard != nullptr;
     const std::vector<Vec3> from = last_.shifts;
     Trial next;
+    choose_splits(observations);
+    ThinPath thin(*path_, splits_->kept());
+    const std::vector<Observation> asked = thin.places_of(observations);
+    const std::vector<RowLink> links = row_links(thin.path(), kRowReach_mm);
+    if (link_stiffness_.size() != links.size()) link_stiffness_.assign(links.size(), 1.0);
     for (int i = 0; i <= kStiffenings; ++i) {
       path_->set_shifts(from);
-      round.limited_points = fit_shift(*path_, observations, fit_options());
+      thin.take_shifts(*path_);
+      const std::vector<double> stiffness = thin.greatest_of(stiffness_);
+      round.limited_points = fit_shift(thin.path(), asked, fit_options(stiffness, links, link_stiffness_));
+      thin.give_shifts(*path_);
       for (std::size_t p = 0; p < from.size(); ++p) {
         Vec3& shift = path_->points()[p].shift_mm;
         shift = from[p] + share * (shift - from[p]);
       }
-      next.emitted = workshop_->emit(*path_, compensated_);
-      const RowTurn turn = row_turn(*path_, links_, job_.compensation.max_angle_growth_rad);
+      next.emitted = workshop_->emit(*path_, splits_->kept(), compensated_);
+      thin.take_shifts(*path_);
+      const RowTurn turn = row_turn(thin.path(), links, job_.compensation.max_angle_growth_rad);
       if (next.emitted->quality.over.empty() && turn.over.empty()) break;
       stiffen(next.emitted->quality.over);
       for (const std::size_t link : turn.over) link_stiffness_[link] *= kStiffer;
@@ -216,6 +228,28 @@ class Loop {
     sensitivity_->learn(*path_, from, before, last_.observed);
     round.overcorrected_share = overcorrected_share(before, last_.observed, tolerance_mm());
     record(out, round);
+  }
+
+  /// The errors that the next shifts are to take away.
+  std::vector<Observation> wanted_of(const Observed& observed, const Guard* guard) {
+    std::vector<Observation> out = without_row_form(*path_, observed.of_path(), fit_options());
+    if (guard) {
+      Observed lifted = observed;
+      guard->apply_to(lifted);
+      const std::vector<Observation> raw = lifted.of_path();
+      for (std::size_t i = 0; i < out.size(); ++i)
+        if (raw[i].weight > 1) out[i] = raw[i];
+    }
+    sensitivity_->apply_to(out);
+    return out;
+  }
+
+  /// Where the shifts that the path could take with all its points ask for it; a late one must be worth more.
+  void choose_splits(const std::vector<Observation>& observations) {
+    ShiftPath free = *path_;
+    fit_shift(free, observations, fit_options());
+    if (splits_->add_strays(free, split_once_ ? kLateSplit_mm : kSplit_mm) > 0) link_stiffness_.clear();
+    split_once_ = true;
   }
 
   void stiffen(const std::vector<MoveMap::Place>& places) {
@@ -271,8 +305,12 @@ class Loop {
       warn_of_not_emitted(program_.text, program_.moves, best_.emitted->emission.not_made, diagnostics_);
       out.quality = best_.emitted->quality;
     }
+    out.surface_steps =
+        surface_steps(*path_, row_links(*path_, kRowReach_mm, RowSense::any), first_observed_, best_.observed);
     out.row_steps = row_steps(*path_, kRowReach_mm);
-    out.row_turn_rad = row_turn(*path_, links_, job_.compensation.max_angle_growth_rad).max_rad;
+    const ThinPath thin(*path_, splits_->kept());
+    out.row_turn_rad =
+        row_turn(thin.path(), row_links(thin.path(), kRowReach_mm), job_.compensation.max_angle_growth_rad).max_rad;
     const double most_um = overcut_um();
     out.depth_after = depth_of(out.surface_after, best_.observed, most_um, true);
     out.depth_others = depth_of(out.surface_after, best_.observed, most_um, false);
@@ -282,7 +320,7 @@ class Loop {
     diagnostics_.throw_if_errors();
     out.blocks_before = program_.text.source.line_count();
     out.blocks_after = program.text.source.line_count();
-    out.blocks_changed = count_changed(program_.text, program.text.source.text());
+    out.blocks_changed = best_.emitted ? count_changed(program_.text, *best_.emitted) : 0;
     out.settled = first.unsettled == 0 && best.unsettled == 0;
   }
 
@@ -305,7 +343,7 @@ class Loop {
     out.text = emitted ? emitted->emission.text : program_.text.source.text();
     if (!options_.header || !emitted) return;
     workshop_->header = options_.header(out);
-    out.text = workshop_->text_of(*path_);
+    out.text = workshop_->text_of(*path_, emitted->splits);
   }
 
   const machine::Job& job_;
@@ -321,8 +359,11 @@ class Loop {
   std::optional<Sensitivity> sensitivity_;
   std::vector<double> stiffness_;  ///< of the path, one a point
   std::vector<RowLink> links_;
-  std::vector<double> link_stiffness_;  ///< one a link
+  std::optional<Splits> splits_;
+  bool split_once_ = false;
+  std::vector<double> link_stiffness_;  ///< one a link of the path that the splits leave
   Trial last_, best_;
+  Observed first_observed_;              ///< of the program as given
   double free_correctable_um_ = 0;       ///< of the best round before the guard
   std::shared_ptr<const Emitted> free_;  ///< its program
 };

@@ -12,6 +12,7 @@
 #include "compensate/path_quality.h"
 #include "compensate/recheck.h"
 #include "compensate/safety.h"
+#include "compensate/surface_steps.h"
 #include "compensate/trial.h"
 #include "compensate/uncertainty.h"
 #include "deflection/predict.h"
@@ -53,6 +54,7 @@ struct Compensation {
   Finishing finishing;
   PathQuality quality;  ///< of the emitted program
   RowSteps row_steps;
+  SurfaceSteps surface_steps;
   double row_turn_rad = 0;          ///< between neighbouring rows of one sense, held like the angles between blocks
   Depth depth_before, depth_after;  ///< into the part, compensated moves
   Depth depth_others;               ///< of moves that are not compensated

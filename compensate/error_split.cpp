@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compensate/row_form.h"
 #include "removal/surface.h"
 
 namespace camber::compensate {
@@ -21,6 +22,13 @@ std::vector<double> left_by(const ShiftPath& old, std::span<const Observation> o
   for (const Observation& o : observations)
     left.push_back(o.error_mm + o.gain * o.normal.dot(path.shift_at(o.place) - old.shift_at(o.place)));
   return left;
+}
+
+FitShiftOptions stiff(const FitShiftOptions& options) {
+  FitShiftOptions out = options;
+  out.max_shift_mm = std::numeric_limits<double>::infinity();
+  out.smoothing_mm = std::min(kStiff, options.smoothing_mm);
+  return out;
 }
 
 double mean_square(const std::vector<double>& values, std::span<const Observation> observations, double area_mm2,
@@ -45,6 +53,15 @@ void ErrorSplit::give_to_guard(double free_correctable_um) {
   guard_um = std::sqrt(all * all - correctable_um * correctable_um);
 }
 
+std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const Observation> observations,
+                                          const FitShiftOptions& options) {
+  std::vector<Observation> out(observations.begin(), observations.end());
+  const std::vector<double> form =
+      row_form_mm(path, observations, left_by(path, observations, stiff(options)), options.smoothing_mm);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].error_mm -= form[i];
+  return out;
+}
+
 ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options) {
   ErrorSplit out;
   double area = 0, others = 0;
@@ -60,28 +77,38 @@ ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const Fi
 
   FitShiftOptions free = options;
   free.max_shift_mm = std::numeric_limits<double>::infinity();
-  FitShiftOptions stiff = free;
-  stiff.smoothing_mm = std::min(kStiff, options.smoothing_mm);
-  const std::vector<double> at_one_place = left_by(path, all, stiff), smooth = left_by(path, all, free),
-                            limited = left_by(path, all, options);
+  const std::vector<Observation> asked = without_row_form(path, all, options);
+  const std::vector<double> at_one_place = left_by(path, asked, stiff(options)), smooth = left_by(path, asked, free),
+                            limited = left_by(path, asked, options);
   const auto every = [](const Observation&) { return true; };
-  std::vector<double> error;
-  for (const Observation& o : all) error.push_back(o.error_mm);
+  const auto errors = [](const std::vector<Observation>& of) {
+    std::vector<double> values;
+    values.reserve(of.size());
+    for (const Observation& o : of) values.push_back(o.error_mm);
+    return values;
+  };
+  const std::vector<double> error = errors(asked);
+  std::vector<double> taken, taken_um, areas;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    taken.push_back(error[i] - limited[i]);
+    taken_um.push_back(1000 * taken.back());
+    areas.push_back(all[i].area_mm2);
+  }
   const double total = mean_square(error, all, area, every), left = mean_square(at_one_place, all, area, every),
                left_smooth = std::max(left, mean_square(smooth, all, area, every)),
                left_limited = std::max(left_smooth, mean_square(limited, all, area, every));
+  // A smooth path is not the least squares' best: what the fit would still move counts where it would gain less.
+  const double correctable = std::max(total - left_limited, mean_square(taken, all, area, every)),
+               limited_by = left_limited - left_smooth,
+               short_range = std::max(0.0, total - correctable - limited_by - left);
   out.opposed_um = um(mean_square(at_one_place, all, area, [](const Observation& o) { return o.opposed; }));
   out.tip_um = um(mean_square(at_one_place, all, area, [](const Observation& o) { return o.at_tip && !o.opposed; }));
-  out.bow_um = um(mean_square(at_one_place, all, area, [](const Observation& o) { return !o.at_tip && !o.opposed; }));
-  out.short_range_um = um(left_smooth - left);
-  out.limited_um = um(left_limited - left_smooth);
-  out.correctable_um = um(total - left_limited);
-
-  std::vector<double> taken_um, areas;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    taken_um.push_back(1000 * (error[i] - limited[i]));
-    areas.push_back(all[i].area_mm2);
-  }
+  out.short_range_um = um(short_range);
+  out.limited_um = um(limited_by);
+  out.correctable_um = um(correctable);
+  const auto square = [](double value_um) { return value_um * value_um / 1e6; };
+  out.bow_um = um(mean_square(errors(all), all, area, every) - correctable - limited_by - short_range -
+                  square(out.opposed_um) - square(out.tip_um));
   const removal::ErrorFigures f = removal::error_figures(taken_um, areas);
   out.correctable_p95_um = f.p95;
   out.correctable_max_um = std::max(std::abs(f.min), std::abs(f.max));

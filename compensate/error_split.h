@@ -1,6 +1,7 @@
 #pragma once
 // An error apart: what a shift of the path can take away, what none can, and what a limit holds back.
 #include <span>
+#include <vector>
 
 #include "compensate/attribution.h"
 #include "compensate/fit_shift.h"
@@ -13,7 +14,8 @@ namespace camber::compensate {
 ///   rms^2 = correctable^2 + guard^2 + limited^2 + short_range^2 + opposed^2 + tip^2 + bow^2 + not_compensated^2
 ///
 /// The parts come from least squares of the error against shifts of the path, each one with less freedom:
-/// any shift at every point of the path; then smooth along the path; then within the largest shift.
+/// any shift at every point of the path; then smooth along the path; then within the largest shift. The shifts are
+/// fitted to the error less the form across the rows, so that they do not follow where the grid shows a row.
 struct ErrorSplit {
   double correctable_um = 0;      ///< a shift within the limits takes it away
   double correctable_p95_um = 0;  ///< 95th percentile of its magnitude
@@ -31,6 +33,10 @@ struct ErrorSplit {
   /// Of a surface that the guard has lifted: what is left beyond that of the best program without it was given up.
   void give_to_guard(double free_correctable_um);
 };
+
+/// The observations' errors less the form that their rows have across (compensate/row_form), for a fit.
+std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const Observation> observations,
+                                          const FitShiftOptions& options);
 
 ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options);
 

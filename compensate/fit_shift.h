@@ -1,5 +1,6 @@
 #pragma once
 // From the form error to new shifts of the path's points.
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -15,10 +16,11 @@ struct Observation {
   Vec3 normal = Vec3::UnitZ();  ///< outward
   double error_mm = 0;
   double area_mm2 = 0;
-  double gain = 1;       ///< by how much the error changes with the shift along the normal
-  double weight = 1;     ///< of its area in the fit
-  bool at_tip = false;   ///< on the axis of a round tip, where the edges hardly move
-  bool opposed = false;  ///< made at the same place as surface that faces the other way
+  double gain = 1;                     ///< by how much the error changes with the shift along the normal
+  double weight = 1;                   ///< of its area in the fit
+  Vec3 from_centre_mm = Vec3::Zero();  ///< from the centre of the cutter's corner (its tip, if that is sharp)
+  bool at_tip = false;                 ///< on the axis of a round tip, where the edges hardly move
+  bool opposed = false;                ///< made at the same place as surface that faces the other way
 };
 
 struct FitShiftOptions {
@@ -30,6 +32,10 @@ struct FitShiftOptions {
   std::span<const RowLink> links{};          ///< between rows
   std::span<const double> link_stiffness{};  ///< one a link, as `stiffness`
 };
+
+/// What a grid of these voxels can tell of a shift: on a coarser one a shorter feature follows the scatter of its
+/// points.
+constexpr double smoothing_mm(double voxel_mm) { return std::max(0.2, 2.5 * voxel_mm); }
 
 /// Shifts that minimize
 ///

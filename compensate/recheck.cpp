@@ -1,5 +1,7 @@
 #include "compensate/recheck.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "compensate/safety.h"
@@ -25,6 +27,8 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const deflection::Mach
   other.simulation.voxel_mm = voxel_mm;
   Diagnostics diagnostics;
   const deflection::Target target = deflection::make_target(other, target_program, diagnostics);
+  FitShiftOptions own = options;
+  own.smoothing_mm = std::max(options.smoothing_mm, smoothing_mm(voxel_mm));
   struct Judged {
     deflection::Prediction prediction;
     Observed observed;
@@ -35,7 +39,7 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const deflection::Mach
     auto prediction = predict(other, target, machined, fmt::format("{}, voxels of {:g} mm", what, voxel_mm), progress);
     Observed observed =
         observe(path, job, given, machined, program ? program->map : MoveMap(), prediction.surface, own_target);
-    const ErrorSplit split = split_error(path, observed, options);
+    const ErrorSplit split = split_error(path, observed, own);
     return Judged{std::move(prediction), std::move(observed), split};
   };
   Recheck out;

@@ -65,7 +65,7 @@ class Cubes {
 
 }  // namespace
 
-std::vector<RowLink> row_links(const ShiftPath& path, double reach_mm) {
+std::vector<RowLink> row_links(const ShiftPath& path, double reach_mm, RowSense sense) {
   const auto& points = path.points();
   const std::vector<Place> places = places_of(path);
   const Cubes cubes(points, reach_mm);
@@ -82,7 +82,9 @@ std::vector<RowLink> row_links(const ShiftPath& path, double reach_mm) {
       cubes.for_near(points[i].place_mm, [&](std::size_t j) {
         const double distance = (points[j].place_mm - points[i].place_mm).norm();
         const double along = std::abs(points[j].along_mm - points[i].along_mm);
-        if (distance >= least || distance <= 0 || places[i].direction.dot(places[j].direction) < kSameSense) return;
+        const double along_cosine = places[i].direction.dot(places[j].direction);
+        const double wanted = sense == RowSense::any ? std::abs(along_cosine) : along_cosine;
+        if (distance >= least || distance <= 0 || wanted < kSameSense) return;
         if (places[i].chain == places[j].chain && along < kDetour * distance + 2 * reach_mm) return;
         const Vec3 across = across_to(j);
         if (across.norm() < 0.5 * distance || (other_side && across.dot(*other_side) >= 0)) return;

@@ -16,9 +16,11 @@ struct RowLink {
   double along_mm = 0;  ///< length of path that the pair stands for
 };
 
+enum class RowSense { same, any };
+
 /// For each point the nearest one of a row on either side, no farther than `reach_mm`; in the order of a and b. Points
 /// that are fixed are left out.
-std::vector<RowLink> row_links(const ShiftPath& path, double reach_mm);
+std::vector<RowLink> row_links(const ShiftPath& path, double reach_mm, RowSense sense = RowSense::same);
 
 /// By how much the surface that the path's points span turns from row to row because of the shifts: |s_b - s_a| over
 /// the rows' distance, as an angle.

@@ -180,7 +180,8 @@ void ShiftPath::edit_arc(std::size_t first, std::size_t last, double tolerance_m
   }
 }
 
-nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, double tolerance_mm) const {
+nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, const std::vector<bool>& kept,
+                                double tolerance_mm) const {
   const ControlPoint& end = points_[last];
   nc::MoveEdit edit;
   edit.move = end.move;
@@ -190,11 +191,8 @@ nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, double tole
     edit_arc(first, last, tolerance_mm, edit);
     return edit;
   }
-  std::vector<Vec3> path;
-  for (std::size_t i = first; i <= last; ++i) path.push_back(points_[i].place_mm + points_[i].shift_mm);
-  std::vector<std::size_t> kept;
-  keep_strays(path, 0, path.size() - 1, tolerance_mm, kept);
-  for (const std::size_t i : kept) edit.via_mm.push_back(path[i]);
+  for (std::size_t i = first + 1; i < last; ++i)
+    if (kept[i]) edit.via_mm.push_back(points_[i].place_mm + points_[i].shift_mm);
   return edit;
 }
 
@@ -202,7 +200,58 @@ namespace {
 constexpr double kNothing_mm = 0.0002;  // a move whose shifts are all smaller is left as it is
 }
 
+std::vector<bool> ShiftPath::ends_of_moves() const {
+  std::vector<bool> out(points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    out[i] = points_[i].fixed || points_[i].share >= 1 || points_[i].share <= 0 ||
+             program_->moves[points_[i].move].kind == nc::MoveKind::arc;
+  return out;
+}
+
+void ShiftPath::keep_strays(double tolerance_mm, std::vector<bool>& kept) const {
+  for (const Chain& chain : chains_) {
+    std::size_t last = chain.from;
+    for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i) {
+      if (!kept[i]) continue;
+      if (i > last + 1) {
+        std::vector<Vec3> path;
+        for (std::size_t k = last; k <= i; ++k) path.push_back(points_[k].place_mm + points_[k].shift_mm);
+        std::vector<std::size_t> strays;
+        compensate::keep_strays(path, 0, path.size() - 1, tolerance_mm, strays);
+        for (const std::size_t k : strays) kept[last + k] = true;
+      }
+      last = i;
+    }
+  }
+}
+
+ShiftPath ShiftPath::thinned(const std::vector<bool>& kept) const {
+  ShiftPath out = *this;
+  out.points_.clear();
+  out.chains_.clear();
+  std::vector<std::size_t> now(points_.size());
+  for (const Chain& chain : chains_) {
+    Chain thin{out.points_.size(), 0};
+    for (std::size_t i = chain.from; i < chain.from + chain.count; ++i) {
+      now[i] = out.points_.size();
+      if (!kept[i]) continue;
+      out.points_.push_back(points_[i]);
+      ++thin.count;
+    }
+    out.chains_.push_back(thin);
+  }
+  for (std::size_t& first : out.first_of_move_)
+    if (first != kNone) first = now[first];
+  return out;
+}
+
 std::vector<nc::MoveEdit> ShiftPath::edits(double tolerance_mm) const {
+  std::vector<bool> kept = ends_of_moves();
+  keep_strays(tolerance_mm, kept);
+  return edits(kept, tolerance_mm);
+}
+
+std::vector<nc::MoveEdit> ShiftPath::edits(const std::vector<bool>& kept, double tolerance_mm) const {
   std::vector<nc::MoveEdit> out;
   for (const Chain& chain : chains_) {
     const std::size_t end = chain.from + chain.count;
@@ -211,7 +260,7 @@ std::vector<nc::MoveEdit> ShiftPath::edits(double tolerance_mm) const {
       while (last + 1 < end && points_[last + 1].move == points_[first + 1].move) ++last;
       bool shifted = false;
       for (std::size_t i = first; i <= last; ++i) shifted = shifted || points_[i].shift_mm.norm() > kNothing_mm;
-      if (shifted) out.push_back(edit_of(first, last, tolerance_mm));
+      if (shifted) out.push_back(edit_of(first, last, kept, tolerance_mm));
       first = last;
     }
   }

@@ -53,10 +53,20 @@ class ShiftPath {
   /// would stray by more than tolerance_mm; an arc stays one where one passes the shifted points within it, else it
   /// becomes the fewest arcs that do.
   std::vector<nc::MoveEdit> edits(double tolerance_mm) const;
+  /// The same with lines split at the points that are kept (one a point) and nowhere else.
+  std::vector<nc::MoveEdit> edits(const std::vector<bool>& kept, double tolerance_mm) const;
+
+  /// One a point: true for the ends of moves, for every point of an arc and for what is fixed.
+  std::vector<bool> ends_of_moves() const;
+  /// Keeps points of lines without which the shifted path would stray by more than tolerance_mm.
+  void keep_strays(double tolerance_mm, std::vector<bool>& kept) const;
+  /// The path of the kept points alone; ends_of_moves() must be among them.
+  ShiftPath thinned(const std::vector<bool>& kept) const;
   double largest_shift_mm() const;
 
  private:
-  nc::MoveEdit edit_of(std::size_t first_point, std::size_t last_point, double tolerance_mm) const;
+  nc::MoveEdit edit_of(std::size_t first_point, std::size_t last_point, const std::vector<bool>& kept,
+                       double tolerance_mm) const;
   void edit_arc(std::size_t first_point, std::size_t last_point, double tolerance_mm, nc::MoveEdit& edit) const;
 
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);

@@ -38,9 +38,11 @@ Workshop::Workshop(const machine::Job& job, const deflection::MachinedProgram& g
                    bool own_target)
     : job_(job), given_(given), target_(target), own_target_(own_target) {}
 
-std::shared_ptr<const Emitted> Workshop::emit(const ShiftPath& path, const std::vector<bool>& compensated) const {
+std::shared_ptr<const Emitted> Workshop::emit(const ShiftPath& path, const std::vector<bool>& splits,
+                                              const std::vector<bool>& compensated) const {
   auto out = std::make_shared<Emitted>();
-  out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(kViaTolerance_mm), {});
+  out->splits = splits;
+  out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(splits, kViaTolerance_mm), {});
   Diagnostics repeated;  // the emitted program's warnings are the given one's
   machine::Job job = job_;
   out->operations = moved_ranges(job_.operations, out->emission.block_of_line);
@@ -52,10 +54,10 @@ std::shared_ptr<const Emitted> Workshop::emit(const ShiftPath& path, const std::
   return out;
 }
 
-std::string Workshop::text_of(const ShiftPath& path) const {
+std::string Workshop::text_of(const ShiftPath& path, const std::vector<bool>& splits) const {
   nc::EmitOptions options;
   options.header_comment = header;
-  return nc::emit(given_.text, given_.moves, path.edits(kViaTolerance_mm), options);
+  return nc::emit(given_.text, given_.moves, path.edits(splits, kViaTolerance_mm), options);
 }
 
 deflection::Prediction Workshop::predict(const deflection::MachinedProgram& program,

@@ -13,6 +13,7 @@ namespace camber::compensate {
 
 /// The emitted program of some shifts.
 struct Emitted {
+  std::vector<bool> splits;  ///< points of the path at which lines are split
   nc::Emission emission;
   deflection::MachinedProgram program;
   MoveMap map;
@@ -39,12 +40,14 @@ class Workshop {
   Workshop(const machine::Job& job, const deflection::MachinedProgram& given, const deflection::Target& target,
            bool own_target);
 
-  /// A split of a line must be worth this.
+  /// How near the arcs that an arc becomes pass its shifted points.
   static constexpr double kViaTolerance_mm = 0.0005;
 
-  std::shared_ptr<const Emitted> emit(const ShiftPath& path, const std::vector<bool>& compensated) const;
+  /// `splits`: points of the path at which lines are split.
+  std::shared_ptr<const Emitted> emit(const ShiftPath& path, const std::vector<bool>& splits,
+                                      const std::vector<bool>& compensated) const;
   /// Only the text, with the header.
-  std::string text_of(const ShiftPath& path) const;
+  std::string text_of(const ShiftPath& path, const std::vector<bool>& splits) const;
   /// Does not throw for what the given program was warned of already.
   deflection::Prediction predict(const deflection::MachinedProgram& program,
                                  const std::function<void(double)>& progress) const;

@@ -223,13 +223,18 @@ std::string compensate_json(const compensate::Compensation& c, double compute_s)
                     {"after", depth(c.depth_after)},
                     {"not_compensated", depth(c.depth_others)},
                     {"without_bending", depth(c.depth_without_bending)}};
-  j["path"] = {{"angle_growth_deg", deg_from_rad(c.quality.angle_growth_rad)},
-               {"angle_growth_line", c.quality.angle_line},
-               {"shortest_split_mm", c.quality.shortest_mm},
-               {"too_short_splits", c.quality.too_short},
-               {"row_turn_deg", deg_from_rad(c.row_turn_rad)},
-               {"row_step_p95_um", 1000 * c.row_steps.p95_mm},
-               {"row_step_max_um", 1000 * c.row_steps.max_mm}};
+  j["path"] = {
+      {"angle_growth_deg", deg_from_rad(c.quality.angle_growth_rad)},
+      {"angle_growth_line", c.quality.angle_line},
+      {"shortest_split_mm", c.quality.shortest_mm},
+      {"too_short_splits", c.quality.too_short},
+      {"row_turn_deg", deg_from_rad(c.row_turn_rad)},
+      {"row_step_p95_um", 1000 * c.row_steps.p95_mm},
+      {"row_step_max_um", 1000 * c.row_steps.max_mm},
+      {"surface_step_um",
+       {{"before", {{"p95", 1000 * c.surface_steps.before_p95_mm}, {"max", 1000 * c.surface_steps.before_max_mm}}},
+        {"after", {{"p95", 1000 * c.surface_steps.after_p95_mm}, {"max", 1000 * c.surface_steps.after_max_mm}}},
+        {"growth_deg", deg_from_rad(c.surface_steps.growth_rad)}}}};
   j["operations"] = operations(c);
   if (!c.rechecks.empty()) {
     j["check"] = recheck(c.rechecks.front());
@@ -312,6 +317,9 @@ std::string path_text(const compensate::Compensation& c) {
   if (c.row_steps.pairs > 0) out += fmt::format("; row to row {:.1f} um (95 %)", 1000 * c.row_steps.p95_mm);
   if (c.row_turn_rad > 0)
     out += fmt::format("\nfrom row to row the shifts turn by {:.2f} degrees at most", deg_from_rad(c.row_turn_rad));
+  if (c.surface_steps.pairs > 0)
+    out += fmt::format("\nthe surface steps from row to row by {:.2f} um, before by {:.2f} um (95 %)",
+                       1000 * c.surface_steps.after_p95_mm, 1000 * c.surface_steps.before_p95_mm);
   if (c.quality.shortest_mm > 0) out += fmt::format("\nshortest block of a split: {:.3f} mm", c.quality.shortest_mm);
   return out + "\n";
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "compensate/fit_shift.h"
+#include "compensate/surface_steps.h"
 
 namespace camber::compensate {
 namespace {
@@ -159,6 +160,45 @@ TEST(FitShift, AHeavyPointDoesNotBendThePathMoreThanALightOne) {
     return most;
   };
   EXPECT_LT(roughness(heavy), 3 * roughness(light));
+}
+
+/// The error of each row as a whole, um, and that of one place.
+Observed rows_that_leave(const nc::Interpretation& p, const ShiftPath& path, double up_um, double down_um,
+                         double odd_um) {
+  Observed out;
+  int row = 0;
+  for (std::uint32_t m = 0; m < p.moves.size(); ++m) {
+    if (!path.contains(m)) continue;
+    for (double u = 0.01; u < 1; u += 0.02) {
+      const double e = row == 5 && std::abs(u - 0.5) < 0.05 ? odd_um : row % 2 ? down_um : up_um;
+      out.points.push_back({path.find(m, u), Vec3::UnitZ(), e / 1000, 0.01});
+      out.compensated.push_back(true);
+    }
+    ++row;
+  }
+  return out;
+}
+
+TEST(SurfaceSteps, AreToldBetweenRowsOfEitherSense) {
+  const auto program = rows_program(true);
+  const ShiftPath path = path_of(program);
+  const auto pairs = row_links(path, 1.0, RowSense::any);
+  EXPECT_GT(pairs.size(), row_links(path, 1.0).size());
+  const auto steps = surface_steps(path, pairs, rows_that_leave(program, path, 9, 2, 2),
+                                   rows_that_leave(program, path, 0.3, 0.1, 0.1));
+  EXPECT_NEAR(1000 * steps.before_p95_mm, 7, 1e-9);
+  EXPECT_NEAR(1000 * steps.after_p95_mm, 0.2, 1e-9);
+  EXPECT_LE(steps.growth_rad, 0);
+}
+
+TEST(SurfaceSteps, FindThePlaceThatTheShiftMadeWorse) {
+  const auto program = rows_program(true);
+  const ShiftPath path = path_of(program);
+  const auto steps = surface_steps(path, row_links(path, 1.0, RowSense::any), rows_that_leave(program, path, 9, 2, 2),
+                                   rows_that_leave(program, path, 0.3, 0.1, 30));
+  EXPECT_NEAR(1000 * steps.after_p95_mm, 0.2, 0.2) << "one place is not the whole";
+  EXPECT_NEAR(1000 * steps.after_max_mm, 29.7, 1e-9);
+  EXPECT_NEAR(steps.growth_rad, std::atan(0.0297 / kStep_mm) - std::atan(0.007 / kStep_mm), 1e-9);
 }
 
 }  // namespace

@@ -1,0 +1,47 @@
+#pragma once
+// Where lines are split, and the path with no freedom but what those splits give it.
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "compensate/fit_shift.h"
+#include "compensate/shift_path.h"
+
+namespace camber::compensate {
+
+/// The points of a path that are ends of blocks in the emitted program. A split is not free: a control that rounds
+/// corners rounds shorter blocks by less, so that a new split moves the path near by micrometres. So they are chosen
+/// once, where the shift asks for them, and stay.
+class Splits {
+ public:
+  /// The ends of moves, and every point of an arc (which becomes the fewest arcs when it is emitted).
+  explicit Splits(const ShiftPath& path);
+
+  /// Adds points of lines where the shifted path strays by more than tolerance_mm from the one without them.
+  std::size_t add_strays(const ShiftPath& path, double tolerance_mm);
+  const std::vector<bool>& kept() const { return kept_; }
+
+ private:
+  std::vector<bool> kept_;  ///< one a point
+};
+
+/// The path of the kept points alone; between them its shifts are linear, as the emitted blocks are.
+class ThinPath {
+ public:
+  ThinPath(const ShiftPath& whole, const std::vector<bool>& kept);
+
+  ShiftPath& path() { return path_; }
+  const ShiftPath& path() const { return path_; }
+  std::vector<Observation> places_of(std::span<const Observation> observations) const;
+  /// The greatest of the values of the points that come to lie between two kept ones; one a kept point.
+  std::vector<double> greatest_of(std::span<const double> values) const;
+  void take_shifts(const ShiftPath& whole);
+  void give_shifts(ShiftPath& whole) const;
+
+ private:
+  ShiftPath path_;
+  std::vector<ShiftPath::Place> of_point_;  ///< of the whole path's points on this one
+  std::vector<std::size_t> point_;          ///< of this path's points on the whole one
+};
+
+}  // namespace camber::compensate
