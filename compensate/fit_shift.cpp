@@ -103,15 +103,16 @@ void add_rest(System& s, const Chain& chain) {
   for (std::size_t k = 0; k < chain.count; ++k) s.diagonal[chain.from + k] += rest[k];
 }
 
-/// Adds the links' stiffness. Returns each link's own, for the terms between its ends.
+/// Adds the links' stiffness: of two rows the one with the smaller weight tells it, so that what the guard holds does
+/// not hold the rows beside it. Returns each link's own, for the terms between its ends.
 std::vector<double> add_links(System& s, double soft_mu, std::span<const double> weight,
                               const FitShiftOptions& options) {
   std::vector<double> out;
   out.reserve(options.links.size());
   for (std::size_t i = 0; i < options.links.size(); ++i) {
     const RowLink& l = options.links[i];
-    const double mu =
-        soft_mu * (weight[l.a] + weight[l.b]) / 2 * (options.link_stiffness.empty() ? 1.0 : options.link_stiffness[i]);
+    const double mu = soft_mu * std::min(weight[l.a], weight[l.b]) *
+                      (options.link_stiffness.empty() ? 1.0 : options.link_stiffness[i]);
     out.push_back(mu * l.along_mm / (l.distance_mm * l.distance_mm));
     s.diagonal[l.a] += out.back() * Matrix3d::Identity();
     s.diagonal[l.b] += out.back() * Matrix3d::Identity();

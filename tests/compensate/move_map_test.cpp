@@ -30,7 +30,7 @@ TEST(MoveMap, FindsTheGivenMoveBehindSplitBlocksAndAHeader) {
   edits[0].via_mm = {{12.5, 0, 1}};
   edits[0].end_mm = {20, 0, 0};
   const nc::Emission emission = nc::emit_edits(given.text, given.moves, edits, options);
-  EXPECT_EQ(emission.text, "%\nO0001\n(ONE)\n(TWO)\nG21 G90\nG1 X10. F100\nX12.5Z1.\nX20.Z0.\nX30.\n%\n");
+  EXPECT_EQ(emission.text, "%\nO0001\n(ONE)\n(TWO)\nG21 G90\nG1 X10. F100\nX12.5 Z1.\nX20. Z0.\nX30.\n%\n");
   const Read emitted(emission.text);
   ASSERT_EQ(emitted.moves.moves.size(), 4u);
   const MoveMap map(given.moves, emitted.moves, emission.block_of_line);

@@ -98,6 +98,27 @@ TEST(RowLinks, SmoothErrorsAreStillCorrected) {
   }
 }
 
+TEST(RowLinks, ARowThatTheGuardHoldsDoesNotHoldItsNeighbours) {
+  const auto program = rows_program(false);
+  ShiftPath path = path_of(program);
+  const auto links = row_links(path, 1.0);
+  auto observations = observe(program, path, 0);
+  const auto row_of = [&](const Observation& o) {
+    return std::lround(path.points()[o.place.lower].place_mm.y() / kStep_mm);
+  };
+  for (Observation& o : observations)
+    if (row_of(o) == kRows - 1) o.error_mm = 0, o.weight = 5000;
+  fit_shift(path, observations, {.links = links});
+  double held = 0, beside = 0;
+  for (const Observation& o : observations) {
+    if (path.points()[o.place.lower].along_mm < 2) continue;
+    if (row_of(o) == kRows - 1) held = std::max(held, std::abs(path.shift_at(o.place).z()));
+    if (row_of(o) == kRows - 2) beside = std::max(beside, std::abs(o.error_mm + path.shift_at(o.place).z()));
+  }
+  EXPECT_LT(held, 0.0005);
+  EXPECT_LT(beside, 0.008) << "of 0.025 mm";
+}
+
 TEST(RowLinks, NoiseFromRowToRowMakesNoFacets) {
   const auto program = rows_program(false);
   ShiftPath path = path_of(program);
