@@ -107,14 +107,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
     return kNumbersDidNotWorkOut;
   }
   if (result.stop == compensate::Stop::tolerance) return kDone;
-  // What keeps it from the tolerance is often the part, not the path.
-  const compensate::ErrorSplit& left = result.split_after;
-  const std::string given_up = left.guard_um > left.correctable_um
-                                   ? fmt::format(", most of it left so as to cut no more than {:g} um into the part",
-                                                 job.compensation.overcut_um())
-                                   : "";
-  print_error(fmt::format("of what a shift can correct {:.2f} um (95th percentile) are left; tolerance_um = {:g}{}",
-                          left.correctable_p95_um, job.compensation.tolerance_um, given_up));
+  print_error(report::left_over_sentence(result.split_after, job.compensation));
   return kNumbersDidNotWorkOut;
 }
 

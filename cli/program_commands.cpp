@@ -288,8 +288,7 @@ void add_resegment(CLI::App& app, const GlobalOptions& options, Action& chosen) 
   command
       ->add_option("--contour-mm", arguments->contour_mm,
                    "most that the predicted axes may stray from the old path; else neither the largest error nor the "
-                   "rms is more "
-                   "than with the old blocks, or the tolerance; a raster has no limit unless it is given")
+                   "rms is more than with the old blocks, or the tolerance; a raster has no limit unless it is given")
       ->check(length_validator())
       ->type_name("C");
   command->add_option("--json", arguments->json, "the figures, of all lengths tried")->type_name("R.json");

@@ -379,4 +379,13 @@ std::string unsettled_sentence(const compensate::Compensation& c) {
   return "the static deflection of some stretches did not settle; their figures are uncertain";
 }
 
+std::string left_over_sentence(const compensate::ErrorSplit& left, const machine::Compensation& asked) {
+  std::string out = fmt::format("of what a shift can correct {:.2f} um (95th percentile) are left; tolerance_um = {:g}",
+                                left.correctable_p95_um, asked.tolerance_um);
+  // What keeps it from the tolerance is often the part, not the path.
+  if (left.guard_um > left.correctable_um)
+    out += fmt::format(", most of it left so as to cut no more than {:g} um into the part", asked.overcut_um());
+  return out;
+}
+
 }  // namespace camber::report

@@ -20,4 +20,7 @@ std::string compensate_text(const compensate::Compensation& result, double compu
 std::string unsettled_sentence(const deflection::Prediction& prediction);
 std::string unsettled_sentence(const compensate::Compensation& result);
 
+/// A sentence about how far the compensation stayed from its tolerance, and whether the guard is why.
+std::string left_over_sentence(const compensate::ErrorSplit& left, const machine::Compensation& asked);
+
 }  // namespace camber::report

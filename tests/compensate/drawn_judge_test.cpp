@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "compensate/compensate.h"
-#include "tests/support/displaced_envelope.h"
+#include "tests/support/drawn_job.h"
 
 namespace camber::compensate {
 namespace {
@@ -22,19 +22,9 @@ constexpr double kEdge_mm = 0.15;  // above and below: the map leaves out a voxe
 
 DrawnCut drawn(const machine::Job& job, const deflection::MachinedProgram& program,
                const deflection::MachinedProgram& given) {
-  const machine::Tool& tool = job.tools.at(1);
-  DrawnCut c;
-  c.radius = tool.diameter_mm / 2, c.corner = 0;
-  c.flutes = tool.flutes;
-  c.helix_rad = tool.helix_rad;
+  DrawnCut c = testing::drawn_cut_of(job);
+  c.corner = 0;
   c.top = kHeight_mm;
-  c.lo = job.stock.box->min_mm, c.hi = job.stock.box->max_mm;
-  const auto& m = job.material;
-  c.k = {m.ktc_MPa, m.krc_MPa, m.kac_MPa, m.kte_N_per_mm, m.kre_N_per_mm, m.kae_N_per_mm};
-  c.overhang = tool.overhang_mm;
-  c.bending_stiffness_N_mm2 =
-      tool.youngs_modulus_MPa * kPi / 64 * std::pow(tool.effective_diameter_ratio * tool.diameter_mm, 4);
-  c.allowance = job.stock.allowance_mm;
   c.steps_per_pitch = 180;
   c.edge_step = 0.06;
   const auto of_wall = [](const deflection::MachinedProgram& p) {

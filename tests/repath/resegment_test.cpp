@@ -241,14 +241,20 @@ std::string uneven_bow() {
   return text + "M30\n";
 }
 
-TEST(Fastest, KeepsToBothLimitsAndIsFasterThanAnyFeedAlone) {
-  const Read old = read(uneven_bow());
+/// Two milliseconds a block, axes that lag.
+machine::Machine two_ms_control() {
   machine::Machine machine;
   machine.control.block_time_s = 0.002;
   for (auto& axis : machine.axis) {
     axis.acceleration_mm_per_s2 = 3000;
     axis.position_gain_per_s = 40;
   }
+  return machine;
+}
+
+TEST(Fastest, KeepsToBothLimitsAndIsFasterThanAnyFeedAlone) {
+  const Read old = read(uneven_bow());
+  const machine::Machine machine = two_ms_control();
   const ContourFigures before = contour_figures(old.moves, old.moves, machine);
   FastestOptions options;
   options.layout = within(0.01);
@@ -280,12 +286,7 @@ TEST(Fastest, KeepsToBothLimitsAndIsFasterThanAnyFeedAlone) {
 
 TEST(Fastest, WhereNothingKeepsToTheContourTheNearestIsTaken) {
   const Read old = read(bow());
-  machine::Machine machine;
-  machine.control.block_time_s = 0.002;
-  for (auto& axis : machine.axis) {
-    axis.acceleration_mm_per_s2 = 3000;
-    axis.position_gain_per_s = 40;
-  }
+  const machine::Machine machine = two_ms_control();
   FastestOptions options;
   options.layout = within(0.01);
   options.contour_mm = 1e-4;
