@@ -125,6 +125,17 @@ TEST(ShortArcs, ALoneOneStaysAndSoDoesOneBeyondACorner) {
   EXPECT_EQ(resegment(old.program, old.moves, {.length_mm = 1}).text, before + "G1 X10.25\nM30\n");
 }
 
+TEST(ShortArcs, OneBetweenTwoCornersStaysAmongShortLines) {
+  std::string text = "G21 G90 G17\nG0 X0. Y0. Z0.\nF3000\n", up;
+  for (int k = 1; k <= 10; ++k) text += fmt::format("{}X{:.1f}\n", k == 1 ? "G1 " : "", 0.1 * k);
+  const std::string arc = "G3 X0.9 Y0.1 I-0.1 J0.\n";
+  for (int k = 2; k <= 11; ++k) up += fmt::format("{}Y{:.1f}\n", k == 2 ? "G1 " : "", 0.1 * k);
+  const Read old = nc::read_clean(text + arc + up + "M30\n");
+  const std::string now = resegment(old.program, old.moves, {.tolerance_mm = 0.05, .length_mm = 0.5}).text;
+  EXPECT_NE(now.find(arc), std::string::npos) << now;
+  EXPECT_LT(std::count(now.begin(), now.end(), '\n'), 14) << now;
+}
+
 TEST(ShortArcs, FullCirclesAndLongArcsStayByteForByteAndLinesBetweenThemAreLaidOut) {
   std::string lines;
   for (int k = 1; k <= 40; ++k) lines += fmt::format("{}X{:.3f}\n", k == 1 ? "G1 " : "", 5 + 0.05 * k);
