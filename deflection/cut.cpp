@@ -149,6 +149,11 @@ class Cutter {
       }
   }
 
+  /// Leaves the stock as cut.
+  void finish(CutResult& result) {
+    if (engager_) result.stock_mm3 += engager_->commit();
+  }
+
  private:
   static constexpr double kFall = 0.4;  ///< a round should bring the change down by this share of its step
   static constexpr double kShorter = 0.7;
@@ -179,7 +184,6 @@ class Cutter {
       turn[k] = removal::chips_of(blocks, chips);
     });
     for (const auto& [k, chips] : turn) keep_turn(chips, all[from + k], from + k, result);
-    result.stock_mm3 += engager_->commit();
   }
 
   /// Of a hole its deepest stamp says all.
@@ -291,6 +295,7 @@ CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& 
     cutter.cut(stamps, from, n, contacts.empty() ? contacts : contacts.subspan(from, n), first_id, result);
     if (options.progress) options.progress(static_cast<double>(from + n) / static_cast<double>(stamps.size()));
   }
+  cutter.finish(result);
   return result;
 }
 

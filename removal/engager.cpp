@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -20,9 +21,9 @@ namespace {
 /// A tile that is being cut.
 struct CutTile {
   ColumnCover cover;
-  double material;  ///< before the stretch, voxels
+  double material;  ///< as it was loaded, voxels
   bool changed = false;
-  std::int32_t last = -1;  ///< stamp that it took last, of the stretch
+  std::int32_t last = -1;  ///< stamp of the stretch that it took last
   std::vector<std::int32_t> batch{};
 };
 
@@ -36,12 +37,12 @@ struct Engager::Impl {
   std::int32_t first_id;
   EnvelopeBlocks blocks;
   BlockReader reader;
-  bool loaded = false;              ///< a stretch that is not committed
+  double removed_mm3 = 0;           ///< from tiles that were given back since the last commit
   std::size_t from = 0;             ///< its first stamp
   std::span<const Stamp> stamps{};  ///< of the stretch
   StampOrder order{};
   TileArena arena{};
-  std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena; more may be left from before
+  std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
   tbb::enumerable_thread_specific<BlockReader::Buffers> buffers{};
 
   Impl(Stock& stock_, const Stock& blank_, const EnvelopeGrid& envelope_, std::span<const Stamp> stamps_,
@@ -55,6 +56,7 @@ struct Engager::Impl {
         reader(envelope_, blocks, stamps_, first_id_, stock_.voxel_mm(), stock_.max_mm().z() + stock_.band_mm()) {}
 
   void start_tiles();
+  void give_back(std::size_t tile);
   void read_batch(std::size_t begin, std::size_t end, const ChipSink& sink);
   void cut_batch(std::size_t begin, std::size_t end);
   void cut(std::size_t tile, BatchCut& batch_cut);
@@ -69,12 +71,26 @@ void Engager::Impl::start_tiles() {
     bend_mm = 0;
     return true;
   };
-  tbb::parallel_for(std::size_t{1}, arena.size(), [&](std::size_t t) {
+  for (auto& tile : tiles)
+    if (tile) tile->last = -1;
+  const auto fresh = arena.fresh();
+  tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
+    const std::size_t t = fresh[i];
     const Tile& tile = arena[t];
     tiles[t].emplace(
         CutTile{ColumnCover(tile, arena.index(t), stock.voxel_mm(), stock.band_mm(), envelope.shape, tip_of),
                 material_voxels(tile, stock.voxel_mm())});
   });
+}
+
+/// Writes a tile to the stock.
+void Engager::Impl::give_back(std::size_t t) {
+  if (tiles[t]->changed) {
+    const double voxel = stock.voxel_mm();
+    removed_mm3 += (tiles[t]->material - material_voxels(arena[t], voxel)) * std::pow(voxel, 3);
+    stock.store(arena.index(t), arena[t]);
+  }
+  tiles[t].reset();
 }
 
 void Engager::Impl::read_batch(std::size_t begin, std::size_t end, const ChipSink& sink) {
@@ -142,10 +158,9 @@ void Engager::engage(std::size_t from, std::size_t count, const ChipSink& sink) 
   Impl& m = *impl_;
   m.from = from;
   m.stamps = m.all.subspan(from, count);
-  m.loaded = count > 0;
-  if (!m.loaded) return;
+  if (count == 0) return;
   m.order = StampOrder::of_path(m.stamps, m.envelope.shape);
-  m.arena.load(m.stock, m.blank, m.envelope.shape, m.stamps);
+  m.arena.load(m.stock, m.blank, m.envelope.shape, m.stamps, [&](std::size_t t) { m.give_back(t); });
   m.start_tiles();
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
     const std::int32_t batch = m.order.batch(static_cast<std::int32_t>(begin));
@@ -157,15 +172,8 @@ void Engager::engage(std::size_t from, std::size_t count, const ChipSink& sink) 
 
 double Engager::commit() {
   Impl& m = *impl_;
-  double removed = 0;
-  const double voxel = m.stock.voxel_mm();
-  for (std::size_t t = 1; m.loaded && t < m.arena.size(); ++t) {
-    if (!m.tiles[t]->changed) continue;
-    removed += (m.tiles[t]->material - material_voxels(m.arena[t], voxel)) * std::pow(voxel, 3);
-    m.stock.store(m.arena.index(t), m.arena[t]);
-  }
-  m.loaded = false;
-  return removed;
+  m.arena.clear([&](std::size_t t) { m.give_back(t); });
+  return std::exchange(m.removed_mm3, 0.0);
 }
 
 }  // namespace camber::removal

@@ -27,9 +27,10 @@ class Engager {
   ~Engager();
 
   const EnvelopeBlocks& blocks() const;
-  /// Cuts stamps[from] ... stamps[from + count - 1]; the stock is written by commit() only.
+  /// Cuts stamps[from] ... stamps[from + count - 1], which must come after all that were cut before. The stock itself
+  /// lags behind: of what an earlier call cut, it gets what these stamps do not reach, of this one nothing.
   void engage(std::size_t from, std::size_t count, const ChipSink& sink);
-  /// Returns the volume that the last engage() took, mm^3.
+  /// Writes the rest to the stock. Returns the volume that was taken since the last commit, mm^3.
   double commit();
 
  private:

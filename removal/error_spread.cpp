@@ -2,12 +2,31 @@
 #include <cmath>
 #include <numeric>
 
+#include <tbb/parallel_sort.h>
+
 #include "removal/surface.h"
 
 namespace camber::removal {
 namespace {
 
 constexpr int kMostBins = 40;
+
+/// A value and the number of its point.
+struct Ranked {
+  double value;
+  std::size_t point;
+  bool operator<(const Ranked& o) const { return value < o.value || (value == o.value && point < o.point); }
+};
+
+/// By what `value_of` makes of the errors, equal ones in the order of the points.
+template <class ValueOf>
+std::vector<Ranked> ranked(const std::vector<double>& error, ValueOf value_of) {
+  std::vector<Ranked> out;
+  out.reserve(error.size());
+  for (std::size_t i = 0; i < error.size(); ++i) out.push_back({value_of(error[i]), i});
+  tbb::parallel_sort(out.begin(), out.end());
+  return out;
+}
 
 double round_width(double least) {
   const double power = std::pow(10.0, std::floor(std::log10(least)));
@@ -31,14 +50,10 @@ ErrorFigures error_figures(const std::vector<double>& error, const std::vector<d
   }
   f.mean = sum / f.area_mm2;
   f.rms = std::sqrt(squares / f.area_mm2);
-  std::vector<std::size_t> order(error.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return std::abs(error[a]) < std::abs(error[b]); });
   double below = 0;
-  for (const std::size_t i : order) {
+  for (const auto& [size, i] : ranked(error, [](double e) { return std::abs(e); })) {
     below += area[i];
-    f.p95 = std::abs(error[i]);
+    f.p95 = size;
     if (below >= 0.95 * f.area_mm2) break;
   }
   return f;
@@ -47,18 +62,16 @@ ErrorFigures error_figures(const std::vector<double>& error, const std::vector<d
 ErrorSpread error_spread(const std::vector<double>& error, const std::vector<double>& area) {
   ErrorSpread out;
   if (error.empty()) return out;
-  std::vector<std::size_t> order(error.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return error[a] < error[b]; });
+  const std::vector<Ranked> order = ranked(error, [](double e) { return e; });
   const double whole = std::accumulate(area.begin(), area.end(), 0.0);
   double below = 0;
   std::size_t next = 0;
-  for (const std::size_t i : order) {
+  for (const auto& [value, i] : order) {
     below += area[i];
-    for (; next < out.kShares.size() && below >= out.kShares[next] * whole; ++next) out.percentile[next] = error[i];
+    for (; next < out.kShares.size() && below >= out.kShares[next] * whole; ++next) out.percentile[next] = value;
   }
-  for (; next < out.kShares.size(); ++next) out.percentile[next] = error[order.back()];
-  const double least = error[order.front()], greatest = error[order.back()];
+  for (; next < out.kShares.size(); ++next) out.percentile[next] = order.back().value;
+  const double least = order.front().value, greatest = order.back().value;
   // The width leaves room for a bin that the round beginning cuts off.
   out.bin_width = round_width(std::max((greatest - least) / (kMostBins - 1), 1e-6));
   out.bin_from = std::floor(least / out.bin_width) * out.bin_width;

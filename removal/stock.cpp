@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tree/LeafManager.h>
 #include <tbb/parallel_for.h>
 
 #include "base/diagnostics.h"
@@ -342,7 +344,7 @@ openvdb::FloatGrid::Ptr read_float_grid(const std::string& path) {
   openvdb::FloatGrid::Ptr found;
   try {
     openvdb::io::File file(path);
-    file.open();
+    file.open(false);  // all at once, not leaf by leaf as they are asked for
     const openvdb::GridPtrVecPtr grids = file.getGrids();
     for (const auto& grid : *grids)
       if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
@@ -397,21 +399,16 @@ Stock Stock::load(const std::string& path, double voxel_mm, double band_voxels) 
     lo[a] = (box.min()[a] - 1) * voxel_mm + old_band;
     hi[a] = (box.max()[a] + 1) * voxel_mm - old_band;
   }
+  auto& tree = grid->tree();
+  openvdb::tree::LeafManager<openvdb::FloatTree>(tree).foreach (
+      [&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) { clip_leaf(leaf, old_band, band); });
+  openvdb::tools::changeLevelSetBackground(tree, band);
   auto impl = std::make_unique<Impl>();
-  impl->distance = openvdb::FloatGrid::create(band);
+  impl->distance = openvdb::FloatGrid::create(grid->treePtr());  // without what else the file says of it
   impl->distance->setTransform(openvdb::math::Transform::createLinearTransform(voxel_mm));
   impl->distance->setGridClass(openvdb::GRID_LEVEL_SET);
   impl->distance->setName("stock");
   impl->stamp = openvdb::Int32Grid::create(kUncut);
-  auto& tree = impl->distance->tree();
-  tree.topologyUnion(grid->tree());
-  for (auto it = grid->tree().cbeginValueAll(); it; ++it)
-    if (!it.isVoxelValue() && it.getValue() < 0) tree.addTile(it.getLevel(), it.getCoord(), -band, false);
-  for (auto it = grid->tree().cbeginLeaf(); it; ++it) {
-    auto* leaf = tree.touchLeaf(it->origin());
-    std::copy_n(it->buffer().data(), openvdb::FloatTree::LeafNodeType::SIZE, leaf->buffer().data());
-    clip_leaf(*leaf, old_band, band);
-  }
   return Stock(voxel_mm, band, lo, hi, std::move(impl));
 }
 

@@ -14,6 +14,7 @@
 #include "removal/patch_lanes.h"
 #include "removal/slot_map.h"
 #include "removal/stamp_order.h"
+#include "removal/tiles_reached.h"
 
 namespace camber::removal {
 namespace {
@@ -96,31 +97,22 @@ void Stretch::Impl::list_stamps(const ShiftTable* shifts) {
                       [&](std::size_t k) { bends[k] = all.of(static_cast<std::ptrdiff_t>(k)); });
   }
   constexpr std::int32_t kAir = -2;
-  const double band = stock.band_mm();
-  for (std::size_t k = 0; k < stamps.size(); ++k) {
-    const Vec3& tip = stamps[k].tip_mm;
-    const double slack = shifts ? bends[k].largest_mm : 0.0;
-    const double reach = envelope.shape.radius_mm + band + slack;
-    const Index3 lo = tile_of(tip - Vec3(reach, reach, band), tile_mm);
-    const Index3 hi = tile_of(Vec3(tip.x() + reach, tip.y() + reach, stock.max_mm().z() + band), tile_mm);
-    for (int i = lo[0]; i <= hi[0]; ++i)
-      for (int j = lo[1]; j <= hi[1]; ++j)
-        for (int l = lo[2]; l <= hi[2]; ++l) {
-          if (!slots.contains(i, j, l)) continue;
-          std::int32_t& slot = slots.at(i, j, l);
-          if (slot == kAir || tile_distance_mm({i, j, l}, stock.voxel_mm(), envelope.shape, tip) > band + slack)
-            continue;
-          if (slot == -1) {
-            if (stock.is_air({i, j, l})) {
-              slot = kAir;
-              continue;
-            }
-            slot = static_cast<std::int32_t>(tiles.size());
-            tiles.emplace_back().index = {i, j, l};
-          }
-          tiles[static_cast<std::size_t>(slot)].stamps.push_back(static_cast<std::int32_t>(k));
-        }
-  }
+  std::vector<std::vector<std::size_t>> reached(stamps.size());  // places of tiles
+  tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+    const double reach = stock.band_mm() + (shifts ? bends[k].largest_mm : 0.0);
+    for_each_tile_reached(slots, stock.voxel_mm(), envelope.shape, stamps[k].tip_mm, reach,
+                          [&](std::size_t place) { reached[k].push_back(place); });
+  });
+  for (std::size_t k = 0; k < stamps.size(); ++k)
+    for (const std::size_t place : reached[k]) {
+      std::int32_t& slot = slots.all()[place];
+      if (slot == SlotMap::kNone) {
+        const Index3 tile = slots.tile_at(place);
+        slot = stock.is_air(tile) ? kAir : static_cast<std::int32_t>(tiles.size());
+        if (slot != kAir) tiles.emplace_back().index = tile;
+      }
+      if (slot != kAir) tiles[static_cast<std::size_t>(slot)].stamps.push_back(static_cast<std::int32_t>(k));
+    }
 }
 
 void Stretch::Impl::touches_of_stamp(std::int32_t k, const ShiftTable* shifts,

@@ -15,12 +15,16 @@ namespace {
 constexpr double kRounding_mm = 3e-4;  ///< of distances in single precision, within a metre
 constexpr int kBlock = 4;              ///< voxels a side of the cubes whose points are passed over together
 
-/// Points first ... first + count - 1 within `radius` of `centre`.
+/// Points first ... first + count - 1 within `radius` of `centre`, `across` of it along the surface and `thick` above
+/// and below.
 struct Group {
-  Vec3 centre = Vec3::Zero();
-  double radius = 0;
+  Vec3 centre = Vec3::Zero(), normal = Vec3::UnitZ();
+  double radius = 0, across = 0, thick = 0;
   std::size_t first = 0, count = 0;
   double highest = 0;  ///< of its points' errors
+
+  /// What a straight cutter must be as near as to reach one of the points, or one above it by its error, when bent.
+  double reach_mm() const { return std::max(highest, 0.0) + kRounding_mm; }
 };
 
 /// The points of one of the stock's tiles.
@@ -31,11 +35,22 @@ struct TilePoints {
 
 Group group_of(std::span<const SurfacePoint> points, std::size_t first, std::size_t count, double highest) {
   Vec3 lo = points[first].place_mm, hi = lo;
+  Vec3 normal = Vec3::Zero();
   for (std::size_t i = first; i < first + count; ++i) {
     lo = lo.cwiseMin(points[i].place_mm);
     hi = hi.cwiseMax(points[i].place_mm);
+    normal += points[i].normal;
   }
-  return {(lo + hi) / 2, (hi - lo).norm() / 2, first, count, highest};
+  Group out{.centre = (lo + hi) / 2, .first = first, .count = count, .highest = highest};
+  if (normal.norm() > 0) out.normal = normal.normalized();
+  for (std::size_t i = first; i < first + count; ++i) {
+    const Vec3 from = points[i].place_mm - out.centre;
+    const double above = from.dot(out.normal);
+    out.radius = std::max(out.radius, from.norm());
+    out.thick = std::max(out.thick, std::abs(above));
+    out.across = std::max(out.across, (from - above * out.normal).norm());
+  }
+  return out;
 }
 
 /// Number of the cube of `side` voxels that a point lies in.
@@ -64,6 +79,22 @@ class Tips {
     }
     for (std::size_t k = 0; k < x_.size(); ++k)
       out[k] = static_cast<float>(shape.distance_mm((p - Eigen::Vector3f(x_[k], y_[k], z_[k])).cast<double>()));
+  }
+  /// How near the straight cutter at each can come to a place of a group, at least.
+  void distances_to(const CutterShape& shape, const Group& group, std::vector<float>& out) const {
+    if (shape.general) {
+      distances(shape, group.centre, out);
+      for (float& d : out) d -= static_cast<float>(group.radius);
+      return;
+    }
+    const Eigen::Vector3f p = (group.centre - origin_).cast<float>(), n = group.normal.cast<float>();
+    rounded_distances_to(x_.data(), y_.data(), z_.data(), x_.size(),
+                         {{p.x(), p.y(), p.z()},
+                          {n.x(), n.y(), n.z()},
+                          static_cast<float>(group.across),
+                          static_cast<float>(group.thick)},
+                         static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm),
+                         out.data());
   }
 
  private:
@@ -265,15 +296,15 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
   }
   tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
     TilePoints& tile = impl_->tiles[t];
-    const double reach = envelope.shape.radius_mm + tile.all.radius + tile.all.highest + most_bent;
+    const double reach = envelope.shape.radius_mm + tile.all.radius + tile.all.reach_mm() + most_bent;
     for (int a = 0; a < 2; ++a)
       if (tile.all.centre[a] < lo[a] - reach || tile.all.centre[a] > hi[a] + reach) return;
     std::vector<float> distance(stamps.size());
-    tips.distances(envelope.shape, tile.all.centre, distance);
+    tips.distances_to(envelope.shape, tile.all, distance);
     Tips near_tips;
     std::vector<std::size_t> near;
     for (std::size_t k = 0; k < stamps.size(); ++k)
-      if (distance[k] <= tile.all.radius + tile.all.highest + bends[k].largest_mm + kRounding_mm) {
+      if (distance[k] <= tile.all.reach_mm() + bends[k].largest_mm) {
         near.push_back(k);
         near_tips.add(stamps[k].tip_mm);
       }
@@ -282,11 +313,11 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
     tile.all.highest = -std::numeric_limits<double>::infinity();
     CloseStamps close(envelope, shifts);
     for (Group& block : tile.blocks) {
-      near_tips.distances(envelope.shape, block.centre, distance);
+      near_tips.distances_to(envelope.shape, block, distance);
       close.clear();
       for (std::size_t n = 0; n < near.size(); ++n) {
         const CarveBend& bend = bends[near[n]];
-        if (distance[n] <= block.radius + block.highest + bend.largest_mm + kRounding_mm)
+        if (distance[n] <= block.reach_mm() + bend.largest_mm)
           close.add(stamps[near[n]].tip_mm, bend, first_id + static_cast<std::int32_t>(near[n]));
       }
       if (!close.empty()) {

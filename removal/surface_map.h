@@ -25,8 +25,8 @@ namespace camber::removal {
 /// to x; the least height of all stamps stays. Nothing depends on the number of threads.
 class SurfaceMap {
  public:
-  /// `places`: the cutters of the target's sweep, by the ids that its voxels name. `blank`: the surface wherever no mark
-  /// is deeper. `solid`: see surface_points. Nothing of them is needed afterwards.
+  /// `places`: the cutters of the target's sweep, by the ids that its voxels name. `blank`: the surface wherever no
+  /// mark is deeper. `solid`: see surface_points. Nothing of them is needed afterwards.
   SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank, const Stock* solid = nullptr);
   ~SurfaceMap();
 

@@ -1,26 +1,64 @@
 #include "removal/tile_arena.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <tbb/parallel_for.h>
 
-#include "removal/carve.h"
+#include "removal/tiles_reached.h"
 
 namespace camber::removal {
 namespace {
 
 Index3 first_voxel(const Index3& tile) { return {tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore}; }
 
-}  // namespace
-
-void TileArena::load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps) {
-  voxel_ = stock.voxel_mm();
-  list_tiles(stock, shape, stamps);
-  load_tiles(stock, blank);
+/// The part of a tile's upper layer that is the core of a neighbour, `up` tiles on. What the stock has there is old
+/// where the neighbour stayed.
+void copy_shared(const Tile& from, const std::array<int, 3>& up, Tile& to) {
+  const auto range = [](int up) { return up != 0 ? 1 : Tile::kCore; };
+  for (int i = 0; i < range(up[0]); ++i)
+    for (int j = 0; j < range(up[1]); ++j) {
+      const int there = Tile::offset(i, j, 0);
+      const int here = Tile::offset(i + up[0] * Tile::kCore, j + up[1] * Tile::kCore, up[2] * Tile::kCore);
+      std::copy_n(from.distance.data() + there, range(up[2]), to.distance.data() + here);
+      std::copy_n(from.stamp.data() + there, range(up[2]), to.stamp.data() + here);
+    }
 }
 
-void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps) {
+}  // namespace
+
+void TileArena::load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps,
+                     const Leave& leave) {
+  voxel_ = stock.voxel_mm();
+  list_tiles(stock, shape, stamps, leave);
+  make_room();
+  load_fresh(stock, blank);
+}
+
+void TileArena::clear(const Leave& leave) {
+  for (std::size_t t = 1; t < used_.size(); ++t)
+    if (used_[t] != 0) leave(t);
+  if (!used_.empty()) used_.resize(1), in_solid_.resize(1), index_.resize(1);
+  free_.clear();
+  fresh_.clear();
+  slots_ = {};
+}
+
+std::size_t TileArena::take_number(const Index3& index) {
+  std::size_t t = used_.size();
+  if (free_.empty()) {
+    used_.push_back(1), in_solid_.push_back(1), index_.push_back(index);
+  } else {
+    t = free_.back();
+    free_.pop_back();
+    used_[t] = 1, index_[t] = index;
+  }
+  return t;
+}
+
+void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps,
+                           const Leave& leave) {
   reached_.resize(stamps.size());
   for (auto& tiles : reached_) tiles.clear();
   const double tile_mm = Tile::kCore * voxel_, band = stock.band_mm(), reach = shape.radius_mm + band;
@@ -32,34 +70,46 @@ void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::sp
   lo -= Vec3(reach, reach, band);
   hi = Vec3(hi.x() + reach, hi.y() + reach, stock.max_mm().z() + band);
   const Vec3 bands = Vec3::Constant(band);
+  std::swap(before_, slots_);
   slots_.reset(tile_of(lo.cwiseMax(stock.min_mm() - bands), tile_mm),
                tile_of(hi.cwiseMin(stock.max_mm() + bands), tile_mm));
-  const Index3 first = slots_.first(), n = slots_.extent();
   tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
-    const Vec3& tip = stamps[k].tip_mm;
-    const Index3 from = tile_of(tip - Vec3(reach, reach, band), tile_mm),
-                 to = tile_of(tip + Vec3(reach, reach, 0), tile_mm);
-    for (int i = std::max(from[0], first[0]); i <= std::min(to[0], first[0] + n[0] - 1); ++i)
-      for (int j = std::max(from[1], first[1]); j <= std::min(to[1], first[1] + n[1] - 1); ++j)
-        for (int l = first[2] + n[2] - 1; l >= std::max(from[2], first[2]); --l) {
-          // Lower tiles are farther away.
-          if (tile_distance_mm({i, j, l}, voxel_, shape, tip) > band) break;
-          reached_[k].push_back(static_cast<std::int32_t>(slots_.place(i, j, l)));
-        }
+    for_each_tile_reached(slots_, voxel_, shape, stamps[k].tip_mm, band,
+                          [&](std::size_t place) { reached_[k].push_back(static_cast<std::int32_t>(place)); });
   });
-  // Numbers in the order of places, so that nothing depends on the number of threads.
+  constexpr std::int32_t kWanted = 0;
   auto& slot = slots_.all();
   for (const auto& places : reached_)
-    for (const std::int32_t p : places) slot[static_cast<std::size_t>(p)] = 0;
-  index_.assign(1, {});
+    for (const std::int32_t p : places) slot[static_cast<std::size_t>(p)] = kWanted;
+  std::vector<char> stays(used_.size(), 0);
+  std::vector<std::size_t> wanted;  // places
   for (std::size_t p = 0; p < slot.size(); ++p) {
-    if (slot[p] == 0 && !stock.is_air(slots_.tile_at(p))) {
-      slot[p] = static_cast<std::int32_t>(index_.size());
-      index_.push_back(slots_.tile_at(p));
+    if (slot[p] != kWanted) continue;
+    const Index3 tile = slots_.tile_at(p);
+    const std::int32_t known = before_.find(tile[0], tile[1], tile[2]);
+    if (known > 0) {
+      slot[p] = known;
+      stays[static_cast<std::size_t>(known)] = 1;
     } else {
-      slot[p] = 0;
+      wanted.push_back(p);
     }
   }
+  for (std::size_t t = 1; t < used_.size(); ++t) {
+    if (used_[t] == 0 || stays[t] != 0) continue;
+    leave(t);
+    used_[t] = 0;
+    free_.push_back(t);
+  }
+  if (used_.empty()) take_number({});  // the air
+  // In the order of places, so that nothing depends on the number of threads.
+  fresh_.clear();
+  for (const std::size_t p : wanted) {
+    const Index3 tile = slots_.tile_at(p);
+    if (stock.is_air(tile)) continue;
+    fresh_.push_back(take_number(tile));
+    slot[p] = static_cast<std::int32_t>(fresh_.back());
+  }
+  for (std::int32_t& s : slot) s = std::max(s, 0);
   tbb::parallel_for(std::size_t{0}, reached_.size(), [&](std::size_t k) {
     auto& tiles = reached_[k];
     for (std::int32_t& t : tiles) t = slot[static_cast<std::size_t>(t)];
@@ -67,28 +117,38 @@ void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::sp
   });
 }
 
-void TileArena::load_tiles(const Stock& stock, const Stock& blank) {
-  count_ = index_.size();
-  if (count_ > room_) {
-    room_ = count_ + count_ / 8;
-    tiles_.reset();
-    tiles_.reset(new Tile[room_]);
-  }
+void TileArena::make_room() {
+  if (used_.size() <= room_) return;
+  const std::size_t before = room_;
+  room_ = used_.size() + used_.size() / 8;
+  std::unique_ptr<Tile[]> tiles(new Tile[room_]);
+  std::unique_ptr<float[]> blanks(new float[room_ * Tile::kVolume]);
+  std::copy_n(tiles_.get(), before, tiles.get());
+  for (std::size_t t = 1; t < before; ++t)
+    if (const float* from = blank(t)) std::copy_n(from, Tile::kVolume, blanks.get() + t * Tile::kVolume);
+  tiles_ = std::move(tiles);
+  blanks_ = std::move(blanks);
+}
+
+void TileArena::load_fresh(const Stock& stock, const Stock& blank) {
   tiles_[0].distance.fill(static_cast<float>(stock.band_mm()));
   tiles_[0].stamp.fill(Stock::kUncut);
-  blank_.assign(count_, -1);
-  tbb::parallel_for(std::size_t{1}, count_, [&](std::size_t t) {
+  tbb::parallel_for(std::size_t{0}, fresh_.size(), [&](std::size_t i) {
+    const std::size_t t = fresh_[i];
     stock.load(index_[t], tiles_[t]);
-    blank_[t] = blank.is_solid(index_[t]) ? -1 : 0;
+    in_solid_[t] = static_cast<char>(blank.is_solid(index_[t]));
+    if (in_solid_[t] == 0) blank.read(first_voxel(index_[t]), Tile::kSide, blanks_.get() + t * Tile::kVolume, nullptr);
   });
-  std::int32_t count = 0;
-  for (std::int32_t& b : blank_)
-    if (b == 0) b = count++;
-  blanks_.resize(static_cast<std::size_t>(count) * Tile::kVolume);
-  tbb::parallel_for(std::size_t{1}, count_, [&](std::size_t t) {
-    if (blank_[t] >= 0)
-      blank.read(first_voxel(index_[t]), Tile::kSide,
-                 blanks_.data() + static_cast<std::size_t>(blank_[t]) * Tile::kVolume, nullptr);
+  std::vector<char> is_fresh(used_.size(), 0);
+  for (const std::size_t t : fresh_) is_fresh[t] = 1;
+  tbb::parallel_for(std::size_t{0}, fresh_.size(), [&](std::size_t i) {
+    const Index3& at = index_[fresh_[i]];
+    for (int c = 1; c < 8; ++c) {
+      const std::array<int, 3> up{c & 1, c >> 1 & 1, c >> 2};
+      const std::int32_t other = slots_.find(at[0] + up[0], at[1] + up[1], at[2] + up[2]);
+      if (other > 0 && is_fresh[static_cast<std::size_t>(other)] == 0)
+        copy_shared(tiles_[static_cast<std::size_t>(other)], up, tiles_[fresh_[i]]);
+    }
   });
 }
 

@@ -1,6 +1,8 @@
 #pragma once
-// Working copies of all tiles that a stretch of undeflected stamps reaches.
+// Working copies of all tiles that a stretch of undeflected stamps reaches. Rows overlap, so most tiles of a stretch
+// are those of the one before: they stay.
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -15,16 +17,23 @@ namespace camber::removal {
 
 class TileArena {
  public:
-  /// Loads what is not air, instead of what was loaded before. Tile 0 is air all over and stands for all others.
-  /// `blank`: the stock before the first stamp.
-  void load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps);
+  /// Called with the number of a tile before it is given up.
+  using Leave = std::function<void(std::size_t tile)>;
 
-  std::size_t size() const { return count_; }  ///< with tile 0
+  /// Loads what is not air and not there yet, and gives up what these stamps do not reach. Tile 0 is air all over and
+  /// stands for all others. `blank`: the stock before the first stamp.
+  void load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps,
+            const Leave& leave);
+  /// Gives up all tiles.
+  void clear(const Leave& leave);
+
+  std::size_t size() const { return used_.size(); }              ///< numbers are below it; 0 is the air
+  std::span<const std::size_t> fresh() const { return fresh_; }  ///< tiles that the last load() loaded
   const Index3& index(std::size_t tile) const { return index_[tile]; }
   Tile& operator[](std::size_t tile) { return tiles_[tile]; }
   /// Distances of the blank there; null where the blank is solid.
   const float* blank(std::size_t tile) const {
-    return blank_[tile] < 0 ? nullptr : blanks_.data() + static_cast<std::size_t>(blank_[tile]) * Tile::kVolume;
+    return in_solid_[tile] != 0 ? nullptr : blanks_.get() + tile * Tile::kVolume;
   }
   /// The tiles of stamps[k] that are not air.
   std::span<const std::int32_t> reached_by(std::size_t k) const { return reached_[k]; }
@@ -34,17 +43,21 @@ class TileArena {
   StampPlace place_of(const Stamp& stamp, double least_mm) const;
 
  private:
-  void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps);
-  void load_tiles(const Stock& stock, const Stock& blank);
+  void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const Leave& leave);
+  std::size_t take_number(const Index3& index);
+  void make_room();
+  void load_fresh(const Stock& stock, const Stock& blank);
 
   double voxel_ = 0;
-  SlotMap slots_;
+  SlotMap slots_, before_;  ///< of this stretch and of the last one
   std::vector<std::vector<std::int32_t>> reached_;
+  std::size_t room_ = 0;
+  // By number:
+  std::vector<char> used_, in_solid_;
   std::vector<Index3> index_;
-  std::size_t count_ = 0, room_ = 0;
-  std::unique_ptr<Tile[]> tiles_;  ///< not cleared
-  std::vector<std::int32_t> blank_;
-  std::vector<float> blanks_;
+  std::unique_ptr<Tile[]> tiles_;    ///< not cleared
+  std::unique_ptr<float[]> blanks_;  ///< not cleared
+  std::vector<std::size_t> fresh_, free_;
 };
 
 }  // namespace camber::removal

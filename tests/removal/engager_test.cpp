@@ -94,6 +94,36 @@ TEST(Engager, ABullNosesChipsAreThoseOfStampsOneByOne) {
   expect_the_chips_of_stamps_one_by_one(machine::ToolType::bull);
 }
 
+TEST(Engager, TilesThatStayFromStretchToStretchHoldWhatTheStockWould) {
+  EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::bull), 2.0, 0.1, kPi / 90);
+  const std::vector<Stamp> stamps = wavy_rows();
+  const Stock blank = box();
+  Stock kept = box(), stored = box();
+  Engager once(kept, blank, envelope, stamps, 0), each_time(stored, blank, envelope, stamps, 0);
+  std::vector<double> of_once(stamps.size()), of_each(stamps.size());
+  const auto volumes = [&](std::vector<double>& out, const Engager& engager) {
+    return [&](std::size_t k, std::span<const ChipBlock> chips) {
+      out[k] = chip_volume_mm3(envelope, engager.blocks(), chips);
+    };
+  };
+  double taken = 0;
+  constexpr std::size_t kStretch = 17;
+  for (std::size_t from = 0; from < stamps.size(); from += kStretch) {
+    const std::size_t count = std::min(kStretch, stamps.size() - from);
+    once.engage(from, count, [&, sink = volumes(of_once, once)](std::size_t k, auto chips) { sink(from + k, chips); });
+    each_time.engage(from, count,
+                     [&, sink = volumes(of_each, each_time)](std::size_t k, auto chips) { sink(from + k, chips); });
+    taken += each_time.commit();
+  }
+  ASSERT_GT(taken, 5);
+  EXPECT_NEAR(once.commit(), taken, 1e-9 * taken);
+  for (std::size_t k = 0; k < stamps.size(); ++k) EXPECT_NEAR(of_once[k], of_each[k], 1e-5) << k;
+  for (int x = -3; x < 75; ++x)
+    for (int y = -42; y < 42; ++y)
+      for (int z = -32; z < 3; ++z)
+        ASSERT_NEAR(kept.voxel({x, y, z}), stored.voxel({x, y, z}), 1e-6) << x << ' ' << y << ' ' << z;
+}
+
 TEST(Engager, StampsAwayFromTheStockTakeNothing) {
   EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::ball), 2.0, 0.1, kPi / 90);
   make_patches(envelope, 0.24);
@@ -131,7 +161,7 @@ TEST(BlockKernels, WideAndNarrowVectorsReadTheSame) {
   const std::vector<Stamp> stamps = wavy_rows();
   const Stock stock = box();
   TileArena arena;
-  arena.load(stock, stock, envelope.shape, stamps);
+  arena.load(stock, stock, envelope.shape, stamps, [](std::size_t) {});
   // Voxels as if stamps had cut them.
   std::mt19937 random(3);
   for (std::size_t t = 1; t < arena.size(); ++t)
