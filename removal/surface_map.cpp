@@ -192,36 +192,49 @@ class CloseStamps {
   void clear() {
     tips_ = {};
     stamps_.clear();
+    reach_mm_.clear();
   }
   void add(const Vec3& tip, const CarveBend& bend, std::int32_t id) {
     tips_.add(tip);
-    stamps_.push_back({BentEnvelope(e_, shifts_, bend, tip), static_cast<float>(bend.largest_mm + kRounding_mm), id});
+    stamps_.push_back({BentEnvelope(e_, shifts_, bend, tip), id});
+    reach_mm_.push_back(static_cast<float>(bend.largest_mm + kRounding_mm));
   }
   bool empty() const { return stamps_.empty(); }
 
   /// Lowers a point to the deepest of them.
   void mark(SurfacePoint& p) {
     distance_.resize(stamps_.size());
+    within_.resize(stamps_.size());
     measure(p);
     // The stamp that goes deepest first: most others are then too high to look at.
     const auto first =
         static_cast<std::size_t>(std::min_element(distance_.begin(), distance_.end()) - distance_.begin());
+    if (distance_[first] > reach_mm_[first] && find_within() == 0) return;
     lower(p, first);
     if (!e_.shape.general) measure(p);
-    for (std::size_t k = 0; k < stamps_.size(); ++k)
-      if (k != first) lower(p, k);
+    const std::size_t count = find_within();
+    for (std::size_t n = 0; n < count; ++n)
+      if (within_[n] != first) lower(p, within_[n]);
   }
 
  private:
   struct Bent {
     BentEnvelope envelope;
-    float reach_mm;
     std::int32_t id;
   };
 
   void measure(const SurfacePoint& p) { tips_.distances(e_.shape, p.place_mm + p.error_mm * p.normal, distance_); }
+  /// Lists the stamps that are as near as their bend reaches.
+  std::size_t find_within() {
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < distance_.size(); ++k) {
+      within_[count] = k;
+      count += distance_[k] <= reach_mm_[k] ? 1 : 0;
+    }
+    return count;
+  }
   void lower(SurfacePoint& p, std::size_t k) const {
-    if (distance_[k] > stamps_[k].reach_mm) return;
+    if (distance_[k] > reach_mm_[k]) return;
     const double h = stamps_[k].envelope.height_mm(p.place_mm, p.normal, p.error_mm);
     if (h >= p.error_mm) return;
     p.error_mm = h;
@@ -232,7 +245,8 @@ class CloseStamps {
   const ShiftTable& shifts_;
   Tips tips_;
   std::vector<Bent> stamps_;
-  std::vector<float> distance_;
+  std::vector<float> reach_mm_, distance_;
+  std::vector<std::size_t> within_;
 };
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 namespace camber::report {
 namespace {
@@ -47,20 +49,48 @@ std::array<Cell, 4> cells_around(const Crossing& c, std::int32_t factor) {
   return out;
 }
 
-void keep_each_once(std::vector<Cell>& cells) {
+constexpr std::uint64_t kNoCell = ~std::uint64_t{0};
+
+/// Cells as numbers in the order of their coordinates: 21 bits each, from the lowest cell on.
+class CellKeys {
+ public:
+  CellKeys(const std::vector<Crossing>& crossings, std::int32_t factor) : factor_(factor) {
+    Cell lo = crossings.front().edge;
+    for (const Crossing& c : crossings)
+      for (std::size_t a = 0; a < 3; ++a) lo[a] = std::min(lo[a], c.edge[a]);
+    for (std::size_t a = 0; a < 3; ++a) lowest_[a] = floor_share(lo[a] - 1, factor);
+  }
+  /// Of the cells around an edge.
+  std::array<std::uint64_t, 4> around(const Crossing& c) const {
+    std::array<std::uint64_t, 4> out{};
+    const auto cells = cells_around(c, factor_);
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t a = 0; a < 3; ++a)
+        out[i] = out[i] << 21 | static_cast<std::uint64_t>(static_cast<std::uint32_t>(cells[i][a] - lowest_[a]));
+    return out;
+  }
+
+ private:
+  std::int32_t factor_;
+  Cell lowest_{};
+};
+
+void keep_each_once(std::vector<std::uint64_t>& cells) {
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
 }
 
-std::vector<Cell> all_cells(const std::vector<Crossing>& crossings, std::int32_t factor) {
+std::vector<std::uint64_t> all_cells(const std::vector<Crossing>& crossings, const CellKeys& keys) {
   constexpr std::size_t kRoom = 1 << 16;
-  std::vector<Cell> cells;
+  std::vector<std::uint64_t> cells;
   std::size_t full = kRoom;  // each cell is met many times
+  std::array<std::uint64_t, 4> before;
+  before.fill(kNoCell);
   for (const auto& c : crossings) {
-    const auto around = cells_around(c, factor);
-    for (auto cell = around.begin(); cell != around.end(); ++cell)
-      if (std::find(around.begin(), cell, *cell) == cell && (cells.empty() || cells.back() != *cell))
-        cells.push_back(*cell);
+    const auto around = keys.around(c);
+    for (const std::uint64_t cell : around)
+      if (std::find(before.begin(), before.end(), cell) == before.end()) cells.push_back(cell);
+    before = around;
     if (cells.size() < full) continue;
     keep_each_once(cells);
     full = std::max(kRoom, 2 * cells.size());
@@ -68,6 +98,24 @@ std::vector<Cell> all_cells(const std::vector<Crossing>& crossings, std::int32_t
   keep_each_once(cells);
   return cells;
 }
+
+/// Where cells stand in a list in order. Points come tile by tile, so most were asked for a moment ago.
+class CellFinder {
+ public:
+  explicit CellFinder(const std::vector<std::uint64_t>& cells) : cells_(cells) {}
+  std::size_t find(std::uint64_t cell) {
+    auto& [known, at] = recent_[cell * 0x9e3779b97f4a7c15u >> 52];
+    if (known != cell) {
+      known = cell;
+      at = static_cast<std::size_t>(std::lower_bound(cells_.begin(), cells_.end(), cell) - cells_.begin());
+    }
+    return at;
+  }
+
+ private:
+  const std::vector<std::uint64_t>& cells_;
+  std::vector<std::pair<std::uint64_t, std::size_t>> recent_ = std::vector(4096, std::pair(kNoCell, std::size_t{0}));
+};
 
 void add_to(SurfaceSample& vertex, const SurfaceSample& s, bool first) {
   vertex.place_mm += s.place_mm;
@@ -105,11 +153,11 @@ SurfaceMesh surface_mesh(const SurfaceSamples& samples, double grid_mm, std::siz
   const auto most = static_cast<double>(std::max<std::size_t>(1, most_vertices));
   const double crossed = static_cast<double>(crossings.size());
   auto factor = std::max(std::int32_t{1}, static_cast<std::int32_t>(std::sqrt(kFewest * crossed / most)));
-  std::vector<Cell> cells = all_cells(crossings, factor);
+  std::vector<std::uint64_t> cells = all_cells(crossings, {crossings, factor});
   while (static_cast<double>(cells.size()) > most) {
     const double over = std::sqrt(static_cast<double>(cells.size()) / most);
     factor = std::max(factor + 1, static_cast<std::int32_t>(std::floor(factor * over)));
-    cells = all_cells(crossings, factor);
+    cells = all_cells(crossings, {crossings, factor});
   }
 
   mesh.cell_mm = factor * grid_mm;
@@ -117,12 +165,14 @@ SurfaceMesh surface_mesh(const SurfaceSamples& samples, double grid_mm, std::siz
   nothing.normal = Vec3::Zero();
   mesh.vertices.assign(cells.size(), nothing);
   std::vector<std::uint32_t> points(cells.size(), 0);
+  const CellKeys keys(crossings, factor);
+  CellFinder finder(cells);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     std::array<std::uint32_t, 4> quad{};
     const SurfaceSample sample = samples[i];
-    const auto around = cells_around(crossings[i], factor);
+    const auto around = keys.around(crossings[i]);
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto v = static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), around[k]) - cells.begin());
+      const std::size_t v = finder.find(around[k]);
       quad[k] = static_cast<std::uint32_t>(v);
       if (std::find(quad.begin(), quad.begin() + static_cast<std::ptrdiff_t>(k), quad[k]) !=
           quad.begin() + static_cast<std::ptrdiff_t>(k))
