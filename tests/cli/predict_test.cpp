@@ -59,7 +59,8 @@ TEST(Predict, GivesTheSameBytesOnOneAndTwoThreads) {
   write_job(folder);
   ASSERT_EQ(run_camber(folder, "--threads 1 predict job.toml -o one").status, 0);
   ASSERT_EQ(run_camber(folder, "--threads 2 predict job.toml -o two").status, 0);
-  for (const std::string name : {"feed.csv", "forces.csv", "form_error.csv", "form_error.vtp", "report.html"})
+  for (const std::string name : {"feed.csv", "forces.csv", "form_error.csv", "form_error.vtp", "form_error.ply",
+                                 "stock.vdb", "report.html"})
     EXPECT_EQ(tests::file_text(folder / ("one/" + name)), tests::file_text(folder / ("two/" + name))) << name;
 }
 
