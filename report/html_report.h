@@ -37,6 +37,10 @@ struct ReportData {
   SurfaceSamples surface;
   bool compared = false;      ///< the surface's error_after_um and block_after count
   double voxel_mm = 0.1;      ///< of the grid that the surface's points lie on
+  /// The stock around the machined surface, drawn in grey; on the lines of a grid of stock_cell_mm. Only places and
+  /// normals count.
+  SurfaceSamples stock;
+  double stock_cell_mm = 0;
   std::vector<PathRun> path;  ///< none, one, or before and after
   std::vector<TextTable> tables;
   std::vector<std::string> warnings;
