@@ -52,6 +52,27 @@ TEST(CommandLine, SaysBeforeTheWorkThatAnOutputCannotBeWritten) {
   EXPECT_EQ(run.err, "nowhere/feed.csv: error: cannot be written: there is no folder nowhere [file-unwritable]\n");
 }
 
+TEST(CommandLine, SaysBeforeTheWorkWhatElseStandsInTheWayOfAnOutput) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "folder");
+  folder.write("p.nc", "G1\n");
+  const auto said = [&](const std::string& arguments) {
+    const auto run = run_camber(folder, arguments);
+    EXPECT_EQ(run.status, 1);
+    return run.err;
+  };
+  EXPECT_EQ(said("feed p.nc --machine m.toml -o folder"),
+            "folder: error: cannot be written: it is a folder; the name of a file was expected [file-unwritable]\n");
+  EXPECT_EQ(said("feed p.nc --machine m.toml -o a.csv --json ./a.csv"),
+            "./a.csv: error: is to be written twice; another name was expected [output-twice]\n");
+  EXPECT_EQ(said("predict job.toml -o p.nc/out"), "p.nc/out: error: cannot be made a folder: " + (folder / "p.nc") +
+                                                      " is a file [file-unwritable]\n");
+  std::filesystem::permissions(folder / "p.nc", std::filesystem::perms{0444});
+  EXPECT_EQ(said("feed q.nc --machine m.toml -o p.nc"),
+            "p.nc: error: cannot be written: the file there is write-protected [file-unwritable]\n");
+  EXPECT_EQ(tests::file_text(folder / "p.nc"), "G1\n");
+}
+
 TEST(CommandLine, PrintsTheEffectiveConfigurationAsAFileThatCanBeRead) {
   const TempFolder folder;
   folder.write("m.toml", "[axis.x]\nmax_velocity_mm_per_min = 9000\n");
@@ -82,6 +103,7 @@ TEST(Progress, TellsShareAndTimeLeft) {
   EXPECT_EQ(cli::progress_text("cutting", 0.02, 10), "  2 % [........................] cutting");
   EXPECT_EQ(cli::progress_text("cutting", 0.25, 10), " 25 % [######..................] cutting, 30 s left");
   EXPECT_EQ(cli::progress_text("round 2", 0.1, 60), " 10 % [##......................] round 2, 9 min left");
+  EXPECT_EQ(cli::progress_text("fitting", std::nullopt, 12), "fitting, 12 s so far");
   EXPECT_EQ(cli::progress_text("round 2", 1.2, 60), "100 % [########################] round 2, 0 s left");
 }
 
