@@ -16,8 +16,8 @@ bool is_full_turn(const nc::Arc& arc) { return std::abs(std::abs(arc.sweep_rad) 
 
 constexpr int kPiecesOfFullTurn = 3;
 
-/// Pieces of an arc that stays one: as many as it takes to tell its radius.
-int fewest_pieces(const nc::Interpretation& program, const nc::Move& move) {
+/// Pieces of a move that is not split: of an arc as many as it takes to tell its radius.
+int pieces_of_whole(const nc::Interpretation& program, const nc::Move& move) {
   if (move.kind != nc::MoveKind::arc) return 1;
   return is_full_turn(program.arcs[move.arc]) ? kPiecesOfFullTurn : 2;
 }
@@ -51,9 +51,9 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
     if (!move.editable) points_.back().fixed = true;
     const double along = points_.back().along_mm;
     const bool several_turns = move.kind == nc::MoveKind::arc && std::abs(program.arcs[move.arc].sweep_rad) > 6.4;
-    const int pieces = several_turns ? 1
-                                     : std::max(fewest_pieces(program, move),
-                                                pieces_of(length, spacing_mm, move.feed_mm_per_s * block_time_s));
+    const int pieces = several_turns           ? 1
+                       : std::isinf(spacing_mm) ? pieces_of_whole(program, move)
+                                                : pieces_of(length, spacing_mm, move.feed_mm_per_s * block_time_s);
     for (int i = 1; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
       points_.push_back({.move = m,
@@ -128,6 +128,7 @@ Vec3 agreeing_centre(const nc::Arc& arc, const Vec3& start, const Vec3& end, con
 
 namespace {
 
+constexpr double kNearHalfTurn = 0.35;  // rad; beyond it a last decimal of R is under six of the centre's
 constexpr double kMostSweep = 5.5;  // rad, of one piece of an arc that is not shifted evenly
 
 /// Centre of the circle through three points in the plane across `normal`; nothing where they lie on a line.
@@ -202,15 +203,32 @@ void ShiftPath::edit_arc(std::size_t first, std::size_t last, double tolerance_m
   for (std::size_t i = first; i < last; ++i)
     evenly = evenly && (points_[i + 1].shift_mm - points_[i].shift_mm).norm() < 1e-9;
   const std::size_t end = shifted.size() - 1;
+  // R tells the centre of half a turn only to a square root: a last decimal of R moves it by hundreds of them.
+  const auto can_be_said = [&](std::size_t a, std::size_t b) {
+    return !arc.by_radius || b == a + 1 || std::abs(static_cast<double>(b - a) * step_rad - kPi) >= kNearHalfTurn;
+  };
+  const auto centre_of = [&](std::size_t a, std::size_t b) -> std::optional<Vec3> {
+    if (!can_be_said(a, b)) return std::nullopt;
+    return evenly ? std::optional<Vec3>(arc.center_mm + points_[first].shift_mm) : piece(a, b);
+  };
   if (!evenly && is_full_turn(arc))
     if (const auto centre = full_turn_centre(arc, shifted, tolerance_mm)) {
       edit.center_mm = *centre;
       return;
     }
+  if (!can_be_said(0, end)) {
+    const auto centre = evenly ? std::optional<Vec3>(arc.center_mm + points_[first].shift_mm) : piece(0, end);
+    if (centre) {  // two pieces of one circle
+      edit.via_mm.push_back(shifted[end / 2]);
+      edit.via_center_mm.push_back(*centre);
+      edit.center_mm = *centre;
+      return;
+    }
+  }
   for (std::size_t a = 0; a < end;) {
     std::size_t b = evenly ? end : std::min(a + most, end);
     std::optional<Vec3> centre;
-    while (!(centre = evenly ? std::optional<Vec3>(arc.center_mm + points_[first].shift_mm) : piece(a, b))) --b;
+    while (!(centre = centre_of(a, b))) --b;
     if (b == end) {
       edit.center_mm = *centre;
     } else {

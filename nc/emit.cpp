@@ -378,9 +378,6 @@ class Emitter {
       at_ = move.end_mm;
       return;
     }
-    std::optional<MoveEdit> halved;
-    if (wanted.by_radius) halved = without_half_turns(move, edit, wanted, axes);
-    if (halved) edit = &*halved;
     if (edit && !edit->via_mm.empty()) {
       for (int more = 0; more <= kMoreDecimals; ++more)
         if (write_arc_pieces(move, *edit, wanted, more)) return;
@@ -444,42 +441,6 @@ class Emitter {
     while (sweep * like <= 0) sweep += like > 0 ? 2 * kPi : -2 * kPi;
     while (std::abs(sweep) > 2 * kPi) sweep -= like > 0 ? 2 * kPi : -2 * kPi;
     return sweep;
-  }
-
-  /// R tells the centre of half a turn badly: there a last decimal of R moves it by hundreds of them. An edit in which
-  /// such pieces are two; nothing where there are none.
-  std::optional<MoveEdit> without_half_turns(const Move& move, const MoveEdit* edit, const WantedArc& whole,
-                                             const PlaneAxes& axes) const {
-    constexpr double kNearHalf = 0.35;  // rad; beyond it a last decimal of R is under six of the centre's
-    MoveEdit out;
-    out.move = static_cast<std::uint32_t>(&move - moves_.moves.data());
-    out.end_mm = whole.end_mm;
-    out.center_mm = whole.center_mm;
-    const std::size_t pieces = edit ? edit->via_mm.size() + 1 : 1;
-    Vec3 start = at_;
-    for (std::size_t i = 0; i < pieces; ++i) {
-      const bool last = i + 1 == pieces;
-      const Vec3 end = last ? whole.end_mm : edit->via_mm[i], centre = last ? whole.center_mm : edit->via_center_mm[i];
-      const double sweep = sweep_about(centre, start, end, axes, whole.sweep_rad);
-      if (std::abs(std::abs(sweep) - kPi) < kNearHalf) {
-        Vec3 middle = 0.5 * (start + end);
-        const double angle = 0.5 * sweep, x = start[axes.first] - centre[axes.first],
-                     y = start[axes.second] - centre[axes.second];
-        const double reach = std::hypot(end[axes.first] - centre[axes.first], end[axes.second] - centre[axes.second]);
-        const double radius = 0.5 * (1 + reach / std::hypot(x, y));
-        middle[axes.first] = centre[axes.first] + radius * (x * std::cos(angle) - y * std::sin(angle));
-        middle[axes.second] = centre[axes.second] + radius * (x * std::sin(angle) + y * std::cos(angle));
-        out.via_mm.push_back(middle);
-        out.via_center_mm.push_back(centre);
-      }
-      if (!last) {
-        out.via_mm.push_back(end);
-        out.via_center_mm.push_back(centre);
-      }
-      start = end;
-    }
-    if (out.via_mm.size() + 1 == pieces) return std::nullopt;
-    return out;
   }
 
   /// Several arcs in place of one; false, and nothing is written, where the words of one of them do not close.

@@ -1,4 +1,7 @@
 // Options, exit status and what is said about a wrong command line.
+#include <filesystem>
+#include <sstream>
+
 #include <gtest/gtest.h>
 
 #include "cli/console.h"
@@ -82,6 +85,18 @@ TEST(CommandLine, PrintsTheEffectiveConfigurationAsAFileThatCanBeRead) {
   EXPECT_NE(run.out.find("acceleration_mm_per_s2 = inf\n"), std::string::npos);
   folder.write("again.toml", run.out);
   EXPECT_EQ(run_camber(folder, "feed p.nc --machine again.toml --effective-config").status, 0);
+}
+
+TEST(CommandLine, CheckFitsEightyColumns) {
+  const TempFolder folder;
+  folder.write("p.nc",
+               "G21 G90 G17 G40 G80 G54\nT124 M6\nS10500 M3\nG0 X-1183.959 Y-1115.38 Z125.4\nG1 Z-164.671 F330.2\n"
+               "X1210.78 Y1175.12 F13810.5\nS12000\nG81 X1. Y1. Z-160. R130. F100.\nG80\nG28 Z130.\nM30\n");
+  const auto run = run_camber(folder, "check p.nc");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("of them to or from the reference point"), std::string::npos) << run.out;
+  std::istringstream lines(run.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << line;
 }
 
 TEST(CommandLine, PutsNoColourInAPipe) {
