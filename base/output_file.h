@@ -7,9 +7,9 @@
 namespace camber {
 
 /// Opens `path` + ".part"; commit() flushes and renames it to `path`. Without commit() the part is removed
-/// and an older file at `path` stays as it was; a newer one takes over its permissions. Where `path` is a symbolic link,
-/// what it points to is written. What is no regular file (/dev/stdout, a pipe) is written as it goes.
-/// Throws InputError [file-unwritable].
+/// and an older file at `path` stays as it was; a newer one takes over its permissions. Where `path` is a symbolic
+/// link, what it points to is written. What is no regular file (/dev/stdout, a pipe) is written as it goes. Throws
+/// InputError [file-unwritable].
 class OutputFile {
  public:
   explicit OutputFile(std::string path);

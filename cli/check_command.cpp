@@ -51,7 +51,8 @@ std::string extents_text(const nc::Extents& e) {
 std::string tool_table(const std::vector<nc::ToolUse>& tools) {
   if (tools.empty()) return {};
   constexpr const char* kRow = "{:>4} {:>6} {:>6} {:>16} {:>14} {:>9} {}\n";
-  std::string out = "\n" + fmt::format(kRow, "tool", "line", "moves", "feed mm/min", "spindle rpm", "cut mm", "cut Z mm");
+  std::string out =
+      "\n" + fmt::format(kRow, "tool", "line", "moves", "feed mm/min", "spindle rpm", "cut mm", "cut Z mm");
   for (const auto& t : tools) {
     const std::string z =
         t.cutting.empty() ? "-" : fmt::format("{:.2f} to {:.2f}", t.cutting.min_mm.z(), t.cutting.max_mm.z());

@@ -169,8 +169,7 @@ std::string fish_script(const Command& all, const std::vector<Command>& commands
   for (const auto& c : commands) {
     const std::string when = "__fish_seen_subcommand_from " + c.name;
     for (const Choice& choice : c.choices) out += fish_option(when, choice);
-    if (!c.values.empty())
-      out += fmt::format("complete -c camber -f -n {} -a {}\n", quoted(when), quoted(c.values));
+    if (!c.values.empty()) out += fmt::format("complete -c camber -f -n {} -a {}\n", quoted(when), quoted(c.values));
   }
   return out;
 }

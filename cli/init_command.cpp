@@ -69,8 +69,9 @@ void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chose
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   command->add_option("-o,--output", arguments->output, "the new job file")->required()->type_name("job.toml");
   command
-      ->add_option("--tools", arguments->tools,
-                   "LinuxCNC's tool table, or a tool library of Fusion (.json, .tools) or HSMWorks (.hsmlib); may be repeated")
+      ->add_option(
+          "--tools", arguments->tools,
+          "LinuxCNC's tool table, or a tool library of Fusion (.json, .tools) or HSMWorks (.hsmlib); may be repeated")
       ->expected(1)
       ->take_all()
       ->type_name("FILE");

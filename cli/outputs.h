@@ -18,8 +18,8 @@ void check_output_folder(const std::string& path);
 /// Makes it where it is not there. Throws InputError [file-unwritable].
 void make_folder(const std::string& path);
 
-/// Runs `write` and adds to `failed` what it could not write: when a disk is full, what still can be written is, and the
-/// figures are printed.
+/// Runs `write` and adds to `failed` what it could not write: when a disk is full, what still can be written is, and
+/// the figures are printed.
 void try_to_write(const std::function<void()>& write, Diagnostics& failed);
 
 }  // namespace camber::cli

@@ -18,7 +18,8 @@ constexpr double kLeastShareForTime = 0.05;
 constexpr int kBarWidth = 24;
 
 std::string time_text(double seconds, const char* what) {
-  return seconds < 100 ? fmt::format(", {:.0f} s {}", seconds, what) : fmt::format(", {:.0f} min {}", seconds / 60, what);
+  return seconds < 100 ? fmt::format(", {:.0f} s {}", seconds, what)
+                       : fmt::format(", {:.0f} min {}", seconds / 60, what);
 }
 
 }  // namespace

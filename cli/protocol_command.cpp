@@ -21,7 +21,8 @@ int run_protocol(const ProtocolArguments& arguments, const GlobalOptions& option
   for (const calib::ProtocolProgram& program : calib::protocol_programs(machine)) {
     write_file(fs::path(arguments.folder) / program.name, program.text);
     if (!program.parts.empty())
-      write_file(fs::path(arguments.folder) / fs::path(program.name).replace_extension(".parts.csv"), calib::parts_csv(program));
+      write_file(fs::path(arguments.folder) / fs::path(program.name).replace_extension(".parts.csv"),
+                 calib::parts_csv(program));
     if (!options.quiet) fmt::print("{:<18} {:>4} parts: {}\n", program.name, program.parts.size(), program.tells);
   }
   if (!options.quiet)

@@ -50,7 +50,7 @@ struct Compensation {
   double max_shift_mm = 0;
   std::vector<removal::SurfacePoint> surface_before, surface_after;  ///< the same points, in the same order
   std::vector<deflection::StampLoad> loads_before, loads_after;      ///< of the given and of the emitted program
-  removal::StockShape stock;  ///< what the target program leaves, for a picture
+  removal::StockShape stock;                                         ///< what the target program leaves, for a picture
   feedmodel::FeedSummary feed_before, feed_after;
   bool settled = true;  ///< every static solution of the first and the best round did
   Finishing finishing;

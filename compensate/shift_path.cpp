@@ -51,7 +51,7 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
     if (!move.editable) points_.back().fixed = true;
     const double along = points_.back().along_mm;
     const bool several_turns = move.kind == nc::MoveKind::arc && std::abs(program.arcs[move.arc].sweep_rad) > 6.4;
-    const int pieces = several_turns           ? 1
+    const int pieces = several_turns            ? 1
                        : std::isinf(spacing_mm) ? pieces_of_whole(program, move)
                                                 : pieces_of(length, spacing_mm, move.feed_mm_per_s * block_time_s);
     for (int i = 1; i <= pieces; ++i) {
@@ -129,7 +129,7 @@ Vec3 agreeing_centre(const nc::Arc& arc, const Vec3& start, const Vec3& end, con
 namespace {
 
 constexpr double kNearHalfTurn = 0.35;  // rad; beyond it a last decimal of R is under six of the centre's
-constexpr double kMostSweep = 5.5;  // rad, of one piece of an arc that is not shifted evenly
+constexpr double kMostSweep = 5.5;      // rad, of one piece of an arc that is not shifted evenly
 
 /// Centre of the circle through three points in the plane across `normal`; nothing where they lie on a line.
 std::optional<Vec3> circle_centre(const Vec3& normal, const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -326,7 +326,8 @@ std::size_t Stock::memory_bytes() const { return impl_->distance->memUsage() + i
 
 namespace {
 
-/// The format has a random identifier behind magic number, three versions and a flag; ours is the same for the same stock.
+/// The format has a random identifier behind magic number, three versions and a flag; ours is the same for the same
+/// stock.
 constexpr std::streamoff kIdentifierAt = 8 + 3 * 4 + 1;
 constexpr const char* kIdentifier = "00000000-0000-0000-0000-000000000000";
 

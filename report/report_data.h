@@ -22,8 +22,7 @@ constexpr std::size_t kMostStockCrossings = 12000;
 /// Program and prediction must outlive what comes back.
 ReportData predict_report(const machine::Job& job, const deflection::MachinedProgram& program,
                           const deflection::Prediction& prediction, const removal::StockShape& stock,
-                          std::vector<PathRow> rows,
-                          const Diagnostics& diagnostics);
+                          std::vector<PathRow> rows, const Diagnostics& diagnostics);
 
 /// One of the two programs of a compensation.
 struct CompensatedRun {

@@ -82,7 +82,6 @@ TEST(OutputFile, AFullDiskKeepsTheOldFile) {
   EXPECT_FALSE(std::filesystem::is_symlink(path + ".part"));
 }
 
-
 TEST(OutputFile, WritesWhatALinkPointsTo) {
   const tests::TempFolder folder;
   const std::string real = folder.write("real.txt", "OLD"), link = folder / "link.txt";
@@ -136,8 +135,8 @@ TEST(RequireWritable, SaysWhatStandsInTheWay) {
   EXPECT_EQ(refusal(inside),
             inside + ": error: cannot be written: it is a folder; the name of a file was expected [file-unwritable]");
   const std::string far = folder / "nowhere/a.txt";
-  EXPECT_EQ(refusal(far), far + ": error: cannot be written: there is no folder " + (folder / "nowhere") +
-                              " [file-unwritable]");
+  EXPECT_EQ(refusal(far),
+            far + ": error: cannot be written: there is no folder " + (folder / "nowhere") + " [file-unwritable]");
   std::filesystem::permissions(path, std::filesystem::perms{0444});
   EXPECT_EQ(refusal(path), path + ": error: cannot be written: the file there is write-protected [file-unwritable]");
   EXPECT_EQ(tests::file_text(path), "OLD");

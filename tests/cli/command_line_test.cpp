@@ -68,8 +68,8 @@ TEST(CommandLine, SaysBeforeTheWorkWhatElseStandsInTheWayOfAnOutput) {
             "folder: error: cannot be written: it is a folder; the name of a file was expected [file-unwritable]\n");
   EXPECT_EQ(said("feed p.nc --machine m.toml -o a.csv --json ./a.csv"),
             "./a.csv: error: is to be written twice; another name was expected [output-twice]\n");
-  EXPECT_EQ(said("predict job.toml -o p.nc/out"), "p.nc/out: error: cannot be made a folder: " + (folder / "p.nc") +
-                                                      " is a file [file-unwritable]\n");
+  EXPECT_EQ(said("predict job.toml -o p.nc/out"),
+            "p.nc/out: error: cannot be made a folder: " + (folder / "p.nc") + " is a file [file-unwritable]\n");
   std::filesystem::permissions(folder / "p.nc", std::filesystem::perms{0444});
   EXPECT_EQ(said("feed q.nc --machine m.toml -o p.nc"),
             "p.nc: error: cannot be written: the file there is write-protected [file-unwritable]\n");

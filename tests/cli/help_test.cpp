@@ -71,8 +71,9 @@ TEST(Completion, OffersCommandsOptionsAndValues) {
 
 /// What fish offers for a line that is being typed: words without their descriptions.
 std::string offered_by_fish(const TempFolder& folder, const std::string& line) {
-  const std::string command = "cd '" + folder.path() + "' && HOME=. fish --no-config -c 'source ./completion; complete -C \"" +
-                              line + "\"' 2>&1 | cut -f1 | sort | tr '\\n' ' ' > offered";
+  const std::string command = "cd '" + folder.path() +
+                              "' && HOME=. fish --no-config -c 'source ./completion; complete -C \"" + line +
+                              "\"' 2>&1 | cut -f1 | sort | tr '\\n' ' ' > offered";
   EXPECT_EQ(std::system(command.c_str()), 0);
   return tests::file_text(folder / "offered");
 }
@@ -117,8 +118,8 @@ TEST(Install, PutsProgramDocumentsSamplesAndCompletionInPlace) {
   ASSERT_EQ(std::system(command.c_str()), 0) << tests::file_text(folder / "log");
   for (const char* name :
        {"bin/camber", "share/doc/camber/LICENSE", "share/doc/camber/README.md", "share/doc/camber/docs/report.md",
-        "share/camber/samples/01-finishing/job.toml", "share/bash-completion/completions/camber", "share/zsh/site-functions/_camber",
-        "share/fish/vendor_completions.d/camber.fish"})
+        "share/camber/samples/01-finishing/job.toml", "share/bash-completion/completions/camber",
+        "share/zsh/site-functions/_camber", "share/fish/vendor_completions.d/camber.fish"})
     EXPECT_TRUE(std::filesystem::is_regular_file(folder / ("usr/" + std::string(name)))) << name;
   EXPECT_FALSE(std::filesystem::exists(folder / "usr/share/doc/camber/docs/changes"));
   EXPECT_EQ(std::system(("'" + (folder / "usr/bin/camber") + "' --version > /dev/null").c_str()), 0);
