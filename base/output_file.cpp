@@ -7,6 +7,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include <pthread.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/diagnostics.h"
@@ -14,6 +16,29 @@
 namespace camber {
 
 namespace {
+
+namespace fs = std::filesystem;
+
+/// A device or a pipe: there is nothing that a rename could put in its place.
+bool is_special(const fs::path& place) {
+  std::error_code ec;
+  const fs::file_status status = fs::status(place, ec);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+/// Where a chain of symbolic links ends, whether that is there or not; `path` itself where it is none.
+std::string behind_links(const std::string& path) {
+  if (is_special(path)) return path;  // /dev/stdout is a link to what has no name
+  constexpr int kMostLinks = 40;      // as the system itself follows
+  std::error_code ec;
+  fs::path at = path;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(at, ec); ++i) {
+    const fs::path next = fs::read_symlink(at, ec);
+    if (ec) break;
+    at = next.is_absolute() ? next : at.parent_path() / next;
+  }
+  return at.string();
+}
 
 /// Names of unfinished parts where a signal handler may read them: fixed memory, no locks.
 constexpr int kSlots = 32;
@@ -41,7 +66,38 @@ void leave(int slot) {
   if (slot >= 0) slots[static_cast<std::size_t>(slot)].state = 0;
 }
 
+constexpr std::array kEndingSignals{SIGINT, SIGTERM, SIGHUP};
+std::atomic<bool> ending{false};  ///< a signal ends the process: no part is opened any more
+std::atomic<int> opening{0};      ///< threads between asking that and having the part on the disk
+
+/// While it lives no signal cuts this thread off, and one that another thread gets waits for it.
+class Opening {
+ public:
+  Opening() {
+    sigset_t blocked;
+    sigemptyset(&blocked);
+    for (const int signal : kEndingSignals) sigaddset(&blocked, signal);
+    pthread_sigmask(SIG_BLOCK, &blocked, &before_);
+    ++opening;
+    if (!ending) return;
+    --opening;
+    for (;;) pause();
+  }
+  ~Opening() {
+    --opening;
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  Opening(const Opening&) = delete;
+  Opening& operator=(const Opening&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
 extern "C" void remove_parts(int signal) {
+  ending = true;
+  constexpr timespec kMillisecond{0, 1'000'000};
+  for (int i = 0; i < 2000 && opening > 0; ++i) nanosleep(&kMillisecond, nullptr);  // a disk may hang
   for (Slot& slot : slots)
     if (slot.state == 2) unlink(slot.path);
   std::signal(signal, SIG_DFL);
@@ -51,7 +107,7 @@ extern "C" void remove_parts(int signal) {
 }  // namespace
 
 void remove_parts_on_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int signal : kEndingSignals) {
     struct sigaction action {};
     sigaction(signal, nullptr, &action);
     if (action.sa_handler == SIG_IGN) continue;  // nohup
@@ -63,12 +119,18 @@ void remove_parts_on_signals() {
   std::signal(SIGXFSZ, SIG_IGN);  // a limit of the file size is a failed write, as a full disk
 }
 
-OutputFile::OutputFile(std::string path) : path_(std::move(path)), part_path_(path_ + ".part") {
-  slot_ = enter(part_path_);
-  errno = 0;
-  stream_.open(part_path_, std::ios::binary | std::ios::trunc);
+OutputFile::OutputFile(std::string path) : path_(std::move(path)), place_(behind_links(path_)) {
+  const bool direct = is_special(place_);
+  part_path_ = direct ? place_ : place_ + ".part";
+  int reason = 0;
+  {
+    const Opening guard;
+    if (!direct) slot_ = enter(part_path_);
+    errno = 0;
+    stream_.open(part_path_, std::ios::binary | std::ios::trunc);
+    reason = errno;
+  }
   if (stream_) return;
-  const int reason = errno;
   leave(slot_);
   fail_on_file(path_, std::string("cannot be written: ") + std::strerror(reason), "file-unwritable");
 }
@@ -76,8 +138,9 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), part_path_(pa
 OutputFile::~OutputFile() {
   if (committed_) return;
   stream_.close();
+  if (part_path_ == place_) return;
   std::error_code ec;
-  std::filesystem::remove(part_path_, ec);
+  fs::remove(part_path_, ec);
   leave(slot_);
 }
 
@@ -85,10 +148,37 @@ void OutputFile::commit() {
   stream_.close();
   if (stream_.fail()) fail_on_file(path_, "could not be written to its end (is the disk full?)", "file-unwritable");
   std::error_code ec;
-  std::filesystem::rename(part_path_, path_, ec);
-  if (ec) fail_on_file(path_, "cannot be written: " + ec.message(), "file-unwritable");
+  if (part_path_ != place_) {
+    const fs::file_status old = fs::status(place_, ec);
+    if (fs::is_regular_file(old)) fs::permissions(part_path_, old.permissions(), ec);
+    fs::rename(part_path_, place_, ec);
+    if (ec) fail_on_file(path_, "cannot be written: " + ec.message(), "file-unwritable");
+  }
   committed_ = true;
   leave(slot_);
+}
+
+void require_writable(const std::string& path) {
+  if (path.empty()) return;
+  const auto refuse = [&](const std::string& why) {
+    fail_on_file(path, "cannot be written: " + why, "file-unwritable");
+  };
+  std::error_code ec;
+  const fs::path place = behind_links(path);
+  const fs::path folder = place.has_parent_path() ? place.parent_path() : ".";
+  const fs::file_status there = fs::status(place, ec);
+  if (fs::is_directory(there)) refuse("it is a folder; the name of a file was expected");
+  if (!fs::is_directory(folder, ec)) refuse("there is no folder " + folder.string());
+  if (is_special(place)) {
+    if (access(place.c_str(), W_OK) != 0) refuse(std::strerror(errno));
+    return;
+  }
+  // Root may write where the permissions say no; a file that its owner protected is meant to stay all the same.
+  constexpr auto kAnyWrite = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  if (fs::exists(there) && ((there.permissions() & kAnyWrite) == fs::perms::none || access(place.c_str(), W_OK) != 0))
+    refuse("the file there is write-protected");
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    refuse("in the folder " + folder.string() + " nothing can be written: " + std::strerror(errno));
 }
 
 void write_file(const std::string& path, std::string_view content) {

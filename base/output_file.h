@@ -7,7 +7,9 @@
 namespace camber {
 
 /// Opens `path` + ".part"; commit() flushes and renames it to `path`. Without commit() the part is removed
-/// and an older file at `path` stays as it was. Throws InputError [file-unwritable].
+/// and an older file at `path` stays as it was; a newer one takes over its permissions. Where `path` is a symbolic
+/// link, what it points to is written. What is no regular file (/dev/stdout, a pipe) is written as it goes. Throws
+/// InputError [file-unwritable].
 class OutputFile {
  public:
   explicit OutputFile(std::string path);
@@ -16,12 +18,13 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   std::ofstream& stream() { return stream_; }
-  /// Where the unfinished file stands, for writers that open files by name.
-  const std::string& part_path() const { return part_path_; }
+  /// Throws where not everything could be written.
   void commit();
 
  private:
-  std::string path_, part_path_;
+  std::string path_;       ///< as the user says it
+  std::string place_;      ///< behind symbolic links
+  std::string part_path_;  ///< as place_ where that is no regular file
   std::ofstream stream_;
   bool committed_ = false;
   int slot_ = -1;  ///< among the parts that a signal removes
@@ -29,6 +32,11 @@ class OutputFile {
 
 /// From now on SIGINT, SIGTERM and SIGHUP remove the parts of files that are not whole before they end the process.
 void remove_parts_on_signals();
+
+/// Says before the work what stands in the way of OutputFile(path): a folder that is not there or may not be written
+/// in, a folder in the file's place, a file that is write-protected. An empty path is fine.
+/// Throws InputError [file-unwritable].
+void require_writable(const std::string& path);
 
 /// The whole of a small file at once.
 void write_file(const std::string& path, std::string_view content);

@@ -44,20 +44,20 @@ std::string extents_text(const nc::Extents& e) {
   if (e.empty()) return "none";
   std::string out;
   for (int axis = 0; axis < 3; ++axis)
-    out += fmt::format("{}{} {:.3f} to {:.3f}", axis > 0 ? "   " : "", "XYZ"[axis], e.min_mm[axis], e.max_mm[axis]);
+    out += fmt::format("{}{} {:.3f} to {:.3f}", axis > 0 ? "  " : "", "XYZ"[axis], e.min_mm[axis], e.max_mm[axis]);
   return out;
 }
 
 std::string tool_table(const std::vector<nc::ToolUse>& tools) {
   if (tools.empty()) return {};
-  std::string out = fmt::format("\n{:>6} {:>7} {:>9} {:>18} {:>16} {:>13}  {}\n", "tool", "line", "moves",
-                                "feed mm/min", "spindle rpm", "cutting mm", "cutting Z mm");
+  constexpr const char* kRow = "{:>4} {:>6} {:>6} {:>16} {:>14} {:>9} {}\n";
+  std::string out =
+      "\n" + fmt::format(kRow, "tool", "line", "moves", "feed mm/min", "spindle rpm", "cut mm", "cut Z mm");
   for (const auto& t : tools) {
     const std::string z =
-        t.cutting.empty() ? "-" : fmt::format("{:.3f} to {:.3f}", t.cutting.min_mm.z(), t.cutting.max_mm.z());
-    out += fmt::format("{:>6} {:>7} {:>9} {:>18} {:>16} {:>13.1f}  {}\n", fmt::format("T{}", t.tool), t.line,
-                       t.cutting_moves, range_text(t.feed_mm_per_min, 1), range_text(t.spindle_speed_rpm, 0),
-                       t.cutting_length_mm, z);
+        t.cutting.empty() ? "-" : fmt::format("{:.2f} to {:.2f}", t.cutting.min_mm.z(), t.cutting.max_mm.z());
+    out += fmt::format(kRow, fmt::format("T{}", t.tool), t.line, t.cutting_moves, range_text(t.feed_mm_per_min, 1),
+                       range_text(t.spindle_speed_rpm, 0), fmt::format("{:.1f}", t.cutting_length_mm), z);
   }
   return out;
 }
@@ -99,12 +99,15 @@ std::string check_report(const std::string& program, const nc::Summary& s, const
   std::string out =
       fmt::format("{}: {} blocks, {} of them with words, {}\n", program, s.blocks, s.blocks_with_words, unit_text(s));
   out += fmt::format("moves     {} rapid, {} linear, {} arc, {} dwell", s.rapids, s.lines, s.arcs, s.dwells);
-  if (s.canned > 0) out += fmt::format("; {} of them by drilling cycles", s.canned);
-  if (s.cutter_radius > 0) out += fmt::format("; {} under cutter radius compensation", s.cutter_radius);
-  if (s.high_speed_contouring > 0) out += fmt::format("; {} in high speed contouring", s.high_speed_contouring);
-  if (s.reference > 0) out += fmt::format("; {} to or from the reference point", s.reference);
-  out += fmt::format("\ncutting   {:.1f} mm   {}\n", s.cutting_length_mm, extents_text(s.cutting));
-  out += fmt::format("rapid     {:.1f} mm   {}\n", s.rapid_length_mm, extents_text(s.rapid));
+  const auto of_them = [&out](std::size_t count, const char* what) {
+    if (count > 0) out += fmt::format("\n          {} of them {}", count, what);
+  };
+  of_them(s.canned, "by drilling cycles");
+  of_them(s.cutter_radius, "under cutter radius compensation");
+  of_them(s.high_speed_contouring, "in high speed contouring");
+  of_them(s.reference, "to or from the reference point");
+  out += fmt::format("\ncutting   {:.1f} mm\n        {}\n", s.cutting_length_mm, extents_text(s.cutting));
+  out += fmt::format("rapid     {:.1f} mm\n        {}\n", s.rapid_length_mm, extents_text(s.rapid));
   if (s.dwells > 0) out += fmt::format("dwell     {} s\n", format_trimmed(s.dwell_s, 3));
   out += tool_table(s.tools);
   const std::size_t warnings = diagnostics.warnings();

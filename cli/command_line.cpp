@@ -1,7 +1,6 @@
 #include "cli/command_line.h"
 
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <new>
 
@@ -56,21 +55,6 @@ int guarded(const Action& action, const GlobalOptions& options) {
 }
 
 }  // namespace
-
-void require_folder_of(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  std::error_code ec;
-  if (path.empty() || folder.empty() || std::filesystem::is_directory(folder, ec)) return;
-  fail_on_file(path, fmt::format("cannot be written: there is no folder {}", folder.string()), "file-unwritable");
-}
-
-void require_not_an_input(const std::string& output, const std::vector<std::string>& inputs) {
-  std::error_code ec;
-  if (output.empty() || !std::filesystem::exists(output, ec)) return;
-  for (const auto& input : inputs)
-    if (!input.empty() && std::filesystem::equivalent(output, input, ec))
-      fail_on_file(output, "would be written over, but it is read; another name was expected", "output-is-input");
-}
 
 int run(int argc, const char* const* argv) {
   CLI::App app(kDescription, "camber");

@@ -19,16 +19,9 @@ using Action = std::function<int()>;
 void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< check, feed, fit-feed
 void add_force_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
-void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);      ///< predict, compensate
+void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< predict, compensate
 /// completion, and an example for each of the subcommands that are there; to be called last.
 void add_help(CLI::App& app, Action& chosen);
-
-/// Throws InputError [file-unwritable] when the folder that `path` lies in does not exist: said before the work,
-/// not after it. An empty path is fine.
-void require_folder_of(const std::string& path);
-
-/// Throws InputError [output-is-input] when `output` is one of the files that are read. Empty paths do not count.
-void require_not_an_input(const std::string& output, const std::vector<std::string>& inputs);
 
 /// The whole program. Returns the exit status; does not throw.
 int run(int argc, const char* const* argv);

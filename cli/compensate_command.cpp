@@ -6,6 +6,7 @@
 
 #include "base/output_file.h"
 #include "cli/console.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "compensate/header.h"
 #include "compensate/measured.h"
@@ -65,12 +66,13 @@ std::string header_of(const machine::Job& job, const compensate::Compensation& c
 int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
+  ProgressLine progress(options, "reading");
   const machine::Job told = machine::read_job(arguments.job, diagnostics);
-  ProgressLine progress(options);
   compensate::CompensateOptions compensate_options;
   compensate_options.progress = [&](const std::string& what, double share) { progress.show(what, share); };
   for (const auto& u : arguments.uncertainty)
     for (auto& group : compensate::read_uncertainty(u)) compensate_options.uncertainty.push_back(std::move(group));
+  if (!arguments.report.empty()) compensate_options.most_stock_crossings = report::kMostStockCrossings;
   compensate_options.recheck_voxels_mm = arguments.check_voxels_mm;
   std::optional<compensate::MeasuredFit> fit;
   const machine::Job job = as_measured(told, arguments, diagnostics, compensate_options.progress, fit);
@@ -88,11 +90,16 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
     if (!options.quiet)
       fmt::print(stderr, "camber: warning: --uncertainty: {} is no parameter of the job; left out [uncertainty]\n",
                  name);
-  if (!arguments.dry_run) write_file(arguments.output, result.text);
-  if (!arguments.json.empty()) write_file(arguments.json, report::compensate_json(result, compute_s));
-  if (!arguments.report.empty()) write_report(arguments, job, result, diagnostics);
+  Diagnostics failed;
+  if (!arguments.dry_run) try_to_write([&] { write_file(arguments.output, result.text); }, failed);
+  if (!arguments.json.empty())
+    try_to_write([&] { write_file(arguments.json, report::compensate_json(result, compute_s)); }, failed);
+  progress.show("writing the report");
+  if (!arguments.report.empty()) try_to_write([&] { write_report(arguments, job, result, diagnostics); }, failed);
+  progress.clear();
 
   if (!options.quiet) fmt::print("{}", report::compensate_text(result, compute_s));
+  failed.throw_if_errors();
   if (const std::string unsettled = report::unsettled_sentence(result); !unsettled.empty()) {
     print_error(unsettled);
     return kNumbersDidNotWorkOut;

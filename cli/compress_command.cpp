@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "cli/console.h"
 #include "cli/program_figures.h"
+#include "cli/progress.h"
 #include "cli/rewrite_report.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
@@ -112,6 +113,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
   settle(diagnostics, options);
 
+  ProgressLine progress(options, "compressing");
   repath::CompressOptions compress_options;
   compress_options.tolerance_mm = arguments.tolerance_mm;
   compress_options.feeds = feeds_of(arguments);
@@ -120,6 +122,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   compress_options.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
   compress_options.fit.most_kink_rad = rad_from_deg(arguments.tangent_deg);
   compress_options.fit.arcs = !arguments.lines_only;
+  compress_options.progress = [&](double share) { progress.show("compressing", share); };
   const repath::Compression result = repath::compress(program, moves, compress_options);
 
   Diagnostics again;  // what it says of the text was said above; an error is ours
@@ -143,6 +146,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
       write_file(arguments.report, report::rewrite_page(page));
     }
   }
+  progress.clear();
   if (!options.quiet) fmt::print("{}", text_report(before, after, result));
   return kDone;
 }

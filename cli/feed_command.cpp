@@ -7,6 +7,7 @@
 
 #include "base/output_file.h"
 #include "cli/console.h"
+#include "cli/progress.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
@@ -18,11 +19,13 @@ namespace camber::cli {
 
 int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   Diagnostics diagnostics;
+  ProgressLine progress(options, "reading");
   const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
   const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const nc::Interpretation moves =
       nc::interpret(program, feedmodel::interpreter_options(machine, arguments.interpreter), diagnostics);
   feedmodel::check_range(moves, arguments.program, machine, diagnostics);
+  progress.clear();
   settle(diagnostics, options);
   print_translation(machine.translation, options);
 
@@ -31,8 +34,11 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   const feedmodel::FeedSummary summary =
       feedmodel::predict_feed(moves, machine, [&](std::span<const feedmodel::TimedSample> samples) {
         if (csv) csv->write(samples);
+        if (!samples.empty())
+          progress.show("timing", static_cast<double>(samples.back().move) / static_cast<double>(moves.moves.size()));
       });
   if (csv) csv->commit();
+  progress.clear();
 
   if (!options.quiet)
     fmt::print("time          {:.3f} s\ncutting time  {:.3f} s\nblocks        {}\n", summary.time_s,

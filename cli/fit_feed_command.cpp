@@ -15,6 +15,7 @@
 #include "calib/fit_stretches.h"
 #include "calib/machine_log.h"
 #include "cli/console.h"
+#include "cli/progress.h"
 #include "machine/machine.h"
 #include "nc/program.h"
 #include "report/block_time_plot.h"
@@ -293,9 +294,15 @@ int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options
   print_translation(start.translation, options);
   if (!arguments.block_time_plot.empty()) plot_block_time(runs, arguments, options);
   if (!runs.stretches.empty()) return fit_to_times(runs, start, arguments, options);
+  ProgressLine progress(options, "fitting");
   const FitFeedResult result = calib::fit_feed(runs.servo, start, {});
+  progress.clear();
   const int status = finish(result, result.machine, arguments, options);
-  if (arguments.leave_one_out) print(calib::leave_one_out(runs.servo, start, {}));
+  if (!arguments.leave_one_out) return status;
+  progress.show("leaving out one after the other");
+  const auto left_out = calib::leave_one_out(runs.servo, start, {});
+  progress.clear();
+  print(left_out);
   return status;
 }
 

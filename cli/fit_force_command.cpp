@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "calib/fit_force.h"
 #include "cli/console.h"
+#include "cli/progress.h"
 #include "machine/material_reader.h"
 
 namespace camber::cli {
@@ -104,7 +105,9 @@ int run_fit_force(const FitForceArguments& arguments, const GlobalOptions& optio
   Diagnostics diagnostics;
   const auto logs = read_logs(arguments, diagnostics);
   settle(diagnostics, options);
+  ProgressLine progress(options, "fitting");
   const FitForceResult result = calib::fit_force(logs);
+  progress.clear();
   if (!options.quiet) print(result);
   write_file(arguments.output, material_file(arguments, result));
   if (!arguments.json.empty()) write_file(arguments.json, report_of(result).dump(2) + "\n");

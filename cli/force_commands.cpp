@@ -6,6 +6,7 @@
 
 #include "cli/command_line.h"
 #include "cli/fit_force_command.h"
+#include "cli/outputs.h"
 
 namespace camber::cli {
 
@@ -30,11 +31,9 @@ void add_force_commands(CLI::App& app, const GlobalOptions& options, Action& cho
                                  fmt::format("{} logs and {} jobs; one job for all or one for each was expected",
                                              arguments->logs.size(), arguments->jobs.size()));
     chosen = [arguments, &options] {
-      for (const auto& output : {arguments->output, arguments->json}) {
-        require_folder_of(output);
-        require_not_an_input(output, arguments->logs);
-        require_not_an_input(output, arguments->jobs);
-      }
+      std::vector<std::string> inputs = arguments->logs;
+      inputs.insert(inputs.end(), arguments->jobs.begin(), arguments->jobs.end());
+      check_outputs({arguments->output, arguments->json}, inputs);
       return run_fit_force(*arguments, options);
     };
   });

@@ -1,5 +1,4 @@
-// What helps at the prompt: an example for each subcommand, and completion for bash.
-#include <map>
+// What helps at the prompt: an example for each subcommand, and completion.
 #include <memory>
 #include <string>
 
@@ -7,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
+#include "cli/completion.h"
 
 namespace camber::cli {
 namespace {
@@ -28,57 +28,6 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
      "--spindle-rpm 12000 -o raster.nc"},
     {"completion", "camber completion bash > ~/.local/share/bash-completion/completions/camber"}};
 
-std::string names_of(const CLI::App& app) {
-  std::string out;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const auto& name : option->get_snames()) out += " -" + name;
-    for (const auto& name : option->get_lnames()) out += " --" + name;
-  }
-  return out;
-}
-
-/// "mm|inch" as words; nothing for other types.
-std::string words_of(const CLI::Option& option) {
-  std::string type = option.get_type_name();
-  if (type.find('|') == std::string::npos || type.find_first_of(" :[=") != std::string::npos) return {};
-  for (char& c : type)
-    if (c == '|') c = ' ';
-  return type;
-}
-
-std::string completion_script(const CLI::App& app) {
-  std::string commands, cases, values;
-  for (const CLI::App* sub : app.get_subcommands({})) {
-    commands += " " + sub->get_name();
-    cases += fmt::format("    {}) words=\"{}\" ;;\n", sub->get_name(), names_of(*sub).substr(1));
-    for (const CLI::Option* option : sub->get_options())
-      if (const std::string words = words_of(*option); !words.empty() && !option->get_lnames().empty())
-        values += fmt::format("    {}:--{}) COMPREPLY=($(compgen -W \"{}\" -- \"$current\")); return ;;\n",
-                              sub->get_name(), option->get_lnames().front(), words);
-  }
-  return fmt::format(R"(# Completion of camber for bash; made by camber completion bash.
-_camber() {{
-  local current="${{COMP_WORDS[COMP_CWORD]}}" previous="${{COMP_WORDS[COMP_CWORD-1]}}" command="" words="" word
-  for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
-    case " {0} " in *" $word "*) command="$word"; break ;; esac
-  done
-  case "$command:$previous" in
-{3}    completion:completion) COMPREPLY=($(compgen -W "bash" -- "$current")); return ;;
-  esac
-  case "$command" in
-    "") words="{0}" ;;
-{1}  esac
-  case "$current" in
-    -*) COMPREPLY=($(compgen -W "$words {2}" -- "$current")) ;;
-    *) if [ -z "$command" ]; then COMPREPLY=($(compgen -W "$words" -- "$current"))
-       else COMPREPLY=($(compgen -f -- "$current")); fi ;;
-  esac
-}}
-complete -o filenames -F _camber camber
-)",
-                     commands.substr(1), cases, names_of(app).substr(1), values);
-}
-
 }  // namespace
 
 void add_help(CLI::App& app, Action& chosen) {
@@ -86,11 +35,11 @@ void add_help(CLI::App& app, Action& chosen) {
   auto shell = std::make_shared<std::string>();
   completion->add_option("shell", *shell, "for which shell")
       ->required()
-      ->check(CLI::IsMember({"bash"}).description(""))
-      ->type_name("bash");
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
+      ->type_name("bash|zsh|fish");
   completion->callback([shell, &app, &chosen] {
-    chosen = [&app] {
-      fmt::print("{}", completion_script(app));
+    chosen = [shell, &app] {
+      fmt::print("{}", completion_script(app, *shell));
       return kDone;
     };
   });

@@ -10,6 +10,7 @@
 #include "base/output_file.h"
 #include "cli/command_line.h"
 #include "cli/console.h"
+#include "cli/outputs.h"
 #include "nc/program.h"
 #include "report/job_proposal.h"
 
@@ -68,8 +69,9 @@ void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chose
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   command->add_option("-o,--output", arguments->output, "the new job file")->required()->type_name("job.toml");
   command
-      ->add_option("--tools", arguments->tools,
-                   "LinuxCNC's tool table or Fusion's tool library (JSON); may be repeated")
+      ->add_option(
+          "--tools", arguments->tools,
+          "LinuxCNC's tool table, or a tool library of Fusion (.json, .tools) or HSMWorks (.hsmlib); may be repeated")
       ->expected(1)
       ->take_all()
       ->type_name("FILE");
@@ -79,7 +81,7 @@ void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chose
       ->type_name("mm|inch");
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
-      require_folder_of(arguments->output);
+      check_outputs({arguments->output}, {});
       return run_init(*arguments, options);
     };
   });

@@ -7,6 +7,7 @@
 #include "cli/command_line.h"
 #include "cli/compensate_command.h"
 #include "cli/console.h"
+#include "cli/outputs.h"
 #include "cli/predict_command.h"
 #include "machine/job.h"
 
@@ -21,15 +22,13 @@ int print_effective_job(const std::string& path, const GlobalOptions& options) {
   return kDone;
 }
 
-/// Outputs may be written, and are none of the job's own files.
-void check_outputs(const std::string& job_path, std::initializer_list<std::string> outputs) {
+/// Every file that a job names, and those of the command line.
+std::vector<std::string> files_read(const std::string& job_path, std::vector<std::string> others = {}) {
   Diagnostics diagnostics;
   const machine::Job job = machine::read_job(job_path, diagnostics);
-  for (const auto& output : outputs) {
-    require_folder_of(output);
-    require_not_an_input(output, {job_path, job.program, job.machine_path, job.stock.mesh, job.stock.vdb, job.part.mesh,
-                                  job.part.program});
-  }
+  others.insert(others.end(), {job_path, job.program, job.machine_path, job.stock.mesh, job.stock.vdb, job.part.mesh,
+                               job.part.program});
+  return others;
 }
 
 void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
@@ -46,10 +45,11 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);
-      check_outputs(arguments->job, {arguments->json});
-      Diagnostics diagnostics;
-      require_not_an_input(arguments->output_folder + "/stock.vdb",
-                           {machine::read_job(arguments->job, diagnostics).stock.vdb});
+      check_output_folder(arguments->output_folder);
+      std::vector<std::string> outputs{arguments->json};
+      for (const char* name : {"summary.json", "stock.vdb"}) outputs.push_back(arguments->output_folder + "/" + name);
+      if (!std::filesystem::exists(arguments->output_folder)) outputs.resize(1);
+      check_outputs(outputs, files_read(arguments->job));
       return run_predict(*arguments, options);
     };
   });
@@ -89,9 +89,8 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
     if (output->empty() && dry_run->empty()) throw CLI::RequiredError("-o OUT.nc or --dry-run");
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);
-      check_outputs(arguments->job, {arguments->output, arguments->report, arguments->json});
-      for (const auto& output : {arguments->output, arguments->report, arguments->json})
-        require_not_an_input(output, {arguments->measured, arguments->measured_program});
+      check_outputs({arguments->dry_run ? "" : arguments->output, arguments->report, arguments->json},
+                    files_read(arguments->job, {arguments->measured, arguments->measured_program}));
       return run_compensate(*arguments, options);
     };
   });

@@ -9,6 +9,7 @@
 #include "base/freed_memory.h"
 #include "base/output_file.h"
 #include "cli/console.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "deflection/collisions.h"
 #include "deflection/turn.h"
@@ -24,13 +25,6 @@ namespace camber::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path make_folder(const std::string& path) {
-  std::error_code ec;
-  fs::create_directories(path, ec);
-  if (!fs::is_directory(path)) fail_on_file(path, "cannot be made a folder: " + ec.message(), "file-unwritable");
-  return path;
-}
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -53,6 +47,7 @@ std::vector<report::PathRow> write_feed(const deflection::MachinedProgram& progr
 void write_files(const machine::Job& job, const deflection::MachinedProgram& program,
                  deflection::Prediction& prediction, std::size_t forces_at, const fs::path& folder,
                  const Diagnostics& diagnostics) {
+  const removal::StockShape stock = removal::stock_shape(*prediction.machined, report::kMostStockCrossings);
   tbb::task_group others;
   others.run([&] {
     prediction.machined->save(folder / "stock.vdb");
@@ -70,7 +65,7 @@ void write_files(const machine::Job& job, const deflection::MachinedProgram& pro
   others.run_and_wait([&] {
     auto feed = write_feed(program, job, folder / "feed.csv");
     report::write_html_report(folder / "report.html",
-                              report::predict_report(job, program, prediction, std::move(feed), diagnostics));
+                              report::predict_report(job, program, prediction, stock, std::move(feed), diagnostics));
   });
 }
 
@@ -79,8 +74,10 @@ void write_files(const machine::Job& job, const deflection::MachinedProgram& pro
 int run_predict(const PredictArguments& arguments, const GlobalOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
+  ProgressLine progress(options, "reading");
   const machine::Job job = machine::read_job(arguments.job, diagnostics);
   const auto program = deflection::machine_program(SourceText::read(job.program), job, {}, diagnostics);
+  progress.show("cutting as the target");
   deflection::Target target = [&] {
     if (job.part.program.empty()) return deflection::make_target(job, program, diagnostics);
     Diagnostics of_target;
@@ -91,12 +88,15 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   deflection::PredictOptions predict_options;
   if (arguments.forces_at > 0)
     predict_options.turn_from = deflection::turn_at_line(program, job, arguments.forces_at, diagnostics);
+  progress.show("looking for collisions");
   deflection::check_collisions(job, program, target.blank, diagnostics);
+  progress.clear();
   settle(diagnostics, options);
   print_translation(job.machine.translation, options);
-  const fs::path folder = make_folder(arguments.output_folder);
+  const fs::path folder = arguments.output_folder;
+  make_folder(folder);
 
-  ProgressLine progress(options);
+  progress.show("cutting", 0);
   predict_options.progress = [&](double share) { progress.show("cutting", share); };
   predict_options.surface_read = [&] {
     target.surface.clear();
@@ -104,15 +104,19 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   };
   auto prediction = deflection::predict(job, target, program, predict_options);
   target.blank.clear();  // nothing reads it any more, and the files need room
-  progress.clear();
   const double compute_s = seconds_since(begin);
+  progress.show("writing");
 
-  write_files(job, program, prediction, arguments.forces_at, folder, diagnostics);
+  Diagnostics failed;
+  try_to_write([&] { write_files(job, program, prediction, arguments.forces_at, folder, diagnostics); }, failed);
   const std::string json = report::predict_json(program, prediction, compute_s);
-  write_file(folder / "summary.json", json);
-  if (!arguments.json.empty()) write_file(arguments.json, json);
+  // The last: where it is new, so is all beside it.
+  if (!failed.has_errors()) try_to_write([&] { write_file(folder / "summary.json", json); }, failed);
+  if (!arguments.json.empty()) try_to_write([&] { write_file(arguments.json, json); }, failed);
+  progress.clear();
 
   if (!options.quiet) fmt::print("{}", report::predict_text(program, prediction, compute_s));
+  failed.throw_if_errors();
   const std::string unsettled = report::unsettled_sentence(prediction);
   if (unsettled.empty()) return kDone;
   print_error(unsettled);

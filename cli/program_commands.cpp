@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/feed_command.h"
 #include "cli/fit_feed_command.h"
+#include "cli/outputs.h"
 #include "cli/protocol_command.h"
 #include "cli/raster_options.h"
 #include "cli/resegment_command.h"
@@ -74,14 +75,6 @@ int check(const CheckCommand& command, const GlobalOptions& options) {
   std::cout.flush();
   settle(diagnostics, options);
   return status;
-}
-
-/// Outputs may be written, and are none of the files that are read. (A machine file may be fitted in its place.)
-void check_outputs(std::initializer_list<std::string> outputs, const std::vector<std::string>& inputs) {
-  for (const auto& output : outputs) {
-    require_folder_of(output);
-    require_not_an_input(output, inputs);
-  }
 }
 
 void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
@@ -187,8 +180,9 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
                                              arguments->programs.size(), arguments->traces.size()));
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);
-      check_outputs({arguments->output, arguments->json}, arguments->programs);
-      check_outputs({arguments->output, arguments->json}, arguments->traces);
+      std::vector<std::string> inputs = arguments->programs;  // a machine file may be fitted in its place
+      inputs.insert(inputs.end(), arguments->traces.begin(), arguments->traces.end());
+      check_outputs({arguments->output, arguments->json, arguments->block_time_plot}, inputs);
       return run_fit_feed(*arguments, options);
     };
   });
@@ -318,6 +312,7 @@ void add_protocol(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);
+      check_output_folder(arguments->folder);
       return run_protocol(*arguments, options);
     };
   });

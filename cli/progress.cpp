@@ -12,42 +12,74 @@ namespace camber::cli {
 namespace {
 
 constexpr std::chrono::milliseconds kRedrawEvery{200};
+constexpr double kShownAfter_s = 1;
 /// Below this share the time left is anybody's guess.
 constexpr double kLeastShareForTime = 0.05;
 constexpr int kBarWidth = 24;
 
-}  // namespace
-
-std::string progress_text(std::string_view what, double share, double seconds_so_far) {
-  share = std::clamp(share, 0.0, 1.0);
-  const auto filled = static_cast<std::size_t>(share * kBarWidth);
-  std::string out = fmt::format("{:3.0f} % [{}{}] {}", std::floor(100 * share), std::string(filled, '#'),
-                                std::string(kBarWidth - filled, '.'), what);
-  if (share < kLeastShareForTime || seconds_so_far < 1) return out;
-  const double left_s = seconds_so_far * (1 - share) / share;
-  return out + (left_s < 100 ? fmt::format(", {:.0f} s left", left_s) : fmt::format(", {:.0f} min left", left_s / 60));
+std::string time_text(double seconds, const char* what) {
+  return seconds < 100 ? fmt::format(", {:.0f} s {}", seconds, what)
+                       : fmt::format(", {:.0f} min {}", seconds / 60, what);
 }
 
-ProgressLine::ProgressLine(const GlobalOptions& options) : enabled_(!options.quiet && stderr_is_terminal()) {}
+}  // namespace
 
-ProgressLine::~ProgressLine() { clear(); }
+std::string progress_text(std::string_view what, std::optional<double> share, double seconds_so_far) {
+  if (!share) return std::string(what) + time_text(seconds_so_far, "so far");
+  const double done = std::clamp(*share, 0.0, 1.0);
+  const auto filled = static_cast<std::size_t>(done * kBarWidth);
+  std::string out = fmt::format("{:3.0f} % [{}{}] {}", std::floor(100 * done), std::string(filled, '#'),
+                                std::string(kBarWidth - filled, '.'), what);
+  if (done < kLeastShareForTime || seconds_so_far < 1) return out;
+  return out + time_text(seconds_so_far * (1 - done) / done, "left");
+}
 
-void ProgressLine::show(std::string_view what, double share) {
+ProgressLine::ProgressLine(const GlobalOptions& options, std::string what)
+    : enabled_(!options.quiet && stderr_is_terminal()), what_(std::move(what)), begin_(Clock::now()) {
+  if (enabled_) drawing_ = std::thread([this] { redraw_until_stopped(); });
+}
+
+ProgressLine::~ProgressLine() {
   if (!enabled_) return;
-  const auto now = Clock::now();
-  if (what != what_) {
-    what_ = what;
-    begin_ = now;
-  } else if (now - last_ < kRedrawEvery) {
-    return;
+  clear();
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
   }
-  last_ = now;
+  wake_.notify_all();
+  drawing_.join();
+}
+
+void ProgressLine::show(std::string_view what, double share) { take(what, share); }
+void ProgressLine::show(std::string_view what) { take(what, std::nullopt); }
+
+void ProgressLine::take(std::string_view what, std::optional<double> share) {
+  if (!enabled_) return;
+  const std::lock_guard lock(mutex_);
+  if (what != what_ || quiet_) begin_ = Clock::now();
+  if (what != what_) what_ = what;
+  share_ = share;
+  quiet_ = false;
+}
+
+void ProgressLine::redraw_until_stopped() {
+  std::unique_lock lock(mutex_);
+  while (!wake_.wait_for(lock, kRedrawEvery, [this] { return stop_; }))
+    if (!quiet_) draw(Clock::now());
+}
+
+void ProgressLine::draw(Clock::time_point now) {
+  const double seconds = std::chrono::duration<double>(now - begin_).count();
+  if (!shown_ && seconds < kShownAfter_s) return;
   shown_ = true;
-  fmt::print(stderr, "\r\033[K{}", progress_text(what, share, std::chrono::duration<double>(now - begin_).count()));
+  fmt::print(stderr, "\r\033[K{}", progress_text(what_, share_, seconds));
   std::fflush(stderr);
 }
 
 void ProgressLine::clear() {
+  if (!enabled_) return;
+  const std::lock_guard lock(mutex_);
+  quiet_ = true;
   if (!shown_) return;
   fmt::print(stderr, "\r\033[K");
   std::fflush(stderr);

@@ -7,6 +7,7 @@
 #include "base/output_file.h"
 #include "calib/protocol.h"
 #include "cli/console.h"
+#include "cli/outputs.h"
 #include "machine/machine.h"
 
 namespace camber::cli {
@@ -16,15 +17,12 @@ int run_protocol(const ProtocolArguments& arguments, const GlobalOptions& option
   Diagnostics diagnostics;
   const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
   settle(diagnostics, options);
-  std::error_code ec;
-  const fs::path folder = arguments.folder;
-  fs::create_directories(folder, ec);
-  if (!fs::is_directory(folder))
-    fail_on_file(arguments.folder, "cannot be made a folder: " + ec.message(), "file-unwritable");
+  make_folder(arguments.folder);
   for (const calib::ProtocolProgram& program : calib::protocol_programs(machine)) {
-    write_file(folder / program.name, program.text);
+    write_file(fs::path(arguments.folder) / program.name, program.text);
     if (!program.parts.empty())
-      write_file(folder / fs::path(program.name).replace_extension(".parts.csv"), calib::parts_csv(program));
+      write_file(fs::path(arguments.folder) / fs::path(program.name).replace_extension(".parts.csv"),
+                 calib::parts_csv(program));
     if (!options.quiet) fmt::print("{:<18} {:>4} parts: {}\n", program.name, program.parts.size(), program.tells);
   }
   if (!options.quiet)

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/output_file.h"
-#include "cli/command_line.h"
 #include "cli/console.h"
+#include "cli/outputs.h"
 #include "cli/program_figures.h"
 #include "cli/progress.h"
 #include "cli/raster_report.h"
@@ -218,8 +218,8 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
   const std::string part = arguments.part.empty() ? job.part.mesh : arguments.part;
   if (part.empty())
     fail_on_file(job.path, "has no [part] mesh, and there is no --part; one of them was expected", "part-missing");
-  for (const auto& output : {arguments.output, arguments.json, arguments.report})
-    require_not_an_input(output, {job.path, job.machine_path, part, job.stock.mesh, job.stock.vdb});
+  check_outputs({arguments.output, arguments.json, arguments.report},
+                {job.path, job.machine_path, part, job.stock.mesh, job.stock.vdb});
   const machine::Tool& tool = chosen_tool(job, arguments);
   if (arguments.spindle_rpm > job.machine.spindle.max_rpm)
     fail_on_file(job.machine_path,
@@ -236,7 +236,7 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
                                        .tolerance_mm = arguments.tolerance_mm};
   const int decimals = arguments.tolerance_mm < kFineToleranceMm ? 4 : 3;
   if (decimals == 4) raster_options.increment_mm = 0.0001;
-  ProgressLine progress(options);
+  ProgressLine progress(options, "laying rows");
   raster_options.progress = [&](double share) { progress.show("laying rows", std::clamp(share, 0.0, 1.0)); };
   const repath::Raster raster = repath::make_raster(drop, raster_options);
   progress.clear();

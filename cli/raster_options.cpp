@@ -7,6 +7,7 @@
 
 #include "base/numbers.h"
 #include "cli/console.h"
+#include "cli/outputs.h"
 #include "cli/validators.h"
 #include "machine/unprogrammed_job.h"
 
@@ -114,9 +115,7 @@ Action RasterOptions::action(const ResegmentArguments& shared, const GlobalOptio
   arguments.contour_mm = shared.contour_mm;
   return [arguments, &options] {
     if (options.effective_config) return print_job(arguments.job, options);
-    require_folder_of(arguments.output);
-    require_folder_of(arguments.json);
-    require_folder_of(arguments.report);
+    check_outputs({arguments.output, arguments.json, arguments.report}, {});
     return run_raster(arguments, options);
   };
 }

@@ -8,6 +8,7 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/program_figures.h"
+#include "cli/progress.h"
 #include "cli/rewrite_report.h"
 #include "feedmodel/control_options.h"
 #include "repath/fastest.h"
@@ -128,7 +129,9 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   fastest.layout.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
   fastest.contour_mm = arguments.contour_mm;
   fastest.interpreter = interpreter;
+  ProgressLine progress(options, "timing the old blocks");
   const repath::ContourFigures before = repath::contour_figures(moves, moves, machine);
+  fastest.progress = [&](double share) { progress.show("timing new ones", share); };
   const repath::Fastest result = repath::find_fastest(program, moves, machine, before, fastest);
 
   Diagnostics again;
@@ -149,6 +152,7 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
     page.tables.push_back(tried_table(result.tried));
     write_file(arguments.report, report::rewrite_page(page));
   }
+  progress.clear();
   if (!options.quiet) fmt::print("{}", report.text());
   if (!result.gains && !options.quiet) fmt::print("no length is faster: the program was left as it is\n");
   if (result.within_limit) return kDone;

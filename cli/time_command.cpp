@@ -10,6 +10,7 @@
 #include "base/output_file.h"
 #include "calib/cycle_accuracy.h"
 #include "cli/console.h"
+#include "cli/progress.h"
 #include "cli/time_report.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/fitted_range.h"
@@ -42,11 +43,12 @@ report::CycleRow row_of(std::string name, std::vector<double> values, const nc::
 
 /// Every combination of the swept values, the last key running fastest.
 std::vector<report::CycleRow> sweep_rows(const std::vector<Sweep>& sweeps, const nc::Interpretation& moves,
-                                         const machine::Machine& machine) {
+                                         const machine::Machine& machine, ProgressLine& progress) {
   std::size_t points = 1;
   for (const Sweep& sweep : sweeps) points *= sweep.values.size();
   std::vector<report::CycleRow> rows;
   for (std::size_t i = 0; i < points; ++i) {
+    progress.show("timing", static_cast<double>(i) / static_cast<double>(points));
     machine::Machine changed = machine;
     std::vector<double> values(sweeps.size());
     std::string name;
@@ -129,6 +131,7 @@ Sweep parse_sweep(const std::string& text) {
 
 int run_time(const TimeArguments& arguments, const GlobalOptions& options) {
   Diagnostics diagnostics;
+  ProgressLine progress(options, "timing");
   std::optional<machine::Machine> machine;
   if (!arguments.machine.empty()) machine = machine::read_machine(arguments.machine, diagnostics);
   TimeReport out{.program = arguments.program, .machine = arguments.machine};
@@ -147,9 +150,10 @@ int run_time(const TimeArguments& arguments, const GlobalOptions& options) {
       out.rows.push_back({arguments.machine, {}, std::move(time)});
     } else {
       for (const Sweep& sweep : sweeps) out.keys.push_back(sweep.key);
-      out.rows = sweep_rows(sweeps, moves, *machine);
+      out.rows = sweep_rows(sweeps, moves, *machine, progress);
     }
   }
+  progress.clear();
   settle(diagnostics, options);
   out.notes = notes_of(out.rows);
   if (!options.quiet) fmt::print("{}", time_text(out));

@@ -64,7 +64,7 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const deflectio
     } else {
       continue;
     }
-    if (!path.contains(at.move)) continue;
+    if (!path.contains(at.move) || !given.moves.moves[at.move].editable) continue;
     out.compensated[i] = true;
     o.place = path.find(at.move, at.share);
     const auto tool = job.tools.find(given.moves.state_of(given.moves.moves[at.move]).tool);

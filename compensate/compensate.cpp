@@ -316,6 +316,8 @@ class Loop {
     out.depth_others = depth_of(out.surface_after, best_.observed, most_um, false);
     out.depth_without_bending = depth_without_bending(job_, *target_, program, most_um);
     out.within_part = out.depth_after.held_um <= most_um;
+    if (options_.most_stock_crossings > 0)
+      out.stock = removal::stock_shape(target_->surface, options_.most_stock_crossings);
     check_travel(job_, program.text, program.moves, diagnostics_);
     diagnostics_.throw_if_errors();
     out.blocks_before = program_.text.source.line_count();

@@ -17,6 +17,7 @@
 #include "compensate/uncertainty.h"
 #include "deflection/predict.h"
 #include "machine/job.h"
+#include "removal/stock_shape.h"
 
 namespace camber::compensate {
 
@@ -49,6 +50,7 @@ struct Compensation {
   double max_shift_mm = 0;
   std::vector<removal::SurfacePoint> surface_before, surface_after;  ///< the same points, in the same order
   std::vector<deflection::StampLoad> loads_before, loads_after;      ///< of the given and of the emitted program
+  removal::StockShape stock;                                         ///< what the target program leaves, for a picture
   feedmodel::FeedSummary feed_before, feed_after;
   bool settled = true;  ///< every static solution of the first and the best round did
   Finishing finishing;
@@ -68,6 +70,7 @@ struct Compensation {
 
 struct CompensateOptions {
   std::function<void(const std::string& what, double share)> progress;
+  std::size_t most_stock_crossings = 0;       ///< of Compensation::stock; 0: none
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.

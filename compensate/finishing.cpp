@@ -100,11 +100,12 @@ Finishing find_finishing(const machine::Job& job, const MachinedProgram& program
 
 void check_compensated(const MachinedProgram& program, const std::vector<bool>& moves, Diagnostics& diagnostics) {
   const nc::Move* first = nullptr;
-  std::size_t count = 0, all = 0;
+  std::size_t count = 0, all = 0, editable = 0;
   for (std::size_t m = 0; m < moves.size(); ++m) {
     if (!moves[m]) continue;
     ++all;
     const nc::Move& move = program.moves.moves[m];
+    if (move.editable) ++editable;
     if (!program.moves.state_of(move).cutter_radius) continue;
     if (!first) first = &move;
     ++count;
@@ -116,6 +117,14 @@ void check_compensated(const MachinedProgram& program, const std::vector<bool>& 
                      "cutting moves was expected",
                      "nothing-to-compensate",
                      {}});
+  if (!first && all > 0 && editable == 0) {
+    const auto made = static_cast<std::size_t>(std::find(moves.begin(), moves.end(), true) - moves.begin());
+    diagnostics.add(program.text.source.diagnostic(
+        Severity::error, program.text.blocks[program.moves.moves[made].block].offset,
+        "all moves to compensate, from here on, are made by a loop, an expression or a subprogram that is called more "
+        "than once or stands in another file; the text has no words of their own: a program without these was expected",
+        "nothing-to-compensate"));
+  }
   if (!first) return;
   diagnostics.add(program.text.source.diagnostic(
       Severity::error, program.text.blocks[first->block].offset,

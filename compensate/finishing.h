@@ -35,7 +35,7 @@ Finishing find_finishing(const machine::Job& job, const deflection::MachinedProg
                          const std::vector<removal::SurfacePoint>& surface);
 
 /// Error [cutter-radius] at the first of `moves` that runs under G41 or G42: its path is made by the control, the text
-/// has no words for it. Error [nothing-to-compensate] where there is no move.
+/// has no words for it. Error [nothing-to-compensate] where there is no move, or none whose words may be changed.
 void check_compensated(const deflection::MachinedProgram& program, const std::vector<bool>& moves,
                        Diagnostics& diagnostics);
 

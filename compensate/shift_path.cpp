@@ -10,6 +10,18 @@ namespace camber::compensate {
 
 namespace {
 
+constexpr double kFullTurn = 1e-6;  // rad
+
+bool is_full_turn(const nc::Arc& arc) { return std::abs(std::abs(arc.sweep_rad) - 2 * kPi) < kFullTurn; }
+
+constexpr int kPiecesOfFullTurn = 3;
+
+/// Pieces of a move that is not split: of an arc as many as it takes to tell its radius.
+int pieces_of_whole(const nc::Interpretation& program, const nc::Move& move) {
+  if (move.kind != nc::MoveKind::arc) return 1;
+  return is_full_turn(program.arcs[move.arc]) ? kPiecesOfFullTurn : 2;
+}
+
 int pieces_of(double length_mm, double spacing_mm, double shortest_mm) {
   const int wanted = std::max(1, static_cast<int>(std::ceil(length_mm / spacing_mm - 1e-9)));
   if (shortest_mm <= 0) return wanted;
@@ -39,7 +51,9 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
     if (!move.editable) points_.back().fixed = true;
     const double along = points_.back().along_mm;
     const bool several_turns = move.kind == nc::MoveKind::arc && std::abs(program.arcs[move.arc].sweep_rad) > 6.4;
-    const int pieces = several_turns ? 1 : pieces_of(length, spacing_mm, move.feed_mm_per_s * block_time_s);
+    const int pieces = several_turns            ? 1
+                       : std::isinf(spacing_mm) ? pieces_of_whole(program, move)
+                                                : pieces_of(length, spacing_mm, move.feed_mm_per_s * block_time_s);
     for (int i = 1; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
       points_.push_back({.move = m,
@@ -104,7 +118,7 @@ void keep_strays(const std::vector<Vec3>& path, std::size_t a, std::size_t b, do
 Vec3 agreeing_centre(const nc::Arc& arc, const Vec3& start, const Vec3& end, const Vec3& wished) {
   Vec3 across = end - start;
   across -= across.dot(arc.normal) * arc.normal;
-  if (across.norm() < 1e-9) return wished;  // a full turn closes on itself
+  if (across.norm() < 1e-9) return wished;
   across.normalize();
   const Vec3 middle = 0.5 * (start + end);
   return wished - (wished - middle).dot(across) * across;
@@ -114,7 +128,8 @@ Vec3 agreeing_centre(const nc::Arc& arc, const Vec3& start, const Vec3& end, con
 
 namespace {
 
-constexpr double kMostSweep = 5.5;  // rad, of one piece of an arc that is not shifted evenly
+constexpr double kNearHalfTurn = 0.35;  // rad; beyond it a last decimal of R is under six of the centre's
+constexpr double kMostSweep = 5.5;      // rad, of one piece of an arc that is not shifted evenly
 
 /// Centre of the circle through three points in the plane across `normal`; nothing where they lie on a line.
 std::optional<Vec3> circle_centre(const Vec3& normal, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -126,27 +141,49 @@ std::optional<Vec3> circle_centre(const Vec3& normal, const Vec3& a, const Vec3&
   return a + (ab.squaredNorm() * ac.cross(across) + ac.squaredNorm() * across.cross(ab)) / twice;
 }
 
+bool all_on_circle(const nc::Arc& arc, const std::vector<Vec3>& points, std::size_t a, std::size_t b,
+                   const Vec3& centre, double tolerance_mm) {
+  const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(arc.normal) * arc.normal); };
+  const double radius = flat(points[a] - centre).norm(), sense = arc.sweep_rad > 0 ? 1 : -1;
+  double before = 0;
+  for (std::size_t i = a; i <= b; ++i) {
+    const Vec3 from = flat(points[a] - centre), to = flat(points[i] - centre);
+    if (std::abs(to.norm() - radius) > tolerance_mm) return false;
+    double turned = sense * std::atan2(from.cross(to).dot(arc.normal), from.dot(to));
+    while (turned < before - kPi) turned += 2 * kPi;
+    if (i > a && turned <= before) return false;
+    before = turned;
+    const double share = static_cast<double>(i - a) / static_cast<double>(b - a);
+    const double level = (points[a] + share * (points[b] - points[a]) - points[i]).dot(arc.normal);
+    if (std::abs(level) > tolerance_mm) return false;
+  }
+  return true;
+}
+
+/// Centre of the circle that all points of a full turn lie on within the tolerance, the last as near to the first;
+/// nothing where there is none. The arc ends where it starts.
+std::optional<Vec3> full_turn_centre(const nc::Arc& arc, std::vector<Vec3> points, double tolerance_mm) {
+  const std::size_t end = points.size() - 1;
+  Vec3 gap = points[end] - points[0];
+  gap -= gap.dot(arc.normal) * arc.normal;
+  const bool whole_alone = end == static_cast<std::size_t>(kPiecesOfFullTurn);  // no points to split it at
+  if (end < 3 || (!whole_alone && gap.norm() > tolerance_mm)) return std::nullopt;
+  const auto centre = circle_centre(arc.normal, points[0], points[end / 3], points[2 * end / 3]);
+  points.pop_back();
+  if (!centre || !all_on_circle(arc, points, 0, end - 1, *centre, tolerance_mm)) return std::nullopt;
+  return centre;
+}
+
 /// Centre of an arc from points[a] to points[b] that passes those between within the tolerance, also along the normal,
 /// in the sense of `arc`; nothing where there is none. Two neighbours always have one.
 std::optional<Vec3> piece_centre(const nc::Arc& arc, const std::vector<Vec3>& points, std::size_t a, std::size_t b,
                                  const Vec3& wished, double tolerance_mm) {
+  // Full turns close on themselves, however their ends are shifted; the line between them says nothing of the centre.
+  const bool closes = a == 0 && b + 1 == points.size() && std::abs(std::remainder(arc.sweep_rad, 2 * kPi)) < kFullTurn;
+  if (closes) return wished;
   if (b == a + 1) return agreeing_centre(arc, points[a], points[b], wished);
   const auto centre = circle_centre(arc.normal, points[a], points[(a + b) / 2], points[b]);
-  if (!centre) return std::nullopt;
-  const auto flat = [&](const Vec3& v) { return Vec3(v - v.dot(arc.normal) * arc.normal); };
-  const double radius = flat(points[a] - *centre).norm(), sense = arc.sweep_rad > 0 ? 1 : -1;
-  double before = 0;
-  for (std::size_t i = a; i <= b; ++i) {
-    const Vec3 from = flat(points[a] - *centre), to = flat(points[i] - *centre);
-    if (std::abs(to.norm() - radius) > tolerance_mm) return std::nullopt;
-    double turned = sense * std::atan2(from.cross(to).dot(arc.normal), from.dot(to));
-    while (turned < before - kPi) turned += 2 * kPi;
-    if (i > a && turned <= before) return std::nullopt;
-    before = turned;
-    const double share = static_cast<double>(i - a) / static_cast<double>(b - a);
-    const double level = (points[a] + share * (points[b] - points[a]) - points[i]).dot(arc.normal);
-    if (std::abs(level) > tolerance_mm) return std::nullopt;
-  }
+  if (!centre || !all_on_circle(arc, points, a, b, *centre, tolerance_mm)) return std::nullopt;
   return centre;
 }
 
@@ -166,10 +203,32 @@ void ShiftPath::edit_arc(std::size_t first, std::size_t last, double tolerance_m
   for (std::size_t i = first; i < last; ++i)
     evenly = evenly && (points_[i + 1].shift_mm - points_[i].shift_mm).norm() < 1e-9;
   const std::size_t end = shifted.size() - 1;
+  // R tells the centre of half a turn only to a square root: a last decimal of R moves it by hundreds of them.
+  const auto can_be_said = [&](std::size_t a, std::size_t b) {
+    return !arc.by_radius || b == a + 1 || std::abs(static_cast<double>(b - a) * step_rad - kPi) >= kNearHalfTurn;
+  };
+  const auto centre_of = [&](std::size_t a, std::size_t b) -> std::optional<Vec3> {
+    if (!can_be_said(a, b)) return std::nullopt;
+    return evenly ? std::optional<Vec3>(arc.center_mm + points_[first].shift_mm) : piece(a, b);
+  };
+  if (!evenly && is_full_turn(arc))
+    if (const auto centre = full_turn_centre(arc, shifted, tolerance_mm)) {
+      edit.center_mm = *centre;
+      return;
+    }
+  if (!can_be_said(0, end)) {
+    const auto centre = evenly ? std::optional<Vec3>(arc.center_mm + points_[first].shift_mm) : piece(0, end);
+    if (centre) {  // two pieces of one circle
+      edit.via_mm.push_back(shifted[end / 2]);
+      edit.via_center_mm.push_back(*centre);
+      edit.center_mm = *centre;
+      return;
+    }
+  }
   for (std::size_t a = 0; a < end;) {
     std::size_t b = evenly ? end : std::min(a + most, end);
     std::optional<Vec3> centre;
-    while (!(centre = evenly ? std::optional<Vec3>(arc.center_mm + points_[first].shift_mm) : piece(a, b))) --b;
+    while (!(centre = centre_of(a, b))) --b;
     if (b == end) {
       edit.center_mm = *centre;
     } else {

@@ -7,6 +7,7 @@
 
 #include "base/numbers.h"
 #include "base/units.h"
+#include "machine/library_words.h"
 #include "machine/tool_proposal.h"
 #include "machine/zip_entry.h"
 
@@ -68,15 +69,6 @@ std::string text_at(const json& object, const char* key) {
   return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
 }
 
-std::optional<ToolType> fusion_type(const std::string& type) {
-  if (type == "ball end mill") return ToolType::ball;
-  if (type == "flat end mill" || type == "face mill") return ToolType::flat;
-  if (type == "bull nose end mill") return ToolType::bull;
-  if (type == "chamfer mill") return ToolType::chamfer;
-  if (type.find("drill") != std::string::npos) return ToolType::drill;
-  return std::nullopt;
-}
-
 std::optional<ToolProposal> library_tool(const json& entry, const std::string& path, std::size_t index) {
   if (!entry.is_object()) return std::nullopt;
   const json none = json::object();
@@ -94,17 +86,14 @@ std::optional<ToolProposal> library_tool(const json& entry, const std::string& p
   tool.from = fmt::format("{}, tool {}", path, index + 1);
   tool.what = text_at(entry, "description");
   if (tool.what.empty()) tool.what = text_at(entry, "type");
-  tool.type = fusion_type(text_at(entry, "type"));
+  tool.type = type_of_library(text_at(entry, "type"));
   tool.diameter_mm = number_at(geometry, "DC", unit);
   if (tool.type == ToolType::bull) tool.corner_radius_mm = number_at(geometry, "RE", unit);
   tool.flute_length_mm = number_at(geometry, "LCF", unit);
   tool.overhang_mm = number_at(geometry, "LB", unit);
   tool.shank_diameter_mm = number_at(geometry, "SFDM", unit);
   if (const auto flutes = number_at(geometry, "NOF", 1)) tool.flutes = static_cast<int>(std::lround(*flutes));
-  const std::string made_of = text_at(entry, "BMC");
-  constexpr double kCarbide_GPa = 600, kSteel_GPa = 210;
-  if (made_of == "carbide") tool.youngs_modulus_GPa = kCarbide_GPa;
-  if (made_of == "hss") tool.youngs_modulus_GPa = kSteel_GPa;
+  tool.youngs_modulus_GPa = modulus_of_library_GPa(text_at(entry, "BMC"));
   return tool;
 }
 
@@ -140,9 +129,7 @@ std::vector<ToolProposal> read_tool_library(const std::string& path) {
 
 std::vector<ToolProposal> read_tools(const std::string& path, bool inch) {
   const std::string ending = std::filesystem::path(path).extension().string();
-  if (ending == ".hsmlib")
-    fail_on_file(path, "is a library that camber does not read; its export as .json or .tools was expected",
-                 "tool-library");
+  if (ending == ".hsmlib") return read_hsm_library(path);
   return ending == ".json" || ending == ".tools" ? read_tool_library(path) : read_tool_table(path, inch);
 }
 

@@ -36,8 +36,14 @@ std::vector<ToolProposal> read_tool_table(const std::string& path, bool inch);
 /// Throws InputError [tool-library], [file-missing].
 std::vector<ToolProposal> read_tool_library(const std::string& path);
 
-/// By the name's ending: .json and .tools a Fusion library, all others a tool table. Throws InputError [tool-library] for
-/// .hsmlib, the format before.
+/// A tool library of HSMWorks, Inventor CAM or older Fusion: .hsmlib, XML in UTF-16 or UTF-8, root tool-library or
+/// tool-table; each tool names its unit (millimeters, inches). There is no published description of it; names and
+/// meanings are those that independent readers of such files agree on: nc number (not the tool's id), body diameter,
+/// corner-radius, flute-length, body-length (what sticks out of the holder), shaft-diameter, number-of-flutes, material
+/// name. Throws InputError [tool-library], [file-missing].
+std::vector<ToolProposal> read_hsm_library(const std::string& path);
+
+/// By the name's ending: .json and .tools a Fusion library, .hsmlib one of HSMWorks, all others a tool table.
 std::vector<ToolProposal> read_tools(const std::string& path, bool inch);
 
 /// Type, size, corner radius and flutes as far as the words tell, "1/2 BULL ENDMILL 0.125 RAD".

@@ -119,6 +119,7 @@ ArcResult make_arc(const ArcWords& words) {
   result.arc.center_mm = centre;
   result.arc.normal = normal_of(words.plane);
   result.arc.sweep_rad = sweep_of(words, axes, centre);
+  result.arc.by_radius = words.r_mm.has_value();
   return result;
 }
 

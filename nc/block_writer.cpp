@@ -22,6 +22,12 @@ BlockWriter::BlockWriter(const Program& program, std::size_t block, const Number
       style_(style),
       blanks_(block_uses_blanks()) {}
 
+/// Upper or lower case, as the block's first word.
+char BlockWriter::in_case(char letter) const {
+  const bool lower = !words_.empty() && program_.source.text()[words_.front().offset] >= 'a';
+  return lower ? static_cast<char>(letter - 'A' + 'a') : letter;
+}
+
 bool BlockWriter::block_uses_blanks() const {
   if (words_.size() < 2) return style_.blanks;
   for (std::size_t i = 1; i < words_.size(); ++i)
@@ -64,7 +70,7 @@ void BlockWriter::set(char letter, double value, int decimals) {
 /// behind the last N or G.
 void BlockWriter::add(char letter, double value, int decimals) {
   const double r = rounded(value, decimals);
-  const std::string word = letter + format_number(r, decimals, style_);
+  const std::string word = in_case(letter) + format_number(r, decimals, style_);
   const auto rank = [](char c) { return static_cast<int>(kOrder.find(c)); };
   const Word *before = nullptr, *after = nullptr, *code = nullptr;
   for (const Word& w : words_) {
@@ -115,7 +121,7 @@ std::string BlockWriter::further_block(std::string_view letters, const std::vect
     if (same && same->value == values[i])
       words.push_back(program_.source.text().substr(same->offset, same->length));
     else
-      words.push_back(letters[i] + format_number(values[i], decimals, style_));
+      words.push_back(in_case(letters[i]) + format_number(values[i], decimals, style_));
   }
   auto behind_codes = words.begin();
   for (const Word& w : own)

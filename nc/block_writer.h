@@ -47,6 +47,7 @@ class BlockWriter {
     double value;
   };
   void add(char letter, double value, int decimals);
+  char in_case(char letter) const;
   bool block_uses_blanks() const;
 
   const Program& program_;

@@ -43,6 +43,7 @@ struct Arc {
   Vec3 center_mm = Vec3::Zero();  ///< component along `normal` = start's
   Vec3 normal = Vec3::UnitZ();    ///< unit: +Z for G17, +Y for G18, +X for G19
   double sweep_rad = 0;           ///< counter-clockwise about `normal` positive (G3); includes full turns
+  bool by_radius = false;         ///< the text says R, not I J K
 };
 
 struct Move {

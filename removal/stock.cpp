@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/diagnostics.h"
+#include "base/output_file.h"
 
 namespace camber::removal {
 
@@ -322,18 +324,28 @@ std::vector<Index3> Stock::surface_tiles() const {
 
 std::size_t Stock::memory_bytes() const { return impl_->distance->memUsage() + impl_->stamp->memUsage(); }
 
-void Stock::save(const std::string& path) const {
-  const std::string part = path + ".part";
-  try {
-    openvdb::io::File file(part);
-    file.write(openvdb::GridCPtrVec{impl_->distance});
-    file.close();
-    std::filesystem::rename(part, path);
-  } catch (const std::exception& e) {
-    std::error_code ec;
-    std::filesystem::remove(part, ec);
-    fail_on_file(path, std::string("cannot be written: ") + e.what(), "file-unwritable");
+namespace {
+
+/// The format has a random identifier behind magic number, three versions and a flag; ours is the same for the same
+/// stock.
+constexpr std::streamoff kIdentifierAt = 8 + 3 * 4 + 1;
+constexpr const char* kIdentifier = "00000000-0000-0000-0000-000000000000";
+
+/// io::File::write does not tell whether the disk took everything; a stream does.
+struct VdbArchive : openvdb::io::Archive {
+  void write_to(std::ostream& out, const openvdb::GridCPtrVec& grids) const {
+    constexpr bool kSeekable = true;
+    write(out, grids, kSeekable, {});
+    out.seekp(kIdentifierAt).write(kIdentifier, static_cast<std::streamsize>(std::strlen(kIdentifier)));
   }
+};
+
+}  // namespace
+
+void Stock::save(const std::string& path) const {
+  OutputFile file(path);
+  VdbArchive().write_to(file.stream(), {impl_->distance});
+  file.commit();
 }
 
 namespace {

@@ -149,7 +149,11 @@ class Compressor {
 Compression compress(const nc::Program& program, const nc::Interpretation& moves, const CompressOptions& options) {
   Compressor compressor(program, moves, options);
   const std::vector<Run> runs = runs_to_compress(program, moves, options.switch_planes && options.fit.arcs);
-  for_each_chain(moves, runs, [&](const RunChain& chain) { compressor.rewrite(chain); });
+  for_each_chain(moves, runs, [&](const RunChain& chain) {
+    compressor.rewrite(chain);
+    if (options.progress && !chain.parts.empty())
+      options.progress(chain.parts.back().run.last_move / static_cast<double>(moves.moves.size()));
+  });
   return compressor.result();
 }
 

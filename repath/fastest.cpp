@@ -134,6 +134,7 @@ class Search {
     predicted_blocks_ = static_cast<double>(moves.moves.size());
     c.figures = contour_figures(moves, meant_, machine_);
     out_.tried.push_back(c);
+    if (options_.progress) options_.progress(static_cast<double>(out_.tried.size()) / most_trials());
     const std::size_t now = out_.tried.size() - 1;
     const bool keeps = out_.limit.holds(c.figures);
     if (now == 0 || choose(c, keeps)) out_.chosen = now;
@@ -151,6 +152,16 @@ class Search {
   bool beats(const Candidate& c, const Candidate& other) const {
     return options_.fewest_blocks ? c.figures.time_s * kAlmostSameTime < other.figures.time_s
                                   : better(c.figures, other.figures);
+  }
+
+  double trials_of_feeds() const {
+    return std::clamp(kPredictedBlocks / std::max(1.0, predicted_blocks_), kFewestTrials, kMostTrials);
+  }
+
+  /// As many trials as there may be.
+  double most_trials() const {
+    if (last_trial_ > 0) return static_cast<double>(last_trial_);
+    return trials_of_feeds() + (options_.layout.length_mm > 0 ? 1.0 : static_cast<double>(std::size(kLengths)));
   }
 
   /// At the programmed feed: the fastest one.
@@ -171,9 +182,7 @@ class Search {
   /// Times of steps between corners first, three lags of the axes before others, then shares about corners; for each
   /// the highest feed that keeps to the limit. Without a gain from one kind of corner the next is not tried.
   void look_for_feeds(std::size_t at_length) {
-    const auto trials = static_cast<std::size_t>(
-        std::clamp(kPredictedBlocks / std::max(1.0, predicted_blocks_), kFewestTrials, kMostTrials));
-    last_trial_ = out_.tried.size() + trials;
+    last_trial_ = out_.tried.size() + static_cast<std::size_t>(trials_of_feeds());
     const double lag = lag_s(machine_);
     Candidate best = out_.tried[at_length];
     best.feed_factor = kFirstFeed;

@@ -1,5 +1,6 @@
 #pragma once
 // The length of segments, and where it must be the feed, with which a machine is fastest.
+#include <functional>
 #include <vector>
 
 #include "machine/machine.h"
@@ -31,6 +32,7 @@ struct FastestOptions {
   bool keep_old = true;   ///< where nothing is faster than the old program, that is what comes out
   bool fewest_blocks = false;  ///< a shorter length is only taken where it saves more than 0.5 % of the time
   nc::InterpreterOptions interpreter;
+  std::function<void(double)> progress{};  ///< share of the most trials that there may be
 };
 
 struct Fastest {

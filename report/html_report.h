@@ -35,8 +35,12 @@ struct ReportData {
   std::string subtitle;         ///< e.g. the files that the page is about
   std::vector<Figure> figures;  ///< the first four are shown large
   SurfaceSamples surface;
-  bool compared = false;      ///< the surface's error_after_um and block_after count
-  double voxel_mm = 0.1;      ///< of the grid that the surface's points lie on
+  bool compared = false;  ///< the surface's error_after_um and block_after count
+  double voxel_mm = 0.1;  ///< of the grid that the surface's points lie on
+  /// The stock around the machined surface, drawn in grey; on the lines of a grid of stock_cell_mm. Only places and
+  /// normals count.
+  SurfaceSamples stock;
+  double stock_cell_mm = 0;
   std::vector<PathRun> path;  ///< none, one, or before and after
   std::vector<TextTable> tables;
   std::vector<std::string> warnings;

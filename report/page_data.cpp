@@ -52,24 +52,11 @@ json whole(PackedArrays& arrays, const std::vector<Row>& rows, std::uint32_t Row
   return arrays.add_whole(values);
 }
 
-json surface_json(const ReportData& data, const ReportOptions& options, PackedArrays& arrays, PageData& page) {
-  const SurfaceMesh mesh = surface_mesh(data.surface, data.voxel_mm, options.most_vertices);
-  if (mesh.cell_mm > 1.5 * data.voxel_mm)
-    page.left_out.push_back(
-        fmt::format("The surface is drawn in cells of {:.3g} mm ({} vertices for {} points); each shows the error of "
-                    "greatest magnitude in it.",
-                    mesh.cell_mm, mesh.vertices.size(), data.surface.size()));
-  using S = SurfaceSample;
+/// Places of the vertices, and quadrangles: the first corner as a step from the one before, the others as steps from
+/// the first.
+json mesh_json(const SurfaceMesh& mesh, PackedArrays& arrays) {
   json out;
-  out["place"] = triple(arrays, mesh.vertices, [](const S& s) -> const Vec3& { return s.place_mm; });
-  out["normal"] = triple(arrays, mesh.vertices, [](const S& s) -> const Vec3& { return s.normal; });
-  out["error"] = json::array({arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.error_um; }))});
-  out["block"] = json::array({whole(arrays, mesh.vertices, &S::block)});
-  if (data.compared) {
-    out["error"].push_back(arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.error_after_um; })));
-    out["block"].push_back(whole(arrays, mesh.vertices, &S::block_after));
-  }
-  // The first corner as a step from the quadrangle before, the others as steps from the first.
+  out["place"] = triple(arrays, mesh.vertices, [](const SurfaceSample& s) -> const Vec3& { return s.place_mm; });
   out["quad"] = json::array();
   for (std::size_t corner = 0; corner < 4; ++corner) {
     std::vector<std::uint32_t> values;
@@ -78,6 +65,33 @@ json surface_json(const ReportData& data, const ReportOptions& options, PackedAr
     out["quad"].push_back(arrays.add_whole(values));
   }
   out["cell"] = mesh.cell_mm;
+  return out;
+}
+
+json stock_json(const ReportData& data, PackedArrays& arrays, PageData& page) {
+  const SurfaceMesh mesh = surface_mesh(data.stock, data.stock_cell_mm, 4 * data.stock.size());
+  page.left_out.push_back(
+      fmt::format("Grey is the stock that stays, in cells of {:.3g} mm; what is thinner than a cell may be missing.",
+                  mesh.cell_mm));
+  return mesh_json(mesh, arrays);
+}
+
+json surface_json(const ReportData& data, const ReportOptions& options, PackedArrays& arrays, PageData& page) {
+  const SurfaceMesh mesh = surface_mesh(data.surface, data.voxel_mm, options.most_vertices);
+  if (mesh.cell_mm > 1.5 * data.voxel_mm)
+    page.left_out.push_back(
+        fmt::format("The surface is drawn in cells of {:.3g} mm ({} vertices for {} points); each shows the error of "
+                    "greatest magnitude in it.",
+                    mesh.cell_mm, mesh.vertices.size(), data.surface.size()));
+  using S = SurfaceSample;
+  json out = mesh_json(mesh, arrays);
+  out["normal"] = triple(arrays, mesh.vertices, [](const S& s) -> const Vec3& { return s.normal; });
+  out["error"] = json::array({arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.error_um; }))});
+  out["block"] = json::array({whole(arrays, mesh.vertices, &S::block)});
+  if (data.compared) {
+    out["error"].push_back(arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.error_after_um; })));
+    out["block"].push_back(whole(arrays, mesh.vertices, &S::block_after));
+  }
   out["points"] = data.surface.size();
   return out;
 }
@@ -141,6 +155,7 @@ PageData page_data(const ReportData& data, const ReportOptions& options) {
   page.scale_after_um = data.compared ? scale_um(data.surface, &SurfaceSample::error_after_um) : page.scale_um;
   index["scales"] = {page.scale_um, page.scale_after_um};
   if (!data.surface.empty()) index["surface"] = surface_json(data, options, arrays, page);
+  if (!data.stock.empty()) index["stock"] = stock_json(data, arrays, page);
   index["runs"] = json::array();
   for (const auto& run : data.path) index["runs"].push_back(run_json(run, options, arrays, page));
   add_programs(data, options, page);

@@ -24,6 +24,16 @@ SurfaceSample sample_of(const removal::SurfacePoint& p, const MachinedProgram& p
   return {p.crossing_mm, p.normal, 1000 * p.error_mm, 0, p.area_mm2, line_of(program, p.machined_stamp), 0};
 }
 
+void add_stock(ReportData& data, const removal::StockShape& stock) {
+  data.stock = {stock.crossings.size(), [&crossings = stock.crossings](std::size_t i) {
+                  SurfaceSample out;
+                  out.place_mm = crossings[i].place_mm;
+                  out.normal = crossings[i].outward;
+                  return out;
+                }};
+  data.stock_cell_mm = stock.cell_mm;
+}
+
 /// `key`: of the group in the JSON, with {} for before and after.
 void add_figures(ReportData& data, const removal::ErrorFigures& before, const removal::ErrorFigures* after,
                  const std::string& key) {
@@ -93,7 +103,7 @@ FormErrorPoints form_error_points(const MachinedProgram& program, const deflecti
 }
 
 ReportData predict_report(const machine::Job& job, const MachinedProgram& program, const deflection::Prediction& p,
-                          std::vector<PathRow> rows, const Diagnostics& diagnostics) {
+                          const removal::StockShape& stock, std::vector<PathRow> rows, const Diagnostics& diagnostics) {
   ReportData data;
   data.title = "Predicted form error of " + file_name(job.program);
   data.subtitle = job.path;
@@ -108,6 +118,7 @@ ReportData predict_report(const machine::Job& job, const MachinedProgram& progra
   data.figures.push_back({"removed, by the stock", p.cut.stock_mm3, std::nullopt, "mm3", 2, "removed_mm3.stock"});
   data.surface = {p.surface.size(), [&](std::size_t i) { return sample_of(p.surface[i], program); }};
   data.voxel_mm = job.simulation.voxel_mm;
+  add_stock(data, stock);
   add_loads(rows, program.path, p.cut.loads);
   add_errors(rows, program.path, p.surface);
   data.path.push_back({"", program.text.source.text(), std::move(rows)});
@@ -135,6 +146,7 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
                     sample.block_after = line_of(written, c.surface_after[i].machined_stamp);
                     return sample;
                   }};
+  add_stock(data, c.stock);
   add_shifts(after.rows, after.program.moves, before.program.moves);
   for (CompensatedRun* run : {&before, &after}) {
     add_loads(run->rows, run->program.path, run->loads);

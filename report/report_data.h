@@ -7,6 +7,7 @@
 #include "base/diagnostics.h"
 #include "compensate/compensate.h"
 #include "deflection/predict.h"
+#include "removal/stock_shape.h"
 #include "report/form_error.h"
 #include "report/html_report.h"
 
@@ -15,10 +16,13 @@ namespace camber::report {
 /// Both must outlive what comes back.
 FormErrorPoints form_error_points(const deflection::MachinedProgram& program, const deflection::Prediction& prediction);
 
+/// Crossings of the stock that a page draws in grey: about a fifteenth of a megabyte.
+constexpr std::size_t kMostStockCrossings = 12000;
+
 /// Program and prediction must outlive what comes back.
 ReportData predict_report(const machine::Job& job, const deflection::MachinedProgram& program,
-                          const deflection::Prediction& prediction, std::vector<PathRow> rows,
-                          const Diagnostics& diagnostics);
+                          const deflection::Prediction& prediction, const removal::StockShape& stock,
+                          std::vector<PathRow> rows, const Diagnostics& diagnostics);
 
 /// One of the two programs of a compensation.
 struct CompensatedRun {

@@ -343,6 +343,13 @@ std::string checks_text(const compensate::Compensation& c) {
   return out;
 }
 
+/// "compensated", "compensated in 3 of 4 moves", "simulated only".
+std::string compensated_of(const compensate::Operation& o) {
+  if (o.compensated_moves == 0) return "simulated only";
+  if (o.compensated_moves == o.moves) return "compensated";
+  return fmt::format("compensated in {} of {} moves", o.compensated_moves, o.moves);
+}
+
 }  // namespace
 
 std::string compensate_text(const compensate::Compensation& c, double compute_s) {
@@ -353,11 +360,11 @@ std::string compensate_text(const compensate::Compensation& c, double compute_s)
                                                           : "the largest number of rounds was reached";
   fmt::format_to(std::back_inserter(out), "stopped: {}\n", why);
   out += split_text(c.split_before, c.split_after) + safety_text(c) + path_text(c) + checks_text(c);
-  for (const auto& o : c.finishing.operations)
-    if (c.finishing.operations.size() > 1)
+  const auto& operations = c.finishing.operations;
+  for (const auto& o : operations)
+    if (operations.size() > 1 || o.compensated_moves < o.moves)
       fmt::format_to(std::back_inserter(out), "T{}, lines {} to {}: {}, {:.0f} % of the surface\n", o.tool,
-                     o.first_line, o.last_line, o.compensated_moves > 0 ? "compensated" : "simulated only",
-                     100 * o.surface_share);
+                     o.first_line, o.last_line, compensated_of(o), 100 * o.surface_share);
   fmt::format_to(std::back_inserter(out),
                  "largest shift {:.1f} um; {} of {} blocks changed, {} blocks after\n"
                  "machine time {:.1f} s before, {:.1f} s after; computed in {:.1f} s\n",

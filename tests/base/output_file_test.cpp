@@ -4,6 +4,8 @@
 #include <csignal>
 #include <filesystem>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -78,6 +80,66 @@ TEST(OutputFile, AFullDiskKeepsTheOldFile) {
   }
   EXPECT_EQ(tests::file_text(path), "OLD");
   EXPECT_FALSE(std::filesystem::is_symlink(path + ".part"));
+}
+
+TEST(OutputFile, WritesWhatALinkPointsTo) {
+  const tests::TempFolder folder;
+  const std::string real = folder.write("real.txt", "OLD"), link = folder / "link.txt";
+  std::filesystem::create_symlink("real.txt", link);
+  write_file(link, "NEW");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(tests::file_text(real), "NEW");
+  EXPECT_FALSE(std::filesystem::exists(real + ".part"));
+}
+
+TEST(OutputFile, LeavesADeviceADevice) {
+  const tests::TempFolder folder;
+  const std::string pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  write_file(pipe, "NEW");
+  char got[4] = {};
+  EXPECT_EQ(read(reader, got, 3), 3);
+  close(reader);
+  EXPECT_EQ(std::string(got), "NEW");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  EXPECT_FALSE(std::filesystem::exists(pipe + ".part"));
+}
+
+TEST(OutputFile, KeepsThePermissionsOfTheOldFile) {
+  const tests::TempFolder folder;
+  const std::string path = folder.write("a.txt", "OLD");
+  std::filesystem::permissions(path, std::filesystem::perms{0640});
+  write_file(path, "NEW");
+  EXPECT_EQ(std::filesystem::status(path).permissions(), std::filesystem::perms{0640});
+}
+
+std::string refusal(const std::string& path) {
+  try {
+    require_writable(path);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(RequireWritable, SaysWhatStandsInTheWay) {
+  const tests::TempFolder folder;
+  const std::string path = folder.write("a.txt", "OLD"), inside = folder / "folder";
+  std::filesystem::create_directory(inside);
+  EXPECT_EQ(refusal(""), "");
+  EXPECT_EQ(refusal(path), "");
+  EXPECT_EQ(refusal(folder / "new.txt"), "");
+  EXPECT_EQ(refusal("/dev/null"), "");
+  EXPECT_EQ(refusal(inside),
+            inside + ": error: cannot be written: it is a folder; the name of a file was expected [file-unwritable]");
+  const std::string far = folder / "nowhere/a.txt";
+  EXPECT_EQ(refusal(far),
+            far + ": error: cannot be written: there is no folder " + (folder / "nowhere") + " [file-unwritable]");
+  std::filesystem::permissions(path, std::filesystem::perms{0444});
+  EXPECT_EQ(refusal(path), path + ": error: cannot be written: the file there is write-protected [file-unwritable]");
+  EXPECT_EQ(tests::file_text(path), "OLD");
 }
 
 }  // namespace

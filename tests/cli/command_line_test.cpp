@@ -1,4 +1,7 @@
 // Options, exit status and what is said about a wrong command line.
+#include <filesystem>
+#include <sstream>
+
 #include <gtest/gtest.h>
 
 #include "cli/console.h"
@@ -52,6 +55,27 @@ TEST(CommandLine, SaysBeforeTheWorkThatAnOutputCannotBeWritten) {
   EXPECT_EQ(run.err, "nowhere/feed.csv: error: cannot be written: there is no folder nowhere [file-unwritable]\n");
 }
 
+TEST(CommandLine, SaysBeforeTheWorkWhatElseStandsInTheWayOfAnOutput) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "folder");
+  folder.write("p.nc", "G1\n");
+  const auto said = [&](const std::string& arguments) {
+    const auto run = run_camber(folder, arguments);
+    EXPECT_EQ(run.status, 1);
+    return run.err;
+  };
+  EXPECT_EQ(said("feed p.nc --machine m.toml -o folder"),
+            "folder: error: cannot be written: it is a folder; the name of a file was expected [file-unwritable]\n");
+  EXPECT_EQ(said("feed p.nc --machine m.toml -o a.csv --json ./a.csv"),
+            "./a.csv: error: is to be written twice; another name was expected [output-twice]\n");
+  EXPECT_EQ(said("predict job.toml -o p.nc/out"),
+            "p.nc/out: error: cannot be made a folder: " + (folder / "p.nc") + " is a file [file-unwritable]\n");
+  std::filesystem::permissions(folder / "p.nc", std::filesystem::perms{0444});
+  EXPECT_EQ(said("feed q.nc --machine m.toml -o p.nc"),
+            "p.nc: error: cannot be written: the file there is write-protected [file-unwritable]\n");
+  EXPECT_EQ(tests::file_text(folder / "p.nc"), "G1\n");
+}
+
 TEST(CommandLine, PrintsTheEffectiveConfigurationAsAFileThatCanBeRead) {
   const TempFolder folder;
   folder.write("m.toml", "[axis.x]\nmax_velocity_mm_per_min = 9000\n");
@@ -61,6 +85,18 @@ TEST(CommandLine, PrintsTheEffectiveConfigurationAsAFileThatCanBeRead) {
   EXPECT_NE(run.out.find("acceleration_mm_per_s2 = inf\n"), std::string::npos);
   folder.write("again.toml", run.out);
   EXPECT_EQ(run_camber(folder, "feed p.nc --machine again.toml --effective-config").status, 0);
+}
+
+TEST(CommandLine, CheckFitsEightyColumns) {
+  const TempFolder folder;
+  folder.write("p.nc",
+               "G21 G90 G17 G40 G80 G54\nT124 M6\nS10500 M3\nG0 X-1183.959 Y-1115.38 Z125.4\nG1 Z-164.671 F330.2\n"
+               "X1210.78 Y1175.12 F13810.5\nS12000\nG81 X1. Y1. Z-160. R130. F100.\nG80\nG28 Z130.\nM30\n");
+  const auto run = run_camber(folder, "check p.nc");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("of them to or from the reference point"), std::string::npos) << run.out;
+  std::istringstream lines(run.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << line;
 }
 
 TEST(CommandLine, PutsNoColourInAPipe) {
@@ -82,6 +118,7 @@ TEST(Progress, TellsShareAndTimeLeft) {
   EXPECT_EQ(cli::progress_text("cutting", 0.02, 10), "  2 % [........................] cutting");
   EXPECT_EQ(cli::progress_text("cutting", 0.25, 10), " 25 % [######..................] cutting, 30 s left");
   EXPECT_EQ(cli::progress_text("round 2", 0.1, 60), " 10 % [##......................] round 2, 9 min left");
+  EXPECT_EQ(cli::progress_text("fitting", std::nullopt, 12), "fitting, 12 s so far");
   EXPECT_EQ(cli::progress_text("round 2", 1.2, 60), "100 % [########################] round 2, 0 s left");
 }
 

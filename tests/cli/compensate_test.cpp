@@ -186,11 +186,16 @@ TEST(CompensateCommand, AFullDiskLeavesTheOldFile) {
   const TempFolder folder;
   write_job(folder);
   folder.write("a.nc", "OLD\n");
+  folder.write("r.json", "OLD\n");
   const std::string command = "cd '" + folder.path() +
-                              "' && (ulimit -f 0; exec '" CAMBER_EXECUTABLE
-                              "' compensate job.toml -o a.nc -q 2>&1 | cat > /dev/null; true)";
+                              "' && { (ulimit -f 0; exec '" CAMBER_EXECUTABLE
+                              "' compensate job.toml -o a.nc --json r.json -q); echo status $?; } 2>&1 | cat > said";
   ASSERT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(file_text(folder / "a.nc"), "OLD\n");
+  EXPECT_EQ(file_text(folder / "r.json"), "OLD\n");
+  EXPECT_EQ(file_text(folder / "said"),
+            "a.nc: error: could not be written to its end (is the disk full?) [file-unwritable]\n"
+            "r.json: error: could not be written to its end (is the disk full?) [file-unwritable]\nstatus 1\n");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.nc.part"));
 }
 
@@ -212,12 +217,35 @@ TEST(CompensateCommand, ATargetThatIsAFolderIsSaidAndNothingIsLeft) {
   std::filesystem::create_directory(folder / "a.nc");
   const auto run = run_camber(folder, "compensate job.toml -o a.nc -q");
   EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.err.find("a.nc: error: cannot be written"), std::string::npos) << run.err;
+  EXPECT_EQ(run.err,
+            "a.nc: error: cannot be written: it is a folder; the name of a file was expected [file-unwritable]\n");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.nc.part"));
 }
 
+/// Where one output cannot be written, the others are, and the figures are printed.
+TEST(CompensateCommand, WhatFitsOnTheDiskIsWritten) {
+  const TempFolder folder;
+  write_job(folder);
+  constexpr const char* kSmall = "16";  // blocks of 512 bytes: the program and the figures fit, the page does not
+  const std::string command = "cd '" + folder.path() + "' && { (ulimit -f " + kSmall +
+                              "; exec '" CAMBER_EXECUTABLE
+                              "' compensate job.toml -o a.nc --json r.json --report r.html); echo status $?; } 2>&1 | "
+                              "cat > said";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const std::string said = file_text(folder / "said");
+  EXPECT_NE(said.find("largest shift"), std::string::npos) << said;
+  EXPECT_NE(said.find("r.html: error: could not be written to its end (is the disk full?) [file-unwritable]\n"),
+            std::string::npos)
+      << said;
+  EXPECT_TRUE(said.ends_with("status 1\n")) << said;
+  EXPECT_TRUE(file_text(folder / "a.nc").ends_with("M30\n%\n"));
+  EXPECT_TRUE(nlohmann::json::accept(file_text(folder / "r.json")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "r.html"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "r.html.part"));
+}
+
 /// Ends camber while it works.
-void expect_nothing_written_after(int signal) {
+void expect_nothing_written_after(int signal, int milliseconds) {
   const TempFolder folder;
   write_job(folder);
   folder.write("a.nc", "OLD\n");
@@ -229,6 +257,7 @@ void expect_nothing_written_after(int signal) {
           static_cast<char*>(nullptr));
     _exit(99);
   }
+  usleep(static_cast<useconds_t>(1000 * milliseconds));
   kill(child, signal);
   int status = 0;
   waitpid(child, &status, 0);
@@ -237,8 +266,12 @@ void expect_nothing_written_after(int signal) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a.nc.part"));
 }
 
-TEST(CompensateCommand, AnInterruptedRunLeavesTheOldFile) { expect_nothing_written_after(SIGINT); }
-TEST(CompensateCommand, AnEndedRunLeavesTheOldFile) { expect_nothing_written_after(SIGTERM); }
+TEST(CompensateCommand, AnInterruptedRunLeavesTheOldFile) {
+  for (const int milliseconds : {0, 15, 40}) expect_nothing_written_after(SIGINT, milliseconds);
+}
+TEST(CompensateCommand, AnEndedRunLeavesTheOldFile) {
+  for (const int milliseconds : {0, 15, 40}) expect_nothing_written_after(SIGTERM, milliseconds);
+}
 
 }  // namespace
 }  // namespace camber

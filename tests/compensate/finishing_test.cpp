@@ -75,6 +75,19 @@ TEST(Finishing, RefusesCutterRadiusCompensation) {
       "[compensation] operations without these blocks, was expected [cutter-radius]\n    G1 Y10. F100\n    ^");
 }
 
+TEST(Finishing, SaysWhereNoMoveHasWordsOfItsOwn) {
+  const auto program = machined(
+      "G21 G90 G17 G54\nT1 M6\nS3000 M3\nG0 X0. Y0.\n#1=0\nWHILE [#1 LT 3] DO1\nG1 X[#1+1] F300\n#1=#1+1\nEND1\nM30\n");
+  std::vector<bool> lines(program.moves.moves.size());
+  for (std::size_t m = 0; m < lines.size(); ++m) lines[m] = program.moves.moves[m].kind == nc::MoveKind::linear;
+  Diagnostics diagnostics;
+  check_compensated(program, lines, diagnostics);
+  ASSERT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(diagnostics.all()[0].severity, Severity::error);
+  EXPECT_EQ(diagnostics.all()[0].location.line, 7u);
+  EXPECT_EQ(diagnostics.all()[0].check, "nothing-to-compensate");
+}
+
 TEST(Finishing, SaysWhereNothingIsLeftToCompensate) {
   const auto program = machined(kTwoTools);
   Diagnostics diagnostics;

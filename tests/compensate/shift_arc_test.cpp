@@ -1,5 +1,6 @@
 // Arcs under a shift: one arc where one does, else the fewest.
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -40,7 +41,7 @@ double worst_stray(const nc::Interpretation& moves, auto out) {
     if (m.kind != nc::MoveKind::arc) continue;
     for (double u = 0; u <= 1; u += 0.05) {
       const Vec3 p = nc::point_at(moves, m, u);
-      worst = std::max(worst, std::abs(p.norm() - 10 - out(std::atan2(p.y(), p.x()))));
+      worst = std::max(worst, std::abs(p.head<2>().norm() - 10 - out(std::atan2(p.y(), p.x()))));
     }
   }
   return worst;
@@ -91,6 +92,54 @@ TEST(ShiftedArc, KeepsRadiusWordsAndFullTurns) {
     const Arcs emitted(emission.text);
     EXPECT_GE(emitted.moves.moves.size(), 3u) << emission.text;
     EXPECT_LT(worst_stray(emitted.moves, out), kTolerance_mm + kRounding_mm + 0.0003) << emission.text;
+  }
+}
+
+TEST(ShiftedArc, AFullTurnStaysOneWhereTheShiftIsEven) {
+  const Arcs given("G21 G17 G90\nG0 X12. Y0.\nG1 X10. F300\nG3 I-10.\nM30\n");
+  ShiftPath path(given.moves, {false, true, true}, 0.4);
+  const auto out = [](double) { return 0.01; };
+  shift_outwards(path, out);
+  const auto edits = path.edits(kTolerance_mm);
+  ASSERT_EQ(edits.size(), 2u);
+  EXPECT_TRUE(edits[1].via_mm.empty());
+  EXPECT_NEAR(edits[1].center_mm.norm(), 0, 1e-6);
+}
+
+/// Where the control stops at every corner arcs are not split; the ends of a full turn are shifted one by one all the
+/// same, and the line between them points anywhere.
+TEST(ShiftedArc, AFullTurnKeepsItsCentreWhereItsEndsAreShiftedUnevenly) {
+  for (const char* text : {"G21 G17 G90\nG0 X12. Y0.\nG1 X10. F300\nG3 I-10.\nM30\n",
+                           "G21 G17 G90\nG0 X12. Y0.\nG1 X10. F300\nG3 I-10. Z-1.\nM30\n"}) {
+    const Arcs given(text);
+    ShiftPath path(given.moves, {false, true, true}, std::numeric_limits<double>::infinity());
+    ASSERT_EQ(path.points().size(), 5u);
+    const auto out = [](double) { return 0.01; };
+    shift_outwards(path, out);
+    path.points().back().shift_mm += Vec3(0.0004, 0.0002, 0);
+    const auto edits = path.edits(kTolerance_mm);
+    ASSERT_EQ(edits.size(), 2u);
+    EXPECT_TRUE(edits[1].via_mm.empty());
+    const Arcs emitted(nc::emit_edits(given.text, given.moves, edits, {}).text);
+    EXPECT_LT(worst_stray(emitted.moves, out), kRounding_mm);
+  }
+}
+
+/// R says the centre of half a turn only to a square root: one of 7 mm, rounded to 0.1 um, lies 26 um away.
+TEST(ShiftedArc, HalfATurnByItsRadiusBecomesTwo) {
+  for (const char* text : {"G21 G17 G90\nG0 X12. Y0.\nG1 X10. F300\nG3 X-10. Y0. R10.\nM30\n",
+                           "G21 G17 G90\nG0 X12. Y0.\nG1 X10. F300\nG3 X-9.9954 Y-0.3034 R-10.\nM30\n"}) {
+    const Arcs given(text);
+    ShiftPath path(given.moves, {false, true, true}, std::numeric_limits<double>::infinity());
+    ASSERT_EQ(path.points().size(), 4u);
+    const auto out = [](double) { return 0.01; };
+    shift_outwards(path, out);
+    path.points().back().shift_mm.y() -= 0.0004;
+    const nc::Emission emission = nc::emit_edits(given.text, given.moves, path.edits(kTolerance_mm), {});
+    EXPECT_TRUE(emission.not_made.empty());
+    const Arcs emitted(emission.text);
+    EXPECT_EQ(emitted.moves.moves.size(), 4u) << emission.text;
+    EXPECT_LT(worst_stray(emitted.moves, out), kTolerance_mm) << emission.text;
   }
 }
 

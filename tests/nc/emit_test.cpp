@@ -57,6 +57,11 @@ TEST(NcEmit, KeepsTheStyleOfNumbers) {
   EXPECT_EQ(emitted("G0 X5 Y5 Z1\nG1 X 10 F100\n", {2, 0, 0}, {1}), "G0 X5 Y5 Z1\nG1 X 12 F100\n");
 }
 
+TEST(NcEmit, AddsWordsInTheCaseOfTheBlock) {
+  EXPECT_EQ(emitted("g0 x0 y0 z0\ng1 x1. f100\ny2.\n", {0, 0, 0.125}, {1}),
+            "g0 x0 y0 z0\ng1 x1. z0.125 f100\ny2. z0.\n");
+}
+
 TEST(NcEmit, WritesInchesWithFiveDecimals) {
   const Read r = read_clean("G20G0X0Y0Z0\nG1X1.F10.\n");
   EXPECT_EQ(emit(r.program, r.moves, shifted(r, {0.01, 0, 0}, {1}), {}), "G20G0X0Y0Z0\nG1X1.00039F10.\n");

@@ -1,11 +1,16 @@
 #include "removal/stock.h"
 
 #include <cmath>
+#include <csignal>
+
+#include <sys/resource.h>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "base/diagnostics.h"
 #include "removal/mesh_distance.h"
+#include "removal/stock_shape.h"
 #include "removal/stretch.h"
 #include "removal/surface.h"
 #include "tests/support/cutting.h"
@@ -232,6 +237,61 @@ TEST(Stock, ComesBackFromItsFile) {
               folder / "s.vdb" + std::string(": error: its voxels are 0.1 mm wide; 0.2 mm (voxel_mm of the job), from "
                                              "zero, were expected [vdb-voxel]"));
   }
+}
+
+TEST(Stock, IsNotSavedHalfWhenTheDiskIsFull) {
+  const tests::TempFolder folder;
+  const std::string path = folder.write("s.vdb", "OLD");
+  const Stock stock = make_box({0, 0, 0}, {8, 6, 4}, 0.1);
+  const auto before = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit small{20000, limit.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  std::string said;
+  try {
+    stock.save(path);
+  } catch (const InputError& e) {
+    said = e.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, before);
+  EXPECT_EQ(said, path + ": error: could not be written to its end (is the disk full?) [file-unwritable]");
+  EXPECT_EQ(tests::file_text(path), "OLD");
+  EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+}
+
+TEST(StockShape, LiesOnTheFacesOfABoxAndOnWhatWasCut) {
+  Stock stock = make_box({-6, -6, -4}, {6, 6, 0}, 0.1);
+  const EnvelopeGrid envelope = ball_envelope();
+  std::vector<Stamp> row;
+  add_row(row, {-8, 0, -1}, {8, 0, -1}, 0.1);
+  carve_row(stock, envelope, row);
+  constexpr std::size_t kMost = 3000;
+  const StockShape shape = stock_shape(stock, kMost);
+  EXPECT_LE(shape.crossings.size(), kMost);
+  EXPECT_GT(shape.crossings.size(), kMost / 3) << "no coarser than asked";
+  constexpr double kFace_mm = 0.001;
+  int cut = 0, below = 0;
+  for (const StockCrossing& c : shape.crossings) {
+    const Vec3 p = c.place_mm;
+    int on_lines = 0;
+    for (int a = 0; a < 3; ++a)
+      if (std::abs(p[a] / shape.cell_mm - std::round(p[a] / shape.cell_mm)) < 1e-6) ++on_lines;
+    EXPECT_GE(on_lines, 2) << p.transpose();
+    EXPECT_NEAR(stock.distance_mm(p), 0, 0.01) << p.transpose();
+    EXPECT_GT(stock.distance_mm(p + 0.05 * c.outward), 0) << p.transpose();
+    const bool in_groove = std::abs(p.y()) < 2.2 && p.z() > -1.1 && std::abs(p.x()) < 5.9;
+    if (in_groove) {  // radius 3, its axis at z = 2
+      EXPECT_NEAR(std::hypot(p.y(), p.z() - 2), 3, 0.02) << p.transpose();
+      ++cut;
+    } else if (p.z() < -3.9) {
+      EXPECT_NEAR(p.z(), -4, kFace_mm);
+      ++below;
+    }
+  }
+  EXPECT_GT(cut, 100);
+  EXPECT_GT(below, 100);
 }
 
 TEST(Stl, SaysHowManyEdgesAreOpen) {

@@ -74,6 +74,33 @@ ReportData example() {
   return data;
 }
 
+/// Where the lines of a grid cross the faces of a box.
+std::vector<SurfaceSample> faces(const Vec3& low, const Vec3& high, double cell_mm) {
+  std::vector<SurfaceSample> out;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    for (int i = static_cast<int>(std::ceil(low[b] / cell_mm)); i * cell_mm < high[b]; ++i)
+      for (int j = static_cast<int>(std::ceil(low[c] / cell_mm)); j * cell_mm < high[c]; ++j)
+        for (const bool upper : {false, true}) {
+          SurfaceSample s;
+          s.place_mm[axis] = upper ? high[axis] : low[axis];
+          s.place_mm[b] = i * cell_mm;
+          s.place_mm[c] = j * cell_mm;
+          s.normal = (upper ? 1.0 : -1.0) * Vec3::Unit(axis);
+          out.push_back(s);
+        }
+  }
+  return out;
+}
+
+/// A wall in front of the slope, higher than it.
+ReportData behind_a_wall() {
+  ReportData data = example();
+  data.stock_cell_mm = 0.5;
+  data.stock = faces({-5.1, -4.1, -8.1}, {35.1, -0.6, 3.1}, data.stock_cell_mm);
+  return data;
+}
+
 class ReportPage : public testing::Test {
  protected:
   void SetUp() override { CAMBER_NEEDS_BROWSER(); }
@@ -85,6 +112,8 @@ class ReportPage : public testing::Test {
 };
 
 TEST_F(ReportPage, ShowsPartAndPathAndLeadsFromOneToTheOther) { EXPECT_EQ(checked("compared", example()), ""); }
+
+TEST_F(ReportPage, ShowsTheStockInGreyAndNothingBehindIt) { EXPECT_EQ(checked("stock", behind_a_wall()), ""); }
 
 TEST_F(ReportPage, SaysSoWithoutWebGl) { EXPECT_EQ(checked("without_webgl", example()), ""); }
 
@@ -101,6 +130,8 @@ ReportData large() {
     s.error_after_um += random();
   }
   data.surface = std::move(surface);
+  data.stock_cell_mm = 5;
+  data.stock = faces({-11, -11, -81}, {511, 136, 3}, data.stock_cell_mm);
   data.path.clear();
   for (const char* name : {"before", "after"}) {
     PathRun run{name, {}, {}};

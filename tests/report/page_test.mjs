@@ -30,6 +30,17 @@ const pixels = page => page.evaluate(() => {
   return out;
 });
 
+// Share of the picture that has the colour of the stock.
+const GREY = `(() => {
+  const canvas = document.querySelector('#scene canvas'), gl = canvas.getContext('webgl2');
+  const { drawingBufferWidth: w, drawingBufferHeight: h } = gl, px = new Uint8Array(4 * w * h);
+  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, px);
+  let grey = 0;
+  for (let i = 0; i < px.length; i += 4)
+    if (px[i] > 100 && px[i] < 180 && px[i + 2] - px[i] > 8 && px[i + 2] - px[i] < 26 && px[i + 1] > px[i] && px[i + 1] < px[i + 2]) grey++;
+  return grey / (w * h);
+})()`;
+
 // Every number that names its place in the JSON is the JSON's.
 async function expectNumbersOfJson(page) {
   const figures = JSON.parse(readFileSync(json, 'utf8'));
@@ -120,6 +131,31 @@ const CHECKS = {
     expect(download.suggestedFilename() === 'out.nc', `the download is called ${download.suggestedFilename()}`);
     const text = readFileSync(await download.path(), 'utf8');
     expect(text.startsWith('%\r\nO1\r\n') && text.endsWith('N32 G1 X29.001\r\nM30\r\n%\r\n'), `the download holds ${JSON.stringify(text.slice(0, 40))} ...`);
+  },
+
+  // A wall of the stock in front of the surface.
+  async stock(page) {
+    const grey = await page.evaluate(GREY);
+    expect(grey > 0.05, `the stock covers ${grey} of the picture`);
+    const colours = await pixels(page);
+    expect(colours.red > 0.005 * colours.all && colours.blue > 0.005 * colours.all, `the surface is not seen beside it: ${JSON.stringify(colours)}`);
+    expect(/Grey is the stock that stays, in cells of 0.5 mm/.test(await page.locator('.notes').innerText()), 'the page does not say what is grey');
+    await page.getByRole('button', { name: 'Front', exact: true }).click();
+    expect((await pixels(page)).red === 0, 'the surface is seen through the stock');
+    const box = await page.locator('#scene canvas').boundingBox(), tip = page.locator('.tip');
+    // The slope's upper half, behind the wall's.
+    const seen = async () => {
+      for (let y = 0.3; y < 0.7; y += 0.02) {
+        await page.locator('#scene canvas').hover({ position: { x: box.width / 2, y: box.height * y } });
+        await painted(page);
+        if (await tip.isVisible()) return true;
+      }
+      return false;
+    };
+    expect(!await seen(), 'the cursor reads through the stock');
+    await page.click('button[data-value=hidden]');
+    expect(await page.evaluate(GREY) === 0, 'the hidden stock is seen');
+    expect(await seen(), 'the cursor does not read the surface where the stock is hidden');
   },
 
   async numbers(page) {

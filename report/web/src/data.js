@@ -48,10 +48,12 @@ function triangles(bytes, arrays) {
   return new Uint32Array(out);
 }
 
+const meshOf = (bytes, m) => ({ place: triples(bytes, m.place), triangles: triangles(bytes, m.quad), cell: m.cell });
+
 function surfaceOf(bytes, s) {
   return {
-    place: triples(bytes, s.place), normal: triples(bytes, s.normal), triangles: triangles(bytes, s.quad),
-    error: s.error.map(a => read(bytes, a)), block: s.block.map(a => read(bytes, a)), cell: s.cell, points: s.points,
+    ...meshOf(bytes, s), normal: triples(bytes, s.normal),
+    error: s.error.map(a => read(bytes, a)), block: s.block.map(a => read(bytes, a)), points: s.points,
   };
 }
 
@@ -61,12 +63,13 @@ function runOf(bytes, run) {
   return out;
 }
 
-// {scales, download, surface, runs}; runs without rows are left out.
+// {scales, download, surface, stock, runs}; runs without rows are left out.
 export async function readPage() {
   const index = JSON.parse(document.getElementById('index').textContent), bytes = await inflate(bytesOf('arrays'));
   return {
     scales: index.scales, download: index.download,
     surface: index.surface && surfaceOf(bytes, index.surface),
+    stock: index.stock && meshOf(bytes, index.stock),
     runs: index.runs.filter(r => r.t.n > 0).map(r => runOf(bytes, r)),
   };
 }

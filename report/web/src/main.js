@@ -43,7 +43,7 @@ class Page {
   }
 
   controls() {
-    const box = byId('part-controls'), { surface, runs, scales } = this.page;
+    const box = byId('part-controls'), { surface, stock, runs, scales } = this.page;
     if (surface) {
       const modes = surface.error[1] ? [['before', 'Before'], ['after', 'After'], ['change', 'Change'], ['plain', 'Plain']] : [['before', 'Form error'], ['plain', 'Plain']];
       box.append(choice('Surface', modes, mode => {
@@ -56,6 +56,7 @@ class Page {
       scale.list.value = String(scales[0]);
       box.append(scale.box);
     }
+    if (stock) box.append(choice('Stock', [['shown', 'Shown'], ['hidden', 'Hidden']], shown => this.scene.showStock(shown === 'shown')).box);
     if (runs.length)
       box.append(menu('Path', [['', 'hidden'], ...present(runs).map(q => [q, 'by ' + QUANTITIES[q].name])], q => { this.quantity = q || null; this.update(); }).box);
     const views = element('span', { className: 'choice' }, element('span', { className: 'label', textContent: 'View' }));

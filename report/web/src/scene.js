@@ -1,6 +1,7 @@
 // The part and the path in 3-D.
 import {
-  BufferAttribute, BufferGeometry, Color, DoubleSide, LineBasicMaterial, LineSegments, Mesh, OrthographicCamera, Scene,
+  BufferAttribute, BufferGeometry, Color, DoubleSide, LineBasicMaterial, LineSegments, Mesh, OrthographicCamera, Raycaster,
+  Scene,
   ShaderMaterial, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
@@ -39,8 +40,30 @@ void main() {
   gl_FragColor = vec4(base * light, 1.0);
 }`;
 
+// The stock around is coarse: it lies a cell farther away than it is, so that it hides nothing of the surface.
+const STOCK_VERTEX = `
+uniform float back;
+varying vec3 eye;
+void main() {
+  vec4 at = modelViewMatrix * vec4(position, 1.0);
+  eye = at.xyz;
+  at.z -= back;
+  gl_Position = projectionMatrix * at;
+}`;
+
+// Flat, and darker than white, which is an error of nothing.
+const STOCK_FRAGMENT = `
+varying vec3 eye;
+void main() {
+  vec3 n = normalize(cross(dFdx(eye), dFdy(eye)));
+  float light = 0.72 + 0.28 * max(0.0, dot(n.z < 0.0 ? -n : n, normalize(vec3(0.35, 0.55, 0.75))));
+  gl_FragColor = vec4(vec3(0.66, 0.69, 0.73) * light, 1.0);
+}`;
+
 const VIEWS = { oblique: [-0.6, -1, 1.25], top: [0, -1e-4, 1], front: [0, -1, 0], right: [1, 0, 0] };
 const CLICK_PX = 4, PATH_PX = 6;
+// Up to this many times the size of what is judged, the stock decides how large the picture is.
+const WHOLE_STOCK = 2.5;
 
 function bounds(arrays) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
@@ -64,11 +87,12 @@ export class PartScene {
     this.run = 0;
     this.camera = new OrthographicCamera();
     this.camera.up.set(0, 0, 1);
-    const { surface, runs } = page;
+    const { surface, stock, runs } = page;
     const cutting = runs.map(r => r.place.filter((_, i) => r.cutting[Math.floor(i / 3)] > 0.5));
     this.shown = surface ? [surface.place] : cutting.some(c => c.length) ? cutting : runs.map(r => r.place);
-    Object.assign(this, bounds(this.shown));
+    Object.assign(this, bounds(this.shown), { deep: bounds(this.shown).radius });
     if (surface) this.scene.add(this.surface = this.meshOf(surface));
+    if (stock) this.addStock(stock);
     this.renderer.domElement.tabIndex = 0;
     this.renderer.domElement.setAttribute('aria-label', 'The part in three dimensions');
     box.append(this.renderer.domElement);
@@ -98,6 +122,25 @@ export class PartScene {
     }));
   }
 
+  addStock(stock) {
+    const geometry = new BufferGeometry(), whole = bounds([...this.shown, stock.place]);
+    geometry.setAttribute('position', new BufferAttribute(stock.place, 3));
+    geometry.setIndex(new BufferAttribute(stock.triangles, 1));
+    this.stock = new Mesh(geometry, new ShaderMaterial({
+      vertexShader: STOCK_VERTEX, fragmentShader: STOCK_FRAGMENT, side: DoubleSide, uniforms: { back: { value: stock.cell } },
+    }));
+    this.scene.add(this.stock);
+    this.deep = Math.hypot(...whole.middle.map((v, k) => v - this.middle[k])) + whole.radius;
+    if (whole.radius > WHOLE_STOCK * this.radius) return;
+    this.shown = [...this.shown, stock.place];
+    Object.assign(this, whole);
+  }
+
+  showStock(shown) {
+    this.stock.visible = shown;
+    this.render();
+  }
+
   listen(hover, click) {
     const canvas = this.renderer.domElement;
     let down = null, asked = null;
@@ -116,7 +159,7 @@ export class PartScene {
   }
 
   look(name) {
-    const [x, y, z] = VIEWS[name], length = Math.hypot(x, y, z), far = 20 * this.radius;
+    const [x, y, z] = VIEWS[name], length = Math.hypot(x, y, z), far = 20 * this.deep;
     this.controls.target.set(...this.middle);
     this.camera.position.set(...this.middle.map((v, k) => v + [x, y, z][k] / length * far / 2));
     Object.assign(this.camera, { near: 0, far, zoom: 1 });
@@ -213,7 +256,16 @@ export class PartScene {
     return best;
   }
 
-  // The vertex nearest to the eye of those within a cell or a few pixels of the ray.
+  // How far from the plane of the screen the stock is hit, or Infinity.
+  stockDepth(x, y) {
+    if (!this.stock?.visible) return Infinity;
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2(x, y), this.camera);
+    const hit = ray.intersectObject(this.stock)[0];
+    return hit ? hit.distance : Infinity;
+  }
+
+  // The vertex nearest to the eye of those within a cell or a few pixels of the ray; none behind the stock.
   nearestVertex(x, y) {
     const { place, cell } = this.page.surface, from = new Vector3(x, y, -1).unproject(this.camera);
     const along = this.camera.getWorldDirection(new Vector3()), reach = Math.max(cell, 3 * this.mmPerPixel()) ** 2;
@@ -223,7 +275,7 @@ export class PartScene {
       const depth = dx * along.x + dy * along.y + dz * along.z, off = dx * dx + dy * dy + dz * dz - depth * depth;
       if (off < reach && depth + 2 * Math.sqrt(off) < least) { least = depth + 2 * Math.sqrt(off); best = i / 3; }
     }
-    return best;
+    return best >= 0 && least > this.stockDepth(x, y) + 2 * (this.page.stock?.cell || 0) ? -1 : best;
   }
 
   mark(place) {
