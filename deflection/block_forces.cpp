@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "deflection/chip_ends.h"
 #include "deflection/edge_force.h"
 #include "deflection/tooth_pass.h"
 #include "removal/envelope_blocks.h"
@@ -56,8 +57,9 @@ void add_four(const EdgeForces& e, const Sums& s) {
 /// Linear law without a ramp.
 inline void linear_forces(const machine::Material& m, const float* h, const std::uint8_t* cut_255, double width,
                           EdgeForces& e) {
+  const double width_255 = width / 255;
   for (std::size_t l = 0; l < kSteps; ++l) {
-    const double thickness = h[l], cuts = h[l] > 0 ? cut_255[l] / 255.0 * width : 0.0;
+    const double thickness = h[l], cuts = h[l] > 0 ? cut_255[l] * width_255 : 0.0;
     e.tangential[l] = (m.ktc_MPa * thickness + m.kte_N_per_mm) * cuts;
     e.radial[l] = (m.krc_MPa * thickness + m.kre_N_per_mm) * cuts;
     e.axial[l] = (m.kac_MPa * thickness + m.kae_N_per_mm) * cuts;
@@ -66,10 +68,98 @@ inline void linear_forces(const machine::Material& m, const float* h, const std:
 
 }  // namespace
 
+/// What an end adds to the sums that hold every sample whole, drawn in a straight line to the next step.
+void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, std::span<float> fine_mm) const {
+  const auto& ring = envelope_.rings[static_cast<std::size_t>(e.ring)];
+  const int pitch = envelope_.steps_per_pitch, turn = pitch * kFine;
+  const int m = static_cast<int>(e.point) % envelope_.steps % pitch;
+  const double width = e.width_share * ring.width_mm;
+  const double half = std::max(e.ramp, 1.0 / kFine) / 2;
+  const double c = envelope_.cos_phi[e.point], sn = envelope_.sin_phi[e.point];
+  const double sine = ring.sine, cosine = ring.cosine;
+  const std::size_t nodes = node_height_mm_.size();
+  const double* compliance = compliance_.data() + static_cast<std::size_t>(e.ring) * nodes;
+  const bool linear = material_.law == machine::ForceLaw::linear && edge_ramp_mm_ == 0;
+  const auto on_tool = [&](const EdgeForce& f) {
+    const double outward = f.radial_N * sine + f.axial_N * cosine;
+    return std::array<double, 4>{-(f.tangential_N * sn + outward * c), -(outward * sn - f.tangential_N * c),
+                                 f.radial_N * cosine - f.axial_N * sine, f.tangential_N * ring.profile.radius_mm};
+  };
+  // Linear: a millimetre of thickness, and the edge.
+  const auto per_mm = on_tool({material_.ktc_MPa * width, material_.krc_MPa * width, material_.kac_MPa * width});
+  const auto edge =
+      on_tool({material_.kte_N_per_mm * width, material_.kre_N_per_mm * width, material_.kae_N_per_mm * width});
+  const int first = static_cast<int>(std::ceil(std::min(0.0, e.at - half) * kFine));
+  const int last = static_cast<int>(std::floor(std::max(1.0, e.at + half) * kFine));
+  for (int j = first; j <= last; ++j) {
+    const double u = static_cast<double>(j) / kFine;
+    const double share = std::clamp((e.at - u) / (2 * half) + 0.5, 0.0, 1.0);
+    if ((u <= 0 && share == 1) || (u >= 1 && share == 0)) continue;
+    // Over the part of the ring that is in the cut the chip falls evenly to nothing.
+    const double thickness = e.fall_mm > 0
+                                 ? e.fall_mm * (std::max(0.0, e.at + half - u) + std::max(0.0, e.at - half - u)) / 2
+                                 : e.thickness_mm;
+    const double drawn = e.thickness_mm - std::min(u, 0.0) * e.fall_mm;
+    const double left = std::clamp(1 - u, 0.0, 1.0);  // of the line to the sample that is out of the cut
+    std::array<double, 4> f;
+    if (linear) {
+      const double h = share * thickness - left * drawn, b = share - left;
+      for (std::size_t i = 0; i < 4; ++i) f[i] = h * per_mm[i] + b * edge[i];
+    } else {
+      const auto is = on_tool(edge_force(material_, share > 0 ? thickness : 0, share * width, edge_ramp_mm_));
+      const auto was = on_tool(edge_force(material_, drawn, left * width, edge_ramp_mm_));
+      for (std::size_t i = 0; i < 4; ++i) f[i] = is[i] - was[i];
+    }
+    int at = m * kFine + e.side * j;
+    at += at < 0 ? turn : at >= turn ? -turn : 0;
+    if (!fine_mm.empty()) {
+      float* d = fine_mm.data() + 2 * at;
+      for (std::size_t n = 0; n < nodes; ++n, d += 2 * turn) {
+        d[0] += static_cast<float>((compliance[n] + axis_compliance_.x()) * f[0]);
+        d[1] += static_cast<float>((compliance[n] + axis_compliance_.y()) * f[1]);
+      }
+    }
+    if (j % kFine == 0)
+      for (std::size_t i = 0; i < 4; ++i) sums[i * row + static_cast<std::size_t>(at / kFine)] += f[i];
+  }
+}
+
+namespace {
+
+/// Deflections along x and y, [count] each, with straight lines between the steps.
+void draw_between_steps(const double* x, const double* y, std::size_t count, float* fine) {
+  for (std::size_t m = 0; m < count; ++m) {
+    const std::size_t next = m + 1 < count ? m + 1 : 0;
+    if (x[m] == 0 && y[m] == 0 && x[next] == 0 && y[next] == 0) {
+      std::fill_n(fine, 2 * kFine, 0.0f);
+      fine += 2 * kFine;
+      continue;
+    }
+    const double dx = (x[next] - x[m]) / kFine, dy = (y[next] - y[m]) / kFine;
+    for (int i = 0; i < kFine; ++i) {
+      *fine++ = static_cast<float>(x[m] + i * dx);
+      *fine++ = static_cast<float>(y[m] + i * dy);
+    }
+  }
+}
+
+}  // namespace
+
 void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips,
-                              std::size_t passing, const Vec3& feed, ToothPass& out) const {
-  if (with_feedback_ || !teeth_.even()) return evaluate(removal::chips_of(blocks, chips), passing, feed, out);
+                              std::size_t passing, const Vec3& feed, ToothPass& out, std::span<float> fine) const {
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
+  if (with_feedback_ || !teeth_.even()) {
+    evaluate(removal::chips_of(blocks, chips), passing, feed, out);
+    std::vector<double> x(steps), y(steps);
+    for (std::size_t n = 0; n < node_height_mm_.size() && !fine.empty(); ++n) {
+      for (std::size_t m = 0; m < steps; ++m) {
+        x[m] = static_cast<double>(out.deflection_mm[2 * (n * steps + m)]);
+        y[m] = static_cast<double>(out.deflection_mm[2 * (n * steps + m) + 1]);
+      }
+      draw_between_steps(x.data(), y.data(), steps, fine.data() + 2 * n * steps * kFine);
+    }
+    return;
+  }
   const std::size_t nodes = node_height_mm_.size(), row = (steps + kSteps - 1) / kSteps * kSteps;
   const int last = static_cast<int>(envelope_.rings.size()) - 1;
   thread_local std::vector<double> sums;
@@ -114,6 +204,12 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
     }
   }
   out.chip_max_mm = thickest;
+  for (std::size_t n = 0; n < nodes && !fine.empty(); ++n) {
+    const double* x = sums.data() + (4 + 2 * n) * row;
+    draw_between_steps(x, x + row, steps, fine.data() + 2 * n * steps * kFine);
+  }
+  thread_local ChipEnds ends;
+  for (const ChipEnd& e : ends.find(envelope_, blocks, chips)) add_end(e, sums.data(), row, fine);
   out.force_N.resize(steps);
   out.torque_Nmm.assign(sums.begin() + static_cast<std::ptrdiff_t>(3 * row),
                         sums.begin() + static_cast<std::ptrdiff_t>(3 * row + steps));
@@ -124,11 +220,7 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
   }
   out.feedback.clear();
   out.feedback_before.clear();
-  out.deflection_mm.resize(nodes * steps * 2);
-  for (std::size_t n = 0; n < nodes; ++n)
-    for (std::size_t m = 0; m < steps; ++m)
-      for (std::size_t a = 0; a < 2; ++a)
-        out.deflection_mm[2 * (n * steps + m) + a] = static_cast<float>(sums[(4 + 2 * n + a) * row + m]);
+  out.deflection_mm.clear();
 }
 
 }  // namespace camber::deflection

@@ -52,14 +52,14 @@ EnvelopeGrid sampled_envelope(const Stock& stock, const machine::Tool& tool, dou
                                 options.rotation_step_rad, stock.voxel_mm());
 }
 
-Vec2 deflection_at(const ToothPassModel& model, const EnvelopeGrid& envelope, const float* row, const Contact& c) {
-  const double step_rad = 2 * kPi / envelope.steps;
-  const int steps = envelope.steps_per_pitch;
+Vec2 deflection_at(const EnvelopeGrid& envelope, const ShiftTable& shifts, const float* row, const Contact& c) {
+  const int steps = shifts.steps;
+  const double step_rad = 2 * kPi / (steps * envelope.flutes);
   double at = (c.angle_rad - c.height_mm * envelope.lag_per_mm) / step_rad;
   at -= steps * std::floor(at / steps);
   const int m0 = static_cast<int>(at) % steps, m1 = (m0 + 1) % steps;
   const double f = at - std::floor(at);
-  const auto w = removal::node_weight(model.node_height_mm(), c.height_mm);
+  const auto w = removal::node_weight(shifts.node_height_mm, c.height_mm);
   Vec2 sum = Vec2::Zero();
   const auto add = [&](int node, int m, double weight) {
     const float* v = row + 2 * (node * steps + m);
@@ -101,7 +101,8 @@ class Cutter {
         rigid_(options.coupling == machine::Coupling::rigid),
         top_mm_(engaged_top_mm(stock, tool, stamps)),
         envelope_(sampled_envelope(stock, tool, top_mm_, options)),
-        model_(envelope_, material, beam_of(tool), node_heights(top_mm_),
+        model_(envelope_, material, beam_of(tool),
+               node_heights(top_mm_, std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm))),
                options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
                options.axis_compliance_mm_per_N, options.coupling == machine::Coupling::static_) {
     if (!options.blank) own_blank_.emplace(stock);
@@ -114,7 +115,10 @@ class Cutter {
            std::int32_t first_id, CutResult& result) {
     const std::span<const Stamp> stamps = all.subspan(from, count);
     passings_ = from;
-    ShiftTable shifts(stamps.size(), model_.steps(), model_.node_height_mm());
+    // Rigid: every row is written anew, and a hole's are not read.
+    if (!rigid_ || shifts_.stamps != stamps.size())
+      shifts_ = ShiftTable(stamps.size(), (rigid_ ? kFine : 1) * model_.steps(), model_.node_height_mm());
+    ShiftTable& shifts = shifts_;
     if (!last_row_.empty()) std::copy(last_row_.begin(), last_row_.end(), shifts.row(-1));
     // The last loaded stamp's state is the first guess for all.
     if (!rigid_ && !guess_row_.empty())
@@ -134,7 +138,7 @@ class Cutter {
     for (std::size_t k = 0; k < stamps.size(); ++k) {
       if (!contacts.empty())
         loads[k].contact_deflection_mm =
-            deflection_at(model_, envelope_, shifts.row(static_cast<std::ptrdiff_t>(k)), contacts[k]);
+            deflection_at(envelope_, shifts, shifts.row(static_cast<std::ptrdiff_t>(k)), contacts[k]);
       result.chip_mm3 += loads[k].chip_mm3;
     }
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
@@ -174,11 +178,10 @@ class Cutter {
     tbb::enumerable_thread_specific<ToothPass> passes;
     engager_->engage(from, loads.size(), [&](std::size_t k, std::span<const removal::ChipBlock> chips) {
       ToothPass& pass = passes.local();
-      model_.evaluate(blocks, chips, from + k, all[from + k].feed_per_tooth_mm, pass);
+      std::span<float> row(shifts.row(static_cast<std::ptrdiff_t>(k)), options_.drilling ? 0 : shifts.row_size());
+      model_.evaluate(blocks, chips, from + k, all[from + k].feed_per_tooth_mm, pass, row);
       loads[k] = summarize(pass);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
-      if (!options_.drilling)
-        std::copy(pass.deflection_mm.begin(), pass.deflection_mm.end(), shifts.row(static_cast<std::ptrdiff_t>(k)));
       if (!in_turn(from + k)) return;
       const std::scoped_lock lock(turn_lock);
       turn[k] = removal::chips_of(blocks, chips);
@@ -276,6 +279,7 @@ class Cutter {
   EnvelopeGrid envelope_;
   ToothPassModel model_;
   std::optional<removal::Engager> engager_;  ///< rigid
+  ShiftTable shifts_;                        ///< of the stretch
   std::vector<float> last_row_, guess_row_;
   double most_bent_mm_ = 0;
   std::size_t passings_ = 0;  ///< tooth passings before the stretch

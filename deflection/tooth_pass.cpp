@@ -7,8 +7,9 @@
 
 namespace camber::deflection {
 
-std::vector<double> node_heights(double top_mm) {
-  const int n = std::clamp(static_cast<int>(std::ceil(top_mm / 2.0)) + 1, 2, 12);
+std::vector<double> node_heights(double top_mm, double fluted_length_mm) {
+  const double apart = std::max(2.0, fluted_length_mm / 10);
+  const int n = std::clamp(static_cast<int>(std::ceil(top_mm / apart)) + 1, 2, 12);
   std::vector<double> out;
   for (int i = 0; i < n; ++i) out.push_back(top_mm * i / (n - 1));
   return out;

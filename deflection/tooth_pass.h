@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "deflection/beam.h"
+#include "deflection/chip_ends.h"
 #include "deflection/teeth.h"
 #include "machine/job.h"
 #include "removal/cutter.h"
@@ -12,6 +13,10 @@
 #include "removal/stretch.h"
 
 namespace camber::deflection {
+
+/// Deflections between rotation steps stand this many times as close: an edge that enters the material all at once
+/// changes the force within less than a step.
+constexpr int kFine = 4;
 
 /// One tooth passing. Sized once, filled for many stamps.
 struct ToothPass {
@@ -51,8 +56,10 @@ class ToothPassModel {
   /// `passing` counts tooth passings since the tool began: it tells which tooth stands where, which only matters where
   /// the teeth are not even. feed_mm: motion in one mean pitch.
   void evaluate(std::span<const removal::Chip> chips, std::size_t passing, const Vec3& feed_mm, ToothPass& out) const;
+  /// The same of chips in blocks, the instants told at which each edge element enters the material and leaves it.
+  /// fine_mm: takes the deflection, [nodes][steps * kFine][2], a row of removal::ShiftTable.
   void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
-                const Vec3& feed_mm, ToothPass& out) const;
+                const Vec3& feed_mm, ToothPass& out, std::span<float> fine_mm) const;
   /// Adds the chips of one tooth passing, the turn's `pass`-th (0 ... flutes - 1), to the turn.
   void add_to_turn(std::span<const removal::Chip> chips, std::size_t pass, std::size_t passing, const Vec3& feed_mm,
                    TurnForces& turn) const;
@@ -71,6 +78,8 @@ class ToothPassModel {
   void add(const removal::Chip& chip, double thickness_mm, const Direction& d, std::uint32_t ring, std::size_t m,
            std::vector<double>& deflection, ToothPass& out) const;
 
+  void add_end(const ChipEnd& end, double* sums, std::size_t row, std::span<float> fine_mm) const;
+
   const removal::EnvelopeGrid& envelope_;
   machine::Material material_;
   double edge_ramp_mm_;
@@ -83,7 +92,10 @@ class ToothPassModel {
   std::vector<double> own_compliance_;  ///< [rings]: at the ring's own height
 };
 
-/// Heights for a cutter that is engaged up to `top_mm`: evenly spaced, at most 2 mm apart where 12 nodes suffice.
-std::vector<double> node_heights(double top_mm);
+/// Heights for a cutter that is engaged up to `top_mm`: evenly spaced, where 12 nodes suffice at most 2 mm or a tenth
+/// of the fluted length L apart. Below a force F a beam is straight, above it bent by F (z - z_F) / (E I): a straight
+/// line between nodes a tenth of L apart beside a force is off by less than a twentieth of a percent of F L^3 / (3 E
+/// I).
+std::vector<double> node_heights(double top_mm, double fluted_length_mm = 0);
 
 }  // namespace camber::deflection

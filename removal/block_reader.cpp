@@ -87,7 +87,7 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
       if (!(deep > 0)) continue;
       const float depth = thickness_over(earlier, point(stamp, static_cast<int>(hits.block[h]) * kLanes + l));
       after_tooth(h * kLanes + l, depth > kNearCap * deep);
-      deep = std::max(0.0f, std::min(depth, deep));
+      deep = std::min(depth, deep);
     }
   b.chips.clear();
   for (int h = 0; h < hits.count; ++h) {
@@ -110,8 +110,8 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
     if (depth > 0) depth = below_blank(arena, shallow, i, up_mm, depth);
     if (depth > 0 && !earlier.empty())
       depth = std::min(depth, thickness_over(earlier, raised(point(stamp, shallow.lane[i]), up_mm)));
-    if (!(depth > 0)) continue;
     hits.thickness[shallow.hit[i]] = std::min(depth, shallow.cap[i]);
+    if (!(depth > 0)) continue;
     after_tooth(shallow.hit[i], depth > kNearCap * shallow.cap[i]);
   }
   for (int h = 0; h < hits.count; ++h) {
@@ -175,7 +175,7 @@ float BlockReader::thin(const TileArena& arena, int cell, const Point& p) const 
     const Vec3 from_tip = p.place_mm - stamps_[static_cast<std::size_t>(id)].tip_mm;
     const auto depth = static_cast<float>(envelope_.shape.distance_mm(from_tip));
     if (depth < thinnest)
-      thinnest = depth <= 0 ? 0 : std::min(thinnest, depth / slope(envelope_.shape.gradient(from_tip).dot(p.normal)));
+      thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(from_tip).dot(p.normal)));
   }
   return thinnest;
 }
@@ -186,7 +186,6 @@ float BlockReader::thickness_over(std::span<const std::int32_t> earlier, const P
   for (const std::int32_t j : earlier) {
     const Vec3 from_tip = point.place_mm - stamps_[static_cast<std::size_t>(j)].tip_mm;
     const auto depth = static_cast<float>(envelope_.shape.distance_mm(from_tip));
-    if (depth <= 0) return 0;
     if (depth < thinnest)
       thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(from_tip).dot(point.normal)));
   }

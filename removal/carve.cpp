@@ -80,7 +80,8 @@ struct SectorTable {
 
 }  // namespace
 
-Bends::Bends(const EnvelopeGrid& envelope, const ShiftTable& shifts) : shifts_(shifts), flutes_(envelope.flutes) {
+Bends::Bends(const EnvelopeGrid& envelope, const ShiftTable& shifts)
+    : shifts_(shifts), flutes_(envelope.flutes), group_(std::max(1, shifts.steps * envelope.flutes / 360)) {
   const int nodes = static_cast<int>(shifts.nodes());
   const double node_step = nodes > 1 ? shifts.node_height_mm[1] : 0.0;
   const double sector = 2 * kPi / CarveBend::kSectors;
@@ -88,36 +89,46 @@ Bends::Bends(const EnvelopeGrid& envelope, const ShiftTable& shifts) : shifts_(s
   spread_ =
       std::min(1 + static_cast<int>(std::ceil(envelope.lag_per_mm * node_step / sector)), CarveBend::kSectors / 2);
   for (int n = 0; n < nodes; ++n)
-    for (int m = 0; m < shifts.steps; ++m)
+    for (int m = 0; m < shifts.steps; m += group_)
       for (int j = 0; j < flutes_; ++j) {
-        const double phi =
-            2 * kPi * (m + j * shifts.steps) / envelope.steps + shifts.node_height_mm[n] * envelope.lag_per_mm;
+        const double turn = static_cast<double>(m + j * shifts.steps) / (shifts.steps * flutes_);
+        const double phi = 2 * kPi * turn + shifts.node_height_mm[n] * envelope.lag_per_mm;
         const int centre = static_cast<int>(std::floor((phi + kPi) / sector)) & (CarveBend::kSectors - 1);
         centre_.push_back(static_cast<std::uint8_t>(centre));
       }
 }
 
 CarveBend Bends::of(std::ptrdiff_t stamp) const {
-  CarveBend bend{shifts_.row(stamp), shifts_.largest_mm(stamp), {}};
+  CarveBend bend{shifts_.row(stamp), 0, {}};
+  float largest2 = 0;
   const auto half_sector = static_cast<float>(kPi / CarveBend::kSectors);
   static const SectorTable table;
   std::array<float, SectorTable::kPadded> outward{};  // from sector -kSectors / 2 on
   const std::uint8_t* centre = centre_.data();
-  const std::size_t count = shifts_.row_size() / 2;
-  for (std::size_t i = 0; i < count; ++i, centre += flutes_) {
-    const float* v = bend.row + 2 * i;
-    if (v[0] == 0 && v[1] == 0) continue;
-    const float more = half_sector * std::sqrt(v[0] * v[0] + v[1] * v[1]);
-    for (int j = 0; j < flutes_; ++j) {
-      const int first = centre[j] - spread_ + CarveBend::kSectors / 2;
-      for (int o = first; o <= first + 2 * spread_; ++o)
-        outward[o] = std::max(outward[o], v[0] * table.cosine[o] + v[1] * table.sine[o] + more);
+  for (std::size_t n = 0; n < shifts_.nodes(); ++n)
+    for (int m = 0; m < shifts_.steps; m += group_, centre += flutes_) {
+      const float* v = bend.row + 2 * (static_cast<int>(n) * shifts_.steps + m);
+      // The others of a group lie within `apart` of its first.
+      float longest2 = 0, apart2 = 0;
+      for (int i = 0; i < std::min(group_, shifts_.steps - m); ++i) {
+        const float x = v[2 * i], y = v[2 * i + 1], dx = x - v[0], dy = y - v[1];
+        longest2 = std::max(longest2, x * x + y * y);
+        apart2 = std::max(apart2, dx * dx + dy * dy);
+      }
+      if (longest2 == 0) continue;
+      largest2 = std::max(largest2, longest2);
+      const float more = half_sector * std::sqrt(longest2) + std::sqrt(apart2);
+      for (int j = 0; j < flutes_; ++j) {
+        const int first = centre[j] - spread_ + CarveBend::kSectors / 2;
+        for (int o = first; o <= first + 2 * spread_; ++o)
+          outward[o] = std::max(outward[o], v[0] * table.cosine[o] + v[1] * table.sine[o] + more);
+      }
     }
-  }
   for (int o = 0; o < SectorTable::kPadded; ++o) {
     float& of_sector = bend.outward_mm[(o + CarveBend::kSectors / 2) & (CarveBend::kSectors - 1)];
     of_sector = std::max(of_sector, outward[o]);
   }
+  bend.largest_mm = std::sqrt(static_cast<double>(largest2));
   return bend;
 }
 

@@ -37,7 +37,8 @@ class Bends {
  private:
   const ShiftTable& shifts_;
   int flutes_, spread_;
-  std::vector<std::uint8_t> centre_;  ///< [node][step][flute]: the sector that the edge passes then
+  int group_;                         ///< steps taken together: at most a degree
+  std::vector<std::uint8_t> centre_;  ///< [node][group][flute]: the sector that the edge passes then
 };
 
 /// Carves with the undeflected cutter; true where a voxel changed. Values are clipped to +-band_mm.

@@ -39,11 +39,11 @@ double chip_volume_mm3(const EnvelopeGrid& e, const EnvelopeBlocks& blocks, std:
       double h1 = 0, h2 = 0, h3 = 0;  // sums of powers
       for (int l = 0; l < EnvelopeBlocks::kSteps; ++l) {
         const auto at = static_cast<std::size_t>(half * EnvelopeBlocks::kSteps + l);
-        const double h = c.thickness_mm[at], cut = c.cut_255[at] / 255.0 * h;
+        const double h = std::max(0.0f, c.thickness_mm[at]), cut = c.cut_255[at] * h;
         h1 += cut, h2 += cut * h, h3 += cut * h * h;
       }
       const double k1 = ring.profile.meridian_curvature_per_mm, k2 = ring.profile.parallel_curvature_per_mm;
-      volume += (h1 - 0.5 * (k1 + k2) * h2 + k1 * k2 * h3 / 3) * ring.width_mm * ring.profile.radius_mm * turn;
+      volume += (h1 - 0.5 * (k1 + k2) * h2 + k1 * k2 * h3 / 3) * ring.width_mm * ring.profile.radius_mm * turn / 255;
     }
   return volume;
 }

@@ -23,8 +23,9 @@ struct Chip {
 /// The same of the points of a block (removal/envelope_blocks.h).
 struct ChipBlock {
   std::uint32_t block = 0;
-  std::uint32_t after_tooth = 0;        ///< a bit a point
-  std::array<float, 8> thickness_mm{};  ///< 0: no chip
+  std::uint32_t after_tooth = 0;  ///< a bit a point
+  /// 0: no chip; negative: no chip, the material lies that far outwards along the normal
+  std::array<float, 8> thickness_mm{};
   std::array<std::uint8_t, 8> cut_255{};
 };
 

@@ -159,7 +159,8 @@ class BentEnvelope {
 
   Vec3 shift(const Vec3& from_tip) const {
     const double height = envelope_height_mm(from_tip);
-    double step = (std::atan2(from_tip.y(), from_tip.x()) - height * e_.lag_per_mm) * e_.steps / (2 * kPi);
+    double step =
+        (std::atan2(from_tip.y(), from_tip.x()) - height * e_.lag_per_mm) * shifts_.steps * e_.flutes / (2 * kPi);
     step -= shifts_.steps * std::floor(step / shifts_.steps);
     const int m0 = static_cast<int>(step) % shifts_.steps, m1 = m0 + 1 == shifts_.steps ? 0 : m0 + 1;
     const double f = step - std::floor(step);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -39,7 +40,8 @@ void print_off(const std::string& name, const CutFigures& f, const CutFigures& w
   std::fflush(stdout);
 }
 
-void plane_case(const std::string& name, const InclinedPlane& p) {
+void plane_case(const std::string& name, InclinedPlane p) {
+  p.drawn_steps = 2880 / p.flutes, p.drawn_edge = 0.01;
   const CutFigures want = drawn_figures(p);
   std::printf("%s\n", name.c_str());
   print_drawn(want);
@@ -48,12 +50,12 @@ void plane_case(const std::string& name, const InclinedPlane& p) {
 
 void planes() {
   head_of_plane();
-  for (const double slope : {15.0, 30.0, 45.0, 60.0}) {
+  for (const double slope : {5.0, 15.0, 20.0, 30.0, 45.0, 60.0, 75.0}) {
     InclinedPlane p;
     p.slope_deg = slope;
     plane_case(fmt::format("slope {} deg", slope), p);
   }
-  for (const double feed : {0.05, 0.1, 0.2}) {
+  for (const double feed : {0.05, 0.1, 0.2, 0.3}) {
     InclinedPlane p;
     p.feed_mm = feed;
     plane_case(fmt::format("45 deg, {} mm/tooth", feed), p);
@@ -70,9 +72,21 @@ void planes() {
   p = {};
   p.row_mm = 0.5;
   plane_case("45 deg, rows 0.5 mm apart", p);
+  p.row_mm = 0.15;
+  plane_case("45 deg, rows 0.15 mm apart", p);
   p = {};
   p.allowance_mm = 0.4;
   plane_case("45 deg, allowance 0.4 mm", p);
+  for (const int flutes : {3, 4}) {
+    p = {};
+    p.flutes = flutes;
+    plane_case(fmt::format("45 deg, {} flutes", flutes), p);
+  }
+  for (const double helix : {0.0, 45.0}) {
+    p = {};
+    p.helix_deg = helix;
+    plane_case(fmt::format("45 deg, helix {}", helix), p);
+  }
 }
 
 void grid() {
@@ -121,6 +135,20 @@ void walls() {
     w.up = up;
     wall_case(w);
   }
+  // One thing at a time: flutes, widths of cut, feed, helix, height.
+  std::vector<FinishedWall> others(7);
+  others[0].flutes = 3;
+  others[1].radial_mm = 0.1;
+  others[2].radial_mm = 5;
+  others[3].feed_mm = 0.1;
+  others[4].helix_deg = 60;
+  others[5].height_mm = 20;
+  others[6].flutes = 3, others[6].helix_deg = 0;
+  for (FinishedWall& other : others)
+    for (const bool up : {true, false}) {
+      other.up = up;
+      wall_case(other);
+    }
   w = {};
   w.radial_mm = 2;
   w.offset_mm = Vec3(0.037, 0.051, 0.023);

@@ -18,11 +18,13 @@ struct InclinedPlane {
   double slope_deg = 45, feed_mm = 0.15, row_mm = 0.3, allowance_mm = 0.2;
   bool upwards = true;  ///< rows climb; else they descend
   double along_x = -1;  ///< direction of the feed; 0: to and fro
+  int flutes = 2;
+  double helix_deg = 30;
   double voxel_mm = 0.1;
   Vec3 offset_mm = Vec3::Zero();  ///< of path and stock against the grid
   double radius_mm = 3, diameter_step_mm = 0.06;
-  int steps_per_pitch = 180;
-  int drawn_steps = 360;
+  double rotation_step_deg = 1;
+  int drawn_steps = 360;  ///< a pitch
   double drawn_edge = 0.03;
 };
 
@@ -40,7 +42,8 @@ inline DrawnCut drawn(const InclinedPlane& p) {
   const double a = rad_from_deg(p.slope_deg), c = std::cos(a), s = std::sin(a);
   DrawnCut cut;
   cut.radius = cut.corner = p.radius_mm;
-  cut.helix_rad = rad_from_deg(30);
+  cut.helix_rad = rad_from_deg(p.helix_deg);
+  cut.flutes = p.flutes;
   cut.top = p.radius_mm * (1 - std::cos(std::min(a + 0.75, kPi / 2)));
   cut.allowance = p.allowance_mm;
   cut.k = {2000, 700, 0, 15, 15, 0};
@@ -141,7 +144,7 @@ inline CutFigures drawn_figures(const InclinedPlane& p) {
 /// Camber's figures.
 inline CutFigures camber_figures(const InclinedPlane& p) {
   const DrawnCut cut = drawn(p);
-  const auto tool = make_tool(machine::ToolType::ball, 2 * p.radius_mm, 2, 30);
+  const auto tool = make_tool(machine::ToolType::ball, 2 * p.radius_mm, p.flutes, p.helix_deg);
   const machine::Material material{2000, 700, 0, 15, 15, 0};
   removal::Stock stock = make_box(cut.lo, cut.hi, p.voxel_mm);
   deflection::sweep(stock, tool, cut.stamps, 0, p.allowance_mm);
@@ -151,7 +154,7 @@ inline CutFigures camber_figures(const InclinedPlane& p) {
   deflection::CutOptions options;
   options.coupling = machine::Coupling::rigid;
   options.envelope_step_mm = p.diameter_step_mm;
-  options.rotation_step_rad = kPi / p.steps_per_pitch;
+  options.rotation_step_rad = rad_from_deg(p.rotation_step_deg);
   removal::CutterPlaces places;
   places.add(0, removal::shape_of(tool), cut.stamps);
   removal::SurfaceMap map(target, places, stock);
