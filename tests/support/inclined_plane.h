@@ -44,7 +44,9 @@ inline DrawnCut drawn(const InclinedPlane& p) {
   cut.radius = cut.corner = p.radius_mm;
   cut.helix_rad = rad_from_deg(p.helix_deg);
   cut.flutes = p.flutes;
-  cut.top = p.radius_mm * (1 - std::cos(std::min(a + 0.75, kPi / 2)));
+  constexpr double kBeyond = 0.75;  // the contact, along the profile, rad; on the shank from a quarter turn on
+  const double end = a + kBeyond, shank = std::max(0.0, end - kPi / 2);
+  cut.top = p.radius_mm * (1 - std::cos(end - shank) + shank);
   cut.allowance = p.allowance_mm;
   cut.k = {2000, 700, 0, 15, 15, 0};
   cut.overhang = 40;
