@@ -43,7 +43,7 @@ struct CutOptions {
   double envelope_step_mm = 0.1;
   double rotation_step_rad = kPi / 180;
   std::size_t stretch_stamps = 400;              ///< solved and kept in memory at a time; static
-  std::size_t rigid_stretch_stamps = 2000;       ///< rigid: engaged and kept in memory at a time
+  std::size_t rigid_stretch_stamps = 1500;       ///< rigid: engaged and kept in memory at a time
   int max_rounds = 40;                           ///< of the static solution of one stretch
   double edge_ramp_mm = 0.002;                   ///< static only, see edge_force
   double settle_um = 0.1;                        ///< rms change of the deflection at which a stretch is settled, or ...
