@@ -2,15 +2,18 @@
 
 #include "removal/block_kernels_impl.h"
 #include "removal/kernels_impl.h"
+#include "removal/mark_kernels_impl.h"
 
 namespace camber::removal {
 
 #if defined(__x86_64__)
 const Kernels kBaseKernels = Vectors<xsimd::sse2>::table();
 const BlockKernels kBaseBlockKernels = BlockVectors<xsimd::sse2>::table();
+const MarkKernels kBaseMarkKernels = MarkVectors<xsimd::sse2>::table();
 #else
 const Kernels kBaseKernels = Vectors<xsimd::default_arch>::table();
 const BlockKernels kBaseBlockKernels = BlockVectors<xsimd::default_arch>::table();
+const MarkKernels kBaseMarkKernels = MarkVectors<xsimd::default_arch>::table();
 #endif
 
 const Kernels& kernels() {
@@ -28,6 +31,15 @@ const BlockKernels& block_kernels() {
   return widest;
 #else
   return kBaseBlockKernels;
+#endif
+}
+
+const MarkKernels& mark_kernels() {
+#if defined(__x86_64__)
+  static const MarkKernels& widest = __builtin_cpu_supports("avx2") ? kAvx2MarkKernels : kBaseMarkKernels;
+  return widest;
+#else
+  return kBaseMarkKernels;
 #endif
 }
 

@@ -6,6 +6,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "removal/kernels.h"
+#include "removal/shift_lanes.h"
 #include "removal/vector_table.h"
 
 namespace camber::removal {
@@ -24,12 +25,9 @@ struct Vectors {
   static I to_int(const F& f) { return xsimd::batch_cast<std::int32_t>(f); }
   static F to_float(const I& i) { return xsimd::batch_cast<float>(i); }
 
-  struct Shift {
-    F x, y;
-  };
+  using Shift = typename ShiftLanes<A>::Shift;
   static Shift at(const float* row, const I& node_offset, const I& step) {
-    const I i = I(2) * (node_offset + step);
-    return {Table<A>::gather(row, i), Table<A>::gather(row, i + I(1))};
+    return ShiftLanes<A>::at(row, node_offset, step);
   }
   static Shift between(const float* row, const I& lower, const I& upper, const F& share, const I& step) {
     const Shift a = at(row, lower, step), b = at(row, upper, step);
@@ -132,43 +130,9 @@ struct Vectors {
     return least;
   }
 
-  /// atan2 to 1e-5 rad: enough to find a rotation step.
-  static F fast_atan2(const F& y, const F& x) {
-    const F ax = xsimd::abs(x), ay = xsimd::abs(y);
-    const F a = xsimd::min(ax, ay) / xsimd::max(xsimd::max(ax, ay), F(1e-20f));
-    const F s = a * a;
-    F r = ((((F(0.0208351f) * s - F(0.085133f)) * s + F(0.180141f)) * s - F(0.3302995f)) * s + F(0.999866f)) * a;
-    r = xsimd::select(ay > ax, F(1.57079633f) - r, r);
-    r = xsimd::select(x < F(0.0f), F(3.14159265f) - r, r);
-    return xsimd::select(y < F(0.0f), -r, r);
-  }
-
   /// Shift of the envelope's point nearest to a place.
   static Shift shift_at(const LineCut& c, const LineBend& b, const F& x, const F& y, const F& z) {
-    const F zero(0.0f);
-    const F qx = xsimd::sqrt(x * x + y * y) - F(c.flat), qz = F(c.corner) - z;
-    const F length = xsimd::sqrt(qx * qx + qz * qz);
-    const F rounded = F(c.corner) - F(c.corner) * qz / xsimd::max(length, F(1e-12f));
-    const F height =
-        xsimd::select((qx > zero) & (qz > zero), rounded, xsimd::select(qx > qz, xsimd::max(z, zero), zero));
-    const F steps(static_cast<float>(b.shift.steps));
-    F step = (fast_atan2(y, x) - height * F(b.lag_per_mm)) * F(b.steps_per_rad);
-    step -= steps * xsimd::floor(step / steps);
-    I m0 = to_int(step);
-    const F fm = step - to_float(m0);
-    const I all(b.shift.steps);
-    m0 = xsimd::select(m0 >= all, I(0), m0);
-    const I m1 = xsimd::select(m0 + I(1) == all, I(0), m0 + I(1));
-    const F at_node =
-        xsimd::min(xsimd::max(height / F(b.shift.node_step_mm), zero), F(static_cast<float>(b.shift.nodes - 1)));
-    const I n0 = xsimd::min(to_int(at_node), I(b.shift.nodes > 1 ? b.shift.nodes - 2 : 0));
-    const F fn = at_node - to_float(n0);
-    const I low = n0 * all, high = b.shift.nodes > 1 ? low + all : low;
-    const Shift s00 = at(b.shift.now, low, m0), s01 = at(b.shift.now, low, m1), s10 = at(b.shift.now, high, m0),
-                s11 = at(b.shift.now, high, m1);
-    const F one(1.0f), w00 = (one - fn) * (one - fm), w01 = (one - fn) * fm, w10 = fn * (one - fm), w11 = fn * fm;
-    return {w00 * s00.x + w01 * s01.x + w10 * s10.x + w11 * s11.x,
-            w00 * s00.y + w01 * s01.y + w10 * s10.y + w11 * s11.y};
+    return ShiftLanes<A>::shift_at({c.flat, c.corner, b.lag_per_mm, b.steps_per_rad}, b.shift, I(0), x, y, z);
   }
 
   /// Calls f(first voxel of a vector) for all of a column from `low` up to `top`; the lowest vectors may overlap.
@@ -286,7 +250,7 @@ struct Vectors {
     const F largest(bend.largest_mm), axis_zone2(25 * bend.largest_mm * bend.largest_mm);
     for (int j = 0; j < LineCut::kLine; j += n) {
       const F dy = F(c.dy + static_cast<float>(j) * c.voxel) + steps;
-      const F at = (fast_atan2(dy, dx) + F(3.14159265f)) * F(static_cast<float>(bend.sectors) / 6.28318531f);
+      const F at = (ShiftLanes<A>::atan2(dy, dx) + F(3.14159265f)) * F(static_cast<float>(bend.sectors) / 6.28318531f);
       const I sector = xsimd::min(xsimd::max(to_int(at), I(0)), I(bend.sectors - 1));
       const F outward = xsimd::min(Table<A>::gather(bend.outward_mm, sector), largest);
       xsimd::select(F(dx2) + dy * dy > axis_zone2, outward, largest).store_aligned(slack + j);

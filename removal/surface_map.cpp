@@ -1,12 +1,15 @@
 #include "removal/surface_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include <tbb/parallel_for.h>
 
+#include "removal/bent_envelope.h"
 #include "removal/carve.h"
+#include "removal/mark_kernels.h"
 #include "removal/rounded_distance.h"
 
 namespace camber::removal {
@@ -102,94 +105,73 @@ class Tips {
   std::vector<float> x_, y_, z_;
 };
 
-/// One bent stamp.
-class BentEnvelope {
+/// Pairs of a point and a stamp that may lower it, side by side.
+class MarkQueue {
  public:
-  BentEnvelope(const EnvelopeGrid& envelope, const ShiftTable& shifts, const CarveBend& bend, const Vec3& tip)
-      : e_(envelope), shifts_(shifts), bend_(bend), tip_(tip) {}
+  struct Pair {
+    std::size_t point, stamp;
+  };
 
-  /// Height above q along n at which q + height n lies on the bent envelope, if that is under `highest`; else
-  /// `highest`.
-  double height_mm(const Vec3& q, const Vec3& n, double highest) const {
-    const Vec3 above = q + highest * n - tip_;
-    const double outside = e_.shape.distance_mm(above);
-    if (outside > bend_.largest_mm || (outside > 0 && outside > outward_mm(above))) return highest;
-    // Where the deflection jumps along with the edge, two points of the envelope may lie on one line: the lower counts.
-    return std::min(settled_mm(q, n, highest, Vec3::Zero()), settled_mm(q, n, highest, shift(above - shift(above))));
+  MarkQueue(const EnvelopeGrid& envelope, const ShiftTable& shifts)
+      : first_row_(shifts.values.data()),
+        tool_{{first_row_, nullptr, static_cast<int>(shifts.nodes()), shifts.steps,
+               shifts.nodes() > 1 ? static_cast<float>(shifts.node_height_mm[1]) : 1.0f},
+              static_cast<float>(envelope.shape.bottom_length_mm()),
+              static_cast<float>(envelope.shape.corner_radius_mm),
+              static_cast<float>(envelope.lag_per_mm),
+              static_cast<float>(shifts.steps * envelope.flutes / (2 * kPi))} {}
+
+  void add(const Pair& pair, const SurfacePoint& p, const BentEnvelope& stamp) {
+    pairs_.push_back(pair);
+    const Eigen::Vector3f place = (p.place_mm - stamp.tip_mm()).cast<float>(), normal = p.normal.cast<float>();
+    const std::array<float, kValues> values{place.x(),
+                                            place.y(),
+                                            place.z(),
+                                            normal.x(),
+                                            normal.y(),
+                                            normal.z(),
+                                            static_cast<float>(p.error_mm),
+                                            static_cast<float>(stamp.bend().largest_mm)};
+    for (std::size_t v = 0; v < kValues; ++v) lanes_[v].push_back(values[v]);
+    shift_.push_back(static_cast<std::int32_t>((stamp.bend().row - first_row_) / 2));
+  }
+
+  /// Calls lowered(pair, height) for all that are lowered, in the order of add, and forgets them.
+  template <class Function>
+  void settle(Function lowered) {
+    const std::size_t count = pairs_.size();
+    if (count == 0) return;
+    while (shift_.size() % MarkLanes::kLanes != 0) {
+      for (auto& values : lanes_) values.push_back(values.back());
+      shift_.push_back(shift_.back());
+    }
+    height_.resize(shift_.size());
+    const auto& l = lanes_;
+    mark_kernels().heights({static_cast<int>(shift_.size()), l[0].data(), l[1].data(), l[2].data(), l[3].data(),
+                            l[4].data(), l[5].data(), l[6].data(), l[7].data(), shift_.data(), height_.data()},
+                           tool_);
+    for (std::size_t i = 0; i < count; ++i)
+      if (height_[i] < lanes_[kHighest][i]) lowered(pairs_[i], static_cast<double>(height_[i]));
+    pairs_.clear();
+    for (auto& values : lanes_) values.clear();
+    shift_.clear();
   }
 
  private:
-  /// Where the deflection jumps against the motion of the edge, the envelope is torn, and the tooth draws the gap while
-  /// it bends: there plain steps swing between both sides, and smaller ones find the place between them.
-  static constexpr double share_of(int step) { return step < 5 ? 1.0 : step < 16 ? 0.3 : 0.1; }
-
-  /// From a guess of the deflection to the height at which place and deflection agree.
-  double settled_mm(const Vec3& q, const Vec3& n, double highest, Vec3 bend) const {
-    double h = highest;
-    for (int step = 0; step < kSteps; ++step) {
-      const Vec3 x = q + h * n - tip_;
-      const double s = e_.shape.distance_mm(x - bend);
-      if (step == 0 && s >= 0) return highest;
-      const double change = s / std::clamp(-e_.shape.gradient(x - bend).dot(n), kFlattest, 1.0);
-      h += change;
-      const Vec3 turned = shift(q + h * n - tip_ - bend) - bend;
-      if (std::abs(change) < kClose_mm && turned.squaredNorm() < kClose_mm * kClose_mm) break;
-      bend += share_of(step) * turned;
-    }
-    return std::min(h, highest);
-  }
-
-  double outward_mm(const Vec3& from_tip) const {
-    const double rho = from_tip.head<2>().norm();
-    if (rho <= 5 * bend_.largest_mm) return bend_.largest_mm;  // near the axis a shift turns a place to another side
-    const double sector = (std::atan2(from_tip.y(), from_tip.x()) + kPi) * CarveBend::kSectors / (2 * kPi);
-    const int i = std::clamp(static_cast<int>(sector), 0, CarveBend::kSectors - 1);
-    return std::min(bend_.largest_mm, static_cast<double>(bend_.outward_mm[static_cast<std::size_t>(i)]));
-  }
-
-  /// Height of the envelope's point nearest to a place.
-  double envelope_height_mm(const Vec3& p) const {
-    const CutterShape& shape = e_.shape;
-    const double rho = std::sqrt(p.x() * p.x() + p.y() * p.y());
-    if (shape.general) return shape.profile.nearest({rho, p.z()}).place.y();
-    const double qx = rho - shape.bottom_length_mm(), qz = shape.corner_radius_mm - p.z();
-    if (qx > 0 && qz > 0) return shape.corner_radius_mm * (1 - qz / std::sqrt(qx * qx + qz * qz));
-    return qx > qz ? std::max(p.z(), 0.0) : 0.0;
-  }
-
-  Vec3 shift(const Vec3& from_tip) const {
-    const double height = envelope_height_mm(from_tip);
-    double step =
-        (std::atan2(from_tip.y(), from_tip.x()) - height * e_.lag_per_mm) * shifts_.steps * e_.flutes / (2 * kPi);
-    step -= shifts_.steps * std::floor(step / shifts_.steps);
-    const int m0 = static_cast<int>(step) % shifts_.steps, m1 = m0 + 1 == shifts_.steps ? 0 : m0 + 1;
-    const double f = step - std::floor(step);
-    const NodeWeight w = node_weight(shifts_.node_height_mm, height);
-    Vec3 sum = Vec3::Zero();
-    const auto add = [&](int node, int m, double weight) {
-      const float* v = bend_.row + 2 * (node * shifts_.steps + m);
-      sum.x() += weight * v[0];
-      sum.y() += weight * v[1];
-    };
-    add(w.lower, m0, (1 - w.upper_share) * (1 - f));
-    add(w.lower, m1, (1 - w.upper_share) * f);
-    add(w.upper, m0, w.upper_share * (1 - f));
-    add(w.upper, m1, w.upper_share * f);
-    return sum;
-  }
-
-  static constexpr int kSteps = 32;
-  static constexpr double kClose_mm = 1e-5, kFlattest = 0.3;
-  const EnvelopeGrid& e_;
-  const ShiftTable& shifts_;
-  const CarveBend& bend_;
-  Vec3 tip_;
+  static constexpr std::size_t kValues = 8, kHighest = 6;  ///< as MarkLanes has them
+  const float* first_row_;
+  MarkTool tool_;
+  std::vector<Pair> pairs_;
+  std::array<std::vector<float>, kValues> lanes_;
+  std::vector<std::int32_t> shift_;
+  std::vector<float> height_;
 };
 
 /// Bent stamps that may lower points of one block.
 class CloseStamps {
  public:
-  CloseStamps(const EnvelopeGrid& envelope, const ShiftTable& shifts) : e_(envelope), shifts_(shifts) {}
+  CloseStamps(const EnvelopeGrid& envelope, const ShiftTable& shifts)
+      : e_(envelope), shifts_(shifts), queue_(envelope, shifts) {}
   void clear() {
     tips_ = {};
     stamps_.clear();
@@ -202,20 +184,15 @@ class CloseStamps {
   }
   bool empty() const { return stamps_.empty(); }
 
-  /// Lowers a point to the deepest of them.
-  void mark(SurfacePoint& p) {
+  /// Lowers points to the deepest of them. The stamp that goes deepest where it is straight comes first: most others
+  /// are then too high to look at.
+  void mark(std::span<SurfacePoint> points) {
     distance_.resize(stamps_.size());
     within_.resize(stamps_.size());
-    measure(p);
-    // The stamp that goes deepest first: most others are then too high to look at.
-    const auto first =
-        static_cast<std::size_t>(std::min_element(distance_.begin(), distance_.end()) - distance_.begin());
-    if (distance_[first] > reach_mm_[first] && find_within() == 0) return;
-    lower(p, first);
-    if (!e_.shape.general) measure(p);
-    const std::size_t count = find_within();
-    for (std::size_t n = 0; n < count; ++n)
-      if (within_[n] != first) lower(p, within_[n]);
+    if (e_.shape.general)
+      for (SurfacePoint& p : points) mark_general(p);
+    else
+      mark_rounded(points);
   }
 
  private:
@@ -223,7 +200,49 @@ class CloseStamps {
     BentEnvelope envelope;
     std::int32_t id;
   };
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
+  void mark_general(SurfacePoint& p) {
+    const std::size_t first = find_first(p);
+    if (first == kNone) return;
+    lower(p, first);
+    const std::size_t count = find_within();
+    for (std::size_t n = 0; n < count; ++n)
+      if (within_[n] != first) lower(p, within_[n]);
+  }
+
+  void mark_rounded(std::span<SurfacePoint> points) {
+    const auto settle = [&] {
+      queue_.settle([&](const MarkQueue::Pair& pair, double height_mm) {
+        SurfacePoint& p = points[pair.point];
+        if (height_mm >= p.error_mm) return;
+        p.error_mm = height_mm;
+        p.machined_stamp = stamps_[pair.stamp].id;
+      });
+    };
+    first_.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      first_[i] = find_first(points[i]);
+      if (first_[i] != kNone) queue_.add({i, first_[i]}, points[i], stamps_[first_[i]].envelope);
+    }
+    settle();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (first_[i] == kNone) continue;
+      measure(points[i]);
+      const std::size_t count = find_within();
+      for (std::size_t n = 0; n < count; ++n)
+        if (within_[n] != first_[i]) queue_.add({i, within_[n]}, points[i], stamps_[within_[n]].envelope);
+    }
+    settle();
+  }
+
+  /// Measures; the stamp that goes deepest, or none where none comes as near as its bend reaches.
+  std::size_t find_first(const SurfacePoint& p) {
+    measure(p);
+    const auto first =
+        static_cast<std::size_t>(std::min_element(distance_.begin(), distance_.end()) - distance_.begin());
+    return distance_[first] > reach_mm_[first] && find_within() == 0 ? kNone : first;
+  }
   void measure(const SurfacePoint& p) { tips_.distances(e_.shape, p.place_mm + p.error_mm * p.normal, distance_); }
   /// Lists the stamps that are as near as their bend reaches.
   std::size_t find_within() {
@@ -244,10 +263,11 @@ class CloseStamps {
 
   const EnvelopeGrid& e_;
   const ShiftTable& shifts_;
+  MarkQueue queue_;
   Tips tips_;
   std::vector<Bent> stamps_;
   std::vector<float> reach_mm_, distance_;
-  std::vector<std::size_t> within_;
+  std::vector<std::size_t> within_, first_;
 };
 
 }  // namespace
@@ -337,10 +357,9 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
       }
       if (!close.empty()) {
         block.highest = -std::numeric_limits<double>::infinity();
-        for (std::size_t i = block.first; i < block.first + block.count; ++i) {
-          close.mark(impl_->points[i]);
-          block.highest = std::max(block.highest, impl_->points[i].error_mm);
-        }
+        const std::span<SurfacePoint> own(impl_->points.data() + block.first, block.count);
+        close.mark(own);
+        for (const SurfacePoint& p : own) block.highest = std::max(block.highest, p.error_mm);
       }
       tile.all.highest = std::max(tile.all.highest, block.highest);
     }

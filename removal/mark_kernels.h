@@ -1,0 +1,41 @@
+#pragma once
+// Marks of bent rounded cylinders on the surface (removal/bent_envelope.h), in vectors as wide as the processor has
+// them. Every lane does the same operations in the same order whatever the width, so results do not depend on it.
+#include <cstdint>
+
+#include "removal/kernels.h"
+
+namespace camber::removal {
+
+/// Surface points, each beside one bent stamp.
+struct MarkLanes {
+  static constexpr int kLanes = 8;
+  int count;               ///< a multiple of kLanes
+  const float *x, *y, *z;  ///< of the point, from the stamp's tip, mm
+  const float *nx, *ny, *nz;
+  const float* highest;       ///< mm
+  const float* largest;       ///< of the stamp's shifts, mm
+  const std::int32_t* shift;  ///< of the stamp's row, shifts (pairs of values) from the first
+  float* height;              ///< out, mm
+};
+
+/// The bent cutter; `rows.now` is the first row.
+struct MarkTool {
+  ShiftRow rows;
+  float flat, corner;
+  float lag_per_mm, steps_per_rad;
+};
+
+struct MarkKernels {
+  /// BentEnvelope::height_mm of each.
+  void (*heights)(const MarkLanes& marks, const MarkTool& tool);
+};
+
+/// Those of the widest vectors that this processor has.
+const MarkKernels& mark_kernels();
+extern const MarkKernels kBaseMarkKernels;  ///< on every processor
+#if defined(__x86_64__)
+extern const MarkKernels kAvx2MarkKernels;
+#endif
+
+}  // namespace camber::removal

@@ -1,0 +1,99 @@
+#pragma once
+// The loops behind removal/mark_kernels.h for one instruction set; as removal/kernels_impl.h.
+#include <xsimd/xsimd.hpp>
+
+#include "removal/mark_kernels.h"
+#include "removal/settling.h"
+#include "removal/shift_lanes.h"
+
+namespace camber::removal {
+namespace {
+
+template <class A>
+struct MarkVectors {
+  using F = xsimd::batch<float, A>;
+  using I = xsimd::batch<std::int32_t, A>;
+  using Mask = xsimd::batch_bool<float, A>;
+  using Shift = typename ShiftLanes<A>::Shift;
+  static constexpr int n = static_cast<int>(F::size);
+
+  static F load(const float* p) { return F::load_unaligned(p); }
+
+  /// Points and what belongs to them.
+  struct Lanes {
+    F x, y, z, nx, ny, nz, highest;
+    I row;
+  };
+
+  /// Distance of places from the straight cutter.
+  struct Place {
+    F rho, qx, qz, length, distance;
+    Place(const MarkTool& t, const F& x, const F& y, const F& z) {
+      const F zero(0.0f);
+      rho = xsimd::sqrt(x * x + y * y);
+      qx = rho - F(t.flat), qz = F(t.corner) - z;
+      const F a = xsimd::max(qx, zero), b = xsimd::max(qz, zero);
+      length = xsimd::sqrt(a * a + b * b);
+      distance = xsimd::min(xsimd::max(qx, qz), zero) + length - F(t.corner);
+    }
+  };
+
+  static F slope_against(const Place& p, const F& x, const F& y, const Lanes& l) {
+    const F zero(0.0f), one(1.0f), tiny(1e-12f);
+    const Mask round = (p.qx > zero) & (p.qz > zero);
+    const F per_length = one / xsimd::max(p.length, tiny);
+    const F radial = xsimd::select(round, p.qx * per_length, xsimd::select(p.qx > p.qz, one, zero));
+    const F down = xsimd::select(round, p.qz * per_length, xsimd::select(p.qx > p.qz, zero, one));
+    return down * l.nz - radial * (x * l.nx + y * l.ny) / xsimd::max(p.rho, tiny);
+  }
+
+  static Shift shift_at(const MarkTool& t, const I& row, const F& x, const F& y, const F& z) {
+    return ShiftLanes<A>::shift_at({t.flat, t.corner, t.lag_per_mm, t.steps_per_rad}, t.rows, row, x, y, z);
+  }
+
+  /// From a guess of the deflections to the heights at which place and deflection agree.
+  static F settled(const MarkTool& t, const Lanes& l, Shift bend, Mask live) {
+    const F zero(0.0f), one(1.0f), flattest(Settling::kFlattest), close(Settling::kClose_mm), close2 = close * close;
+    F h = l.highest;
+    for (int step = 0; step < Settling::kSteps; ++step) {
+      const F x = l.x + h * l.nx - bend.x, y = l.y + h * l.ny - bend.y, z = l.z + h * l.nz;
+      const Place p(t, x, y, z);
+      if (step == 0) live = live & (p.distance < zero);
+      if (!xsimd::any(live)) break;
+      const F slope = xsimd::min(xsimd::max(slope_against(p, x, y, l), flattest), one);
+      const F change = xsimd::select(live, p.distance / slope, zero);
+      h += change;
+      const Shift s = shift_at(t, l.row, l.x + h * l.nx - bend.x, l.y + h * l.ny - bend.y, l.z + h * l.nz);
+      const F turned_x = s.x - bend.x, turned_y = s.y - bend.y;
+      live = live & !((xsimd::abs(change) < close) & (turned_x * turned_x + turned_y * turned_y < close2));
+      const F share(Settling::share_of(step));
+      bend.x += xsimd::select(live, share * turned_x, zero);
+      bend.y += xsimd::select(live, share * turned_y, zero);
+    }
+    return xsimd::min(h, l.highest);
+  }
+
+  static void heights(const MarkLanes& m, const MarkTool& t) {
+    for (int k = 0; k < m.count; k += n) {
+      const Lanes l{load(m.x + k),  load(m.y + k),  load(m.z + k),       load(m.nx + k),
+                    load(m.ny + k), load(m.nz + k), load(m.highest + k), I::load_unaligned(m.shift + k)};
+      const F x = l.x + l.highest * l.nx, y = l.y + l.highest * l.ny, z = l.z + l.highest * l.nz;
+      const Mask near = Place(t, x, y, z).distance <= load(m.largest + k);
+      F h = l.highest;
+      if (xsimd::any(near)) {
+        // Where the deflection jumps along with the edge, two points of the envelope may lie on one line: the lower
+        // counts.
+        const F zero(0.0f);
+        const F from_straight = settled(t, l, {zero, zero}, near);
+        const Shift first = shift_at(t, l.row, x, y, z);
+        h = xsimd::min(from_straight, settled(t, l, shift_at(t, l.row, x - first.x, y - first.y, z), near));
+      }
+      h.store_unaligned(m.height + k);
+    }
+  }
+
+  static constexpr MarkKernels table() { return {&heights}; }
+};
+
+}  // namespace
+}  // namespace camber::removal
