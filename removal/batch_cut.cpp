@@ -156,12 +156,15 @@ bool BatchCut::cut_block(Tile& tile, ColumnCover& cover, const Block& b, std::in
                     tip_z.data(),
                     winner.data()};
   bool changed = false;
-  for (int i = b.i_from; i < b.i_to; ++i) {
+  const auto to_line = [&](int i) {
     line.distance = tile.distance.data() + Tile::offset(i, 0, 0);
     line.stamp = tile.stamp.data() + Tile::offset(i, 0, 0);
     line.top = cover.tops(i);
-    line.id = first_id;
-    if (candidates_.size() > 1) {
+  };
+  if (candidates_.size() > 1) {
+    for (int i = b.i_from; i < b.i_to; ++i) {
+      to_line(i);
+      line.id = first_id;
       search.x = static_cast<float>(i) * voxel_;
       for (int j = search.first; j < search.end; ++j) search_z[j] = cover.tops_mm(i)[j] - band_;
       kernels_.find_winners(search);
@@ -169,10 +172,16 @@ bool BatchCut::cut_block(Tile& tile, ColumnCover& cover, const Block& b, std::in
         changed |= update(tile, cover, i, kernels_.cut_winners(line, search, id_.data()), tip_x.data(), tip_y.data(),
                           tip_z.data(), 1);
     }
-    for (const std::int32_t c : candidates_) {
-      const auto at = static_cast<std::size_t>(c);
-      const Eigen::Vector3f tip(x_[at], y_[at], z_[at]);
-      if (!cover.changeable(i, search.first, search.end, tip, 0, changeable)) continue;
+  }
+  std::array<float, (kHalf + 1) * ColumnCover::kLine> of_lines;
+  for (const std::int32_t c : candidates_) {
+    const auto at = static_cast<std::size_t>(c);
+    const Eigen::Vector3f tip(x_[at], y_[at], z_[at]);
+    std::uint32_t lines = cover.changeable_lines(b.i_from, b.i_to, search.first, search.end, tip, of_lines.data());
+    for (int i = b.i_from; lines != 0; ++i, lines >>= 1) {
+      if (!(lines & 1u)) continue;
+      to_line(i);
+      line.changeable = of_lines.data() + (i - b.i_from) * ColumnCover::kLine;
       line.dx = static_cast<float>(i) * voxel_ - tip.x();
       line.dy = -tip.y(), line.z = -tip.z();
       line.lowest = std::max(0, static_cast<int>((tip.z() - band_) / voxel_));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "removal/carve_general.h"
 #include "removal/kernels.h"
@@ -98,6 +99,20 @@ Bends::Bends(const EnvelopeGrid& envelope, const ShiftTable& shifts)
       }
 }
 
+namespace {
+
+bool all_zero(const float* values, int count) {
+  int i = 0;
+  for (std::array<std::uint64_t, 4> words{}; i + 8 <= count; i += 8) {
+    std::memcpy(words.data(), values + i, sizeof(words));
+    if ((words[0] | words[1] | words[2] | words[3]) != 0) return false;
+  }
+  while (i < count && values[i] == 0) ++i;
+  return i == count;
+}
+
+}  // namespace
+
 CarveBend Bends::of(std::ptrdiff_t stamp) const {
   CarveBend bend{shifts_.row(stamp), 0, {}};
   float largest2 = 0;
@@ -108,14 +123,16 @@ CarveBend Bends::of(std::ptrdiff_t stamp) const {
   for (std::size_t n = 0; n < shifts_.nodes(); ++n)
     for (int m = 0; m < shifts_.steps; m += group_, centre += flutes_) {
       const float* v = bend.row + 2 * (static_cast<int>(n) * shifts_.steps + m);
+      const int count = std::min(group_, shifts_.steps - m);
+      if (all_zero(v, 2 * count)) continue;  // most of a row
       // The others of a group lie within `apart` of its first.
       float longest2 = 0, apart2 = 0;
-      for (int i = 0; i < std::min(group_, shifts_.steps - m); ++i) {
+      for (int i = 0; i < count; ++i) {
         const float x = v[2 * i], y = v[2 * i + 1], dx = x - v[0], dy = y - v[1];
         longest2 = std::max(longest2, x * x + y * y);
         apart2 = std::max(apart2, dx * dx + dy * dy);
       }
-      if (longest2 == 0) continue;
+      if (longest2 == 0) continue;  // of negative zeros
       largest2 = std::max(largest2, longest2);
       const float more = half_sector * std::sqrt(longest2) + std::sqrt(apart2);
       for (int j = 0; j < flutes_; ++j) {
@@ -161,15 +178,6 @@ double material_voxels(const Tile& tile, double voxel_mm) {
     for (const float v : share) sum += static_cast<double>(v);
   }
   return sum;
-}
-
-double tile_distance_mm(const Index3& t, double voxel, const CutterShape& shape, const Vec3& tip) {
-  const auto gap = [&](int a) {
-    const double lo = t[a] * Tile::kCore * voxel, hi = lo + Tile::kCore * voxel;
-    return std::max({lo - tip[a], tip[a] - hi, 0.0});
-  };
-  const double top = (t[2] + 1) * Tile::kCore * voxel - tip.z();
-  return shape.distance_mm({std::sqrt(gap(0) * gap(0) + gap(1) * gap(1)), 0, top});
 }
 
 }  // namespace camber::removal

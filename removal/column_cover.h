@@ -56,6 +56,10 @@ class ColumnCover {
   /// For columns j = first ... end - 1, whole vectors of 8; tips from the tile's voxel (0, 0, 0).
   bool changeable(int i, int first, int end, const Eigen::Vector3f& tip, float bend_mm,
                   std::array<float, kLine>& out) const;
+  /// The same for lines i_from ... i_to - 1 of a block, its line l from out[l * kLine] on; a bit a line, the lowest for
+  /// i_from. An undeflected stamp.
+  std::uint32_t changeable_lines(int i_from, int i_to, int first, int end, const Eigen::Vector3f& tip,
+                                 float* out) const;
   /// With a stamp of its own for every column.
   bool changeable_each(int i, int first, int end, const float* x, const float* y, const float* z,
                        std::array<float, kLine>& out) const;
