@@ -64,6 +64,17 @@ struct FixedTips {
   std::int32_t first_id;  ///< of tip 0; smaller ids have none
 };
 
+/// Points that the blank's surface may be near; the lists are read up to a multiple of 8.
+struct BlankPoints {
+  int count;
+  const float* blank;        ///< distances, from the first tile of the arena on
+  const std::int32_t* lane;  ///< of BlockPoints
+  const std::int32_t* cell;  ///< lowest voxel of each point's cell
+  const float* share[3];     ///< place in the cell
+  float voxel_mm, least_slope;
+  float* thickness;  ///< in: of what is below the stamps' surfaces, mm; out: the blank's surface counts too
+};
+
 struct BlockKernels {
   /// Lists the blocks that may cut. Returns their number.
   int (*find_blocks)(const BlockBounds& bounds, const StampPlace& stamp, const ArenaView& arena, std::int32_t* out);
@@ -75,6 +86,8 @@ struct BlockKernels {
   /// The lists are read and out is written up to a multiple of 8. No stamp in sight: 1e30.
   void (*thin_points)(const BlockPoints& points, const ShallowPoints& shallow, const ArenaView& arena,
                       const FixedTips& tips, float flat, float corner, float least_slope, float* out);
+  /// The blank's surface as one field more, read trilinearly: distance over slope.
+  void (*thin_by_blank)(const BlockPoints& points, const BlankPoints& at);
 };
 
 /// Those of the widest vectors that this processor has.

@@ -163,7 +163,32 @@ struct BlockVectors {
     }
   }
 
-  static constexpr BlockKernels table() { return {&find_blocks, &read_blocks, &thin_points}; }
+  static void thin_by_blank(const BlockPoints& p, const BlankPoints& b) {
+    const F zero(0.0f), one(1.0f), per_voxel(1 / b.voxel_mm);
+    for (int i = 0; i < b.count; i += n) {
+      const I lane = load(b.lane + i), cell = load(b.cell + i);
+      const F u = load(b.share[0] + i), v = load(b.share[1] + i), w = load(b.share[2] + i);
+      F value[2], along_y[2], along_z[2];  // on the cell's two faces across x
+      for (int f = 0; f < 2; ++f) {
+        F d00, d01, d10, d11;
+        T::gather_pair(b.blank, cell + I(f * kSide * kSide), d00, d01);
+        T::gather_pair(b.blank, cell + I((f * kSide + 1) * kSide), d10, d11);
+        const F z0 = d01 - d00, z1 = d11 - d10, at0 = d00 + w * z0, at1 = d10 + w * z1;
+        along_y[f] = at1 - at0;
+        along_z[f] = z0 + v * (z1 - z0);
+        value[f] = at0 + v * along_y[f];
+      }
+      const F gx = value[1] - value[0], distance = value[0] + u * gx;
+      const F gy = along_y[0] + u * (along_y[1] - along_y[0]), gz = along_z[0] + u * (along_z[1] - along_z[0]);
+      const F fall =
+          -(gx * T::gather(p.nx, lane) + gy * T::gather(p.ny, lane) + gz * T::gather(p.nz, lane)) * per_voxel;
+      const F slope = xsimd::min(xsimd::max(fall, F(b.least_slope)), one);
+      const F depth = -distance, thickness = load(b.thickness + i);
+      xsimd::min(thickness, xsimd::select(depth > zero, depth / slope, depth)).store_unaligned(b.thickness + i);
+    }
+  }
+
+  static constexpr BlockKernels table() { return {&find_blocks, &read_blocks, &thin_points, &thin_by_blank}; }
 };
 
 }  // namespace

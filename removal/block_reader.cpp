@@ -36,8 +36,9 @@ void BlockReader::make_room(Buffers& b) const {
   const std::size_t blocks = blocks_.size() + kLanes, points = blocks * kLanes;
   if (b.blocks.size() >= blocks) return;
   b.blocks.resize(blocks), b.hit_block.resize(blocks), b.hit_deep.resize(blocks);
-  for (auto* v : {&b.lane, &b.cell, &b.hit}) v->resize(points);
-  for (auto* v : {&b.hit_thickness, &b.cap, &b.thickness, &b.share[0], &b.share[1], &b.share[2]}) v->resize(points);
+  for (auto* v : {&b.lane, &b.cell, &b.hit, &b.blank_point, &b.blank_lane, &b.blank_cell}) v->resize(points);
+  for (auto* v : {&b.hit_thickness, &b.cap, &b.thickness, &b.blank_thickness}) v->resize(points);
+  for (std::size_t a = 0; a < 3; ++a) b.share[a].resize(points), b.blank_share[a].resize(points);
 }
 
 BlockReader::Point BlockReader::point(const Stamp& stamp, int lane) const {
@@ -77,6 +78,7 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
     kernels.thin_points(blocks_.points(), shallow, arena.view(), tips, static_cast<float>(shape.bottom_length_mm()),
                         static_cast<float>(shape.corner_radius_mm), kLeastSlope, thickness);
   }
+  thin_by_blank(arena, shallow, b);
   const auto after_tooth = [&](int hit, bool after) {
     hits.deep[hit / kLanes] = (hits.deep[hit / kLanes] & ~(1u << hit % kLanes)) | static_cast<std::uint32_t>(after)
                                                                                       << hit % kLanes;
@@ -105,9 +107,9 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
             .cut_255[static_cast<std::size_t>(shallow.hit[i] % kLanes)] = cut_255;
         up_mm = static_cast<float>(part.middle_mm());
         depth = thin(arena, shallow.cell[i], raised(point(stamp, shallow.lane[i]), up_mm));
+        if (depth > 0) depth = below_blank(arena, shallow, i, up_mm, depth);
       }
     }
-    if (depth > 0) depth = below_blank(arena, shallow, i, up_mm, depth);
     if (depth > 0 && !earlier.empty())
       depth = std::min(depth, thickness_over(earlier, raised(point(stamp, shallow.lane[i]), up_mm)));
     hits.thickness[shallow.hit[i]] = std::min(depth, shallow.cap[i]);
@@ -141,7 +143,38 @@ RingPart BlockReader::part_of_ring(const TileArena& arena, const Stamp& stamp, c
                           stamps_, first_id_, envelope_.shape, voxel_mm_);
 }
 
-/// The blank's surface counts as one field more, read trilinearly; `up_mm` above the point.
+/// The blank's surface counts as one field more, read trilinearly.
+void BlockReader::thin_by_blank(const TileArena& arena, const ShallowPoints& points, Buffers& b) const {
+  int count = 0;
+  for (int i = 0; i < points.count; ++i) {
+    const auto at = static_cast<std::size_t>(i), to = static_cast<std::size_t>(count);
+    if (!(b.thickness[at] > 0)) continue;
+    const auto cell = static_cast<std::size_t>(points.cell[i]), tile = cell / (2 * Tile::kVolume);
+    if (!arena.blank(tile)) continue;
+    b.blank_point[to] = i;
+    b.blank_lane[to] = points.lane[i];
+    b.blank_cell[to] = static_cast<std::int32_t>(cell - tile * Tile::kVolume);
+    for (std::size_t a = 0; a < 3; ++a) b.blank_share[a][to] = points.share[a][i];
+    b.blank_thickness[to] = b.thickness[at];
+    ++count;
+  }
+  for (int i = count; i % kLanes != 0; ++i)
+    b.blank_lane[static_cast<std::size_t>(i)] = b.blank_cell[static_cast<std::size_t>(i)] = 0;
+  block_kernels().thin_by_blank(blocks_.points(),
+                                {count,
+                                 arena.blanks(),
+                                 b.blank_lane.data(),
+                                 b.blank_cell.data(),
+                                 {b.blank_share[0].data(), b.blank_share[1].data(), b.blank_share[2].data()},
+                                 static_cast<float>(voxel_mm_),
+                                 kLeastSlope,
+                                 b.blank_thickness.data()});
+  for (int i = 0; i < count; ++i)
+    b.thickness[static_cast<std::size_t>(b.blank_point[static_cast<std::size_t>(i)])] =
+        b.blank_thickness[static_cast<std::size_t>(i)];
+}
+
+/// The same for one point, and `up_mm` above it.
 float BlockReader::below_blank(const TileArena& arena, const ShallowPoints& points, int i, float up_mm,
                                float thinnest) const {
   const int cell = points.cell[i];
@@ -149,8 +182,8 @@ float BlockReader::below_blank(const TileArena& arena, const ShallowPoints& poin
   if (!blank) return thinnest;
   const float* lowest = blank + cell % (2 * Tile::kVolume);
   const CellShare share{points.share[0][i], points.share[1][i], points.share[2][i]};
-  float distance = trilinear(lowest, share);
-  if (up_mm != 0) distance += up_mm * static_cast<float>(trilinear_gradient(lowest, share, voxel_mm_).z());
+  const float distance =
+      trilinear(lowest, share) + up_mm * static_cast<float>(trilinear_gradient(lowest, share, voxel_mm_).z());
   // A slope is at most 1: what is deeper than the thinnest so far cannot become thinner.
   if (distance >= 0 || -distance >= thinnest) return std::min(thinnest, -distance);
   const auto p = blocks_.point(static_cast<std::uint32_t>(points.lane[i] / kLanes), points.lane[i] % kLanes);

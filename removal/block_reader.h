@@ -24,6 +24,9 @@ class BlockReader {
     std::vector<float> hit_thickness;
     std::vector<std::int32_t> lane, cell, hit;
     std::vector<float> cap, thickness;
+    std::vector<std::int32_t> blank_point, blank_lane, blank_cell;
+    std::vector<float> blank_thickness;
+    std::array<std::vector<float>, 3> blank_share;
     std::array<std::vector<float>, 3> share;
     std::vector<ChipBlock> chips;
   };
@@ -47,6 +50,7 @@ class BlockReader {
   static Point raised(Point point, float up_mm);
   RingPart part_of_ring(const TileArena& arena, const Stamp& stamp, const ShallowPoints& points, int i) const;
   float thin(const TileArena& arena, int cell, const Point& point) const;
+  void thin_by_blank(const TileArena& arena, const ShallowPoints& points, Buffers& b) const;
   float below_blank(const TileArena& arena, const ShallowPoints& points, int i, float up_mm, float thinnest) const;
   float thickness_over(std::span<const std::int32_t> earlier, const Point& point) const;
 

@@ -35,6 +35,8 @@ class TileArena {
   const float* blank(std::size_t tile) const {
     return in_solid_[tile] != 0 ? nullptr : blanks_.get() + tile * Tile::kVolume;
   }
+  /// Of all tiles, Tile::kVolume each; only what blank() points to counts.
+  const float* blanks() const { return blanks_.get(); }
   /// The tiles of stamps[k] that are not air.
   std::span<const std::int32_t> reached_by(std::size_t k) const { return reached_[k]; }
 
