@@ -15,7 +15,8 @@ struct BlockPoints {
 struct BlockBounds {
   int count;  ///< a multiple of 8
   const float *x, *y, *z;
-  const float* reach;  ///< a voxel nearest to the centre with more than this tells that all points are in air, mm
+  const float* bottom;  ///< height of the lowest of the points
+  const float* reach;   ///< a voxel nearest to the centre with more than this tells that all points are in air, mm
   const float *nx, *ny, *nz, *spread;
 };
 
@@ -26,6 +27,7 @@ struct ArenaView {
   std::int32_t stride;        ///< from one tile to the next, values
   const std::int32_t* slot;   ///< [n[0]][n[1]][n[2]]
   std::int32_t n[3];
+  const std::int32_t* top;  ///< TopMap::heights
 };
 
 /// A stamp in the arena.

@@ -17,6 +17,7 @@ struct BlockVectors {
   static constexpr int kSide = 17;  ///< Tile::kSide
   static constexpr int kCoreBits = 4, kCore = 1 << kCoreBits;
   static constexpr int kLanes = 8;
+  static constexpr int kSquareBits = 2, kSquareShift = kCoreBits - kSquareBits;  ///< TopMap::kCellBits
 
   static F load(const float* p) { return F::load_unaligned(p); }
   static I load(const std::int32_t* p) { return I::load_unaligned(p); }
@@ -37,15 +38,22 @@ struct BlockVectors {
   static int find_blocks(const BlockBounds& b, const StampPlace& s, const ArenaView& arena, std::int32_t* out) {
     int found = 0;
     const F fx(s.feed_mm[0]), fy(s.feed_mm[1]), fz(s.feed_mm[2]), length(s.feed_length_mm), least(s.least_mm);
-    const F per_voxel(s.per_voxel), half(0.5f);
+    const F per_voxel(s.per_voxel), half(0.5f), base_z(static_cast<float>(s.base[2]) + s.fraction[2]);
+    const I squares_x(arena.n[0] << kSquareShift), squares_y(arena.n[1] << kSquareShift);
     for (int k = 0; k < b.count; k += n) {
       const F into = fx * load(b.nx + k) + fy * load(b.ny + k) + fz * load(b.nz + k) + length * load(b.spread + k);
       const auto forward = into > least;
       if (!xsimd::any(forward)) continue;
-      const I cell = cell_of(s, arena, xsimd::floor(F(s.fraction[0]) + load(b.x + k) * per_voxel + half),
-                             xsimd::floor(F(s.fraction[1]) + load(b.y + k) * per_voxel + half),
+      const F gx = F(s.fraction[0]) + load(b.x + k) * per_voxel, gy = F(s.fraction[1]) + load(b.y + k) * per_voxel;
+      const I i = (to_int(xsimd::floor(gx)) + I(s.base[0])) >> kSquareBits;
+      const I j = (to_int(xsimd::floor(gy)) + I(s.base[1])) >> kSquareBits;
+      const auto inside = (i >= I(0)) & (i < squares_x) & (j >= I(0)) & (j < squares_y);
+      const I top = T::gather(arena.top, xsimd::select(inside, i * squares_y + j, I(0)));
+      const auto under = to_float(xsimd::select(inside, top, I(0))) > base_z + load(b.bottom + k) * per_voxel;
+      if (!xsimd::any(forward & under)) continue;
+      const I cell = cell_of(s, arena, xsimd::floor(gx + half), xsimd::floor(gy + half),
                              xsimd::floor(F(s.fraction[2]) + load(b.z + k) * per_voxel + half));
-      std::uint32_t bits = T::bits(forward & (T::gather(arena.distance, cell) <= load(b.reach + k)));
+      std::uint32_t bits = T::bits(forward & under & (T::gather(arena.distance, cell) <= load(b.reach + k)));
       for (int l = 0; bits != 0; bits >>= 1, ++l)
         if (bits & 1u) out[found++] = k + l;
     }

@@ -81,6 +81,8 @@ void Engager::Impl::start_tiles() {
         CutTile{ColumnCover(tile, arena.index(t), stock.voxel_mm(), stock.band_mm(), envelope.shape, tip_of),
                 material_voxels(tile, stock.voxel_mm())});
   });
+  arena.read_tops(static_cast<int>(std::ceil(blocks.widest_mm() / stock.voxel_mm())),
+                  [&](std::size_t t) -> const ColumnCover& { return tiles[t]->cover; });
 }
 
 /// Writes a tile to the stock.

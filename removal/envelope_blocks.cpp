@@ -22,7 +22,8 @@ EnvelopeBlocks::EnvelopeBlocks(const EnvelopeGrid& e, double voxel_mm, double ba
   }
   // Whole vectors; what fills the last one moves into nothing.
   for (std::size_t n = block_.size(); n % kLanes != 0; ++n) {
-    for (auto* v : {&centre_x_, &centre_y_, &centre_z_, &reach_, &normal_x_, &normal_y_, &normal_z_}) v->push_back(0);
+    for (auto* v : {&bottom_, &centre_x_, &centre_y_, &centre_z_, &reach_, &normal_x_, &normal_y_, &normal_z_})
+      v->push_back(0);
     spread_.push_back(-1e9f);
   }
 }
@@ -54,13 +55,18 @@ void EnvelopeBlocks::add(const EnvelopeGrid& e, const std::vector<float>& wall_h
   for (const std::size_t p : real) centre += place(p), mean += normal(p);
   centre /= static_cast<double>(real.size()), mean /= static_cast<double>(real.size());
   double extent = 0, spread = 0;
+  float bottom = std::numeric_limits<float>::infinity();
   for (const std::size_t p : real) {
-    extent = std::max(extent, (place(p) - centre).norm());
+    const Vec3 from_centre = place(p) - centre;
+    extent = std::max(extent, from_centre.norm());
+    widest_mm_ = std::max(widest_mm_, from_centre.head<2>().norm());
+    bottom = std::min(bottom, e.z[p]);
     spread = std::max(spread, (normal(p) - mean).norm());
   }
   // From the voxel nearest to the centre; what the band does not reach across is never passed over.
   const double reach = extent + 0.87 * voxel_mm;
   reach_.push_back(reach < 0.999 * band_mm ? static_cast<float>(reach) : 1e9f);
+  bottom_.push_back(bottom);
   centre_x_.push_back(static_cast<float>(centre.x()));
   centre_y_.push_back(static_cast<float>(centre.y()));
   centre_z_.push_back(static_cast<float>(centre.z()));
@@ -85,6 +91,7 @@ BlockBounds EnvelopeBlocks::bounds() const {
           centre_x_.data(),
           centre_y_.data(),
           centre_z_.data(),
+          bottom_.data(),
           reach_.data(),
           normal_x_.data(),
           normal_y_.data(),

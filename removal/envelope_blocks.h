@@ -32,6 +32,8 @@ class EnvelopeBlocks {
   const float* sin_phi(std::uint32_t block) const { return sin_phi_.data() + kLanes * block; }
   /// Blocks from here on lie higher above the tip.
   int up_to(double height_mm) const;
+  /// How far seen from above a point of a block lies from the block's centre, at most.
+  double widest_mm() const { return widest_mm_; }
   float wall_half_mm(int lane_of_all) const { return wall_half_[static_cast<std::size_t>(lane_of_all)]; }
   BlockPoints points() const;
   BlockBounds bounds() const;
@@ -44,7 +46,8 @@ class EnvelopeBlocks {
   std::vector<float> lowest_;  ///< of the points of each block and all after it
   std::vector<std::uint32_t> point_;
   std::vector<float> x_, y_, z_, nx_, ny_, nz_, cos_phi_, sin_phi_, k1_, k2_, wall_half_;
-  std::vector<float> centre_x_, centre_y_, centre_z_, reach_, normal_x_, normal_y_, normal_z_, spread_;
+  double widest_mm_ = 0;
+  std::vector<float> bottom_, centre_x_, centre_y_, centre_z_, reach_, normal_x_, normal_y_, normal_z_, spread_;
 };
 
 }  // namespace camber::removal

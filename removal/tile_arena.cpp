@@ -152,6 +152,13 @@ void TileArena::load_fresh(const Stock& stock, const Stock& blank) {
   });
 }
 
+void TileArena::read_tops(int reach_voxels, const std::function<const ColumnCover&(std::size_t)>& cover_of) {
+  tops_.read(slots_, reach_voxels, [&](std::size_t place) {
+    const std::int32_t tile = slots_.all()[place];
+    return tile > 0 ? &cover_of(static_cast<std::size_t>(tile)) : nullptr;
+  });
+}
+
 ArenaView TileArena::view() const {
   static_assert(sizeof(Tile) == 2 * sizeof(float) * Tile::kVolume);
   static constexpr std::int32_t kAir = 0;  // read, and not used, where no stamp comes near the stock
@@ -159,7 +166,8 @@ ArenaView TileArena::view() const {
           tiles_[0].stamp.data(),
           2 * Tile::kVolume,
           slots_.all().empty() ? &kAir : slots_.all().data(),
-          {slots_.extent()[0], slots_.extent()[1], slots_.extent()[2]}};
+          {slots_.extent()[0], slots_.extent()[1], slots_.extent()[2]},
+          tops_.heights()};
 }
 
 StampPlace TileArena::place_of(const Stamp& stamp, double least_mm) const {

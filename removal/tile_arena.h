@@ -12,6 +12,7 @@
 #include "removal/slot_map.h"
 #include "removal/stamp.h"
 #include "removal/stock.h"
+#include "removal/top_map.h"
 
 namespace camber::removal {
 
@@ -40,6 +41,9 @@ class TileArena {
   /// The tiles of stamps[k] that are not air.
   std::span<const std::int32_t> reached_by(std::size_t k) const { return reached_[k]; }
 
+  /// Reads how high the stock is: `cover_of` a tile's number. `reach_voxels`: see TopMap.
+  void read_tops(int reach_voxels, const std::function<const ColumnCover&(std::size_t tile)>& cover_of);
+
   ArenaView view() const;
   /// Of a stamp that moves at most by its feed; see StampPlace::least_mm.
   StampPlace place_of(const Stamp& stamp, double least_mm) const;
@@ -52,6 +56,7 @@ class TileArena {
 
   double voxel_ = 0;
   SlotMap slots_, before_;  ///< of this stretch and of the last one
+  TopMap tops_;
   std::vector<std::vector<std::int32_t>> reached_;
   std::size_t room_ = 0;
   // By number:
