@@ -40,6 +40,20 @@ struct BlockVectors {
     const F fx(s.feed_mm[0]), fy(s.feed_mm[1]), fz(s.feed_mm[2]), length(s.feed_length_mm), least(s.least_mm);
     const F per_voxel(s.per_voxel), half(0.5f), base_z(static_cast<float>(s.base[2]) + s.fraction[2]);
     const I squares_x(arena.n[0] << kSquareShift), squares_y(arena.n[1] << kSquareShift);
+    constexpr int kAhead = 4;
+    struct Asked {
+      alignas(64) std::int32_t cell[n];
+      int first;
+      std::uint32_t bits;
+    };
+    Asked asked[kAhead];
+    int count = 0;
+    const auto take = [&](const Asked& a) {
+      const F distance = T::gather(arena.distance, I::load_aligned(a.cell));
+      std::uint32_t bits = a.bits & T::bits(distance <= load(b.reach + a.first));
+      for (int l = 0; bits != 0; bits >>= 1, ++l)
+        if (bits & 1u) out[found++] = a.first + l;
+    };
     for (int k = 0; k < b.count; k += n) {
       const F into = fx * load(b.nx + k) + fy * load(b.ny + k) + fz * load(b.nz + k) + length * load(b.spread + k);
       const auto forward = into > least;
@@ -53,10 +67,16 @@ struct BlockVectors {
       if (!xsimd::any(forward & under)) continue;
       const I cell = cell_of(s, arena, xsimd::floor(gx + half), xsimd::floor(gy + half),
                              xsimd::floor(F(s.fraction[2]) + load(b.z + k) * per_voxel + half));
-      std::uint32_t bits = T::bits(forward & under & (T::gather(arena.distance, cell) <= load(b.reach + k)));
-      for (int l = 0; bits != 0; bits >>= 1, ++l)
-        if (bits & 1u) out[found++] = k + l;
+      // Voxels come from far away: what is asked for now is read a few vectors later.
+      Asked& next = asked[count % kAhead];
+      if (count >= kAhead) take(next);
+      next.first = k;
+      next.bits = T::bits(forward & under);
+      cell.store_aligned(next.cell);
+      for (int l = 0; l < n; ++l) __builtin_prefetch(arena.distance + next.cell[l]);
+      ++count;
     }
+    for (int i = count < kAhead ? 0 : count - kAhead; i < count; ++i) take(asked[i % kAhead]);
     return found;
   }
 
@@ -125,6 +145,8 @@ struct BlockVectors {
         shallow.cap[at] = caps[l];
         shallow.share[0][at] = u_of[l], shallow.share[1][at] = v_of[l], shallow.share[2][at] = w_of[l];
         shallow.hit[at] = hit * kLanes + l;
+        const std::int32_t* named = arena.stamp + cells[l];  // thin_points reads them
+        for (const int row : {0, kSide, kSide * kSide, kSide * kSide + kSide}) __builtin_prefetch(named + row);
       }
     }
   }
