@@ -52,7 +52,12 @@ struct BlockVectors {
       const F distance = T::gather(arena.distance, I::load_aligned(a.cell));
       std::uint32_t bits = a.bits & T::bits(distance <= load(b.reach + a.first));
       for (int l = 0; bits != 0; bits >>= 1, ++l)
-        if (bits & 1u) out[found++] = a.first + l;
+        if (bits & 1u) {
+          out[found++] = a.first + l;
+          const float* centre = arena.distance + a.cell[l];  // read_blocks reads all around it
+          for (const int row : {-kSide, kSide, -kSide * kSide, kSide * kSide, kSide * kSide + kSide})
+            __builtin_prefetch(centre + row);
+        }
     };
     for (int k = 0; k < b.count; k += n) {
       const F into = fx * load(b.nx + k) + fy * load(b.ny + k) + fz * load(b.nz + k) + length * load(b.spread + k);

@@ -154,6 +154,7 @@ void BlockReader::thin_by_blank(const TileArena& arena, const ShallowPoints& poi
     b.blank_point[to] = i;
     b.blank_lane[to] = points.lane[i];
     b.blank_cell[to] = static_cast<std::int32_t>(cell - tile * Tile::kVolume);
+    for (const int corner : {0, 1, 2, 3}) __builtin_prefetch(arena.blanks() + b.blank_cell[to] + cell_corner(corner));
     for (std::size_t a = 0; a < 3; ++a) b.blank_share[a][to] = points.share[a][i];
     b.blank_thickness[to] = b.thickness[at];
     ++count;
