@@ -33,14 +33,25 @@ double chip_volume_mm3(const EnvelopeGrid& e, std::span<const Chip> chips) {
 
 namespace {
 
-/// Four chips of one ring: h - (k1 + k2) / 2 h^2 + k1 k2 / 3 h^3 each, by the share of the width that is cut.
-CAMBER_VECTOR_CLONES
-void add_volumes(const float* h_mm, const std::uint8_t* cut_255, double half_sum, double third_product, double scale,
-                 std::array<double, EnvelopeBlocks::kSteps>& volume) {
-  for (std::size_t l = 0; l < EnvelopeBlocks::kSteps; ++l) {
-    const double h = std::max(0.0f, h_mm[l]);
-    volume[l] += h * (1 - h * (half_sum - h * third_product)) * cut_255[l] * scale;
+/// Sums over chips that stand side by side, of share h, share h^2 and share h^3.
+struct Powers {
+  std::array<double, EnvelopeBlocks::kLanes> h{}, h2{}, h3{};
+
+  double sum(const std::array<double, EnvelopeBlocks::kLanes>& of, int half) const {
+    double out = 0;
+    for (std::size_t l = 0; l < EnvelopeBlocks::kSteps; ++l)
+      out += of[static_cast<std::size_t>(half * EnvelopeBlocks::kSteps) + l];
+    return out;
   }
+};
+
+CAMBER_VECTOR_CLONES
+void add_powers(const ChipBlock* chips, std::size_t count, Powers& sums) {
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t l = 0; l < EnvelopeBlocks::kLanes; ++l) {
+      const double h = std::max(0.0f, chips[k].thickness_mm[l]), cut = chips[k].cut_255[l] * h;
+      sums.h[l] += cut, sums.h2[l] += cut * h, sums.h3[l] += cut * h * h;
+    }
 }
 
 }  // namespace
@@ -48,16 +59,21 @@ void add_volumes(const float* h_mm, const std::uint8_t* cut_255, double half_sum
 double chip_volume_mm3(const EnvelopeGrid& e, const EnvelopeBlocks& blocks, std::span<const ChipBlock> chips) {
   const double per_255 = 2 * kPi / e.steps / 255;
   const int last = static_cast<int>(e.rings.size()) - 1;
-  std::array<double, EnvelopeBlocks::kSteps> volume{};
-  for (const ChipBlock& c : chips)
+  double volume = 0;
+  for (std::size_t from = 0, end = 0; from < chips.size(); from = end) {
+    const int lower = blocks.block(chips[from].block).ring;
+    while (end < chips.size() && blocks.block(chips[end].block).ring == lower) ++end;
+    Powers sums;
+    add_powers(chips.data() + from, end - from, sums);
     for (int half = 0; half < EnvelopeBlocks::kRings; ++half) {
-      const auto& ring = e.rings[static_cast<std::size_t>(std::min(blocks.block(c.block).ring + half, last))];
+      const auto& ring = e.rings[static_cast<std::size_t>(std::min(lower + half, last))];
       const double k1 = ring.profile.meridian_curvature_per_mm, k2 = ring.profile.parallel_curvature_per_mm;
-      add_volumes(c.thickness_mm.data() + half * EnvelopeBlocks::kSteps,
-                  c.cut_255.data() + half * EnvelopeBlocks::kSteps, (k1 + k2) / 2, k1 * k2 / 3,
-                  ring.width_mm * ring.profile.radius_mm * per_255, volume);
+      volume +=
+          (sums.sum(sums.h, half) - 0.5 * (k1 + k2) * sums.sum(sums.h2, half) + k1 * k2 * sums.sum(sums.h3, half) / 3) *
+          ring.width_mm * ring.profile.radius_mm * per_255;
     }
-  return volume[0] + volume[1] + volume[2] + volume[3];
+  }
+  return volume;
 }
 
 }  // namespace camber::removal

@@ -26,7 +26,24 @@ struct MarkTool {
   float lag_per_mm, steps_per_rad;
 };
 
+/// Undeflected cutters side by side: whole vectors of MarkLanes::kLanes, the last filled up with reach_mm < 0.
+struct CutterLanes {
+  int count;
+  const float *x, *y, *z;  ///< of the tips, from some origin, mm
+  const float* reach;      ///< how near a place must be to count, mm
+  float flat, corner;
+};
+
+/// Cutters near a place.
+struct NearCutters {
+  int nearest;           ///< negative: none is within its reach
+  int count;             ///< within their reach
+  std::int32_t* within;  ///< room for all
+};
+
 struct MarkKernels {
+  /// Which cutters a place is within the reach of, and the nearest of all.
+  void (*find_near)(const CutterLanes& cutters, float x, float y, float z, NearCutters& out);
   /// BentEnvelope::height_mm of each.
   void (*heights)(const MarkLanes& marks, const MarkTool& tool);
 };

@@ -28,13 +28,13 @@ struct MarkVectors {
   /// Distance of places from the straight cutter.
   struct Place {
     F rho, qx, qz, length, distance;
-    Place(const MarkTool& t, const F& x, const F& y, const F& z) {
+    Place(float flat, float corner, const F& x, const F& y, const F& z) {
       const F zero(0.0f);
       rho = xsimd::sqrt(x * x + y * y);
-      qx = rho - F(t.flat), qz = F(t.corner) - z;
+      qx = rho - F(flat), qz = F(corner) - z;
       const F a = xsimd::max(qx, zero), b = xsimd::max(qz, zero);
       length = xsimd::sqrt(a * a + b * b);
-      distance = xsimd::min(xsimd::max(qx, qz), zero) + length - F(t.corner);
+      distance = xsimd::min(xsimd::max(qx, qz), zero) + length - F(corner);
     }
   };
 
@@ -57,7 +57,7 @@ struct MarkVectors {
     F h = l.highest;
     for (int step = 0; step < Settling::kSteps; ++step) {
       const F x = l.x + h * l.nx - bend.x, y = l.y + h * l.ny - bend.y, z = l.z + h * l.nz;
-      const Place p(t, x, y, z);
+      const Place p(t.flat, t.corner, x, y, z);
       if (step == 0) live = live & (p.distance < zero);
       if (!xsimd::any(live)) break;
       const F slope = xsimd::min(xsimd::max(slope_against(p, x, y, l), flattest), one);
@@ -78,7 +78,7 @@ struct MarkVectors {
       const Lanes l{load(m.x + k),  load(m.y + k),  load(m.z + k),       load(m.nx + k),
                     load(m.ny + k), load(m.nz + k), load(m.highest + k), I::load_unaligned(m.shift + k)};
       const F x = l.x + l.highest * l.nx, y = l.y + l.highest * l.ny, z = l.z + l.highest * l.nz;
-      const Mask near = Place(t, x, y, z).distance <= load(m.largest + k);
+      const Mask near = Place(t.flat, t.corner, x, y, z).distance <= load(m.largest + k);
       F h = l.highest;
       if (xsimd::any(near)) {
         // Where the deflection jumps along with the edge, two points of the envelope may lie on one line: the lower
@@ -92,7 +92,34 @@ struct MarkVectors {
     }
   }
 
-  static constexpr MarkKernels table() { return {&heights}; }
+  static void find_near(const CutterLanes& c, float x, float y, float z, NearCutters& out) {
+    const F none(1e30f), px(x), py(y), pz(z);
+    F nearest = none, where(-1.0f);
+    alignas(64) float ramp[n], distance[n], lane[n];
+    for (int l = 0; l < n; ++l) ramp[l] = static_cast<float>(l);
+    const F lanes = F::load_aligned(ramp);
+    out.count = 0;
+    for (int k = 0; k < c.count; k += n) {
+      const F d = Place(c.flat, c.corner, px - load(c.x + k), py - load(c.y + k), pz - load(c.z + k)).distance;
+      const F reach = load(c.reach + k);
+      const Mask nearer = (d < nearest) & (reach >= F(0.0f));
+      nearest = xsimd::select(nearer, d, nearest);
+      where = xsimd::select(nearer, F(static_cast<float>(k)) + lanes, where);
+      std::uint32_t bits = Table<A>::bits((d <= reach) & (reach >= F(0.0f)));
+      for (int l = 0; bits != 0; bits >>= 1, ++l)
+        if (bits & 1u) out.within[out.count++] = k + l;
+    }
+    out.nearest = -1;
+    if (out.count == 0) return;
+    // The first of those that are equally near, whatever the width.
+    nearest.store_aligned(distance), where.store_aligned(lane);
+    int best = 0;
+    for (int l = 1; l < n; ++l)
+      if (distance[l] < distance[best] || (distance[l] == distance[best] && lane[l] < lane[best])) best = l;
+    out.nearest = static_cast<int>(lane[best]);
+  }
+
+  static constexpr MarkKernels table() { return {&find_near, &heights}; }
 };
 
 }  // namespace

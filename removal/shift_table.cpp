@@ -1,15 +1,35 @@
 #include "removal/shift_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "removal/vector_clones.h"
 
 namespace camber::removal {
 
+namespace {
+
+/// Of `pairs` pairs the largest sum of squares.
+CAMBER_VECTOR_CLONES
+float largest_square(const float* values, std::size_t pairs) {
+  constexpr std::size_t kLanes = 8;
+  std::array<float, kLanes> most{};
+  std::size_t i = 0;
+  for (; i + kLanes <= pairs; i += kLanes)
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const float x = values[2 * (i + l)], y = values[2 * (i + l) + 1], square = x * x + y * y;
+      most[l] = square > most[l] ? square : most[l];
+    }
+  for (; i < pairs; ++i)
+    most[0] = std::max(most[0], values[2 * i] * values[2 * i] + values[2 * i + 1] * values[2 * i + 1]);
+  return *std::max_element(most.begin(), most.end());
+}
+
+}  // namespace
+
 double ShiftTable::largest_mm(std::ptrdiff_t k) const {
-  const float* r = row(k);
-  float largest = 0;
-  for (std::size_t i = 0; i < row_size(); i += 2) largest = std::max(largest, r[i] * r[i] + r[i + 1] * r[i + 1]);
-  return std::sqrt(static_cast<double>(largest));
+  return std::sqrt(static_cast<double>(largest_square(row(k), row_size() / 2)));
 }
 
 NodeWeight node_weight(const std::vector<double>& nodes, double height) {

@@ -74,14 +74,16 @@ class Tips {
   /// How far a place is from the straight cutter at each.
   void distances(const CutterShape& shape, const Vec3& place, std::vector<float>& out) const {
     const Eigen::Vector3f p = (place - origin_).cast<float>();
-    if (!shape.general) {
-      rounded_distances(x_.data(), y_.data(), z_.data(), x_.size(), p.x(), p.y(), p.z(),
-                        static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm),
-                        out.data());
-      return;
-    }
     for (std::size_t k = 0; k < x_.size(); ++k)
       out[k] = static_cast<float>(shape.distance_mm((p - Eigen::Vector3f(x_[k], y_[k], z_[k])).cast<double>()));
+  }
+  /// Of rounded cutters: see MarkKernels. `reach_mm`: of each, and whole vectors of them.
+  void find_near(const CutterShape& shape, const std::vector<float>& reach_mm, const Vec3& place,
+                 NearCutters& out) const {
+    const Eigen::Vector3f p = (place - origin_).cast<float>();
+    mark_kernels().find_near({static_cast<int>(x_.size()), x_.data(), y_.data(), z_.data(), reach_mm.data(),
+                              static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm)},
+                             p.x(), p.y(), p.z(), out);
   }
   /// How near the straight cutter at each can come to a place of a group, at least.
   void distances_to(const CutterShape& shape, const Group& group, std::vector<float>& out) const {
@@ -187,10 +189,8 @@ class CloseStamps {
   /// Lowers points to the deepest of them. The stamp that goes deepest where it is straight comes first: most others
   /// are then too high to look at.
   void mark(std::span<SurfacePoint> points) {
-    distance_.resize(stamps_.size());
-    within_.resize(stamps_.size());
     if (e_.shape.general)
-      for (SurfacePoint& p : points) mark_general(p);
+      mark_general(points);
     else
       mark_rounded(points);
   }
@@ -200,15 +200,23 @@ class CloseStamps {
     BentEnvelope envelope;
     std::int32_t id;
   };
-  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-  void mark_general(SurfacePoint& p) {
-    const std::size_t first = find_first(p);
-    if (first == kNone) return;
-    lower(p, first);
-    const std::size_t count = find_within();
-    for (std::size_t n = 0; n < count; ++n)
-      if (within_[n] != first) lower(p, within_[n]);
+  void mark_general(std::span<SurfacePoint> points) {
+    distance_.resize(stamps_.size());
+    for (SurfacePoint& p : points) {
+      tips_.distances(e_.shape, p.place_mm + p.error_mm * p.normal, distance_);
+      const auto first = static_cast<std::size_t>(std::ranges::min_element(distance_) - distance_.begin());
+      lower(p, first);
+      for (std::size_t k = 0; k < stamps_.size(); ++k)
+        if (k != first) lower(p, k);
+    }
+  }
+  void lower(SurfacePoint& p, std::size_t k) const {
+    if (distance_[k] > reach_mm_[k]) return;
+    const double h = stamps_[k].envelope.height_mm(p.place_mm, p.normal, p.error_mm);
+    if (h >= p.error_mm) return;
+    p.error_mm = h;
+    p.machined_stamp = stamps_[k].id;
   }
 
   void mark_rounded(std::span<SurfacePoint> points) {
@@ -220,45 +228,37 @@ class CloseStamps {
         p.machined_stamp = stamps_[pair.stamp].id;
       });
     };
+    fill_lanes();
     first_.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      first_[i] = find_first(points[i]);
-      if (first_[i] != kNone) queue_.add({i, first_[i]}, points[i], stamps_[first_[i]].envelope);
+      first_[i] = find_near(points[i]).nearest;
+      if (first_[i] >= 0) add_to_queue(points, i, first_[i]);
     }
     settle();
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (first_[i] == kNone) continue;
-      measure(points[i]);
-      const std::size_t count = find_within();
-      for (std::size_t n = 0; n < count; ++n)
-        if (within_[n] != first_[i]) queue_.add({i, within_[n]}, points[i], stamps_[within_[n]].envelope);
+      if (first_[i] < 0) continue;
+      const NearCutters near = find_near(points[i]);
+      for (int n = 0; n < near.count; ++n)
+        if (near.within[n] != first_[i]) add_to_queue(points, i, near.within[n]);
     }
     settle();
   }
-
-  /// Measures; the stamp that goes deepest, or none where none comes as near as its bend reaches.
-  std::size_t find_first(const SurfacePoint& p) {
-    measure(p);
-    const auto first =
-        static_cast<std::size_t>(std::min_element(distance_.begin(), distance_.end()) - distance_.begin());
-    return distance_[first] > reach_mm_[first] && find_within() == 0 ? kNone : first;
-  }
-  void measure(const SurfacePoint& p) { tips_.distances(e_.shape, p.place_mm + p.error_mm * p.normal, distance_); }
-  /// Lists the stamps that are as near as their bend reaches.
-  std::size_t find_within() {
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < distance_.size(); ++k) {
-      within_[count] = k;
-      count += distance_[k] <= reach_mm_[k] ? 1 : 0;
+  void fill_lanes() {
+    constexpr float kNever = -1;
+    while (reach_mm_.size() % MarkLanes::kLanes != 0) {
+      tips_.add(stamps_.back().envelope.tip_mm());
+      reach_mm_.push_back(kNever);
     }
-    return count;
+    within_.resize(reach_mm_.size());
   }
-  void lower(SurfacePoint& p, std::size_t k) const {
-    if (distance_[k] > reach_mm_[k]) return;
-    const double h = stamps_[k].envelope.height_mm(p.place_mm, p.normal, p.error_mm);
-    if (h >= p.error_mm) return;
-    p.error_mm = h;
-    p.machined_stamp = stamps_[k].id;
+  NearCutters find_near(const SurfacePoint& p) {
+    NearCutters near{-1, 0, within_.data()};
+    tips_.find_near(e_.shape, reach_mm_, p.place_mm + p.error_mm * p.normal, near);
+    return near;
+  }
+  void add_to_queue(std::span<const SurfacePoint> points, std::size_t point, int stamp) {
+    const auto k = static_cast<std::size_t>(stamp);
+    queue_.add({point, k}, points[point], stamps_[k].envelope);
   }
 
   const EnvelopeGrid& e_;
@@ -267,7 +267,8 @@ class CloseStamps {
   Tips tips_;
   std::vector<Bent> stamps_;
   std::vector<float> reach_mm_, distance_;
-  std::vector<std::size_t> within_, first_;
+  std::vector<std::int32_t> within_;
+  std::vector<int> first_;
 };
 
 }  // namespace
@@ -318,8 +319,11 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
   if (stamps.empty()) return;
   std::vector<CarveBend> bends(stamps.size());
   const Bends all(envelope, shifts);
-  tbb::parallel_for(std::size_t{0}, stamps.size(),
-                    [&](std::size_t k) { bends[k] = all.of(static_cast<std::ptrdiff_t>(k)); });
+  tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+    const auto row = static_cast<std::ptrdiff_t>(k);
+    // MarkKernels ask for no directions.
+    bends[k] = envelope.shape.general ? all.of(row) : CarveBend{shifts.row(row), shifts.largest_mm(row), {}};
+  });
   Vec3 lo = stamps.front().tip_mm, hi = lo;
   double most_bent = 0;
   Tips tips;
