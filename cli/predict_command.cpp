@@ -48,20 +48,20 @@ void write_files(const machine::Job& job, const deflection::MachinedProgram& pro
                  deflection::Prediction& prediction, std::size_t forces_at, const fs::path& folder,
                  const Diagnostics& diagnostics) {
   const removal::StockShape stock = removal::stock_shape(*prediction.machined, report::kMostStockCrossings);
+  const report::FormErrorPoints points = report::form_error_points(program, prediction);
   tbb::task_group others;
   others.run([&] {
     prediction.machined->save(folder / "stock.vdb");
     prediction.machined.reset();
+  });
+  others.run([&] { report::write_form_error_csv(folder / "form_error.csv", points); });
+  others.run([&] { report::write_form_error_vtp(folder / "form_error.vtp", points); });
+  others.run([&] {
     report::write_forces_csv(folder / "forces.csv", job, program, prediction);
     if (forces_at > 0)
       report::write_forces_at_csv(folder / fmt::format("forces_at_{}.csv", forces_at), prediction.cut.turn);
   });
-  others.run([&] {
-    const report::FormErrorPoints points = report::form_error_points(program, prediction);
-    report::write_form_error_csv(folder / "form_error.csv", points);
-    report::write_form_error_vtp(folder / "form_error.vtp", points);
-    report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95);
-  });
+  others.run([&] { report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95); });
   others.run_and_wait([&] {
     auto feed = write_feed(program, job, folder / "feed.csv");
     report::write_html_report(folder / "report.html",

@@ -340,13 +340,16 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
     Vec3 place;
   };
   std::vector<Contact> out(stamps.size());
-  tbb::enumerable_thread_specific<std::vector<Candidate>> buffers;
+  struct Buffers {
+    Stock::Probe probe;
+    std::vector<Candidate> candidates;
+  };
+  tbb::enumerable_thread_specific<Buffers> buffers([&] { return Buffers{Stock::Probe(target), {}}; });
   tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
     const Vec3& f = stamps[k].feed_per_tooth_mm;
     const double horizontal = f.head<2>().norm();
     const Vec2 along = horizontal > 0 ? Vec2(f.head<2>() / horizontal) : Vec2::UnitX(), aside(-along.y(), along.x());
-    const Stock::Probe probe(target);
-    std::vector<Candidate>& candidates = buffers.local();  // depth: of the nearest voxel
+    auto& [probe, candidates] = buffers.local();  // depth: of the nearest voxel
     candidates.clear();
     for (const Ring& ring : rings) {
       // The cosine of the angle from the motion at which the normal stands across it.

@@ -28,7 +28,7 @@ struct Stock::Impl {
 // while the tree changes.
 namespace {
 
-constexpr int kLeaf = 8;
+constexpr int kLeafBits = 3, kLeaf = 1 << kLeafBits;
 
 Coord coord(const Index3& i) { return {i[0], i[1], i[2]}; }
 
@@ -105,7 +105,7 @@ Stock::~Stock() = default;
 namespace {
 
 template <class Accessor>
-double trilinear(const Accessor& access, const Vec3& g) {
+double trilinear(Accessor&& access, const Vec3& g) {
   const Index3 b{static_cast<int>(std::floor(g.x())), static_cast<int>(std::floor(g.y())),
                  static_cast<int>(std::floor(g.z()))};
   double sum = 0;
@@ -129,21 +129,45 @@ double Stock::distance_mm(const Vec3& p) const {
   return trilinear(impl_->distance->getConstUnsafeAccessor(), p / voxel_mm_);
 }
 
+/// Remembers the leaves that were met lately, by their place among their neighbours.
 struct Stock::Probe::Access {
+  struct Leaf {
+    Coord origin = Coord::max();
+    const float* values = nullptr;  ///< null: `constant` throughout
+    float constant = 0;
+  };
+  static constexpr int kSideBits = 2, kSides = 1 << kSideBits;
+
   openvdb::FloatGrid::ConstUnsafeAccessor accessor;
+  std::array<Leaf, kSides * kSides * kSides> leaves{};
+
+  float getValue(const Coord& at) {
+    const Coord origin = at & ~(kLeaf - 1);
+    const auto place = [](int v) { return v >> kLeafBits & (kSides - 1); };
+    Leaf& leaf =
+        leaves[static_cast<std::size_t>((place(at.x()) << kSideBits | place(at.y())) << kSideBits | place(at.z()))];
+    if (leaf.origin != origin) {
+      const auto* node = accessor.probeConstLeaf(origin);
+      leaf = {origin, node ? node->buffer().data() : nullptr, node ? 0.0f : accessor.getValue(origin)};
+    }
+    if (!leaf.values) return leaf.constant;
+    constexpr int kIn = kLeaf - 1;
+    return leaf.values[((at.x() & kIn) << kLeafBits | (at.y() & kIn)) << kLeafBits | (at.z() & kIn)];
+  }
 };
 Stock::Probe::Probe(const Stock& stock)
     : access_(std::make_unique<Access>(Access{stock.impl_->distance->getConstUnsafeAccessor()})),
       voxel_mm_(stock.voxel_mm()),
       per_mm_(1 / stock.voxel_mm()) {}
+Stock::Probe::Probe(Probe&&) noexcept = default;
 Stock::Probe::~Probe() = default;
 float Stock::Probe::nearest(const Vec3& p) const {
-  return access_->accessor.getValue({static_cast<int>(std::floor(p.x() * per_mm_ + 0.5)),
-                                     static_cast<int>(std::floor(p.y() * per_mm_ + 0.5)),
-                                     static_cast<int>(std::floor(p.z() * per_mm_ + 0.5))});
+  return access_->getValue({static_cast<int>(std::floor(p.x() * per_mm_ + 0.5)),
+                            static_cast<int>(std::floor(p.y() * per_mm_ + 0.5)),
+                            static_cast<int>(std::floor(p.z() * per_mm_ + 0.5))});
 }
 
-double Stock::Probe::distance_mm(const Vec3& p) const { return trilinear(access_->accessor, p / voxel_mm_); }
+double Stock::Probe::distance_mm(const Vec3& p) const { return trilinear(*access_, p / voxel_mm_); }
 
 float Stock::voxel(const Index3& i) const { return impl_->distance->tree().getValue(coord(i)); }
 std::int32_t Stock::stamp(const Index3& i) const { return impl_->stamp->tree().getValue(coord(i)); }

@@ -53,10 +53,11 @@ class Stock {
   float voxel(const Index3& index) const;
   std::int32_t stamp(const Index3& index) const;
 
-  /// Many readings by one thread.
+  /// Many readings by one thread, while the stock stays as it is.
   class Probe {
    public:
     explicit Probe(const Stock& stock);
+    Probe(Probe&&) noexcept;
     ~Probe();
     /// The value of the voxel nearest to a point, clipped to the band.
     float nearest(const Vec3& point) const;
