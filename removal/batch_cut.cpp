@@ -164,6 +164,10 @@ bool BatchCut::cut_block(Tile& tile, ColumnCover& cover, const Block& b, std::in
   if (candidates_.size() > 1) {
     for (int i = b.i_from; i < b.i_to; ++i) {
       to_line(i);
+      for (int j = b.j_from; i + 1 < b.i_to && j < b.j_to; ++j) {  // comes next, and from far away
+        __builtin_prefetch(line.distance + Tile::offset(1, j, kHalf));
+        __builtin_prefetch(line.stamp + Tile::offset(1, j, kHalf));
+      }
       line.id = first_id;
       search.x = static_cast<float>(i) * voxel_;
       for (int j = search.first; j < search.end; ++j) search_z[j] = cover.tops_mm(i)[j] - band_;

@@ -172,17 +172,34 @@ struct Vectors {
     return true;
   }
 
-  /// Column j with the straight cutter, its axis at rho, voxel 0 at z0 above its tip.
-  static void cut_column(const LineCut& c, int j, float rho, float z0, int lowest, std::int32_t id,
+  /// Where the straight cutter is, seen from the columns of a line: its axis, and the first voxel that it reaches.
+  struct Columns {
+    alignas(64) float rho[LineCut::kLine];
+    alignas(64) std::int32_t low[LineCut::kLine];
+
+    /// Columns first, first + 1, ... of a vector; dx, dy, z0: from the tips, z0 of voxel 0.
+    void find(const LineCut& c, int first, const F& dx, const F& dy, const F& z0) {
+      const F zero(0.0f), corner(c.corner), reach(c.band + c.corner - c.shrink), per_voxel(1 / c.voxel);
+      const F from_axis = xsimd::sqrt(dx * dx + dy * dy), qx = from_axis - F(c.flat);
+      const F left = reach * reach - qx * qx;
+      const F lowest =
+          xsimd::select(qx <= zero, corner - reach, xsimd::select(left > zero, corner - xsimd::sqrt(left), corner));
+      const I up = to_int((lowest - z0) * per_voxel);
+      from_axis.store_unaligned(rho + first);
+      // Nowhere: above all columns.
+      const I none(LineCut::kColumns);
+      xsimd::select(to_int(xsimd::select(qx > reach, F(1.0f), zero)) == I(1), none, up).store_unaligned(low + first);
+    }
+  };
+
+  /// Column j with the straight cutter, voxel 0 at z0 above its tip.
+  static void cut_column(const LineCut& c, int j, const Columns& columns, float z0, int lowest, std::int32_t id,
                          LineResult& result) {
-    const float reach = c.band + c.corner - c.shrink, qx = rho - c.flat;
-    if (qx > reach) return;
-    const int up = static_cast<int>((lowest_reached(qx, c.corner, reach) - z0) / c.voxel);
-    const int low = up > lowest ? up : lowest, top = c.top[j];
+    const int low = columns.low[j] > lowest ? columns.low[j] : lowest, top = c.top[j];
     if (low >= top) return;
     result.tried |= 1u << j;
     bool changed = false;
-    const F rhos(rho), steps = ramp() * F(c.voxel), band(c.band), shrink(c.shrink);
+    const F rhos(columns.rho[j]), steps = ramp() * F(c.voxel), band(c.band), shrink(c.shrink);
     for_vectors(low, top, [&](int k) {
       const F z = F(z0 + static_cast<float>(k) * c.voxel) + steps;
       const F v = xsimd::min(-(distance(rhos, z, c.flat, c.corner) + shrink), band);
@@ -191,25 +208,29 @@ struct Vectors {
     if (changed) result.changed |= 1u << j;
   }
 
+  /// Places of columns first, first + 1, ..., from column 0.
+  static F along_y(const LineCut& c, int first) { return (F(static_cast<float>(first)) + ramp()) * F(c.voxel); }
+
   static LineResult cut_line(const LineCut& c) {
     LineResult result;
-    const float dx2 = c.dx * c.dx;
-    for (int j = c.first; j < c.end; ++j) {
-      if (!(c.changeable[j] > 0)) continue;
-      const float dy = c.dy + static_cast<float>(j) * c.voxel;
-      cut_column(c, j, std::sqrt(dx2 + dy * dy), c.z, c.lowest, c.id, result);
-    }
+    Columns columns;
+    const F dx(c.dx), z(c.z);
+    for (int j = c.first / n * n; j < c.end; j += n) columns.find(c, j, dx, F(c.dy) + along_y(c, j), z);
+    for (int j = c.first; j < c.end; ++j)
+      if (c.changeable[j] > 0) cut_column(c, j, columns, c.z, c.lowest, c.id, result);
     return result;
   }
 
   static LineResult cut_winners(const LineCut& c, const LineSearch& s, const std::int32_t* id_of_tip) {
     LineResult result;
+    Columns columns;
+    const F x(s.x);
+    for (int j = c.first / n * n; j < c.end; j += n)
+      columns.find(c, j, x - load(s.tip_x + j), along_y(c, j) - load(s.tip_y + j), -load(s.tip_z + j));
     for (int j = c.first; j < c.end; ++j) {
       if (!(c.changeable[j] > 0)) continue;
-      const float dx = s.x - s.tip_x[j], dy = static_cast<float>(j) * c.voxel - s.tip_y[j];
       const int lowest = static_cast<int>((s.tip_z[j] - c.band) / c.voxel);  // below 0: not cut off downwards, but so
-      cut_column(c, j, std::sqrt(dx * dx + dy * dy), -s.tip_z[j], lowest > 0 ? lowest : 0,
-                 c.id + id_of_tip[s.winner[j]], result);
+      cut_column(c, j, columns, -s.tip_z[j], lowest > 0 ? lowest : 0, c.id + id_of_tip[s.winner[j]], result);
     }
     return result;
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
@@ -119,8 +120,15 @@ class NamedCutters {
   };
   Governing governing(const Vec3& p) const {
     Governing out;
+    std::array<std::pair<std::int32_t, std::int32_t>, 18> seen;  // from which of them a search ends where one has ended
+    std::size_t searches = 0;
     for (std::size_t n = 0; n < count_; ++n) {
-      const auto [id, depth] = places_.deepest_from(ids_[n], p);
+      const std::int32_t from = ids_[n];
+      if (std::any_of(seen.begin(), seen.begin() + searches,
+                      [&](const auto& s) { return s.first <= from && from <= s.second; }))
+        continue;
+      const auto [id, depth] = places_.deepest_from(from, p);
+      seen[searches++] = {std::min(from, id), std::max(from, id + 1)};
       if (depth > out.value_mm) out = {depth, id};
     }
     return out;
