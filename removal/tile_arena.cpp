@@ -32,6 +32,7 @@ void TileArena::load(const Stock& stock, const Stock& blank, const CutterShape& 
                      const Leave& leave) {
   voxel_ = stock.voxel_mm();
   list_tiles(stock, shape, stamps, leave);
+  tops_.reset(slots_);
   make_room();
   load_fresh(stock, blank);
 }
@@ -167,7 +168,7 @@ ArenaView TileArena::view() const {
           2 * Tile::kVolume,
           slots_.all().empty() ? &kAir : slots_.all().data(),
           {slots_.extent()[0], slots_.extent()[1], slots_.extent()[2]},
-          tops_.heights()};
+          tops_.heights().empty() ? &kAir : tops_.heights().data()};
 }
 
 StampPlace TileArena::place_of(const Stamp& stamp, double least_mm) const {

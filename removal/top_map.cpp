@@ -22,6 +22,12 @@ void raise(const ColumnCover& cover, int from_z, std::int32_t* square, std::size
 
 }  // namespace
 
+void TopMap::reset(const SlotMap& slots) {
+  const Index3 n = slots.extent();
+  around_.assign(static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * kOfTile * kOfTile,
+                 (n[2] + 1) * Tile::kCore);
+}
+
 void TopMap::read(const SlotMap& slots, int reach_voxels,
                   const std::function<const ColumnCover*(std::size_t)>& cover_of) {
   const Index3 n = slots.extent(), first = slots.first();

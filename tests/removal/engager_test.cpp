@@ -138,6 +138,40 @@ TEST(Engager, StampsAwayFromTheStockTakeNothing) {
   EXPECT_EQ(engager.commit(), 0);
 }
 
+TEST(TopMap, SquaresKnowTheHighestColumnAround) {
+  // A tile of air above y = 5 voxels, and on one column of it a pillar; the tile beside it along y is not there.
+  constexpr int kFloor = 6, kPillar = 11;
+  constexpr double kVoxel_mm = 0.1, kBand_mm = 0.4;
+  Tile tile;
+  tile.stamp.fill(Stock::kUncut);
+  for (int i = 0; i < Tile::kSide; ++i)
+    for (int j = 0; j < Tile::kSide; ++j)
+      for (int k = 0; k < Tile::kSide; ++k)
+        tile.distance[static_cast<std::size_t>(Tile::offset(i, j, k))] =
+            k < (i == 9 && j == 2 ? kPillar : kFloor) ? -0.1f : static_cast<float>(kBand_mm);
+  SlotMap slots;
+  slots.reset({3, 5, -2}, {3, 6, -1});
+  const ColumnCover cover(tile, {3, 5, -1}, kVoxel_mm, kBand_mm, shape_of(tool_of(machine::ToolType::ball)),
+                          [](std::int32_t, Vec3&, double&) { return false; });
+  const auto cover_of = [&](std::size_t place) { return place == slots.place(3, 5, -1) ? &cover : nullptr; };
+  TopMap map;
+  constexpr int kSquares = 2 * TopMap::kOfTile;  // along y
+  map.reset(slots);
+  EXPECT_EQ(map.heights(), std::vector<std::int32_t>(TopMap::kOfTile * kSquares, 3 * Tile::kCore));
+  for (const int reach : {0, 3, 8}) {
+    map.read(slots, reach, cover_of);
+    const int around = (reach + TopMap::kCell - 1) / TopMap::kCell;
+    for (int i = 0; i < TopMap::kOfTile; ++i)
+      for (int j = 0; j < kSquares; ++j) {
+        const bool pillar = std::abs(i - 2) <= around && j <= around;
+        const bool floor = j < TopMap::kOfTile + around;
+        EXPECT_EQ(map.heights()[static_cast<std::size_t>(i * kSquares + j)],
+                  floor ? Tile::kCore + (pillar ? kPillar : kFloor) : 0)
+            << reach << ' ' << i << ' ' << j;
+      }
+  }
+}
+
 TEST(EnvelopeBlocks, HoldEveryPointOnce) {
   // 3 x 31 steps and an odd number of rings leave places over.
   const EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::bull), 1.5, 0.1, 2 * kPi / 93);
@@ -176,7 +210,7 @@ TEST(BlockKernels, WideAndNarrowVectorsReadTheSame) {
   struct Reading {
     std::vector<std::int32_t> found, lane, cell, hit;
     std::vector<std::uint32_t> block, deep;
-    std::vector<float> thickness, cap, u, v, w, thin;
+    std::vector<float> thickness, cap, u, v, w, thin, under_blank;
     bool operator==(const Reading&) const = default;
   };
   const auto read = [&](const BlockKernels& kernels) {
@@ -195,6 +229,19 @@ TEST(BlockKernels, WideAndNarrowVectorsReadTheSame) {
     shallow.count = shallow.count / 8 * 8;
     const FixedTips tips{x.data(), y.data(), z.data(), {x[k], y[k], z[k]}, 1e-6f, 0};
     kernels.thin_points(blocks.points(), shallow, arena.view(), tips, 0, 2, 0.05f, r.thin.data());
+    // The stock as its own blank; tiles of the arena hold twice as many values as those of the blank.
+    std::vector<std::int32_t> of_blank = r.cell;
+    for (auto& cell : of_blank) cell -= cell / (2 * Tile::kVolume) * Tile::kVolume;
+    r.under_blank = r.thin;
+    kernels.thin_by_blank(blocks.points(), {shallow.count,
+                                            arena.blanks(),
+                                            r.lane.data(),
+                                            of_blank.data(),
+                                            {r.u.data(), r.v.data(), r.w.data()},
+                                            0.1f,
+                                            0.05f,
+                                            r.under_blank.data()});
+    EXPECT_NE(r.under_blank, r.thin);
     return r;
   };
   EXPECT_EQ(read(kBaseBlockKernels), read(block_kernels()));

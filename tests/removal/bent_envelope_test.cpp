@@ -1,0 +1,192 @@
+// Marks of bent cutters: what height_mm and the vectors say lies on the displaced envelope, and both say the same.
+#include "removal/bent_envelope.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "removal/mark_kernels.h"
+#include "tests/support/cutting.h"
+
+namespace camber::removal {
+namespace {
+
+constexpr int kSteps = 90, kFlutes = 2;
+constexpr double kTop_mm = 6, kLargest_mm = 0.03;
+
+/// Deflections that turn with the edge and grow with height, and of the second row one that jumps.
+ShiftTable bent_rows() {
+  ShiftTable shifts(2, kSteps, {0, 2, 4, kTop_mm});
+  for (int row = 0; row < 2; ++row)
+    for (int n = 0; n < 4; ++n)
+      for (int m = 0; m < kSteps; ++m) {
+        const double turn = 2 * kPi * m / kSteps, size = row == 1 && m < 30 ? 0 : 0.6 * kLargest_mm * (1 - 0.1 * n);
+        float* v = shifts.row(row) + 2 * (n * kSteps + m);
+        v[0] = static_cast<float>(size * (1 + 0.3 * std::cos(turn)));
+        v[1] = static_cast<float>(size * std::sin(turn));
+      }
+  return shifts;
+}
+
+/// The shift of the envelope's point at an angle and height, by the definition of ShiftTable.
+Vec3 shift_of(const ShiftTable& shifts, int row, double phi, double height, double lag_per_mm) {
+  double step = (phi - height * lag_per_mm) * kSteps * kFlutes / (2 * kPi);
+  step -= kSteps * std::floor(step / kSteps);
+  const int m0 = static_cast<int>(step) % kSteps, m1 = (m0 + 1) % kSteps;
+  const double f = step - std::floor(step), node = std::clamp(height / 2, 0.0, 3.0);
+  const int n0 = std::min(2, static_cast<int>(node));
+  const auto at = [&](int n, int m) {
+    const float* v = shifts.row(row) + 2 * (n * kSteps + m);
+    return Vec3(v[0], v[1], 0);
+  };
+  const auto along = [&](int n) { return Vec3((1 - f) * at(n, m0) + f * at(n, m1)); };
+  return (1 - (node - n0)) * along(n0) + (node - n0) * along(n0 + 1);
+}
+
+struct Mark {
+  Vec3 point, normal;
+  double highest;
+  int row;
+};
+
+/// Points in the cutter's way near its envelope, normals up to 40 degrees off.
+std::vector<Mark> marks_around(const CutterShape& shape, std::size_t count, bool jump) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Mark> out;
+  while (out.size() < count) {
+    const double phi = kPi * unit(random), s = (0.5 + 0.5 * unit(random)) * shape.profile.length_to_height_mm(kTop_mm);
+    const ProfilePoint p = shape.profile.at(s);
+    const Vec3 place(p.radius_mm * std::cos(phi), p.radius_mm * std::sin(phi), p.height_mm);
+    const Vec3 normal = (-shape.gradient(place) + 0.6 * Vec3(unit(random), unit(random), unit(random))).normalized();
+    out.push_back({place + 0.02 * unit(random) * normal, normal, 0.2, jump ? 1 : 0});
+  }
+  return out;
+}
+
+EnvelopeGrid envelope_of(machine::ToolType type) {
+  machine::Tool tool = testing::make_tool(type, 6, kFlutes, 30);
+  if (type == machine::ToolType::bull) tool.corner_radius_mm = 1;
+  return make_envelope(tool, kTop_mm, 0.5, kPi / 9);
+}
+
+std::vector<double> heights_by(const MarkKernels& kernels, const EnvelopeGrid& envelope, const ShiftTable& shifts,
+                               const std::vector<Mark>& marks) {
+  const std::size_t count = (marks.size() + 7) / 8 * 8;
+  std::vector<std::vector<float>> v(9, std::vector<float>(count));
+  std::vector<std::int32_t> row(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Mark& m = marks[std::min(i, marks.size() - 1)];
+    for (std::size_t a = 0; a < 3; ++a) {
+      v[a][i] = static_cast<float>(m.point[static_cast<int>(a)]);
+      v[3 + a][i] = static_cast<float>(m.normal[static_cast<int>(a)]);
+    }
+    v[6][i] = static_cast<float>(m.highest);
+    v[7][i] = static_cast<float>(shifts.largest_mm(m.row));
+    row[i] = static_cast<std::int32_t>((shifts.row(m.row) - shifts.values.data()) / 2);
+  }
+  kernels.heights({static_cast<int>(count), v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(),
+                   v[5].data(), v[6].data(), v[7].data(), row.data(), v[8].data()},
+                  {{shifts.values.data(), nullptr, 4, kSteps, 2.0f},
+                   static_cast<float>(envelope.shape.bottom_length_mm()),
+                   static_cast<float>(envelope.shape.corner_radius_mm),
+                   static_cast<float>(envelope.lag_per_mm),
+                   static_cast<float>(kSteps * kFlutes / (2 * kPi))});
+  return {v[8].begin(), v[8].begin() + static_cast<std::ptrdiff_t>(marks.size())};
+}
+
+TEST(BentEnvelope, MarksLieOnTheDisplacedEnvelope) {
+  const ShiftTable shifts = bent_rows();
+  for (const auto type : {machine::ToolType::ball, machine::ToolType::bull, machine::ToolType::flat}) {
+    const EnvelopeGrid envelope = envelope_of(type);
+    const Bends bends(envelope, shifts);
+    const CarveBend bend = bends.of(0);
+    const auto marks = marks_around(envelope.shape, 400, false);
+    const BentEnvelope bent(envelope, shifts, bend, Vec3::Zero());
+    int met = 0;
+    for (const Mark& m : marks) {
+      const double h = bent.height_mm(m.point, m.normal, m.highest);
+      if (h >= m.highest) continue;
+      // x = q + h n comes from the envelope's point x - shift: some place there whose own shift leads to x.
+      const Vec3 x = m.point + h * m.normal;
+      Vec3 from = x;
+      for (int i = 0; i < 30; ++i) {
+        const double phi = std::atan2(from.y(), from.x()), rho = from.head<2>().norm();
+        from = x -
+               shift_of(shifts, 0, phi, envelope.shape.profile.nearest({rho, from.z()}).place.y(), envelope.lag_per_mm);
+      }
+      EXPECT_NEAR(envelope.shape.distance_mm(from), 0, 2e-5);
+      ++met;
+    }
+    EXPECT_GT(met, 300);
+  }
+}
+
+TEST(BentEnvelope, VectorsOfAllWidthsMarkTheSame) {
+  const ShiftTable shifts = bent_rows();
+  for (const auto type : {machine::ToolType::ball, machine::ToolType::bull, machine::ToolType::flat})
+    for (const bool jump : {false, true}) {
+      const EnvelopeGrid envelope = envelope_of(type);
+      const Bends bends(envelope, shifts);
+      const CarveBend bend = bends.of(jump ? 1 : 0);
+      const auto marks = marks_around(envelope.shape, 403, jump);
+      const auto narrow = heights_by(kBaseMarkKernels, envelope, shifts, marks);
+      EXPECT_EQ(narrow, heights_by(mark_kernels(), envelope, shifts, marks));
+      const BentEnvelope bent(envelope, shifts, bend, Vec3::Zero());
+      std::size_t off = 0;
+      for (std::size_t i = 0; i < marks.size(); ++i)
+        off += std::abs(narrow[i] - bent.height_mm(marks[i].point, marks[i].normal, marks[i].highest)) > 2e-5;
+      // Where the deflection jumps a rounding decides now and then on which side a place is.
+      EXPECT_LE(off, jump ? marks.size() / 50 : 0);
+    }
+}
+
+TEST(MarkKernels, FindTheNearestCutterAndAllWithinTheirReach) {
+  const CutterShape shape = envelope_of(machine::ToolType::bull).shape;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  constexpr std::size_t kCount = 40, kReal = 37;
+  std::vector<float> x(kCount), y(kCount), z(kCount), reach(kCount, -1.0f);
+  for (std::size_t k = 0; k < kReal; ++k)
+    x[k] = unit(random), y[k] = unit(random), z[k] = unit(random), reach[k] = 0.3f;
+  x[11] = 1.5f, y[11] = 0.5f, z[11] = -1.2f;    // the nearest of all for many places,
+  x[20] = x[11], y[20] = y[11], z[20] = z[11];  // and another is as near
+  for (std::size_t k = kReal; k < kCount; ++k) x[k] = x[11], y[k] = y[11], z[k] = z[11];
+  const CutterLanes lanes{static_cast<int>(kCount),
+                          x.data(),
+                          y.data(),
+                          z.data(),
+                          reach.data(),
+                          static_cast<float>(shape.bottom_length_mm()),
+                          static_cast<float>(shape.corner_radius_mm)};
+  std::vector<std::int32_t> within(kCount);
+  int some = 0, ties = 0;
+  for (int n = 0; n < 300; ++n) {
+    const Vec3 p(4 * unit(random), 4 * unit(random), 2 * unit(random));
+    std::vector<int> expected;
+    int nearest = 0;
+    std::vector<double> d(kReal);
+    for (std::size_t k = 0; k < kReal; ++k) {
+      d[k] = shape.distance_mm(p - Vec3(x[k], y[k], z[k]));
+      if (d[k] <= 0.3) expected.push_back(static_cast<int>(k));
+      if (d[k] < d[static_cast<std::size_t>(nearest)]) nearest = static_cast<int>(k);
+    }
+    if (expected.empty()) nearest = -1;
+    for (const MarkKernels* kernels : {&kBaseMarkKernels, &mark_kernels()}) {
+      NearCutters near{0, 0, within.data()};
+      kernels->find_near(lanes, static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), near);
+      EXPECT_EQ(near.nearest, nearest);
+      EXPECT_EQ(std::vector<int>(within.begin(), within.begin() + near.count), expected);
+    }
+    some += !expected.empty();
+    ties += nearest == 11;
+  }
+  EXPECT_GT(some, 50);
+  EXPECT_GT(ties, 3);
+}
+
+}  // namespace
+}  // namespace camber::removal
