@@ -167,7 +167,8 @@ struct BlockVectors {
       F best = none;
       I ids[kCorners];
       for (int c = 0; c < kCorners; ++c) {
-        ids[c] = T::gather(arena.stamp, cell + I(((c >> 2) * kSide + (c >> 1 & 1)) * kSide + (c & 1)));
+        if (c % 2 == 0)
+          T::gather_pair(arena.stamp, cell + I(((c >> 2) * kSide + (c >> 1 & 1)) * kSide), ids[c], ids[c + 1]);
         // Neighbouring corners mostly name the same stamps.
         auto known = ids[c] != ids[c];
         for (int other = 1; other < kCorners; other *= 2)

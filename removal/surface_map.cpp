@@ -85,8 +85,10 @@ class Tips {
                               static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm)},
                              p.x(), p.y(), p.z(), out);
   }
+  std::size_t size() const { return x_.size(); }
   /// How near the straight cutter at each can come to a place of a group, at least.
   void distances_to(const CutterShape& shape, const Group& group, std::vector<float>& out) const {
+    out.resize(x_.size());
     if (shape.general) {
       distances(shape, group.centre, out);
       for (float& d : out) d -= static_cast<float>(group.radius);
@@ -105,6 +107,50 @@ class Tips {
  private:
   Vec3 origin_ = Vec3::Zero();
   std::vector<float> x_, y_, z_;
+};
+
+/// Stamps of a stretch, some of the path's neighbours together.
+class StampGroups {
+ public:
+  StampGroups(std::span<const Stamp> stamps, const std::vector<CarveBend>& bends) {
+    constexpr std::size_t kTogether = 32;
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+      if (k % kTogether == 0) groups_.push_back({stamps[k].tip_mm.head<2>(), stamps[k].tip_mm.head<2>(), 0, {}});
+      Together& g = groups_.back();
+      g.lo = g.lo.cwiseMin(stamps[k].tip_mm.head<2>());
+      g.hi = g.hi.cwiseMax(stamps[k].tip_mm.head<2>());
+      g.most_bent_mm = std::max(g.most_bent_mm, bends[k].largest_mm);
+      g.tips.add(stamps[k].tip_mm);
+      bent_mm_.push_back(static_cast<float>(bends[k].largest_mm));
+    }
+  }
+
+  /// Lists the stamps that may reach a place of `points`; `distance` is working room.
+  void find_near(const CutterShape& shape, const Group& points, std::vector<float>& distance,
+                 std::vector<std::size_t>& near) const {
+    const auto reach = static_cast<float>(points.reach_mm());
+    const Vec2 centre = points.centre.head<2>();
+    std::size_t first = 0;
+    for (const Together& g : groups_) {
+      const double around = shape.radius_mm + points.radius + points.reach_mm() + g.most_bent_mm;
+      const Vec2 gap = (g.lo - centre).cwiseMax(centre - g.hi).cwiseMax(0.0);
+      if (gap.squaredNorm() <= around * around) {
+        g.tips.distances_to(shape, points, distance);
+        for (std::size_t k = 0; k < g.tips.size(); ++k)
+          if (distance[k] <= reach + bent_mm_[first + k]) near.push_back(first + k);
+      }
+      first += g.tips.size();
+    }
+  }
+
+ private:
+  struct Together {
+    Vec2 lo, hi;
+    double most_bent_mm;
+    Tips tips;
+  };
+  std::vector<Together> groups_;
+  std::vector<float> bent_mm_;
 };
 
 /// Pairs of a point and a stamp that may lower it, side by side.
@@ -324,31 +370,15 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
     // MarkKernels ask for no directions.
     bends[k] = envelope.shape.general ? all.of(row) : CarveBend{shifts.row(row), shifts.largest_mm(row), {}};
   });
-  Vec3 lo = stamps.front().tip_mm, hi = lo;
-  double most_bent = 0;
-  Tips tips;
-  for (std::size_t k = 0; k < stamps.size(); ++k) {
-    tips.add(stamps[k].tip_mm);
-    lo = lo.cwiseMin(stamps[k].tip_mm);
-    hi = hi.cwiseMax(stamps[k].tip_mm);
-    most_bent = std::max(most_bent, bends[k].largest_mm);
-  }
+  const StampGroups groups(stamps, bends);
   tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
     TilePoints& tile = impl_->tiles[t];
-    const double reach = envelope.shape.radius_mm + tile.all.radius + tile.all.reach_mm() + most_bent;
-    for (int a = 0; a < 2; ++a)
-      if (tile.all.centre[a] < lo[a] - reach || tile.all.centre[a] > hi[a] + reach) return;
-    std::vector<float> distance(stamps.size());
-    tips.distances_to(envelope.shape, tile.all, distance);
-    Tips near_tips;
+    std::vector<float> distance;
     std::vector<std::size_t> near;
-    for (std::size_t k = 0; k < stamps.size(); ++k)
-      if (distance[k] <= tile.all.reach_mm() + bends[k].largest_mm) {
-        near.push_back(k);
-        near_tips.add(stamps[k].tip_mm);
-      }
+    groups.find_near(envelope.shape, tile.all, distance, near);
+    Tips near_tips;
+    for (const std::size_t k : near) near_tips.add(stamps[k].tip_mm);
     if (near.empty()) return;
-    distance.resize(near.size());
     tile.all.highest = -std::numeric_limits<double>::infinity();
     CloseStamps close(envelope, shifts);
     for (Group& block : tile.blocks) {

@@ -26,6 +26,10 @@ struct Table {
     first = gather(from, index);
     second = gather(from, index + I(1));
   }
+  static void gather_pair(const std::int32_t* from, const I& index, I& first, I& second) {
+    first = gather(from, index);
+    second = gather(from, index + I(1));
+  }
   /// A bit a lane.
   static std::uint32_t bits(const xsimd::batch_bool<float, A>& mask) {
     alignas(64) float lanes[n];
@@ -45,6 +49,12 @@ struct Table<xsimd::avx2> {
   static F gather(const float* from, const I& index) { return _mm256_i32gather_ps(from, index, sizeof(float)); }
   static I gather(const std::int32_t* from, const I& index) {
     return _mm256_i32gather_epi32(from, index, sizeof(std::int32_t));
+  }
+  static void gather_pair(const std::int32_t* from, const I& index, I& first, I& second) {
+    F a, b;
+    gather_pair(reinterpret_cast<const float*>(from), index, a, b);  // 64 bits of any kind
+    first = _mm256_castps_si256(a);
+    second = _mm256_castps_si256(b);
   }
   static void gather_pair(const float* from, const I& index, F& first, F& second) {
     alignas(32) std::int32_t at[8];
