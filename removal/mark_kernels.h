@@ -44,6 +44,9 @@ struct NearCutters {
 struct MarkKernels {
   /// Which cutters a place is within the reach of, and the nearest of all.
   void (*find_near)(const CutterLanes& cutters, float x, float y, float z, NearCutters& out);
+  /// Keeps those of a list that another place is within the reach of; returns how many. The list has room up to a
+  /// multiple of MarkLanes::kLanes.
+  int (*keep_near)(const CutterLanes& cutters, float x, float y, float z, std::int32_t* list, int count);
   /// BentEnvelope::height_mm of each.
   void (*heights)(const MarkLanes& marks, const MarkTool& tool);
 };

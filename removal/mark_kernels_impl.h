@@ -119,7 +119,23 @@ struct MarkVectors {
     out.nearest = static_cast<int>(lane[best]);
   }
 
-  static constexpr MarkKernels table() { return {&find_near, &heights}; }
+  static int keep_near(const CutterLanes& c, float x, float y, float z, std::int32_t* list, int count) {
+    const F px(x), py(y), pz(z);
+    for (int i = count; i % n != 0; ++i) list[i] = 0;
+    int kept = 0;
+    for (int i = 0; i < count; i += n) {
+      const I k = I::load_unaligned(list + i);
+      const F d = Place(c.flat, c.corner, px - Table<A>::gather(c.x, k), py - Table<A>::gather(c.y, k),
+                        pz - Table<A>::gather(c.z, k))
+                      .distance;
+      std::uint32_t bits = Table<A>::bits(d <= Table<A>::gather(c.reach, k));
+      for (int l = 0; bits != 0 && i + l < count; bits >>= 1, ++l)
+        if (bits & 1u) list[kept++] = list[i + l];
+    }
+    return kept;
+  }
+
+  static constexpr MarkKernels table() { return {&find_near, &keep_near, &heights}; }
 };
 
 }  // namespace

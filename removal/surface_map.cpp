@@ -78,13 +78,16 @@ class Tips {
       out[k] = static_cast<float>(shape.distance_mm((p - Eigen::Vector3f(x_[k], y_[k], z_[k])).cast<double>()));
   }
   /// Of rounded cutters: see MarkKernels. `reach_mm`: of each, and whole vectors of them.
-  void find_near(const CutterShape& shape, const std::vector<float>& reach_mm, const Vec3& place,
-                 NearCutters& out) const {
-    const Eigen::Vector3f p = (place - origin_).cast<float>();
-    mark_kernels().find_near({static_cast<int>(x_.size()), x_.data(), y_.data(), z_.data(), reach_mm.data(),
-                              static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm)},
-                             p.x(), p.y(), p.z(), out);
+  CutterLanes lanes(const CutterShape& shape, const std::vector<float>& reach_mm) const {
+    return {static_cast<int>(x_.size()),
+            x_.data(),
+            y_.data(),
+            z_.data(),
+            reach_mm.data(),
+            static_cast<float>(shape.bottom_length_mm()),
+            static_cast<float>(shape.corner_radius_mm)};
   }
+  Eigen::Vector3f from_origin(const Vec3& place) const { return (place - origin_).cast<float>(); }
   std::size_t size() const { return x_.size(); }
   /// How near the straight cutter at each can come to a place of a group, at least.
   void distances_to(const CutterShape& shape, const Group& group, std::vector<float>& out) const {
@@ -275,17 +278,29 @@ class CloseStamps {
       });
     };
     fill_lanes();
-    first_.resize(points.size());
+    const CutterLanes lanes = tips_.lanes(e_.shape, reach_mm_);
+    near_.clear();
+    within_.clear();
     for (std::size_t i = 0; i < points.size(); ++i) {
-      first_[i] = find_near(points[i]).nearest;
-      if (first_[i] >= 0) add_to_queue(points, i, first_[i]);
+      const auto found = static_cast<std::ptrdiff_t>(within_.size());
+      within_.resize(within_.size() + reach_mm_.size());
+      NearCutters near{-1, 0, within_.data() + found};
+      const Eigen::Vector3f p = place_of(points[i]);
+      mark_kernels().find_near(lanes, p.x(), p.y(), p.z(), near);
+      within_.resize(static_cast<std::size_t>(found + (near.count + MarkLanes::kLanes - 1) / MarkLanes::kLanes *
+                                                          MarkLanes::kLanes));
+      near_.push_back({near.nearest, near.count, found});
+      if (near.nearest >= 0) add_to_queue(points, i, near.nearest);
     }
     settle();
+    // A place farther down is farther from every cutter that cuts towards it.
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (first_[i] < 0) continue;
-      const NearCutters near = find_near(points[i]);
-      for (int n = 0; n < near.count; ++n)
-        if (near.within[n] != first_[i]) add_to_queue(points, i, near.within[n]);
+      const Near& near = near_[i];
+      if (near.count == 0 || (near.count == 1 && near.within(within_)[0] == near.first)) continue;
+      const Eigen::Vector3f p = place_of(points[i]);
+      const int count = mark_kernels().keep_near(lanes, p.x(), p.y(), p.z(), near.within(within_), near.count);
+      for (int n = 0; n < count; ++n)
+        if (near.within(within_)[n] != near.first) add_to_queue(points, i, near.within(within_)[n]);
     }
     settle();
   }
@@ -295,12 +310,9 @@ class CloseStamps {
       tips_.add(stamps_.back().envelope.tip_mm());
       reach_mm_.push_back(kNever);
     }
-    within_.resize(reach_mm_.size());
   }
-  NearCutters find_near(const SurfacePoint& p) {
-    NearCutters near{-1, 0, within_.data()};
-    tips_.find_near(e_.shape, reach_mm_, p.place_mm + p.error_mm * p.normal, near);
-    return near;
+  Eigen::Vector3f place_of(const SurfacePoint& p) const {
+    return tips_.from_origin(p.place_mm + p.error_mm * p.normal);
   }
   void add_to_queue(std::span<const SurfacePoint> points, std::size_t point, int stamp) {
     const auto k = static_cast<std::size_t>(stamp);
@@ -313,8 +325,14 @@ class CloseStamps {
   Tips tips_;
   std::vector<Bent> stamps_;
   std::vector<float> reach_mm_, distance_;
+  /// Of a point: the nearest stamp, and which are within their reach.
+  struct Near {
+    int first, count;
+    std::ptrdiff_t from;
+    std::int32_t* within(std::vector<std::int32_t>& all) const { return all.data() + from; }
+  };
+  std::vector<Near> near_;
   std::vector<std::int32_t> within_;
-  std::vector<int> first_;
 };
 
 }  // namespace

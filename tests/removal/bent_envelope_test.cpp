@@ -180,6 +180,20 @@ TEST(MarkKernels, FindTheNearestCutterAndAllWithinTheirReach) {
       kernels->find_near(lanes, static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), near);
       EXPECT_EQ(near.nearest, nearest);
       EXPECT_EQ(std::vector<int>(within.begin(), within.begin() + near.count), expected);
+      // From all that there are, those near another place.
+      const Vec3 q = p + Vec3(0.2, -0.1, 0.1);
+      std::vector<int> list, of_list;
+      for (int k = 0; k < static_cast<int>(kReal); k += 3) {
+        list.push_back(k);
+        if (shape.distance_mm(q - Vec3(x[static_cast<std::size_t>(k)], y[static_cast<std::size_t>(k)],
+                                       z[static_cast<std::size_t>(k)])) <= 0.3)
+          of_list.push_back(k);
+      }
+      const int count = static_cast<int>(list.size());
+      list.resize(16);
+      list.resize(static_cast<std::size_t>(kernels->keep_near(
+          lanes, static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), list.data(), count)));
+      EXPECT_EQ(list, of_list);
     }
     some += !expected.empty();
     ties += nearest == 11;
