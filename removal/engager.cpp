@@ -56,7 +56,7 @@ struct Engager::Impl {
         reader(envelope_, blocks, stamps_, first_id_, stock_.voxel_mm(), stock_.max_mm().z() + stock_.band_mm()) {}
 
   void start_tiles();
-  void give_back(std::size_t tile);
+  void give_back(std::span<const std::size_t> numbers);
   void read_batch(std::size_t begin, std::size_t end, const ChipSink& sink);
   void cut_batch(std::size_t begin, std::size_t end);
   void cut(std::size_t tile, BatchCut& batch_cut);
@@ -85,14 +85,20 @@ void Engager::Impl::start_tiles() {
                   [&](std::size_t t) -> const ColumnCover& { return tiles[t]->cover; });
 }
 
-/// Writes a tile to the stock.
-void Engager::Impl::give_back(std::size_t t) {
-  if (tiles[t]->changed) {
-    const double voxel = stock.voxel_mm();
-    removed_mm3 += (tiles[t]->material - material_voxels(arena[t], voxel)) * std::pow(voxel, 3);
-    stock.store(arena.index(t), arena[t]);
-  }
-  tiles[t].reset();
+/// Writes tiles to the stock.
+void Engager::Impl::give_back(std::span<const std::size_t> numbers) {
+  std::vector<Stock::StoredTile> changed;
+  std::vector<double> taken(numbers.size(), 0.0);  // voxels
+  for (const std::size_t t : numbers)
+    if (tiles[t]->changed) changed.push_back({arena.index(t), &arena[t]});
+  stock.store(changed);
+  const double voxel = stock.voxel_mm();
+  tbb::parallel_for(std::size_t{0}, numbers.size(), [&](std::size_t i) {
+    auto& tile = tiles[numbers[i]];
+    if (tile->changed) taken[i] = tile->material - material_voxels(arena[numbers[i]], voxel);
+    tile.reset();
+  });
+  for (const double voxels : taken) removed_mm3 += voxels * std::pow(voxel, 3);
 }
 
 void Engager::Impl::read_batch(std::size_t begin, std::size_t end, const ChipSink& sink) {
@@ -162,7 +168,8 @@ void Engager::engage(std::size_t from, std::size_t count, const ChipSink& sink) 
   m.stamps = m.all.subspan(from, count);
   if (count == 0) return;
   m.order = StampOrder::of_path(m.stamps, m.envelope.shape);
-  m.arena.load(m.stock, m.blank, m.envelope.shape, m.stamps, [&](std::size_t t) { m.give_back(t); });
+  m.arena.load(m.stock, m.blank, m.envelope.shape, m.stamps,
+               [&](std::span<const std::size_t> tiles) { m.give_back(tiles); });
   m.start_tiles();
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
     const std::int32_t batch = m.order.batch(static_cast<std::int32_t>(begin));
@@ -174,7 +181,7 @@ void Engager::engage(std::size_t from, std::size_t count, const ChipSink& sink) 
 
 double Engager::commit() {
   Impl& m = *impl_;
-  m.arena.clear([&](std::size_t t) { m.give_back(t); });
+  m.arena.clear([&](std::span<const std::size_t> tiles) { m.give_back(tiles); });
   return std::exchange(m.removed_mm3, 0.0);
 }
 

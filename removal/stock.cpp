@@ -277,43 +277,68 @@ RowFacts row_facts(const float* d, const std::int32_t* s, float band) {
   return facts;
 }
 
+/// A leaf's part of a tile that is stored.
+struct StoredLeaf {
+  Coord origin;
+  const float* distance;  ///< of its first voxel in the tile
+  const std::int32_t* stamp;
+  RowFacts facts{};
+  openvdb::FloatTree::LeafNodeType* leaf = nullptr;  ///< null: the same throughout
+  openvdb::Int32Tree::LeafNodeType* marks = nullptr;
+
+  template <class Function>
+  static void for_each_row(Function f) {
+    for (int n = 0; n < kLeaf * kLeaf; ++n) f(n, Tile::offset(n / kLeaf, n % kLeaf, 0));
+  }
+  void find_facts(float band) {
+    for_each_row([&](int, int at) {
+      const RowFacts row = row_facts(distance + at, stamp + at, band);
+      facts.air &= row.air;
+      facts.solid &= row.solid;
+      facts.cut |= row.cut;
+    });
+  }
+  void fill(float band) const {
+    if (!leaf) return;
+    float* d = leaf->buffer().data();
+    std::int32_t* s = marks ? marks->buffer().data() : nullptr;
+    openvdb::util::NodeMask<kLeafBits> active;
+    for_each_row([&](int n, int at) {
+      std::copy_n(distance + at, kLeaf, d + kLeaf * n);
+      if (s) std::copy_n(stamp + at, kLeaf, s + kLeaf * n);
+      for (int k = 0; k < kLeaf; ++k)
+        if (std::abs(distance[at + k]) < band) active.setOn(static_cast<openvdb::Index32>(kLeaf * n + k));
+    });
+    leaf->setValueMask(active);
+  }
+};
+
 }  // namespace
 
-void Stock::store(const Index3& tile, const Tile& in) {
+void Stock::store(std::span<const StoredTile> tiles) {
   const auto band = static_cast<float>(band_mm_);
+  std::vector<StoredLeaf> parts;
+  parts.reserve(8 * tiles.size());
+  for (const StoredTile& t : tiles)
+    for (int i = 0; i < Tile::kCore; i += kLeaf)
+      for (int j = 0; j < Tile::kCore; j += kLeaf)
+        for (int k = 0; k < Tile::kCore; k += kLeaf)
+          parts.push_back(
+              {Coord(t.index[0] * Tile::kCore + i, t.index[1] * Tile::kCore + j, t.index[2] * Tile::kCore + k),
+               t.tile->distance.data() + Tile::offset(i, j, k), t.tile->stamp.data() + Tile::offset(i, j, k)});
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) { parts[p].find_facts(band); });
   auto distances = impl_->distance->getAccessor();
   auto stamps = impl_->stamp->getAccessor();
-  for (int li = 0; li < Tile::kCore; li += kLeaf)
-    for (int lj = 0; lj < Tile::kCore; lj += kLeaf)
-      for (int lk = 0; lk < Tile::kCore; lk += kLeaf) {
-        const Coord origin(tile[0] * Tile::kCore + li, tile[1] * Tile::kCore + lj, tile[2] * Tile::kCore + lk);
-        bool air = true, solid = true, cut = false;
-        for (int n = 0; n < 64; ++n) {
-          const int from = Tile::offset(li + (n >> 3), lj + (n & 7), lk);
-          const RowFacts row = row_facts(in.distance.data() + from, in.stamp.data() + from, band);
-          air &= row.air;
-          solid &= row.solid;
-          cut |= row.cut;
-        }
-        if (air || solid) {
-          distances.addTile(1, origin, air ? band : -band, false);
-          stamps.addTile(1, origin, kUncut, false);
-          continue;
-        }
-        auto* leaf = distances.touchLeaf(origin);
-        auto* marks = cut ? stamps.touchLeaf(origin) : stamps.probeLeaf(origin);
-        float* d = leaf->buffer().data();
-        std::int32_t* s = marks ? marks->buffer().data() : nullptr;
-        openvdb::util::NodeMask<3> active;
-        for (int n = 0; n < 64; ++n) {
-          const int from = Tile::offset(li + (n >> 3), lj + (n & 7), lk);
-          std::copy_n(in.distance.data() + from, kLeaf, d + kLeaf * n);
-          if (s) std::copy_n(in.stamp.data() + from, kLeaf, s + kLeaf * n);
-          for (int k = 0; k < kLeaf; ++k)
-            if (std::abs(in.distance[from + k]) < band) active.setOn(kLeaf * n + k);
-        }
-        leaf->setValueMask(active);
-      }
+  for (StoredLeaf& p : parts) {
+    if (p.facts.air || p.facts.solid) {
+      distances.addTile(1, p.origin, p.facts.air ? band : -band, false);
+      stamps.addTile(1, p.origin, kUncut, false);
+    } else {
+      p.leaf = distances.touchLeaf(p.origin);
+      p.marks = p.facts.cut ? stamps.touchLeaf(p.origin) : stamps.probeLeaf(p.origin);
+    }
+  }
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) { parts[p].fill(band); });
 }
 
 void Stock::clear_stamps() { impl_->stamp = openvdb::Int32Grid::create(kUncut); }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -80,8 +81,12 @@ class Stock {
   bool is_air(const Index3& tile) const;
   /// True where the tile and its upper layer are deeper in material than the band. Thread safe.
   bool is_solid(const Index3& tile) const;
-  /// Writes the core of a tile back. Not thread safe.
-  void store(const Index3& tile, const Tile& in);
+  struct StoredTile {
+    Index3 index;
+    const Tile* tile;
+  };
+  /// Writes the cores of tiles back, each once. Not thread safe.
+  void store(std::span<const StoredTile> tiles);
   /// Forgets which stamps cut what: the stock is a blank.
   void clear_stamps();
   /// Leaves air everywhere, and gives the memory back.

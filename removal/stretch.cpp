@@ -283,10 +283,12 @@ double Stretch::commit() {
   Impl& m = *impl_;
   if (m.engager) return m.engager->commit();
   double removed = 0;
-  for (auto& w : m.tiles) {
-    if (w.result) m.stock.store(w.index, *w.result);
+  std::vector<Stock::StoredTile> changed;
+  for (const auto& w : m.tiles) {
+    if (w.result) changed.push_back({w.index, w.result.get()});
     removed += w.removed_mm3;
   }
+  m.stock.store(changed);
   m.tiles.clear();
   return removed;
 }

@@ -38,8 +38,10 @@ void TileArena::load(const Stock& stock, const Stock& blank, const CutterShape& 
 }
 
 void TileArena::clear(const Leave& leave) {
+  std::vector<std::size_t> all;
   for (std::size_t t = 1; t < used_.size(); ++t)
-    if (used_[t] != 0) leave(t);
+    if (used_[t] != 0) all.push_back(t);
+  leave(all);
   if (!used_.empty()) used_.resize(1), in_solid_.resize(1), index_.resize(1);
   free_.clear();
   fresh_.clear();
@@ -95,9 +97,11 @@ void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::sp
       wanted.push_back(p);
     }
   }
-  for (std::size_t t = 1; t < used_.size(); ++t) {
-    if (used_[t] == 0 || stays[t] != 0) continue;
-    leave(t);
+  std::vector<std::size_t> leaving;
+  for (std::size_t t = 1; t < used_.size(); ++t)
+    if (used_[t] != 0 && stays[t] == 0) leaving.push_back(t);
+  leave(leaving);
+  for (const std::size_t t : leaving) {
     used_[t] = 0;
     free_.push_back(t);
   }

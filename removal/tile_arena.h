@@ -18,8 +18,8 @@ namespace camber::removal {
 
 class TileArena {
  public:
-  /// Called with the number of a tile before it is given up.
-  using Leave = std::function<void(std::size_t tile)>;
+  /// Called with the numbers of tiles before they are given up.
+  using Leave = std::function<void(std::span<const std::size_t> tiles)>;
 
   /// Loads what is not air and not there yet, and gives up what these stamps do not reach. Tile 0 is air all over and
   /// stands for all others. `blank`: the stock before the first stamp.
