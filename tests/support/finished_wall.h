@@ -12,10 +12,9 @@
 namespace camber::testing {
 
 namespace detail {
-constexpr double kMiddle = 6;   ///< of the block
 constexpr double kEdge = 0.25;  ///< above and below: the map leaves out the blank's edges
-}
-
+constexpr double kRead = 1;     ///< to both sides of the block's middle, mm
+}  // namespace detail
 
 /// One pass along the wall y = 0 of a block at y > 0, by a tool at y < 0.
 struct FinishedWall {
@@ -28,6 +27,9 @@ struct FinishedWall {
   double slice_mm = 0.5;          ///< of the height, over which the error is averaged
   int drawn_steps = 1440;         ///< a turn
   double rotation_step_deg = 1;   ///< Camber's
+
+  /// Of the block: what cuts ahead of the places that are read, a radius away at most, is still all in it.
+  double middle_mm() const { return diameter_mm / 2 + detail::kRead + 1; }
 };
 
 struct WallFigures {
@@ -37,7 +39,8 @@ struct WallFigures {
 };
 
 inline DrawnCut drawn(const FinishedWall& w) {
-  constexpr double kBelow = 0.53, kLength = 12;  // the tip runs below the block
+  constexpr double kBelow = 0.53;  // the tip runs below the block
+  const double length = 2 * w.middle_mm();
   DrawnCut c;
   c.radius = w.diameter_mm / 2, c.corner = 0;
   c.flutes = w.flutes;
@@ -47,9 +50,9 @@ inline DrawnCut drawn(const FinishedWall& w) {
   c.overhang = 40;
   c.bending_stiffness_N_mm2 = 600000 * kPi / 64 * std::pow(0.8 * w.diameter_mm, 4);
   c.lo = w.offset_mm + Vec3(0, -w.radial_mm, 0);
-  c.hi = w.offset_mm + Vec3(kLength, 2, w.height_mm);
+  c.hi = w.offset_mm + Vec3(length, 2, w.height_mm);
   c.steps_per_pitch = w.drawn_steps / w.flutes;
-  const double from = -c.radius - 0.2, to = kLength + c.radius + 0.2;
+  const double from = -c.radius - 0.2, to = length + c.radius + 0.2;
   const Vec3 tip = w.offset_mm + Vec3(0, -c.radius, -kBelow);
   const Vec3 a = tip + Vec3(w.up ? from : to, 0, 0), b = tip + Vec3(w.up ? to : from, 0, 0);
   add_row(c.stamps, a, b, w.feed_mm);
@@ -82,7 +85,7 @@ struct Slices {
 /// The stamp that stands in the middle of the block.
 inline std::size_t middle_stamp(const FinishedWall& w, const DrawnCut& c) {
   std::size_t best = 0;
-  const auto off = [&](std::size_t k) { return std::abs(c.stamps[k].tip_mm.x() - w.offset_mm.x() - detail::kMiddle); };
+  const auto off = [&](std::size_t k) { return std::abs(c.stamps[k].tip_mm.x() - w.offset_mm.x() - w.middle_mm()); };
   for (std::size_t k = 1; k < c.stamps.size(); ++k)
     if (off(k) < off(best)) best = k;
   return best;
@@ -97,11 +100,11 @@ inline WallFigures drawn_figures(const FinishedWall& w) {
   WallFigures f{pass.lateral_max_N, pass.mean_N, {}};
   constexpr int kAlong = 20;
   const double step = 0.05;
-  const DrawnSurface lattice(w.offset_mm + Vec3(detail::kMiddle, 0, step / 2), Vec3::UnitX(), Vec3::UnitZ(), kAlong,
+  const DrawnSurface lattice(w.offset_mm + Vec3(w.middle_mm(), 0, step / 2), Vec3::UnitX(), Vec3::UnitZ(), kAlong,
                              static_cast<int>(std::lround(w.height_mm / step)), w.feed_mm / kAlong, step);
   std::vector<std::size_t> stamps;
   for (std::size_t k = 0; k < cut.stamps.size(); ++k)
-    if (std::abs(cut.stamps[k].tip_mm.x() - w.offset_mm.x() - detail::kMiddle) < 1.3) stamps.push_back(k);
+    if (std::abs(cut.stamps[k].tip_mm.x() - w.offset_mm.x() - w.middle_mm()) < 1.3) stamps.push_back(k);
   // In the steady middle every stamp bends alike.
   const auto error = drawn_error_mm(
       cut, [&](std::size_t) -> const DrawnPass& { return pass; }, stamps, lattice, 0.1);
@@ -142,7 +145,8 @@ inline WallFigures camber_figures(const FinishedWall& w) {
   detail::Slices slices(w);
   for (const auto& p : map.take()) {
     const Vec3 q = p.place_mm - w.offset_mm;
-    if (std::abs(q.y()) < 0.05 && std::abs(q.x() - detail::kMiddle) < 1) slices.add(q.z(), p.error_mm, p.area_mm2);
+    if (std::abs(q.y()) < 0.05 && std::abs(q.x() - w.middle_mm()) < detail::kRead)
+      slices.add(q.z(), p.error_mm, p.area_mm2);
   }
   f.error_um = slices.means();
   return f;
