@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "deflection/cut.h"
+#include "deflection/predict.h"
 #include "removal/surface_map.h"
 #include "tests/support/cutting.h"
 #include "tests/support/displaced_envelope.h"
@@ -23,7 +24,7 @@ struct FinishedWall {
   bool up = true;  ///< up (conventional) or down (climb) milling
   double voxel_mm = 0.1;
   Vec3 offset_mm = Vec3::Zero();  ///< of path and stock against the grid
-  double edge_step_mm = 0.1;      ///< Camber's
+  double edge_step_mm = 0;        ///< Camber's; 0: as predict sets it
   double slice_mm = 0.5;          ///< of the height, over which the error is averaged
   int drawn_steps = 1440;         ///< a turn
   double rotation_step_deg = 1;   ///< Camber's
@@ -131,7 +132,7 @@ inline WallFigures camber_figures(const FinishedWall& w) {
   removal::SurfaceMap map(target, places, stock);
   deflection::CutOptions options;
   options.coupling = machine::Coupling::rigid;
-  options.envelope_step_mm = w.edge_step_mm;
+  options.envelope_step_mm = w.edge_step_mm > 0 ? w.edge_step_mm : deflection::envelope_step_mm({}, tool);
   options.rotation_step_rad = rad_from_deg(w.rotation_step_deg);
   options.surface = &map;
   const auto result = deflection::cut(stock, tool, material, cut.stamps, {}, 0, options);
