@@ -21,7 +21,9 @@ constexpr double kRead = 1;     ///< to both sides of the block's middle, mm
 struct FinishedWall {
   double diameter_mm = 10, helix_deg = 30, height_mm = 6, radial_mm = 0.5, feed_mm = 0.05;
   int flutes = 4;
-  bool up = true;  ///< up (conventional) or down (climb) milling
+  bool up = true;                          ///< up (conventional) or down (climb) milling
+  std::vector<double> pitch_deg{};         ///< from each tooth to the next, of teeth that are not even
+  double run_out_mm = 0, run_out_deg = 0;  ///< with pitch_deg
   double voxel_mm = 0.1;
   Vec3 offset_mm = Vec3::Zero();  ///< of path and stock against the grid
   double edge_step_mm = 0;        ///< Camber's; 0: as predict sets it
@@ -46,6 +48,12 @@ inline DrawnCut drawn(const FinishedWall& w) {
   c.radius = w.diameter_mm / 2, c.corner = 0;
   c.flutes = w.flutes;
   c.helix_rad = rad_from_deg(w.helix_deg);
+  double at = 0;
+  for (const double pitch : w.pitch_deg) {
+    c.tooth_at_rad.push_back(at);
+    at += rad_from_deg(pitch);
+  }
+  c.run_out_mm = w.run_out_mm, c.run_out_rad = rad_from_deg(w.run_out_deg);
   c.top = w.height_mm + kBelow;
   c.k = {2000, 700, 300, 15, 12, 3};
   c.overhang = 40;
@@ -99,10 +107,11 @@ inline WallFigures drawn_figures(const FinishedWall& w) {
   const std::size_t middle = detail::middle_stamp(w, cut);
   const DrawnPass pass = drawn_pass(cut, middle);
   WallFigures f{pass.lateral_max_N, pass.mean_N, {}};
-  constexpr int kAlong = 20;
+  constexpr int kInFeed = 20;
+  const int along = kInFeed * static_cast<int>(std::max<std::size_t>(1, cut.tooth_at_rad.size()));
   const double step = 0.05;
-  const DrawnSurface lattice(w.offset_mm + Vec3(w.middle_mm(), 0, step / 2), Vec3::UnitX(), Vec3::UnitZ(), kAlong,
-                             static_cast<int>(std::lround(w.height_mm / step)), w.feed_mm / kAlong, step);
+  const DrawnSurface lattice(w.offset_mm + Vec3(w.middle_mm(), 0, step / 2), Vec3::UnitX(), Vec3::UnitZ(), along,
+                             static_cast<int>(std::lround(w.height_mm / step)), w.feed_mm / kInFeed, step);
   std::vector<std::size_t> stamps;
   for (std::size_t k = 0; k < cut.stamps.size(); ++k)
     if (std::abs(cut.stamps[k].tip_mm.x() - w.offset_mm.x() - w.middle_mm()) < 1.3) stamps.push_back(k);
@@ -122,7 +131,9 @@ inline WallFigures drawn_figures(const FinishedWall& w) {
 
 inline WallFigures camber_figures(const FinishedWall& w) {
   const DrawnCut cut = drawn(w);
-  const auto tool = make_tool(machine::ToolType::flat, w.diameter_mm, w.flutes, w.helix_deg);
+  auto tool = make_tool(machine::ToolType::flat, w.diameter_mm, w.flutes, w.helix_deg);
+  for (const double pitch : w.pitch_deg) tool.pitch_rad.push_back(rad_from_deg(pitch));
+  tool.runout_mm = w.run_out_mm, tool.runout_angle_rad = rad_from_deg(w.run_out_deg);
   const machine::Material material{cut.k.ktc, cut.k.krc, cut.k.kac, cut.k.kte, cut.k.kre, cut.k.kae};
   removal::Stock stock = make_box(cut.lo, cut.hi, w.voxel_mm);
   removal::Stock target(stock);
@@ -138,10 +149,11 @@ inline WallFigures camber_figures(const FinishedWall& w) {
   const auto result = deflection::cut(stock, tool, material, cut.stamps, {}, 0, options);
   WallFigures f;
   const std::size_t middle = detail::middle_stamp(w, cut);
-  constexpr std::size_t kAround = 10;
-  for (std::size_t k = middle - kAround; k <= middle + kAround; ++k) {
-    f.lateral_max_N += result.loads[k].lateral_max_N / (2 * kAround + 1);
-    f.mean_N += result.loads[k].force_mean_N / (2 * kAround + 1);
+  const std::size_t around = cut.even() ? 21 : static_cast<std::size_t>(6 * w.flutes);  // whole turns
+  for (std::size_t k = middle - around / 2; k < middle - around / 2 + around; ++k) {
+    const double share = 1 / static_cast<double>(around), peak = result.loads[k].lateral_max_N;
+    f.lateral_max_N = cut.even() ? f.lateral_max_N + share * peak : std::max(f.lateral_max_N, peak);
+    f.mean_N += share * result.loads[k].force_mean_N;
   }
   detail::Slices slices(w);
   for (const auto& p : map.take()) {
