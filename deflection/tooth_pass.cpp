@@ -25,8 +25,7 @@ ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const mach
       teeth_(std::move(teeth)),
       with_feedback_(with_feedback),
       node_height_mm_(std::move(nodes)) {
-  for (int j = 0; j < teeth_.count(); ++j)
-    tooth_step_.push_back(static_cast<int>(std::lround(teeth_.offset_rad(j) * envelope.steps / (2 * kPi))));
+  for (int j = 0; j < teeth_.count(); ++j) tooth_step_.push_back(teeth_.offset_steps(j, envelope.steps));
   for (const auto& ring : envelope.rings) {
     const double z = ring.profile.height_mm;
     own_compliance_.push_back(beam.compliance_mm_per_N(z, z));
