@@ -184,10 +184,14 @@ removal::ChipBlock ToothPassModel::tooth_block(int j, const EnvelopeBlocks& bloc
     const std::uint32_t p = blocks.point(even.block, lane);
     if (even.thickness_mm[l] == 0 || p == EnvelopeBlocks::kNoPoint) continue;
     const auto& ring = envelope_.rings[p / static_cast<std::uint32_t>(envelope_.steps)];
-    const bool after_tooth = (even.after_tooth >> lane & 1u) != 0;
+    const MotionChip motion = motion_chip(direction(p, ring), ring, feed);
     const double thickness = even.thickness_mm[l];
-    const double room = teeth_.room_mm(j, after_tooth ? thickness : motion_chip_mm(direction(p, ring), ring, feed),
-                                       ring.sine, ring.lag_rad);
+    // Where even teeth would not cut, only what the teeth before have left is as near as the motion tells.
+    constexpr double kSame_mm = 1e-4;
+    const bool after_tooth =
+        (even.after_tooth >> lane & 1u) != 0 || (thickness < 0 && thickness > motion.even_mm - kSame_mm);
+    const double room =
+        teeth_.room_mm(j, after_tooth ? thickness : motion.even_mm, ring.sine, ring.lag_rad, motion.bulge_mm);
     own.thickness_mm[l] = static_cast<float>(
         after_tooth ? room : std::min(room, thickness + ring.sine * teeth_.throw_mm(j, ring.lag_rad)));
   }

@@ -173,7 +173,7 @@ class Cutter {
   /// Deflection straight from the chips.
   void engage(std::span<const Stamp> all, std::size_t from, ShiftTable& shifts, std::vector<StampLoad>& loads,
               std::int32_t first_id, CutResult& result) {
-    if (!engager_) engager_.emplace(stock_, *blank_, envelope_, all, first_id);
+    if (!engager_) engager_.emplace(stock_, *blank_, envelope_, all, first_id, tooth_marks_ ? envelope_.flutes : 1);
     const auto& blocks = engager_->blocks();
     std::map<std::size_t, std::vector<removal::Chip>> turn;  // what the turn needs
     std::mutex turn_lock;

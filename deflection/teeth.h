@@ -27,14 +27,15 @@ class Teeth {
   /// Chip of a tooth: h = max(0, min over m = 1 ... N of (c_m + sin(kappa) (t_j - t_(j-m)))), c_m what the motion since
   /// the m-th tooth before allows, t the throws: a tooth that stands back leaves its chip to the next. Over a turn the
   /// teeth take as much as even ones.
-  /// even_chip_mm: what the motion in one mean pitch allows, along the normal. sine: of the normal's angle kappa.
+  /// even_chip_mm: what the motion in one mean pitch allows, along the normal; bulge_mm: of it what the envelope's
+  /// curvature adds, which grows with the square of the motion. sine: of the normal's angle kappa.
   /// Source: Kline & DeVor, The effect of runout on cutting geometry and forces in end milling, Int. J. Mach. Tool Des.
   /// Res. 23 (1983) 123-140.
-  double chip_mm(int tooth, double even_chip_mm, double sine, double lag_rad) const {
-    return std::max(0.0, room_mm(tooth, even_chip_mm, sine, lag_rad));
+  double chip_mm(int tooth, double even_chip_mm, double sine, double lag_rad, double bulge_mm = 0) const {
+    return std::max(0.0, room_mm(tooth, even_chip_mm, sine, lag_rad, bulge_mm));
   }
   /// The same before it is cut off at nothing: how far a tooth that does not cut stays out of the material.
-  double room_mm(int tooth, double even_chip_mm, double sine, double lag_rad) const;
+  double room_mm(int tooth, double even_chip_mm, double sine, double lag_rad, double bulge_mm) const;
 
  private:
   bool even_ = true;

@@ -47,17 +47,19 @@ double chip_area_mm2(const removal::EnvelopeGrid::Ring& ring, int steps) {
 }
 }  // namespace
 
-double ToothPassModel::motion_chip_mm(const Direction& d, const removal::EnvelopeGrid::Ring& ring,
-                                      const Vec3& feed) const {
+ToothPassModel::MotionChip ToothPassModel::motion_chip(const Direction& d, const removal::EnvelopeGrid::Ring& ring,
+                                                       const Vec3& feed) const {
   const double around = feed.dot(d.tangential), up = feed.dot(d.meridian);
-  return feed.dot(d.normal) + 0.5 * (ring.profile.meridian_curvature_per_mm * up * up +
-                                     ring.profile.parallel_curvature_per_mm * around * around);
+  const double bulge = 0.5 * (ring.profile.meridian_curvature_per_mm * up * up +
+                              ring.profile.parallel_curvature_per_mm * around * around);
+  return {feed.dot(d.normal) + bulge, bulge};
 }
 
 double ToothPassModel::tooth_chip_mm(int j, const removal::Chip& chip, const Direction& d,
                                      const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const {
-  const double even = chip.after_tooth ? static_cast<double>(chip.thickness_mm) : motion_chip_mm(d, ring, feed);
-  const double h = teeth_.chip_mm(j, even, ring.sine, ring.lag_rad);
+  const MotionChip motion = motion_chip(d, ring, feed);
+  const double even = chip.after_tooth ? static_cast<double>(chip.thickness_mm) : motion.even_mm;
+  const double h = teeth_.chip_mm(j, even, ring.sine, ring.lag_rad, motion.bulge_mm);
   return chip.after_tooth ? h : std::min(h, chip.thickness_mm + ring.sine * teeth_.throw_mm(j, ring.lag_rad));
 }
 

@@ -76,8 +76,11 @@ class ToothPassModel {
   /// The same of a block of points; nothing is cut off below, so that what is not in the cut tells how far off it is.
   removal::ChipBlock tooth_block(int j, const removal::EnvelopeBlocks& blocks, const removal::ChipBlock& even,
                                  const Vec3& feed) const;
-  /// What the motion allows at a point, along the normal (removal/stretch.h).
-  double motion_chip_mm(const Direction& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
+  /// What the motion in one mean pitch allows at a point, along the normal (removal/stretch.h).
+  struct MotionChip {
+    double even_mm, bulge_mm;  ///< the latter what curvature adds to it
+  };
+  MotionChip motion_chip(const Direction& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
   /// Adds the force and deflection of one edge element at rotation step m.
   void add(const removal::Chip& chip, double thickness_mm, const Direction& d, std::uint32_t ring, std::size_t m,
            std::vector<double>& deflection, ToothPass& out) const;

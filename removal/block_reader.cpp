@@ -15,8 +15,17 @@ constexpr int kLanes = EnvelopeBlocks::kLanes;
 }  // namespace
 
 BlockReader::BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const Stamp> stamps,
-                         std::int32_t first_id, double voxel_mm, double top_mm)
-    : envelope_(envelope), blocks_(blocks), stamps_(stamps), first_id_(first_id), voxel_mm_(voxel_mm), top_mm_(top_mm) {
+                         std::int32_t first_id, double voxel_mm, double top_mm, int pitches)
+    : envelope_(envelope),
+      blocks_(blocks),
+      stamps_(stamps),
+      first_id_(first_id),
+      voxel_mm_(voxel_mm),
+      top_mm_(top_mm),
+      pitches_(pitches) {
+  for (const auto& ring : envelope.rings)
+    most_curved_per_mm_ =
+        std::max({most_curved_per_mm_, ring.profile.meridian_curvature_per_mm, ring.profile.parallel_curvature_per_mm});
   Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
   for (const auto& s : stamps) {
     lo = lo.cwiseMin(s.tip_mm);
@@ -53,7 +62,9 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
   const CutterShape& shape = envelope_.shape;
   // What curvature adds to a chip at most.
   const double bulge = stamp.feed_per_tooth_mm.squaredNorm() / (2 * std::max(shape.corner_radius_mm, 0.1));
-  const StampPlace place = arena.place_of(stamp, -bulge - 1e-6);
+  StampPlace place = arena.place_of(stamp, -pitches_ * bulge - 1e-6);
+  place.least_cap_mm =
+      static_cast<float>((1 - pitches_) * stamp.feed_per_tooth_mm.squaredNorm() * most_curved_per_mm_ / 2);
   const BlockKernels& kernels = block_kernels();
   BlockBounds bounds = blocks_.bounds();
   bounds.count = std::min(bounds.count, blocks_.up_to(top_mm_ - stamp.tip_mm.z()));
