@@ -193,7 +193,7 @@ removal::ChipBlock ToothPassModel::tooth_block(int j, const EnvelopeBlocks& bloc
     const double room =
         teeth_.room_mm(j, after_tooth ? thickness : motion.even_mm, ring.sine, ring.lag_rad, motion.bulge_mm);
     own.thickness_mm[l] = static_cast<float>(
-        after_tooth ? room : std::min(room, thickness + ring.sine * teeth_.throw_mm(j, ring.lag_rad)));
+        after_tooth ? room : std::min(room, thickness + deeper_mm(j, (even.own_surface >> lane & 1u) != 0, ring)));
   }
   return own;
 }

@@ -27,6 +27,12 @@ double Teeth::throw_mm(int tooth, double lag_rad) const {
   return runout_mm_ * std::cos(offset_rad(tooth) + lag_rad - runout_angle_rad_);
 }
 
+double Teeth::most_throw_mm(double lag_rad) const {
+  double most = -std::numeric_limits<double>::infinity();
+  for (int j = 0; j < count(); ++j) most = std::max(most, throw_mm(j, lag_rad));
+  return most;
+}
+
 double Teeth::room_mm(int tooth, double even_chip_mm, double sine, double lag_rad, double bulge_mm) const {
   const int n = count();
   const double own = throw_mm(tooth, lag_rad);

@@ -21,6 +21,8 @@ class Teeth {
   /// In steps of a turn of so many.
   int offset_steps(int tooth, int steps) const;
   double throw_mm(int tooth, double lag_rad) const;
+  /// Of the tooth that stands out most.
+  double most_throw_mm(double lag_rad) const;
   double runout_mm() const { return runout_mm_; }
   double runout_angle_rad() const { return runout_angle_rad_; }
 

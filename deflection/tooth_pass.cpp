@@ -55,12 +55,17 @@ ToothPassModel::MotionChip ToothPassModel::motion_chip(const Direction& d, const
   return {feed.dot(d.normal) + bulge, bulge};
 }
 
+double ToothPassModel::deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const {
+  const double least = own_surface ? teeth_.most_throw_mm(ring.lag_rad) : 0.0;
+  return ring.sine * (teeth_.throw_mm(j, ring.lag_rad) - least);
+}
+
 double ToothPassModel::tooth_chip_mm(int j, const removal::Chip& chip, const Direction& d,
                                      const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const {
   const MotionChip motion = motion_chip(d, ring, feed);
   const double even = chip.after_tooth ? static_cast<double>(chip.thickness_mm) : motion.even_mm;
   const double h = teeth_.chip_mm(j, even, ring.sine, ring.lag_rad, motion.bulge_mm);
-  return chip.after_tooth ? h : std::min(h, chip.thickness_mm + ring.sine * teeth_.throw_mm(j, ring.lag_rad));
+  return chip.after_tooth ? h : std::max(0.0, std::min(h, chip.thickness_mm + deeper_mm(j, chip.own_surface, ring)));
 }
 
 void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const Direction& d, std::uint32_t r,

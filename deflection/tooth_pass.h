@@ -70,6 +70,9 @@ class ToothPassModel {
     Vec3 tangential, normal, meridian;
   };
   Direction direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
+  /// How much deeper than even teeth tooth j cuts into an older surface, along the normal. One that the same tool cut
+  /// lies as deep as the tooth that stands out most left it.
+  double deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const;
   /// What tooth j takes where even teeth would take the chip.
   double tooth_chip_mm(int j, const removal::Chip& chip, const Direction& d, const removal::EnvelopeGrid::Ring& ring,
                        const Vec3& feed) const;

@@ -92,19 +92,23 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
     hits.deep[hit / kLanes] = (hits.deep[hit / kLanes] & ~(1u << hit % kLanes)) | static_cast<std::uint32_t>(after)
                                                                                       << hit % kLanes;
   };
+  b.chips.clear();
+  for (int h = 0; h < hits.count; ++h) {
+    ChipBlock& chip = b.chips.emplace_back(ChipBlock{hits.block[h], 0, 0, {}, {}});
+    chip.cut_255.fill(255);
+  }
+  const auto set_own_surface = [&](int hit) {
+    b.chips[static_cast<std::size_t>(hit / kLanes)].own_surface |= static_cast<std::uint16_t>(1u << hit % kLanes);
+  };
   for (int h = 0; h < hits.count && !earlier.empty(); ++h)
     for (int l = 0; l < kLanes; ++l) {
       float& deep = hits.thickness[h * kLanes + l];
       if (!(deep > 0)) continue;
       const float depth = thickness_over(earlier, point(stamp, static_cast<int>(hits.block[h]) * kLanes + l));
       after_tooth(h * kLanes + l, depth > kNearCap * deep);
+      if (depth < deep) set_own_surface(h * kLanes + l);
       deep = std::min(depth, deep);
     }
-  b.chips.clear();
-  for (int h = 0; h < hits.count; ++h) {
-    ChipBlock& chip = b.chips.emplace_back(ChipBlock{hits.block[h], 0, {}, {}});
-    chip.cut_255.fill(255);
-  }
   for (int i = 0; i < shallow.count; ++i) {
     float depth = thickness[i], up_mm = 0;
     if (const float half = blocks_.wall_half_mm(shallow.lane[i]); half > 0) {
@@ -118,16 +122,20 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
         depth = thin(arena, shallow.cell[i], raised(point(stamp, shallow.lane[i]), up_mm));
       }
     }
+    float own = depth;
     if (depth > 0) depth = below_blank(arena, shallow, i, up_mm, depth);
-    if (depth > 0 && !earlier.empty())
-      depth = std::min(depth, thickness_over(earlier, raised(point(stamp, shallow.lane[i]), up_mm)));
+    if (depth > 0 && !earlier.empty()) {
+      own = std::min(own, thickness_over(earlier, raised(point(stamp, shallow.lane[i]), up_mm)));
+      depth = std::min(depth, own);
+    }
+    if (depth == own) set_own_surface(shallow.hit[i]);
     hits.thickness[shallow.hit[i]] = std::min(depth, shallow.cap[i]);
     if (!(depth > 0)) continue;
     after_tooth(shallow.hit[i], depth > kNearCap * shallow.cap[i]);
   }
   for (int h = 0; h < hits.count; ++h) {
     ChipBlock& chip = b.chips[static_cast<std::size_t>(h)];
-    chip.after_tooth = hits.deep[h];
+    chip.after_tooth = static_cast<std::uint16_t>(hits.deep[h]);
     std::copy_n(hits.thickness + h * kLanes, kLanes, chip.thickness_mm.begin());
   }
   return b.chips;

@@ -107,6 +107,25 @@ TEST(DisplacedEnvelope, VerySteepHelixAlongAWallAgrees_slow) {
   }
 }
 
+TEST(DisplacedEnvelope, TeethOfUnequalPitchMarkTheWallAtTheirOwnInstants_slow) {
+  // At the instants of even teeth the wall was 3.8 um of 16 off.
+  for (const bool up : {true, false}) {
+    FinishedWall w{.up = up, .drawn_steps = 720};
+    w.pitch_deg = {85, 97, 83, 95};
+    expect_wall(w);
+  }
+}
+
+TEST(DisplacedEnvelope, RunOutMarksTheWall_slow) {
+  // The tooth that stands out takes more, marks alone, and deeper by its throw, which the helix turns over the height.
+  for (const bool up : {true, false}) {
+    FinishedWall w{.up = up, .drawn_steps = 720};
+    w.pitch_deg = {90, 90, 90, 90};
+    w.run_out_mm = 0.01, w.run_out_deg = 20;
+    expect_wall(w);
+  }
+}
+
 TEST(DisplacedEnvelope, HalfImmersionDownMillingAgrees_slow) {
   // 77 um of bending at 50 um of feed: far stamps mark the wall, and the cut reaches a radius ahead of it.
   expect_wall({.radial_mm = 5, .up = false}, 0.01);
