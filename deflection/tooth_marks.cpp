@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace camber::deflection {
 
@@ -43,17 +44,20 @@ removal::ShiftTable ToothMarks::bending(const removal::ShiftTable& deflections, 
 void ToothMarks::add_run_out(removal::ShiftTable& shifts, std::size_t passing) const {
   if (teeth_.runout_mm() == 0) return;
   const int turn = shifts.steps, pitch = turn / teeth_.count();
+  std::vector<Eigen::Vector2f> offset;  // by the place of tooth 0, from which the run-out's direction counts
+  for (int i = 0; i < turn; ++i) {
+    const double at = 2 * kPi * i / turn + teeth_.runout_angle_rad();
+    offset.push_back((teeth_.runout_mm() * Vec2(std::cos(at), std::sin(at))).cast<float>());
+  }
   for (std::size_t k = 0; k < shifts.stamps; ++k) {
     const int gone = static_cast<int>((passing + k) % static_cast<std::size_t>(teeth_.count())) * pitch;
     float* row = shifts.row(static_cast<std::ptrdiff_t>(k));
     for (int point = 0; point < turn; ++point) {
-      // Of tooth 0, from which the run-out's direction counts.
-      const double at = 2 * kPi * (instant(passing + k, point, turn) - gone) / turn + teeth_.runout_angle_rad();
-      const auto x = static_cast<float>(teeth_.runout_mm() * std::cos(at));
-      const auto y = static_cast<float>(teeth_.runout_mm() * std::sin(at));
+      const int tooth_0 = ((instant(passing + k, point, turn) - gone) % turn + turn) % turn;
+      const Eigen::Vector2f& e = offset[static_cast<std::size_t>(tooth_0)];
       for (std::size_t n = 0; n < shifts.nodes(); ++n) {
         float* v = row + 2 * (static_cast<int>(n) * turn + point);
-        v[0] += x, v[1] += y;
+        v[0] += e.x(), v[1] += e.y();
       }
     }
   }
