@@ -72,7 +72,6 @@ inline void linear_forces(const machine::Material& m, const float* h, const std:
 void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, std::span<float> fine_mm) const {
   const auto& ring = envelope_.rings[static_cast<std::size_t>(e.ring)];
   const int pitch = envelope_.steps_per_pitch, turn = pitch * kFine;
-  const int m = static_cast<int>(e.point) % envelope_.steps % pitch;
   const double width = e.width_share * ring.width_mm;
   const double half = std::max(e.ramp, 1.0 / kFine) / 2;
   const double c = envelope_.cos_phi[e.point], sn = envelope_.sin_phi[e.point];
@@ -110,7 +109,7 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
       const auto was = on_tool(edge_force(material_, drawn, left * width, edge_ramp_mm_));
       for (std::size_t i = 0; i < 4; ++i) f[i] = is[i] - was[i];
     }
-    int at = m * kFine + e.side * j;
+    int at = e.step * kFine + e.side * j;
     at += at < 0 ? turn : at >= turn ? -turn : 0;
     if (!fine_mm.empty()) {
       float* d = fine_mm.data() + 2 * at;
@@ -145,33 +144,74 @@ void draw_between_steps(const double* x, const double* y, std::size_t count, flo
 
 }  // namespace
 
+namespace {
+
+/// Sums of one tooth passing: forces along x, y, z, torque, then deflections along x and y by nodes; a row of each by
+/// rotation step, with room for a block on both sides of the pitch.
+class PassSums {
+ public:
+  static constexpr int kAside = kSteps;
+  PassSums(std::size_t steps, std::size_t nodes)
+      : nodes_(static_cast<int>(nodes)), row_((steps + kSteps - 1) / kSteps * kSteps + 2 * kAside) {
+    thread_local std::vector<double> room;
+    room.assign((4 + 2 * nodes) * row_, 0.0);
+    values_ = room.data();
+  }
+  std::size_t row() const { return row_; }
+  /// From the pitch's first step on.
+  double* of(std::size_t i) const { return values_ + i * row_ + kAside; }
+  Sums at(int step) const {
+    Sums s{};
+    s.nodes = nodes_, s.row = static_cast<int>(row_);
+    s.fx = of(0) + step, s.fy = of(1) + step, s.fz = of(2) + step, s.torque = of(3) + step;
+    s.deflection = of(4) + step;
+    return s;
+  }
+
+ private:
+  int nodes_;
+  std::size_t row_;
+  double* values_;
+};
+
+}  // namespace
+
+removal::ChipBlock ToothPassModel::tooth_block(int j, const EnvelopeBlocks& blocks, const removal::ChipBlock& even,
+                                               const Vec3& feed) const {
+  removal::ChipBlock own = even;
+  for (int lane = 0; lane < EnvelopeBlocks::kLanes; ++lane) {
+    const auto l = static_cast<std::size_t>(lane);
+    const std::uint32_t p = blocks.point(even.block, lane);
+    if (even.thickness_mm[l] == 0 || p == EnvelopeBlocks::kNoPoint) continue;
+    const auto& ring = envelope_.rings[p / static_cast<std::uint32_t>(envelope_.steps)];
+    const MotionChip motion = motion_chip(direction(p, ring), ring, feed);
+    const double thickness = even.thickness_mm[l];
+    // Where even teeth would not cut, only what the teeth before have left is as near as the motion tells.
+    constexpr double kSame_mm = 1e-4;
+    const bool after_tooth =
+        (even.after_tooth >> lane & 1u) != 0 || (thickness < 0 && thickness > motion.even_mm - kSame_mm);
+    const double room =
+        teeth_.room_mm(j, after_tooth ? thickness : motion.even_mm, ring.sine, ring.lag_rad, motion.bulge_mm);
+    own.thickness_mm[l] = static_cast<float>(
+        after_tooth ? room : std::min(room, thickness + deeper_mm(j, (even.own_surface >> lane & 1u) != 0, ring)));
+  }
+  return own;
+}
+
 void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips,
                               std::size_t passing, const Vec3& feed, ToothPass& out, std::span<float> fine) const {
-  const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
-  if (with_feedback_ || !teeth_.even()) {
-    evaluate(removal::chips_of(blocks, chips), passing, feed, out);
-    std::vector<double> x(steps), y(steps);
-    for (std::size_t n = 0; n < node_height_mm_.size() && !fine.empty(); ++n) {
-      for (std::size_t m = 0; m < steps; ++m) {
-        x[m] = static_cast<double>(out.deflection_mm[2 * (n * steps + m)]);
-        y[m] = static_cast<double>(out.deflection_mm[2 * (n * steps + m) + 1]);
-      }
-      draw_between_steps(x.data(), y.data(), steps, fine.data() + 2 * n * steps * kFine);
-    }
-    return;
-  }
-  const std::size_t nodes = node_height_mm_.size(), row = (steps + kSteps - 1) / kSteps * kSteps;
+  const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
+  const auto steps = static_cast<std::size_t>(pitch);
+  const std::size_t nodes = node_height_mm_.size();
   const int last = static_cast<int>(envelope_.rings.size()) - 1;
-  thread_local std::vector<double> sums;
-  sums.assign((4 + 2 * nodes) * row, 0.0);
-  Sums s{};
-  s.nodes = static_cast<int>(nodes), s.row = static_cast<int>(row);
-  s.axis_x = axis_compliance_.x(), s.axis_y = axis_compliance_.y();
+  const PassSums sums(steps, nodes);
   out.chip_max_mm = out.chip_area_mm2 = 0;
   const bool linear = material_.law == machine::ForceLaw::linear && edge_ramp_mm_ == 0;
   float thickest = 0;
-  for (const removal::ChipBlock& chip : chips) {
-    const EnvelopeBlocks::Block& block = blocks.block(chip.block);
+  const auto add_block = [&](const removal::ChipBlock& chip, int step) {
+    Sums s = sums.at(step);
+    s.axis_x = axis_compliance_.x(), s.axis_y = axis_compliance_.y();
+    const int first_ring = blocks.block(chip.block).ring;
     for (int half = 0; half < EnvelopeBlocks::kRings; ++half) {
       const float* h = chip.thickness_mm.data() + half * kSteps;
       const std::uint8_t* cut_255 = chip.cut_255.data() + half * kSteps;
@@ -181,7 +221,7 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
         thickest = std::max(thickest, h[l]);
       }
       if (cut_of_all == 0) continue;
-      const int r = std::min(block.ring + half, last);
+      const int r = std::min(first_ring + half, last);
       const auto& ring = envelope_.rings[static_cast<std::size_t>(r)];
       EdgeForces e;
       if (linear) {
@@ -192,31 +232,61 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
           e.tangential[l] = f.tangential_N, e.radial[l] = f.radial_N, e.axial[l] = f.axial_N;
         }
       }
-      out.chip_area_mm2 += cut_of_all / 255.0 * ring.width_mm * 2 * kPi * ring.profile.radius_mm / envelope_.steps;
+      out.chip_area_mm2 += cut_of_all / 255.0 * ring.width_mm * 2 * kPi * ring.profile.radius_mm / turn;
       s.cosine_phi = blocks.cos_phi(chip.block) + half * kSteps;
       s.sine_phi = blocks.sin_phi(chip.block) + half * kSteps;
       s.sine = ring.sine, s.cosine = ring.cosine;
       s.radius_mm = ring.profile.radius_mm;
       s.compliance = compliance_.data() + static_cast<std::size_t>(r) * nodes;
-      double* at = sums.data() + block.step;
-      s.fx = at, s.fy = at + row, s.fz = at + 2 * row, s.torque = at + 3 * row, s.deflection = at + 4 * row;
       add_four(e, s);
     }
+  };
+  thread_local ChipEnds finder;
+  thread_local std::vector<ChipEnd> uneven_ends;
+  std::span<const ChipEnd> ends;
+  if (teeth_.even()) {
+    for (const removal::ChipBlock& chip : chips) add_block(chip, blocks.block(chip.block).step);
+    ends = finder.find(envelope_, blocks, chips);
+  } else {
+    uneven_ends.clear();
+    const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth_.count())) * pitch;
+    thread_local std::vector<removal::ChipBlock> own;
+    for (int j = 0; j < teeth_.count(); ++j) {
+      // Rotation step at which the tooth is at a point.
+      const int ahead = gone - tooth_step_[static_cast<std::size_t>(j)];
+      const auto step_at = [&](std::uint32_t p) { return ((static_cast<int>(p) % turn + ahead) % turn + turn) % turn; };
+      own.clear();
+      for (const removal::ChipBlock& chip : chips) {
+        // What lies beside the pitch tells where the chips in it end.
+        int step = step_at(blocks.point(chip.block, 0));
+        if (step >= pitch + kSteps) step -= turn;
+        if (step < -2 * kSteps) continue;
+        own.push_back(tooth_block(j, blocks, chip, feed));
+        removal::ChipBlock in_pitch = own.back();
+        for (int lane = 0; lane < EnvelopeBlocks::kLanes; ++lane)
+          if (const int m = step + lane % kSteps; m < 0 || m >= pitch)
+            in_pitch.thickness_mm[static_cast<std::size_t>(lane)] = 0;
+        if (step > -kSteps && step < pitch) add_block(in_pitch, step);
+      }
+      for (ChipEnd e : finder.find(envelope_, blocks, own)) {
+        e.step = step_at(e.point);
+        if (e.step < pitch) uneven_ends.push_back(e);
+      }
+    }
+    ends = uneven_ends;
   }
   out.chip_max_mm = thickest;
   for (std::size_t n = 0; n < nodes && !fine.empty(); ++n) {
-    const double* x = sums.data() + (4 + 2 * n) * row;
-    draw_between_steps(x, x + row, steps, fine.data() + 2 * n * steps * kFine);
+    const double* x = sums.of(4 + 2 * n);
+    draw_between_steps(x, x + sums.row(), steps, fine.data() + 2 * n * steps * kFine);
   }
-  thread_local ChipEnds ends;
-  for (const ChipEnd& e : ends.find(envelope_, blocks, chips)) add_end(e, sums.data(), row, fine);
+  for (const ChipEnd& e : ends) add_end(e, sums.of(0), sums.row(), fine);
   out.force_N.resize(steps);
-  out.torque_Nmm.assign(sums.begin() + static_cast<std::ptrdiff_t>(3 * row),
-                        sums.begin() + static_cast<std::ptrdiff_t>(3 * row + steps));
+  out.torque_Nmm.assign(sums.of(3), sums.of(3) + steps);
   out.work_Nmm = 0;
   for (std::size_t m = 0; m < steps; ++m) {
-    out.force_N[m] = {sums[m], sums[row + m], sums[2 * row + m]};
-    out.work_Nmm += out.torque_Nmm[m] * 2 * kPi / envelope_.steps;
+    out.force_N[m] = {sums.of(0)[m], sums.of(1)[m], sums.of(2)[m]};
+    out.work_Nmm += out.torque_Nmm[m] * 2 * kPi / turn;
   }
   out.feedback.clear();
   out.feedback_before.clear();

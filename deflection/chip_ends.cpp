@@ -70,6 +70,7 @@ void ChipEnds::add_ring(const removal::EnvelopeGrid& envelope, int ring, std::sp
         if (!(at(l) > 0) || at(l + side) > 0) continue;
         const int lane = half * kSteps + l - 1;
         ChipEnd e{.point = blocks.point(chips[k].block, lane), .ring = ring, .side = side, .thickness_mm = at(l)};
+        e.step = blocks.block(chips[k].block).step + l - 1;
         e.width_share = chips[k].cut_255[static_cast<std::size_t>(lane)] / 255.0;
         double inside = 0;  // of the sample before, on the way out
         if (l - side >= 0 && l - side <= count + 1) inside = at(l - side);

@@ -13,6 +13,7 @@ namespace camber::deflection {
 struct ChipEnd {
   std::uint32_t point = 0;  ///< of the envelope: the last sample in the cut
   int ring = 0;
+  int step = 0;             ///< of the pitch, at which an even tooth is there
   int side = 1;             ///< 1: the next sample, at the larger angle, is out of the cut; -1: the one before
   double at = 0.5;          ///< from the sample outwards, 0 to 1: where the chip of the ring's middle ends
   double ramp = 0;          ///< how long the end takes to cross the ring's width; 0: all at once, or not known

@@ -12,6 +12,7 @@
 #include <Eigen/LU>
 
 #include "deflection/beam.h"
+#include "deflection/tooth_marks.h"
 #include "removal/engager.h"
 #include "removal/stretch.h"
 
@@ -107,6 +108,7 @@ class Cutter {
                options.axis_compliance_mm_per_N, options.coupling == machine::Coupling::static_) {
     if (!options.blank) own_blank_.emplace(stock);
     blank_ = options.blank ? options.blank : &*own_blank_;
+    if (const Teeth teeth(tool); !teeth.even() && !options.drilling) tooth_marks_.emplace(envelope_, teeth);
     if (!rigid_) removal::make_patches(envelope_, 0.6 * stock.band_mm());
   }
 
@@ -134,13 +136,13 @@ class Cutter {
       for (std::size_t k = 0; k < count; ++k) keep_turn(engagement.of(k), stamps[k], from + k, result);
       result.stock_mm3 += stretch.commit();
     }
-    if (options_.surface) mark(stamps, shifts, first_id + static_cast<std::int32_t>(from));
-    for (std::size_t k = 0; k < stamps.size(); ++k) {
-      if (!contacts.empty())
-        loads[k].contact_deflection_mm =
-            deflection_at(envelope_, shifts, shifts.row(static_cast<std::ptrdiff_t>(k)), contacts[k]);
-      result.chip_mm3 += loads[k].chip_mm3;
+    if (tooth_marks_) {
+      leave_uneven(stamps, shifts, contacts, first_id + static_cast<std::int32_t>(from), loads);
+    } else {
+      if (options_.surface) mark(stamps, shifts, first_id + static_cast<std::int32_t>(from));
+      tell_contacts(envelope_, shifts, contacts, loads);
     }
+    for (const StampLoad& load : loads) result.chip_mm3 += load.chip_mm3;
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
     for (std::ptrdiff_t k = 0; !rigid_ && k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
       most_bent_mm_ = std::max(most_bent_mm_, shifts.largest_mm(k));
@@ -171,7 +173,7 @@ class Cutter {
   /// Deflection straight from the chips.
   void engage(std::span<const Stamp> all, std::size_t from, ShiftTable& shifts, std::vector<StampLoad>& loads,
               std::int32_t first_id, CutResult& result) {
-    if (!engager_) engager_.emplace(stock_, *blank_, envelope_, all, first_id);
+    if (!engager_) engager_.emplace(stock_, *blank_, envelope_, all, first_id, tooth_marks_ ? envelope_.flutes : 1);
     const auto& blocks = engager_->blocks();
     std::map<std::size_t, std::vector<removal::Chip>> turn;  // what the turn needs
     std::mutex turn_lock;
@@ -187,6 +189,30 @@ class Cutter {
       turn[k] = removal::chips_of(blocks, chips);
     });
     for (const auto& [k, chips] : turn) keep_turn(chips, all[from + k], from + k, result);
+  }
+
+  static void tell_contacts(const EnvelopeGrid& envelope, const ShiftTable& shifts, std::span<const Contact> contacts,
+                            std::span<StampLoad> loads) {
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+      loads[k].contact_deflection_mm =
+          deflection_at(envelope, shifts, shifts.row(static_cast<std::ptrdiff_t>(k)), contacts[k]);
+  }
+
+  /// Marks and contacts of teeth that are not even. Rows are as many times as long as there are teeth, and as many
+  /// times fewer at once.
+  void leave_uneven(std::span<const Stamp> stamps, const ShiftTable& shifts, std::span<const Contact> contacts,
+                    std::int32_t first_id, std::span<StampLoad> loads) const {
+    const std::size_t part = stamps.size() / static_cast<std::size_t>(envelope_.flutes) + 1;
+    for (std::size_t from = 0; from < stamps.size(); from += part) {
+      const std::size_t count = std::min(part, stamps.size() - from);
+      ShiftTable own = tooth_marks_->bending(shifts, from, count, passings_ + from);
+      if (!contacts.empty())
+        tell_contacts(tooth_marks_->envelope(), own, contacts.subspan(from, count), loads.subspan(from, count));
+      if (!options_.surface) continue;
+      tooth_marks_->add_run_out(own, passings_ + from);
+      options_.surface->mark(tooth_marks_->envelope(), stamps.subspan(from, count), own,
+                             first_id + static_cast<std::int32_t>(from));
+    }
   }
 
   /// Of a hole its deepest stamp says all.
@@ -278,6 +304,7 @@ class Cutter {
   double top_mm_;
   EnvelopeGrid envelope_;
   ToothPassModel model_;
+  std::optional<ToothMarks> tooth_marks_;    ///< of teeth that are not even
   std::optional<removal::Engager> engager_;  ///< rigid
   ShiftTable shifts_;                        ///< of the stretch
   std::vector<float> last_row_, guess_row_;

@@ -71,7 +71,8 @@ struct PredictOptions {
 Prediction predict(const machine::Job& job, const Target& target, const MachinedProgram& program,
                    const PredictOptions& options);
 
-/// Chips and forces need samples about as fine as this along the profile; the job's value where it gives one.
+/// Chips and forces need samples about as fine as this along the profile: a hundredth of the diameter, 0.02 to 0.1 mm,
+/// in which the edge lags by no more than a degree; the job's value where it gives one.
 double envelope_step_mm(const machine::Job& job, const machine::Tool& tool);
 
 }  // namespace camber::deflection

@@ -19,20 +19,31 @@ Teeth::Teeth(const machine::Tool& tool) : runout_mm_(tool.runout_mm), runout_ang
   even_ = even_ && runout_mm_ == 0;
 }
 
+int Teeth::offset_steps(int tooth, int steps) const {
+  return static_cast<int>(std::lround(offset_rad(tooth) * steps / (2 * kPi)));
+}
+
 double Teeth::throw_mm(int tooth, double lag_rad) const {
   return runout_mm_ * std::cos(offset_rad(tooth) + lag_rad - runout_angle_rad_);
 }
 
-double Teeth::chip_mm(int tooth, double even_chip_mm, double sine, double lag_rad) const {
+double Teeth::most_throw_mm(double lag_rad) const {
+  double most = -std::numeric_limits<double>::infinity();
+  for (int j = 0; j < count(); ++j) most = std::max(most, throw_mm(j, lag_rad));
+  return most;
+}
+
+double Teeth::room_mm(int tooth, double even_chip_mm, double sine, double lag_rad, double bulge_mm) const {
   const int n = count();
   const double own = throw_mm(tooth, lag_rad);
   double chip = std::numeric_limits<double>::infinity(), pitches = 0;
   for (int m = 1; m <= n; ++m) {
     const int before = ((tooth - m) % n + n) % n;
     pitches += pitch_share_[static_cast<std::size_t>(before)];
-    chip = std::min(chip, pitches * even_chip_mm + sine * (own - throw_mm(before, lag_rad)));
+    chip =
+        std::min(chip, pitches * (even_chip_mm + (pitches - 1) * bulge_mm) + sine * (own - throw_mm(before, lag_rad)));
   }
-  return std::max(0.0, chip);
+  return chip;
 }
 
 }  // namespace camber::deflection

@@ -1,5 +1,6 @@
 #pragma once
 // What makes one tooth's chip differ from the next's: unequal pitch and run-out.
+#include <algorithm>
 #include <vector>
 
 #include "machine/job.h"
@@ -17,15 +18,26 @@ class Teeth {
   bool even() const { return even_; }
   int count() const { return static_cast<int>(offset_rad_.size()); }
   double offset_rad(int tooth) const { return offset_rad_[static_cast<std::size_t>(tooth)]; }
+  /// In steps of a turn of so many.
+  int offset_steps(int tooth, int steps) const;
   double throw_mm(int tooth, double lag_rad) const;
+  /// Of the tooth that stands out most.
+  double most_throw_mm(double lag_rad) const;
+  double runout_mm() const { return runout_mm_; }
+  double runout_angle_rad() const { return runout_angle_rad_; }
 
   /// Chip of a tooth: h = max(0, min over m = 1 ... N of (c_m + sin(kappa) (t_j - t_(j-m)))), c_m what the motion since
   /// the m-th tooth before allows, t the throws: a tooth that stands back leaves its chip to the next. Over a turn the
   /// teeth take as much as even ones.
-  /// even_chip_mm: what the motion in one mean pitch allows, along the normal. sine: of the normal's angle kappa.
+  /// even_chip_mm: what the motion in one mean pitch allows, along the normal; bulge_mm: of it what the envelope's
+  /// curvature adds, which grows with the square of the motion. sine: of the normal's angle kappa.
   /// Source: Kline & DeVor, The effect of runout on cutting geometry and forces in end milling, Int. J. Mach. Tool Des.
   /// Res. 23 (1983) 123-140.
-  double chip_mm(int tooth, double even_chip_mm, double sine, double lag_rad) const;
+  double chip_mm(int tooth, double even_chip_mm, double sine, double lag_rad, double bulge_mm = 0) const {
+    return std::max(0.0, room_mm(tooth, even_chip_mm, sine, lag_rad, bulge_mm));
+  }
+  /// The same before it is cut off at nothing: how far a tooth that does not cut stays out of the material.
+  double room_mm(int tooth, double even_chip_mm, double sine, double lag_rad, double bulge_mm) const;
 
  private:
   bool even_ = true;

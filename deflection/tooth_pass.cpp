@@ -25,8 +25,7 @@ ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const mach
       teeth_(std::move(teeth)),
       with_feedback_(with_feedback),
       node_height_mm_(std::move(nodes)) {
-  for (int j = 0; j < teeth_.count(); ++j)
-    tooth_step_.push_back(static_cast<int>(std::lround(teeth_.offset_rad(j) * envelope.steps / (2 * kPi))));
+  for (int j = 0; j < teeth_.count(); ++j) tooth_step_.push_back(teeth_.offset_steps(j, envelope.steps));
   for (const auto& ring : envelope.rings) {
     const double z = ring.profile.height_mm;
     own_compliance_.push_back(beam.compliance_mm_per_N(z, z));
@@ -48,18 +47,25 @@ double chip_area_mm2(const removal::EnvelopeGrid::Ring& ring, int steps) {
 }
 }  // namespace
 
-double ToothPassModel::motion_chip_mm(const Direction& d, const removal::EnvelopeGrid::Ring& ring,
-                                      const Vec3& feed) const {
+ToothPassModel::MotionChip ToothPassModel::motion_chip(const Direction& d, const removal::EnvelopeGrid::Ring& ring,
+                                                       const Vec3& feed) const {
   const double around = feed.dot(d.tangential), up = feed.dot(d.meridian);
-  return feed.dot(d.normal) + 0.5 * (ring.profile.meridian_curvature_per_mm * up * up +
-                                     ring.profile.parallel_curvature_per_mm * around * around);
+  const double bulge = 0.5 * (ring.profile.meridian_curvature_per_mm * up * up +
+                              ring.profile.parallel_curvature_per_mm * around * around);
+  return {feed.dot(d.normal) + bulge, bulge};
+}
+
+double ToothPassModel::deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const {
+  const double least = own_surface ? teeth_.most_throw_mm(ring.lag_rad) : 0.0;
+  return ring.sine * (teeth_.throw_mm(j, ring.lag_rad) - least);
 }
 
 double ToothPassModel::tooth_chip_mm(int j, const removal::Chip& chip, const Direction& d,
                                      const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const {
-  const double even = chip.after_tooth ? static_cast<double>(chip.thickness_mm) : motion_chip_mm(d, ring, feed);
-  const double h = teeth_.chip_mm(j, even, ring.sine, ring.lag_rad);
-  return chip.after_tooth ? h : std::min(h, chip.thickness_mm + ring.sine * teeth_.throw_mm(j, ring.lag_rad));
+  const MotionChip motion = motion_chip(d, ring, feed);
+  const double even = chip.after_tooth ? static_cast<double>(chip.thickness_mm) : motion.even_mm;
+  const double h = teeth_.chip_mm(j, even, ring.sine, ring.lag_rad, motion.bulge_mm);
+  return chip.after_tooth ? h : std::max(0.0, std::min(h, chip.thickness_mm + deeper_mm(j, chip.own_surface, ring)));
 }
 
 void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const Direction& d, std::uint32_t r,

@@ -56,7 +56,8 @@ class ToothPassModel {
   /// `passing` counts tooth passings since the tool began: it tells which tooth stands where, which only matters where
   /// the teeth are not even. feed_mm: motion in one mean pitch.
   void evaluate(std::span<const removal::Chip> chips, std::size_t passing, const Vec3& feed_mm, ToothPass& out) const;
-  /// The same of chips in blocks, the instants told at which each edge element enters the material and leaves it.
+  /// The same of chips in blocks, the instants told at which each edge element enters the material and leaves it;
+  /// without feedback.
   /// fine_mm: takes the deflection, [nodes][steps * kFine][2], a row of removal::ShiftTable.
   void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
                 const Vec3& feed_mm, ToothPass& out, std::span<float> fine_mm) const;
@@ -69,11 +70,20 @@ class ToothPassModel {
     Vec3 tangential, normal, meridian;
   };
   Direction direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
+  /// How much deeper than even teeth tooth j cuts into an older surface, along the normal. One that the same tool cut
+  /// lies as deep as the tooth that stands out most left it.
+  double deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const;
   /// What tooth j takes where even teeth would take the chip.
   double tooth_chip_mm(int j, const removal::Chip& chip, const Direction& d, const removal::EnvelopeGrid::Ring& ring,
                        const Vec3& feed) const;
-  /// What the motion allows at a point, along the normal (removal/stretch.h).
-  double motion_chip_mm(const Direction& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
+  /// The same of a block of points; nothing is cut off below, so that what is not in the cut tells how far off it is.
+  removal::ChipBlock tooth_block(int j, const removal::EnvelopeBlocks& blocks, const removal::ChipBlock& even,
+                                 const Vec3& feed) const;
+  /// What the motion in one mean pitch allows at a point, along the normal (removal/stretch.h).
+  struct MotionChip {
+    double even_mm, bulge_mm;  ///< the latter what curvature adds to it
+  };
+  MotionChip motion_chip(const Direction& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
   /// Adds the force and deflection of one edge element at rotation step m.
   void add(const removal::Chip& chip, double thickness_mm, const Direction& d, std::uint32_t ring, std::size_t m,
            std::vector<double>& deflection, ToothPass& out) const;

@@ -37,7 +37,8 @@ struct StampPlace {
   float per_voxel;       ///< 1 / voxel_mm
   float feed_mm[3];      ///< motion since the stamp before
   float feed_length_mm;
-  float least_mm;  ///< a block whose normals all go along the motion by less than this makes no chip
+  float least_mm;      ///< a block whose normals all go along the motion by less than this makes no chip
+  float least_cap_mm;  ///< nor does a point whose motion allows no more than this; <= 0
 };
 
 /// Points whose chip the fields of the stamps around decide.

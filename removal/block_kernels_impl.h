@@ -116,7 +116,7 @@ struct BlockVectors {
         const F around = load(p.cos_phi + k) * fy - load(p.sin_phi + k) * fx, around2 = around * around;
         const F cap =
             along + half * (load(p.k1 + k) * xsimd::max(zero, tangential2 - around2) + load(p.k2 + k) * around2);
-        const auto forward = cap > zero;
+        const auto forward = cap > F(s.least_cap_mm);
         cap.store_aligned(caps + l);
         if (!xsimd::any(forward)) {
           zero.store_aligned(thickness + l);

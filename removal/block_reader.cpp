@@ -15,8 +15,17 @@ constexpr int kLanes = EnvelopeBlocks::kLanes;
 }  // namespace
 
 BlockReader::BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const Stamp> stamps,
-                         std::int32_t first_id, double voxel_mm, double top_mm)
-    : envelope_(envelope), blocks_(blocks), stamps_(stamps), first_id_(first_id), voxel_mm_(voxel_mm), top_mm_(top_mm) {
+                         std::int32_t first_id, double voxel_mm, double top_mm, int pitches)
+    : envelope_(envelope),
+      blocks_(blocks),
+      stamps_(stamps),
+      first_id_(first_id),
+      voxel_mm_(voxel_mm),
+      top_mm_(top_mm),
+      pitches_(pitches) {
+  for (const auto& ring : envelope.rings)
+    most_curved_per_mm_ =
+        std::max({most_curved_per_mm_, ring.profile.meridian_curvature_per_mm, ring.profile.parallel_curvature_per_mm});
   Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
   for (const auto& s : stamps) {
     lo = lo.cwiseMin(s.tip_mm);
@@ -37,7 +46,7 @@ void BlockReader::make_room(Buffers& b) const {
   if (b.blocks.size() >= blocks) return;
   b.blocks.resize(blocks), b.hit_block.resize(blocks), b.hit_deep.resize(blocks);
   for (auto* v : {&b.lane, &b.cell, &b.hit, &b.blank_point, &b.blank_lane, &b.blank_cell}) v->resize(points);
-  for (auto* v : {&b.hit_thickness, &b.cap, &b.thickness, &b.blank_thickness}) v->resize(points);
+  for (auto* v : {&b.hit_thickness, &b.cap, &b.thickness, &b.depth, &b.blank_thickness}) v->resize(points);
   for (std::size_t a = 0; a < 3; ++a) b.share[a].resize(points), b.blank_share[a].resize(points);
 }
 
@@ -54,7 +63,9 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
   const CutterShape& shape = envelope_.shape;
   // What curvature adds to a chip at most.
   const double bulge = stamp.feed_per_tooth_mm.squaredNorm() / (2 * std::max(shape.corner_radius_mm, 0.1));
-  const StampPlace place = arena.place_of(stamp, -bulge - 1e-6);
+  StampPlace place = arena.place_of(stamp, -pitches_ * bulge - 1e-6);
+  place.least_cap_mm =
+      static_cast<float>((1 - pitches_) * stamp.feed_per_tooth_mm.squaredNorm() * most_curved_per_mm_ / 2);
   const BlockKernels& kernels = block_kernels();
   BlockBounds bounds = blocks_.bounds();
   bounds.count = std::min(bounds.count, blocks_.up_to(top_mm_ - stamp.tip_mm.z()));
@@ -83,21 +94,25 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
     hits.deep[hit / kLanes] = (hits.deep[hit / kLanes] & ~(1u << hit % kLanes)) | static_cast<std::uint32_t>(after)
                                                                                       << hit % kLanes;
   };
+  b.chips.clear();
+  for (int h = 0; h < hits.count; ++h) {
+    ChipBlock& chip = b.chips.emplace_back(ChipBlock{hits.block[h], 0, 0, {}, {}});
+    chip.cut_255.fill(255);
+  }
+  const auto set_own_surface = [&](int hit) {
+    b.chips[static_cast<std::size_t>(hit / kLanes)].own_surface |= static_cast<std::uint16_t>(1u << hit % kLanes);
+  };
   for (int h = 0; h < hits.count && !earlier.empty(); ++h)
     for (int l = 0; l < kLanes; ++l) {
       float& deep = hits.thickness[h * kLanes + l];
       if (!(deep > 0)) continue;
       const float depth = thickness_over(earlier, point(stamp, static_cast<int>(hits.block[h]) * kLanes + l));
       after_tooth(h * kLanes + l, depth > kNearCap * deep);
+      if (depth < deep) set_own_surface(h * kLanes + l);
       deep = std::min(depth, deep);
     }
-  b.chips.clear();
-  for (int h = 0; h < hits.count; ++h) {
-    ChipBlock& chip = b.chips.emplace_back(ChipBlock{hits.block[h], 0, {}, {}});
-    chip.cut_255.fill(255);
-  }
   for (int i = 0; i < shallow.count; ++i) {
-    float depth = thickness[i], up_mm = 0;
+    float own = thickness[i], depth = b.depth[static_cast<std::size_t>(i)], up_mm = 0;
     if (const float half = blocks_.wall_half_mm(shallow.lane[i]); half > 0) {
       const RingPart part = part_of_ring(arena, stamp, shallow, i);
       const std::uint8_t cut_255 = part.cut_255(static_cast<double>(half));
@@ -106,19 +121,22 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
         b.chips[static_cast<std::size_t>(shallow.hit[i] / kLanes)]
             .cut_255[static_cast<std::size_t>(shallow.hit[i] % kLanes)] = cut_255;
         up_mm = static_cast<float>(part.middle_mm());
-        depth = thin(arena, shallow.cell[i], raised(point(stamp, shallow.lane[i]), up_mm));
+        depth = own = thin(arena, shallow.cell[i], raised(point(stamp, shallow.lane[i]), up_mm));
         if (depth > 0) depth = below_blank(arena, shallow, i, up_mm, depth);
       }
     }
-    if (depth > 0 && !earlier.empty())
-      depth = std::min(depth, thickness_over(earlier, raised(point(stamp, shallow.lane[i]), up_mm)));
+    if (depth > 0 && !earlier.empty()) {
+      own = std::min(own, thickness_over(earlier, raised(point(stamp, shallow.lane[i]), up_mm)));
+      depth = std::min(depth, own);
+    }
+    if (depth == own) set_own_surface(shallow.hit[i]);
     hits.thickness[shallow.hit[i]] = std::min(depth, shallow.cap[i]);
     if (!(depth > 0)) continue;
     after_tooth(shallow.hit[i], depth > kNearCap * shallow.cap[i]);
   }
   for (int h = 0; h < hits.count; ++h) {
     ChipBlock& chip = b.chips[static_cast<std::size_t>(h)];
-    chip.after_tooth = hits.deep[h];
+    chip.after_tooth = static_cast<std::uint16_t>(hits.deep[h]);
     std::copy_n(hits.thickness + h * kLanes, kLanes, chip.thickness_mm.begin());
   }
   return b.chips;
@@ -143,8 +161,9 @@ RingPart BlockReader::part_of_ring(const TileArena& arena, const Stamp& stamp, c
                           stamps_, first_id_, envelope_.shape, voxel_mm_);
 }
 
-/// The blank's surface counts as one field more, read trilinearly.
+/// From thickness to depth: the blank's surface counts as one field more, read trilinearly.
 void BlockReader::thin_by_blank(const TileArena& arena, const ShallowPoints& points, Buffers& b) const {
+  std::copy_n(b.thickness.begin(), points.count, b.depth.begin());
   int count = 0;
   for (int i = 0; i < points.count; ++i) {
     const auto at = static_cast<std::size_t>(i), to = static_cast<std::size_t>(count);
@@ -171,7 +190,7 @@ void BlockReader::thin_by_blank(const TileArena& arena, const ShallowPoints& poi
                                  kLeastSlope,
                                  b.blank_thickness.data()});
   for (int i = 0; i < count; ++i)
-    b.thickness[static_cast<std::size_t>(b.blank_point[static_cast<std::size_t>(i)])] =
+    b.depth[static_cast<std::size_t>(b.blank_point[static_cast<std::size_t>(i)])] =
         b.blank_thickness[static_cast<std::size_t>(i)];
 }
 

@@ -23,7 +23,7 @@ class BlockReader {
     std::vector<std::uint32_t> hit_block, hit_deep;
     std::vector<float> hit_thickness;
     std::vector<std::int32_t> lane, cell, hit;
-    std::vector<float> cap, thickness;
+    std::vector<float> cap, thickness, depth;
     std::vector<std::int32_t> blank_point, blank_lane, blank_cell;
     std::vector<float> blank_thickness;
     std::array<std::vector<float>, 3> blank_share;
@@ -32,8 +32,9 @@ class BlockReader {
   };
 
   /// Ids in the stock are first_id + index into `stamps`; smaller ids count as blank. Above `top_mm` there is air.
+  /// `pitches`: motion in so many may make a chip, see Engager.
   BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const Stamp> stamps,
-              std::int32_t first_id, double voxel_mm, double top_mm);
+              std::int32_t first_id, double voxel_mm, double top_mm, int pitches);
 
   /// Chips of stamps[k]. `earlier`: stamps that the arena does not hold yet and that may have cut what this one meets.
   std::span<const ChipBlock> read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> earlier,
@@ -59,6 +60,8 @@ class BlockReader {
   std::span<const Stamp> stamps_;
   std::int32_t first_id_;
   double voxel_mm_, top_mm_;
+  int pitches_;
+  double most_curved_per_mm_ = 0;                 ///< of the envelope
   std::array<std::vector<std::int32_t>, 3> tip_;  ///< of all stamps, in steps that are a billionth of their range
   float tip_step_mm_;
 };

@@ -13,8 +13,8 @@ std::vector<Chip> chips_of(const EnvelopeBlocks& blocks, std::span<const ChipBlo
   for (const ChipBlock& c : chips)
     for (int l = 0; l < EnvelopeBlocks::kLanes; ++l)
       if (const float h = c.thickness_mm[static_cast<std::size_t>(l)]; h > 0)
-        out.push_back(
-            {blocks.point(c.block, l), h, (c.after_tooth >> l & 1u) != 0, c.cut_255[static_cast<std::size_t>(l)]});
+        out.push_back({blocks.point(c.block, l), h, (c.after_tooth >> l & 1u) != 0, (c.own_surface >> l & 1u) != 0,
+                       c.cut_255[static_cast<std::size_t>(l)]});
   return out;
 }
 

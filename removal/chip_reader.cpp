@@ -115,7 +115,7 @@ void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t
         cell.move_up(part.middle_mm());
       }
       const float depth = -field > cap && share == 255 ? cap : thickness(stocks, cell, normal);
-      if (depth > 0) out.push_back({k, {p, std::min(depth, cap), depth > kNearCap * cap, share}});
+      if (depth > 0) out.push_back({k, {p, std::min(depth, cap), depth > kNearCap * cap, false, share}});
     }
   }
 }

@@ -43,6 +43,8 @@ CutterShape shape_of(const machine::Tool& tool) {
 
 namespace {
 
+constexpr double kMostTurn_rad = 0.06;  ///< of the profile's normal over one ring of a small corner
+
 /// Cuts [from, to] in equal rings no wider than `step`.
 void add_rings(EnvelopeGrid& grid, double from, double to, double step) {
   if (to - from <= 1e-9) return;
@@ -71,8 +73,9 @@ EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step
   const double end = profile.length_to_height_mm(std::max(0.0, top_mm + above_mm));
   for (const auto& piece : profile.pieces()) {
     const double to = piece.from_s_mm + piece.length_mm;
-    add_rings(grid, piece.from_s_mm, std::min(to, top), step_mm);
-    add_rings(grid, std::max(piece.from_s_mm, top), std::min(to, end), step_mm);
+    const double step = piece.arc ? std::min(step_mm, kMostTurn_rad * piece.radius_mm) : step_mm;
+    add_rings(grid, piece.from_s_mm, std::min(to, top), step);
+    add_rings(grid, std::max(piece.from_s_mm, top), std::min(to, end), step);
   }
 
   for (const auto& ring : grid.rings) {

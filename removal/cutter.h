@@ -75,7 +75,7 @@ struct EnvelopeGrid {
 /// Cuts the envelope in patches of about `size_mm`.
 void make_patches(EnvelopeGrid& grid, double size_mm);
 
-/// Rings `step_mm` apart (the last one narrower) from the tip to `top_mm` above it; at least
+/// Rings `step_mm` apart (the last one narrower; in small corners all are) from the tip to `top_mm` above it; at least
 /// `2 pi / rotation_step_rad` points a ring, rounded up to a multiple of the flutes. More rings reach `above_mm`
 /// higher; none lies across top_mm: a ring counts whole or not at all, and where top_mm is the blank's face none is cut
 /// in two.

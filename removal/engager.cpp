@@ -46,14 +46,15 @@ struct Engager::Impl {
   tbb::enumerable_thread_specific<BlockReader::Buffers> buffers{};
 
   Impl(Stock& stock_, const Stock& blank_, const EnvelopeGrid& envelope_, std::span<const Stamp> stamps_,
-       std::int32_t first_id_)
+       std::int32_t first_id_, int pitches)
       : stock(stock_),
         blank(blank_),
         envelope(envelope_),
         all(stamps_),
         first_id(first_id_),
         blocks(envelope_, stock_.voxel_mm(), stock_.band_mm()),
-        reader(envelope_, blocks, stamps_, first_id_, stock_.voxel_mm(), stock_.max_mm().z() + stock_.band_mm()) {}
+        reader(envelope_, blocks, stamps_, first_id_, stock_.voxel_mm(), stock_.max_mm().z() + stock_.band_mm(),
+               pitches) {}
 
   void start_tiles();
   void give_back(std::span<const std::size_t> numbers);
@@ -156,8 +157,8 @@ void Engager::Impl::cut_general(std::size_t t) {
 }
 
 Engager::Engager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
-                 std::int32_t first_id)
-    : impl_(std::make_unique<Impl>(stock, blank, envelope, stamps, first_id)) {}
+                 std::int32_t first_id, int pitches)
+    : impl_(std::make_unique<Impl>(stock, blank, envelope, stamps, first_id, pitches)) {}
 Engager::~Engager() = default;
 
 const EnvelopeBlocks& Engager::blocks() const { return impl_->blocks; }

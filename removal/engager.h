@@ -21,9 +21,11 @@ using ChipSink = std::function<void(std::size_t k, std::span<const ChipBlock>)>;
 /// For one run of one tool. How depth and chip are defined: removal/stretch.h.
 class Engager {
  public:
-  /// As removal::Stretch; everything passed must outlive the object.
+  /// As removal::Stretch; everything passed must outlive the object. `pitches`: how many tooth passings before a tooth
+  /// the last one may be that has left it a chip; even teeth: 1. What the motion in so many allows is told too, with
+  /// the thickness, then negative, of the chip after one.
   Engager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
-          std::int32_t first_id);
+          std::int32_t first_id, int pitches = 1);
   ~Engager();
 
   const EnvelopeBlocks& blocks() const;

@@ -39,15 +39,17 @@ void EnvelopeBlocks::add(const EnvelopeGrid& e, const std::vector<float>& wall_h
     const auto p = static_cast<std::size_t>(in_r) * static_cast<std::size_t>(e.steps) +
                    static_cast<std::size_t>(first_of_pitch + in_s);
     const auto& profile = e.rings[static_cast<std::size_t>(in_r)].profile;
-    const float counts = is_point ? 1.0f : 0.0f;  // without normal and curvature no motion makes a chip
+    // Without a normal, and with a curvature that takes all away, no motion makes a chip.
+    constexpr float kHollow_per_mm = -1e6f;
+    const float counts = is_point ? 1.0f : 0.0f;
     if (is_point) real.push_back(p);
     point_.push_back(is_point ? static_cast<std::uint32_t>(p) : kNoPoint);
     x_.push_back(e.x[p]), y_.push_back(e.y[p]), z_.push_back(e.z[p]);
     nx_.push_back(counts * e.nx[p]), ny_.push_back(counts * e.ny[p]), nz_.push_back(counts * e.nz[p]);
     cos_phi_.push_back(e.cos_phi[p]), sin_phi_.push_back(e.sin_phi[p]);
     wall_half_.push_back(wall_half_mm[static_cast<std::size_t>(in_r)]);
-    k1_.push_back(counts * static_cast<float>(profile.meridian_curvature_per_mm));
-    k2_.push_back(counts * static_cast<float>(profile.parallel_curvature_per_mm));
+    k1_.push_back(is_point ? static_cast<float>(profile.meridian_curvature_per_mm) : kHollow_per_mm);
+    k2_.push_back(is_point ? static_cast<float>(profile.parallel_curvature_per_mm) : kHollow_per_mm);
   }
   const auto place = [&](std::size_t p) { return Vec3(e.x[p], e.y[p], e.z[p]); };
   const auto normal = [&](std::size_t p) { return Vec3(e.nx[p], e.ny[p], e.nz[p]); };

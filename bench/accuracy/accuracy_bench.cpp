@@ -1,5 +1,5 @@
 // Camber against the drawn cut (tests/support/displaced_envelope.h): force and form error of rigid finishing cuts.
-//   accuracy_bench plane | grid | wall | voxels
+//   accuracy_bench plane | cutters | uneven | grid | wall | voxels
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -89,6 +89,33 @@ void planes() {
   }
 }
 
+/// Bull-nose and tapered cutters, and rows along the fall line.
+void cutters() {
+  head_of_plane();
+  for (const double slope : {20.0, 45.0})
+    for (const double way : {1.0, -1.0}) {
+      InclinedPlane p;
+      p.slope_deg = slope, p.along_slope = way;
+      plane_case(fmt::format("ball, {} deg, {}", slope, way > 0 ? "climbing" : "descending"), p);
+    }
+  for (const double corner : {1.0, 0.5})
+    for (const double slope : {20.0, 45.0}) {
+      InclinedPlane p;
+      p.corner_mm = corner, p.slope_deg = slope;
+      plane_case(fmt::format("bull R{}, {} deg", corner, slope), p);
+    }
+  for (const double way : {1.0, -1.0}) {
+    InclinedPlane p;
+    p.corner_mm = 1, p.along_slope = way;
+    plane_case(fmt::format("bull R1, 45 deg, {}", way > 0 ? "climbing" : "descending"), p);
+  }
+  for (const double slope : {20.0, 45.0, 80.0}) {
+    InclinedPlane p;
+    p.taper_deg = 5, p.slope_deg = slope;
+    plane_case(fmt::format("tapered ball, {} deg", slope), p);
+  }
+}
+
 void grid() {
   head_of_plane();
   InclinedPlane p;
@@ -120,6 +147,23 @@ void wall_case(const FinishedWall& w) {
   }
   std::printf("  largest difference %.3f um, %.2f %% of the largest error\n", worst, 100 * worst / largest);
   std::fflush(stdout);
+}
+
+void uneven_walls() {
+  for (const double helix : {30.0, 0.0})
+    for (const bool up : {true, false}) {
+      FinishedWall w;
+      w.helix_deg = helix, w.up = up;
+      w.pitch_deg = {85, 97, 83, 95};
+      std::printf("pitch 85, 97, 83, 95\n");
+      wall_case(w);
+      w.pitch_deg = {90, 90, 90, 90}, w.run_out_deg = 20;
+      for (const double run_out : {0.003, 0.01}) {
+        w.run_out_mm = run_out;
+        std::printf("run-out %g um\n", 1000 * run_out);
+        wall_case(w);
+      }
+    }
 }
 
 void walls() {
@@ -158,6 +202,32 @@ void walls() {
   }
 }
 
+/// Both walls of a slot.
+void slots() {
+  for (const double helix : {30.0, 45.0})
+    for (const bool up : {true, false}) {
+      FinishedWall w;
+      w.radial_mm = 12, w.helix_deg = helix, w.up = up;
+      wall_case(w);
+    }
+}
+
+/// Unequal pitch and run-out, on planes and walls.
+void uneven() {
+  head_of_plane();
+  for (const double slope : {45.0, 60.0}) {
+    InclinedPlane p;
+    p.slope_deg = slope, p.pitch_deg = {170, 190};
+    plane_case(fmt::format("{} deg, pitch 170, 190", slope), p);
+    p.pitch_deg = {180, 180}, p.run_out_deg = 20;
+    for (const double run_out : {0.003, 0.01}) {
+      p.run_out_mm = run_out;
+      plane_case(fmt::format("{} deg, run-out {} um", slope, 1000 * run_out), p);
+    }
+  }
+  uneven_walls();
+}
+
 /// The inclined plane on coarser and finer voxels, the envelope's samples as fine as predict sets them.
 void voxels() {
   const CutFigures want = drawn_figures(InclinedPlane{});
@@ -190,7 +260,9 @@ void voxels() {
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   if (what == "plane") planes();
+  if (what == "cutters") cutters();
+  if (what == "uneven") uneven();
   if (what == "grid") grid();
-  if (what == "wall") walls();
+  if (what == "wall") walls(), slots();
   if (what == "voxels") voxels();
 }

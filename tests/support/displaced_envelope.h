@@ -19,9 +19,13 @@ namespace camber::testing {
 /// A cut: the cutter, where it stands at every tooth passing, and what it meets.
 struct DrawnCut {
   double radius = 3, corner = 3;  ///< of the cutter; corner = radius: ball, 0: flat
+  double taper_rad = 0;           ///< of a ball's wall from the axis
   int flutes = 2;
   double helix_rad = 0;
-  double top = 1;  ///< nothing is cut higher than this above the tip
+  /// Where teeth that are not even stand from the first one, against the turning direction; empty: even teeth.
+  std::vector<double> tooth_at_rad{};
+  double run_out_mm = 0, run_out_rad = 0;  ///< offset of the axis, its direction from the first tooth; with the former
+  double top = 1;                          ///< nothing is cut higher than this above the tip
   std::vector<removal::Stamp> stamps;
   Vec3 lo = Vec3::Constant(-1e9), hi = Vec3::Constant(1e9);  ///< of the blank's box
   /// What the pass before has left: the same stamps with the cutter smaller by this; 0: the whole box.
@@ -32,16 +36,51 @@ struct DrawnCut {
   double overhang = 40, bending_stiffness_N_mm2 = 1, root_stiffness_N_per_mm = 1e300;
   int steps_per_pitch = 360;
   double edge_step = 0.03;
+
+  bool even() const { return tooth_at_rad.empty(); }
+  int steps() const { return steps_per_pitch * flutes; }  ///< a turn
+  /// Of a turn, after which the force is the same again.
+  int instants() const { return even() ? steps_per_pitch : steps(); }
+  std::size_t tooth_of(std::size_t passing) const { return even() ? 0 : passing % tooth_at_rad.size(); }
+  double tooth_rad(std::size_t tooth) const { return even() ? 0.0 : tooth_at_rad[tooth]; }
+  double lag_rad(double z) const { return z * std::tan(helix_rad) / radius; }
+  /// How much further out than the cutter's own radius a tooth turns.
+  double throw_mm(std::size_t tooth, double z) const {
+    return even() ? 0.0 : run_out_mm * std::cos(tooth_at_rad[tooth] + lag_rad(z) - run_out_rad);
+  }
+  /// Where the tip stands as the tooth of a passing cuts: a late tooth comes when the tool is further on.
+  Vec3 tip(std::size_t passing) const {
+    const removal::Stamp& s = stamps[passing];
+    if (even()) return s.tip_mm;
+    const auto tooth = static_cast<double>(tooth_of(passing));
+    return s.tip_mm + (tooth_rad(tooth_of(passing)) * flutes / (2 * kPi) - tooth) * s.feed_per_tooth_mm;
+  }
+  DrawnCutter cutter(double smaller, double step) const {
+    const double r = radius - smaller, inner = std::max(0.0, corner - smaller);
+    return taper_rad > 0 ? drawn_tapered_ball(r, taper_rad, top, step) : drawn_end_mill(r, inner, top, step);
+  }
 };
 
-/// Deflection at z_out under a unit force at z_force, both from the tip: textbook cantilever.
+/// Deflection at z_out under a unit force at z_force, both from the tip: textbook cantilever. Of a tapered bar, whose
+/// stiffness is that of the ball's diameter, by the unit load.
 inline double bar_compliance(const DrawnCut& c, double z_out, double z_force) {
+  if (c.taper_rad > 0) {
+    constexpr int kSlices = 400;
+    const double from = std::max(z_out, z_force), ds = (c.overhang - from) / kSlices;
+    const double wall = std::cos(c.taper_rad) - (1 - std::sin(c.taper_rad)) * std::tan(c.taper_rad);
+    double sum = 1 / c.root_stiffness_N_per_mm;
+    for (int i = 0; i < kSlices; ++i) {
+      const double at = from + (i + 0.5) * ds, wider = wall + at * std::tan(c.taper_rad) / c.radius;
+      sum += (at - z_out) * (at - z_force) * ds / (c.bending_stiffness_N_mm2 * std::pow(wider, 4));
+    }
+    return sum;
+  }
   const double a = c.overhang - z_force, x = c.overhang - z_out;  // from the root
   const double bent = x <= a ? x * x * (3 * a - x) : a * a * (3 * x - a);
   return bent / (6 * c.bending_stiffness_N_mm2) + 1 / c.root_stiffness_N_per_mm;
 }
 
-/// One tooth passing.
+/// One tooth passing; of teeth that are not even one turn.
 struct DrawnPass {
   std::vector<Vec3> force_N;               ///< by instant
   std::vector<std::vector<Vec2>> bend_mm;  ///< [height, 0 to top in equal steps][instant]
@@ -49,10 +88,10 @@ struct DrawnPass {
   Vec3 mean_N = Vec3::Zero();
   double lateral_max_N = 0, chip_mm3 = 0;
 
-  /// Where the cutter's axis is bent to at height z as the edge passes the direction phi.
-  Vec2 bend(double z, double phi, const DrawnCut& c) const {
-    const int n = c.steps_per_pitch;
-    double at = (phi - z * std::tan(c.helix_rad) / c.radius) * n * c.flutes / (2 * kPi);
+  /// Where the cutter's axis is bent to at height z as the edge of a tooth passes the direction phi.
+  Vec2 bend(double z, double phi, const DrawnCut& c, std::size_t tooth = 0) const {
+    const int n = c.instants();
+    double at = (phi - c.tooth_rad(tooth) - c.lag_rad(z)) * c.steps() / (2 * kPi);
     at -= n * std::floor(at / n);
     const int m = static_cast<int>(at) % n, next = (m + 1) % n;
     const double f = at - std::floor(at);
@@ -66,28 +105,39 @@ struct DrawnPass {
   }
 };
 
-inline DrawnPass drawn_pass(const DrawnCut& c, std::size_t now) {
+namespace detail {
+
+/// Adds what the edge of passing `now`'s tooth does all around.
+inline void add_tooth(const DrawnCut& c, std::size_t now, DrawnPass& out) {
   constexpr double kStep = 0.004;
-  const DrawnCutter cutter = drawn_end_mill(c.radius, c.corner, c.top, c.edge_step);
-  const Vec3 tip = c.stamps[now].tip_mm, feed = c.stamps[now].feed_per_tooth_mm;
+  const DrawnCutter cutter = c.cutter(0, c.edge_step);
+  const Vec3 tip = c.tip(now), feed = c.stamps[now].feed_per_tooth_mm;
+  const std::size_t tooth = c.tooth_of(now);
   // Cutters that stand too far away to have cut anything that this one meets are left out.
-  std::vector<Vec3> before, any;
+  struct Before {
+    Vec3 tip;
+    std::size_t tooth;
+  };
+  std::vector<Before> before;
+  std::vector<Vec3> any;
+  const double far = 2 * (c.radius + c.top * std::tan(c.taper_rad)) + 0.1;
   for (std::size_t i = 0; i < c.stamps.size(); ++i) {
-    const Vec3 d = c.stamps[i].tip_mm - tip;
-    if (d.norm() > 2 * c.radius + 0.1) continue;
+    if ((c.stamps[i].tip_mm - tip).norm() > far) continue;
     if (c.pass_before.empty()) any.push_back(c.stamps[i].tip_mm);
-    if (i < now) before.push_back(c.stamps[i].tip_mm);
+    if (i < now) before.push_back({c.tip(i), c.tooth_of(i)});
   }
   for (const removal::Stamp& s : c.pass_before)
-    if ((s.tip_mm - tip).norm() <= 2 * c.radius + 0.1) any.push_back(s.tip_mm);
+    if ((s.tip_mm - tip).norm() <= far) any.push_back(s.tip_mm);
   const auto nearer = [&](const Vec3& a, const Vec3& b) { return (a - tip).norm() < (b - tip).norm(); };
-  std::sort(before.begin(), before.end(), nearer);
+  std::sort(before.begin(), before.end(), [&](const Before& a, const Before& b) { return nearer(a.tip, b.tip); });
   std::sort(any.begin(), any.end(), nearer);
-  const DrawnCutter smaller = drawn_end_mill(c.radius - c.allowance, std::max(0.0, c.corner - c.allowance), c.top, 1);
+  const DrawnCutter smaller = c.cutter(c.allowance, 1);
   const auto in_material = [&](const Vec3& q) {
     if ((q.array() < c.lo.array()).any() || (q.array() > c.hi.array()).any()) return false;
-    for (const Vec3& t : before)
-      if (cutter.inside(std::hypot(q.x() - t.x(), q.y() - t.y()), q.z() - t.z())) return false;
+    for (const Before& b : before) {
+      const double z = q.z() - b.tip.z();
+      if (cutter.inside(std::hypot(q.x() - b.tip.x(), q.y() - b.tip.y()) - c.throw_mm(b.tooth, z), z)) return false;
+    }
     if (c.allowance > 0)
       for (const Vec3& t : any)
         if (smaller.inside(std::hypot(q.x() - t.x(), q.y() - t.y()), q.z() - t.z() - c.allowance)) return false;
@@ -103,41 +153,54 @@ inline DrawnPass drawn_pass(const DrawnCut& c, std::size_t now) {
     }
     return std::min((length + beyond) / 2, longest);
   };
+  // Of teeth that are not even one may take what all of them would.
+  const double thickest = feed.norm() * (c.even() ? 1 : c.flutes) + 2 * c.run_out_mm;
   const auto chip = [&](const Vec3& p, const Vec3& n) {
     if (!in_material(p - 1e-6 * n)) return 0.0;
-    const double inwards = ray(p, n, 2 * feed.norm());
-    if (inwards <= feed.norm()) return inwards;
-    return std::max(0.0, feed.normalized().dot(n)) * ray(p, feed.normalized(), feed.norm());
+    const double inwards = ray(p, n, 2 * thickest);
+    if (inwards <= thickest) return inwards;
+    return std::max(0.0, feed.normalized().dot(n)) * ray(p, feed.normalized(), thickest);
   };
-
-  DrawnPass out;
-  const auto per_pitch = static_cast<std::size_t>(c.steps_per_pitch);
-  const int steps = c.steps_per_pitch * c.flutes;
-  out.force_N.assign(per_pitch, Vec3::Zero());
-  const auto levels = static_cast<std::size_t>(std::max(2.0, std::ceil(c.top / 0.1) + 1));
-  out.height_step = c.top / static_cast<double>(levels - 1);
-  out.bend_mm.assign(levels, std::vector<Vec2>(per_pitch, Vec2::Zero()));
-  for (const auto& e : cutter.edge)
+  const int steps = c.steps();
+  for (const auto& e : cutter.edge) {
+    std::vector<double> compliance;
+    for (std::size_t i = 0; i < out.bend_mm.size(); ++i)
+      compliance.push_back(bar_compliance(c, static_cast<double>(i) * out.height_step, e.z));
     for (int a = 0; a < steps; ++a) {
-      const double phi = 2 * kPi * a / steps + e.z * std::tan(c.helix_rad) / c.radius;
+      const double phi = 2 * kPi * a / steps + c.tooth_rad(tooth) + c.lag_rad(e.z);
       const Vec3 out_of_axis(std::cos(phi), std::sin(phi), 0);
       const Vec3 n = std::sin(e.kappa) * out_of_axis - std::cos(e.kappa) * Vec3::UnitZ();
-      const double h = chip(tip + e.r * out_of_axis + e.z * Vec3::UnitZ(), n);
+      const double h = chip(tip + (e.r + c.throw_mm(tooth, e.z)) * out_of_axis + e.z * Vec3::UnitZ(), n);
       if (h <= 0) continue;
       // Clockwise from above: the edge moves along r x z.
       const Vec3 motion = out_of_axis.cross(Vec3::UnitZ());
       const Vec3 meridian = std::cos(e.kappa) * out_of_axis + std::sin(e.kappa) * Vec3::UnitZ();
       const Vec3 f = -e.width * ((c.k.ktc * h + c.k.kte) * motion + (c.k.krc * h + c.k.kre) * n +
                                  (c.k.kac * h + c.k.kae) * meridian);
-      const std::size_t instant = static_cast<std::size_t>(a) % per_pitch;
+      const std::size_t instant = static_cast<std::size_t>(a % c.instants());
       out.force_N[instant] += f;
-      for (std::size_t i = 0; i < levels; ++i)
-        out.bend_mm[i][instant] +=
-            bar_compliance(c, static_cast<double>(i) * out.height_step, e.z) * Vec2(f.x(), f.y());
+      for (std::size_t i = 0; i < out.bend_mm.size(); ++i)
+        out.bend_mm[i][instant] += compliance[i] * Vec2(f.x(), f.y());
       out.chip_mm3 += h * e.width * e.r * 2 * kPi / steps;
     }
+  }
+}
+
+}  // namespace detail
+
+/// Teeth that are not even: the turn from passing `now` on.
+inline DrawnPass drawn_pass(const DrawnCut& c, std::size_t now) {
+  DrawnPass out;
+  const auto instants = static_cast<std::size_t>(c.instants());
+  out.force_N.assign(instants, Vec3::Zero());
+  const auto levels = static_cast<std::size_t>(std::max(2.0, std::ceil(c.top / 0.1) + 1));
+  out.height_step = c.top / static_cast<double>(levels - 1);
+  out.bend_mm.assign(levels, std::vector<Vec2>(instants, Vec2::Zero()));
+  const std::size_t teeth = c.even() ? 1 : c.tooth_at_rad.size();
+  for (std::size_t j = 0; j < teeth; ++j) detail::add_tooth(c, now + j, out);
+  out.chip_mm3 /= static_cast<double>(teeth);
   for (const Vec3& f : out.force_N) {
-    out.mean_N += f / c.steps_per_pitch;
+    out.mean_N += f / static_cast<double>(instants);
     out.lateral_max_N = std::max(out.lateral_max_N, f.head<2>().norm());
   }
   return out;
@@ -188,26 +251,33 @@ inline void draw_envelope(const DrawnCut& c, std::size_t k, const DrawnPass* pas
   };
   std::vector<Ring> rings;
   if (c.radius > c.corner) rings.push_back({0, 0});
-  const int arc = std::max(1, static_cast<int>(std::ceil(c.corner * kPi / 2 / kFacet)));
+  const double turn = kPi / 2 - c.taper_rad;  // of the rounding
+  const int arc = std::max(1, static_cast<int>(std::ceil(c.corner * turn / kFacet)));
   for (int i = 0; i <= (c.corner > 0 ? arc : 0); ++i) {
-    const double a = c.corner > 0 ? kPi / 2 * i / arc : 0;
+    const double a = c.corner > 0 ? turn * i / arc : 0;
     rings.push_back({c.radius - c.corner + c.corner * std::sin(a), c.corner - c.corner * std::cos(a)});
   }
-  const int wall = static_cast<int>(std::ceil(std::max(0.0, c.top - c.corner) / kFacet));
-  for (int i = 1; i <= wall; ++i) rings.push_back({c.radius, c.corner + (c.top - c.corner) * i / wall});
-  const int around = std::max(1440, c.steps_per_pitch * c.flutes);
+  const Ring end = rings.back();
+  const int wall = static_cast<int>(std::ceil(std::max(0.0, c.top - end.z) / kFacet));
+  for (int i = 1; i <= wall; ++i) {
+    const double up = (c.top - end.z) * i / wall;
+    rings.push_back({end.r + up * std::tan(c.taper_rad), end.z + up});
+  }
+  const int around = std::max(1440, c.steps());
   struct Corner {
     Vec3 place;
     bool close;
   };
   std::vector<Corner> last, line(static_cast<std::size_t>(around) + 1);
-  const Vec3 tip = c.stamps[k].tip_mm;
+  const Vec3 tip = pass ? c.tip(k) : c.stamps[k].tip_mm;
+  const std::size_t tooth = c.tooth_of(k);
   for (const Ring& ring : rings) {
+    const double r = ring.r + (pass ? c.throw_mm(tooth, ring.z) : 0.0);
     for (int i = 0; i <= around; ++i) {
       const double phi = 2 * kPi * i / around;
-      Vec3 p = tip + Vec3(ring.r * std::cos(phi), ring.r * std::sin(phi), ring.z) - s.origin;
+      Vec3 p = tip + Vec3(r * std::cos(phi), r * std::sin(phi), ring.z) - s.origin;
       const bool close = p.dot(s.n) < clearance;
-      if (pass && close) p.head<2>() += pass->bend(std::min(ring.z, c.top), phi, c);
+      if (pass && close) p.head<2>() += pass->bend(std::min(ring.z, c.top), phi, c, tooth);
       line[static_cast<std::size_t>(i)] = {{p.dot(s.u), p.dot(s.v), p.dot(s.n)}, close};
     }
     if (!last.empty())

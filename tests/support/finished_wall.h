@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "deflection/cut.h"
+#include "deflection/predict.h"
 #include "removal/surface_map.h"
 #include "tests/support/cutting.h"
 #include "tests/support/displaced_envelope.h"
@@ -12,22 +13,26 @@
 namespace camber::testing {
 
 namespace detail {
-constexpr double kMiddle = 6;   ///< of the block
 constexpr double kEdge = 0.25;  ///< above and below: the map leaves out the blank's edges
-}
-
+constexpr double kRead = 1;     ///< to both sides of the block's middle, mm
+}  // namespace detail
 
 /// One pass along the wall y = 0 of a block at y > 0, by a tool at y < 0.
 struct FinishedWall {
   double diameter_mm = 10, helix_deg = 30, height_mm = 6, radial_mm = 0.5, feed_mm = 0.05;
   int flutes = 4;
-  bool up = true;  ///< up (conventional) or down (climb) milling
+  bool up = true;                          ///< up (conventional) or down (climb) milling
+  std::vector<double> pitch_deg{};         ///< from each tooth to the next, of teeth that are not even
+  double run_out_mm = 0, run_out_deg = 0;  ///< with pitch_deg
   double voxel_mm = 0.1;
   Vec3 offset_mm = Vec3::Zero();  ///< of path and stock against the grid
-  double edge_step_mm = 0.1;      ///< Camber's
+  double edge_step_mm = 0;        ///< Camber's; 0: as predict sets it
   double slice_mm = 0.5;          ///< of the height, over which the error is averaged
   int drawn_steps = 1440;         ///< a turn
   double rotation_step_deg = 1;   ///< Camber's
+
+  /// Of the block: what cuts ahead of the places that are read, a radius away at most, is still all in it.
+  double middle_mm() const { return diameter_mm / 2 + detail::kRead + 1; }
 };
 
 struct WallFigures {
@@ -37,19 +42,26 @@ struct WallFigures {
 };
 
 inline DrawnCut drawn(const FinishedWall& w) {
-  constexpr double kBelow = 0.53, kLength = 12;  // the tip runs below the block
+  constexpr double kBelow = 0.53;  // the tip runs below the block
+  const double length = 2 * w.middle_mm();
   DrawnCut c;
   c.radius = w.diameter_mm / 2, c.corner = 0;
   c.flutes = w.flutes;
   c.helix_rad = rad_from_deg(w.helix_deg);
+  double at = 0;
+  for (const double pitch : w.pitch_deg) {
+    c.tooth_at_rad.push_back(at);
+    at += rad_from_deg(pitch);
+  }
+  c.run_out_mm = w.run_out_mm, c.run_out_rad = rad_from_deg(w.run_out_deg);
   c.top = w.height_mm + kBelow;
   c.k = {2000, 700, 300, 15, 12, 3};
   c.overhang = 40;
   c.bending_stiffness_N_mm2 = 600000 * kPi / 64 * std::pow(0.8 * w.diameter_mm, 4);
   c.lo = w.offset_mm + Vec3(0, -w.radial_mm, 0);
-  c.hi = w.offset_mm + Vec3(kLength, 2, w.height_mm);
+  c.hi = w.offset_mm + Vec3(length, 2, w.height_mm);
   c.steps_per_pitch = w.drawn_steps / w.flutes;
-  const double from = -c.radius - 0.2, to = kLength + c.radius + 0.2;
+  const double from = -c.radius - 0.2, to = length + c.radius + 0.2;
   const Vec3 tip = w.offset_mm + Vec3(0, -c.radius, -kBelow);
   const Vec3 a = tip + Vec3(w.up ? from : to, 0, 0), b = tip + Vec3(w.up ? to : from, 0, 0);
   add_row(c.stamps, a, b, w.feed_mm);
@@ -82,7 +94,7 @@ struct Slices {
 /// The stamp that stands in the middle of the block.
 inline std::size_t middle_stamp(const FinishedWall& w, const DrawnCut& c) {
   std::size_t best = 0;
-  const auto off = [&](std::size_t k) { return std::abs(c.stamps[k].tip_mm.x() - w.offset_mm.x() - detail::kMiddle); };
+  const auto off = [&](std::size_t k) { return std::abs(c.stamps[k].tip_mm.x() - w.offset_mm.x() - w.middle_mm()); };
   for (std::size_t k = 1; k < c.stamps.size(); ++k)
     if (off(k) < off(best)) best = k;
   return best;
@@ -95,13 +107,14 @@ inline WallFigures drawn_figures(const FinishedWall& w) {
   const std::size_t middle = detail::middle_stamp(w, cut);
   const DrawnPass pass = drawn_pass(cut, middle);
   WallFigures f{pass.lateral_max_N, pass.mean_N, {}};
-  constexpr int kAlong = 20;
+  constexpr int kInFeed = 20;
+  const int along = kInFeed * static_cast<int>(std::max<std::size_t>(1, cut.tooth_at_rad.size()));
   const double step = 0.05;
-  const DrawnSurface lattice(w.offset_mm + Vec3(detail::kMiddle, 0, step / 2), Vec3::UnitX(), Vec3::UnitZ(), kAlong,
-                             static_cast<int>(std::lround(w.height_mm / step)), w.feed_mm / kAlong, step);
+  const DrawnSurface lattice(w.offset_mm + Vec3(w.middle_mm(), 0, step / 2), Vec3::UnitX(), Vec3::UnitZ(), along,
+                             static_cast<int>(std::lround(w.height_mm / step)), w.feed_mm / kInFeed, step);
   std::vector<std::size_t> stamps;
   for (std::size_t k = 0; k < cut.stamps.size(); ++k)
-    if (std::abs(cut.stamps[k].tip_mm.x() - w.offset_mm.x() - detail::kMiddle) < 1.3) stamps.push_back(k);
+    if (std::abs(cut.stamps[k].tip_mm.x() - w.offset_mm.x() - w.middle_mm()) < 1.3) stamps.push_back(k);
   // In the steady middle every stamp bends alike.
   const auto error = drawn_error_mm(
       cut, [&](std::size_t) -> const DrawnPass& { return pass; }, stamps, lattice, 0.1);
@@ -118,7 +131,9 @@ inline WallFigures drawn_figures(const FinishedWall& w) {
 
 inline WallFigures camber_figures(const FinishedWall& w) {
   const DrawnCut cut = drawn(w);
-  const auto tool = make_tool(machine::ToolType::flat, w.diameter_mm, w.flutes, w.helix_deg);
+  auto tool = make_tool(machine::ToolType::flat, w.diameter_mm, w.flutes, w.helix_deg);
+  for (const double pitch : w.pitch_deg) tool.pitch_rad.push_back(rad_from_deg(pitch));
+  tool.runout_mm = w.run_out_mm, tool.runout_angle_rad = rad_from_deg(w.run_out_deg);
   const machine::Material material{cut.k.ktc, cut.k.krc, cut.k.kac, cut.k.kte, cut.k.kre, cut.k.kae};
   removal::Stock stock = make_box(cut.lo, cut.hi, w.voxel_mm);
   removal::Stock target(stock);
@@ -128,21 +143,23 @@ inline WallFigures camber_figures(const FinishedWall& w) {
   removal::SurfaceMap map(target, places, stock);
   deflection::CutOptions options;
   options.coupling = machine::Coupling::rigid;
-  options.envelope_step_mm = w.edge_step_mm;
+  options.envelope_step_mm = w.edge_step_mm > 0 ? w.edge_step_mm : deflection::envelope_step_mm({}, tool);
   options.rotation_step_rad = rad_from_deg(w.rotation_step_deg);
   options.surface = &map;
   const auto result = deflection::cut(stock, tool, material, cut.stamps, {}, 0, options);
   WallFigures f;
   const std::size_t middle = detail::middle_stamp(w, cut);
-  constexpr std::size_t kAround = 10;
-  for (std::size_t k = middle - kAround; k <= middle + kAround; ++k) {
-    f.lateral_max_N += result.loads[k].lateral_max_N / (2 * kAround + 1);
-    f.mean_N += result.loads[k].force_mean_N / (2 * kAround + 1);
+  const std::size_t around = cut.even() ? 21 : static_cast<std::size_t>(6 * w.flutes);  // whole turns
+  for (std::size_t k = middle - around / 2; k < middle - around / 2 + around; ++k) {
+    const double share = 1 / static_cast<double>(around), peak = result.loads[k].lateral_max_N;
+    f.lateral_max_N = cut.even() ? f.lateral_max_N + share * peak : std::max(f.lateral_max_N, peak);
+    f.mean_N += share * result.loads[k].force_mean_N;
   }
   detail::Slices slices(w);
   for (const auto& p : map.take()) {
     const Vec3 q = p.place_mm - w.offset_mm;
-    if (std::abs(q.y()) < 0.05 && std::abs(q.x() - detail::kMiddle) < 1) slices.add(q.z(), p.error_mm, p.area_mm2);
+    if (std::abs(q.y()) < 0.05 && std::abs(q.x() - w.middle_mm()) < detail::kRead)
+      slices.add(q.z(), p.error_mm, p.area_mm2);
   }
   f.error_um = slices.means();
   return f;

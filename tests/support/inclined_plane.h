@@ -13,11 +13,17 @@
 
 namespace camber::testing {
 
-/// Rows along X over the plane z = y tan(slope), its figures read in the steady middle.
+/// Rows over the plane z = y tan(slope), its figures read in the steady middle.
 struct InclinedPlane {
   double slope_deg = 45, feed_mm = 0.15, row_mm = 0.3, allowance_mm = 0.2;
-  bool upwards = true;  ///< rows climb; else they descend
+  bool upwards = true;  ///< rows along X follow each other up the slope; else down
   double along_x = -1;  ///< direction of the feed; 0: to and fro
+  double along_slope =
+      0;  ///< 1: rows run up the slope, -1: down, and follow each other along X (upwards) or -X; 0: along X
+  double corner_mm = 0;                    ///< of a bull-nose cutter; 0: a ball
+  double taper_deg = 0;                    ///< of a ball's wall
+  std::vector<double> pitch_deg{};         ///< from each tooth to the next, of teeth that are not even
+  double run_out_mm = 0, run_out_deg = 0;  ///< with pitch_deg
   int flutes = 2;
   double helix_deg = 30;
   double voxel_mm = 0.1;
@@ -26,6 +32,8 @@ struct InclinedPlane {
   double rotation_step_deg = 1;
   int drawn_steps = 360;  ///< a pitch
   double drawn_edge = 0.03;
+
+  double corner() const { return corner_mm > 0 ? corner_mm : radius_mm; }
 };
 
 /// Means are per tooth passing; error: signed, of the surface's area.
@@ -41,12 +49,19 @@ inline DrawnCut drawn(const InclinedPlane& p) {
   constexpr double kLength = 7, kAlong = 6.3, kRun = 1.8;
   const double a = rad_from_deg(p.slope_deg), c = std::cos(a), s = std::sin(a);
   DrawnCut cut;
-  cut.radius = cut.corner = p.radius_mm;
+  cut.radius = p.radius_mm, cut.corner = p.corner();
   cut.helix_rad = rad_from_deg(p.helix_deg);
   cut.flutes = p.flutes;
-  constexpr double kBeyond = 0.75;  // the contact, along the profile, rad; on the shank from a quarter turn on
-  const double end = a + kBeyond, shank = std::max(0.0, end - kPi / 2);
-  cut.top = p.radius_mm * (1 - std::cos(end - shank) + shank);
+  const double rc = p.corner(), bottom = p.radius_mm - rc;
+  // Above the contact the cutter meets the allowance, and the next row's of it.
+  const double beyond = std::max(0.75, std::acos(1 - 1.5 * p.allowance_mm / rc) + p.row_mm / rc);  // rad of the profile
+  const double turn = kPi / 2 - rad_from_deg(p.taper_deg);
+  const double end = a + beyond, leaning = std::max(turn - a, 1e-3);
+  // A wall that leans but little from the plane meets the allowance high up.
+  const double shank =
+      leaning < beyond ? std::max(end - turn, (1.2 * p.allowance_mm / std::tan(leaning) + p.row_mm) / rc) : 0;
+  cut.taper_rad = rad_from_deg(p.taper_deg);
+  cut.top = rc * (1 - std::cos(end - shank) + shank);
   cut.allowance = p.allowance_mm;
   cut.k = {2000, 700, 0, 15, 15, 0};
   cut.overhang = 40;
@@ -55,13 +70,29 @@ inline DrawnCut drawn(const InclinedPlane& p) {
   cut.bending_stiffness_N_mm2 = 600000 * kPi / 64 * std::pow(0.8 * 2 * p.radius_mm, 4);
   cut.lo = p.offset_mm + Vec3(0, 0, -1.5);
   cut.hi = p.offset_mm + Vec3(kLength, kAlong * c, kAlong * s + 1);
-  const int rows = static_cast<int>((kAlong + 4) / p.row_mm);
+  double at = 0;
+  for (const double pitch : p.pitch_deg) {
+    cut.tooth_at_rad.push_back(at);
+    at += rad_from_deg(pitch);
+  }
+  cut.run_out_mm = p.run_out_mm, cut.run_out_rad = rad_from_deg(p.run_out_deg);
+  // The tip where the rounding touches the plane at x, and `up` along the slope.
+  const auto tip = [&](double x, double up) -> Vec3 {
+    return p.offset_mm + Vec3(x, up * c - rc * s - bottom, up * s + rc * c - rc);
+  };
+  constexpr double kBeside = 2;
+  const double across = (p.along_slope != 0 ? kLength : kAlong) + 2 * kBeside;
+  const int rows = static_cast<int>(across / p.row_mm);
   for (int r = 0; r < rows; ++r) {
-    const double at = -2.0 + p.row_mm * (p.upwards ? r : rows - 1 - r);
-    const Vec3 tip = p.offset_mm + Vec3(0, at * c - p.radius_mm * s, at * s + p.radius_mm * c - p.radius_mm);
+    const double row = -kBeside + p.row_mm * (p.upwards ? r : rows - 1 - r);
+    if (p.along_slope != 0) {
+      const Vec3 low = tip(row, -kRun), high = tip(row, kAlong + kRun);
+      add_row(cut.stamps, p.along_slope > 0 ? low : high, p.along_slope > 0 ? high : low, p.feed_mm);
+      continue;
+    }
     const double way = p.along_x != 0 ? p.along_x : r % 2 ? 1 : -1;
-    const Vec3 from = tip + Vec3(way > 0 ? -kRun : kLength + kRun, 0, 0);
-    add_row(cut.stamps, from, from + Vec3(way * (kLength + 2 * kRun), 0, 0), p.feed_mm);
+    const Vec3 left = tip(-kRun, row), right = tip(kLength + kRun, row);
+    add_row(cut.stamps, way > 0 ? left : right, way > 0 ? right : left, p.feed_mm);
   }
   return cut;
 }
@@ -74,7 +105,7 @@ constexpr double kSFrom = 2.7, kSTo = 3.9;  ///< along the slope
 inline double along_slope(const InclinedPlane& p, const Vec3& tip) {
   const double a = rad_from_deg(p.slope_deg);
   const Vec3 q = tip - p.offset_mm;
-  return (q.y() + p.radius_mm * std::sin(a)) / std::cos(a);
+  return (q.y() + p.corner() * std::sin(a) + p.radius_mm - p.corner()) / std::cos(a);
 }
 
 /// Stamps whose figures are read.
@@ -146,7 +177,13 @@ inline CutFigures drawn_figures(const InclinedPlane& p) {
 /// Camber's figures.
 inline CutFigures camber_figures(const InclinedPlane& p) {
   const DrawnCut cut = drawn(p);
-  const auto tool = make_tool(machine::ToolType::ball, 2 * p.radius_mm, p.flutes, p.helix_deg);
+  auto tool = make_tool(p.corner_mm > 0   ? machine::ToolType::bull
+                        : p.taper_deg > 0 ? machine::ToolType::tapered_ball
+                                          : machine::ToolType::ball,
+                        2 * p.radius_mm, p.flutes, p.helix_deg);
+  tool.corner_radius_mm = p.corner_mm, tool.taper_rad = rad_from_deg(p.taper_deg);
+  for (const double pitch : p.pitch_deg) tool.pitch_rad.push_back(rad_from_deg(pitch));
+  tool.runout_mm = p.run_out_mm, tool.runout_angle_rad = rad_from_deg(p.run_out_deg);
   const machine::Material material{2000, 700, 0, 15, 15, 0};
   removal::Stock stock = make_box(cut.lo, cut.hi, p.voxel_mm);
   deflection::sweep(stock, tool, cut.stamps, 0, p.allowance_mm);
@@ -167,7 +204,8 @@ inline CutFigures camber_figures(const InclinedPlane& p) {
   const auto inner = detail::middle(p, cut.stamps, 0);
   for (const std::size_t k : inner) {
     const double share = 1.0 / static_cast<double>(inner.size());
-    f.lateral_max_N += share * result.loads[k].lateral_max_N;
+    const double peak = result.loads[k].lateral_max_N;
+    f.lateral_max_N = cut.even() ? f.lateral_max_N + share * peak : std::max(f.lateral_max_N, peak);
     f.mean_N += share * result.loads[k].force_mean_N;
     f.chip_mm3 += share * result.loads[k].chip_mm3;
   }

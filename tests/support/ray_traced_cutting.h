@@ -50,6 +50,31 @@ inline DrawnCutter drawn_end_mill(double radius, double corner, double top, doub
   return c;
 }
 
+/// A ball of `radius`, then a wall that leans by `taper` from the axis.
+inline DrawnCutter drawn_tapered_ball(double radius, double taper, double top, double step) {
+  DrawnCutter c;
+  c.radius = radius;
+  const double t = std::tan(taper), at_r = radius * std::cos(taper), at_z = radius * (1 - std::sin(taper));
+  c.inside = [=](double r, double z) {
+    if (z <= 0) return false;
+    if (z > at_z) return r < at_r + (z - at_z) * t;
+    return r <= 0 || r * r + (z - radius) * (z - radius) < radius * radius;
+  };
+  const double turn = kPi / 2 - taper;
+  const int arc = static_cast<int>(std::ceil(turn * radius / step));
+  for (int i = 0; i < arc; ++i) {
+    const double k = (i + 0.5) * turn / arc;
+    c.edge.push_back({radius * std::sin(k), radius * (1 - std::cos(k)), k, turn * radius / arc});
+  }
+  const double rise = std::max(0.0, top - at_z);
+  const int wall = static_cast<int>(std::ceil(rise / std::cos(taper) / step));
+  for (int i = 0; i < wall; ++i) {
+    const double up = (i + 0.5) * rise / wall;
+    c.edge.push_back({at_r + up * t, at_z + up, turn, rise / std::cos(taper) / wall});
+  }
+  return c;
+}
+
 /// A flat of tip_radius, then a cone at half_angle to the axis up to `radius`, then a wall.
 inline DrawnCutter drawn_chamfer(double tip_radius, double radius, double half_angle, double top, double step) {
   DrawnCutter c;
