@@ -148,7 +148,7 @@ void draw_between_steps(const double* x, const double* y, std::size_t count, flo
 void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips,
                               std::size_t passing, const Vec3& feed, ToothPass& out, std::span<float> fine) const {
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
-  if (with_feedback_ || !teeth_.even()) {
+  if (!teeth_.even()) {
     evaluate(removal::chips_of(blocks, chips), passing, feed, out);
     std::vector<double> x(steps), y(steps);
     for (std::size_t n = 0; n < node_height_mm_.size() && !fine.empty(); ++n) {
@@ -218,8 +218,6 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
     out.force_N[m] = {sums[m], sums[row + m], sums[2 * row + m]};
     out.work_Nmm += out.torque_Nmm[m] * 2 * kPi / envelope_.steps;
   }
-  out.feedback.clear();
-  out.feedback_before.clear();
   out.deflection_mm.clear();
 }
 
