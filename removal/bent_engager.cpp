@@ -107,9 +107,11 @@ void BentEngager::Impl::find_touches(std::size_t k) {
     if (into[i] <= least) continue;
     const auto& patch = envelope.patches[i];
     const double extent = patch.radius_mm + moved;
-    const double reach = std::min(extent + 0.87 * stock.voxel_mm(), 0.999 * stock.band_mm());
+    const double reach = extent + 0.87 * stock.voxel_mm();
     const Vec3 centre = stamp.tip_mm + patch.centre_from_tip;
-    if (centre.z() - reach > stock.max_mm().z() || static_cast<double>(probe->nearest(centre)) > reach) continue;
+    if (centre.z() - reach > stock.max_mm().z()) continue;
+    // A value at the edge of the band tells no more.
+    if (reach < stock.band_mm() && static_cast<double>(probe->nearest(centre)) > reach) continue;
     const Vec3 margin = Vec3::Constant(extent + 1e-3 * stock.voxel_mm());
     const Index3 lo = tile_of(centre - margin, tile_mm), hi = tile_of(centre + margin, tile_mm);
     for (int a = lo[0]; a <= hi[0]; ++a)
