@@ -232,13 +232,19 @@ void StaticEquilibrium::solve_coarse() {
 double StaticEquilibrium::balance_all() {
   place_shifts();
   const auto row = static_cast<Eigen::Index>(2 * nodes_);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, steps_, 32), [&](const auto& range) {
+  const auto some = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t m = range.begin(); m < range.end(); ++m) {
       if (stale_[m] == 0) continue;
       balance(m);
       norm_[m] = Eigen::Map<const Eigen::VectorXd>(left_.data() + 2 * m * nodes_, row).lpNorm<Eigen::Infinity>();
     }
-  });
+  };
+  const tbb::blocked_range<std::size_t> all(0, steps_, 16);
+  constexpr std::size_t kWorthThreads = 4000;
+  if (elements_.size() < kWorthThreads)
+    some(all);
+  else
+    tbb::parallel_for(all, some);
   return Eigen::Map<const Eigen::VectorXd>(left_.data(), static_cast<Eigen::Index>(left_.size())).squaredNorm();
 }
 
