@@ -69,14 +69,20 @@ TEST(StaticCut, AToolThatIsPulledIntoItsCutIsTold) {
   tool.overhang_mm = 32;
   tool.youngs_modulus_MPa = 210000;
   const machine::Material pulling{1860, -900, 0, 15, 15, 0};
-  auto stock = testing::make_box({0, -4, -4}, {6, 4, 0}, 0.1);
-  std::vector<removal::Stamp> stamps;
-  testing::add_row(stamps, {-3.1, 0, -3}, {3, 0, -3}, 0.05);
-  for (std::size_t k = 0; k < stamps.size(); ++k) stamps[k].move = static_cast<std::uint32_t>(k / 10);
-  const CutResult result = cut(stock, tool, pulling, stamps, {}, 0, {});
-  EXPECT_GT(result.unsettled, 0u);
-  ASSERT_FALSE(result.unsettled_moves.empty());
-  EXPECT_GT(result.unsettled_moves.front(), 0u);
+  const auto slot = [&](double depth) {
+    auto stock = testing::make_box({0, -4, -4}, {3, 4, 0}, 0.1);
+    std::vector<removal::Stamp> stamps;
+    testing::add_row(stamps, {-3.1, 0, -depth}, {-1.5, 0, -depth}, 0.05);
+    for (std::size_t k = 0; k < stamps.size(); ++k) stamps[k].move = static_cast<std::uint32_t>(100 + k / 10);
+    return cut(stock, tool, pulling, stamps, {}, 0, {});
+  };
+  const CutResult shallow = slot(0.1), deep = slot(3);
+  EXPECT_EQ(shallow.unsettled, 0u);
+  EXPECT_TRUE(shallow.unsettled_moves.empty());
+  EXPECT_GT(deep.unsettled, 0u);
+  ASSERT_FALSE(deep.unsettled_moves.empty());
+  EXPECT_GE(deep.unsettled_moves.front(), 100u);
+  EXPECT_LE(deep.unsettled_moves.back(), 103u);
 }
 
 }  // namespace
