@@ -117,7 +117,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
 
   if (!options.quiet) fmt::print("{}", report::predict_text(program, prediction, compute_s));
   failed.throw_if_errors();
-  const std::string unsettled = report::unsettled_sentence(prediction);
+  const std::string unsettled = report::unsettled_sentence(program, prediction);
   if (unsettled.empty()) return kDone;
   print_error(unsettled);
   return kNumbersDidNotWorkOut;

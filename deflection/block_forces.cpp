@@ -288,8 +288,6 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
     out.force_N[m] = {sums.of(0)[m], sums.of(1)[m], sums.of(2)[m]};
     out.work_Nmm += out.torque_Nmm[m] * 2 * kPi / turn;
   }
-  out.feedback.clear();
-  out.feedback_before.clear();
   out.deflection_mm.clear();
 }
 

@@ -9,16 +9,15 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <Eigen/LU>
 
 #include "deflection/beam.h"
+#include "deflection/static_cut.h"
 #include "deflection/tooth_marks.h"
 #include "removal/engager.h"
 #include "removal/stretch.h"
 
 namespace camber::deflection {
 
-using removal::Engagement;
 using removal::EnvelopeGrid;
 using removal::ShiftTable;
 using removal::Stamp;
@@ -105,7 +104,7 @@ class Cutter {
         model_(envelope_, material, beam_of(tool),
                node_heights(top_mm_, std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm))),
                options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
-               options.axis_compliance_mm_per_N, options.coupling == machine::Coupling::static_) {
+               options.axis_compliance_mm_per_N) {
     if (!options.blank) own_blank_.emplace(stock);
     blank_ = options.blank ? options.blank : &*own_blank_;
     if (const Teeth teeth(tool); !teeth.even() && !options.drilling) tooth_marks_.emplace(envelope_, teeth);
@@ -116,60 +115,35 @@ class Cutter {
   void cut(std::span<const Stamp> all, std::size_t from, std::size_t count, std::span<const Contact> contacts,
            std::int32_t first_id, CutResult& result) {
     const std::span<const Stamp> stamps = all.subspan(from, count);
-    passings_ = from;
     // Rigid: every row is written anew, and a hole's are not read.
     if (!rigid_ || shifts_.stamps != stamps.size())
       shifts_ = ShiftTable(stamps.size(), (rigid_ ? kFine : 1) * model_.steps(), model_.node_height_mm());
     ShiftTable& shifts = shifts_;
     if (!last_row_.empty()) std::copy(last_row_.begin(), last_row_.end(), shifts.row(-1));
-    // The last loaded stamp's state is the first guess for all.
-    if (!rigid_ && !guess_row_.empty())
-      for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
-        std::copy(guess_row_.begin(), guess_row_.end(), shifts.row(k));
     std::vector<StampLoad> loads(stamps.size());
-    if (rigid_) {
+    if (rigid_)
       engage(all, from, shifts, loads, first_id, result);
-    } else {
-      Stretch stretch(stock_, blank_, envelope_, all, from, count,
-                      {.first_id = first_id, .bent_before_mm = most_bent_mm_});
-      const Engagement engagement = settle(stretch, stamps, shifts, loads, result);
-      for (std::size_t k = 0; k < count; ++k) keep_turn(engagement.of(k), stamps[k], from + k, result);
-      result.stock_mm3 += stretch.commit();
-    }
+    else
+      settle(all, from, shifts, loads, first_id, result);
     if (tooth_marks_) {
-      leave_uneven(stamps, shifts, contacts, first_id + static_cast<std::int32_t>(from), loads);
+      leave_uneven(stamps, from, shifts, contacts, first_id + static_cast<std::int32_t>(from), loads);
     } else {
       if (options_.surface) mark(stamps, shifts, first_id + static_cast<std::int32_t>(from));
       tell_contacts(envelope_, shifts, contacts, loads);
     }
     for (const StampLoad& load : loads) result.chip_mm3 += load.chip_mm3;
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
-    for (std::ptrdiff_t k = 0; !rigid_ && k < static_cast<std::ptrdiff_t>(stamps.size()); ++k)
-      most_bent_mm_ = std::max(most_bent_mm_, shifts.largest_mm(k));
     const float* last = shifts.row(static_cast<std::ptrdiff_t>(stamps.size()) - 1);
     last_row_.assign(last, last + shifts.row_size());
-    for (std::ptrdiff_t k = static_cast<std::ptrdiff_t>(stamps.size()) - 1; k >= 0; --k)
-      if (loads[static_cast<std::size_t>(k)].chip_mm3 > 0) {
-        guess_row_.assign(shifts.row(k), shifts.row(k) + shifts.row_size());
-        break;
-      }
   }
 
   /// Leaves the stock as cut.
   void finish(CutResult& result) {
     if (engager_) result.stock_mm3 += engager_->commit();
+    if (static_cut_) result.stock_mm3 += static_cut_->commit();
   }
 
  private:
-  static constexpr double kFall = 0.4;  ///< a round should bring the change down by this share of its step
-  static constexpr double kShorter = 0.7;
-  static constexpr double kLeastShare = 0.3;  ///< of a Newton step
-
-  /// Over the loaded rotation steps of a stretch.
-  struct Change {
-    double rms_um = 0, size_um = 0;
-  };
-
   /// Deflection straight from the chips.
   void engage(std::span<const Stamp> all, std::size_t from, ShiftTable& shifts, std::vector<StampLoad>& loads,
               std::int32_t first_id, CutResult& result) {
@@ -198,18 +172,18 @@ class Cutter {
           deflection_at(envelope, shifts, shifts.row(static_cast<std::ptrdiff_t>(k)), contacts[k]);
   }
 
-  /// Marks and contacts of teeth that are not even. Rows are as many times as long as there are teeth, and as many
-  /// times fewer at once.
-  void leave_uneven(std::span<const Stamp> stamps, const ShiftTable& shifts, std::span<const Contact> contacts,
-                    std::int32_t first_id, std::span<StampLoad> loads) const {
+  /// Marks and contacts of teeth that are not even, after `passings` tooth passings. Rows are as many times as long as
+  /// there are teeth, and as many times fewer at once.
+  void leave_uneven(std::span<const Stamp> stamps, std::size_t passings, const ShiftTable& shifts,
+                    std::span<const Contact> contacts, std::int32_t first_id, std::span<StampLoad> loads) const {
     const std::size_t part = stamps.size() / static_cast<std::size_t>(envelope_.flutes) + 1;
     for (std::size_t from = 0; from < stamps.size(); from += part) {
       const std::size_t count = std::min(part, stamps.size() - from);
-      ShiftTable own = tooth_marks_->bending(shifts, from, count, passings_ + from);
+      ShiftTable own = tooth_marks_->bending(shifts, from, count, passings + from);
       if (!contacts.empty())
         tell_contacts(tooth_marks_->envelope(), own, contacts.subspan(from, count), loads.subspan(from, count));
       if (!options_.surface) continue;
-      tooth_marks_->add_run_out(own, passings_ + from);
+      tooth_marks_->add_run_out(own, passings + from);
       options_.surface->mark(tooth_marks_->envelope(), stamps.subspan(from, count), own,
                              first_id + static_cast<std::int32_t>(from));
     }
@@ -227,29 +201,28 @@ class Cutter {
     }
   }
 
-  /// Static equilibrium: delta = C F(chip(delta)) of all stamps of the stretch, by Newton steps. A shift changes this
-  /// stamp's chip and, with the other sign, the next one's.
-  Engagement settle(Stretch& bent, std::span<const Stamp> stamps, ShiftTable& shifts, std::vector<StampLoad>& loads,
-                    CutResult& result) const {
-    double share = 1, change_before_um = std::numeric_limits<double>::infinity();
-    std::vector<ToothPass> passes(stamps.size());
-    Engagement engagement;
-    for (int round = 1; round <= options_.max_rounds; ++round) {
-      engagement = bent.carve(&shifts);
-      tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
-        model_.evaluate(engagement.of(k), passings_ + k, stamps[k].feed_per_tooth_mm, passes[k]);
-        loads[k] = summarize(passes[k]);
-        loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, engagement.of(k));
-      });
-      const Change change = newton_step(stamps, passes, share, shifts);
-      result.rounds_max = std::max(result.rounds_max, round);
-      if (change.rms_um < std::max(options_.settle_um, options_.settle_share * change.size_um)) return engagement;
-      // What swings from round to round is stilled by shorter steps.
-      if (change.rms_um > (1 - kFall * share) * change_before_um) share = std::max(kLeastShare, kShorter * share);
-      change_before_um = change.rms_um;
+  void settle(std::span<const Stamp> all, std::size_t from, ShiftTable& shifts, std::vector<StampLoad>& loads,
+              std::int32_t first_id, CutResult& result) {
+    if (!static_cut_)
+      static_cut_.emplace(stock_, *blank_, envelope_, model_, all, first_id,
+                          SettleOptions{options_.max_rounds, options_.settle_um, options_.settle_share});
+    static_cut_->start(from, loads.size(), shifts);
+    ToothPass pass;
+    for (std::size_t k = 0; k < loads.size(); ++k) {
+      const Stamp& stamp = all[from + k];
+      const auto passing = static_cut_->cut(k);
+      model_.evaluate(passing.chips, from + k, stamp.feed_per_tooth_mm, pass);
+      loads[k] = summarize(pass);
+      loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, passing.chips);
+      keep_turn(passing.chips, stamp, from + k, result);
+      result.rounds_max = std::max(result.rounds_max, passing.rounds);
+      if (!passing.settled) {
+        if (settled_) ++result.unsettled;
+        if (result.unsettled_moves.empty() || result.unsettled_moves.back() != stamp.move)
+          result.unsettled_moves.push_back(stamp.move);
+      }
+      settled_ = passing.settled;
     }
-    ++result.unsettled;
-    return engagement;
   }
 
   bool in_turn(std::size_t k) const {
@@ -258,42 +231,6 @@ class Cutter {
   }
   void keep_turn(std::span<const removal::Chip> chips, const Stamp& stamp, std::size_t k, CutResult& result) const {
     if (in_turn(k)) model_.add_to_turn(chips, k - *options_.turn_from, k, stamp.feed_per_tooth_mm, result.turn);
-  }
-
-  /// (I - J_k) step_k + J'_k step_(k-1) = residual_k for every rotation step: forward through the stamps.
-  Change newton_step(std::span<const Stamp> stamps, const std::vector<ToothPass>& passes, double share,
-                     ShiftTable& shifts) const {
-    const int steps = model_.steps(), nodes = static_cast<int>(model_.node_height_mm().size());
-    std::vector<Vec2> before(static_cast<std::size_t>(steps * nodes), Vec2::Zero());
-    double change2 = 0, size2 = 0;
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < stamps.size(); ++k) {
-      const ToothPass& pass = passes[k];
-      float* row = shifts.row(static_cast<std::ptrdiff_t>(k));
-      if (stamps[k].first) std::fill(before.begin(), before.end(), Vec2::Zero());
-      for (int m = 0; m < steps; ++m) {
-        const auto at = static_cast<std::size_t>(m);
-        const Eigen::Matrix2d inverse = (Eigen::Matrix2d::Identity() - pass.feedback[at]).inverse();
-        const bool loaded = !pass.force_N[at].isZero();
-        for (int n = 0; n < nodes; ++n) {
-          float* v = row + 2 * (n * steps + m);
-          const float* target = pass.deflection_mm.data() + 2 * (n * steps + m);
-          Vec2& last = before[static_cast<std::size_t>(n * steps + m)];
-          const Vec2 residual(target[0] - v[0], target[1] - v[1]);
-          const Vec2 step = share * inverse * (residual - pass.feedback_before[at] * last / share);
-          last = step;
-          v[0] += static_cast<float>(step.x());
-          v[1] += static_cast<float>(step.y());
-          if (n > 0 || !loaded) continue;
-          change2 += step.squaredNorm();
-          size2 += Vec2(v[0], v[1]).squaredNorm();
-          ++count;
-        }
-      }
-    }
-    if (count == 0) return {};
-    return {1000 * std::sqrt(change2 / static_cast<double>(count)),
-            1000 * std::sqrt(size2 / static_cast<double>(count))};
   }
 
   Stock& stock_;
@@ -306,10 +243,10 @@ class Cutter {
   ToothPassModel model_;
   std::optional<ToothMarks> tooth_marks_;    ///< of teeth that are not even
   std::optional<removal::Engager> engager_;  ///< rigid
-  ShiftTable shifts_;                        ///< of the stretch
-  std::vector<float> last_row_, guess_row_;
-  double most_bent_mm_ = 0;
-  std::size_t passings_ = 0;  ///< tooth passings before the stretch
+  std::optional<StaticCut> static_cut_;
+  bool settled_ = true;  ///< the last tooth passing
+  ShiftTable shifts_;    ///< of the stretch
+  std::vector<float> last_row_;
 };
 
 }  // namespace
@@ -340,7 +277,7 @@ double sweep(Stock& stock, const machine::Tool& tool, std::span<const Stamp> sta
     const std::size_t n = std::min(kStretch, stamps.size() - from);
     Stretch stretch(stock, nullptr, envelope, stamps, from, n,
                     {.engage = false, .shrink_mm = shrink_mm, .first_id = first_id});
-    stretch.carve(nullptr);
+    stretch.carve();
     removed += stretch.commit();
   }
   return removed;

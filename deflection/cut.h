@@ -42,12 +42,12 @@ struct CutOptions {
   machine::Coupling coupling = machine::Coupling::static_;
   double envelope_step_mm = 0.1;
   double rotation_step_rad = kPi / 180;
-  std::size_t stretch_stamps = 400;              ///< solved and kept in memory at a time; static
-  std::size_t rigid_stretch_stamps = 1500;       ///< rigid: engaged and kept in memory at a time
-  int max_rounds = 40;                           ///< of the static solution of one stretch
-  double edge_ramp_mm = 0.002;                   ///< static only, see edge_force
-  double settle_um = 0.1;                        ///< rms change of the deflection at which a stretch is settled, or ...
-  double settle_share = 0.01;                    ///< ... this share of its rms
+  std::size_t stretch_stamps = 400;         ///< kept in memory at a time; static
+  std::size_t rigid_stretch_stamps = 1500;  ///< rigid: engaged and kept in memory at a time
+  int max_rounds = 40;                      ///< of the static solution of one tooth passing
+  double edge_ramp_mm = 0.002;              ///< static only, see edge_force
+  double settle_um = 0.1;                   ///< see SettleOptions
+  double settle_share = 0.01;
   Vec2 axis_compliance_mm_per_N = Vec2::Zero();  ///< of the machine's x and y axes
   bool drilling = false;                         ///< straight down: see deflection/holes.h; with rigid coupling
   std::function<void(double)> progress;          ///< share done, 0 to 1
@@ -58,12 +58,13 @@ struct CutOptions {
 };
 
 struct CutResult {
-  std::vector<StampLoad> loads;  ///< one a stamp
-  double chip_mm3 = 0;           ///< sum over the chips
-  double stock_mm3 = 0;          ///< change of the stock that engagement reads
-  int rounds_max = 0;            ///< of the static solution
-  std::size_t unsettled = 0;     ///< stretches that did not settle
-  TurnForces turn;               ///< empty without CutOptions::turn_from
+  std::vector<StampLoad> loads;                ///< one a stamp
+  double chip_mm3 = 0;                         ///< sum over the chips
+  double stock_mm3 = 0;                        ///< change of the stock that engagement reads
+  int rounds_max = 0;                          ///< of the static solution: readings of a tooth passing's chips
+  std::size_t unsettled = 0;                   ///< stretches of tooth passings without a static equilibrium
+  std::vector<std::uint32_t> unsettled_moves;  ///< of these tooth passings: Stamp::move, each once in a row
+  TurnForces turn;                             ///< empty without CutOptions::turn_from
 };
 
 /// Cuts `stock`: with the bent cutter, or in rigid coupling, where no bending feeds back, with the undeflected one;

@@ -171,6 +171,8 @@ Prediction predict(const Job& job, const Target& target, const MachinedProgram& 
     if (run.kind != removal::RunKind::tapping) out.cut.stock_mm3 += cut_run.stock_mm3;
     out.cut.rounds_max = std::max(out.cut.rounds_max, cut_run.rounds_max);
     out.cut.unsettled += cut_run.unsettled;
+    out.cut.unsettled_moves.insert(out.cut.unsettled_moves.end(), cut_run.unsettled_moves.begin(),
+                                   cut_run.unsettled_moves.end());
     if (cut_options.turn_from) out.cut.turn = std::move(cut_run.turn);
   });
   out.surface = map.take();

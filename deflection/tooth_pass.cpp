@@ -17,18 +17,16 @@ std::vector<double> node_heights(double top_mm, double fluted_length_mm) {
 
 ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material,
                                const Beam& beam, std::vector<double> nodes, double edge_ramp_mm, Teeth teeth,
-                               const Vec2& axis_compliance, bool with_feedback)
+                               const Vec2& axis_compliance)
     : envelope_(envelope),
       material_(material),
       edge_ramp_mm_(edge_ramp_mm),
       axis_compliance_(axis_compliance),
       teeth_(std::move(teeth)),
-      with_feedback_(with_feedback),
       node_height_mm_(std::move(nodes)) {
   for (int j = 0; j < teeth_.count(); ++j) tooth_step_.push_back(teeth_.offset_steps(j, envelope.steps));
   for (const auto& ring : envelope.rings) {
     const double z = ring.profile.height_mm;
-    own_compliance_.push_back(beam.compliance_mm_per_N(z, z));
     for (const double node : node_height_mm_) compliance_.push_back(beam.compliance_mm_per_N(node, z));
   }
 }
@@ -86,14 +84,40 @@ void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const D
     deflection[2 * (n * steps + m)] += (w + axis_compliance_.x()) * force.x();
     deflection[2 * (n * steps + m) + 1] += (w + axis_compliance_.y()) * force.y();
   }
-  if (!with_feedback_) return;
-  const EdgeForce k = edge_force_slope(material_, thickness_mm, edge_ramp_mm_);
-  const Vec3 slope = k.tangential_N * d.tangential + k.radial_N * d.normal + k.axial_N * d.meridian;
-  const Eigen::Matrix2d feedback =
-      -width_mm * (axis_compliance_.array() + own_compliance_[r]).matrix().cwiseProduct(slope.head<2>()) *
-      d.normal.head<2>().transpose();
-  out.feedback[m] += feedback;
-  if (chip.after_tooth) out.feedback_before[m] += feedback;
+}
+
+namespace {
+const removal::Chip& chip_of(const removal::Chip& chip) { return chip; }
+const removal::Chip& chip_of(const removal::BentChip& bent) { return bent.chip; }
+}  // namespace
+
+template <class Chips, class Function>
+void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, const Vec3& feed, Function f) const {
+  const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
+  const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth_.count())) * pitch;
+  for (std::size_t i = 0; i < chips.size(); ++i) {
+    const removal::Chip& chip = chip_of(chips[i]);
+    const int at = static_cast<int>(chip.point % static_cast<std::uint32_t>(turn));
+    if (teeth_.even()) {
+      f(i, at % pitch, static_cast<double>(chip.thickness_mm));
+      continue;
+    }
+    const auto& ring = envelope_.rings[chip.point / static_cast<std::uint32_t>(turn)];
+    const Direction d = direction(chip.point, ring);
+    // Every tooth that passes the point during this tooth passing.
+    for (int j = 0; j < teeth_.count(); ++j) {
+      const int m = ((at - tooth_step_[static_cast<std::size_t>(j)] + gone) % turn + turn) % turn;
+      if (m < pitch) f(i, m, tooth_chip_mm(j, chip, d, ring, feed));
+    }
+  }
+}
+
+void ToothPassModel::edge_elements(std::span<const removal::BentChip> chips, std::size_t passing, const Vec3& feed,
+                                   std::vector<EdgeElement>& out) const {
+  out.clear();
+  for_each_element(chips, passing, feed, [&](std::size_t i, int m, double h) {
+    out.push_back({static_cast<std::uint32_t>(i), m, h});
+  });
 }
 
 void ToothPassModel::evaluate(std::span<const removal::Chip> chips, std::size_t passing, const Vec3& feed,
@@ -103,29 +127,13 @@ void ToothPassModel::evaluate(std::span<const removal::Chip> chips, std::size_t 
   out.force_N.assign(steps, Vec3::Zero());
   out.torque_Nmm.assign(steps, 0.0);
   out.work_Nmm = out.chip_max_mm = out.chip_area_mm2 = 0;
-  out.feedback.assign(with_feedback_ ? steps : 0, Eigen::Matrix2d::Zero());
-  out.feedback_before.assign(with_feedback_ ? steps : 0, Eigen::Matrix2d::Zero());
   out.deflection_mm.assign(nodes * steps * 2, 0.0f);
   std::vector<double> deflection(nodes * steps * 2, 0.0);
-  const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
-  const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth_.count())) * pitch;
-  for (const removal::Chip& chip : chips) {
-    const std::uint32_t r = chip.point / static_cast<std::uint32_t>(turn);
-    const int at = static_cast<int>(chip.point % static_cast<std::uint32_t>(turn));
-    const auto& ring = envelope_.rings[r];
-    const Direction d = direction(chip.point, ring);
-    if (teeth_.even()) {
-      add(chip, chip.thickness_mm, d, r, static_cast<std::size_t>(at) % steps, deflection, out);
-      continue;
-    }
-    // Every tooth that passes the point during this tooth passing.
-    for (int j = 0; j < teeth_.count(); ++j) {
-      const int m = ((at - tooth_step_[static_cast<std::size_t>(j)] + gone) % turn + turn) % turn;
-      if (m >= pitch) continue;
-      const double h = tooth_chip_mm(j, chip, d, ring, feed);
-      if (h > 0) add(chip, h, d, r, static_cast<std::size_t>(m), deflection, out);
-    }
-  }
+  for_each_element(chips, passing, feed, [&](std::size_t i, int m, double h) {
+    if (h <= 0) return;
+    const std::uint32_t r = chips[i].point / static_cast<std::uint32_t>(envelope_.steps);
+    add(chips[i], h, direction(chips[i].point, envelope_.rings[r]), r, static_cast<std::size_t>(m), deflection, out);
+  });
   std::transform(deflection.begin(), deflection.end(), out.deflection_mm.begin(),
                  [](double v) { return static_cast<float>(v); });
 }

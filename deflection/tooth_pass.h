@@ -7,6 +7,7 @@
 #include "deflection/chip_ends.h"
 #include "deflection/teeth.h"
 #include "machine/job.h"
+#include "removal/chip_reader.h"
 #include "removal/cutter.h"
 #include "removal/envelope_blocks.h"
 #include "removal/shift_table.h"
@@ -26,11 +27,6 @@ struct ToothPass {
   double chip_max_mm = 0;            ///< thickest chip
   double chip_area_mm2 = 0;          ///< of the envelope that cuts; the chips' volume over it is the mean thickness
   std::vector<float> deflection_mm;  ///< [nodes][steps][2], as a row of removal::ShiftTable
-  /// Per step, where the model is asked for it: how a lateral shift of the tool changes the deflection through the
-  /// chip, d(deflection)/d(shift).
-  std::vector<Eigen::Matrix2d> feedback;
-  /// The part of it that a shift of the tooth before takes back.
-  std::vector<Eigen::Matrix2d> feedback_before;
 };
 
 /// One turn of the spindle, tooth by tooth. Turned clockwise by angle a from where tooth 1's edge at the tip points
@@ -44,12 +40,23 @@ struct TurnForces {
   std::vector<std::vector<Tooth>> teeth;  ///< [flutes][rotation steps of a turn]
 };
 
+/// One tooth at one point of the envelope.
+struct EdgeElement {
+  std::uint32_t chip = 0;  ///< number of the chip
+  int step = 0;            ///< rotation step at which the tooth stands there
+  double thickness_mm = 0;
+};
+
 /// Turns chips into forces and deflections for one tool in one material.
 class ToothPassModel {
  public:
+  struct Direction {
+    Vec3 tangential, normal, meridian;
+  };
+
   ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material, const Beam& beam,
                  std::vector<double> node_height_mm, double edge_ramp_mm, Teeth teeth,
-                 const Vec2& axis_compliance_mm_per_N = Vec2::Zero(), bool with_feedback = true);
+                 const Vec2& axis_compliance_mm_per_N = Vec2::Zero());
 
   int steps() const { return envelope_.steps_per_pitch; }
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
@@ -61,15 +68,24 @@ class ToothPassModel {
   /// fine_mm: takes the deflection, [nodes][steps * kFine][2], a row of removal::ShiftTable.
   void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
                 const Vec3& feed_mm, ToothPass& out, std::span<float> fine_mm) const;
+  /// The elements that chips are made by; of chips with negative thickness too.
+  void edge_elements(std::span<const removal::BentChip> chips, std::size_t passing, const Vec3& feed_mm,
+                     std::vector<EdgeElement>& out) const;
+  Direction direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
+  const machine::Material& material() const { return material_; }
+  double edge_ramp_mm() const { return edge_ramp_mm_; }
+  /// Of the node's x and y to a force at a ring, mm/N.
+  Vec2 compliance_mm_per_N(std::size_t ring, std::size_t node) const {
+    return axis_compliance_.array() + compliance_[ring * node_height_mm_.size() + node];
+  }
   /// Adds the chips of one tooth passing, the turn's `pass`-th (0 ... flutes - 1), to the turn.
   void add_to_turn(std::span<const removal::Chip> chips, std::size_t pass, std::size_t passing, const Vec3& feed_mm,
                    TurnForces& turn) const;
 
  private:
-  struct Direction {
-    Vec3 tangential, normal, meridian;
-  };
-  Direction direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
+  /// Calls f(chip number, rotation step, thickness) for the elements of chips.
+  template <class Chips, class Function>
+  void for_each_element(const Chips& chips, std::size_t passing, const Vec3& feed, Function f) const;
   /// How much deeper than even teeth tooth j cuts into an older surface, along the normal. One that the same tool cut
   /// lies as deep as the tooth that stands out most left it.
   double deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const;
@@ -95,11 +111,9 @@ class ToothPassModel {
   double edge_ramp_mm_;
   Vec2 axis_compliance_;  ///< of the machine's x and y axes, mm/N, the same at every height
   Teeth teeth_;
-  bool with_feedback_;
   std::vector<int> tooth_step_;  ///< rotation steps from tooth 0 to each tooth
   std::vector<double> node_height_mm_;
-  std::vector<double> compliance_;      ///< [rings][nodes], mm/N
-  std::vector<double> own_compliance_;  ///< [rings]: at the ring's own height
+  std::vector<double> compliance_;  ///< [rings][nodes], mm/N
 };
 
 /// Heights for a cutter that is engaged up to `top_mm`: evenly spaced, where 12 nodes suffice at most 2 mm or a tenth

@@ -180,4 +180,13 @@ double material_voxels(const Tile& tile, double voxel_mm) {
   return sum;
 }
 
+double tile_distance_mm(const Index3& t, double voxel, const CutterShape& shape, const Vec3& tip) {
+  const auto gap = [&](int a) {
+    const double lo = t[a] * Tile::kCore * voxel, hi = lo + Tile::kCore * voxel;
+    return std::max({lo - tip[a], tip[a] - hi, 0.0});
+  };
+  const double top = (t[2] + 1) * Tile::kCore * voxel - tip.z();
+  return shape.distance_mm({std::sqrt(gap(0) * gap(0) + gap(1) * gap(1)), 0, top});
+}
+
 }  // namespace camber::removal

@@ -54,4 +54,7 @@ bool carve_bent(Tile& tile, ColumnCover& cover, const Index3& tile_index, double
 /// Material in a tile's core, in voxels.
 double material_voxels(const Tile& tile, double voxel_mm);
 
+/// Lower bound of the distance between the cutter's envelope and any voxel of a tile.
+double tile_distance_mm(const Index3& tile_index, double voxel_mm, const CutterShape& shape, const Vec3& tip_mm);
+
 }  // namespace camber::removal

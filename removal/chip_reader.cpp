@@ -31,16 +31,12 @@ struct ChipReader::Cell {
     point_mm.z() += mm;
   }
 
-  float trilinear(const std::array<float, Tile::kVolume>& values) const {
-    return removal::trilinear(values.data() + at, share);
-  }
-  Vec3 gradient(const std::array<float, Tile::kVolume>& values, double voxel_mm) const {
-    return trilinear_gradient(values.data() + at, share, voxel_mm);
-  }
+  float trilinear(const float* tile) const { return removal::trilinear(tile + at, share); }
+  Vec3 gradient(const float* tile, double voxel_mm) const { return trilinear_gradient(tile + at, share, voxel_mm); }
 };
 
 ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
-                       std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const ShiftTable* shifts)
+                       std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const ShiftTable& shifts)
     : envelope_(envelope),
       lanes_(lanes),
       view_(lanes.view()),
@@ -65,20 +61,18 @@ ChipReader::Place ChipReader::place_of(std::size_t k) const {
     place.view.feed_mm[a] = static_cast<float>(stamp.feed_per_tooth_mm[a]);
     place.base[static_cast<std::size_t>(a)] = static_cast<int>(base);
   }
-  if (shifts_) {
-    const auto row = static_cast<std::ptrdiff_t>(k);
-    place.view.shift = {shifts_->row(row), stamp.first ? shifts_->row(row) : shifts_->row(row - 1),
-                        static_cast<int>(shifts_->nodes()), shifts_->steps,
-                        shifts_->nodes() > 1 ? static_cast<float>(shifts_->node_height_mm[1]) : 1.0f};
-    place.view.lag_per_mm = static_cast<float>(envelope_.lag_per_mm);
-    place.view.per_rad = static_cast<float>(envelope_.steps / (4 * kPi));
-    place.view.most_tilt_mm = static_cast<float>(kMostTilt * stamp.feed_per_tooth_mm.norm());
-  }
+  const auto row = static_cast<std::ptrdiff_t>(k);
+  place.view.shift = {shifts_.row(row), stamp.first ? shifts_.row(row) : shifts_.row(row - 1),
+                      static_cast<int>(shifts_.nodes()), shifts_.steps,
+                      shifts_.nodes() > 1 ? static_cast<float>(shifts_.node_height_mm[1]) : 1.0f};
+  place.view.lag_per_mm = static_cast<float>(envelope_.lag_per_mm);
+  place.view.per_rad = static_cast<float>(envelope_.steps / (4 * kPi));
+  place.view.most_tilt_mm = static_cast<float>(kMostTilt * stamp.feed_per_tooth_mm.norm());
   return place;
 }
 
 void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t k, std::uint32_t patch,
-                      std::vector<StampChip>& out) const {
+                      std::vector<BentChip>& out) const {
   const Place& place = places_[static_cast<std::size_t>(k)];
   TileView tile_view{stocks.now->distance.data(), {}};
   for (std::size_t a = 0; a < 3; ++a) tile_view.from[a] = tile[a] * Tile::kCore - place.base[a];
@@ -97,37 +91,43 @@ void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t
       const std::uint32_t p = lanes_.point(range.from + from + l);
       const float half = wall_half_mm_[p / static_cast<std::uint32_t>(envelope_.steps)];
       if (field > std::max(air, half)) continue;
+      const Vec3 normal(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]);
+      const std::array<float, 2> along{envelope_.nx[p], envelope_.ny[p]};
       if (-field > std::max(cap, half)) {
-        out.push_back({k, {p, cap, true}});
+        out.push_back({{p, cap, true}, -field, cap, along, along});
         continue;
       }
       Cell cell(reading.cell[l], {reading.fraction[0][l], reading.fraction[1][l], reading.fraction[2][l]}, tile,
                 voxel_mm_);
-      const Vec3 normal(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]);
       std::uint8_t share = 255;
       if (std::abs(field) < half) {
-        const RingPart part = part_in_material(
-            {stocks.blank ? stocks.blank->distance.data() + cell.at : nullptr, stocks.now->stamp.data() + cell.at,
-             cell.share, cell.point_mm, normal, static_cast<double>(half)},
-            all_, first_id_, envelope_.shape, voxel_mm_);
+        const RingPart part =
+            part_in_material({stocks.blank ? stocks.blank + cell.at : nullptr, stocks.now->stamp.data() + cell.at,
+                              cell.share, cell.point_mm, normal, static_cast<double>(half)},
+                             all_, first_id_, envelope_.shape, voxel_mm_);
         share = part.cut_255(static_cast<double>(half));
         if (share == 0) continue;
         cell.move_up(part.middle_mm());
       }
-      const float depth = -field > cap && share == 255 ? cap : thickness(stocks, cell, normal);
-      if (depth > 0) out.push_back({k, {p, std::min(depth, cap), depth > kNearCap * cap, false, share}});
+      const Depth below = -field > cap && share == 255 ? Depth{-field, along} : depth(stocks, cell, normal);
+      if (below.mm > -kNear_mm)
+        out.push_back({{p, std::min(below.mm, cap), below.mm > kNearCap * cap, false, share},
+                       below.mm,
+                       cap,
+                       below.deeper,
+                       along});
     }
   }
 }
 
 /// Thickness of the stock below a point, against the normal, from the fields that meet in its cell (see
 /// removal/stretch.h): the thinnest of distance / slope, where slope is how fast a field falls along the normal.
-float ChipReader::thickness(const TileStocks& stocks, const Cell& cell, const Vec3& normal) const {
+ChipReader::Depth ChipReader::depth(const TileStocks& stocks, const Cell& cell, const Vec3& normal) const {
   constexpr float kSolid = std::numeric_limits<float>::infinity();
-  float below_blank = stocks.blank ? -cell.trilinear(stocks.blank->distance) : kSolid;
+  float below_blank = stocks.blank ? -cell.trilinear(stocks.blank) : kSolid;
   if (stocks.blank && cell.up_mm != 0)
-    below_blank -= static_cast<float>(cell.up_mm * cell.gradient(stocks.blank->distance, voxel_mm_).z());
-  if (below_blank <= 0) return 0;
+    below_blank -= static_cast<float>(cell.up_mm * cell.gradient(stocks.blank, voxel_mm_).z());
+  if (below_blank <= -kNear_mm) return {below_blank, {}};
   CornerLanes corners;
   std::array<std::int32_t, 8> ids;
   std::array<Vec3, 8> tip;
@@ -141,7 +141,7 @@ float ChipReader::thickness(const TileStocks& stocks, const Cell& cell, const Ve
     any |= ids[c] >= 0;
   }
   for (int a = 0; a < 3; ++a) corners.normal[a] = static_cast<float>(normal[a]);
-  if (any && shifts_) {
+  if (any) {
     // For each stamp the mean difference between the field and the straight cutter's, weighted as the corners.
     std::array<float, 8> difference;
     for (std::size_t c = 0; c < 8; ++c) {
@@ -162,27 +162,36 @@ float ChipReader::thickness(const TileStocks& stocks, const Cell& cell, const Ve
       corners.bend[c] = bend / weight;
     }
   }
-  float thinnest = kSolid;
+  const auto of_field = [&](float mm, const Vec3& outwards) {
+    const double fall = static_cast<double>(slope(outwards.dot(normal)));
+    return Depth{mm, {static_cast<float>(outwards.x() / fall), static_cast<float>(outwards.y() / fall)}};
+  };
+  Thinnest thinnest{kSolid, 0};
   if (any)
     thinnest = envelope_.shape.general
                    ? thinnest_general(normal, tip, corners)
                    : kernels_.thinnest(corners, static_cast<float>(envelope_.shape.bottom_length_mm()),
                                        static_cast<float>(envelope_.shape.corner_radius_mm), kLeastSlope);
-  if (thinnest <= 0) return 0;
   // A slope is at most 1: what is deeper than the thinnest so far cannot become thinner.
-  if (below_blank >= thinnest) return thinnest;
-  return std::min(thinnest, below_blank / slope(-cell.gradient(stocks.blank->distance, voxel_mm_).dot(normal)));
+  if (below_blank < std::max(0.0f, thinnest.mm)) {
+    const Vec3 outwards = -cell.gradient(stocks.blank, voxel_mm_);
+    const float mm = below_blank / slope(outwards.dot(normal));
+    if (mm < thinnest.mm) return of_field(mm, outwards);
+  }
+  if (!any) return {kSolid, {}};
+  return of_field(thinnest.mm, envelope_.shape.gradient(-tip[static_cast<std::size_t>(thinnest.corner)]));
 }
 
 /// As Kernels::thinnest, for any cutter.
-float ChipReader::thinnest_general(const Vec3& normal, const std::array<Vec3, 8>& tip,
-                                   const CornerLanes& corners) const {
-  float thinnest = std::numeric_limits<float>::infinity();
+Thinnest ChipReader::thinnest_general(const Vec3& normal, const std::array<Vec3, 8>& tip,
+                                      const CornerLanes& corners) const {
+  Thinnest thinnest{std::numeric_limits<float>::infinity(), 0};
   for (std::size_t c = 0; c < 8; ++c) {
     if (!(corners.valid[c] > 0) || (c > 0 && corners.valid[c - 1] > 0 && tip[c] == tip[c - 1])) continue;
     const auto depth = static_cast<float>(envelope_.shape.distance_mm(-tip[c])) - corners.bend[c];
-    if (depth <= 0) return 0;
-    if (depth < thinnest) thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(-tip[c]).dot(normal)));
+    if (depth >= thinnest.mm) continue;
+    const float along = depth / slope(envelope_.shape.gradient(-tip[c]).dot(normal));
+    if (along < thinnest.mm) thinnest = {along, static_cast<int>(c)};
   }
   return thinnest;
 }

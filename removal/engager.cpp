@@ -13,6 +13,7 @@
 #include "removal/block_reader.h"
 #include "removal/carve.h"
 #include "removal/stamp_order.h"
+#include "removal/store_cut.h"
 #include "removal/tile_arena.h"
 
 namespace camber::removal {
@@ -57,7 +58,6 @@ struct Engager::Impl {
                pitches) {}
 
   void start_tiles();
-  void give_back(std::span<const std::size_t> numbers);
   void read_batch(std::size_t begin, std::size_t end, const ChipSink& sink);
   void cut_batch(std::size_t begin, std::size_t end);
   void cut(std::size_t tile, BatchCut& batch_cut);
@@ -84,22 +84,6 @@ void Engager::Impl::start_tiles() {
   });
   arena.read_tops(static_cast<int>(std::ceil(blocks.widest_mm() / stock.voxel_mm())),
                   [&](std::size_t t) -> const ColumnCover& { return tiles[t]->cover; });
-}
-
-/// Writes tiles to the stock.
-void Engager::Impl::give_back(std::span<const std::size_t> numbers) {
-  std::vector<Stock::StoredTile> changed;
-  std::vector<double> taken(numbers.size(), 0.0);  // voxels
-  for (const std::size_t t : numbers)
-    if (tiles[t]->changed) changed.push_back({arena.index(t), &arena[t]});
-  stock.store(changed);
-  const double voxel = stock.voxel_mm();
-  tbb::parallel_for(std::size_t{0}, numbers.size(), [&](std::size_t i) {
-    auto& tile = tiles[numbers[i]];
-    if (tile->changed) taken[i] = tile->material - material_voxels(arena[numbers[i]], voxel);
-    tile.reset();
-  });
-  for (const double voxels : taken) removed_mm3 += voxels * std::pow(voxel, 3);
 }
 
 void Engager::Impl::read_batch(std::size_t begin, std::size_t end, const ChipSink& sink) {
@@ -170,7 +154,7 @@ void Engager::engage(std::size_t from, std::size_t count, const ChipSink& sink) 
   if (count == 0) return;
   m.order = StampOrder::of_path(m.stamps, m.envelope.shape);
   m.arena.load(m.stock, m.blank, m.envelope.shape, m.stamps,
-               [&](std::span<const std::size_t> tiles) { m.give_back(tiles); });
+               [&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); });
   m.start_tiles();
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
     const std::int32_t batch = m.order.batch(static_cast<std::int32_t>(begin));
@@ -182,7 +166,7 @@ void Engager::engage(std::size_t from, std::size_t count, const ChipSink& sink) 
 
 double Engager::commit() {
   Impl& m = *impl_;
-  m.arena.clear([&](std::span<const std::size_t> tiles) { m.give_back(tiles); });
+  m.arena.clear([&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); });
   return std::exchange(m.removed_mm3, 0.0);
 }
 

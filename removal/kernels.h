@@ -54,6 +54,11 @@ struct CornerLanes {
   float normal[3];
 };
 
+struct Thinnest {
+  float mm;
+  int corner;
+};
+
 /// A line of a tile's columns (removal/column_cover.h), all with the same x, against a rounded cylinder.
 struct LineCut {
   static constexpr int kColumns = 17, kLine = 24;  ///< as Tile::kSide and ColumnCover::kLine
@@ -108,8 +113,8 @@ struct Kernels {
   void (*read_points)(const PointLanes& points, int from, int count, const StampView& stamp, const TileView& tile,
                       LaneReading& out);
   /// Thickness of what a rounded cylinder left at each corner's tip, along the normal: distance over slope, the slope
-  /// at least `least_slope`; the least of them, at most 0 where one has cut the point away.
-  float (*thinnest)(const CornerLanes& corners, float flat, float corner, float least_slope);
+  /// at least `least_slope`; the least of them and its corner, at most 0 where one has cut the point away.
+  Thinnest (*thinnest)(const CornerLanes& corners, float flat, float corner, float least_slope);
   /// stock = max(stock, -cutter), at most band; voxels that change take the id.
   LineResult (*cut_line)(const LineCut& line);
   LineResult (*cut_line_bent)(const LineCut& line, const LineBend& bend);

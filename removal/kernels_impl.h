@@ -103,8 +103,8 @@ struct Vectors {
     }
   }
 
-  static float thinnest(const CornerLanes& c, float flat, float corner, float least_slope) {
-    F best(1e30f);
+  static Thinnest thinnest(const CornerLanes& c, float flat, float corner, float least_slope) {
+    alignas(64) float each[8];
     const F zero(0.0f), tiny(1e-12f);
     for (int l = 0; l < 8; l += n) {
       // From the tip to the point.
@@ -121,12 +121,11 @@ struct Vectors {
       const F outward = (x * F(c.normal[0]) + y * F(c.normal[1])) / xsimd::max(rho, tiny);
       const F fall = radial * outward - down * F(c.normal[2]);
       const F slope = xsimd::min(xsimd::max(fall, F(least_slope)), F(1.0f));
-      best = xsimd::min(best, xsimd::select(load(c.valid + l) > zero, depth / slope, F(1e30f)));
+      xsimd::select(load(c.valid + l) > zero, depth / slope, F(1e30f)).store_aligned(each + l);
     }
-    alignas(64) float each[n];
-    best.store_aligned(each);
-    float least = each[0];
-    for (int l = 1; l < n; ++l) least = each[l] < least ? each[l] : least;
+    Thinnest least{each[0], 0};
+    for (int l = 1; l < 8; ++l)
+      if (each[l] < least.mm) least = {each[l], l};
     return least;
   }
 

@@ -31,18 +31,6 @@ bool covers(const Vec3& tip, const Vec3& before, const Vec3& earlier, const Cutt
 
 }  // namespace
 
-StampOrder StampOrder::one_batch(std::size_t count) {
-  StampOrder order;
-  order.batch_.assign(count, 0);
-  return order;
-}
-
-StampOrder StampOrder::one_by_one(std::size_t count) {
-  StampOrder order;
-  for (std::size_t k = 0; k < count; ++k) order.batch_.push_back(static_cast<std::int32_t>(k));
-  return order;
-}
-
 StampOrder StampOrder::of_path(std::span<const Stamp> stamps, const CutterShape& shape) {
   StampOrder order;
   std::int32_t batch = -1;

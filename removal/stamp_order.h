@@ -19,8 +19,6 @@ namespace camber::removal {
 class StampOrder {
  public:
   StampOrder() = default;
-  static StampOrder one_batch(std::size_t count);
-  static StampOrder one_by_one(std::size_t count);
   /// Batches of a path that no bending moves; for undeflected stamps of one cutter.
   static StampOrder of_path(std::span<const Stamp> stamps, const CutterShape& shape);
 

@@ -53,9 +53,8 @@ class Stretch {
           std::size_t from, std::size_t count, const StretchOptions& options);
   ~Stretch();
 
-  /// Carves all stamps anew, from the stock as it stands. `shifts` null: the undeflected cutter; else sampled and
-  /// carved at its bent places.
-  Engagement carve(const ShiftTable* shifts);
+  /// Carves all stamps anew, from the stock as it stands.
+  Engagement carve();
 
   /// Makes the last carve() the stock. Returns the volume that it took, mm^3.
   double commit();

@@ -29,9 +29,9 @@ void copy_shared(const Tile& from, const std::array<int, 3>& up, Tile& to) {
 }  // namespace
 
 void TileArena::load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps,
-                     const Leave& leave) {
+                     const Leave& leave, double bent_mm) {
   voxel_ = stock.voxel_mm();
-  list_tiles(stock, shape, stamps, leave);
+  list_tiles(stock, shape, stamps, leave, bent_mm);
   tops_.reset(slots_);
   make_room();
   load_fresh(stock, blank);
@@ -61,10 +61,10 @@ std::size_t TileArena::take_number(const Index3& index) {
 }
 
 void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps,
-                           const Leave& leave) {
+                           const Leave& leave, double bent_mm) {
   reached_.resize(stamps.size());
   for (auto& tiles : reached_) tiles.clear();
-  const double tile_mm = Tile::kCore * voxel_, band = stock.band_mm(), reach = shape.radius_mm + band;
+  const double tile_mm = Tile::kCore * voxel_, band = stock.band_mm() + bent_mm, reach = shape.radius_mm + band;
   Vec3 lo = stamps.front().tip_mm, hi = lo;
   for (const auto& s : stamps) {
     lo = lo.cwiseMin(s.tip_mm);

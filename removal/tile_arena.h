@@ -1,5 +1,5 @@
 #pragma once
-// Working copies of all tiles that a stretch of undeflected stamps reaches. Rows overlap, so most tiles of a stretch
+// Working copies of all tiles that a stretch of stamps reaches. Rows overlap, so most tiles of a stretch
 // are those of the one before: they stay.
 #include <cstdint>
 #include <functional>
@@ -22,9 +22,9 @@ class TileArena {
   using Leave = std::function<void(std::span<const std::size_t> tiles)>;
 
   /// Loads what is not air and not there yet, and gives up what these stamps do not reach. Tile 0 is air all over and
-  /// stands for all others. `blank`: the stock before the first stamp.
+  /// stands for all others. `blank`: the stock before the first stamp. bent_mm: how far cutters may lean.
   void load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps,
-            const Leave& leave);
+            const Leave& leave, double bent_mm = 0);
   /// Gives up all tiles.
   void clear(const Leave& leave);
 
@@ -38,6 +38,8 @@ class TileArena {
   }
   /// Of all tiles, Tile::kVolume each; only what blank() points to counts.
   const float* blanks() const { return blanks_.get(); }
+  /// The number of the tile at an index, 0 (or less) where it is air or out of reach.
+  std::int32_t find(int i, int j, int k) const { return slots_.find(i, j, k); }
   /// The tiles of stamps[k] that are not air.
   std::span<const std::int32_t> reached_by(std::size_t k) const { return reached_[k]; }
 
@@ -49,7 +51,8 @@ class TileArena {
   StampPlace place_of(const Stamp& stamp, double least_mm) const;
 
  private:
-  void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const Leave& leave);
+  void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const Leave& leave,
+                  double bent_mm);
   std::size_t take_number(const Index3& index);
   void make_room();
   void load_fresh(const Stock& stock, const Stock& blank);

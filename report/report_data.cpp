@@ -122,7 +122,7 @@ ReportData predict_report(const machine::Job& job, const MachinedProgram& progra
   add_loads(rows, program.path, p.cut.loads);
   add_errors(rows, program.path, p.surface);
   data.path.push_back({"", program.text.source.text(), std::move(rows)});
-  add_texts(data, job, diagnostics, unsettled_sentence(p));
+  add_texts(data, job, diagnostics, unsettled_sentence(program, p));
   return data;
 }
 

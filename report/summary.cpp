@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
@@ -111,6 +113,20 @@ std::string holes_text(const deflection::HoleFigures& h) {
 
 }  // namespace
 
+namespace {
+
+/// Each once, in order.
+std::vector<std::size_t> unsettled_lines(const deflection::MachinedProgram& program, const deflection::Prediction& p) {
+  std::vector<std::size_t> lines;
+  for (const std::uint32_t move : p.cut.unsettled_moves) lines.push_back(program.moves.moves[move].block + 1);
+  std::ranges::sort(lines);
+  const auto again = std::ranges::unique(lines);
+  lines.erase(again.begin(), again.end());
+  return lines;
+}
+
+}  // namespace
+
 std::string predict_json(const deflection::MachinedProgram& program, const deflection::Prediction& p,
                          double compute_s) {
   ordered_json j;
@@ -128,7 +144,9 @@ std::string predict_json(const deflection::MachinedProgram& program, const defle
   if (p.holes.any()) j["holes"] = holes(p.holes);
   j["form_error_um"] = form_error(p);
   if (!p.total_error_mm.empty()) j["total_error_um"] = figures(total_error(p));
-  j["static"] = {{"rounds_max", p.cut.rounds_max}, {"unsettled_stretches", p.cut.unsettled}};
+  j["static"] = {{"rounds_max", p.cut.rounds_max},
+                 {"unsettled_stretches", p.cut.unsettled},
+                 {"unsettled_lines", unsettled_lines(program, p)}};
   return j.dump(2) + "\n";
 }
 
@@ -375,10 +393,17 @@ std::string compensate_text(const compensate::Compensation& c, double compute_s)
   return out;
 }
 
-std::string unsettled_sentence(const deflection::Prediction& p) {
+std::string unsettled_sentence(const deflection::MachinedProgram& program, const deflection::Prediction& p) {
   if (p.cut.unsettled == 0) return {};
-  return fmt::format("the static deflection of {} stretches did not settle; their figures are uncertain",
-                     p.cut.unsettled);
+  constexpr std::size_t kNamed = 5;
+  const std::vector<std::size_t> lines = unsettled_lines(program, p);
+  return fmt::format(
+      "the tool finds no static equilibrium in {} stretches of the path, in line{} {}{}: it is pushed out of the cut "
+      "or "
+      "pulled into it, or swings between two states; figures from there on are uncertain",
+      p.cut.unsettled, lines.size() > 1 ? "s" : "",
+      fmt::join(std::span(lines).first(std::min(lines.size(), kNamed)), ", "),
+      lines.size() > kNamed ? fmt::format(" and {} more", lines.size() - kNamed) : "");
 }
 
 std::string unsettled_sentence(const compensate::Compensation& c) {

@@ -16,8 +16,9 @@ std::string predict_text(const deflection::MachinedProgram& program, const defle
                          double compute_s);
 std::string compensate_text(const compensate::Compensation& result, double compute_s);
 
-/// A sentence about static solutions that did not settle; empty where all did.
-std::string unsettled_sentence(const deflection::Prediction& prediction);
+/// A sentence about tooth passings without a static equilibrium, and the lines that they are in; empty where all have
+/// one.
+std::string unsettled_sentence(const deflection::MachinedProgram& program, const deflection::Prediction& prediction);
 std::string unsettled_sentence(const compensate::Compensation& result);
 
 /// A sentence about how far the compensation stayed from its tolerance, and whether the guard is why.

@@ -1,5 +1,5 @@
 // Camber against the drawn cut (tests/support/displaced_envelope.h): force and form error of rigid finishing cuts.
-//   accuracy_bench plane | cutters | uneven | grid | wall | voxels
+//   accuracy_bench plane | cutters | uneven | grid | wall | voxels | static
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "tests/support/bent_shoulder.h"
 #include "tests/support/finished_wall.h"
 #include "tests/support/inclined_plane.h"
 
@@ -255,6 +256,46 @@ void voxels() {
   }
 }
 
+void shoulder_case(const testing::BentShoulder& s) {
+  const auto drawn = testing::DrawnShoulder(s).cut();
+  const auto bent = testing::camber_figures(s), rigid = testing::camber_figures(s, machine::Coupling::rigid);
+  double largest = 0, peak = 0, mean = 0, rigid_mean = 0, rigid_peak = 0;
+  for (const auto& f : drawn) largest = std::max(largest, f.lateral_max_N);
+  const double mean_N = drawn.back().mean_N.norm();
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    peak = std::max(peak, 100 * std::abs(bent[k].lateral_max_N - drawn[k].lateral_max_N) / largest);
+    rigid_peak = std::max(rigid_peak, 100 * std::abs(rigid[k].lateral_max_N - drawn[k].lateral_max_N) / largest);
+    mean = std::max(mean, 100 * (bent[k].mean_N - drawn[k].mean_N).norm() / mean_N);
+    rigid_mean = std::max(rigid_mean, 100 * (rigid[k].mean_N - drawn[k].mean_N).norm() / mean_N);
+  }
+  std::printf(
+      "%s, helix %g, ae %g, edge %g N/mm, spring %g N/mm: %.1f N, steady peak %+.2f %%, mean %+.2f %%; at worst on the "
+      "way in peak %.2f %%, mean %.2f %% (rigid %.2f, %.2f %%)\n",
+      s.up ? "up" : "down", s.helix_deg, s.radial_mm, s.kte, s.stiffness_N_per_mm, drawn.back().lateral_max_N,
+      off(bent.back().lateral_max_N, drawn.back().lateral_max_N),
+      100 * (bent.back().mean_N - drawn.back().mean_N).norm() / mean_N, peak, mean, rigid_peak, rigid_mean);
+  std::fflush(stdout);
+}
+
+/// Static coupling: shoulders of a cutter on a spring, from the first touch on, tooth passing by tooth passing.
+void shoulders() {
+  for (const double stiffness : {5000.0, 1500.0})
+    for (const double edge : {0.0, 15.0})
+      for (const bool up : {true, false}) {
+        testing::BentShoulder s;
+        s.up = up, s.kte = s.kre = edge, s.stiffness_N_per_mm = stiffness;
+        shoulder_case(s);
+      }
+  for (const bool up : {true, false}) {
+    testing::BentShoulder s;
+    s.up = up, s.radial_mm = 3, s.from_mm = -5;
+    shoulder_case(s);
+    s = {};
+    s.up = up, s.helix_deg = 0, s.slices = 1;
+    shoulder_case(s);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -265,4 +306,5 @@ int main(int argc, char** argv) {
   if (what == "grid") grid();
   if (what == "wall") walls(), slots();
   if (what == "voxels") voxels();
+  if (what == "static") shoulders();
 }

@@ -77,7 +77,7 @@ TEST(ClosedForms, EngagementAnglesOfShouldersAndSlots) {
       removal::EnvelopeGrid envelope = removal::make_envelope(tool, 1.5, 0.2, rad_from_deg(0.2));
       removal::make_patches(envelope, 0.24);
       removal::Stretch stretch(cut.stock, &blank, envelope, cut.stamps, 0, cut.stamps.size(), {});
-      const auto engagement = stretch.carve(nullptr);
+      const auto engagement = stretch.carve();
       // A ring in the middle of the depth.
       std::size_t ring = 0;
       while (envelope.rings[ring].profile.height_mm < 1) ++ring;

@@ -36,7 +36,7 @@ Volumes slot(const machine::Tool& tool, double rise) {
   std::vector<Stamp> stamps;
   add_row(stamps, {-8, 0.013, -kDepth}, {kLength + 8, 0.013, -kDepth + rise * (kLength + 16)}, kFeed);
   Stretch stretch(stock, &blank, envelope, stamps, 0, stamps.size(), {});
-  const Engagement e = stretch.carve(nullptr);
+  const Engagement e = stretch.carve();
   double chips = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k) chips += chip_volume_mm3(envelope, e.of(k));
   return {stretch.commit(), chips};
@@ -138,7 +138,7 @@ double layer_share(double deeper, bool below_top) {
   const std::size_t second = stamps.size();
   add_row(stamps, {-8, 0.013, floor - deeper}, {kLength + 8, 0.013, floor - deeper}, kFeed);
   Stretch stretch(stock, &blank, envelope, stamps, 0, stamps.size(), {});
-  const Engagement e = stretch.carve(nullptr);
+  const Engagement e = stretch.carve();
   double chips = 0;
   for (std::size_t k = second; k < stamps.size(); ++k) chips += chip_volume_mm3(envelope, e.of(k));
   return chips / (10 * deeper * kLength);
@@ -160,7 +160,7 @@ TEST(CutterVolume, PlungingDrillTakesItsPointAndItsCylinder) {
   std::vector<Stamp> stamps;
   add_row(stamps, {0.02, 0.03, 0.5}, {0.02, 0.03, -4}, 0.05);
   Stretch stretch(stock, &blank, envelope, stamps, 0, stamps.size(), {});
-  const Engagement e = stretch.carve(nullptr);
+  const Engagement e = stretch.carve();
   double chips = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k) chips += chip_volume_mm3(envelope, e.of(k));
   const double stock_mm3 = stretch.commit();

@@ -117,7 +117,7 @@ TEST(Kernels, WideAndNarrowVectorsReadTheSameThicknesses) {
       c.bend[l] = 0.01f * place(random);
     }
     c.normal[0] = 0.6f, c.normal[1] = 0, c.normal[2] = -0.8f;
-    EXPECT_EQ(kBaseKernels.thinnest(c, 3, 2, 0.25f), kernels().thinnest(c, 3, 2, 0.25f));
+    EXPECT_EQ(kBaseKernels.thinnest(c, 3, 2, 0.25f).mm, kernels().thinnest(c, 3, 2, 0.25f).mm);
   }
 }
 
@@ -136,5 +136,5 @@ TEST(Kernels, TheThinnestIsDistanceOverSlope) {
     if (l != 2) thinnest = std::min(thinnest, (shape.distance_mm(-tip) - 0.001 * l) / slope);
   }
   for (const Kernels* kernel : {&kBaseKernels, &kernels()})
-    EXPECT_NEAR(kernel->thinnest(c, 3, 2, 0.25f), thinnest, 1e-5);
+    EXPECT_NEAR(kernel->thinnest(c, 3, 2, 0.25f).mm, thinnest, 1e-5);
 }

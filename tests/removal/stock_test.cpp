@@ -27,7 +27,7 @@ EnvelopeGrid ball_envelope() { return make_envelope(make_tool(machine::ToolType:
 
 double carve_row(Stock& stock, const EnvelopeGrid& envelope, const std::vector<Stamp>& stamps) {
   Stretch stretch(stock, nullptr, envelope, stamps, 0, stamps.size(), {.engage = false});
-  stretch.carve(nullptr);
+  stretch.carve();
   return stretch.commit();
 }
 
@@ -78,7 +78,7 @@ TEST(Stretch, GivesTheSameBytesOnOneAndTwoThreads) {
     add_row(stamps, {-4, 0, -1}, {14, 0, -1}, 0.15);
     add_row(stamps, {14, 0.4, -1}, {-4, 0.4, -1}, 0.15);
     Stretch stretch(stock, &blank, envelope, stamps, 0, stamps.size(), {});
-    Engagement e = stretch.carve(nullptr);
+    Engagement e = stretch.carve();
     const double removed = stretch.commit();
     return std::tuple(std::move(e), removed, std::move(stock));
   };
@@ -103,7 +103,7 @@ TEST(Stretch, ChipVolumeIsTheVolumeThatTheStockLoses) {
   std::vector<Stamp> stamps;
   for (int row = 0; row < 3; ++row) add_row(stamps, {14, 0.5 * row, -1}, {-4, 0.5 * row, -1}, 0.15);
   Stretch stretch(stock, &blank, envelope, stamps, 0, stamps.size(), {});
-  const Engagement e = stretch.carve(nullptr);
+  const Engagement e = stretch.carve();
   double chips = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k) chips += chip_volume_mm3(envelope, e.of(k));
   const double removed = stretch.commit();

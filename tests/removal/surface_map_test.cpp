@@ -21,7 +21,7 @@ TEST(SurfaceMap, WhereNoMarkIsDeeperTheBlankIsTheSurface) {
   add_row(stamps, {-9, 0, kFloor_mm}, {9, 0, kFloor_mm}, 0.02);
   Stock target = make_box({-4, -5, -3}, {4, 5, 0}, 0.1);
   Stretch stretch(target, nullptr, envelope, stamps, 0, stamps.size(), {.engage = false});
-  stretch.carve(nullptr);
+  stretch.carve();
   stretch.commit();
   CutterPlaces places;
   places.add(0, envelope.shape, stamps);

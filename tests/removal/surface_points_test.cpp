@@ -34,7 +34,7 @@ std::vector<SurfacePoint> step_points(double voxel_mm, bool to_the_edges, double
   Stock target = make_box({-4, -5, -3}, {4, 3, 0}, voxel_mm);
   const Stock solid(target);
   Stretch stretch(target, nullptr, envelope, stamps, 0, stamps.size(), {.engage = false});
-  stretch.carve(nullptr);
+  stretch.carve();
   stretch.commit();
   CutterPlaces places;
   places.add(0, envelope.shape, stamps);
