@@ -123,8 +123,10 @@ TEST(DrillingCycles, DoNotTouchTheFormErrorOfTheMilledSurface) {
   write_job(folder, kHead + kDrillHead + "G81 X12 Y7 Z-8 R1 F240\nG80\n" + mill + "M30\n", kMill + kDrill, stock);
   ASSERT_EQ(run_camber(folder, "predict job.toml -o drilled").status, 0);
   const json plain = summary(folder, "plain"), drilled = summary(folder, "drilled");
+  constexpr double kRounding_um = 1e-5;  // of marks, which are made in single precision
   for (const char* figure : {"min", "max", "mean", "rms", "p95", "area_mm2"})
-    EXPECT_NEAR(drilled["form_error_um"][figure].get<double>(), plain["form_error_um"][figure].get<double>(), 1e-9)
+    EXPECT_NEAR(drilled["form_error_um"][figure].get<double>(), plain["form_error_um"][figure].get<double>(),
+                kRounding_um)
         << figure;
   EXPECT_NEAR(drilled["holes"]["not_judged_mm2"].get<double>() / (std::acos(-1.0) * 8 * 6), 0.93, 0.05)
       << "less a voxel at both rims";
