@@ -10,8 +10,8 @@
 
 #include "removal/carve.h"
 #include "removal/chip_reader.h"
+#include "removal/cut_tiles.h"
 #include "removal/patch_lanes.h"
-#include "removal/store_cut.h"
 #include "removal/tile_arena.h"
 
 namespace camber::removal {
@@ -57,28 +57,9 @@ struct BentEngager::Impl {
   std::vector<std::vector<BentChip>> chips_of_tile{};
   std::vector<BentChip> chips{};
 
-  void start_tiles();
   void find_touches(std::size_t k);
   void cut(std::size_t tile, std::size_t k, const CarveBend& bend);
 };
-
-void BentEngager::Impl::start_tiles() {
-  if (tiles.size() < arena.size()) tiles.resize(arena.size());
-  const ColumnCover::TipOf tip_of = [&](std::int32_t id, Vec3& tip_mm, double& bend_mm) {
-    if (id < first_id) return false;
-    tip_mm = all[static_cast<std::size_t>(id - first_id)].tip_mm;
-    bend_mm = most_bent_mm;
-    return true;
-  };
-  const auto fresh = arena.fresh();
-  tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
-    const std::size_t t = fresh[i];
-    const Tile& tile = arena[t];
-    tiles[t].emplace(
-        CutTile{ColumnCover(tile, arena.index(t), stock.voxel_mm(), stock.band_mm(), envelope.shape, tip_of),
-                material_voxels(tile, stock.voxel_mm())});
-  });
-}
 
 /// Patches that may be in material, by the stock as it was stored last: it only becomes less.
 void BentEngager::Impl::find_touches(std::size_t k) {
@@ -151,7 +132,7 @@ void BentEngager::start(std::size_t from, std::size_t count, const ShiftTable& s
   m.arena.load(
       m.stock, m.blank, m.envelope.shape, m.stamps,
       [&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); }, kMostBent_mm);
-  m.start_tiles();
+  load_cut(m.stock, m.arena, m.envelope.shape, tips_by_id(m.all, m.first_id, m.most_bent_mm), m.tiles);
   m.reader.emplace(m.envelope, *m.lanes, m.all, m.stamps, m.first_id, m.stock.voxel_mm(), shifts);
   m.probe.emplace(m.stock);
 }

@@ -12,8 +12,8 @@
 #include "removal/batch_cut.h"
 #include "removal/block_reader.h"
 #include "removal/carve.h"
+#include "removal/cut_tiles.h"
 #include "removal/stamp_order.h"
-#include "removal/store_cut.h"
 #include "removal/tile_arena.h"
 
 namespace camber::removal {
@@ -65,23 +65,9 @@ struct Engager::Impl {
 };
 
 void Engager::Impl::start_tiles() {
-  if (tiles.size() < arena.size()) tiles.resize(arena.size());
-  const ColumnCover::TipOf tip_of = [&](std::int32_t id, Vec3& tip_mm, double& bend_mm) {
-    if (id < first_id) return false;
-    tip_mm = all[static_cast<std::size_t>(id - first_id)].tip_mm;
-    bend_mm = 0;
-    return true;
-  };
   for (auto& tile : tiles)
     if (tile) tile->last = -1;
-  const auto fresh = arena.fresh();
-  tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
-    const std::size_t t = fresh[i];
-    const Tile& tile = arena[t];
-    tiles[t].emplace(
-        CutTile{ColumnCover(tile, arena.index(t), stock.voxel_mm(), stock.band_mm(), envelope.shape, tip_of),
-                material_voxels(tile, stock.voxel_mm())});
-  });
+  load_cut(stock, arena, envelope.shape, tips_by_id(all, first_id, 0), tiles);
   arena.read_tops(static_cast<int>(std::ceil(blocks.widest_mm() / stock.voxel_mm())),
                   [&](std::size_t t) -> const ColumnCover& { return tiles[t]->cover; });
 }

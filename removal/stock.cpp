@@ -435,12 +435,14 @@ void require_voxels(const openvdb::FloatGrid& grid, const std::string& path, dou
 
 /// Clips a leaf to the new band; what the old band had cut off ("at least this deep") is beyond the new one as well.
 void clip_leaf(openvdb::FloatTree::LeafNodeType& leaf, float old_band, float band) {
-  for (openvdb::Index n = 0; n < openvdb::FloatTree::LeafNodeType::SIZE; ++n) {
-    const float d = leaf.getValue(n);
-    const float v = std::abs(d) >= 0.9999f * old_band ? std::copysign(band, d) : std::clamp(d, -band, band);
-    leaf.setValueOnly(n, v);
-    leaf.setActiveState(n, std::abs(v) < band);
+  float* values = leaf.buffer().data();
+  openvdb::util::NodeMask<kLeafBits> active;
+  for (openvdb::Index32 n = 0; n < openvdb::FloatTree::LeafNodeType::SIZE; ++n) {
+    const float d = values[n];
+    values[n] = std::abs(d) >= 0.9999f * old_band ? std::copysign(band, d) : std::clamp(d, -band, band);
+    if (std::abs(values[n]) < band) active.setOn(n);
   }
+  leaf.setValueMask(active);
 }
 
 }  // namespace

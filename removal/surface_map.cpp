@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include "removal/bent_envelope.h"
@@ -89,6 +90,9 @@ class Tips {
   }
   Eigen::Vector3f from_origin(const Vec3& place) const { return (place - origin_).cast<float>(); }
   std::size_t size() const { return x_.size(); }
+  void clear() {
+    for (auto* v : {&x_, &y_, &z_}) v->clear();
+  }
   /// How near the straight cutter at each can come to a place of a group, at least.
   void distances_to(const CutterShape& shape, const Group& group, std::vector<float>& out) const {
     out.resize(x_.size());
@@ -224,7 +228,7 @@ class CloseStamps {
   CloseStamps(const EnvelopeGrid& envelope, const ShiftTable& shifts)
       : e_(envelope), shifts_(shifts), queue_(envelope, shifts) {}
   void clear() {
-    tips_ = {};
+    tips_.clear();
     stamps_.clear();
     reach_mm_.clear();
   }
@@ -389,16 +393,22 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
     bends[k] = envelope.shape.general ? all.of(row) : CarveBend{shifts.row(row), shifts.largest_mm(row), {}};
   });
   const StampGroups groups(stamps, bends);
+  struct Room {
+    CloseStamps close;
+    Tips near_tips{};
+    std::vector<float> distance{};
+    std::vector<std::size_t> near{};
+  };
+  tbb::enumerable_thread_specific<Room> rooms([&] { return Room{CloseStamps(envelope, shifts)}; });
   tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
     TilePoints& tile = impl_->tiles[t];
-    std::vector<float> distance;
-    std::vector<std::size_t> near;
+    auto& [close, near_tips, distance, near] = rooms.local();
+    near.clear();
     groups.find_near(envelope.shape, tile.all, distance, near);
-    Tips near_tips;
+    near_tips.clear();
     for (const std::size_t k : near) near_tips.add(stamps[k].tip_mm);
     if (near.empty()) return;
     tile.all.highest = -std::numeric_limits<double>::infinity();
-    CloseStamps close(envelope, shifts);
     for (Group& block : tile.blocks) {
       near_tips.distances_to(envelope.shape, block, distance);
       close.clear();

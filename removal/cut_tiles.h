@@ -1,5 +1,5 @@
 #pragma once
-// Tiles that were cut go back to the stock.
+// Tiles of the stock while they are cut: what both engagers do with them.
 #include <cmath>
 #include <optional>
 #include <span>
@@ -11,6 +11,30 @@
 #include "removal/tile_arena.h"
 
 namespace camber::removal {
+
+/// The stamps that a stock names by their ids, first_id and on; `bend_mm` bounds how far they leaned.
+inline ColumnCover::TipOf tips_by_id(std::span<const Stamp> stamps, std::int32_t first_id, double bend_mm) {
+  return [=](std::int32_t id, Vec3& tip_mm, double& bend) {
+    if (id < first_id) return false;
+    tip_mm = stamps[static_cast<std::size_t>(id - first_id)].tip_mm;
+    bend = bend_mm;
+    return true;
+  };
+}
+
+/// Begins with the tiles that the arena has loaded last. `tiles`, by number: begin with `cover` and `material`, in
+/// voxels.
+template <class CutTile>
+void load_cut(const Stock& stock, TileArena& arena, const CutterShape& shape, const ColumnCover::TipOf& tip_of,
+              std::vector<std::optional<CutTile>>& tiles) {
+  if (tiles.size() < arena.size()) tiles.resize(arena.size());
+  const auto fresh = arena.fresh();
+  tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
+    const std::size_t t = fresh[i];
+    tiles[t].emplace(CutTile{ColumnCover(arena[t], arena.index(t), stock.voxel_mm(), stock.band_mm(), shape, tip_of),
+                             material_voxels(arena[t], stock.voxel_mm())});
+  });
+}
 
 /// Writes those of the tiles that have changed to the stock, and forgets all. `tiles`, by number: each with `changed`
 /// and `material`, in voxels, as it was loaded. The volume that was taken, mm^3.
