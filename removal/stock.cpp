@@ -4,8 +4,11 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tree/LeafManager.h>
@@ -404,14 +407,16 @@ openvdb::FloatGrid::Ptr read_float_grid(const std::string& path) {
   if (!std::filesystem::exists(path)) fail_on_file(path, "no such file", "file-missing");
   openvdb::FloatGrid::Ptr found;
   try {
-    openvdb::io::File file(path);
-    file.open(false);  // all at once, not leaf by leaf as they are asked for
-    const openvdb::GridPtrVecPtr grids = file.getGrids();
+    // Read at once: the library seeks before every leaf, which empties a file stream's buffer.
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(std::filesystem::file_size(path), '\0');
+    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) throw openvdb::IoError("cannot be read");
+    std::istringstream in(std::move(bytes), std::ios::binary);
+    const openvdb::GridPtrVecPtr grids = openvdb::io::Stream(in, false).getGrids();
     for (const auto& grid : *grids)
       if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
           floats && (!found || grid->getName() == "stock"))
         found = floats;
-    file.close();
   } catch (const std::exception& e) {
     fail_on_file(path, std::string("cannot be read as .vdb: ") + e.what(), "vdb-format");
   }
