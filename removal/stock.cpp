@@ -395,8 +395,11 @@ struct VdbArchive : openvdb::io::Archive {
 }  // namespace
 
 void Stock::save(const std::string& path) const {
+  // Written at once: the library seeks after every leaf, which empties a file stream's buffer.
+  std::ostringstream bytes(std::ios::binary);
+  VdbArchive().write_to(bytes, {impl_->distance});
   OutputFile file(path);
-  VdbArchive().write_to(file.stream(), {impl_->distance});
+  file.stream() << bytes.view();
   file.commit();
 }
 
