@@ -288,7 +288,7 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
   const double top = std::max(shape.corner_radius_mm, target.voxel_mm());
   const double length = shape.profile.length_to_height_mm(top);
   constexpr int kRings = 100;
-  constexpr double kDepthBand_mm = 0.001;
+  constexpr double kDepthBand_mm = 0.001, kOut = -1e9;
   struct Ring {
     double radius, height;
     double slope;  ///< tangent of the normal's angle; 0: the normal points down
@@ -322,15 +322,34 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
       const Vec2 ahead = ring.radius * cosine * along, beside = ring.radius * std::sqrt(1 - cosine * cosine) * aside;
       for (const double side : {-1.0, 1.0}) {
         const Vec2 flat = ahead + side * beside;
-        const Vec3 place(flat.x(), flat.y(), ring.height);
-        candidates.push_back({-static_cast<double>(probe.nearest(stamps[k].tip_mm + place)), place});
+        candidates.push_back({0, Vec3(flat.x(), flat.y(), ring.height)});
       }
     }
-    // A trilinear value differs from the nearest voxel's by no more than the mean distance of its corners from it.
-    const double blur = std::sqrt(1.5) * target.voxel_mm();
-    double deepest = -1e9;
+    const auto nearest = [&](const Candidate& c) {
+      return -static_cast<double>(probe.nearest(stamps[k].tip_mm + c.place));
+    };
+    const auto trilinear = [&](const Candidate& c) { return -probe.distance_mm(stamps[k].tip_mm + c.place); };
+    // A trilinear value differs from the nearest voxel's by no more than the mean distance of its corners from it, and
+    // voxels from each other by no more than they are apart.
+    const double blur = std::sqrt(1.5) * target.voxel_mm(), apart = std::sqrt(3.0) * target.voxel_mm();
+    // A few of each side first: where they are far from the deepest, those around are as well.
+    constexpr std::size_t kSides = 2, kEvery = 4 * kSides;
+    std::size_t top = 0;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      if (c % kEvery >= kSides) continue;
+      candidates[c].depth = nearest(candidates[c]);
+      if (candidates[c].depth > candidates[top].depth) top = c;
+    }
+    const double known = candidates.empty() ? kOut : trilinear(candidates[top]);
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      if (c % kEvery < kSides) continue;
+      const Candidate& before = candidates[c / kEvery * kEvery + c % kSides];
+      const double most = before.depth + (candidates[c].place - before.place).norm() + apart;
+      candidates[c].depth = most + blur < known - kDepthBand_mm ? kOut : nearest(candidates[c]);
+    }
+    double deepest = kOut;
     const auto read = [&](Candidate& c) {
-      c.depth = -probe.distance_mm(stamps[k].tip_mm + c.place);
+      c.depth = trilinear(c);
       deepest = std::max(deepest, c.depth);
     };
     const auto first = std::ranges::max_element(candidates, {}, &Candidate::depth);
@@ -339,7 +358,7 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
       if (candidates[c].depth + blur >= deepest - kDepthBand_mm)
         read(candidates[c]);
       else
-        candidates[c].depth = -1e9;
+        candidates[c].depth = kOut;
     }
     Vec3 sum = Vec3::Zero();
     double count = 0;
