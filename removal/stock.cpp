@@ -396,7 +396,11 @@ struct VdbArchive : openvdb::io::Archive {
 
 void Stock::save(const std::string& path) const {
   // Written at once: the library seeks after every leaf, which empties a file stream's buffer.
-  std::ostringstream bytes(std::ios::binary);
+  // Room for all of it, uncompressed: only what is written takes memory, and nothing is copied as it grows.
+  constexpr std::size_t kLeafBytes = 2300, kRest = 1 << 20;
+  std::string room;
+  room.reserve(impl_->distance->tree().leafCount() * kLeafBytes + kRest);
+  std::ostringstream bytes(std::move(room), std::ios::binary);
   VdbArchive().write_to(bytes, {impl_->distance});
   OutputFile file(path);
   file.stream() << bytes.view();
