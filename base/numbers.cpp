@@ -44,10 +44,10 @@ constexpr std::array<double, 7> kPowersOfTen{1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6};
 /// Writes a value before `end`, with as many decimals; where it begins, or null where a double cannot tell how its
 /// last digit is rounded, or the value is too large.
 char* write_backwards(double value, int decimals, char* end) {
-  constexpr double kMost = 4e9, kSure = 1e-5;  // the product is off by less than 1e-6
+  constexpr double kMax = 4e9, kSure = 1e-5;  // the product is off by less than 1e-6
   if (static_cast<std::size_t>(decimals) >= kPowersOfTen.size()) return nullptr;
   const double scaled = std::abs(value) * kPowersOfTen[static_cast<std::size_t>(decimals)];
-  if (!(scaled < kMost)) return nullptr;
+  if (!(scaled < kMax)) return nullptr;
   auto digits = static_cast<std::uint64_t>(scaled);
   const double left = scaled - static_cast<double>(digits);
   if (std::abs(left - 0.5) < kSure) return nullptr;

@@ -9,7 +9,7 @@ using machine::Machine;
 
 Machine stopping(Machine m) {
   m.control.corner.law = machine::CornerLaw::exact_stop;
-  m.control.corner.step_share = 0;
+  m.control.corner.step_fraction = 0;
   m.control.merge_tolerance_mm = 0;
   return m;
 }

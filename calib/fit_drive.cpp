@@ -19,7 +19,7 @@ using feedmodel::PositionLoopOptions;
 
 constexpr double kEnoughMm = 0.001;    // a residual under this needs no filter to explain it
 constexpr double kNearlyAsGood = 2.0;  // times the least held-out error
-constexpr std::size_t kMostResiduals = 60000;
+constexpr std::size_t kMaxResiduals = 60000;
 
 enum class Share { fitted, held_out };
 
@@ -49,7 +49,7 @@ void run(const std::vector<const ServoTrace*>& traces, int axis, const Model& mo
       const double start = trace->command_mm[stretch.first][axis];
       AxisFilter filter(window, start);
       PositionLoop loop(loop_of_trace, start);
-      const std::size_t end = std::min(stretch.end, options.most_samples);
+      const std::size_t end = std::min(stretch.end, options.max_samples);
       for (std::size_t k = stretch.first; k < end; ++k) {
         const double position = loop(filter(trace->command_mm[k][axis]));
         const auto slice = static_cast<long>((trace->t_s[k] - trace->t_s.front()) / options.slice_s);
@@ -120,7 +120,7 @@ void set_errors(Candidate& c, ceres::Problem& problem) {
 
 void solve(Candidate& c, const std::vector<const ServoTrace*>& traces, int axis, const DriveFitOptions& options) {
   const std::size_t samples = fitted_samples(traces, axis, c.model, options);
-  const std::size_t every = samples / kMostResiduals + 1;
+  const std::size_t every = samples / kMaxResiduals + 1;
   auto cost = std::make_unique<ceres::DynamicNumericDiffCostFunction<DriveResiduals, ceres::CENTRAL>>(
       new DriveResiduals(traces, axis, c.model, options, every));
   cost->AddParameterBlock(c.model.parameters);
@@ -224,7 +224,7 @@ double drive_rms_mm(const std::vector<const ServoTrace*>& all, int axis, const m
   std::size_t n = 0;
   const PositionLoopOptions loop{model.position_gain_per_s, model.velocity_lag_s, model.feed_forward_percent, 0.001};
   DriveFitOptions whole;
-  whole.most_samples = SIZE_MAX;
+  whole.max_samples = SIZE_MAX;
   run(traces, axis, {1, model.filter_s}, loop, whole, [&](double error, long) {
     sum += error * error;
     ++n;

@@ -18,7 +18,7 @@ using machine::Machine;
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 constexpr double kPlateauShare = 0.999;  // of the highest speed
 constexpr double kPlateauS = 0.02;       // at least this long at it, or it was just passed through
-constexpr std::uint32_t kMostBlocksApart = 60;
+constexpr std::uint32_t kMaxBlocksApart = 60;
 constexpr int kListIterations = 6;      // for each value of a list
 constexpr double kSettledShare = 1e-3;  // gain of cost under which a richer law is not worth it
 
@@ -32,7 +32,7 @@ void set_control_defaults(machine::Control& control) {
   // No control takes up two blocks in one period.
   if (control.block_time_s == 0) control.block_time_s = control.period_s;
   if (control.dialect != machine::Dialect::linuxcnc || control.corner.law != machine::CornerLaw::blend) return;
-  if (control.corner.step_share == 0) control.corner.step_share = kLinuxCncStepShare;
+  if (control.corner.step_fraction == 0) control.corner.step_fraction = kLinuxCncStepShare;
   if (control.lookahead_blocks == 0) control.lookahead_blocks = kLinuxCncLookahead;
   if (control.corner.short_line_time_s == 0)
     control.corner.short_line_time_s = kLinuxCncShortLinePeriods * control.period_s;
@@ -72,7 +72,7 @@ void add_timed_lines(const FeedRun& run, int keep_back_every, std::size_t& count
   TimedLines parts, blocks;
   for (const Part& part : parts_of(run.program)) {
     const bool kept_back = ++count % static_cast<std::size_t>(keep_back_every) == 0;
-    const bool by_block = part.line_last - part.line_first < kMostBlocksApart && part.line_last > part.line_first;
+    const bool by_block = part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
     for (std::uint32_t line = part.line_first; by_block && line <= part.line_last; ++line) {
       blocks.parts.push_back({line, line, part.feed_mm_per_s});
       blocks.kept_back.push_back(kept_back);

@@ -19,7 +19,7 @@ namespace {
 
 using machine::ForceLaw;
 
-constexpr double kLeastSingular = 1e-3;  // of the Jacobian with columns of length one
+constexpr double kMinSingular = 1e-3;  // of the Jacobian with columns of length one
 
 class Cost final : public ceres::CostFunction {
  public:
@@ -129,7 +129,7 @@ void check_told(const ForceProblem& problem, const Eigen::VectorXd& p) {
   constexpr double kTakesPart = 0.1;
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index k = 0; k < n; ++k)
-      if (svd.singularValues()[k] < kLeastSingular && std::abs(svd.matrixV()(i, k)) > kTakesPart) {
+      if (svd.singularValues()[k] < kMinSingular && std::abs(svd.matrixV()(i, k)) > kTakesPart) {
         untold.push_back(static_cast<std::size_t>(i));
         break;
       }

@@ -174,21 +174,21 @@ std::vector<LimitParameter> limit_parameters(const Machine& start) {
   p.push_back(acceleration<1>(start, "axis.y.acceleration_mm_per_s2"));
   p.push_back(acceleration<2>(start, "axis.z.acceleration_mm_per_s2"));
   p.push_back(share(
-      "control.arc_normal_share", [](const Machine& m) { return m.control.arc_normal_share; },
-      [](Machine& m, double v) { m.control.arc_normal_share = v; }, 0.9));
+      "control.arc_normal_share", [](const Machine& m) { return m.control.arc_normal_fraction; },
+      [](Machine& m, double v) { m.control.arc_normal_fraction = v; }, 0.9));
   p.push_back(share(
-      "control.arc_tangential_share", [](const Machine& m) { return m.control.arc_tangential_share; },
-      [](Machine& m, double v) { m.control.arc_tangential_share = v; }, 0.7));
+      "control.arc_tangential_share", [](const Machine& m) { return m.control.arc_tangential_fraction; },
+      [](Machine& m, double v) { m.control.arc_tangential_fraction = v; }, 0.7));
   p.push_back(share(
-      "control.stop_acceleration_share", [](const Machine& m) { return m.control.stop_acceleration_share; },
-      [](Machine& m, double v) { m.control.stop_acceleration_share = v; }, 0.7));
+      "control.stop_acceleration_share", [](const Machine& m) { return m.control.stop_acceleration_fraction; },
+      [](Machine& m, double v) { m.control.stop_acceleration_fraction = v; }, 0.7));
   p.push_back({.name = "control.corner.step_share",
                .unit = "1",
-               .get = [](const Machine& m) { return m.control.corner.step_share; },
-               .set = [](Machine& m, double v) { m.control.corner.step_share = v; },
+               .get = [](const Machine& m) { return m.control.corner.step_fraction; },
+               .set = [](Machine& m, double v) { m.control.corner.step_fraction = v; },
                .least = 1e-3,
                .most = 0.7,
-               .start = start.control.corner.step_share > 0 ? start.control.corner.step_share : 0.05,
+               .start = start.control.corner.step_fraction > 0 ? start.control.corner.step_fraction : 0.05,
                .fitted = {}});
   p.push_back({.name = "control.block_time_ms",
                .unit = "ms",

@@ -129,8 +129,8 @@ std::vector<LimitParameter> parameters_of(const StretchLaw& law) {
         [](Machine& m, double v) { m.control.path_acceleration_mm_per_s2 = v; }, 20, 50000, 500));
   }
   p.push_back(positive(
-      "control.arc_normal_share", "1", [](const Machine& m) { return m.control.arc_normal_share; },
-      [](Machine& m, double v) { m.control.arc_normal_share = v; }, 0.02, 50, 1.3));
+      "control.arc_normal_share", "1", [](const Machine& m) { return m.control.arc_normal_fraction; },
+      [](Machine& m, double v) { m.control.arc_normal_fraction = v; }, 0.02, 50, 1.3));
   if (law.corner == CornerLaw::angle)
     p.push_back(positive(
         "control.corner.time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.time_s; },

@@ -153,7 +153,7 @@ double best_speed_rpm(const Signal& s, std::size_t from, std::size_t to, double 
 
 MeasuredCut measured_cut(const Signal& s, const machine::LoggedCut& logged, double rpm, const MeasuredLog& log) {
   constexpr std::size_t kHeldOutEvery = 4;
-  constexpr int kMostSteps = 180, kLeastSteps = 24;
+  constexpr int kMaxSteps = 180, kMinSteps = 24;
   const ForceLog& how = log.how;
   const auto from = static_cast<std::size_t>(std::ranges::lower_bound(s.t_s, logged.from_s) - s.t_s.begin());
   auto to = static_cast<std::size_t>(std::ranges::upper_bound(s.t_s, logged.to_s) - s.t_s.begin());
@@ -182,10 +182,10 @@ MeasuredCut measured_cut(const Signal& s, const machine::LoggedCut& logged, doub
   if (!how.waveform) return out;
   if (out.turns < 8) fail(fmt::format("lasts {} whole turns; a waveform needs at least eight", out.turns));
   const double per_turn = turn_s / period_s;
-  const int steps = std::clamp(static_cast<int>(static_cast<double>(to - from) / 8), 1, kMostSteps) / how.tool.flutes *
+  const int steps = std::clamp(static_cast<int>(static_cast<double>(to - from) / 8), 1, kMaxSteps) / how.tool.flutes *
                     how.tool.flutes;
-  if (per_turn < kLeastSteps || steps < kLeastSteps)
-    fail(fmt::format("has {:.1f} samples a turn; a waveform needs at least {}", per_turn, kLeastSteps));
+  if (per_turn < kMinSteps || steps < kMinSteps)
+    fail(fmt::format("has {:.1f} samples a turn; a waveform needs at least {}", per_turn, kMinSteps));
   const auto held = [](std::size_t turn) { return turn % kHeldOutEvery == kHeldOutEvery - 1; };
   Folded fitted = fold(s, from, to, out.spindle_speed_rpm, steps, [&](std::size_t t) { return !held(t); });
   out.waveform_N = std::move(fitted.mean);

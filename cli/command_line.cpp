@@ -19,7 +19,7 @@ constexpr const char* kDescription =
 constexpr const char* kExitStatus =
     "Exit status: 0 done; 1 the input is wrong; 2 the command line is wrong; 3 done as far as possible, but the "
     "numbers did not work out.";
-constexpr int kMostThreads = 1024;
+constexpr int kMaxThreads = 1024;
 
 void add_global_options(CLI::App& app, GlobalOptions& options) {
   app.set_version_flag("--version", std::string("camber ") + CAMBER_VERSION);
@@ -27,7 +27,7 @@ void add_global_options(CLI::App& app, GlobalOptions& options) {
   auto* quiet = app.add_flag("-q,--quiet", options.quiet, "print errors only");
   app.add_flag("-v,--verbose", options.verbosity, "say more; twice: still more")->excludes(quiet);
   app.add_option("--threads", options.threads, "number of threads; 0: as many as the computer has")
-      ->check(CLI::Range(0, kMostThreads))
+      ->check(CLI::Range(0, kMaxThreads))
       ->type_name("N");
   app.add_flag("--effective-config", options.effective_config,
                "print the job and the machine with every default filled in, and stop");

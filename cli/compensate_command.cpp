@@ -31,9 +31,9 @@ void write_report(const CompensateArguments& arguments, const machine::Job& job,
                   const Diagnostics& diagnostics) {
   Diagnostics ignored;  // said already
   const auto machined = [&](SourceText source) {
-    return deflection::machine_program(std::move(source), job, {}, ignored);
+    return simulate::simulate_motion(std::move(source), job, {}, ignored);
   };
-  const auto rows = [&](const deflection::MachinedProgram& program) {
+  const auto rows = [&](const simulate::SimulatedProgram& program) {
     report::PathCollector collector(program.moves);
     feedmodel::predict_feed(program.moves, job.machine,
                             [&](std::span<const feedmodel::TimedSample> s) { collector.add(s); });
@@ -72,7 +72,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   compensate_options.progress = [&](const std::string& what, double share) { progress.show(what, share); };
   for (const auto& u : arguments.uncertainty)
     for (auto& group : compensate::read_uncertainty(u)) compensate_options.uncertainty.push_back(std::move(group));
-  if (!arguments.report.empty()) compensate_options.most_stock_crossings = report::kMostStockCrossings;
+  if (!arguments.report.empty()) compensate_options.max_stock_crossings = report::kMaxStockCrossings;
   compensate_options.recheck_voxels_mm = arguments.check_voxels_mm;
   std::optional<compensate::MeasuredFit> fit;
   const machine::Job job = as_measured(told, arguments, diagnostics, compensate_options.progress, fit);

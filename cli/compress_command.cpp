@@ -120,7 +120,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   compress_options.switch_planes = arguments.switch_planes;
   compress_options.helices = arguments.helices;
   compress_options.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
-  compress_options.fit.most_kink_rad = rad_from_deg(arguments.tangent_deg);
+  compress_options.fit.max_kink_rad = rad_from_deg(arguments.tangent_deg);
   compress_options.fit.arcs = !arguments.lines_only;
   compress_options.progress = [&](double share) { progress.show("compressing", share); };
   const repath::Compression result = repath::compress(program, moves, compress_options);

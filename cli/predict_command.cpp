@@ -11,8 +11,8 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "deflection/collisions.h"
-#include "deflection/turn.h"
+#include "simulate/collisions.h"
+#include "simulate/turn.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
 #include "nc/interpreter.h"
@@ -31,7 +31,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }
 
 /// Times the program once more to write feed.csv, a sample a period.
-std::vector<report::PathRow> write_feed(const deflection::MachinedProgram& program, const machine::Job& job,
+std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& program, const machine::Job& job,
                                         const std::string& path) {
   feedmodel::FeedCsv csv(program.moves, path);
   report::PathCollector collector(program.moves);
@@ -44,10 +44,10 @@ std::vector<report::PathRow> write_feed(const deflection::MachinedProgram& progr
 }
 
 /// What the folder holds but summary.json, side by side. The machined stock is given up once it is saved.
-void write_files(const machine::Job& job, const deflection::MachinedProgram& program,
-                 deflection::Prediction& prediction, std::size_t forces_at, const fs::path& folder,
+void write_files(const machine::Job& job, const simulate::SimulatedProgram& program,
+                 simulate::Prediction& prediction, std::size_t forces_at, const fs::path& folder,
                  const Diagnostics& diagnostics) {
-  const removal::StockShape stock = removal::stock_shape(*prediction.machined, report::kMostStockCrossings);
+  const removal::StockShape stock = removal::stock_shape(*prediction.machined, report::kMaxStockCrossings);
   const report::FormErrorPoints points = report::form_error_points(program, prediction);
   tbb::task_group others;
   others.run([&] {
@@ -76,20 +76,20 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
   const machine::Job job = machine::read_job(arguments.job, diagnostics);
-  const auto program = deflection::machine_program(SourceText::read(job.program), job, {}, diagnostics);
+  const auto program = simulate::simulate_motion(SourceText::read(job.program), job, {}, diagnostics);
   progress.show("cutting as the target");
-  deflection::Target target = [&] {
-    if (job.part.program.empty()) return deflection::make_target(job, program, diagnostics);
+  simulate::Target target = [&] {
+    if (job.part.program.empty()) return simulate::make_target(job, program, diagnostics);
     Diagnostics of_target;
-    const auto original = deflection::machine_program(SourceText::read(job.part.program), job, {}, of_target);
-    return deflection::make_target(job, original, diagnostics);
+    const auto original = simulate::simulate_motion(SourceText::read(job.part.program), job, {}, of_target);
+    return simulate::make_target(job, original, diagnostics);
   }();
   feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
-  deflection::PredictOptions predict_options;
+  simulate::PredictOptions predict_options;
   if (arguments.forces_at > 0)
-    predict_options.turn_from = deflection::turn_at_line(program, job, arguments.forces_at, diagnostics);
+    predict_options.turn_from = simulate::turn_at_line(program, job, arguments.forces_at, diagnostics);
   progress.show("looking for collisions");
-  deflection::check_collisions(job, program, target.blank, diagnostics);
+  simulate::check_collisions(job, program, target.blank, diagnostics);
   progress.clear();
   settle(diagnostics, options);
   print_translation(job.machine.translation, options);
@@ -102,7 +102,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
     target.surface.clear();
     return_freed_memory();
   };
-  auto prediction = deflection::predict(job, target, program, predict_options);
+  auto prediction = simulate::predict(job, target, program, predict_options);
   target.blank.clear();  // nothing reads it any more, and the files need room
   const double compute_s = seconds_since(begin);
   progress.show("writing");

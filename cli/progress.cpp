@@ -14,7 +14,7 @@ namespace {
 constexpr std::chrono::milliseconds kRedrawEvery{200};
 constexpr double kShownAfter_s = 1;
 /// Below this share the time left is anybody's guess.
-constexpr double kLeastShareForTime = 0.05;
+constexpr double kMinShareForTime = 0.05;
 constexpr int kBarWidth = 24;
 
 std::string time_text(double seconds, const char* what) {
@@ -30,7 +30,7 @@ std::string progress_text(std::string_view what, std::optional<double> share, do
   const auto filled = static_cast<std::size_t>(done * kBarWidth);
   std::string out = fmt::format("{:3.0f} % [{}{}] {}", std::floor(100 * done), std::string(filled, '#'),
                                 std::string(kBarWidth - filled, '.'), what);
-  if (done < kLeastShareForTime || seconds_so_far < 1) return out;
+  if (done < kMinShareForTime || seconds_so_far < 1) return out;
   return out + time_text(seconds_so_far * (1 - done) / done, "left");
 }
 

@@ -28,8 +28,8 @@ constexpr double kLeadInMm = 1;
 constexpr double kLargestPartMm = 1e4;
 constexpr double kFineToleranceMm = 0.004;  ///< below, coordinates have four decimals
 
-removal::TriangleMesh read_part(const std::string& path) {
-  removal::TriangleMesh mesh = removal::read_stl(path);
+TriangleMesh read_part(const std::string& path) {
+  TriangleMesh mesh = read_stl(path);
   if (const std::size_t open = mesh.open_edges(); open > 0)
     fail_on_file(path,
                  fmt::format("the mesh is not closed: {} of its edges have no second triangle, and the cutter could "
@@ -63,7 +63,7 @@ const machine::Tool& chosen_tool(const machine::Job& job, const RasterArguments&
 
 /// Of the rectangle that was asked for, what lies over the part.
 repath::Rectangle boundary_of(const RasterArguments& arguments, const std::string& part,
-                              const removal::DropCutter& drop) {
+                              const repath::DropCutter& drop) {
   const Vec2 low = drop.min_mm().head<2>(), high = drop.max_mm().head<2>();
   if (const double size = (high - low).maxCoeff(); size > kLargestPartMm)
     fail_on_file(part, fmt::format("the part is {:g} mm long; no more than {:g} mm was expected", size, kLargestPartMm),
@@ -86,7 +86,7 @@ std::optional<double> top_of_stock_mm(const machine::Stock& stock) {
   if (stock.cylinder) return stock.cylinder->base_mm.z() + stock.cylinder->height_mm;
   if (stock.mesh.empty()) return std::nullopt;
   double top = -std::numeric_limits<double>::infinity();
-  for (const auto& p : removal::read_stl(stock.mesh).points) top = std::max(top, static_cast<double>(p.z()));
+  for (const auto& p : read_stl(stock.mesh).points) top = std::max(top, static_cast<double>(p.z()));
   return top;
 }
 
@@ -137,7 +137,7 @@ struct Report {
   ProgramFigures before, after;
 
   const repath::Candidate& chosen() const { return result.tried[result.chosen]; }
-  bool scallops_too_high() const { return raster.spacing.steep_share > 0; }
+  bool scallops_too_high() const { return raster.spacing.steep_fraction > 0; }
 
   std::string text() const {
     const auto [least, most] = row_spaces_mm(raster.spacing);
@@ -170,7 +170,7 @@ struct Report {
                                   {"scallop_mm",
                                    {{"asked", arguments.scallop_mm},
                                     {"largest", raster.spacing.largest_scallop_mm},
-                                    {"too_high_share", raster.spacing.steep_share}}},
+                                    {"too_high_share", raster.spacing.steep_fraction}}},
                                   {"compared_step_mm", kComparedStepMm},
                                   {"blocks_before", before.blocks},
                                   {"blocks_after", after.blocks},
@@ -228,8 +228,8 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
                  "spindle-speed");
   settle(diagnostics, options);
 
-  const removal::TriangleMesh mesh = read_part(part);
-  const removal::DropCutter drop(mesh, removal::shape_of(tool));
+  const TriangleMesh mesh = read_part(part);
+  const repath::DropCutter drop(mesh, removal::shape_of(tool));
   repath::RasterOptions raster_options{.boundary = boundary_of(arguments, part, drop),
                                        .direction_rad = arguments.direction_deg * kPi / 180,
                                        .scallop_mm = arguments.scallop_mm,

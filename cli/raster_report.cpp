@@ -14,7 +14,7 @@ namespace camber::cli {
 namespace {
 
 constexpr double kEdgeCosine = 0.97;  ///< of 14 degrees: where two triangles meet in an edge that is drawn
-constexpr std::size_t kMostEdges = 20000;
+constexpr std::size_t kMaxEdges = 20000;
 constexpr std::size_t kBins = 40;
 
 void add_line(report::PathPicture& picture, const Vec3& from, const Vec3& to) {
@@ -28,7 +28,7 @@ void add_line(report::PathPicture& picture, const Vec3& from, const Vec3& to) {
 }
 
 /// The edges of the part; of one that has too many (or none, as a ball) its box as seen from above.
-report::PathPicture outline(const removal::TriangleMesh& part) {
+report::PathPicture outline(const TriangleMesh& part) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Vec3> normals;
   report::PathPicture out;
   Vec3 low = Vec3::Constant(1e300), high = -low;
@@ -43,7 +43,7 @@ report::PathPicture outline(const removal::TriangleMesh& part) {
         add_line(out, part.points[a].cast<double>(), part.points[b].cast<double>());
     }
   }
-  if (!out.points.empty() && out.points.size() <= 2 * kMostEdges) return out;
+  if (!out.points.empty() && out.points.size() <= 2 * kMaxEdges) return out;
   out = {};
   const std::array<Vec3, 4> box{Vec3(low.x(), low.y(), high.z()), Vec3(high.x(), low.y(), high.z()),
                                 Vec3(high.x(), high.y(), high.z()), Vec3(low.x(), high.y(), high.z())};
@@ -114,8 +114,8 @@ report::RewritePage raster_page(const RasterResult& r) {
   page.deviation = false;
   page.part = outline(r.part);
   const report::BlockRanges all{{0, ~0u}};
-  page.before = report::path_picture(r.before, all, report::kMostPicturePoints);
-  page.after = report::path_picture(r.after, all, report::kMostPicturePoints);
+  page.before = report::path_picture(r.before, all, report::kMaxPicturePoints);
+  page.after = report::path_picture(r.after, all, report::kMaxPicturePoints);
   page.histograms = {
       histogram("How far rows lie apart", "% of the spaces", "distance of neighbouring rows, mm",
                 spaces(r.raster.spacing.rows_mm)),
@@ -124,7 +124,7 @@ report::RewritePage raster_page(const RasterResult& r) {
   page.notes.push_back(
       fmt::format("Before: the same rows with a point every {} mm. After: the program that was written.",
                   format_trimmed(r.compared_step_mm, 3)));
-  if (r.raster.spacing.steep_share > 0)
+  if (r.raster.spacing.steep_fraction > 0)
     page.notes.push_back("Scallops stay higher than asked for where the surface is steep across the rows.");
   return page;
 }

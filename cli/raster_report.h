@@ -11,7 +11,7 @@ namespace camber::cli {
 
 /// What was laid, what it is set against, and what became of it. "Before" is the raster of constant steps.
 struct RasterResult {
-  const removal::TriangleMesh& part;
+  const TriangleMesh& part;
   const repath::Raster& raster;
   const repath::Fastest& result;
   const nc::Interpretation &before, &after;

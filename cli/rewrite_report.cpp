@@ -20,8 +20,8 @@ report::RewritePage rewrite_page_of(const Rewriting& rewriting, std::vector<repo
     old_blocks.emplace_back(run.first_block, run.last_block);
     new_blocks.emplace_back(run.first_block_after, run.last_block_after);
   }
-  page.before = report::path_picture(rewriting.before, old_blocks, report::kMostPicturePoints);
-  page.after = report::path_picture(rewriting.after, new_blocks, report::kMostPicturePoints);
+  page.before = report::path_picture(rewriting.before, old_blocks, report::kMaxPicturePoints);
+  page.after = report::path_picture(rewriting.after, new_blocks, report::kMaxPicturePoints);
   return page;
 }
 

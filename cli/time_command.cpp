@@ -22,7 +22,7 @@
 namespace camber::cli {
 namespace {
 
-constexpr std::size_t kMostPoints = 10000;
+constexpr std::size_t kMaxPoints = 10000;
 
 nc::Interpretation read_moves(const std::string& path, const machine::Machine& machine, const TimeArguments& arguments,
                               Diagnostics& diagnostics) {
@@ -92,8 +92,8 @@ std::vector<Sweep> checked_sweeps(const TimeArguments& arguments, const machine:
       const std::string wrong = machine::set_number(probe, sweeps.back().key, value);
       if (!wrong.empty()) fail_on_file(arguments.machine, "--sweep: " + wrong, "sweep-key");
     }
-    if (points > kMostPoints)
-      fail_on_file(arguments.machine, fmt::format("--sweep: more than {} points; fewer were expected", kMostPoints),
+    if (points > kMaxPoints)
+      fail_on_file(arguments.machine, fmt::format("--sweep: more than {} points; fewer were expected", kMaxPoints),
                    "sweep-points");
   }
   return sweeps;

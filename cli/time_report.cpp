@@ -18,7 +18,7 @@ using feedmodel::CycleUse;
 using feedmodel::kCycleKinds;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostPartsShown = 8;
+constexpr std::size_t kMaxPartsShown = 8;
 
 // --- text ------------------------------------------------------------------------------------------------------
 
@@ -99,7 +99,7 @@ std::string accuracy_text(const calib::CycleAccuracy& a) {
   std::stable_sort(worst.begin(), worst.end(), [](const auto& x, const auto& y) {
     return std::abs(x.time.predicted_s - x.time.measured_s) > std::abs(y.time.predicted_s - y.time.measured_s);
   });
-  if (worst.size() > kMostPartsShown) worst.resize(kMostPartsShown);
+  if (worst.size() > kMaxPartsShown) worst.resize(kMaxPartsShown);
   out += fmt::format("{} parts; those that differ most:\n", a.parts.size());
   for (const auto& part : worst)
     out += pair_text(fmt::format("{}-{}", part.line_first, part.line_last).c_str(), part.time);

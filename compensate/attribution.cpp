@@ -39,13 +39,13 @@ std::vector<Observation> Observed::of_path() const {
   return out;
 }
 
-Observed observe(const ShiftPath& path, const machine::Job& job, const deflection::MachinedProgram& given,
-                 const deflection::MachinedProgram& emitted, const MoveMap& map,
+Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
+                 const simulate::SimulatedProgram& emitted, const MoveMap& map,
                  std::span<const removal::SurfacePoint> surface, bool own_target) {
   Observed out;
   out.points.resize(surface.size());
   out.compensated.assign(surface.size(), false);
-  const auto known = [](std::int32_t id, const deflection::MachinedProgram& p) {
+  const auto known = [](std::int32_t id, const simulate::SimulatedProgram& p) {
     return id >= 0 && static_cast<std::size_t>(id) < p.path.stamps.size();
   };
   for (std::size_t i = 0; i < surface.size(); ++i) {
@@ -69,7 +69,7 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const deflectio
     o.place = path.find(at.move, at.share);
     const auto tool = job.tools.find(given.moves.state_of(given.moves.moves[at.move]).tool);
     const ControlPoint &from = path.points()[o.place.lower], &to = path.points()[o.place.lower + 1];
-    const Vec3 tip = from.place_mm + o.place.upper_share * (to.place_mm - from.place_mm);
+    const Vec3 tip = from.place_mm + o.place.upper_fraction * (to.place_mm - from.place_mm);
     const double corner_mm = tool != job.tools.end() ? removal::shape_of(tool->second).corner_radius_mm : 0;
     o.from_centre_mm = p.place_mm - tip - corner_mm * Vec3::UnitZ();
     o.at_tip = tool != job.tools.end() && round_tip(tool->second) && p.normal.z() > kTipNormal;

@@ -6,7 +6,7 @@
 #include "compensate/fit_shift.h"
 #include "compensate/move_map.h"
 #include "compensate/shift_path.h"
-#include "deflection/predict.h"
+#include "simulate/predict.h"
 
 namespace camber::compensate {
 
@@ -20,8 +20,8 @@ struct Observed {
 
 /// A point belongs to the stamp that cut the machined surface there; where nothing did, to the stamp of the target's
 /// sweep, if that is the program's own (`own_target`). `map`: from the emitted program's moves to those of `path`.
-Observed observe(const ShiftPath& path, const machine::Job& job, const deflection::MachinedProgram& given,
-                 const deflection::MachinedProgram& emitted, const MoveMap& map,
+Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
+                 const simulate::SimulatedProgram& emitted, const MoveMap& map,
                  std::span<const removal::SurfacePoint> surface, bool own_target);
 
 }  // namespace camber::compensate

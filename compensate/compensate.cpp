@@ -12,12 +12,12 @@
 #include "compensate/sensitivity.h"
 #include "compensate/shift_path.h"
 #include "compensate/splits.h"
-#include "deflection/collisions.h"
+#include "simulate/collisions.h"
 #include "nc/emit.h"
 
 namespace camber::compensate {
 
-using deflection::MachinedProgram;
+using simulate::SimulatedProgram;
 
 std::string to_string(Stop stop) {
   switch (stop) {
@@ -34,7 +34,7 @@ std::string to_string(Stop stop) {
 namespace {
 
 constexpr double kSpacing_mm = 0.4;  // between points of a long line
-constexpr double kLeastGain = 0.03;  // a round that lowers the rms by less has stalled
+constexpr double kMinGain = 0.03;  // a round that lowers the rms by less has stalled
 constexpr int kPatience = 2;         // rounds without that gain before it counts
 constexpr double kWorse = 1.02;      // a round whose rms is over the best one's by this has over-corrected
 constexpr double kShorter = 0.5;     // then the next step starts at the best one's shifts, shorter
@@ -61,7 +61,7 @@ std::size_t count_changed(const nc::Program& program, const Emitted& emitted) {
 }
 
 /// Share of the area whose error changed its sign and is still over the tolerance.
-double overcorrected_share(const Observed& before, const Observed& now, double tolerance_mm) {
+double overcorrected_fraction(const Observed& before, const Observed& now, double tolerance_mm) {
   double over = 0, area = 0;
   for (std::size_t i = 0; i < now.points.size(); ++i) {
     const double a = before.points[i].error_mm, b = now.points[i].error_mm;
@@ -85,7 +85,7 @@ class Loop {
       : job_(job),
         diagnostics_(diagnostics),
         options_(options),
-        program_(deflection::machine_program(SourceText::read(job.program), job, {}, diagnostics)),
+        program_(simulate::simulate_motion(SourceText::read(job.program), job, {}, diagnostics)),
         own_target_(job.part.program.empty()) {
     // What is known to be refused is refused before the long work.
     const Finishing early = find_finishing(job_, program_, {});
@@ -94,9 +94,9 @@ class Loop {
     check_travel(job_, program_.text, program_.moves, diagnostics_);
     diagnostics_.throw_if_errors();
     if (!own_target_)
-      target_program_.emplace(deflection::machine_program(SourceText::read(job.part.program), job, {}, diagnostics));
-    target_.emplace(deflection::make_target(job, target_program(), diagnostics));
-    deflection::check_collisions(job_, program_, target_->blank, diagnostics_);
+      target_program_.emplace(simulate::simulate_motion(SourceText::read(job.part.program), job, {}, diagnostics));
+    target_.emplace(simulate::make_target(job, target_program(), diagnostics));
+    simulate::check_collisions(job_, program_, target_->blank, diagnostics_);
     diagnostics_.throw_if_errors();
     workshop_.emplace(job_, program_, *target_, own_target_);
   }
@@ -112,7 +112,7 @@ class Loop {
   }
 
  private:
-  const MachinedProgram& target_program() const { return target_program_ ? *target_program_ : program_; }
+  const SimulatedProgram& target_program() const { return target_program_ ? *target_program_ : program_; }
 
   double tolerance_mm() const { return job_.compensation.tolerance_um / 1000; }
   double overcut_um() const { return job_.compensation.overcut_um(); }
@@ -163,7 +163,7 @@ class Loop {
     while (!done(out, without_gain)) {
       step(out, share, nullptr);
       const double best = out.rounds[out.best].error_um.rms, now = out.rounds.back().error_um.rms;
-      without_gain = now < (1 - kLeastGain) * best ? 0 : without_gain + 1;
+      without_gain = now < (1 - kMinGain) * best ? 0 : without_gain + 1;
       if (now < best) {
         take(out);
       } else if (now > kWorse * best) {
@@ -193,7 +193,7 @@ class Loop {
     std::vector<Observation> observations = wanted_of(before, guard);
     Round round;
     round.gain = sensitivity_->mean();
-    round.step_share = share;
+    round.step_fraction = share;
     round.guard = guard != nullptr;
     const std::vector<Vec3> from = last_.shifts;
     Trial next;
@@ -226,7 +226,7 @@ class Loop {
     next.observed = workshop_->observe(*path_, next.emitted.get(), next.surface);
     last_ = std::move(next);
     sensitivity_->learn(*path_, from, before, last_.observed);
-    round.overcorrected_share = overcorrected_share(before, last_.observed, tolerance_mm());
+    round.overcorrected_fraction = overcorrected_fraction(before, last_.observed, tolerance_mm());
     record(out, round);
   }
 
@@ -292,7 +292,7 @@ class Loop {
   void finish(Compensation& out) {
     path_->set_shifts(best_.shifts);
     const Round &first = out.rounds[0], &best = out.rounds[out.best];
-    const MachinedProgram& program = best_.emitted ? best_.emitted->program : program_;
+    const SimulatedProgram& program = best_.emitted ? best_.emitted->program : program_;
     out.before_um = first.error_um;
     out.after_um = best.error_um;
     out.split_before = first.split;
@@ -311,13 +311,13 @@ class Loop {
     const ThinPath thin(*path_, splits_->kept());
     out.row_turn_rad =
         row_turn(thin.path(), row_links(thin.path(), kRowReach_mm), job_.compensation.max_angle_growth_rad).max_rad;
-    const double most_um = overcut_um();
-    out.depth_after = depth_of(out.surface_after, best_.observed, most_um, true);
-    out.depth_others = depth_of(out.surface_after, best_.observed, most_um, false);
-    out.depth_without_bending = depth_without_bending(job_, *target_, program, most_um);
-    out.within_part = out.depth_after.held_um <= most_um;
-    if (options_.most_stock_crossings > 0)
-      out.stock = removal::stock_shape(target_->surface, options_.most_stock_crossings);
+    const double max_um = overcut_um();
+    out.depth_after = depth_of(out.surface_after, best_.observed, max_um, true);
+    out.depth_others = depth_of(out.surface_after, best_.observed, max_um, false);
+    out.depth_without_bending = depth_without_bending(job_, *target_, program, max_um);
+    out.within_part = out.depth_after.held_um <= max_um;
+    if (options_.max_stock_crossings > 0)
+      out.stock = removal::stock_shape(target_->surface, options_.max_stock_crossings);
     check_travel(job_, program.text, program.moves, diagnostics_);
     diagnostics_.throw_if_errors();
     out.blocks_before = program_.text.source.line_count();
@@ -351,11 +351,11 @@ class Loop {
   const machine::Job& job_;
   Diagnostics& diagnostics_;
   const CompensateOptions& options_;
-  MachinedProgram program_;
+  SimulatedProgram program_;
   bool own_target_;
-  std::optional<MachinedProgram> target_program_;  ///< [part] program
-  std::optional<deflection::Target> target_;
-  std::optional<Workshop> workshop_;
+  std::optional<SimulatedProgram> target_program_;  ///< [part] program
+  std::optional<simulate::Target> target_;
+  std::optional<TrialRunner> workshop_;
   std::vector<bool> compensated_;
   std::optional<ShiftPath> path_;
   std::optional<Sensitivity> sensitivity_;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "compensate/row_form.h"
-#include "removal/surface.h"
+#include "removal/form_error.h"
 
 namespace camber::compensate {
 namespace {

@@ -7,15 +7,15 @@
 
 #include <fmt/format.h>
 
-#include "removal/stamp_path.h"
+#include "removal/tool_path.h"
 
 namespace camber::compensate {
 namespace {
 
-using deflection::MachinedProgram;
+using simulate::SimulatedProgram;
 
 /// Operations in order, and for each move the index of its own (the moves that are not simulated: nonsense).
-std::vector<Operation> operations_of(const MachinedProgram& program, std::vector<std::size_t>& of_move) {
+std::vector<Operation> operations_of(const SimulatedProgram& program, std::vector<std::size_t>& of_move) {
   std::vector<Operation> out;
   of_move.assign(program.moves.moves.size(), 0);
   for (std::size_t m = 0; m < program.moves.moves.size(); ++m) {
@@ -32,16 +32,16 @@ std::vector<Operation> operations_of(const MachinedProgram& program, std::vector
   return out;
 }
 
-void share_surface(const MachinedProgram& program, const std::vector<removal::SurfacePoint>& surface,
+void share_surface(const SimulatedProgram& program, const std::vector<removal::SurfacePoint>& surface,
                    const std::vector<std::size_t>& of_move, std::vector<Operation>& operations) {
   double area = 0;
   for (const auto& p : surface) {
     area += p.area_mm2;
     if (p.machined_stamp < 0 || static_cast<std::size_t>(p.machined_stamp) >= program.path.stamps.size()) continue;
     const auto move = program.path.stamps[static_cast<std::size_t>(p.machined_stamp)].move;
-    if (program.selected[move]) operations[of_move[move]].surface_share += p.area_mm2;
+    if (program.selected[move]) operations[of_move[move]].surface_fraction += p.area_mm2;
   }
-  for (Operation& o : operations) o.surface_share = area > 0 ? o.surface_share / area : 0;
+  for (Operation& o : operations) o.surface_fraction = area > 0 ? o.surface_fraction / area : 0;
 }
 
 /// Text in round brackets or behind a semicolon; empty: none.
@@ -53,7 +53,7 @@ std::string comment_of(std::string_view line) {
 }
 
 /// For each line whether the heading above it matches.
-std::vector<bool> lines_under(const MachinedProgram& program, const std::string& pattern) {
+std::vector<bool> lines_under(const SimulatedProgram& program, const std::string& pattern) {
   const std::regex wanted(pattern, std::regex::ECMAScript | std::regex::icase);
   const std::size_t lines = program.text.blocks.size();
   std::vector<bool> moves_here(lines, false), out(lines, false);
@@ -77,7 +77,7 @@ std::vector<bool> lines_under(const MachinedProgram& program, const std::string&
 
 }  // namespace
 
-Finishing find_finishing(const machine::Job& job, const MachinedProgram& program,
+Finishing find_finishing(const machine::Job& job, const SimulatedProgram& program,
                          const std::vector<removal::SurfacePoint>& surface) {
   Finishing out;
   std::vector<std::size_t> of_move;
@@ -92,13 +92,13 @@ Finishing find_finishing(const machine::Job& job, const MachinedProgram& program
     if (!out.moves[m]) continue;
     Operation& operation = out.operations[of_move[m]];
     if (!under.empty()) out.moves[m] = under[program.moves.moves[m].block];
-    if (!wanted.given() && !surface.empty()) out.moves[m] = operation.surface_share >= kFinishingShare;
+    if (!wanted.given() && !surface.empty()) out.moves[m] = operation.surface_fraction >= kFinishingShare;
     if (out.moves[m]) ++operation.compensated_moves;
   }
   return out;
 }
 
-void check_compensated(const MachinedProgram& program, const std::vector<bool>& moves, Diagnostics& diagnostics) {
+void check_compensated(const SimulatedProgram& program, const std::vector<bool>& moves, Diagnostics& diagnostics) {
   const nc::Move* first = nullptr;
   std::size_t count = 0, all = 0, editable = 0;
   for (std::size_t m = 0; m < moves.size(); ++m) {

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "deflection/predict.h"
+#include "simulate/predict.h"
 #include "machine/job.h"
-#include "removal/surface.h"
+#include "removal/form_error.h"
 
 namespace camber::compensate {
 
@@ -13,7 +13,7 @@ namespace camber::compensate {
 struct Operation {
   int tool = 0;
   std::size_t first_line = 0, last_line = 0;  ///< 1-based
-  double surface_share = 0;                   ///< of the machined surface that it made
+  double surface_fraction = 0;                   ///< of the machined surface that it made
   std::size_t moves = 0, compensated_moves = 0;
 };
 
@@ -31,12 +31,12 @@ inline constexpr double kFinishingShare = 0.05;
 ///
 /// A comment names the moves behind it, up to the next tool change or the next comment; comments on lines behind each
 /// other, without a move between them, are one heading.
-Finishing find_finishing(const machine::Job& job, const deflection::MachinedProgram& program,
+Finishing find_finishing(const machine::Job& job, const simulate::SimulatedProgram& program,
                          const std::vector<removal::SurfacePoint>& surface);
 
 /// Error [cutter-radius] at the first of `moves` that runs under G41 or G42: its path is made by the control, the text
 /// has no words for it. Error [nothing-to-compensate] where there is no move, or none whose words may be changed.
-void check_compensated(const deflection::MachinedProgram& program, const std::vector<bool>& moves,
+void check_compensated(const simulate::SimulatedProgram& program, const std::vector<bool>& moves,
                        Diagnostics& diagnostics);
 
 }  // namespace camber::compensate

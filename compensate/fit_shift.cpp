@@ -23,7 +23,7 @@ struct System {
 
 void add_observation(System& s, const ShiftPath& path, const Observation& o) {
   const std::size_t i = o.place.lower;
-  const double v = o.place.upper_share, u = 1 - v;
+  const double v = o.place.upper_fraction, u = 1 - v;
   const double a = o.weight * o.area_mm2;
   const Matrix3d nn = a * o.normal * o.normal.transpose();
   const auto& points = path.points();
@@ -47,7 +47,7 @@ std::vector<double> weight_about(const ShiftPath& path, std::span<const Observat
   std::vector<Sums> own(points.size());
   for (const Observation& o : observations)
     for (const auto& [at, share] :
-         {std::pair{o.place.lower, 1 - o.place.upper_share}, std::pair{o.place.lower + 1, o.place.upper_share}}) {
+         {std::pair{o.place.lower, 1 - o.place.upper_fraction}, std::pair{o.place.lower + 1, o.place.upper_fraction}}) {
       own[at].weighted += share * o.area_mm2 * o.weight;
       own[at].area += share * o.area_mm2;
     }

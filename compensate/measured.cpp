@@ -9,12 +9,12 @@
 #include <fmt/format.h>
 
 #include "base/numbers.h"
-#include "deflection/predict.h"
+#include "simulate/predict.h"
 
 namespace camber::compensate {
 namespace {
 
-using deflection::MachinedProgram;
+using simulate::SimulatedProgram;
 
 struct Field {
   std::string_view text;
@@ -185,24 +185,24 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
                          const std::function<void(const std::string&, double)>& progress) {
   Diagnostics repeated;
   const auto machined = [&](const std::string& file, Diagnostics& into) {
-    return deflection::machine_program(SourceText::read(file), job, {}, into);
+    return simulate::simulate_motion(SourceText::read(file), job, {}, into);
   };
-  const MachinedProgram cut =
+  const SimulatedProgram cut =
       machined(program.empty() ? job.program : program, program.empty() ? repeated : diagnostics);
-  const MachinedProgram wanted = machined(job.part.program.empty() ? job.program : job.part.program, repeated);
-  const deflection::Target target = deflection::make_target(job, wanted, repeated);
+  const SimulatedProgram wanted = machined(job.part.program.empty() ? job.program : job.part.program, repeated);
+  const simulate::Target target = simulate::make_target(job, wanted, repeated);
 
   MeasuredFit out;
   std::optional<Neighbours> near;
   std::vector<double> measured;
   const auto predicted_at = [&](double scale) {
-    deflection::PredictOptions options;
+    simulate::PredictOptions options;
     options.contacts = false;
     if (progress)
       options.progress = [&](double share) {
         progress(fmt::format("measured points, deflection x {:.3f}", scale), share);
       };
-    const auto prediction = deflection::predict(softened(job, scale), target, cut, options);
+    const auto prediction = simulate::predict(softened(job, scale), target, cut, options);
     ++out.predictions;
     if (!near) {
       near.emplace(prediction.surface, points, 1.5 * job.simulation.voxel_mm);
@@ -222,7 +222,7 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
   };
   const auto refuse = [&](const std::string& why) { fail_on_file(path, why, "measured-untold"); };
 
-  constexpr double kProbe = 1.15, kSame = 0.005, kLeast = 0.2, kMost = 5, kVague = 0.25;
+  constexpr double kProbe = 1.15, kSame = 0.005, kMin = 0.2, kMax = 5, kVague = 0.25;
   constexpr int kPredictions = 6;
   double c0 = 1, c1 = kProbe;
   std::vector<double> e0 = predicted_at(c0);
@@ -245,7 +245,7 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
       refuse(
           "the predicted error at the points hardly depends on the deflection; points where the tool bends across the "
           "surface were expected");
-    const double next = std::clamp(c1 + jr / jj, kLeast, kMost);
+    const double next = std::clamp(c1 + jr / jj, kMin, kMax);
     double left = 0;
     for (std::size_t i = 0; i < e1.size(); ++i) {
       const double slope = (e1[i] - e0[i]) / (c1 - c0), r = measured[i] - e1[i] - slope * (next - c1);

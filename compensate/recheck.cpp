@@ -9,28 +9,28 @@
 namespace camber::compensate {
 namespace {
 
-deflection::Prediction predict(const machine::Job& job, const deflection::Target& target,
-                               const deflection::MachinedProgram& program, const std::string& what,
+simulate::Prediction predict(const machine::Job& job, const simulate::Target& target,
+                               const simulate::SimulatedProgram& program, const std::string& what,
                                const Progress& progress) {
-  deflection::PredictOptions options;
+  simulate::PredictOptions options;
   options.contacts = false;
   if (progress) options.progress = [&](double share) { progress(what, share); };
-  return deflection::predict(job, target, program, options);
+  return simulate::predict(job, target, program, options);
 }
 
 }  // namespace
 
-Recheck recheck(const machine::Job& job, double voxel_mm, const deflection::MachinedProgram& target_program,
-                const deflection::MachinedProgram& given, const EmittedPair& emitted, const ShiftPath& path,
+Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::SimulatedProgram& target_program,
+                const simulate::SimulatedProgram& given, const EmittedPair& emitted, const ShiftPath& path,
                 const FitShiftOptions& options, bool own_target, const Progress& progress) {
   machine::Job other = job;
   other.simulation.voxel_mm = voxel_mm;
   Diagnostics diagnostics;
-  const deflection::Target target = deflection::make_target(other, target_program, diagnostics);
+  const simulate::Target target = simulate::make_target(other, target_program, diagnostics);
   FitShiftOptions own = options;
   own.smoothing_mm = std::max(options.smoothing_mm, smoothing_mm(voxel_mm));
   struct Judged {
-    deflection::Prediction prediction;
+    simulate::Prediction prediction;
     Observed observed;
     ErrorSplit split;
   };
@@ -55,15 +55,15 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const deflection::Mach
   return out;
 }
 
-std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const deflection::Target& target,
-                               const deflection::MachinedProgram& given, const Emitted* emitted,
+std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const simulate::Target& target,
+                               const simulate::SimulatedProgram& given, const Emitted* emitted,
                                const std::vector<removal::SurfacePoint>& after, std::vector<std::string>& unknown,
                                const Progress& progress) {
   machine::Job other = moved(job, group, unknown);
   if (emitted) other.operations = emitted->operations;
   Diagnostics repeated;
   const auto& text = (emitted ? emitted->program : given).text.source;
-  const auto program = deflection::machine_program(text, other, {}, repeated);
+  const auto program = simulate::simulate_motion(text, other, {}, repeated);
   const auto prediction = predict(other, target, program, "uncertainty: " + group.name, progress);
   std::vector<double> out;
   out.reserve(after.size());

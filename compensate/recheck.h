@@ -27,13 +27,13 @@ struct EmittedPair {
 
 /// `target`: the program that the part is judged against. `path`: of the given program. What the guard gives up is
 /// told by the same rule as in the rounds: what is left beyond that of the best program without it, on this grid.
-Recheck recheck(const machine::Job& job, double voxel_mm, const deflection::MachinedProgram& target,
-                const deflection::MachinedProgram& given, const EmittedPair& emitted, const ShiftPath& path,
+Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::SimulatedProgram& target,
+                const simulate::SimulatedProgram& given, const EmittedPair& emitted, const ShiftPath& path,
                 const FitShiftOptions& options, bool own_target, const Progress& progress);
 
 /// By how much each point of the emitted program's surface (`after`) moves when a group does.
-std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const deflection::Target& target,
-                               const deflection::MachinedProgram& given, const Emitted* emitted,
+std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const simulate::Target& target,
+                               const simulate::SimulatedProgram& given, const Emitted* emitted,
                                const std::vector<removal::SurfacePoint>& after, std::vector<std::string>& unknown,
                                const Progress& progress);
 

@@ -59,8 +59,8 @@ struct Moments {
 };
 
 void share_out(const ShiftPath::Place& place, auto add) {
-  add(place.lower, 1 - place.upper_share);
-  add(place.lower + 1, place.upper_share);
+  add(place.lower, 1 - place.upper_fraction);
+  add(place.lower + 1, place.upper_fraction);
 }
 
 std::vector<Facing> facing(const ShiftPath& path, std::span<const Observation> observations) {
@@ -80,7 +80,7 @@ std::vector<double> places_across(const ShiftPath& path, std::span<const Observa
   out.reserve(observations.size());
   for (const Observation& o : observations) {
     const auto &a = path.points()[o.place.lower], &b = path.points()[o.place.lower + 1];
-    const double v = o.place.upper_share;
+    const double v = o.place.upper_fraction;
     const Vec3 across =
         (b.place_mm - a.place_mm).cross((1 - v) * faces[o.place.lower].normal + v * faces[o.place.lower + 1].normal);
     out.push_back(across.norm() > 0 ? o.from_centre_mm.dot(across.normalized()) : 0);

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "deflection/cut.h"
+#include "simulate/cut.h"
 
 namespace camber::compensate {
 namespace {
@@ -61,16 +61,16 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed
     depths.emplace_back(-1000 * surface[i].error_mm, surface[i].area_mm2);
   }
   out.held_um = held_um(std::move(depths), area);
-  out.over_share = area > 0 ? over / area : 0;
+  out.over_fraction = area > 0 ? over / area : 0;
   return out;
 }
 
-Depth depth_without_bending(const machine::Job& job, const deflection::Target& target,
-                            const deflection::MachinedProgram& emitted, double tolerance_um) {
+Depth depth_without_bending(const machine::Job& job, const simulate::Target& target,
+                            const simulate::SimulatedProgram& emitted, double tolerance_um) {
   removal::Stock stock(target.blank);
   for (const auto& run : emitted.path.runs) {
     const std::span<const removal::Stamp> stamps(emitted.path.stamps.data() + run.from, run.count);
-    deflection::sweep(stock, job.tools.at(run.tool), stamps, static_cast<std::int32_t>(run.from), 0);
+    simulate::sweep(stock, job.tools.at(run.tool), stamps, static_cast<std::int32_t>(run.from), 0);
   }
   Depth out;
   double over = 0, area = 0;
@@ -83,7 +83,7 @@ Depth depth_without_bending(const machine::Job& job, const deflection::Target& t
     depths.emplace_back(-1000 * p.error_mm, p.area_mm2);
   }
   out.held_um = held_um(std::move(depths), area);
-  out.over_share = area > 0 ? over / area : 0;
+  out.over_fraction = area > 0 ? over / area : 0;
   return out;
 }
 

@@ -6,7 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "compensate/attribution.h"
-#include "deflection/predict.h"
+#include "simulate/predict.h"
 #include "machine/job.h"
 
 namespace camber::compensate {
@@ -16,7 +16,7 @@ struct Depth {
   double deepest_um = 0;  ///< of single points; not negative
   double held_um = 0;     ///< a thousandth of the surface at most lies deeper: what is held against the limit
   Vec3 place_mm = Vec3::Zero();
-  double over_share = 0;  ///< of the area that lies deeper than the tolerance
+  double over_fraction = 0;  ///< of the area that lies deeper than the tolerance
 };
 
 /// Of the points that compensated moves made (`compensated` false: of the others).
@@ -25,8 +25,8 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed
 
 /// The emitted program carved by a tool that does not bend at all. Bounded by the largest shift and, where rows cross
 /// other rows, by what their shifts add.
-Depth depth_without_bending(const machine::Job& job, const deflection::Target& target,
-                            const deflection::MachinedProgram& emitted, double tolerance_um);
+Depth depth_without_bending(const machine::Job& job, const simulate::Target& target,
+                            const simulate::SimulatedProgram& emitted, double tolerance_um);
 
 /// Where the moves of a program take the axes, machine coordinates, against Axis::travel_mm. Needs
 /// [compensation] work_offset_mm; without it only the extent is checked against the length of the travel.

@@ -47,7 +47,7 @@ void Sensitivity::learn(const ShiftPath& path, std::span<const Vec3> shifts_befo
     if (!now.compensated[i] || !before.compensated[i]) continue;
     const Observation& o = now.points[i];
     const std::size_t lower = o.place.lower;
-    const double v = o.place.upper_share, u = 1 - v;
+    const double v = o.place.upper_fraction, u = 1 - v;
     const Vec3 old = u * shifts_before[lower] + v * shifts_before[lower + 1];
     const double step = o.normal.dot(path.shift_at(o.place) - old);
     const double change = o.error_mm - before.points[i].error_mm;
@@ -67,13 +67,13 @@ void Sensitivity::learn(const ShiftPath& path, std::span<const Vec3> shifts_befo
   for (std::size_t i = 0; i < gain_.size(); ++i) {
     const Sums& s = sums[i];
     const double prior = std::max(told * s.area, 1e-12);
-    gain_[i] = std::clamp((s.products + prior * mean) / (s.squares + prior), kLeast, kGreatest);
+    gain_[i] = std::clamp((s.products + prior * mean) / (s.squares + prior), kMin, kGreatest);
   }
 }
 
 void Sensitivity::apply_to(std::vector<Observation>& observations) const {
   for (Observation& o : observations)
-    o.gain = (1 - o.place.upper_share) * gain_[o.place.lower] + o.place.upper_share * gain_[o.place.lower + 1];
+    o.gain = (1 - o.place.upper_fraction) * gain_[o.place.lower] + o.place.upper_fraction * gain_[o.place.lower + 1];
 }
 
 double Sensitivity::mean() const {

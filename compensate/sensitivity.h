@@ -18,7 +18,7 @@ namespace camber::compensate {
 /// one is what an over-correction looks like: the next step is shorter by it.
 class Sensitivity {
  public:
-  static constexpr double kLeast = 0.4, kGreatest = 1.6;
+  static constexpr double kMin = 0.4, kGreatest = 1.6;
 
   explicit Sensitivity(const ShiftPath& path) : gain_(path.points().size(), 1.0) {}
 

@@ -78,8 +78,8 @@ ShiftPath::Place ShiftPath::find(std::uint32_t move, double share) const {
 }
 
 Vec3 ShiftPath::shift_at(const Place& place) const {
-  return (1 - place.upper_share) * points_[place.lower].shift_mm +
-         place.upper_share * points_[place.lower + 1].shift_mm;
+  return (1 - place.upper_fraction) * points_[place.lower].shift_mm +
+         place.upper_fraction * points_[place.lower + 1].shift_mm;
 }
 
 std::vector<Vec3> ShiftPath::shifts() const {
@@ -129,7 +129,7 @@ Vec3 agreeing_centre(const nc::Arc& arc, const Vec3& start, const Vec3& end, con
 namespace {
 
 constexpr double kNearHalfTurn = 0.35;  // rad; beyond it a last decimal of R is under six of the centre's
-constexpr double kMostSweep = 5.5;      // rad, of one piece of an arc that is not shifted evenly
+constexpr double kMaxSweep = 5.5;      // rad, of one piece of an arc that is not shifted evenly
 
 /// Centre of the circle through three points in the plane across `normal`; nothing where they lie on a line.
 std::optional<Vec3> circle_centre(const Vec3& normal, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -194,7 +194,7 @@ void ShiftPath::edit_arc(std::size_t first, std::size_t last, double tolerance_m
   std::vector<Vec3> shifted;
   for (std::size_t i = first; i <= last; ++i) shifted.push_back(points_[i].place_mm + points_[i].shift_mm);
   const double step_rad = std::abs(arc.sweep_rad) / static_cast<double>(last - first);
-  const std::size_t most = std::max<std::size_t>(1, static_cast<std::size_t>(kMostSweep / std::max(step_rad, 1e-9)));
+  const std::size_t most = std::max<std::size_t>(1, static_cast<std::size_t>(kMaxSweep / std::max(step_rad, 1e-9)));
   const auto piece = [&](std::size_t a, std::size_t b) {
     const Vec3 wished = arc.center_mm + 0.5 * (points_[first + a].shift_mm + points_[first + b].shift_mm);
     return piece_centre(arc, shifted, a, b, wished, tolerance_mm);

@@ -40,7 +40,7 @@ class ShiftPath {
   /// Between which points a place of the path lies: points()[lower] and points()[lower + 1].
   struct Place {
     std::size_t lower = 0;
-    double upper_share = 0;
+    double upper_fraction = 0;
   };
   /// The move is one whose points may be shifted.
   bool contains(std::uint32_t move) const { return move < first_of_move_.size() && first_of_move_[move] != kNone; }

@@ -20,8 +20,8 @@ std::vector<std::optional<double>> mean_errors_mm(const ShiftPath& path, const O
       sums[at].error += share * o.area_mm2 * o.error_mm;
       sums[at].area += share * o.area_mm2;
     };
-    add(o.place.lower, 1 - o.place.upper_share);
-    add(o.place.lower + 1, o.place.upper_share);
+    add(o.place.lower, 1 - o.place.upper_fraction);
+    add(o.place.lower + 1, o.place.upper_fraction);
   }
   std::vector<std::optional<double>> out(sums.size());
   for (std::size_t i = 0; i < sums.size(); ++i)

@@ -26,7 +26,7 @@ machine::Operations moved_ranges(const machine::Operations& operations,
 
 }  // namespace
 
-void Trial::keep(deflection::Prediction prediction) {
+void Trial::keep(simulate::Prediction prediction) {
   surface = std::move(prediction.surface);
   loads = std::move(prediction.cut.loads);
   error_um = prediction.form_error_um;
@@ -34,11 +34,11 @@ void Trial::keep(deflection::Prediction prediction) {
   unsettled = prediction.cut.unsettled;
 }
 
-Workshop::Workshop(const machine::Job& job, const deflection::MachinedProgram& given, const deflection::Target& target,
+TrialRunner::TrialRunner(const machine::Job& job, const simulate::SimulatedProgram& given, const simulate::Target& target,
                    bool own_target)
     : job_(job), given_(given), target_(target), own_target_(own_target) {}
 
-std::shared_ptr<const Emitted> Workshop::emit(const ShiftPath& path, const std::vector<bool>& splits,
+std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const std::vector<bool>& splits,
                                               const std::vector<bool>& compensated) const {
   auto out = std::make_shared<Emitted>();
   out->splits = splits;
@@ -47,28 +47,28 @@ std::shared_ptr<const Emitted> Workshop::emit(const ShiftPath& path, const std::
   machine::Job job = job_;
   out->operations = moved_ranges(job_.operations, out->emission.block_of_line);
   job.operations = out->operations;
-  out->program = deflection::machine_program(SourceText(job_.program, out->emission.text), job, {}, repeated);
+  out->program = simulate::simulate_motion(SourceText(job_.program, out->emission.text), job, {}, repeated);
   out->map = MoveMap(given_.moves, out->program.moves, out->emission.block_of_line);
   out->quality = path_quality(given_.moves, compensated, out->program.moves, out->map,
                               job_.machine.control.block_time_s, job_.compensation.max_angle_growth_rad);
   return out;
 }
 
-std::string Workshop::text_of(const ShiftPath& path, const std::vector<bool>& splits) const {
+std::string TrialRunner::text_of(const ShiftPath& path, const std::vector<bool>& splits) const {
   nc::EmitOptions options;
   options.header_comment = header;
   return nc::emit(given_.text, given_.moves, path.edits(splits, kViaTolerance_mm), options);
 }
 
-deflection::Prediction Workshop::predict(const deflection::MachinedProgram& program,
+simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& program,
                                          const std::function<void(double)>& progress) const {
-  deflection::PredictOptions options;
+  simulate::PredictOptions options;
   options.contacts = true;
   options.progress = progress;
-  return deflection::predict(job_, target_, program, options);
+  return simulate::predict(job_, target_, program, options);
 }
 
-Observed Workshop::observe(const ShiftPath& path, const Emitted* emitted,
+Observed TrialRunner::observe(const ShiftPath& path, const Emitted* emitted,
                            const std::vector<removal::SurfacePoint>& surface) const {
   if (!emitted) return compensate::observe(path, job_, given_, given_, {}, surface, own_target_);
   return compensate::observe(path, job_, given_, emitted->program, emitted->map, surface, own_target_);

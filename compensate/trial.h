@@ -15,7 +15,7 @@ namespace camber::compensate {
 struct Emitted {
   std::vector<bool> splits;  ///< points of the path at which lines are split
   nc::Emission emission;
-  deflection::MachinedProgram program;
+  simulate::SimulatedProgram program;
   MoveMap map;
   PathQuality quality;
   machine::Operations operations;  ///< the job's, with the emitted program's lines
@@ -25,19 +25,19 @@ struct Trial {
   std::vector<Vec3> shifts;
   std::shared_ptr<const Emitted> emitted;      ///< none: the program as given
   std::vector<removal::SurfacePoint> surface;  ///< the same points in the same order, whatever the shifts
-  std::vector<deflection::StampLoad> loads;
+  std::vector<simulate::StampLoad> loads;
   removal::ErrorFigures error_um;
   int static_rounds = 0;
   std::size_t unsettled = 0;
   Observed observed;
 
-  void keep(deflection::Prediction prediction);
+  void keep(simulate::Prediction prediction);
 };
 
 /// What all trials have in common. Everything passed must outlive the object.
-class Workshop {
+class TrialRunner {
  public:
-  Workshop(const machine::Job& job, const deflection::MachinedProgram& given, const deflection::Target& target,
+  TrialRunner(const machine::Job& job, const simulate::SimulatedProgram& given, const simulate::Target& target,
            bool own_target);
 
   /// How near the arcs that an arc becomes pass its shifted points.
@@ -49,7 +49,7 @@ class Workshop {
   /// Only the text, with the header.
   std::string text_of(const ShiftPath& path, const std::vector<bool>& splits) const;
   /// Does not throw for what the given program was warned of already.
-  deflection::Prediction predict(const deflection::MachinedProgram& program,
+  simulate::Prediction predict(const simulate::SimulatedProgram& program,
                                  const std::function<void(double)>& progress) const;
   Observed observe(const ShiftPath& path, const Emitted* emitted,
                    const std::vector<removal::SurfacePoint>& surface) const;
@@ -58,8 +58,8 @@ class Workshop {
 
  private:
   const machine::Job& job_;
-  const deflection::MachinedProgram& given_;
-  const deflection::Target& target_;
+  const simulate::SimulatedProgram& given_;
+  const simulate::Target& target_;
   bool own_target_;
 };
 

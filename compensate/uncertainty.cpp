@@ -159,10 +159,10 @@ Band band_of(const std::vector<removal::SurfacePoint>& before, const std::vector
     return over <= kAreaAllowed * whole;
   };
   constexpr int kSteps = 100;
-  out.safe_share = 0;
+  out.safe_fraction = 0;
   for (int i = kSteps; i > 0; --i)
     if (holds(static_cast<double>(i) / kSteps)) {
-      out.safe_share = static_cast<double>(i) / kSteps;
+      out.safe_fraction = static_cast<double>(i) / kSteps;
       break;
     }
   return out;

@@ -6,8 +6,8 @@
 #include "deflection/chip_ends.h"
 #include "deflection/edge_force.h"
 #include "deflection/tooth_pass.h"
-#include "removal/envelope_blocks.h"
-#include "removal/vector_clones.h"
+#include "removal/engagement.h"
+#include "base/vector_clones.h"
 
 namespace camber::deflection {
 
@@ -72,7 +72,7 @@ inline void linear_forces(const machine::Material& m, const float* h, const std:
 void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, std::span<float> fine_mm) const {
   const auto& ring = envelope_.rings[static_cast<std::size_t>(e.ring)];
   const int pitch = envelope_.steps_per_pitch, turn = pitch * kFine;
-  const double width = e.width_share * ring.width_mm;
+  const double width = e.width_fraction * ring.width_mm;
   const double half = std::max(e.ramp, 1.0 / kFine) / 2;
   const double c = envelope_.cos_phi[e.point], sn = envelope_.sin_phi[e.point];
   const double sine = ring.sine, cosine = ring.cosine;

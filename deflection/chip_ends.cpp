@@ -11,7 +11,7 @@ using removal::ChipBlock;
 using removal::EnvelopeBlocks;
 
 namespace {
-constexpr double kMostRamp = 2;  ///< steps; ends that run along a ring are not drawn out further
+constexpr double kMaxRamp = 2;  ///< steps; ends that run along a ring are not drawn out further
 constexpr double kSameEnd = 3;   ///< steps within which the ends of two rings belong together
 }  // namespace
 
@@ -71,7 +71,7 @@ void ChipEnds::add_ring(const removal::EnvelopeGrid& envelope, int ring, std::sp
         const int lane = half * kSteps + l - 1;
         ChipEnd e{.point = blocks.point(chips[k].block, lane), .ring = ring, .side = side, .thickness_mm = at(l)};
         e.step = blocks.block(chips[k].block).step + l - 1;
-        e.width_share = chips[k].cut_255[static_cast<std::size_t>(lane)] / 255.0;
+        e.width_fraction = chips[k].cut_255[static_cast<std::size_t>(lane)] / 255.0;
         double inside = 0;  // of the sample before, on the way out
         if (l - side >= 0 && l - side <= count + 1) inside = at(l - side);
         e.fall_mm = at(l + side) < 0 ? at(l) - at(l + side) : std::max(0.0, inside - at(l));
@@ -97,7 +97,7 @@ void ChipEnds::set_ramps(int steps) {
   for (ChipEnd& e : ends_) {
     const double up = later(e, e.ring + 1), down = later(e, e.ring - 1);
     const double ramp = std::isnan(up) ? (std::isnan(down) ? 0 : -down) : std::isnan(down) ? up : (up - down) / 2;
-    e.ramp = std::min(kMostRamp, std::abs(ramp));
+    e.ramp = std::min(kMaxRamp, std::abs(ramp));
   }
 }
 

@@ -3,9 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "removal/chip.h"
+#include "removal/engagement.h"
 #include "removal/cutter.h"
-#include "removal/envelope_blocks.h"
 
 namespace camber::deflection {
 
@@ -19,7 +18,7 @@ struct ChipEnd {
   double ramp = 0;          ///< how long the end takes to cross the ring's width; 0: all at once, or not known
   double thickness_mm = 0;  ///< at the sample
   double fall_mm = 0;       ///< of the thickness, a step outwards; 0: the chip ends at its full thickness
-  double width_share = 1;   ///< of the ring that is in the cut at the sample
+  double width_fraction = 1;   ///< of the ring that is in the cut at the sample
 };
 
 /// Ends of all chips of a stamp, ring by ring. A sample out of the cut tells by its negative thickness how far the

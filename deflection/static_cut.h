@@ -1,17 +1,17 @@
 #pragma once
-// The bent cutter through the stock, each tooth passing in its static equilibrium before the next one.
+// The deflected cutter through the stock, each tooth passing in its static equilibrium before the next one.
 #include <span>
 #include <vector>
 
 #include "deflection/static_equilibrium.h"
-#include "removal/bent_engager.h"
+#include "removal/engagement.h"
 
 namespace camber::deflection {
 
 struct SettleOptions {
   int max_rounds = 40;         ///< readings of one stamp's chips
   double settle_um = 0.1;      ///< change of the deflection that the next reading may bring, rms over the cut, or ...
-  double settle_share = 0.01;  ///< ... this share of its rms
+  double settle_fraction = 0.01;  ///< ... this share of its rms
 };
 
 /// What one tooth passing leaves alone decides the next: so each is brought to its equilibrium by readings of its chips
@@ -26,16 +26,16 @@ class StaticCut {
         engager_(stock, blank, envelope, stamps, first_id),
         equilibrium_(envelope, model) {}
 
-  /// Begins with stamps[from] ... stamps[from + count - 1]; row -1 of `shifts` is that of the stamp before. The rows
+  /// Begins with stamps[from] ... stamps[from + count - 1]; row -1 of `deflections` is that of the stamp before. The rows
   /// are filled as their stamps are cut.
-  void start(std::size_t from, std::size_t count, removal::ShiftTable& shifts);
+  void start(std::size_t from, std::size_t count, removal::DeflectionTable& deflections);
 
   struct Passing {
     int rounds = 0;
     bool settled = true;
-    std::span<const removal::Chip> chips;  ///< gone at the next call
+    std::span<const removal::ChipSample> chips;  ///< gone at the next call
   };
-  /// Cuts stamps[from + k]. Where it finds no equilibrium, or one bent beyond removal::BentEngager::kMostBent_mm, the
+  /// Cuts stamps[from + k]. Where it finds no equilibrium, or one deflected beyond removal::DeflectedEngager::kMaxDeflection_mm, the
   /// cutter keeps the bend nearest to one, in the latter case that of the stamp before.
   Passing cut(std::size_t k);
   /// Leaves the stock as cut. Returns the volume that was taken since the last commit, mm^3.
@@ -44,12 +44,12 @@ class StaticCut {
  private:
   std::span<const removal::Stamp> stamps_;
   SettleOptions options_;
-  removal::BentEngager engager_;
+  removal::DeflectedEngager engager_;
   StaticEquilibrium equilibrium_;
   std::size_t from_ = 0;
-  removal::ShiftTable* shifts_ = nullptr;
-  std::vector<removal::BentChip> read_;
-  std::vector<removal::Chip> chips_;
+  removal::DeflectionTable* deflections_ = nullptr;
+  std::vector<removal::DeflectedChipSample> read_;
+  std::vector<removal::ChipSample> chips_;
 };
 
 }  // namespace camber::deflection

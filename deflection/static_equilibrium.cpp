@@ -14,10 +14,10 @@ namespace camber::deflection {
 
 namespace {
 
-constexpr int kMostSteps = 25;
+constexpr int kMaxSteps = 25;
 constexpr double kExact_mm = 2e-5;  ///< of delta - C F, at any node
 constexpr double kFar2_mm2 = 1e4;   ///< no tool bends that far and cuts
-constexpr int kMostHalvings = 5;
+constexpr int kMaxHalvings = 5;
 
 using Coarse = Eigen::Matrix4d;
 using CoarseShift = Eigen::Vector4d;
@@ -45,7 +45,7 @@ StaticEquilibrium::StaticEquilibrium(const removal::EnvelopeGrid& envelope, cons
   stale_.assign(steps_, 1);
 }
 
-void StaticEquilibrium::place_elements(std::span<const removal::BentChip> chips, std::size_t passing,
+void StaticEquilibrium::place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
                                        const removal::Stamp& stamp) {
   const Vec3& feed = stamp.feed_per_tooth_mm;
   model_.edge_elements(chips, passing, feed, found_);
@@ -53,12 +53,12 @@ void StaticEquilibrium::place_elements(std::span<const removal::BentChip> chips,
   for (const EdgeElement& e : found_) ++first_[static_cast<std::size_t>(e.step) + 1];
   for (std::size_t m = 0; m < steps_; ++m) first_[m + 1] += first_[m];
   elements_.resize(found_.size());
-  most_lean_mm_ = removal::kMostTilt * feed.norm();
+  max_lean_mm_ = removal::kMaxTilt * feed.norm();
   first_stamp_ = stamp.first;
   const double node_step = model_.node_height_mm()[1], per_rad = envelope_.steps / (4 * kPi);
   std::vector<std::size_t> at(first_.begin(), first_.end() - 1);
   for (const EdgeElement& f : found_) {
-    const removal::BentChip& bent = chips[f.chip];
+    const removal::DeflectedChipSample& bent = chips[f.chip];
     const std::uint32_t r = bent.chip.point / static_cast<std::uint32_t>(envelope_.steps);
     const Ring& ring = rings_[r];
     const ToothPassModel::Direction d = model_.direction(bent.chip.point, envelope_.rings[r]);
@@ -70,9 +70,9 @@ void StaticEquilibrium::place_elements(std::span<const removal::BentChip> chips,
     e.depth_mm = static_cast<double>(bent.depth_mm);
     e.cap_mm = static_cast<double>(bent.cap_mm);
     e.thickness_mm = f.thickness_mm;
-    e.width_mm = bent.chip.width_share() * envelope_.rings[r].width_mm;
+    e.width_mm = bent.chip.width_fraction() * envelope_.rings[r].width_mm;
     e.ring = r, e.chip = f.chip;
-    // As removal/kernels_impl.h, read_points.
+    // As removal/simd/upright_kernels_impl.h, read_points.
     constexpr double kLevel = 0.05;
     const double around = -feed.dot(d.tangential), up = feed.dot(d.meridian);
     const bool leans = ring.sine >= kLevel;
@@ -95,10 +95,10 @@ void StaticEquilibrium::place_shifts() {
   }
 }
 
-Vec2 StaticEquilibrium::at_ring(const std::vector<double>& shift, const Ring& ring, std::size_t m) const {
-  const double* lower = shift.data() + 2 * (m * nodes_ + static_cast<std::size_t>(ring.weight.lower));
-  const double* upper = shift.data() + 2 * (m * nodes_ + static_cast<std::size_t>(ring.weight.upper));
-  const auto share = static_cast<double>(ring.weight.upper_share);
+Vec2 StaticEquilibrium::at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const {
+  const double* lower = deflection.data() + 2 * (m * nodes_ + static_cast<std::size_t>(ring.weight.lower));
+  const double* upper = deflection.data() + 2 * (m * nodes_ + static_cast<std::size_t>(ring.weight.upper));
+  const auto share = static_cast<double>(ring.weight.upper_fraction);
   return {lower[0] + share * (upper[0] - lower[0]), lower[1] + share * (upper[1] - lower[1])};
 }
 
@@ -120,7 +120,7 @@ void StaticEquilibrium::balance(std::size_t m) {
   const machine::Material& material = model_.material();
   const double ramp = model_.edge_ramp_mm();
   const double nodes_apart = model_.node_height_mm()[1] / model_.node_height_mm().back();
-  const auto bounded = [&](double v) { return std::clamp(v, -most_lean_mm_, most_lean_mm_); };
+  const auto bounded = [&](double v) { return std::clamp(v, -max_lean_mm_, max_lean_mm_); };
   for (std::size_t i = first_[m]; i < first_[m + 1]; ++i) {
     Element& e = elements_[i];
     const Ring& ring = rings_[e.ring];
@@ -135,11 +135,11 @@ void StaticEquilibrium::balance(std::size_t m) {
     const EdgeForce k = edge_force_slope(material, h, ramp);
     const Vec2 force = -(f.tangential_N * e.tangential + f.radial_N * e.normal + f.axial_N * e.meridian);
     const Vec2 slope = -e.width_mm * (k.tangential_N * e.tangential + k.radial_N * e.normal + k.axial_N * e.meridian);
-    // Thickness by the shifts at the first and the last node, of this rotation step and of those beside it.
+    // Thickness by the deflections at the first and the last node, of this rotation step and of those beside it.
     const Vec2 own = !by_cap ? e.deeper : first_stamp_ ? Vec2(Vec2::Zero()) : e.normal;
-    const double up = ring.height_share;
+    const double up = ring.height_fraction;
     std::array<double, 4> by_own{(1 - up) * own.x(), (1 - up) * own.y(), up * own.x(), up * own.y()}, by_side{};
-    const bool leans = by_cap && std::abs(lean) < most_lean_mm_;
+    const bool leans = by_cap && std::abs(lean) < max_lean_mm_;
     if (leans) {
       const double along = e.by_height * nodes_apart;
       for (std::size_t a = 0; a < 2; ++a) {
@@ -166,8 +166,8 @@ void StaticEquilibrium::balance(std::size_t m) {
   }
 }
 
-/// (1 - own_m) x_m - side_m (x_(m+1) - x_(m-1)) = left_m around the turn, for the shifts x at the first and last node:
-/// elimination with the last step's shift kept as a border.
+/// (1 - own_m) x_m - side_m (x_(m+1) - x_(m-1)) = left_m around the turn, for the deflections x at the first and last node:
+/// elimination with the last step's deflection kept as a border.
 void StaticEquilibrium::solve_coarse() {
   const std::size_t n = steps_;
   const auto block = [&](const std::vector<double>& v, std::size_t m) {
@@ -208,7 +208,7 @@ void StaticEquilibrium::solve_coarse() {
     ahead[m] = lu.solve(a);
     border[m] = lu.solve(b);
   }
-  // The first step's shift by the last one's.
+  // The first step's deflection by the last one's.
   CoarseShift first_value = value[n - 2];
   Coarse first_border = border[n - 2];
   const CoarseShift before_value = first_value;
@@ -267,7 +267,7 @@ void StaticEquilibrium::advance() {
     if (moves[m] != 0) stale_[m + 1 == steps_ ? 0 : m + 1] = stale_[m == 0 ? steps_ - 1 : m - 1] = 1;
 }
 
-StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::BentChip> chips, std::size_t passing,
+StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing,
                                                  const removal::Stamp& stamp, double share, std::span<float> row) {
   for (std::size_t m = 0; m < steps_; ++m)
     for (std::size_t i = 0; i < nodes_; ++i)
@@ -280,7 +280,7 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::BentChip> ch
   Step out;
   out.solved = false;
   double left2 = balance_all();
-  for (; out.steps < kMostSteps; ++out.steps) {
+  for (; out.steps < kMaxSteps; ++out.steps) {
     out.solved = *std::ranges::max_element(norm_) < kExact_mm;
     if (out.solved || !(left2 < kFar2_mm2)) break;
     solve_coarse();
@@ -290,7 +290,7 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::BentChip> ch
     for (int half = 0;; ++half, way /= 2) {
       for (std::size_t i = 0; i < shift_.size(); ++i) shift_[i] = from[i] + way * step_[i];
       next2 = balance_all();
-      if (next2 < (1 - 0.1 * way) * left2 || half == kMostHalvings) break;
+      if (next2 < (1 - 0.1 * way) * left2 || half == kMaxHalvings) break;
     }
     left2 = next2;
   }

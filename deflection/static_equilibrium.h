@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "deflection/tooth_pass.h"
-#include "removal/chip_reader.h"
+#include "removal/engage/upright/chip_reader.h"
 #include "removal/cutter.h"
-#include "removal/shift_table.h"
+#include "removal/deflection_table.h"
 
 namespace camber::deflection {
 
 /// Solves the equilibrium of one tooth passing for chips that were read once: as the tool bends, the depth of a point
-/// and what the motion allows it change as the reading tells, the latter also with the lean of the bent envelope, that
-/// is with the shifts of the rotation steps before and after; force follows by its law, with the edge's ramp, ceasing
-/// and beginning contact. Newton's method over all rotation steps at once; the shift that feeds back is taken as a
+/// and what the motion allows it change as the reading tells, the latter also with the lean of the deflected envelope, that
+/// is with the deflections of the rotation steps before and after; force follows by its law, with the edge's ramp, ceasing
+/// and beginning contact. Newton's method over all rotation steps at once; the deflection that feeds back is taken as a
 /// straight line over the height (what is left of delta - C F is that of all heights).
 class StaticEquilibrium {
  public:
@@ -22,34 +22,34 @@ class StaticEquilibrium {
 
   struct Step {
     double rms_um = 0;   ///< of the change, at the tip over the rotation steps in the cut
-    double size_um = 0;  ///< the same of the shift
+    double size_um = 0;  ///< the same of the deflection
     bool solved = true;
     int steps = 0;  ///< of Newton's method
   };
-  /// chips: as read with the shifts in `row` ([nodes][steps][2]). Goes `share` of the way from `row` to the
+  /// chips: as read with the deflections in `row` ([nodes][steps][2]). Goes `share` of the way from `row` to the
   /// equilibrium; the chips' thickness follows.
-  Step solve(std::span<removal::BentChip> chips, std::size_t passing, const removal::Stamp& stamp, double share,
+  Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const removal::Stamp& stamp, double share,
              std::span<float> row);
 
  private:
   struct Ring {
     removal::NodeWeight weight;  ///< upper: the node above, where there is one
-    double height_share;         ///< from the first node to the last
+    double height_fraction;         ///< from the first node to the last
     double sine, per_radius;
   };
   struct Element {
     Vec2 normal, tangential, meridian, deeper;
     double depth_mm, cap_mm;    ///< as read
     double thickness_mm;        ///< the lesser of them, or a tooth's that is not even
-    double by_step, by_height;  ///< of the lean: by shifts of the steps before and after, by shifts of the nodes
+    double by_step, by_height;  ///< of the lean: by deflections of the steps before and after, by deflections of the nodes
     double lean_mm;             ///< as read
     double width_mm;
-    double solved_mm;  ///< thickness with the shift as it is
+    double solved_mm;  ///< thickness with the deflection as it is
     std::uint32_t ring, chip;
   };
-  void place_elements(std::span<const removal::BentChip> chips, std::size_t passing, const removal::Stamp& stamp);
+  void place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const removal::Stamp& stamp);
   void place_shifts();
-  Vec2 at_ring(const std::vector<double>& shift, const Ring& ring, std::size_t m) const;
+  Vec2 at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const;
   double lean_mm(const Element& e, std::size_t m) const;
   void balance(std::size_t m);
   double balance_all();
@@ -63,17 +63,17 @@ class StaticEquilibrium {
   std::vector<EdgeElement> found_;
   std::vector<Element> elements_;   ///< rotation step by rotation step
   std::vector<std::size_t> first_;  ///< of a rotation step's elements
-  double most_lean_mm_ = 0;
+  double max_lean_mm_ = 0;
   bool first_stamp_ = false;
   // [steps][nodes][2]:
   std::vector<double> read_, shift_;
-  std::vector<double> moved_, side_;      ///< shift less the one that was read; of the step ahead less of that behind
+  std::vector<double> moved_, side_;      ///< deflection less the one that was read; of the step ahead less of that behind
   std::vector<double> left_;              ///< C F - delta
   std::vector<double> step_;              ///< Newton's
-  std::vector<double> by_own_, by_side_;  ///< [steps][nodes][2][4]: of C F, by the shifts at the first and last node
+  std::vector<double> by_own_, by_side_;  ///< [steps][nodes][2][4]: of C F, by the deflections at the first and last node
   std::vector<double> coarse_;            ///< [steps][4]: Newton's step there
   std::vector<double> norm_;              ///< [steps]: largest of left_
-  std::vector<char> stale_;               ///< [steps]: shifts have changed since left_ was worked out
+  std::vector<char> stale_;               ///< [steps]: deflections have changed since left_ was worked out
 };
 
 }  // namespace camber::deflection

@@ -16,7 +16,7 @@ struct SteadyCut {
   double axial_depth_mm = 0;
   double radial_depth_mm = 0;  ///< up to the diameter; at the diameter: a slot
   Milling milling = Milling::up;
-  /// Chips as the circles of the teeth before leave them, to second order in feed / radius (removal/stretch.h), with
+  /// Chips as the circles of the teeth before leave them, to second order in feed / radius (removal/engagement.h), with
   /// the little that a tooth cuts behind the feed's quadrant; else h = f sin(phi) sin(kappa), as closed forms have it.
   bool circular_chip = false;
 };

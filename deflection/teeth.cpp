@@ -12,7 +12,7 @@ Teeth::Teeth(const machine::Tool& tool) : runout_mm_(tool.runout_mm), runout_ang
   for (int j = 0; j < tool.flutes; ++j) {
     const double pitch = tool.pitch_rad.empty() ? mean : tool.pitch_rad[static_cast<std::size_t>(j)];
     offset_rad_.push_back(at);
-    pitch_share_.push_back(pitch / mean);
+    pitch_fraction_.push_back(pitch / mean);
     at += pitch;
     even_ = even_ && std::abs(pitch - mean) < 1e-9;
   }
@@ -23,25 +23,25 @@ int Teeth::offset_steps(int tooth, int steps) const {
   return static_cast<int>(std::lround(offset_rad(tooth) * steps / (2 * kPi)));
 }
 
-double Teeth::throw_mm(int tooth, double lag_rad) const {
+double Teeth::tooth_runout_mm(int tooth, double lag_rad) const {
   return runout_mm_ * std::cos(offset_rad(tooth) + lag_rad - runout_angle_rad_);
 }
 
-double Teeth::most_throw_mm(double lag_rad) const {
+double Teeth::max_runout_mm(double lag_rad) const {
   double most = -std::numeric_limits<double>::infinity();
-  for (int j = 0; j < count(); ++j) most = std::max(most, throw_mm(j, lag_rad));
+  for (int j = 0; j < count(); ++j) most = std::max(most, tooth_runout_mm(j, lag_rad));
   return most;
 }
 
 double Teeth::room_mm(int tooth, double even_chip_mm, double sine, double lag_rad, double bulge_mm) const {
   const int n = count();
-  const double own = throw_mm(tooth, lag_rad);
+  const double own = tooth_runout_mm(tooth, lag_rad);
   double chip = std::numeric_limits<double>::infinity(), pitches = 0;
   for (int m = 1; m <= n; ++m) {
     const int before = ((tooth - m) % n + n) % n;
-    pitches += pitch_share_[static_cast<std::size_t>(before)];
+    pitches += pitch_fraction_[static_cast<std::size_t>(before)];
     chip =
-        std::min(chip, pitches * (even_chip_mm + (pitches - 1) * bulge_mm) + sine * (own - throw_mm(before, lag_rad)));
+        std::min(chip, pitches * (even_chip_mm + (pitches - 1) * bulge_mm) + sine * (own - tooth_runout_mm(before, lag_rad)));
   }
   return chip;
 }

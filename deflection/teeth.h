@@ -20,9 +20,9 @@ class Teeth {
   double offset_rad(int tooth) const { return offset_rad_[static_cast<std::size_t>(tooth)]; }
   /// In steps of a turn of so many.
   int offset_steps(int tooth, int steps) const;
-  double throw_mm(int tooth, double lag_rad) const;
+  double tooth_runout_mm(int tooth, double lag_rad) const;
   /// Of the tooth that stands out most.
-  double most_throw_mm(double lag_rad) const;
+  double max_runout_mm(double lag_rad) const;
   double runout_mm() const { return runout_mm_; }
   double runout_angle_rad() const { return runout_angle_rad_; }
 
@@ -41,7 +41,7 @@ class Teeth {
 
  private:
   bool even_ = true;
-  std::vector<double> offset_rad_, pitch_share_;  ///< pitch to the next tooth / mean pitch
+  std::vector<double> offset_rad_, pitch_fraction_;  ///< pitch to the next tooth / mean pitch
   double runout_mm_, runout_angle_rad_;
 };
 

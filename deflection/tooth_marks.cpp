@@ -20,10 +20,10 @@ int ToothMarks::instant(std::size_t passing, int point, int steps) const {
   return point % pitch - (teeth_.offset_steps(tooth, envelope_.steps) * fine - tooth * pitch);
 }
 
-removal::ShiftTable ToothMarks::bending(const removal::ShiftTable& deflections, std::size_t from, std::size_t count,
+removal::DeflectionTable ToothMarks::bending(const removal::DeflectionTable& deflections, std::size_t from, std::size_t count,
                                         std::size_t passing) const {
   const int pitch = deflections.steps, turn = pitch * teeth_.count();
-  removal::ShiftTable out(count, turn, deflections.node_height_mm);
+  removal::DeflectionTable out(count, turn, deflections.node_height_mm);
   const auto last = static_cast<std::ptrdiff_t>(deflections.stamps) - 1;
   for (std::size_t k = 0; k < count; ++k) {
     const auto stamp = static_cast<std::ptrdiff_t>(from + k);
@@ -41,21 +41,21 @@ removal::ShiftTable ToothMarks::bending(const removal::ShiftTable& deflections, 
   return out;
 }
 
-void ToothMarks::add_run_out(removal::ShiftTable& shifts, std::size_t passing) const {
+void ToothMarks::add_run_out(removal::DeflectionTable& deflections, std::size_t passing) const {
   if (teeth_.runout_mm() == 0) return;
-  const int turn = shifts.steps, pitch = turn / teeth_.count();
+  const int turn = deflections.steps, pitch = turn / teeth_.count();
   std::vector<Eigen::Vector2f> offset;  // by the place of tooth 0, from which the run-out's direction counts
   for (int i = 0; i < turn; ++i) {
     const double at = 2 * kPi * i / turn + teeth_.runout_angle_rad();
     offset.push_back((teeth_.runout_mm() * Vec2(std::cos(at), std::sin(at))).cast<float>());
   }
-  for (std::size_t k = 0; k < shifts.stamps; ++k) {
+  for (std::size_t k = 0; k < deflections.stamps; ++k) {
     const int gone = static_cast<int>((passing + k) % static_cast<std::size_t>(teeth_.count())) * pitch;
-    float* row = shifts.row(static_cast<std::ptrdiff_t>(k));
+    float* row = deflections.row(static_cast<std::ptrdiff_t>(k));
     for (int point = 0; point < turn; ++point) {
       const int tooth_0 = ((instant(passing + k, point, turn) - gone) % turn + turn) % turn;
       const Eigen::Vector2f& e = offset[static_cast<std::size_t>(tooth_0)];
-      for (std::size_t n = 0; n < shifts.nodes(); ++n) {
+      for (std::size_t n = 0; n < deflections.nodes(); ++n) {
         float* v = row + 2 * (static_cast<int>(n) * turn + point);
         v[0] += e.x(), v[1] += e.y();
       }

@@ -54,11 +54,11 @@ ToothPassModel::MotionChip ToothPassModel::motion_chip(const Direction& d, const
 }
 
 double ToothPassModel::deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const {
-  const double least = own_surface ? teeth_.most_throw_mm(ring.lag_rad) : 0.0;
-  return ring.sine * (teeth_.throw_mm(j, ring.lag_rad) - least);
+  const double least = own_surface ? teeth_.max_runout_mm(ring.lag_rad) : 0.0;
+  return ring.sine * (teeth_.tooth_runout_mm(j, ring.lag_rad) - least);
 }
 
-double ToothPassModel::tooth_chip_mm(int j, const removal::Chip& chip, const Direction& d,
+double ToothPassModel::tooth_chip_mm(int j, const removal::ChipSample& chip, const Direction& d,
                                      const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const {
   const MotionChip motion = motion_chip(d, ring, feed);
   const double even = chip.after_tooth ? static_cast<double>(chip.thickness_mm) : motion.even_mm;
@@ -66,19 +66,19 @@ double ToothPassModel::tooth_chip_mm(int j, const removal::Chip& chip, const Dir
   return chip.after_tooth ? h : std::max(0.0, std::min(h, chip.thickness_mm + deeper_mm(j, chip.own_surface, ring)));
 }
 
-void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const Direction& d, std::uint32_t r,
+void ToothPassModel::add(const removal::ChipSample& chip, double thickness_mm, const Direction& d, std::uint32_t r,
                          std::size_t m, std::vector<double>& deflection, ToothPass& out) const {
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
   const std::size_t nodes = node_height_mm_.size();
   const auto& ring = envelope_.rings[r];
-  const double width_mm = chip.width_share() * ring.width_mm;
+  const double width_mm = chip.width_fraction() * ring.width_mm;
   const EdgeForce e = edge_force(material_, thickness_mm, width_mm, edge_ramp_mm_);
   const Vec3 force = -(e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian);
   out.force_N[m] += force;
   out.torque_Nmm[m] += e.tangential_N * ring.profile.radius_mm;
   out.work_Nmm += e.tangential_N * ring.profile.radius_mm * 2 * kPi / envelope_.steps;
   out.chip_max_mm = std::max(out.chip_max_mm, thickness_mm);
-  out.chip_area_mm2 += chip.width_share() * chip_area_mm2(ring, envelope_.steps);
+  out.chip_area_mm2 += chip.width_fraction() * chip_area_mm2(ring, envelope_.steps);
   for (std::size_t n = 0; n < nodes; ++n) {
     const double w = compliance_[r * nodes + n];
     deflection[2 * (n * steps + m)] += (w + axis_compliance_.x()) * force.x();
@@ -87,8 +87,8 @@ void ToothPassModel::add(const removal::Chip& chip, double thickness_mm, const D
 }
 
 namespace {
-const removal::Chip& chip_of(const removal::Chip& chip) { return chip; }
-const removal::Chip& chip_of(const removal::BentChip& bent) { return bent.chip; }
+const removal::ChipSample& chip_of(const removal::ChipSample& chip) { return chip; }
+const removal::ChipSample& chip_of(const removal::DeflectedChipSample& bent) { return bent.chip; }
 }  // namespace
 
 template <class Chips, class Function>
@@ -96,7 +96,7 @@ void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, c
   const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
   const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth_.count())) * pitch;
   for (std::size_t i = 0; i < chips.size(); ++i) {
-    const removal::Chip& chip = chip_of(chips[i]);
+    const removal::ChipSample& chip = chip_of(chips[i]);
     const int at = static_cast<int>(chip.point % static_cast<std::uint32_t>(turn));
     if (teeth_.even()) {
       f(i, at % pitch, static_cast<double>(chip.thickness_mm));
@@ -112,7 +112,7 @@ void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, c
   }
 }
 
-void ToothPassModel::edge_elements(std::span<const removal::BentChip> chips, std::size_t passing, const Vec3& feed,
+void ToothPassModel::edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const Vec3& feed,
                                    std::vector<EdgeElement>& out) const {
   out.clear();
   for_each_element(chips, passing, feed, [&](std::size_t i, int m, double h) {
@@ -120,7 +120,7 @@ void ToothPassModel::edge_elements(std::span<const removal::BentChip> chips, std
   });
 }
 
-void ToothPassModel::evaluate(std::span<const removal::Chip> chips, std::size_t passing, const Vec3& feed,
+void ToothPassModel::evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const Vec3& feed,
                               ToothPass& out) const {
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
   const std::size_t nodes = node_height_mm_.size();
@@ -138,13 +138,13 @@ void ToothPassModel::evaluate(std::span<const removal::Chip> chips, std::size_t 
                  [](double v) { return static_cast<float>(v); });
 }
 
-void ToothPassModel::add_to_turn(std::span<const removal::Chip> chips, std::size_t pass, std::size_t passing,
+void ToothPassModel::add_to_turn(std::span<const removal::ChipSample> chips, std::size_t pass, std::size_t passing,
                                  const Vec3& feed, TurnForces& turn) const {
   const int steps = envelope_.steps, pitch = envelope_.steps_per_pitch, teeth = teeth_.count();
   const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth)) * pitch;
   if (turn.teeth.empty())
     turn.teeth.assign(static_cast<std::size_t>(teeth), std::vector<TurnForces::Tooth>(static_cast<std::size_t>(steps)));
-  for (const removal::Chip& chip : chips) {
+  for (const removal::ChipSample& chip : chips) {
     const auto& ring = envelope_.rings[chip.point / static_cast<std::uint32_t>(steps)];
     const int column = static_cast<int>(chip.point % static_cast<std::uint32_t>(steps));
     const Direction d = direction(chip.point, ring);
@@ -162,7 +162,7 @@ void ToothPassModel::add_to_turn(std::span<const removal::Chip> chips, std::size
         h = tooth_chip_mm(j, chip, d, ring, feed);
       }
       TurnForces::Tooth& tooth = turn.teeth[static_cast<std::size_t>(j)][static_cast<std::size_t>(at)];
-      const EdgeForce e = edge_force(material_, h, chip.width_share() * ring.width_mm, edge_ramp_mm_);
+      const EdgeForce e = edge_force(material_, h, chip.width_fraction() * ring.width_mm, edge_ramp_mm_);
       tooth.force_N -= e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian;
       tooth.torque_Nmm += e.tangential_N * ring.profile.radius_mm;
       tooth.chip_max_mm = std::max(tooth.chip_max_mm, h);

@@ -7,11 +7,10 @@
 #include "deflection/chip_ends.h"
 #include "deflection/teeth.h"
 #include "machine/job.h"
-#include "removal/chip_reader.h"
+#include "removal/engage/upright/chip_reader.h"
 #include "removal/cutter.h"
-#include "removal/envelope_blocks.h"
-#include "removal/shift_table.h"
-#include "removal/stretch.h"
+#include "removal/engagement.h"
+#include "removal/deflection_table.h"
 
 namespace camber::deflection {
 
@@ -26,7 +25,7 @@ struct ToothPass {
   double work_Nmm = 0;               ///< of the spindle over the tooth passing
   double chip_max_mm = 0;            ///< thickest chip
   double chip_area_mm2 = 0;          ///< of the envelope that cuts; the chips' volume over it is the mean thickness
-  std::vector<float> deflection_mm;  ///< [nodes][steps][2], as a row of removal::ShiftTable
+  std::vector<float> deflection_mm;  ///< [nodes][steps][2], as a row of removal::DeflectionTable
 };
 
 /// One turn of the spindle, tooth by tooth. Turned clockwise by angle a from where tooth 1's edge at the tip points
@@ -62,14 +61,14 @@ class ToothPassModel {
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
   /// `passing` counts tooth passings since the tool began: it tells which tooth stands where, which only matters where
   /// the teeth are not even. feed_mm: motion in one mean pitch.
-  void evaluate(std::span<const removal::Chip> chips, std::size_t passing, const Vec3& feed_mm, ToothPass& out) const;
+  void evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const Vec3& feed_mm, ToothPass& out) const;
   /// The same of chips in blocks, the instants told at which each edge element enters the material and leaves it;
   /// without feedback.
-  /// fine_mm: takes the deflection, [nodes][steps * kFine][2], a row of removal::ShiftTable.
+  /// fine_mm: takes the deflection, [nodes][steps * kFine][2], a row of removal::DeflectionTable.
   void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
                 const Vec3& feed_mm, ToothPass& out, std::span<float> fine_mm) const;
   /// The elements that chips are made by; of chips with negative thickness too.
-  void edge_elements(std::span<const removal::BentChip> chips, std::size_t passing, const Vec3& feed_mm,
+  void edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const Vec3& feed_mm,
                      std::vector<EdgeElement>& out) const;
   Direction direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
   const machine::Material& material() const { return material_; }
@@ -79,7 +78,7 @@ class ToothPassModel {
     return axis_compliance_.array() + compliance_[ring * node_height_mm_.size() + node];
   }
   /// Adds the chips of one tooth passing, the turn's `pass`-th (0 ... flutes - 1), to the turn.
-  void add_to_turn(std::span<const removal::Chip> chips, std::size_t pass, std::size_t passing, const Vec3& feed_mm,
+  void add_to_turn(std::span<const removal::ChipSample> chips, std::size_t pass, std::size_t passing, const Vec3& feed_mm,
                    TurnForces& turn) const;
 
  private:
@@ -90,18 +89,18 @@ class ToothPassModel {
   /// lies as deep as the tooth that stands out most left it.
   double deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const;
   /// What tooth j takes where even teeth would take the chip.
-  double tooth_chip_mm(int j, const removal::Chip& chip, const Direction& d, const removal::EnvelopeGrid::Ring& ring,
+  double tooth_chip_mm(int j, const removal::ChipSample& chip, const Direction& d, const removal::EnvelopeGrid::Ring& ring,
                        const Vec3& feed) const;
   /// The same of a block of points; nothing is cut off below, so that what is not in the cut tells how far off it is.
   removal::ChipBlock tooth_block(int j, const removal::EnvelopeBlocks& blocks, const removal::ChipBlock& even,
                                  const Vec3& feed) const;
-  /// What the motion in one mean pitch allows at a point, along the normal (removal/stretch.h).
+  /// What the motion in one mean pitch allows at a point, along the normal (removal/engagement.h).
   struct MotionChip {
     double even_mm, bulge_mm;  ///< the latter what curvature adds to it
   };
   MotionChip motion_chip(const Direction& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
   /// Adds the force and deflection of one edge element at rotation step m.
-  void add(const removal::Chip& chip, double thickness_mm, const Direction& d, std::uint32_t ring, std::size_t m,
+  void add(const removal::ChipSample& chip, double thickness_mm, const Direction& d, std::uint32_t ring, std::size_t m,
            std::vector<double>& deflection, ToothPass& out) const;
 
   void add_end(const ChipEnd& end, double* sums, std::size_t row, std::span<float> fine_mm) const;

@@ -32,8 +32,8 @@ double block_time_speed(double length_mm, double block_time_s) {
   return block_time_s > 0 ? length_mm / block_time_s : machine::kNoLimit;
 }
 
-double arc_speed(double radius_mm, double acceleration_mm_per_s2, double normal_share) {
-  return std::sqrt(normal_share * acceleration_mm_per_s2 * radius_mm);
+double arc_speed(double radius_mm, double acceleration_mm_per_s2, double normal_fraction) {
+  return std::sqrt(normal_fraction * acceleration_mm_per_s2 * radius_mm);
 }
 
 double arc_servo_speed(double radius_mm, double radius_error_mm, double gain_per_s, double feed_forward_percent,

@@ -23,7 +23,7 @@ double block_time_speed(double length_mm, double block_time_s);
 
 /// Centripetal limit on an arc, v <= sqrt(share a r).          [mm/s] = sqrt([mm/s^2][mm])
 /// Source: Yan & Shirase 1997, eq. 15 (share 1).
-double arc_speed(double radius_mm, double acceleration_mm_per_s2, double normal_share);
+double arc_speed(double radius_mm, double acceleration_mm_per_s2, double normal_fraction);
 
 /// Speed at which the position loops make a circle's radius wrong by `radius_error_mm`:
 /// v <= sqrt(m Kp^2 r dr / (1 - (Kf/100)^2)).   m: 8 or 2, by the kind of position loop.

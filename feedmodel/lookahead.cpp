@@ -13,7 +13,7 @@ double squared(double v) { return v * v; }
 double gain(const PlanRow& row) { return row.length_mm > 0 ? 2.0 * row.acceleration_mm_per_s2 * row.length_mm : 0.0; }
 
 /// Of it, what the control counts on for braking.
-double brakes(const PlanRow& row) { return gain(row) * row.planned_share; }
+double brakes(const PlanRow& row) { return gain(row) * row.planned_fraction; }
 
 /// What may be the speed squared at the entry of a row, its neighbours considered.
 double entry_cap(const std::vector<PlanRow>& rows, std::size_t i) {

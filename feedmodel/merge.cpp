@@ -30,7 +30,7 @@ std::size_t merged_run_end(std::span<const nc::Move> moves, std::size_t first, d
   const nc::Move& run = moves[first];
   std::size_t end = first + 1;
   if (tolerance_mm <= 0 || run.kind != nc::MoveKind::linear || run.canned) return end;
-  while (end < moves.size() && end - first < kMostMergedLines && !moves[end - 1].exact_stop &&
+  while (end < moves.size() && end - first < kMaxMergedLines && !moves[end - 1].exact_stop &&
          may_follow(run, moves[end])) {
     const bool fits = std::all_of(moves.begin() + first, moves.begin() + end, [&](const nc::Move& m) {
       return distance_to_line(m.end_mm, run.start_mm, moves[end].end_mm) <= tolerance_mm;

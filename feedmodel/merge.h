@@ -10,7 +10,7 @@
 namespace camber::feedmodel {
 
 /// A run of merged lines never holds more than this (LinuxCNC's figure).
-inline constexpr std::size_t kMostMergedLines = 100;
+inline constexpr std::size_t kMaxMergedLines = 100;
 
 /// Tolerance within which lines are merged in this modal state: G64's Q, else (LinuxCNC) its P, else the
 /// control's own. 0: no merging.

@@ -66,7 +66,7 @@ class MotionClock {
     rows_.push_back({.length_mm = s.length_mm,
                      .speed_limit_mm_per_s = s.speed_limit_mm_per_s,
                      .acceleration_mm_per_s2 = s.acceleration_mm_per_s2,
-                     .planned_share = s.planned_share,
+                     .planned_fraction = s.planned_fraction,
                      .joined = s.joined,
                      .entry_speed_mm_per_s = s.entry_limit_mm_per_s});
     info_.push_back({s.move, s.cutting, s.length_mm == 0, s.dwell_s});

@@ -32,14 +32,14 @@ struct Element {
   double tolerance_mm = 0;
   bool stops = false;        ///< G9, G61.1
   double from_s = 0;         ///< where the rounding at its start ends
-  double less_share = 0;     ///< of its acceleration, kept free for the corners' speed steps
-  double planned_share = 1;  ///< of its acceleration, that the look-ahead counts on
+  double less_fraction = 0;     ///< of its acceleration, kept free for the corners' speed steps
+  double planned_fraction = 1;  ///< of its acceleration, that the look-ahead counts on
 };
 
 /// How one element passes into the next.
 struct Junction {
   double speed_mm_per_s = 0;
-  double less_share = 0;
+  double less_fraction = 0;
   double wait_s = 0;  ///< at a stop
   std::optional<Blend> blend;
 };
@@ -62,15 +62,15 @@ void set_arc_limits(Segment& s, const Vec3& acceleration, const machine::Control
                              control.path_acceleration_mm_per_s2});
   const double rise_per_rad = s.rise.norm() / s.turn_rad_per_mm;
   const double curvature_radius = helix_curvature_radius(s.radius_mm, rise_per_rad);
-  const double turning = arc_speed(curvature_radius, plane, control.arc_normal_share);
-  double share = control.arc_tangential_share;
+  const double turning = arc_speed(curvature_radius, plane, control.arc_normal_fraction);
+  double share = control.arc_tangential_fraction;
   if (s.speed_limit_mm_per_s < turning && !std::isinf(a)) {
     const double used = s.speed_limit_mm_per_s * s.speed_limit_mm_per_s / (curvature_radius * a);
     share = std::max(share, std::sqrt(std::max(0.0, 1.0 - used * used)));
   } else if (control.dialect == machine::Dialect::linuxcnc && rise_per_rad > 0 && share < 1) {
     // The traced helices leave more to the path the more the whole arc rises (not the rise of one radian).
     const double used =
-        control.arc_normal_share / (helix_curvature_radius(s.radius_mm, s.rise.norm() * s.length_mm) / s.radius_mm);
+        control.arc_normal_fraction / (helix_curvature_radius(s.radius_mm, s.rise.norm() * s.length_mm) / s.radius_mm);
     share = std::max(share, std::sqrt(std::max(0.0, 1.0 - used * used)));
   }
   s.acceleration_mm_per_s2 = std::isinf(a) ? a : a * share;
@@ -163,7 +163,7 @@ class Builder {
   /// The speed steps that the axes take in one period without being asked to round the corner.
   Junction step_junction(const Element& a, const Element& b, const Vec3& from, const Vec3& to) const {
     Junction j;
-    const double share = control_.corner.step_share;
+    const double share = control_.corner.step_fraction;
     const double arc_factor = a.line && b.line ? 1.0 : 0.5;
     Vec3 permitted = Vec3::Zero();
     if (share > 0) permitted = share * arc_factor * control_.period_s * acceleration_;
@@ -172,7 +172,7 @@ class Builder {
     const double least = std::min(a.segment.acceleration_mm_per_s2, b.segment.acceleration_mm_per_s2);
     if (j.speed_mm_per_s < least * control_.period_s) j.speed_mm_per_s = 0;
     const double reference = std::min(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s);
-    j.less_share = share * (j.speed_mm_per_s > reference ? reference / j.speed_mm_per_s : 1.0);
+    j.less_fraction = share * (j.speed_mm_per_s > reference ? reference / j.speed_mm_per_s : 1.0);
     return j;
   }
 
@@ -183,7 +183,7 @@ class Builder {
     if (std::isinf(options.tolerance_mm)) options.tolerance_mm = kOpenToleranceShare * shorter;
     options.room_mm = std::min(kBlendRoomShare * shorter, a.segment.length_mm - a.from_s);
     options.goal_speed_mm_per_s = std::max(a.segment.feed_command_mm_per_s, b.segment.feed_command_mm_per_s);
-    options.normal_share = control_.arc_normal_share;
+    options.normal_fraction = control_.arc_normal_fraction;
     options.velocity_mm_per_s = velocity_;
     options.acceleration_mm_per_s2 = acceleration_.cwiseMin(control_.path_acceleration_mm_per_s2);
     Junction j;
@@ -232,12 +232,12 @@ class Builder {
   void join(Element& a, Element& b) {
     const Junction j = junction(a, b);
     b.segment.entry_limit_mm_per_s = j.speed_mm_per_s;
-    a.less_share = std::max(a.less_share, j.less_share);
-    b.less_share = j.less_share;
+    a.less_fraction = std::max(a.less_fraction, j.less_fraction);
+    b.less_fraction = j.less_fraction;
     if (j.blend && a.line && b.line && j.blend->trim_mm > kNoLength) {
       emit_with_blend(a, b, *j.blend);
     } else {
-      emit(a, a.segment.length_mm, a.segment.acceleration_mm_per_s2 * (1.0 - a.less_share));
+      emit(a, a.segment.length_mm, a.segment.acceleration_mm_per_s2 * (1.0 - a.less_fraction));
     }
     if (j.wait_s > 0) wait(j.wait_s, a.segment);
   }
@@ -258,7 +258,7 @@ class Builder {
     const Vec3 touch = a.segment.point_at(end_s);
     const Vec3 normal = from.cross(to).normalized();
     Segment arc = arc_segment(touch, touch + blend.radius_mm * normal.cross(from), normal, blend.turn_rad, 0);
-    arc.acceleration_mm_per_s2 = blend.acceleration_mm_per_s2 * control_.arc_tangential_share;
+    arc.acceleration_mm_per_s2 = blend.acceleration_mm_per_s2 * control_.arc_tangential_fraction;
     arc.speed_limit_mm_per_s =
         std::min(blend.speed_mm_per_s, std::max(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s));
     arc.entry_limit_mm_per_s = arc.speed_limit_mm_per_s;
@@ -274,7 +274,7 @@ class Builder {
       a.segment.speed_limit_mm_per_s = std::min(a.segment.speed_limit_mm_per_s, arc.speed_limit_mm_per_s);
       emit(a, end_s, arc.acceleration_mm_per_s2);
     } else {
-      emit(a, end_s, a.segment.acceleration_mm_per_s2 * (1.0 - a.less_share));
+      emit(a, end_s, a.segment.acceleration_mm_per_s2 * (1.0 - a.less_fraction));
     }
     sink_(arc);
     b.from_s = blend.trim_mm;
@@ -286,15 +286,15 @@ class Builder {
                     ? part_of(element.segment, element.from_s, end_s)
                     : element.segment;
     s.acceleration_mm_per_s2 = acceleration;
-    s.planned_share = element.planned_share;
+    s.planned_fraction = element.planned_fraction;
     sink_(s);
   }
 
   void rest(double dwell_s, std::size_t move, const Vec3& where_mm) {
     if (previous_) {
       const bool blended = previous_->control == nc::PathControl::blend && control_.corner.law == CornerLaw::blend;
-      const double share = (1.0 - previous_->less_share) * (blended ? control_.stop_acceleration_share : 1.0);
-      previous_->planned_share = blended ? control_.stop_acceleration_share : 1.0;
+      const double share = (1.0 - previous_->less_fraction) * (blended ? control_.stop_acceleration_fraction : 1.0);
+      previous_->planned_fraction = blended ? control_.stop_acceleration_fraction : 1.0;
       emit(*previous_, previous_->segment.length_mm, previous_->segment.acceleration_mm_per_s2 * share);
     }
     previous_.reset();

@@ -13,7 +13,7 @@ PlanRow row_of(const Segment& s) {
   return {.length_mm = s.length_mm,
           .speed_limit_mm_per_s = s.speed_limit_mm_per_s,
           .acceleration_mm_per_s2 = s.acceleration_mm_per_s2,
-          .planned_share = s.planned_share,
+          .planned_fraction = s.planned_fraction,
           .joined = s.joined,
           .entry_speed_mm_per_s = s.entry_limit_mm_per_s};
 }

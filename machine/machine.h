@@ -27,7 +27,7 @@ struct Corner {
   double time_s = 0;                       ///< angle: dt
   /// Corners passed without rounding: the speed of an axis may jump by this share of what it gains in one period
   /// (dV = share x acceleration x period). 0: only corners without a change of direction are passed so.
-  double step_share = 0;
+  double step_fraction = 0;
   /// A line that lasts less than this between two roundings is driven with the limits of the roundings.
   double short_line_time_s = 0;
   double stop_angle_rad = kNoLimit;  ///< corners that turn by more are stopped at, whatever the law
@@ -41,11 +41,11 @@ struct Control {
   Corner corner;
   double merge_tolerance_mm = 0;  ///< short lines within it are merged; 0: none
   int lookahead_blocks = 0;       ///< segments seen ahead, at the last of which it could stop; 0: all
-  double arc_normal_share = 1;      ///< of the acceleration, to turn: v <= sqrt(share a r)
-  double arc_tangential_share = 1;  ///< of the acceleration, along an arc whose speed may reach that limit
+  double arc_normal_fraction = 1;      ///< of the acceleration, to turn: v <= sqrt(share a r)
+  double arc_tangential_fraction = 1;  ///< of the acceleration, along an arc whose speed may reach that limit
   /// Of the acceleration, in a block that should be blended (G64) but ends in a stop; taken twice when the
   /// look-ahead plans how fast that block may be entered.
-  double stop_acceleration_share = 1;
+  double stop_acceleration_fraction = 1;
   double rest_latency_s = 0;  ///< a rest (dwell) takes this much longer than programmed
   /// Along the path, beside what the axes allow (before interpolation).
   double path_acceleration_mm_per_s2 = kNoLimit;

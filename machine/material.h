@@ -36,7 +36,7 @@ struct CatalogueRow {
 /// At least two rows of different feeds.
 struct KienzlePair {
   double k1_1_MPa = 0, m = 0;
-  double worst_share = 0;  ///< largest |k_c of the line / k_c of the table - 1|
+  double worst_fraction = 0;  ///< largest |k_c of the line / k_c of the table - 1|
 };
 KienzlePair kienzle_from_catalogue(std::span<const CatalogueRow> rows);
 

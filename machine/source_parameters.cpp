@@ -119,7 +119,7 @@ class IniReader {
       tell("TRAJ.ARC_BLEND_OPTIMIZATION_DEPTH", "", "control.lookahead_blocks", *depth);
     }
     if (const auto ratio = number("TRAJ.ARC_BLEND_KINK_RATIO")) {
-      machine_.control.corner.step_share = *ratio;
+      machine_.control.corner.step_fraction = *ratio;
       tell("TRAJ.ARC_BLEND_KINK_RATIO", "", "control.corner.step_share", *ratio);
     }
   }

@@ -45,7 +45,7 @@ constexpr Dialect kLinuxCnc{.control = ControlKind::linuxcnc,
                             .radius_entry_square = false,
                             .radius_exit_waits = false,
                             .radius_look_ahead = 1'000'000,
-                            .most_levels = 10};
+                            .max_levels = 10};
 
 constexpr std::array kDialects{&kFanuc, &kHaas, &kMazak, &kLinuxCnc};
 

@@ -9,7 +9,7 @@
 namespace camber::nc {
 namespace {
 
-constexpr int kMostDepth = 100;  ///< brackets in brackets; controls stop at 5 to 10
+constexpr int kMaxDepth = 100;  ///< brackets in brackets; controls stop at 5 to 10
 
 struct Spelling {
   std::string_view text;
@@ -179,8 +179,8 @@ void ExpressionReader::binary(int least_priority) {
 }
 
 void ExpressionReader::operand() {
-  if (++depth_ > kMostDepth)
-    throw MacroError(at_, "expression", fmt::format("more than {} brackets in brackets", kMostDepth));
+  if (++depth_ > kMaxDepth)
+    throw MacroError(at_, "expression", fmt::format("more than {} brackets in brackets", kMaxDepth));
   const char c = peek();
   const std::size_t begin = at_;
   std::size_t length = 0;

@@ -31,7 +31,7 @@ struct InterpreterOptions {
   bool whole_numbers_are_increments = false;  ///< X1000 is 1000 least increments of the dialect (1 mm), not 1000 mm
   std::uint16_t skip_switches = 0;            ///< bit n: blocks that begin with /n are left out (/ is /1)
   /// Blocks that loops and repeated subprograms may run again before the program counts as endless.
-  std::size_t most_repeated_blocks = 10'000'000;
+  std::size_t max_repeated_blocks = 10'000'000;
 
   // What the operator has set at the control; what is not given here and not set by the program is not known.
   std::map<int, Vec3> work_offsets_mm{};     ///< machine coordinates, by the number of ModalState::work_offset

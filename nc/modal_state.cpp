@@ -10,7 +10,7 @@ namespace camber::nc {
 namespace {
 
 constexpr const char* kAxisWords = "XYZ";
-constexpr std::size_t kMostGWords = 64;  ///< there are some 20 modal groups; each word is compared with each
+constexpr std::size_t kMaxGWords = 64;  ///< there are some 20 modal groups; each word is compared with each
 
 bool is_whole(double value) { return value == std::floor(value) && value >= 0 && value < 1e8; }
 
@@ -54,9 +54,9 @@ void BlockInterpreter::add_m_event(const Code& code) {
 }
 
 void BlockInterpreter::check_one_of_each_group() {
-  if (words_.g().size() > kMostGWords) {
+  if (words_.g().size() > kMaxGWords) {
     error(words_.offset(), "too-many-words",
-          fmt::format("{} G words in one block; at most {} are read", words_.g().size(), kMostGWords));
+          fmt::format("{} G words in one block; at most {} are read", words_.g().size(), kMaxGWords));
     return;
   }
   for (std::size_t i = 0; i < words_.g().size(); ++i)

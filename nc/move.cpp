@@ -51,6 +51,10 @@ Vec3 point_at(const Interpretation& program, const Move& move, double u) {
   return arc.center_mm + radius * (std::cos(angle) * f.out + std::sin(angle) * f.along) + height * arc.normal;
 }
 
+ToolPose pose_at(const Interpretation& program, const Move& move, double u) {
+  return {point_at(program, move, u), Vec3::UnitZ()};
+}
+
 Vec3 direction_at(const Interpretation& program, const Move& move, double u) {
   Vec3 direction = move.end_mm - move.start_mm;
   if (move.arc != Move::kNoArc) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/tool_pose.h"
 #include "nc/event.h"
 #include "nc/frame.h"
 
@@ -84,6 +85,8 @@ struct Interpretation {
 double length_mm(const Interpretation& program, const Move& move);
 /// Point at the share u in [0, 1] of the move's length.
 Vec3 point_at(const Interpretation& program, const Move& move, double u);
+/// The tool there. Rotary axes are not read yet, so every pose is upright.
+ToolPose pose_at(const Interpretation& program, const Move& move, double u);
 /// Unit direction of motion at the share u; zero for a move without length.
 Vec3 direction_at(const Interpretation& program, const Move& move, double u);
 

@@ -82,7 +82,7 @@ void Sequencer::go(BlockPlace place) {
 
 void Sequencer::count_run() {
   std::uint8_t& runs = (*runs_)[at_.block];
-  if (runs > 0 && ++repeated_ > options_.most_repeated_blocks) fail_as_endless();
+  if (runs > 0 && ++repeated_ > options_.max_repeated_blocks) fail_as_endless();
   if (runs < 255) ++runs;
 }
 
@@ -242,7 +242,7 @@ void Sequencer::run_loop(std::uint32_t index) {
 void Sequencer::next_turn(std::uint32_t head) {
   const Statement& s = statement(head);
   const Statement& last = statement(s.partner);
-  if (++repeated_ > options_.most_repeated_blocks) fail_as_endless();
+  if (++repeated_ > options_.max_repeated_blocks) fail_as_endless();
   bool again = true;
   if (s.repeats)
     again = --turns_left()[head] >= 1;
@@ -270,14 +270,14 @@ void Sequencer::fail_as_endless() {
   const LoopKey* loop = nullptr;
   std::size_t entered = 0;
   for (const auto& [key, when] : entered_)
-    if (repeated_ - when > options_.most_repeated_blocks / 2 && (!loop || when >= entered)) {
+    if (repeated_ - when > options_.max_repeated_blocks / 2 && (!loop || when >= entered)) {
       loop = &key;
       entered = when;
     }
   if (loop) report_.set_source(loop->first->source);
   throw MacroError(
       loop ? loop->second : at_.file->blocks[at_.block].offset, "endless-loop",
-      fmt::format("the loop does not end: {} blocks were run again; it is not read on", options_.most_repeated_blocks));
+      fmt::format("the loop does not end: {} blocks were run again; it is not read on", options_.max_repeated_blocks));
 }
 
 // --- words ----------------------------------------------------------------------------------------------------------

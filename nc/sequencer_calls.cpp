@@ -40,10 +40,10 @@ void Sequencer::return_from_sub(const Statement& s) {
 
 void Sequencer::enter(Call call, bool o_word) {
   if (call.times == 0) return;
-  if (frames_.size() >= static_cast<std::size_t>(dialect_.most_levels))
+  if (frames_.size() >= static_cast<std::size_t>(dialect_.max_levels))
     throw MacroError(call.offset, "call-depth",
                      fmt::format("calls inside calls deeper than {} levels; a {} control reads no more",
-                                 dialect_.most_levels, dialect_.name));
+                                 dialect_.max_levels, dialect_.name));
   const BlockPlace caller{at_.file, at_.block == 0 ? 0 : at_.block - 1};
   const std::uint32_t from = caller.file == &files_.main() ? caller.block : frames_.back().called_from;
   if (call.locals) {

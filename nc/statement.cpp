@@ -14,7 +14,7 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
 
-constexpr std::size_t kMostArguments = 30;
+constexpr std::size_t kMaxArguments = 30;
 
 struct OKeyword {
   std::string_view word;
@@ -214,10 +214,10 @@ bool StatementReader::read_o_keyword(std::size_t begin, std::uint32_t label, boo
   if (k == kOKeywords.end() || (computed && k->kind != StatementKind::call)) return false;
   at_ = letters;
   std::vector<std::uint32_t> values;
-  const std::size_t most = k->values == -2 ? kMostArguments : k->values == 0 ? 0 : 1;
+  const std::size_t most = k->values == -2 ? kMaxArguments : k->values == 0 ? 0 : 1;
   for (skip_blanks(); at_ < end_ && text_[at_] == '[' && values.size() <= most; skip_blanks()) {
     if (values.size() == most && k->kind == StatementKind::call)
-      throw MacroError(at_, "statement", fmt::format("more than {} arguments of a call", kMostArguments));
+      throw MacroError(at_, "statement", fmt::format("more than {} arguments of a call", kMaxArguments));
     if (values.size() == most) break;
     values.push_back(expressions().read_bracketed());
   }

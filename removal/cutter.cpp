@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "removal/field/rounded_cutter.h"
+
 namespace camber::removal {
+namespace {
+
+RoundedCutter<double> rounded(const CutterShape& shape) { return {shape.bottom_length_mm(), shape.corner_radius_mm}; }
+
+}  // namespace
 
 double CutterShape::distance_mm(const Vec3& p) const {
   if (general) return profile.distance_mm({std::sqrt(p.x() * p.x() + p.y() * p.y()), p.z()});
-  const double qx = std::sqrt(p.x() * p.x() + p.y() * p.y()) - bottom_length_mm();
-  const double qz = corner_radius_mm - p.z();
-  const double a = std::max(qx, 0.0), b = std::max(qz, 0.0);
-  return std::min(std::max(qx, qz), 0.0) + std::sqrt(a * a + b * b) - corner_radius_mm;
+  return rounded(*this).distance(std::sqrt(p.x() * p.x() + p.y() * p.y()), p.z());
 }
 
 Vec3 CutterShape::gradient(const Vec3& p) const {
@@ -19,17 +23,10 @@ Vec3 CutterShape::gradient(const Vec3& p) const {
     const Vec2 n = profile.nearest({rho, p.z()}).normal;
     return {rho > 0 ? p.x() / rho * n.x() : 0, rho > 0 ? p.y() / rho * n.x() : 0, n.y()};
   }
-  const double qx = rho - bottom_length_mm(), qz = corner_radius_mm - p.z();
-  double radial = 0, down = 0;
-  if (qx > 0 && qz > 0) {
-    const double length = std::sqrt(qx * qx + qz * qz);
-    radial = qx / length;
-    down = qz / length;
-  } else {
-    (qx > qz ? radial : down) = 1;
-  }
-  const double per_rho = rho > 0 ? radial / rho : 0;
-  return {p.x() * per_rho, p.y() * per_rho, -down};
+  const auto cutter = rounded(*this);
+  const auto n = cutter.normal(cutter.place(rho, p.z()));
+  const double per_rho = rho > 0 ? n.radial / rho : 0;
+  return {p.x() * per_rho, p.y() * per_rho, -n.down};
 }
 
 CutterShape shape_of(const machine::Tool& tool) {
@@ -43,7 +40,7 @@ CutterShape shape_of(const machine::Tool& tool) {
 
 namespace {
 
-constexpr double kMostTurn_rad = 0.06;  ///< of the profile's normal over one ring of a small corner
+constexpr double kMaxTurn_rad = 0.06;  ///< of the profile's normal over one ring of a small corner
 
 /// Cuts [from, to] in equal rings no wider than `step`.
 void add_rings(EnvelopeGrid& grid, double from, double to, double step) {
@@ -73,7 +70,7 @@ EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step
   const double end = profile.length_to_height_mm(std::max(0.0, top_mm + above_mm));
   for (const auto& piece : profile.pieces()) {
     const double to = piece.from_s_mm + piece.length_mm;
-    const double step = piece.arc ? std::min(step_mm, kMostTurn_rad * piece.radius_mm) : step_mm;
+    const double step = piece.arc ? std::min(step_mm, kMaxTurn_rad * piece.radius_mm) : step_mm;
     add_rings(grid, piece.from_s_mm, std::min(to, top), step);
     add_rings(grid, std::max(piece.from_s_mm, top), std::min(to, end), step);
   }

@@ -9,7 +9,7 @@ namespace {
 constexpr double kNoEnd_mm = 1e6;
 
 /// Circles of latitude closer to the axis than this count as this large: at the tip of a cone they have no radius.
-constexpr double kLeastParallel_mm = 0.05;
+constexpr double kMinParallel_mm = 0.05;
 
 Vec2 normal_of(double kappa) { return {std::sin(kappa), -std::cos(kappa)}; }
 
@@ -102,7 +102,7 @@ ProfilePoint Profile::at(double s) const {
             r > 1e-9 ? std::sin(k) / r : 1 / p->radius_mm};
   }
   const Vec2 place = p->start + (s - p->from_s_mm) * p->along;
-  return {place.x(), place.y(), p->normal_from_rad, 0, p->normal.x() / std::max(place.x(), kLeastParallel_mm)};
+  return {place.x(), place.y(), p->normal_from_rad, 0, p->normal.x() / std::max(place.x(), kMinParallel_mm)};
 }
 
 double Profile::length_to_height_mm(double z) const {

@@ -1,4 +1,5 @@
 #include "removal/stock.h"
+#include "removal/field/tile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -351,12 +352,12 @@ void Stock::clear() {
   clear_stamps();
 }
 
-double material_share(double d, double voxel) { return std::clamp(0.5 - 0.5 * d / voxel, 0.0, 1.0); }
+double material_fraction(double d, double voxel) { return std::clamp(0.5 - 0.5 * d / voxel, 0.0, 1.0); }
 
 double Stock::volume_mm3() const {
   double share = 0;
   for (auto it = impl_->distance->tree().cbeginLeaf(); it; ++it)
-    for (openvdb::Index n = 0; n < 512; ++n) share += material_share(it->getValue(n), voxel_mm_);
+    for (openvdb::Index n = 0; n < 512; ++n) share += material_fraction(it->getValue(n), voxel_mm_);
   // Below leaf level only inactive tiles of one value are left.
   for (auto it = impl_->distance->tree().cbeginValueOff(); it; ++it)
     if (!it.isVoxelValue() && it.getValue() < 0) share += static_cast<double>(it.getVoxelCount());

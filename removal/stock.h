@@ -1,6 +1,6 @@
 #pragma once
 // The stock: a narrow-band signed distance field (OpenVDB), negative inside the material, and for every voxel
-// the stamp that set it last.
+// the stamp that set it last; the bodies that a stock is made from (box, cylinder, mesh); what a stock looks like.
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -16,17 +16,7 @@ namespace camber::removal {
 /// Voxel or tile coordinates; voxel i stands at i * voxel_mm.
 using Index3 = std::array<int, 3>;
 
-/// A dense working copy of a cube of voxels: `kCore` a side that the tile owns and one layer above (towards
-/// +x, +y, +z) of its neighbours', so that every trilinear cell of the core is whole.
-struct Tile {
-  static constexpr int kCore = 16;
-  static constexpr int kSide = kCore + 1;
-  static constexpr int kVolume = kSide * kSide * kSide;
-  std::array<float, kVolume> distance;
-  std::array<std::int32_t, kVolume> stamp;  ///< -1: not cut
-
-  static constexpr int offset(int i, int j, int k) { return (i * kSide + j) * kSide + k; }
-};
+struct Tile;  // removal/field/tile.h
 
 class Stock {
  public:
@@ -109,12 +99,49 @@ class Stock {
 };
 
 /// Share of a voxel that is material, from its distance: 1 inside, 0 outside, linear over one voxel each way.
-double material_share(double distance_mm, double voxel_mm);
+double material_fraction(double distance_mm, double voxel_mm);
 
 /// Signed distance to an upright cylinder, exact. base: middle of its lower face.
 double cylinder_distance_mm(const Vec3& point, const Vec3& base_mm, double radius_mm, double height_mm);
 
 /// Signed distance to a box, exact.
 double box_distance_mm(const Vec3& point, const Vec3& min_mm, const Vec3& max_mm);
+
+class MeshDistance {
+ public:
+  /// Reads a binary or ASCII STL (mm) and samples its distance on voxels within band_mm of its surface. Throws
+  /// InputError [file-missing], [stl-format], [stl-empty], [stl-open] (an edge without a second triangle: the mesh
+  /// has no inside).
+  MeshDistance(const std::string& stl_path, double voxel_mm, double band_mm);
+  ~MeshDistance();
+  MeshDistance(MeshDistance&&) noexcept;
+
+  /// Trilinear, clipped to +-band_mm.
+  double distance_mm(const Vec3& point) const;
+  const Vec3& min_mm() const { return min_mm_; }
+  const Vec3& max_mm() const { return max_mm_; }
+
+ private:
+  struct Impl;
+  Vec3 min_mm_, max_mm_;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Where a line between two points of the grid leaves the material.
+struct StockCrossing {
+  Vec3 place_mm;
+  Vec3 outward;  ///< along the line: an axis or its opposite
+};
+
+struct StockShape {
+  double cell_mm = 0;  ///< grid whose points stand at whole multiples of it; a whole number of voxels
+  std::vector<StockCrossing> crossings;
+};
+
+/// Crossings of the stock's surface with the lines of the finest grid that has no more than `max_crossings`; 1 or
+/// more. Each lies where the voxels put it, but for a thousandth of a cell
+/// between the two points. What is thinner than a cell between two points of the
+/// grid is not seen.
+StockShape stock_shape(const Stock& stock, std::size_t max_crossings);
 
 }  // namespace camber::removal

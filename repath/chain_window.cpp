@@ -40,7 +40,7 @@ std::vector<Primitive> ChainWindow::best(const Primitive& before, const Primitiv
   for (std::size_t k = 0; k <= ends.size(); ++k) at_[k].clear();
   at_[0].push_back(0);
   for (std::size_t from = 0; from < ends.size(); ++from) {
-    std::erase_if(at_[from], [&](std::size_t s) { return states_[s].cost.primitives >= limits.most_primitives; });
+    std::erase_if(at_[from], [&](std::size_t s) { return states_[s].cost.primitives >= limits.max_primitives; });
     if (at_[from].empty()) continue;
     const std::uint32_t begin = from == 0 ? before.last : ends[from - 1];
     const auto limit = std::upper_bound(path_.ends.begin(), path_.ends.end(), begin);
@@ -61,7 +61,7 @@ bool ChainWindow::reach(std::size_t from, std::size_t to, std::uint32_t begin, s
   for (const std::size_t s : at_[from]) {
     const std::array<std::optional<Bent>, 2> bents = line_or_arc(bends_, states_[s].bent, stretch);
     for (const auto& bent : bents) {
-      if (!bent || bent->primitive.deviation_mm > limits.most_deviation_mm) continue;
+      if (!bent || bent->primitive.deviation_mm > limits.max_deviation_mm) continue;
       reached = true;
       keep(at_[to], {states_[s].cost.with(path_, bent->primitive), *bent, s});
     }

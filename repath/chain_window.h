@@ -31,8 +31,8 @@ class ChainWindow {
       : path_(path), options_(options), joints_(joints), bends_(path, options, fitter, joints) {}
 
   struct Limits {
-    double most_deviation_mm = 0;
-    std::size_t most_primitives = 0;
+    double max_deviation_mm = 0;
+    std::size_t max_primitives = 0;
     double primitives_per_line_mm = 0;  ///< see ChainCost
   };
 

@@ -36,8 +36,8 @@ namespace {
 
 /// How many blocks more may be had for a millimetre of lines that becomes one of arcs.
 double blocks_per_line_mm(const FeedsByKind& feeds) {
-  constexpr double kMost = 1e4;
-  return std::min(kMost, (1 / feeds.line_mm_per_s - 1 / feeds.arc_mm_per_s) / std::max(feeds.block_s, 1e-9));
+  constexpr double kMax = 1e4;
+  return std::min(kMax, (1 / feeds.line_mm_per_s - 1 / feeds.arc_mm_per_s) / std::max(feeds.block_s, 1e-9));
 }
 
 /// Rewrites the runs of a program, one chain of runs after the other.

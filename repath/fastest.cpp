@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kLengths[] = {10, 6.3, 4, 3.2, 2.5, 2, 1.6, 1.25, 1};  ///< longest first: they are rarely slower
 constexpr int kNoBetter = 2;                                            ///< lengths in a row that are no faster: enough
-constexpr double kLeastGain = 1.002;                                    ///< less is not worth another program
+constexpr double kMinGain = 1.002;                                    ///< less is not worth another program
 constexpr double kSameTime = 1.001;  ///< what is no faster than this has no say: the path with the smaller error has
 constexpr double kAlmostSameTime = 1.005;  ///< is worth fewer blocks
 
 constexpr double kPredictedBlocks = 3e6;  ///< by all trials of feeds together
-constexpr double kFewestTrials = 12, kMostTrials = 70;
-constexpr double kFirstFeed = 0.7, kLeastFeed = 0.25, kLeastShare = 0.1;
+constexpr double kFewestTrials = 12, kMaxTrials = 70;
+constexpr double kFirstFeed = 0.7, kMinFeed = 0.25, kMinShare = 0.1;
 constexpr double kAim = 0.998;    ///< of the limit
 constexpr double kNearer = 0.99;  ///< than the old program, by so much: worth another one where none keeps to the limit
 
@@ -77,13 +77,13 @@ class Search {
     }
     const std::size_t best = best_length();
     out_.unbounded = best;
-    const bool may_gain = out_.tried[best].figures.time_s * kLeastGain < before_.time_s;
+    const bool may_gain = out_.tried[best].figures.time_s * kMinGain < before_.time_s;
     if (!out_.limit.holds(out_.tried[best].figures) && (may_gain || !options_.keep_old)) look_for_feeds(best);
     const bool asked_for = options_.layout.length_mm > 0 || !options_.keep_old;
     const bool old_keeps = out_.limit.holds(before_);
     const Candidate& chosen = out_.tried[out_.chosen];
     if (out_.within_limit)
-      out_.gains = asked_for || !old_keeps || chosen.figures.time_s * kLeastGain < before_.time_s;
+      out_.gains = asked_for || !old_keeps || chosen.figures.time_s * kMinGain < before_.time_s;
     else  // the old program may be the nearest that there is
       out_.gains = asked_for || out_.limit.share(chosen.figures) < kNearer * out_.limit.share(before_);
     if (out_.gains) {
@@ -101,7 +101,7 @@ class Search {
     if (options_.layout.length_mm > 0 || !options_.keep_old || !out_.limit.holds(before_) ||
         before_.move_s.size() != moves.moves.size())
       return false;
-    double most_s = 0;
+    double max_s = 0;
     for (const double length : {kLengths[0], 1.0}) {
       const std::vector<RewrittenRun> runs = resegmenter_.lay_out(layout_of({.length_factor = length})).runs;
       double gain_s = 0;
@@ -113,9 +113,9 @@ class Search {
         if (move.editable && move.feed_mm_per_s > 0 && move.block >= run->first_block)
           gain_s += std::max(0.0, before_.move_s[m] - nc::length_mm(moves, move) / move.feed_mm_per_s);
       }
-      most_s = std::max(most_s, gain_s);
+      max_s = std::max(max_s, gain_s);
     }
-    return before_.time_s < kLeastGain * (before_.time_s - most_s);
+    return before_.time_s < kMinGain * (before_.time_s - max_s);
   }
 
   ResegmentOptions layout_of(const Candidate& c) const {
@@ -134,7 +134,7 @@ class Search {
     predicted_blocks_ = static_cast<double>(moves.moves.size());
     c.figures = contour_figures(moves, meant_, machine_);
     out_.tried.push_back(c);
-    if (options_.progress) options_.progress(static_cast<double>(out_.tried.size()) / most_trials());
+    if (options_.progress) options_.progress(static_cast<double>(out_.tried.size()) / max_trials());
     const std::size_t now = out_.tried.size() - 1;
     const bool keeps = out_.limit.holds(c.figures);
     if (now == 0 || choose(c, keeps)) out_.chosen = now;
@@ -155,11 +155,11 @@ class Search {
   }
 
   double trials_of_feeds() const {
-    return std::clamp(kPredictedBlocks / std::max(1.0, predicted_blocks_), kFewestTrials, kMostTrials);
+    return std::clamp(kPredictedBlocks / std::max(1.0, predicted_blocks_), kFewestTrials, kMaxTrials);
   }
 
   /// As many trials as there may be.
-  double most_trials() const {
+  double max_trials() const {
     if (last_trial_ > 0) return static_cast<double>(last_trial_);
     return trials_of_feeds() + (options_.layout.length_mm > 0 ? 1.0 : static_cast<double>(std::size(kLengths)));
   }
@@ -208,7 +208,7 @@ class Search {
         best = *found, best_time = found->figures.time_s;
     }
     for (const double lags : {0.0, 2.0, 4.5}) take({1, lags * lag});
-    for (double share = 0.7; share > kLeastShare && take({share, best.corners.settle_s}); share *= 0.7) {
+    for (double share = 0.7; share > kMinShare && take({share, best.corners.settle_s}); share *= 0.7) {
     }
     for (const double finer : {1.2, 1 / 1.2, 1.1, 1 / 1.1})
       if (best.corners.settle_s > 0) take({best.corners.share, finer * best.corners.settle_s});
@@ -232,7 +232,7 @@ class Search {
         power = std::clamp(std::log(strays / strays_before) / std::log(c.feed_factor / feed_before), 0.3, 4.0);
       feed_before = c.feed_factor;
       strays_before = strays;
-      c.feed_factor = std::clamp(c.feed_factor * std::pow(kAim / std::max(strays, 1e-3), 1 / power), kLeastFeed, 1.0);
+      c.feed_factor = std::clamp(c.feed_factor * std::pow(kAim / std::max(strays, 1e-3), 1 / power), kMinFeed, 1.0);
       if (c.feed_factor == feed_before) break;
     }
     return out;

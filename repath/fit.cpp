@@ -112,7 +112,7 @@ class Search {
     const std::uint32_t base = std::max(vertex + options_.arc_points - 2, leader ? line_end : farthest_);
     std::uint32_t good = 0, bad = end + 1;
     int failures = 0;
-    for (std::uint32_t step = 1, most_failures = leader ? 3 : 2; failures < static_cast<int>(most_failures);
+    for (std::uint32_t step = 1, max_failures = leader ? 3 : 2; failures < static_cast<int>(max_failures);
          step *= 2) {
       const std::uint32_t e = std::min(end, base + step);
       if (e <= base) break;
@@ -163,7 +163,7 @@ std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& 
   const auto n = static_cast<std::uint32_t>(path.points.size());
   if (n < 2) return {};
   const Fitter fitter(path, options);
-  assert(!(options.most_kink_rad < kPi));
+  assert(!(options.max_kink_rad < kPi));
   const std::vector<bool> corners = corners_of(path, options), ends = ends_of(path, corners);
   const Joints joints(path, options, corners);
   const Bends bends(path, options, fitter, joints);

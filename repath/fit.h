@@ -21,7 +21,7 @@ struct FitOptions {
   /// Where the path has no corner and no edge an arc meets an arc with a kink of no more than this, or an eighth of
   /// what the path itself turns there; a line it meets with no more than this, or 0.6 of that turn (a chord leaves its
   /// curve by half of it). Half a turn: not bounded. See repath/joints.h.
-  double most_kink_rad = 1 * kPi / 180;
+  double max_kink_rad = 1 * kPi / 180;
   /// For controls that run arcs faster than lines: primitives that a millimetre of lines is worth. Zero: the fewest
   /// primitives, and among as many the shortest lines.
   double primitives_per_line_mm = 0;
@@ -71,7 +71,7 @@ double corner_leg_mm(const FitOptions& options);
 /// The room of the arc from one point to another: its sweep may lie between the two; both with the sign of the
 /// direction. Nothing where no arc fits.
 struct ArcRoom {
-  double least_sweep_rad = 0, most_sweep_rad = 0;  ///< magnitudes
+  double least_sweep_rad = 0, max_sweep_rad = 0;  ///< magnitudes
   double best_sweep_rad = 0;                       ///< goes through the points as well as it can (least squares)
   int direction = 1;
 };

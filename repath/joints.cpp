@@ -64,9 +64,9 @@ double chord_angle_rad(std::span<const Vec2> points, const Primitive& p) {
 Joints::Joints(const Polyline& path, const FitOptions& options, const std::vector<bool>& corners)
     : path_(path),
       corners_(corners),
-      most_kink_rad_(options.most_kink_rad),
+      max_kink_rad_(options.max_kink_rad),
       increment_mm_(options.increment_mm),
-      bounded_(options.arcs && options.most_kink_rad < kPi) {
+      bounded_(options.arcs && options.max_kink_rad < kPi) {
   if (!bounded_) return;
   const std::vector<Vec3> points = in_space(path);
   turn_ = turns_of(points, corner_leg_mm(options));
@@ -74,7 +74,7 @@ Joints::Joints(const Polyline& path, const FitOptions& options, const std::vecto
   edges_ = edges_of(path, options);
 }
 
-double Joints::most_kink_rad(const Primitive& before, const Primitive& p) const {
+double Joints::max_kink_rad(const Primitive& before, const Primitive& p) const {
   const std::uint32_t at = p.first;
   if (!bounded_ || at == 0 || at + 1 == corners_.size() || corners_[at] ||
       std::min(turn_[at], blocks_turn_[at]) > kAlwaysSharpRad || (is_block(before) && is_block(p)))
@@ -83,13 +83,13 @@ double Joints::most_kink_rad(const Primitive& before, const Primitive& p) const 
   const bool arc_behind = p.arc || (path_.arc_behind && at + 2 == corners_.size());
   if (!arc_before && !arc_behind)
     return rises(path_, before) || rises(path_, p) ? kInfinity
-                                                   : std::max(most_kink_rad_, kTimesOfBlocks * blocks_turn_[at]);
+                                                   : std::max(max_kink_rad_, kTimesOfBlocks * blocks_turn_[at]);
   // Where a level path begins to climb it turns there, and what joins there turns as much.
-  const bool climbs = std::abs(slope_rad(path_, p) - slope_rad(path_, before)) > kClimb * most_kink_rad_;
+  const bool climbs = std::abs(slope_rad(path_, p) - slope_rad(path_, before)) > kClimb * max_kink_rad_;
   // Beside an arc of the program a line may turn as the block did that lay there.
   const bool as_drawn = !before.arc && !p.arc;
   const double share = edges_[at] || climbs || as_drawn ? 1 : arc_before && arc_behind ? kShareOfArcs : kShareOfLines;
-  return std::max(most_kink_rad_, share * std::min(turn_[at], blocks_turn_[at]));
+  return std::max(max_kink_rad_, share * std::min(turn_[at], blocks_turn_[at]));
 }
 
 double Joints::chord_angle_rad(const Primitive& p) const {
@@ -108,7 +108,7 @@ double Joints::rounding_rad(const Primitive& p) const {
 
 std::optional<Sweeps> Joints::behind(const Primitive& before, const Sweeps& of_before, const Primitive& p,
                                      const Sweeps& of_p) const {
-  const double most = most_kink_rad(before, p);
+  const double most = max_kink_rad(before, p);
   if (most == kInfinity) return of_p;
   const double climb = slope_rad(path_, p) - slope_rad(path_, before);
   if (std::abs(climb) > most) return std::nullopt;
@@ -138,7 +138,7 @@ double Joints::sweep_towards(const Primitive& p, const Sweeps& of_p, const Primi
 }
 
 bool Joints::keep(const Primitive& before, const Primitive& p) const {
-  const double most = most_kink_rad(before, p);
+  const double most = max_kink_rad(before, p);
   return most == kInfinity || kinks_of(path_, std::array{before, p}).front() <= most + kRoundingRad;
 }
 

@@ -17,7 +17,7 @@ struct Sweeps {
 /// A block of the path as it was.
 inline bool is_block(const Primitive& p) { return !p.arc && p.last == p.first + 1; }
 
-/// The rule of FitOptions::most_kink_rad at the joints of one path.
+/// The rule of FitOptions::max_kink_rad at the joints of one path.
 class Joints {
  public:
   /// `corners`: as corners_of says. Both must outlive this.
@@ -28,7 +28,7 @@ class Joints {
 
   /// Most that two primitives may kink where they meet, rad; infinite at corners and where nothing is bounded. The
   /// blocks of the path as they were may always follow each other.
-  double most_kink_rad(const Primitive& before, const Primitive& p) const;
+  double max_kink_rad(const Primitive& before, const Primitive& p) const;
 
   /// Of a kink between arcs the share that behind() gives away; rounding of centres takes from the rest.
   void give_away(double share) { share_tried_ = share; }
@@ -53,7 +53,7 @@ class Joints {
 
   const Polyline path_;
   const std::vector<bool>& corners_;
-  double most_kink_rad_, increment_mm_;
+  double max_kink_rad_, increment_mm_;
   bool bounded_;
   double share_tried_ = 1;
   std::vector<double> turn_;         ///< of the path at each of its points, between legs as for corners

@@ -17,7 +17,7 @@ double to_chord_mm(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 class PathMaker {
  public:
-  PathMaker(const removal::DropCutter& part, const OffsetPathOptions& options)
+  PathMaker(const DropCutter& part, const OffsetPathOptions& options)
       : part_(part), options_(options), longest_(longest_chord_mm(part.cutter(), options.chord_mm)) {}
 
   std::vector<OffsetPoint> run(const Vec2& from, const Vec2& to) {
@@ -60,7 +60,7 @@ class PathMaker {
     return true;
   }
 
-  const removal::DropCutter& part_;
+  const DropCutter& part_;
   const OffsetPathOptions& options_;
   double longest_;
   std::optional<std::uint32_t> near_;
@@ -69,13 +69,13 @@ class PathMaker {
 
 }  // namespace
 
-double longest_chord_mm(const removal::Underside& cutter, double chord_mm) {
+double longest_chord_mm(const Underside& cutter, double chord_mm) {
   const double round = cutter.corner_mm > 0 ? cutter.corner_mm : cutter.radius_mm();
   const double most = cutter.corner_mm > 0 ? kLongestBaseMm : kFlatBaseMm;
   return std::min({std::sqrt(8 * round * chord_mm), 0.25 * cutter.radius_mm(), most});
 }
 
-std::vector<OffsetPoint> offset_path(const removal::DropCutter& part, const Vec2& from, const Vec2& to,
+std::vector<OffsetPoint> offset_path(const DropCutter& part, const Vec2& from, const Vec2& to,
                                      const OffsetPathOptions& options) {
   return PathMaker(part, options).run(from, to);
 }

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "removal/drop_cutter.h"
+#include "repath/drop_cutter.h"
 
 namespace camber::repath {
 
@@ -16,19 +16,19 @@ struct OffsetPathOptions {
 
 struct OffsetPoint {
   Vec3 tip = Vec3::Zero();
-  removal::Contact contact{};
+  Contact contact{};
 };
 
 /// The longest chord for which a cutter with this rounding, on its way between two places at which it is free, meets
 /// nothing by more than chord_mm: l^2 = 8 r chord (a point outside both spheres of radius r is outside the sphere
 /// between them but for the sagitta). Flat: the radius stands for r, which holds for what lies beside the cutter; what
 /// it meets from above shows at the points.
-double longest_chord_mm(const removal::Underside& cutter, double chord_mm);
+double longest_chord_mm(const Underside& cutter, double chord_mm);
 
 /// From `from` to `to`, both included. Chords are halved while they are longer than longest_chord_mm() or the path
 /// halfway is farther from them than chord_mm; at walls until they stand upright. Empty where at a point nothing lies
 /// under the cutter.
-std::vector<OffsetPoint> offset_path(const removal::DropCutter& part, const Vec2& from, const Vec2& to,
+std::vector<OffsetPoint> offset_path(const DropCutter& part, const Vec2& from, const Vec2& to,
                                      const OffsetPathOptions& options);
 
 }  // namespace camber::repath

@@ -111,13 +111,13 @@ class Measure {
   DeviationFigures figures() && { return std::move(out_); }
 
  private:
-  /// Points of `path`, at most `most_mm` apart, and the middles of its segments, against the other.
-  void along(const Chain& path, Chain& other, double most_mm, bool counted) {
+  /// Points of `path`, at most `max_mm` apart, and the middles of its segments, against the other.
+  void along(const Chain& path, Chain& other, double max_mm, bool counted) {
     other.rewind();
     const auto& points = path.points();
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
       const double length = (points[k + 1] - points[k]).norm();
-      const int n = std::max(2, static_cast<int>(std::ceil(length / most_mm)));
+      const int n = std::max(2, static_cast<int>(std::ceil(length / max_mm)));
       for (int i = 1; i <= n; ++i) {
         const Vec3 p = points[k] + static_cast<double>(i) / n * (points[k + 1] - points[k]);
         const double away = other.follow(p, length / n, tolerance_);

@@ -25,7 +25,7 @@ namespace {
 
 /// Points as `at` tells them, two coordinates or three.
 template <class Point, class At>
-std::optional<double> deviation_of_line(std::uint32_t first, std::uint32_t last, double most_backwards_mm, At at) {
+std::optional<double> deviation_of_line(std::uint32_t first, std::uint32_t last, double max_backwards_mm, At at) {
   const Point start = at(first), chord = at(last) - start;
   const double length = chord.norm();
   if (length == 0) return std::nullopt;
@@ -34,25 +34,25 @@ std::optional<double> deviation_of_line(std::uint32_t first, std::uint32_t last,
   for (std::uint32_t k = first + 1; k < last; ++k) {
     const Point p = at(k) - start;
     const double u = p.dot(along);
-    if (u < farthest - most_backwards_mm) return std::nullopt;
+    if (u < farthest - max_backwards_mm) return std::nullopt;
     farthest = std::max(farthest, u);
     worst = std::max(worst, (p - std::clamp(u, 0.0, length) * along).norm());
   }
-  if (farthest > length + most_backwards_mm) return std::nullopt;
+  if (farthest > length + max_backwards_mm) return std::nullopt;
   return worst;
 }
 
 }  // namespace
 
 std::optional<double> line_deviation(std::span<const Vec2> points, std::uint32_t first, std::uint32_t last,
-                                     double most_backwards_mm) {
-  return deviation_of_line<Vec2>(first, last, most_backwards_mm,
+                                     double max_backwards_mm) {
+  return deviation_of_line<Vec2>(first, last, max_backwards_mm,
                                  [&](std::uint32_t k) -> const Vec2& { return points[k]; });
 }
 
 std::optional<double> line_deviation(std::span<const Vec2> points, std::span<const double> heights, std::uint32_t first,
-                                     std::uint32_t last, double most_backwards_mm) {
-  return deviation_of_line<Vec3>(first, last, most_backwards_mm,
+                                     std::uint32_t last, double max_backwards_mm) {
+  return deviation_of_line<Vec3>(first, last, max_backwards_mm,
                                  [&](std::uint32_t k) { return Vec3(points[k].x(), points[k].y(), heights[k]); });
 }
 
@@ -88,10 +88,10 @@ ArcShape arc_shape(const Vec2& start, const Vec2& end, const Vec2& center_mm, in
 }
 
 std::optional<ArcFit> arc_deviation(std::span<const Vec2> points, std::uint32_t first, std::uint32_t last,
-                                    const ArcShape& arc, double most_mm, double most_backwards_mm) {
-  const double room = most_mm - 0.5 * arc.radius_difference_mm;
+                                    const ArcShape& arc, double max_mm, double max_backwards_mm) {
+  const double room = max_mm - 0.5 * arc.radius_difference_mm;
   if (room < 0) return std::nullopt;
-  const double backwards_rad = most_backwards_mm / arc.radius_mm;
+  const double backwards_rad = max_backwards_mm / arc.radius_mm;
   Vec2 from = points[first] - arc.center_mm;
   double worst = 0, angle = 0, farthest = 0, least = 0;
   for (std::uint32_t k = first + 1; k <= last; ++k) {

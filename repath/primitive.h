@@ -20,13 +20,13 @@ struct Primitive {
 
 /// Lines. The distance holds both ways: the polyline's distance to the line is greatest at a vertex (the distance to a
 /// convex set is convex), and every point of the line is the foot of a point of the polyline, which runs from one end
-/// to the other. Nothing where the polyline runs back along the line by more than `most_backwards_mm`.
+/// to the other. Nothing where the polyline runs back along the line by more than `max_backwards_mm`.
 std::optional<double> line_deviation(std::span<const Vec2> points, std::uint32_t first, std::uint32_t last,
-                                     double most_backwards_mm);
+                                     double max_backwards_mm);
 
 /// In space: `heights` is the third coordinate of each point. The same holds.
 std::optional<double> line_deviation(std::span<const Vec2> points, std::span<const double> heights, std::uint32_t first,
-                                     std::uint32_t last, double most_backwards_mm);
+                                     std::uint32_t last, double max_backwards_mm);
 
 /// An arc as the control runs it: centre and, for ends whose radii differ, a radius between the two.
 struct ArcShape {
@@ -45,10 +45,10 @@ struct ArcFit {
 /// Arcs. Greatest difference between the arc's radius and the polyline's distance from the centre, over the vertices
 /// and the feet of the perpendiculars on the edges, and half the difference of the radii. As the polyline turns about
 /// the centre from the arc's start to its end, every point of the arc has a point of the polyline on its ray: the
-/// distance holds both ways. Nothing where a point is farther than `most_mm`, where the polyline turns back by more
-/// than `most_backwards_mm` along the arc, passes an end of the arc by more than that, or turns by more than one turn.
+/// distance holds both ways. Nothing where a point is farther than `max_mm`, where the polyline turns back by more
+/// than `max_backwards_mm` along the arc, passes an end of the arc by more than that, or turns by more than one turn.
 std::optional<ArcFit> arc_deviation(std::span<const Vec2> points, std::uint32_t first, std::uint32_t last,
-                                    const ArcShape& arc, double most_mm, double most_backwards_mm);
+                                    const ArcShape& arc, double max_mm, double max_backwards_mm);
 
 /// How far the heights of the polyline, taken at its angle about the centre, are from those of a helix of constant
 /// pitch from the first point to the last (controls move the third axis evenly with the angle). Greatest value over

@@ -18,7 +18,7 @@ struct Interval {
 
 class RasterMaker {
  public:
-  RasterMaker(const removal::DropCutter& part, const RasterOptions& options)
+  RasterMaker(const DropCutter& part, const RasterOptions& options)
       : part_(part),
         options_(options),
         frame_{{std::cos(options.direction_rad), std::sin(options.direction_rad)},
@@ -122,7 +122,7 @@ class RasterMaker {
     return std::all_of(path.begin(), path.end(), [&](const OffsetPoint& p) { return p.tip.z() > lower_end - radius; });
   }
 
-  const removal::DropCutter& part_;
+  const DropCutter& part_;
   const RasterOptions& options_;
   RowFrame frame_;
   RowSampler sampler_;
@@ -132,11 +132,11 @@ class RasterMaker {
 
 }  // namespace
 
-Raster make_raster(const removal::DropCutter& part, const RasterOptions& options) {
+Raster make_raster(const DropCutter& part, const RasterOptions& options) {
   return RasterMaker(part, options).run();
 }
 
-std::vector<Vec3> points_of(const removal::DropCutter& part, const std::vector<Leg>& chain,
+std::vector<Vec3> points_of(const DropCutter& part, const std::vector<Leg>& chain,
                             const RasterOptions& options, double step_mm) {
   std::vector<Vec3> out;
   for (const Leg& leg : chain)

@@ -35,11 +35,11 @@ struct Raster {
 /// passed along the surface. Neighbouring rows are cut in opposite directions. From the end of a piece to the next one
 /// it goes along the surface too where that is no farther than a diameter and does not dip by more than a radius below
 /// its ends; else over the clearance plane. Empty chains: nothing of the part lies inside the boundary.
-Raster make_raster(const removal::DropCutter& part, const RasterOptions& options);
+Raster make_raster(const DropCutter& part, const RasterOptions& options);
 
 /// The tip's places along a chain, rounded to the increment, no two that follow each other alike. `step_mm` as in
 /// OffsetPathOptions; 0: chords within 15 % of the tolerance.
-std::vector<Vec3> points_of(const removal::DropCutter& part, const std::vector<Leg>& chain,
+std::vector<Vec3> points_of(const DropCutter& part, const std::vector<Leg>& chain,
                             const RasterOptions& options, double step_mm = 0);
 
 /// What points_of() and its rounding leave of the tolerance to those who lay the path out again.

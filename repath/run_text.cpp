@@ -12,8 +12,8 @@
 namespace camber::repath {
 namespace {
 
-constexpr int kMostDecimals = 6;
-constexpr double kLeastFeedFactor = 0.005;
+constexpr int kMaxDecimals = 6;
+constexpr double kMinFeedFactor = 0.005;
 constexpr char kAxis[] = "XYZ", kCentre[] = "IJK";
 
 std::string_view written(const nc::Program& program, const nc::Word& word) {
@@ -67,7 +67,7 @@ class BlockWriter {
   std::string number(char letter, double value_mm) const {
     const double value = value_mm / unit_mm_;
     int decimals = style_.decimals;
-    while (decimals < kMostDecimals && std::abs(nc::rounded(value, decimals) - value) * unit_mm_ > 2e-7) ++decimals;
+    while (decimals < kMaxDecimals && std::abs(nc::rounded(value, decimals) - value) * unit_mm_ > 2e-7) ++decimals;
     return letter + nc::format_number(value, decimals, style_.numbers);
   }
 
@@ -129,7 +129,7 @@ class PointWriter : BlockWriter {
     if (place.near_corner) out *= feeds.corners.share;
     if (place.between_corners_mm > 0 && feeds.corners.settle_s > 0)
       out = std::min(out, 60 * place.between_corners_mm / feeds.corners.settle_s / feed_mm_per_min_);
-    return std::max(out, kLeastFeedFactor);
+    return std::max(out, kMinFeedFactor);
   }
 };
 
@@ -223,7 +223,7 @@ TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& mo
     if (w.letter >= 'X' && w.letter <= 'Z' && !std::isnan(w.value))
       style.decimals = std::max(style.decimals, nc::decimals_of(text.substr(w.value_at)));
   }
-  style.decimals = std::min(style.decimals, kMostDecimals);
+  style.decimals = std::min(style.decimals, kMaxDecimals);
   if (whole_numbers_are_increments) style.numbers.whole = nc::WholeStyle::point;
   return style;
 }

@@ -160,13 +160,13 @@ std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation&
 }
 
 std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart) {
-  constexpr std::uint32_t kLeastMoves = 4;
+  constexpr std::uint32_t kMinMoves = 4;
   std::vector<Run> out, in_space = find_runs(program, moves, RunKind::in_space), planar;
   if (apart) planar = find_runs(program, moves, RunKind::in_plane);
   auto next = planar.begin();
   for (Run run : in_space) {
     for (; next != planar.end() && next->last_move <= run.last_move; ++next) {
-      if (next->current_plane || next->last_move - next->first_move + 1 < kLeastMoves) continue;
+      if (next->current_plane || next->last_move - next->first_move + 1 < kMinMoves) continue;
       if (next->first_move > run.first_move + 1) {
         out.push_back(run);
         out.back().last_move = next->first_move - 1;

@@ -21,8 +21,8 @@ bool in(const Rectangle& r, const Vec2& p, double room) {
 struct Groove {
   double v_mm, tip_mm, slope;
   /// Height of what it leaves; infinity beside it.
-  double at(const removal::Underside& cutter, double v) const {
-    const auto rise = removal::rise_on_line(cutter, v - v_mm, slope);
+  double at(const Underside& cutter, double v) const {
+    const auto rise = rise_on_line(cutter, v - v_mm, slope);
     return rise ? tip_mm - *rise : std::numeric_limits<double>::infinity();
   }
 };
@@ -42,7 +42,7 @@ struct Cusp {
 };
 
 /// Of a point above a groove, at right angles to it. The foot lies no farther beside it than the point lies above.
-double distance_mm(const removal::Underside& cutter, const Groove& groove, const Cusp& point) {
+double distance_mm(const Underside& cutter, const Groove& groove, const Cusp& point) {
   const double above = point.height_mm - groove.at(cutter, point.v_mm);
   if (!(above > 0)) return above;
   const double flatten = 1 / std::sqrt(1 + groove.slope * groove.slope);  // in the plane at right angles to the row
@@ -62,7 +62,7 @@ double distance_mm(const removal::Underside& cutter, const Groove& groove, const
 }
 
 /// Where the grooves cross: left of it a lies lower, right of it b.
-std::optional<Cusp> cusp_of(const removal::Underside& cutter, const Groove& a, const Groove& b) {
+std::optional<Cusp> cusp_of(const Underside& cutter, const Groove& a, const Groove& b) {
   double left = b.v_mm - cutter.radius_mm(), right = a.v_mm + cutter.radius_mm();
   if (!(left < right)) return std::nullopt;
   for (int i = 0; i < 44; ++i) {
@@ -77,24 +77,24 @@ std::optional<Cusp> cusp_of(const removal::Underside& cutter, const Groove& a, c
 
 }  // namespace
 
-bool touches(const Rectangle& boundary, const removal::Contact& contact) {
+bool touches(const Rectangle& boundary, const Contact& contact) {
   return in(boundary, contact.point.head<2>(), kBorderMm);
 }
 
-bool works_inside(const removal::Underside& cutter, const Rectangle& boundary, const Vec2& axis,
-                  const removal::Contact& contact) {
+bool works_inside(const Underside& cutter, const Rectangle& boundary, const Vec2& axis,
+                  const Contact& contact) {
   const Vec2 at = contact.point.head<2>();
   if (!touches(boundary, contact)) return false;
   const double under_flat = std::max(cutter.flat_mm - 1e-9, 1e-9);  // the rim is not
   if ((at - axis).norm() < under_flat) return in(boundary, axis, kBorderMm);
-  return contact.kind == removal::ContactKind::facet || in(boundary, at, -kBorderMm);
+  return contact.kind == ContactKind::facet || in(boundary, at, -kBorderMm);
 }
 
 bool RowHeights::any_inside() const {
   return std::any_of(inside.begin(), inside.end(), [](char i) { return i != 0; });
 }
 
-RowSampler::RowSampler(const removal::DropCutter& part, const RowFrame& frame, const Rectangle& boundary,
+RowSampler::RowSampler(const DropCutter& part, const RowFrame& frame, const Rectangle& boundary,
                        double step_mm)
     : part_(part), frame_(frame), boundary_(boundary) {
   u_min_ = v_min_ = std::numeric_limits<double>::infinity();
@@ -131,7 +131,7 @@ RowHeights RowSampler::row(double v_mm) const {
   return out;
 }
 
-double scallop_mm(const RowSampler& sampler, const removal::Underside& cutter, const RowHeights& a,
+double scallop_mm(const RowSampler& sampler, const Underside& cutter, const RowHeights& a,
                   const RowHeights& b) {
   const bool ball = cutter.flat_mm == 0;
   const int between = ball ? 1 : 7;
@@ -173,7 +173,7 @@ namespace {
 
 class Spacer {
  public:
-  Spacer(const RowSampler& sampler, const removal::Underside& cutter, double scallop, double increment)
+  Spacer(const RowSampler& sampler, const Underside& cutter, double scallop, double increment)
       : sampler_(sampler), cutter_(cutter), scallop_(scallop), increment_(increment) {
     const double sag = std::min(scallop, cutter.corner_mm);
     const double level = 2 * std::sqrt(sag * (2 * cutter.corner_mm - sag));
@@ -211,7 +211,7 @@ class Spacer {
       row = std::move(next);
     }
     if (out.rows_mm.size() > 1)
-      out.steep_share = static_cast<double>(steep) / static_cast<double>(out.rows_mm.size() - 1);
+      out.steep_fraction = static_cast<double>(steep) / static_cast<double>(out.rows_mm.size() - 1);
     return out;
   }
 
@@ -288,14 +288,14 @@ class Spacer {
   }
 
   const RowSampler& sampler_;
-  const removal::Underside& cutter_;
+  const Underside& cutter_;
   double scallop_, increment_;
   double level_ = 0, farthest_ = 0, closest_ = 0;
 };
 
 }  // namespace
 
-RowSpacing space_rows(const RowSampler& sampler, const removal::Underside& cutter, double scallop_mm,
+RowSpacing space_rows(const RowSampler& sampler, const Underside& cutter, double scallop_mm,
                       double increment_mm, const std::function<void(double)>& progress) {
   return Spacer(sampler, cutter, scallop_mm, increment_mm).run(progress);
 }

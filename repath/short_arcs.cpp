@@ -10,8 +10,8 @@ namespace camber::repath {
 namespace {
 
 constexpr double kSmoothRad = 20 * kPi / 180;
-constexpr double kMostPerLineRad = kPi / 8;  ///< of the lines that stand for an arc; small arcs keep their shape
-constexpr int kLeastLines = 4;
+constexpr double kMaxPerLineRad = kPi / 8;  ///< of the lines that stand for an arc; small arcs keep their shape
+constexpr int kMinLines = 4;
 
 bool is_arc(const nc::Move& m) { return m.kind == nc::MoveKind::arc; }
 
@@ -98,9 +98,9 @@ SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double 
     if (is_arc(m)) {
       path.sagitta_mm = sagitta_mm;
       const double radius = std::max(radius_mm(moves, m), sagitta_mm);
-      const double per_line = std::min(kMostPerLineRad, 2 * std::acos(1 - sagitta_mm / radius));
+      const double per_line = std::min(kMaxPerLineRad, 2 * std::acos(1 - sagitta_mm / radius));
       const int n =
-          std::max(kLeastLines, static_cast<int>(std::ceil(std::abs(moves.arcs[m.arc].sweep_rad) / per_line)));
+          std::max(kMinLines, static_cast<int>(std::ceil(std::abs(moves.arcs[m.arc].sweep_rad) / per_line)));
       for (int i = 1; i < n; ++i) add(m, nc::point_at(moves, m, static_cast<double>(i) / n), SpacePath::kInside);
     }
     add(m, m.end_mm, m.block);
@@ -111,14 +111,14 @@ SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double 
 double segment_length_mm(double feed_mm_per_s, double block_time_s) { return feed_mm_per_s * block_time_s; }
 
 double length_for(const nc::Interpretation& moves, const Run& run, const ResegmentOptions& options) {
-  constexpr double kLeast = 0.01;
-  if (options.length_mm > 0) return std::max(options.length_mm, kLeast);
+  constexpr double kMin = 0.01;
+  if (options.length_mm > 0) return std::max(options.length_mm, kMin);
   double base = segment_length_mm(moves.moves[run.first_move].feed_mm_per_s, options.block_time_s);
   if (!(base > 0)) {
     for (std::uint32_t m = run.first_move; m <= run.last_move; ++m) base += nc::length_mm(moves, moves.moves[m]);
     base /= run.last_move - run.first_move + 1;
   }
-  return std::max(options.length_factor * base, kLeast);
+  return std::max(options.length_factor * base, kMin);
 }
 
 }  // namespace camber::repath

@@ -9,7 +9,7 @@ namespace camber::repath {
 namespace {
 
 constexpr std::size_t kBefore = 2, kBehind = 2;  ///< primitives beside a line that are laid out anew with it
-constexpr std::uint32_t kMostPoints = 64;
+constexpr std::uint32_t kMaxPoints = 64;
 constexpr double kExact = 0.25;  ///< of the tolerance: so near lies only what was drawn so
 
 }  // namespace
@@ -17,7 +17,7 @@ constexpr double kExact = 0.25;  ///< of the tolerance: so near lies only what w
 void shorten_lines(const Polyline& path, const FitOptions& options, const Fitter& fitter,
                    const std::vector<bool>& corners, std::vector<Primitive>& chain) {
   FitOptions any_kink = options;
-  any_kink.most_kink_rad = std::numeric_limits<double>::infinity();
+  any_kink.max_kink_rad = std::numeric_limits<double>::infinity();
   const Joints joints(path, any_kink, corners);
   ChainWindow window(path, any_kink, fitter, joints);
   std::vector<std::uint32_t> ends;
@@ -30,7 +30,7 @@ void shorten_lines(const Polyline& path, const FitOptions& options, const Fitter
     while (first > 0 && out.size() - 1 - first < kBefore && !corners[out[first].first]) --first;
     while (last + 1 < chain.size() && last - k < kBehind && !corners[chain[last].last]) ++last;
     const std::uint32_t begin = out[first].first, end = chain[last].last;
-    if (end - begin >= kMostPoints || out.size() - first + (last - k) < 2) continue;
+    if (end - begin >= kMaxPoints || out.size() - first + (last - k) < 2) continue;
     ChainCost was, now;
     double deviation = 0;
     const auto count = [&](const Primitive& p) {
@@ -41,8 +41,8 @@ void shorten_lines(const Polyline& path, const FitOptions& options, const Fitter
     for (std::size_t i = k + 1; i <= last; ++i) count(chain[i]);
     ends.resize(end - begin);
     std::iota(ends.begin(), ends.end(), begin + 1);
-    const auto best = [&](double most_deviation_mm) {
-      return window.best({.first = begin, .last = begin}, nullptr, ends, {most_deviation_mm, was.primitives}, now);
+    const auto best = [&](double max_deviation_mm) {
+      return window.best({.first = begin, .last = begin}, nullptr, ends, {max_deviation_mm, was.primitives}, now);
     };
     // A line and an arc as they were drawn; else fewer; else shorter lines.
     const double exact = std::max(options.increment_mm, kExact * options.tolerance_mm);

@@ -16,7 +16,7 @@ struct Effort {
   double share = 1;  ///< of the bound; see Joints::give_away
 };
 constexpr std::array kEfforts{Effort{4, 12, 1.0}, Effort{4, 12, 0.9}, Effort{8, 12, 0.8}, Effort{8, 32, 0.9}};
-constexpr std::size_t kMostPrimitives = 40;  ///< of one stretch
+constexpr std::size_t kMaxPrimitives = 40;  ///< of one stretch
 
 class Smoother {
  public:
@@ -55,7 +55,7 @@ class Smoother {
       // What stands in `out` behind the last stretch is as in the chain: the begin of this one is taken back from it.
       auto [first, last] = stretch(chain, k, done_of(out, chain, k), effort.beside);
       for (std::size_t next = last; next + 1 < chain.size() && next < last + effort.beside; ++next) {
-        if (last - first >= kMostPrimitives || corners_[chain[next].last] || joints_.keep(chain[next], chain[next + 1]))
+        if (last - first >= kMaxPrimitives || corners_[chain[next].last] || joints_.keep(chain[next], chain[next + 1]))
           continue;
         last = stretch(chain, next, first, effort.beside).second;
       }

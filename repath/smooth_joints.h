@@ -1,5 +1,5 @@
 #pragma once
-// A chain whose joints kink no more than FitOptions::most_kink_rad allows.
+// A chain whose joints kink no more than FitOptions::max_kink_rad allows.
 #include <vector>
 
 #include "repath/fit.h"

@@ -9,10 +9,10 @@ namespace camber::repath {
 namespace {
 
 constexpr std::size_t kBeside = 3;       ///< primitives at either side of a line that are laid out anew with it
-constexpr std::uint32_t kMostEnds = 64;  ///< of a window
+constexpr std::uint32_t kMaxEnds = 64;  ///< of a window
 constexpr double kExact = 0.25;          ///< of the tolerance: so near lies only what was drawn so
 constexpr double kTimesNearer = 4;
-constexpr std::size_t kMostInstead = 3;  ///< of a line with many points
+constexpr std::size_t kMaxInstead = 3;  ///< of a line with many points
 
 class LineSparer {
  public:
@@ -57,7 +57,7 @@ class LineSparer {
   double exact_mm() const { return std::max(options_.increment_mm, kExact * options_.tolerance_mm); }
 
   void lay_ends(std::uint32_t begin, std::uint32_t end) {
-    const std::uint32_t count = end - begin, parts = std::min(count, kMostEnds);
+    const std::uint32_t count = end - begin, parts = std::min(count, kMaxEnds);
     ends_.clear();
     for (std::uint32_t i = 1; i <= parts; ++i)
       ends_.push_back(begin + static_cast<std::uint32_t>(std::uint64_t{count} * i / parts));
@@ -69,7 +69,7 @@ class LineSparer {
     if (p.last - p.first + 1 < options_.arc_points) return false;
     lay_ends(p.first, p.last);
     ChainCost cost;
-    const ChainWindow::Limits limits{std::max(options_.increment_mm, p.deviation_mm / kTimesNearer), kMostInstead,
+    const ChainWindow::Limits limits{std::max(options_.increment_mm, p.deviation_mm / kTimesNearer), kMaxInstead,
                                      options_.primitives_per_line_mm};
     return window_.best({.first = p.first, .last = p.first}, nullptr, ends_, limits, cost).empty();
   }

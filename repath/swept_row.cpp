@@ -35,7 +35,7 @@ double slope_at(const RowHeights& row, double t, double step_mm) {
 
 }  // namespace
 
-std::optional<SweptHeight> swept_height(const removal::Underside& cutter, const RowHeights& row, double step_mm,
+std::optional<SweptHeight> swept_height(const Underside& cutter, const RowHeights& row, double step_mm,
                                         double place, double v_mm) {
   const double radius = cutter.radius_mm(), beside = v_mm - row.v_mm, left = radius * radius - beside * beside;
   constexpr double kRounding = 1e-9;
@@ -65,7 +65,7 @@ std::optional<SweptHeight> swept_height(const removal::Underside& cutter, const 
   return best;
 }
 
-std::optional<double> swept_scallop_mm(const RowSampler& sampler, const removal::Underside& cutter, const RowHeights& a,
+std::optional<double> swept_scallop_mm(const RowSampler& sampler, const Underside& cutter, const RowHeights& a,
                                        const RowHeights& b, std::span<const RowHeights> between, std::size_t k) {
   const double step = sampler.step_mm(), width = b.v_mm - a.v_mm, radius = cutter.radius_mm();
   const double from = b.v_mm - radius, to = a.v_mm + radius;

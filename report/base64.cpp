@@ -19,7 +19,7 @@ std::string base64(std::string_view bytes) {
 }
 
 std::string& Base64Stream::bytes() {
-  if (bytes_.size() >= kMost) {
+  if (bytes_.size() >= kMax) {
     const std::size_t whole = bytes_.size() - bytes_.size() % 3;
     out_ << base64(std::string_view(bytes_).substr(0, whole));
     bytes_.erase(0, whole);

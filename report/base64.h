@@ -22,7 +22,7 @@ class Base64Stream {
   void finish();
 
  private:
-  static constexpr std::size_t kMost = 3 << 18;  ///< whole groups of three
+  static constexpr std::size_t kMax = 3 << 18;  ///< whole groups of three
   std::ostream& out_;
   std::string bytes_;
 };

@@ -8,7 +8,7 @@
 namespace camber::report {
 namespace {
 
-using deflection::StampLoad;
+using simulate::StampLoad;
 using removal::Stamp;
 
 /// Loads of a row's teeth, taken together.
@@ -38,7 +38,7 @@ void write_row(std::string& out, const Stamp& first, std::size_t line, const Row
   const StampLoad& l = row.load;
   append_cells(out, 4, {first.t_s});
   append_cells(out, 0, {static_cast<double>(line)});
-  append_cells(out, 4, {first.tip_mm.x(), first.tip_mm.y(), first.tip_mm.z()});
+  append_cells(out, 4, {first.pose.tip_mm.x(), first.pose.tip_mm.y(), first.pose.tip_mm.z()});
   append_cells(out, 3,
                {l.force_max_N.x(), l.force_max_N.y(), l.force_max_N.z(), l.lateral_max_N, l.force_mean_N.x() / n,
                 l.force_mean_N.y() / n, l.force_mean_N.z() / n});
@@ -46,7 +46,7 @@ void write_row(std::string& out, const Stamp& first, std::size_t line, const Row
   append_cells(out, 5, {l.chip_mm3 / (n * passing_s)});
   append_cells(out, 7, {l.chip_mm3});
   append_cells(out, 6, {l.torque_max_Nmm / 1000, l.torque_mean_Nmm / (1000 * n)});
-  append_cells(out, 4, {deflection::power_W(l.torque_mean_Nmm / n, rpm)});
+  append_cells(out, 4, {simulate::power_W(l.torque_mean_Nmm / n, rpm)});
   append_cells(out, 6, {l.chip_max_mm, l.chip_area_mm2 > 0 ? l.chip_mm3 / l.chip_area_mm2 : 0.0});
   append_cells(out, 2, {l.chip_mm3 > 0 ? l.work_Nmm / l.chip_mm3 : 0.0});
   out.back() = '\n';
@@ -54,8 +54,8 @@ void write_row(std::string& out, const Stamp& first, std::size_t line, const Row
 
 }  // namespace
 
-void write_forces_csv(const std::string& path, const machine::Job& job, const deflection::MachinedProgram& program,
-                      const deflection::Prediction& prediction) {
+void write_forces_csv(const std::string& path, const machine::Job& job, const simulate::SimulatedProgram& program,
+                      const simulate::Prediction& prediction) {
   OutputFile file(path);
   file.stream() << "t_s,block,x_mm,y_mm,z_mm,fx_max_N,fy_max_N,fz_max_N,f_max_N,fx_mean_N,fy_mean_N,fz_mean_N,"
                    "dx_um,dy_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,"

@@ -2,7 +2,7 @@
 // forces.csv: loads along the path, a row a spindle turn or a block, whichever is shorter.
 #include <string>
 
-#include "deflection/predict.h"
+#include "simulate/predict.h"
 #include "machine/job.h"
 
 namespace camber::report {
@@ -15,7 +15,7 @@ namespace camber::report {
 /// magnitude, f_max the greatest lateral force; dx, dy the deflection at the contact's height as an edge passes the
 /// contact, mean over the row's teeth; t, x, y, z belong to the row's first tooth. Throws InputError
 /// [file-unwritable].
-void write_forces_csv(const std::string& path, const machine::Job& job, const deflection::MachinedProgram& program,
-                      const deflection::Prediction& prediction);
+void write_forces_csv(const std::string& path, const machine::Job& job, const simulate::SimulatedProgram& program,
+                      const simulate::Prediction& prediction);
 
 }  // namespace camber::report

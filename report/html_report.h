@@ -52,11 +52,11 @@ struct ReportData {
 struct ReportOptions {
   /// Above this many vertices, cells of the grid are taken together, each with its error of greatest magnitude; the
   /// page says so. Histogram and figures always hold all points.
-  std::size_t most_vertices = 120000;
+  std::size_t max_vertices = 120000;
   /// Above this many rows a run, only those with the extremes of their neighbourhood are drawn; the page says so.
-  std::size_t most_rows = 80000;
+  std::size_t max_rows = 80000;
   /// Above this, deflated and both together, programs are left out, the one before first; the page says so.
-  std::size_t most_program_bytes = 3'500'000;
+  std::size_t max_program_bytes = 3'500'000;
 };
 
 /// The page's text, UTF-8. The same data give the same bytes. Does not throw.

@@ -77,7 +77,7 @@ json stock_json(const ReportData& data, PackedArrays& arrays, PageData& page) {
 }
 
 json surface_json(const ReportData& data, const ReportOptions& options, PackedArrays& arrays, PageData& page) {
-  const SurfaceMesh mesh = surface_mesh(data.surface, data.voxel_mm, options.most_vertices);
+  const SurfaceMesh mesh = surface_mesh(data.surface, data.voxel_mm, options.max_vertices);
   if (mesh.cell_mm > 1.5 * data.voxel_mm)
     page.left_out.push_back(
         fmt::format("The surface is drawn in cells of {:.3g} mm ({} vertices for {} points); each shows the error of "
@@ -97,7 +97,7 @@ json surface_json(const ReportData& data, const ReportOptions& options, PackedAr
 }
 
 json run_json(const PathRun& run, const ReportOptions& options, PackedArrays& arrays, PageData& page) {
-  const auto kept = rows_to_draw(run.rows, options.most_rows);
+  const auto kept = rows_to_draw(run.rows, options.max_rows);
   if (kept.size() < run.rows.size())
     page.left_out.push_back(
         fmt::format("Path and plots{} are drawn through {} of {} moments: of each run of neighbours the first and, of "
@@ -129,7 +129,7 @@ json run_json(const PathRun& run, const ReportOptions& options, PackedArrays& ar
 /// The last program matters most: it is the one that is offered.
 void add_programs(const ReportData& data, const ReportOptions& options, PageData& page) {
   page.programs.assign(data.path.size(), {});
-  std::size_t room = options.most_program_bytes;
+  std::size_t room = options.max_program_bytes;
   for (std::size_t i = data.path.size(); i-- > 0;) {
     if (data.path[i].program_text.empty()) continue;
     const std::string small = deflated(data.path[i].program_text);

@@ -9,7 +9,7 @@ namespace camber::report {
 namespace {
 
 constexpr std::size_t kTiles = 4;
-constexpr double kMostChange_percent = 200;  // of something next to nothing: a percentage says nothing
+constexpr double kMaxChange_percent = 200;  // of something next to nothing: a percentage says nothing
 
 std::string unit_text(const std::string& unit) {
   if (unit == "um") return "µm";
@@ -38,7 +38,7 @@ std::string tile(const Figure& f) {
 std::string change_text(const Figure& f) {
   if (!f.after || !std::isfinite(f.before) || !std::isfinite(*f.after) || std::abs(f.before) < 1e-12) return {};
   const double percent = 100 * (std::abs(*f.after) / std::abs(f.before) - 1);
-  if (percent > kMostChange_percent) return {};
+  if (percent > kMaxChange_percent) return {};
   const std::string text = number_text(percent, 1);
   return (percent > 0 && text != "0.0" ? "+" : "") + text + " %";
 }

@@ -10,7 +10,7 @@
 namespace camber::report {
 namespace {
 
-using deflection::StampLoad;
+using simulate::StampLoad;
 
 constexpr std::array kQuantities{&PathRow::feed_mm_per_min, &PathRow::force_N,  &PathRow::deflection_um,
                                  &PathRow::chip_um,         &PathRow::error_um, &PathRow::shift_um};

@@ -13,14 +13,14 @@
 namespace camber::report {
 namespace {
 
-using deflection::MachinedProgram;
+using simulate::SimulatedProgram;
 
-std::uint32_t line_of(const MachinedProgram& program, std::int32_t stamp) {
+std::uint32_t line_of(const SimulatedProgram& program, std::int32_t stamp) {
   if (stamp < 0 || static_cast<std::size_t>(stamp) >= program.path.stamps.size()) return 0;
   return program.moves.moves[program.path.stamps[static_cast<std::size_t>(stamp)].move].block + 1;
 }
 
-SurfaceSample sample_of(const removal::SurfacePoint& p, const MachinedProgram& program) {
+SurfaceSample sample_of(const removal::SurfacePoint& p, const SimulatedProgram& program) {
   return {p.crossing_mm, p.normal, 1000 * p.error_mm, 0, p.area_mm2, line_of(program, p.machined_stamp), 0};
 }
 
@@ -87,7 +87,7 @@ TextTable limits_table(const machine::Job& job, const compensate::Compensation& 
 
 }  // namespace
 
-FormErrorPoints form_error_points(const MachinedProgram& program, const deflection::Prediction& prediction) {
+FormErrorPoints form_error_points(const SimulatedProgram& program, const simulate::Prediction& prediction) {
   return {prediction.surface.size(), [&program, &prediction](std::size_t i) {
             const auto& p = prediction.surface[i];
             FormErrorPoint point{.place_mm = p.place_mm, .normal = p.normal, .error_um = 1000 * p.error_mm};
@@ -102,7 +102,7 @@ FormErrorPoints form_error_points(const MachinedProgram& program, const deflecti
           }};
 }
 
-ReportData predict_report(const machine::Job& job, const MachinedProgram& program, const deflection::Prediction& p,
+ReportData predict_report(const machine::Job& job, const SimulatedProgram& program, const simulate::Prediction& p,
                           const removal::StockShape& stock, std::vector<PathRow> rows, const Diagnostics& diagnostics) {
   ReportData data;
   data.title = "Predicted form error of " + file_name(job.program);

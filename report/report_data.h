@@ -6,30 +6,30 @@
 
 #include "base/diagnostics.h"
 #include "compensate/compensate.h"
-#include "deflection/predict.h"
-#include "removal/stock_shape.h"
+#include "simulate/predict.h"
+#include "removal/stock.h"
 #include "report/form_error.h"
 #include "report/html_report.h"
 
 namespace camber::report {
 
 /// Both must outlive what comes back.
-FormErrorPoints form_error_points(const deflection::MachinedProgram& program, const deflection::Prediction& prediction);
+FormErrorPoints form_error_points(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction);
 
 /// Crossings of the stock that a page draws in grey: about a fifteenth of a megabyte.
-constexpr std::size_t kMostStockCrossings = 12000;
+constexpr std::size_t kMaxStockCrossings = 12000;
 
 /// Program and prediction must outlive what comes back.
-ReportData predict_report(const machine::Job& job, const deflection::MachinedProgram& program,
-                          const deflection::Prediction& prediction, const removal::StockShape& stock,
+ReportData predict_report(const machine::Job& job, const simulate::SimulatedProgram& program,
+                          const simulate::Prediction& prediction, const removal::StockShape& stock,
                           std::vector<PathRow> rows, const Diagnostics& diagnostics);
 
 /// One of the two programs of a compensation.
 struct CompensatedRun {
-  const deflection::MachinedProgram& program;
+  const simulate::SimulatedProgram& program;
   std::vector<PathRow> rows;
   /// One a stamp of `program`; none: the page has no forces of this run.
-  std::span<const deflection::StampLoad> loads{};
+  std::span<const simulate::StampLoad> loads{};
 };
 
 /// `result` and both programs must outlive what comes back.

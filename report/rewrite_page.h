@@ -37,7 +37,7 @@ struct RewritePage {
 };
 
 /// Points of a picture, of each of the two paths, that the page draws at most.
-constexpr std::size_t kMostPicturePoints = 80000;
+constexpr std::size_t kMaxPicturePoints = 80000;
 
 /// The page's text, UTF-8, self-contained. The same data give the same bytes. Does not throw.
 std::string rewrite_page(const RewritePage& page);

@@ -26,7 +26,7 @@ std::string figures_row(const std::string& name, const removal::ErrorFigures& f)
 constexpr const char* kFiguresHead = "form error, um     p95      rms     mean      min      max";
 
 /// Area-weighted figures of |total error| against the mesh.
-removal::ErrorFigures total_error(const deflection::Prediction& p) {
+removal::ErrorFigures total_error(const simulate::Prediction& p) {
   std::vector<double> um, area;
   for (std::size_t i = 0; i < p.total_error_mm.size(); ++i) {
     um.push_back(1000 * p.total_error_mm[i]);
@@ -44,7 +44,7 @@ ordered_json spread(const removal::ErrorSpread& s) {
           {"histogram", {{"from", s.bin_from}, {"width", s.bin_width}, {"area_mm2", s.bin_area_mm2}}}};
 }
 
-ordered_json form_error(const deflection::Prediction& p) {
+ordered_json form_error(const simulate::Prediction& p) {
   ordered_json j = figures(p.form_error_um);
   std::vector<double> um, area;
   for (const auto& point : p.surface) {
@@ -55,7 +55,7 @@ ordered_json form_error(const deflection::Prediction& p) {
   return j;
 }
 
-double largest_force_N(const deflection::Prediction& p) {
+double largest_force_N(const simulate::Prediction& p) {
   double largest = 0;
   for (const auto& l : p.cut.loads) largest = std::max(largest, l.lateral_max_N);
   return largest;
@@ -67,14 +67,14 @@ struct SpindleFigures {
 };
 
 /// The mean power is over the time in the cut; the specific energy is all work over all chips.
-SpindleFigures spindle_figures(const deflection::MachinedProgram& program, const deflection::Prediction& p) {
+SpindleFigures spindle_figures(const simulate::SimulatedProgram& program, const simulate::Prediction& p) {
   SpindleFigures out;
   double work_Nmm = 0, volume_mm3 = 0, time_s = 0;
   for (std::size_t k = 0; k < p.cut.loads.size(); ++k) {
     const auto& l = p.cut.loads[k];
     if (l.chip_mm3 <= 0 || l.torque_mean_Nmm <= 0) continue;
     const double rpm = program.moves.state_of(program.moves.moves[program.path.stamps[k].move]).spindle_speed_rpm;
-    const double power_W = deflection::power_W(l.torque_mean_Nmm, rpm);
+    const double power_W = simulate::power_W(l.torque_mean_Nmm, rpm);
     out.torque_max_Nm = std::max(out.torque_max_Nm, l.torque_max_Nmm / 1000);
     out.power_max_W = std::max(out.power_max_W, power_W);
     out.chip_max_mm = std::max(out.chip_max_mm, l.chip_max_mm);
@@ -87,7 +87,7 @@ SpindleFigures spindle_figures(const deflection::MachinedProgram& program, const
   return out;
 }
 
-ordered_json holes(const deflection::HoleFigures& h) {
+ordered_json holes(const simulate::HoleFigures& h) {
   return {{"drilled", h.count.drilled},
           {"tapped", h.count.tapped},
           {"drilled_mm3", h.drilled_mm3},
@@ -97,7 +97,7 @@ ordered_json holes(const deflection::HoleFigures& h) {
           {"not_judged_mm2", h.surface_mm2}};
 }
 
-std::string holes_text(const deflection::HoleFigures& h) {
+std::string holes_text(const simulate::HoleFigures& h) {
   std::string out;
   if (h.count.drilled > 0)
     fmt::format_to(std::back_inserter(out),
@@ -116,7 +116,7 @@ std::string holes_text(const deflection::HoleFigures& h) {
 namespace {
 
 /// Each once, in order.
-std::vector<std::size_t> unsettled_lines(const deflection::MachinedProgram& program, const deflection::Prediction& p) {
+std::vector<std::size_t> unsettled_lines(const simulate::SimulatedProgram& program, const simulate::Prediction& p) {
   std::vector<std::size_t> lines;
   for (const std::uint32_t move : p.cut.unsettled_moves) lines.push_back(program.moves.moves[move].block + 1);
   std::ranges::sort(lines);
@@ -127,7 +127,7 @@ std::vector<std::size_t> unsettled_lines(const deflection::MachinedProgram& prog
 
 }  // namespace
 
-std::string predict_json(const deflection::MachinedProgram& program, const deflection::Prediction& p,
+std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& p,
                          double compute_s) {
   ordered_json j;
   j["machine_time_s"] = program.feed.time_s;
@@ -170,7 +170,7 @@ ordered_json depth(const compensate::Depth& d) {
   return {{"deepest_um", d.deepest_um},
           {"held_um", d.held_um},
           {"at_mm", {d.place_mm.x(), d.place_mm.y(), d.place_mm.z()}},
-          {"area_over_tolerance", d.over_share}};
+          {"area_over_tolerance", d.over_fraction}};
 }
 
 ordered_json rounds(const compensate::Compensation& c) {
@@ -181,8 +181,8 @@ ordered_json rounds(const compensate::Compensation& c) {
     row["largest_shift_um"] = 1000 * r.largest_shift_mm;
     row["limited_points"] = r.limited_points;
     row["gain"] = r.gain;
-    row["step_share"] = r.step_share;
-    row["overcorrected_area"] = r.overcorrected_share;
+    row["step_share"] = r.step_fraction;
+    row["overcorrected_area"] = r.overcorrected_fraction;
     row["deepest_um"] = r.deepest_um;
     row["guard"] = r.guard;
     row["static_rounds"] = r.static_rounds;
@@ -205,7 +205,7 @@ ordered_json band(const compensate::Band& b) {
   ordered_json groups = ordered_json::array();
   for (const auto& g : b.groups) groups.push_back({{"name", g.name}, {"rms_um", g.rms_um}});
   return {{"groups", groups},   {"sigma_rms_um", b.sigma_rms_um}, {"rms_um", b.rms_um},
-          {"p95_um", b.p95_um}, {"deepest_um", b.deepest_um},     {"safe_share", b.safe_share}};
+          {"p95_um", b.p95_um}, {"deepest_um", b.deepest_um},     {"safe_share", b.safe_fraction}};
 }
 
 ordered_json measured(const compensate::MeasuredFit& m) {
@@ -219,7 +219,7 @@ ordered_json operations(const compensate::Compensation& c) {
   for (const auto& o : c.finishing.operations)
     out.push_back({{"tool", o.tool},
                    {"lines", {o.first_line, o.last_line}},
-                   {"surface_share", o.surface_share},
+                   {"surface_share", o.surface_fraction},
                    {"moves", o.moves},
                    {"compensated_moves", o.compensated_moves}});
   return out;
@@ -267,7 +267,7 @@ std::string compensate_json(const compensate::Compensation& c, double compute_s)
   return j.dump(2) + "\n";
 }
 
-std::string predict_text(const deflection::MachinedProgram& program, const deflection::Prediction& p,
+std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& p,
                          double compute_s) {
   std::string out = fmt::format("machine time {:.1f} s, of it cutting {:.1f} s; computed in {:.1f} s\n",
                                 program.feed.time_s, program.feed.cutting_time_s, compute_s);
@@ -313,8 +313,8 @@ std::string rounds_text(const compensate::Compensation& c) {
     const auto& r = c.rounds[i];
     std::string note = i == c.best ? "  <" : "";
     if (r.guard) note += "  guard";
-    if (r.step_share < 1) note += fmt::format("  step x {:.2g}", r.step_share);
-    if (r.overcorrected_share >= 0.01) note += fmt::format("  {:.0f} % over", 100 * r.overcorrected_share);
+    if (r.step_fraction < 1) note += fmt::format("  step x {:.2g}", r.step_fraction);
+    if (r.overcorrected_fraction >= 0.01) note += fmt::format("  {:.0f} % over", 100 * r.overcorrected_fraction);
     fmt::format_to(std::back_inserter(out), "{}{}\n",
                    figures_row(i == 0 ? "as given" : fmt::format("round {}", i), r.error_um), note);
   }
@@ -357,7 +357,7 @@ std::string checks_text(const compensate::Compensation& c) {
   if (!c.band) return out;
   add("with the model's uncertainty: rms {:.2f} um, 95 % within {:.2f} um\n", c.band->rms_um, c.band->p95_um);
   for (const auto& g : c.band->groups) add("  {:<12}{:>8.2f} um rms for one standard error\n", g.name, g.rms_um);
-  add("safe share of the compensation: {:.0f} %\n", 100 * c.band->safe_share);
+  add("safe share of the compensation: {:.0f} %\n", 100 * c.band->safe_fraction);
   return out;
 }
 
@@ -382,7 +382,7 @@ std::string compensate_text(const compensate::Compensation& c, double compute_s)
   for (const auto& o : operations)
     if (operations.size() > 1 || o.compensated_moves < o.moves)
       fmt::format_to(std::back_inserter(out), "T{}, lines {} to {}: {}, {:.0f} % of the surface\n", o.tool,
-                     o.first_line, o.last_line, compensated_of(o), 100 * o.surface_share);
+                     o.first_line, o.last_line, compensated_of(o), 100 * o.surface_fraction);
   fmt::format_to(std::back_inserter(out),
                  "largest shift {:.1f} um; {} of {} blocks changed, {} blocks after\n"
                  "machine time {:.1f} s before, {:.1f} s after; computed in {:.1f} s\n",
@@ -393,7 +393,7 @@ std::string compensate_text(const compensate::Compensation& c, double compute_s)
   return out;
 }
 
-std::string unsettled_sentence(const deflection::MachinedProgram& program, const deflection::Prediction& p) {
+std::string unsettled_sentence(const simulate::SimulatedProgram& program, const simulate::Prediction& p) {
   if (p.cut.unsettled == 0) return {};
   constexpr std::size_t kNamed = 5;
   const std::vector<std::size_t> lines = unsettled_lines(program, p);

@@ -3,22 +3,22 @@
 #include <string>
 
 #include "compensate/compensate.h"
-#include "deflection/predict.h"
+#include "simulate/predict.h"
 
 namespace camber::report {
 
-std::string predict_json(const deflection::MachinedProgram& program, const deflection::Prediction& prediction,
+std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
                          double compute_s);
 std::string compensate_json(const compensate::Compensation& result, double compute_s);
 
 /// The same for a terminal, within 80 columns.
-std::string predict_text(const deflection::MachinedProgram& program, const deflection::Prediction& prediction,
+std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
                          double compute_s);
 std::string compensate_text(const compensate::Compensation& result, double compute_s);
 
 /// A sentence about tooth passings without a static equilibrium, and the lines that they are in; empty where all have
 /// one.
-std::string unsettled_sentence(const deflection::MachinedProgram& program, const deflection::Prediction& prediction);
+std::string unsettled_sentence(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction);
 std::string unsettled_sentence(const compensate::Compensation& result);
 
 /// A sentence about how far the compensation stayed from its tolerance, and whether the guard is why.

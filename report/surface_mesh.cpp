@@ -32,7 +32,7 @@ Crossing crossing_of(const SurfaceSample& s, double grid_mm) {
   return out;
 }
 
-std::int32_t floor_share(std::int32_t value, std::int32_t by) {
+std::int32_t floor_fraction(std::int32_t value, std::int32_t by) {
   return value >= 0 ? value / by : -((-value + by - 1) / by);
 }
 
@@ -45,7 +45,7 @@ std::array<Cell, 4> cells_around(const Crossing& c, std::int32_t factor) {
   out[2][d] -= 1;
   out[3][d] -= 1;
   for (Cell& cell : out)
-    for (auto& v : cell) v = floor_share(v, factor);
+    for (auto& v : cell) v = floor_fraction(v, factor);
   return out;
 }
 
@@ -58,7 +58,7 @@ class CellKeys {
     Cell lo = crossings.front().edge;
     for (const Crossing& c : crossings)
       for (std::size_t a = 0; a < 3; ++a) lo[a] = std::min(lo[a], c.edge[a]);
-    for (std::size_t a = 0; a < 3; ++a) lowest_[a] = floor_share(lo[a] - 1, factor);
+    for (std::size_t a = 0; a < 3; ++a) lowest_[a] = floor_fraction(lo[a] - 1, factor);
   }
   /// Of the cells around an edge.
   std::array<std::uint64_t, 4> around(const Crossing& c) const {
@@ -142,7 +142,7 @@ bool tidy(std::array<std::uint32_t, 4>& quad) {
 
 }  // namespace
 
-SurfaceMesh surface_mesh(const SurfaceSamples& samples, double grid_mm, std::size_t most_vertices) {
+SurfaceMesh surface_mesh(const SurfaceSamples& samples, double grid_mm, std::size_t max_vertices) {
   SurfaceMesh mesh;
   if (samples.empty()) return mesh;
   std::vector<Crossing> crossings;
@@ -150,7 +150,7 @@ SurfaceMesh surface_mesh(const SurfaceSamples& samples, double grid_mm, std::siz
   for (const SurfaceSample& s : samples.all()) crossings.push_back(crossing_of(s, grid_mm));
   // A grid edge that the surface crosses belongs to four cells, and a cell that it passes has four such edges or six.
   constexpr double kFewest = 0.5;  // cells for a crossing, with room
-  const auto most = static_cast<double>(std::max<std::size_t>(1, most_vertices));
+  const auto most = static_cast<double>(std::max<std::size_t>(1, max_vertices));
   const double crossed = static_cast<double>(crossings.size());
   auto factor = std::max(std::int32_t{1}, static_cast<std::int32_t>(std::sqrt(kFewest * crossed / most)));
   std::vector<std::uint64_t> cells = all_cells(crossings, {crossings, factor});

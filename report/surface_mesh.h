@@ -19,8 +19,8 @@ struct SurfaceMesh {
 /// Surface nets: a vertex for every cell of the grid that the surface passes, a quadrangle for every grid edge that it
 /// crosses. The samples must lie on the lines of a grid of `grid_mm` through the origin
 /// (removal::SurfacePoint::crossing_mm).
-/// Where that would be more than `most_vertices`, cells are taken together in cubes of 2, 3, ... a side.
+/// Where that would be more than `max_vertices`, cells are taken together in cubes of 2, 3, ... a side.
 /// Source: Gibson, Constrained elastic surface nets, MICCAI 1998 (without the relaxation).
-SurfaceMesh surface_mesh(const SurfaceSamples& samples, double grid_mm, std::size_t most_vertices);
+SurfaceMesh surface_mesh(const SurfaceSamples& samples, double grid_mm, std::size_t max_vertices);
 
 }  // namespace camber::report

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "tests/support/bent_shoulder.h"
+#include "tests/support/deflected_shoulder.h"
 #include "tests/support/finished_wall.h"
 #include "tests/support/inclined_plane.h"
 
@@ -256,7 +256,7 @@ void voxels() {
   }
 }
 
-void shoulder_case(const testing::BentShoulder& s) {
+void shoulder_case(const testing::DeflectedShoulder& s) {
   const auto drawn = testing::DrawnShoulder(s).cut();
   const auto bent = testing::camber_figures(s), rigid = testing::camber_figures(s, machine::Coupling::rigid);
   double largest = 0, peak = 0, mean = 0, rigid_mean = 0, rigid_peak = 0;
@@ -282,12 +282,12 @@ void shoulders() {
   for (const double stiffness : {5000.0, 1500.0})
     for (const double edge : {0.0, 15.0})
       for (const bool up : {true, false}) {
-        testing::BentShoulder s;
+        testing::DeflectedShoulder s;
         s.up = up, s.kte = s.kre = edge, s.stiffness_N_per_mm = stiffness;
         shoulder_case(s);
       }
   for (const bool up : {true, false}) {
-    testing::BentShoulder s;
+    testing::DeflectedShoulder s;
     s.up = up, s.radial_mm = 3, s.from_mm = -5;
     shoulder_case(s);
     s = {};

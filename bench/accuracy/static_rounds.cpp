@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <ctime>
 
-#include "deflection/cut.h"
+#include "simulate/cut.h"
 #include "tests/support/cutting.h"
 
 using namespace camber;
@@ -30,10 +30,10 @@ void row(const Tool& t, bool slot, double depth, const char* law, const machine:
   auto stock = make_box({0, slot ? -r - 1 : half - 0.4, -depth - 0.7}, {6, r + 1.5, 0}, 0.1);
   std::vector<removal::Stamp> stamps;
   add_row(stamps, {-r - 0.1, 0, -depth}, {6 + r, 0, -depth}, 0.05);
-  deflection::CutOptions options;
+  simulate::CutOptions options;
   options.envelope_step_mm = 0.06;
   const std::clock_t begin = std::clock();
-  const auto result = deflection::cut(stock, tool, material, stamps, {}, 0, options);
+  const auto result = simulate::cut(stock, tool, material, stamps, {}, 0, options);
   std::printf("%-20s %-8s %g mm %-8s rounds %2d unsettled %zu, chips/stock %.4f, %.2f s of processor\n", t.name,
               slot ? "slot" : "shoulder", depth, law, result.rounds_max, result.unsettled,
               result.chip_mm3 / result.stock_mm3, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);

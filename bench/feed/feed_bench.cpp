@@ -36,9 +36,9 @@ nc::Interpretation wavy_spiral(std::size_t blocks) {
 
 machine::Machine machine_of(int lookahead_blocks) {
   machine::Machine m;
-  m.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01, .step_share = 0.1};
-  m.control.arc_normal_share = 0.87;
-  m.control.arc_tangential_share = 0.5;
+  m.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01, .step_fraction = 0.1};
+  m.control.arc_normal_fraction = 0.87;
+  m.control.arc_tangential_fraction = 0.5;
   m.control.lookahead_blocks = lookahead_blocks;
   for (machine::Axis& axis : m.axis) {
     axis.max_velocity_mm_per_s = 300;

@@ -11,9 +11,9 @@
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 
-#include "deflection/cut.h"
+#include "simulate/cut.h"
 #include "machine/job.h"
-#include "removal/stamp.h"
+#include "removal/tool_path.h"
 #include "removal/stock.h"
 
 using namespace camber;
@@ -44,9 +44,9 @@ std::vector<removal::Stamp> stamps_of(int from_row, int rows, double lift_mm) {
   for (int r = from_row; r < from_row + rows; ++r)
     for (int i = 0; i < kPoints; ++i) {
       removal::Stamp s;
-      s.tip_mm = tip_at((r % 2 ? kPoints - 1 - i : i) * kStep_mm, r * kRow_mm) + Vec3(0, 0, lift_mm);
+      s.pose.tip_mm = tip_at((r % 2 ? kPoints - 1 - i : i) * kStep_mm, r * kRow_mm) + Vec3(0, 0, lift_mm);
       s.first = out.empty();
-      if (!out.empty()) s.feed_per_tooth_mm = s.tip_mm - out.back().tip_mm;
+      if (!out.empty()) s.feed_per_tooth_mm = s.pose.tip_mm - out.back().pose.tip_mm;
       s.t_s = static_cast<double>(out.size()) * 0.004;
       out.push_back(s);
     }
@@ -96,10 +96,10 @@ int main(int argc, char** argv) {
   removal::Stock stock([&](const Vec3& p) { return removal::box_distance_mm(p, lo, hi); }, lo, hi, voxel, band);
   // The pass before, where the cutter can meet it.
   const int row0 = std::max(0, from_row - 20), row1 = std::min(kRows, from_row + rows + 20);
-  if (second) deflection::sweep(stock, tool, stamps_of(row0, row1 - row0, 0.3), 0, 0);
+  if (second) simulate::sweep(stock, tool, stamps_of(row0, row1 - row0, 0.3), 0, 0);
   stock.clear_stamps();
   // A part of the path meets what the rows before it have left.
-  if (from_row > row0) deflection::sweep(stock, tool, stamps_of(row0, from_row - row0, 0), 0, 0);
+  if (from_row > row0) simulate::sweep(stock, tool, stamps_of(row0, from_row - row0, 0), 0, 0);
   stock.clear_stamps();
   const auto stamps = stamps_of(from_row, rows, 0);
   const double volume = stock.volume_mm3();
@@ -109,12 +109,12 @@ int main(int argc, char** argv) {
   const auto start = std::chrono::steady_clock::now();
   double chips = 0;
   if (carve_only) {
-    deflection::sweep(stock, tool, stamps, 0, 0);
+    simulate::sweep(stock, tool, stamps, 0, 0);
   } else {
-    deflection::CutOptions options;
+    simulate::CutOptions options;
     options.coupling = bent ? machine::Coupling::static_ : machine::Coupling::rigid;
     options.envelope_step_mm = 0.1;
-    const auto result = deflection::cut(stock, tool, material, stamps, {}, 0, options);
+    const auto result = simulate::cut(stock, tool, material, stamps, {}, 0, options);
     chips = result.chip_mm3;
   }
   const double seconds = seconds_since(start);

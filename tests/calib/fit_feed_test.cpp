@@ -43,7 +43,7 @@ TEST(FitFeed, GivesTheParametersOfASyntheticMachineBack) {
     EXPECT_NEAR(is.position_gain_per_s / was.position_gain_per_s, 1, kDriveShare) << i;
     EXPECT_NEAR(is.velocity_lag_s / was.velocity_lag_s, 1, kDriveShare) << i;
   }
-  EXPECT_NEAR(fit.machine.control.arc_normal_share, 0.8, 0.8 * kLimitShare);
+  EXPECT_NEAR(fit.machine.control.arc_normal_fraction, 0.8, 0.8 * kLimitShare);
   EXPECT_TRUE(std::isinf(value_of(fit, "axis.x.max_velocity_mm_per_min")));  // no rapid shows it: not invented
   EXPECT_LT(fit.held_out.part_time_percent, 1.0);
   EXPECT_LT(fit.held_out.speed_rms_percent, 2.0);

@@ -32,7 +32,7 @@ machine::Machine known_machine() {
   m.control.corner.stop_angle_rad = 0.6;
   m.control.corner.stop_time_s = 0.035;
   m.control.path_acceleration_mm_per_s2 = 520;
-  m.control.arc_normal_share = 1.5;
+  m.control.arc_normal_fraction = 1.5;
   m.control.rapid_change_s = 0.09;
   return m;
 }
@@ -89,7 +89,7 @@ TEST(FitStretches, GivesAKnownMachineBackFromTheTimesAlone) {
   EXPECT_NEAR(is.path_acceleration_mm_per_s2 / was.path_acceleration_mm_per_s2, 1, 0.03);
   EXPECT_NEAR(is.corner.time_s / was.corner.time_s, 1, 0.05);
   EXPECT_NEAR(is.corner.stop_time_s / was.corner.stop_time_s, 1, 0.05);
-  EXPECT_NEAR(is.arc_normal_share / was.arc_normal_share, 1, 0.05);
+  EXPECT_NEAR(is.arc_normal_fraction / was.arc_normal_fraction, 1, 0.05);
   EXPECT_LT(fit.held_out.mean, 0.2);
   EXPECT_GT(fit.constant_feed.mean, 5);
 }

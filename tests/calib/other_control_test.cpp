@@ -159,7 +159,7 @@ TEST(OtherControl, AFeedHoldAnOverrideAndAHoleDoNotSpoilTheFit) {
     EXPECT_NEAR(fit.machine.axis[i].acceleration_mm_per_s2 / known.axis[i].acceleration_mm_per_s2, 1, 0.03) << i;
     EXPECT_NEAR(fit.machine.axis[i].position_gain_per_s / known.axis[i].position_gain_per_s, 1, 0.01) << i;
   }
-  EXPECT_NEAR(fit.machine.control.arc_normal_share, 0.8, 0.03);
+  EXPECT_NEAR(fit.machine.control.arc_normal_fraction, 0.8, 0.03);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nc/interpreter.h"
-#include "removal/drop_cutter.h"
+#include "repath/drop_cutter.h"
 #include "tests/nc/rs274_oracle.h"
 #include "tests/support/read_text.h"
 #include "tests/support/run_camber.h"
@@ -67,7 +67,7 @@ TEST(RasterCommand, LaysRowsThatKeepToTheOffsetSurface) {
       EXPECT_GT(t["time_s"], 1.004 * fastest);
     }
   // The tip along every block, against the drop cutter, which was tested by itself. The slopes are below 20 degrees.
-  const removal::DropCutter part(removal::read_stl(folder / "part.stl"), {.radius_mm = 3, .corner_radius_mm = 3});
+  const repath::DropCutter part(read_stl(folder / "part.stl"), {.radius_mm = 3, .corner_radius_mm = 3});
   const Read program = read(file_text(folder / "raster.nc"));
   double above = 0, below = 0;
   std::size_t rows = 0, chains = 0;

@@ -55,8 +55,8 @@ machine::Job slope_job(const std::filesystem::path& folder, Diagnostics& diagnos
   return job;
 }
 
-DrawnCut drawn(const machine::Job& job, const deflection::MachinedProgram& program,
-               const deflection::MachinedProgram& given) {
+DrawnCut drawn(const machine::Job& job, const simulate::SimulatedProgram& program,
+               const simulate::SimulatedProgram& given) {
   DrawnCut c = testing::drawn_cut_of(job);
   c.corner = c.radius;
   c.top = c.radius;
@@ -79,8 +79,8 @@ struct Judged {
 
 /// What the emitted program leaves less what the given one would with a stiff tool; a shift moves a row as a whole, so
 /// the mean over its width is what it can correct.
-Judged judge(const machine::Job& job, const deflection::MachinedProgram& program,
-             const deflection::MachinedProgram& given) {
+Judged judge(const machine::Job& job, const simulate::SimulatedProgram& program,
+             const simulate::SimulatedProgram& given) {
   const DrawnCut cut = drawn(job, program, given), stiff = drawn(job, given, given);
   const double du = (kJudgedTo_mm - kJudgedFrom_mm) / (kAlong - 1), dv = kStep_mm / kOfRow;
   constexpr int kUp = (kLastRow - kFirstRow + 1) * kOfRow;
@@ -90,17 +90,17 @@ Judged judge(const machine::Job& job, const deflection::MachinedProgram& program
   constexpr double kReach_mm = 0.5, kClearance_mm = 0.03;
   const double middle = (kJudgedFrom_mm + kJudgedTo_mm) / 2;
   const auto row_of = [](const removal::Stamp& s) {
-    return static_cast<int>(std::lround((s.tip_mm.y() - tip(0, 0).y()) / (kSlope * kStep_mm)));
+    return static_cast<int>(std::lround((s.pose.tip_mm.y() - tip(0, 0).y()) / (kSlope * kStep_mm)));
   };
   const auto near = [&](const removal::Stamp& s) {
-    return std::abs(s.tip_mm.x() - middle) < (kJudgedTo_mm - kJudgedFrom_mm) / 2 + kReach_mm &&
+    return std::abs(s.pose.tip_mm.x() - middle) < (kJudgedTo_mm - kJudgedFrom_mm) / 2 + kReach_mm &&
            row_of(s) >= kFirstRow - 2 && row_of(s) <= kLastRow + 2;
   };
   std::map<std::pair<int, int>, DrawnPass> passes;  // conditions stay the same along a row: one a row and millimetre
   for (std::size_t k = 0; k < cut.stamps.size(); ++k) {
     const removal::Stamp& s = cut.stamps[k];
     if (!near(s)) continue;
-    const std::pair at{row_of(s), static_cast<int>(std::lround(s.tip_mm.x()))};
+    const std::pair at{row_of(s), static_cast<int>(std::lround(s.pose.tip_mm.x()))};
     if (!passes.contains(at)) passes.emplace(at, drawn_pass(cut, k));
     draw_envelope(cut, k, &passes.at(at), bent, kClearance_mm);
   }
@@ -132,7 +132,7 @@ TEST(DrawnJudge, FindsWhatAShiftCanCorrectGoneFromASlopeOfBallRows_slow) {
   const machine::Job job = slope_job(folder, diagnostics);
   const Compensation c = compensate(job, diagnostics, {});
   const auto program = [&](const std::string& text) {
-    return deflection::machine_program(SourceText(job.program, text), job, {}, diagnostics);
+    return simulate::simulate_motion(SourceText(job.program, text), job, {}, diagnostics);
   };
   std::cout << fmt::format("camber: rms {:.2f} to {:.2f}, correctable {:.2f} to {:.3f} um\n", c.before_um.rms,
                            c.after_um.rms, c.split_before.correctable_um, c.split_after.correctable_um);

@@ -20,17 +20,17 @@ using testing::DrawnSurface;
 constexpr double kFrom_mm = 8, kTo_mm = 10, kHeight_mm = 6;
 constexpr double kEdge_mm = 0.15;  // above and below: the map leaves out a voxel
 
-DrawnCut drawn(const machine::Job& job, const deflection::MachinedProgram& program,
-               const deflection::MachinedProgram& given) {
+DrawnCut drawn(const machine::Job& job, const simulate::SimulatedProgram& program,
+               const simulate::SimulatedProgram& given) {
   DrawnCut c = testing::drawn_cut_of(job);
   c.corner = 0;
   c.top = kHeight_mm;
   c.steps_per_pitch = 180;
   c.edge_step = 0.06;
-  const auto of_wall = [](const deflection::MachinedProgram& p) {
+  const auto of_wall = [](const simulate::SimulatedProgram& p) {
     std::vector<removal::Stamp> out;
     for (const auto& s : p.path.stamps)
-      if (s.tip_mm.z() < -5.9 && s.tip_mm.y() < -3.5 && s.tip_mm.x() < 15) out.push_back(s);
+      if (s.pose.tip_mm.z() < -5.9 && s.pose.tip_mm.y() < -3.5 && s.pose.tip_mm.x() < 15) out.push_back(s);
     return out;
   };
   c.stamps = of_wall(program);
@@ -44,8 +44,8 @@ struct Judged {
 
 /// What the emitted program leaves less what the given one would with a stiff tool. A shift moves the wall as a whole
 /// where the cutter stands: the mean over the height is what it can correct.
-Judged judge(const machine::Job& job, const deflection::MachinedProgram& program,
-             const deflection::MachinedProgram& given) {
+Judged judge(const machine::Job& job, const simulate::SimulatedProgram& program,
+             const simulate::SimulatedProgram& given) {
   const DrawnCut cut = drawn(job, program, given), stiff = drawn(job, given, given);
   constexpr int kAlong = 81, kUp = 115;
   const double du = (kTo_mm - kFrom_mm) / (kAlong - 1), dv = (kHeight_mm - 2 * kEdge_mm) / (kUp - 1);
@@ -54,14 +54,14 @@ Judged judge(const machine::Job& job, const deflection::MachinedProgram& program
   constexpr double kReach_mm = 1.3, kClearance_mm = 0.1, kPassEvery_mm = 1;
   std::map<int, DrawnPass> passes;
   for (std::size_t k = 0; k < cut.stamps.size(); ++k) {
-    const double x = cut.stamps[k].tip_mm.x();
+    const double x = cut.stamps[k].pose.tip_mm.x();
     if (x < kFrom_mm - kReach_mm || x > kTo_mm + kReach_mm) continue;
     const int at = static_cast<int>(std::lround(x / kPassEvery_mm));
     if (!passes.contains(at)) passes.emplace(at, drawn_pass(cut, k));
     draw_envelope(cut, k, &passes.at(at), bent, kClearance_mm);
   }
   for (std::size_t k = 0; k < stiff.stamps.size(); ++k)
-    if (std::abs(stiff.stamps[k].tip_mm.x() - (kFrom_mm + kTo_mm) / 2) < (kTo_mm - kFrom_mm) / 2 + kReach_mm)
+    if (std::abs(stiff.stamps[k].pose.tip_mm.x() - (kFrom_mm + kTo_mm) / 2) < (kTo_mm - kFrom_mm) / 2 + kReach_mm)
       draw_envelope(stiff, k, nullptr, straight, kClearance_mm);
   Judged out;
   double squares = 0, means = 0, sum = 0;
@@ -86,7 +86,7 @@ TEST(DrawnJudge, FindsWhatAShiftCanCorrectGoneFromTheWallOfSample06_slow) {
   job.compensation.tolerance_um = 0.2;  // under what the judge is asked for, or the tolerance would be judged
   const Compensation c = compensate(job, diagnostics, {});
   const auto program = [&](const std::string& text) {
-    return deflection::machine_program(SourceText(job.program, text), job, {}, diagnostics);
+    return simulate::simulate_motion(SourceText(job.program, text), job, {}, diagnostics);
   };
   const auto given = program(SourceText::read(job.program).text()), emitted = program(c.text);
   const Judged before = judge(job, given, given), after = judge(job, emitted, given);

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "nc/interpreter.h"
-#include "removal/stamp_path.h"
+#include "removal/tool_path.h"
 
 namespace camber::compensate {
 namespace {
@@ -12,8 +12,8 @@ const char* const kTwoTools =
     "G21 G90\nG0 X0. Y0. Z5.\n(ROUGHING)\nT1 M6\nS1000 M3\nG1 X10. F100\nX20.\n(FINISH WALLS)\nT2 M6\nG1 "
     "X30.\nX40.\n(CHAMFER)\nX50.\nM30\n";
 
-deflection::MachinedProgram machined(const std::string& text) {
-  deflection::MachinedProgram p;
+simulate::SimulatedProgram machined(const std::string& text) {
+  simulate::SimulatedProgram p;
   Diagnostics diagnostics;
   p.text = nc::read_program(SourceText("two.nc", text), diagnostics);
   p.moves = nc::interpret(p.text, {}, diagnostics);
@@ -44,7 +44,7 @@ TEST(Finishing, IsWhatMakesTheSurface) {
   EXPECT_EQ(f.operations[0].tool, 1);
   EXPECT_EQ(f.operations[0].compensated_moves, 0u);
   EXPECT_EQ(f.operations[1].compensated_moves, 3u);
-  EXPECT_DOUBLE_EQ(f.operations[1].surface_share, 1);
+  EXPECT_DOUBLE_EQ(f.operations[1].surface_fraction, 1);
   EXPECT_EQ(f.moves, (std::vector<bool>{false, false, false, true, true, true}));
 }
 

@@ -73,7 +73,7 @@ TEST(RowForm, IsFoundFromPointsAtRandom) {
   const auto points = observed(path, 3);
   std::vector<double> left;
   for (const auto& o : points)
-    left.push_back(o.error_mm - along_mm(path.points()[o.place.lower].place_mm.x() + 0.5 * o.place.upper_share));
+    left.push_back(o.error_mm - along_mm(path.points()[o.place.lower].place_mm.x() + 0.5 * o.place.upper_fraction));
   const auto form = row_form_mm(path, points, left, 0.2);
   double squares = 0;
   for (std::size_t i = 0; i < form.size(); ++i) squares += (form[i] - left[i]) * (form[i] - left[i]);
@@ -104,7 +104,7 @@ TEST(RowForm, SquaresAddUpWithIt) {
   double squares = 0, area = 0;
   double bow_squares = 0;
   for (const auto& o : seen.points) {
-    const double x = path.points()[o.place.lower].place_mm.x() + 0.5 * o.place.upper_share;
+    const double x = path.points()[o.place.lower].place_mm.x() + 0.5 * o.place.upper_fraction;
     squares += o.area_mm2 * o.error_mm * o.error_mm, area += o.area_mm2;
     bow_squares += o.area_mm2 * std::pow(o.error_mm - along_mm(x), 2);
   }

@@ -32,7 +32,7 @@ struct Lines {
 
   std::size_t at(std::uint32_t move, double share) const {
     const auto place = path.find(move, share);
-    return place.lower + (place.upper_share > 0.5 ? 1 : 0);
+    return place.lower + (place.upper_fraction > 0.5 ? 1 : 0);
   }
 };
 

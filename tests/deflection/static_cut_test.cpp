@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/bent_shoulder.h"
+#include "tests/support/deflected_shoulder.h"
 
 namespace camber::deflection {
 namespace {
 
-using testing::BentShoulder;
+using testing::DeflectedShoulder;
 using testing::PassingFigures;
 
 double largest_force(const std::vector<PassingFigures>& all) {
@@ -20,7 +20,7 @@ double largest_force(const std::vector<PassingFigures>& all) {
 }
 
 /// Tooth passing by tooth passing, from the first touch of the block on.
-void expect_the_drawn_cut(const BentShoulder& s, double peak_share, double mean_share) {
+void expect_the_drawn_cut(const DeflectedShoulder& s, double peak_share, double mean_share) {
   const auto drawn = testing::DrawnShoulder(s).cut();
   const auto camber = testing::camber_figures(s), rigid = testing::camber_figures(s, machine::Coupling::rigid);
   ASSERT_EQ(drawn.size(), camber.size());
@@ -36,8 +36,8 @@ void expect_the_drawn_cut(const BentShoulder& s, double peak_share, double mean_
 }
 
 /// A soft spring: bending changes the mean force by 3.5 % on the way in, the peak by 12 %.
-BentShoulder soft(bool up) {
-  BentShoulder s;
+DeflectedShoulder soft(bool up) {
+  DeflectedShoulder s;
   s.up = up, s.stiffness_N_per_mm = 1500, s.kte = s.kre = 15;
   s.to_mm = -0.5, s.instants = 180, s.slices = 20;
   return s;
@@ -55,7 +55,7 @@ TEST(StaticCut, ADownMillingToolOnASpringGrowsIntoItsCutAsDrawn_slow) {
 TEST(StaticCut, ARepeatedToothPassingTakesWhatARigidToolTakes) {
   // What one tooth leaves by yielding the next one takes.
   for (const bool up : {true, false}) {
-    BentShoulder s;
+    DeflectedShoulder s;
     s.up = up, s.to_mm = 5;
     const auto bent = testing::camber_figures(s).back(),
                rigid = testing::camber_figures(s, machine::Coupling::rigid).back();

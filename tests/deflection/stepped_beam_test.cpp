@@ -98,7 +98,7 @@ TEST(MachineAxes, AddTheirComplianceAtEveryHeight) {
   const ToothPassModel soft(envelope, material, beam_of(tool), {0, 2, 4}, 0, Teeth(tool), axes);
   // One point of the wall, at some angle.
   const auto point = static_cast<std::uint32_t>((envelope.rings.size() - 2) * envelope.steps + 7);
-  const std::vector<removal::Chip> chips{{point, 0.05f, false}};
+  const std::vector<removal::ChipSample> chips{{point, 0.05f, false}};
   ToothPass a, b;
   stiff.evaluate(chips, 0, Vec3(0.05, 0, 0), a);
   soft.evaluate(chips, 0, Vec3(0.05, 0, 0), b);

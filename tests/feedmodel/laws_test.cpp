@@ -38,7 +38,7 @@ TEST(Corner, RoundingKeepsTheTolerance) {
   const BlendOptions options{.tolerance_mm = 0.01,
                              .room_mm = 10,
                              .goal_speed_mm_per_s = 100,
-                             .normal_share = 0.5,
+                             .normal_fraction = 0.5,
                              .velocity_mm_per_s = Vec3::Constant(1000),
                              .acceleration_mm_per_s2 = Vec3(600, 500, 400)};
   const auto blend = blend_corner(Vec3::UnitX(), Vec3::UnitY(), options);

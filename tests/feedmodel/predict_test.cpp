@@ -64,8 +64,8 @@ TEST(PredictFeed, EmptyProgramGivesNothing) {
 
 TEST(PredictFeed, CommandKeepsTheAxesLimitsAndIsContinuous) {
   machine::Machine m = test_machine();
-  m.control.arc_normal_share = std::sqrt(0.75);
-  m.control.arc_tangential_share = 0.5;
+  m.control.arc_normal_fraction = std::sqrt(0.75);
+  m.control.arc_tangential_fraction = 0.5;
   tests::TestProgram p;
   unsigned seed = 7;
   const auto random = [&] { return static_cast<double>((seed = seed * 1664525u + 1013904223u) >> 8) / (1 << 24); };

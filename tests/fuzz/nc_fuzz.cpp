@@ -22,9 +22,9 @@ using namespace camber;
 constexpr double kLargestPlaceMm = 1e6;
 constexpr double kPlaceTolerance_mm = 2e-3;  ///< rounding to four decimals, or to five of an inch, and the sums of G91
 /// Blocks that loops may run again. A run with the limit of everyday (ten million) would take seconds.
-constexpr std::size_t kMostRepeatedBlocks = 20000;
+constexpr std::size_t kMaxRepeatedBlocks = 20000;
 /// More moves than the blocks of any fuzzed text make without repeats of cycles: not worth emitting in this time.
-constexpr std::size_t kMostMoves = 20000;
+constexpr std::size_t kMaxMoves = 20000;
 
 struct Read {
   nc::Program program;
@@ -123,12 +123,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if ((flags & 16) != 0) options.control = static_cast<nc::ControlKind>((flags >> 5) & 3);
   options.whole_numbers_are_increments = (choice[5] & 3) == 3;
   options.skip_switches = static_cast<std::uint16_t>((choice[5] & 4) != 0 ? 0x3fe : 0);
-  options.most_repeated_blocks = kMostRepeatedBlocks;
+  options.max_repeated_blocks = kMaxRepeatedBlocks;
   options.tool_offsets[1].radius_mm = 1.5;
   const Read r = read(bytes.ConsumeRemainingBytesAsString(), options);
   if (!r.clean) return 0;
   nc::summarize(r.program, r.moves);
-  if (r.moves.moves.size() > kMostMoves) return 0;
+  if (r.moves.moves.size() > kMaxMoves) return 0;
   FuzzedDataProvider edit_bytes(choice.data(), choice.size());
   emit_and_read(r, options, edit_bytes);
   return 0;

@@ -37,10 +37,10 @@ period_ms = 2
 block_time_ms = 1.5
 merge_tolerance_mm = 0.01
 lookahead_blocks = 200
-arc_normal_share = 0.9
-arc_tangential_share = 0.8
-stop_acceleration_share = 0.5
-corner = { law = "blend", tolerance_mm = 0.02, step_share = 0.4, short_line_time_ms = 3 }
+arc_normal_fraction = 0.9
+arc_tangential_fraction = 0.8
+stop_acceleration_fraction = 0.5
+corner = { law = "blend", tolerance_mm = 0.02, step_fraction = 0.4, short_line_time_ms = 3 }
 [axis.x]
 max_velocity_mm_per_min = 9000.0
 acceleration_mm_per_s2 = 600.0
@@ -58,12 +58,12 @@ max_rpm = 12000.0
   EXPECT_EQ(m.control.block_time_s, 0.0015);
   EXPECT_EQ(m.control.merge_tolerance_mm, 0.01);
   EXPECT_EQ(m.control.lookahead_blocks, 200);
-  EXPECT_EQ(m.control.arc_normal_share, 0.9);
-  EXPECT_EQ(m.control.arc_tangential_share, 0.8);
-  EXPECT_EQ(m.control.stop_acceleration_share, 0.5);
+  EXPECT_EQ(m.control.arc_normal_fraction, 0.9);
+  EXPECT_EQ(m.control.arc_tangential_fraction, 0.8);
+  EXPECT_EQ(m.control.stop_acceleration_fraction, 0.5);
   EXPECT_EQ(m.control.corner.law, CornerLaw::blend);
   EXPECT_EQ(m.control.corner.tolerance_mm, 0.02);
-  EXPECT_EQ(m.control.corner.step_share, 0.4);
+  EXPECT_EQ(m.control.corner.step_fraction, 0.4);
   EXPECT_EQ(m.control.corner.short_line_time_s, 0.003);
   EXPECT_EQ(m.axis[0].max_velocity_mm_per_s, 150);
   EXPECT_EQ(m.axis[0].acceleration_mm_per_s2, 600);
@@ -97,7 +97,7 @@ TEST(MachineReader, WritesTextThatReadsBackToTheSameValues) {
   Machine m;
   m.control.dialect = Dialect::haas;
   m.control.period_s = 0.001;
-  m.control.corner = {.law = CornerLaw::speed_difference, .speed_difference_mm_per_s = 12.345, .step_share = 0.37};
+  m.control.corner = {.law = CornerLaw::speed_difference, .speed_difference_mm_per_s = 12.345, .step_fraction = 0.37};
   m.control.lookahead_blocks = 40;
   m.axis[0].max_velocity_mm_per_s = 150;
   m.axis[1].acceleration_mm_per_s2 = 612.3456789;
@@ -108,7 +108,7 @@ TEST(MachineReader, WritesTextThatReadsBackToTheSameValues) {
   EXPECT_EQ(to_toml(back), text);
   EXPECT_EQ(back.axis[1].acceleration_mm_per_s2, m.axis[1].acceleration_mm_per_s2);
   EXPECT_EQ(back.axis[2].travel_mm, m.axis[2].travel_mm);
-  EXPECT_EQ(back.control.corner.step_share, m.control.corner.step_share);
+  EXPECT_EQ(back.control.corner.step_fraction, m.control.corner.step_fraction);
 }
 
 TEST(MachineReader, WritesMachineTomlForReaders) {

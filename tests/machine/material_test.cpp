@@ -96,9 +96,9 @@ TEST(Material, CatalogueLinesPassNearTheirTables) {
   for (const auto& p : material_presets()) {
     if (p.catalogue.empty()) continue;
     const KienzlePair pair = kienzle_from_catalogue(p.catalogue);
-    EXPECT_LT(pair.worst_share, 0.03) << p.name;
+    EXPECT_LT(pair.worst_fraction, 0.03) << p.name;
     std::printf("%s: kc1.1 %.1f MPa, mc %.4f, worst %.2f %%\n", std::string(p.name).c_str(), pair.k1_1_MPa, pair.m,
-                100 * pair.worst_share);
+                100 * pair.worst_fraction);
   }
 }
 

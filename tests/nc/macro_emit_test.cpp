@@ -90,7 +90,7 @@ TEST(MacroEmit, NoTextMakesItCrash) {
       if (text.empty()) text = seed;
     }
     InterpreterOptions options = as(i % 2 == 0 ? ControlKind::fanuc : ControlKind::linuxcnc);
-    options.most_repeated_blocks = 300;
+    options.max_repeated_blocks = 300;
     const Read r = read_text(text, options);
     for (const Move& m : r.moves.moves) ASSERT_TRUE(m.end_mm.allFinite());
     if (!r.moves.moves.empty()) all_shifted(r);

@@ -38,7 +38,7 @@ inline double value_of(const std::string& expression, ControlKind control = Cont
 /// The first thing said of a program.
 inline std::string said(const std::string& text, ControlKind control = ControlKind::fanuc) {
   InterpreterOptions options = as(control);
-  options.most_repeated_blocks = 10000;
+  options.max_repeated_blocks = 10000;
   const Read r = read_text(text, options);
   return r.messages.empty() ? "" : r.messages.front();
 }

@@ -1,5 +1,5 @@
 // BatchCut, and the distances that it asks for, against every stamp evaluated at every voxel.
-#include "removal/batch_cut.h"
+#include "removal/field/upright/batch_cut.h"
 
 #include <algorithm>
 #include <memory>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "removal/rounded_distance.h"
+#include "removal/simd/upright_distances.h"
 
 namespace camber::removal {
 namespace {
@@ -30,7 +30,7 @@ Drawn rows(std::mt19937& random, double radius_mm) {
   for (double y = -radius_mm - 1; y < radius_mm + 1; y += 0.45)
     for (double x = -radius_mm - 1; x < radius_mm + 1; x += step) {
       Stamp s;
-      s.tip_mm = middle + Vec3(x, y, slope * x + 0.3 * std::sin(2 * y));
+      s.pose.tip_mm = middle + Vec3(x, y, slope * x + 0.3 * std::sin(2 * y));
       d.batch.push_back(static_cast<std::int32_t>(d.stamps.size()));
       d.stamps.push_back(s);
     }
@@ -39,7 +39,7 @@ Drawn rows(std::mt19937& random, double radius_mm) {
 }
 
 double left_by(const CutterShape& shape, const Stamp& stamp, const Vec3& voxel) {
-  return std::min(-shape.distance_mm(voxel - stamp.tip_mm), kBand);
+  return std::min(-shape.distance_mm(voxel - stamp.pose.tip_mm), kBand);
 }
 
 void expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType type, double corner_mm) {

@@ -5,14 +5,17 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "removal/stretch.h"
+#include "removal/engagement.h"
 #include "tests/support/cutting.h"
+#include "tests/support/engage_all.h"
 
 namespace camber::removal {
 namespace {
 
 using machine::ToolType;
 using testing::add_row;
+using testing::AllChips;
+using testing::engage_all;
 using testing::make_box;
 using testing::make_tool;
 
@@ -35,11 +38,10 @@ Volumes slot(const machine::Tool& tool, double rise) {
   make_patches(envelope, 0.24);
   std::vector<Stamp> stamps;
   add_row(stamps, {-8, 0.013, -kDepth}, {kLength + 8, 0.013, -kDepth + rise * (kLength + 16)}, kFeed);
-  Stretch stretch(stock, &blank, envelope, stamps, 0, stamps.size(), {});
-  const Engagement e = stretch.carve();
+  const AllChips e = engage_all(stock, blank, envelope, stamps);
   double chips = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k) chips += chip_volume_mm3(envelope, e.of(k));
-  return {stretch.commit(), chips};
+  return {e.removed_mm3, chips};
 }
 
 void expect_volume(const machine::Tool& tool, double area_mm2, const char* what) {
@@ -137,8 +139,7 @@ double layer_share(double deeper, bool below_top) {
   if (!below_top) add_row(stamps, {-8, 0.013, floor}, {kLength + 8, 0.013, floor}, kFeed);
   const std::size_t second = stamps.size();
   add_row(stamps, {-8, 0.013, floor - deeper}, {kLength + 8, 0.013, floor - deeper}, kFeed);
-  Stretch stretch(stock, &blank, envelope, stamps, 0, stamps.size(), {});
-  const Engagement e = stretch.carve();
+  const AllChips e = engage_all(stock, blank, envelope, stamps);
   double chips = 0;
   for (std::size_t k = second; k < stamps.size(); ++k) chips += chip_volume_mm3(envelope, e.of(k));
   return chips / (10 * deeper * kLength);
@@ -159,11 +160,10 @@ TEST(CutterVolume, PlungingDrillTakesItsPointAndItsCylinder) {
   make_patches(envelope, 0.24);
   std::vector<Stamp> stamps;
   add_row(stamps, {0.02, 0.03, 0.5}, {0.02, 0.03, -4}, 0.05);
-  Stretch stretch(stock, &blank, envelope, stamps, 0, stamps.size(), {});
-  const Engagement e = stretch.carve();
+  const AllChips e = engage_all(stock, blank, envelope, stamps);
   double chips = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k) chips += chip_volume_mm3(envelope, e.of(k));
-  const double stock_mm3 = stretch.commit();
+  const double stock_mm3 = e.removed_mm3;
   const double point = 3 / std::tan(rad_from_deg(59)), exact = kPi * 9 * (4 - point) + kPi * 9 * point / 3;
   EXPECT_NEAR(stock_mm3 / exact, 1, 0.004);
   EXPECT_NEAR(chips / stock_mm3, 1, balance_share(tool));

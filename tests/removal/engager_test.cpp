@@ -1,5 +1,5 @@
 // Chips read in blocks against those read patch by patch, one stamp at a time.
-#include "removal/engager.h"
+#include "removal/engagement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "removal/bent_engager.h"
-#include "removal/block_kernels.h"
-#include "removal/tile_arena.h"
+#include "removal/simd/upright_block_kernels.h"
+#include "removal/field/upright/tile_arena.h"
 
 namespace camber::removal {
 namespace {
@@ -34,9 +33,9 @@ std::vector<Stamp> wavy_rows() {
     for (int i = 0; i <= 60; ++i) {
       const double x = -1 + 0.15 * (row % 2 ? 60 - i : i);
       Stamp s;
-      s.tip_mm = {x, 0.4 * row + 0.2 * std::sin(x), -1.0 + 0.3 * std::sin(0.9 * x)};
+      s.pose.tip_mm = {x, 0.4 * row + 0.2 * std::sin(x), -1.0 + 0.3 * std::sin(0.9 * x)};
       s.first = out.empty();
-      s.feed_per_tooth_mm = out.empty() ? Vec3(0.15, 0, 0) : Vec3(s.tip_mm - out.back().tip_mm);
+      s.feed_per_tooth_mm = out.empty() ? Vec3(0.15, 0, 0) : Vec3(s.pose.tip_mm - out.back().pose.tip_mm);
       out.push_back(s);
     }
   return out;
@@ -53,18 +52,18 @@ void expect_the_chips_of_stamps_one_by_one(machine::ToolType type) {
   const std::vector<Stamp> stamps = wavy_rows();
   const Stock blank = box();
   Stock one_by_one = box(), in_batches = box();
-  // Cutters that are bent by nothing take the other way through the code.
-  const ShiftTable none(stamps.size(), envelope.steps_per_pitch, {0.0, 2.0});
-  BentEngager slow(one_by_one, blank, envelope, stamps, 0);
+  // Cutters that are deflected by nothing take the other way through the code.
+  const DeflectionTable none(stamps.size(), envelope.steps_per_pitch, {0.0, 2.0});
+  DeflectedEngager slow(one_by_one, blank, envelope, stamps, 0);
   slow.start(0, stamps.size(), none);
-  std::vector<std::vector<Chip>> expected(stamps.size());
+  std::vector<std::vector<ChipSample>> expected(stamps.size());
   for (std::size_t k = 0; k < stamps.size(); ++k) {
-    for (const BentChip& c : slow.read(k))
+    for (const DeflectedChipSample& c : slow.read(k))
       if (c.chip.thickness_mm > 0) expected[k].push_back(c.chip);
     slow.cut(k);
   }
-  Engager fast(in_batches, blank, envelope, stamps, 0);
-  std::vector<std::vector<Chip>> found(stamps.size());
+  RigidEngager fast(in_batches, blank, envelope, stamps, 0);
+  std::vector<std::vector<ChipSample>> found(stamps.size());
   fast.engage(0, stamps.size(), [&](std::size_t k, std::span<const ChipBlock> chips) {
     found[k] = chips_of(fast.blocks(), chips);
     EXPECT_NEAR(chip_volume_mm3(envelope, fast.blocks(), chips), chip_volume_mm3(envelope, found[k]), 1e-9);
@@ -73,8 +72,8 @@ void expect_the_chips_of_stamps_one_by_one(machine::ToolType type) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < stamps.size(); ++k) {
     std::map<std::uint32_t, float> there;
-    for (const Chip& c : expected[k]) there[c.point] = c.thickness_mm;
-    for (const Chip& c : found[k]) {
+    for (const ChipSample& c : expected[k]) there[c.point] = c.thickness_mm;
+    for (const ChipSample& c : found[k]) {
       const auto other = there.find(c.point);
       difference += std::abs(c.thickness_mm - (other == there.end() ? 0.0f : other->second));
       ++count;
@@ -94,20 +93,20 @@ void expect_the_chips_of_stamps_one_by_one(machine::ToolType type) {
 
 }  // namespace
 
-TEST(Engager, ABallsChipsAreThoseOfStampsOneByOne) { expect_the_chips_of_stamps_one_by_one(machine::ToolType::ball); }
+TEST(RigidEngager, ABallsChipsAreThoseOfStampsOneByOne) { expect_the_chips_of_stamps_one_by_one(machine::ToolType::ball); }
 
-TEST(Engager, ABullNosesChipsAreThoseOfStampsOneByOne) {
+TEST(RigidEngager, ABullNosesChipsAreThoseOfStampsOneByOne) {
   expect_the_chips_of_stamps_one_by_one(machine::ToolType::bull);
 }
 
-TEST(Engager, TilesThatStayFromStretchToStretchHoldWhatTheStockWould) {
+TEST(RigidEngager, TilesThatStayFromStretchToStretchHoldWhatTheStockWould) {
   EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::bull), 2.0, 0.1, kPi / 90);
   const std::vector<Stamp> stamps = wavy_rows();
   const Stock blank = box();
   Stock kept = box(), stored = box();
-  Engager once(kept, blank, envelope, stamps, 0), each_time(stored, blank, envelope, stamps, 0);
+  RigidEngager once(kept, blank, envelope, stamps, 0), each_time(stored, blank, envelope, stamps, 0);
   std::vector<double> of_once(stamps.size()), of_each(stamps.size());
-  const auto volumes = [&](std::vector<double>& out, const Engager& engager) {
+  const auto volumes = [&](std::vector<double>& out, const RigidEngager& engager) {
     return [&](std::size_t k, std::span<const ChipBlock> chips) {
       out[k] = chip_volume_mm3(envelope, engager.blocks(), chips);
     };
@@ -130,14 +129,14 @@ TEST(Engager, TilesThatStayFromStretchToStretchHoldWhatTheStockWould) {
         ASSERT_NEAR(kept.voxel({x, y, z}), stored.voxel({x, y, z}), 1e-6) << x << ' ' << y << ' ' << z;
 }
 
-TEST(Engager, StampsAwayFromTheStockTakeNothing) {
+TEST(RigidEngager, StampsAwayFromTheStockTakeNothing) {
   EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::ball), 2.0, 0.1, kPi / 90);
   make_patches(envelope, 0.24);
   std::vector<Stamp> stamps = wavy_rows();
-  for (Stamp& s : stamps) s.tip_mm.y() += 40;
+  for (Stamp& s : stamps) s.pose.tip_mm.y() += 40;
   const Stock blank = box();
   Stock stock = box();
-  Engager engager(stock, blank, envelope, stamps, 0);
+  RigidEngager engager(stock, blank, envelope, stamps, 0);
   std::size_t chips_found = 0;
   engager.engage(0, stamps.size(), [&](std::size_t, std::span<const ChipBlock> chips) { chips_found += chips.size(); });
   EXPECT_EQ(chips_found, 0u);
@@ -209,9 +208,9 @@ TEST(BlockKernels, WideAndNarrowVectorsReadTheSame) {
   const std::size_t room = blocks.size() + 8, k = 30;
   std::vector<std::int32_t> x(stamps.size()), y(stamps.size()), z(stamps.size());
   for (std::size_t s = 0; s < stamps.size(); ++s) {
-    x[s] = static_cast<std::int32_t>(1e6 * stamps[s].tip_mm.x());
-    y[s] = static_cast<std::int32_t>(1e6 * stamps[s].tip_mm.y());
-    z[s] = static_cast<std::int32_t>(1e6 * stamps[s].tip_mm.z());
+    x[s] = static_cast<std::int32_t>(1e6 * stamps[s].pose.tip_mm.x());
+    y[s] = static_cast<std::int32_t>(1e6 * stamps[s].pose.tip_mm.y());
+    z[s] = static_cast<std::int32_t>(1e6 * stamps[s].pose.tip_mm.z());
   }
   struct Reading {
     std::vector<std::int32_t> found, lane, cell, hit;

@@ -1,10 +1,9 @@
 // Which moves make holes, and the stamps along them.
-#include "removal/hole_moves.h"
+#include "removal/tool_path.h"
 
 #include <gtest/gtest.h>
 
 #include "nc/interpreter.h"
-#include "removal/stamp_path.h"
 
 namespace camber::removal {
 namespace {
@@ -18,7 +17,7 @@ struct Holes {
   /// Lowest tip of the path.
   double lowest() const {
     double z = 1e9;
-    for (const auto& s : path.stamps) z = std::min(z, s.tip_mm.z());
+    for (const auto& s : path.stamps) z = std::min(z, s.pose.tip_mm.z());
     return z;
   }
 };
@@ -109,11 +108,11 @@ TEST(HoleStamps, EndAtTheProgrammedBottomHoweverFarTheAxisLags) {
       std::vector<double> bottoms;
       for (std::size_t k = 0; k < h.path.stamps.size(); ++k) {
         const auto& s = h.path.stamps[k];
-        EXPECT_TRUE(s.tip_mm.head<2>() == Vec2(1, 2) || s.tip_mm.head<2>() == Vec2(8, 9));
+        EXPECT_TRUE(s.pose.tip_mm.head<2>() == Vec2(1, 2) || s.pose.tip_mm.head<2>() == Vec2(8, 9));
         EXPECT_LE(s.feed_per_tooth_mm.norm(), (1 + 1e-9) * feed / 6000);
         EXPECT_GE(s.t_s, h.path.stamps[k > 0 ? k - 1 : 0].t_s);
-        if (k + 1 == h.path.stamps.size() || h.path.stamps[k + 1].first) bottoms.push_back(s.tip_mm.z());
-        EXPECT_TRUE(s.first || s.tip_mm.z() < h.path.stamps[k - 1].tip_mm.z());
+        if (k + 1 == h.path.stamps.size() || h.path.stamps[k + 1].first) bottoms.push_back(s.pose.tip_mm.z());
+        EXPECT_TRUE(s.first || s.pose.tip_mm.z() < h.path.stamps[k - 1].pose.tip_mm.z());
       }
       ASSERT_EQ(bottoms.size(), 8u);
       for (std::size_t i = 0; i < bottoms.size(); ++i)

@@ -1,5 +1,5 @@
 // The loops in vectors: wide and narrow ones give the same bits, and both what the closed forms give.
-#include "removal/kernels.h"
+#include "removal/simd/upright_kernels.h"
 
 #include <cmath>
 #include <random>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "removal/carve.h"
+#include "removal/field/upright/carve.h"
 #include "removal/cutter.h"
 
 using namespace camber;
@@ -44,11 +44,11 @@ struct Line {
 };
 
 struct Bend {
-  std::vector<float> row, outward = std::vector<float>(CarveBend::kSectors, 0.03f);
+  std::vector<float> row, outward = std::vector<float>(StampDeflection::kSectors, 0.03f);
   explicit Bend(int nodes, int steps) : row(static_cast<std::size_t>(2 * nodes * steps)) {
     std::mt19937 random(5);
-    std::uniform_real_distribution<float> shift(-0.02f, 0.02f);
-    for (float& v : row) v = shift(random);
+    std::uniform_real_distribution<float> deflection(-0.02f, 0.02f);
+    for (float& v : row) v = deflection(random);
   }
 };
 
@@ -87,17 +87,17 @@ TEST(Kernels, LinesAreCutToTheDistanceOfTheCutter) {
 
 TEST(Kernels, WideAndNarrowVectorsCutTheSameBits) {
   if (!has_wide_vectors()) GTEST_SKIP() << "no AVX2 here";
-  Bend bend(4, 60);
-  const LineBend lean{
-      {bend.row.data(), nullptr, 4, 60, 1.5f}, 0.03f, bend.outward.data(), CarveBend::kSectors, 0.1f, 19.1f};
+  Bend deflection(4, 60);
+  const LineDeflection lean{
+      {deflection.row.data(), nullptr, 4, 60, 1.5f}, 0.03f, deflection.outward.data(), StampDeflection::kSectors, 0.1f, 19.1f};
   for (const float dx : {0.0f, 2.9f, 4.6f, 5.2f}) {
     Line narrow, wide;
     for (Line* line : {&narrow, &wide}) line->top[5] = 9;
     kBaseKernels.cut_line(narrow.cut(dx));
     kernels().cut_line(wide.cut(dx));
     EXPECT_EQ(narrow.distance, wide.distance);
-    const LineResult a = kBaseKernels.cut_line_bent(narrow.cut(dx + 0.05f), lean);
-    const LineResult b = kernels().cut_line_bent(wide.cut(dx + 0.05f), lean);
+    const LineResult a = kBaseKernels.cut_line_deflected(narrow.cut(dx + 0.05f), lean);
+    const LineResult b = kernels().cut_line_deflected(wide.cut(dx + 0.05f), lean);
     EXPECT_EQ(narrow.distance, wide.distance);
     EXPECT_EQ(narrow.stamp, wide.stamp);
     EXPECT_EQ(a.changed, b.changed);
@@ -114,7 +114,7 @@ TEST(Kernels, WideAndNarrowVectorsReadTheSameThicknesses) {
       for (auto& axis : c.tip) axis[l] = place(random);
       c.tip[2][l] += 3;
       c.valid[l] = l == n % 8 || place(random) > 0 ? 1.0f : 0.0f;
-      c.bend[l] = 0.01f * place(random);
+      c.deflection[l] = 0.01f * place(random);
     }
     c.normal[0] = 0.6f, c.normal[1] = 0, c.normal[2] = -0.8f;
     EXPECT_EQ(kBaseKernels.thinnest(c, 3, 2, 0.25f).mm, kernels().thinnest(c, 3, 2, 0.25f).mm);
@@ -131,7 +131,7 @@ TEST(Kernels, TheThinnestIsDistanceOverSlope) {
     const Vec3 tip(-4.9 - 0.02 * l, 0.1 * l, -1 + 0.01 * l);
     for (int a = 0; a < 3; ++a) c.tip[a][l] = static_cast<float>(tip[a]);
     c.valid[l] = l == 2 ? 0.0f : 1.0f;
-    c.bend[l] = 0.001f * static_cast<float>(l);
+    c.deflection[l] = 0.001f * static_cast<float>(l);
     const double slope = std::clamp(shape.gradient(-tip).dot(normal), 0.25, 1.0);
     if (l != 2) thinnest = std::min(thinnest, (shape.distance_mm(-tip) - 0.001 * l) / slope);
   }

@@ -1,5 +1,5 @@
 // Which stamps of a batch count: against every stamp, point by point.
-#include "removal/stamp_order.h"
+#include "removal/field/upright/stamp_order.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ std::vector<Stamp> wandering_path(std::mt19937& random, double step_mm, bool lev
         step_mm * Vec3(std::cos(climb) * std::cos(heading), std::cos(climb) * std::sin(heading), std::sin(climb));
     Stamp s;
     at += f;
-    s.tip_mm = at;
+    s.pose.tip_mm = at;
     s.feed_per_tooth_mm = f;
     s.first = i == 0;
     out.push_back(s);
@@ -50,7 +50,7 @@ void expect_that_nobody_else_counts(const CutterShape& shape, double step_mm, bo
     const auto stamps = wandering_path(random, step_mm, level);
     const StampOrder order = StampOrder::of_path(stamps, shape);
     for (std::int32_t k = 1; k < static_cast<std::int32_t>(stamps.size()); ++k) {
-      const auto at = [&](std::int32_t i) -> const Vec3& { return stamps[static_cast<std::size_t>(i)].tip_mm; };
+      const auto at = [&](std::int32_t i) -> const Vec3& { return stamps[static_cast<std::size_t>(i)].pose.tip_mm; };
       named += order.earlier(k).size();
       for (int r = 0; r < 12; ++r)
         for (int a = 0; a < 36; ++a) {
@@ -85,7 +85,7 @@ TEST(StampOrder, NamesEveryStampThatCountsOfABullNose) {
 TEST(StampOrder, StraightPathsHaveLongBatchesInWhichNobodyElseCounts) {
   std::vector<Stamp> stamps(200);
   for (std::size_t i = 0; i < stamps.size(); ++i) {
-    stamps[i].tip_mm = {0.1 * static_cast<double>(i), 0.05 * static_cast<double>(i), 0};
+    stamps[i].pose.tip_mm = {0.1 * static_cast<double>(i), 0.05 * static_cast<double>(i), 0};
     stamps[i].first = i == 0;
   }
   const StampOrder order = StampOrder::of_path(stamps, cutter(machine::ToolType::bull, 10, 1));

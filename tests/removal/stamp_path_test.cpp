@@ -1,4 +1,4 @@
-#include "removal/stamp_path.h"
+#include "removal/tool_path.h"
 
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ TEST(StampPath, SetsNoStampsInRapidsAndDwells) {
   const auto [moves, path] = stamps_of("G21 G90\nT1 M6\nS3000 M3\nG0 X0 Y0 Z1\nG1 X3 F900\nG4 P1\nG0 X6\nG1 X9\nM30\n");
   for (const auto& s : path.stamps) {
     EXPECT_EQ(moves.moves[s.move].kind, nc::MoveKind::linear);
-    EXPECT_TRUE(s.tip_mm.x() < 3.2 || s.tip_mm.x() > 5.8);
+    EXPECT_TRUE(s.pose.tip_mm.x() < 3.2 || s.pose.tip_mm.x() > 5.8);
   }
   EXPECT_LT(path.stamps.size(), 50u);
 }

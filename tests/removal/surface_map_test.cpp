@@ -1,9 +1,9 @@
 // The map of the machined surface: what marks say, and the blank where none is deeper.
-#include "removal/surface_map.h"
+#include "removal/form_error.h"
 
 #include <gtest/gtest.h>
 
-#include "removal/stretch.h"
+#include "removal/engagement.h"
 #include "tests/support/cutting.h"
 
 namespace camber::removal {
@@ -20,16 +20,14 @@ TEST(SurfaceMap, WhereNoMarkIsDeeperTheBlankIsTheSurface) {
   std::vector<Stamp> stamps;
   add_row(stamps, {-9, 0, kFloor_mm}, {9, 0, kFloor_mm}, 0.02);
   Stock target = make_box({-4, -5, -3}, {4, 5, 0}, 0.1);
-  Stretch stretch(target, nullptr, envelope, stamps, 0, stamps.size(), {.engage = false});
-  stretch.carve();
-  stretch.commit();
+  sweep(target, envelope.shape, stamps, {});
   CutterPlaces places;
   places.add(0, envelope.shape, stamps);
   const Stock blank = make_box({-4, -5, -3}, {4, 5, kFloor_mm + kLeft_mm}, 0.1);
   SurfaceMap map(target, places, blank);
   // The straight cutter passes over the first half of the floor only.
   const std::span<const Stamp> half(stamps.data(), stamps.size() / 2);
-  map.mark(envelope, half, ShiftTable(half.size(), envelope.steps_per_pitch, {0, 3}), 0);
+  map.mark(envelope, half, DeflectionTable(half.size(), envelope.steps_per_pitch, {0, 3}), 0);
   std::size_t cut = 0, uncut = 0;
   for (const SurfacePoint& p : map.take()) {
     if (p.normal.z() < 0.9 || std::abs(p.place_mm.y()) > 0.5) continue;

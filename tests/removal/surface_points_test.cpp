@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "removal/stretch.h"
-#include "removal/surface.h"
+#include "removal/engagement.h"
+#include "removal/form_error.h"
 #include "tests/support/cutting.h"
 
 namespace camber::removal {
@@ -33,9 +33,7 @@ std::vector<SurfacePoint> step_points(double voxel_mm, bool to_the_edges, double
     add_row(stamps, y * across - 9 * along - 1.5 * Vec3::UnitZ(), y * across + 9 * along - 1.5 * Vec3::UnitZ(), 0.02);
   Stock target = make_box({-4, -5, -3}, {4, 3, 0}, voxel_mm);
   const Stock solid(target);
-  Stretch stretch(target, nullptr, envelope, stamps, 0, stamps.size(), {.engage = false});
-  stretch.carve();
-  stretch.commit();
+  sweep(target, envelope.shape, stamps, {});
   CutterPlaces places;
   places.add(0, envelope.shape, stamps);
   std::vector<SurfacePoint> out;

@@ -274,7 +274,7 @@ TEST(Fit, RandomPathsTakeTheFewestPrimitivesButForOneInAHundred) {
   constexpr int kPaths = 600;
   for (int i = 0; i < kPaths; ++i) {
     const Points points = random_path(random);
-    const FitOptions options{.tolerance_mm = 0.01, .most_kink_rad = kPi};
+    const FitOptions options{.tolerance_mm = 0.01, .max_kink_rad = kPi};
     const auto found = fit(points, options).size(), fewest = fit_exhaustively(points, options).size();
     EXPECT_GE(found, fewest);
     worse += found > fewest;
@@ -298,7 +298,7 @@ TEST(Fit, NoLineIsLongerThanItMustBeAndStraightSidesStay) {
   };
   FitOptions options;
   options.tangent = false;
-  options.most_kink_rad = kPi;
+  options.max_kink_rad = kPi;
   for (int i = 0; i < 100; ++i) {
     Points points;
     const double a = 10 + 20 * u(random), b = 5 + 5 * u(random), phase = 6 * u(random);

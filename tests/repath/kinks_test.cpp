@@ -20,17 +20,17 @@ constexpr double kAnyKink_deg = 180;
 /// What ends whose radii differ by up to 0.002 mm change of a direction, and the differences taken.
 constexpr double kMeasured_deg = 0.02;
 
-std::string compressed(const std::string& text, double most_kink_deg, bool helices = false,
+std::string compressed(const std::string& text, double max_kink_deg, bool helices = false,
                        double tolerance_mm = 0.01) {
   const nc::Read r = nc::read_clean(text);
   CompressOptions options{.tolerance_mm = tolerance_mm, .helices = helices};
-  options.fit.most_kink_rad = rad_from_deg(most_kink_deg);
+  options.fit.max_kink_rad = rad_from_deg(max_kink_deg);
   return compress(r.program, r.moves, options).text;
 }
 
 /// The largest and the rms kink of a program, degrees, and its blocks.
 struct Kinks {
-  double most_deg = 0, rms_deg = 0;
+  double max_deg = 0, rms_deg = 0;
   std::size_t blocks = 0;
 };
 
@@ -39,7 +39,7 @@ Kinks kinks_of_text(const std::string& text) {
   Kinks out{.blocks = r.moves.moves.size()};
   const auto kinks = kinks_between_moves(r.moves);
   for (const auto& k : kinks) {
-    out.most_deg = std::max(out.most_deg, deg_from_rad(k.rad));
+    out.max_deg = std::max(out.max_deg, deg_from_rad(k.rad));
     out.rms_deg += k.rad * k.rad;
   }
   out.rms_deg = deg_from_rad(std::sqrt(out.rms_deg / static_cast<double>(kinks.size())));
@@ -63,12 +63,12 @@ Vec3 sine(int i) { return {0.05 * i, 3 * std::sin(0.05 * i / 4), 0}; }
 TEST(Kinks, OfASmoothPathAreWithinTheBound) {
   const std::string text = program_of(1400, sine);
   const Kinks any = kinks_of_text(compressed(text, kAnyKink_deg));
-  EXPECT_GT(any.most_deg, 2);  // or there is nothing to bound
+  EXPECT_GT(any.max_deg, 2);  // or there is nothing to bound
   for (const double bound : {2.0, 1.0, 0.5, 0.2}) {
     SCOPED_TRACE(bound);
     const std::string out = compressed(text, bound);
     const Kinks kinks = kinks_of_text(out);
-    EXPECT_LE(kinks.most_deg, bound + kMeasured_deg);
+    EXPECT_LE(kinks.max_deg, bound + kMeasured_deg);
     EXPECT_LE(kinks.blocks, any.blocks * 1.15);
     EXPECT_LE(tests::hausdorff_mm(nc::read_clean(text).moves, nc::read_clean(out).moves, 0.002), 0.0101);
     EXPECT_NE(out.find("G3"), std::string::npos);
@@ -94,10 +94,10 @@ TEST(Kinks, BetweenRunsAreWithinTheBoundWhereThePathIsSmooth) {
     }
     text += "M2\n";
     const Kinks any = kinks_of_text(compressed(text, kAnyKink_deg));
-    EXPECT_GT(any.most_deg, 2);
+    EXPECT_GT(any.max_deg, 2);
     for (const double bound : {1.0, 0.5}) {
       const std::string out = compressed(text, bound);
-      EXPECT_LE(kinks_of_text(out).most_deg, bound + kMeasured_deg);
+      EXPECT_LE(kinks_of_text(out).max_deg, bound + kMeasured_deg);
       EXPECT_LE(kinks_of_text(out).blocks, any.blocks * 1.3);
       EXPECT_LE(tests::hausdorff_mm(nc::read_clean(text).moves, nc::read_clean(out).moves, 0.002), 0.0101);
       std::size_t kept = 0;
@@ -216,7 +216,7 @@ TEST(Kinks, OfHelicesAreWithinTheBound) {
   });
   const std::string out = compressed(text, 0.5, true);
   const Kinks kinks = kinks_of_text(out);
-  EXPECT_LE(kinks.most_deg, 0.5 + kMeasured_deg);
+  EXPECT_LE(kinks.max_deg, 0.5 + kMeasured_deg);
   EXPECT_LT(kinks.blocks, 60u);
   EXPECT_LE(tests::hausdorff_mm(nc::read_clean(text).moves, nc::read_clean(out).moves, 0.002), 0.0101);
 }

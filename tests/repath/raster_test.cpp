@@ -13,8 +13,8 @@
 using namespace camber;
 using namespace camber::repath;
 using removal::CutterShape;
-using removal::DropCutter;
-using removal::TriangleMesh;
+using repath::DropCutter;
+using TriangleMesh;
 
 namespace {
 
@@ -254,7 +254,7 @@ TEST(Raster, LeavesTheScallopsThatWereAskedForAndNoMore) {
     const RasterOptions options = over(kX, kY, kScallop, kTolerance, c.degrees);
     const Raster raster = make_raster(part, options);
     EXPECT_LE(raster.spacing.largest_scallop_mm, kScallop) << c.name;
-    EXPECT_EQ(raster.spacing.steep_share, 0) << c.name;
+    EXPECT_EQ(raster.spacing.steep_fraction, 0) << c.name;
     const Left left = left_standing(paths_of(part, raster, options), c.cutter, c.height, kX, kY, c.rim_mm, 0.05);
     // Above: the scallop, the tolerance, and what stamps 0.05 mm apart and the mesh's chords leave.
     EXPECT_LE(left.most, kScallop + kTolerance + 0.0005) << c.name;

@@ -257,7 +257,7 @@ TEST(FitInSpace, RandomPathsTakeTheFewestPrimitivesButForOneInAHundred) {
   constexpr int kPaths = 400;
   for (int i = 0; i < kPaths; ++i) {
     const Points points = random_path(random);
-    constexpr FitOptions kAnyKink{.helices = true, .most_kink_rad = kPi};
+    constexpr FitOptions kAnyKink{.helices = true, .max_kink_rad = kPi};
     const auto found = fit(points.line(), kAnyKink).size(), fewest = fit_exhaustively(points.line(), kAnyKink).size();
     EXPECT_GE(found, fewest);
     worse += found > fewest;

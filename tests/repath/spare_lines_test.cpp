@@ -38,7 +38,7 @@ TEST(SpareLines, ComesNearTheLeastSumOfBlocksAndLines) {
   std::mt19937 random(3);
   FitOptions fewest;
   fewest.tangent = false;
-  fewest.most_kink_rad = kPi;
+  fewest.max_kink_rad = kPi;
   FitOptions spare = fewest;
   spare.primitives_per_line_mm = 2;
   double fewest_mm = 0, spared_mm = 0, spared_sum = 0, least_sum = 0;
@@ -117,7 +117,7 @@ TEST(SpareLines, ToleranceAndKinksHoldAsWithoutIt) {
     EXPECT_LE(tests::hausdorff_mm(before.moves, after.moves, 0.002), 0.0101);
     EXPECT_LE(cutting_time_s(after.moves, *options.feeds),
               cutting_time_s(nc::read_clean(fewest.text).moves, *options.feeds) + 1e-6);
-    EXPECT_LE(spared.max_kink_rad, std::max(options.fit.most_kink_rad, fewest.max_kink_rad) + 1e-6);
+    EXPECT_LE(spared.max_kink_rad, std::max(options.fit.max_kink_rad, fewest.max_kink_rad) + 1e-6);
   }
 }
 

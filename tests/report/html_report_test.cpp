@@ -124,14 +124,14 @@ TEST(HtmlReport, HoldsTheProgramsAsLongAsThereIsRoom) {
   EXPECT_EQ(count(html_report(data)), std::pair(true, true));
   for (int i = 0; i < 2000; ++i)
     for (auto& run : data.path) run.program_text += "N" + std::to_string(i * 7919) + "\n";
-  const std::string page = html_report(data, {.most_program_bytes = 10000});
+  const std::string page = html_report(data, {.max_program_bytes = 10000});
   EXPECT_EQ(count(page), std::pair(false, true));
   EXPECT_TRUE(
       holds(page, "The text of the program before is too large for this page; lines are named by their numbers."));
 }
 
 TEST(HtmlReport, SaysWhenSomethingWasLeftOut) {
-  const std::string page = html_report(example(), {.most_vertices = 300, .most_rows = 300});
+  const std::string page = html_report(example(), {.max_vertices = 300, .max_rows = 300});
   EXPECT_TRUE(holds(page,
                     "The surface is drawn in cells of 1.5 mm (176 vertices for 900 points); each shows the error of "
                     "greatest magnitude in it."));

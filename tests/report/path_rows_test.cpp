@@ -49,13 +49,13 @@ TEST(PathRows, TakeTheLoadsOfTheirStamps) {
   // Teeth every 15 ms from 20 to 65 ms: some rows hold none and go on with the tooth before; nothing is cut before
   // the first and after the last.
   removal::StampPath path;
-  std::vector<deflection::StampLoad> loads;
+  std::vector<simulate::StampLoad> loads;
   for (int k = 0; k < 4; ++k) {
     removal::Stamp stamp;
     stamp.t_s = 0.021 + 0.015 * k;
     stamp.first = k == 0;
     path.stamps.push_back(stamp);
-    deflection::StampLoad load;
+    simulate::StampLoad load;
     load.lateral_max_N = 10 + k;
     load.contact_deflection_mm = Vec2(0.003, 0.004);
     load.chip_max_mm = 0.05;

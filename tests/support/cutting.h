@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "machine/job.h"
-#include "removal/stamp.h"
+#include "removal/tool_path.h"
 #include "removal/stock.h"
 
 namespace camber::testing {
@@ -25,7 +25,7 @@ inline void add_row(std::vector<removal::Stamp>& stamps, const Vec3& from, const
   const int n = static_cast<int>((to - from).norm() / feed_mm);
   for (int i = 0; i <= n; ++i) {
     removal::Stamp s;
-    s.tip_mm = from + i * step;
+    s.pose.tip_mm = from + i * step;
     s.feed_per_tooth_mm = step;
     s.first = i == 0;
     stamps.push_back(s);

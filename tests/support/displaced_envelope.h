@@ -45,15 +45,15 @@ struct DrawnCut {
   double tooth_rad(std::size_t tooth) const { return even() ? 0.0 : tooth_at_rad[tooth]; }
   double lag_rad(double z) const { return z * std::tan(helix_rad) / radius; }
   /// How much further out than the cutter's own radius a tooth turns.
-  double throw_mm(std::size_t tooth, double z) const {
+  double tooth_runout_mm(std::size_t tooth, double z) const {
     return even() ? 0.0 : run_out_mm * std::cos(tooth_at_rad[tooth] + lag_rad(z) - run_out_rad);
   }
   /// Where the tip stands as the tooth of a passing cuts: a late tooth comes when the tool is further on.
   Vec3 tip(std::size_t passing) const {
     const removal::Stamp& s = stamps[passing];
-    if (even()) return s.tip_mm;
+    if (even()) return s.pose.tip_mm;
     const auto tooth = static_cast<double>(tooth_of(passing));
-    return s.tip_mm + (tooth_rad(tooth_of(passing)) * flutes / (2 * kPi) - tooth) * s.feed_per_tooth_mm;
+    return s.pose.tip_mm + (tooth_rad(tooth_of(passing)) * flutes / (2 * kPi) - tooth) * s.feed_per_tooth_mm;
   }
   DrawnCutter cutter(double smaller, double step) const {
     const double r = radius - smaller, inner = std::max(0.0, corner - smaller);
@@ -122,12 +122,12 @@ inline void add_tooth(const DrawnCut& c, std::size_t now, DrawnPass& out) {
   std::vector<Vec3> any;
   const double far = 2 * (c.radius + c.top * std::tan(c.taper_rad)) + 0.1;
   for (std::size_t i = 0; i < c.stamps.size(); ++i) {
-    if ((c.stamps[i].tip_mm - tip).norm() > far) continue;
-    if (c.pass_before.empty()) any.push_back(c.stamps[i].tip_mm);
+    if ((c.stamps[i].pose.tip_mm - tip).norm() > far) continue;
+    if (c.pass_before.empty()) any.push_back(c.stamps[i].pose.tip_mm);
     if (i < now) before.push_back({c.tip(i), c.tooth_of(i)});
   }
   for (const removal::Stamp& s : c.pass_before)
-    if ((s.tip_mm - tip).norm() <= far) any.push_back(s.tip_mm);
+    if ((s.pose.tip_mm - tip).norm() <= far) any.push_back(s.pose.tip_mm);
   const auto nearer = [&](const Vec3& a, const Vec3& b) { return (a - tip).norm() < (b - tip).norm(); };
   std::sort(before.begin(), before.end(), [&](const Before& a, const Before& b) { return nearer(a.tip, b.tip); });
   std::sort(any.begin(), any.end(), nearer);
@@ -136,7 +136,7 @@ inline void add_tooth(const DrawnCut& c, std::size_t now, DrawnPass& out) {
     if ((q.array() < c.lo.array()).any() || (q.array() > c.hi.array()).any()) return false;
     for (const Before& b : before) {
       const double z = q.z() - b.tip.z();
-      if (cutter.inside(std::hypot(q.x() - b.tip.x(), q.y() - b.tip.y()) - c.throw_mm(b.tooth, z), z)) return false;
+      if (cutter.inside(std::hypot(q.x() - b.tip.x(), q.y() - b.tip.y()) - c.tooth_runout_mm(b.tooth, z), z)) return false;
     }
     if (c.allowance > 0)
       for (const Vec3& t : any)
@@ -170,7 +170,7 @@ inline void add_tooth(const DrawnCut& c, std::size_t now, DrawnPass& out) {
       const double phi = 2 * kPi * a / steps + c.tooth_rad(tooth) + c.lag_rad(e.z);
       const Vec3 out_of_axis(std::cos(phi), std::sin(phi), 0);
       const Vec3 n = std::sin(e.kappa) * out_of_axis - std::cos(e.kappa) * Vec3::UnitZ();
-      const double h = chip(tip + (e.r + c.throw_mm(tooth, e.z)) * out_of_axis + e.z * Vec3::UnitZ(), n);
+      const double h = chip(tip + (e.r + c.tooth_runout_mm(tooth, e.z)) * out_of_axis + e.z * Vec3::UnitZ(), n);
       if (h <= 0) continue;
       // Clockwise from above: the edge moves along r x z.
       const Vec3 motion = out_of_axis.cross(Vec3::UnitZ());
@@ -269,10 +269,10 @@ inline void draw_envelope(const DrawnCut& c, std::size_t k, const DrawnPass* pas
     bool close;
   };
   std::vector<Corner> last, line(static_cast<std::size_t>(around) + 1);
-  const Vec3 tip = pass ? c.tip(k) : c.stamps[k].tip_mm;
+  const Vec3 tip = pass ? c.tip(k) : c.stamps[k].pose.tip_mm;
   const std::size_t tooth = c.tooth_of(k);
   for (const Ring& ring : rings) {
-    const double r = ring.r + (pass ? c.throw_mm(tooth, ring.z) : 0.0);
+    const double r = ring.r + (pass ? c.tooth_runout_mm(tooth, ring.z) : 0.0);
     for (int i = 0; i <= around; ++i) {
       const double phi = 2 * kPi * i / around;
       Vec3 p = tip + Vec3(r * std::cos(phi), r * std::sin(phi), ring.z) - s.origin;

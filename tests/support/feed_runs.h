@@ -11,10 +11,10 @@ namespace camber::tests {
 inline machine::Machine known_machine() {
   machine::Machine m;
   m.control.dialect = machine::Dialect::linuxcnc;
-  m.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01, .step_share = 0.1};
-  m.control.arc_normal_share = 0.8;
-  m.control.arc_tangential_share = 0.6;
-  m.control.stop_acceleration_share = 0.5;
+  m.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01, .step_fraction = 0.1};
+  m.control.arc_normal_fraction = 0.8;
+  m.control.arc_tangential_fraction = 0.6;
+  m.control.stop_acceleration_fraction = 0.5;
   const double acceleration[] = {900, 700, 450}, gain[] = {25, 35, 45}, lag[] = {0.002, 0.004, 0.006};
   for (int i = 0; i < 3; ++i) {
     m.axis[i].acceleration_mm_per_s2 = acceleration[i];

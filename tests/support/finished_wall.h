@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "base/units.h"
-#include "deflection/cut.h"
-#include "deflection/predict.h"
-#include "removal/surface_map.h"
+#include "simulate/cut.h"
+#include "simulate/predict.h"
+#include "removal/form_error.h"
 #include "tests/support/cutting.h"
 #include "tests/support/displaced_envelope.h"
 
@@ -94,7 +94,7 @@ struct Slices {
 /// The stamp that stands in the middle of the block.
 inline std::size_t middle_stamp(const FinishedWall& w, const DrawnCut& c) {
   std::size_t best = 0;
-  const auto off = [&](std::size_t k) { return std::abs(c.stamps[k].tip_mm.x() - w.offset_mm.x() - w.middle_mm()); };
+  const auto off = [&](std::size_t k) { return std::abs(c.stamps[k].pose.tip_mm.x() - w.offset_mm.x() - w.middle_mm()); };
   for (std::size_t k = 1; k < c.stamps.size(); ++k)
     if (off(k) < off(best)) best = k;
   return best;
@@ -114,7 +114,7 @@ inline WallFigures drawn_figures(const FinishedWall& w) {
                              static_cast<int>(std::lround(w.height_mm / step)), w.feed_mm / kInFeed, step);
   std::vector<std::size_t> stamps;
   for (std::size_t k = 0; k < cut.stamps.size(); ++k)
-    if (std::abs(cut.stamps[k].tip_mm.x() - w.offset_mm.x() - w.middle_mm()) < 1.3) stamps.push_back(k);
+    if (std::abs(cut.stamps[k].pose.tip_mm.x() - w.offset_mm.x() - w.middle_mm()) < 1.3) stamps.push_back(k);
   // In the steady middle every stamp bends alike.
   const auto error = drawn_error_mm(
       cut, [&](std::size_t) -> const DrawnPass& { return pass; }, stamps, lattice, 0.1);
@@ -137,16 +137,16 @@ inline WallFigures camber_figures(const FinishedWall& w) {
   const machine::Material material{cut.k.ktc, cut.k.krc, cut.k.kac, cut.k.kte, cut.k.kre, cut.k.kae};
   removal::Stock stock = make_box(cut.lo, cut.hi, w.voxel_mm);
   removal::Stock target(stock);
-  deflection::sweep(target, tool, cut.stamps, 0, 0);
+  simulate::sweep(target, tool, cut.stamps, 0, 0);
   removal::CutterPlaces places;
   places.add(0, removal::shape_of(tool), cut.stamps);
   removal::SurfaceMap map(target, places, stock);
-  deflection::CutOptions options;
+  simulate::CutOptions options;
   options.coupling = machine::Coupling::rigid;
-  options.envelope_step_mm = w.edge_step_mm > 0 ? w.edge_step_mm : deflection::envelope_step_mm({}, tool);
+  options.envelope_step_mm = w.edge_step_mm > 0 ? w.edge_step_mm : simulate::envelope_step_mm({}, tool);
   options.rotation_step_rad = rad_from_deg(w.rotation_step_deg);
   options.surface = &map;
-  const auto result = deflection::cut(stock, tool, material, cut.stamps, {}, 0, options);
+  const auto result = simulate::cut(stock, tool, material, cut.stamps, {}, 0, options);
   WallFigures f;
   const std::size_t middle = detail::middle_stamp(w, cut);
   const std::size_t around = cut.even() ? 21 : static_cast<std::size_t>(6 * w.flutes);  // whole turns

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/units.h"
-#include "deflection/cut.h"
-#include "removal/surface.h"
+#include "simulate/cut.h"
+#include "removal/form_error.h"
 #include "tests/support/cutting.h"
 #include "tests/support/displaced_envelope.h"
 
@@ -113,7 +113,7 @@ inline std::vector<std::size_t> middle(const InclinedPlane& p, const std::vector
                                        double margin) {
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k + 1 < stamps.size(); ++k) {
-    const double x = stamps[k].tip_mm.x() - p.offset_mm.x(), s = along_slope(p, stamps[k].tip_mm);
+    const double x = stamps[k].pose.tip_mm.x() - p.offset_mm.x(), s = along_slope(p, stamps[k].pose.tip_mm);
     if (x > kXFrom - margin && x < kXTo + margin && s > kSFrom - margin && s < kSTo + margin) out.push_back(k);
   }
   return out;
@@ -152,7 +152,7 @@ inline CutFigures drawn_figures(const InclinedPlane& p) {
     std::size_t best = cut.stamps.size();
     for (const std::size_t k : inner)
       if (way(k) == w && (best == cut.stamps.size() ||
-                          std::abs(cut.stamps[k].tip_mm.x() - x_mid) < std::abs(cut.stamps[best].tip_mm.x() - x_mid)))
+                          std::abs(cut.stamps[k].pose.tip_mm.x() - x_mid) < std::abs(cut.stamps[best].pose.tip_mm.x() - x_mid)))
         best = k;
     if (best < cut.stamps.size()) by_way[w] = drawn_pass(cut, best);
   }
@@ -186,11 +186,11 @@ inline CutFigures camber_figures(const InclinedPlane& p) {
   tool.runout_mm = p.run_out_mm, tool.runout_angle_rad = rad_from_deg(p.run_out_deg);
   const machine::Material material{2000, 700, 0, 15, 15, 0};
   removal::Stock stock = make_box(cut.lo, cut.hi, p.voxel_mm);
-  deflection::sweep(stock, tool, cut.stamps, 0, p.allowance_mm);
+  simulate::sweep(stock, tool, cut.stamps, 0, p.allowance_mm);
   stock.clear_stamps();
   removal::Stock target(stock);
-  deflection::sweep(target, tool, cut.stamps, 0, 0);
-  deflection::CutOptions options;
+  simulate::sweep(target, tool, cut.stamps, 0, 0);
+  simulate::CutOptions options;
   options.coupling = machine::Coupling::rigid;
   options.envelope_step_mm = p.diameter_step_mm;
   options.rotation_step_rad = rad_from_deg(p.rotation_step_deg);
@@ -198,7 +198,7 @@ inline CutFigures camber_figures(const InclinedPlane& p) {
   places.add(0, removal::shape_of(tool), cut.stamps);
   removal::SurfaceMap map(target, places, stock);
   options.surface = &map;
-  const auto result = deflection::cut(stock, tool, material, cut.stamps, {}, 0, options);
+  const auto result = simulate::cut(stock, tool, material, cut.stamps, {}, 0, options);
   CutFigures f;
   f.chips_of_stock = result.chip_mm3 / result.stock_mm3;
   const auto inner = detail::middle(p, cut.stamps, 0);

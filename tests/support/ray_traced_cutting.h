@@ -12,7 +12,7 @@
 #include <Eigen/Geometry>
 
 #include "base/geometry.h"
-#include "removal/stamp.h"
+#include "removal/tool_path.h"
 
 namespace camber::testing {
 
@@ -114,7 +114,7 @@ inline std::vector<DrawnForce> ray_traced_forces(const DrawnCutter& cutter, int 
   const auto in_material = [&](const Vec3& q, std::size_t now) {
     if ((q.array() < lo.array()).any() || (q.array() > hi.array()).any()) return false;
     for (std::size_t i = now; i-- > 0;) {
-      const Vec3 d = q - stamps[i].tip_mm;
+      const Vec3 d = q - stamps[i].pose.tip_mm;
       if (cutter.inside(std::hypot(d.x(), d.y()), d.z())) return false;
     }
     return true;
@@ -145,7 +145,7 @@ inline std::vector<DrawnForce> ray_traced_forces(const DrawnCutter& cutter, int 
         const double phi = 2 * kPi * a / steps + e.z * std::tan(helix_rad) / cutter.radius;
         const Vec3 out_of_axis(std::cos(phi), std::sin(phi), 0);
         const Vec3 n = std::sin(e.kappa) * out_of_axis - std::cos(e.kappa) * Vec3::UnitZ();
-        const Vec3 p = stamps[now].tip_mm + e.r * out_of_axis + e.z * Vec3::UnitZ();
+        const Vec3 p = stamps[now].pose.tip_mm + e.r * out_of_axis + e.z * Vec3::UnitZ();
         const double h = chip(p, n, now);
         if (h <= 0) continue;
         // Clockwise from above: the edge moves along z x r the other way.

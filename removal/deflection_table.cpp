@@ -1,0 +1,44 @@
+#include "removal/deflection_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/vector_clones.h"
+
+namespace camber::removal {
+
+namespace {
+
+/// Of `pairs` pairs the largest sum of squares.
+CAMBER_VECTOR_CLONES
+float largest_square(const float* values, std::size_t pairs) {
+  constexpr std::size_t kLanes = 8;
+  std::array<float, kLanes> most{};
+  std::size_t i = 0;
+  for (; i + kLanes <= pairs; i += kLanes)
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const float x = values[2 * (i + l)], y = values[2 * (i + l) + 1], square = x * x + y * y;
+      most[l] = square > most[l] ? square : most[l];
+    }
+  for (; i < pairs; ++i)
+    most[0] = std::max(most[0], values[2 * i] * values[2 * i] + values[2 * i + 1] * values[2 * i + 1]);
+  return *std::max_element(most.begin(), most.end());
+}
+
+}  // namespace
+
+double DeflectionTable::largest_mm(std::ptrdiff_t k) const {
+  return std::sqrt(static_cast<double>(largest_square(row(k), row_size() / 2)));
+}
+
+NodeWeight node_weight(const std::vector<double>& nodes, double height) {
+  const int last = static_cast<int>(nodes.size()) - 1;
+  if (last < 1 || height <= nodes.front()) return {0, 0, 0};
+  if (height >= nodes.back()) return {last, last, 0};
+  const double at = (height - nodes[0]) / (nodes[1] - nodes[0]);
+  const int lower = std::min(static_cast<int>(at), last - 1);
+  return {lower, lower + 1, static_cast<float>(at - lower)};
+}
+
+}  // namespace camber::removal

@@ -1,0 +1,162 @@
+#include "removal/engagement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include "removal/field/upright/batch_cut.h"
+#include "removal/engage/upright/block_reader.h"
+#include "removal/field/upright/carve.h"
+#include "removal/field/upright/cut_tiles.h"
+#include "removal/field/upright/stamp_order.h"
+#include "removal/field/upright/tile_arena.h"
+
+namespace camber::removal {
+
+using namespace upright;
+
+namespace {
+
+/// A tile that is being cut.
+struct CutTile {
+  ColumnCover cover;
+  double material;  ///< as it was loaded, voxels
+  bool changed = false;
+  std::int32_t last = -1;  ///< stamp of the stretch that it took last
+  std::vector<std::int32_t> batch{};
+};
+
+}  // namespace
+
+struct RigidEngager::Impl {
+  Stock& stock;
+  const Stock& blank;
+  const EnvelopeGrid& envelope;
+  std::span<const Stamp> all;
+  std::int32_t first_id;
+  EnvelopeBlocks blocks;
+  BlockReader reader;
+  double removed_mm3 = 0;           ///< from tiles that were given back since the last commit
+  std::size_t from = 0;             ///< its first stamp
+  std::span<const Stamp> stamps{};  ///< of the stretch
+  StampOrder order{};
+  TileArena arena{};
+  std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
+  tbb::enumerable_thread_specific<BlockReader::Buffers> buffers{};
+
+  Impl(Stock& stock_, const Stock& blank_, const EnvelopeGrid& envelope_, std::span<const Stamp> stamps_,
+       std::int32_t first_id_, int pitches)
+      : stock(stock_),
+        blank(blank_),
+        envelope(envelope_),
+        all(stamps_),
+        first_id(first_id_),
+        blocks(envelope_, stock_.voxel_mm(), stock_.band_mm()),
+        reader(envelope_, blocks, stamps_, first_id_, stock_.voxel_mm(), stock_.max_mm().z() + stock_.band_mm(),
+               pitches) {}
+
+  void start_tiles();
+  void read_batch(std::size_t begin, std::size_t end, const ChipSink& sink);
+  void cut_batch(std::size_t begin, std::size_t end);
+  void cut(std::size_t tile, BatchCut& batch_cut);
+  void cut_general(std::size_t tile);
+};
+
+void RigidEngager::Impl::start_tiles() {
+  for (auto& tile : tiles)
+    if (tile) tile->last = -1;
+  load_cut(stock, arena, envelope.shape, tips_by_id(all, first_id, 0), tiles);
+  arena.read_tops(static_cast<int>(std::ceil(blocks.widest_mm() / stock.voxel_mm())),
+                  [&](std::size_t t) -> const ColumnCover& { return tiles[t]->cover; });
+}
+
+void RigidEngager::Impl::read_batch(std::size_t begin, std::size_t end, const ChipSink& sink) {
+  tbb::parallel_for(begin, end, [&](std::size_t k) {
+    std::vector<std::int32_t> earlier;
+    for (const std::int32_t j : order.earlier(static_cast<std::int32_t>(k)))
+      earlier.push_back(j + static_cast<std::int32_t>(from));
+    sink(k, reader.read(arena, from + k, earlier, buffers.local()));
+  });
+}
+
+void RigidEngager::Impl::cut_batch(std::size_t begin, std::size_t end) {
+  std::vector<std::size_t> reached;
+  for (std::size_t k = begin; k < end; ++k)
+    for (const std::int32_t t : arena.reached_by(k)) {
+      CutTile& tile = *tiles[static_cast<std::size_t>(t)];
+      if (tile.cover.all_air()) continue;
+      if (tile.batch.empty()) reached.push_back(static_cast<std::size_t>(t));
+      tile.batch.push_back(static_cast<std::int32_t>(k));
+    }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, reached.size()), [&](const auto& range) {
+    BatchCut batch_cut(envelope.shape, stock.voxel_mm(), stock.band_mm(), 0);
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      if (envelope.shape.general)
+        cut_general(reached[i]);
+      else
+        cut(reached[i], batch_cut);
+      CutTile& tile = *tiles[reached[i]];
+      tile.last = tile.batch.back();
+      tile.batch.clear();
+    }
+  });
+}
+
+void RigidEngager::Impl::cut(std::size_t t, BatchCut& batch_cut) {
+  CutTile& tile = *tiles[t];
+  tile.changed |= batch_cut.cut(arena[t], tile.cover, stamps, tile.batch, first_id + static_cast<std::int32_t>(from));
+}
+
+void RigidEngager::Impl::cut_general(std::size_t t) {
+  CutTile& tile = *tiles[t];
+  const auto tip = [&](std::int32_t k) -> const Vec3& { return stamps[static_cast<std::size_t>(k)].pose.tip_mm; };
+  const auto covers = [&](std::int32_t last, std::int32_t k) {
+    return last >= 0 && !tile.cover.changeable_after(tip(last), 0, tip(k), 0);
+  };
+  for_each_coarse_to_fine(
+      static_cast<std::int32_t>(tile.batch.size()), [&](std::int32_t i, std::int32_t left, std::int32_t right) {
+        const auto stamp = [&](std::int32_t n) { return tile.batch[static_cast<std::size_t>(n)]; };
+        const std::int32_t k = stamp(i);
+        // The neighbours of the batch are in the tile already; in the first of a batch the one before it.
+        if (covers(left >= 0 ? stamp(left) : tile.last, k) || (right >= 0 && covers(stamp(right), k))) return;
+        tile.changed |= carve(arena[t], tile.cover, arena.index(t), stock.voxel_mm(), stock.band_mm(), envelope.shape,
+                              {tip(k), first_id + static_cast<std::int32_t>(from) + k, 0});
+      });
+}
+
+RigidEngager::RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
+                 std::int32_t first_id, int pitches)
+    : impl_(std::make_unique<Impl>(stock, blank, envelope, stamps, first_id, pitches)) {}
+RigidEngager::~RigidEngager() = default;
+
+const EnvelopeBlocks& RigidEngager::blocks() const { return impl_->blocks; }
+
+void RigidEngager::engage(std::size_t from, std::size_t count, const ChipSink& sink) {
+  Impl& m = *impl_;
+  m.from = from;
+  m.stamps = m.all.subspan(from, count);
+  if (count == 0) return;
+  m.order = StampOrder::of_path(m.stamps, m.envelope.shape);
+  m.arena.load(m.stock, m.blank, m.envelope.shape, m.stamps,
+               [&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); });
+  m.start_tiles();
+  for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+    const std::int32_t batch = m.order.batch(static_cast<std::int32_t>(begin));
+    while (end < count && m.order.batch(static_cast<std::int32_t>(end)) == batch) ++end;
+    m.read_batch(begin, end, sink);
+    m.cut_batch(begin, end);
+  }
+}
+
+double RigidEngager::commit() {
+  Impl& m = *impl_;
+  m.arena.clear([&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); });
+  return std::exchange(m.removed_mm3, 0.0);
+}
+
+}  // namespace camber::removal

@@ -1,0 +1,249 @@
+#include "removal/engage/upright/block_reader.h"
+#include "removal/simd/upright_block_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "removal/field/cell.h"
+
+namespace camber::removal::upright {
+namespace {
+
+constexpr float kSolid = std::numeric_limits<float>::infinity();
+constexpr int kLanes = EnvelopeBlocks::kLanes;
+
+}  // namespace
+
+BlockReader::BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const Stamp> stamps,
+                         std::int32_t first_id, double voxel_mm, double top_mm, int pitches)
+    : envelope_(envelope),
+      blocks_(blocks),
+      stamps_(stamps),
+      first_id_(first_id),
+      voxel_mm_(voxel_mm),
+      top_mm_(top_mm),
+      pitches_(pitches) {
+  for (const auto& ring : envelope.rings)
+    max_curved_per_mm_ =
+        std::max({max_curved_per_mm_, ring.profile.meridian_curvature_per_mm, ring.profile.parallel_curvature_per_mm});
+  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
+  for (const auto& s : stamps) {
+    lo = lo.cwiseMin(s.pose.tip_mm);
+    hi = hi.cwiseMax(s.pose.tip_mm);
+  }
+  constexpr double kSteps = 1 << 30;
+  tip_step_mm_ = static_cast<float>(stamps.empty() ? 1.0 : std::max(1.0, (hi - lo).maxCoeff()) / kSteps);
+  for (std::size_t a = 0; a < 3; ++a) {
+    tip_[a].reserve(stamps.size());
+    for (const auto& s : stamps)
+      tip_[a].push_back(static_cast<std::int32_t>(
+          std::lround((s.pose.tip_mm[static_cast<int>(a)] - lo[static_cast<int>(a)]) / static_cast<double>(tip_step_mm_))));
+  }
+}
+
+void BlockReader::make_room(Buffers& b) const {
+  const std::size_t blocks = blocks_.size() + kLanes, points = blocks * kLanes;
+  if (b.blocks.size() >= blocks) return;
+  b.blocks.resize(blocks), b.hit_block.resize(blocks), b.hit_deep.resize(blocks);
+  for (auto* v : {&b.lane, &b.cell, &b.hit, &b.blank_point, &b.blank_lane, &b.blank_cell}) v->resize(points);
+  for (auto* v : {&b.hit_thickness, &b.cap, &b.thickness, &b.depth, &b.blank_thickness}) v->resize(points);
+  for (std::size_t a = 0; a < 3; ++a) b.share[a].resize(points), b.blank_fraction[a].resize(points);
+}
+
+BlockReader::Point BlockReader::point(const Stamp& stamp, int lane) const {
+  const std::uint32_t p = blocks_.point(static_cast<std::uint32_t>(lane / kLanes), lane % kLanes);
+  return {stamp.pose.tip_mm + Vec3(envelope_.x[p], envelope_.y[p], envelope_.z[p]),
+          Vec3(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p])};
+}
+
+std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t k,
+                                             std::span<const std::int32_t> earlier, Buffers& b) const {
+  make_room(b);
+  const Stamp& stamp = stamps_[k];
+  const CutterShape& shape = envelope_.shape;
+  // What curvature adds to a chip at most.
+  const double bulge = stamp.feed_per_tooth_mm.squaredNorm() / (2 * std::max(shape.corner_radius_mm, 0.1));
+  StampPlace place = arena.place_of(stamp, -pitches_ * bulge - 1e-6);
+  place.least_cap_mm =
+      static_cast<float>((1 - pitches_) * stamp.feed_per_tooth_mm.squaredNorm() * max_curved_per_mm_ / 2);
+  const BlockKernels& kernels = block_kernels();
+  BlockBounds bounds = blocks_.bounds();
+  bounds.count = std::min(bounds.count, blocks_.up_to(top_mm_ - stamp.pose.tip_mm.z()));
+  const int found = kernels.find_blocks(bounds, place, arena.view(), b.blocks.data());
+  BlockHits hits{0, b.hit_block.data(), b.hit_deep.data(), b.hit_thickness.data()};
+  ShallowPoints shallow{0,
+                        b.lane.data(),
+                        b.cell.data(),
+                        b.cap.data(),
+                        {b.share[0].data(), b.share[1].data(), b.share[2].data()},
+                        b.hit.data()};
+  kernels.read_blocks(blocks_.points(), b.blocks.data(), found, place, arena.view(),
+                      0.5f * static_cast<float>(voxel_mm_), hits, shallow);
+  for (int i = shallow.count; i % kLanes != 0; ++i) shallow.lane[i] = shallow.cell[i] = 0;
+  float* thickness = b.thickness.data();
+  if (shape.general) {
+    thin_general(arena, stamp, shallow, thickness);
+  } else {
+    const FixedTips tips{tip_[0].data(), tip_[1].data(), tip_[2].data(), {tip_[0][k], tip_[1][k], tip_[2][k]},
+                         tip_step_mm_,   first_id_};
+    kernels.thin_points(blocks_.points(), shallow, arena.view(), tips, static_cast<float>(shape.bottom_length_mm()),
+                        static_cast<float>(shape.corner_radius_mm), kMinSlope, thickness);
+  }
+  thin_by_blank(arena, shallow, b);
+  const auto after_tooth = [&](int hit, bool after) {
+    hits.deep[hit / kLanes] = (hits.deep[hit / kLanes] & ~(1u << hit % kLanes)) | static_cast<std::uint32_t>(after)
+                                                                                      << hit % kLanes;
+  };
+  b.chips.clear();
+  for (int h = 0; h < hits.count; ++h) {
+    ChipBlock& chip = b.chips.emplace_back(ChipBlock{hits.block[h], 0, 0, {}, {}});
+    chip.cut_255.fill(255);
+  }
+  const auto set_own_surface = [&](int hit) {
+    b.chips[static_cast<std::size_t>(hit / kLanes)].own_surface |= static_cast<std::uint16_t>(1u << hit % kLanes);
+  };
+  for (int h = 0; h < hits.count && !earlier.empty(); ++h)
+    for (int l = 0; l < kLanes; ++l) {
+      float& deep = hits.thickness[h * kLanes + l];
+      if (!(deep > 0)) continue;
+      const float depth = thickness_over(earlier, point(stamp, static_cast<int>(hits.block[h]) * kLanes + l));
+      after_tooth(h * kLanes + l, depth > kNearCap * deep);
+      if (depth < deep) set_own_surface(h * kLanes + l);
+      deep = std::min(depth, deep);
+    }
+  for (int i = 0; i < shallow.count; ++i) {
+    float own = thickness[i], depth = b.depth[static_cast<std::size_t>(i)], up_mm = 0;
+    if (const float half = blocks_.wall_half_mm(shallow.lane[i]); half > 0) {
+      const RingPart part = part_of_ring(arena, stamp, shallow, i);
+      const std::uint8_t cut_255 = part.cut_255(static_cast<double>(half));
+      if (cut_255 == 0) continue;
+      if (cut_255 < 255) {
+        b.chips[static_cast<std::size_t>(shallow.hit[i] / kLanes)]
+            .cut_255[static_cast<std::size_t>(shallow.hit[i] % kLanes)] = cut_255;
+        up_mm = static_cast<float>(part.middle_mm());
+        depth = own = thin(arena, shallow.cell[i], raised(point(stamp, shallow.lane[i]), up_mm));
+        if (depth > 0) depth = below_blank(arena, shallow, i, up_mm, depth);
+      }
+    }
+    if (depth > 0 && !earlier.empty()) {
+      own = std::min(own, thickness_over(earlier, raised(point(stamp, shallow.lane[i]), up_mm)));
+      depth = std::min(depth, own);
+    }
+    if (depth == own) set_own_surface(shallow.hit[i]);
+    hits.thickness[shallow.hit[i]] = std::min(depth, shallow.cap[i]);
+    if (!(depth > 0)) continue;
+    after_tooth(shallow.hit[i], depth > kNearCap * shallow.cap[i]);
+  }
+  for (int h = 0; h < hits.count; ++h) {
+    ChipBlock& chip = b.chips[static_cast<std::size_t>(h)];
+    chip.after_tooth = static_cast<std::uint16_t>(hits.deep[h]);
+    std::copy_n(hits.thickness + h * kLanes, kLanes, chip.thickness_mm.begin());
+  }
+  return b.chips;
+}
+
+BlockReader::Point BlockReader::raised(Point point, float up_mm) {
+  point.place_mm.z() += static_cast<double>(up_mm);
+  return point;
+}
+
+RingPart BlockReader::part_of_ring(const TileArena& arena, const Stamp& stamp, const ShallowPoints& points,
+                                   int i) const {
+  const int cell = points.cell[i];
+  const float* blank = arena.blank(static_cast<std::size_t>(cell / (2 * Tile::kVolume)));
+  const Point p = point(stamp, points.lane[i]);
+  return part_in_material({blank ? blank + cell % (2 * Tile::kVolume) : nullptr,
+                           arena.view().stamp + cell,
+                           {points.share[0][i], points.share[1][i], points.share[2][i]},
+                           p.place_mm,
+                           p.normal,
+                           static_cast<double>(blocks_.wall_half_mm(points.lane[i]))},
+                          stamps_, first_id_, envelope_.shape, voxel_mm_);
+}
+
+/// From thickness to depth: the blank's surface counts as one field more, read trilinearly.
+void BlockReader::thin_by_blank(const TileArena& arena, const ShallowPoints& points, Buffers& b) const {
+  std::copy_n(b.thickness.begin(), points.count, b.depth.begin());
+  int count = 0;
+  for (int i = 0; i < points.count; ++i) {
+    const auto at = static_cast<std::size_t>(i), to = static_cast<std::size_t>(count);
+    if (!(b.thickness[at] > 0)) continue;
+    const auto cell = static_cast<std::size_t>(points.cell[i]), tile = cell / (2 * Tile::kVolume);
+    if (!arena.blank(tile)) continue;
+    b.blank_point[to] = i;
+    b.blank_lane[to] = points.lane[i];
+    b.blank_cell[to] = static_cast<std::int32_t>(cell - tile * Tile::kVolume);
+    for (const int corner : {0, 1, 2, 3}) __builtin_prefetch(arena.blanks() + b.blank_cell[to] + cell_corner(corner));
+    for (std::size_t a = 0; a < 3; ++a) b.blank_fraction[a][to] = points.share[a][i];
+    b.blank_thickness[to] = b.thickness[at];
+    ++count;
+  }
+  for (int i = count; i % kLanes != 0; ++i)
+    b.blank_lane[static_cast<std::size_t>(i)] = b.blank_cell[static_cast<std::size_t>(i)] = 0;
+  block_kernels().thin_by_blank(blocks_.points(),
+                                {count,
+                                 arena.blanks(),
+                                 b.blank_lane.data(),
+                                 b.blank_cell.data(),
+                                 {b.blank_fraction[0].data(), b.blank_fraction[1].data(), b.blank_fraction[2].data()},
+                                 static_cast<float>(voxel_mm_),
+                                 kMinSlope,
+                                 b.blank_thickness.data()});
+  for (int i = 0; i < count; ++i)
+    b.depth[static_cast<std::size_t>(b.blank_point[static_cast<std::size_t>(i)])] =
+        b.blank_thickness[static_cast<std::size_t>(i)];
+}
+
+/// The same for one point, and `up_mm` above it.
+float BlockReader::below_blank(const TileArena& arena, const ShallowPoints& points, int i, float up_mm,
+                               float thinnest) const {
+  const int cell = points.cell[i];
+  const float* blank = arena.blank(static_cast<std::size_t>(cell / (2 * Tile::kVolume)));
+  if (!blank) return thinnest;
+  const float* lowest = blank + cell % (2 * Tile::kVolume);
+  const CellShare share{points.share[0][i], points.share[1][i], points.share[2][i]};
+  const float distance =
+      trilinear(lowest, share) + up_mm * static_cast<float>(trilinear_gradient(lowest, share, voxel_mm_).z());
+  // A slope is at most 1: what is deeper than the thinnest so far cannot become thinner.
+  if (distance >= 0 || -distance >= thinnest) return std::min(thinnest, -distance);
+  const auto p = blocks_.point(static_cast<std::uint32_t>(points.lane[i] / kLanes), points.lane[i] % kLanes);
+  const Vec3 normal(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]);
+  return std::min(thinnest, -distance / slope(-trilinear_gradient(lowest, share, voxel_mm_).dot(normal)));
+}
+
+/// As BlockKernels::thin_points, for any cutter.
+void BlockReader::thin_general(const TileArena& arena, const Stamp& stamp, const ShallowPoints& points,
+                               float* out) const {
+  for (int i = 0; i < points.count; ++i) out[i] = thin(arena, points.cell[i], point(stamp, points.lane[i]));
+}
+
+float BlockReader::thin(const TileArena& arena, int cell, const Point& p) const {
+  const std::int32_t* ids = arena.view().stamp + cell;
+  float thinnest = kSolid;
+  std::int32_t last = -1;
+  for (int c = 0; c < 8; ++c) {
+    const std::int32_t id = ids[cell_corner(c)] - first_id_;
+    if (id < 0 || id == last) continue;
+    last = id;
+    const Vec3 from_tip = p.place_mm - stamps_[static_cast<std::size_t>(id)].pose.tip_mm;
+    const auto depth = static_cast<float>(envelope_.shape.distance_mm(from_tip));
+    if (depth < thinnest)
+      thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(from_tip).dot(p.normal)));
+  }
+  return thinnest;
+}
+
+/// Thickness of what stamps that are not in the arena yet leave at a point.
+float BlockReader::thickness_over(std::span<const std::int32_t> earlier, const Point& point) const {
+  float thinnest = kSolid;
+  for (const std::int32_t j : earlier) {
+    const Vec3 from_tip = point.place_mm - stamps_[static_cast<std::size_t>(j)].pose.tip_mm;
+    const auto depth = static_cast<float>(envelope_.shape.distance_mm(from_tip));
+    if (depth < thinnest)
+      thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(from_tip).dot(point.normal)));
+  }
+  return thinnest;
+}
+
+}  // namespace camber::removal::upright

@@ -1,0 +1,68 @@
+#pragma once
+// Which chips a stamp of the undeflected cutter takes from the tiles as they stand.
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "removal/engagement.h"
+#include "removal/cutter.h"
+#include "removal/engage/upright/level_faces.h"
+#include "removal/tool_path.h"
+#include "removal/field/upright/tile_arena.h"
+
+namespace camber::removal::upright {
+
+/// For one run of one tool. How depth and chip are defined: removal/engagement.h.
+class BlockReader {
+ public:
+  /// What one thread needs; may be used for stamp after stamp.
+  struct Buffers {
+    std::vector<std::int32_t> blocks;
+    std::vector<std::uint32_t> hit_block, hit_deep;
+    std::vector<float> hit_thickness;
+    std::vector<std::int32_t> lane, cell, hit;
+    std::vector<float> cap, thickness, depth;
+    std::vector<std::int32_t> blank_point, blank_lane, blank_cell;
+    std::vector<float> blank_thickness;
+    std::array<std::vector<float>, 3> blank_fraction;
+    std::array<std::vector<float>, 3> share;
+    std::vector<ChipBlock> chips;
+  };
+
+  /// Ids in the stock are first_id + index into `stamps`; smaller ids count as blank. Above `top_mm` there is air.
+  /// `pitches`: motion in so many may make a chip, see RigidEngager.
+  BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const Stamp> stamps,
+              std::int32_t first_id, double voxel_mm, double top_mm, int pitches);
+
+  /// Chips of stamps[k]. `earlier`: stamps that the arena does not hold yet and that may have cut what this one meets.
+  std::span<const ChipBlock> read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> earlier,
+                                  Buffers& buffers) const;
+
+ private:
+  /// A shallow point, or a deep one that stamps not in the arena may have cut.
+  struct Point {
+    Vec3 place_mm, normal;
+  };
+  Point point(const Stamp& stamp, int lane) const;
+  void make_room(Buffers& b) const;
+  void thin_general(const TileArena& arena, const Stamp& stamp, const ShallowPoints& points, float* out) const;
+  static Point raised(Point point, float up_mm);
+  RingPart part_of_ring(const TileArena& arena, const Stamp& stamp, const ShallowPoints& points, int i) const;
+  float thin(const TileArena& arena, int cell, const Point& point) const;
+  void thin_by_blank(const TileArena& arena, const ShallowPoints& points, Buffers& b) const;
+  float below_blank(const TileArena& arena, const ShallowPoints& points, int i, float up_mm, float thinnest) const;
+  float thickness_over(std::span<const std::int32_t> earlier, const Point& point) const;
+
+  const EnvelopeGrid& envelope_;
+  const EnvelopeBlocks& blocks_;
+  std::span<const Stamp> stamps_;
+  std::int32_t first_id_;
+  double voxel_mm_, top_mm_;
+  int pitches_;
+  double max_curved_per_mm_ = 0;                 ///< of the envelope
+  std::array<std::vector<std::int32_t>, 3> tip_;  ///< of all stamps, in steps that are a billionth of their range
+  float tip_step_mm_;
+};
+
+}  // namespace camber::removal::upright

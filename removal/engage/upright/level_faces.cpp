@@ -1,0 +1,52 @@
+#include "removal/engage/upright/level_faces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camber::removal::upright {
+namespace {
+
+/// Rings whose normal leans by less count as upright, faces whose normal does as level.
+constexpr double kUpright = 0.1;
+
+}  // namespace
+
+std::vector<float> wall_half_widths_mm(const EnvelopeGrid& envelope) {
+  std::vector<float> out;
+  out.reserve(envelope.rings.size());
+  for (const auto& ring : envelope.rings)
+    out.push_back(std::abs(ring.cosine) < kUpright ? static_cast<float>(ring.width_mm / 2) : 0.0f);
+  return out;
+}
+
+std::uint8_t RingPart::cut_255(double half_width_mm) const {
+  return static_cast<std::uint8_t>(std::lround(255 * std::max(0.0, to_mm - from_mm) / (2 * half_width_mm)));
+}
+
+RingPart part_in_material(const RingPlace& ring, std::span<const Stamp> stamps, std::int32_t first_id,
+                          const CutterShape& shape, double voxel_mm) {
+  RingPart part{-ring.half_width_mm, ring.half_width_mm};
+  if (ring.blank) {
+    const auto above = static_cast<double>(trilinear(ring.blank, ring.share));  // the blank's face
+    if (std::abs(above) < ring.half_width_mm) {
+      const Vec3 up = trilinear_gradient(ring.blank, ring.share, voxel_mm);
+      if (std::abs(up.dot(ring.normal)) < kUpright * std::abs(up.z())) {
+        const double face = -above / up.z();
+        if (up.z() > 0)
+          part.to_mm = std::min(part.to_mm, face);
+        else
+          part.from_mm = std::max(part.from_mm, face);
+      }
+    }
+  }
+  for (int c = 0; c < 8; ++c) {
+    const std::int32_t id = ring.ids[cell_corner(c)] - first_id;
+    if (id < 0) continue;
+    const Vec3 from_tip = ring.point_mm - stamps[static_cast<std::size_t>(id)].pose.tip_mm;
+    if (std::abs(from_tip.z()) >= ring.half_width_mm || shape.gradient(from_tip).z() > -1 + kUpright) continue;
+    part.to_mm = std::min(part.to_mm, -from_tip.z());
+  }
+  return part;
+}
+
+}  // namespace camber::removal::upright

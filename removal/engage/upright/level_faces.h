@@ -1,0 +1,39 @@
+#pragma once
+// Level faces of the stock across a cutter's wall: which share of the width that a sampled point stands for they leave
+// in material.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/geometry.h"
+#include "removal/field/cell.h"
+#include "removal/cutter.h"
+#include "removal/tool_path.h"
+
+namespace camber::removal::upright {
+
+/// Half the widths of an envelope's rings that stand upright, mm; 0 for the others.
+std::vector<float> wall_half_widths_mm(const EnvelopeGrid& envelope);
+
+/// Where a ring of the cutter's wall may be cut in two by level faces.
+struct RingPlace {
+  const float* blank;        ///< lowest voxel of the point's cell in the blank; null: solid
+  const std::int32_t* ids;   ///< the same of the stamps that the stock's voxels name
+  CellShare share;           ///< of the point in its cell
+  Vec3 point_mm, normal;     ///< of the envelope
+  double half_width_mm = 0;  ///< of the ring
+};
+
+/// Part of the ring's width that lies in material, up and down from its point, mm; nothing where from >= to.
+struct RingPart {
+  double from_mm, to_mm;
+  /// In 255ths of the ring's width.
+  std::uint8_t cut_255(double half_width_mm) const;
+  double middle_mm() const { return (from_mm + to_mm) / 2; }
+};
+
+/// Level faces are the blank's, and the floors cut by the stamps that the cell names: id - first_id of `stamps`.
+RingPart part_in_material(const RingPlace& ring, std::span<const Stamp> stamps, std::int32_t first_id,
+                          const CutterShape& shape, double voxel_mm);
+
+}  // namespace camber::removal::upright

@@ -1,0 +1,188 @@
+#pragma once
+// Engagement: which chip every point of the cutter's envelope takes at every stamp, read from the stock as the stamps
+// before left it; and the stock that is left.
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "removal/cutter.h"
+#include "removal/deflection_table.h"
+#include "removal/stock.h"
+#include "removal/tool_path.h"
+
+namespace camber::removal {
+
+namespace upright {
+struct BlockPoints;  // removal/simd/upright_block_kernels.h
+struct BlockBounds;
+}  // namespace upright
+
+// How depth and chip are defined
+//
+// Depth. A trilinear field rounds the ridges where two cuts meet, and most of a finishing chip lies near a ridge (6 %
+// of its volume was lost at 0.1 mm voxels). So the depth of a point is the largest of the smooth fields that meet in
+// its voxel cell: the blank's, read trilinearly, and those of the stamps that the cell's corners name, each evaluated
+// at the point itself. For deflected stamps the difference between the corners' values and the undeflected cutter's is
+// added, with the trilinear weights.
+//
+// Chip. h = min(d, max(0, B + (k1 f_m^2 + k2 f_t^2) / 2)): d is the depth of the point in the stock as the stamp
+// before left it; f the point's motion since then; B, f_m, f_t its parts along the normal, the meridian and the circle
+// of latitude; k1 and k2 the envelope's curvatures there.
+//
+// Level faces. A level face of the stock (the blank's top, the floor of an earlier pass, an allowance on a floor) cuts
+// a whole ring of a cutter's wall in two at once. There the chip holds the fraction of the ring's width that lies in
+// material, and its thickness is that in the middle of this part.
+//
+// Threads. Space is cut in tiles that take the stamps in order, all tiles at once; no result depends on the number of
+// threads.
+
+/// What one envelope point takes at one stamp.
+struct ChipSample {
+  std::uint32_t point = 0;     ///< index into EnvelopeGrid
+  float thickness_mm = 0;      ///< uncut, along the envelope normal, > 0
+  bool after_tooth = false;    ///< bounded below by what the tooth before left, not by older surface
+  bool own_surface = false;    ///< an older surface that the same tool cut
+  std::uint8_t cut_255 = 255;  ///< how much of the ring's width is in the cut, in 255ths
+  double width_fraction() const { return cut_255 / 255.0; }
+};
+
+/// The chip samples of one block of EnvelopeBlocks.
+struct ChipBlock {
+  std::uint32_t block = 0;
+  std::uint16_t after_tooth = 0, own_surface = 0;  ///< a bit a point
+  /// 0: no chip; negative: no chip, the material lies that far outwards along the normal
+  std::array<float, 8> thickness_mm{};
+  std::array<std::uint8_t, 8> cut_255{};
+};
+
+/// Two neighbouring rings by four rotation steps, all of one pitch; the steps of a ring side by side. Where an edge
+/// of the grid leaves places over, these are no points.
+class EnvelopeBlocks {
+ public:
+  static constexpr int kSteps = 4, kRings = 2, kLanes = kSteps * kRings;
+  static constexpr std::uint32_t kNoPoint = 0xffffffff;
+
+  /// `band_mm`, `voxel_mm`: of the stock that is read.
+  EnvelopeBlocks(const EnvelopeGrid& envelope, double voxel_mm, double band_mm);
+
+  struct Block {
+    int ring = 0;  ///< the lower one
+    int step = 0;  ///< of the pitch, the first
+  };
+  const Block& block(std::uint32_t i) const { return block_[i]; }
+  std::size_t size() const { return block_.size(); }
+  /// Index into the grid; kNoPoint.
+  std::uint32_t point(std::uint32_t block, int lane) const {
+    return point_[block * static_cast<std::uint32_t>(kLanes) + static_cast<std::uint32_t>(lane)];
+  }
+  const float* cos_phi(std::uint32_t block) const { return cos_phi_.data() + kLanes * block; }
+  const float* sin_phi(std::uint32_t block) const { return sin_phi_.data() + kLanes * block; }
+  /// Blocks from here on lie higher above the tip.
+  int up_to(double height_mm) const;
+  /// How far seen from above a point of a block lies from the block's centre, at most.
+  double widest_mm() const { return widest_mm_; }
+  float wall_half_mm(int lane_of_all) const { return wall_half_[static_cast<std::size_t>(lane_of_all)]; }
+  upright::BlockPoints points() const;
+  upright::BlockBounds bounds() const;
+
+ private:
+  void add(const EnvelopeGrid& envelope, const std::vector<float>& wall_half_mm, int ring, int step, int first_of_pitch,
+           double voxel_mm, double band_mm);
+
+  std::vector<Block> block_;
+  std::vector<float> lowest_;  ///< of the points of each block and all after it
+  std::vector<std::uint32_t> point_;
+  std::vector<float> x_, y_, z_, nx_, ny_, nz_, cos_phi_, sin_phi_, k1_, k2_, wall_half_;
+  double widest_mm_ = 0;
+  std::vector<float> bottom_, centre_x_, centre_y_, centre_z_, reach_, normal_x_, normal_y_, normal_z_, spread_;
+};
+
+std::vector<ChipSample> chips_of(const EnvelopeBlocks& blocks, std::span<const ChipBlock> chips);
+
+/// Volume that the chips of one stamp hold, mm^3: sum of (h - H h^2 + K h^3 / 3) dA, with the mean and Gaussian
+/// curvature of the envelope. Source: parallel surfaces (Steiner).
+double chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const ChipSample> chips);
+double chip_volume_mm3(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const ChipBlock> chips);
+
+/// Receives the chips of stamp `from` + k. Called by several threads at once, once for every k, in any order; the
+/// span is valid during the call only.
+using ChipSink = std::function<void(std::size_t k, std::span<const ChipBlock>)>;
+
+/// Engagement of the undeflected cutter, batch by batch: the chips of a batch's stamps are read from the tiles as they
+/// stand, then the batch is cut. For one run of one tool.
+class RigidEngager {
+ public:
+  /// `blank`: the stock before stamps[0]. Ids in the stock are first_id + index; smaller ids count as blank.
+  /// `pitches`: the largest number of tooth passings before a tooth of the one that left its chip; 1 for even teeth.
+  /// With more, points whose chip would need the motion in up to `pitches` passings are reported too, with a negative
+  /// thickness. Requires upright stamps; everything passed must outlive the object.
+  RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
+               std::int32_t first_id, int pitches = 1);
+  ~RigidEngager();
+
+  const EnvelopeBlocks& blocks() const;
+  /// Cuts stamps[from] ... stamps[from + count - 1], which must come after all that were cut before. The stock is
+  /// written lazily: tiles that these stamps reach are written by a later call, or by commit().
+  void engage(std::size_t from, std::size_t count, const ChipSink& sink);
+  /// Writes all pending tiles to the stock. Returns the volume removed since the last commit, mm^3.
+  double commit();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Maximum tilt of the deflected envelope (a deflection that jumps at an edge's entry is no slope).
+constexpr double kMaxTilt = 0.3;
+
+/// Points up to this far outside the material are reported, with a negative thickness.
+constexpr float kNear_mm = 0.1f;
+
+/// A chip sample of a deflected cutter, and its change with the deflection.
+struct DeflectedChipSample {
+  ChipSample chip;     ///< its thickness is the smaller of the next two, negative for a point outside the material
+  float depth_mm = 0;  ///< of the stock below the point, against the normal
+  float cap_mm = 0;    ///< what the motion allows
+  std::array<float, 2> deeper{};  ///< d(depth)/d(deflection), by x and y
+};
+
+/// Engagement of the deflected cutter, stamp by stamp: read() gives the chips that a stamp takes with the deflection it
+/// has, as often as that changes; then cut() carves it. For one run of one tool.
+class DeflectedEngager {
+ public:
+  static constexpr double kMaxDeflection_mm = 0.5;
+
+  /// `blank`: the stock before stamps[0]. Ids in the stock are first_id + index; smaller ids count as blank. Requires
+  /// upright stamps and an envelope with patches; everything passed must outlive the object.
+  DeflectedEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
+                   std::int32_t first_id);
+  ~DeflectedEngager();
+
+  /// Begins with stamps[from] ... stamps[from + count - 1], which must come after all that were cut before. Row k of
+  /// `deflections` is that of stamps[from + k]; it is read with its stamp and with the next one.
+  void start(std::size_t from, std::size_t count, const DeflectionTable& deflections);
+  /// Chips that stamps[from + k] takes after its predecessors were cut; valid until the next call. Points less than
+  /// kNear_mm outside the material are among them, with a negative thickness.
+  std::span<const DeflectedChipSample> read(std::size_t k);
+  void cut(std::size_t k);
+  /// Writes all pending tiles to the stock. Returns the volume removed since the last commit, mm^3.
+  double commit();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+struct SweepOptions {
+  double shrink_mm = 0;       ///< cutter smaller by this along its normal (the blank's allowance)
+  std::int32_t first_id = 0;  ///< id of stamps[0], written to the voxels that it sets last
+};
+
+/// Carves the undeflected cutter through the stock, without engagement. Returns the volume removed, mm^3. Requires
+/// upright stamps.
+double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const SweepOptions& options);
+
+}  // namespace camber::removal

@@ -1,0 +1,60 @@
+#pragma once
+// The rounded cylinder (ball, flat, bull-nose): distance, normal and nearest point, for numbers of any kind.
+#include <algorithm>
+#include <cmath>
+
+namespace camber::removal {
+namespace {  // compiled for several instruction sets
+
+inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
+
+/// A cylinder whose bottom edge is rounded: `flat` is the radius of the flat bottom, `corner` that of the rounding, mm.
+/// It has no top. `Number`: double, float, or an xsimd batch of floats, whose operations are found by their arguments.
+///
+/// Source: distance to a rounded rectangle in the meridian plane; exact outside, inside as long as the nearest point is
+/// on the bottom or the wall.
+template <class Number>
+struct RoundedCutter {
+  Number flat, corner;
+
+  /// A place in the meridian plane.
+  struct Place {
+    Number outside;   ///< of the flat bottom's rim
+    Number below;     ///< the centre of the rounding
+    Number length;    ///< from that centre, of what is outside and below
+    Number distance;  ///< signed, negative inside the cutter
+  };
+  /// radius: from the axis; height: above the tip.
+  Place place(const Number& radius, const Number& height) const {
+    using std::max, std::min, std::sqrt;
+    const Number zero(0), outside = radius - flat, below = corner - height;
+    const Number a = max(outside, zero), b = max(below, zero), length = sqrt(a * a + b * b);
+    return {outside, below, length, min(max(outside, below), zero) + length - corner};
+  }
+  Number distance(const Number& radius, const Number& height) const { return place(radius, height).distance; }
+
+  /// Outward unit normal at the nearest point of the cutter: away from the axis and downwards.
+  struct Normal {
+    Number radial, down;
+  };
+  Normal normal(const Place& p) const {
+    using std::max;
+    const Number zero(0), one(1), per_length = one / max(p.length, Number(1e-12f));
+    const auto rounded = (p.outside > zero) & (p.below > zero), wall = p.outside > p.below;
+    return {select(rounded, p.outside * per_length, select(wall, one, zero)),
+            select(rounded, p.below * per_length, select(wall, zero, one))};
+  }
+
+  /// Height above the tip of the nearest point of the cutter.
+  Number nearest_height(const Place& p, const Number& height) const {
+    using std::max;
+    const Number zero(0);
+    const auto rounded = (p.outside > zero) & (p.below > zero), wall = p.outside > p.below;
+    return select(rounded, corner - corner * p.below / max(p.length, Number(1e-12f)),
+                  select(wall, max(height, zero), zero));
+  }
+};
+
+}  // namespace
+}  // namespace camber::removal

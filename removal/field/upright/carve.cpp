@@ -1,0 +1,105 @@
+#include "removal/field/upright/carve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "removal/field/upright/carve_general.h"
+#include "removal/simd/upright_kernels.h"
+#include "base/vector_clones.h"
+
+namespace camber::removal::upright {
+namespace {
+
+/// First voxel of the row that the cutter may reach.
+int first_reached(double lowest_mm, double row_z_mm, double voxel_mm) {
+  return std::clamp(static_cast<int>(std::floor((lowest_mm - row_z_mm) / voxel_mm)), 0, Tile::kSide);
+}
+
+LineCut line_cut(const Index3& t, double voxel, double band, const CutterShape& shape, const CarveStamp& stamp) {
+  LineCut line{};
+  line.id = stamp.id;
+  line.lowest = first_reached(stamp.tip_mm.z() - band, t[2] * Tile::kCore * voxel, voxel);
+  line.dy = static_cast<float>(t[1] * Tile::kCore * voxel - stamp.tip_mm.y());
+  line.z = static_cast<float>(t[2] * Tile::kCore * voxel - stamp.tip_mm.z());
+  line.voxel = static_cast<float>(voxel);
+  line.band = static_cast<float>(band);
+  line.flat = static_cast<float>(shape.bottom_length_mm());
+  line.corner = static_cast<float>(shape.corner_radius_mm);
+  line.shrink = static_cast<float>(stamp.shrink_mm);
+  return line;
+}
+
+/// Calls cut(line) for the lines of columns that a stamp may change; true where a voxel changed.
+template <class Cut>
+bool cut_lines(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, LineCut line, const CarveStamp& stamp,
+               double deflection_mm, Cut cut) {
+  static_assert(LineCut::kColumns == Tile::kSide && LineCut::kLine == ColumnCover::kLine);
+  const float reach = line.flat + line.corner + line.band - line.shrink + static_cast<float>(deflection_mm);
+  std::array<float, ColumnCover::kLine> changeable;
+  line.changeable = changeable.data();
+  bool any = false;
+  for (int i = 0; i < Tile::kSide; ++i) {
+    line.dx = static_cast<float>((t[0] * Tile::kCore + i) * voxel - stamp.tip_mm.x());
+    if (std::abs(line.dx) > reach) continue;
+    if (!cover.changeable(i, stamp.tip_mm, deflection_mm, changeable)) continue;
+    line.distance = tile.distance.data() + Tile::offset(i, 0, 0);
+    line.stamp = tile.stamp.data() + Tile::offset(i, 0, 0);
+    line.top = cover.tops(i);
+    const LineResult result = cut(line);
+    for (int j = 0; j < Tile::kSide; ++j)
+      if (result.tried >> j & 1u) cover.cut(tile, i, j, stamp.tip_mm, deflection_mm, (result.changed >> j & 1u) != 0);
+    any |= result.changed != 0;
+  }
+  return any;
+}
+
+}  // namespace
+
+bool carve(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band, const CutterShape& shape,
+           const CarveStamp& stamp) {
+  if (shape.general) return carve_general(tile, cover, t, voxel, band, shape, stamp);
+  return cut_lines(tile, cover, t, voxel, line_cut(t, voxel, band, shape, stamp), stamp, 0, kernels().cut_line);
+}
+
+bool carve_deflected(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band,
+                const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
+                const StampDeflection& deflection) {
+  if (envelope.shape.general) return carve_deflected_general(tile, cover, t, voxel, band, envelope, stamp, deflections, deflection);
+  const LineDeflection line_deflection{{deflection.row, nullptr, static_cast<int>(deflections.nodes()), deflections.steps,
+                            deflections.nodes() > 1 ? static_cast<float>(deflections.node_height_mm[1]) : 1.0f},
+                           static_cast<float>(deflection.largest_mm),
+                           deflection.outward_mm.data(),
+                           StampDeflection::kSectors,
+                           static_cast<float>(envelope.lag_per_mm),
+                           static_cast<float>(envelope.steps / (2 * kPi))};
+  const auto cut = kernels().cut_line_deflected;
+  return cut_lines(tile, cover, t, voxel, line_cut(t, voxel, band, envelope.shape, {stamp.tip_mm, stamp.id}), stamp,
+                   deflection.largest_mm, [&](const LineCut& line) { return cut(line, line_deflection); });
+}
+
+CAMBER_VECTOR_CLONES
+double material_voxels(const Tile& tile, double voxel_mm) {
+  const auto scale = static_cast<float>(0.5 / voxel_mm);
+  double sum = 0;
+  for (int i = 0; i < Tile::kCore; ++i) {
+    std::array<float, Tile::kCore> share{};
+    for (int j = 0; j < Tile::kCore; ++j) {
+      const float* d = tile.distance.data() + Tile::offset(i, j, 0);
+      for (int k = 0; k < Tile::kCore; ++k) share[k] += std::min(std::max(0.5f - scale * d[k], 0.0f), 1.0f);
+    }
+    for (const float v : share) sum += static_cast<double>(v);
+  }
+  return sum;
+}
+
+double tile_distance_mm(const Index3& t, double voxel, const CutterShape& shape, const Vec3& tip) {
+  const auto gap = [&](int a) {
+    const double lo = t[a] * Tile::kCore * voxel, hi = lo + Tile::kCore * voxel;
+    return std::max({lo - tip[a], tip[a] - hi, 0.0});
+  };
+  const double top = (t[2] + 1) * Tile::kCore * voxel - tip.z();
+  return shape.distance_mm({std::sqrt(gap(0) * gap(0) + gap(1) * gap(1)), 0, top});
+}
+
+}  // namespace camber::removal::upright

@@ -1,0 +1,16 @@
+#pragma once
+// Cutting one tile with one stamp of a general cutter: carve.h for profiles that are no rounded cylinder.
+#include "removal/field/upright/carve.h"
+
+namespace camber::removal::upright {
+
+/// As carve(), for any convex profile.
+bool carve_general(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
+                   const CutterShape& shape, const CarveStamp& stamp);
+
+/// As carve_deflected(), for any convex profile.
+bool carve_deflected_general(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
+                        const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
+                        const StampDeflection& deflection);
+
+}  // namespace camber::removal::upright

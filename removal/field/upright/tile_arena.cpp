@@ -1,0 +1,192 @@
+#include "removal/field/upright/tile_arena.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+#include "removal/field/upright/tiles_reached.h"
+
+namespace camber::removal::upright {
+namespace {
+
+Index3 first_voxel(const Index3& tile) { return {tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore}; }
+
+/// The part of a tile's upper layer that is the core of a neighbour, `up` tiles on. What the stock has there is old
+/// where the neighbour stayed.
+void copy_shared(const Tile& from, const std::array<int, 3>& up, Tile& to) {
+  const auto range = [](int up) { return up != 0 ? 1 : Tile::kCore; };
+  for (int i = 0; i < range(up[0]); ++i)
+    for (int j = 0; j < range(up[1]); ++j) {
+      const int there = Tile::offset(i, j, 0);
+      const int here = Tile::offset(i + up[0] * Tile::kCore, j + up[1] * Tile::kCore, up[2] * Tile::kCore);
+      std::copy_n(from.distance.data() + there, range(up[2]), to.distance.data() + here);
+      std::copy_n(from.stamp.data() + there, range(up[2]), to.stamp.data() + here);
+    }
+}
+
+}  // namespace
+
+void TileArena::load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps,
+                     const Leave& leave, double deflection_mm) {
+  voxel_ = stock.voxel_mm();
+  list_tiles(stock, shape, stamps, leave, deflection_mm);
+  tops_.reset(slots_);
+  make_room();
+  load_fresh(stock, blank);
+}
+
+void TileArena::clear(const Leave& leave) {
+  std::vector<std::size_t> all;
+  for (std::size_t t = 1; t < used_.size(); ++t)
+    if (used_[t] != 0) all.push_back(t);
+  leave(all);
+  if (!used_.empty()) used_.resize(1), in_solid_.resize(1), index_.resize(1);
+  free_.clear();
+  fresh_.clear();
+  slots_ = {};
+}
+
+std::size_t TileArena::take_number(const Index3& index) {
+  std::size_t t = used_.size();
+  if (free_.empty()) {
+    used_.push_back(1), in_solid_.push_back(1), index_.push_back(index);
+  } else {
+    t = free_.back();
+    free_.pop_back();
+    used_[t] = 1, index_[t] = index;
+  }
+  return t;
+}
+
+void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps,
+                           const Leave& leave, double deflection_mm) {
+  reached_.resize(stamps.size());
+  for (auto& tiles : reached_) tiles.clear();
+  const double tile_mm = Tile::kCore * voxel_, band = stock.band_mm() + deflection_mm, reach = shape.radius_mm + band;
+  Vec3 lo = stamps.front().pose.tip_mm, hi = lo;
+  for (const auto& s : stamps) {
+    lo = lo.cwiseMin(s.pose.tip_mm);
+    hi = hi.cwiseMax(s.pose.tip_mm);
+  }
+  lo -= Vec3(reach, reach, band);
+  hi = Vec3(hi.x() + reach, hi.y() + reach, stock.max_mm().z() + band);
+  const Vec3 bands = Vec3::Constant(band);
+  std::swap(before_, slots_);
+  slots_.reset(tile_of(lo.cwiseMax(stock.min_mm() - bands), tile_mm),
+               tile_of(hi.cwiseMin(stock.max_mm() + bands), tile_mm));
+  tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+    for_each_tile_reached(slots_, voxel_, shape, stamps[k].pose.tip_mm, band,
+                          [&](std::size_t place) { reached_[k].push_back(static_cast<std::int32_t>(place)); });
+  });
+  constexpr std::int32_t kWanted = 0;
+  auto& slot = slots_.all();
+  for (const auto& places : reached_)
+    for (const std::int32_t p : places) slot[static_cast<std::size_t>(p)] = kWanted;
+  std::vector<char> stays(used_.size(), 0);
+  std::vector<std::size_t> wanted;  // places
+  for (std::size_t p = 0; p < slot.size(); ++p) {
+    if (slot[p] != kWanted) continue;
+    const Index3 tile = slots_.tile_at(p);
+    const std::int32_t known = before_.find(tile[0], tile[1], tile[2]);
+    if (known > 0) {
+      slot[p] = known;
+      stays[static_cast<std::size_t>(known)] = 1;
+    } else {
+      wanted.push_back(p);
+    }
+  }
+  std::vector<std::size_t> leaving;
+  for (std::size_t t = 1; t < used_.size(); ++t)
+    if (used_[t] != 0 && stays[t] == 0) leaving.push_back(t);
+  leave(leaving);
+  for (const std::size_t t : leaving) {
+    used_[t] = 0;
+    free_.push_back(t);
+  }
+  if (used_.empty()) take_number({});  // the air
+  // In the order of places, so that nothing depends on the number of threads.
+  fresh_.clear();
+  for (const std::size_t p : wanted) {
+    const Index3 tile = slots_.tile_at(p);
+    if (stock.is_air(tile)) continue;
+    fresh_.push_back(take_number(tile));
+    slot[p] = static_cast<std::int32_t>(fresh_.back());
+  }
+  for (std::int32_t& s : slot) s = std::max(s, 0);
+  tbb::parallel_for(std::size_t{0}, reached_.size(), [&](std::size_t k) {
+    auto& tiles = reached_[k];
+    for (std::int32_t& t : tiles) t = slot[static_cast<std::size_t>(t)];
+    std::erase(tiles, 0);
+  });
+}
+
+void TileArena::make_room() {
+  if (used_.size() <= room_) return;
+  const std::size_t before = room_;
+  room_ = used_.size() + used_.size() / 8;
+  std::unique_ptr<Tile[]> tiles(new Tile[room_]);
+  std::unique_ptr<float[]> blanks(new float[room_ * Tile::kVolume]);
+  std::copy_n(tiles_.get(), before, tiles.get());
+  for (std::size_t t = 1; t < before; ++t)
+    if (const float* from = blank(t)) std::copy_n(from, Tile::kVolume, blanks.get() + t * Tile::kVolume);
+  tiles_ = std::move(tiles);
+  blanks_ = std::move(blanks);
+}
+
+void TileArena::load_fresh(const Stock& stock, const Stock& blank) {
+  tiles_[0].distance.fill(static_cast<float>(stock.band_mm()));
+  tiles_[0].stamp.fill(Stock::kUncut);
+  tbb::parallel_for(std::size_t{0}, fresh_.size(), [&](std::size_t i) {
+    const std::size_t t = fresh_[i];
+    stock.load(index_[t], tiles_[t]);
+    in_solid_[t] = static_cast<char>(blank.is_solid(index_[t]));
+    if (in_solid_[t] == 0) blank.read(first_voxel(index_[t]), Tile::kSide, blanks_.get() + t * Tile::kVolume, nullptr);
+  });
+  std::vector<char> is_fresh(used_.size(), 0);
+  for (const std::size_t t : fresh_) is_fresh[t] = 1;
+  tbb::parallel_for(std::size_t{0}, fresh_.size(), [&](std::size_t i) {
+    const Index3& at = index_[fresh_[i]];
+    for (int c = 1; c < 8; ++c) {
+      const std::array<int, 3> up{c & 1, c >> 1 & 1, c >> 2};
+      const std::int32_t other = slots_.find(at[0] + up[0], at[1] + up[1], at[2] + up[2]);
+      if (other > 0 && is_fresh[static_cast<std::size_t>(other)] == 0)
+        copy_shared(tiles_[static_cast<std::size_t>(other)], up, tiles_[fresh_[i]]);
+    }
+  });
+}
+
+void TileArena::read_tops(int reach_voxels, const std::function<const ColumnCover&(std::size_t)>& cover_of) {
+  tops_.read(slots_, reach_voxels, [&](std::size_t place) {
+    const std::int32_t tile = slots_.all()[place];
+    return tile > 0 ? &cover_of(static_cast<std::size_t>(tile)) : nullptr;
+  });
+}
+
+ArenaView TileArena::view() const {
+  static_assert(sizeof(Tile) == 2 * sizeof(float) * Tile::kVolume);
+  static constexpr std::int32_t kAir = 0;  // read, and not used, where no stamp comes near the stock
+  return {tiles_[0].distance.data(),
+          tiles_[0].stamp.data(),
+          2 * Tile::kVolume,
+          slots_.all().empty() ? &kAir : slots_.all().data(),
+          {slots_.extent()[0], slots_.extent()[1], slots_.extent()[2]},
+          tops_.heights().empty() ? &kAir : tops_.heights().data()};
+}
+
+StampPlace TileArena::place_of(const Stamp& stamp, double least_mm) const {
+  StampPlace place{};
+  for (int a = 0; a < 3; ++a) {
+    const double at = stamp.pose.tip_mm[a] / voxel_, base = std::floor(at);
+    place.fraction[a] = static_cast<float>(at - base);
+    place.base[a] = static_cast<std::int32_t>(base) - slots_.first()[static_cast<std::size_t>(a)] * Tile::kCore;
+    place.feed_mm[a] = static_cast<float>(stamp.feed_per_tooth_mm[a]);
+  }
+  place.per_voxel = static_cast<float>(1 / voxel_);
+  place.feed_length_mm = static_cast<float>(stamp.feed_per_tooth_mm.norm());
+  place.least_mm = static_cast<float>(least_mm);
+  return place;
+}
+
+}  // namespace camber::removal::upright

@@ -1,0 +1,74 @@
+#pragma once
+// Working copies of all tiles that a stretch of stamps reaches. Rows overlap, so most tiles of a stretch
+// are those of the one before: they stay.
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "removal/simd/upright_block_kernels.h"
+#include "removal/field/tile.h"
+#include "removal/cutter.h"
+#include "removal/field/slot_map.h"
+#include "removal/tool_path.h"
+#include "removal/stock.h"
+#include "removal/field/upright/top_map.h"
+
+namespace camber::removal::upright {
+
+class TileArena {
+ public:
+  /// Called with the numbers of tiles before they are given up.
+  using Leave = std::function<void(std::span<const std::size_t> tiles)>;
+
+  /// Loads what is not air and not there yet, and gives up what these stamps do not reach. Tile 0 is air all over and
+  /// stands for all others. `blank`: the stock before the first stamp. deflection_mm: how far cutters may lean.
+  void load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps,
+            const Leave& leave, double deflection_mm = 0);
+  /// Gives up all tiles.
+  void clear(const Leave& leave);
+
+  std::size_t size() const { return used_.size(); }              ///< numbers are below it; 0 is the air
+  std::span<const std::size_t> fresh() const { return fresh_; }  ///< tiles that the last load() loaded
+  const Index3& index(std::size_t tile) const { return index_[tile]; }
+  Tile& operator[](std::size_t tile) { return tiles_[tile]; }
+  /// Distances of the blank there; null where the blank is solid.
+  const float* blank(std::size_t tile) const {
+    return in_solid_[tile] != 0 ? nullptr : blanks_.get() + tile * Tile::kVolume;
+  }
+  /// Of all tiles, Tile::kVolume each; only what blank() points to counts.
+  const float* blanks() const { return blanks_.get(); }
+  /// The number of the tile at an index, 0 (or less) where it is air or out of reach.
+  std::int32_t find(int i, int j, int k) const { return slots_.find(i, j, k); }
+  /// The tiles of stamps[k] that are not air.
+  std::span<const std::int32_t> reached_by(std::size_t k) const { return reached_[k]; }
+
+  /// Reads how high the stock is: `cover_of` a tile's number. `reach_voxels`: see TopMap.
+  void read_tops(int reach_voxels, const std::function<const ColumnCover&(std::size_t tile)>& cover_of);
+
+  ArenaView view() const;
+  /// Of a stamp that moves at most by its feed; see StampPlace::least_mm.
+  StampPlace place_of(const Stamp& stamp, double least_mm) const;
+
+ private:
+  void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const Leave& leave,
+                  double deflection_mm);
+  std::size_t take_number(const Index3& index);
+  void make_room();
+  void load_fresh(const Stock& stock, const Stock& blank);
+
+  double voxel_ = 0;
+  SlotMap slots_, before_;  ///< of this stretch and of the last one
+  TopMap tops_;
+  std::vector<std::vector<std::int32_t>> reached_;
+  std::size_t room_ = 0;
+  // By number:
+  std::vector<char> used_, in_solid_;
+  std::vector<Index3> index_;
+  std::unique_ptr<Tile[]> tiles_;    ///< not cleared
+  std::unique_ptr<float[]> blanks_;  ///< not cleared
+  std::vector<std::size_t> fresh_, free_;
+};
+
+}  // namespace camber::removal::upright

@@ -1,0 +1,120 @@
+#pragma once
+// The form error: points of the target's surface, each with the height of the machined surface along its normal, and
+// figures of it.
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/geometry.h"
+#include "removal/cutter.h"
+#include "removal/deflection_table.h"
+#include "removal/stock.h"
+#include "removal/tool_path.h"
+
+namespace camber::removal {
+
+/// Undeflected cutters by stamp id. Ids are added in ascending order.
+class CutterPlaces {
+ public:
+  /// Stamps first_id, first_id + 1, ... of one cutter.
+  void add(std::int32_t first_id, const CutterShape& shape, std::span<const Stamp> stamps);
+  bool empty() const { return runs_.empty(); }
+  bool knows(std::int32_t id) const { return find(id) != nullptr; }
+  /// Of a known stamp's envelope, mm, negative inside the cutter.
+  double distance_mm(std::int32_t id, const Vec3& point) const;
+  Vec3 gradient(std::int32_t id, const Vec3& point) const;
+  struct Depth {
+    std::int32_t id;
+    double depth_mm;  ///< of the point inside that cutter
+  };
+  /// The stamp that the point lies deepest in, of those met going from a known stamp along its run while it grows
+  /// deeper.
+  Depth deepest_from(std::int32_t id, const Vec3& point) const;
+
+ private:
+  struct Run {
+    std::int32_t first_id;
+    CutterShape shape;
+    std::vector<ToolPose> poses;
+    const ToolPose& pose(std::int32_t id) const { return poses[static_cast<std::size_t>(id - first_id)]; }
+  };
+  const Run* find(std::int32_t id) const;
+  std::vector<Run> runs_;
+};
+
+struct SurfacePoint {
+  Vec3 place_mm = Vec3::Zero();      ///< on the target's surface
+  Vec3 crossing_mm = Vec3::Zero();   ///< where a grid line crosses the target's field, beside it
+  Vec3 normal = Vec3::UnitZ();       ///< outward, unit
+  double error_mm = 0;               ///< machined minus target along the normal; positive: material is left
+  double area_mm2 = 0;               ///< of the target's surface that the point stands for
+  std::int32_t target_stamp = -1;    ///< which stamp of the target's sweep made it
+  std::int32_t machined_stamp = -1;  ///< which stamp cut the machined field there last; -1: none
+};
+
+/// Points where grid lines cross the target's surface, in a fixed order. A crossing along axis a stands for
+/// voxel^2 |n_a|: along all three axes these add up to the surface's area, since sum n_a^2 = 1. Only surface that the
+/// target's sweep has cut, leaving out one voxel along its edges. Errors are cut off at the band. Both stocks must have
+/// the same voxels.
+std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target);
+
+/// The same points of the target alone, without error, tile by tile; each moved along its grid line to where the
+/// cutters that the voxels around it name have left the surface, which a trilinear field does not tell at ridges and
+/// edges, with the normal of the cutter that governs there, and aside within the square that the grid line stands for
+/// (the same for the same grid edge): those squares cover the surface once, and cusps in step with the grid are met at
+/// all their places.
+///
+/// `solid`: the stock that the target was cut from, before any allowance was taken off. With it the points reach up to
+/// the edges with the stock's faces: the last one of a row stands for what is left up to the edge, so that what part of
+/// a low wall is seen does not depend on where the grid lies. Without it (null) one voxel along the edges is left out.
+std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places,
+                                                      const Stock* solid = nullptr);
+
+/// Area-weighted figures of an error, in the unit of the values.
+struct ErrorFigures {
+  double min = 0, max = 0, mean = 0, rms = 0;
+  double p95 = 0;  ///< 95th percentile of the magnitude
+  double area_mm2 = 0;
+};
+ErrorFigures error_figures(const std::vector<double>& error, const std::vector<double>& area_mm2);
+
+/// How the area is spread over the error.
+struct ErrorSpread {
+  static constexpr std::array<double, 9> kShares{0.01, 0.05, 0.10, 0.25, 0.50, 0.75, 0.90, 0.95, 0.99};
+  std::array<double, kShares.size()> percentile{};  ///< of the signed error, by area
+  double bin_from = 0, bin_width = 0;               ///< in the unit of the values
+  std::vector<double> bin_area_mm2;                 ///< their sum is the whole area
+};
+/// Forty bins or fewer of a round width (1, 2 or 5 times a power of ten) from the least to the greatest error.
+ErrorSpread error_spread(const std::vector<double>& error, const std::vector<double>& area_mm2);
+
+/// Points of the target's surface (as compare_surfaces has them, moved along their grid line onto the cutters that made
+/// the surface there), each with the height of the machined surface along its normal.
+///
+/// A field between voxels rounds the ridges between two cuts. The deflected cutter leaves other ridges than the straight
+/// one, sharper by the jump of the deflection as an edge enters the cut, so that rounding does not cancel between
+/// two fields: 3.5 % of the error were lost at 0.1 mm voxels (docs/engagement.md). Here every point meets every
+/// envelope itself: the height e at which x = q + e n - delta(s, phi) lies on the straight envelope, (s, phi) belonging
+/// to x; the least height of all stamps stays. Nothing depends on the number of threads.
+class SurfaceMap {
+ public:
+  /// `places`: the cutters of the target's sweep, by the ids that its voxels name. `blank`: the surface wherever no
+  /// mark is deeper. `solid`: see surface_points. Nothing of them is needed afterwards.
+  SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank, const Stock* solid = nullptr);
+  ~SurfaceMap();
+
+  /// Takes the marks of `stamps`, deflected by the rows of `deflections`; ids are first_id + index.
+  void mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamps, const DeflectionTable& deflections,
+            std::int32_t first_id);
+
+  /// The points with what the marks and, where it still stands, the blank say. Ends the map.
+  std::vector<SurfacePoint> take();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace camber::removal

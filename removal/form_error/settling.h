@@ -1,0 +1,18 @@
+#pragma once
+// How place and deflection of a deflected envelope's point are brought to agree (removal/form_error/deflected_envelope.h).
+
+namespace camber::removal {
+namespace {  // compiled for several instruction sets
+
+struct Settling {
+  static constexpr int kSteps = 32;
+  static constexpr float kClose_mm = 1e-5f;
+  static constexpr float kFlattest = 0.3f;  ///< slope of an envelope against a point's normal, at least
+
+  /// Where the deflection jumps against the motion of the edge, the envelope is torn, and the tooth draws the gap while
+  /// it bends: there plain steps swing between both sides, and smaller ones find the place between them.
+  static constexpr float share_of(int step) { return step < 5 ? 1.0f : step < 16 ? 0.3f : 0.1f; }
+};
+
+}  // namespace
+}  // namespace camber::removal

@@ -1,0 +1,134 @@
+#pragma once
+// The inner loops of engagement and deflected carving, in vectors as wide as the processor has them. Every lane does the
+// same operations in the same order whatever the width, so results do not depend on it.
+#include <cstdint>
+
+namespace camber::removal::upright {
+
+/// Lateral deflections of a stamp: [node][step][2], mm, as a row of DeflectionTable.
+struct DeflectionRow {
+  const float* now = nullptr;     ///< null: the undeflected cutter
+  const float* before = nullptr;  ///< of the stamp before
+  int nodes = 0, steps = 0;
+  float node_step_mm = 1;
+};
+
+/// Envelope points side by side (see removal/engage/upright/patch_lanes.h): the arrays hold whole vectors of kLanes.
+struct PointLanes {
+  const float *x, *y, *z, *nx, *ny, *nz, *cos_phi, *sin_phi, *k1, *k2;
+  const float *sine, *cosine, *per_radius, *upper_fraction;
+  const std::int32_t *lower, *step;  ///< node below, rotation step
+};
+
+/// Where a stamp stands: the voxel below its tip is the origin of `fraction` and of TileView.
+struct StampView {
+  float fraction[3];  ///< of the tip in its voxel, voxels
+  float per_voxel;    ///< 1 / voxel_mm
+  float feed_mm[3];   ///< motion since the stamp before
+  DeflectionRow deflection;
+  float lag_per_mm;
+  float per_rad;       ///< rotation steps / (4 pi)
+  float max_tilt_mm;  ///< of the deflected envelope, along the motion
+};
+
+/// A tile's voxels.
+struct TileView {
+  const float* distance;
+  std::int32_t from[3];  ///< its first voxel, from the stamp's
+};
+
+/// What is told of each point.
+struct LaneReading {
+  static constexpr int kMax = 64;
+  alignas(64) float cap[kMax];          ///< thickest chip that the motion allows, mm
+  alignas(64) float field[kMax];        ///< trilinear distance of the tile at the point, mm
+  alignas(64) float fraction[3][kMax];  ///< of the point in its cell
+  alignas(64) std::int32_t cell[kMax];  ///< its cell's lowest voxel in the tile; -1: not in the tile, or no chip
+};
+
+/// A point against the stamps whose fields meet in its cell.
+struct CornerLanes {
+  alignas(64) float tip[3][8];  ///< from the point, mm
+  alignas(64) float valid[8];   ///< 0: none
+  alignas(64) float deflection[8];    ///< how much farther out than the straight cutter's the surface lies there, mm
+  float normal[3];
+};
+
+struct Thinnest {
+  float mm;
+  int corner;
+};
+
+/// A line of a tile's columns (removal/field/upright/column_cover.h), all with the same x, against a rounded cylinder.
+struct LineCut {
+  static constexpr int kColumns = 17, kLine = 24;  ///< as Tile::kSide and ColumnCover::kLine
+  float* distance;                                 ///< [kColumns][kColumns] of the line
+  std::int32_t* stamp;                             ///< the same of the ids
+  const float* changeable;                         ///< [kLine], > 0: the column may change
+  const std::int16_t* top;                         ///< [kColumns], first voxel of the air above
+  int first = 0, end = kColumns;                   ///< columns
+  std::int32_t id;
+  int lowest;         ///< no voxel below is reached
+  float dx, dy, z;    ///< of voxel 0 of column 0, from the tip, mm
+  float voxel, band;  ///< mm
+  float flat, corner, shrink;
+};
+
+/// Places of stamps in a tile, from its voxel (0, 0, 0), mm.
+struct TipLanes {
+  const float *x, *y, *z;
+};
+
+/// A line of columns, from column `first` up to `end` (whole vectors of 8), and for each of them the stamp that goes
+/// deepest at `z`.
+struct LineSearch {
+  int first, end;
+  TipLanes tips;
+  const std::int32_t* which;  ///< [count] of the tips
+  int count;
+  float x, voxel;  ///< mm, of the line; between columns
+  const float* z;  ///< [LineCut::kLine], mm
+  float flat, corner;
+  float *tip_x, *tip_y, *tip_z;  ///< [LineCut::kLine], out
+  std::int32_t* winner;          ///< [LineCut::kLine], out: index of a tip
+};
+
+/// What a deflected cutter adds to it.
+struct LineDeflection {
+  DeflectionRow deflection;
+  float largest_mm;         ///< of the row
+  const float* outward_mm;  ///< by sector, StampDeflection::kSectors of them
+  int sectors;
+  float lag_per_mm, steps_per_rad;
+};
+
+/// Columns of a line as bits.
+struct LineResult {
+  std::uint32_t tried = 0, changed = 0;
+};
+
+struct Kernels {
+  int lanes;
+  /// `count`: a multiple of 8, at most LaneReading::kMax.
+  void (*read_points)(const PointLanes& points, int from, int count, const StampView& stamp, const TileView& tile,
+                      LaneReading& out);
+  /// Thickness of what a rounded cylinder left at each corner's tip, along the normal: distance over slope, the slope
+  /// at least `least_slope`; the least of them and its corner, at most 0 where one has cut the point away.
+  Thinnest (*thinnest)(const CornerLanes& corners, float flat, float corner, float least_slope);
+  /// stock = max(stock, -cutter), at most band; voxels that change take the id.
+  LineResult (*cut_line)(const LineCut& line);
+  LineResult (*cut_line_deflected)(const LineCut& line, const LineDeflection& deflection);
+  /// The same with a stamp of its own for every column, as LineSearch has found them; `x` of the line; ids are
+  /// line.id + winner.
+  LineResult (*cut_winners)(const LineCut& line, const LineSearch& search, const std::int32_t* id_of_tip);
+  void (*find_winners)(const LineSearch& search);
+};
+
+/// Those of the widest vectors that this processor has.
+const Kernels& kernels();
+extern const Kernels kBaseKernels;  ///< on every processor
+#if defined(__x86_64__)
+extern const Kernels kAvx2Kernels;
+#endif
+
+}  // namespace camber::removal::upright

@@ -1,0 +1,309 @@
+#pragma once
+// The loops behind removal/simd/upright_kernels.h for one instruction set. Included by the files that are compiled for one; nothing
+// else of ours is included, as what is compiled here for wide vectors must not be linked into code for narrow ones.
+#include <cmath>
+
+#include <xsimd/xsimd.hpp>
+
+#include "removal/simd/upright_kernels.h"
+#include "removal/simd/deflection_lanes.h"
+#include "removal/field/rounded_cutter.h"
+#include "removal/simd/vector_table.h"
+
+namespace camber::removal::upright {
+namespace {
+
+template <class A>
+struct Vectors {
+  using F = xsimd::batch<float, A>;
+  using I = xsimd::batch<std::int32_t, A>;
+  static constexpr int n = static_cast<int>(F::size);
+  static constexpr int kSide = 17;  ///< Tile::kSide
+  static constexpr int kCore = 16;
+
+  static F load(const float* p) { return F::load_unaligned(p); }
+  static I load(const std::int32_t* p) { return I::load_unaligned(p); }
+  static I to_int(const F& f) { return xsimd::batch_cast<std::int32_t>(f); }
+  static F to_float(const I& i) { return xsimd::batch_cast<float>(i); }
+
+  using Deflection = typename DeflectionLanes<A>::Deflection;
+  static Deflection at(const float* row, const I& node_offset, const I& step) {
+    return DeflectionLanes<A>::at(row, node_offset, step);
+  }
+  static Deflection between(const float* row, const I& lower, const I& upper, const F& share, const I& step) {
+    const Deflection a = at(row, lower, step), b = at(row, upper, step);
+    return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+  }
+
+  static void read_points(const PointLanes& p, int from, int count, const StampView& s, const TileView& tile,
+                          LaneReading& out) {
+    const F zero(0.0f), one(1.0f);
+    for (int l = 0; l < count; l += n) {
+      const int k = from + l;
+      F x = load(p.x + k), y = load(p.y + k);
+      const F z = load(p.z + k), nx = load(p.nx + k), ny = load(p.ny + k), nz = load(p.nz + k);
+      const F cosine_phi = load(p.cos_phi + k), sine_phi = load(p.sin_phi + k);
+      const F fx(s.feed_mm[0]), fy(s.feed_mm[1]), fz(s.feed_mm[2]);
+      F mx = fx, my = fy, tilt = zero;
+      if (s.deflection.now) {
+        const I lower = load(p.lower + k), step = load(p.step + k), steps(s.deflection.steps);
+        const I lower_at = lower * steps;
+        const I upper_at = xsimd::min(lower + I(1), I(s.deflection.nodes - 1)) * steps;
+        const F share = load(p.upper_fraction + k);
+        const Deflection low = at(s.deflection.now, lower_at, step), high = at(s.deflection.now, upper_at, step);
+        const Deflection now{low.x + share * (high.x - low.x), low.y + share * (high.y - low.y)};
+        const Deflection before = between(s.deflection.before, lower_at, upper_at, share, step);
+        // How much less the motion goes along the deflected envelope's normal than along n: n_bent = n - sum over the
+        // surface directions e of e (d(deflection)/de . n).
+        const I next = xsimd::select(step + I(1) == steps, I(0), step + I(1));
+        const I last = xsimd::select(step == I(0), steps - I(1), step - I(1));
+        const Deflection ahead = between(s.deflection.now, lower_at, upper_at, share, next);
+        const Deflection behind = between(s.deflection.now, lower_at, upper_at, share, last);
+        const F by_angle = F(s.per_rad) * ((ahead.x - behind.x) * nx + (ahead.y - behind.y) * ny);
+        const F by_height = ((high.x - low.x) * nx + (high.y - low.y) * ny) / F(s.deflection.node_step_mm);
+        const F sine = load(p.sine + k);
+        const F around = cosine_phi * fy - sine_phi * fx;
+        const F up = load(p.cosine + k) * (cosine_phi * fx + sine_phi * fy) + sine * fz;
+        tilt = around * by_angle * load(p.per_radius + k) + up * sine * (by_height - F(s.lag_per_mm) * by_angle);
+        tilt = xsimd::min(xsimd::max(tilt, F(-s.max_tilt_mm)), F(s.max_tilt_mm));
+        tilt = xsimd::select(sine < F(0.05f), zero, tilt);
+        x += now.x, y += now.y;
+        mx += now.x - before.x, my += now.y - before.y;
+      }
+      const F along = mx * nx + my * ny + fz * nz - tilt;
+      const F tangential2 = xsimd::max(zero, mx * mx + my * my + fz * fz - along * along);
+      const F around = cosine_phi * my - sine_phi * mx, around2 = around * around;
+      const F cap =
+          along + F(0.5f) * (load(p.k1 + k) * xsimd::max(zero, tangential2 - around2) + load(p.k2 + k) * around2);
+      const F per_voxel(s.per_voxel);
+      const F gx = F(s.fraction[0]) + x * per_voxel, gy = F(s.fraction[1]) + y * per_voxel,
+              gz = F(s.fraction[2]) + z * per_voxel;
+      const F bx = xsimd::floor(gx), by = xsimd::floor(gy), bz = xsimd::floor(gz);
+      const I ix = to_int(bx) - I(tile.from[0]), iy = to_int(by) - I(tile.from[1]), iz = to_int(bz) - I(tile.from[2]);
+      const auto inside = (ix >= I(0)) & (ix < I(kCore)) & (iy >= I(0)) & (iy < I(kCore)) & (iz >= I(0)) &
+                          (iz < I(kCore)) & (to_int(xsimd::select(cap > zero, one, zero)) == I(1));
+      const I cell = xsimd::select(inside, (ix * I(kSide) + iy) * I(kSide) + iz, I(0));
+      const F u = gx - bx, v = gy - by, w = gz - bz;
+      const auto d = [&](int i, int j, int m) {
+        return Table<A>::gather(tile.distance, cell + I((i * kSide + j) * kSide + m));
+      };
+      const auto along_z = [&](int i, int j) {
+        const F a = d(i, j, 0);
+        return a + w * (d(i, j, 1) - a);
+      };
+      const auto along_y = [&](int i) {
+        const F a = along_z(i, 0);
+        return a + v * (along_z(i, 1) - a);
+      };
+      const F a = along_y(0), field = a + u * (along_y(1) - a);
+      cap.store_unaligned(out.cap + l);
+      field.store_unaligned(out.field + l);
+      u.store_unaligned(out.fraction[0] + l), v.store_unaligned(out.fraction[1] + l),
+          w.store_unaligned(out.fraction[2] + l);
+      xsimd::select(inside, cell, I(-1)).store_unaligned(out.cell + l);
+    }
+  }
+
+  static Thinnest thinnest(const CornerLanes& c, float flat, float corner, float least_slope) {
+    alignas(64) float each[8];
+    const F zero(0.0f), tiny(1e-12f);
+    const RoundedCutter<F> cutter{F(flat), F(corner)};
+    for (int l = 0; l < 8; l += n) {
+      // From the tip to the point.
+      const F x = -load(c.tip[0] + l), y = -load(c.tip[1] + l), z = -load(c.tip[2] + l);
+      const F rho = xsimd::sqrt(x * x + y * y);
+      const auto place = cutter.place(rho, z);
+      const auto normal = cutter.normal(place);
+      const F depth = place.distance - load(c.deflection + l);
+      const F outward = (x * F(c.normal[0]) + y * F(c.normal[1])) / xsimd::max(rho, tiny);
+      const F fall = normal.radial * outward - normal.down * F(c.normal[2]);
+      const F slope = xsimd::min(xsimd::max(fall, F(least_slope)), F(1.0f));
+      xsimd::select(load(c.valid + l) > zero, depth / slope, F(1e30f)).store_aligned(each + l);
+    }
+    Thinnest least{each[0], 0};
+    for (int l = 1; l < 8; ++l)
+      if (each[l] < least.mm) least = {each[l], l};
+    return least;
+  }
+
+  /// Deflection of the envelope's point nearest to a place.
+  static Deflection deflection_at(const LineCut& c, const LineDeflection& b, const F& x, const F& y, const F& z) {
+    return DeflectionLanes<A>::deflection_at({c.flat, c.corner, b.lag_per_mm, b.steps_per_rad}, b.deflection, I(0), x, y, z);
+  }
+
+  /// Calls f(first voxel of a vector) for all of a column from `low` up to `top`; the lowest vectors may overlap.
+  template <class Function>
+  static void for_vectors(int low, int top, Function f) {
+    for (int k = top - n; k > low - n; k -= n) f(k > 0 ? k : 0);
+  }
+
+  /// Height above the tip from which on a column at qx outside the flat comes within `reach` of the envelope.
+  static float lowest_reached(float qx, float corner, float reach) {
+    if (qx <= 0) return corner - reach;
+    const float left = reach * reach - qx * qx;
+    return left > 0 ? corner - std::sqrt(left) : corner;
+  }
+
+  static F distance(const F& rho, const F& z, float flat, float corner) {
+    return RoundedCutter<F>{F(flat), F(corner)}.distance(rho, z);
+  }
+
+  static F ramp() {
+    alignas(64) float first[n];
+    for (int l = 0; l < n; ++l) first[l] = static_cast<float>(l);
+    return F::load_aligned(first);
+  }
+
+  /// One vector of a column: takes v where it is more.
+  static bool take(float* distance, std::int32_t* stamp, const F& v, std::int32_t id) {
+    const F old = load(distance);
+    const auto cut = v > old;
+    if (!xsimd::any(cut)) return false;
+    xsimd::select(cut, v, old).store_unaligned(distance);
+    const auto bits = xsimd::select(cut, F(1.0f), F(0.0f));
+    const I ids = load(stamp);
+    xsimd::select(to_int(bits) == I(1), I(id), ids).store_unaligned(stamp);
+    return true;
+  }
+
+  /// Where the straight cutter is, seen from the columns of a line: its axis, and the first voxel that it reaches.
+  struct Columns {
+    alignas(64) float rho[LineCut::kLine];
+    alignas(64) std::int32_t low[LineCut::kLine];
+
+    /// Columns first, first + 1, ... of a vector; dx, dy, z0: from the tips, z0 of voxel 0.
+    void find(const LineCut& c, int first, const F& dx, const F& dy, const F& z0) {
+      const F zero(0.0f), corner(c.corner), reach(c.band + c.corner - c.shrink), per_voxel(1 / c.voxel);
+      const F from_axis = xsimd::sqrt(dx * dx + dy * dy), qx = from_axis - F(c.flat);
+      const F left = reach * reach - qx * qx;
+      const F lowest =
+          xsimd::select(qx <= zero, corner - reach, xsimd::select(left > zero, corner - xsimd::sqrt(left), corner));
+      const I up = to_int((lowest - z0) * per_voxel);
+      from_axis.store_unaligned(rho + first);
+      // Nowhere: above all columns.
+      const I none(LineCut::kColumns);
+      xsimd::select(to_int(xsimd::select(qx > reach, F(1.0f), zero)) == I(1), none, up).store_unaligned(low + first);
+    }
+  };
+
+  /// Column j with the straight cutter, voxel 0 at z0 above its tip.
+  static void cut_column(const LineCut& c, int j, const Columns& columns, float z0, int lowest, std::int32_t id,
+                         LineResult& result) {
+    const int low = columns.low[j] > lowest ? columns.low[j] : lowest, top = c.top[j];
+    if (low >= top) return;
+    result.tried |= 1u << j;
+    bool changed = false;
+    const F rhos(columns.rho[j]), steps = ramp() * F(c.voxel), band(c.band), shrink(c.shrink);
+    for_vectors(low, top, [&](int k) {
+      const F z = F(z0 + static_cast<float>(k) * c.voxel) + steps;
+      const F v = xsimd::min(-(distance(rhos, z, c.flat, c.corner) + shrink), band);
+      changed |= take(c.distance + j * LineCut::kColumns + k, c.stamp + j * LineCut::kColumns + k, v, id);
+    });
+    if (changed) result.changed |= 1u << j;
+  }
+
+  /// Places of columns first, first + 1, ..., from column 0.
+  static F along_y(const LineCut& c, int first) { return (F(static_cast<float>(first)) + ramp()) * F(c.voxel); }
+
+  static LineResult cut_line(const LineCut& c) {
+    LineResult result;
+    Columns columns;
+    const F dx(c.dx), z(c.z);
+    for (int j = c.first / n * n; j < c.end; j += n) columns.find(c, j, dx, F(c.dy) + along_y(c, j), z);
+    for (int j = c.first; j < c.end; ++j)
+      if (c.changeable[j] > 0) cut_column(c, j, columns, c.z, c.lowest, c.id, result);
+    return result;
+  }
+
+  static LineResult cut_winners(const LineCut& c, const LineSearch& s, const std::int32_t* id_of_tip) {
+    LineResult result;
+    Columns columns;
+    const F x(s.x);
+    for (int j = c.first / n * n; j < c.end; j += n)
+      columns.find(c, j, x - load(s.tip_x + j), along_y(c, j) - load(s.tip_y + j), -load(s.tip_z + j));
+    for (int j = c.first; j < c.end; ++j) {
+      if (!(c.changeable[j] > 0)) continue;
+      const int lowest = static_cast<int>((s.tip_z[j] - c.band) / c.voxel);  // below 0: not cut off downwards, but so
+      cut_column(c, j, columns, -s.tip_z[j], lowest > 0 ? lowest : 0, c.id + id_of_tip[s.winner[j]], result);
+    }
+    return result;
+  }
+
+  static void find_winners(const LineSearch& s) {
+    const bool ball = s.flat <= 0;
+    const F zero(0.0f), steps = ramp() * F(s.voxel);
+    for (int j = s.first; j < s.end; j += n) {
+      const F y = F(static_cast<float>(j) * s.voxel) + steps, z = load(s.z + j);
+      F best(1e30f), best_x(zero), best_y(zero), best_z(zero), winner(zero);
+      for (int c = 0; c < s.count; ++c) {
+        const int t = s.which[c];
+        const F tx(s.tips.x[t]), ty(s.tips.y[t]), tz(s.tips.z[t]);
+        const F dx = F(s.x) - tx, dy = y - ty, up = z - tz;
+        const F rho2 = dx * dx + dy * dy;
+        // Of balls the nearest centre.
+        const F below = xsimd::min(up - F(s.corner), zero);
+        const F rank = ball ? rho2 + below * below : distance(xsimd::sqrt(rho2), up, s.flat, s.corner);
+        const auto nearer = rank < best;
+        best = xsimd::select(nearer, rank, best);
+        best_x = xsimd::select(nearer, tx, best_x);
+        best_y = xsimd::select(nearer, ty, best_y);
+        best_z = xsimd::select(nearer, tz, best_z);
+        winner = xsimd::select(nearer, F(static_cast<float>(t)), winner);
+      }
+      best_x.store_unaligned(s.tip_x + j), best_y.store_unaligned(s.tip_y + j), best_z.store_unaligned(s.tip_z + j);
+      to_int(winner).store_unaligned(s.winner + j);
+    }
+  }
+
+  static LineResult cut_line_deflected(const LineCut& c, const LineDeflection& deflection) {
+    LineResult result;
+    const float per_voxel = 1 / c.voxel, dx2 = c.dx * c.dx;
+    const F steps = ramp() * F(c.voxel), band(c.band), dx(c.dx);
+    // How far a deflection moves the envelope outwards in each column; near the axis a deflection turns a place into another
+    // direction.
+    alignas(64) float slack[LineCut::kLine];
+    const F largest(deflection.largest_mm), axis_zone2(25 * deflection.largest_mm * deflection.largest_mm);
+    for (int j = 0; j < LineCut::kLine; j += n) {
+      const F dy = F(c.dy + static_cast<float>(j) * c.voxel) + steps;
+      const F at = (DeflectionLanes<A>::atan2(dy, dx) + F(3.14159265f)) * F(static_cast<float>(deflection.sectors) / 6.28318531f);
+      const I sector = xsimd::min(xsimd::max(to_int(at), I(0)), I(deflection.sectors - 1));
+      const F outward = xsimd::min(Table<A>::gather(deflection.outward_mm, sector), largest);
+      xsimd::select(F(dx2) + dy * dy > axis_zone2, outward, largest).store_aligned(slack + j);
+    }
+    for (int j = 0; j < LineCut::kColumns; ++j) {
+      if (!(c.changeable[j] > 0)) continue;
+      const float y = c.dy + static_cast<float>(j) * c.voxel, reach = c.corner + c.band + slack[j];
+      const float rho = std::sqrt(dx2 + y * y), qx = rho - c.flat;
+      if (qx > reach) continue;
+      const int up = static_cast<int>((lowest_reached(qx, c.corner, reach) - c.z) * per_voxel);
+      const int low = up > c.lowest ? up : c.lowest, top = c.top[j];
+      if (low >= top) continue;
+      const F dy(y), rhos(rho), outwards(slack[j]);
+      bool changed = false;
+      for_vectors(low, top, [&](int k) {
+        float* stock = c.distance + j * LineCut::kColumns + k;
+        const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
+        const F most = xsimd::min(outwards - distance(rhos, z, c.flat, c.corner), band);
+        const F old = load(stock);
+        if (!xsimd::any(most > old)) return;
+        result.tried |= 1u << j;
+        Deflection s = deflection_at(c, deflection, dx, dy, z);
+        s = deflection_at(c, deflection, dx - s.x, dy - s.y, z);
+        const F x = dx - s.x, yy = dy - s.y;
+        const F v = xsimd::min(-distance(xsimd::sqrt(x * x + yy * yy), z, c.flat, c.corner), band);
+        // Where the bound says no, rounding must not say yes.
+        changed |=
+            take(stock, c.stamp + j * LineCut::kColumns + k, xsimd::min(v, xsimd::select(most > old, v, old)), c.id);
+      });
+      if (changed) result.changed |= 1u << j;
+    }
+    return result;
+  }
+
+  static constexpr Kernels table() {
+    return {n, &read_points, &thinnest, &cut_line, &cut_line_deflected, &cut_winners, &find_winners};
+  }
+};
+
+}  // namespace
+}  // namespace camber::removal::upright

@@ -1,0 +1,61 @@
+#pragma once
+// Marks of deflected rounded cylinders on the surface (removal/form_error/deflected_envelope.h), in vectors as wide as the processor has
+// them. Every lane does the same operations in the same order whatever the width, so results do not depend on it.
+#include <cstdint>
+
+#include "removal/simd/upright_kernels.h"
+
+namespace camber::removal::upright {
+
+/// Surface points, each beside one deflected stamp.
+struct MarkLanes {
+  static constexpr int kLanes = 8;
+  int count;               ///< a multiple of kLanes
+  const float *x, *y, *z;  ///< of the point, from the stamp's tip, mm
+  const float *nx, *ny, *nz;
+  const float* highest;       ///< mm
+  const float* largest;       ///< of the stamp's deflections, mm
+  const std::int32_t* deflection;  ///< of the stamp's row, deflections (pairs of values) from the first
+  float* height;              ///< out, mm
+};
+
+/// The deflected cutter; `rows.now` is the first row.
+struct MarkTool {
+  DeflectionRow rows;
+  float flat, corner;
+  float lag_per_mm, steps_per_rad;
+};
+
+/// Undeflected cutters side by side: whole vectors of MarkLanes::kLanes, the last filled up with reach_mm < 0.
+struct CutterLanes {
+  int count;
+  const float *x, *y, *z;  ///< of the tips, from some origin, mm
+  const float* reach;      ///< how near a place must be to count, mm
+  float flat, corner;
+};
+
+/// Cutters near a place.
+struct NearCutters {
+  int nearest;           ///< negative: none is within its reach
+  int count;             ///< within their reach
+  std::int32_t* within;  ///< room for all
+};
+
+struct MarkKernels {
+  /// Which cutters a place is within the reach of, and the nearest of all.
+  void (*find_near)(const CutterLanes& cutters, float x, float y, float z, NearCutters& out);
+  /// Keeps those of a list that another place is within the reach of; returns how many. The list has room up to a
+  /// multiple of MarkLanes::kLanes.
+  int (*keep_near)(const CutterLanes& cutters, float x, float y, float z, std::int32_t* list, int count);
+  /// DeflectedEnvelope::height_mm of each.
+  void (*heights)(const MarkLanes& marks, const MarkTool& tool);
+};
+
+/// Those of the widest vectors that this processor has.
+const MarkKernels& mark_kernels();
+extern const MarkKernels kBaseMarkKernels;  ///< on every processor
+#if defined(__x86_64__)
+extern const MarkKernels kAvx2MarkKernels;
+#endif
+
+}  // namespace camber::removal::upright

@@ -1,0 +1,203 @@
+#include "removal/tool_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camber::removal {
+
+using feedmodel::TimedSample;
+
+namespace {
+constexpr double kStill_mm = 1e-6;
+}
+
+bool in_operations(const nc::Interpretation& program, const nc::Move& m, const machine::Operations& operations) {
+  const int tool = program.state_of(m).tool;
+  if (!operations.tools.empty() && std::ranges::find(operations.tools, tool) == operations.tools.end()) return false;
+  const int line = static_cast<int>(m.block) + 1;
+  return operations.blocks.empty() ||
+         std::ranges::any_of(operations.blocks, [&](const auto& r) { return line >= r[0] && line <= r[1]; });
+}
+
+std::vector<bool> selected_moves(const nc::Interpretation& program, const machine::Operations& operations) {
+  const auto wanted = [&](const nc::Move& m) {
+    if (m.kind != nc::MoveKind::linear && m.kind != nc::MoveKind::arc) return false;
+    return !m.reference && !m.canned && in_operations(program, m, operations);
+  };
+  std::vector<bool> out;
+  out.reserve(program.moves.size());
+  for (const auto& m : program.moves) out.push_back(wanted(m));
+  return out;
+}
+
+StampBuilder::StampBuilder(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools,
+                           std::vector<bool> selected, std::vector<HoleMove> holes)
+    : program_(program), tools_(tools), selected_(std::move(selected)), holes_(std::move(holes)), tracker_(program) {}
+
+void StampBuilder::add(std::span<const TimedSample> samples) {
+  for (const TimedSample& s : samples) add(s);
+}
+
+void StampBuilder::add(const TimedSample& sample) {
+  const feedmodel::PathPlace place = tracker_(sample);
+  for (; next_move_ <= place.move; ++next_move_)
+    if (program_.moves[next_move_].kind == nc::MoveKind::rapid) path_.rapids.push_back({next_move_, sample.t_s});
+  for (; next_hole_ < place.move; ++next_hole_)
+    if (makes_hole(next_hole_)) finish_hole(next_hole_, sample.t_s);
+  if (makes_hole(place.move)) {
+    drill(sample, place);
+  } else if (!selected_[place.move]) {
+    cutting_ = false;
+  } else {
+    const nc::ModalState& state = program_.state_of(program_.moves[place.move]);
+    if (!cutting_ || path_.runs.empty() || path_.runs.back().tool != state.tool ||
+        path_.runs.back().kind != RunKind::milling) {
+      next_s_ = sample.t_s;
+      cutting_ = false;
+    }
+    const double passing = passing_s(place.move);
+    for (; next_s_ <= sample.t_s; next_s_ += passing) stamp_at(next_s_, sample, place, state.tool);
+  }
+  last_ = sample;
+  have_last_ = true;
+}
+
+void StampBuilder::stamp_at(double t_s, const TimedSample& sample, const feedmodel::PathPlace& place, int tool) {
+  Stamp stamp;
+  stamp.t_s = t_s;
+  stamp.share = place.u;
+  stamp.move = place.move;
+  stamp.first = !cutting_;
+  const double span = have_last_ ? sample.t_s - last_.t_s : 0;
+  const double u = span > 0 ? std::clamp((t_s - last_.t_s) / span, 0.0, 1.0) : 1.0;
+  stamp.pose = nc::pose_at(program_, program_.moves[place.move], place.u);
+  stamp.pose.tip_mm = have_last_ ? Vec3((1 - u) * last_.position_mm + u * sample.position_mm) : sample.position_mm;
+  if (cutting_) {
+    stamp.feed_per_tooth_mm = stamp.pose.tip_mm - path_.stamps.back().pose.tip_mm;
+    if (stamp.feed_per_tooth_mm.norm() < kStill_mm) return;
+  } else {
+    stamp.feed_per_tooth_mm = sample.velocity_mm_per_s * passing_s(place.move);
+  }
+  append(stamp, tool, RunKind::milling);
+}
+
+void StampBuilder::append(const Stamp& stamp, int tool, RunKind kind) {
+  if (path_.runs.empty() || path_.runs.back().tool != tool || path_.runs.back().kind != kind)
+    path_.runs.push_back({tool, path_.stamps.size(), 0, kind});
+  ++path_.runs.back().count;
+  path_.stamps.push_back(stamp);
+  cutting_ = true;
+}
+
+double StampBuilder::passing_s(std::uint32_t move) const {
+  const nc::ModalState& state = program_.state_of(program_.moves[move]);
+  return 60.0 / (state.spindle_speed_rpm * tools_.at(state.tool).flutes);
+}
+
+void StampBuilder::drill(const TimedSample& sample, const feedmodel::PathPlace& place) {
+  if (!cutting_ || path_.stamps.back().move != place.move) {
+    next_s_ = sample.t_s;
+    hole_fraction_ = place.u;
+    cutting_ = false;
+  }
+  // After a rapid the following error of the feed model still shrinks; a cycle has waited for it.
+  const nc::Move& m = program_.moves[place.move];
+  const double passing = passing_s(place.move), span = have_last_ ? sample.t_s - last_.t_s : 0;
+  const double feed_fraction = m.feed_mm_per_s * passing / (m.end_mm - m.start_mm).norm();
+  for (; next_s_ <= sample.t_s; next_s_ += passing) {
+    const double u = span > 0 ? std::clamp((next_s_ - last_.t_s) / span, 0.0, 1.0) : 1.0;
+    const double share = (1 - u) * hole_fraction_ + u * place.u;
+    hole_stamp(place.move, cutting_ ? std::min(share, path_.stamps.back().share + feed_fraction) : share, next_s_);
+  }
+  hole_fraction_ = place.u;
+}
+
+/// The rest of the way to the bottom, in steps of the programmed feed per tooth.
+void StampBuilder::finish_hole(std::uint32_t move, double t_s) {
+  const nc::Move& m = program_.moves[move];
+  const bool begun = cutting_ && path_.stamps.back().move == move;
+  if (!begun) cutting_ = false;
+  const double length = (m.end_mm - m.start_mm).norm(), from = begun ? path_.stamps.back().share : 0.0;
+  const double feed = m.feed_mm_per_s * passing_s(move);
+  const int steps = feed > 0 ? std::max(1, static_cast<int>(std::ceil((1 - from) * length / feed - 1e-9))) : 1;
+  for (int i = begun ? 1 : 0; i <= steps; ++i) hole_stamp(move, from + (1 - from) * i / steps, t_s);
+  cutting_ = false;
+}
+
+void StampBuilder::hole_stamp(std::uint32_t move, double share, double t_s) {
+  const nc::Move& m = program_.moves[move];
+  const Vec3 way = m.end_mm - m.start_mm;
+  Stamp stamp;
+  stamp.t_s = t_s;
+  stamp.share = share;
+  stamp.move = move;
+  stamp.first = !cutting_;
+  stamp.pose = {m.start_mm + share * way, nc::pose_at(program_, m, share).axis};
+  stamp.feed_per_tooth_mm = cutting_ ? Vec3(stamp.pose.tip_mm - path_.stamps.back().pose.tip_mm)
+                                     : Vec3(way.normalized() * m.feed_mm_per_s * passing_s(move));
+  if (cutting_ && stamp.feed_per_tooth_mm.norm() < kStill_mm) return;
+  append(stamp, program_.state_of(m).tool, holes_[move] == HoleMove::tapped ? RunKind::tapping : RunKind::drilling);
+}
+
+StampPath StampBuilder::take() {
+  for (; next_hole_ < holes_.size(); ++next_hole_)
+    if (makes_hole(next_hole_)) finish_hole(next_hole_, last_.t_s);
+  return std::move(path_);
+}
+
+namespace {
+
+constexpr double kSame_mm = 1e-6;  // rounding of a turned frame
+
+bool same_place(const Vec3& a, const Vec3& b) { return (a - b).head<2>().norm() <= kSame_mm; }
+
+/// Down (-1) or up (1) along the tool's axis; 0: not along it.
+int straight(const nc::Move& m) {
+  if (!same_place(m.start_mm, m.end_mm) || m.start_mm.z() == m.end_mm.z()) return 0;
+  return m.end_mm.z() < m.start_mm.z() ? -1 : 1;
+}
+
+bool taps(const nc::Move& m) { return m.cycle == 74 || m.cycle == 84; }
+
+}  // namespace
+
+std::vector<HoleMove> hole_moves(const nc::Interpretation& program, const machine::Operations& operations,
+                                 const std::map<int, machine::Tool>& tools) {
+  std::vector<HoleMove> out(program.moves.size(), HoleMove::none);
+  const nc::Move* hole = nullptr;  // the last move down
+  for (std::size_t i = 0; i < program.moves.size(); ++i) {
+    const nc::Move& m = program.moves[i];
+    if (m.kind != nc::MoveKind::linear || m.reference || !in_operations(program, m, operations)) continue;
+    const int way = straight(m);
+    if (m.cycle == 0) {
+      const auto tool = tools.find(program.state_of(m).tool);
+      if (way == 0 || tool == tools.end() || tool->second.type != machine::ToolType::drill) continue;
+      out[i] = way < 0 ? HoleMove::drilled : HoleMove::way_out;
+    } else if (way < 0) {
+      out[i] = taps(m) ? HoleMove::tapped : HoleMove::drilled;
+    } else if (way > 0 && hole && hole->block == m.block && same_place(hole->end_mm, m.start_mm)) {
+      out[i] = HoleMove::way_out;
+    } else {
+      out[i] = HoleMove::not_carved;
+    }
+    if (makes_hole(out[i])) hole = &m;
+  }
+  return out;
+}
+
+HoleCount count_holes(const nc::Interpretation& program, const std::vector<HoleMove>& holes) {
+  HoleCount count;
+  const nc::Move* last = nullptr;
+  for (std::size_t i = 0; i < holes.size(); ++i) {
+    if (!makes_hole(holes[i])) continue;
+    const nc::Move& m = program.moves[i];
+    const bool deeper = last && same_place(last->end_mm, m.start_mm) &&
+                        program.state_of(*last).tool == program.state_of(m).tool &&
+                        (m.cycle == 0 || last->block == m.block);
+    if (!deeper) ++(holes[i] == HoleMove::tapped ? count.tapped : count.drilled);
+    last = &m;
+  }
+  return count;
+}
+
+}  // namespace camber::removal

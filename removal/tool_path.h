@@ -1,0 +1,112 @@
+#pragma once
+// The tool's path as removal sees it: stamps, one tooth passing apart, and the moves that make holes.
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "base/tool_pose.h"
+#include "feedmodel/path_tracker.h"
+#include "feedmodel/timed_path.h"
+#include "machine/job.h"
+#include "nc/move.h"
+
+namespace camber::removal {
+
+/// The cutter at one tooth passing.
+struct Stamp {
+  double t_s = 0;
+  ToolPose pose;
+  Vec3 feed_per_tooth_mm = Vec3::Zero();  ///< motion since the stamp before, one tooth passing earlier
+  double share = 0;                       ///< of `move`'s length at which the tip stands, 0 to 1
+  bool first = false;                     ///< after a rapid, a dwell or a tool change: no tooth passed just before
+  std::uint32_t move = 0;  ///< index into Interpretation::moves, where the tip is (not what is commanded)
+};
+
+enum class HoleMove : std::uint8_t {
+  none,        ///< of no hole, or of none of the job's operations
+  drilled,     ///< straight down: carved, with chips and forces
+  tapped,      ///< G74, G84: carved; a tap's chip is none of ours
+  way_out,     ///< fed straight up out of the hole just made: nothing is left to cut
+  not_carved,  ///< G87 (bored upwards, from below) and cycles along another axis than the tool's
+};
+constexpr bool makes_hole(HoleMove m) { return m == HoleMove::drilled || m == HoleMove::tapped; }
+
+/// One a move of the program. A cycle's feed moves count for every cutter; of moves outside cycles, straight ones
+/// up and down count where the job says that the tool is a drill (cycles written out by a CAM program).
+std::vector<HoleMove> hole_moves(const nc::Interpretation& program, const machine::Operations& operations,
+                                 const std::map<int, machine::Tool>& tools);
+
+/// How many holes such moves make: pecks of one place and block are one hole.
+struct HoleCount {
+  std::size_t drilled = 0, tapped = 0;
+};
+HoleCount count_holes(const nc::Interpretation& program, const std::vector<HoleMove>& holes);
+
+enum class RunKind : std::uint8_t { milling, drilling, tapping };
+
+/// Stamps from ... from + count - 1 are cut by one tool, one after the other.
+struct ToolRun {
+  int tool = 0;
+  std::size_t from = 0, count = 0;
+  RunKind kind = RunKind::milling;
+};
+
+/// When a rapid begins; rapids too short to hold a sample take the time of the next one.
+struct RapidStart {
+  std::uint32_t move = 0;  ///< index into Interpretation::moves
+  double t_s = 0;
+};
+
+struct StampPath {
+  std::vector<Stamp> stamps;
+  std::vector<ToolRun> runs;
+  std::vector<RapidStart> rapids;  ///< in order
+};
+
+/// True for a move of the job's operations.
+bool in_operations(const nc::Interpretation& program, const nc::Move& move, const machine::Operations& operations);
+
+/// Which moves are milled: lines and arcs of the job's operations whose place in the work frame is known. Drilling
+/// cycles are not among them (hole_moves()).
+std::vector<bool> selected_moves(const nc::Interpretation& program, const machine::Operations& operations);
+
+/// Takes the samples of predict_feed in order and sets a stamp every tooth passing, 60 / (rpm * flutes) s, while
+/// the actual position lies on a selected move. Stamps that have not moved since the one before are left out.
+/// Every selected move's tool must be in `tools` and its spindle must turn.
+///
+/// Moves that make holes get stamps as well, in runs of their own: on the commanded axis, and one at the commanded
+/// bottom, where a cycle waits for the axis.
+class StampBuilder {
+ public:
+  StampBuilder(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools, std::vector<bool> selected,
+               std::vector<HoleMove> holes = {});
+  void add(std::span<const feedmodel::TimedSample> samples);
+  StampPath take();
+
+ private:
+  void add(const feedmodel::TimedSample& sample);
+  void stamp_at(double t_s, const feedmodel::TimedSample& sample, const feedmodel::PathPlace& place, int tool);
+  void drill(const feedmodel::TimedSample& sample, const feedmodel::PathPlace& place);
+  void finish_hole(std::uint32_t move, double t_s);
+  void hole_stamp(std::uint32_t move, double share, double t_s);
+  void append(const Stamp& stamp, int tool, RunKind kind);
+  bool makes_hole(std::uint32_t move) const { return !holes_.empty() && removal::makes_hole(holes_[move]); }
+  double passing_s(std::uint32_t move) const;
+
+  const nc::Interpretation& program_;
+  const std::map<int, machine::Tool>& tools_;
+  std::vector<bool> selected_;
+  std::vector<HoleMove> holes_;
+  feedmodel::PathTracker tracker_;
+  StampPath path_;
+  feedmodel::TimedSample last_;
+  bool have_last_ = false, cutting_ = false;
+  double next_s_ = 0;
+  std::uint32_t next_move_ = 0;  ///< whose beginning was not met yet
+  std::uint32_t next_hole_ = 0;  ///< move whose hole, if any, is not finished yet
+  double hole_fraction_ = 0;        ///< of next_hole_'s length, at the last sample
+};
+
+}  // namespace camber::removal

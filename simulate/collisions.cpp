@@ -1,0 +1,309 @@
+#include "simulate/collisions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "simulate/cut.h"
+#include "simulate/tool_outline.h"
+
+namespace camber::simulate {
+namespace {
+
+constexpr double kStep_mm = 0.5;  ///< along paths and on outlines
+
+using Part = OutlineRing::Part;
+
+/// One tool's outline against the stock.
+class Feeler {
+ public:
+  Feeler(const machine::Tool& tool, const removal::Stock& stock)
+      : stock_(stock), rings_(tool_outline(tool, kStep_mm, 1e6)) {
+    for (const auto& r : rings_) {
+      const double reach = r.radius_mm;
+      if (r.part != Part::cutter) lowest_shank_mm_ = std::min(lowest_shank_mm_, r.height_mm);
+      widest_mm_ = std::max(widest_mm_, reach);
+    }
+  }
+
+  /// Whether the tool, or only its shank and holder, comes as low as the stock's top and beside it.
+  bool near(const Vec3& tip, bool with_cutter) const {
+    const Vec3 &lo = stock_.min_mm(), &hi = stock_.max_mm();
+    return tip.z() + (with_cutter ? 0 : lowest_shank_mm_) < hi.z() && tip.x() + widest_mm_ > lo.x() &&
+           tip.x() - widest_mm_ < hi.x() && tip.y() + widest_mm_ > lo.y() && tip.y() - widest_mm_ < hi.y();
+  }
+
+  /// Whether the tool, drawn up along its axis, stays in the space that it and its shank take or have taken.
+  bool widens_upwards() const {
+    constexpr double kRounding_mm = 1e-9;
+    return std::ranges::adjacent_find(rings_, [](const auto& below, const auto& above) {
+             return above.radius_mm < below.radius_mm - kRounding_mm;
+           }) == rings_.end();
+  }
+
+  /// A point of the outline that is in material by more than a voxel.
+  std::optional<std::pair<Part, Vec3>> touch(const removal::Stock::Probe& probe, const Vec3& tip,
+                                             bool with_cutter) const {
+    const double allowed = stock_.voxel_mm(), blur = 0.87 * stock_.voxel_mm();
+    const double deep = std::min(allowed + 0.5 * stock_.voxel_mm(), 0.9 * stock_.band_mm());
+    for (const auto& ring : rings_) {
+      if ((!with_cutter && ring.part == Part::cutter) || tip.z() + ring.height_mm > stock_.max_mm().z()) continue;
+      const int n = std::max(1, static_cast<int>(std::ceil(2 * kPi * ring.radius_mm / kStep_mm)));
+      for (int i = 0; i < n; ++i) {
+        const double phi = 2 * kPi * i / n;
+        const Vec3 p = tip + Vec3(ring.radius_mm * std::cos(phi), ring.radius_mm * std::sin(phi), ring.height_mm);
+        if (probe.nearest(p) > -deep + blur || stock_.distance_mm(p) > -allowed) continue;
+        return std::pair(ring.part, p);
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const removal::Stock& stock_;
+  std::vector<OutlineRing> rings_;
+  double lowest_shank_mm_ = 1e9, widest_mm_ = 0;
+};
+
+/// Rapids that are looked at, and which of their ends are known.
+struct RapidCheck {
+  std::uint32_t move = 0;
+  double t_s = 0;
+  std::size_t before_stamp = 0;  ///< it happens before this stamp
+  bool start_known = true;
+};
+
+/// Tells the rapids of cycles that stay in their hole, where the tool has been just before; there G76 also leaves the
+/// hole's axis, which its tool, as a turning outline, could not.
+class HoleWatch {
+ public:
+  bool in_hole(const nc::Move& m) {
+    if (m.cycle == 0) return false;
+    if (m.cycle == 87) return true;  // beside the axis all the way
+    if (m.kind == nc::MoveKind::linear && m.end_mm.z() < m.start_mm.z() && (m.block != block_ || !reaches(m))) {
+      block_ = m.block;
+      entry_z_mm_ = m.start_mm.z();
+      place_ = m.start_mm.head<2>();
+    }
+    constexpr double kRounding_mm = 1e-6;
+    if (m.block != block_ || (m.cycle != 76 && m.start_mm.head<2>() != place_)) return false;
+    return std::min(m.start_mm.z(), m.end_mm.z()) < entry_z_mm_ - kRounding_mm;
+  }
+
+ private:
+  /// Another peck of the hole.
+  bool reaches(const nc::Move& m) const { return m.start_mm.head<2>() == place_; }
+  std::uint32_t block_ = std::numeric_limits<std::uint32_t>::max();
+  double entry_z_mm_ = 0;
+  Vec2 place_ = Vec2::Zero();
+};
+
+/// G28, G30, G53: its words are no places of the work frame.
+bool goes_to_reference(const SimulatedProgram& program, const nc::Move& m) {
+  return std::ranges::any_of(program.text.words_of(m.block), [](const nc::Word& word) {
+    return word.letter == 'G' && (word.value == 28 || word.value == 30 || word.value == 53);
+  });
+}
+
+void learn_words(const SimulatedProgram& program, const nc::Move& m, std::array<bool, 3>& known) {
+  for (const auto& word : program.text.words_of(m.block))
+    if (word.letter >= 'X' && word.letter <= 'Z') known[static_cast<std::size_t>(word.letter - 'X')] = true;
+}
+
+std::vector<RapidCheck> rapids_of(const SimulatedProgram& program) {
+  std::vector<RapidCheck> out;
+  HoleWatch watch;
+  std::array<bool, 3> known{};
+  int tool = -1;
+  const auto& stamps = program.path.stamps;
+  std::size_t next = 0;
+  for (std::uint32_t i = 0; i < program.moves.moves.size(); ++i) {
+    const nc::Move& m = program.moves.moves[i];
+    while (next < stamps.size() && stamps[next].move < i) ++next;
+    bool start_known = known[0] && known[1] && known[2];
+    if (m.reference) {
+      if (goes_to_reference(program, m))
+        known = {};
+      else  // on the way back the words tell the end
+        learn_words(program, m, known);
+      tool = program.moves.state_of(m).tool;
+      continue;
+    }
+    // A tool change may take the axes anywhere.
+    if (program.moves.state_of(m).tool != tool) start_known = false;
+    tool = program.moves.state_of(m).tool;
+    for (std::size_t a = 0; a < 3; ++a) known[a] = known[a] || m.start_mm[a] != m.end_mm[a];
+    learn_words(program, m, known);
+    if (m.kind != nc::MoveKind::rapid) known = {true, true, true};
+    if (watch.in_hole(m) || m.kind != nc::MoveKind::rapid || !(known[0] && known[1] && known[2])) continue;
+    const double t = next < stamps.size() ? stamps[next].t_s : stamps.empty() ? 0 : stamps.back().t_s;
+    const auto timed = std::ranges::lower_bound(program.path.rapids, i, {}, &removal::RapidStart::move);
+    const bool found = timed != program.path.rapids.end() && timed->move == i;
+    out.push_back({i, found ? timed->t_s : t, next, start_known});
+  }
+  return out;
+}
+
+/// The sweep, stretch by stretch, with what is looked at between.
+class Search {
+ public:
+  Search(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank)
+      : job_(job), program_(program), stock_(blank) {
+    for (const auto& [number, tool] : job.tools) feelers_.try_emplace(number, tool, stock_);
+    for (const RapidCheck& r : rapids_of(program))
+      if (comes_near(r)) rapids_.push_back(r);
+    for (const auto& run : program.path.runs)
+      for (std::size_t k = run.from; k < run.from + run.count; ++k)
+        if (feelers_.at(run.tool).near(program.path.stamps[k].pose.tip_mm, false)) last_needed_ = k + 1;
+    if (!rapids_.empty()) last_needed_ = std::max(last_needed_, rapids_.back().before_stamp);
+  }
+
+  std::vector<Collision> run() {
+    auto rapid = rapids_.begin();
+    for (const auto& run : program_.path.runs) {
+      const std::size_t end = run.from + run.count;
+      for (std::size_t at = run.from; at < end && (at < last_needed_ || rapid != rapids_.end());) {
+        for (; rapid != rapids_.end() && rapid->before_stamp <= at; ++rapid) feel_rapid(*rapid);
+        std::size_t to = stretch_end(run, at);
+        if (rapid != rapids_.end()) to = std::min(to, std::max(at + 1, rapid->before_stamp));
+        feel_stretch(run.tool, at, to);
+        sweep(stock_, job_.tools.at(run.tool), std::span(program_.path.stamps).subspan(at, to - at),
+              static_cast<std::int32_t>(at), 0);
+        at = to;
+      }
+    }
+    for (; rapid != rapids_.end(); ++rapid) feel_rapid(*rapid);
+    return std::move(found_);
+  }
+
+ private:
+  bool comes_near(const RapidCheck& r) const {
+    const nc::Move& m = program_.moves.moves[r.move];
+    const auto feeler = feelers_.find(program_.moves.state_of(m).tool);
+    if (feeler == feelers_.end()) return false;
+    const Vec3 way = m.end_mm - m.start_mm;
+    if (r.start_known && way.x() == 0 && way.y() == 0 && way.z() >= 0 && feeler->second.widens_upwards()) return false;
+    bool near = false;
+    for_places(r, [&](const Vec3& tip) { near = near || feeler->second.near(tip, true); });
+    return near;
+  }
+
+  template <class Function>
+  void for_places(const RapidCheck& r, Function f) const {
+    const nc::Move& m = program_.moves.moves[r.move];
+    const int n =
+        r.start_known ? std::max(1, static_cast<int>(std::ceil((m.end_mm - m.start_mm).norm() / kStep_mm))) : 0;
+    for (int i = 0; i <= n; ++i) f(n == 0 ? m.end_mm : Vec3(m.start_mm + (m.end_mm - m.start_mm) * i / n));
+  }
+
+  void feel_rapid(const RapidCheck& r) {
+    const nc::Move& m = program_.moves.moves[r.move];
+    const int tool = program_.moves.state_of(m).tool;
+    const Feeler& feeler = feelers_.at(tool);
+    const removal::Stock::Probe probe(stock_);
+    bool hit = false;
+    for_places(r, [&](const Vec3& tip) {
+      if (hit || !feeler.near(tip, true)) return;
+      if (const auto touch = feeler.touch(probe, tip, true)) {
+        hit = true;
+        add({static_cast<Collision::Part>(touch->first), true, r.t_s, r.move, tool, touch->second});
+      }
+    });
+  }
+
+  void feel_stretch(int tool, std::size_t from, std::size_t to) {
+    const Feeler& feeler = feelers_.at(tool);
+    const removal::Stock::Probe probe(stock_);
+    Vec3 last = Vec3::Constant(1e9);
+    for (std::size_t k = from; k < to; ++k) {
+      const removal::Stamp& s = program_.path.stamps[k];
+      if ((s.pose.tip_mm - last).norm() < kStep_mm || !feeler.near(s.pose.tip_mm, false)) continue;
+      last = s.pose.tip_mm;
+      if (const auto touch = feeler.touch(probe, s.pose.tip_mm, false))
+        add({static_cast<Collision::Part>(touch->first), false, s.t_s, s.move, tool, touch->second});
+    }
+  }
+
+  /// Within a stretch the tip rises and falls by less than half the flutes: what stands at the shank's height was not
+  /// for the cutter of the same stretch to remove.
+  std::size_t stretch_end(const removal::ToolRun& run, std::size_t from) const {
+    constexpr std::size_t kMax = 10000;
+    const double range = 0.5 * cutter_end_mm(job_.tools.at(run.tool));
+    const auto& stamps = program_.path.stamps;
+    double lo = stamps[from].pose.tip_mm.z(), hi = lo;
+    std::size_t to = from + 1;
+    for (; to < std::min(run.from + run.count, from + kMax); ++to) {
+      lo = std::min(lo, stamps[to].pose.tip_mm.z());
+      hi = std::max(hi, stamps[to].pose.tip_mm.z());
+      if (hi - lo > range) break;
+    }
+    return to;
+  }
+
+  void add(const Collision& c) {
+    const auto block = program_.moves.moves[c.move].block;
+    if (!found_.empty() && program_.moves.moves[found_.back().move].block == block && found_.back().part == c.part)
+      return;
+    found_.push_back(c);
+  }
+
+  const machine::Job& job_;
+  const SimulatedProgram& program_;
+  removal::Stock stock_;
+  std::map<int, Feeler> feelers_;
+  std::vector<RapidCheck> rapids_;
+  std::size_t last_needed_ = 0;
+  std::vector<Collision> found_;
+};
+
+/// Something that cuts was not simulated, so stock may stand that the real machine has removed.
+bool motion_left_out(const SimulatedProgram& program) {
+  for (std::size_t i = 0; i < program.moves.moves.size(); ++i) {
+    const nc::Move& m = program.moves.moves[i];
+    const bool cuts = m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc;
+    const removal::HoleMove hole = program.holes[i];
+    const bool carved = removal::makes_hole(hole) || hole == removal::HoleMove::way_out;
+    if (cuts && !m.reference && !program.selected[i] && !carved) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<Collision> find_collisions(const machine::Job& job, const SimulatedProgram& program,
+                                       const removal::Stock& blank) {
+  return Search(job, program, blank).run();
+}
+
+void check_collisions(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+                      Diagnostics& diagnostics) {
+  const auto kind = job.simulation.collisions.value_or(motion_left_out(program) ? machine::Collisions::warning
+                                                                                : machine::Collisions::error);
+  if (kind == machine::Collisions::off) return;
+  constexpr std::size_t kMax = 10;
+  const auto found = find_collisions(job, program, blank);
+  const auto severity = kind == machine::Collisions::error ? Severity::error : Severity::warning;
+  for (std::size_t i = 0; i < std::min(found.size(), kMax); ++i) {
+    const Collision& c = found[i];
+    const char* part = c.part == Collision::Part::cutter  ? "cutter"
+                       : c.part == Collision::Part::shank ? "shank"
+                                                          : "holder";
+    const std::size_t offset = program.text.blocks[program.moves.moves[c.move].block].offset;
+    diagnostics.add(program.text.source.diagnostic(
+        severity, offset,
+        fmt::format("{} of T{} in stock at X{:.2f} Y{:.2f} Z{:.2f}, {:.2f} s into the program{}; {} was expected",
+                    c.rapid ? fmt::format("rapid through material: the {}", part) : fmt::format("the {}", part), c.tool,
+                    c.place_mm.x(), c.place_mm.y(), c.place_mm.z(), c.t_s,
+                    i + 1 == kMax && found.size() > kMax ? fmt::format(" ({} more)", found.size() - kMax) : "",
+                    c.rapid ? "a rapid clear of the stock" : "a longer overhang or less depth"),
+        c.rapid                            ? "collision-rapid"
+        : c.part == Collision::Part::shank ? "collision-shank"
+                                           : "collision-holder"));
+  }
+}
+
+}  // namespace camber::simulate

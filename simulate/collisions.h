@@ -1,0 +1,44 @@
+#pragma once
+// Rapids through material; shank and holder against stock.
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "simulate/predict.h"
+#include "machine/job.h"
+#include "removal/stock.h"
+
+namespace camber::simulate {
+
+struct Collision {
+  enum class Part { cutter, shank, holder };  ///< a cutter collides in rapids only; the neck counts as shank
+  Part part = Part::cutter;
+  bool rapid = false;
+  double t_s = 0;          ///< a rapid: when it begins
+  std::uint32_t move = 0;  ///< index into Interpretation::moves
+  int tool = 0;
+  Vec3 place_mm = Vec3::Zero();  ///< of the tool's outline, in material
+};
+
+/// First collision of every block, in order of time.
+///
+/// The undeflected cutter is swept through a copy of the blank; a rapid is looked at when its turn comes, shank, neck
+/// and holder before the stretch of path is cut that takes them there: the cutter below them must have made room long
+/// before. What lies above the stock, or beside it, is not looked at, and nothing is swept where no part of a tool
+/// ever comes so low. Rapids count as straight lines; leading rapids, those after a tool change and after a reference
+/// point whose start is not known count at their end; a rapid straight up is free where no part of the tool is narrower
+/// than what is below it. Less than a voxel of depth is no collision; places every half
+/// millimetre of path, half a millimetre apart on the outline. Rapids of a cycle within its hole are free: the tool has
+/// just been there.
+std::vector<Collision> find_collisions(const machine::Job& job, const SimulatedProgram& program,
+                                       const removal::Stock& blank);
+
+/// The same as diagnostics at the blocks: [collision-rapid], [collision-shank], [collision-holder]. What they are the
+/// job says; where it does not, errors, or warnings if a part of the program's motion was left out (operations,
+/// cycles that are not carved): material may stand that would be gone.
+void check_collisions(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+                      Diagnostics& diagnostics);
+
+}  // namespace camber::simulate

@@ -1,0 +1,347 @@
+#include "simulate/cut.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include "deflection/beam.h"
+#include "deflection/static_cut.h"
+#include "deflection/tooth_marks.h"
+#include "removal/engagement.h"
+
+namespace camber::simulate {
+
+using removal::EnvelopeGrid;
+using removal::DeflectionTable;
+using removal::Stamp;
+using removal::Stock;
+
+namespace {
+
+/// Height above the tip up to which the cutter can meet material anywhere on its path.
+double engaged_top_mm(const Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps) {
+  double lowest = stock.max_mm().z();
+  for (const auto& s : stamps) lowest = std::min(lowest, s.pose.tip_mm.z());
+  const double cutting = tool.flute_length_mm.value_or(tool.overhang_mm);
+  return std::clamp(stock.max_mm().z() - lowest + stock.voxel_mm(), stock.voxel_mm(), cutting);
+}
+
+/// Height above the tip at which the profile turns upright: above it nothing cuts straight down.
+double wall_height_mm(const machine::Tool& tool) {
+  constexpr double kUpright = 1e-9;
+  const removal::Profile& profile = removal::shape_of(tool).profile;
+  for (const auto& piece : profile.pieces())
+    if (!piece.arc && piece.normal.x() > 1 - kUpright) return piece.start.y();
+  return std::numeric_limits<double>::infinity();
+}
+
+/// The envelope at which chips are sampled.
+EnvelopeGrid sampled_envelope(const Stock& stock, const machine::Tool& tool, double top_mm, const CutOptions& options) {
+  if (options.drilling)
+    return removal::make_envelope(tool, std::min(top_mm, wall_height_mm(tool)), options.envelope_step_mm,
+                                  options.rotation_step_rad);
+  return removal::make_envelope(tool, std::max(0.0, top_mm - stock.voxel_mm()), options.envelope_step_mm,
+                                options.rotation_step_rad, stock.voxel_mm());
+}
+
+Vec2 deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row, const Contact& c) {
+  const double step = deflections.step_at(c.angle_rad, c.height_mm, envelope.lag_per_mm, envelope.flutes);
+  return deflections.at<double>(row, c.height_mm, step);
+}
+
+StampLoad summarize(const ToothPass& pass) {
+  StampLoad load;
+  for (const Vec3& f : pass.force_N) {
+    for (int a = 0; a < 3; ++a)
+      if (std::abs(f[a]) > std::abs(load.force_max_N[a])) load.force_max_N[a] = f[a];
+    load.lateral_max_N = std::max(load.lateral_max_N, f.head<2>().norm());
+    load.force_mean_N += f;
+  }
+  load.force_mean_N /= static_cast<double>(pass.force_N.size());
+  for (const double t : pass.torque_Nmm) {
+    load.torque_max_Nmm = std::max(load.torque_max_Nmm, t);
+    load.torque_mean_Nmm += t / static_cast<double>(pass.torque_Nmm.size());
+  }
+  load.work_Nmm = pass.work_Nmm;
+  load.chip_max_mm = pass.chip_max_mm;
+  load.chip_area_mm2 = pass.chip_area_mm2;
+  return load;
+}
+
+/// One tool on one stock; cuts stretch after stretch.
+class Cutter {
+ public:
+  Cutter(Stock& stock, const machine::Tool& tool, const machine::Material& material, std::span<const Stamp> stamps,
+         const CutOptions& options)
+      : stock_(stock),
+        options_(options),
+        rigid_(options.coupling == machine::Coupling::rigid),
+        top_mm_(engaged_top_mm(stock, tool, stamps)),
+        envelope_(sampled_envelope(stock, tool, top_mm_, options)),
+        model_(envelope_, material, beam_of(tool),
+               node_heights(top_mm_, std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm))),
+               options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
+               options.axis_compliance_mm_per_N) {
+    if (!options.blank) own_blank_.emplace(stock);
+    blank_ = options.blank ? options.blank : &*own_blank_;
+    if (const Teeth teeth(tool); !teeth.even() && !options.drilling) tooth_marks_.emplace(envelope_, teeth);
+    if (!rigid_) removal::make_patches(envelope_, 0.6 * stock.band_mm());
+  }
+
+  /// Cuts stamps from ... from + count - 1 of all.
+  void cut(std::span<const Stamp> all, std::size_t from, std::size_t count, std::span<const Contact> contacts,
+           std::int32_t first_id, CutResult& result) {
+    const std::span<const Stamp> stamps = all.subspan(from, count);
+    // Rigid: every row is written anew, and a hole's are not read.
+    if (!rigid_ || deflections_.stamps != stamps.size())
+      deflections_ = DeflectionTable(stamps.size(), (rigid_ ? kFine : 1) * model_.steps(), model_.node_height_mm());
+    DeflectionTable& deflections = deflections_;
+    if (!last_row_.empty()) std::copy(last_row_.begin(), last_row_.end(), deflections.row(-1));
+    std::vector<StampLoad> loads(stamps.size());
+    if (rigid_)
+      engage(all, from, deflections, loads, first_id, result);
+    else
+      settle(all, from, deflections, loads, first_id, result);
+    if (tooth_marks_) {
+      leave_uneven(stamps, from, deflections, contacts, first_id + static_cast<std::int32_t>(from), loads);
+    } else {
+      if (options_.surface) mark(stamps, deflections, first_id + static_cast<std::int32_t>(from));
+      tell_contacts(envelope_, deflections, contacts, loads);
+    }
+    for (const StampLoad& load : loads) result.chip_mm3 += load.chip_mm3;
+    result.loads.insert(result.loads.end(), loads.begin(), loads.end());
+    const float* last = deflections.row(static_cast<std::ptrdiff_t>(stamps.size()) - 1);
+    last_row_.assign(last, last + deflections.row_size());
+  }
+
+  /// Leaves the stock as cut.
+  void finish(CutResult& result) {
+    if (engager_) result.stock_mm3 += engager_->commit();
+    if (static_cut_) result.stock_mm3 += static_cut_->commit();
+  }
+
+ private:
+  /// Deflection straight from the chips.
+  void engage(std::span<const Stamp> all, std::size_t from, DeflectionTable& deflections, std::vector<StampLoad>& loads,
+              std::int32_t first_id, CutResult& result) {
+    if (!engager_) engager_.emplace(stock_, *blank_, envelope_, all, first_id, tooth_marks_ ? envelope_.flutes : 1);
+    const auto& blocks = engager_->blocks();
+    std::map<std::size_t, std::vector<removal::ChipSample>> turn;  // what the turn needs
+    std::mutex turn_lock;
+    tbb::enumerable_thread_specific<ToothPass> passes;
+    engager_->engage(from, loads.size(), [&](std::size_t k, std::span<const removal::ChipBlock> chips) {
+      ToothPass& pass = passes.local();
+      std::span<float> row(deflections.row(static_cast<std::ptrdiff_t>(k)), options_.drilling ? 0 : deflections.row_size());
+      model_.evaluate(blocks, chips, from + k, all[from + k].feed_per_tooth_mm, pass, row);
+      loads[k] = summarize(pass);
+      loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
+      if (!in_turn(from + k)) return;
+      const std::scoped_lock lock(turn_lock);
+      turn[k] = removal::chips_of(blocks, chips);
+    });
+    for (const auto& [k, chips] : turn) keep_turn(chips, all[from + k], from + k, result);
+  }
+
+  static void tell_contacts(const EnvelopeGrid& envelope, const DeflectionTable& deflections, std::span<const Contact> contacts,
+                            std::span<StampLoad> loads) {
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+      loads[k].contact_deflection_mm =
+          deflection_at(envelope, deflections, deflections.row(static_cast<std::ptrdiff_t>(k)), contacts[k]);
+  }
+
+  /// Marks and contacts of teeth that are not even, after `passings` tooth passings. Rows are as many times as long as
+  /// there are teeth, and as many times fewer at once.
+  void leave_uneven(std::span<const Stamp> stamps, std::size_t passings, const DeflectionTable& deflections,
+                    std::span<const Contact> contacts, std::int32_t first_id, std::span<StampLoad> loads) const {
+    const std::size_t part = stamps.size() / static_cast<std::size_t>(envelope_.flutes) + 1;
+    for (std::size_t from = 0; from < stamps.size(); from += part) {
+      const std::size_t count = std::min(part, stamps.size() - from);
+      DeflectionTable own = tooth_marks_->bending(deflections, from, count, passings + from);
+      if (!contacts.empty())
+        tell_contacts(tooth_marks_->envelope(), own, contacts.subspan(from, count), loads.subspan(from, count));
+      if (!options_.surface) continue;
+      tooth_marks_->add_run_out(own, passings + from);
+      options_.surface->mark(tooth_marks_->envelope(), stamps.subspan(from, count), own,
+                             first_id + static_cast<std::int32_t>(from));
+    }
+  }
+
+  /// Of a hole its deepest stamp says all.
+  void mark(std::span<const Stamp> stamps, const DeflectionTable& deflections, std::int32_t first_id) const {
+    if (!options_.drilling) return options_.surface->mark(envelope_, stamps, deflections, first_id);
+    const DeflectionTable straight(1, model_.steps(), model_.node_height_mm());
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+      const bool deeper = k + 1 < stamps.size() && stamps[k + 1].pose.tip_mm.head<2>() == stamps[k].pose.tip_mm.head<2>() &&
+                          stamps[k + 1].move >= stamps[k].move;
+      if (!deeper)
+        options_.surface->mark(envelope_, stamps.subspan(k, 1), straight, first_id + static_cast<std::int32_t>(k));
+    }
+  }
+
+  void settle(std::span<const Stamp> all, std::size_t from, DeflectionTable& deflections, std::vector<StampLoad>& loads,
+              std::int32_t first_id, CutResult& result) {
+    if (!static_cut_)
+      static_cut_.emplace(stock_, *blank_, envelope_, model_, all, first_id,
+                          SettleOptions{options_.max_rounds, options_.settle_um, options_.settle_fraction});
+    static_cut_->start(from, loads.size(), deflections);
+    ToothPass pass;
+    for (std::size_t k = 0; k < loads.size(); ++k) {
+      const Stamp& stamp = all[from + k];
+      const auto passing = static_cut_->cut(k);
+      model_.evaluate(passing.chips, from + k, stamp.feed_per_tooth_mm, pass);
+      loads[k] = summarize(pass);
+      loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, passing.chips);
+      keep_turn(passing.chips, stamp, from + k, result);
+      result.rounds_max = std::max(result.rounds_max, passing.rounds);
+      if (!passing.settled) {
+        if (settled_) ++result.unsettled;
+        if (result.unsettled_moves.empty() || result.unsettled_moves.back() != stamp.move)
+          result.unsettled_moves.push_back(stamp.move);
+      }
+      settled_ = passing.settled;
+    }
+  }
+
+  bool in_turn(std::size_t k) const {
+    return options_.turn_from && k >= *options_.turn_from &&
+           k < *options_.turn_from + static_cast<std::size_t>(envelope_.flutes);
+  }
+  void keep_turn(std::span<const removal::ChipSample> chips, const Stamp& stamp, std::size_t k, CutResult& result) const {
+    if (in_turn(k)) model_.add_to_turn(chips, k - *options_.turn_from, k, stamp.feed_per_tooth_mm, result.turn);
+  }
+
+  Stock& stock_;
+  std::optional<Stock> own_blank_;
+  const Stock* blank_ = nullptr;  ///< before the first stamp
+  const CutOptions& options_;
+  bool rigid_;
+  double top_mm_;
+  EnvelopeGrid envelope_;
+  ToothPassModel model_;
+  std::optional<ToothMarks> tooth_marks_;    ///< of teeth that are not even
+  std::optional<removal::RigidEngager> engager_;  ///< rigid
+  std::optional<StaticCut> static_cut_;
+  bool settled_ = true;  ///< the last tooth passing
+  DeflectionTable deflections_;    ///< of the stretch
+  std::vector<float> last_row_;
+};
+
+}  // namespace
+
+CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& material, std::span<const Stamp> stamps,
+              std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options) {
+  CutResult result;
+  result.loads.reserve(stamps.size());
+  Cutter cutter(stock, tool, material, stamps, options);
+  const std::size_t stretch =
+      options.coupling == machine::Coupling::rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
+  for (std::size_t from = 0; from < stamps.size(); from += stretch) {
+    const std::size_t n = std::min(stretch, stamps.size() - from);
+    cutter.cut(stamps, from, n, contacts.empty() ? contacts : contacts.subspan(from, n), first_id, result);
+    if (options.progress) options.progress(static_cast<double>(from + n) / static_cast<double>(stamps.size()));
+  }
+  cutter.finish(result);
+  return result;
+}
+
+double sweep(Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps, std::int32_t first_id,
+             double shrink_mm) {
+  return removal::sweep(stock, removal::shape_of(tool), stamps, {.shrink_mm = shrink_mm, .first_id = first_id});
+}
+
+std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& tool, std::span<const Stamp> stamps) {
+  const removal::CutterShape shape = removal::shape_of(tool);
+  const double top = std::max(shape.corner_radius_mm, target.voxel_mm());
+  const double length = shape.profile.length_to_height_mm(top);
+  constexpr int kRings = 100;
+  constexpr double kDepthBand_mm = 0.001, kOut = -1e9;
+  struct Ring {
+    double radius, height;
+    double slope;  ///< tangent of the normal's angle; 0: the normal points down
+  };
+  std::array<Ring, kRings> rings;
+  for (int r = 0; r < kRings; ++r) {
+    const auto p = shape.profile.at((r + 0.5) * length / kRings);
+    rings[static_cast<std::size_t>(r)] = {p.radius_mm, p.height_mm,
+                                          p.normal_angle_rad > 0 ? std::tan(p.normal_angle_rad) : 0.0};
+  }
+  struct Candidate {
+    double depth;
+    Vec3 place;
+  };
+  std::vector<Contact> out(stamps.size());
+  struct Buffers {
+    Stock::Probe probe;
+    std::vector<Candidate> candidates;
+  };
+  tbb::enumerable_thread_specific<Buffers> buffers([&] { return Buffers{Stock::Probe(target), {}}; });
+  tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+    const Vec3& f = stamps[k].feed_per_tooth_mm;
+    const double horizontal = f.head<2>().norm();
+    const Vec2 along = horizontal > 0 ? Vec2(f.head<2>() / horizontal) : Vec2::UnitX(), aside(-along.y(), along.x());
+    auto& [probe, candidates] = buffers.local();  // depth: of the nearest voxel
+    candidates.clear();
+    for (const Ring& ring : rings) {
+      // The cosine of the angle from the motion at which the normal stands across it.
+      const double cosine = ring.slope == 0 ? 0.0 : horizontal > 0 ? f.z() / (horizontal * ring.slope) : 2.0;
+      if (std::abs(cosine) > 1) continue;
+      const Vec2 ahead = ring.radius * cosine * along, beside = ring.radius * std::sqrt(1 - cosine * cosine) * aside;
+      for (const double side : {-1.0, 1.0}) {
+        const Vec2 flat = ahead + side * beside;
+        candidates.push_back({0, Vec3(flat.x(), flat.y(), ring.height)});
+      }
+    }
+    const auto nearest = [&](const Candidate& c) {
+      return -static_cast<double>(probe.nearest(stamps[k].pose.tip_mm + c.place));
+    };
+    const auto trilinear = [&](const Candidate& c) { return -probe.distance_mm(stamps[k].pose.tip_mm + c.place); };
+    // A trilinear value differs from the nearest voxel's by no more than the mean distance of its corners from it, and
+    // voxels from each other by no more than they are apart.
+    const double blur = std::sqrt(1.5) * target.voxel_mm(), apart = std::sqrt(3.0) * target.voxel_mm();
+    // A few of each side first: where they are far from the deepest, those around are as well.
+    constexpr std::size_t kSides = 2, kEvery = 4 * kSides;
+    std::size_t top = 0;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      if (c % kEvery >= kSides) continue;
+      candidates[c].depth = nearest(candidates[c]);
+      if (candidates[c].depth > candidates[top].depth) top = c;
+    }
+    const double known = candidates.empty() ? kOut : trilinear(candidates[top]);
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      if (c % kEvery < kSides) continue;
+      const Candidate& before = candidates[c / kEvery * kEvery + c % kSides];
+      const double most = before.depth + (candidates[c].place - before.place).norm() + apart;
+      candidates[c].depth = most + blur < known - kDepthBand_mm ? kOut : nearest(candidates[c]);
+    }
+    double deepest = kOut;
+    const auto read = [&](Candidate& c) {
+      c.depth = trilinear(c);
+      deepest = std::max(deepest, c.depth);
+    };
+    const auto first = std::ranges::max_element(candidates, {}, &Candidate::depth);
+    if (first != candidates.end()) std::swap(*first, candidates.front()), read(candidates.front());
+    for (std::size_t c = 1; c < candidates.size(); ++c) {
+      if (candidates[c].depth + blur >= deepest - kDepthBand_mm)
+        read(candidates[c]);
+      else
+        candidates[c].depth = kOut;
+    }
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
+    for (const auto& c : candidates)
+      if (c.depth >= deepest - kDepthBand_mm) {
+        sum += c.place;
+        ++count;
+      }
+    if (count > 0) out[k] = {sum.z() / count, std::atan2(sum.y(), sum.x())};
+  });
+  return out;
+}
+
+}  // namespace camber::simulate

@@ -1,0 +1,87 @@
+#pragma once
+// Cutting a path: chips, forces and deflections at every stamp, and the stock that the deflected cutter leaves.
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "deflection/tooth_pass.h"
+#include "machine/job.h"
+#include "removal/tool_path.h"
+#include "removal/stock.h"
+#include "removal/form_error.h"
+
+namespace camber::simulate {
+
+/// The loads of one tooth passing. Forces act on the tool, in machine axes.
+struct StampLoad {
+  Vec3 force_max_N = Vec3::Zero();                 ///< per component the signed value of largest magnitude
+  double lateral_max_N = 0;                        ///< largest sqrt(Fx^2 + Fy^2)
+  Vec3 force_mean_N = Vec3::Zero();                ///< over the tooth passing
+  Vec2 contact_deflection_mm = Vec2::Zero();       ///< at the contact's height as an edge passes it
+  double chip_mm3 = 0;                             ///< volume of the chips
+  double torque_max_Nmm = 0, torque_mean_Nmm = 0;  ///< over the tooth passing
+  double work_Nmm = 0;                             ///< of the spindle over the tooth passing
+  double chip_max_mm = 0;                          ///< thickest chip
+  double chip_area_mm2 = 0;                        ///< chip_mm3 over it is the mean thickness
+};
+
+/// P = M 2 pi n / 60.
+constexpr double power_W(double torque_mean_Nmm, double spindle_speed_rpm) {
+  return torque_mean_Nmm / 1000 * 2 * kPi * spindle_speed_rpm / 60;
+}
+
+/// Where the envelope generates the surface: the point at which an edge leaves its mark.
+struct Contact {
+  double height_mm = 0;
+  double angle_rad = 0;
+};
+
+struct CutOptions {
+  machine::Coupling coupling = machine::Coupling::static_;
+  double envelope_step_mm = 0.1;
+  double rotation_step_rad = kPi / 180;
+  std::size_t stretch_stamps = 400;         ///< kept in memory at a time; static
+  std::size_t rigid_stretch_stamps = 1500;  ///< rigid: engaged and kept in memory at a time
+  int max_rounds = 40;                      ///< of the static solution of one tooth passing
+  double edge_ramp_mm = 0.002;              ///< static only, see edge_force
+  double settle_um = 0.1;                   ///< see SettleOptions
+  double settle_fraction = 0.01;
+  Vec2 axis_compliance_mm_per_N = Vec2::Zero();  ///< of the machine's x and y axes
+  bool drilling = false;                         ///< straight down: see simulate/holes.h; with rigid coupling
+  std::function<void(double)> progress;          ///< share done, 0 to 1
+  const removal::Stock* blank = nullptr;   ///< the stock as it is before, where somebody keeps it anyway; saves a copy
+  removal::SurfaceMap* surface = nullptr;  ///< takes the marks of the deflected cutter, if given
+  /// First stamp of a turn whose forces are kept tooth by tooth, in CutResult::turn.
+  std::optional<std::size_t> turn_from;
+};
+
+struct CutResult {
+  std::vector<StampLoad> loads;                ///< one a stamp
+  double chip_mm3 = 0;                         ///< sum over the chips
+  double stock_mm3 = 0;                        ///< change of the stock that engagement reads
+  int rounds_max = 0;                          ///< of the static solution: readings of a tooth passing's chips
+  std::size_t unsettled = 0;                   ///< stretches of tooth passings without a static equilibrium
+  std::vector<std::uint32_t> unsettled_moves;  ///< of these tooth passings: Stamp::move, each once in a row
+  TurnForces turn;                             ///< empty without CutOptions::turn_from
+};
+
+/// Cuts `stock`: with the deflected cutter, or in rigid coupling, where no bending feeds back, with the undeflected one;
+/// what the deflected one leaves is then in `surface` only. `contacts` (one a stamp, or empty) only serves
+/// StampLoad::contact_deflection_mm. Stamp ids in the stock are first_id + index.
+CutResult cut(removal::Stock& stock, const machine::Tool& tool, const machine::Material& material,
+              std::span<const removal::Stamp> stamps, std::span<const Contact> contacts, std::int32_t first_id,
+              const CutOptions& options);
+
+/// Cuts `stock` with the undeflected cutter, made smaller by shrink_mm along its normal. Returns the
+/// volume that it took, mm^3.
+double sweep(removal::Stock& stock, const machine::Tool& tool, std::span<const removal::Stamp> stamps,
+             std::int32_t first_id, double shrink_mm);
+
+/// The contact of every stamp with a target surface: of the points at which the envelope moves tangentially
+/// (f . n = 0), the middle of those that lie deepest in the target, within 1 um.
+std::vector<Contact> find_contacts(const removal::Stock& target, const machine::Tool& tool,
+                                   std::span<const removal::Stamp> stamps);
+
+}  // namespace camber::simulate

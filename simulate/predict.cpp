@@ -1,0 +1,190 @@
+#include "simulate/predict.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "simulate/job_checks.h"
+#include "feedmodel/control_options.h"
+#include "nc/interpreter.h"
+
+namespace camber::simulate {
+
+using machine::Job;
+
+namespace {
+
+/// Half width of the narrow band: three voxels for the field's sake, and the thickest chip with room for bending.
+double band_voxels(const Job& job, const removal::StampPath& path) {
+  double thickest = 0;
+  for (const auto& run : path.runs)
+    for (std::size_t k = run.from; k < run.from + run.count && run.kind != removal::RunKind::tapping; ++k)
+      thickest = std::max(thickest, path.stamps[k].feed_per_tooth_mm.norm());
+  constexpr double kMin = 4, kMax = 12, kBending_mm = 0.1;
+  return std::clamp(std::ceil((thickest + kBending_mm) / job.simulation.voxel_mm) + 1, kMin, kMax);
+}
+
+removal::Stock raw_stock(const Job& job, double band, Diagnostics& diagnostics) {
+  const double voxel = job.simulation.voxel_mm;
+  if (job.stock.box) {
+    const Vec3 lo = job.stock.box->min_mm, hi = job.stock.box->max_mm;
+    check_memory(job, lo, hi, band, diagnostics);
+    diagnostics.throw_if_errors();
+    return {[=](const Vec3& p) { return removal::box_distance_mm(p, lo, hi); }, lo, hi, voxel, band};
+  }
+  if (job.stock.cylinder) {
+    const machine::Cylinder c = *job.stock.cylinder;
+    const double r = c.diameter_mm / 2;
+    const Vec3 lo = c.base_mm - Vec3(r, r, 0), hi = c.base_mm + Vec3(r, r, c.height_mm);
+    check_memory(job, lo, hi, band, diagnostics);
+    diagnostics.throw_if_errors();
+    return {[=](const Vec3& p) { return removal::cylinder_distance_mm(p, c.base_mm, r, c.height_mm); }, lo, hi, voxel,
+            band};
+  }
+  if (!job.stock.vdb.empty()) return removal::Stock::load(job.stock.vdb, voxel, band);
+  if (job.stock.mesh.empty())
+    fail_on_file(job.path, "has no stock; [stock] with box_mm, cylinder, mesh or vdb was expected", "stock-missing");
+  // A leaf of voxels is skipped by the distance at its centre, so the mesh's band must hold a leaf's half diagonal.
+  const removal::MeshDistance mesh(job.stock.mesh, voxel, (band + 8) * voxel);
+  check_memory(job, mesh.min_mm(), mesh.max_mm(), band, diagnostics);
+  diagnostics.throw_if_errors();
+  return {[&](const Vec3& p) { return mesh.distance_mm(p); }, mesh.min_mm(), mesh.max_mm(), voxel, band};
+}
+
+template <class Function>
+void for_each_run(const Job& job, const removal::StampPath& path, Function f) {
+  for (const auto& run : path.runs) {
+    const std::span<const removal::Stamp> stamps(path.stamps.data() + run.from, run.count);
+    f(run, job.tools.at(run.tool), stamps);
+  }
+}
+
+void add_holes(removal::RunKind kind, const CutResult& run, HoleFigures& holes) {
+  (kind == removal::RunKind::tapping ? holes.tapped_mm3 : holes.drilled_mm3) += run.stock_mm3;
+  for (const StampLoad& load : run.loads) {
+    holes.thrust_max_N = std::max(holes.thrust_max_N, load.force_max_N.z());
+    holes.torque_max_Nmm = std::max(holes.torque_max_Nmm, load.torque_max_Nmm);
+  }
+}
+
+}  // namespace
+
+double envelope_step_mm(const Job& job, const machine::Tool& tool) {
+  if (job.simulation.envelope_step_mm > 0) return job.simulation.envelope_step_mm;
+  // A ring counts whole at the angle of its middle: two degrees of lag in one make the peak 2.5 % too high.
+  constexpr double kMaxLag_rad = kPi / 180;
+  const double lag_per_mm = std::tan(tool.helix_rad) / (tool.diameter_mm / 2);
+  const double step = std::clamp(tool.diameter_mm / 100, 0.02, 0.1);
+  return lag_per_mm > 0 ? std::min(step, kMaxLag_rad / lag_per_mm) : step;
+}
+
+SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmodel::SampleSink& samples,
+                                Diagnostics& diagnostics) {
+  SimulatedProgram out;
+  out.text = nc::read_program(std::move(source), diagnostics);
+  out.moves = nc::interpret(out.text, feedmodel::interpreter_options(job.machine, job.inch), diagnostics);
+  diagnostics.throw_if_errors();
+  out.selected = removal::selected_moves(out.moves, job.operations);
+  out.holes = removal::hole_moves(out.moves, job.operations, job.tools);
+  for (std::size_t i = 0; i < out.holes.size(); ++i)
+    if (out.holes[i] != removal::HoleMove::none) out.selected[i] = false;
+  check_cutting(job, out.text, out.moves, out.selected, out.holes, diagnostics);
+  diagnostics.throw_if_errors();
+  removal::StampBuilder builder(out.moves, job.tools, out.selected, out.holes);
+  out.feed = feedmodel::predict_feed(out.moves, job.machine, [&](std::span<const feedmodel::TimedSample> run) {
+    builder.add(run);
+    if (samples) samples(run);
+  });
+  out.path = builder.take();
+  return out;
+}
+
+Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics) {
+  removal::Stock blank = raw_stock(job, band_voxels(job, target.path), diagnostics);
+  const auto sweep_all = [&](removal::Stock& stock, double shrink_mm) {
+    for_each_run(job, target.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+      // An allowance lies on milled surface; holes are made from solid.
+      if (shrink_mm > 0 && run.kind != removal::RunKind::milling) return;
+      sweep(stock, tool, stamps, static_cast<std::int32_t>(run.from), shrink_mm);
+    });
+  };
+  std::optional<removal::Stock> whole;
+  if (job.stock.allowance_mm > 0) {
+    whole.emplace(blank);
+    sweep_all(blank, job.stock.allowance_mm);
+    blank.clear_stamps();
+  }
+  removal::Stock surface(blank);
+  sweep_all(surface, 0);
+  removal::CutterPlaces places;
+  for_each_run(job, target.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    places.add(static_cast<std::int32_t>(run.from), removal::shape_of(tool), stamps);
+  });
+  std::optional<removal::MeshDistance> part;
+  if (!job.part.mesh.empty()) part.emplace(job.part.mesh, job.simulation.voxel_mm, 10 * job.simulation.voxel_mm);
+  return {std::move(blank), std::move(surface),      std::move(places),
+          std::move(part),  HoleStamps(target.path), std::move(whole)};
+}
+
+Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
+                   const PredictOptions& options) {
+  Prediction out;
+  removal::SurfaceMap map(target.surface, target.places, target.blank, &target.solid());
+  const auto all = static_cast<double>(program.path.stamps.size());
+  std::vector<std::vector<Contact>> contacts_of_runs;
+  for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    auto& contacts = contacts_of_runs.emplace_back();
+    if (options.contacts && run.kind == removal::RunKind::milling)
+      contacts = find_contacts(target.surface, tool, stamps);
+  });
+  if (options.surface_read) options.surface_read();
+  out.machined = std::make_unique<removal::Stock>(target.blank);
+  auto next_contacts = contacts_of_runs.begin();
+  out.holes.count = removal::count_holes(program.moves, program.holes);
+  for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    const std::size_t from = run.from;
+    const bool milling = run.kind == removal::RunKind::milling;
+    const std::vector<Contact> contacts = std::move(*next_contacts++);
+    CutOptions cut_options;
+    cut_options.surface = &map;
+    cut_options.coupling = job.simulation.coupling;
+    cut_options.axis_compliance_mm_per_N = {1 / job.machine.axis[0].stiffness_N_per_mm,
+                                            1 / job.machine.axis[1].stiffness_N_per_mm};
+    if (from == program.path.runs.front().from) cut_options.blank = &target.blank;
+    cut_options.envelope_step_mm = envelope_step_mm(job, tool);
+    cut_options.rotation_step_rad = job.simulation.rotation_step_rad;
+    if (options.progress)
+      cut_options.progress = [&](double share) {
+        options.progress((static_cast<double>(from) + share * static_cast<double>(stamps.size())) / all);
+      };
+    if (options.turn_from && *options.turn_from >= from && *options.turn_from < from + stamps.size())
+      cut_options.turn_from = *options.turn_from - from;
+    const auto first_id = static_cast<std::int32_t>(from);
+    CutResult cut_run = milling ? cut(*out.machined, tool, job.material, stamps, contacts, first_id, cut_options)
+                        : run.kind == removal::RunKind::drilling
+                            ? drill(*out.machined, tool, job.material, stamps, first_id, cut_options)
+                            : tap(*out.machined, tool, stamps, first_id, cut_options);
+    if (!milling) add_holes(run.kind, cut_run, out.holes);
+    out.cut.loads.insert(out.cut.loads.end(), cut_run.loads.begin(), cut_run.loads.end());
+    out.cut.chip_mm3 += cut_run.chip_mm3;
+    if (run.kind != removal::RunKind::tapping) out.cut.stock_mm3 += cut_run.stock_mm3;
+    out.cut.rounds_max = std::max(out.cut.rounds_max, cut_run.rounds_max);
+    out.cut.unsettled += cut_run.unsettled;
+    out.cut.unsettled_moves.insert(out.cut.unsettled_moves.end(), cut_run.unsettled_moves.begin(),
+                                   cut_run.unsettled_moves.end());
+    if (cut_options.turn_from) out.cut.turn = std::move(cut_run.turn);
+  });
+  out.surface = map.take();
+  out.holes.surface_mm2 = target.holes.drop_from(out.surface);
+  std::vector<double> error_um, area;
+  for (const auto& p : out.surface) {
+    error_um.push_back(1000 * p.error_mm);
+    area.push_back(p.area_mm2);
+    if (target.part) out.total_error_mm.push_back(target.part->distance_mm(p.place_mm + p.error_mm * p.normal));
+  }
+  out.form_error_um = removal::error_figures(error_um, area);
+  return out;
+}
+
+}  // namespace camber::simulate

@@ -1,0 +1,76 @@
+#pragma once
+// A whole prediction: program to timed path to stamps to forces, deflections and the form error of the part.
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "simulate/cut.h"
+#include "simulate/holes.h"
+#include "feedmodel/timed_path.h"
+#include "machine/job.h"
+#include "nc/move.h"
+#include "nc/program.h"
+#include "removal/form_error.h"
+#include "removal/stock.h"
+#include "removal/tool_path.h"
+
+namespace camber::simulate {
+
+/// A program as it runs on the job's machine.
+struct SimulatedProgram {
+  nc::Program text;
+  nc::Interpretation moves;
+  std::vector<bool> selected;            ///< per move: milled by the job's operations
+  std::vector<removal::HoleMove> holes;  ///< per move
+  removal::StampPath path;
+  feedmodel::FeedSummary feed;
+};
+
+/// Reads, interprets, checks and times a program. `samples` (may be empty) also receives the timed path.
+/// Throws InputError.
+SimulatedProgram simulate_motion(SourceText source, const machine::Job& job, const feedmodel::SampleSink& samples,
+                                Diagnostics& diagnostics);
+
+/// What the part is judged against: the undeflected sweep of the target program through the blank.
+struct Target {
+  removal::Stock blank;          ///< before this job's first cut
+  removal::Stock surface;        ///< after the undeflected sweep; its stamps are the target program's
+  removal::CutterPlaces places;  ///< the target program's stamps, by the ids in `surface`
+  std::optional<removal::MeshDistance> part;
+  HoleStamps holes;                       ///< of the target program
+  std::optional<removal::Stock> whole{};  ///< the stock before the allowance was taken off; empty: `blank`
+  const removal::Stock& solid() const { return whole ? *whole : blank; }
+};
+
+/// Builds the blank (box or mesh, less what the target program leaves with the cutter shrunk by the allowance) and
+/// sweeps the target through it. Throws InputError (stock missing, memory).
+Target make_target(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics);
+
+struct Prediction {
+  CutResult cut;  ///< loads: one a stamp of the program; the volumes are without tapping, which has no chips
+  HoleFigures holes;
+  std::vector<removal::SurfacePoint> surface;  ///< of the target, but for what its holes made
+  std::vector<double> total_error_mm;          ///< against the part's mesh, one a point; empty without a mesh
+  removal::ErrorFigures form_error_um;
+  std::unique_ptr<removal::Stock> machined;
+};
+
+/// `contacts`: also find where each stamp touches the target (only for the deflection at the contact).
+struct PredictOptions {
+  bool contacts = true;
+  std::optional<std::size_t> turn_from;  ///< first stamp of a turn to keep in Prediction::cut.turn
+  std::function<void(double)> progress;
+  std::function<void()> surface_read;  ///< called when Target::surface is no longer needed
+};
+
+Prediction predict(const machine::Job& job, const Target& target, const SimulatedProgram& program,
+                   const PredictOptions& options);
+
+/// Chips and forces need samples about as fine as this along the profile: a hundredth of the diameter, 0.02 to 0.1 mm,
+/// in which the edge lags by no more than a degree; the job's value where it gives one.
+double envelope_step_mm(const machine::Job& job, const machine::Tool& tool);
+
+}  // namespace camber::simulate

@@ -1,0 +1,24 @@
+#pragma once
+// The whole tool from the tip to the holder's upper end, as points on its outline.
+#include <vector>
+
+#include "machine/job.h"
+#include "removal/profile.h"
+
+namespace camber::simulate {
+
+/// A circle about the axis.
+struct OutlineRing {
+  enum class Part { cutter, shank, holder };
+  Part part = Part::cutter;
+  double radius_mm = 0, height_mm = 0;
+};
+
+/// Rings about `step_mm` apart along the cutter up to its flutes' end, the neck, the shank and the holder, with the
+/// faces between them; those above `top_mm` are left out.
+std::vector<OutlineRing> tool_outline(const machine::Tool& tool, double step_mm, double top_mm);
+
+/// Height above the tip at which the cutter ends and neck, shank or holder begin.
+double cutter_end_mm(const machine::Tool& tool);
+
+}  // namespace camber::simulate
