@@ -14,8 +14,8 @@ struct FitForceArguments {
   std::string json;               ///< empty: none
 };
 
-/// Throws InputError. Returns kDone, or kNumbersDidNotWorkOut when the fit did not converge or makes no sense (the material is written
-/// all the same, and a sentence says so).
+/// Throws InputError. Returns kDone, or kNumbersDidNotWorkOut when the fit did not converge or makes no sense (the
+/// material is written all the same, and a sentence says so).
 int run_fit_force(const FitForceArguments& arguments, const GlobalOptions& options);
 
 }  // namespace camber::cli
