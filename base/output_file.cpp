@@ -29,7 +29,7 @@ bool is_special(const fs::path& place) {
 /// Where a chain of symbolic links ends, whether that is there or not; `path` itself where it is none.
 std::string behind_links(const std::string& path) {
   if (is_special(path)) return path;  // /dev/stdout is a link to what has no name
-  constexpr int kMaxLinks = 40;      // as the system itself follows
+  constexpr int kMaxLinks = 40;       // as the system itself follows
   std::error_code ec;
   fs::path at = path;
   for (int i = 0; i < kMaxLinks && fs::is_symlink(at, ec); ++i) {

@@ -11,8 +11,6 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "simulate/collisions.h"
-#include "simulate/turn.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
 #include "nc/interpreter.h"
@@ -20,6 +18,8 @@
 #include "report/forces_csv.h"
 #include "report/report_data.h"
 #include "report/summary.h"
+#include "simulate/collisions.h"
+#include "simulate/turn.h"
 
 namespace camber::cli {
 namespace {
@@ -44,9 +44,8 @@ std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& progra
 }
 
 /// What the folder holds but summary.json, side by side. The machined stock is given up once it is saved.
-void write_files(const machine::Job& job, const simulate::SimulatedProgram& program,
-                 simulate::Prediction& prediction, std::size_t forces_at, const fs::path& folder,
-                 const Diagnostics& diagnostics) {
+void write_files(const machine::Job& job, const simulate::SimulatedProgram& program, simulate::Prediction& prediction,
+                 std::size_t forces_at, const fs::path& folder, const Diagnostics& diagnostics) {
   const removal::StockShape stock = removal::stock_shape(*prediction.machined, report::kMaxStockCrossings);
   const report::FormErrorPoints points = report::form_error_points(program, prediction);
   tbb::task_group others;

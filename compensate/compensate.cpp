@@ -12,8 +12,8 @@
 #include "compensate/sensitivity.h"
 #include "compensate/shift_path.h"
 #include "compensate/splits.h"
-#include "simulate/collisions.h"
 #include "nc/emit.h"
+#include "simulate/collisions.h"
 
 namespace camber::compensate {
 
@@ -34,7 +34,7 @@ std::string to_string(Stop stop) {
 namespace {
 
 constexpr double kSpacing_mm = 0.4;  // between points of a long line
-constexpr double kMinGain = 0.03;  // a round that lowers the rms by less has stalled
+constexpr double kMinGain = 0.03;    // a round that lowers the rms by less has stalled
 constexpr int kPatience = 2;         // rounds without that gain before it counts
 constexpr double kWorse = 1.02;      // a round whose rms is over the best one's by this has over-corrected
 constexpr double kShorter = 0.5;     // then the next step starts at the best one's shifts, shorter

@@ -15,9 +15,9 @@
 #include "compensate/surface_steps.h"
 #include "compensate/trial.h"
 #include "compensate/uncertainty.h"
-#include "simulate/predict.h"
 #include "machine/job.h"
 #include "removal/stock.h"
+#include "simulate/predict.h"
 
 namespace camber::compensate {
 
@@ -29,12 +29,12 @@ struct Round {
   removal::ErrorFigures error_um;  ///< of the program that this round emitted
   ErrorSplit split;
   double largest_shift_mm = 0;
-  std::size_t limited_points = 0;  ///< cut to max_shift_mm
-  double gain = 1;                 ///< error over shift, the mean that the round's step divided by
+  std::size_t limited_points = 0;     ///< cut to max_shift_mm
+  double gain = 1;                    ///< error over shift, the mean that the round's step divided by
   double step_fraction = 1;           ///< of the step that was taken; less than 1 after an over-correction
   double overcorrected_fraction = 0;  ///< of the area: the error changed its sign and is still over the tolerance
-  double deepest_um = 0;           ///< into the part, where compensated moves cut, but for a thousandth of the surface
-  bool guard = false;              ///< a round of the guard against cutting into the part
+  double deepest_um = 0;  ///< into the part, where compensated moves cut, but for a thousandth of the surface
+  bool guard = false;     ///< a round of the guard against cutting into the part
   int static_rounds = 0;
   std::size_t unsettled = 0;
 };
@@ -49,7 +49,7 @@ struct Compensation {
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double max_shift_mm = 0;
   std::vector<removal::SurfacePoint> surface_before, surface_after;  ///< the same points, in the same order
-  std::vector<simulate::StampLoad> loads_before, loads_after;      ///< of the given and of the emitted program
+  std::vector<simulate::StampLoad> loads_before, loads_after;        ///< of the given and of the emitted program
   removal::StockShape stock;                                         ///< what the target program leaves, for a picture
   feedmodel::FeedSummary feed_before, feed_after;
   bool settled = true;  ///< every static solution of the first and the best round did
@@ -70,7 +70,7 @@ struct Compensation {
 
 struct CompensateOptions {
   std::function<void(const std::string& what, double share)> progress;
-  std::size_t max_stock_crossings = 0;       ///< of Compensation::stock; 0: none
+  std::size_t max_stock_crossings = 0;        ///< of Compensation::stock; 0: none
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.

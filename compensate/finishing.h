@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "simulate/predict.h"
 #include "machine/job.h"
 #include "removal/form_error.h"
+#include "simulate/predict.h"
 
 namespace camber::compensate {
 
@@ -13,7 +13,7 @@ namespace camber::compensate {
 struct Operation {
   int tool = 0;
   std::size_t first_line = 0, last_line = 0;  ///< 1-based
-  double surface_fraction = 0;                   ///< of the machined surface that it made
+  double surface_fraction = 0;                ///< of the machined surface that it made
   std::size_t moves = 0, compensated_moves = 0;
 };
 

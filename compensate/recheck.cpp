@@ -10,8 +10,8 @@ namespace camber::compensate {
 namespace {
 
 simulate::Prediction predict(const machine::Job& job, const simulate::Target& target,
-                               const simulate::SimulatedProgram& program, const std::string& what,
-                               const Progress& progress) {
+                             const simulate::SimulatedProgram& program, const std::string& what,
+                             const Progress& progress) {
   simulate::PredictOptions options;
   options.contacts = false;
   if (progress) options.progress = [&](double share) { progress(what, share); };

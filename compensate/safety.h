@@ -6,8 +6,8 @@
 
 #include "base/diagnostics.h"
 #include "compensate/attribution.h"
-#include "simulate/predict.h"
 #include "machine/job.h"
+#include "simulate/predict.h"
 
 namespace camber::compensate {
 

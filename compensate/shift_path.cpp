@@ -129,7 +129,7 @@ Vec3 agreeing_centre(const nc::Arc& arc, const Vec3& start, const Vec3& end, con
 namespace {
 
 constexpr double kNearHalfTurn = 0.35;  // rad; beyond it a last decimal of R is under six of the centre's
-constexpr double kMaxSweep = 5.5;      // rad, of one piece of an arc that is not shifted evenly
+constexpr double kMaxSweep = 5.5;       // rad, of one piece of an arc that is not shifted evenly
 
 /// Centre of the circle through three points in the plane across `normal`; nothing where they lie on a line.
 std::optional<Vec3> circle_centre(const Vec3& normal, const Vec3& a, const Vec3& b, const Vec3& c) {

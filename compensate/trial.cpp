@@ -34,12 +34,12 @@ void Trial::keep(simulate::Prediction prediction) {
   unsettled = prediction.cut.unsettled;
 }
 
-TrialRunner::TrialRunner(const machine::Job& job, const simulate::SimulatedProgram& given, const simulate::Target& target,
-                   bool own_target)
+TrialRunner::TrialRunner(const machine::Job& job, const simulate::SimulatedProgram& given,
+                         const simulate::Target& target, bool own_target)
     : job_(job), given_(given), target_(target), own_target_(own_target) {}
 
 std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const std::vector<bool>& splits,
-                                              const std::vector<bool>& compensated) const {
+                                                 const std::vector<bool>& compensated) const {
   auto out = std::make_shared<Emitted>();
   out->splits = splits;
   out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(splits, kViaTolerance_mm), {});
@@ -61,7 +61,7 @@ std::string TrialRunner::text_of(const ShiftPath& path, const std::vector<bool>&
 }
 
 simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& program,
-                                         const std::function<void(double)>& progress) const {
+                                          const std::function<void(double)>& progress) const {
   simulate::PredictOptions options;
   options.contacts = true;
   options.progress = progress;
@@ -69,7 +69,7 @@ simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& prog
 }
 
 Observed TrialRunner::observe(const ShiftPath& path, const Emitted* emitted,
-                           const std::vector<removal::SurfacePoint>& surface) const {
+                              const std::vector<removal::SurfacePoint>& surface) const {
   if (!emitted) return compensate::observe(path, job_, given_, given_, {}, surface, own_target_);
   return compensate::observe(path, job_, given_, emitted->program, emitted->map, surface, own_target_);
 }

@@ -38,7 +38,7 @@ struct Trial {
 class TrialRunner {
  public:
   TrialRunner(const machine::Job& job, const simulate::SimulatedProgram& given, const simulate::Target& target,
-           bool own_target);
+              bool own_target);
 
   /// How near the arcs that an arc becomes pass its shifted points.
   static constexpr double kViaTolerance_mm = 0.0005;
@@ -50,7 +50,7 @@ class TrialRunner {
   std::string text_of(const ShiftPath& path, const std::vector<bool>& splits) const;
   /// Does not throw for what the given program was warned of already.
   simulate::Prediction predict(const simulate::SimulatedProgram& program,
-                                 const std::function<void(double)>& progress) const;
+                               const std::function<void(double)>& progress) const;
   Observed observe(const ShiftPath& path, const Emitted* emitted,
                    const std::vector<removal::SurfacePoint>& surface) const;
 

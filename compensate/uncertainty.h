@@ -38,18 +38,19 @@ struct Band {
     double rms_um = 0;  ///< of the change of the error over the surface
   };
   std::vector<Group> groups;
-  double sigma_rms_um = 0;  ///< rms over the surface of the standard error of the error
-  double rms_um = 0;        ///< of the residual to be expected: sqrt(rms^2 + sigma^2)
-  double p95_um = 0;        ///< 95th percentile of |error| + 1.96 sigma
-  double deepest_um = 0;    ///< into the part, of the error less 1.64 sigma, at the 99th percentile of the area
-  double safe_fraction = 1;    ///< see band_of
+  double sigma_rms_um = 0;   ///< rms over the surface of the standard error of the error
+  double rms_um = 0;         ///< of the residual to be expected: sqrt(rms^2 + sigma^2)
+  double p95_um = 0;         ///< 95th percentile of |error| + 1.96 sigma
+  double deepest_um = 0;     ///< into the part, of the error less 1.64 sigma, at the 99th percentile of the area
+  double safe_fraction = 1;  ///< see band_of
 };
 
 /// First-order propagation: the standard error of each point of the surface is the root of the sum of squares of the
 /// groups' changes (`changes_mm`, one list a group, of the surface of the compensated program).
 ///
-/// safe_fraction: the largest share of the compensation with which, at 95 % confidence in each point, no more of the area
-/// is cut deeper into the part than the tolerance than one twentieth; the error goes linearly from before to after.
+/// safe_fraction: the largest share of the compensation with which, at 95 % confidence in each point, no more of the
+/// area is cut deeper into the part than the tolerance than one twentieth; the error goes linearly from before to
+/// after.
 Band band_of(const std::vector<removal::SurfacePoint>& before, const std::vector<removal::SurfacePoint>& after,
              const std::vector<std::string>& names, const std::vector<std::vector<double>>& changes_mm,
              double tolerance_mm);

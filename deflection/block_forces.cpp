@@ -3,11 +3,11 @@
 #include <array>
 #include <cmath>
 
+#include "base/vector_clones.h"
 #include "deflection/chip_ends.h"
 #include "deflection/edge_force.h"
 #include "deflection/tooth_pass.h"
 #include "removal/engagement.h"
-#include "base/vector_clones.h"
 
 namespace camber::deflection {
 

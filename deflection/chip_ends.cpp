@@ -12,7 +12,7 @@ using removal::EnvelopeBlocks;
 
 namespace {
 constexpr double kMaxRamp = 2;  ///< steps; ends that run along a ring are not drawn out further
-constexpr double kSameEnd = 3;   ///< steps within which the ends of two rings belong together
+constexpr double kSameEnd = 3;  ///< steps within which the ends of two rings belong together
 }  // namespace
 
 std::span<const ChipEnd> ChipEnds::find(const removal::EnvelopeGrid& envelope, const EnvelopeBlocks& blocks,

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "removal/engagement.h"
 #include "removal/cutter.h"
+#include "removal/engagement.h"
 
 namespace camber::deflection {
 
@@ -12,13 +12,13 @@ namespace camber::deflection {
 struct ChipEnd {
   std::uint32_t point = 0;  ///< of the envelope: the last sample in the cut
   int ring = 0;
-  int step = 0;             ///< of the pitch, at which an even tooth is there
-  int side = 1;             ///< 1: the next sample, at the larger angle, is out of the cut; -1: the one before
-  double at = 0.5;          ///< from the sample outwards, 0 to 1: where the chip of the ring's middle ends
-  double ramp = 0;          ///< how long the end takes to cross the ring's width; 0: all at once, or not known
-  double thickness_mm = 0;  ///< at the sample
-  double fall_mm = 0;       ///< of the thickness, a step outwards; 0: the chip ends at its full thickness
-  double width_fraction = 1;   ///< of the ring that is in the cut at the sample
+  int step = 0;               ///< of the pitch, at which an even tooth is there
+  int side = 1;               ///< 1: the next sample, at the larger angle, is out of the cut; -1: the one before
+  double at = 0.5;            ///< from the sample outwards, 0 to 1: where the chip of the ring's middle ends
+  double ramp = 0;            ///< how long the end takes to cross the ring's width; 0: all at once, or not known
+  double thickness_mm = 0;    ///< at the sample
+  double fall_mm = 0;         ///< of the thickness, a step outwards; 0: the chip ends at its full thickness
+  double width_fraction = 1;  ///< of the ring that is in the cut at the sample
 };
 
 /// Ends of all chips of a stamp, ring by ring. A sample out of the cut tells by its negative thickness how far the

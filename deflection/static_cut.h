@@ -9,8 +9,8 @@
 namespace camber::deflection {
 
 struct SettleOptions {
-  int max_rounds = 40;         ///< readings of one stamp's chips
-  double settle_um = 0.1;      ///< change of the deflection that the next reading may bring, rms over the cut, or ...
+  int max_rounds = 40;     ///< readings of one stamp's chips
+  double settle_um = 0.1;  ///< change of the deflection that the next reading may bring, rms over the cut, or ...
   double settle_fraction = 0.01;  ///< ... this share of its rms
 };
 
@@ -26,8 +26,8 @@ class StaticCut {
         engager_(stock, blank, envelope, stamps, first_id),
         equilibrium_(envelope, model) {}
 
-  /// Begins with stamps[from] ... stamps[from + count - 1]; row -1 of `deflections` is that of the stamp before. The rows
-  /// are filled as their stamps are cut.
+  /// Begins with stamps[from] ... stamps[from + count - 1]; row -1 of `deflections` is that of the stamp before. The
+  /// rows are filled as their stamps are cut.
   void start(std::size_t from, std::size_t count, removal::DeflectionTable& deflections);
 
   struct Passing {
@@ -35,8 +35,9 @@ class StaticCut {
     bool settled = true;
     std::span<const removal::ChipSample> chips;  ///< gone at the next call
   };
-  /// Cuts stamps[from + k]. Where it finds no equilibrium, or one deflected beyond removal::DeflectedEngager::kMaxDeflection_mm, the
-  /// cutter keeps the bend nearest to one, in the latter case that of the stamp before.
+  /// Cuts stamps[from + k]. Where it finds no equilibrium, or one deflected beyond
+  /// removal::DeflectedEngager::kMaxDeflection_mm, the cutter keeps the bend nearest to one, in the latter case that of
+  /// the stamp before.
   Passing cut(std::size_t k);
   /// Leaves the stock as cut. Returns the volume that was taken since the last commit, mm^3.
   double commit() { return engager_.commit(); }

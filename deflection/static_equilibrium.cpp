@@ -166,8 +166,8 @@ void StaticEquilibrium::balance(std::size_t m) {
   }
 }
 
-/// (1 - own_m) x_m - side_m (x_(m+1) - x_(m-1)) = left_m around the turn, for the deflections x at the first and last node:
-/// elimination with the last step's deflection kept as a border.
+/// (1 - own_m) x_m - side_m (x_(m+1) - x_(m-1)) = left_m around the turn, for the deflections x at the first and last
+/// node: elimination with the last step's deflection kept as a border.
 void StaticEquilibrium::solve_coarse() {
   const std::size_t n = steps_;
   const auto block = [&](const std::vector<double>& v, std::size_t m) {

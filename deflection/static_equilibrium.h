@@ -5,17 +5,17 @@
 #include <vector>
 
 #include "deflection/tooth_pass.h"
-#include "removal/engage/upright/chip_reader.h"
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
+#include "removal/engage/upright/chip_reader.h"
 
 namespace camber::deflection {
 
 /// Solves the equilibrium of one tooth passing for chips that were read once: as the tool bends, the depth of a point
-/// and what the motion allows it change as the reading tells, the latter also with the lean of the deflected envelope, that
-/// is with the deflections of the rotation steps before and after; force follows by its law, with the edge's ramp, ceasing
-/// and beginning contact. Newton's method over all rotation steps at once; the deflection that feeds back is taken as a
-/// straight line over the height (what is left of delta - C F is that of all heights).
+/// and what the motion allows it change as the reading tells, the latter also with the lean of the deflected envelope,
+/// that is with the deflections of the rotation steps before and after; force follows by its law, with the edge's ramp,
+/// ceasing and beginning contact. Newton's method over all rotation steps at once; the deflection that feeds back is
+/// taken as a straight line over the height (what is left of delta - C F is that of all heights).
 class StaticEquilibrium {
  public:
   StaticEquilibrium(const removal::EnvelopeGrid& envelope, const ToothPassModel& model);
@@ -28,26 +28,28 @@ class StaticEquilibrium {
   };
   /// chips: as read with the deflections in `row` ([nodes][steps][2]). Goes `share` of the way from `row` to the
   /// equilibrium; the chips' thickness follows.
-  Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const removal::Stamp& stamp, double share,
-             std::span<float> row);
+  Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const removal::Stamp& stamp,
+             double share, std::span<float> row);
 
  private:
   struct Ring {
     removal::NodeWeight weight;  ///< upper: the node above, where there is one
-    double height_fraction;         ///< from the first node to the last
+    double height_fraction;      ///< from the first node to the last
     double sine, per_radius;
   };
   struct Element {
     Vec2 normal, tangential, meridian, deeper;
-    double depth_mm, cap_mm;    ///< as read
-    double thickness_mm;        ///< the lesser of them, or a tooth's that is not even
-    double by_step, by_height;  ///< of the lean: by deflections of the steps before and after, by deflections of the nodes
-    double lean_mm;             ///< as read
+    double depth_mm, cap_mm;  ///< as read
+    double thickness_mm;      ///< the lesser of them, or a tooth's that is not even
+    double by_step,
+        by_height;   ///< of the lean: by deflections of the steps before and after, by deflections of the nodes
+    double lean_mm;  ///< as read
     double width_mm;
     double solved_mm;  ///< thickness with the deflection as it is
     std::uint32_t ring, chip;
   };
-  void place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const removal::Stamp& stamp);
+  void place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
+                      const removal::Stamp& stamp);
   void place_shifts();
   Vec2 at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const;
   double lean_mm(const Element& e, std::size_t m) const;
@@ -67,13 +69,14 @@ class StaticEquilibrium {
   bool first_stamp_ = false;
   // [steps][nodes][2]:
   std::vector<double> read_, shift_;
-  std::vector<double> moved_, side_;      ///< deflection less the one that was read; of the step ahead less of that behind
-  std::vector<double> left_;              ///< C F - delta
-  std::vector<double> step_;              ///< Newton's
-  std::vector<double> by_own_, by_side_;  ///< [steps][nodes][2][4]: of C F, by the deflections at the first and last node
-  std::vector<double> coarse_;            ///< [steps][4]: Newton's step there
-  std::vector<double> norm_;              ///< [steps]: largest of left_
-  std::vector<char> stale_;               ///< [steps]: deflections have changed since left_ was worked out
+  std::vector<double> moved_, side_;  ///< deflection less the one that was read; of the step ahead less of that behind
+  std::vector<double> left_;          ///< C F - delta
+  std::vector<double> step_;          ///< Newton's
+  std::vector<double> by_own_,
+      by_side_;                 ///< [steps][nodes][2][4]: of C F, by the deflections at the first and last node
+  std::vector<double> coarse_;  ///< [steps][4]: Newton's step there
+  std::vector<double> norm_;    ///< [steps]: largest of left_
+  std::vector<char> stale_;     ///< [steps]: deflections have changed since left_ was worked out
 };
 
 }  // namespace camber::deflection

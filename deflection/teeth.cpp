@@ -40,8 +40,8 @@ double Teeth::room_mm(int tooth, double even_chip_mm, double sine, double lag_ra
   for (int m = 1; m <= n; ++m) {
     const int before = ((tooth - m) % n + n) % n;
     pitches += pitch_fraction_[static_cast<std::size_t>(before)];
-    chip =
-        std::min(chip, pitches * (even_chip_mm + (pitches - 1) * bulge_mm) + sine * (own - tooth_runout_mm(before, lag_rad)));
+    chip = std::min(
+        chip, pitches * (even_chip_mm + (pitches - 1) * bulge_mm) + sine * (own - tooth_runout_mm(before, lag_rad)));
   }
   return chip;
 }

@@ -20,8 +20,8 @@ int ToothMarks::instant(std::size_t passing, int point, int steps) const {
   return point % pitch - (teeth_.offset_steps(tooth, envelope_.steps) * fine - tooth * pitch);
 }
 
-removal::DeflectionTable ToothMarks::bending(const removal::DeflectionTable& deflections, std::size_t from, std::size_t count,
-                                        std::size_t passing) const {
+removal::DeflectionTable ToothMarks::bending(const removal::DeflectionTable& deflections, std::size_t from,
+                                             std::size_t count, std::size_t passing) const {
   const int pitch = deflections.steps, turn = pitch * teeth_.count();
   removal::DeflectionTable out(count, turn, deflections.node_height_mm);
   const auto last = static_cast<std::ptrdiff_t>(deflections.stamps) - 1;

@@ -8,9 +8,9 @@
 
 namespace camber::deflection {
 
-/// Even teeth pass all points of a rotation step at one instant of a tooth passing, and a row of that many deflections says
-/// all. Of others each comes at its own instant, and stands out by its own throw: their rows hold a deflection for every
-/// point of the turn, as if the tool had one tooth.
+/// Even teeth pass all points of a rotation step at one instant of a tooth passing, and a row of that many deflections
+/// says all. Of others each comes at its own instant, and stands out by its own throw: their rows hold a deflection for
+/// every point of the turn, as if the tool had one tooth.
 class ToothMarks {
  public:
   ToothMarks(const removal::EnvelopeGrid& envelope, const Teeth& teeth);
@@ -22,7 +22,7 @@ class ToothMarks {
   /// which that tooth is there whose turn it is. `passing`: number of the stamp `from`. An instant of the passing after
   /// the table's last is taken from that one, as if it went on alike.
   removal::DeflectionTable bending(const removal::DeflectionTable& deflections, std::size_t from, std::size_t count,
-                              std::size_t passing) const;
+                                   std::size_t passing) const;
   /// Adds the run-out: the cutter's axis turns about the spindle's.
   void add_run_out(removal::DeflectionTable& deflections, std::size_t passing) const;
 

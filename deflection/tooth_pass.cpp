@@ -112,8 +112,8 @@ void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, c
   }
 }
 
-void ToothPassModel::edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const Vec3& feed,
-                                   std::vector<EdgeElement>& out) const {
+void ToothPassModel::edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
+                                   const Vec3& feed, std::vector<EdgeElement>& out) const {
   out.clear();
   for_each_element(chips, passing, feed, [&](std::size_t i, int m, double h) {
     out.push_back({static_cast<std::uint32_t>(i), m, h});

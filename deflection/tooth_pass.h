@@ -7,10 +7,10 @@
 #include "deflection/chip_ends.h"
 #include "deflection/teeth.h"
 #include "machine/job.h"
-#include "removal/engage/upright/chip_reader.h"
 #include "removal/cutter.h"
-#include "removal/engagement.h"
 #include "removal/deflection_table.h"
+#include "removal/engage/upright/chip_reader.h"
+#include "removal/engagement.h"
 
 namespace camber::deflection {
 
@@ -61,7 +61,8 @@ class ToothPassModel {
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
   /// `passing` counts tooth passings since the tool began: it tells which tooth stands where, which only matters where
   /// the teeth are not even. feed_mm: motion in one mean pitch.
-  void evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const Vec3& feed_mm, ToothPass& out) const;
+  void evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const Vec3& feed_mm,
+                ToothPass& out) const;
   /// The same of chips in blocks, the instants told at which each edge element enters the material and leaves it;
   /// without feedback.
   /// fine_mm: takes the deflection, [nodes][steps * kFine][2], a row of removal::DeflectionTable.
@@ -78,8 +79,8 @@ class ToothPassModel {
     return axis_compliance_.array() + compliance_[ring * node_height_mm_.size() + node];
   }
   /// Adds the chips of one tooth passing, the turn's `pass`-th (0 ... flutes - 1), to the turn.
-  void add_to_turn(std::span<const removal::ChipSample> chips, std::size_t pass, std::size_t passing, const Vec3& feed_mm,
-                   TurnForces& turn) const;
+  void add_to_turn(std::span<const removal::ChipSample> chips, std::size_t pass, std::size_t passing,
+                   const Vec3& feed_mm, TurnForces& turn) const;
 
  private:
   /// Calls f(chip number, rotation step, thickness) for the elements of chips.
@@ -89,8 +90,8 @@ class ToothPassModel {
   /// lies as deep as the tooth that stands out most left it.
   double deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const;
   /// What tooth j takes where even teeth would take the chip.
-  double tooth_chip_mm(int j, const removal::ChipSample& chip, const Direction& d, const removal::EnvelopeGrid::Ring& ring,
-                       const Vec3& feed) const;
+  double tooth_chip_mm(int j, const removal::ChipSample& chip, const Direction& d,
+                       const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const;
   /// The same of a block of points; nothing is cut off below, so that what is not in the cut tells how far off it is.
   removal::ChipBlock tooth_block(int j, const removal::EnvelopeBlocks& blocks, const removal::ChipBlock& even,
                                  const Vec3& feed) const;

@@ -40,7 +40,8 @@ std::optional<Blend> blend_corner(const Vec3& from, const Vec3& to, const BlendO
   const double goal = std::min(options.goal_speed_mm_per_s, limit_in_plane(normal, options.velocity_mm_per_s));
   const double by_goal = goal * goal / (blend.acceleration_mm_per_s2 * std::cos(half));
   blend.radius_mm = std::min({by_tolerance, by_room, by_goal});
-  blend.speed_mm_per_s = std::min(goal, arc_speed(blend.radius_mm, blend.acceleration_mm_per_s2, options.normal_fraction));
+  blend.speed_mm_per_s =
+      std::min(goal, arc_speed(blend.radius_mm, blend.acceleration_mm_per_s2, options.normal_fraction));
   if (std::isinf(blend.acceleration_mm_per_s2))
     blend = {
         .turn_rad = blend.turn_rad, .speed_mm_per_s = goal, .acceleration_mm_per_s2 = blend.acceleration_mm_per_s2};

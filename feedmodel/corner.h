@@ -29,7 +29,7 @@ struct BlendOptions {
   double tolerance_mm = 0;         ///< largest distance between the arc and the corner; infinite: only the room counts
   double room_mm = 0;              ///< most that may be cut off each side
   double goal_speed_mm_per_s = 0;  ///< programmed; no faster than this
-  double normal_fraction = 1;         ///< of the plane's acceleration that turns the motion
+  double normal_fraction = 1;      ///< of the plane's acceleration that turns the motion
   Vec3 velocity_mm_per_s, acceleration_mm_per_s2;  ///< of the axes
 };
 

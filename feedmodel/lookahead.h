@@ -9,7 +9,7 @@ struct PlanRow {
   double length_mm = 0;
   double speed_limit_mm_per_s = 0;
   double acceleration_mm_per_s2 = 0;
-  double planned_fraction = 1;         ///< of the acceleration, that may be counted on for braking
+  double planned_fraction = 1;      ///< of the acceleration, that may be counted on for braking
   bool joined = false;              ///< counts as one with the next for the horizon
   double entry_speed_mm_per_s = 0;  ///< in: what the corner allows; out: what the plan takes
 };

@@ -30,8 +30,8 @@ struct Element {
   bool line = true;
   nc::PathControl control = nc::PathControl::blend;
   double tolerance_mm = 0;
-  bool stops = false;        ///< G9, G61.1
-  double from_s = 0;         ///< where the rounding at its start ends
+  bool stops = false;           ///< G9, G61.1
+  double from_s = 0;            ///< where the rounding at its start ends
   double less_fraction = 0;     ///< of its acceleration, kept free for the corners' speed steps
   double planned_fraction = 1;  ///< of its acceleration, that the look-ahead counts on
 };

@@ -24,27 +24,27 @@ struct Tool {
   int number = 0;
   ToolType type = ToolType::ball;
   double diameter_mm = 0;
-  double corner_radius_mm = 0;  ///< bull, general
-  double tip_diameter_mm = 0;   ///< chamfer: of the flat at the tip; 0: a point
-  double point_angle_rad = 0;   ///< chamfer, drill: between opposite sides of the cone
-  double taper_rad = 0;         ///< tapered_ball, general: between the wall and the axis
-  double bottom_angle_rad = 0;  ///< general: the bottom rises by this towards the outside
+  double corner_radius_mm = 0;                            ///< bull, general
+  double tip_diameter_mm = 0;                             ///< chamfer: of the flat at the tip; 0: a point
+  double point_angle_rad = 0;                             ///< chamfer, drill: between opposite sides of the cone
+  double taper_rad = 0;                                   ///< tapered_ball, general: between the wall and the axis
+  double bottom_angle_rad = 0;                            ///< general: the bottom rises by this towards the outside
   double corner_centre_r_mm = 0, corner_centre_z_mm = 0;  ///< general: centre of the corner's arc
   int flutes = 2;
   double helix_rad = 0;
   std::vector<double> pitch_rad;  ///< from each tooth to the next, as they follow in the cut; empty: equal
   double runout_mm = 0;           ///< of the cutter's axis from the spindle's
   double runout_angle_rad = 0;    ///< from tooth 1 to the direction of the run-out, against the turning direction
-  double overhang_mm = 0;                    ///< holder face to tip
-  std::optional<double> flute_length_mm;     ///< not given: the whole overhang is fluted
-  double neck_diameter_mm = 0;               ///< 0: no neck
-  double neck_length_mm = 0;                 ///< from the flutes up
-  double shank_diameter_mm = 0;              ///< 0: as the cutter
-  std::vector<HolderPart> holder;            ///< from the holder's face up
-  bool shear = false;                        ///< deflection by shear as well (Timoshenko)
-  double effective_diameter_ratio = 0.8;     ///< bending diameter of the fluted part / diameter
+  double overhang_mm = 0;         ///< holder face to tip
+  std::optional<double> flute_length_mm;  ///< not given: the whole overhang is fluted
+  double neck_diameter_mm = 0;            ///< 0: no neck
+  double neck_length_mm = 0;              ///< from the flutes up
+  double shank_diameter_mm = 0;           ///< 0: as the cutter
+  std::vector<HolderPart> holder;         ///< from the holder's face up
+  bool shear = false;                     ///< deflection by shear as well (Timoshenko)
+  double effective_diameter_ratio = 0.8;  ///< bending diameter of the fluted part / diameter
   double youngs_modulus_MPa = 600000;
-  double root_stiffness_N_per_mm = kNoLimit; ///< lateral, holder and spindle
+  double root_stiffness_N_per_mm = kNoLimit;  ///< lateral, holder and spindle
 };
 
 struct Box {
@@ -61,9 +61,9 @@ struct Cylinder {
 struct Stock {
   std::optional<Box> box;
   std::optional<Cylinder> cylinder;
-  std::string mesh;          ///< STL path; empty: none
-  std::string vdb;           ///< stock.vdb of another job; empty: none
-  double allowance_mm = 0;   ///< > 0: the blank was already cut by this program with the cutter shrunk by this much
+  std::string mesh;         ///< STL path; empty: none
+  std::string vdb;          ///< stock.vdb of another job; empty: none
+  double allowance_mm = 0;  ///< > 0: the blank was already cut by this program with the cutter shrunk by this much
 };
 
 struct Part {
@@ -111,7 +111,7 @@ struct Job {
   std::string program;  ///< paths are resolved against the job's folder
   std::string machine_path;
   Machine machine;
-  std::optional<bool> inch;   ///< unit of a program without G20/G21: `units = "inch"` or "mm"
+  std::optional<bool> inch;  ///< unit of a program without G20/G21: `units = "inch"` or "mm"
   Operations operations;
   std::map<int, Tool> tools;
   Material material;

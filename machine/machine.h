@@ -22,9 +22,9 @@ enum class CornerLaw {
 
 struct Corner {
   CornerLaw law = CornerLaw::exact_stop;
-  double tolerance_mm = 0;                 ///< blend
+  double tolerance_mm = 0;                      ///< blend
   double speed_difference_mm_per_s = kNoLimit;  ///< speed_difference
-  double time_s = 0;                       ///< angle: dt
+  double time_s = 0;                            ///< angle: dt
   /// Corners passed without rounding: the speed of an axis may jump by this share of what it gains in one period
   /// (dV = share x acceleration x period). 0: only corners without a change of direction are passed so.
   double step_fraction = 0;
@@ -36,11 +36,11 @@ struct Corner {
 
 struct Control {
   Dialect dialect = Dialect::fanuc;
-  double period_s = 0.001;      ///< of interpolation and of feed.csv
-  double block_time_s = 0;      ///< block processing time T_b
+  double period_s = 0.001;  ///< of interpolation and of feed.csv
+  double block_time_s = 0;  ///< block processing time T_b
   Corner corner;
-  double merge_tolerance_mm = 0;  ///< short lines within it are merged; 0: none
-  int lookahead_blocks = 0;       ///< segments seen ahead, at the last of which it could stop; 0: all
+  double merge_tolerance_mm = 0;       ///< short lines within it are merged; 0: none
+  int lookahead_blocks = 0;            ///< segments seen ahead, at the last of which it could stop; 0: all
   double arc_normal_fraction = 1;      ///< of the acceleration, to turn: v <= sqrt(share a r)
   double arc_tangential_fraction = 1;  ///< of the acceleration, along an arc whose speed may reach that limit
   /// Of the acceleration, in a block that should be blended (G64) but ends in a stop; taken twice when the
@@ -56,15 +56,15 @@ struct Control {
 struct Axis {
   double max_velocity_mm_per_s = kNoLimit;
   double acceleration_mm_per_s2 = kNoLimit;
-  double rapid_mm_per_s = kNoLimit;  ///< of G0, where it is lower than max_velocity
+  double rapid_mm_per_s = kNoLimit;                ///< of G0, where it is lower than max_velocity
   double rapid_acceleration_mm_per_s2 = kNoLimit;  ///< of G0; infinity: the same as acceleration
   double jerk_mm_per_s3 = kNoLimit;
-  double filter_s = 0;                      ///< moving average after interpolation; 0: none
+  double filter_s = 0;                              ///< moving average after interpolation; 0: none
   double exponential_1_s = 0, exponential_2_s = 0;  ///< first-order lags after interpolation (Yan & Shirase); 0: none
-  double position_gain_per_s = kNoLimit;    ///< Kp of the position loop; infinity: no lag
-  double velocity_lag_s = 0;                ///< time constant of the velocity loop inside the position loop
+  double position_gain_per_s = kNoLimit;            ///< Kp of the position loop; infinity: no lag
+  double velocity_lag_s = 0;                        ///< time constant of the velocity loop inside the position loop
   double feed_forward_percent = 0;
-  double stiffness_N_per_mm = kNoLimit;     ///< static, tool against work; only across the tool (x, y)
+  double stiffness_N_per_mm = kNoLimit;  ///< static, tool against work; only across the tool (x, y)
   std::array<double, 2> travel_mm{-kNoLimit, kNoLimit};
 };
 
@@ -73,7 +73,7 @@ struct FittedRange {
   bool known = false;
   std::array<double, 2> feed_mm_per_s{}, corner_rad{}, line_mm{}, arc_radius_mm{};
   std::array<double, 2> blocks_per_s{};  ///< at the programmed feed, over eight blocks in a row
-  std::array<bool, 3> axis{};  ///< x, y, z moved
+  std::array<bool, 3> axis{};            ///< x, y, z moved
 };
 
 struct Spindle {

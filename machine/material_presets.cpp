@@ -15,7 +15,8 @@ KienzlePair kienzle_from_catalogue(std::span<const CatalogueRow> rows) {
   KienzlePair out;
   out.m = -slope;
   for (const auto& r : rows)
-    out.worst_fraction = std::max(out.worst_fraction, std::abs(at_one * std::pow(r.feed_per_tooth_mm, slope) / r.kc_MPa - 1));
+    out.worst_fraction =
+        std::max(out.worst_fraction, std::abs(at_one * std::pow(r.feed_per_tooth_mm, slope) / r.kc_MPa - 1));
   const double half_sqrt_pi = 0.88622692545275801;
   out.k1_1_MPa = at_one / (half_sqrt_pi * std::tgamma(1 - out.m / 2) / std::tgamma(1.5 - out.m / 2));
   return out;

@@ -62,7 +62,7 @@ struct Dialect {
 
   // Subprograms
   bool m98_count_in_p = false;  ///< M98 P31234: O1234, three times
-  int max_levels = 15;         ///< of calls inside calls
+  int max_levels = 15;          ///< of calls inside calls
 };
 
 const Dialect& dialect_of(ControlKind control);

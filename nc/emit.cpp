@@ -102,7 +102,8 @@ class Emitter {
       if (block == header_before_) out.insert(out.end(), header_lines_, Emission::kNoBlock);
       std::size_t lines = 1;
       for (; next < replaced_.size() && replaced_[next].first == block; ++next)
-        lines += static_cast<std::size_t>(std::count(replaced_[next].second.begin(), replaced_[next].second.end(), '\n'));
+        lines +=
+            static_cast<std::size_t>(std::count(replaced_[next].second.begin(), replaced_[next].second.end(), '\n'));
       out.insert(out.end(), lines, block);
     }
     return out;
@@ -433,7 +434,8 @@ class Emitter {
   }
 
   /// The sweep from start to end about a centre, in the sense of `like`.
-  static double sweep_about(const Vec3& centre, const Vec3& start, const Vec3& end, const PlaneAxes& axes, double like) {
+  static double sweep_about(const Vec3& centre, const Vec3& start, const Vec3& end, const PlaneAxes& axes,
+                            double like) {
     const auto angle = [&](const Vec3& p) {
       return std::atan2(p[axes.second] - centre[axes.second], p[axes.first] - centre[axes.first]);
     };

@@ -36,9 +36,9 @@ struct EmitOptions {
 /// corrected, so an axis that a rapid does not name stays where the edited move left it until the next cutting move.
 ///
 /// A block with via points becomes several: the first keeps its words and comment and goes to the first via point, the
-/// others hold coordinates only (arcs: and their centre or R). Words that act at the end of the move (M0 M1 M2 M5 M9 M30 M60, G9) go to the last.
-/// A full turn stays closed: it ends where the emitted program starts it. Arcs get as many decimals as it takes for the
-/// radii at start and end to agree within one unit of the last decimal.
+/// others hold coordinates only (arcs: and their centre or R). Words that act at the end of the move (M0 M1 M2 M5 M9
+/// M30 M60, G9) go to the last. A full turn stays closed: it ends where the emitted program starts it. Arcs get as many
+/// decimals as it takes for the radii at start and end to agree within one unit of the last decimal.
 ///
 /// Points are in the frame of the moves; where the text has them in a shifted, turned, mirrored or scaled frame the
 /// words are counted back into it.

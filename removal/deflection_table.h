@@ -16,9 +16,9 @@ struct NodeWeight {
 };
 NodeWeight node_weight(const std::vector<double>& node_height_mm, double height_mm);
 
-/// Lateral deflections, along x and y of the tool's frame, by stamp, height and rotation step. The edge of any tooth passes the points of rotation step
-/// m at that instant of the tooth passing; between nodes the deflection is linear in height, beyond the last node it
-/// is the last node's. Row 0 belongs to the stamp before the stretch's first.
+/// Lateral deflections, along x and y of the tool's frame, by stamp, height and rotation step. The edge of any tooth
+/// passes the points of rotation step m at that instant of the tooth passing; between nodes the deflection is linear in
+/// height, beyond the last node it is the last node's. Row 0 belongs to the stamp before the stretch's first.
 struct DeflectionTable {
   std::size_t stamps = 0;              ///< without row 0
   int steps = 0;                       ///< per pitch

@@ -93,9 +93,9 @@ ErrorSpread error_spread(const std::vector<double>& error, const std::vector<dou
 /// Points of the target's surface (as compare_surfaces has them, moved along their grid line onto the cutters that made
 /// the surface there), each with the height of the machined surface along its normal.
 ///
-/// A field between voxels rounds the ridges between two cuts. The deflected cutter leaves other ridges than the straight
-/// one, sharper by the jump of the deflection as an edge enters the cut, so that rounding does not cancel between
-/// two fields: 3.5 % of the error were lost at 0.1 mm voxels (docs/engagement.md). Here every point meets every
+/// A field between voxels rounds the ridges between two cuts. The deflected cutter leaves other ridges than the
+/// straight one, sharper by the jump of the deflection as an edge enters the cut, so that rounding does not cancel
+/// between two fields: 3.5 % of the error were lost at 0.1 mm voxels (docs/engagement.md). Here every point meets every
 /// envelope itself: the height e at which x = q + e n - delta(s, phi) lies on the straight envelope, (s, phi) belonging
 /// to x; the least height of all stamps stays. Nothing depends on the number of threads.
 class SurfaceMap {

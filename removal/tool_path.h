@@ -106,7 +106,7 @@ class StampBuilder {
   double next_s_ = 0;
   std::uint32_t next_move_ = 0;  ///< whose beginning was not met yet
   std::uint32_t next_hole_ = 0;  ///< move whose hole, if any, is not finished yet
-  double hole_fraction_ = 0;        ///< of next_hole_'s length, at the last sample
+  double hole_fraction_ = 0;     ///< of next_hole_'s length, at the last sample
 };
 
 }  // namespace camber::removal

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "repath/contact.h"
 #include "base/stl.h"
+#include "repath/contact.h"
 
 namespace camber::repath {
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kLengths[] = {10, 6.3, 4, 3.2, 2.5, 2, 1.6, 1.25, 1};  ///< longest first: they are rarely slower
 constexpr int kNoBetter = 2;                                            ///< lengths in a row that are no faster: enough
-constexpr double kMinGain = 1.002;                                    ///< less is not worth another program
+constexpr double kMinGain = 1.002;                                      ///< less is not worth another program
 constexpr double kSameTime = 1.001;  ///< what is no faster than this has no say: the path with the smaller error has
 constexpr double kAlmostSameTime = 1.005;  ///< is worth fewer blocks
 

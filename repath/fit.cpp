@@ -112,8 +112,7 @@ class Search {
     const std::uint32_t base = std::max(vertex + options_.arc_points - 2, leader ? line_end : farthest_);
     std::uint32_t good = 0, bad = end + 1;
     int failures = 0;
-    for (std::uint32_t step = 1, max_failures = leader ? 3 : 2; failures < static_cast<int>(max_failures);
-         step *= 2) {
+    for (std::uint32_t step = 1, max_failures = leader ? 3 : 2; failures < static_cast<int>(max_failures); step *= 2) {
       const std::uint32_t e = std::min(end, base + step);
       if (e <= base) break;
       if (const auto arc = fitter_.arc(vertex, e)) {

@@ -72,7 +72,7 @@ double corner_leg_mm(const FitOptions& options);
 /// direction. Nothing where no arc fits.
 struct ArcRoom {
   double least_sweep_rad = 0, max_sweep_rad = 0;  ///< magnitudes
-  double best_sweep_rad = 0;                       ///< goes through the points as well as it can (least squares)
+  double best_sweep_rad = 0;                      ///< goes through the points as well as it can (least squares)
   int direction = 1;
 };
 

@@ -132,12 +132,10 @@ class RasterMaker {
 
 }  // namespace
 
-Raster make_raster(const DropCutter& part, const RasterOptions& options) {
-  return RasterMaker(part, options).run();
-}
+Raster make_raster(const DropCutter& part, const RasterOptions& options) { return RasterMaker(part, options).run(); }
 
-std::vector<Vec3> points_of(const DropCutter& part, const std::vector<Leg>& chain,
-                            const RasterOptions& options, double step_mm) {
+std::vector<Vec3> points_of(const DropCutter& part, const std::vector<Leg>& chain, const RasterOptions& options,
+                            double step_mm) {
   std::vector<Vec3> out;
   for (const Leg& leg : chain)
     for (const OffsetPoint& p : offset_path(part, leg.from, leg.to,

@@ -39,8 +39,8 @@ Raster make_raster(const DropCutter& part, const RasterOptions& options);
 
 /// The tip's places along a chain, rounded to the increment, no two that follow each other alike. `step_mm` as in
 /// OffsetPathOptions; 0: chords within 15 % of the tolerance.
-std::vector<Vec3> points_of(const DropCutter& part, const std::vector<Leg>& chain,
-                            const RasterOptions& options, double step_mm = 0);
+std::vector<Vec3> points_of(const DropCutter& part, const std::vector<Leg>& chain, const RasterOptions& options,
+                            double step_mm = 0);
 
 /// What points_of() and its rounding leave of the tolerance to those who lay the path out again.
 double tolerance_left_mm(const RasterOptions& options);

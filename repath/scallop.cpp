@@ -81,8 +81,7 @@ bool touches(const Rectangle& boundary, const Contact& contact) {
   return in(boundary, contact.point.head<2>(), kBorderMm);
 }
 
-bool works_inside(const Underside& cutter, const Rectangle& boundary, const Vec2& axis,
-                  const Contact& contact) {
+bool works_inside(const Underside& cutter, const Rectangle& boundary, const Vec2& axis, const Contact& contact) {
   const Vec2 at = contact.point.head<2>();
   if (!touches(boundary, contact)) return false;
   const double under_flat = std::max(cutter.flat_mm - 1e-9, 1e-9);  // the rim is not
@@ -94,8 +93,7 @@ bool RowHeights::any_inside() const {
   return std::any_of(inside.begin(), inside.end(), [](char i) { return i != 0; });
 }
 
-RowSampler::RowSampler(const DropCutter& part, const RowFrame& frame, const Rectangle& boundary,
-                       double step_mm)
+RowSampler::RowSampler(const DropCutter& part, const RowFrame& frame, const Rectangle& boundary, double step_mm)
     : part_(part), frame_(frame), boundary_(boundary) {
   u_min_ = v_min_ = std::numeric_limits<double>::infinity();
   u_max_ = v_max_ = -u_min_;
@@ -131,8 +129,7 @@ RowHeights RowSampler::row(double v_mm) const {
   return out;
 }
 
-double scallop_mm(const RowSampler& sampler, const Underside& cutter, const RowHeights& a,
-                  const RowHeights& b) {
+double scallop_mm(const RowSampler& sampler, const Underside& cutter, const RowHeights& a, const RowHeights& b) {
   const bool ball = cutter.flat_mm == 0;
   const int between = ball ? 1 : 7;
   const double missed = ball ? 1 : 8.0 / 7;
@@ -295,8 +292,8 @@ class Spacer {
 
 }  // namespace
 
-RowSpacing space_rows(const RowSampler& sampler, const Underside& cutter, double scallop_mm,
-                      double increment_mm, const std::function<void(double)>& progress) {
+RowSpacing space_rows(const RowSampler& sampler, const Underside& cutter, double scallop_mm, double increment_mm,
+                      const std::function<void(double)>& progress) {
   return Spacer(sampler, cutter, scallop_mm, increment_mm).run(progress);
 }
 

@@ -21,8 +21,7 @@ struct Rectangle {
 
 /// A contact counts where it lies in the rectangle; on its border only where the cutter does not roll over it, and
 /// under a flat bottom, which touches anywhere, only with the axis inside.
-bool works_inside(const Underside& cutter, const Rectangle& boundary, const Vec2& axis,
-                  const Contact& contact);
+bool works_inside(const Underside& cutter, const Rectangle& boundary, const Vec2& axis, const Contact& contact);
 
 /// Whether a contact lies in the rectangle or on its border.
 bool touches(const Rectangle& boundary, const Contact& contact);
@@ -65,14 +64,13 @@ class RowSampler {
 /// swept_scallop_mm() measures, wherever it can.
 /// On a plane of any slope that gives R - sqrt(R^2 - (w/2)^2), w the distance of the rows along it, for a ball, and the
 /// step's w sin(slope) for a flat cutter; on a curved surface the curvature is in it to second order.
-double scallop_mm(const RowSampler& sampler, const Underside& cutter, const RowHeights& a,
-                  const RowHeights& b);
+double scallop_mm(const RowSampler& sampler, const Underside& cutter, const RowHeights& a, const RowHeights& b);
 
 struct RowSpacing {
   std::vector<double> rows_mm;  ///< v of each, ascending
   double largest_scallop_mm = 0;
   double steep_fraction = 0;  ///< of the spaces between rows: where the scallop asked for would need closer rows than
-                           ///< closest_mm
+                              ///< closest_mm
   double closest_mm = 0;
 };
 
@@ -80,7 +78,7 @@ struct RowSpacing {
 /// of what it allows on a level plane; no farther than twice that and three quarters of the diameter. One row on either
 /// side lies on the border or beyond, as far as the cutter touches inside. `increment_mm`: v is rounded to it.
 /// `progress`: told the share of the boundary that is done; may be empty.
-RowSpacing space_rows(const RowSampler& sampler, const Underside& cutter, double scallop_mm,
-                      double increment_mm, const std::function<void(double)>& progress = {});
+RowSpacing space_rows(const RowSampler& sampler, const Underside& cutter, double scallop_mm, double increment_mm,
+                      const std::function<void(double)>& progress = {});
 
 }  // namespace camber::repath

@@ -99,8 +99,7 @@ SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double 
       path.sagitta_mm = sagitta_mm;
       const double radius = std::max(radius_mm(moves, m), sagitta_mm);
       const double per_line = std::min(kMaxPerLineRad, 2 * std::acos(1 - sagitta_mm / radius));
-      const int n =
-          std::max(kMinLines, static_cast<int>(std::ceil(std::abs(moves.arcs[m.arc].sweep_rad) / per_line)));
+      const int n = std::max(kMinLines, static_cast<int>(std::ceil(std::abs(moves.arcs[m.arc].sweep_rad) / per_line)));
       for (int i = 1; i < n; ++i) add(m, nc::point_at(moves, m, static_cast<double>(i) / n), SpacePath::kInside);
     }
     add(m, m.end_mm, m.block);

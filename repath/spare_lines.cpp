@@ -8,9 +8,9 @@
 namespace camber::repath {
 namespace {
 
-constexpr std::size_t kBeside = 3;       ///< primitives at either side of a line that are laid out anew with it
+constexpr std::size_t kBeside = 3;      ///< primitives at either side of a line that are laid out anew with it
 constexpr std::uint32_t kMaxEnds = 64;  ///< of a window
-constexpr double kExact = 0.25;          ///< of the tolerance: so near lies only what was drawn so
+constexpr double kExact = 0.25;         ///< of the tolerance: so near lies only what was drawn so
 constexpr double kTimesNearer = 4;
 constexpr std::size_t kMaxInstead = 3;  ///< of a line with many points
 

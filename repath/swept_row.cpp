@@ -35,8 +35,8 @@ double slope_at(const RowHeights& row, double t, double step_mm) {
 
 }  // namespace
 
-std::optional<SweptHeight> swept_height(const Underside& cutter, const RowHeights& row, double step_mm,
-                                        double place, double v_mm) {
+std::optional<SweptHeight> swept_height(const Underside& cutter, const RowHeights& row, double step_mm, double place,
+                                        double v_mm) {
   const double radius = cutter.radius_mm(), beside = v_mm - row.v_mm, left = radius * radius - beside * beside;
   constexpr double kRounding = 1e-9;
   if (left < -kRounding) return std::nullopt;

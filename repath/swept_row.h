@@ -16,8 +16,8 @@ struct SweptHeight {
 /// The least of tip(t) + underside(distance from t) over the row, `place` in steps along it and `v_mm` across; the tip
 /// between the samples is a parabola through three of them. A flat cutter touches with its rim, up to a radius before
 /// or behind the place, where the row has another slope. Nothing out of the cutter's reach.
-std::optional<SweptHeight> swept_height(const Underside& cutter, const RowHeights& row, double step_mm,
-                                        double place, double v_mm);
+std::optional<SweptHeight> swept_height(const Underside& cutter, const RowHeights& row, double step_mm, double place,
+                                        double v_mm);
 
 /// The height of what two rows leave beside the k-th sample of both, for cutters with a flat: everything is measured on
 /// the rows as they are swept. It is sought where both leave the same, and at the border of the lower one, up to a

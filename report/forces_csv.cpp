@@ -8,8 +8,8 @@
 namespace camber::report {
 namespace {
 
-using simulate::StampLoad;
 using removal::Stamp;
+using simulate::StampLoad;
 
 /// Loads of a row's teeth, taken together.
 struct Row {

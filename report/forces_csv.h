@@ -2,8 +2,8 @@
 // forces.csv: loads along the path, a row a spindle turn or a block, whichever is shorter.
 #include <string>
 
-#include "simulate/predict.h"
 #include "machine/job.h"
+#include "simulate/predict.h"
 
 namespace camber::report {
 

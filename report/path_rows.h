@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "simulate/predict.h"
 #include "feedmodel/timed_path.h"
+#include "simulate/predict.h"
 
 namespace camber::report {
 
@@ -57,8 +57,7 @@ class PathCollector {
 
 /// Gives each row the loads of the stamps from it to the next row (or, where there is none, of the last one, if the
 /// next is the following tooth passing). `loads`: one a stamp, or none.
-void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path,
-               std::span<const simulate::StampLoad> loads);
+void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path, std::span<const simulate::StampLoad> loads);
 
 /// Gives the rows the error of greatest magnitude of the surface that their stamps made.
 void add_errors(std::vector<PathRow>& rows, const removal::StampPath& path,

@@ -6,10 +6,10 @@
 
 #include "base/diagnostics.h"
 #include "compensate/compensate.h"
-#include "simulate/predict.h"
 #include "removal/stock.h"
 #include "report/form_error.h"
 #include "report/html_report.h"
+#include "simulate/predict.h"
 
 namespace camber::report {
 

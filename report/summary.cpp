@@ -127,8 +127,7 @@ std::vector<std::size_t> unsettled_lines(const simulate::SimulatedProgram& progr
 
 }  // namespace
 
-std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& p,
-                         double compute_s) {
+std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s) {
   ordered_json j;
   j["machine_time_s"] = program.feed.time_s;
   j["cutting_time_s"] = program.feed.cutting_time_s;
@@ -267,8 +266,7 @@ std::string compensate_json(const compensate::Compensation& c, double compute_s)
   return j.dump(2) + "\n";
 }
 
-std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& p,
-                         double compute_s) {
+std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s) {
   std::string out = fmt::format("machine time {:.1f} s, of it cutting {:.1f} s; computed in {:.1f} s\n",
                                 program.feed.time_s, program.feed.cutting_time_s, compute_s);
   const SpindleFigures s = spindle_figures(program, p);

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "simulate/predict.h"
 #include "machine/job.h"
 #include "removal/stock.h"
+#include "simulate/predict.h"
 
 namespace camber::simulate {
 

@@ -17,8 +17,8 @@
 
 namespace camber::simulate {
 
-using removal::EnvelopeGrid;
 using removal::DeflectionTable;
+using removal::EnvelopeGrid;
 using removal::Stamp;
 using removal::Stock;
 
@@ -50,7 +50,8 @@ EnvelopeGrid sampled_envelope(const Stock& stock, const machine::Tool& tool, dou
                                 options.rotation_step_rad, stock.voxel_mm());
 }
 
-Vec2 deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row, const Contact& c) {
+Vec2 deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
+                   const Contact& c) {
   const double step = deflections.step_at(c.angle_rad, c.height_mm, envelope.lag_per_mm, envelope.flutes);
   return deflections.at<double>(row, c.height_mm, step);
 }
@@ -137,7 +138,8 @@ class Cutter {
     tbb::enumerable_thread_specific<ToothPass> passes;
     engager_->engage(from, loads.size(), [&](std::size_t k, std::span<const removal::ChipBlock> chips) {
       ToothPass& pass = passes.local();
-      std::span<float> row(deflections.row(static_cast<std::ptrdiff_t>(k)), options_.drilling ? 0 : deflections.row_size());
+      std::span<float> row(deflections.row(static_cast<std::ptrdiff_t>(k)),
+                           options_.drilling ? 0 : deflections.row_size());
       model_.evaluate(blocks, chips, from + k, all[from + k].feed_per_tooth_mm, pass, row);
       loads[k] = summarize(pass);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
@@ -148,8 +150,8 @@ class Cutter {
     for (const auto& [k, chips] : turn) keep_turn(chips, all[from + k], from + k, result);
   }
 
-  static void tell_contacts(const EnvelopeGrid& envelope, const DeflectionTable& deflections, std::span<const Contact> contacts,
-                            std::span<StampLoad> loads) {
+  static void tell_contacts(const EnvelopeGrid& envelope, const DeflectionTable& deflections,
+                            std::span<const Contact> contacts, std::span<StampLoad> loads) {
     for (std::size_t k = 0; k < contacts.size(); ++k)
       loads[k].contact_deflection_mm =
           deflection_at(envelope, deflections, deflections.row(static_cast<std::ptrdiff_t>(k)), contacts[k]);
@@ -177,7 +179,8 @@ class Cutter {
     if (!options_.drilling) return options_.surface->mark(envelope_, stamps, deflections, first_id);
     const DeflectionTable straight(1, model_.steps(), model_.node_height_mm());
     for (std::size_t k = 0; k < stamps.size(); ++k) {
-      const bool deeper = k + 1 < stamps.size() && stamps[k + 1].pose.tip_mm.head<2>() == stamps[k].pose.tip_mm.head<2>() &&
+      const bool deeper = k + 1 < stamps.size() &&
+                          stamps[k + 1].pose.tip_mm.head<2>() == stamps[k].pose.tip_mm.head<2>() &&
                           stamps[k + 1].move >= stamps[k].move;
       if (!deeper)
         options_.surface->mark(envelope_, stamps.subspan(k, 1), straight, first_id + static_cast<std::int32_t>(k));
@@ -212,7 +215,8 @@ class Cutter {
     return options_.turn_from && k >= *options_.turn_from &&
            k < *options_.turn_from + static_cast<std::size_t>(envelope_.flutes);
   }
-  void keep_turn(std::span<const removal::ChipSample> chips, const Stamp& stamp, std::size_t k, CutResult& result) const {
+  void keep_turn(std::span<const removal::ChipSample> chips, const Stamp& stamp, std::size_t k,
+                 CutResult& result) const {
     if (in_turn(k)) model_.add_to_turn(chips, k - *options_.turn_from, k, stamp.feed_per_tooth_mm, result.turn);
   }
 
@@ -224,11 +228,11 @@ class Cutter {
   double top_mm_;
   EnvelopeGrid envelope_;
   ToothPassModel model_;
-  std::optional<ToothMarks> tooth_marks_;    ///< of teeth that are not even
+  std::optional<ToothMarks> tooth_marks_;         ///< of teeth that are not even
   std::optional<removal::RigidEngager> engager_;  ///< rigid
   std::optional<StaticCut> static_cut_;
-  bool settled_ = true;  ///< the last tooth passing
-  DeflectionTable deflections_;    ///< of the stretch
+  bool settled_ = true;          ///< the last tooth passing
+  DeflectionTable deflections_;  ///< of the stretch
   std::vector<float> last_row_;
 };
 

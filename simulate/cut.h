@@ -8,9 +8,9 @@
 
 #include "deflection/tooth_pass.h"
 #include "machine/job.h"
-#include "removal/tool_path.h"
-#include "removal/stock.h"
 #include "removal/form_error.h"
+#include "removal/stock.h"
+#include "removal/tool_path.h"
 
 namespace camber::simulate {
 
@@ -67,8 +67,8 @@ struct CutResult {
   TurnForces turn;                             ///< empty without CutOptions::turn_from
 };
 
-/// Cuts `stock`: with the deflected cutter, or in rigid coupling, where no bending feeds back, with the undeflected one;
-/// what the deflected one leaves is then in `surface` only. `contacts` (one a stamp, or empty) only serves
+/// Cuts `stock`: with the deflected cutter, or in rigid coupling, where no bending feeds back, with the undeflected
+/// one; what the deflected one leaves is then in `surface` only. `contacts` (one a stamp, or empty) only serves
 /// StampLoad::contact_deflection_mm. Stamp ids in the stock are first_id + index.
 CutResult cut(removal::Stock& stock, const machine::Tool& tool, const machine::Material& material,
               std::span<const removal::Stamp> stamps, std::span<const Contact> contacts, std::int32_t first_id,

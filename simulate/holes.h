@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "simulate/cut.h"
-#include "removal/tool_path.h"
 #include "removal/form_error.h"
+#include "removal/tool_path.h"
+#include "simulate/cut.h"
 
 namespace camber::simulate {
 

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "simulate/job_checks.h"
 #include "feedmodel/control_options.h"
 #include "nc/interpreter.h"
+#include "simulate/job_checks.h"
 
 namespace camber::simulate {
 
@@ -80,7 +80,7 @@ double envelope_step_mm(const Job& job, const machine::Tool& tool) {
 }
 
 SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmodel::SampleSink& samples,
-                                Diagnostics& diagnostics) {
+                                 Diagnostics& diagnostics) {
   SimulatedProgram out;
   out.text = nc::read_program(std::move(source), diagnostics);
   out.moves = nc::interpret(out.text, feedmodel::interpreter_options(job.machine, job.inch), diagnostics);

@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "simulate/cut.h"
-#include "simulate/holes.h"
 #include "feedmodel/timed_path.h"
 #include "machine/job.h"
 #include "nc/move.h"
@@ -16,6 +14,8 @@
 #include "removal/form_error.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
+#include "simulate/cut.h"
+#include "simulate/holes.h"
 
 namespace camber::simulate {
 
@@ -32,7 +32,7 @@ struct SimulatedProgram {
 /// Reads, interprets, checks and times a program. `samples` (may be empty) also receives the timed path.
 /// Throws InputError.
 SimulatedProgram simulate_motion(SourceText source, const machine::Job& job, const feedmodel::SampleSink& samples,
-                                Diagnostics& diagnostics);
+                                 Diagnostics& diagnostics);
 
 /// What the part is judged against: the undeflected sweep of the target program through the blank.
 struct Target {

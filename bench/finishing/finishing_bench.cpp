@@ -11,10 +11,10 @@
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 
-#include "simulate/cut.h"
 #include "machine/job.h"
-#include "removal/tool_path.h"
 #include "removal/stock.h"
+#include "removal/tool_path.h"
+#include "simulate/cut.h"
 
 using namespace camber;
 

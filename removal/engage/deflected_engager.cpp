@@ -8,10 +8,10 @@
 
 #include <tbb/parallel_for.h>
 
-#include "removal/field/upright/carve.h"
 #include "removal/engage/upright/chip_reader.h"
-#include "removal/field/upright/cut_tiles.h"
 #include "removal/engage/upright/patch_lanes.h"
+#include "removal/field/upright/carve.h"
+#include "removal/field/upright/cut_tiles.h"
 #include "removal/field/upright/tile_arena.h"
 
 namespace camber::removal {
@@ -53,7 +53,7 @@ struct DeflectedEngager::Impl {
   TileArena arena{};
   std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
   double removed_mm3 = 0;                       ///< from tiles that were given back since the last commit
-  double max_deflection_mm = 0;                      ///< of all stamps that were cut
+  double max_deflection_mm = 0;                 ///< of all stamps that were cut
   std::vector<float> into{};                    ///< of the patches
   std::vector<Touch> touches{};
   std::vector<std::size_t> first_touch{};  ///< of each tile that is touched
@@ -108,19 +108,21 @@ void DeflectedEngager::Impl::cut(std::size_t t, std::size_t k, const StampDeflec
   const double voxel = stock.voxel_mm(), band = stock.band_mm();
   if (tile.cover.all_air()) return;
   if (tile_distance_mm(arena.index(t), voxel, envelope.shape, stamp.pose.tip_mm) > band + deflection.largest_mm) return;
-  if (tile.cut && !tile.cover.changeable_after(tile.last_tip_mm, tile.last_deflection_mm, stamp.pose.tip_mm, deflection.largest_mm))
+  if (tile.cut &&
+      !tile.cover.changeable_after(tile.last_tip_mm, tile.last_deflection_mm, stamp.pose.tip_mm, deflection.largest_mm))
     return;
   const CarveStamp at{stamp.pose.tip_mm, first_id + static_cast<std::int32_t>(from + k)};
-  tile.changed |= deflection.largest_mm > 0
-                      ? carve_deflected(arena[t], tile.cover, arena.index(t), voxel, band, envelope, at, *deflections, deflection)
-                      : carve(arena[t], tile.cover, arena.index(t), voxel, band, envelope.shape, at);
+  tile.changed |=
+      deflection.largest_mm > 0
+          ? carve_deflected(arena[t], tile.cover, arena.index(t), voxel, band, envelope, at, *deflections, deflection)
+          : carve(arena[t], tile.cover, arena.index(t), voxel, band, envelope.shape, at);
   tile.cut = true;
   tile.last_tip_mm = stamp.pose.tip_mm;
   tile.last_deflection_mm = deflection.largest_mm;
 }
 
-DeflectedEngager::DeflectedEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
-                         std::int32_t first_id)
+DeflectedEngager::DeflectedEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope,
+                                   std::span<const Stamp> stamps, std::int32_t first_id)
     : impl_(new Impl{stock, blank, envelope, stamps, first_id}) {}
 DeflectedEngager::~DeflectedEngager() = default;
 

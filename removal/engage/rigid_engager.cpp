@@ -9,8 +9,8 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "removal/field/upright/batch_cut.h"
 #include "removal/engage/upright/block_reader.h"
+#include "removal/field/upright/batch_cut.h"
 #include "removal/field/upright/carve.h"
 #include "removal/field/upright/cut_tiles.h"
 #include "removal/field/upright/stamp_order.h"
@@ -129,8 +129,8 @@ void RigidEngager::Impl::cut_general(std::size_t t) {
       });
 }
 
-RigidEngager::RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
-                 std::int32_t first_id, int pitches)
+RigidEngager::RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope,
+                           std::span<const Stamp> stamps, std::int32_t first_id, int pitches)
     : impl_(std::make_unique<Impl>(stock, blank, envelope, stamps, first_id, pitches)) {}
 RigidEngager::~RigidEngager() = default;
 

@@ -5,8 +5,8 @@
 #include <array>
 
 #include "base/geometry.h"
-#include "removal/stock.h"
 #include "removal/field/tile.h"
+#include "removal/stock.h"
 
 namespace camber::removal {
 

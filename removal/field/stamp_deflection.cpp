@@ -25,13 +25,15 @@ struct SectorTable {
 }  // namespace
 
 StampDeflections::StampDeflections(const EnvelopeGrid& envelope, const DeflectionTable& deflections)
-    : deflections_(deflections), flutes_(envelope.flutes), group_(std::max(1, deflections.steps * envelope.flutes / 360)) {
+    : deflections_(deflections),
+      flutes_(envelope.flutes),
+      group_(std::max(1, deflections.steps * envelope.flutes / 360)) {
   const int nodes = static_cast<int>(deflections.nodes());
   const double node_step = nodes > 1 ? deflections.node_height_mm[1] : 0.0;
   const double sector = 2 * kPi / StampDeflection::kSectors;
   // A deflection between two nodes belongs to a range of lags; one sector more for interpolation between steps.
-  spread_ =
-      std::min(1 + static_cast<int>(std::ceil(envelope.lag_per_mm * node_step / sector)), StampDeflection::kSectors / 2);
+  spread_ = std::min(1 + static_cast<int>(std::ceil(envelope.lag_per_mm * node_step / sector)),
+                     StampDeflection::kSectors / 2);
   for (int n = 0; n < nodes; ++n)
     for (int m = 0; m < deflections.steps; m += group_)
       for (int j = 0; j < flutes_; ++j) {

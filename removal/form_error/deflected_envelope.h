@@ -1,5 +1,6 @@
 #pragma once
-// The envelope of one stamp whose point (s, phi) is displaced by the deflection of the instant at which an edge passes it.
+// The envelope of one stamp whose point (s, phi) is displaced by the deflection of the instant at which an edge passes
+// it.
 #include "base/tool_pose.h"
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
@@ -10,7 +11,8 @@ namespace camber::removal {
 /// One deflected stamp. What it is made from must outlive it.
 class DeflectedEnvelope {
  public:
-  DeflectedEnvelope(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const StampDeflection& deflection, const ToolPose& pose)
+  DeflectedEnvelope(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const StampDeflection& deflection,
+                    const ToolPose& pose)
       : e_(envelope), deflections_(deflections), deflection_(deflection), pose_(pose) {}
 
   const ToolPose& pose() const { return pose_; }

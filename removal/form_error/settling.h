@@ -1,5 +1,6 @@
 #pragma once
-// How place and deflection of a deflected envelope's point are brought to agree (removal/form_error/deflected_envelope.h).
+// How place and deflection of a deflected envelope's point are brought to agree
+// (removal/form_error/deflected_envelope.h).
 
 namespace camber::removal {
 namespace {  // compiled for several instruction sets

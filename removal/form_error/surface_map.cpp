@@ -8,10 +8,10 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "removal/form_error/deflected_envelope.h"
 #include "removal/field/upright/carve.h"
-#include "removal/simd/upright_mark_kernels.h"
+#include "removal/form_error/deflected_envelope.h"
 #include "removal/simd/upright_distances.h"
+#include "removal/simd/upright_mark_kernels.h"
 
 namespace camber::removal {
 namespace {
@@ -27,7 +27,8 @@ struct Group {
   std::size_t first = 0, count = 0;
   double highest = 0;  ///< of its points' errors
 
-  /// What a straight cutter must be as near as to reach one of the points, or one above it by its error, when deflected.
+  /// What a straight cutter must be as near as to reach one of the points, or one above it by its error, when
+  /// deflected.
   double reach_mm() const { return std::max(highest, 0.0) + kRounding_mm; }
 };
 
@@ -103,12 +104,12 @@ class UprightTips {
     }
     const Eigen::Vector3f p = (group.centre - origin_).cast<float>(), n = group.normal.cast<float>();
     upright::rounded_distances_to(x_.data(), y_.data(), z_.data(), x_.size(),
-                         {{p.x(), p.y(), p.z()},
-                          {n.x(), n.y(), n.z()},
-                          static_cast<float>(group.across),
-                          static_cast<float>(group.thick)},
-                         static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm),
-                         out.data());
+                                  {{p.x(), p.y(), p.z()},
+                                   {n.x(), n.y(), n.z()},
+                                   static_cast<float>(group.across),
+                                   static_cast<float>(group.thick)},
+                                  static_cast<float>(shape.bottom_length_mm()),
+                                  static_cast<float>(shape.corner_radius_mm), out.data());
   }
 
  private:
@@ -122,7 +123,8 @@ class UprightStampGroups {
   UprightStampGroups(std::span<const Stamp> stamps, const std::vector<StampDeflection>& deflections) {
     constexpr std::size_t kTogether = 32;
     for (std::size_t k = 0; k < stamps.size(); ++k) {
-      if (k % kTogether == 0) groups_.push_back({stamps[k].pose.tip_mm.head<2>(), stamps[k].pose.tip_mm.head<2>(), 0, {}});
+      if (k % kTogether == 0)
+        groups_.push_back({stamps[k].pose.tip_mm.head<2>(), stamps[k].pose.tip_mm.head<2>(), 0, {}});
       Together& g = groups_.back();
       g.lo = g.lo.cwiseMin(stamps[k].pose.tip_mm.head<2>());
       g.hi = g.hi.cwiseMax(stamps[k].pose.tip_mm.head<2>());
@@ -202,9 +204,10 @@ class UprightMarkQueue {
     }
     height_.resize(shift_.size());
     const auto& l = lanes_;
-    upright::mark_kernels().heights({static_cast<int>(shift_.size()), l[0].data(), l[1].data(), l[2].data(), l[3].data(),
-                            l[4].data(), l[5].data(), l[6].data(), l[7].data(), shift_.data(), height_.data()},
-                           tool_);
+    upright::mark_kernels().heights(
+        {static_cast<int>(shift_.size()), l[0].data(), l[1].data(), l[2].data(), l[3].data(), l[4].data(), l[5].data(),
+         l[6].data(), l[7].data(), shift_.data(), height_.data()},
+        tool_);
     for (std::size_t i = 0; i < count; ++i)
       if (height_[i] < lanes_[kHighest][i]) lowered(pairs_[i], static_cast<double>(height_[i]));
     pairs_.clear();
@@ -291,8 +294,8 @@ class UprightCloseStamps {
       upright::NearCutters near{-1, 0, within_.data() + found};
       const Eigen::Vector3f p = place_of(points[i]);
       upright::mark_kernels().find_near(lanes, p.x(), p.y(), p.z(), near);
-      within_.resize(static_cast<std::size_t>(found + (near.count + upright::MarkLanes::kLanes - 1) / upright::MarkLanes::kLanes *
-                                                          upright::MarkLanes::kLanes));
+      within_.resize(static_cast<std::size_t>(found + (near.count + upright::MarkLanes::kLanes - 1) /
+                                                          upright::MarkLanes::kLanes * upright::MarkLanes::kLanes));
       near_.push_back({near.nearest, near.count, found});
       if (near.nearest >= 0) add_to_queue(points, i, near.nearest);
     }
@@ -390,7 +393,8 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
   tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
     const auto row = static_cast<std::ptrdiff_t>(k);
     // MarkKernels ask for no directions.
-    bounds[k] = envelope.shape.general ? all.of(row) : StampDeflection{deflections.row(row), deflections.largest_mm(row), {}};
+    bounds[k] =
+        envelope.shape.general ? all.of(row) : StampDeflection{deflections.row(row), deflections.largest_mm(row), {}};
   });
   const UprightStampGroups groups(stamps, bounds);
   struct Room {

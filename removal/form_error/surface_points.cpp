@@ -1,5 +1,5 @@
-#include "removal/form_error.h"
 #include "removal/field/tile.h"
+#include "removal/form_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -165,7 +165,8 @@ class NamedCutters {
 constexpr double kOn_mm = 1e-4;  // as good as on an edge
 constexpr double kFace_mm =
     0.15;  // left out along the stock's faces: entry and exit, which a grid knows to half a voxel
-constexpr double kEdge_mm = 0.05;  // left out along edges between two cut surfaces: there the other one's deflection is met
+constexpr double kEdge_mm =
+    0.05;  // left out along edges between two cut surfaces: there the other one's deflection is met
 
 /// Where a smooth piece of surface ends near a point: how far from it, and which way along the surface.
 struct End {
@@ -294,8 +295,8 @@ class Patch {
 
 /// Puts a point of the trilinear surface along its grid line onto the cutters that made it, and aside: rows and feed
 /// marks that are in step with the grid would else be met at the same places of every cusp. `untold` where the cutters
-/// tell no place: the point is left as it was. `beyond`: so near an edge that a deflection of the other surface takes it
-/// off.
+/// tell no place: the point is left as it was. `beyond`: so near an edge that a deflection of the other surface takes
+/// it off.
 enum class Sharpened { yes, untold, beyond };
 Sharpened sharpen(SurfacePoint& p, int axis, const NamedCutters& cutters, const CutterPlaces& places,
                   const Around& around, const Stock::Probe* solid, const Vec2& scatter, double voxel) {

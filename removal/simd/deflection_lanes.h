@@ -1,10 +1,10 @@
 #pragma once
-// Shifts of the deflected envelope at places, in vectors. Included by the files that are compiled for one instruction set,
-// as removal/simd/upright_kernels_impl.h.
+// Shifts of the deflected envelope at places, in vectors. Included by the files that are compiled for one instruction
+// set, as removal/simd/upright_kernels_impl.h.
 #include <xsimd/xsimd.hpp>
 
-#include "removal/simd/upright_kernels.h"
 #include "removal/field/rounded_cutter.h"
+#include "removal/simd/upright_kernels.h"
 #include "removal/simd/vector_table.h"
 
 namespace camber::removal::upright {
@@ -49,7 +49,8 @@ struct DeflectionLanes {
   }
 
   /// Deflection of the envelope's point nearest to a place; `offset` of each lane's row in the table.
-  static Deflection deflection_at(const EdgeLanes& e, const DeflectionRow& rows, const I& offset, const F& x, const F& y, const F& z) {
+  static Deflection deflection_at(const EdgeLanes& e, const DeflectionRow& rows, const I& offset, const F& x,
+                                  const F& y, const F& z) {
     const F zero(0.0f);
     const RoundedCutter<F> cutter{F(e.flat), F(e.corner)};
     const F height = cutter.nearest_height(cutter.place(xsimd::sqrt(x * x + y * y), z), z);
@@ -67,7 +68,7 @@ struct DeflectionLanes {
     const F fn = at_node - to_float(n0);
     const I low = offset + n0 * all, high = rows.nodes > 1 ? low + all : low;
     const Deflection s00 = at(rows.now, low, m0), s01 = at(rows.now, low, m1), s10 = at(rows.now, high, m0),
-                s11 = at(rows.now, high, m1);
+                     s11 = at(rows.now, high, m1);
     const F one(1.0f), w00 = (one - fn) * (one - fm), w01 = (one - fn) * fm, w10 = fn * (one - fm), w11 = fn * fm;
     return {w00 * s00.x + w01 * s01.x + w10 * s10.x + w11 * s11.x,
             w00 * s00.y + w01 * s01.y + w10 * s10.y + w11 * s11.y};

@@ -1,9 +1,10 @@
 #pragma once
-// The loops behind removal/simd/upright_block_kernels.h for one instruction set; as removal/simd/upright_kernels_impl.h.
+// The loops behind removal/simd/upright_block_kernels.h for one instruction set; as
+// removal/simd/upright_kernels_impl.h.
 #include <xsimd/xsimd.hpp>
 
-#include "removal/simd/upright_block_kernels.h"
 #include "removal/field/rounded_cutter.h"
+#include "removal/simd/upright_block_kernels.h"
 #include "removal/simd/vector_table.h"
 
 namespace camber::removal::upright {

@@ -1,6 +1,6 @@
 #pragma once
-// The inner loops of engagement and deflected carving, in vectors as wide as the processor has them. Every lane does the
-// same operations in the same order whatever the width, so results do not depend on it.
+// The inner loops of engagement and deflected carving, in vectors as wide as the processor has them. Every lane does
+// the same operations in the same order whatever the width, so results do not depend on it.
 #include <cstdint>
 
 namespace camber::removal::upright {
@@ -27,7 +27,7 @@ struct StampView {
   float feed_mm[3];   ///< motion since the stamp before
   DeflectionRow deflection;
   float lag_per_mm;
-  float per_rad;       ///< rotation steps / (4 pi)
+  float per_rad;      ///< rotation steps / (4 pi)
   float max_tilt_mm;  ///< of the deflected envelope, along the motion
 };
 
@@ -48,9 +48,9 @@ struct LaneReading {
 
 /// A point against the stamps whose fields meet in its cell.
 struct CornerLanes {
-  alignas(64) float tip[3][8];  ///< from the point, mm
-  alignas(64) float valid[8];   ///< 0: none
-  alignas(64) float deflection[8];    ///< how much farther out than the straight cutter's the surface lies there, mm
+  alignas(64) float tip[3][8];      ///< from the point, mm
+  alignas(64) float valid[8];       ///< 0: none
+  alignas(64) float deflection[8];  ///< how much farther out than the straight cutter's the surface lies there, mm
   float normal[3];
 };
 

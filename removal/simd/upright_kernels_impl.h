@@ -1,13 +1,14 @@
 #pragma once
-// The loops behind removal/simd/upright_kernels.h for one instruction set. Included by the files that are compiled for one; nothing
-// else of ours is included, as what is compiled here for wide vectors must not be linked into code for narrow ones.
+// The loops behind removal/simd/upright_kernels.h for one instruction set. Included by the files that are compiled for
+// one; nothing else of ours is included, as what is compiled here for wide vectors must not be linked into code for
+// narrow ones.
 #include <cmath>
 
 #include <xsimd/xsimd.hpp>
 
-#include "removal/simd/upright_kernels.h"
-#include "removal/simd/deflection_lanes.h"
 #include "removal/field/rounded_cutter.h"
+#include "removal/simd/deflection_lanes.h"
+#include "removal/simd/upright_kernels.h"
 #include "removal/simd/vector_table.h"
 
 namespace camber::removal::upright {
@@ -128,7 +129,8 @@ struct Vectors {
 
   /// Deflection of the envelope's point nearest to a place.
   static Deflection deflection_at(const LineCut& c, const LineDeflection& b, const F& x, const F& y, const F& z) {
-    return DeflectionLanes<A>::deflection_at({c.flat, c.corner, b.lag_per_mm, b.steps_per_rad}, b.deflection, I(0), x, y, z);
+    return DeflectionLanes<A>::deflection_at({c.flat, c.corner, b.lag_per_mm, b.steps_per_rad}, b.deflection, I(0), x,
+                                             y, z);
   }
 
   /// Calls f(first voxel of a vector) for all of a column from `low` up to `top`; the lowest vectors may overlap.
@@ -259,13 +261,14 @@ struct Vectors {
     LineResult result;
     const float per_voxel = 1 / c.voxel, dx2 = c.dx * c.dx;
     const F steps = ramp() * F(c.voxel), band(c.band), dx(c.dx);
-    // How far a deflection moves the envelope outwards in each column; near the axis a deflection turns a place into another
-    // direction.
+    // How far a deflection moves the envelope outwards in each column; near the axis a deflection turns a place into
+    // another direction.
     alignas(64) float slack[LineCut::kLine];
     const F largest(deflection.largest_mm), axis_zone2(25 * deflection.largest_mm * deflection.largest_mm);
     for (int j = 0; j < LineCut::kLine; j += n) {
       const F dy = F(c.dy + static_cast<float>(j) * c.voxel) + steps;
-      const F at = (DeflectionLanes<A>::atan2(dy, dx) + F(3.14159265f)) * F(static_cast<float>(deflection.sectors) / 6.28318531f);
+      const F at = (DeflectionLanes<A>::atan2(dy, dx) + F(3.14159265f)) *
+                   F(static_cast<float>(deflection.sectors) / 6.28318531f);
       const I sector = xsimd::min(xsimd::max(to_int(at), I(0)), I(deflection.sectors - 1));
       const F outward = xsimd::min(Table<A>::gather(deflection.outward_mm, sector), largest);
       xsimd::select(F(dx2) + dy * dy > axis_zone2, outward, largest).store_aligned(slack + j);

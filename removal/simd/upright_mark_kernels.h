@@ -1,6 +1,7 @@
 #pragma once
-// Marks of deflected rounded cylinders on the surface (removal/form_error/deflected_envelope.h), in vectors as wide as the processor has
-// them. Every lane does the same operations in the same order whatever the width, so results do not depend on it.
+// Marks of deflected rounded cylinders on the surface (removal/form_error/deflected_envelope.h), in vectors as wide as
+// the processor has them. Every lane does the same operations in the same order whatever the width, so results do not
+// depend on it.
 #include <cstdint>
 
 #include "removal/simd/upright_kernels.h"
@@ -13,10 +14,10 @@ struct MarkLanes {
   int count;               ///< a multiple of kLanes
   const float *x, *y, *z;  ///< of the point, from the stamp's tip, mm
   const float *nx, *ny, *nz;
-  const float* highest;       ///< mm
-  const float* largest;       ///< of the stamp's deflections, mm
+  const float* highest;            ///< mm
+  const float* largest;            ///< of the stamp's deflections, mm
   const std::int32_t* deflection;  ///< of the stamp's row, deflections (pairs of values) from the first
-  float* height;              ///< out, mm
+  float* height;                   ///< out, mm
 };
 
 /// The deflected cutter; `rows.now` is the first row.

@@ -3,9 +3,9 @@
 #include <xsimd/xsimd.hpp>
 
 #include "removal/field/rounded_cutter.h"
-#include "removal/simd/upright_mark_kernels.h"
 #include "removal/form_error/settling.h"
 #include "removal/simd/deflection_lanes.h"
+#include "removal/simd/upright_mark_kernels.h"
 
 namespace camber::removal::upright {
 namespace {
@@ -56,7 +56,8 @@ struct MarkVectors {
       const F slope = xsimd::min(xsimd::max(slope_against(cutter.normal(p), rho, x, y, l), flattest), one);
       const F change = xsimd::select(live, p.distance / slope, zero);
       h += change;
-      const Deflection s = deflection_at(t, l.row, l.x + h * l.nx - deflection.x, l.y + h * l.ny - deflection.y, l.z + h * l.nz);
+      const Deflection s =
+          deflection_at(t, l.row, l.x + h * l.nx - deflection.x, l.y + h * l.ny - deflection.y, l.z + h * l.nz);
       const F turned_x = s.x - deflection.x, turned_y = s.y - deflection.y;
       live = live & !((xsimd::abs(change) < close) & (turned_x * turned_x + turned_y * turned_y < close2));
       const F share(Settling::share_of(step));

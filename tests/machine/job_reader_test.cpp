@@ -197,13 +197,14 @@ TEST(JobReader, ShowsTheMachinesErrorsInTheMachinesFile) {
 }
 
 TEST(JobReader, AsksForWhatIsMissing) {
-  EXPECT_EQ(read("units = \"mm\"\n").messages,
-            "job.toml: error: program is missing; the path of a file, in quotes was expected [key-missing]\n"
-            "job.toml: error: machine is missing; the path of a file, in quotes was expected [key-missing]\n"
-            "job.toml: error: [tool.1] is missing; a table for each tool of the program was expected [key-missing]\n"
-            "job.toml: error: [material] is missing; a table with the specific cutting forces ktc_MPa, krc_MPa ... "
-            "was expected [key-missing]\n"
-            "job.toml: error: [stock] is missing; a table with box_mm, cylinder, mesh or vdb was expected [key-missing]");
+  EXPECT_EQ(
+      read("units = \"mm\"\n").messages,
+      "job.toml: error: program is missing; the path of a file, in quotes was expected [key-missing]\n"
+      "job.toml: error: machine is missing; the path of a file, in quotes was expected [key-missing]\n"
+      "job.toml: error: [tool.1] is missing; a table for each tool of the program was expected [key-missing]\n"
+      "job.toml: error: [material] is missing; a table with the specific cutting forces ktc_MPa, krc_MPa ... "
+      "was expected [key-missing]\n"
+      "job.toml: error: [stock] is missing; a table with box_mm, cylinder, mesh or vdb was expected [key-missing]");
   EXPECT_EQ(read(with("diameter_mm = 6.0\n", "")).messages,
             "job.toml:3:1: error: diameter_mm is missing in [tool.1]; a number greater than zero was expected "
             "[key-missing]\n"

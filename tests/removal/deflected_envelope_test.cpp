@@ -87,8 +87,8 @@ EnvelopeGrid envelope_of(machine::ToolType type) {
   return make_envelope(tool, kTop_mm, 0.5, kPi / 9);
 }
 
-std::vector<double> heights_by(const MarkKernels& kernels, const EnvelopeGrid& envelope, const DeflectionTable& deflections,
-                               const std::vector<Mark>& marks) {
+std::vector<double> heights_by(const MarkKernels& kernels, const EnvelopeGrid& envelope,
+                               const DeflectionTable& deflections, const std::vector<Mark>& marks) {
   const std::size_t count = (marks.size() + 7) / 8 * 8;
   std::vector<std::vector<float>> v(9, std::vector<float>(count));
   std::vector<std::int32_t> row(count);
@@ -129,8 +129,8 @@ TEST(DeflectedEnvelope, MarksLieOnTheDisplacedEnvelope) {
       Vec3 from = x;
       for (int i = 0; i < 30; ++i) {
         const double phi = std::atan2(from.y(), from.x()), rho = from.head<2>().norm();
-        from = x -
-               shift_of(deflections, 0, phi, envelope.shape.profile.nearest({rho, from.z()}).place.y(), envelope.lag_per_mm);
+        from = x - shift_of(deflections, 0, phi, envelope.shape.profile.nearest({rho, from.z()}).place.y(),
+                            envelope.lag_per_mm);
       }
       EXPECT_NEAR(envelope.shape.distance_mm(from), 0, 2e-5);
       ++met;

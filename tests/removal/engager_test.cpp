@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "removal/simd/upright_block_kernels.h"
 #include "removal/field/upright/tile_arena.h"
+#include "removal/simd/upright_block_kernels.h"
 
 namespace camber::removal {
 namespace {
@@ -93,7 +93,9 @@ void expect_the_chips_of_stamps_one_by_one(machine::ToolType type) {
 
 }  // namespace
 
-TEST(RigidEngager, ABallsChipsAreThoseOfStampsOneByOne) { expect_the_chips_of_stamps_one_by_one(machine::ToolType::ball); }
+TEST(RigidEngager, ABallsChipsAreThoseOfStampsOneByOne) {
+  expect_the_chips_of_stamps_one_by_one(machine::ToolType::ball);
+}
 
 TEST(RigidEngager, ABullNosesChipsAreThoseOfStampsOneByOne) {
   expect_the_chips_of_stamps_one_by_one(machine::ToolType::bull);

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "removal/field/upright/carve.h"
 #include "removal/cutter.h"
+#include "removal/field/upright/carve.h"
 
 using namespace camber;
 using namespace camber::removal;
@@ -88,8 +88,12 @@ TEST(Kernels, LinesAreCutToTheDistanceOfTheCutter) {
 TEST(Kernels, WideAndNarrowVectorsCutTheSameBits) {
   if (!has_wide_vectors()) GTEST_SKIP() << "no AVX2 here";
   Bend deflection(4, 60);
-  const LineDeflection lean{
-      {deflection.row.data(), nullptr, 4, 60, 1.5f}, 0.03f, deflection.outward.data(), StampDeflection::kSectors, 0.1f, 19.1f};
+  const LineDeflection lean{{deflection.row.data(), nullptr, 4, 60, 1.5f},
+                            0.03f,
+                            deflection.outward.data(),
+                            StampDeflection::kSectors,
+                            0.1f,
+                            19.1f};
   for (const float dx : {0.0f, 2.9f, 4.6f, 5.2f}) {
     Line narrow, wide;
     for (Line* line : {&narrow, &wide}) line->top[5] = 9;

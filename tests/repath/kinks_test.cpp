@@ -20,8 +20,7 @@ constexpr double kAnyKink_deg = 180;
 /// What ends whose radii differ by up to 0.002 mm change of a direction, and the differences taken.
 constexpr double kMeasured_deg = 0.02;
 
-std::string compressed(const std::string& text, double max_kink_deg, bool helices = false,
-                       double tolerance_mm = 0.01) {
+std::string compressed(const std::string& text, double max_kink_deg, bool helices = false, double tolerance_mm = 0.01) {
   const nc::Read r = nc::read_clean(text);
   CompressOptions options{.tolerance_mm = tolerance_mm, .helices = helices};
   options.fit.max_kink_rad = rad_from_deg(max_kink_deg);

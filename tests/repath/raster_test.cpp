@@ -12,9 +12,9 @@
 
 using namespace camber;
 using namespace camber::repath;
+using TriangleMesh;
 using removal::CutterShape;
 using repath::DropCutter;
-using TriangleMesh;
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "simulate/cut.h"
 #include "removal/engagement.h"
 #include "removal/form_error.h"
+#include "simulate/cut.h"
 #include "tests/support/cutting.h"
 #include "tests/support/engage_all.h"
 
@@ -111,8 +111,8 @@ TEST(ClosedForms, MeanForcesAtAnyImmersionWhateverTheHelix) {
         options.coupling = machine::Coupling::rigid;
         options.envelope_step_mm = 0.05;
         options.rotation_step_rad = rad_from_deg(0.5);
-        const auto result = simulate::cut(cut.stock, make_tool(machine::ToolType::flat, 2 * kRadius, 3, helix),
-                                            kSteel, cut.stamps, {}, 0, options);
+        const auto result = simulate::cut(cut.stock, make_tool(machine::ToolType::flat, 2 * kRadius, 3, helix), kSteel,
+                                          cut.stamps, {}, 0, options);
         Vec3 mean = Vec3::Zero();
         constexpr std::size_t kOver = 20;
         for (std::size_t k = cut.stamps.size() - kOver; k < cut.stamps.size(); ++k)

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "simulate/cut.h"
 #include "deflection/edge_force.h"
 #include "deflection/steady_cut.h"
+#include "simulate/cut.h"
 #include "tests/support/cutting.h"
 
 namespace camber::simulate {

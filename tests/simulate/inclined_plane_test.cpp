@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "simulate/cut.h"
 #include "removal/form_error.h"
+#include "simulate/cut.h"
 #include "tests/support/cutting.h"
 
 namespace camber::simulate {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "machine/job.h"
-#include "removal/tool_path.h"
 #include "removal/stock.h"
+#include "removal/tool_path.h"
 
 namespace camber::testing {
 

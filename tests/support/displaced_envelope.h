@@ -136,7 +136,8 @@ inline void add_tooth(const DrawnCut& c, std::size_t now, DrawnPass& out) {
     if ((q.array() < c.lo.array()).any() || (q.array() > c.hi.array()).any()) return false;
     for (const Before& b : before) {
       const double z = q.z() - b.tip.z();
-      if (cutter.inside(std::hypot(q.x() - b.tip.x(), q.y() - b.tip.y()) - c.tooth_runout_mm(b.tooth, z), z)) return false;
+      if (cutter.inside(std::hypot(q.x() - b.tip.x(), q.y() - b.tip.y()) - c.tooth_runout_mm(b.tooth, z), z))
+        return false;
     }
     if (c.allowance > 0)
       for (const Vec3& t : any)

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "base/units.h"
+#include "removal/form_error.h"
 #include "simulate/cut.h"
 #include "simulate/predict.h"
-#include "removal/form_error.h"
 #include "tests/support/cutting.h"
 #include "tests/support/displaced_envelope.h"
 
@@ -94,7 +94,9 @@ struct Slices {
 /// The stamp that stands in the middle of the block.
 inline std::size_t middle_stamp(const FinishedWall& w, const DrawnCut& c) {
   std::size_t best = 0;
-  const auto off = [&](std::size_t k) { return std::abs(c.stamps[k].pose.tip_mm.x() - w.offset_mm.x() - w.middle_mm()); };
+  const auto off = [&](std::size_t k) {
+    return std::abs(c.stamps[k].pose.tip_mm.x() - w.offset_mm.x() - w.middle_mm());
+  };
   for (std::size_t k = 1; k < c.stamps.size(); ++k)
     if (off(k) < off(best)) best = k;
   return best;

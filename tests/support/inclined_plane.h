@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/units.h"
-#include "simulate/cut.h"
 #include "removal/form_error.h"
+#include "simulate/cut.h"
 #include "tests/support/cutting.h"
 #include "tests/support/displaced_envelope.h"
 
@@ -151,8 +151,8 @@ inline CutFigures drawn_figures(const InclinedPlane& p) {
   for (const int w : {-1, 1}) {
     std::size_t best = cut.stamps.size();
     for (const std::size_t k : inner)
-      if (way(k) == w && (best == cut.stamps.size() ||
-                          std::abs(cut.stamps[k].pose.tip_mm.x() - x_mid) < std::abs(cut.stamps[best].pose.tip_mm.x() - x_mid)))
+      if (way(k) == w && (best == cut.stamps.size() || std::abs(cut.stamps[k].pose.tip_mm.x() - x_mid) <
+                                                           std::abs(cut.stamps[best].pose.tip_mm.x() - x_mid)))
         best = k;
     if (best < cut.stamps.size()) by_way[w] = drawn_pass(cut, best);
   }

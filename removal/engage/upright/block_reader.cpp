@@ -37,8 +37,8 @@ BlockReader::BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blo
   for (std::size_t a = 0; a < 3; ++a) {
     tip_[a].reserve(stamps.size());
     for (const auto& s : stamps)
-      tip_[a].push_back(static_cast<std::int32_t>(
-          std::lround((s.pose.tip_mm[static_cast<int>(a)] - lo[static_cast<int>(a)]) / static_cast<double>(tip_step_mm_))));
+      tip_[a].push_back(static_cast<std::int32_t>(std::lround(
+          (s.pose.tip_mm[static_cast<int>(a)] - lo[static_cast<int>(a)]) / static_cast<double>(tip_step_mm_))));
   }
 }
 

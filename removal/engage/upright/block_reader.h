@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "removal/engagement.h"
 #include "removal/cutter.h"
 #include "removal/engage/upright/level_faces.h"
-#include "removal/tool_path.h"
+#include "removal/engagement.h"
 #include "removal/field/upright/tile_arena.h"
+#include "removal/tool_path.h"
 
 namespace camber::removal::upright {
 
@@ -60,7 +60,7 @@ class BlockReader {
   std::int32_t first_id_;
   double voxel_mm_, top_mm_;
   int pitches_;
-  double max_curved_per_mm_ = 0;                 ///< of the envelope
+  double max_curved_per_mm_ = 0;                  ///< of the envelope
   std::array<std::vector<std::int32_t>, 3> tip_;  ///< of all stamps, in steps that are a billionth of their range
   float tip_step_mm_;
 };

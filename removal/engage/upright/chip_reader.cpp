@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "removal/field/cell.h"
 #include "removal/engage/upright/level_faces.h"
+#include "removal/field/cell.h"
 
 namespace camber::removal::upright {
 
@@ -36,7 +36,8 @@ struct ChipReader::Cell {
 };
 
 ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
-                       std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections)
+                       std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm,
+                       const DeflectionTable& deflections)
     : envelope_(envelope),
       lanes_(lanes),
       view_(lanes.view()),
@@ -63,8 +64,8 @@ ChipReader::Place ChipReader::place_of(std::size_t k) const {
   }
   const auto row = static_cast<std::ptrdiff_t>(k);
   place.view.deflection = {deflections_.row(row), stamp.first ? deflections_.row(row) : deflections_.row(row - 1),
-                      static_cast<int>(deflections_.nodes()), deflections_.steps,
-                      deflections_.nodes() > 1 ? static_cast<float>(deflections_.node_height_mm[1]) : 1.0f};
+                           static_cast<int>(deflections_.nodes()), deflections_.steps,
+                           deflections_.nodes() > 1 ? static_cast<float>(deflections_.node_height_mm[1]) : 1.0f};
   place.view.lag_per_mm = static_cast<float>(envelope_.lag_per_mm);
   place.view.per_rad = static_cast<float>(envelope_.steps / (4 * kPi));
   place.view.max_tilt_mm = static_cast<float>(kMaxTilt * stamp.feed_per_tooth_mm.norm());
@@ -111,10 +112,8 @@ void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t
       }
       const Depth below = -field > cap && share == 255 ? Depth{-field, along} : depth(stocks, cell, normal);
       if (below.mm > -kNear_mm)
-        out.push_back({{p, std::min(below.mm, cap), below.mm > kNearCap * cap, false, share},
-                       below.mm,
-                       cap,
-                       below.deeper});
+        out.push_back(
+            {{p, std::min(below.mm, cap), below.mm > kNearCap * cap, false, share}, below.mm, cap, below.deeper});
     }
   }
 }

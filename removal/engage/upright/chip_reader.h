@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
+#include "removal/cutter.h"
+#include "removal/deflection_table.h"
+#include "removal/engage/upright/patch_lanes.h"
 #include "removal/engagement.h"
 #include "removal/field/tile.h"
-#include "removal/cutter.h"
-#include "removal/engage/upright/patch_lanes.h"
-#include "removal/deflection_table.h"
-#include "removal/tool_path.h"
 #include "removal/stock.h"
+#include "removal/tool_path.h"
 
 namespace camber::removal::upright {
 
@@ -24,8 +24,8 @@ struct TileStocks {
 /// Reads for one stretch. How depth and chip are defined: removal/engagement.h.
 class ChipReader {
  public:
-  /// `all`: the stamps that ids in the stock count from `first_id`; `stamps`: those of the stretch. Rows of `deflections`
-  /// are read as they stand.
+  /// `all`: the stamps that ids in the stock count from `first_id`; `stamps`: those of the stretch. Rows of
+  /// `deflections` are read as they stand.
   ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
              std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections);
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "removal/field/cell.h"
 #include "removal/cutter.h"
+#include "removal/field/cell.h"
 #include "removal/tool_path.h"
 
 namespace camber::removal::upright {

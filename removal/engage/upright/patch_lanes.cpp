@@ -58,9 +58,14 @@ void PatchLanes::motion_into(const Vec3& motion, std::vector<float>& out) const 
 }
 
 PointLanes PatchLanes::view() const {
-  return {x_.data(),          y_.data(),           z_.data(),     nx_.data(),  ny_.data(),   nz_.data(),
-          cos_phi_.data(),    sin_phi_.data(),     k1_.data(),    k2_.data(),  sine_.data(), cosine_.data(),
-          per_radius_.data(), upper_fraction_.data(), lower_.data(), step_.data()};
+  return {x_.data(),          y_.data(),
+          z_.data(),          nx_.data(),
+          ny_.data(),         nz_.data(),
+          cos_phi_.data(),    sin_phi_.data(),
+          k1_.data(),         k2_.data(),
+          sine_.data(),       cosine_.data(),
+          per_radius_.data(), upper_fraction_.data(),
+          lower_.data(),      step_.data()};
 }
 
 }  // namespace camber::removal::upright

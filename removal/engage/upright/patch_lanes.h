@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "removal/cutter.h"
-#include "removal/simd/upright_kernels.h"
 #include "removal/deflection_table.h"
+#include "removal/simd/upright_kernels.h"
 
 namespace camber::removal::upright {
 
@@ -29,7 +29,8 @@ class PatchLanes {
   std::vector<Range> range_;
   std::vector<float> normal_x_, normal_y_, normal_z_, normal_spread_;  ///< of the patches
   std::vector<std::uint32_t> point_;
-  std::vector<float> x_, y_, z_, nx_, ny_, nz_, cos_phi_, sin_phi_, k1_, k2_, sine_, cosine_, per_radius_, upper_fraction_;
+  std::vector<float> x_, y_, z_, nx_, ny_, nz_, cos_phi_, sin_phi_, k1_, k2_, sine_, cosine_, per_radius_,
+      upper_fraction_;
   std::vector<std::int32_t> lower_, step_;
 };
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "removal/simd/upright_distances.h"
 #include "base/vector_clones.h"
+#include "removal/simd/upright_distances.h"
 
 namespace camber::removal::upright {
 namespace {

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "removal/field/upright/column_cover.h"
 #include "removal/cutter.h"
+#include "removal/field/upright/column_cover.h"
 #include "removal/simd/upright_kernels.h"
-#include "removal/tool_path.h"
 #include "removal/stock.h"
+#include "removal/tool_path.h"
 
 namespace camber::removal::upright {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/vector_clones.h"
 #include "removal/field/upright/carve_general.h"
 #include "removal/simd/upright_kernels.h"
-#include "base/vector_clones.h"
 
 namespace camber::removal::upright {
 namespace {
@@ -63,16 +63,18 @@ bool carve(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double
 }
 
 bool carve_deflected(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band,
-                const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
-                const StampDeflection& deflection) {
-  if (envelope.shape.general) return carve_deflected_general(tile, cover, t, voxel, band, envelope, stamp, deflections, deflection);
-  const LineDeflection line_deflection{{deflection.row, nullptr, static_cast<int>(deflections.nodes()), deflections.steps,
-                            deflections.nodes() > 1 ? static_cast<float>(deflections.node_height_mm[1]) : 1.0f},
-                           static_cast<float>(deflection.largest_mm),
-                           deflection.outward_mm.data(),
-                           StampDeflection::kSectors,
-                           static_cast<float>(envelope.lag_per_mm),
-                           static_cast<float>(envelope.steps / (2 * kPi))};
+                     const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
+                     const StampDeflection& deflection) {
+  if (envelope.shape.general)
+    return carve_deflected_general(tile, cover, t, voxel, band, envelope, stamp, deflections, deflection);
+  const LineDeflection line_deflection{
+      {deflection.row, nullptr, static_cast<int>(deflections.nodes()), deflections.steps,
+       deflections.nodes() > 1 ? static_cast<float>(deflections.node_height_mm[1]) : 1.0f},
+      static_cast<float>(deflection.largest_mm),
+      deflection.outward_mm.data(),
+      StampDeflection::kSectors,
+      static_cast<float>(envelope.lag_per_mm),
+      static_cast<float>(envelope.steps / (2 * kPi))};
   const auto cut = kernels().cut_line_deflected;
   return cut_lines(tile, cover, t, voxel, line_cut(t, voxel, band, envelope.shape, {stamp.tip_mm, stamp.id}), stamp,
                    deflection.largest_mm, [&](const LineCut& line) { return cut(line, line_deflection); });

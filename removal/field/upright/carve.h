@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "removal/field/upright/column_cover.h"
-#include "removal/field/tile.h"
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
 #include "removal/field/stamp_deflection.h"
+#include "removal/field/tile.h"
+#include "removal/field/upright/column_cover.h"
 #include "removal/stock.h"
 
 namespace camber::removal::upright {
@@ -28,7 +28,8 @@ bool carve(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxe
 /// it: the cutter's distance is read at x - delta(s, phi), where (s, phi) belong to x - delta (two fixed-point
 /// steps: what is left is the square of the deflection's slope, a quarter of a percent of it).
 bool carve_deflected(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
-                const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections, const StampDeflection& deflection);
+                     const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
+                     const StampDeflection& deflection);
 
 /// Material in a tile's core, in voxels.
 double material_voxels(const Tile& tile, double voxel_mm);

@@ -92,11 +92,11 @@ double lowest_reached(const Profile& profile, double r, double reach) {
 }
 
 /// The deflection of the envelope's point nearest to a place.
-Eigen::Vector2f deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row, float x, float y,
-                         float z) {
+Eigen::Vector2f deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
+                              float x, float y, float z) {
   const double height = envelope.shape.profile.nearest({std::hypot(x, y), z}).place.y();
-  return deflections.at<float>(
-      row, height, deflections.step_at(std::atan2(y, x), height, envelope.lag_per_mm, envelope.flutes));
+  return deflections.at<float>(row, height,
+                               deflections.step_at(std::atan2(y, x), height, envelope.lag_per_mm, envelope.flutes));
 }
 
 /// Calls change(i, j, k0, count, rho, dx, dy, z) for every row that the stamp may change; it tells whether it did.
@@ -153,14 +153,15 @@ bool carve_general(Tile& tile, ColumnCover& cover, const Index3& t, double voxel
 }
 
 bool carve_deflected_general(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band,
-                        const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
-                        const StampDeflection& deflection) {
+                             const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
+                             const StampDeflection& deflection) {
   const Profile& exact = envelope.shape.profile;
   const RowProfile profile = row_profile(exact);
   const auto top = static_cast<float>(band), largest = static_cast<float>(deflection.largest_mm);
   std::array<float, Tile::kSide> row;
   return for_rows(tile, cover, t, voxel, band + deflection.largest_mm, exact, envelope.shape.radius_mm, stamp.tip_mm,
-                  deflection.largest_mm, [&](int i, int j, int k0, int count, double rho, double dx, double dy, double z0) {
+                  deflection.largest_mm,
+                  [&](int i, int j, int k0, int count, double rho, double dx, double dy, double z0) {
                     row_distances(profile, static_cast<float>(rho), static_cast<float>(z0), static_cast<float>(voxel),
                                   count, row.data());
                     float* distance = tile.distance.data() + Tile::offset(i, j, k0);

@@ -10,7 +10,7 @@ bool carve_general(Tile& tile, ColumnCover& cover, const Index3& tile_index, dou
 
 /// As carve_deflected(), for any convex profile.
 bool carve_deflected_general(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
-                        const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
-                        const StampDeflection& deflection);
+                             const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
+                             const StampDeflection& deflection);
 
 }  // namespace camber::removal::upright

@@ -50,27 +50,28 @@ inline bool test_line(const float* cx, const float* cy, const float* cz, const f
 }
 
 CAMBER_VECTOR_CLONES
-bool test_columns(const float* cx, const float* cy, const float* cz, const float* cdeflection, const float* top_mm, int first,
-                  int end, float px, float voxel, NewTips tips, float radius, bool ball, float* __restrict out) {
+bool test_columns(const float* cx, const float* cy, const float* cz, const float* cdeflection, const float* top_mm,
+                  int first, int end, float px, float voxel, NewTips tips, float radius, bool ball,
+                  float* __restrict out) {
   return ball ? test_line<true, false>(cx, cy, cz, cdeflection, top_mm, first, end, px, voxel, tips, radius, out)
               : test_line<false, false>(cx, cy, cz, cdeflection, top_mm, first, end, px, voxel, tips, radius, out);
 }
 
 /// As test_columns for lines one after the other, kLine values apart; a bit for each.
 CAMBER_VECTOR_CLONES
-std::uint32_t test_lines(const float* cx, const float* cy, const float* cz, const float* cdeflection, const float* top_mm,
-                         int i_from, int i_to, int first, int end, float voxel, NewTips tips, float radius, bool ball,
-                         float* __restrict out) {
+std::uint32_t test_lines(const float* cx, const float* cy, const float* cz, const float* cdeflection,
+                         const float* top_mm, int i_from, int i_to, int first, int end, float voxel, NewTips tips,
+                         float radius, bool ball, float* __restrict out) {
   constexpr int kLine = ColumnCover::kLine;
   std::uint32_t lines = 0;
   for (int i = i_from; i < i_to; ++i) {
     const int at = i * kLine;
     const float px = static_cast<float>(i) * voxel;
     float* of_line = out + (i - i_from) * kLine;
-    const bool any = ball ? test_line<true, false>(cx + at, cy + at, cz + at, cdeflection + at, top_mm + at, first, end, px,
-                                                   voxel, tips, radius, of_line)
-                          : test_line<false, false>(cx + at, cy + at, cz + at, cdeflection + at, top_mm + at, first, end, px,
-                                                    voxel, tips, radius, of_line);
+    const bool any = ball ? test_line<true, false>(cx + at, cy + at, cz + at, cdeflection + at, top_mm + at, first, end,
+                                                   px, voxel, tips, radius, of_line)
+                          : test_line<false, false>(cx + at, cy + at, cz + at, cdeflection + at, top_mm + at, first,
+                                                    end, px, voxel, tips, radius, of_line);
     lines |= static_cast<std::uint32_t>(any) << (i - i_from);
   }
   return lines;
@@ -132,16 +133,16 @@ void ColumnCover::lower_top(const Tile& tile, int column) {
 bool ColumnCover::changeable(int i, int first, int end, const Eigen::Vector3f& tip, float deflection,
                              std::array<float, kLine>& out) const {
   const auto at = static_cast<std::size_t>(i * kLine);
-  return test_columns(x_.data() + at, y_.data() + at, z_.data() + at, deflection_.data() + at, top_mm_.data() + at, first,
-                      end, static_cast<float>(i) * voxel_, voxel_,
-                      {&tip.x(), &tip.y(), &tip.z(), deflection, radius_ + band_ + deflection, band_ + deflection}, radius_, ball_,
-                      out.data());
+  return test_columns(x_.data() + at, y_.data() + at, z_.data() + at, deflection_.data() + at, top_mm_.data() + at,
+                      first, end, static_cast<float>(i) * voxel_, voxel_,
+                      {&tip.x(), &tip.y(), &tip.z(), deflection, radius_ + band_ + deflection, band_ + deflection},
+                      radius_, ball_, out.data());
 }
 
 std::uint32_t ColumnCover::changeable_lines(int i_from, int i_to, int first, int end, const Eigen::Vector3f& tip,
                                             float* out) const {
-  return test_lines(x_.data(), y_.data(), z_.data(), deflection_.data(), top_mm_.data(), i_from, i_to, first, end, voxel_,
-                    {&tip.x(), &tip.y(), &tip.z(), 0, radius_ + band_, band_}, radius_, ball_, out);
+  return test_lines(x_.data(), y_.data(), z_.data(), deflection_.data(), top_mm_.data(), i_from, i_to, first, end,
+                    voxel_, {&tip.x(), &tip.y(), &tip.z(), 0, radius_ + band_, band_}, radius_, ball_, out);
 }
 
 bool ColumnCover::changeable_each(int i, int first, int end, const float* x, const float* y, const float* z,

@@ -67,7 +67,8 @@ class ColumnCover {
                        std::array<float, kLine>& out) const;
 
   /// False when this stamp, coming right after the one given, can change nothing in the tile.
-  bool changeable_after(const Vec3& before_mm, double before_deflection_mm, const Vec3& tip_mm, double deflection_mm) const;
+  bool changeable_after(const Vec3& before_mm, double before_deflection_mm, const Vec3& tip_mm,
+                        double deflection_mm) const;
 
   /// After the stamp has been cut into the column: `changed` tells whether a voxel did.
   void cut(const Tile& tile, int i, int j, const Vec3& tip_mm, double deflection_mm, bool changed) {

@@ -6,11 +6,11 @@
 #include <tbb/parallel_for.h>
 
 #include "removal/engagement.h"
+#include "removal/field/slot_map.h"
+#include "removal/field/tile.h"
 #include "removal/field/upright/batch_cut.h"
 #include "removal/field/upright/carve.h"
-#include "removal/field/slot_map.h"
 #include "removal/field/upright/stamp_order.h"
-#include "removal/field/tile.h"
 #include "removal/field/upright/tiles_reached.h"
 
 namespace camber::removal {

@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "removal/simd/upright_block_kernels.h"
-#include "removal/field/tile.h"
 #include "removal/cutter.h"
 #include "removal/field/slot_map.h"
-#include "removal/tool_path.h"
-#include "removal/stock.h"
+#include "removal/field/tile.h"
 #include "removal/field/upright/top_map.h"
+#include "removal/simd/upright_block_kernels.h"
+#include "removal/stock.h"
+#include "removal/tool_path.h"
 
 namespace camber::removal::upright {
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "removal/cutter.h"
-#include "removal/field/tile.h"
 #include "removal/field/slot_map.h"
+#include "removal/field/tile.h"
 
 namespace camber::removal::upright {
 

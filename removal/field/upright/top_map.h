@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "removal/field/upright/column_cover.h"
 #include "removal/field/slot_map.h"
+#include "removal/field/upright/column_cover.h"
 
 namespace camber::removal::upright {
 
