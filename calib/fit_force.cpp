@@ -17,7 +17,8 @@
 namespace camber::calib {
 namespace {
 
-using machine::ForceLaw;
+using machine::Coefficient;
+using machine::CoefficientRole;
 
 constexpr double kMinSingular = 1e-3;  // of the Jacobian with columns of length one
 
@@ -48,15 +49,16 @@ struct Solution {
 };
 
 Solution solve(const ForceProblem& problem, const Eigen::VectorXd& start) {
-  constexpr double kLargestExponent = 0.9;
   Solution out{start};
   ceres::Problem ceres_problem;
   ceres_problem.AddResidualBlock(new Cost(problem), nullptr, out.p.data());
   for (std::size_t i = 0; i < problem.coefficient_count(); ++i) {
     const Coefficient& c = problem.coefficient(i);
-    if (std::string_view(c.unit) != "1") continue;
-    ceres_problem.SetParameterLowerBound(out.p.data(), static_cast<int>(i), 0);
-    ceres_problem.SetParameterUpperBound(out.p.data(), static_cast<int>(i), kLargestExponent);
+    if (c.role != CoefficientRole::shape) continue;
+    if (std::isfinite(c.range.min))
+      ceres_problem.SetParameterLowerBound(out.p.data(), static_cast<int>(i), c.range.min);
+    if (std::isfinite(c.range.max))
+      ceres_problem.SetParameterUpperBound(out.p.data(), static_cast<int>(i), c.range.max);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -85,9 +87,9 @@ std::optional<double> only_feed_mm(const std::vector<MeasuredLog>& logs) {
   std::vector<std::string> names, quoted;
   bool axial = true;
   for (const std::size_t i : untold) {
-    names.emplace_back(problem.coefficient(i).name);
+    names.emplace_back(problem.coefficient(i).key);
     quoted.push_back(fmt::format("\"{}\"", names.back()));
-    axial = axial && problem.coefficient(i).axis == 2;
+    axial = axial && problem.coefficient(i).component == machine::Component::axial;
   }
   const bool no_fz = std::ranges::none_of(logs, [](const auto& log) { return log.has[2]; });
   const auto feed = only_feed_mm(logs);
@@ -145,7 +147,7 @@ void check_logs(const std::vector<MeasuredLog>& logs) {
     if (!log.how.hold.empty() && (!log.how.material || log.how.material->law != log.how.law))
       fail_on_file(log.how.path,
                    fmt::format("holds coefficients, but has no [material] of law \"{}\" with their values",
-                               log.how.law == ForceLaw::kienzle ? "kienzle" : "linear"),
+                               machine::description(log.how.law).word),
                    "force-log");
   }
 }
@@ -198,8 +200,8 @@ std::optional<double> left_out_rms_N(const ForceProblem& problem, const Eigen::M
 void report_coefficients(const ForceProblem& problem, const Solution& s, const std::optional<Eigen::MatrixXd>& cov,
                          FitForceResult& out) {
   const machine::ForceLog& how = problem.logs().front().how;
-  for (const Coefficient& c : coefficients_of(how.law)) {
-    ForceParameter parameter{c.name, c.unit, out.material.*(c.field), std::nullopt, "held"};
+  for (const Coefficient& c : machine::description(how.law).fitted) {
+    ForceParameter parameter{std::string(c.key), std::string(c.unit), out.material.*(c.field), std::nullopt, "held"};
     for (std::size_t i = 0; i < problem.coefficient_count(); ++i) {
       if (&problem.coefficient(i) != &c) continue;
       const auto at = static_cast<Eigen::Index>(i);
@@ -246,6 +248,13 @@ void report_run_out(const ForceProblem& problem, const Solution& s, const std::o
   }
 }
 
+/// No cutting coefficient is negative that [material] would refuse.
+bool plausible(const machine::Material& m) {
+  return std::ranges::all_of(machine::description(m.law).coefficients, [&](const Coefficient& c) {
+    return c.role != CoefficientRole::cutting || m.*c.field >= c.range.min;
+  });
+}
+
 }  // namespace
 
 FitForceResult fit_force(const std::vector<MeasuredLog>& logs) {
@@ -285,7 +294,7 @@ FitForceResult fit_force(const std::vector<MeasuredLog>& logs) {
   out.residual_rms_N = std::sqrt(r.squaredNorm() / static_cast<double>(r.size()));
   const bool waveforms = std::ranges::any_of(logs, [](const auto& log) { return log.how.waveform; });
   out.held_out_rms_N = waveforms ? std::optional(problem.held_out_rms_N(best.p)) : left_out_rms_N(problem, j, r);
-  out.plausible = out.material.ktc_MPa >= 0 && out.material.krc_MPa >= 0 && out.material.kc1_1_MPa >= 0;
+  out.plausible = plausible(out.material);
   out.message = !out.plausible
                     ? "a tangential or radial coefficient came out negative, as no cutter has it; look at the "
                       "axes and signs of [force_log]"

@@ -5,22 +5,9 @@
 
 namespace camber::calib {
 
-using machine::ForceLaw;
+using machine::Coefficient;
+using machine::CoefficientRole;
 using machine::Material;
-
-const std::vector<Coefficient>& coefficients_of(ForceLaw law) {
-  static const std::vector<Coefficient> linear{{"ktc_MPa", "MPa", &Material::ktc_MPa, 1e-4, 0},
-                                               {"kte_N_per_mm", "N/mm", &Material::kte_N_per_mm, 1e-4, 0, true},
-                                               {"krc_MPa", "MPa", &Material::krc_MPa, 1e-4, 1},
-                                               {"kre_N_per_mm", "N/mm", &Material::kre_N_per_mm, 1e-4, 1, true},
-                                               {"kac_MPa", "MPa", &Material::kac_MPa, 1e-4, 2},
-                                               {"kae_N_per_mm", "N/mm", &Material::kae_N_per_mm, 1e-4, 2, true}};
-  static const std::vector<Coefficient> kienzle{
-      {"kc1_1_MPa", "MPa", &Material::kc1_1_MPa, 1e-4, 0}, {"mc", "1", &Material::mc, 1e-5, 0, true},
-      {"kr1_1_MPa", "MPa", &Material::kr1_1_MPa, 1e-4, 1}, {"mr", "1", &Material::mr, 1e-5, 1, true},
-      {"ka1_1_MPa", "MPa", &Material::ka1_1_MPa, 1e-4, 2}, {"ma", "1", &Material::ma, 1e-5, 2, true}};
-  return law == ForceLaw::kienzle ? kienzle : linear;
-}
 
 namespace {
 
@@ -43,10 +30,11 @@ ForceProblem::ForceProblem(const std::vector<MeasuredLog>& logs) : logs_(logs) {
   if (how.material) base_ = *how.material;
   base_.law = how.law;
   base_.preset = {};
-  for (const Coefficient& c : coefficients_of(how.law))
-    if (std::ranges::find(how.hold, c.name) == how.hold.end()) free_.push_back(&c);
-  if (how.law == ForceLaw::kienzle && how.hold.empty())
-    base_.kte_N_per_mm = base_.kre_N_per_mm = base_.kae_N_per_mm = 0;
+  const machine::ForceLawDescription& law = machine::description(how.law);
+  for (const Coefficient& c : law.fitted)
+    if (std::ranges::find(how.hold, c.key) == how.hold.end()) free_.push_back(&c);
+  if (how.hold.empty())
+    for (const Coefficient& c : law.coefficients) base_.*c.field = 0;
   size_ = static_cast<Eigen::Index>(free_.size());
   for (const MeasuredLog& log : logs) {
     LogPlace place;
@@ -111,7 +99,8 @@ Eigen::VectorXd ForceProblem::residuals(const Eigen::VectorXd& p) const {
 
 double ForceProblem::step_of(Eigen::Index i, double value) const {
   if (i < static_cast<Eigen::Index>(free_.size()))
-    return free_[static_cast<std::size_t>(i)]->step * std::max(1.0, std::abs(value));
+    return (coefficient(static_cast<std::size_t>(i)).role == CoefficientRole::shape ? 1e-5 : 1e-4) *
+           std::max(1.0, std::abs(value));
   constexpr double kRunOut_mm = 2e-5, kPhase_rad = 1e-4;
   for (const LogPlace& place : places_)
     if (i >= place.run_out && i < place.run_out + place.run_out_size) return kRunOut_mm;

@@ -7,19 +7,9 @@
 
 #include "calib/force_signal.h"
 #include "deflection/steady_cut.h"
+#include "machine/force_law.h"
 
 namespace camber::calib {
-
-/// A coefficient as [material] has it.
-struct Coefficient {
-  const char* name;
-  const char* unit;
-  double machine::Material::*field;
-  double step;        ///< of numeric derivatives, as a share, and at least this much of 1
-  int axis;           ///< 0 tangential, 1 radial, 2 axial
-  bool edge = false;  ///< an edge term, or Kienzle's exponent
-};
-const std::vector<Coefficient>& coefficients_of(machine::ForceLaw law);
 
 /// One vector: coefficients that are fitted, then for every log of waveforms its run-out (x, y mm; only x, or none) and
 /// the phase of each of its cuts (rad).
@@ -30,7 +20,7 @@ class ForceProblem {
   Eigen::Index size() const { return size_; }
   Eigen::Index residual_count() const { return residuals_; }
   std::size_t coefficient_count() const { return free_.size(); }
-  const Coefficient& coefficient(std::size_t i) const { return *free_[i]; }
+  const machine::Coefficient& coefficient(std::size_t i) const { return *free_[i]; }
 
   struct LogPlace {
     Eigen::Index run_out = 0;  ///< of its first component
@@ -57,7 +47,7 @@ class ForceProblem {
 
   const std::vector<MeasuredLog>& logs_;
   machine::Material base_;
-  std::vector<const Coefficient*> free_;
+  std::vector<const machine::Coefficient*> free_;
   std::vector<std::vector<deflection::SteadyCutModel>> models_;
   std::vector<std::vector<Eigen::Index>> first_residual_;
   std::vector<LogPlace> places_;

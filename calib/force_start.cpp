@@ -9,7 +9,6 @@
 namespace camber::calib {
 namespace {
 
-using machine::ForceLaw;
 using machine::Material;
 
 constexpr std::size_t kLinear = 6;
@@ -17,7 +16,7 @@ using Linear = Eigen::Matrix<double, 6, 1>;
 
 /// What one unit of each linear coefficient makes of a cut: rows as in the residuals, all three components.
 Eigen::MatrixXd basis(const deflection::SteadyCutModel& model, std::size_t steps) {
-  const auto& all = coefficients_of(ForceLaw::linear);
+  const auto& all = machine::description(machine::ForceLaw::linear).fitted;
   Eigen::MatrixXd out(3 * static_cast<Eigen::Index>(std::max<std::size_t>(1, steps)), kLinear);
   for (std::size_t i = 0; i < kLinear; ++i) {
     Material unit;
@@ -79,21 +78,14 @@ Eigen::VectorXd measured_rows(const MeasuredCut& cut, const std::array<bool, 3>&
   return out;
 }
 
-/// Coefficients of the problem's law from those of the linear one.
+/// Coefficients of the problem's law from those of the linear one, in the order of `basis`.
 void set_coefficients(const ForceProblem& problem, const Linear& linear, Eigen::VectorXd& p) {
-  const auto& all = coefficients_of(problem.logs().front().how.law);
-  const double h = 2 / kPi * problem.logs().front().cuts.front().cut.feed_per_tooth_mm;
-  for (std::size_t i = 0; i < problem.coefficient_count(); ++i) {
-    const Coefficient& c = problem.coefficient(i);
-    const auto at = static_cast<Eigen::Index>(&c - all.data());
-    if (problem.logs().front().how.law == ForceLaw::linear) {
-      p[static_cast<Eigen::Index>(i)] = linear[at];
-      continue;
-    }
-    const double cutting = linear[2 * c.axis], edge = linear[2 * c.axis + 1], force = cutting * h + edge;
-    const double m = force != 0 ? std::clamp(edge / force, 0.05, 0.7) : 0.25;
-    p[static_cast<Eigen::Index>(i)] = c.edge ? m : force / std::pow(h, 1 - m);
-  }
+  const MeasuredLog& log = problem.logs().front();
+  const double h = 2 / kPi * log.cuts.front().cut.feed_per_tooth_mm;
+  const machine::LinearForce force{{linear[0], linear[2], linear[4]}, {linear[1], linear[3], linear[5]}};
+  const Material start = machine::description(log.how.law).start(force, h);
+  for (std::size_t i = 0; i < problem.coefficient_count(); ++i)
+    p[static_cast<Eigen::Index>(i)] = start.*problem.coefficient(i).field;
 }
 
 }  // namespace

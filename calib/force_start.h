@@ -6,9 +6,9 @@
 
 namespace camber::calib {
 
-/// Coefficients by linear least squares (with Kienzle's law: the power law through the linear one's force and slope at
-/// the chip in the middle of the first cut), each waveform turned to the phase within a pitch at which it fits best.
-/// Run-out zero.
+/// Coefficients by linear least squares (with another law than the linear one: the law through the linear one's force
+/// and slope at the mean chip of the first cut), each waveform turned to the phase within a pitch at which it fits
+/// best. Run-out zero.
 Eigen::VectorXd start_without_run_out(const ForceProblem& problem);
 
 /// Starts with run-out, the most promising first: offsets of a quarter of the feed per tooth in several directions, the

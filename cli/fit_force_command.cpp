@@ -11,6 +11,7 @@
 #include "calib/fit_force.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "machine/force_law.h"
 #include "machine/material_reader.h"
 
 namespace camber::cli {
@@ -94,8 +95,8 @@ std::string material_file(const FitForceArguments& arguments, const FitForceResu
     if (p.std_error) out += fmt::format("# {}: {:.6g} +- {:.2g} {}\n", p.name, p.value, *p.std_error, p.unit);
   // More digits than the fit can know would only hide it.
   machine::Material rounded = result.material;
-  for (const auto& c : machine::coefficient_fields(rounded.law))
-    rounded.*c = std::stod(fmt::format("{:.6g}", rounded.*c));
+  for (const auto& c : machine::description(rounded.law).coefficients)
+    rounded.*c.field = std::stod(fmt::format("{:.6g}", rounded.*c.field));
   return out + "[material]\n" + machine::material_text(rounded);
 }
 

@@ -1,11 +1,14 @@
 #include "compensate/header.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
 
 #include <fmt/format.h>
+
+#include "machine/force_law.h"
 
 namespace camber::compensate {
 namespace {
@@ -40,6 +43,27 @@ machine::Job without_paths(machine::Job job) {
   return job;
 }
 
+/// Symbols and values: a unit after the last one that has it, a comma before the edge terms.
+std::string material_line(const machine::Material& m) {
+  const machine::ForceLawDescription& law = machine::description(m.law);
+  std::string out;
+  const machine::Coefficient* last = nullptr;
+  const auto end_unit = [&] {
+    if (last->unit != "1") fmt::format_to(std::back_inserter(out), " {}", last->unit);
+  };
+  for (const auto& c : law.coefficients) {
+    if (std::ranges::find(law.header_keys, c.key) == law.header_keys.end()) continue;
+    if (last != nullptr) {
+      if (c.unit != last->unit) end_unit();
+      out += c.role != last->role && c.role == machine::CoefficientRole::edge ? ", " : " ";
+    }
+    fmt::format_to(std::back_inserter(out), "{} {:g}", c.symbol, m.*c.field);
+    last = &c;
+  }
+  if (last != nullptr) end_unit();
+  return out;
+}
+
 }  // namespace
 
 std::string header_lines(const machine::Job& job, const Compensation& c, const std::string& version) {
@@ -54,15 +78,7 @@ std::string header_lines(const machine::Job& job, const Compensation& c, const s
     fmt::format_to(std::back_inserter(out), "T{} D{:g} OVERHANG {:g} E {:g} GPA, {} FLUTES\n", t.number, t.diameter_mm,
                    t.overhang_mm, t.youngs_modulus_MPa / 1000, t.flutes);
   }
-  const machine::Material& m = job.material;
-  if (m.law == machine::ForceLaw::linear)
-    fmt::format_to(std::back_inserter(out), "KTC {:g} KRC {:g} KAC {:g} MPA, KTE {:g} KRE {:g} KAE {:g} N/MM\n",
-                   m.ktc_MPa, m.krc_MPa, m.kac_MPa, m.kte_N_per_mm, m.kre_N_per_mm, m.kae_N_per_mm);
-  else
-    fmt::format_to(std::back_inserter(out), "KC1.1 {:g} MPA MC {:g}, KTE {:g} KRE {:g} N/MM\n", m.kc1_1_MPa, m.mc,
-                   m.kte_N_per_mm, m.kre_N_per_mm);
-  out.pop_back();
-  return plain(out);
+  return plain(out + material_line(job.material));
 }
 
 std::string hash_of_inputs(const machine::Job& job) {

@@ -9,14 +9,15 @@
 #include <nlohmann/json.hpp>
 
 #include "base/numbers.h"
-#include "machine/material_reader.h"
+#include "machine/force_law.h"
 #include "machine/set_number.h"
 
 namespace camber::compensate {
 namespace {
 
 std::string group_of(const std::string& name) {
-  if (name.ends_with("e_N_per_mm")) return "edge";
+  const machine::Coefficient* coefficient = machine::find_coefficient(name);
+  if (coefficient != nullptr && coefficient->role == machine::CoefficientRole::edge) return "edge";
   if (name.find('.') == std::string::npos) return "cutting";
   for (const char* drive : {"position_gain", "velocity_lag", "filter", "exponential", "feed_forward"})
     if (name.find(drive) != std::string::npos) return "drives";
@@ -92,24 +93,16 @@ std::vector<ParameterGroup> read_uncertainty(const std::string& given) {
 machine::Job moved(const machine::Job& job, const ParameterGroup& group, std::vector<std::string>& unknown) {
   machine::Job out = job;
   if (group.name == "force" && group.share > 0)
-    for (const auto field : machine::coefficient_fields(out.material.law))
-      if (field != &machine::Material::mc && field != &machine::Material::mr && field != &machine::Material::ma)
-        out.material.*field *= 1 + group.share;
+    for (const auto& c : machine::description(out.material.law).coefficients)
+      if (c.role != machine::CoefficientRole::shape) out.material.*c.field *= 1 + group.share;
   if (group.name == "stiffness" && group.share > 0)
     for (auto& [number, tool] : out.tools) {
       tool.youngs_modulus_MPa /= 1 + group.share;
       tool.root_stiffness_N_per_mm /= 1 + group.share;
     }
-  static const std::map<std::string, double machine::Material::*> coefficients{
-      {"ktc_MPa", &machine::Material::ktc_MPa},           {"krc_MPa", &machine::Material::krc_MPa},
-      {"kac_MPa", &machine::Material::kac_MPa},           {"kte_N_per_mm", &machine::Material::kte_N_per_mm},
-      {"kre_N_per_mm", &machine::Material::kre_N_per_mm}, {"kae_N_per_mm", &machine::Material::kae_N_per_mm},
-      {"kc1_1_MPa", &machine::Material::kc1_1_MPa},       {"mc", &machine::Material::mc},
-      {"kr1_1_MPa", &machine::Material::kr1_1_MPa},       {"mr", &machine::Material::mr},
-      {"ka1_1_MPa", &machine::Material::ka1_1_MPa},       {"ma", &machine::Material::ma}};
   for (const auto& p : group.parameters) {
-    if (const auto at = coefficients.find(p.name); at != coefficients.end())
-      out.material.*at->second += p.std_error;
+    if (const auto* coefficient = machine::find_coefficient(p.name))
+      out.material.*coefficient->field += p.std_error;
     else if (!machine::set_number(out.machine, p.name, p.value + p.std_error).empty())
       unknown.push_back(p.name);
   }

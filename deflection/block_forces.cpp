@@ -7,6 +7,7 @@
 #include "deflection/chip_ends.h"
 #include "deflection/edge_force.h"
 #include "deflection/tooth_pass.h"
+#include "machine/force_law.h"
 #include "removal/engagement.h"
 
 namespace camber::deflection {
@@ -54,15 +55,15 @@ void add_four(const EdgeForces& e, const Sums& s) {
   }
 }
 
-/// Linear law without a ramp.
-inline void linear_forces(const machine::Material& m, const float* h, const std::uint8_t* cut_255, double width,
-                          EdgeForces& e) {
+/// Of an affine law without a ramp.
+inline void affine_forces(const EdgeForce& k_MPa, const machine::Material& m, const float* h,
+                          const std::uint8_t* cut_255, double width, EdgeForces& e) {
   const double width_255 = width / 255;
   for (std::size_t l = 0; l < kSteps; ++l) {
     const double thickness = h[l], cuts = h[l] > 0 ? cut_255[l] * width_255 : 0.0;
-    e.tangential[l] = (m.ktc_MPa * thickness + m.kte_N_per_mm) * cuts;
-    e.radial[l] = (m.krc_MPa * thickness + m.kre_N_per_mm) * cuts;
-    e.axial[l] = (m.kac_MPa * thickness + m.kae_N_per_mm) * cuts;
+    e.tangential[l] = (k_MPa.tangential_N * thickness + m.kte_N_per_mm) * cuts;
+    e.radial[l] = (k_MPa.radial_N * thickness + m.kre_N_per_mm) * cuts;
+    e.axial[l] = (k_MPa.axial_N * thickness + m.kae_N_per_mm) * cuts;
   }
 }
 
@@ -78,14 +79,15 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
   const double sine = ring.sine, cosine = ring.cosine;
   const std::size_t nodes = node_height_mm_.size();
   const double* compliance = compliance_.data() + static_cast<std::size_t>(e.ring) * nodes;
-  const bool linear = material_.law == machine::ForceLaw::linear && edge_ramp_mm_ == 0;
+  const bool affine = machine::is_affine(material_.law) && edge_ramp_mm_ == 0;
   const auto on_tool = [&](const EdgeForce& f) {
     const double outward = f.radial_N * sine + f.axial_N * cosine;
     return std::array<double, 4>{-(f.tangential_N * sn + outward * c), -(outward * sn - f.tangential_N * c),
                                  f.radial_N * cosine - f.axial_N * sine, f.tangential_N * ring.profile.radius_mm};
   };
-  // Linear: a millimetre of thickness, and the edge.
-  const auto per_mm = on_tool({material_.ktc_MPa * width, material_.krc_MPa * width, material_.kac_MPa * width});
+  // Affine: a millimetre of thickness, and the edge.
+  const EdgeForce k = affine ? edge_force_slope(material_, 1) : EdgeForce{};
+  const auto per_mm = on_tool({k.tangential_N * width, k.radial_N * width, k.axial_N * width});
   const auto edge =
       on_tool({material_.kte_N_per_mm * width, material_.kre_N_per_mm * width, material_.kae_N_per_mm * width});
   const int first = static_cast<int>(std::ceil(std::min(0.0, e.at - half) * kFine));
@@ -101,7 +103,7 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
     const double drawn = e.thickness_mm - std::min(u, 0.0) * e.fall_mm;
     const double left = std::clamp(1 - u, 0.0, 1.0);  // of the line to the sample that is out of the cut
     std::array<double, 4> f;
-    if (linear) {
+    if (affine) {
       const double h = share * thickness - left * drawn, b = share - left;
       for (std::size_t i = 0; i < 4; ++i) f[i] = h * per_mm[i] + b * edge[i];
     } else {
@@ -206,7 +208,8 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
   const int last = static_cast<int>(envelope_.rings.size()) - 1;
   const PassSums sums(steps, nodes);
   out.chip_max_mm = out.chip_area_mm2 = 0;
-  const bool linear = material_.law == machine::ForceLaw::linear && edge_ramp_mm_ == 0;
+  const bool affine = machine::is_affine(material_.law) && edge_ramp_mm_ == 0;
+  const EdgeForce k = affine ? edge_force_slope(material_, 1) : EdgeForce{};
   float thickest = 0;
   const auto add_block = [&](const removal::ChipBlock& chip, int step) {
     Sums s = sums.at(step);
@@ -224,8 +227,8 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
       const int r = std::min(first_ring + half, last);
       const auto& ring = envelope_.rings[static_cast<std::size_t>(r)];
       EdgeForces e;
-      if (linear) {
-        linear_forces(material_, h, cut_255, ring.width_mm, e);
+      if (affine) {
+        affine_forces(k, material_, h, cut_255, ring.width_mm, e);
       } else {
         for (std::size_t l = 0; l < kSteps; ++l) {
           const EdgeForce f = edge_force(material_, h[l], cut_255[l] / 255.0 * ring.width_mm, edge_ramp_mm_);

@@ -48,7 +48,4 @@ struct ForceLog {
 /// Throws InputError with file:line:column.
 ForceLog read_force_log(const std::string& job_path, Diagnostics& diagnostics);
 
-/// Names of the coefficients of a law as [material] has them, cutting before edge: those that fit-force fits.
-std::vector<std::string> fitted_names(ForceLaw law);
-
 }  // namespace camber::machine

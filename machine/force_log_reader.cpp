@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "machine/force_law.h"
 #include "machine/force_log.h"
 #include "machine/job_keys.h"
 #include "machine/job_tables.h"
@@ -18,7 +19,6 @@ constexpr std::array<std::string_view, 2> kContentsWords{"means", "samples"};
 constexpr std::array<std::string_view, 2> kFitWords{"means", "waveform"};
 constexpr std::array<std::string_view, 2> kMillingWords{"up", "down"};
 constexpr std::array<std::string_view, 2> kSideWords{"tool", "work"};
-constexpr std::array<std::string_view, 2> kFittedLawWords{"linear", "kienzle"};
 constexpr std::array<std::string_view, 3> kForceUnitWords{"N", "kN", "lbf"};
 constexpr std::array<double, 3> kNewtons{1, 1000, 4.4482216152605};
 constexpr NumberRange kColumnNumber{.min = 1, .max = 10000, .whole = true};
@@ -113,7 +113,8 @@ void read_ranges(TomlTable& table, ForceLog& log) {
 }
 
 void read_hold(TomlTable& table, ForceLog& log) {
-  const auto names = fitted_names(log.law);
+  std::vector<std::string> names;
+  for (const auto& c : description(log.law).fitted) names.emplace_back(c.key);
   for (const std::string& name :
        table.text_list("hold", "names of coefficients, as in [\"kac_MPa\"],").value_or(std::vector<std::string>{})) {
     if (std::ranges::find(names, name) == names.end())
@@ -140,7 +141,7 @@ void read_table(TomlTable table, const std::map<int, Tool>& tools, ForceLog& log
                    "force-log");
   log.up_milling = table.choice("milling", kMillingWords, 0) == 0;
   log.on_work = table.choice("force_on", kSideWords, 0) == 1;
-  log.law = static_cast<ForceLaw>(table.choice("law", kFittedLawWords, 0));
+  log.law = static_cast<ForceLaw>(table.choice("law", ForceLaws::words, 0));
   log.header_line = static_cast<int>(table.number("header_line", kLineNumber, 1));
   read_forces(table, log);
   log.spindle_rpm = quantity_or_own_name(table, "spindle_rpm", kPositive);
@@ -158,11 +159,6 @@ void read_table(TomlTable table, const std::map<int, Tool>& tools, ForceLog& log
 }
 
 }  // namespace
-
-std::vector<std::string> fitted_names(ForceLaw law) {
-  if (law == ForceLaw::kienzle) return {"kc1_1_MPa", "mc", "kr1_1_MPa", "mr", "ka1_1_MPa", "ma"};
-  return {"ktc_MPa", "kte_N_per_mm", "krc_MPa", "kre_N_per_mm", "kac_MPa", "kae_N_per_mm"};
-}
 
 ForceLog read_force_log(const std::string& job_path, Diagnostics& diagnostics) {
   ForceLog log;

@@ -66,31 +66,6 @@ inline constexpr std::array kProfileKeys{
     ProfileKey{{"corner_centre_z_mm", &Tool::corner_centre_z_mm, kAnyNumber}, "general", ""},
 };
 
-inline constexpr std::array kLinearKeys{
-    NumberKey<Material>{"ktc_MPa", &Material::ktc_MPa, kNotNegative},
-    NumberKey<Material>{"krc_MPa", &Material::krc_MPa, kNotNegative},
-    NumberKey<Material>{"kac_MPa", &Material::kac_MPa, kAnyNumber},
-};
-
-inline constexpr NumberRange kExponent{.min = 0, .max = 0.9};
-inline constexpr std::array kKienzleKeys{
-    NumberKey<Material>{"kc1_1_MPa", &Material::kc1_1_MPa, kPositive},
-    NumberKey<Material>{"mc", &Material::mc, kExponent},
-};
-/// Written; read_material reads them together with the ratios.
-inline constexpr std::array kKienzleSideKeys{
-    NumberKey<Material>{"kr1_1_MPa", &Material::kr1_1_MPa, kAnyNumber},
-    NumberKey<Material>{"mr", &Material::mr, kExponent},
-    NumberKey<Material>{"ka1_1_MPa", &Material::ka1_1_MPa, kAnyNumber},
-    NumberKey<Material>{"ma", &Material::ma, kExponent},
-};
-
-inline constexpr std::array kEdgeKeys{
-    NumberKey<Material>{"kte_N_per_mm", &Material::kte_N_per_mm, kNotNegative},
-    NumberKey<Material>{"kre_N_per_mm", &Material::kre_N_per_mm, kNotNegative},
-    NumberKey<Material>{"kae_N_per_mm", &Material::kae_N_per_mm, kAnyNumber},
-};
-
 inline constexpr std::array kSimulationKeys{
     NumberKey<Simulation>{"voxel_mm", &Simulation::voxel_mm, kPositive},
     NumberKey<Simulation>{"rotation_step_deg", &Simulation::rotation_step_rad, kRotationStepDeg, kDegrees},

@@ -4,7 +4,6 @@
 // A table is read key by key; finish() then names the keys that nobody asked for. The readers below return
 // the fallback where a key is missing or its value is wrong, so that reading goes on and finds the next problem.
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -15,28 +14,9 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "machine/number_range.h"
 
 namespace camber::machine {
-
-/// Which numbers a key takes, and how a message says so.
-struct NumberRange {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool above_min = false;         ///< min itself is not allowed
-  bool infinity_allowed = false;  ///< the TOML value `inf`
-  bool whole = false;             ///< whole numbers only
-
-  bool holds(double value) const;
-  /// "a number greater than zero", "a whole number from 1 to 20" ...
-  std::string wanted() const;
-};
-
-inline constexpr NumberRange kAnyNumber{};
-inline constexpr NumberRange kPositive{.min = 0, .above_min = true};
-inline constexpr NumberRange kPositiveOrInf{.min = 0, .above_min = true, .infinity_allowed = true};
-inline constexpr NumberRange kNotNegative{.min = 0};
-inline constexpr NumberRange kNotNegativeOrInf{.min = 0, .infinity_allowed = true};
-inline constexpr NumberRange kAnyNumberOrInf{.infinity_allowed = true};
 
 /// One value of the file, with its place.
 struct TomlNode {

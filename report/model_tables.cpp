@@ -11,6 +11,7 @@
 
 #include "base/numbers.h"
 #include "base/units.h"
+#include "machine/force_law.h"
 
 namespace camber::report {
 namespace {
@@ -113,29 +114,16 @@ std::map<std::string, std::string> stated_errors(const std::string& path) {
 
 TextTable material_table(const Job& job) {
   const machine::Material& m = job.material;
-  const bool kienzle = m.law == machine::ForceLaw::kienzle;
+  const machine::ForceLawDescription& law = machine::description(m.law);
   TextTable table{"Material", {"coefficient", "value", "standard error", "unit"}, {}, {}};
   const auto errors = stated_errors(material_path(job));
-  const auto add = [&](const char* name, double value, const char* unit) {
+  const auto add = [&](const std::string& name, double value, std::string_view unit) {
     const auto error = errors.find(name);
-    table.rows.push_back({name, value_text(value), error == errors.end() ? "not known" : "± " + error->second, unit});
+    table.rows.push_back(
+        {name, value_text(value), error == errors.end() ? "not known" : "± " + error->second, std::string(unit)});
   };
-  if (kienzle) {
-    add("kc1_1_MPa", m.kc1_1_MPa, "MPa");
-    add("mc", m.mc, "");
-    add("kr1_1_MPa", m.kr1_1_MPa, "MPa");
-    add("mr", m.mr, "");
-    add("ka1_1_MPa", m.ka1_1_MPa, "MPa");
-    add("ma", m.ma, "");
-  } else {
-    add("ktc_MPa", m.ktc_MPa, "MPa");
-    add("krc_MPa", m.krc_MPa, "MPa");
-    add("kac_MPa", m.kac_MPa, "MPa");
-  }
-  add("kte_N_per_mm", m.kte_N_per_mm, "N/mm");
-  add("kre_N_per_mm", m.kre_N_per_mm, "N/mm");
-  add("kae_N_per_mm", m.kae_N_per_mm, "N/mm");
-  table.note = kienzle ? "Kienzle’s force law." : "Linear edge force law.";
+  for (const auto& c : law.coefficients) add(std::string(c.key), m.*c.field, c.unit == "1" ? "" : c.unit);
+  table.note = fmt::format("{}.", law.title);
   if (!m.preset.empty()) table.note += fmt::format(" It began with the preset {}.", m.preset);
   if (errors.empty()) table.note += " No standard errors are stated: the coefficients were not fitted by fit-force.";
   return table;
