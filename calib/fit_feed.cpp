@@ -22,20 +22,15 @@ constexpr std::uint32_t kMaxBlocksApart = 60;
 constexpr int kListIterations = 6;      // for each value of a list
 constexpr double kSettledShare = 1e-3;  // gain of cost under which a richer law is not worth it
 
-/// What LinuxCNC does unless its INI file says otherwise ([TRAJ] ARC_BLEND_KINK_RATIO and ARC_BLEND_OPTIMIZATION_DEPTH)
-/// and the short lines that its traces show, where the start file says nothing and the traces may not tell.
-constexpr double kLinuxCncStepShare = 0.1;
-constexpr int kLinuxCncLookahead = 50;
-constexpr double kLinuxCncShortLinePeriods = 4;
-
+/// The usual values of this kind of control for keys that the start file leaves out and the traces may not determine.
 void set_control_defaults(machine::Control& control) {
   // No control takes up two blocks in one period.
   if (control.block_time_s == 0) control.block_time_s = control.period_s;
-  if (control.dialect != machine::Dialect::linuxcnc || control.corner.law != machine::CornerLaw::blend) return;
-  if (control.corner.step_fraction == 0) control.corner.step_fraction = kLinuxCncStepShare;
-  if (control.lookahead_blocks == 0) control.lookahead_blocks = kLinuxCncLookahead;
+  if (control.corner.law != machine::CornerLaw::blend) return;
+  if (control.corner.step_fraction == 0) control.corner.step_fraction = control.kind.usual_step_share;
+  if (control.lookahead_blocks == 0) control.lookahead_blocks = control.kind.usual_lookahead_blocks;
   if (control.corner.short_line_time_s == 0)
-    control.corner.short_line_time_s = kLinuxCncShortLinePeriods * control.period_s;
+    control.corner.short_line_time_s = control.kind.usual_short_line_periods * control.period_s;
 }
 
 /// Commanded time of each part: first to last sample of its lines.

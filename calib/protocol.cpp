@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "feedmodel/control_options.h"
 
 namespace camber::calib {
 namespace {
@@ -31,19 +32,20 @@ constexpr int kZigzagSides = 24;
 
 class Writer {
  public:
-  Writer(const machine::Machine& machine, std::string name, std::string tells) : machine_(machine) {
-    program_.name = name + (linuxcnc() ? ".ngc" : ".nc");
+  Writer(const machine::Machine& machine, std::string name, std::string tells)
+      : machine_(machine), dialect_(feedmodel::dialect_of(machine.control.kind)) {
+    program_.name = name + std::string(dialect_.file_extension);
     program_.tells = std::move(tells);
     line("%");
-    if (!linuxcnc()) line("O0001");
+    if (dialect_.has_program_number) line("O0001");
     line("(" + name + ")");
-    line(std::string("G21 G90 G94 G40 G49 G80 G17") + (linuxcnc() ? " G64 P0.01" : ""));
+    line(std::string("G21 G90 G94 G40 G49 G80 G17") + (dialect_.g64_p_is_tolerance ? " G64 P0.01" : ""));
     line("G0 X0 Y0 Z0");
     rest();
   }
 
   ProtocolProgram finish() {
-    line(linuxcnc() ? "M2" : "M30");
+    line(std::string(dialect_.program_end));
     line("%");
     return std::move(program_);
   }
@@ -53,7 +55,7 @@ class Writer {
     ++lines_;
   }
 
-  void rest() { line(linuxcnc() ? "G4 P0.2" : "G4 P200"); }
+  void rest() { line(dialect_.dwell_p_is_ms ? "G4 P200" : "G4 P0.2"); }
 
   double feed_within_limits(double feed_mm_per_min) const {
     double least = feed_mm_per_min;
@@ -101,8 +103,6 @@ class Writer {
   }
 
  private:
-  bool linuxcnc() const { return machine_.control.dialect == machine::Dialect::linuxcnc; }
-
   static std::string words(int plane, const std::array<double, 2>& p) {
     return fmt::format(" {}{:.6f} {}{:.6f}", "XYZ"[kPlaneAxes[plane][0]], p[0], "XYZ"[kPlaneAxes[plane][1]], p[1]);
   }
@@ -115,6 +115,7 @@ class Writer {
   }
 
   const machine::Machine& machine_;
+  const nc::Dialect& dialect_;
   ProtocolProgram program_;
   int lines_ = 0;
 };

@@ -1,5 +1,7 @@
 // check, feed, time, compress, resegment and fit-feed on the command line.
+#include <algorithm>
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -18,6 +20,7 @@
 #include "cli/resegment_command.h"
 #include "cli/time_command.h"
 #include "cli/validators.h"
+#include "feedmodel/control_options.h"
 #include "machine/machine.h"
 
 namespace camber::cli {
@@ -42,19 +45,33 @@ void add_interpreter_options(CLI::App& command, nc::InterpreterOptions& interpre
       ->type_name("N");
 }
 
+/// Index of a control in the table: what --dialect maps a name to.
+enum class ControlRow : std::uint8_t {};
+
+std::map<std::string, ControlRow> rows_of_controls() {
+  std::map<std::string, ControlRow> rows;
+  for (const std::string_view name : machine::control_kind_names())
+    rows.emplace(name, static_cast<ControlRow>(rows.size()));
+  return rows;
+}
+
+std::string_view name_of_dialect_with(bool nc::Dialect::*fact) {
+  return std::ranges::find(nc::dialects(), true, fact)->name;
+}
+
 void add_language_options(CLI::App& command, nc::InterpreterOptions& interpreter) {
   command
-      .add_option(
-          "--dialect", interpreter.control,
-          "control that the program is for; not given: what its text shows (O-words: linuxcnc, M97: haas), else "
-          "fanuc, with a dwell's P in seconds")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, nc::ControlKind>{{"fanuc", nc::ControlKind::fanuc},
-                                                                         {"haas", nc::ControlKind::haas},
-                                                                         {"mazak", nc::ControlKind::mazak},
-                                                                         {"linuxcnc", nc::ControlKind::linuxcnc}})
-              .description(""))
-      ->type_name("fanuc|haas|mazak|linuxcnc");
+      .add_option_function<ControlRow>(
+          "--dialect",
+          [&interpreter](ControlRow row) {
+            interpreter.dialect = feedmodel::dialect_of(machine::control_kinds()[static_cast<std::size_t>(row)]);
+          },
+          fmt::format("control that the program is for; not given: what its text shows (O-words: {}, M97: {}), else "
+                      "{}, with a dwell's P in seconds",
+                      name_of_dialect_with(&nc::Dialect::shown_by_o_words),
+                      name_of_dialect_with(&nc::Dialect::shown_by_m97), nc::default_dialect().name))
+      ->transform(CLI::CheckedTransformer(rows_of_controls()).description(""))
+      ->type_name(fmt::format("{}", fmt::join(machine::control_kind_names(), "|")));
   command.add_flag("--least-increments", interpreter.whole_numbers_are_increments,
                    "X1000 without a point is 1000 least increments (1 mm), not 1000 mm");
 }

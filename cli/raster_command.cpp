@@ -93,7 +93,7 @@ std::optional<double> top_of_stock_mm(const machine::Stock& stock) {
 /// Where feed begins: in a stock that is left all over alike a little above it, else above the blank.
 repath::RasterProgram program_of(const RasterArguments& arguments, const machine::Job& job, const machine::Tool& tool,
                                  double part_top_mm, int decimals) {
-  repath::RasterProgram out{.dialect = job.machine.control.dialect,
+  repath::RasterProgram out{.dialect = feedmodel::dialect_of(job.machine.control.kind),
                             .tool = tool,
                             .spindle_rpm = arguments.spindle_rpm,
                             .feed_mm_per_min = arguments.feed_mm_per_min,

@@ -1,5 +1,5 @@
 #pragma once
-// How a machine's control reads a program.
+// How a machine's control reads a program. Joins the table of controls to the table of NC dialects.
 #include <optional>
 
 #include "machine/machine.h"
@@ -7,34 +7,14 @@
 
 namespace camber::feedmodel {
 
-inline nc::ControlKind control_kind(machine::Dialect dialect) {
-  switch (dialect) {
-    case machine::Dialect::haas:
-      return nc::ControlKind::haas;
-    case machine::Dialect::mazak:
-      return nc::ControlKind::mazak;
-    case machine::Dialect::linuxcnc:
-      return nc::ControlKind::linuxcnc;
-    case machine::Dialect::fanuc:
-      break;
-  }
-  return nc::ControlKind::fanuc;
-}
+/// The dialect of the control's programs. Requires kind.nc_dialect to name a dialect; static_asserts in
+/// control_options.cpp check this for every row of the table of controls.
+const nc::Dialect& dialect_of(const machine::ControlKind& kind);
 
-/// `inch`: unit of a program without G20 and G21, where it is told. The rest is nc's table of dialects.
-inline nc::InterpreterOptions interpreter_options(const machine::Machine& machine, std::optional<bool> inch) {
-  nc::InterpreterOptions options;
-  options.inch = inch;
-  options.control = control_kind(machine.control.dialect);
-  options.dwell_p_is_ms = options.dialect().dwell_p_is_ms;
-  return options;
-}
+/// `inch`: unit of a program without G20 and G21, where known. The rest follows from the dialect.
+nc::InterpreterOptions interpreter_options(const machine::Machine& machine, std::optional<bool> inch);
 
 /// With the other options as given.
-inline nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given) {
-  given.control = control_kind(machine.control.dialect);
-  given.dwell_p_is_ms = given.dialect().dwell_p_is_ms;
-  return given;
-}
+nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given);
 
 }  // namespace camber::feedmodel

@@ -22,7 +22,7 @@ double distance_to_line(const Vec3& point, const Vec3& from, const Vec3& to) {
 double merge_tolerance_mm(const nc::ModalState& state, const machine::Control& control) {
   if (state.path_control != nc::PathControl::blend) return 0;
   if (state.merge_tolerance_mm >= 0) return state.merge_tolerance_mm;
-  if (control.dialect == machine::Dialect::linuxcnc && state.blend_tolerance_mm >= 0) return state.blend_tolerance_mm;
+  if (control.kind.g64_p_merges && state.blend_tolerance_mm >= 0) return state.blend_tolerance_mm;
   return control.merge_tolerance_mm;
 }
 

@@ -12,8 +12,8 @@ namespace camber::feedmodel {
 /// A run of merged lines never holds more than this (LinuxCNC's figure).
 inline constexpr std::size_t kMaxMergedLines = 100;
 
-/// Tolerance within which lines are merged in this modal state: G64's Q, else (LinuxCNC) its P, else the
-/// control's own. 0: no merging.
+/// Tolerance within which lines are merged in this modal state: G64's Q, else its P where the control
+/// merges by it (ControlKind::g64_p_merges), else the control's own. 0: no merging.
 double merge_tolerance_mm(const nc::ModalState& state, const machine::Control& control);
 
 /// Index after the last move of the run of lines that begins at `first` and is driven as one line: every corner

@@ -67,7 +67,7 @@ void set_arc_limits(Segment& s, const Vec3& acceleration, const machine::Control
   if (s.speed_limit_mm_per_s < turning && !std::isinf(a)) {
     const double used = s.speed_limit_mm_per_s * s.speed_limit_mm_per_s / (curvature_radius * a);
     share = std::max(share, std::sqrt(std::max(0.0, 1.0 - used * used)));
-  } else if (control.dialect == machine::Dialect::linuxcnc && rise_per_rad > 0 && share < 1) {
+  } else if (control.kind.helix_rise_frees_acceleration && rise_per_rad > 0 && share < 1) {
     // The traced helices leave more to the path the more the whole arc rises (not the rise of one radian).
     const double used =
         control.arc_normal_fraction / (helix_curvature_radius(s.radius_mm, s.rise.norm() * s.length_mm) / s.radius_mm);
@@ -204,7 +204,7 @@ class Builder {
     const Vec3 from = a.segment.direction_at(a.segment.length_mm), to = b.segment.direction_at(0);
     if (control_.rapid_change_s > 0 && a.segment.cutting != b.segment.cutting) return stop(control_.rapid_change_s);
     if (from.dot(to) < -1.0 + kReversal) return stop(control_.corner.stop_time_s);
-    if (control_.dialect == machine::Dialect::linuxcnc && a.segment.cutting != b.segment.cutting) return {};
+    if (control_.kind.stops_between_rapid_and_feed && a.segment.cutting != b.segment.cutting) return {};
     if (options_.rest_at_rapids && !(a.segment.cutting && b.segment.cutting)) return {};
     if (a.stops || a.control == nc::PathControl::exact_stop) return {};
     const machine::Corner& corner = control_.corner;

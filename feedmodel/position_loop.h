@@ -14,7 +14,7 @@ struct PositionLoopOptions {
 ///
 /// solved exactly for a command c that runs straight between two periods. At a constant speed v the axis is
 /// behind by v (1 - Kf/100) / Kp.
-/// Source: DESIGN section 2 (position loop with feed-forward); Tv as the traces of real drives show it.
+/// Source: Yan & Shirase 1997; Takata 1999 (Kp, Kf; docs/feed-model.md); Tv as the traces of real drives show it.
 class PositionLoop {
  public:
   PositionLoop(const PositionLoopOptions& options, double start_mm);

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "machine/control_kind.h"
 #include "machine/cycle.h"
 
 namespace camber::machine {
 
 inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-enum class Dialect { fanuc, haas, mazak, linuxcnc };
 enum class CornerLaw {
   speed_difference,  ///< per-axis permitted speed step (Fanuc 1783): F_c = F / max(dV_axis / V_permitted)
   angle,             ///< F <= a dt / sqrt(2 (1 - cos theta))
@@ -35,7 +35,7 @@ struct Corner {
 };
 
 struct Control {
-  Dialect dialect = Dialect::fanuc;
+  ControlKind kind = default_control_kind();
   double period_s = 0.001;  ///< of interpolation and of feed.csv
   double block_time_s = 0;  ///< block processing time T_b
   Corner corner;

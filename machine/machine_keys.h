@@ -8,7 +8,6 @@
 
 namespace camber::machine {
 
-inline constexpr std::array<std::string_view, 4> kDialectWords{"fanuc", "haas", "mazak", "linuxcnc"};
 inline constexpr std::array<std::string_view, 4> kCornerLawWords{"speed_difference", "angle", "blend", "exact_stop"};
 inline constexpr std::array<std::string_view, 3> kAxisNames{"x", "y", "z"};
 

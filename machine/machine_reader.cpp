@@ -41,7 +41,7 @@ void read_corner(TomlTable table, Corner& corner) {
 }
 
 void read_control(TomlTable table, Control& control) {
-  control.dialect = static_cast<Dialect>(table.choice("dialect", kDialectWords, 0));
+  control.kind = control_kinds()[table.choice("dialect", control_kind_names(), 0)];
   read_numbers<Control>(table, kControlKeys, control);
   control.lookahead_blocks = static_cast<int>(table.number("lookahead_blocks", kBlockCount, control.lookahead_blocks));
   if (auto corner = table.table("corner")) read_corner(*corner, control.corner);
@@ -127,7 +127,7 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
   if (auto control = top.table("control")) read_control(*control, machine.control);
   if (auto axes = top.table("axis")) read_axes(*axes, machine.axis);
   if (auto spindle = top.table("spindle")) read_spindle(*spindle, machine.spindle);
-  if (machine.control.dialect == Dialect::linuxcnc) machine.cycle.rapid_path = RapidPath::linear;
+  machine.cycle.rapid_path = machine.control.kind.rapid_path;
   if (auto cycle = top.table("cycle")) read_cycle(*cycle, machine.cycle);
   if (auto change = top.table("tool_change")) {
     read_numbers<ToolChange>(*change, kToolChangeKeys, machine.tool_change);

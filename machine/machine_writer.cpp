@@ -53,7 +53,7 @@ std::string fitted_range_text(const FittedRange& r) {
 
 std::string to_toml(const Machine& machine) {
   std::string out = "[control]\n";
-  out += toml_line("dialect", kDialectWords[static_cast<std::size_t>(machine.control.dialect)]);
+  out += toml_line("dialect", machine.control.kind.name);
   out += toml_lines<Control>(kControlKeys, machine.control);
   out += toml_line("lookahead_blocks", machine.control.lookahead_blocks, kAsIs);
   out += corner_text(machine.control.corner);

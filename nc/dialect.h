@@ -1,16 +1,12 @@
 #pragma once
-// What differs between the controls whose programs are read: one table of facts, nothing else in nc/ asks for a name.
-#include <cstdint>
-#include <optional>
+// The facts in which the NC dialects differ. The rows are in nc/dialects.h; code queries a fact of the dialect and
+// never compares its name.
+#include <span>
 #include <string_view>
 
 namespace camber::nc {
 
 struct Program;
-
-/// Siemens and Heidenhain have languages of their own: read_program refuses them by name (see foreign.h). A preset here
-/// is for controls that read RS-274 blocks.
-enum class ControlKind : std::uint8_t { fanuc, haas, mazak, linuxcnc };
 
 /// Inclusive range of variable numbers.
 struct NumberRange {
@@ -18,9 +14,19 @@ struct NumberRange {
   bool holds(double number) const { return number >= first && number <= last; }
 };
 
+/// One dialect of RS-274. Siemens and Heidenhain have languages of their own: read_program refuses them by name (see
+/// foreign.h).
 struct Dialect {
-  ControlKind control = ControlKind::fanuc;
-  std::string_view name;
+  std::string_view name;   ///< the word in files, options and messages
+  std::string_view title;  ///< as its maker writes it
+
+  // Program text: constructs that identify the dialect, and how Camber writes a program
+  bool shown_by_o_words = false;    ///< the only one with O-words (o100 sub) and named parameters (#<x>)
+  bool shown_by_m97 = false;        ///< the only one with M97, the call of a local subprogram
+  bool has_program_number = true;   ///< O1234 is the program's number; else an O-word begins a subprogram
+  bool g64_p_is_tolerance = false;  ///< G64 P0.01: corners are rounded within 0.01 mm
+  std::string_view program_end = "M30";
+  std::string_view file_extension = ".nc";
 
   // Numbers
   bool dwell_p_is_ms = true;                  ///< G4 P500 is 500 ms; else 500 s
@@ -65,12 +71,16 @@ struct Dialect {
   int max_levels = 15;          ///< of calls inside calls
 };
 
-const Dialect& dialect_of(ControlKind control);
+/// All rows, in the order in which messages list them.
+std::span<const Dialect> dialects();
 
-/// "fanuc", "haas", "mazak", "linuxcnc".
-std::optional<ControlKind> control_named(std::string_view name);
+/// Assumed for a program whose text shows no dialect: Fanuc, in which most macros are written.
+const Dialect& default_dialect();
 
-/// What the text itself shows: O-words and named parameters (LinuxCNC), M97 (Haas). Nothing where it shows nothing.
-std::optional<ControlKind> control_shown_by(const Program& program);
+/// Null for an unknown name.
+const Dialect* dialect_named(std::string_view name);
+
+/// The dialect that the text shows by O-words, named parameters or M97; null where it shows none.
+const Dialect* dialect_shown_by(const Program& program);
 
 }  // namespace camber::nc

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "nc/dialect.h"
+
 namespace camber::nc {
 namespace {
-
-constexpr std::string_view kExpected = "Camber reads programs in the style of Fanuc, Haas, Mazak EIA and LinuxCNC";
 
 constexpr std::array<std::string_view, 37> kSiemens = {
     "DEF",    "SUPA",  "CYCLE",  "TRAFOOF", "TRAORI", "COMPOF", "COMPON", "COMPCAD", "COMPCURV", "MSG",
@@ -26,25 +26,34 @@ bool among(const std::array<std::string_view, N>& names, std::string_view name) 
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// "Camber reads programs in the style of Fanuc, Haas and LinuxCNC".
+std::string expected() {
+  const std::span<const Dialect> all = dialects();
+  std::string out = "Camber reads programs in the style of ";
+  for (std::size_t i = 0; i < all.size(); ++i)
+    out += fmt::format("{}{}", i == 0 ? "" : i + 1 < all.size() ? ", " : " and ", all[i].title);
+  return out;
+}
+
 }  // namespace
 
 ForeignWord explain_letters(std::string_view name) {
   if (among(kSiemens, name))
-    return {fmt::format("{} belongs to a Siemens Sinumerik program, which is not read yet; {}", name, kExpected),
+    return {fmt::format("{} belongs to a Siemens Sinumerik program, which is not read yet; {}", name, expected()),
             "siemens", true};
   if (among(kOWord, name))
     return {fmt::format("{} without its O number; O100 {} or O<name> {} was expected", name, name, name), "statement",
             false};
   if (among(kHeidenhain, name))
-    return {fmt::format("{} belongs to a Heidenhain program, which is not read yet; {}", name, kExpected), "heidenhain",
-            true};
+    return {fmt::format("{} belongs to a Heidenhain program, which is not read yet; {}", name, expected()),
+            "heidenhain", true};
   if (name.size() == 2)
     return {fmt::format("{} has no number; a number was expected", name.front()), "no-number", false};
   return {fmt::format("{} is not an NC word; a letter and a number were expected", name), "not-a-word", false};
 }
 
 ForeignWord explain_assignment(std::string_view address) {
-  return {fmt::format("{}= belongs to a Siemens Sinumerik program, which is not read yet; {}", address, kExpected),
+  return {fmt::format("{}= belongs to a Siemens Sinumerik program, which is not read yet; {}", address, expected()),
           "siemens", true};
 }
 

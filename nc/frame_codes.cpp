@@ -101,7 +101,7 @@ void BlockInterpreter::run_frame_code() {
 void BlockInterpreter::set_local_shift() {
   if (!words_.has_any("XYZ"))
     error(request_.frame_code.word->offset, "frame", "G52 has no axis; X, Y or Z was expected");
-  Vec3& shift = options_.dialect().g52_is_g92 ? frames_.g92_mm : frames_.g52_mm;
+  Vec3& shift = options_.dialect_or_default().g52_is_g92 ? frames_.g92_mm : frames_.g52_mm;
   for (int axis = 0; axis < 3; ++axis)
     if (words_.has(kAxisLetters[axis])) shift[axis] = words_.value(kAxisLetters[axis]) * unit_mm();
   frames_.g92_kept_mm = frames_.g92_mm;
@@ -119,7 +119,7 @@ void BlockInterpreter::set_position() {
   Vec3 p = programmed();
   for (int axis = 0; axis < 3; ++axis)
     if (words_.has(kAxisLetters[axis])) p[axis] = words_.value(kAxisLetters[axis]) * unit_mm();
-  if (!options_.dialect().g52_is_g92)
+  if (!options_.dialect_or_default().g52_is_g92)
     for (int axis = 0; axis < 3; ++axis)
       if (words_.has(kAxisLetters[axis])) {
         frames_.g92_mm[axis] += frames_.g52_mm[axis];
@@ -166,7 +166,7 @@ void BlockInterpreter::set_rotation() {
   for (int axis = 0; axis < 3; ++axis)
     if (words_.has(kAxisLetters[axis])) centre[axis] = words_.value(kAxisLetters[axis]) * unit_mm();
   const double angle = words_.value('R') * kPi / 180;
-  const bool adds = frames_.rotated && state_.incremental && options_.dialect().rotation_r_adds_in_g91;
+  const bool adds = frames_.rotated && state_.incremental && options_.dialect_or_default().rotation_r_adds_in_g91;
   frames_.rotation_rad = adds ? frames_.rotation_rad + angle : angle;
   frames_.rotation_centre_mm = centre;
   frames_.rotation_plane = plane_;
@@ -175,7 +175,7 @@ void BlockInterpreter::set_rotation() {
 
 double BlockInterpreter::scale_value(char letter) {
   const double value = words_.value(letter);
-  return written_with_point(words_.word(letter)) ? value : value * options_.dialect().scale_unit;
+  return written_with_point(words_.word(letter)) ? value : value * options_.dialect_or_default().scale_unit;
 }
 
 void BlockInterpreter::set_scaling() {
@@ -196,7 +196,7 @@ void BlockInterpreter::set_scaling() {
     if (s >= 0.01 && s <= 100) continue;
     error(request_.frame_code.word->offset, "scaling",
           fmt::format("G51 scales {} by {}; 0.01 to 100 was expected (1 without a decimal point is {})",
-                      kAxisLetters[axis], scale[axis], options_.dialect().scale_unit));
+                      kAxisLetters[axis], scale[axis], options_.dialect_or_default().scale_unit));
     return;
   }
   frames_.scale = scale;
@@ -280,17 +280,17 @@ void BlockInterpreter::set_work_offset_data(bool touch_off) {
     return;
   }
   const int p = static_cast<int>(words_.value('P'));
-  const bool extended = touch_off && options_.dialect().g10_l20_is_g54_1;
+  const bool extended = touch_off && options_.dialect_or_default().g10_l20_is_g54_1;
   if (!extended && p > 9) {
     error(at, "work-offset", fmt::format("{} P{} is no work offset; P0 to P9 was expected", name, p));
     words_.use("XYZR");
     return;
   }
-  const bool external = !extended && p == 0 && options_.dialect().g10_p0_is_external;
+  const bool external = !extended && p == 0 && options_.dialect_or_default().g10_p0_is_external;
   const int number = extended ? 540000 + p : p == 0 ? state_.work_offset : p <= 6 ? 53 + p : 590 + p - 6;
   WorkOffset& offset = frames_.offsets.at(number);
   Vec3& value = external ? frames_.offsets.external_mm : offset.value_mm;
-  const bool adds = state_.incremental && options_.dialect().g10_adds_in_g91;
+  const bool adds = state_.incremental && options_.dialect_or_default().g10_adds_in_g91;
   if (touch_off && !extended) {
     // The tool's place gets the given coordinates in the offset.
     Frames wished = frames_;

@@ -115,7 +115,7 @@ MachineFacts BlockInterpreter::facts() const {
 /// X1000 is a number of least increments where the control counts so (G4 X1000 is a time: see dwell_seconds).
 void BlockInterpreter::scale_whole_numbers() {
   if (request_.dwell) return;
-  const Dialect& dialect = options_.dialect();
+  const Dialect& dialect = options_.dialect_or_default();
   const double step = state_.inch ? dialect.least_increment_inch : dialect.least_increment_mm;
   for (const char letter : std::string_view("XYZUVWIJKRQABC")) {
     if (!words_.has(letter) || written_with_point(words_.word(letter)) || words_.word(letter).value == 0) continue;
@@ -135,9 +135,9 @@ bool run_program(ProgramFiles& files, const InterpreterOptions& options, Reporte
 
 /// The dialect that the text shows where none is named, and what it says of dwells.
 InterpreterOptions settled(const Program& program, InterpreterOptions options) {
-  if (!options.control) options.control = control_shown_by(program);
-  if (options.control) options.dwell_p_is_ms |= options.dialect().dwell_p_is_ms;
-  options.whole_numbers_are_increments |= options.dialect().whole_numbers_are_increments;
+  if (const Dialect* shown = dialect_shown_by(program); shown && !options.dialect) options.dialect = *shown;
+  if (options.dialect) options.dwell_p_is_ms |= options.dialect->dwell_p_is_ms;
+  options.whole_numbers_are_increments |= options.dialect_or_default().whole_numbers_are_increments;
   return options;
 }
 

@@ -25,9 +25,10 @@ struct InterpreterOptions {
   bool absolute_arc_centre = false;  ///< the control starts in G90.1 rather than G91.1
   bool index_table = false;          ///< B turns an index table: an event, no error
   double peck_clearance_mm = 0.254;  ///< G83 stops its rapid so far above the last depth; G73 retracts by it
-  /// Whose language the program is in. Not given: what its text shows (O-words, M97), else Fanuc, whose macros most
-  /// programs are written in; a dwell's P then counts as `dwell_p_is_ms` says.
-  std::optional<ControlKind> control{};
+  /// Dialect of the program: a row of the table, or a copy with some facts changed for a control whose parameters
+  /// differ. Not given: the dialect that the text shows (O-words, M97), else default_dialect(), except that
+  /// `dwell_p_is_ms` then decides the unit of a dwell.
+  std::optional<Dialect> dialect{};
   bool whole_numbers_are_increments = false;  ///< X1000 is 1000 least increments of the dialect (1 mm), not 1000 mm
   std::uint16_t skip_switches = 0;            ///< bit n: blocks that begin with /n are left out (/ is /1)
   /// Blocks that loops and repeated subprograms may run again before the program counts as endless.
@@ -38,12 +39,8 @@ struct InterpreterOptions {
   std::map<int, ToolOffset> tool_offsets{};  ///< by H and D number
   /// Machine coordinates of the reference points: G28, G30 P2, P3, P4.
   std::array<std::optional<Vec3>, 4> reference_points_mm{};
-  /// A control whose parameters differ from its preset; goes before `control`.
-  std::optional<Dialect> own_dialect{};
 
-  const Dialect& dialect() const {
-    return own_dialect ? *own_dialect : dialect_of(control.value_or(ControlKind::fanuc));
-  }
+  const Dialect& dialect_or_default() const { return dialect ? *dialect : default_dialect(); }
 };
 
 /// Arcs whose radii at start and end differ by more than the first are warned of, by more than the second refused.

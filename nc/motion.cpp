@@ -348,10 +348,10 @@ void BlockInterpreter::move_on_arc() {
 void BlockInterpreter::read_spiral_words(ArcWords& arc) {
   if (arc.r_mm) return;
   if (!words_.has('L')) {
-    if (options_.dialect().spiral_radius_difference_mm <= 0) return;
+    if (options_.dialect_or_default().spiral_radius_difference_mm <= 0) return;
     const ArcResult plain = make_arc(arc);
     arc.spiral = plain.error.empty() && plain.radius_difference_mm > kArcRadiusWarningMm &&
-                 plain.radius_difference_mm <= options_.dialect().spiral_radius_difference_mm;
+                 plain.radius_difference_mm <= options_.dialect_or_default().spiral_radius_difference_mm;
     return;
   }
   const double turns = words_.value('L');

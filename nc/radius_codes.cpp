@@ -14,7 +14,7 @@ void BlockInterpreter::read_radius_code(const Code& code) {
     return;
   }
   const bool by_value = code.tenths % 10 != 0;
-  if (by_value && !options_.dialect().g41_1_has_diameter) {
+  if (by_value && !options_.dialect_or_default().g41_1_has_diameter) {
     error(code.word->offset, "not-read", fmt::format("{} (normal direction control) is not read yet", code_text(code)),
           code_text(code));
     words_.use("D");
@@ -108,9 +108,9 @@ void BlockInterpreter::end_radius() {
   cutter.radius_mm = radius.radius_mm;
   cutter.left = (radius.g_tenths / 10 == 41) == (facing > 0);  // a mirror image turns the side over
   cutter.plane = plane_;
-  cutter.corner_lines = options_.dialect().radius_corner_lines;
-  cutter.entry_square_to_next = options_.dialect().radius_entry_square;
-  cutter.moves_without_plane_motion = options_.dialect().radius_look_ahead;
+  cutter.corner_lines = options_.dialect_or_default().radius_corner_lines;
+  cutter.entry_square_to_next = options_.dialect_or_default().radius_entry_square;
+  cutter.moves_without_plane_motion = options_.dialect_or_default().radius_look_ahead;
   cutter.name = fmt::format("G{}", radius.g_tenths / 10);
   const CutterRadiusResult result = compensate_radius(out_, radius.first_move, cutter);
   for (const CutterRadiusProblem& problem : result.problems)
@@ -127,7 +127,7 @@ void BlockInterpreter::leave_contour(Move& move) {
   const PlaneAxes axes = axes_of(plane_);
   constexpr char kLetters[] = "XYZ";
   const bool in_plane = words_.has(kLetters[axes.first]) || words_.has(kLetters[axes.second]);
-  if (move.kind == MoveKind::dwell || (options_.dialect().radius_exit_waits && !in_plane))
+  if (move.kind == MoveKind::dwell || (options_.dialect_or_default().radius_exit_waits && !in_plane))
     move.end_mm += beside_mm_;
   else
     leaving_ = false;

@@ -20,7 +20,7 @@ bool is_axis(char letter) { return std::string_view("XYZUVWIJKRQABC").find(lette
 Sequencer::Sequencer(ProgramFiles& files, const InterpreterOptions& options, Reporter& report, Interpretation& out)
     : files_(files),
       options_(options),
-      dialect_(options.dialect()),
+      dialect_(options.dialect_or_default()),
       report_(report),
       out_(out),
       interpreter_(files.main(), options, report, out),

@@ -29,7 +29,7 @@ std::string_view type_word(machine::ToolType type) {
 
 std::string header(const RasterProgram& p) {
   std::string out = "%\n";
-  if (p.dialect != machine::Dialect::linuxcnc) out += "O0001 (FINISHING RASTER)\n";
+  if (p.dialect.has_program_number) out += "O0001 (FINISHING RASTER)\n";
   out += "G21 G17 G90 G94 G40 G49 G80\n";
   out += fmt::format("T{} M6 ({} D{:g}", p.tool.number, type_word(p.tool.type), p.tool.diameter_mm);
   if (p.tool.type == machine::ToolType::bull) out += fmt::format(" R{:g}", p.tool.corner_radius_mm);

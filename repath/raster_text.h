@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "machine/job.h"
+#include "nc/dialect.h"
 
 namespace camber::repath {
 
 struct RasterProgram {
-  machine::Dialect dialect = machine::Dialect::fanuc;
+  nc::Dialect dialect = nc::default_dialect();
   machine::Tool tool{};
   double spindle_rpm = 0, feed_mm_per_min = 0;
   double clearance_mm = 0;     ///< Z of moves from chain to chain
@@ -19,8 +20,8 @@ struct RasterProgram {
 };
 
 /// The whole program: header, tool change, length offset, spindle; each chain (of two points at least) led in straight
-/// down at a third of the feed and left straight up in rapid; M30. LinuxCNC's have no O number, which there begins a
-/// subprogram.
+/// down at a third of the feed and left straight up in rapid; M30. It has an O number if the
+/// dialect has program numbers.
 std::string raster_text(const RasterProgram& program, std::span<const std::vector<Vec3>> chains);
 
 }  // namespace camber::repath

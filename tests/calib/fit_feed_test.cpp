@@ -33,7 +33,7 @@ constexpr double kDriveShare = 1e-3;
 TEST(FitFeed, GivesTheParametersOfASyntheticMachineBack) {
   const machine::Machine known = known_machine();
   machine::Machine start;
-  start.control.dialect = known.control.dialect;
+  start.control.kind = known.control.kind;
   start.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01};
   const FitFeedResult fit = fit_feed({synthetic_run(known)}, start, {});
   EXPECT_TRUE(fit.converged) << fit.message;
@@ -126,7 +126,7 @@ TEST(FitFeedSlow, FitsTheSamplesTrace) {
       nc::interpret(nc::read_program(SourceText::read(folder + "trace_program.nc"), diagnostics), {}, diagnostics);
   run.trace = read_trace(folder + "trace.csv", diagnostics);
   machine::Machine start;
-  start.control.dialect = machine::Dialect::linuxcnc;
+  start.control.kind = *machine::control_kind_named("linuxcnc");
   start.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = machine::kNoLimit};
   const std::vector<FeedRun> runs{run};
   const FitFeedResult fit = fit_feed(runs, start, {});

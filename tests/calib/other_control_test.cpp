@@ -40,7 +40,7 @@ class Notch {
 
 machine::Machine start_of(const machine::Machine& known) {
   machine::Machine start;
-  start.control.dialect = known.control.dialect;
+  start.control.kind = known.control.kind;
   start.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01};
   return start;
 }

@@ -28,22 +28,23 @@ const ProtocolProgram& named(const std::vector<ProtocolProgram>& programs, const
   return programs.front();
 }
 
-machine::Machine machine_of(machine::Dialect dialect) {
+machine::Machine machine_of(std::string_view control) {
   machine::Machine m;
-  m.control.dialect = dialect;
+  m.control.kind = *machine::control_kind_named(control);
   return m;
 }
 
 TEST(Protocol, IsReadWithoutADiagnosticByItsOwnDialect) {
-  for (auto dialect : {machine::Dialect::fanuc, machine::Dialect::linuxcnc}) {
-    const machine::Machine machine = machine_of(dialect);
+  for (const machine::ControlKind& kind : machine::control_kinds()) {
+    SCOPED_TRACE(kind.name);
+    const machine::Machine machine = machine_of(kind.name);
     for (const ProtocolProgram& program : protocol_programs(machine))
       EXPECT_GT(read_back(program, machine).moves.size(), 10u) << program.name;
   }
 }
 
 TEST(Protocol, PolygonsAreThoseOfTheKakenReport) {
-  const machine::Machine machine = machine_of(machine::Dialect::fanuc);
+  const machine::Machine machine = machine_of("fanuc");
   const auto programs = protocol_programs(machine);
   for (const char* name : {"protocol_xy.nc", "protocol_yz.nc", "protocol_zx.nc"}) {
     const ProtocolProgram& program = named(programs, name);
@@ -69,7 +70,7 @@ TEST(Protocol, PolygonsAreThoseOfTheKakenReport) {
 }
 
 TEST(Protocol, SaturationHasEveryChordAndStaysUnderTheTopSpeed) {
-  machine::Machine machine = machine_of(machine::Dialect::fanuc);
+  machine::Machine machine = machine_of("fanuc");
   for (machine::Axis& axis : machine.axis) axis.max_velocity_mm_per_s = 50;
   const ProtocolProgram program = named(protocol_programs(machine), "saturation.nc");
   std::set<double> chords;
@@ -81,7 +82,7 @@ TEST(Protocol, SaturationHasEveryChordAndStaysUnderTheTopSpeed) {
 }
 
 TEST(Protocol, PartsListNamesTheLines) {
-  const ProtocolProgram program = named(protocol_programs(machine_of(machine::Dialect::linuxcnc)), "protocol_xy.ngc");
+  const ProtocolProgram program = named(protocol_programs(machine_of("linuxcnc")), "protocol_xy.ngc");
   EXPECT_EQ(parts_csv(program).substr(0, 85),
             "line_first,line_last,angle_deg,feed_mm_min,plane,size_mm\n6,41,10,100,xy,0.5\n45,80,10,");
 }

@@ -1,6 +1,7 @@
 // The options of check that say how a program's language is read.
 #include <gtest/gtest.h>
 
+#include "feedmodel/control_options.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -22,6 +23,19 @@ TEST(LanguageOptions, DialectAndTheTextThatShowsIt) {
   const auto wrong = run_camber(folder, "check p.nc --dialect siemens");
   EXPECT_NE(wrong.status, 0);
   EXPECT_TRUE(has(wrong.err, "--dialect"));
+}
+
+TEST(LanguageOptions, DialectTakesEveryControlOfTheTable) {
+  const TempFolder folder;
+  folder.write("p.nc", "G21 G90\nG0 X0 Y0 Z0\n#1=FIX[-2.5]\nG1 X[#1] F100\nM30\n");
+  std::string names;
+  for (const machine::ControlKind& kind : machine::control_kinds()) {
+    const auto run = run_camber(folder, "check p.nc --dialect " + std::string(kind.name));
+    EXPECT_TRUE(has(run.out, feedmodel::dialect_of(kind).fix_to_zero ? "cutting   2.0 mm" : "cutting   3.0 mm"))
+        << kind.name;
+    names += (names.empty() ? "" : "|") + std::string(kind.name);
+  }
+  EXPECT_TRUE(has(run_camber(folder, "check --help").out, "--dialect " + names));
 }
 
 TEST(LanguageOptions, SkipSwitchesAndLeastIncrements) {

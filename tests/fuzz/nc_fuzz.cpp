@@ -120,7 +120,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.skip_slash_blocks = (flags & 2) != 0;
   options.dwell_p_is_ms = (flags & 4) != 0;
   options.absolute_arc_centre = (flags & 8) != 0;
-  if ((flags & 16) != 0) options.control = static_cast<nc::ControlKind>((flags >> 5) & 3);
+  if ((flags & 16) != 0) options.dialect = nc::dialects()[(flags >> 5) % nc::dialects().size()];
   options.whole_numbers_are_increments = (choice[5] & 3) == 3;
   options.skip_switches = static_cast<std::uint16_t>((choice[5] & 4) != 0 ? 0x3fe : 0);
   options.max_repeated_blocks = kMaxRepeatedBlocks;

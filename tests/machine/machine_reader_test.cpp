@@ -53,7 +53,7 @@ travel_mm = [-250.0, 250.0]
 [spindle]
 max_rpm = 12000.0
 )");
-  EXPECT_EQ(m.control.dialect, Dialect::linuxcnc);
+  EXPECT_EQ(m.control.kind.name, "linuxcnc");
   EXPECT_EQ(m.control.period_s, 0.002);
   EXPECT_EQ(m.control.block_time_s, 0.0015);
   EXPECT_EQ(m.control.merge_tolerance_mm, 0.01);
@@ -95,7 +95,7 @@ TEST(MachineReader, ReadsCornerLawsWithTheirNumber) {
 
 TEST(MachineReader, WritesTextThatReadsBackToTheSameValues) {
   Machine m;
-  m.control.dialect = Dialect::haas;
+  m.control.kind = *control_kind_named("haas");
   m.control.period_s = 0.001;
   m.control.corner = {.law = CornerLaw::speed_difference, .speed_difference_mm_per_s = 12.345, .step_fraction = 0.37};
   m.control.lookahead_blocks = 40;

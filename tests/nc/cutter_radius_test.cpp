@@ -32,13 +32,13 @@ std::string path_of(const Read& r) {
   return out;
 }
 
-std::string path(const std::string& text, const InterpreterOptions& o = as(ControlKind::linuxcnc)) {
+std::string path(const std::string& text, const InterpreterOptions& o = as("linuxcnc")) {
   const Read r = read_text("G0 X0 Y0 Z0 F100\n" + text, o);
   for (const auto& m : r.messages) EXPECT_NE(m.find("[not-editable]"), std::string::npos) << m;
   return path_of(r).substr(std::string("r 0 0 0; ").size());
 }
 
-std::string complaint(const std::string& text, const InterpreterOptions& o = as(ControlKind::linuxcnc)) {
+std::string complaint(const std::string& text, const InterpreterOptions& o = as("linuxcnc")) {
   const Read r = read_text("G0 X0 Y0 Z0 F100\n" + text, o);
   for (const auto& m : r.messages)
     if (m.find("error") != std::string::npos) return m;
@@ -47,7 +47,7 @@ std::string complaint(const std::string& text, const InterpreterOptions& o = as(
 
 InterpreterOptions fanuc() {
   InterpreterOptions o{.inch = false};
-  o.control = ControlKind::fanuc;
+  o.dialect = *dialect_named("fanuc");
   o.tool_offsets[4].radius_mm = 2;
   return o;
 }
@@ -84,7 +84,7 @@ TEST(CutterRadius, ArcsInsideAndOutside) {
             "l 10 -2 0; l 20 -2 0; a 32 10 0; l 32 20 0; l 40 20 0; ");
   // A full circle from inside, entered square: radius 8 about (20, 0).
   const Read r = read_text("G0 X20 Y0 Z0\nG41.1 D4 G1 X25 Y-5 F100\nG3 X30 Y0 J5\nG3 I-10\nX25 Y5 I-5\nG40 G1 X20 Y0\n",
-                           as(ControlKind::linuxcnc));
+                           as("linuxcnc"));
   ASSERT_EQ(r.moves.moves.size(), 6u);
   EXPECT_NEAR(r.moves.arcs[1].sweep_rad, 2 * kPi, 1e-9);
   expect_near_mm(r.moves.moves[3].start_mm, {28, 0, 0});
@@ -111,12 +111,12 @@ TEST(CutterRadius, TheExitStartsBesideTheContour) {
 }
 
 TEST(CutterRadius, InOtherPlanes) {
-  const Read g18 = read_text("G18 G0 X0 Y0 Z0\nG41.1 D4 G1 Z10 F100\nZ20\nX10\nG40 Z0\n", as(ControlKind::linuxcnc));
+  const Read g18 = read_text("G18 G0 X0 Y0 Z0\nG41.1 D4 G1 Z10 F100\nZ20\nX10\nG40 Z0\n", as("linuxcnc"));
   // Z, X: left of +Z is +X.
   expect_near_mm(g18.moves.moves[1].end_mm, {2, 0, 10});
   expect_near_mm(g18.moves.moves[2].end_mm, {2, 0, 18});
   expect_near_mm(g18.moves.moves[3].end_mm, {10, 0, 18});
-  const Read g19 = read_text("G19 G0 X0 Y0 Z0\nG42.1 D4 G1 Y10 F100\nY20\nZ10\nG40 Y0\n", as(ControlKind::linuxcnc));
+  const Read g19 = read_text("G19 G0 X0 Y0 Z0\nG42.1 D4 G1 Y10 F100\nY20\nZ10\nG40 Y0\n", as("linuxcnc"));
   expect_near_mm(g19.moves.moves[1].end_mm, {0, 10, -2});
   expect_near_mm(g19.moves.moves[2].end_mm, {0, 20, -2});
   EXPECT_EQ(g19.moves.moves[3].kind, MoveKind::arc);
@@ -135,7 +135,7 @@ TEST(CutterRadius, RadiusComesFromWhereItIsGiven) {
 }
 
 TEST(CutterRadius, WithoutARadiusItIsZeroAndSaysSo) {
-  const Read r = read_text("G0 X0 Y0 Z0\nG41 D3 G1 X10 F100\nY10\nG40 X0\n", as(ControlKind::linuxcnc));
+  const Read r = read_text("G0 X0 Y0 Z0\nG41 D3 G1 X10 F100\nY10\nG40 X0\n", as("linuxcnc"));
   EXPECT_EQ(r.messages, Messages{"p.nc:2:1: warning: no radius is given for D3; G41 takes 0, as where the program is "
                                  "written for the cutter's centre and D holds the wear only [radius-unknown]"});
   EXPECT_EQ(path_of(r), "r 0 0 0; l 10 0 0; l 10 10 0; l 0 10 0; ");
@@ -144,8 +144,8 @@ TEST(CutterRadius, WithoutARadiusItIsZeroAndSaysSo) {
 }
 
 TEST(CutterRadius, SaysOnceThatCompensationLeavesTheMoves) {
-  const Read r = read_text("G0 X0 Y0 Z0\nG41.1 D4 G1 X10 F100\nX20\nG40 Y9\nG42.1 D4 X9\nX0\nG40 Y0\nX5\n",
-                           as(ControlKind::linuxcnc));
+  const Read r =
+      read_text("G0 X0 Y0 Z0\nG41.1 D4 G1 X10 F100\nX20\nG40 Y9\nG42.1 D4 X9\nX0\nG40 Y0\nX5\n", as("linuxcnc"));
   EXPECT_EQ(r.messages, Messages{"p.nc:2:1: warning: the path under G41.1" + kNote});
   std::vector<bool> editable;
   for (const Move& m : r.moves.moves) editable.push_back(m.editable);
@@ -210,7 +210,7 @@ TEST(CutterRadius, TellsWhatDoesNotWork) {
 
 TEST(CutterRadius, EmissionLeavesTheContourAlone) {
   const std::string text = "G0 X0 Y0 Z0\nG1 X5 F100\nG41.1 D4 G1 X15\nX25\nY10\nG40 X0\nG1 X-5\n";
-  const Read r = read_text(text, as(ControlKind::linuxcnc));
+  const Read r = read_text(text, as("linuxcnc"));
   std::vector<MoveEdit> edits;
   for (std::uint32_t i = 1; i < r.moves.moves.size(); ++i)
     edits.push_back({.move = i, .end_mm = r.moves.moves[i].end_mm + Vec3(0, 0.01, 0)});
@@ -259,9 +259,9 @@ TEST(CutterRadius, KeepsItsDistanceToTheContour) {
     const bool lines = i % 2 == 1;
     const std::string contour = open_contour(random, i % 4 < 2 ? "G41 D4" : "G42 D4");
     InterpreterOptions o = fanuc();
-    o.own_dialect = dialect_of(ControlKind::fanuc);
-    o.own_dialect->radius_corner_lines = lines;
-    o.own_dialect->radius_entry_square = false;
+    o.dialect = *dialect_named("fanuc");
+    o.dialect->radius_corner_lines = lines;
+    o.dialect->radius_entry_square = false;
     const Read path = read_text("G0 X0 Y0 Z0 F100\n" + contour, o);
     o.tool_offsets[4].radius_mm = 0;
     const Read programmed = read_text("G0 X0 Y0 Z0 F100\n" + contour, o);

@@ -8,8 +8,8 @@
 namespace camber::nc {
 namespace {
 
-constexpr auto kFanuc = ControlKind::fanuc;
-constexpr auto kLinuxCnc = ControlKind::linuxcnc;
+constexpr auto kFanuc = "fanuc";
+constexpr auto kLinuxCnc = "linuxcnc";
 
 TEST(NcExpression, ArithmeticGoesFromLeftToRightProductsFirst) {
   EXPECT_EQ(value_of("1+2*3-8/4"), 5);
@@ -52,7 +52,7 @@ TEST(NcExpression, RoundingDiffersBetweenControls) {
   EXPECT_EQ(value_of("FUP[1.2]"), 2);
   EXPECT_EQ(value_of("FIX[-2.8]", kLinuxCnc), -3);
   EXPECT_EQ(value_of("FUP[-2.8]", kLinuxCnc), -2);
-  EXPECT_EQ(value_of("27 MOD 20", ControlKind::haas), 7);  // Haas 96-8000
+  EXPECT_EQ(value_of("27 MOD 20", "haas"), 7);  // Haas 96-8000
   EXPECT_EQ(value_of("-7 MOD 3"), -1);
   EXPECT_EQ(value_of("[-7 MOD 3]", kLinuxCnc), 2);
   EXPECT_EQ(value_of("[7.5 MOD 2]", kLinuxCnc), 1.5);
@@ -60,7 +60,7 @@ TEST(NcExpression, RoundingDiffersBetweenControls) {
 
 TEST(NcExpression, RoundInAnAxisWordRoundsToTheLeastIncrement) {
   // Haas 96-8000: #1 = 1.00333, X[#1+#1] goes to 2.0067 and X[ROUND[#1]+ROUND[#1]] to 2.0066, inch.
-  EXPECT_EQ(run_text("G20 #1=1.00333\nG0 X[ROUND[#1]+ROUND[#1]]", as(ControlKind::haas)), "50.9676 0 0");
+  EXPECT_EQ(run_text("G20 #1=1.00333\nG0 X[ROUND[#1]+ROUND[#1]]", as("haas")), "50.9676 0 0");
   EXPECT_EQ(run_text("#1=1.00333\nG0 X[ROUND[#1]+ROUND[#1]]\n#2=ROUND[#1]\nX#2"), "2.006 0 0; 1 0 0");
 }
 

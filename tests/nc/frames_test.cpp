@@ -11,7 +11,7 @@ using Messages = std::vector<std::string>;
 
 InterpreterOptions fanuc() {
   InterpreterOptions o{.inch = false};
-  o.control = ControlKind::fanuc;
+  o.dialect = *dialect_named("fanuc");
   return o;
 }
 
@@ -42,8 +42,7 @@ TEST(Frames, PositionSetByG92) {
 
 TEST(Frames, G52AndG92AddOnFanucAndShareOneShiftOnLinuxCnc) {
   expect_ends("G0 X10\nG92 X0\nG52 X3\nX0\nG52 X0\nX0\n", {{10, 0, 0}, {13, 0, 0}, {10, 0, 0}});
-  expect_ends("G0 X10\nG92 X0\nG52 X3\nX0\nG52 X0\nX0\n", {{10, 0, 0}, {3, 0, 0}, {0, 0, 0}},
-              as(ControlKind::linuxcnc));
+  expect_ends("G0 X10\nG92 X0\nG52 X3\nX0\nG52 X0\nX0\n", {{10, 0, 0}, {3, 0, 0}, {0, 0, 0}}, as("linuxcnc"));
   // On Fanuc G92 takes a local shift away.
   expect_ends("G52 X3\nG0 X0\nG92 X0\nG52 X0\nX0\n", {{3, 0, 0}, {3, 0, 0}});
 }
@@ -93,7 +92,7 @@ TEST(Frames, UnknownWorkOffsetsShareOneFrameWithAWarning) {
 }
 
 TEST(Frames, G10L20TouchesOffOrSetsG541) {
-  InterpreterOptions linuxcnc = as(ControlKind::linuxcnc);
+  InterpreterOptions linuxcnc = as("linuxcnc");
   linuxcnc.work_offsets_mm = {{54, Vec3::Zero()}};
   expect_ends("G0 X7\nG10 L20 P1 X0\nX1\n", {{7, 0, 0}, {8, 0, 0}}, linuxcnc);
   InterpreterOptions o = fanuc();
@@ -110,7 +109,7 @@ TEST(Frames, RotationInThreePlanes) {
   expect_ends("G68 X0 Y0 R30\nG91 G1 X10\nY10\nG69\n", {{10 * c, 10 * s, 0}, {10 * c - 10 * s, 10 * s + 10 * c, 0}});
   expect_ends("G68 X0 Y0 R900000000090\nG1 X10\n", {{0, 10, 0}});  // more quarter turns than an int holds
   InterpreterOptions haas = fanuc();
-  haas.control = ControlKind::haas;
+  haas.dialect = *dialect_named("haas");
   expect_ends("G68 X0 Y0 R30\nG91 G68 X0 Y0 R60\nG90 G1 X10\n", {{0, 10, 0}}, haas);
 }
 
@@ -236,8 +235,8 @@ TEST(Spirals, AreToldFromMistakes) {
             Messages{"p.nc:2:27: error: the spiral ends at a radius of 20.0000 mm, with Q at 15.0000 mm; a difference "
                      "below 0.05 mm was expected [arc-radius]"});
   InterpreterOptions o{.inch = false};
-  o.own_dialect = dialect_of(ControlKind::fanuc);
-  o.own_dialect->spiral_radius_difference_mm = 12;
+  o.dialect = *dialect_named("fanuc");
+  o.dialect->spiral_radius_difference_mm = 12;
   EXPECT_NEAR(read_clean(spiral, o).moves.arcs[0].sweep_rad, kPi / 2, 1e-12);
   // A conical one: Z falls with the turn; ends in one direction are a full turn.
   const Read cone = read_clean("G0 X10 Y0 Z0\nG2 X5 Y0 Z-3 I-10 L1 F100\n");

@@ -22,7 +22,7 @@ std::string all_shifted(const Read& r) {
 }
 
 TEST(MacroEmit, ASubprogramThatRunsOnceIsEditedWhereItStands) {
-  const Read r = read_clean("G0 X0 Y0 Z0\nM98 P7\nG1 X5 F100\nM30\nO7\nG1 X1 F100\nX2\nM99\n", as(ControlKind::fanuc));
+  const Read r = read_clean("G0 X0 Y0 Z0\nM98 P7\nG1 X5 F100\nM30\nO7\nG1 X1 F100\nX2\nM99\n", as("fanuc"));
   EXPECT_EQ(editable_moves(r), (std::vector<bool>{true, true, true, true}));
   EXPECT_EQ(all_shifted(r), "G0 X0.25 Y0 Z0\nM98 P7\nG1 X5.25 F100\nM30\nO7\nG1 X1.25 F100\nX2.25\nM99\n");
 }
@@ -31,7 +31,7 @@ TEST(MacroEmit, LoopsRepeatedSubprogramsAndExpressionsStayAsTheyAre) {
   const std::string text =
       "G0 X0 Y0 Z0\nG1 X1 F100\n#1=3\nX#1\nX[2+2] F#1\nWHILE[#1GT1]DO1\nX9\n#1=#1-1\nEND1\nM98 P7 L2\nX5\nM30\nO7\nY1\n"
       "Y0\nM99\n";
-  const Read r = read_clean(text, as(ControlKind::fanuc));
+  const Read r = read_clean(text, as("fanuc"));
   EXPECT_EQ(editable_moves(r),
             (std::vector<bool>{true, true, false, false, false, false, false, false, false, false, true}));
   std::string wanted = text;
@@ -52,19 +52,18 @@ TEST(MacroEmit, LoopsRepeatedSubprogramsAndExpressionsStayAsTheyAre) {
 }
 
 TEST(MacroEmit, CyclesAreNoWarningAndWholeIncrementsAreNotEdited) {
-  const Read r = read_clean("G0 X0 Y0 Z5.\nG81 X1. Y1. Z-1. R1. F100\nG80\nX2.\n", as(ControlKind::fanuc));
+  const Read r = read_clean("G0 X0 Y0 Z5.\nG81 X1. Y1. Z-1. R1. F100\nG80\nX2.\n", as("fanuc"));
   Diagnostics diagnostics;
   warn_of_uneditable(r.program, r.moves, std::vector<bool>(r.moves.moves.size(), true), diagnostics);
   EXPECT_TRUE(diagnostics.all().empty());
-  InterpreterOptions options = as(ControlKind::fanuc);
+  InterpreterOptions options = as("fanuc");
   options.whole_numbers_are_increments = true;
   EXPECT_EQ(editable_moves(read_clean("G0 X0 Y0 Z0\nX1000\nX2.\n", options)), (std::vector<bool>{true, false, true}));
 }
 
 TEST(MacroEmit, ALineBroughtBackBehindALoop) {
   // The edit before the loop shifts X; the loop moves Y by increments; the line behind names Y only.
-  const Read r =
-      read_clean("G0 X0 Y0 Z0\nG1 X1 F100\nG91\no1 repeat [2]\nY1\no1 endrepeat\nG90\nY5\n", as(ControlKind::linuxcnc));
+  const Read r = read_clean("G0 X0 Y0 Z0\nG1 X1 F100\nG91\no1 repeat [2]\nY1\no1 endrepeat\nG90\nY5\n", as("linuxcnc"));
   EXPECT_EQ(emit(r.program, r.moves, std::vector<MoveEdit>{{.move = 1, .end_mm = {1.25, 0, 0}}}, {}),
             "G0 X0 Y0 Z0\nG1 X1.25 F100\nG91\no1 repeat [2]\nY1\no1 endrepeat\nG90\nX1 Y5\n");
 }
@@ -89,7 +88,7 @@ TEST(MacroEmit, NoTextMakesItCrash) {
         text.insert(at, seed, from, random() % 14);
       if (text.empty()) text = seed;
     }
-    InterpreterOptions options = as(i % 2 == 0 ? ControlKind::fanuc : ControlKind::linuxcnc);
+    InterpreterOptions options = as(i % 2 == 0 ? "fanuc" : "linuxcnc");
     options.max_repeated_blocks = 300;
     const Read r = read_text(text, options);
     for (const Move& m : r.moves.moves) ASSERT_TRUE(m.end_mm.allFinite());

@@ -48,7 +48,7 @@ TEST(NcMacro, SubprogramsWithCounts) {
   EXPECT_EQ(run_text("M98 P1\nY9\nM30\nO1\nX1\nM98 P2 L2\nX5\nM99\nO2\nG91 Y1\nG90\nM99\n"),
             "1 0 0; 1 1 0; 1 2 0; 5 2 0; 5 9 0");
   // Haas: five digits, no count in P.
-  EXPECT_EQ(run_text("M98 P31234\n" + sub, as(ControlKind::haas)),
+  EXPECT_EQ(run_text("M98 P31234\n" + sub, as("haas")),
             "p.nc:2:5: error: there is no program O31234 in this file, and no file of that name beside it "
             "[subprogram]\n");
 }
@@ -104,7 +104,7 @@ TEST(NcMacro, ModalCallsFollowEveryMove) {
 }
 
 TEST(NcMacro, BlockSkipSwitches) {
-  InterpreterOptions options = as(ControlKind::fanuc);
+  InterpreterOptions options = as("fanuc");
   EXPECT_EQ(run_text("/X1\n/2 X2\n/3X3\n", options), "1 0 0; 2 0 0; 3 0 0");
   options.skip_switches = 1 << 2;
   EXPECT_EQ(run_text("/X1\n/2 X2\n/3X3\n/2#1=5\nX4", options), "1 0 0; 3 0 0; 4 0 0");
@@ -115,7 +115,7 @@ TEST(NcMacro, BlockSkipSwitches) {
 }
 
 TEST(NcMacro, WholeNumbersMayBeLeastIncrements) {
-  InterpreterOptions options = as(ControlKind::fanuc);
+  InterpreterOptions options = as("fanuc");
   options.whole_numbers_are_increments = true;
   EXPECT_EQ(run_text("X1000 Y2. Z-500\nG20 X10000 Y1.\n", options), "1 2 -0.5; 25.4 25.4 -0.5");
   EXPECT_EQ(run_text("X1000 Y2. Z-500\n"), "1000 2 -500");
@@ -142,7 +142,7 @@ TEST(NcMacro, AlarmsStopAndClocks) {
   EXPECT_EQ(run_text("X1\nIF[#1EQ#0]THEN #3000=12(DIAMETER MISSING)\nX2"),
             "p.nc:3:16: error: the program stops here with alarm 3012 (DIAMETER MISSING); it is not read on "
             "[alarm]\n1 0 0");
-  const Read r = read_clean("G0 X1 Y1 Z1\n#3006=1(CHECK)\nX2\n", as(ControlKind::fanuc));
+  const Read r = read_clean("G0 X1 Y1 Z1\n#3006=1(CHECK)\nX2\n", as("fanuc"));
   EXPECT_TRUE(r.moves.moves[0].exact_stop);
   // A line of 100 mm at F600 takes 10 s, the dwell 2 s, and three variable blocks 3 ms.
   EXPECT_EQ(run_text("#3001=0\nG1 X100 F600\nG4 P2000\n#1=ROUND[#3001/100]\nX#1"), "100 0 0; 120 0 0");
@@ -217,8 +217,8 @@ TEST(NcMacro, TheTextShowsItsDialect) {
   EXPECT_EQ(run_text("#<a>=[5 AND 2]\nX#<a>", {.inch = false}), "1 0 0");
   EXPECT_EQ(run_text("#1=[5 AND 2]\nX[#1+1]", {.inch = false}), "1 0 0");
   EXPECT_EQ(read_text("o1 if [1]\nG4 P2\no1 endif\n", {.inch = false}).moves.moves.back().dwell_s, 2);
-  EXPECT_EQ(control_named("haas"), ControlKind::haas);
-  EXPECT_EQ(control_named("siemens"), std::nullopt);
+  EXPECT_EQ(dialect_named("haas")->name, "haas");
+  EXPECT_EQ(dialect_named("siemens"), nullptr);
 }
 
 // --- files ----------------------------------------------------------------------------------------------------------
@@ -228,10 +228,10 @@ TEST(NcMacro, SubprogramsInFilesOfTheirOwn) {
   folder.write("O1234.nc", "%\nO1234\nG91 X1\nG90\nM99\n%\n");
   folder.write("0020.NC", "Y#1\nM99\n");
   folder.write("hole.ngc", "o<hole> sub\nG0 Z-#1\nZ0\no<hole> endsub\n");
-  const auto run = [&](const std::string& text, ControlKind control) {
-    return read_text("G0 X0 Y0 Z0\n" + text, as(control), folder / "main.nc");
+  const auto run = [&](const std::string& text, std::string_view dialect) {
+    return read_text("G0 X0 Y0 Z0\n" + text, as(dialect), folder / "main.nc");
   };
-  const Read r = run("M98 P1234 L2\nG65 P20 A5\nX9\nM30\n", ControlKind::fanuc);
+  const Read r = run("M98 P1234 L2\nG65 P20 A5\nX9\nM30\n", "fanuc");
   EXPECT_EQ(r.messages, Messages{});
   EXPECT_EQ(ends_of(r), "0 0 0; 1 0 0; 2 0 0; 2 5 0; 9 5 0");
   std::vector<std::uint32_t> blocks;
@@ -242,17 +242,17 @@ TEST(NcMacro, SubprogramsInFilesOfTheirOwn) {
   }
   EXPECT_EQ(blocks, (std::vector<std::uint32_t>{0, 1, 1, 2, 3}));  // the blocks that call
   EXPECT_EQ(editable, (std::vector<bool>{true, false, false, false, true}));
-  EXPECT_EQ(ends_of(run("o<hole> call [3]\n", ControlKind::linuxcnc)), "0 0 0; 0 0 -3; 0 0 0");
+  EXPECT_EQ(ends_of(run("o<hole> call [3]\n", "linuxcnc")), "0 0 0; 0 0 -3; 0 0 0");
   // What is wrong in such a file is told at its own line.
   folder.write("O7.nc", "O7\nG1 X5\nM99\n");
-  EXPECT_EQ(run("M98 P7\n", ControlKind::fanuc).messages,
+  EXPECT_EQ(run("M98 P7\n", "fanuc").messages,
             Messages{folder / "O7.nc" + ":2:1: error: G1 without a feed; F greater than zero was expected before or in "
                                         "this block [feed-missing]"});
   folder.write("O8.nc", "O8\nG1 X[5\nM99\n");
-  EXPECT_EQ(run("M98 P8\n", ControlKind::fanuc).messages,
+  EXPECT_EQ(run("M98 P8\n", "fanuc").messages,
             Messages{folder / "O8.nc" + ":2:5: error: the bracket `[` is not closed in its block [expression]"});
   EXPECT_EQ(
-      run("o<gone> call\n", ControlKind::linuxcnc).messages,
+      run("o<gone> call\n", "linuxcnc").messages,
       Messages{folder / "main.nc" + ":2:1: error: there is no Ogone SUB in the program, and no file gone.ngc with "
                                     "one beside it [subprogram]"});
 }
@@ -265,8 +265,8 @@ TEST(NcMacro, EndlessLoopsAreToldAtTheirLine) {
   EXPECT_EQ(said("N1 #1=1\nGOTO1\n"), "p.nc:2:1: error: " + tail);
   EXPECT_EQ(said("#1=0\nDO1\n#1=0\nWHILE[#1LT9]DO2\n#1=#1+1\nEND2\nEND1\n"), "p.nc:2:1: error: " + tail);
   EXPECT_EQ(said("WHILE[#1LT3]DO1\n#1=#1+1\nDO2\n#2=1\nEND2\nEND1\n"), "p.nc:3:1: error: " + tail);
-  EXPECT_EQ(said("o1 while [1]\no1 endwhile\n", ControlKind::linuxcnc), "p.nc:1:1: error: " + tail);
-  EXPECT_EQ(said("o1 repeat [1000000]\n#1=1\no1 endrepeat\n", ControlKind::linuxcnc), "p.nc:1:1: error: " + tail);
+  EXPECT_EQ(said("o1 while [1]\no1 endwhile\n", "linuxcnc"), "p.nc:1:1: error: " + tail);
+  EXPECT_EQ(said("o1 repeat [1000000]\n#1=1\no1 endrepeat\n", "linuxcnc"), "p.nc:1:1: error: " + tail);
   EXPECT_EQ(said("M98 P1 L99999999\nM30\nO1\n#1=1\nM99\n"), "p.nc:1:1: error: " + tail);
   EXPECT_EQ(said("N1 G0 X1\nM99 P1\n"), "p.nc:2:1: error: " + tail);
   EXPECT_EQ(said("N1 M98 P1\nM30\nO1\nM99 P1\n"), "p.nc:4:1: error: " + tail);
@@ -275,7 +275,7 @@ TEST(NcMacro, EndlessLoopsAreToldAtTheirLine) {
 TEST(NcMacro, RunawayRecursionIsToldAtTheCall) {
   EXPECT_EQ(said("M98 P1\nM30\nO1\nM98 P1\nM99\n"),
             "p.nc:4:1: error: calls inside calls deeper than 15 levels; a fanuc control reads no more [call-depth]");
-  EXPECT_EQ(said("o1 sub\no1 call\no1 endsub\no1 call\n", ControlKind::linuxcnc),
+  EXPECT_EQ(said("o1 sub\no1 call\no1 endsub\no1 call\n", "linuxcnc"),
             "p.nc:2:1: error: calls inside calls deeper than 10 levels; a linuxcnc control reads no more [call-depth]");
 }
 

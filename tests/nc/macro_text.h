@@ -18,7 +18,7 @@ inline std::string ends_of(const Read& r) {
 }
 
 /// As ends_of, with all that is said before it.
-inline std::string run_text(const std::string& text, const InterpreterOptions& options = as(ControlKind::fanuc)) {
+inline std::string run_text(const std::string& text, const InterpreterOptions& options = as("fanuc")) {
   const Read r = read_text("G0 X0 Y0 Z0\n" + text, options);
   std::string out;
   for (const auto& m : r.messages) out += m + "\n";
@@ -26,18 +26,18 @@ inline std::string run_text(const std::string& text, const InterpreterOptions& o
   return out + ends.substr(std::min(ends.size(), std::string("0 0 0; ").size()));
 }
 
-inline std::string run_linuxcnc(const std::string& text) { return run_text(text, as(ControlKind::linuxcnc)); }
+inline std::string run_linuxcnc(const std::string& text) { return run_text(text, as("linuxcnc")); }
 
 /// The value that #1=... gives, through an axis word.
-inline double value_of(const std::string& expression, ControlKind control = ControlKind::fanuc) {
-  const Read r = read_text(fmt::format("#1={}\nG0 X#1 Y0 Z0\n", expression), as(control));
+inline double value_of(const std::string& expression, std::string_view dialect = "fanuc") {
+  const Read r = read_text(fmt::format("#1={}\nG0 X#1 Y0 Z0\n", expression), as(dialect));
   for (const auto& m : r.messages) ADD_FAILURE() << expression << ": " << m;
   return r.moves.moves.empty() ? NAN : r.moves.moves.back().end_mm.x();
 }
 
 /// The first thing said of a program.
-inline std::string said(const std::string& text, ControlKind control = ControlKind::fanuc) {
-  InterpreterOptions options = as(control);
+inline std::string said(const std::string& text, std::string_view dialect = "fanuc") {
+  InterpreterOptions options = as(dialect);
   options.max_repeated_blocks = 10000;
   const Read r = read_text(text, options);
   return r.messages.empty() ? "" : r.messages.front();

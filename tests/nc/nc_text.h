@@ -24,9 +24,9 @@ inline std::string headline(const Diagnostic& d) {
   return to_string(short_one);
 }
 
-inline InterpreterOptions as(ControlKind control) {
+inline InterpreterOptions as(std::string_view dialect) {
   InterpreterOptions options{.inch = false};
-  options.control = control;
+  options.dialect = *dialect_named(dialect);
   return options;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 /// As LinuxCNC starts: every offset and reference point known, and zero.
 InterpreterOptions all_known() {
-  InterpreterOptions options = as(ControlKind::linuxcnc);
+  InterpreterOptions options = as("linuxcnc");
   for (const int number : {54, 55, 56, 57, 58, 59, 591, 592, 593}) options.work_offsets_mm[number] = Vec3::Zero();
   return options;
 }

@@ -123,10 +123,10 @@ class Rs274 : public testing::Test {
   }
   /// What is not alike; empty: nothing. Moves without length may be missing on either side.
   /// `output`: of rs274, where it was run before. `tolerance`: in units; it prints four decimals.
-  std::string compare(const std::string& text, const InterpreterOptions& options = as(ControlKind::linuxcnc),
+  std::string compare(const std::string& text, const InterpreterOptions& options = as("linuxcnc"),
                       double tolerance = 0.00006, std::string output = {});
   /// Returns the largest difference so far, mm.
-  double expect_same_moves(const std::string& text, const InterpreterOptions& options = as(ControlKind::linuxcnc),
+  double expect_same_moves(const std::string& text, const InterpreterOptions& options = as("linuxcnc"),
                            double tolerance = 0.00006, const std::string& output = {}) {
     EXPECT_EQ(compare(text, options, tolerance, output), "") << text;
     return largest_mm_;
@@ -170,7 +170,7 @@ inline std::size_t expect_same_lines(const std::string& text, const std::map<std
   for (const auto& [name, content] : files) folder.write(name, content);
   const std::string output = run_rs274(text, files);
   const std::vector<CanonMove> canon = canonical(output);
-  const Read r = read_text(text, as(ControlKind::linuxcnc), folder / "program.ngc");
+  const Read r = read_text(text, as("linuxcnc"), folder / "program.ngc");
   for (const auto& m : r.messages) EXPECT_EQ(m.find("error"), std::string::npos) << m << "\n" << text;
   std::size_t at = 0;
   Vec3 place = Vec3::Zero();

@@ -10,7 +10,7 @@ namespace camber::tests {
 
 inline machine::Machine known_machine() {
   machine::Machine m;
-  m.control.dialect = machine::Dialect::linuxcnc;
+  m.control.kind = *machine::control_kind_named("linuxcnc");
   m.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01, .step_fraction = 0.1};
   m.control.arc_normal_fraction = 0.8;
   m.control.arc_tangential_fraction = 0.6;

@@ -1,0 +1,48 @@
+#include "feedmodel/control_options.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "machine/control_kinds.h"
+#include "nc/dialects.h"
+
+namespace camber::feedmodel {
+namespace {
+
+constexpr bool has_dialect(const machine::ControlKind& kind) {
+  return std::ranges::count(nc::kDialects, kind.nc_dialect, &nc::Dialect::name) == 1;
+}
+
+constexpr bool has_unique_name(const machine::ControlKind& kind) {
+  return !kind.name.empty() && std::ranges::count(machine::kControlKinds, kind.name, &machine::ControlKind::name) == 1;
+}
+
+constexpr bool has_control(const nc::Dialect& dialect) {
+  return std::ranges::count(machine::kControlKinds, dialect.name, &machine::ControlKind::nc_dialect) > 0;
+}
+
+static_assert(std::ranges::all_of(machine::kControlKinds, has_dialect), "nc_dialect must name a row of nc/dialects.h");
+static_assert(std::ranges::all_of(machine::kControlKinds, has_unique_name), "names of controls must be unique");
+static_assert(std::ranges::all_of(nc::kDialects, has_control), "every dialect must belong to a control");
+
+}  // namespace
+
+const nc::Dialect& dialect_of(const machine::ControlKind& kind) {
+  const nc::Dialect* dialect = nc::dialect_named(kind.nc_dialect);
+  assert(dialect);
+  return *dialect;
+}
+
+nc::InterpreterOptions interpreter_options(const machine::Machine& machine, std::optional<bool> inch) {
+  nc::InterpreterOptions options;
+  options.inch = inch;
+  return interpreter_options(machine, options);
+}
+
+nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given) {
+  given.dialect = dialect_of(machine.control.kind);
+  given.dwell_p_is_ms = given.dialect->dwell_p_is_ms;
+  return given;
+}
+
+}  // namespace camber::feedmodel

@@ -1,0 +1,43 @@
+#pragma once
+// The facts in which the kinds of control differ, apart from the NC dialect that they read (nc/dialect.h). The rows are
+// in machine/control_kinds.h; code queries a fact of the control and never compares its name.
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "machine/cycle.h"
+
+namespace camber::machine {
+
+/// What machine.toml does not say about a control. The defaults are for a control about which nothing is known.
+struct ControlKind {
+  std::string_view name;        ///< the word of [control] dialect and --dialect
+  std::string_view nc_dialect;  ///< dialect of its programs: nc::Dialect::name
+
+  // Motion
+  RapidPath rapid_path = RapidPath::dogleg;  ///< of G0, where [cycle] rapid_path is not given
+  /// Without Q, the P of G64 (corner tolerance) is also the tolerance within which short lines are merged.
+  bool g64_p_merges = false;
+  /// Stops between rapid and feed moves, whatever the corner law. (Control::rapid_change_s: stops and waits.)
+  bool stops_between_rapid_and_feed = false;
+  /// On helices, the acceleration along the path grows with the rise of the whole arc.
+  bool helix_rise_frees_acceleration = false;
+
+  // Starting values of fit-feed for the corner law "blend", for keys that machine.toml leaves out. 0: not known
+  double usual_step_share = 0;          ///< Corner::step_fraction
+  int usual_lookahead_blocks = 0;       ///< Control::lookahead_blocks
+  double usual_short_line_periods = 0;  ///< Corner::short_line_time_s, in periods of the control
+};
+
+/// All rows, in the order in which messages list them.
+std::span<const ControlKind> control_kinds();
+
+std::vector<std::string_view> control_kind_names();
+
+/// Assumed where machine.toml does not name one: Fanuc.
+const ControlKind& default_control_kind();
+
+/// Null for an unknown name.
+const ControlKind* control_kind_named(std::string_view name);
+
+}  // namespace camber::machine

@@ -1,0 +1,57 @@
+#pragma once
+// The table of NC dialects; a new dialect is a row here. Include nc/dialect.h instead, unless you check the table.
+#include <array>
+
+#include "nc/dialect.h"
+
+namespace camber::nc {
+
+/// Fanuc 0i, 16i, 30i with custom macro B. Sources: B-64484EN (custom macro) and the parameters named in dialect.h.
+inline constexpr Dialect kFanuc{.name = "fanuc", .title = "Fanuc", .m98_count_in_p = true};
+
+/// Haas mill operator's manual, macros: as Fanuc, but O numbers of five digits, so that P is always the whole number,
+/// and common variables up to #999 without a gap.
+inline constexpr Dialect kHaas{.name = "haas",
+                               .title = "Haas",
+                               .shown_by_m97 = true,
+                               .common = {{100, 999}, {10000, 10999}},
+                               .rotation_r_adds_in_g91 = true};
+
+/// Mazak EIA/ISO (Mazatrol's custom macro follows Fanuc's), O numbers of eight digits.
+inline constexpr Dialect kMazak{.name = "mazak", .title = "Mazak EIA", .common = {{100, 199}, {400, 999}}};
+
+/// LinuxCNC 2.9; the facts of expressions were read off rs274 (tests/nc/macro_rs274_test.cpp holds them to it).
+inline constexpr Dialect kLinuxCnc{.name = "linuxcnc",
+                                   .title = "LinuxCNC",
+                                   .shown_by_o_words = true,
+                                   .has_program_number = false,
+                                   .g64_p_is_tolerance = true,
+                                   .program_end = "M2",
+                                   .file_extension = ".ngc",
+                                   .dwell_p_is_ms = false,
+                                   .local = {1, 30},
+                                   .common = {{31, 5000}, {5429, 5601}},
+                                   .has_null = false,
+                                   .system_4000 = false,
+                                   .logic_is_bitwise = false,
+                                   .and_binds_as_product = false,
+                                   .fix_to_zero = false,
+                                   .mod_is_whole = false,
+                                   .atan_is_positive = false,
+                                   .round_to_increment = false,
+                                   .equal_within = 1e-4,
+                                   .g52_is_g92 = true,
+                                   .g10_adds_in_g91 = false,
+                                   .g10_p0_is_external = false,
+                                   .g10_l20_is_g54_1 = false,
+                                   .g41_1_has_diameter = true,
+                                   .radius_corner_lines = false,
+                                   .radius_entry_square = false,
+                                   .radius_exit_waits = false,
+                                   .radius_look_ahead = 1'000'000,
+                                   .max_levels = 10};
+
+/// The first row is default_dialect().
+inline constexpr std::array kDialects{kFanuc, kHaas, kMazak, kLinuxCnc};
+
+}  // namespace camber::nc
