@@ -28,8 +28,9 @@ void warn_of_not_emitted(const nc::Program& program, const nc::Interpretation& m
   for (const auto& n : not_made) lines[n.why].insert(moves.moves[n.move].block + 1);
   for (const auto& [why, of_kind] : lines) {
     const auto words = program.words_of(*of_kind.begin() - 1);
-    const std::string what =
-        why == nc::EmitGap::subprogram ? "bends within a line are not written" : "shifts are not written";
+    const std::string what = why == nc::EmitGap::subprogram || why == nc::EmitGap::arc_not_split
+                                 ? "bends within a line are not written"
+                                 : "shifts are not written";
     diagnostics.add(program.source.diagnostic(
         Severity::warning, words.empty() ? program.blocks[*of_kind.begin() - 1].offset : words.front().offset,
         fmt::format("{} where the move belongs to {}: {}", what, nc::to_string(why), list_of(of_kind)), "not-emitted"));

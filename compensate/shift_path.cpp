@@ -219,8 +219,7 @@ void ShiftPath::edit_arc(std::size_t first, std::size_t last, double tolerance_m
   if (!can_be_said(0, end)) {
     const auto centre = evenly ? std::optional<Vec3>(arc.center_mm + points_[first].shift_mm) : piece(0, end);
     if (centre) {  // two pieces of one circle
-      edit.via_mm.push_back(shifted[end / 2]);
-      edit.via_center_mm.push_back(*centre);
+      edit.via.push_back({shifted[end / 2], *centre});
       edit.center_mm = *centre;
       return;
     }
@@ -232,8 +231,7 @@ void ShiftPath::edit_arc(std::size_t first, std::size_t last, double tolerance_m
     if (b == end) {
       edit.center_mm = *centre;
     } else {
-      edit.via_mm.push_back(shifted[b]);
-      edit.via_center_mm.push_back(*centre);
+      edit.via.push_back({shifted[b], *centre});
     }
     a = b;
   }
@@ -251,7 +249,7 @@ nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, const std::
     return edit;
   }
   for (std::size_t i = first + 1; i < last; ++i)
-    if (kept[i]) edit.via_mm.push_back(points_[i].place_mm + points_[i].shift_mm);
+    if (kept[i]) edit.via.push_back({points_[i].place_mm + points_[i].shift_mm});
   return edit;
 }
 

@@ -168,6 +168,7 @@ class BlockInterpreter {
   void error(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});
   std::string code_text(const Code& code) const;
   bool written_with_point(const Word& word) const;
+  bool written_as_number(const Word& word) const;
   double unit_mm() const { return state_.inch ? kInch : 1.0; }
   static constexpr double kInch = 25.4;
 
@@ -192,6 +193,8 @@ class BlockInterpreter {
   bool return_to_r_ = false;     ///< G99
   bool unit_given_ = false;
   std::optional<double> feed_;  ///< mm/s (G94), 1/s (G93), mm a turn (G95)
+  bool feed_given_ = false;     ///< since the last move
+  bool feed_by_variable_ = false;
   int next_tool_ = -1;
   bool tool_changed_ = false;
   std::size_t tool_word_offset_ = 0;

@@ -1,5 +1,7 @@
 #pragma once
-// Re-emission: the user's program with new end points for some of its moves and nothing else changed.
+// Edits of a program: the user's text with new end points, feeds and splits for some of its moves, or with stretches of
+// blocks replaced, and nothing else changed. Every room that rewrites a program comes through here; what it takes is in
+// nc/emit/.
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -14,14 +16,22 @@
 
 namespace camber::nc {
 
-/// New geometry for one move (a linear or an arc move that is editable and not canned).
+/// A point at which an edited block is split.
+struct ViaPoint {
+  Vec3 point_mm = Vec3::Zero();
+  /// Arcs only: the centre of the arc that ends here, in the sense of the block's arc. Not given: the whole arc's.
+  std::optional<Vec3> center_mm{};
+  std::optional<double> feed_mm_per_s{};  ///< up to this point; not given: the move's (new or old)
+};
+
+/// What is to change about one move (a linear or an arc move that is editable and not canned; a rapid may get a new
+/// end). What is not given stays as it is.
 struct MoveEdit {
-  std::uint32_t move = 0;      ///< index into Interpretation::moves; ascending in the list
-  std::vector<Vec3> via_mm{};  ///< points to pass before the end, in order: the block becomes several
-  /// Arcs only: the centre of the arc that ends at each via point, in the sense of the block's arc; as many.
-  std::vector<Vec3> via_center_mm{};
-  Vec3 end_mm = Vec3::Zero();
-  Vec3 center_mm = Vec3::Zero();  ///< arcs only: the new centre; the emitter makes it agree with the rounded ends
+  std::uint32_t move = 0;       ///< index into Interpretation::moves; ascending in the list
+  std::vector<ViaPoint> via{};  ///< points to pass before the end, in order: the block becomes several
+  std::optional<Vec3> end_mm{};
+  std::optional<Vec3> center_mm{};        ///< arcs only; the emitter makes it agree with the rounded ends
+  std::optional<double> feed_mm_per_s{};  ///< greater than zero; with via points: of the last piece, and their default
 };
 
 struct EmitOptions {
@@ -40,6 +50,12 @@ struct EmitOptions {
 /// M30 M60, G9) go to the last. A full turn stays closed: it ends where the emitted program starts it. Arcs get as many
 /// decimals as it takes for the radii at start and end to agree within one unit of the last decimal.
 ///
+/// F words are changed or added only where the modal feed is not the one wanted. A feed gets the decimals that the F
+/// words of the program have, and as many more as it takes to be right to 0.1 %. Where an unedited move relies on the
+/// modal feed, it gets the F word that it had relied on; where its text may not be changed (a loop, a subprogram called
+/// more than once, a block that may be skipped), that F stands on a line of its own behind the last edited block. A
+/// feed per revolution (G95) is written for the spindle speed at the move, inverse time (G93) for the new length.
+///
 /// Points are in the frame of the moves; where the text has them in a shifted, turned, mirrored or scaled frame the
 /// words are counted back into it.
 ///
@@ -56,8 +72,15 @@ enum class EmitGap {
   dwell,
   not_in_text,    ///< made by a loop, an expression or a subprogram: the text has no words of its own for it
   several_moves,  ///< the block makes more than one move
-  subprogram,     ///< only the via points are left out: the block also calls or ends a subprogram (M96 .. M99)
-  arc             ///< no arc reaches the new ends, the old one was kept; also of unedited arcs behind an edit
+  /// Only the via points and feeds are left out: the block also calls or ends a subprogram (M96 .. M99), or every move
+  /// calls a macro (G66).
+  subprogram,
+  arc,               ///< no arc reaches the new ends, the old one was kept; also of unedited arcs behind an edit
+  rapid,             ///< only the feeds are left out: a rapid has none
+  feed_by_variable,  ///< only the feeds are left out: an expression sets the modal F, or the program reads it
+  /// Only the via points and their feeds are left out: an arc of several turns (P), in inverse time (G93), or whose
+  /// pieces have no words that close.
+  arc_not_split
 };
 
 struct EditNotMade {
@@ -85,5 +108,15 @@ Emission emit_edits(const Program& program, const Interpretation& interpretation
 /// alone, and tells how many there are. `wanted`: one entry for each move.
 void warn_of_uneditable(const Program& program, const Interpretation& interpretation, const std::vector<bool>& wanted,
                         Diagnostics& diagnostics);
+
+/// Blocks first .. last (both included) become `lines`.
+struct BlockReplacement {
+  std::uint32_t first = 0, last = 0;  ///< indexes into Program::blocks
+  std::vector<std::string> lines;     ///< without line ends; they get the one of block `first`
+};
+
+/// The new text. `replacements`: ascending, not overlapping. A last line that the file leaves without a line end stays
+/// without one.
+std::string replace_blocks(const Program& program, std::span<const BlockReplacement> replacements);
 
 }  // namespace camber::nc

@@ -95,6 +95,12 @@ bool BlockInterpreter::written_with_point(const Word& word) const {
   return std::string_view(program_->source.text()).substr(word.offset, word.length).find('.') != std::string_view::npos;
 }
 
+bool BlockInterpreter::written_as_number(const Word& word) const {
+  return std::string_view(program_->source.text())
+             .substr(word.offset + word.value_at, static_cast<std::size_t>(word.length - word.value_at))
+             .find_first_of("#[ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz") == std::string_view::npos;
+}
+
 MachineFacts BlockInterpreter::facts() const {
   MachineFacts f;
   f.position_mm = position_mm_;

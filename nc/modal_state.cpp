@@ -250,6 +250,7 @@ void BlockInterpreter::set_feed_mode(FeedMode mode) {
   if (mode == state_.feed_mode) return;
   state_.feed_mode = mode;
   feed_.reset();
+  feed_given_ = true;
 }
 
 void BlockInterpreter::set_contouring(const Code& code) {
@@ -270,6 +271,8 @@ void BlockInterpreter::read_feed() {
     error(words_.offset_of('F'), "feed-negative", "the feed F is negative; a feed greater than zero was expected");
     return;
   }
+  feed_given_ = true;
+  feed_by_variable_ = !written_as_number(words_.word('F'));
   switch (state_.feed_mode) {
     case FeedMode::per_minute:
       feed_ = value * unit_mm() / 60.0;

@@ -37,6 +37,9 @@ Move& BlockInterpreter::add_move(MoveKind kind, const Vec3& end_mm) {
   move.kind = kind;
   move.editable = editable_ && !frame_.polar;
   move.exact_stop = request_.exact_stop;
+  move.feed_given = feed_given_;
+  move.feed_by_variable = feed_by_variable_;
+  feed_given_ = false;
   move.reference = kind != MoveKind::dwell && place_unknown();
   if (leaving_) leave_contour(move);
   position_mm_ = end_mm;

@@ -66,6 +66,8 @@ struct Move {
   /// once, and its words have numbers. Only the words of such a block may be changed. False in loops, in subprograms
   /// called more than once or from a file of their own, for expressions, under G41 and G42 and in polar coordinates.
   bool editable : 1 = true;
+  bool feed_given : 1 = false;        ///< an F word or a feed mode was read behind the move before, up to this block
+  bool feed_by_variable : 1 = false;  ///< the modal feed was set by an expression (F#1)
 
   static constexpr std::uint32_t kNoArc = std::numeric_limits<std::uint32_t>::max();
 };

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "nc/emit.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
-#include "nc/replace_blocks.h"
 #include "repath/fit.h"
 
 namespace camber::repath {

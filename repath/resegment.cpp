@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "base/units.h"
-#include "nc/replace_blocks.h"
+#include "nc/emit.h"
 #include "repath/run_text.h"
 #include "repath/short_arcs.h"
 #include "repath/smoothed_path.h"

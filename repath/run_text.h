@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "nc/number_style.h"
+#include "nc/emit/number_style.h"
 #include "repath/compress.h"
 #include "repath/resegment.h"
 

@@ -72,9 +72,9 @@ TEST(ShiftPath, SplitsALineOnlyWhereTheShiftChangesAlongIt) {
   ShiftPath path(program, {true}, 1.0);
   for (auto& p : path.points()) p.shift_mm.z() = 0.001 * p.place_mm.x();
   ASSERT_EQ(path.edits(0.0005).size(), 1u);
-  EXPECT_TRUE(path.edits(0.0005)[0].via_mm.empty()) << "a shift that grows evenly needs no split";
+  EXPECT_TRUE(path.edits(0.0005)[0].via.empty()) << "a shift that grows evenly needs no split";
   path.points()[10].shift_mm.z() = 0.02;
-  EXPECT_FALSE(path.edits(0.0005)[0].via_mm.empty());
+  EXPECT_FALSE(path.edits(0.0005)[0].via.empty());
 }
 
 TEST(ShiftPath, DoesNotTouchMovesThatAreNotSelected) {

@@ -27,8 +27,8 @@ TEST(MoveMap, FindsTheGivenMoveBehindSplitBlocksAndAHeader) {
   options.header_comment = "ONE\nTWO";
   std::vector<nc::MoveEdit> edits(1);
   edits[0].move = 1;
-  edits[0].via_mm = {{12.5, 0, 1}};
-  edits[0].end_mm = {20, 0, 0};
+  edits[0].via = {{Vec3(12.5, 0, 1)}};
+  edits[0].end_mm = Vec3(20, 0, 0);
   const nc::Emission emission = nc::emit_edits(given.text, given.moves, edits, options);
   EXPECT_EQ(emission.text, "%\nO0001\n(ONE)\n(TWO)\nG21 G90\nG1 X10. F100\nX12.5 Z1.\nX20. Z0.\nX30.\n%\n");
   const Read emitted(emission.text);

@@ -54,8 +54,8 @@ TEST(ShiftedArc, StaysOneArcWhereTheShiftIsEven) {
   shift_outwards(path, [](double) { return 0.01; });
   const auto edits = path.edits(kTolerance_mm);
   ASSERT_EQ(edits.size(), 1u);
-  EXPECT_TRUE(edits[0].via_mm.empty());
-  EXPECT_NEAR(edits[0].center_mm.norm(), 0, 1e-9);
+  EXPECT_TRUE(edits[0].via.empty());
+  EXPECT_NEAR(edits[0].center_mm->norm(), 0, 1e-9);
 }
 
 TEST(ShiftedArc, BecomesFewArcsWhereTheShiftVaries) {
@@ -65,14 +65,14 @@ TEST(ShiftedArc, BecomesFewArcsWhereTheShiftVaries) {
   shift_outwards(path, out);
   const auto edits = path.edits(kTolerance_mm);
   ASSERT_EQ(edits.size(), 1u);
-  EXPECT_GE(edits[0].via_mm.size(), 2u);
-  EXPECT_LE(edits[0].via_mm.size(), 12u);
+  EXPECT_GE(edits[0].via.size(), 2u);
+  EXPECT_LE(edits[0].via.size(), 12u);
   const nc::Emission emission = nc::emit_edits(given.text, given.moves, edits, {});
   EXPECT_TRUE(emission.not_made.empty());
   const Arcs emitted(emission.text);
   std::size_t arcs = 0;
   for (const auto& m : emitted.moves.moves) arcs += m.kind == nc::MoveKind::arc;
-  EXPECT_EQ(arcs, edits[0].via_mm.size() + 1);
+  EXPECT_EQ(arcs, edits[0].via.size() + 1);
   EXPECT_LT(worst_stray(emitted.moves, out), kTolerance_mm + kRounding_mm + 0.0003);  // and between the points
   // The first piece keeps its words and the comment; what acts at the end goes to the last.
   EXPECT_EQ(emission.text.find("(CORNER)") < emission.text.find("M9"), true);
@@ -102,8 +102,8 @@ TEST(ShiftedArc, AFullTurnStaysOneWhereTheShiftIsEven) {
   shift_outwards(path, out);
   const auto edits = path.edits(kTolerance_mm);
   ASSERT_EQ(edits.size(), 2u);
-  EXPECT_TRUE(edits[1].via_mm.empty());
-  EXPECT_NEAR(edits[1].center_mm.norm(), 0, 1e-6);
+  EXPECT_TRUE(edits[1].via.empty());
+  EXPECT_NEAR(edits[1].center_mm->norm(), 0, 1e-6);
 }
 
 /// Where the control stops at every corner arcs are not split; the ends of a full turn are shifted one by one all the
@@ -119,7 +119,7 @@ TEST(ShiftedArc, AFullTurnKeepsItsCentreWhereItsEndsAreShiftedUnevenly) {
     path.points().back().shift_mm += Vec3(0.0004, 0.0002, 0);
     const auto edits = path.edits(kTolerance_mm);
     ASSERT_EQ(edits.size(), 2u);
-    EXPECT_TRUE(edits[1].via_mm.empty());
+    EXPECT_TRUE(edits[1].via.empty());
     const Arcs emitted(nc::emit_edits(given.text, given.moves, edits, {}).text);
     EXPECT_LT(worst_stray(emitted.moves, out), kRounding_mm);
   }

@@ -61,7 +61,7 @@ TEST(Splits, StayWhenTheShiftThatAskedForThemIsGone) {
   lines.path.points()[lines.at(0, 1)].shift_mm.z() = 0.001;  // or nothing is moved and nothing written
   const auto edits = lines.path.edits(splits.kept(), 0.0005);
   ASSERT_FALSE(edits.empty());
-  EXPECT_EQ(edits[0].via_mm.size(), 3u) << "the place and its neighbours, where the bump began and ended";
+  EXPECT_EQ(edits[0].via.size(), 3u) << "the place and its neighbours, where the bump began and ended";
 }
 
 TEST(ThinPath, MovesAndBackKeepsWhatTheSplitsCanShow) {

@@ -83,7 +83,7 @@ std::optional<nc::MoveEdit> edit_from(FuzzedDataProvider& bytes, const Read& r) 
   if (move.arc != nc::Move::kNoArc)
     edit.center_mm = r.moves.arcs[move.arc].center_mm + shift;
   else if (move.kind == nc::MoveKind::linear && bytes.ConsumeBool())
-    edit.via_mm = {0.5 * (move.start_mm + move.end_mm) + shift};
+    edit.via = {{0.5 * (move.start_mm + move.end_mm) + shift}};
   return edit;
 }
 
@@ -97,13 +97,13 @@ void emit_and_read(const Read& r, const nc::InterpreterOptions& options, FuzzedD
   const std::string changed = nc::emit(r.program, r.moves, std::span(&*edit, 1), {});
   const Read again = read(changed, options);
   if (!again.clean) fail("the emitted program does not read", text, changed);
-  const bool split = !edit->via_mm.empty();
+  const bool split = !edit->via.empty();
   if (!split && own_moves(again) != own_moves(r)) fail("moves are lost or added", text, changed);
   if (split && own_moves(again) < own_moves(r)) fail("moves are lost", text, changed);
   const nc::Move& before = r.moves.moves[edit->move];
   if (split || before.kind != nc::MoveKind::linear || before.canned) return;
   const Vec3 end = again.moves.moves[edit->move].end_mm;
-  if ((end - edit->end_mm).cwiseAbs().maxCoeff() > kPlaceTolerance_mm &&
+  if ((end - *edit->end_mm).cwiseAbs().maxCoeff() > kPlaceTolerance_mm &&
       (end - before.end_mm).cwiseAbs().maxCoeff() > kPlaceTolerance_mm)
     fail("the edited move ends neither at its new place nor at its old one", text, changed);
 }

@@ -123,7 +123,7 @@ class OneEdit {
       return "the arc goes the other way round";
     // Rapids do not come back by themselves, and a full turn ends where it starts.
     if (!editable(old) || given_up(i) || is_full_turn(before_, old)) return {};
-    const Vec3 wanted = i == edit_.move ? edit_.end_mm : old.end_mm;
+    const Vec3 wanted = i == edit_.move ? *edit_.end_mm : old.end_mm;
     const double away = (now.end_mm - wanted).cwiseAbs().maxCoeff();
     return away > tolerance_mm(before_, old) ? fmt::format("ends {:.6f} mm from where it should", away) : "";
   }
@@ -176,14 +176,14 @@ std::string problem_of_via(const Read& r, const MoveEdit& edit) {
   const Read after = read_again(r, emission.text);
   for (const auto& m : after.messages)
     if (m.find("error") != std::string::npos) return m;
-  const std::size_t more = edit.via_mm.size();
+  const std::size_t more = edit.via.size();
   const auto &old = r.moves.moves, &now = after.moves.moves;
   if (now.size() != old.size() + more) return fmt::format("{} moves instead of {}", now.size(), old.size() + more);
   const Move& whole = old[edit.move];
   const double near = tolerance_mm(r, whole);
   for (std::size_t i = 0; i <= more; ++i) {
     const Move& piece = now[edit.move + i];
-    const Vec3 wanted = i < more ? edit.via_mm[i] : edit.end_mm;
+    const Vec3 wanted = i < more ? edit.via[i].point_mm : *edit.end_mm;
     if ((piece.end_mm - wanted).cwiseAbs().maxCoeff() > near) return fmt::format("via point {} is missed", i);
     if (after.moves.state_of(piece) != r.moves.state_of(whole)) return fmt::format("piece {} in another state", i);
     if (std::abs(piece.feed_mm_per_s - whole.feed_mm_per_s) > 1e-9) return fmt::format("piece {} at another feed", i);
@@ -251,9 +251,9 @@ TEST_F(NcEmitProperty, ViaPointsArePassedInOrder) {
     const Move& move = r.moves.moves[m];
     RC_PRE(length_mm(r.moves, move) > 0.1);
     MoveEdit edit = shifted(r, m, random_shift());
-    for (const double u : {0.3, 0.6}) edit.via_mm.push_back(point_at(r.moves, move, u) + random_shift());
+    for (const double u : {0.3, 0.6}) edit.via.push_back({point_at(r.moves, move, u) + random_shift()});
     ++counts_.edits;
-    counts_.via_points += edit.via_mm.size();
+    counts_.via_points += edit.via.size();
     const std::string problem = problem_of_via(r, edit);
     if (!problem.empty())
       RC_LOG() << text << "--- line " << move.block + 1 << "\n" << emit(r.program, r.moves, std::span(&edit, 1), {});
@@ -305,7 +305,7 @@ TEST_F(NcEmitProperty, OneEditOfASharedProgramChangesNoMoreThanItMust) {
       if (length_mm(r.moves, r.moves.moves[m]) < 0.5) continue;
       MoveEdit edit = shifted(r, m, {u(random), u(random), u(random)});
       for (const double share : {0.3, 0.6})
-        edit.via_mm.push_back(point_at(r.moves, r.moves.moves[m], share) + Vec3(u(random), u(random), u(random)));
+        edit.via.push_back({point_at(r.moves, r.moves.moves[m], share) + Vec3(u(random), u(random), u(random))});
       counts_.via_points += 2;
       EXPECT_EQ(problem_of_via(r, edit), "") << file << ":" << r.moves.moves[m].block + 1;
     }

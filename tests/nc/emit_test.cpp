@@ -95,7 +95,7 @@ TEST(NcEmit, ArcsByCentreStayArcs) {
 TEST(NcEmit, ArcsByRadiusGetANewRadius) {
   const std::string text = "G0 X10. Y0. Z0.\nG3 X0. Y10. R10. F100\n";
   const Read r = read_clean(text);
-  const MoveEdit e{.move = 1, .end_mm = {-0.5, 10.5, 0}, .center_mm = {-0.25, 0.25, 0}};
+  const MoveEdit e{.move = 1, .end_mm = Vec3(-0.5, 10.5, 0), .center_mm = Vec3(-0.25, 0.25, 0)};
   const std::string out = emit(r.program, r.moves, std::vector{e}, {});
   EXPECT_EQ(out, "G0 X10. Y0. Z0.\nG3 X-0.5 Y10.5 R10.253 F100\n");
 }
@@ -114,7 +114,7 @@ TEST(NcEmit, AnUneditedArcBehindAnEditStartsWhereTheToolStands) {
 
 TEST(NcEmit, ViaPointsBecomeBlocksOfTheirOwn) {
   const Read r = read_clean("G0 X0 Y0 Z0\r\nN7 G1 X3. F100 S500 M3 (cut)\r\nX6.\r\n");
-  const MoveEdit e{.move = 1, .via_mm = {{1, 0.5, 0}, {2, 0.5, 0}}, .end_mm = {3, 0, 0}};
+  const MoveEdit e{.move = 1, .via = {{Vec3(1, 0.5, 0)}, {Vec3(2, 0.5, 0)}}, .end_mm = Vec3(3, 0, 0)};
   EXPECT_EQ(emit(r.program, r.moves, std::vector{e}, {}),
             "G0 X0 Y0 Z0\r\nN7 G1 X1. Y0.5 F100 S500 M3 (cut)\r\nX2.\r\nX3. Y0.\r\nX6.\r\n");
 }
@@ -122,7 +122,7 @@ TEST(NcEmit, ViaPointsBecomeBlocksOfTheirOwn) {
 /// The program's second move through one via point.
 std::string with_via(const std::string& text, const Vec3& via, const Vec3& end) {
   const Read r = read_clean(text);
-  const MoveEdit e{.move = 1, .via_mm = {via}, .end_mm = end};
+  const MoveEdit e{.move = 1, .via = {{via}}, .end_mm = end};
   return emit(r.program, r.moves, std::vector{e}, {});
 }
 
@@ -146,13 +146,13 @@ TEST(NcEmit, ViaPointsAtTheStartOrTheEndAreLeftOut) {
 
 TEST(NcEmit, ViaPointsInIncrementalAndSkippedBlocks) {
   const Read r = read_clean("G0X0Y0Z0\n/G91G1X3.F100\n");
-  const MoveEdit e{.move = 1, .via_mm = {{1, 0.5, 0}}, .end_mm = {3, 0, 0}};
+  const MoveEdit e{.move = 1, .via = {{Vec3(1, 0.5, 0)}}, .end_mm = Vec3(3, 0, 0)};
   EXPECT_EQ(emit(r.program, r.moves, std::vector{e}, {}), "G0X0Y0Z0\n/G91G1X1.Y0.5F100\n/X2.Y-0.5\n");
 }
 
 TEST(NcEmit, InverseTimeFeedsKeepTheSpeed) {
   const Read r = read_clean("G0 X0. Y0. Z0.\nG93 G1 X10. F6.\n");
-  const MoveEdit e{.move = 1, .via_mm = {{2.5, 0, 0}}, .end_mm = {10, 0, 0}};
+  const MoveEdit e{.move = 1, .via = {{Vec3(2.5, 0, 0)}}, .end_mm = Vec3(10, 0, 0)};
   const Read again = read_clean(emit(r.program, r.moves, std::vector{e}, {}) + "\n");
   ASSERT_EQ(again.moves.moves.size(), 3u);
   for (std::size_t i : {1, 2}) EXPECT_NEAR(again.moves.moves[i].feed_mm_per_s, r.moves.moves[1].feed_mm_per_s, 1e-9);
@@ -212,8 +212,8 @@ struct RoundTrip {
     for (std::size_t i = 0; i < before.moves.moves.size(); ++i) {
       const Move& m = before.moves.moves[i];
       const MoveEdit* edit = next < edits.size() && edits[next].move == i ? &edits[next++] : nullptr;
-      const Vec3 end = edit ? edit->end_mm : m.end_mm;
-      if (edit) at += edit->via_mm.size();
+      const Vec3 end = edit ? *edit->end_mm : m.end_mm;
+      if (edit) at += edit->via.size();
       ASSERT_LT(at, after.moves.moves.size());
       const Move& now = after.moves.moves[at++];
       ASSERT_EQ(now.kind, m.kind) << "move " << i;
@@ -258,7 +258,7 @@ std::vector<MoveEdit> random_edits(const Read& r, std::mt19937& random, double s
       if ((turn - turn.dot(normal) * normal).norm() < 1e-6) continue;  // full turns follow their start
       e.center_mm = r.moves.arcs[m.arc].center_mm + shift;
     } else if (split && random() % 5 == 0 && length_mm(r.moves, m) > 0.5) {
-      e.via_mm = {point_at(r.moves, m, 0.3) + shift, point_at(r.moves, m, 0.7) + shift};
+      e.via = {{point_at(r.moves, m, 0.3) + shift}, {point_at(r.moves, m, 0.7) + shift}};
     }
     edits.push_back(e);
   }

@@ -290,7 +290,7 @@ void expect_edits_arrive(const std::string& text, const InterpreterOptions& opti
   const Read again = read_clean(out, options);
   ASSERT_EQ(again.moves.moves.size(), r.moves.moves.size()) << out;
   for (const MoveEdit& e : edits) {
-    expect_near_mm(again.moves.moves[e.move].end_mm, e.end_mm, 2.1e-4);
+    expect_near_mm(again.moves.moves[e.move].end_mm, *e.end_mm, 2.1e-4);
     if (r.moves.moves[e.move].arc == Move::kNoArc) continue;
     EXPECT_NEAR(again.moves.arcs[again.moves.moves[e.move].arc].sweep_rad,
                 r.moves.arcs[r.moves.moves[e.move].arc].sweep_rad, 1e-3);

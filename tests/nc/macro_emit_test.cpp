@@ -64,7 +64,7 @@ TEST(MacroEmit, CyclesAreNoWarningAndWholeIncrementsAreNotEdited) {
 TEST(MacroEmit, ALineBroughtBackBehindALoop) {
   // The edit before the loop shifts X; the loop moves Y by increments; the line behind names Y only.
   const Read r = read_clean("G0 X0 Y0 Z0\nG1 X1 F100\nG91\no1 repeat [2]\nY1\no1 endrepeat\nG90\nY5\n", as("linuxcnc"));
-  EXPECT_EQ(emit(r.program, r.moves, std::vector<MoveEdit>{{.move = 1, .end_mm = {1.25, 0, 0}}}, {}),
+  EXPECT_EQ(emit(r.program, r.moves, std::vector<MoveEdit>{{.move = 1, .end_mm = Vec3(1.25, 0, 0)}}, {}),
             "G0 X0 Y0 Z0\nG1 X1.25 F100\nG91\no1 repeat [2]\nY1\no1 endrepeat\nG90\nX1 Y5\n");
 }
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "nc/replace_blocks.h"
+#include "nc/emit.h"
 #include "tests/nc/nc_text.h"
 
 namespace camber::nc {

@@ -1,4 +1,4 @@
-#include "nc/number_style.h"
+#include "nc/emit/number_style.h"
 
 #include <algorithm>
 #include <array>
@@ -55,7 +55,21 @@ struct StyleCounts {
     ++decimals[static_cast<std::size_t>(std::min(d, 9))];
     trailing_zero += d > 0 && number.back() == '0';
   }
+
+  void say_of_numbers(NumberStyle& style) const {
+    if (zero + no_zero > 0) style.leading_zero = zero >= no_zero;
+    const auto most = std::max_element(decimals.begin(), decimals.end());
+    if (most != decimals.begin() && *most == pointed && trailing_zero > 0)
+      style.padded_decimals = static_cast<int>(most - decimals.begin());
+    const auto of_whole = std::max_element(whole.begin(), whole.end());
+    if (*of_whole > 0) style.whole = static_cast<WholeStyle>(of_whole - whole.begin());
+  }
 };
+
+std::string_view number_of(const Program& program, const Word& w) {
+  return std::string_view(program.source.text())
+      .substr(w.offset + w.value_at, static_cast<std::size_t>(w.length - w.value_at));
+}
 
 }  // namespace
 
@@ -75,18 +89,29 @@ NumberStyle style_of(const Program& program) {
     if (!is_coordinate(w.letter) || std::isnan(w.value)) continue;
     const bool first_of_line = w.offset == 0 || text[w.offset - 1] == '\n';
     if (!first_of_line) ++(text[w.offset - 1] == ' ' ? c.blank : c.no_blank);
-    if (w.length > w.value_at)
-      c.add(text.substr(w.offset + w.value_at, static_cast<std::size_t>(w.length - w.value_at)), w.value);
+    if (w.length > w.value_at) c.add(number_of(program, w), w.value);
   }
   NumberStyle style;
-  style.leading_zero = c.zero >= c.no_zero;
   style.blanks = c.blank > c.no_blank;
-  const auto most = std::max_element(c.decimals.begin(), c.decimals.end());
-  if (most != c.decimals.begin() && *most == c.pointed && c.trailing_zero > 0)
-    style.padded_decimals = static_cast<int>(most - c.decimals.begin());
-  const auto whole = std::max_element(c.whole.begin(), c.whole.end());
-  if (*whole > 0) style.whole = static_cast<WholeStyle>(whole - c.whole.begin());
+  c.say_of_numbers(style);
   return style;
+}
+
+NumberStyle feed_style_of(const Program& program) {
+  StyleCounts c;
+  for (const Word& w : program.words)
+    if (w.letter == 'F' && !std::isnan(w.value) && w.length > w.value_at) c.add(number_of(program, w), w.value);
+  NumberStyle style = style_of(program);
+  style.padded_decimals = 0;
+  c.say_of_numbers(style);
+  return style;
+}
+
+int feed_decimals_of(const Program& program) {
+  int most = 0;
+  for (const Word& w : program.words)
+    if (w.letter == 'F' && !std::isnan(w.value)) most = std::max(most, decimals_of(number_of(program, w)));
+  return most;
 }
 
 double rounded(double value, int decimals) {

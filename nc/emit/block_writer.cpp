@@ -1,7 +1,8 @@
-#include "nc/block_writer.h"
+#include "nc/emit/block_writer.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace camber::nc {
 namespace {
@@ -54,23 +55,29 @@ int BlockWriter::decimals(char letter, int least) const {
   return std::max(least, word ? decimals_of(number_text(program_, *word)) : 0);
 }
 
-void BlockWriter::set(char letter, double value, int decimals) {
-  const Word* word = find(letter);
+std::string BlockWriter::text_of(const NewWord& word, std::string_view like) const {
+  return format_number(word.value, word.decimals, word.style ? *word.style : style_, like);
+}
+
+void BlockWriter::set(const NewWord& wanted) {
+  const Word* word = find(wanted.letter);
   if (!word) {
-    add(letter, value, decimals);
+    add(wanted);
     return;
   }
-  const double r = rounded(value, decimals);
+  const double r = rounded(wanted.value, wanted.decimals);
   if (r == word->value) return;
   const auto old = number_text(program_, *word);
-  changes_.push_back({word->offset + word->value_at, old.size(), format_number(r, decimals, style_, old), letter, r});
+  changes_.push_back({word->offset + word->value_at, old.size(), text_of(wanted, old), wanted.letter, r});
 }
 
 /// Behind the nearest coordinate that comes before it in the usual order; otherwise before the next one; otherwise
 /// behind the last N or G.
-void BlockWriter::add(char letter, double value, int decimals) {
-  const double r = rounded(value, decimals);
-  const std::string word = in_case(letter) + format_number(r, decimals, style_);
+void BlockWriter::add(const NewWord& wanted) {
+  const char letter = wanted.letter;
+  const double r = rounded(wanted.value, wanted.decimals);
+  std::string word = in_case(letter) + text_of(wanted);
+  if (letter == 'F') return add_feed(std::move(word), r);
   const auto rank = [](char c) { return static_cast<int>(kOrder.find(c)); };
   const Word *before = nullptr, *after = nullptr, *code = nullptr;
   for (const Word& w : words_) {
@@ -85,6 +92,20 @@ void BlockWriter::add(char letter, double value, int decimals) {
     changes_.push_back({before->offset + std::size_t{before->length}, 0, gap + word, letter, r});
   else
     changes_.push_back({after ? after->offset : words_.front().offset, 0, word + gap, letter, r});
+}
+
+/// Behind the last coordinate of the text; otherwise behind the last N or G.
+void BlockWriter::add_feed(std::string word, double value) {
+  const Word *coordinate = nullptr, *code = nullptr;
+  for (const Word& w : words_) {
+    if (kOrder.find(w.letter) != std::string_view::npos) coordinate = &w;
+    if (w.letter == 'N' || w.letter == 'G') code = &w;
+  }
+  const std::string gap = blanks_ ? " " : "";
+  if (const Word* before = coordinate ? coordinate : code)
+    changes_.push_back({before->offset + std::size_t{before->length}, 0, gap + word, 'F', value});
+  else
+    changes_.push_back({words_.front().offset, 0, word + gap, 'F', value});
 }
 
 void BlockWriter::take_out(const Word& word) {
@@ -113,15 +134,14 @@ std::string BlockWriter::text() const {
   return out;
 }
 
-std::string BlockWriter::further_block(std::string_view letters, const std::vector<double>& values, int decimals,
-                                       std::span<const Word> own) const {
+std::string BlockWriter::further_block(std::span<const NewWord> wanted, std::span<const Word> own) const {
   std::vector<std::string> words;
-  for (std::size_t i = 0; i < letters.size(); ++i) {
-    const Word* same = letters[i] == 'F' ? find('F') : nullptr;
-    if (same && same->value == values[i])
+  for (const NewWord& w : wanted) {
+    const Word* same = w.letter == 'F' ? find('F') : nullptr;
+    if (same && same->value == w.value)
       words.push_back(program_.source.text().substr(same->offset, same->length));
     else
-      words.push_back(in_case(letters[i]) + format_number(values[i], decimals, style_));
+      words.push_back(in_case(w.letter) + text_of(w));
   }
   auto behind_codes = words.begin();
   for (const Word& w : own)

@@ -1,4 +1,4 @@
-#include "nc/replace_blocks.h"
+#include "nc/emit.h"
 
 #include <string_view>
 

@@ -20,6 +20,12 @@ struct NumberStyle {
 /// What most of the coordinates of the program do.
 NumberStyle style_of(const Program& program);
 
+/// What most of its F words do; blanks as beside coordinates.
+NumberStyle feed_style_of(const Program& program);
+
+/// Most decimals that an F word of the program has; 0 where none has a point.
+int feed_decimals_of(const Program& program);
+
 /// Decimals of a number as written; -1 without a point.
 int decimals_of(std::string_view number);
 

@@ -5,10 +5,18 @@
 #include <string_view>
 #include <vector>
 
-#include "nc/number_style.h"
+#include "nc/emit/number_style.h"
 #include "nc/program.h"
 
 namespace camber::nc {
+
+/// A word of a block that is made anew.
+struct NewWord {
+  char letter = 0;
+  double value = 0;
+  int decimals = 0;
+  const NumberStyle* style = nullptr;  ///< none: as the coordinates
+};
 
 /// Collects changes of words and renders the block. Everything that is not changed stays byte for byte.
 class BlockWriter {
@@ -24,7 +32,8 @@ class BlockWriter {
 
   /// Gives a word a new value. A value that rounds to the one in the text leaves the word alone; a word that is
   /// missing is added beside its neighbours.
-  void set(char letter, double value, int decimals);
+  void set(char letter, double value, int decimals) { set({letter, value, decimals}); }
+  void set(const NewWord& word);
 
   /// Leaves a word of the block out, with the blank before it.
   void take_out(const Word& word);
@@ -34,8 +43,7 @@ class BlockWriter {
   std::string text() const;
   /// A further block with just these words, in the block's style, and words of this block as they are: G words in
   /// front, others behind.
-  std::string further_block(std::string_view letters, const std::vector<double>& values, int decimals,
-                            std::span<const Word> own = {}) const;
+  std::string further_block(std::span<const NewWord> words, std::span<const Word> own = {}) const;
   bool uses_blanks() const { return blanks_; }
 
  private:
@@ -46,7 +54,9 @@ class BlockWriter {
     char letter;
     double value;
   };
-  void add(char letter, double value, int decimals);
+  std::string text_of(const NewWord& word, std::string_view like = {}) const;
+  void add(const NewWord& word);
+  void add_feed(std::string word, double value);
   char in_case(char letter) const;
   bool block_uses_blanks() const;
 

@@ -1,8 +1,8 @@
-#include "nc/arc_rounding.h"
+#include "nc/emit/arc_rounding.h"
 
 #include <cmath>
 
-#include "nc/number_style.h"
+#include "nc/emit/number_style.h"
 
 namespace camber::nc {
 namespace {
