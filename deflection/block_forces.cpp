@@ -5,7 +5,7 @@
 
 #include "base/vector_clones.h"
 #include "deflection/chip_ends.h"
-#include "deflection/edge_force.h"
+#include "deflection/tool_frame.h"
 #include "deflection/tooth_pass.h"
 #include "machine/force_law.h"
 #include "removal/engagement.h"
@@ -38,13 +38,12 @@ CAMBER_VECTOR_CLONES
 void add_four(const EdgeForces& e, const Sums& s) {
   std::array<double, kSteps> x, y;
   for (std::size_t l = 0; l < kSteps; ++l) {
-    const double c = s.cosine_phi[l], sn = s.sine_phi[l];
-    const double outward = e.radial[l] * s.sine + e.axial[l] * s.cosine;
-    x[l] = -(e.tangential[l] * sn + outward * c);
-    y[l] = -(outward * sn - e.tangential[l] * c);
-    s.fx[l] += x[l];
-    s.fy[l] += y[l];
-    s.fz[l] += e.radial[l] * s.cosine - e.axial[l] * s.sine;
+    const ForceComponents f =
+        force_components(e.tangential[l], e.radial[l], e.axial[l], s.sine, s.cosine, s.sine_phi[l], s.cosine_phi[l]);
+    x[l] = f.x, y[l] = f.y;
+    s.fx[l] += f.x;
+    s.fy[l] += f.y;
+    s.fz[l] += f.z;
     s.torque[l] += e.tangential[l] * s.radius_mm;
   }
   for (int n = 0; n < s.nodes; ++n) {
@@ -81,9 +80,8 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
   const double* compliance = compliance_.data() + static_cast<std::size_t>(e.ring) * nodes;
   const bool affine = machine::is_affine(material_.law) && edge_ramp_mm_ == 0;
   const auto on_tool = [&](const EdgeForce& f) {
-    const double outward = f.radial_N * sine + f.axial_N * cosine;
-    return std::array<double, 4>{-(f.tangential_N * sn + outward * c), -(outward * sn - f.tangential_N * c),
-                                 f.radial_N * cosine - f.axial_N * sine, f.tangential_N * ring.profile.radius_mm};
+    const ForceComponents on = force_components(f.tangential_N, f.radial_N, f.axial_N, sine, cosine, sn, c);
+    return std::array<double, 4>{on.x, on.y, on.z, f.tangential_N * ring.profile.radius_mm};
   };
   // Affine: a millimetre of thickness, and the edge.
   const EdgeForce k = affine ? edge_force_slope(material_, 1) : EdgeForce{};

@@ -8,7 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <Eigen/LU>
 
-#include "deflection/edge_force.h"
+#include "deflection/tool_frame.h"
 
 namespace camber::deflection {
 
@@ -61,7 +61,7 @@ void StaticEquilibrium::place_elements(std::span<const removal::DeflectedChipSam
     const removal::DeflectedChipSample& bent = chips[f.chip];
     const std::uint32_t r = bent.chip.point / static_cast<std::uint32_t>(envelope_.steps);
     const Ring& ring = rings_[r];
-    const ToothPassModel::Direction d = model_.direction(bent.chip.point, envelope_.rings[r]);
+    const EdgeDirections d = model_.direction(bent.chip.point, envelope_.rings[r]);
     Element& e = elements_[at[static_cast<std::size_t>(f.step)]++];
     e.normal = d.normal.head<2>();
     e.tangential = d.tangential.head<2>();
@@ -133,8 +133,8 @@ void StaticEquilibrium::balance(std::size_t m) {
     if (h <= 0) continue;
     const EdgeForce f = edge_force(material, h, e.width_mm, ramp);
     const EdgeForce k = edge_force_slope(material, h, ramp);
-    const Vec2 force = -(f.tangential_N * e.tangential + f.radial_N * e.normal + f.axial_N * e.meridian);
-    const Vec2 slope = -e.width_mm * (k.tangential_N * e.tangential + k.radial_N * e.normal + k.axial_N * e.meridian);
+    const Vec2 force = lateral_on_tool(f, e.tangential, e.normal, e.meridian);
+    const Vec2 slope = e.width_mm * lateral_on_tool(k, e.tangential, e.normal, e.meridian);
     // Thickness by the deflections at the first and the last node, of this rotation step and of those beside it.
     const Vec2 own = !by_cap ? e.deeper : first_stamp_ ? Vec2(Vec2::Zero()) : e.normal;
     const double up = ring.height_fraction;

@@ -7,7 +7,7 @@
 #include "deflection/tooth_pass.h"
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
-#include "removal/engage/upright/chip_reader.h"
+#include "removal/engagement.h"
 
 namespace camber::deflection {
 

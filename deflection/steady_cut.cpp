@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "deflection/edge_force.h"
+#include "deflection/tool_frame.h"
 
 namespace camber::deflection {
 namespace {
@@ -13,16 +13,8 @@ constexpr double kNodes[] = {0.1834346424956498, 0.5255324099163290, 0.796666477
 constexpr double kWeights[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
 constexpr int kPanels = 4;
 
-struct Directions {
-  Vec3 tangential, normal, meridian;
-};
-Directions directions(double sine, double cosine, double phi) {
-  const double s = std::sin(phi), c = std::cos(phi);
-  return {{s, -c, 0}, {sine * c, sine * s, -cosine}, {cosine * c, cosine * s, sine}};
-}
-
-Vec3 on_tool(const EdgeForce& e, const Directions& d) {
-  return -(e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian);
+EdgeDirections directions(double sine, double cosine, double phi) {
+  return edge_directions(sine, cosine, std::sin(phi), std::cos(phi));
 }
 
 }  // namespace
@@ -79,7 +71,7 @@ void SteadyCutModel::integrate(Function f) const {
 Vec3 SteadyCutModel::mean_N(const machine::Material& material) const {
   Vec3 sum = Vec3::Zero();
   integrate([&](const Ring& ring, double phi, double h, double weight) {
-    sum += weight * on_tool(edge_force(material, h, ring.width_mm), directions(ring.sine, ring.cosine, phi));
+    sum += weight * force_on_tool(edge_force(material, h, ring.width_mm), directions(ring.sine, ring.cosine, phi));
   });
   return sum * flutes_ / (2 * kPi);
 }
@@ -143,7 +135,7 @@ std::vector<Vec3> SteadyCutModel::waveform_N(const machine::Material& material, 
         const double phi = (from + to) / 2;
         out[static_cast<std::size_t>(i)] +=
             (to - from) / step *
-            on_tool(edge_force(material, chip(phi), ring.width_mm), directions(ring.sine, ring.cosine, phi));
+            force_on_tool(edge_force(material, chip(phi), ring.width_mm), directions(ring.sine, ring.cosine, phi));
       }
     }
   return out;

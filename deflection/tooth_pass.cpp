@@ -31,11 +31,8 @@ ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const mach
   }
 }
 
-ToothPassModel::Direction ToothPassModel::direction(std::uint32_t p, const removal::EnvelopeGrid::Ring& ring) const {
-  const double s = envelope_.sin_phi[p], c = envelope_.cos_phi[p];
-  const double sk = ring.sine, ck = ring.cosine;
-  // Clockwise seen from above (M3).
-  return {{s, -c, 0}, {sk * c, sk * s, -ck}, {ck * c, ck * s, sk}};
+EdgeDirections ToothPassModel::direction(std::uint32_t p, const removal::EnvelopeGrid::Ring& ring) const {
+  return edge_directions(ring.sine, ring.cosine, envelope_.sin_phi[p], envelope_.cos_phi[p]);
 }
 
 namespace {
@@ -45,7 +42,7 @@ double chip_area_mm2(const removal::EnvelopeGrid::Ring& ring, int steps) {
 }
 }  // namespace
 
-ToothPassModel::MotionChip ToothPassModel::motion_chip(const Direction& d, const removal::EnvelopeGrid::Ring& ring,
+ToothPassModel::MotionChip ToothPassModel::motion_chip(const EdgeDirections& d, const removal::EnvelopeGrid::Ring& ring,
                                                        const Vec3& feed) const {
   const double around = feed.dot(d.tangential), up = feed.dot(d.meridian);
   const double bulge = 0.5 * (ring.profile.meridian_curvature_per_mm * up * up +
@@ -58,7 +55,7 @@ double ToothPassModel::deeper_mm(int j, bool own_surface, const removal::Envelop
   return ring.sine * (teeth_.tooth_runout_mm(j, ring.lag_rad) - least);
 }
 
-double ToothPassModel::tooth_chip_mm(int j, const removal::ChipSample& chip, const Direction& d,
+double ToothPassModel::tooth_chip_mm(int j, const removal::ChipSample& chip, const EdgeDirections& d,
                                      const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const {
   const MotionChip motion = motion_chip(d, ring, feed);
   const double even = chip.after_tooth ? static_cast<double>(chip.thickness_mm) : motion.even_mm;
@@ -66,14 +63,14 @@ double ToothPassModel::tooth_chip_mm(int j, const removal::ChipSample& chip, con
   return chip.after_tooth ? h : std::max(0.0, std::min(h, chip.thickness_mm + deeper_mm(j, chip.own_surface, ring)));
 }
 
-void ToothPassModel::add(const removal::ChipSample& chip, double thickness_mm, const Direction& d, std::uint32_t r,
+void ToothPassModel::add(const removal::ChipSample& chip, double thickness_mm, const EdgeDirections& d, std::uint32_t r,
                          std::size_t m, std::vector<double>& deflection, ToothPass& out) const {
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
   const std::size_t nodes = node_height_mm_.size();
   const auto& ring = envelope_.rings[r];
   const double width_mm = chip.width_fraction() * ring.width_mm;
   const EdgeForce e = edge_force(material_, thickness_mm, width_mm, edge_ramp_mm_);
-  const Vec3 force = -(e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian);
+  const Vec3 force = force_on_tool(e, d);
   out.force_N[m] += force;
   out.torque_Nmm[m] += e.tangential_N * ring.profile.radius_mm;
   out.work_Nmm += e.tangential_N * ring.profile.radius_mm * 2 * kPi / envelope_.steps;
@@ -103,7 +100,7 @@ void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, c
       continue;
     }
     const auto& ring = envelope_.rings[chip.point / static_cast<std::uint32_t>(turn)];
-    const Direction d = direction(chip.point, ring);
+    const EdgeDirections d = direction(chip.point, ring);
     // Every tooth that passes the point during this tooth passing.
     for (int j = 0; j < teeth_.count(); ++j) {
       const int m = ((at - tooth_step_[static_cast<std::size_t>(j)] + gone) % turn + turn) % turn;
@@ -147,7 +144,7 @@ void ToothPassModel::add_to_turn(std::span<const removal::ChipSample> chips, std
   for (const removal::ChipSample& chip : chips) {
     const auto& ring = envelope_.rings[chip.point / static_cast<std::uint32_t>(steps)];
     const int column = static_cast<int>(chip.point % static_cast<std::uint32_t>(steps));
-    const Direction d = direction(chip.point, ring);
+    const EdgeDirections d = direction(chip.point, ring);
     for (int j = 0; j < teeth; ++j) {
       // The tool turns clockwise, by `at` steps: rotation steps are met backwards. Even teeth: tooth 0 starts at column
       // 0; others start where their number tells.
@@ -163,7 +160,7 @@ void ToothPassModel::add_to_turn(std::span<const removal::ChipSample> chips, std
       }
       TurnForces::Tooth& tooth = turn.teeth[static_cast<std::size_t>(j)][static_cast<std::size_t>(at)];
       const EdgeForce e = edge_force(material_, h, chip.width_fraction() * ring.width_mm, edge_ramp_mm_);
-      tooth.force_N -= e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian;
+      tooth.force_N += force_on_tool(e, d);
       tooth.torque_Nmm += e.tangential_N * ring.profile.radius_mm;
       tooth.chip_max_mm = std::max(tooth.chip_max_mm, h);
     }

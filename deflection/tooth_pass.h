@@ -6,10 +6,10 @@
 #include "deflection/beam.h"
 #include "deflection/chip_ends.h"
 #include "deflection/teeth.h"
+#include "deflection/tool_frame.h"
 #include "machine/job.h"
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
-#include "removal/engage/upright/chip_reader.h"
 #include "removal/engagement.h"
 
 namespace camber::deflection {
@@ -20,7 +20,7 @@ constexpr int kFine = 4;
 
 /// One tooth passing. Sized once, filled for many stamps.
 struct ToothPass {
-  std::vector<Vec3> force_N;         ///< per rotation step, on the tool, machine axes
+  std::vector<Vec3> force_N;         ///< per rotation step, on the tool, tool's frame
   std::vector<double> torque_Nmm;    ///< per rotation step, that the spindle must give
   double work_Nmm = 0;               ///< of the spindle over the tooth passing
   double chip_max_mm = 0;            ///< thickest chip
@@ -32,7 +32,7 @@ struct ToothPass {
 /// along +X, the edge of tooth t stands at t pitches minus a, counter-clockwise from +X.
 struct TurnForces {
   struct Tooth {
-    Vec3 force_N = Vec3::Zero();  ///< on the tool, machine axes
+    Vec3 force_N = Vec3::Zero();  ///< on the tool, tool's frame
     double torque_Nmm = 0;
     double chip_max_mm = 0;  ///< thickest along the edge at this instant
   };
@@ -49,10 +49,6 @@ struct EdgeElement {
 /// Turns chips into forces and deflections for one tool in one material.
 class ToothPassModel {
  public:
-  struct Direction {
-    Vec3 tangential, normal, meridian;
-  };
-
   ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material, const Beam& beam,
                  std::vector<double> node_height_mm, double edge_ramp_mm, Teeth teeth,
                  const Vec2& axis_compliance_mm_per_N = Vec2::Zero());
@@ -71,7 +67,7 @@ class ToothPassModel {
   /// The elements that chips are made by; of chips with negative thickness too.
   void edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const Vec3& feed_mm,
                      std::vector<EdgeElement>& out) const;
-  Direction direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
+  EdgeDirections direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
   const machine::Material& material() const { return material_; }
   double edge_ramp_mm() const { return edge_ramp_mm_; }
   /// Of the node's x and y to a force at a ring, mm/N.
@@ -90,7 +86,7 @@ class ToothPassModel {
   /// lies as deep as the tooth that stands out most left it.
   double deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const;
   /// What tooth j takes where even teeth would take the chip.
-  double tooth_chip_mm(int j, const removal::ChipSample& chip, const Direction& d,
+  double tooth_chip_mm(int j, const removal::ChipSample& chip, const EdgeDirections& d,
                        const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const;
   /// The same of a block of points; nothing is cut off below, so that what is not in the cut tells how far off it is.
   removal::ChipBlock tooth_block(int j, const removal::EnvelopeBlocks& blocks, const removal::ChipBlock& even,
@@ -99,9 +95,9 @@ class ToothPassModel {
   struct MotionChip {
     double even_mm, bulge_mm;  ///< the latter what curvature adds to it
   };
-  MotionChip motion_chip(const Direction& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
+  MotionChip motion_chip(const EdgeDirections& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
   /// Adds the force and deflection of one edge element at rotation step m.
-  void add(const removal::ChipSample& chip, double thickness_mm, const Direction& d, std::uint32_t ring, std::size_t m,
+  void add(const removal::ChipSample& chip, double thickness_mm, const EdgeDirections& d, std::uint32_t ring, std::size_t m,
            std::vector<double>& deflection, ToothPass& out) const;
 
   void add_end(const ChipEnd& end, double* sums, std::size_t row, std::span<float> fine_mm) const;

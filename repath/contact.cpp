@@ -106,7 +106,7 @@ double Underside::height_mm(double from_axis_mm) const {
   return corner_mm - std::sqrt(std::max(0.0, (corner_mm - out) * (corner_mm + out)));
 }
 
-Underside underside_of(const CutterShape& shape) {
+Underside underside_of(const removal::CutterShape& shape) {
   const double corner = std::min(shape.corner_radius_mm, shape.radius_mm);
   return {shape.radius_mm - corner, corner};
 }

@@ -18,7 +18,7 @@ struct Underside {
   double height_mm(double from_axis_mm) const;
 };
 /// Requires a shape that is not general.
-Underside underside_of(const CutterShape& shape);
+Underside underside_of(const removal::CutterShape& shape);
 
 enum class ContactKind { facet, edge, vertex };
 

@@ -14,7 +14,7 @@ constexpr double kNothing = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-DropCutter::DropCutter(const TriangleMesh& mesh, const CutterShape& shape) : cutter_(underside_of(shape)) {
+DropCutter::DropCutter(const TriangleMesh& mesh, const removal::CutterShape& shape) : cutter_(underside_of(shape)) {
   facets_.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles)
     facets_.emplace_back(mesh.points[t[0]].cast<double>(), mesh.points[t[1]].cast<double>(),

@@ -15,7 +15,7 @@ namespace camber::repath {
 class DropCutter {
  public:
   /// Requires a shape that is not general. Memory: about 200 bytes a triangle.
-  DropCutter(const TriangleMesh& mesh, const CutterShape& shape);
+  DropCutter(const TriangleMesh& mesh, const removal::CutterShape& shape);
 
   /// Nothing where no triangle lies under the cutter. `near`: a triangle to begin with, as that of the place before;
   /// saves time and changes no height (of places that it touches at once it may name another).

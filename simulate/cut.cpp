@@ -21,6 +21,12 @@ using removal::DeflectionTable;
 using removal::EnvelopeGrid;
 using removal::Stamp;
 using removal::Stock;
+using deflection::kFine;
+using deflection::StaticCut;
+using deflection::Teeth;
+using deflection::ToothMarks;
+using deflection::ToothPass;
+using deflection::ToothPassModel;
 
 namespace {
 
@@ -85,8 +91,8 @@ class Cutter {
         rigid_(options.coupling == machine::Coupling::rigid),
         top_mm_(engaged_top_mm(stock, tool, stamps)),
         envelope_(sampled_envelope(stock, tool, top_mm_, options)),
-        model_(envelope_, material, beam_of(tool),
-               node_heights(top_mm_, std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm))),
+        model_(envelope_, material, deflection::beam_of(tool),
+               deflection::node_heights(top_mm_, std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm))),
                options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
                options.axis_compliance_mm_per_N) {
     if (!options.blank) own_blank_.emplace(stock);
@@ -191,7 +197,7 @@ class Cutter {
               std::int32_t first_id, CutResult& result) {
     if (!static_cut_)
       static_cut_.emplace(stock_, *blank_, envelope_, model_, all, first_id,
-                          SettleOptions{options_.max_rounds, options_.settle_um, options_.settle_fraction});
+                          deflection::SettleOptions{options_.max_rounds, options_.settle_um, options_.settle_fraction});
     static_cut_->start(from, loads.size(), deflections);
     ToothPass pass;
     for (std::size_t k = 0; k < loads.size(); ++k) {

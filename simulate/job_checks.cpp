@@ -54,7 +54,7 @@ void warn_of_vibration(const machine::Tool& tool, double rpm, const nc::Program&
                        Diagnostics& diagnostics) {
   constexpr double kSteelDensity = 7850, kCarbideDensity = 14500, kSteelLimit_MPa = 300000;
   const double density = tool.youngs_modulus_MPa > kSteelLimit_MPa ? kCarbideDensity : kSteelDensity;
-  const double first_hz = beam_of(tool).first_frequency_hz(tool, density);
+  const double first_hz = deflection::beam_of(tool).first_frequency_hz(tool, density);
   const double tooth_hz = rpm / 60 * tool.flutes;
   if (tooth_hz <= first_hz / 3) return;
   diagnostics.add(program.source.diagnostic(

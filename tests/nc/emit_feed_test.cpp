@@ -25,7 +25,7 @@ std::vector<MoveEdit> feeds(std::initializer_list<std::pair<std::uint32_t, doubl
 }
 
 std::string with_feeds(const std::string& text, std::initializer_list<std::pair<std::uint32_t, double>> of,
-                       const InterpreterOptions& options = as(ControlKind::fanuc)) {
+                       const InterpreterOptions& options = as("fanuc")) {
   const Read r = read_clean(text, options);
   const Emission out = emit_edits(r.program, r.moves, feeds(of), {});
   EXPECT_TRUE(out.not_made.empty());
@@ -34,7 +34,7 @@ std::string with_feeds(const std::string& text, std::initializer_list<std::pair<
 
 /// The only reason why the edits are not in the text as they were asked for.
 std::string gap_of(const std::string& text, const std::vector<MoveEdit>& edits, std::string wanted = {}) {
-  const Read r = read_text(text, as(ControlKind::fanuc));
+  const Read r = read_text(text, as("fanuc"));
   const Emission out = emit_edits(r.program, r.moves, edits, {});
   EXPECT_EQ(out.text, wanted.empty() ? text : wanted);
   EXPECT_EQ(out.not_made.size(), 1u);
@@ -294,13 +294,13 @@ TEST(EmitFeed, EveryMoveOfARandomProgramHasTheFeedThatWasAskedFor) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);
     const std::string text = FeedProgram(seed).run();
-    const Read r = read_text(text, as(ControlKind::fanuc));
+    const Read r = read_text(text, as("fanuc"));
     ASSERT_FALSE(r.diagnostics.has_errors()) << text << r.messages.front();
     std::mt19937 random(seed);
     const auto edits = random_feeds(r, random);
     const Emission out = emit_edits(r.program, r.moves, edits, {});
     ASSERT_TRUE(out.not_made.empty()) << text << to_string(out.not_made.front().why);
-    const Read again = read_text(out.text, as(ControlKind::fanuc));
+    const Read again = read_text(out.text, as("fanuc"));
     ASSERT_FALSE(again.diagnostics.has_errors()) << out.text << again.messages.front();
     const auto wanted = wanted_feeds(r, edits);
     ASSERT_EQ(again.moves.moves.size(), wanted.size()) << text << "---\n" << out.text;
@@ -322,12 +322,12 @@ TEST(EmitFeed, EveryMoveOfARandomProgramHasTheFeedThatWasAskedFor) {
 }
 
 TEST(EmitFeed, SkippedBlocksChangeNoOthersFeed) {
-  InterpreterOptions skipping = as(ControlKind::fanuc);
+  InterpreterOptions skipping = as("fanuc");
   skipping.skip_slash_blocks = true;
   std::size_t compared = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
     SCOPED_TRACE(seed);
-    const Read r = read_text(FeedProgram(seed).run(), as(ControlKind::fanuc));
+    const Read r = read_text(FeedProgram(seed).run(), as("fanuc"));
     std::mt19937 random(seed);
     auto edits = random_feeds(r, random);
     for (MoveEdit& e : edits) e.via.clear();
@@ -356,7 +356,7 @@ TEST(EmitFeed, SkippedBlocksChangeNoOthersFeed) {
 TEST(EmitFeed, AskingForWhatIsThereChangesNoByte) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     const std::string text = FeedProgram(seed).run();
-    const Read r = read_text(text, as(ControlKind::fanuc));
+    const Read r = read_text(text, as("fanuc"));
     std::vector<MoveEdit> edits;
     for (std::uint32_t i = 0; i < r.moves.moves.size(); ++i) {
       const Move& m = r.moves.moves[i];
