@@ -41,4 +41,20 @@ NodeWeight node_weight(const std::vector<double>& nodes, double height) {
   return {lower, lower + 1, static_cast<float>(at - lower)};
 }
 
+Vec2 DeflectionTable::at(const float* row, double height_mm, double step) const {
+  const int before = static_cast<int>(step) % steps, after = (before + 1) % steps;
+  const double fraction = step - std::floor(step);
+  const NodeWeight w = node_weight(node_height_mm, height_mm);
+  Vec2 sum = Vec2::Zero();
+  const auto add = [&](int node, int m, double weight) {
+    const float* v = row + 2 * (node * steps + m);
+    sum += weight * Vec2(v[0], v[1]);
+  };
+  add(w.lower, before, (1 - w.upper_fraction) * (1 - fraction));
+  add(w.lower, after, (1 - w.upper_fraction) * fraction);
+  add(w.upper, before, w.upper_fraction * (1 - fraction));
+  add(w.upper, after, w.upper_fraction * fraction);
+  return sum;
+}
+
 }  // namespace camber::removal

@@ -40,8 +40,7 @@ struct DeflectionTable {
 
   /// Deflection of one row at a height and a rotation step (with its fraction), linear between nodes and steps.
   /// simd/deflection_lanes.h does the same for many places at once.
-  template <class Number>
-  Eigen::Matrix<Number, 2, 1> at(const float* row, double height_mm, double step) const;
+  Vec2 at(const float* row, double height_mm, double step) const;
   /// Rotation step, from 0 to `steps`, at which an edge passes the envelope's point at an angle (rad, counter-clockwise
   /// from x) and a height. lag_per_mm: see EnvelopeGrid.
   double step_at(double angle_rad, double height_mm, double lag_per_mm, int flutes) const {
@@ -49,19 +48,5 @@ struct DeflectionTable {
     return step - steps * std::floor(step / steps);
   }
 };
-
-template <class Number>
-Eigen::Matrix<Number, 2, 1> DeflectionTable::at(const float* row, double height_mm, double step) const {
-  using Vector = Eigen::Matrix<Number, 2, 1>;
-  const int before = static_cast<int>(step) % steps, after = (before + 1) % steps;
-  const auto fraction = static_cast<Number>(step - std::floor(step));
-  const auto at_node = [&](int node) -> Vector {
-    const float *a = row + 2 * (node * steps + before), *b = row + 2 * (node * steps + after);
-    return (1 - fraction) * Vector(a[0], a[1]) + fraction * Vector(b[0], b[1]);
-  };
-  const NodeWeight w = node_weight(node_height_mm, height_mm);
-  return static_cast<Number>(1 - w.upper_fraction) * at_node(w.lower) +
-         static_cast<Number>(w.upper_fraction) * at_node(w.upper);
-}
 
 }  // namespace camber::removal

@@ -59,7 +59,7 @@ EnvelopeGrid sampled_envelope(const Stock& stock, const machine::Tool& tool, dou
 Vec2 deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
                    const Contact& c) {
   const double step = deflections.step_at(c.angle_rad, c.height_mm, envelope.lag_per_mm, envelope.flutes);
-  return deflections.at<double>(row, c.height_mm, step);
+  return deflections.at(row, c.height_mm, step);
 }
 
 StampLoad summarize(const ToothPass& pass) {

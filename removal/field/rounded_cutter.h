@@ -2,6 +2,7 @@
 // The rounded cylinder (ball, flat, bull-nose): distance, normal and nearest point, for numbers of any kind.
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace camber::removal {
 namespace {  // compiled for several instruction sets
@@ -39,11 +40,10 @@ struct RoundedCutter {
     Number radial, down;
   };
   Normal normal(const Place& p) const {
-    using std::max;
-    const Number zero(0), one(1), per_length = one / max(p.length, Number(1e-12f));
+    const Number zero(0), one(1);
     const auto rounded = (p.outside > zero) & (p.below > zero), wall = p.outside > p.below;
-    return {select(rounded, p.outside * per_length, select(wall, one, zero)),
-            select(rounded, p.below * per_length, select(wall, zero, one))};
+    return {select(rounded, over_length(p.outside, p), select(wall, one, zero)),
+            select(rounded, over_length(p.below, p), select(wall, zero, one))};
   }
 
   /// Height above the tip of the nearest point of the cutter.
@@ -53,6 +53,17 @@ struct RoundedCutter {
     const auto rounded = (p.outside > zero) & (p.below > zero), wall = p.outside > p.below;
     return select(rounded, corner - corner * p.below / max(p.length, Number(1e-12f)),
                   select(wall, max(height, zero), zero));
+  }
+
+ private:
+  /// Vectors divide once for all their components; a double rounds once.
+  static Number over_length(const Number& part, const Place& p) {
+    using std::max;
+    const Number length = max(p.length, Number(1e-12f));
+    if constexpr (std::is_same_v<Number, double>)
+      return part / length;
+    else
+      return part * (Number(1) / length);
   }
 };
 

@@ -11,6 +11,9 @@
 #include "removal/simd/upright_distances.h"
 
 namespace camber::removal {
+
+using namespace upright;
+
 namespace {
 
 constexpr double kVoxel = 0.1, kBand = 0.5;

@@ -12,6 +12,9 @@
 #include "tests/support/cutting.h"
 
 namespace camber::removal {
+
+using namespace upright;
+
 namespace {
 
 constexpr int kSteps = 720, kJump = kSteps / 3, kFlutes = 2;
@@ -116,13 +119,13 @@ TEST(DeflectedEnvelope, MarksLieOnTheDisplacedEnvelope) {
   const DeflectionTable deflections = deflected_rows();
   for (const auto type : {machine::ToolType::ball, machine::ToolType::bull, machine::ToolType::flat}) {
     const EnvelopeGrid envelope = envelope_of(type);
-    const StampDeflections deflections(envelope, deflections);
-    const StampDeflection deflection = deflections.of(0);
+    const StampDeflections of_stamps(envelope, deflections);
+    const StampDeflection deflection = of_stamps.of(0);
     const auto marks = marks_around(envelope, 400, false);
-    const DeflectedEnvelope bent(envelope, deflections, deflection, Vec3::Zero());
+    const DeflectedEnvelope deflected(envelope, deflections, deflection, ToolPose{});
     int met = 0;
     for (const Mark& m : marks) {
-      const double h = bent.height_mm(m.point, m.normal, m.highest);
+      const double h = deflected.height_mm(m.point, m.normal, m.highest);
       if (h >= m.highest) continue;
       // x = q + h n comes from the envelope's point x - deflection: some place there whose own deflection leads to x.
       const Vec3 x = m.point + h * m.normal;
@@ -144,15 +147,15 @@ TEST(DeflectedEnvelope, VectorsOfAllWidthsMarkTheSame) {
   for (const auto type : {machine::ToolType::ball, machine::ToolType::bull, machine::ToolType::flat})
     for (const bool jump : {false, true}) {
       const EnvelopeGrid envelope = envelope_of(type);
-      const StampDeflections deflections(envelope, deflections);
-      const StampDeflection deflection = deflections.of(jump ? 1 : 0);
+      const StampDeflections of_stamps(envelope, deflections);
+      const StampDeflection deflection = of_stamps.of(jump ? 1 : 0);
       const auto marks = marks_around(envelope, 403, jump);
       const auto narrow = heights_by(kBaseMarkKernels, envelope, deflections, marks);
       EXPECT_EQ(narrow, heights_by(mark_kernels(), envelope, deflections, marks));
-      const DeflectedEnvelope bent(envelope, deflections, deflection, Vec3::Zero());
+      const DeflectedEnvelope deflected(envelope, deflections, deflection, ToolPose{});
       std::size_t off = 0;
       for (std::size_t i = 0; i < marks.size(); ++i)
-        off += std::abs(narrow[i] - bent.height_mm(marks[i].point, marks[i].normal, marks[i].highest)) > 2e-5;
+        off += std::abs(narrow[i] - deflected.height_mm(marks[i].point, marks[i].normal, marks[i].highest)) > 2e-5;
       // Where the deflection jumps a rounding may decide on which side a place is.
       EXPECT_LE(off, jump ? 1u : 0u);
     }

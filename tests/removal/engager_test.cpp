@@ -13,6 +13,9 @@
 #include "removal/simd/upright_block_kernels.h"
 
 namespace camber::removal {
+
+using namespace upright;
+
 namespace {
 
 machine::Tool tool_of(machine::ToolType type) {

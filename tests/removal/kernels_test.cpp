@@ -12,6 +12,7 @@
 
 using namespace camber;
 using namespace camber::removal;
+using namespace camber::removal::upright;
 
 namespace {
 

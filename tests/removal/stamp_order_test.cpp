@@ -8,6 +8,9 @@
 #include <gtest/gtest.h>
 
 namespace camber::removal {
+
+using namespace upright;
+
 namespace {
 
 CutterShape cutter(machine::ToolType type, double diameter_mm, double corner_radius_mm = 0) {

@@ -11,6 +11,13 @@
 namespace camber::simulate {
 namespace {
 
+using deflection::edge_force;
+using deflection::edge_force_slope;
+using deflection::EdgeForce;
+using deflection::Milling;
+using deflection::SteadyCutModel;
+using deflection::TurnForces;
+
 using testing::add_row;
 using testing::make_box;
 using testing::make_tool;

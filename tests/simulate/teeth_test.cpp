@@ -11,6 +11,8 @@
 namespace camber::simulate {
 namespace {
 
+using deflection::Teeth;
+
 machine::Tool mill(int flutes) { return testing::make_tool(machine::ToolType::flat, 10, flutes, 0); }
 
 TEST(Teeth, RunOutMovesTheChipFromOneToothToTheOther) {

@@ -95,8 +95,8 @@ double lowest_reached(const Profile& profile, double r, double reach) {
 Eigen::Vector2f deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
                               float x, float y, float z) {
   const double height = envelope.shape.profile.nearest({std::hypot(x, y), z}).place.y();
-  return deflections.at<float>(row, height,
-                               deflections.step_at(std::atan2(y, x), height, envelope.lag_per_mm, envelope.flutes));
+  const double step = deflections.step_at(std::atan2(y, x), height, envelope.lag_per_mm, envelope.flutes);
+  return deflections.at(row, height, step).cast<float>();
 }
 
 /// Calls change(i, j, k0, count, rho, dx, dy, z) for every row that the stamp may change; it tells whether it did.

@@ -7,7 +7,7 @@
 
 #include "tests/support/deflected_shoulder.h"
 
-namespace camber::deflection {
+namespace camber::simulate {
 namespace {
 
 using testing::DeflectedShoulder;
@@ -86,4 +86,4 @@ TEST(StaticCut, AToolThatIsPulledIntoItsCutIsTold) {
 }
 
 }  // namespace
-}  // namespace camber::deflection
+}  // namespace camber::simulate
