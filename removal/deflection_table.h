@@ -1,6 +1,8 @@
 #pragma once
 // How far every point of the envelope is displaced at each stamp of a stretch of path. Filled by deflection/, read by
 // removal/; plain data.
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -28,6 +30,7 @@ struct DeflectionTable {
   DeflectionTable() = default;
   DeflectionTable(std::size_t stamp_count, int steps_per_pitch, std::vector<double> heights)
       : stamps(stamp_count), steps(steps_per_pitch), node_height_mm(std::move(heights)) {
+    assert(std::ranges::is_sorted(node_height_mm));
     values.assign((stamps + 1) * row_size(), 0.0f);
   }
   std::size_t nodes() const { return node_height_mm.size(); }

