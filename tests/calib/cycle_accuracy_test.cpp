@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "test_paths.h"
 #include "tests/support/nc_program.h"
 #include "tests/support/temp_folder.h"
 

@@ -9,6 +9,7 @@
 #include "feedmodel/timed_path.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
+#include "test_paths.h"
 #include "tests/support/feed_runs.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_program.h"

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "test_paths.h"
 #include "tests/support/milling_simulator.h"
 #include "tests/support/temp_folder.h"
 

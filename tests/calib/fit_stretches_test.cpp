@@ -9,6 +9,7 @@
 #include "feedmodel/plan.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
+#include "test_paths.h"
 #include "tests/support/test_program.h"
 
 namespace camber::calib {

@@ -9,6 +9,7 @@
 
 #include "nc/interpreter.h"
 #include "repath/drop_cutter.h"
+#include "test_paths.h"
 #include "tests/nc/rs274_oracle.h"
 #include "tests/support/read_text.h"
 #include "tests/support/run_camber.h"

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/geometry.h"
+#include "test_paths.h"
 #include "tests/support/open_page.h"
 #include "tests/support/run_camber.h"
 

@@ -10,6 +10,7 @@
 #include "machine/job.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
+#include "test_paths.h"
 #include "tests/support/binary_stl.h"
 #include "tests/support/run_camber.h"
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "compensate/compensate.h"
+#include "test_paths.h"
 #include "tests/support/drawn_job.h"
 
 namespace camber::compensate {

@@ -11,6 +11,7 @@
 #include "feedmodel/rapid.h"
 #include "feedmodel/spindle_start.h"
 #include "machine/cases.h"
+#include "test_paths.h"
 #include "tests/support/nc_program.h"
 #include "tests/support/test_program.h"
 

@@ -7,6 +7,7 @@
 
 #include "base/units.h"
 #include "nc/emit.h"
+#include "test_paths.h"
 #include "tests/nc/macro_text.h"
 
 namespace camber::nc {

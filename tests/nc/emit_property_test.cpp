@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "nc/emit.h"
+#include "test_paths.h"
 #include "tests/nc/nc_text.h"
 #include "tests/support/random_program.h"
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "base/units.h"
+#include "test_paths.h"
 #include "tests/nc/nc_text.h"
 
 namespace camber::nc {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "nc/modal_codes.h"
+#include "test_paths.h"
 
 namespace camber::nc {
 namespace {

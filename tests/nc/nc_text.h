@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "nc/interpreter.h"
+#include "test_paths.h"
 
 namespace camber::nc {
 

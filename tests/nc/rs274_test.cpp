@@ -5,6 +5,7 @@
 #include <random>
 #include <string_view>
 
+#include "test_paths.h"
 #include "tests/nc/rs274_oracle.h"
 #include "tests/support/random_program.h"
 

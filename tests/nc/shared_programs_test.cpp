@@ -1,6 +1,7 @@
 // Programs of real CAM systems and controls, where the shared data lie beside the project.
 #include "nc/interpreter.h"
 #include "nc/summary.h"
+#include "test_paths.h"
 #include "tests/nc/nc_text.h"
 
 namespace camber::nc {

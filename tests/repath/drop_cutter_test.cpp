@@ -9,6 +9,7 @@
 
 using namespace camber;
 using namespace camber::removal;
+using namespace camber::repath;
 
 namespace {
 

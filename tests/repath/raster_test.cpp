@@ -13,9 +13,7 @@
 
 using namespace camber;
 using namespace camber::repath;
-using TriangleMesh;
 using removal::CutterShape;
-using repath::DropCutter;
 
 namespace {
 

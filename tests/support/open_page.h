@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "test_paths.h"
+
 namespace camber::tests {
 
 inline bool has_browser() {

@@ -5,6 +5,7 @@
 
 #include <sys/wait.h>
 
+#include "test_paths.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::tests {
