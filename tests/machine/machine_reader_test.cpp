@@ -37,10 +37,10 @@ period_ms = 2
 block_time_ms = 1.5
 merge_tolerance_mm = 0.01
 lookahead_blocks = 200
-arc_normal_fraction = 0.9
-arc_tangential_fraction = 0.8
-stop_acceleration_fraction = 0.5
-corner = { law = "blend", tolerance_mm = 0.02, step_fraction = 0.4, short_line_time_ms = 3 }
+arc_normal_share = 0.9
+arc_tangential_share = 0.8
+stop_acceleration_share = 0.5
+corner = { law = "blend", tolerance_mm = 0.02, step_share = 0.4, short_line_time_ms = 3 }
 [axis.x]
 max_velocity_mm_per_min = 9000.0
 acceleration_mm_per_s2 = 600.0
