@@ -97,8 +97,8 @@ class ToothPassModel {
   };
   MotionChip motion_chip(const EdgeDirections& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
   /// Adds the force and deflection of one edge element at rotation step m.
-  void add(const removal::ChipSample& chip, double thickness_mm, const EdgeDirections& d, std::uint32_t ring, std::size_t m,
-           std::vector<double>& deflection, ToothPass& out) const;
+  void add(const removal::ChipSample& chip, double thickness_mm, const EdgeDirections& d, std::uint32_t ring,
+           std::size_t m, std::vector<double>& deflection, ToothPass& out) const;
 
   void add_end(const ChipEnd& end, double* sums, std::size_t row, std::span<float> fine_mm) const;
 

@@ -17,16 +17,16 @@
 
 namespace camber::simulate {
 
-using removal::DeflectionTable;
-using removal::EnvelopeGrid;
-using removal::Stamp;
-using removal::Stock;
 using deflection::kFine;
 using deflection::StaticCut;
 using deflection::Teeth;
 using deflection::ToothMarks;
 using deflection::ToothPass;
 using deflection::ToothPassModel;
+using removal::DeflectionTable;
+using removal::EnvelopeGrid;
+using removal::Stamp;
+using removal::Stock;
 
 namespace {
 
@@ -92,7 +92,8 @@ class Cutter {
         top_mm_(engaged_top_mm(stock, tool, stamps)),
         envelope_(sampled_envelope(stock, tool, top_mm_, options)),
         model_(envelope_, material, deflection::beam_of(tool),
-               deflection::node_heights(top_mm_, std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm))),
+               deflection::node_heights(top_mm_,
+                                        std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm))),
                options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
                options.axis_compliance_mm_per_N) {
     if (!options.blank) own_blank_.emplace(stock);

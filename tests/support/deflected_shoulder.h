@@ -166,7 +166,8 @@ inline std::vector<PassingFigures> camber_figures(const DeflectedShoulder& s,
   std::vector<removal::Stamp> stamps;
   // The tip below the block: only the wall cuts.
   for (std::size_t k = 0; k < s.passings(); ++k)
-    stamps.push_back({.pose = {.tip_mm = {s.tip_x(k), 0, floor - 0.5}}, .feed_per_tooth_mm = {s.feed_mm, 0, 0}, .first = k == 0});
+    stamps.push_back(
+        {.pose = {.tip_mm = {s.tip_x(k), 0, floor - 0.5}}, .feed_per_tooth_mm = {s.feed_mm, 0, 0}, .first = k == 0});
   simulate::CutOptions options;
   options.coupling = coupling;
   options.edge_ramp_mm = s.edge_ramp_mm;
