@@ -1,6 +1,7 @@
 #include "deflection/static_cut.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace camber::deflection {
@@ -9,8 +10,12 @@ namespace {
 
 constexpr double kTrust = 0.25;  ///< of a change, what the next one is at most where nothing else is known
 constexpr double kFall = 0.6;    ///< a reading should bring the change down to this share
-constexpr double kShorter = 0.7;
-constexpr double kMinShare = 0.3;  ///< of the way to the equilibrium
+constexpr double kShorter = 0.7, kLonger = 1.5;
+constexpr int kSwings = 12;  ///< readings after which what still swings is stilled
+constexpr int kSwingRounds = 4;
+constexpr double kSwingShare = 1;
+constexpr double kAsForeseen = 0.8;  ///< of the fall that a reading promises
+constexpr double kMinShare = 0.3;    ///< of the way to the equilibrium
 
 }  // namespace
 
@@ -20,6 +25,35 @@ void StaticCut::start(std::size_t from, std::size_t count, removal::DeflectionTa
   engager_.start(from, count, deflections);
 }
 
+/// Into the material or out of it: by the bend along the normals of the points that cut.
+NoEquilibrium StaticCut::beyond_reach(std::span<const float> row) const {
+  double inwards = 0;
+  for (const removal::DeflectedChipSample& c : read_) {
+    const std::size_t step =
+        c.chip.point % static_cast<std::uint32_t>(envelope_.steps) % static_cast<std::size_t>(deflections_->steps);
+    const double x = static_cast<double>(row[2 * step]), y = static_cast<double>(row[2 * step + 1]);
+    if (!std::isfinite(x) || !std::isfinite(y)) continue;
+    inwards +=
+        static_cast<double>(envelope_.nx[c.chip.point]) * x + static_cast<double>(envelope_.ny[c.chip.point]) * y;
+  }
+  return inwards > 0 ? NoEquilibrium::pulled_in : NoEquilibrium::pushed_out;
+}
+
+/// An edge that comes to rest where its next point would begin or cease to cut has no reading with a balance of its
+/// own: one asks for less bend, the next for more. Ever shorter steps close in on the place between them. True where
+/// the bend has stayed since swing_ was kept, and the readings are at odds about a small share of it only.
+bool StaticCut::rests(std::span<const float> row, const StaticEquilibrium::Step& step) const {
+  constexpr double kAtOdds = 0.1, kAtOdds_um = 1;
+  if (swing_.size() != row.size() || step.rms_um > std::max(kAtOdds_um, kAtOdds * step.size_um)) return false;
+  double change2 = 0, size2 = 0;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const double is = static_cast<double>(row[i]), was = static_cast<double>(swing_[i]);
+    change2 += (is - was) * (is - was), size2 += is * is;
+  }
+  const double part = size2 > 0 ? std::sqrt(change2 / size2) : 0;
+  return part * step.size_um < std::max(options_.settle_um, options_.settle_fraction * step.size_um);
+}
+
 StaticCut::Passing StaticCut::cut(std::size_t k) {
   const auto at = static_cast<std::ptrdiff_t>(k);
   const std::span<float> row(deflections_->row(at), deflections_->row_size());
@@ -27,6 +61,7 @@ StaticCut::Passing StaticCut::cut(std::size_t k) {
   std::copy_n(guess, row.size(), row.begin());
   Passing out;
   out.settled = false;
+  swing_.clear();
   double share = 1, before_um = std::numeric_limits<double>::infinity();
   while (!out.settled && out.rounds < options_.max_rounds) {
     const auto read = engager_.read(k);
@@ -34,13 +69,24 @@ StaticCut::Passing StaticCut::cut(std::size_t k) {
     const auto step = equilibrium_.solve(read_, from_ + k, stamps_[from_ + k], share, row);
     ++out.rounds;
     if (!(deflections_->largest_mm(at) <= removal::DeflectedEngager::kMaxDeflection_mm)) {
+      out.reason = beyond_reach(row);
       std::copy_n(guess, row.size(), row.begin());
       break;
     }
     const double next_um = step.rms_um * std::max(kTrust, step.rms_um / before_um);
     out.settled = next_um < std::max(options_.settle_um, options_.settle_fraction * step.size_um);
     // What swings from reading to reading is stilled by shorter steps.
-    if (step.rms_um > kFall * before_um) share = std::max(kMinShare, kShorter * share);
+    if (step.rms_um < (1 - kAsForeseen * share) * before_um)
+      share = std::min(1.0, kLonger * share);
+    else if (step.rms_um > kFall * before_um)
+      share = std::max(kMinShare, kShorter * share);
+    if (out.rounds >= kSwings) {
+      share = std::min(share, kSwingShare / (out.rounds - kSwings + 1));
+      if ((out.rounds - kSwings) % kSwingRounds == 0) {
+        out.settled |= rests(row, step);
+        swing_.assign(row.begin(), row.end());
+      }
+    }
     before_um = step.rms_um;
   }
   engager_.cut(k);

@@ -8,6 +8,13 @@
 
 namespace camber::deflection {
 
+/// Why a tooth passing has no static equilibrium that was found.
+enum class NoEquilibrium {
+  pulled_in,   ///< the force grows faster with the chip than the tool resists: it bends into the material without end
+  pushed_out,  ///< the tool bends away by more than removal::DeflectedEngager::kMaxDeflection_mm
+  swings,      ///< reading after reading asks for another bend
+};
+
 struct SettleOptions {
   int max_rounds = 40;     ///< readings of one stamp's chips
   double settle_um = 0.1;  ///< change of the deflection that the next reading may bring, rms over the cut, or ...
@@ -23,6 +30,7 @@ class StaticCut {
             const SettleOptions& options)
       : stamps_(stamps),
         options_(options),
+        envelope_(envelope),
         engager_(stock, blank, envelope, stamps, first_id),
         equilibrium_(envelope, model) {}
 
@@ -33,7 +41,8 @@ class StaticCut {
   struct Passing {
     int rounds = 0;
     bool settled = true;
-    std::span<const removal::ChipSample> chips;  ///< gone at the next call
+    NoEquilibrium reason = NoEquilibrium::swings;  ///< where it has not
+    std::span<const removal::ChipSample> chips;    ///< gone at the next call
   };
   /// Cuts stamps[from + k]. Where it finds no equilibrium, or one deflected beyond
   /// removal::DeflectedEngager::kMaxDeflection_mm, the cutter keeps the bend nearest to one, in the latter case that of
@@ -43,14 +52,19 @@ class StaticCut {
   double commit() { return engager_.commit(); }
 
  private:
+  NoEquilibrium beyond_reach(std::span<const float> row) const;
+  bool rests(std::span<const float> row, const StaticEquilibrium::Step& step) const;
+
   std::span<const removal::Stamp> stamps_;
   SettleOptions options_;
+  const removal::EnvelopeGrid& envelope_;
   removal::DeflectedEngager engager_;
   StaticEquilibrium equilibrium_;
   std::size_t from_ = 0;
   removal::DeflectionTable* deflections_ = nullptr;
   std::vector<removal::DeflectedChipSample> read_;
   std::vector<removal::ChipSample> chips_;
+  std::vector<float> swing_;  ///< the bend a few readings ago
 };
 
 }  // namespace camber::deflection

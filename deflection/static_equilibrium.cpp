@@ -14,7 +14,8 @@ namespace camber::deflection {
 
 namespace {
 
-constexpr int kMaxSteps = 25;
+constexpr int kMaxSteps = 8;
+constexpr int kMaxDamped = 60;
 constexpr double kExact_mm = 2e-5;  ///< of delta - C F, at any node
 constexpr double kFar2_mm2 = 1e4;   ///< no tool bends that far and cuts
 constexpr int kMaxHalvings = 5;
@@ -42,6 +43,7 @@ StaticEquilibrium::StaticEquilibrium(const removal::EnvelopeGrid& envelope, cons
   for (auto* v : {&by_own_, &by_side_}) v->assign(steps_ * nodes_ * 8, 0.0);
   coarse_.assign(steps_ * 4, 0.0);
   norm_.assign(steps_, 0.0);
+  damping_.assign(steps_, 0.0);
   stale_.assign(steps_, 1);
 }
 
@@ -191,7 +193,7 @@ void StaticEquilibrium::solve_coarse() {
   };
   for (std::size_t m = 0; m + 1 < n; ++m) {
     const Coarse side = block(by_side_, m);
-    Coarse own = Coarse::Identity() - block(by_own_, m);
+    Coarse own = (1 + damping_[m]) * Coarse::Identity() - block(by_own_, m);
     CoarseShift r = right(m);
     Coarse b = Coarse::Zero();
     if (m == 0) {
@@ -218,7 +220,8 @@ void StaticEquilibrium::solve_coarse() {
     first_border = border[m] - ahead[m] * first_border;
   }
   const Coarse side = block(by_side_, n - 1);
-  const Coarse own = Coarse::Identity() - block(by_own_, n - 1) + side * first_border - side * before_border;
+  const Coarse own =
+      (1 + damping_[n - 1]) * Coarse::Identity() - block(by_own_, n - 1) + side * first_border - side * before_border;
   CoarseShift x = own.partialPivLu().solve(right(n - 1) + side * first_value - side * before_value);
   const CoarseShift last = x;
   Eigen::Map<CoarseShift>(coarse_.data() + 4 * (n - 1)) = x;
@@ -258,13 +261,39 @@ void StaticEquilibrium::advance() {
     const bool stays = norm_[m] < kExact_mm && own.lpNorm<Eigen::Infinity>() < kExact_mm;
     for (std::size_t i = 2 * m * nodes_; i < 2 * (m + 1) * nodes_; ++i)
       step_[i] = stays ? 0.0
-                       : left_[i] + Eigen::Map<const Eigen::RowVector4d>(by_own_.data() + 4 * i).dot(own) +
-                             Eigen::Map<const Eigen::RowVector4d>(by_side_.data() + 4 * i).dot(side);
+                       : (left_[i] + Eigen::Map<const Eigen::RowVector4d>(by_own_.data() + 4 * i).dot(own) +
+                          Eigen::Map<const Eigen::RowVector4d>(by_side_.data() + 4 * i).dot(side)) /
+                             (1 + damping_[m]);
     stale_[m] = stays ? 0 : 1;
   }
   const std::vector<char> moves = stale_;
   for (std::size_t m = 0; m < steps_; ++m)
     if (moves[m] != 0) stale_[m + 1 == steps_ ? 0 : m + 1] = stale_[m == 0 ? steps_ - 1 : m - 1] = 1;
+}
+
+/// Where Newton's method swings about a corner of the force: a tool that creeps towards the balance, as a damped one
+/// would, comes to rest at a balance that is stable. Rotation steps that come nearer creep faster.
+void StaticEquilibrium::creep(Step& out) {
+  constexpr double kFirst = 0.5, kMax = 4, kFaster = 0.4, kSlower = 2;
+  std::vector<double> least(steps_, 0.0);
+  for (std::size_t m = 0; m < steps_; ++m) damping_[m] = norm_[m] < kExact_mm ? 0 : kFirst;
+  for (int step = 0; step < kMaxDamped; ++step, ++out.steps) {
+    const std::vector<double> before = norm_;
+    solve_coarse();
+    advance();
+    for (std::size_t i = 0; i < shift_.size(); ++i) shift_[i] += step_[i];
+    if (!(balance_all() < kFar2_mm2)) break;
+    out.solved = *std::ranges::max_element(norm_) < kExact_mm;
+    if (out.solved) break;
+    for (std::size_t m = 0; m < steps_; ++m) {
+      if (norm_[m] < kExact_mm) continue;
+      const bool nearer = norm_[m] < before[m];
+      damping_[m] =
+          nearer ? std::max(least[m], kFaster * damping_[m]) : std::clamp(kSlower * damping_[m], kFirst, kMax);
+      if (!nearer) least[m] = 0.5 * damping_[m];
+    }
+  }
+  std::fill(damping_.begin(), damping_.end(), 0.0);
 }
 
 StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing,
@@ -294,6 +323,7 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
     }
     left2 = next2;
   }
+  if (!out.solved) creep(out);
   double change2 = 0, size2 = 0;
   std::size_t count = 0;
   for (std::size_t m = 0; m < steps_; ++m) {

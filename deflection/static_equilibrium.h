@@ -57,6 +57,7 @@ class StaticEquilibrium {
   double balance_all();
   void solve_coarse();
   void advance();
+  void creep(Step& out);
 
   const removal::EnvelopeGrid& envelope_;
   const ToothPassModel& model_;
@@ -73,10 +74,11 @@ class StaticEquilibrium {
   std::vector<double> left_;          ///< C F - delta
   std::vector<double> step_;          ///< Newton's
   std::vector<double> by_own_,
-      by_side_;                 ///< [steps][nodes][2][4]: of C F, by the deflections at the first and last node
-  std::vector<double> coarse_;  ///< [steps][4]: Newton's step there
-  std::vector<double> norm_;    ///< [steps]: largest of left_
-  std::vector<char> stale_;     ///< [steps]: deflections have changed since left_ was worked out
+      by_side_;                  ///< [steps][nodes][2][4]: of C F, by the deflections at the first and last node
+  std::vector<double> coarse_;   ///< [steps][4]: Newton's step there
+  std::vector<double> damping_;  ///< [steps]: how much slower than Newton's step a deflection follows
+  std::vector<double> norm_;     ///< [steps]: largest of left_
+  std::vector<char> stale_;      ///< [steps]: deflections have changed since left_ was worked out
 };
 
 }  // namespace camber::deflection

@@ -107,6 +107,14 @@ std::vector<ChipSample> chips_of(const EnvelopeBlocks& blocks, std::span<const C
 double chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const ChipSample> chips);
 double chip_volume_mm3(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const ChipBlock> chips);
 
+/// As chip_volume_mm3 of undeflected chips, the area being that which the edge sweeps as the tool bends: a chip's
+/// thickness lies along the envelope's normal n, and the surface p + delta has the area
+///   n . (d(p + delta)/dphi x d(p + delta)/ds) dphi ds = (1 + d(delta)/(r dphi) . t + d(delta)/ds . m) dA,
+/// t along the circle of latitude, m along the meridian. A bend that changes by 5 % of the length of the way that the
+/// edge goes changes the volume by as much. `row`: of the stamp, as those of `deflections`.
+double swept_chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const ChipSample> chips,
+                             const DeflectionTable& deflections, const float* row);
+
 /// Receives the chips of stamp `from` + k. Called by several threads at once, once for every k, in any order; the
 /// span is valid during the call only.
 using ChipSink = std::function<void(std::size_t k, std::span<const ChipBlock>)>;
@@ -138,6 +146,10 @@ class RigidEngager {
 /// Maximum tilt of the deflected envelope (a deflection that jumps at an edge's entry is no slope).
 constexpr double kMaxTilt = 0.3;
 
+/// A depth that goes beyond what the motion allows by less than this factor is the surface that the tooth before left:
+/// it is known better than the motion's allowance, of which the smaller of the two would make a lower bound.
+constexpr float kBeyondCap = 2.0f;
+
 /// Points up to this far outside the material are reported, with a negative thickness.
 constexpr float kNear_mm = 0.1f;
 
@@ -145,7 +157,7 @@ constexpr float kNear_mm = 0.1f;
 struct DeflectedChipSample {
   ChipSample chip;     ///< its thickness is the smaller of the next two, negative for a point outside the material
   float depth_mm = 0;  ///< of the stock below the point, against the normal
-  float cap_mm = 0;    ///< what the motion allows
+  float cap_mm = 0;    ///< what the motion allows; kBeyondCap times that where the depth is less
   std::array<float, 2> deeper{};  ///< d(depth)/d(deflection), by x and y
 };
 

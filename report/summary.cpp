@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <span>
 
 #include <fmt/format.h>
@@ -115,10 +116,39 @@ std::string holes_text(const simulate::HoleFigures& h) {
 
 namespace {
 
-/// Each once, in order.
-std::vector<std::size_t> unsettled_lines(const simulate::SimulatedProgram& program, const simulate::Prediction& p) {
+using Reason = deflection::NoEquilibrium;
+
+/// What keeps the tool from an equilibrium, before the lines in which it does.
+const char* condition(Reason reason) {
+  switch (reason) {
+    case Reason::pulled_in:
+      return "the tool is pulled into its cut (the force grows faster with the chip than the tool is stiff) in";
+    case Reason::pushed_out:
+      return "the tool is pushed out of its cut by more than 0.5 mm in";
+    case Reason::swings:
+      break;
+  }
+  return "the tool swings between two deflections in";
+}
+
+const char* name(Reason reason) {
+  return reason == Reason::pulled_in ? "pulled in" : reason == Reason::pushed_out ? "pushed out" : "swings";
+}
+
+std::string named(const std::vector<std::size_t>& lines) {
+  constexpr std::size_t kNamed = 5;
+  return fmt::format("line{} {}{}", lines.size() > 1 ? "s" : "",
+                     fmt::join(std::span(lines).first(std::min(lines.size(), kNamed)), ", "),
+                     lines.size() > kNamed ? fmt::format(" and {} more", lines.size() - kNamed) : "");
+}
+
+/// Each once, in order; of one reason or all.
+std::vector<std::size_t> unsettled_lines(const simulate::SimulatedProgram& program, const simulate::Prediction& p,
+                                         std::optional<Reason> reason = {}) {
   std::vector<std::size_t> lines;
-  for (const std::uint32_t move : p.cut.unsettled_moves) lines.push_back(program.moves.moves[move].block + 1);
+  for (std::size_t i = 0; i < p.cut.unsettled_moves.size(); ++i)
+    if (!reason || p.cut.unsettled_reasons[i] == *reason)
+      lines.push_back(program.moves.moves[p.cut.unsettled_moves[i]].block + 1);
   std::ranges::sort(lines);
   const auto again = std::ranges::unique(lines);
   lines.erase(again.begin(), again.end());
@@ -146,6 +176,9 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
   j["static"] = {{"rounds_max", p.cut.rounds_max},
                  {"unsettled_stretches", p.cut.unsettled},
                  {"unsettled_lines", unsettled_lines(program, p)}};
+  for (const Reason reason : {Reason::pulled_in, Reason::pushed_out, Reason::swings})
+    if (const auto lines = unsettled_lines(program, p, reason); !lines.empty())
+      j["static"]["unsettled_reasons"].push_back({{"reason", name(reason)}, {"lines", lines}});
   return j.dump(2) + "\n";
 }
 
@@ -393,15 +426,14 @@ std::string compensate_text(const compensate::Compensation& c, double compute_s)
 
 std::string unsettled_sentence(const simulate::SimulatedProgram& program, const simulate::Prediction& p) {
   if (p.cut.unsettled == 0) return {};
-  constexpr std::size_t kNamed = 5;
-  const std::vector<std::size_t> lines = unsettled_lines(program, p);
+  std::string why;
+  for (const auto reason : {Reason::pulled_in, Reason::pushed_out, Reason::swings}) {
+    const std::vector<std::size_t> lines = unsettled_lines(program, p, reason);
+    if (!lines.empty()) why += fmt::format("{}{} {}", why.empty() ? "" : "; ", condition(reason), named(lines));
+  }
   return fmt::format(
-      "the tool finds no static equilibrium in {} stretches of the path, in line{} {}{}: it is pushed out of the cut "
-      "or "
-      "pulled into it, or swings between two states; figures from there on are uncertain",
-      p.cut.unsettled, lines.size() > 1 ? "s" : "",
-      fmt::join(std::span(lines).first(std::min(lines.size(), kNamed)), ", "),
-      lines.size() > kNamed ? fmt::format(" and {} more", lines.size() - kNamed) : "");
+      "the static deflection did not converge in {} stretch{} of the path: {}; figures from there on are uncertain",
+      p.cut.unsettled, p.cut.unsettled > 1 ? "es" : "", why);
 }
 
 std::string unsettled_sentence(const compensate::Compensation& c) {

@@ -206,13 +206,16 @@ class Cutter {
       const auto passing = static_cut_->cut(k);
       model_.evaluate(passing.chips, from + k, stamp.feed_per_tooth_mm, pass);
       loads[k] = summarize(pass);
-      loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, passing.chips);
+      loads[k].chip_mm3 = removal::swept_chip_volume_mm3(envelope_, passing.chips, deflections,
+                                                         deflections.row(static_cast<std::ptrdiff_t>(k)));
       keep_turn(passing.chips, stamp, from + k, result);
       result.rounds_max = std::max(result.rounds_max, passing.rounds);
       if (!passing.settled) {
         if (settled_) ++result.unsettled;
-        if (result.unsettled_moves.empty() || result.unsettled_moves.back() != stamp.move)
+        if (result.unsettled_moves.empty() || result.unsettled_moves.back() != stamp.move) {
           result.unsettled_moves.push_back(stamp.move);
+          result.unsettled_reasons.push_back(passing.reason);
+        }
       }
       settled_ = passing.settled;
     }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "deflection/static_cut.h"
 #include "deflection/tooth_pass.h"
 #include "machine/job.h"
 #include "removal/form_error.h"
@@ -64,7 +65,8 @@ struct CutResult {
   int rounds_max = 0;                          ///< of the static solution: readings of a tooth passing's chips
   std::size_t unsettled = 0;                   ///< stretches of tooth passings without a static equilibrium
   std::vector<std::uint32_t> unsettled_moves;  ///< of these tooth passings: Stamp::move, each once in a row
-  deflection::TurnForces turn;                 ///< empty without CutOptions::turn_from
+  std::vector<deflection::NoEquilibrium> unsettled_reasons;  ///< of the first passing of each
+  deflection::TurnForces turn;                               ///< empty without CutOptions::turn_from
 };
 
 /// Cuts `stock`: with the deflected cutter, or in rigid coupling, where no bending feeds back, with the undeflected

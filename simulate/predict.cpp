@@ -173,6 +173,8 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
     out.cut.unsettled += cut_run.unsettled;
     out.cut.unsettled_moves.insert(out.cut.unsettled_moves.end(), cut_run.unsettled_moves.begin(),
                                    cut_run.unsettled_moves.end());
+    out.cut.unsettled_reasons.insert(out.cut.unsettled_reasons.end(), cut_run.unsettled_reasons.begin(),
+                                     cut_run.unsettled_reasons.end());
     if (cut_options.turn_from) out.cut.turn = std::move(cut_run.turn);
   });
   out.surface = map.take();

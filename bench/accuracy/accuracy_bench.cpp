@@ -1,5 +1,7 @@
 // Camber against the drawn cut (tests/support/displaced_envelope.h): force and form error of rigid finishing cuts.
-//   accuracy_bench plane | cutters | uneven | grid | wall | voxels | static
+//   accuracy_bench plane | cutters | uneven | grid | wall | voxels
+// Static coupling against a drawn shoulder on a spring, and against milling simulated in time:
+//   accuracy_bench static | static-plane | static-wall | judge
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +13,8 @@
 #include "tests/support/deflected_shoulder.h"
 #include "tests/support/finished_wall.h"
 #include "tests/support/inclined_plane.h"
+#include "tests/support/static_plane.h"
+#include "tests/support/static_wall.h"
 
 using namespace camber;
 using testing::CutFigures;
@@ -296,6 +300,131 @@ void shoulders() {
   }
 }
 
+/// Static coupling of a ball on a plane, against the simulation in time.
+void static_plane(const std::string& name, testing::InclinedPlane p) {
+  p.coupling = machine::Coupling::static_;
+  const auto want = testing::judged_figures(p);
+  const auto got = testing::camber_figures(p);
+  const double mean = 100 * (got.mean_N - want.mean_N).norm() / want.mean_N.norm();
+  std::printf(
+      "| %s | %.1f N, %.1f %.1f %.1f um | %+.1f %% | %.1f %% | %+.1f %% (%+.2f um) | %+.1f %% (%+.2f) | %+.1f %% "
+      "(%+.2f) | %+.2f "
+      "%% | %.3f | %zu, %d |\n",
+      name.c_str(), want.lateral_max_N, want.p5_um, want.median_um, want.p95_um,
+      off(got.lateral_max_N, want.lateral_max_N), mean, off(got.p5_um, want.p5_um), got.p5_um - want.p5_um,
+      off(got.median_um, want.median_um), got.median_um - want.median_um, off(got.p95_um, want.p95_um),
+      got.p95_um - want.p95_um, 100 * (testing::chips_over_surface(p, got) - 1), got.chips_of_stock, got.unsettled,
+      want.unsettled_steps);
+  std::fflush(stdout);
+}
+
+machine::Material kienzle_steel() {
+  machine::Material m;
+  m.law = machine::ForceLaw::kienzle;
+  m.kc1_1_MPa = 1410, m.mc = 0.128, m.kr1_1_MPa = 564, m.mr = 0.128;
+  return m;
+}
+
+void static_planes() {
+  std::printf(
+      "| | judge: peak; p5, median, p95 | peak | mean force | p5 | median | p95 | chips, surface | chips / stock | "
+      "unsettled, judge's steps |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const double young : {600.0, 400.0, 300.0, 250.0, 210.0, 150.0}) {
+    testing::InclinedPlane p;
+    p.young_MPa = 1000 * young;
+    static_plane(fmt::format("45 degrees, {} GPa", young), p);
+  }
+  for (const double young : {600.0, 210.0})
+    for (const double slope : {15.0, 30.0, 60.0, 75.0}) {
+      testing::InclinedPlane p;
+      p.young_MPa = 1000 * young, p.slope_deg = slope;
+      static_plane(fmt::format("{} degrees, {} GPa", slope, young), p);
+    }
+  for (const double young : {600.0, 210.0}) {
+    testing::InclinedPlane p;
+    p.young_MPa = 1000 * young, p.upwards = false;
+    static_plane(fmt::format("rows downwards, {} GPa", young), p);
+    p.along_x = 1;
+    static_plane(fmt::format("rows downwards, along +X, {} GPa", young), p);
+    p.upwards = true;
+    static_plane(fmt::format("along +X, {} GPa", young), p);
+    p.along_x = -1, p.material = kienzle_steel();
+    static_plane(fmt::format("Kienzle, {} GPa", young), p);
+    p = {};
+    p.young_MPa = 1000 * young, p.pitch_deg = {180, 180}, p.run_out_mm = 0.003, p.run_out_deg = 20;
+    static_plane(fmt::format("run-out 3 um, {} GPa", young), p);
+  }
+}
+
+/// The same of a flat end mill along a wall and through a slot.
+void static_wall(const std::string& name, FinishedWall w) {
+  w.coupling = machine::Coupling::static_;
+  const auto want = testing::judged_figures(w);
+  const auto got = testing::camber_figures(w);
+  const double mean = 100 * (got.mean_N - want.mean_N).norm() / want.mean_N.norm();
+  double largest = 0, worst = 0;
+  for (const double e : want.error_um) largest = std::max(largest, std::abs(e));
+  for (std::size_t i = 0; i < want.error_um.size(); ++i)
+    worst = std::max(worst, std::abs(got.error_um[i] - want.error_um[i]));
+  std::printf("| %s | %.1f N, %.1f um | %+.1f %% | %.1f %% | %.2f um, %.1f %% | %.3f | %.3f | %zu, %d |\n",
+              name.c_str(), want.lateral_max_N, largest, off(got.lateral_max_N, want.lateral_max_N), mean, worst,
+              100 * worst / largest, got.chips_of_stock, want.chips_of_surface, got.unsettled, want.unsettled_steps);
+  std::fflush(stdout);
+}
+
+void static_walls() {
+  std::printf(
+      "| | judge: peak, largest error | peak | mean force | largest difference of a slice | chips / stock | judge's "
+      "chips / surface | unsettled, judge's steps |\n|---|---|---|---|---|---|---|---|\n");
+  for (const double young : {600.0, 210.0})
+    for (const double radial : {0.5, 2.0, 5.0, 12.0})
+      for (const bool up : {true, false}) {
+        FinishedWall w;
+        w.young_MPa = 1000 * young, w.radial_mm = radial, w.up = up;
+        if (radial > 10)
+          static_wall(fmt::format("slot, {} side, {} GPa", up ? "up" : "down", young), w);
+        else
+          static_wall(fmt::format("{}, ae {}, {} GPa", up ? "up" : "down", radial, young), w);
+      }
+  FinishedWall w;
+  w.young_MPa = 300000, w.pitch_deg = {90, 90, 90, 90}, w.run_out_mm = 0.003, w.run_out_deg = 20;
+  static_wall("up, ae 0.5, run-out 3 um, 300 GPa", w);
+  w = {};
+  w.young_MPa = 300000, w.material = kienzle_steel();
+  static_wall("up, ae 0.5, Kienzle, 300 GPa", w);
+}
+
+/// The judge against its own steps and grid.
+void judge() {
+  for (const double young : {600.0, 210.0}) {
+    testing::InclinedPlane p;
+    p.young_MPa = 1000 * young;
+    const auto line = [&](const char* name, const testing::JudgeSteps& s) {
+      const auto f = testing::judged_figures(p, s);
+      std::printf("| %s, %g GPa | %.2f N | %.3f %.3f %.3f N | %.2f %.2f %.2f um | %.4f |\n", name, young,
+                  f.lateral_max_N, f.mean_N.x(), f.mean_N.y(), f.mean_N.z(), f.p5_um, f.median_um, f.p95_um,
+                  f.chips_of_surface);
+      std::fflush(stdout);
+    };
+    testing::JudgeSteps s;
+    line("0.25 degrees, edge 0.03, grid 0.02 mm", s);
+    s.rotation_deg = 0.5;
+    line("0.5 degrees", s);
+    s = {};
+    s.grid_mm = 0.01;
+    line("grid 0.01 mm", s);
+    s = {};
+    s.edge_mm = 0.015;
+    line("edge 0.015 mm", s);
+    s = {};
+    s.bent_rows = 12;
+    line("12 rows", s);
+    s = {};
+    s.ramp_mm = 0.001;
+    line("ramp 1 um", s);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -306,5 +435,8 @@ int main(int argc, char** argv) {
   if (what == "grid") grid();
   if (what == "wall") walls(), slots();
   if (what == "voxels") voxels();
-  if (what == "static") shoulders();
+  if (what == "static") shoulders(), static_planes(), static_walls();
+  if (what == "static-plane") static_planes();
+  if (what == "static-wall") static_walls();
+  if (what == "judge") judge();
 }

@@ -9,6 +9,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "removal/engage/upright/bend_memory.h"
 #include "removal/engage/upright/chip_reader.h"
 #include "removal/engage/upright/patch_lanes.h"
 #include "removal/field/upright/carve.h"
@@ -53,9 +54,10 @@ struct DeflectedEngager::Impl {
   std::optional<Stock::Probe> probe{};
   TileArena arena{};
   std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
-  double removed_mm3 = 0;                       ///< from tiles that were given back since the last commit
-  double max_deflection_mm = 0;                 ///< of all stamps that were cut
-  std::vector<float> into{};                    ///< of the patches
+  BendMemory memory{};
+  double removed_mm3 = 0;        ///< from tiles that were given back since the last commit
+  double max_deflection_mm = 0;  ///< of all stamps that were cut
+  std::vector<float> into{};     ///< of the patches
   std::vector<Touch> touches{};
   std::vector<std::size_t> first_touch{};  ///< of each tile that is touched
   std::vector<std::vector<DeflectedChipSample>> chips_of_tile{};
@@ -143,7 +145,8 @@ void DeflectedEngager::start(std::size_t from, std::size_t count, const Deflecti
       m.stock, m.blank, m.envelope.shape, m.stamps,
       [&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); }, kMaxDeflection_mm);
   load_cut(m.stock, m.arena, m.envelope.shape, tips_by_id(m.all, m.first_id, m.max_deflection_mm), m.tiles);
-  m.reader.emplace(m.envelope, *m.lanes, m.all, m.stamps, m.first_id, m.stock.voxel_mm(), deflections);
+  m.memory.begin(deflections);
+  m.reader.emplace(m.envelope, *m.lanes, m.all, m.stamps, m.first_id, m.stock.voxel_mm(), deflections, m.memory);
   m.probe.emplace(m.stock);
 }
 
@@ -169,6 +172,7 @@ std::span<const DeflectedChipSample> DeflectedEngager::read(std::size_t k) {
 void DeflectedEngager::cut(std::size_t k) {
   Impl& m = *impl_;
   const StampDeflection deflection = StampDeflections(m.envelope, *m.deflections).of(static_cast<std::ptrdiff_t>(k));
+  m.memory.add(m.deflections->row(static_cast<std::ptrdiff_t>(k)));
   m.max_deflection_mm = std::max(m.max_deflection_mm, deflection.largest_mm);
   const auto reached = m.arena.reached_by(k);
   tbb::parallel_for(std::size_t{0}, reached.size(),

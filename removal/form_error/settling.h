@@ -8,6 +8,8 @@ namespace {  // compiled for several instruction sets
 struct Settling {
   static constexpr int kSteps = 32;
   static constexpr float kClose_mm = 1e-5f;
+  static constexpr int kFieldSteps = 16;  ///< where the field of a deflected cutter is read
+  static constexpr float kFieldClose_mm = 5e-5f;
   static constexpr float kFlattest = 0.3f;  ///< slope of an envelope against a point's normal, at least
 
   /// Where the deflection jumps against the motion of the edge, the envelope is torn, and the tooth draws the gap while

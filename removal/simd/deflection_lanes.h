@@ -4,6 +4,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "removal/field/rounded_cutter.h"
+#include "removal/form_error/settling.h"
 #include "removal/simd/upright_kernels.h"
 #include "removal/simd/vector_table.h"
 
@@ -72,6 +73,24 @@ struct DeflectionLanes {
     const F one(1.0f), w00 = (one - fn) * (one - fm), w01 = (one - fn) * fm, w10 = fn * (one - fm), w11 = fn * fm;
     return {w00 * s00.x + w01 * s01.x + w10 * s10.x + w11 * s11.x,
             w00 * s00.y + w01 * s01.y + w10 * s10.y + w11 * s11.y};
+  }
+
+  /// The deflection s of the envelope's point that is displaced to a place: s = deflection_at(place - s), from a first
+  /// guess.
+  static Deflection settled_at(const EdgeLanes& e, const DeflectionRow& rows, const I& offset, const F& x, const F& y,
+                               const F& z, Deflection s) {
+    const F zero(0.0f), close2(Settling::kFieldClose_mm * Settling::kFieldClose_mm);
+    auto live = close2 > zero;
+    for (int step = 0; step < Settling::kFieldSteps; ++step) {
+      const Deflection next = deflection_at(e, rows, offset, x - s.x, y - s.y, z);
+      const F turned_x = next.x - s.x, turned_y = next.y - s.y;
+      const F share(Settling::share_of(step));
+      s.x += xsimd::select(live, share * turned_x, zero);
+      s.y += xsimd::select(live, share * turned_y, zero);
+      live = live & (turned_x * turned_x + turned_y * turned_y > close2);
+      if (!xsimd::any(live)) break;
+    }
+    return s;
   }
 };
 

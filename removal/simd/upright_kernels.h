@@ -48,10 +48,15 @@ struct LaneReading {
 
 /// A point against the stamps whose fields meet in its cell.
 struct CornerLanes {
-  alignas(64) float tip[3][8];      ///< from the point, mm
+  alignas(64) float tip[3][8];      ///< from the point, mm; out: with the deflection of a known row
   alignas(64) float valid[8];       ///< 0: none
-  alignas(64) float deflection[8];  ///< how much farther out than the straight cutter's the surface lies there, mm
+  alignas(64) float deflection[8];  ///< how much farther out than that cutter's the surface lies there, mm
+  alignas(64) float known[8];       ///< 1: the stamp's deflections are in `rows`, else 0
+  alignas(64) std::int32_t row[8];  ///< there: first pair
   float normal[3];
+  DeflectionRow rows;  ///< `now`: of many stamps; null: of none
+  float guess[2];      ///< of the deflections, mm
+  float lag_per_mm, steps_per_rad;
 };
 
 struct Thinnest {
@@ -114,7 +119,7 @@ struct Kernels {
                       LaneReading& out);
   /// Thickness of what a rounded cylinder left at each corner's tip, along the normal: distance over slope, the slope
   /// at least `least_slope`; the least of them and its corner, at most 0 where one has cut the point away.
-  Thinnest (*thinnest)(const CornerLanes& corners, float flat, float corner, float least_slope);
+  Thinnest (*thinnest)(CornerLanes& corners, float flat, float corner, float least_slope);
   /// stock = max(stock, -cutter), at most band; voxels that change take the id.
   LineResult (*cut_line)(const LineCut& line);
   LineResult (*cut_line_deflected)(const LineCut& line, const LineDeflection& deflection);

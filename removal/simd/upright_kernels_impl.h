@@ -105,13 +105,22 @@ struct Vectors {
     }
   }
 
-  static Thinnest thinnest(const CornerLanes& c, float flat, float corner, float least_slope) {
+  static Thinnest thinnest(CornerLanes& c, float flat, float corner, float least_slope) {
     alignas(64) float each[8];
     const F zero(0.0f), tiny(1e-12f);
     const RoundedCutter<F> cutter{F(flat), F(corner)};
     for (int l = 0; l < 8; l += n) {
       // From the tip to the point.
-      const F x = -load(c.tip[0] + l), y = -load(c.tip[1] + l), z = -load(c.tip[2] + l);
+      F x = -load(c.tip[0] + l), y = -load(c.tip[1] + l);
+      const F z = -load(c.tip[2] + l);
+      if (c.rows.now) {
+        const F known = load(c.known + l);
+        const Deflection guess{known * F(c.guess[0]), known * F(c.guess[1])};
+        const Deflection s = DeflectionLanes<A>::settled_at({flat, corner, c.lag_per_mm, c.steps_per_rad}, c.rows,
+                                                            load(c.row + l), x, y, z, guess);
+        x -= known * s.x, y -= known * s.y;
+        (-x).store_unaligned(c.tip[0] + l), (-y).store_unaligned(c.tip[1] + l);
+      }
       const F rho = xsimd::sqrt(x * x + y * y);
       const auto place = cutter.place(rho, z);
       const auto normal = cutter.normal(place);
@@ -127,10 +136,11 @@ struct Vectors {
     return least;
   }
 
-  /// Deflection of the envelope's point nearest to a place.
-  static Deflection deflection_at(const LineCut& c, const LineDeflection& b, const F& x, const F& y, const F& z) {
-    return DeflectionLanes<A>::deflection_at({c.flat, c.corner, b.lag_per_mm, b.steps_per_rad}, b.deflection, I(0), x,
-                                             y, z);
+  /// Deflection of the envelope's point that is displaced to a place.
+  static Deflection settled_at(const LineCut& c, const LineDeflection& b, const F& x, const F& y, const F& z) {
+    const F zero(0.0f);
+    return DeflectionLanes<A>::settled_at({c.flat, c.corner, b.lag_per_mm, b.steps_per_rad}, b.deflection, I(0), x, y,
+                                          z, {zero, zero});
   }
 
   /// Calls f(first voxel of a vector) for all of a column from `low` up to `top`; the lowest vectors may overlap.
@@ -290,8 +300,7 @@ struct Vectors {
         const F old = load(stock);
         if (!xsimd::any(most > old)) return;
         result.tried |= 1u << j;
-        Deflection s = deflection_at(c, deflection, dx, dy, z);
-        s = deflection_at(c, deflection, dx - s.x, dy - s.y, z);
+        const Deflection s = settled_at(c, deflection, dx, dy, z);
         const F x = dx - s.x, yy = dy - s.y;
         const F v = xsimd::min(-distance(xsimd::sqrt(x * x + yy * yy), z, c.flat, c.corner), band);
         // Where the bound says no, rounding must not say yes.

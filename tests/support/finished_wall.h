@@ -30,6 +30,9 @@ struct FinishedWall {
   double slice_mm = 0.5;          ///< of the height, over which the error is averaged
   int drawn_steps = 1440;         ///< a turn
   double rotation_step_deg = 1;   ///< Camber's
+  double young_MPa = 600000;
+  machine::Material material{2000, 700, 300, 15, 12, 3};
+  machine::Coupling coupling = machine::Coupling::rigid;  ///< Camber's
 
   /// Of the block: what cuts ahead of the places that are read, a radius away at most, is still all in it.
   double middle_mm() const { return diameter_mm / 2 + detail::kRead + 1; }
@@ -39,6 +42,8 @@ struct WallFigures {
   double lateral_max_N = 0;
   Vec3 mean_N = Vec3::Zero();
   std::vector<double> error_um;  ///< by slices of the height, upwards
+  double chips_of_stock = 1;     ///< chips over what the stock lost; Camber's
+  std::size_t unsettled = 0;     ///< stretches without a static equilibrium; Camber's
 };
 
 inline DrawnCut drawn(const FinishedWall& w) {
@@ -57,7 +62,7 @@ inline DrawnCut drawn(const FinishedWall& w) {
   c.top = w.height_mm + kBelow;
   c.k = {2000, 700, 300, 15, 12, 3};
   c.overhang = 40;
-  c.bending_stiffness_N_mm2 = 600000 * kPi / 64 * std::pow(0.8 * w.diameter_mm, 4);
+  c.bending_stiffness_N_mm2 = w.young_MPa * kPi / 64 * std::pow(0.8 * w.diameter_mm, 4);
   c.lo = w.offset_mm + Vec3(0, -w.radial_mm, 0);
   c.hi = w.offset_mm + Vec3(length, 2, w.height_mm);
   c.steps_per_pitch = w.drawn_steps / w.flutes;
@@ -108,7 +113,7 @@ inline WallFigures drawn_figures(const FinishedWall& w) {
   const DrawnCut cut = drawn(w);
   const std::size_t middle = detail::middle_stamp(w, cut);
   const DrawnPass pass = drawn_pass(cut, middle);
-  WallFigures f{pass.lateral_max_N, pass.mean_N, {}};
+  WallFigures f{pass.lateral_max_N, pass.mean_N, {}, 1, 0};
   constexpr int kInFeed = 20;
   const int along = kInFeed * static_cast<int>(std::max<std::size_t>(1, cut.tooth_at_rad.size()));
   const double step = 0.05;
@@ -136,7 +141,7 @@ inline WallFigures camber_figures(const FinishedWall& w) {
   auto tool = make_tool(machine::ToolType::flat, w.diameter_mm, w.flutes, w.helix_deg);
   for (const double pitch : w.pitch_deg) tool.pitch_rad.push_back(rad_from_deg(pitch));
   tool.runout_mm = w.run_out_mm, tool.runout_angle_rad = rad_from_deg(w.run_out_deg);
-  const machine::Material material{cut.k.ktc, cut.k.krc, cut.k.kac, cut.k.kte, cut.k.kre, cut.k.kae};
+  tool.youngs_modulus_MPa = w.young_MPa;
   removal::Stock stock = make_box(cut.lo, cut.hi, w.voxel_mm);
   removal::Stock target(stock);
   simulate::sweep(target, tool, cut.stamps, 0, 0);
@@ -144,12 +149,14 @@ inline WallFigures camber_figures(const FinishedWall& w) {
   places.add(0, removal::shape_of(tool), cut.stamps);
   removal::SurfaceMap map(target, places, stock);
   simulate::CutOptions options;
-  options.coupling = machine::Coupling::rigid;
+  options.coupling = w.coupling;
   options.envelope_step_mm = w.edge_step_mm > 0 ? w.edge_step_mm : simulate::envelope_step_mm({}, tool);
   options.rotation_step_rad = rad_from_deg(w.rotation_step_deg);
   options.surface = &map;
-  const auto result = simulate::cut(stock, tool, material, cut.stamps, {}, 0, options);
+  const auto result = simulate::cut(stock, tool, w.material, cut.stamps, {}, 0, options);
   WallFigures f;
+  f.chips_of_stock = result.chip_mm3 / result.stock_mm3;
+  f.unsettled = result.unsettled;
   const std::size_t middle = detail::middle_stamp(w, cut);
   const std::size_t around = cut.even() ? 21 : static_cast<std::size_t>(6 * w.flutes);  // whole turns
   for (std::size_t k = middle - around / 2; k < middle - around / 2 + around; ++k) {

@@ -32,6 +32,9 @@ struct InclinedPlane {
   double rotation_step_deg = 1;
   int drawn_steps = 360;  ///< a pitch
   double drawn_edge = 0.03;
+  double young_MPa = 600000;
+  machine::Material material{2000, 700, 0, 15, 15, 0};
+  machine::Coupling coupling = machine::Coupling::rigid;  ///< Camber's
 
   double corner() const { return corner_mm > 0 ? corner_mm : radius_mm; }
 };
@@ -43,6 +46,7 @@ struct CutFigures {
   double p5_um = 0, median_um = 0, p95_um = 0, error_mean_um = 0;
   double chip_mm3 = 0;        ///< a tooth passing
   double chips_of_stock = 1;  ///< chips over what the stock lost
+  std::size_t unsettled = 0;  ///< stretches without a static equilibrium
 };
 
 inline DrawnCut drawn(const InclinedPlane& p) {
@@ -67,7 +71,7 @@ inline DrawnCut drawn(const InclinedPlane& p) {
   cut.overhang = 40;
   cut.steps_per_pitch = p.drawn_steps;
   cut.edge_step = p.drawn_edge;
-  cut.bending_stiffness_N_mm2 = 600000 * kPi / 64 * std::pow(0.8 * 2 * p.radius_mm, 4);
+  cut.bending_stiffness_N_mm2 = p.young_MPa * kPi / 64 * std::pow(0.8 * 2 * p.radius_mm, 4);
   cut.lo = p.offset_mm + Vec3(0, 0, -1.5);
   cut.hi = p.offset_mm + Vec3(kLength, kAlong * c, kAlong * s + 1);
   double at = 0;
@@ -184,23 +188,24 @@ inline CutFigures camber_figures(const InclinedPlane& p) {
   tool.corner_radius_mm = p.corner_mm, tool.taper_rad = rad_from_deg(p.taper_deg);
   for (const double pitch : p.pitch_deg) tool.pitch_rad.push_back(rad_from_deg(pitch));
   tool.runout_mm = p.run_out_mm, tool.runout_angle_rad = rad_from_deg(p.run_out_deg);
-  const machine::Material material{2000, 700, 0, 15, 15, 0};
+  tool.youngs_modulus_MPa = p.young_MPa;
   removal::Stock stock = make_box(cut.lo, cut.hi, p.voxel_mm);
   simulate::sweep(stock, tool, cut.stamps, 0, p.allowance_mm);
   stock.clear_stamps();
   removal::Stock target(stock);
   simulate::sweep(target, tool, cut.stamps, 0, 0);
   simulate::CutOptions options;
-  options.coupling = machine::Coupling::rigid;
+  options.coupling = p.coupling;
   options.envelope_step_mm = p.diameter_step_mm;
   options.rotation_step_rad = rad_from_deg(p.rotation_step_deg);
   removal::CutterPlaces places;
   places.add(0, removal::shape_of(tool), cut.stamps);
   removal::SurfaceMap map(target, places, stock);
   options.surface = &map;
-  const auto result = simulate::cut(stock, tool, material, cut.stamps, {}, 0, options);
+  const auto result = simulate::cut(stock, tool, p.material, cut.stamps, {}, 0, options);
   CutFigures f;
   f.chips_of_stock = result.chip_mm3 / result.stock_mm3;
+  f.unsettled = result.unsettled;
   const auto inner = detail::middle(p, cut.stamps, 0);
   for (const std::size_t k : inner) {
     const double share = 1.0 / static_cast<double>(inner.size());

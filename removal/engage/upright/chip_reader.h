@@ -7,6 +7,7 @@
 
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
+#include "removal/engage/upright/bend_memory.h"
 #include "removal/engage/upright/patch_lanes.h"
 #include "removal/engagement.h"
 #include "removal/field/tile.h"
@@ -25,9 +26,10 @@ struct TileStocks {
 class ChipReader {
  public:
   /// `all`: the stamps that ids in the stock count from `first_id`; `stamps`: those of the stretch. Rows of
-  /// `deflections` are read as they stand.
+  /// `deflections` are read as they stand; `memory` has those of stamps that were cut.
   ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
-             std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections);
+             std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections,
+             const BendMemory& memory);
 
   /// Appends the chips that stamp k takes in this tile with the points of a patch. Points that the motion leads into
   /// the material, and that lie out of it by less than kNear_mm along the normal, tell that by a negative thickness.
@@ -47,8 +49,10 @@ class ChipReader {
     float mm;
     std::array<float, 2> deeper;  ///< by a deflection in x and y
   };
-  Depth depth(const TileStocks& stocks, const Cell& cell, const Vec3& normal) const;
-  Thinnest thinnest_general(const Vec3& normal, const std::array<Vec3, 8>& tip, const CornerLanes& corners) const;
+  /// `bend`: of the point itself.
+  Depth depth(const TileStocks& stocks, const Cell& cell, const Vec3& normal, const Vec2& deflection) const;
+  void place_corners(const TileStocks& stocks, const Cell& cell, CornerLanes& corners) const;
+  Thinnest thinnest_general(CornerLanes& corners) const;
 
   const EnvelopeGrid& envelope_;
   const PatchLanes& lanes_;
@@ -57,6 +61,8 @@ class ChipReader {
   std::int32_t first_id_;
   double voxel_mm_;
   const DeflectionTable& deflections_;
+  const BendMemory& memory_;
+  float node_step_mm_;
   const Kernels& kernels_;
   std::vector<Place> places_;        ///< of the stretch's stamps
   std::vector<float> wall_half_mm_;  ///< of the rings (removal/engage/upright/level_faces.h)

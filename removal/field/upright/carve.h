@@ -25,8 +25,8 @@ bool carve(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxe
            const CutterShape& shape, const CarveStamp& stamp);
 
 /// Carves with the envelope whose point (s, phi) is displaced by the deflection of the instant at which an edge passes
-/// it: the cutter's distance is read at x - delta(s, phi), where (s, phi) belong to x - delta (two fixed-point
-/// steps: what is left is the square of the deflection's slope, a quarter of a percent of it).
+/// it: the cutter's distance is read at x - delta(s, phi), where (s, phi) belong to x - delta, by fixed-point steps to
+/// 0.05 um (removal/form_error/settling.h).
 bool carve_deflected(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
                      const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
                      const StampDeflection& deflection);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/vector_clones.h"
+#include "removal/form_error/settling.h"
 
 namespace camber::removal::upright {
 namespace {
@@ -129,6 +130,22 @@ bool for_rows(const Tile& tile, ColumnCover& cover, const Index3& t, double voxe
 
 }  // namespace
 
+Vec2 settled_shift(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
+                   const Vec3& from_tip, Vec2 guess) {
+  constexpr auto close = static_cast<double>(Settling::kFieldClose_mm);
+  const auto z = static_cast<float>(from_tip.z());
+  for (int step = 0; step < Settling::kFieldSteps; ++step) {
+    const Vec2 at = from_tip.head<2>() - guess;
+    const Vec2 turned =
+        deflection_at(envelope, deflections, row, static_cast<float>(at.x()), static_cast<float>(at.y()), z)
+            .cast<double>() -
+        guess;
+    guess += static_cast<double>(Settling::share_of(step)) * turned;
+    if (turned.squaredNorm() <= close * close) break;
+  }
+  return guess;
+}
+
 bool carve_general(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band, const CutterShape& shape,
                    const CarveStamp& stamp) {
   const RowProfile profile = row_profile(shape.profile);
@@ -171,8 +188,7 @@ bool carve_deflected_general(Tile& tile, ColumnCover& cover, const Index3& t, do
                       if (std::min(largest - row[static_cast<std::size_t>(k)], top) <= distance[k]) continue;
                       const auto x = static_cast<float>(dx), y = static_cast<float>(dy);
                       const auto z = static_cast<float>(z0 + k * voxel);
-                      Eigen::Vector2f s = deflection_at(envelope, deflections, deflection.row, x, y, z);
-                      s = deflection_at(envelope, deflections, deflection.row, x - s.x(), y - s.y(), z);
+                      const Vec2 s = settled_shift(envelope, deflections, deflection.row, {x, y, z}, Vec2::Zero());
                       const double d = exact.distance_mm({std::hypot(dx - s.x(), dy - s.y()), z});
                       const float v = std::min(static_cast<float>(-d), top);
                       if (v <= distance[k]) continue;
