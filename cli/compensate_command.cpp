@@ -27,8 +27,8 @@ nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
 }
 
 /// Reads both programs once more, for their stamps and their feed.
-void write_report(const CompensateArguments& arguments, const machine::Job& job, const compensate::Compensation& result,
-                  const Diagnostics& diagnostics) {
+void write_report(const CompensateArguments& arguments, const machine::Job& job,
+                  const compensate::CompensationResult& result, const Diagnostics& diagnostics) {
   Diagnostics ignored;  // said already
   const auto machined = [&](SourceText source) {
     return simulate::simulate_motion(std::move(source), job, {}, ignored);
@@ -56,7 +56,7 @@ machine::Job as_measured(const machine::Job& job, const CompensateArguments& arg
   return compensate::softened(job, fit->scale);
 }
 
-std::string header_of(const machine::Job& job, const compensate::Compensation& c, bool hash) {
+std::string header_of(const machine::Job& job, const compensate::CompensationResult& c, bool hash) {
   const std::string lines = compensate::header_lines(job, c, CAMBER_VERSION);
   return hash ? lines + "\nINPUTS " + compensate::hash_of_inputs(job) : lines;
 }
@@ -78,7 +78,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   const machine::Job job = as_measured(told, arguments, diagnostics, compensate_options.progress, fit);
   if (arguments.header || arguments.header_hash)
     compensate_options.header = [&](const auto& c) { return header_of(job, c, arguments.header_hash); };
-  compensate::Compensation result = compensate::compensate(job, diagnostics, compensate_options);
+  compensate::CompensationResult result = compensate::compensate(job, diagnostics, compensate_options);
   result.measured = fit;
   progress.clear();
   feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);

@@ -81,7 +81,7 @@ repath::Rectangle boundary_of(const RasterArguments& arguments, const std::strin
 }
 
 /// Nothing for a field of another job: where its stock ends is not known here.
-std::optional<double> top_of_stock_mm(const machine::Stock& stock) {
+std::optional<double> top_of_stock_mm(const machine::StockDescription& stock) {
   if (stock.box) return stock.box->max_mm.z();
   if (stock.cylinder) return stock.cylinder->base_mm.z() + stock.cylinder->height_mm;
   if (stock.mesh.empty()) return std::nullopt;

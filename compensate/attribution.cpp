@@ -54,7 +54,7 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const simulate:
     o.normal = p.normal;
     o.error_mm = p.error_mm;
     o.area_mm2 = p.area_mm2;
-    MoveMap::Place at;
+    MoveMap::MovePlace at;
     if (known(p.machined_stamp, emitted)) {
       const auto& stamp = emitted.path.stamps[static_cast<std::size_t>(p.machined_stamp)];
       at = map.given(stamp.move, stamp.share);

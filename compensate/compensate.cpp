@@ -101,8 +101,8 @@ class Loop {
     workshop_.emplace(job_, program_, *target_, own_target_);
   }
 
-  Compensation run() {
-    Compensation out;
+  CompensationResult run() {
+    CompensationResult out;
     start(out);
     converge(out);
     stay_out_of_part(out);
@@ -134,7 +134,7 @@ class Loop {
   }
 
   /// The program as given: its error, what of it is compensated, and the points of the path.
-  void start(Compensation& out) {
+  void start(CompensationResult& out) {
     last_.keep(workshop_->predict(program_, progress("as given")));
     out.finishing = find_finishing(job_, program_, last_.surface);
     check_compensated(program_, out.finishing.moves, diagnostics_);
@@ -157,7 +157,7 @@ class Loop {
     best_ = last_;
   }
 
-  void converge(Compensation& out) {
+  void converge(CompensationResult& out) {
     double share = 1;
     int without_gain = 0;
     while (!done(out, without_gain)) {
@@ -174,7 +174,7 @@ class Loop {
   }
 
   /// Where the best round's surface lies deeper than the tolerance, further rounds lift the path there.
-  void stay_out_of_part(Compensation& out) {
+  void stay_out_of_part(CompensationResult& out) {
     if (out.best == 0) return;  // nothing was moved
     Guard guard(overcut_um() / 1000);
     last_ = best_;
@@ -188,7 +188,7 @@ class Loop {
   }
 
   /// New shifts from the last trial's error, and their prediction.
-  void step(Compensation& out, double share, const Guard* guard) {
+  void step(CompensationResult& out, double share, const Guard* guard) {
     const Observed before = last_.observed;
     std::vector<Observation> observations = wanted_of(before, guard);
     Round round;
@@ -252,7 +252,7 @@ class Loop {
     split_once_ = true;
   }
 
-  void stiffen(const std::vector<MoveMap::Place>& places) {
+  void stiffen(const std::vector<MoveMap::MovePlace>& places) {
     for (const auto& place : places) {
       if (!path_->contains(place.move)) continue;
       const std::size_t at = path_->find(place.move, place.share).lower;
@@ -260,7 +260,7 @@ class Loop {
     }
   }
 
-  void record(Compensation& out, Round round) const {
+  void record(CompensationResult& out, Round round) const {
     round.error_um = last_.error_um;
     round.split = split_error(*path_, last_.observed, fit_options());
     if (round.guard) round.split.give_to_guard(free_correctable_um_);
@@ -270,12 +270,12 @@ class Loop {
     out.rounds.push_back(round);
   }
 
-  void take(Compensation& out) {
+  void take(CompensationResult& out) {
     out.best = out.rounds.size() - 1;
     best_ = last_;
   }
 
-  bool done(Compensation& out, int without_gain) const {
+  bool done(CompensationResult& out, int without_gain) const {
     const auto& c = job_.compensation;
     if (out.rounds[out.best].split.correctable_p95_um <= c.tolerance_um) {
       out.stop = Stop::tolerance;
@@ -289,7 +289,7 @@ class Loop {
     return static_cast<int>(out.rounds.size()) > c.max_rounds;
   }
 
-  void finish(Compensation& out) {
+  void finish(CompensationResult& out) {
     path_->set_shifts(best_.shifts);
     const Round &first = out.rounds[0], &best = out.rounds[out.best];
     const SimulatedProgram& program = best_.emitted ? best_.emitted->program : program_;
@@ -327,7 +327,7 @@ class Loop {
   }
 
   /// The other grid and the uncertainty; the text last, since its header may tell of them.
-  void check(Compensation& out) {
+  void check(CompensationResult& out) {
     const Emitted* emitted = best_.emitted.get();
     const bool guarded = out.rounds[out.best].guard;
     for (const double voxel_mm : options_.recheck_voxels_mm)
@@ -372,7 +372,7 @@ class Loop {
 
 }  // namespace
 
-Compensation compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options) {
+CompensationResult compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options) {
   return Loop(job, diagnostics, options).run();
 }
 

@@ -39,7 +39,7 @@ struct Round {
   std::size_t unsettled = 0;
 };
 
-struct Compensation {
+struct CompensationResult {
   std::string text;  ///< the emitted program of the best round
   removal::ErrorFigures before_um, after_um;
   ErrorSplit split_before, split_after;
@@ -74,10 +74,10 @@ struct CompensateOptions {
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.
-  std::function<std::string(const Compensation&)> header{};
+  std::function<std::string(const CompensationResult&)> header{};
 };
 
 /// Throws InputError. The program's text is not written anywhere.
-Compensation compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options);
+CompensationResult compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options);
 
 }  // namespace camber::compensate

@@ -12,7 +12,7 @@ namespace camber::compensate {
 
 /// One piece of surface and the place of the path that made it.
 struct Observation {
-  ShiftPath::Place place;
+  ShiftPath::PointInterval place;
   Vec3 normal = Vec3::UnitZ();  ///< outward
   double error_mm = 0;
   double area_mm2 = 0;

@@ -48,7 +48,7 @@ MoveMap::MoveMap(const nc::Interpretation& given, const nc::Interpretation& emit
   }
 }
 
-MoveMap::Place MoveMap::given(std::uint32_t emitted_move, double share) const {
+MoveMap::MovePlace MoveMap::given(std::uint32_t emitted_move, double share) const {
   if (parts_.empty()) return {emitted_move, share};
   const Part& p = parts_[emitted_move];
   return {p.move, std::clamp(p.from + share * (p.to - p.from), 0.0, 1.0)};

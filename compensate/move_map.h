@@ -11,7 +11,7 @@ namespace camber::compensate {
 class MoveMap {
  public:
   /// A place on a move: the share of its length.
-  struct Place {
+  struct MovePlace {
     std::uint32_t move = 0;
     double share = 0;
   };
@@ -23,7 +23,7 @@ class MoveMap {
   MoveMap(const nc::Interpretation& given, const nc::Interpretation& emitted,
           std::span<const std::uint32_t> block_of_line);
 
-  Place given(std::uint32_t emitted_move, double share) const;
+  MovePlace given(std::uint32_t emitted_move, double share) const;
 
  private:
   struct Part {

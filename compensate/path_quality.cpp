@@ -32,13 +32,13 @@ PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool
   PathQuality out;
   out.shortest_mm = std::numeric_limits<double>::infinity();
   const auto split = [&](std::size_t m) {
-    const MoveMap::Place first = map.given(static_cast<std::uint32_t>(m), 0),
-                         last = map.given(static_cast<std::uint32_t>(m), 1);
+    const MoveMap::MovePlace first = map.given(static_cast<std::uint32_t>(m), 0),
+                             last = map.given(static_cast<std::uint32_t>(m), 1);
     return last.share - first.share < 1 - 1e-9;
   };
   for (std::size_t m = 0; m < emitted.moves.size(); ++m) {
     const nc::Move& move = emitted.moves[m];
-    const MoveMap::Place end = map.given(static_cast<std::uint32_t>(m), 1);
+    const MoveMap::MovePlace end = map.given(static_cast<std::uint32_t>(m), 1);
     if (!cuts(move) || !selected[end.move]) continue;
     const double length = nc::length_mm(emitted, move);
     if (split(m)) {
@@ -49,7 +49,7 @@ PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool
     while (next < emitted.moves.size() && cuts(emitted.moves[next]) && nc::length_mm(emitted, emitted.moves[next]) <= 0)
       ++next;
     if (length <= 0 || next >= emitted.moves.size() || !cuts(emitted.moves[next])) continue;
-    const MoveMap::Place start = map.given(static_cast<std::uint32_t>(next), 0);
+    const MoveMap::MovePlace start = map.given(static_cast<std::uint32_t>(next), 0);
     if (!selected[start.move]) continue;
     const auto before = given_turn(given, end.move, start.move);
     if (!before) continue;

@@ -14,7 +14,7 @@ struct PathQuality {
   std::size_t angle_line = 0;   ///< of the emitted program; 0: it grows nowhere
   double shortest_mm = 0;       ///< of the blocks that came out of a split; 0: none was split
   std::size_t too_short = 0;    ///< of them, shorter than the control can process: F T_b
-  std::vector<MoveMap::Place> over;  ///< places of the given program where the angle grows by more than the bound
+  std::vector<MoveMap::MovePlace> over;  ///< places of the given program where the angle grows by more than the bound
 };
 
 /// Between consecutive moves that may be shifted (`selected`, of the given program). Moves shorter than kShort_mm in

@@ -10,11 +10,11 @@
 namespace camber::compensate {
 namespace {
 
-constexpr int kTerms = 4;            // of a cubic
-constexpr double kMany = 40;         // points across and along, whose mean needs no help
-constexpr double kOneFace = 0.97;    // mean normal of a ball's row of 40 degrees
-constexpr double kTold = 1e-3;       // share of the moments below which a term is not told
-constexpr double kLeast_mm = 0.005;  // rows narrower than this have no form
+constexpr int kTerms = 4;          // of a cubic
+constexpr double kMany = 40;       // points across and along, whose mean needs no help
+constexpr double kOneFace = 0.97;  // mean normal of a ball's row of 40 degrees
+constexpr double kTold = 1e-3;     // share of the moments below which a term is not told
+constexpr double kMin_mm = 0.005;  // rows narrower than this have no form
 
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 using Square = Eigen::Matrix<double, kTerms, kTerms>;
@@ -58,7 +58,7 @@ struct Moments {
   Moments operator+(const Moments& o) const { return {square + o.square, right + o.right, points + o.points}; }
 };
 
-void share_out(const ShiftPath::Place& place, auto add) {
+void share_out(const ShiftPath::PointInterval& place, auto add) {
   add(place.lower, 1 - place.upper_fraction);
   add(place.lower + 1, place.upper_fraction);
 }
@@ -103,7 +103,7 @@ std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observati
   }
   const double scale = area > 0 ? std::sqrt(squares / area) : 0;
   std::vector<double> out(across.size(), 0.0);
-  if (scale < kLeast_mm) return out;
+  if (scale < kMin_mm) return out;
   std::vector<Moments> moments(path.points().size());
   for (std::size_t i = 0; i < across.size(); ++i) {
     across[i] /= scale;

@@ -14,15 +14,15 @@ namespace {
 constexpr double kSameSense = 0.9;  // cosine between the directions of two rows
 constexpr double kDetour = 4;       // another row is much farther along the path than across
 
-struct Place {
+struct RowPlace {
   std::size_t chain = 0;
   Vec3 direction = Vec3::Zero();
   double length_mm = 0;  ///< of path that the point stands for
 };
 
-std::vector<Place> places_of(const ShiftPath& path) {
+std::vector<RowPlace> places_of(const ShiftPath& path) {
   const auto& points = path.points();
-  std::vector<Place> out(points.size());
+  std::vector<RowPlace> out(points.size());
   for (std::size_t c = 0; c < path.chains().size(); ++c) {
     const Chain& chain = path.chains()[c];
     const std::size_t end = chain.from + chain.count;
@@ -67,7 +67,7 @@ class Cubes {
 
 std::vector<RowLink> row_links(const ShiftPath& path, double reach_mm, RowSense sense) {
   const auto& points = path.points();
-  const std::vector<Place> places = places_of(path);
+  const std::vector<RowPlace> places = places_of(path);
   const Cubes cubes(points, reach_mm);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -66,7 +66,7 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
   }
 }
 
-ShiftPath::Place ShiftPath::find(std::uint32_t move, double share) const {
+ShiftPath::PointInterval ShiftPath::find(std::uint32_t move, double share) const {
   std::size_t i = first_of_move_[move];
   double from = 0;
   while (i + 2 < points_.size() && points_[i + 1].move == move && points_[i + 1].share < share) {
@@ -77,7 +77,7 @@ ShiftPath::Place ShiftPath::find(std::uint32_t move, double share) const {
   return {i, std::clamp((share - from) / (to - from), 0.0, 1.0)};
 }
 
-Vec3 ShiftPath::shift_at(const Place& place) const {
+Vec3 ShiftPath::shift_at(const PointInterval& place) const {
   return (1 - place.upper_fraction) * points_[place.lower].shift_mm +
          place.upper_fraction * points_[place.lower + 1].shift_mm;
 }

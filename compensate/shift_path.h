@@ -38,15 +38,15 @@ class ShiftPath {
   const std::vector<Chain>& chains() const { return chains_; }
 
   /// Between which points a place of the path lies: points()[lower] and points()[lower + 1].
-  struct Place {
+  struct PointInterval {
     std::size_t lower = 0;
     double upper_fraction = 0;
   };
   /// The move is one whose points may be shifted.
   bool contains(std::uint32_t move) const { return move < first_of_move_.size() && first_of_move_[move] != kNone; }
   /// `move` must be contained.
-  Place find(std::uint32_t move, double share) const;
-  Vec3 shift_at(const Place& place) const;
+  PointInterval find(std::uint32_t move, double share) const;
+  Vec3 shift_at(const PointInterval& place) const;
   std::vector<Vec3> shifts() const;
   void set_shifts(std::span<const Vec3> shifts);
 

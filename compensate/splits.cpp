@@ -35,7 +35,7 @@ std::vector<Observation> ThinPath::places_of(std::span<const Observation> observ
   std::vector<Observation> out(observations.begin(), observations.end());
   for (Observation& o : out) {
     // Both ends of a piece of the whole path lie in one piece of this one.
-    const ShiftPath::Place from = of_point_[o.place.lower], to = of_point_[o.place.lower + 1];
+    const ShiftPath::PointInterval from = of_point_[o.place.lower], to = of_point_[o.place.lower + 1];
     const double end = to.lower == from.lower ? to.upper_fraction : 1.0;
     o.place = {from.lower, from.upper_fraction + o.place.upper_fraction * (end - from.upper_fraction)};
   }

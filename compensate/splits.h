@@ -40,8 +40,8 @@ class ThinPath {
 
  private:
   ShiftPath path_;
-  std::vector<ShiftPath::Place> of_point_;  ///< of the whole path's points on this one
-  std::vector<std::size_t> point_;          ///< of this path's points on the whole one
+  std::vector<ShiftPath::PointInterval> of_point_;  ///< of the whole path's points on this one
+  std::vector<std::size_t> point_;                  ///< of this path's points on the whole one
 };
 
 }  // namespace camber::compensate

@@ -21,9 +21,9 @@ EdgeForce edge_force(const Material& m, double h, double db, double edge_ramp_mm
 
 EdgeForce edge_force_slope(const Material& m, double h, double edge_ramp_mm) {
   if (h <= 0) return {};
-  constexpr double kLeast_mm = 1e-3;
+  constexpr double kMin_mm = 1e-3;
   const bool chord = h < edge_ramp_mm;
-  const double at = std::max({h, edge_ramp_mm, kLeast_mm});
+  const double at = std::max({h, edge_ramp_mm, kMin_mm});
   const Components k =
       machine::with_law(m.law, [&](auto law) { return chord ? law.specific_MPa(m, at) : law.slope_MPa(m, at); });
   EdgeForce slope{k.tangential, k.radial, k.axial};

@@ -58,7 +58,7 @@ struct Cylinder {
 };
 
 /// One of box, cylinder, mesh, vdb.
-struct Stock {
+struct StockDescription {
   std::optional<Box> box;
   std::optional<Cylinder> cylinder;
   std::string mesh;         ///< STL path; empty: none
@@ -86,7 +86,7 @@ struct Simulation {
   Coupling coupling = Coupling::static_;
   std::optional<Collisions> collisions;  ///< not given: error; a warning where moves of the program are left out
   double rotation_step_rad = kPi / 180.0;
-  double envelope_step_mm = 0;  ///< of the samples along the profile; 0: the voxel
+  double envelope_step_mm = 0;  ///< of the samples along the profile; 0: chosen by the tool (simulate/predict.h)
 };
 
 /// Of the simulated moves, those that are compensated; nothing given: the finishing ones.
@@ -95,7 +95,7 @@ struct CompensatedOperations : Operations {
   bool given() const { return !tools.empty() || !blocks.empty() || !comments.empty(); }
 };
 
-struct Compensation {
+struct CompensationSettings {
   double tolerance_um = 1.0;
   double max_shift_mm = 0.1;
   int max_rounds = 8;
@@ -115,10 +115,10 @@ struct Job {
   Operations operations;
   std::map<int, Tool> tools;
   Material material;
-  Stock stock;
+  StockDescription stock;
   Part part;
   Simulation simulation;
-  Compensation compensation;
+  CompensationSettings compensation;
 };
 
 /// Reads the job and its machine file. Throws InputError with file:line:column.

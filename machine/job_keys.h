@@ -73,10 +73,11 @@ inline constexpr std::array kSimulationKeys{
 };
 
 inline constexpr std::array kCompensationKeys{
-    NumberKey<Compensation>{"tolerance_um", &Compensation::tolerance_um, kPositive},
-    NumberKey<Compensation>{"max_shift_mm", &Compensation::max_shift_mm, kPositive},
-    NumberKey<Compensation>{"max_overcut_um", &Compensation::max_overcut_um, kNotNegative},
-    NumberKey<Compensation>{"max_angle_growth_deg", &Compensation::max_angle_growth_rad, kAngleGrowthDeg, kDegrees},
+    NumberKey<CompensationSettings>{"tolerance_um", &CompensationSettings::tolerance_um, kPositive},
+    NumberKey<CompensationSettings>{"max_shift_mm", &CompensationSettings::max_shift_mm, kPositive},
+    NumberKey<CompensationSettings>{"max_overcut_um", &CompensationSettings::max_overcut_um, kNotNegative},
+    NumberKey<CompensationSettings>{"max_angle_growth_deg", &CompensationSettings::max_angle_growth_rad,
+                                    kAngleGrowthDeg, kDegrees},
 };
 
 }  // namespace camber::machine

@@ -65,7 +65,7 @@ std::optional<Cylinder> read_cylinder(TomlTable& stock) {
   return cylinder;
 }
 
-void read_stock(TomlTable table, const fs::path& folder, Stock& stock) {
+void read_stock(TomlTable table, const fs::path& folder, StockDescription& stock) {
   stock.box = read_box(table);
   stock.cylinder = read_cylinder(table);
   stock.mesh = file_at(table, "mesh", folder);
@@ -128,8 +128,8 @@ void read_simulation(TomlTable table, Simulation& simulation) {
   table.finish();
 }
 
-void read_compensation(TomlTable table, const std::map<int, Tool>& tools, Compensation& compensation) {
-  read_numbers<Compensation>(table, kCompensationKeys, compensation);
+void read_compensation(TomlTable table, const std::map<int, Tool>& tools, CompensationSettings& compensation) {
+  read_numbers<CompensationSettings>(table, kCompensationKeys, compensation);
   compensation.max_rounds = static_cast<int>(table.number("max_rounds", kRounds, compensation.max_rounds));
   if (auto operations = table.table("operations")) read_compensated(*operations, tools, compensation.operations);
   constexpr std::string_view kOffset = "[x, y, z], the program's zero in machine coordinates,";

@@ -39,7 +39,7 @@ std::string point_text(const Vec3& p) {
   return fmt::format("[{}, {}, {}]", toml_number(p.x(), kAsIs), toml_number(p.y(), kAsIs), toml_number(p.z(), kAsIs));
 }
 
-std::string stock_text(const Stock& stock) {
+std::string stock_text(const StockDescription& stock) {
   std::string out = "\n[stock]\n";
   if (stock.box)
     out += fmt::format("box_mm = [{}, {}]\n", point_text(stock.box->min_mm), point_text(stock.box->max_mm));
@@ -73,8 +73,8 @@ std::string operations_text(const Operations& operations) {
   return lines.empty() ? lines : "\n[operations]\n" + lines;
 }
 
-std::string compensation_text(const Compensation& c) {
-  std::string out = "\n[compensation]\n" + toml_lines<Compensation>(kCompensationKeys, c);
+std::string compensation_text(const CompensationSettings& c) {
+  std::string out = "\n[compensation]\n" + toml_lines<CompensationSettings>(kCompensationKeys, c);
   out += toml_line("max_rounds", c.max_rounds, kAsIs);
   if (c.work_offset_mm) out += fmt::format("work_offset_mm = {}\n", point_text(*c.work_offset_mm));
   if (!c.operations.given()) return out;

@@ -9,7 +9,7 @@
 namespace camber::machine {
 namespace {
 
-constexpr zip_uint64_t kMost_bytes = 64u << 20;
+constexpr zip_uint64_t kMax_bytes = 64u << 20;
 
 struct Close {
   void operator()(zip_t* z) const { zip_discard(z); }
@@ -28,8 +28,8 @@ SourceText read_zip_entry(const std::string& path, const std::string& name, cons
   if (at < 0) fail_on_file(path, fmt::format("is a zip file without {}", name), check);
   zip_stat_t stat;
   const auto index = static_cast<zip_uint64_t>(at);
-  if (zip_stat_index(zip.get(), index, 0, &stat) != 0 || (stat.valid & ZIP_STAT_SIZE) == 0 || stat.size > kMost_bytes)
-    fail_on_file(path, fmt::format("holds {} of more than {} MB", name, kMost_bytes >> 20), check);
+  if (zip_stat_index(zip.get(), index, 0, &stat) != 0 || (stat.valid & ZIP_STAT_SIZE) == 0 || stat.size > kMax_bytes)
+    fail_on_file(path, fmt::format("holds {} of more than {} MB", name, kMax_bytes >> 20), check);
   const std::unique_ptr<zip_file_t, Close> file(zip_fopen_index(zip.get(), index, 0));
   std::string text(stat.size, '\0');
   if (!file || zip_fread(file.get(), text.data(), stat.size) != static_cast<zip_int64_t>(stat.size))

@@ -43,9 +43,9 @@ struct Piece {
   double sweep = 0;  ///< with its sign
 };
 
-class Compensation {
+class RadiusCompensation {
  public:
-  Compensation(Interpretation& program, std::size_t first, const CutterRadius& cutter)
+  RadiusCompensation(Interpretation& program, std::size_t first, const CutterRadius& cutter)
       : program_(program), first_(first), cutter_(cutter), axes_(axes_of(cutter.plane)) {
     offset_ = cutter.left ? cutter.radius_mm : -cutter.radius_mm;
   }
@@ -359,7 +359,7 @@ class Compensation {
 }  // namespace
 
 CutterRadiusResult compensate_radius(Interpretation& program, std::size_t first, const CutterRadius& cutter) {
-  return Compensation(program, first, cutter).run();
+  return RadiusCompensation(program, first, cutter).run();
 }
 
 }  // namespace camber::nc

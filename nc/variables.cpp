@@ -8,28 +8,28 @@
 
 namespace camber::nc {
 
-Variables::Place Variables::place_of(double number, std::size_t offset) const {
+Variables::Scope Variables::place_of(double number, std::size_t offset) const {
   if (number != std::floor(number) || std::abs(number) > 1e9)
     throw MacroError(offset, "variable", fmt::format("#{}: the number of a variable is not a whole one", number));
-  if (dialect_.local.holds(number)) return Place::local;
+  if (dialect_.local.holds(number)) return Scope::local;
   for (const NumberRange& range : dialect_.common)
-    if (range.holds(number) && !system_.owns(static_cast<int>(number))) return Place::common;
-  return Place::system;
+    if (range.holds(number) && !system_.owns(static_cast<int>(number))) return Scope::common;
+  return Scope::system;
 }
 
 Value Variables::get(double number, std::size_t offset) {
   if (number == 0 && dialect_.has_null) return std::nullopt;
   const Value vacant = dialect_.has_null ? Value() : Value(0.0);
   switch (place_of(number, offset)) {
-    case Place::local: {
+    case Scope::local: {
       const Value value = levels_.back().numbered[static_cast<std::size_t>(number)];
       return value ? value : vacant;
     }
-    case Place::common: {
+    case Scope::common: {
       const auto found = common_.find(static_cast<int>(number));
       return found != common_.end() ? Value(found->second) : vacant;
     }
-    case Place::system:
+    case Scope::system:
       break;
   }
   return system_.get(static_cast<int>(number), offset);
@@ -56,16 +56,16 @@ bool Variables::known(const std::string& name) {
 void Variables::set(double number, Value value, std::size_t offset) {
   if (number == 0) throw MacroError(offset, "variable", "#0 cannot be set");
   switch (place_of(number, offset)) {
-    case Place::local:
+    case Scope::local:
       levels_.back().numbered[static_cast<std::size_t>(number)] = value;
       return;
-    case Place::common:
+    case Scope::common:
       if (value)
         common_[static_cast<int>(number)] = *value;
       else
         common_.erase(static_cast<int>(number));
       return;
-    case Place::system:
+    case Scope::system:
       system_.set(static_cast<int>(number), value, offset);
   }
 }

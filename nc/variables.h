@@ -36,8 +36,8 @@ class Variables : public VariableSource {
   std::size_t levels() const { return levels_.size(); }
 
  private:
-  enum class Place { local, common, system };
-  Place place_of(double number, std::size_t offset) const;
+  enum class Scope { local, common, system };
+  Scope place_of(double number, std::size_t offset) const;
 
   const Dialect& dialect_;
   SystemVariables& system_;

@@ -30,9 +30,9 @@ void Profile::add_line(const Vec2& from, const Vec2& to) {
 }
 
 Profile::Profile(const machine::CutterParameters& parameters) {
-  constexpr double kLeast_mm = 1e-9;
+  constexpr double kMin_mm = 1e-9;
   const machine::CornerEnds corner = machine::corner_ends(parameters);
-  if (corner.bottom.x() > kLeast_mm) add_line(Vec2::Zero(), corner.bottom);
+  if (corner.bottom.x() > kMin_mm) add_line(Vec2::Zero(), corner.bottom);
   if (parameters.corner_radius_mm > 0) {
     Piece p;
     p.arc = true;
@@ -47,7 +47,7 @@ Profile::Profile(const machine::CutterParameters& parameters) {
     pieces_.push_back(p);
   }
   Vec2 top = corner.wall;
-  if (parameters.taper_rad > 0 && parameters.height_mm > top.y() + kLeast_mm) {
+  if (parameters.taper_rad > 0 && parameters.height_mm > top.y() + kMin_mm) {
     const double rise = parameters.height_mm - top.y();
     const Vec2 end = top + Vec2(rise * std::tan(parameters.taper_rad), rise);
     add_line(top, end);

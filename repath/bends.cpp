@@ -18,9 +18,9 @@ std::optional<Bent> Bends::behind(const Bent& before, const std::optional<Primit
   return out;
 }
 
-Bends::Stretch Bends::stretch(std::uint32_t first, std::uint32_t last) const {
+Bends::Section Bends::stretch(std::uint32_t first, std::uint32_t last) const {
   const Tried& tried = fitter_.tried(first, last);
-  Stretch out{first, last, tried.line, std::nullopt, std::nullopt};
+  Section out{first, last, tried.line, std::nullopt, std::nullopt};
   if (!tried.arc) return out;
   out.arc = tried.arc;
   out.best_sweep = tried.best_sweep;
@@ -28,7 +28,7 @@ Bends::Stretch Bends::stretch(std::uint32_t first, std::uint32_t last) const {
   return out;
 }
 
-std::optional<Bent> Bends::arc(const Bent& before, const Stretch& stretch) const {
+std::optional<Bent> Bends::arc(const Bent& before, const Section& stretch) const {
   if (!stretch.room) return behind(before, stretch.arc);
   const std::uint32_t first = stretch.first, last = stretch.last;
   ArcRoom room = *stretch.room;

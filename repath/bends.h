@@ -24,16 +24,16 @@ class Bends {
       : path_(path), options_(options), fitter_(fitter), joints_(joints) {}
 
   /// What lies between two points, whatever comes before it: no arc where the line is straight to an increment.
-  struct Stretch {
+  struct Section {
     std::uint32_t first = 0, last = 0;
     std::optional<Primitive> line, arc;
     std::optional<ArcRoom> room;  ///< where the arc's sweep is open
     bool best_sweep = false;      ///< the arc has the room's best sweep
   };
-  Stretch stretch(std::uint32_t first, std::uint32_t last) const;
+  Section stretch(std::uint32_t first, std::uint32_t last) const;
 
-  std::optional<Bent> line(const Bent& before, const Stretch& stretch) const { return behind(before, stretch.line); }
-  std::optional<Bent> arc(const Bent& before, const Stretch& stretch) const;
+  std::optional<Bent> line(const Bent& before, const Section& stretch) const { return behind(before, stretch.line); }
+  std::optional<Bent> arc(const Bent& before, const Section& stretch) const;
 
   /// Whether a chain that ends with the first could stand in for one that ends with the second: it ends at the same
   /// point, in all of its directions.

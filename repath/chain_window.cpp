@@ -27,7 +27,7 @@ ChainCost ChainCost::with(const Polyline& path, const Primitive& p) const {
   return {primitives + 1, lines_mm + (p.arc ? 0 : (path.at(p.last) - path.at(p.first)).norm()), primitives_per_line_mm};
 }
 
-std::array<std::optional<Bent>, 2> line_or_arc(const Bends& bends, const Bent& before, const Bends::Stretch& stretch) {
+std::array<std::optional<Bent>, 2> line_or_arc(const Bends& bends, const Bent& before, const Bends::Section& stretch) {
   const auto line = bends.line(before, stretch), arc = bends.arc(before, stretch);
   if (line && arc && arc->primitive.deviation_mm > kNearer * line->primitive.deviation_mm) return {line, std::nullopt};
   return {line, arc};
@@ -56,7 +56,7 @@ std::vector<Primitive> ChainWindow::best(const Primitive& before, const Primitiv
 
 bool ChainWindow::reach(std::size_t from, std::size_t to, std::uint32_t begin, std::uint32_t end,
                         const Limits& limits) {
-  const Bends::Stretch stretch = bends_.stretch(begin, end);
+  const Bends::Section stretch = bends_.stretch(begin, end);
   bool reached = stretch.room.has_value();
   for (const std::size_t s : at_[from]) {
     const std::array<std::optional<Bent>, 2> bents = line_or_arc(bends_, states_[s].bent, stretch);

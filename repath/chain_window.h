@@ -22,7 +22,7 @@ struct ChainCost {
 
 /// What may stand for a stretch behind `before`: a line; an arc where no line does, or where it lies nearer to the
 /// points by a third. What is straight to an increment stays a line.
-std::array<std::optional<Bent>, 2> line_or_arc(const Bends& bends, const Bent& before, const Bends::Stretch& stretch);
+std::array<std::optional<Bent>, 2> line_or_arc(const Bends& bends, const Bent& before, const Bends::Section& stretch);
 
 /// Chains without a corner inside.
 class ChainWindow {

@@ -43,9 +43,9 @@ double place_on_corner(const Underside& cutter, double distance, double slope) {
 }
 
 struct Best {
-  std::optional<Contact> contact;
+  std::optional<DropContact> contact;
   void offer(double tip_mm, const Vec3& point, ContactKind kind) {
-    if (!contact || tip_mm > contact->tip_mm) contact = Contact{tip_mm, point, kind, 0};
+    if (!contact || tip_mm > contact->tip_mm) contact = DropContact{tip_mm, point, kind, 0};
   }
 };
 
@@ -133,7 +133,7 @@ Facet::Facet(const Vec3& a, const Vec3& b, const Vec3& c) : corner{a, b, c}, nor
   normal = area > 0 ? Vec3(normal / (normal.z() < 0 ? -area : area)) : Vec3(Vec3::Zero());
 }
 
-std::optional<Contact> contact_with(const Underside& cutter, const Facet& f, const Vec2& axis) {
+std::optional<DropContact> contact_with(const Underside& cutter, const Facet& f, const Vec2& axis) {
   Best best;
   facet(cutter, f, axis, best);
   // A facet's contact inside is the greatest there is.

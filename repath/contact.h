@@ -23,7 +23,7 @@ Underside underside_of(const removal::CutterShape& shape);
 enum class ContactKind { facet, edge, vertex };
 
 /// Where the cutter rests.
-struct Contact {
+struct DropContact {
   double tip_mm = 0;          ///< height of the tip
   Vec3 point = Vec3::Zero();  ///< of the mesh, that it touches
   ContactKind kind = ContactKind::facet;
@@ -56,6 +56,6 @@ struct Facet {
 ///
 /// The greatest of z - height(distance from the axis) over the triangle, a concave function: inside, where the facet's
 /// slope is the cutter's; else on an edge, or at its end.
-std::optional<Contact> contact_with(const Underside& cutter, const Facet& facet, const Vec2& axis);
+std::optional<DropContact> contact_with(const Underside& cutter, const Facet& facet, const Vec2& axis);
 
 }  // namespace camber::repath

@@ -83,14 +83,14 @@ double DropCutter::most(const Node& node, const Vec2& axis) const {
   return std::min(by_top, by_plane) + kRounding;
 }
 
-void DropCutter::offer(std::uint32_t facet, const Vec2& axis, std::optional<Contact>& best) const {
+void DropCutter::offer(std::uint32_t facet, const Vec2& axis, std::optional<DropContact>& best) const {
   auto contact = contact_with(cutter_, facets_[facet], axis);
   if (!contact || (best && contact->tip_mm <= best->tip_mm)) return;
   contact->triangle = facet;
   best = contact;
 }
 
-void DropCutter::search(std::uint32_t at, const Vec2& axis, std::optional<Contact>& best) const {
+void DropCutter::search(std::uint32_t at, const Vec2& axis, std::optional<DropContact>& best) const {
   const Node& node = nodes_[at];
   if (node.end > 0) {
     for (std::uint32_t k = node.begin; k < node.end; ++k) offer(k, axis, best);
@@ -104,8 +104,8 @@ void DropCutter::search(std::uint32_t at, const Vec2& axis, std::optional<Contac
   if (worth(most_second)) search(second, axis, best);
 }
 
-std::optional<Contact> DropCutter::at(const Vec2& axis, std::optional<std::uint32_t> near) const {
-  std::optional<Contact> best;
+std::optional<DropContact> DropCutter::at(const Vec2& axis, std::optional<std::uint32_t> near) const {
+  std::optional<DropContact> best;
   if (near && *near < facets_.size()) offer(*near, axis, best);
   if (most(nodes_[0], axis) > (best ? best->tip_mm : kNothing)) search(0, axis, best);
   return best;

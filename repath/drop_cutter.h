@@ -19,7 +19,7 @@ class DropCutter {
 
   /// Nothing where no triangle lies under the cutter. `near`: a triangle to begin with, as that of the place before;
   /// saves time and changes no height (of places that it touches at once it may name another).
-  std::optional<Contact> at(const Vec2& axis, std::optional<std::uint32_t> near = std::nullopt) const;
+  std::optional<DropContact> at(const Vec2& axis, std::optional<std::uint32_t> near = std::nullopt) const;
 
   const Underside& cutter() const { return cutter_; }
   const Vec3& min_mm() const { return min_; }  ///< of the mesh
@@ -36,8 +36,8 @@ class DropCutter {
   };
   void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
   double most(const Node& node, const Vec2& axis) const;
-  void search(std::uint32_t node, const Vec2& axis, std::optional<Contact>& best) const;
-  void offer(std::uint32_t facet, const Vec2& axis, std::optional<Contact>& best) const;
+  void search(std::uint32_t node, const Vec2& axis, std::optional<DropContact>& best) const;
+  void offer(std::uint32_t facet, const Vec2& axis, std::optional<DropContact>& best) const;
 
   Underside cutter_;
   Vec3 min_ = Vec3::Zero(), max_ = Vec3::Zero();

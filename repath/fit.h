@@ -68,8 +68,8 @@ std::vector<bool> corners_of(const Polyline& path, const FitOptions& options);
 std::vector<bool> ends_of(const Polyline& path, const std::vector<bool>& corners);
 double corner_leg_mm(const FitOptions& options);
 
-/// The room of the arc from one point to another: its sweep may lie between the two; both with the sign of the
-/// direction. Nothing where no arc fits.
+/// The room of the arc from one point to another: the magnitude of its sweep lies between the two.
+/// Nothing where no arc fits.
 struct ArcRoom {
   double least_sweep_rad = 0, max_sweep_rad = 0;  ///< magnitudes
   double best_sweep_rad = 0;                      ///< goes through the points as well as it can (least squares)

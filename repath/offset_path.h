@@ -16,7 +16,7 @@ struct OffsetPathOptions {
 
 struct OffsetPoint {
   Vec3 tip = Vec3::Zero();
-  Contact contact{};
+  DropContact contact{};
 };
 
 /// The longest chord for which a cutter with this rounding, on its way between two places at which it is free, meets

@@ -34,9 +34,9 @@ bool is_motion(const nc::Word& w) {
 }
 
 /// What the blocks of a run have in common.
-class BlockWriter {
+class RunBlockWriter {
  public:
-  BlockWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const TextStyle& style)
+  RunBlockWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const TextStyle& style)
       : program_(program), style_(style) {
     const nc::Move& first = moves.moves[run.first_move];
     const nc::ModalState& state = moves.state_of(first);
@@ -88,9 +88,9 @@ class BlockWriter {
   int plane_g_ = 17;
 };
 
-class PointWriter : BlockWriter {
+class PointWriter : RunBlockWriter {
  public:
-  using BlockWriter::BlockWriter;
+  using RunBlockWriter::RunBlockWriter;
 
   std::vector<std::string> write(const SpacePath& path, const Layout& layout, const LayoutFeeds& feeds) const {
     std::vector<std::string> lines;
@@ -133,11 +133,11 @@ class PointWriter : BlockWriter {
   }
 };
 
-class RunWriter : BlockWriter {
+class RunWriter : RunBlockWriter {
  public:
   RunWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,
             const TextStyle& style)
-      : BlockWriter(program, moves, run, style),
+      : RunBlockWriter(program, moves, run, style),
         path_(path),
         run_(run),
         axes_(nc::axes_of(run.normal == 2   ? nc::Plane::xy

@@ -77,11 +77,11 @@ std::optional<Cusp> cusp_of(const Underside& cutter, const Groove& a, const Groo
 
 }  // namespace
 
-bool touches(const Rectangle& boundary, const Contact& contact) {
+bool touches(const Rectangle& boundary, const DropContact& contact) {
   return in(boundary, contact.point.head<2>(), kBorderMm);
 }
 
-bool works_inside(const Underside& cutter, const Rectangle& boundary, const Vec2& axis, const Contact& contact) {
+bool works_inside(const Underside& cutter, const Rectangle& boundary, const Vec2& axis, const DropContact& contact) {
   const Vec2 at = contact.point.head<2>();
   if (!touches(boundary, contact)) return false;
   const double under_flat = std::max(cutter.flat_mm - 1e-9, 1e-9);  // the rim is not

@@ -21,10 +21,10 @@ struct Rectangle {
 
 /// A contact counts where it lies in the rectangle; on its border only where the cutter does not roll over it, and
 /// under a flat bottom, which touches anywhere, only with the axis inside.
-bool works_inside(const Underside& cutter, const Rectangle& boundary, const Vec2& axis, const Contact& contact);
+bool works_inside(const Underside& cutter, const Rectangle& boundary, const Vec2& axis, const DropContact& contact);
 
 /// Whether a contact lies in the rectangle or on its border.
-bool touches(const Rectangle& boundary, const Contact& contact);
+bool touches(const Rectangle& boundary, const DropContact& contact);
 
 /// Heights of the tip along a row, at equal steps.
 struct RowHeights {

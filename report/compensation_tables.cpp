@@ -7,7 +7,7 @@ namespace {
 
 std::string um(double value) { return fmt::format("{:.2f}", value); }
 
-TextTable split_table(const compensate::Compensation& c) {
+TextTable split_table(const compensate::CompensationResult& c) {
   TextTable table{"The error apart", {"part of the error", "before, um rms", "after, um rms"}, {}, {}};
   const auto add = [&](const char* name, double compensate::ErrorSplit::*part) {
     const double before = c.split_before.*part, after = c.split_after.*part;
@@ -28,7 +28,7 @@ TextTable split_table(const compensate::Compensation& c) {
 
 std::string place(const Vec3& p) { return fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", p.x(), p.y(), p.z()); }
 
-TextTable depth_table(const compensate::Compensation& c) {
+TextTable depth_table(const compensate::CompensationResult& c) {
   TextTable table{"Into the part", {"", "all but a thousandth, um", "deepest point, um", "where"}, {}, {}};
   const auto add = [&](const char* name, const compensate::Depth& d) {
     table.rows.push_back({name, um(d.held_um), um(d.deepest_um), d.deepest_um > 0 ? place(d.place_mm) : ""});
@@ -51,7 +51,7 @@ TextTable band_table(const compensate::Band& band) {
 
 }  // namespace
 
-std::vector<TextTable> compensation_tables(const compensate::Compensation& c) {
+std::vector<TextTable> compensation_tables(const compensate::CompensationResult& c) {
   std::vector<TextTable> tables{split_table(c), depth_table(c)};
   if (c.band) tables.push_back(band_table(*c.band));
   return tables;

@@ -61,7 +61,7 @@ void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& dia
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
-TextTable rounds_table(const compensate::Compensation& c) {
+TextTable rounds_table(const compensate::CompensationResult& c) {
   TextTable table{"Rounds of the compensation",
                   {"round", "95 %, µm", "rms, µm", "mean, µm", "least, µm", "greatest, µm", "largest shift, µm"},
                   {},
@@ -75,7 +75,7 @@ TextTable rounds_table(const compensate::Compensation& c) {
   return table;
 }
 
-TextTable limits_table(const machine::Job& job, const compensate::Compensation& c) {
+TextTable limits_table(const machine::Job& job, const compensate::CompensationResult& c) {
   TextTable table{"Limits and changes", {}, {}, {}};
   table.rows = {{"tolerance", fmt::format("{:g} µm", job.compensation.tolerance_um)},
                 {"largest shift allowed", fmt::format("{:g} µm", 1000 * job.compensation.max_shift_mm)},
@@ -126,7 +126,7 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
   return data;
 }
 
-ReportData compensate_report(const machine::Job& job, const compensate::Compensation& c, CompensatedRun before,
+ReportData compensate_report(const machine::Job& job, const compensate::CompensationResult& c, CompensatedRun before,
                              CompensatedRun after, const std::string& output, const Diagnostics& diagnostics) {
   ReportData data;
   data.title = "Compensation of " + file_name(job.program);

@@ -34,7 +34,8 @@ struct CompensatedRun {
 
 /// `result` and both programs must outlive what comes back.
 /// `output`: where the compensated program was written; the page offers it under that name.
-ReportData compensate_report(const machine::Job& job, const compensate::Compensation& result, CompensatedRun before,
-                             CompensatedRun after, const std::string& output, const Diagnostics& diagnostics);
+ReportData compensate_report(const machine::Job& job, const compensate::CompensationResult& result,
+                             CompensatedRun before, CompensatedRun after, const std::string& output,
+                             const Diagnostics& diagnostics);
 
 }  // namespace camber::report

@@ -205,7 +205,7 @@ ordered_json depth(const compensate::Depth& d) {
           {"area_over_tolerance", d.over_fraction}};
 }
 
-ordered_json rounds(const compensate::Compensation& c) {
+ordered_json rounds(const compensate::CompensationResult& c) {
   ordered_json out = ordered_json::array();
   for (const auto& r : c.rounds) {
     ordered_json row = figures(r.error_um);
@@ -246,7 +246,7 @@ ordered_json measured(const compensate::MeasuredFit& m) {
           {"predictions", m.predictions}};
 }
 
-ordered_json operations(const compensate::Compensation& c) {
+ordered_json operations(const compensate::CompensationResult& c) {
   ordered_json out = ordered_json::array();
   for (const auto& o : c.finishing.operations)
     out.push_back({{"tool", o.tool},
@@ -259,7 +259,7 @@ ordered_json operations(const compensate::Compensation& c) {
 
 }  // namespace
 
-std::string compensate_json(const compensate::Compensation& c, double compute_s) {
+std::string compensate_json(const compensate::CompensationResult& c, double compute_s) {
   ordered_json j;
   j["before_um"] = figures(c.before_um);
   j["after_um"] = figures(c.after_um);
@@ -338,7 +338,7 @@ std::string split_text(const compensate::ErrorSplit& before, const compensate::E
   return out;
 }
 
-std::string rounds_text(const compensate::Compensation& c) {
+std::string rounds_text(const compensate::CompensationResult& c) {
   std::string out = fmt::format("{}\n", kFiguresHead);
   for (std::size_t i = 0; i < c.rounds.size(); ++i) {
     const auto& r = c.rounds[i];
@@ -352,7 +352,7 @@ std::string rounds_text(const compensate::Compensation& c) {
   return out;
 }
 
-std::string safety_text(const compensate::Compensation& c) {
+std::string safety_text(const compensate::CompensationResult& c) {
   std::string out = fmt::format("into the part: {:.2f} um before, {:.2f} um after (single points {:.2f} um)",
                                 c.depth_before.held_um, c.depth_after.held_um, c.depth_after.deepest_um);
   if (c.depth_others.deepest_um > 0) out += fmt::format("\n  by other moves: {:.2f} um", c.depth_others.deepest_um);
@@ -360,7 +360,7 @@ std::string safety_text(const compensate::Compensation& c) {
                            c.depth_without_bending.deepest_um);
 }
 
-std::string path_text(const compensate::Compensation& c) {
+std::string path_text(const compensate::CompensationResult& c) {
   std::string out =
       fmt::format("angles between blocks grow by {:.2f} degrees at most", deg_from_rad(c.quality.angle_growth_rad));
   if (c.row_steps.pairs > 0) out += fmt::format("; row to row {:.1f} um (95 %)", 1000 * c.row_steps.p95_mm);
@@ -373,7 +373,7 @@ std::string path_text(const compensate::Compensation& c) {
   return out + "\n";
 }
 
-std::string checks_text(const compensate::Compensation& c) {
+std::string checks_text(const compensate::CompensationResult& c) {
   std::string out;
   const auto add = [&](fmt::string_view format, auto... a) {
     fmt::vformat_to(std::back_inserter(out), format, fmt::make_format_args(a...));
@@ -401,7 +401,7 @@ std::string compensated_of(const compensate::Operation& o) {
 
 }  // namespace
 
-std::string compensate_text(const compensate::Compensation& c, double compute_s) {
+std::string compensate_text(const compensate::CompensationResult& c, double compute_s) {
   std::string out = rounds_text(c);
   const char* why = c.stop == compensate::Stop::tolerance
                         ? "the 95th percentile of what a shift can correct is within the tolerance"
@@ -436,12 +436,12 @@ std::string unsettled_sentence(const simulate::SimulatedProgram& program, const 
       p.cut.unsettled, p.cut.unsettled > 1 ? "es" : "", why);
 }
 
-std::string unsettled_sentence(const compensate::Compensation& c) {
+std::string unsettled_sentence(const compensate::CompensationResult& c) {
   if (c.settled) return {};
   return "the static deflection of some stretches did not settle; their figures are uncertain";
 }
 
-std::string left_over_sentence(const compensate::ErrorSplit& left, const machine::Compensation& asked) {
+std::string left_over_sentence(const compensate::ErrorSplit& left, const machine::CompensationSettings& asked) {
   std::string out = fmt::format("of what a shift can correct {:.2f} um (95th percentile) are left; tolerance_um = {:g}",
                                 left.correctable_p95_um, asked.tolerance_um);
   // What keeps it from the tolerance is often the part, not the path.

@@ -63,7 +63,7 @@ TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates_slow) {
   machine::Job job = plane_job(folder);
   job.machine.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01};
   Diagnostics diagnostics;
-  const Compensation c = compensate(job, diagnostics, {});
+  const CompensationResult c = compensate(job, diagnostics, {});
   EXPECT_GT(c.quality.shortest_mm, 0) << "blocks were split";
   EXPECT_LE(c.row_turn_rad, job.compensation.max_angle_growth_rad);
   EXPECT_GT(c.row_turn_rad, 0);
@@ -105,7 +105,7 @@ TEST(Compensate, MakesNoNewCornersWhereTheControlStopsAtEveryOne_slow) {
   ASSERT_EQ(job.machine.control.corner.law, machine::CornerLaw::exact_stop);
   job.compensation.max_rounds = 1;
   Diagnostics diagnostics;
-  const Compensation c = compensate(job, diagnostics, {});
+  const CompensationResult c = compensate(job, diagnostics, {});
   EXPECT_EQ(c.blocks_after, c.blocks_before);
   EXPECT_EQ(c.quality.shortest_mm, 0);
   EXPECT_LT(c.split_after.correctable_um, 0.3 * c.split_before.correctable_um);
@@ -125,7 +125,7 @@ TEST(Compensate, HoldsToTheLargestShift_slow) {
   job.compensation.max_rounds = 1;
   job.compensation.max_shift_mm = 0.004;
   Diagnostics diagnostics;
-  const Compensation c = compensate(job, diagnostics, {});
+  const CompensationResult c = compensate(job, diagnostics, {});
   EXPECT_LE(c.max_shift_mm, 0.004 + 1e-12);
   EXPECT_GT(c.rounds.back().limited_points, 0u);
   EXPECT_GT(c.split_after.limited_um, 5);
@@ -138,12 +138,12 @@ TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth_slow) {
   machine::Job job = plane_job(folder);
   Diagnostics diagnostics;
   job.compensation.max_rounds = 1;
-  const Compensation free = compensate(job, diagnostics, {});
+  const CompensationResult free = compensate(job, diagnostics, {});
   ASSERT_GT(free.depth_after.held_um, 1.5);
   EXPECT_GE(free.depth_after.deepest_um, free.depth_after.held_um);
   EXPECT_TRUE(free.within_part);  // 50 um are allowed
   job.compensation.max_overcut_um = 0.5 * free.depth_after.held_um;
-  const Compensation guarded = compensate(job, diagnostics, {});
+  const CompensationResult guarded = compensate(job, diagnostics, {});
   EXPECT_TRUE(guarded.rounds.back().guard);
   EXPECT_LT(guarded.depth_after.held_um, 0.9 * free.depth_after.held_um);
   EXPECT_EQ(guarded.within_part, guarded.depth_after.held_um <= job.compensation.max_overcut_um);
@@ -159,9 +159,9 @@ TEST(Compensate, JudgesOnAnotherGridAndMovesTheParameters_slow) {
   CompensateOptions options;
   options.recheck_voxels_mm = {0.19};
   options.uncertainty = read_uncertainty("10 %");
-  options.header = [](const Compensation&) { return std::string("TOLD"); };
+  options.header = [](const CompensationResult&) { return std::string("TOLD"); };
   Diagnostics diagnostics;
-  const Compensation c = compensate(job, diagnostics, options);
+  const CompensationResult c = compensate(job, diagnostics, options);
   ASSERT_EQ(c.rechecks.size(), 1u);
   EXPECT_NEAR(c.rechecks[0].before_um.rms / c.before_um.rms, 1, 0.1);
   EXPECT_LT(c.rechecks[0].split_after.correctable_um, 0.15 * c.rechecks[0].split_before.correctable_um);

@@ -131,7 +131,7 @@ TEST(DrawnJudge, FindsWhatAShiftCanCorrectGoneFromASlopeOfBallRows_slow) {
   std::filesystem::create_directories(folder);
   Diagnostics diagnostics;
   const machine::Job job = slope_job(folder, diagnostics);
-  const Compensation c = compensate(job, diagnostics, {});
+  const CompensationResult c = compensate(job, diagnostics, {});
   const auto program = [&](const std::string& text) {
     return simulate::simulate_motion(SourceText(job.program, text), job, {}, diagnostics);
   };

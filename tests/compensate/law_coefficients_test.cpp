@@ -55,7 +55,7 @@ TEST(UncertaintyOfEachLaw, APercentageMovesTheForcesOnly) {
 TEST(HeaderOfEachLaw, NamesItsCoefficients) {
   for (const auto& law : machine::force_laws()) {
     const machine::Job job = job_of(law);
-    const std::string header = header_lines(job, Compensation{}, "test");
+    const std::string header = header_lines(job, CompensationResult{}, "test");
     const std::string line = header.substr(header.rfind('\n') + 1);
     for (const auto& c : law.coefficients) {
       std::string word = fmt::format("{} {:g}", c.symbol, job.material.*c.field);
@@ -70,7 +70,7 @@ TEST(HeaderOfEachLaw, ReadsAsItDid) {
   machine::Job job;
   job.material = {2000, 700.5, 0, 15, 12, -1.25};
   const auto last_line = [&] {
-    const std::string header = header_lines(job, Compensation{}, "test");
+    const std::string header = header_lines(job, CompensationResult{}, "test");
     return header.substr(header.rfind('\n') + 1);
   };
   EXPECT_EQ(last_line(), "KTC 2000 KRC 700.5 KAC 0 MPA, KTE 15 KRE 12 KAE -1.25 N/MM");

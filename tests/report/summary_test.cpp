@@ -10,7 +10,7 @@ TEST(LeftOverSentence, NamesTheGuardOnlyWhereItLeavesMost) {
   left.correctable_p95_um = 24.181;
   left.correctable_um = 2;
   left.guard_um = 1;
-  machine::Compensation asked;
+  machine::CompensationSettings asked;
   asked.tolerance_um = 0.5;
   EXPECT_EQ(left_over_sentence(left, asked),
             "of what a shift can correct 24.18 um (95th percentile) are left; tolerance_um = 0.5");
@@ -24,7 +24,7 @@ TEST(LeftOverSentence, NamesTheGuardOnlyWhereItLeavesMost) {
 }
 
 TEST(CompensateText, TellsWhichPartOfAnOperationWasCompensated) {
-  compensate::Compensation c;
+  compensate::CompensationResult c;
   c.rounds.emplace_back();
   c.finishing.operations = {{1, 4, 9, 0.07, 3, 0}, {2, 12, 30, 0.9, 4, 3}, {3, 33, 40, 0.03, 2, 2}};
   const std::string text = compensate_text(c, 1);

@@ -55,9 +55,9 @@ ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, st
   for (std::size_t k = 0; k < stamps.size(); ++k) places_.push_back(place_of(k));
 }
 
-ChipReader::Place ChipReader::place_of(std::size_t k) const {
+ChipReader::VoxelPlace ChipReader::place_of(std::size_t k) const {
   const Stamp& stamp = stamps_[k];
-  Place place{};
+  VoxelPlace place{};
   place.view.per_voxel = static_cast<float>(1 / voxel_mm_);
   for (int a = 0; a < 3; ++a) {
     const double at = stamp.pose.tip_mm[a] / voxel_mm_, base = std::floor(at);
@@ -76,7 +76,7 @@ ChipReader::Place ChipReader::place_of(std::size_t k) const {
 
 void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t k, std::uint32_t patch,
                       std::vector<DeflectedChipSample>& out) const {
-  const Place& place = places_[static_cast<std::size_t>(k)];
+  const VoxelPlace& place = places_[static_cast<std::size_t>(k)];
   TileView tile_view{stocks.now->distance.data(), {}};
   for (std::size_t a = 0; a < 3; ++a) tile_view.from[a] = tile[a] * Tile::kCore - place.base[a];
   const float air = 0.5f * static_cast<float>(voxel_mm_);

@@ -39,11 +39,11 @@ class ChipReader {
  private:
   struct Cell;
   /// What the kernels ask of a stamp, and the voxel from which it is told.
-  struct Place {
+  struct VoxelPlace {
     StampView view;
     Index3 base;
   };
-  Place place_of(std::size_t k) const;
+  VoxelPlace place_of(std::size_t k) const;
   /// Of the stock below a point.
   struct Depth {
     float mm;
@@ -64,7 +64,7 @@ class ChipReader {
   const BendMemory& memory_;
   float node_step_mm_;
   const Kernels& kernels_;
-  std::vector<Place> places_;        ///< of the stretch's stamps
+  std::vector<VoxelPlace> places_;   ///< of the stretch's stamps
   std::vector<float> wall_half_mm_;  ///< of the rings (removal/engage/upright/level_faces.h)
 };
 
