@@ -9,17 +9,55 @@
 
 namespace camber {
 
+namespace {
+
+bool is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
+
+/// Bytes of a UTF-8 character at `at`; 0: no such character begins there. Codes that control a terminal (U+0080 to
+/// U+009F) are none.
+std::size_t utf8_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0; };
+  const unsigned char first = byte(0);
+  const std::size_t length = first < 0x80                    ? 1
+                             : first >= 0xc2 && first < 0xe0 ? 2
+                             : first >= 0xe0 && first < 0xf0 ? 3
+                             : first >= 0xf0 && first < 0xf5 ? 4
+                                                             : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  return first == 0xc2 && byte(1) < 0xa0 ? 0 : length;
+}
+
+/// The text without what a terminal would take as a command: each such byte becomes a `?`, so that columns stay.
+std::string harmless(std::string_view text, std::string_view kept) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8_length(text, at);
+    const bool control = length == 0 || (is_control(static_cast<unsigned char>(text[at])) &&
+                                         kept.find(text[at]) == std::string_view::npos);
+    if (control)
+      out += '?';
+    else
+      out.append(text, at, length);
+    at += control ? 1 : length;
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string to_string(const Diagnostic& d) {
-  std::string out = d.location.file;
+  std::string out = harmless(d.location.file, "");
   if (d.location.line > 0) out += fmt::format(":{}:{}", d.location.line, d.location.column);
-  out += fmt::format(": {}: {}", d.severity == Severity::error ? "error" : "warning", d.message);
+  out += fmt::format(": {}: {}", d.severity == Severity::error ? "error" : "warning", harmless(d.message, "\n\t"));
   if (!d.check.empty()) out += fmt::format(" [{}]", d.check);
   if (!d.source_line.empty() && d.location.column > 0) {
     // Tabs are kept in front of the caret, so that it stands below its word whatever a tab is worth.
     std::string indent;
     const std::size_t before = std::min(d.location.column - 1, d.source_line.size());
     for (std::size_t i = 0; i < before; ++i) indent += d.source_line[i] == '\t' ? '\t' : ' ';
-    out += fmt::format("\n    {}\n    {}^", d.source_line, indent);
+    out += fmt::format("\n    {}\n    {}^", harmless(d.source_line, "\t"), indent);
   }
   return out;
 }

@@ -26,7 +26,8 @@ struct Diagnostic {
 };
 
 /// "file:line:column: error: message [check]" and, where there is one, the source line with a caret.
-/// No newline at the end.
+/// No newline at the end. Control characters and bytes that are no UTF-8 are printed as `?`: they come from the user's
+/// file, and a terminal would obey them.
 std::string to_string(const Diagnostic& diagnostic);
 
 /// The user's input is wrong. what() holds all diagnostics, one below the other.

@@ -6,7 +6,10 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <random>
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <pthread.h>
 #include <time.h>
 #include <unistd.h>
@@ -104,6 +107,34 @@ extern "C" void remove_parts(int signal) {
   raise(signal);
 }
 
+/// A part that was not there before, open for writing.
+struct NewPart {
+  std::string path;
+  int descriptor = -1;  ///< -1: errno says why
+};
+
+/// Nothing that lies at a name already, least of all a link that somebody has put there, is opened or written over.
+NewPart create_part(const std::string& place) {
+  const auto create = [](const std::string& path) {
+    return NewPart{path, open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666)};
+  };
+  NewPart part = create(place + ".part");
+  constexpr int kTries = 16;
+  for (int i = 0; part.descriptor < 0 && errno == EEXIST && i < kTries; ++i)
+    part = create(fmt::format("{}.{:08x}.part", place, std::random_device{}()));
+  return part;
+}
+
+/// Opens the very file of the descriptor, whatever stands at its name by now, and closes the descriptor.
+void open_descriptor(std::ofstream& stream, const NewPart& part) {
+  std::error_code ec;
+  const std::string by_descriptor = fmt::format("/proc/self/fd/{}", part.descriptor);
+  stream.open(fs::exists(by_descriptor, ec) ? by_descriptor : part.path, std::ios::binary | std::ios::trunc);
+  const int reason = errno;
+  close(part.descriptor);
+  errno = reason;
+}
+
 }  // namespace
 
 void remove_parts_on_signals() {
@@ -120,14 +151,20 @@ void remove_parts_on_signals() {
 }
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), place_(behind_links(path_)) {
-  const bool direct = is_special(place_);
-  part_path_ = direct ? place_ : place_ + ".part";
   int reason = 0;
   {
     const Opening guard;
-    if (!direct) slot_ = enter(part_path_);
     errno = 0;
-    stream_.open(part_path_, std::ios::binary | std::ios::trunc);
+    if (is_special(place_)) {
+      part_path_ = place_;
+      stream_.open(place_, std::ios::binary | std::ios::trunc);
+    } else if (const NewPart part = create_part(place_); part.descriptor < 0) {
+      stream_.setstate(std::ios::failbit);
+    } else {
+      part_path_ = part.path;
+      slot_ = enter(part_path_);
+      open_descriptor(stream_, part);
+    }
     reason = errno;
   }
   if (stream_) return;

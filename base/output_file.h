@@ -6,7 +6,8 @@
 
 namespace camber {
 
-/// Opens `path` + ".part"; commit() flushes and renames it to `path`. Without commit() the part is removed
+/// Creates `path` + ".part", or where something has that name already, a part with a random name: no file or link that
+/// is there is written to. commit() flushes the part and renames it to `path`. Without commit() the part is removed
 /// and an older file at `path` stays as it was; a newer one takes over its permissions. Where `path` is a symbolic
 /// link, what it points to is written. What is no regular file (/dev/stdout, a pipe) is written as it goes. Throws
 /// InputError [file-unwritable].

@@ -199,19 +199,33 @@ DriveFit fit_drive(const std::vector<const ServoTrace*>& all, int axis, const Dr
   std::vector<Candidate> all_tried;
   Candidate best;
   best.held_out_rms_mm = INFINITY;
+  const auto try_model = [&](int parameters, double filter_s, bool like_last) {
+    Candidate c;
+    c.model = {parameters, filter_s};
+    if (like_last && all_tried.back().converged) std::copy(all_tried.back().p, all_tried.back().p + 3, c.p);
+    solve(c, traces, axis, options);
+    all_tried.push_back(c);
+    const bool better = c.held_out_rms_mm < (1.0 - options.better_by) * best.held_out_rms_mm - options.better_by_mm;
+    if (better) best = c;
+    return better;
+  };
+  // From the last model of the same filter: another filter's gain and lag make up for what that filter is not.
   const auto try_models = [&](double filter_s) {
-    for (int parameters = 1; parameters <= 3; ++parameters) {
-      Candidate c;
-      c.model = {parameters, filter_s};
-      if (best.converged) std::copy(best.p, best.p + 2, c.p);
-      solve(c, traces, axis, options);
-      all_tried.push_back(c);
-      if (c.held_out_rms_mm < (1.0 - options.better_by) * best.held_out_rms_mm - options.better_by_mm) best = c;
-    }
+    bool better = false;
+    for (int parameters = 1; parameters <= 3; ++parameters) better |= try_model(parameters, filter_s, parameters > 1);
+    return better;
   };
   try_models(0);
-  for (double filter_s = 0.002; filter_s <= 0.13 && best.held_out_rms_mm > kEnoughMm; filter_s *= 2)
-    try_models(filter_s);
+  bool better = false;  // the last one was the best: the next may be better still
+  for (double filter_s = 0.002; filter_s <= 0.13 && (better || best.held_out_rms_mm > kEnoughMm); filter_s *= 2)
+    better = try_models(filter_s);
+  // Between the values of the list, to a period.
+  const double period_s = traces.front()->period_s;
+  for (double step_s = best.model.filter_s / 4; best.model.filter_s > 0 && step_s > 0.5 * period_s; step_s /= 2) {
+    const Model from = best.model;
+    if (!try_model(from.parameters, from.filter_s + step_s, true))
+      try_model(from.parameters, from.filter_s - step_s, true);
+  }
   add_ambiguity(best, all_tried);
   return result_of(best);
 }

@@ -30,8 +30,9 @@ struct DriveFitOptions {
 };
 
 /// Fits gain; gain and velocity lag; these and feed-forward; and, where a residual of more than a micrometre is
-/// left, moving averages of 2 to 128 ms before each; chooses by held-out error. Standard errors hold, beside that of
-/// least squares, how far the models differ whose held-out error is less than twice the best.
+/// left, moving averages of 2 to 128 ms before each, the best of them to a period; chooses by held-out error. Standard
+/// errors hold, beside that of least squares, how far the models differ whose held-out error is less than twice the
+/// best.
 DriveFit fit_drive(const std::vector<const ServoTrace*>& traces, int axis, const DriveFitOptions& options);
 
 /// RMS of predicted minus traced position over the traces, all samples, mm.

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "calib/fit_limits.h"
+#include "calib/fit_ramp.h"
 #include "calib/fit_smoothing.h"
 #include "feedmodel/fitted_range.h"
 
@@ -19,13 +20,15 @@ constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 constexpr double kPlateauShare = 0.999;  // of the highest speed
 constexpr double kPlateauS = 0.02;       // at least this long at it, or it was just passed through
 constexpr std::uint32_t kMaxBlocksApart = 60;
+constexpr double kSameWindow = 0.3;     // two estimates of one window differ by less than this share of it
 constexpr int kListIterations = 6;      // for each value of a list
+constexpr double kNoLengthMm = 1e-9;    // rounding of numbers, not a move
 constexpr double kSettledShare = 1e-3;  // gain of cost under which a richer law is not worth it
 
 /// The usual values of this kind of control for keys that the start file leaves out and the traces may not determine.
 void set_control_defaults(machine::Control& control) {
   // No control takes up two blocks in one period.
-  if (control.block_time_s == 0) control.block_time_s = control.period_s;
+  if (control.block_time_s == 0) control.block_time_s = control.kind.min_segment_periods * control.period_s;
   if (control.corner.law != machine::CornerLaw::blend) return;
   if (control.corner.step_fraction == 0) control.corner.step_fraction = control.kind.usual_step_share;
   if (control.lookahead_blocks == 0) control.lookahead_blocks = control.kind.usual_lookahead_blocks;
@@ -92,7 +95,8 @@ std::vector<TimedLines> timed_lines(const std::vector<FeedRun>& runs, int keep_b
   return data;
 }
 
-/// Highest speed of an axis in rapids, and whether it was held long enough to be a limit.
+/// Highest speed of an axis in rapids, and whether it was held long enough to be a limit; a speed that the axis
+/// exceeds in a feed move is none.
 struct Plateau {
   double speed_mm_per_s = 0;
   bool held = false;
@@ -100,6 +104,7 @@ struct Plateau {
 
 Plateau rapid_plateau(const std::vector<FeedRun>& runs, int axis) {
   Plateau plateau;
+  double in_feed = 0;
   for (int pass = 0; pass < 2; ++pass) {
     double at_top_s = 0;
     for (const FeedRun& run : runs) {
@@ -109,15 +114,18 @@ Plateau rapid_plateau(const std::vector<FeedRun>& runs, int axis) {
         rapid[move.block + 1] = move.kind == nc::MoveKind::rapid;
       }
       for (std::size_t k = 1; k < run.trace.line.size(); ++k) {
-        if (run.trace.line[k] >= rapid.size() || !rapid[run.trace.line[k]]) continue;
-        if (run.trace.line[k] != run.trace.line[k - 1]) continue;
+        if (run.trace.line[k] >= rapid.size() || run.trace.line[k] != run.trace.line[k - 1]) continue;
         const double speed =
             std::abs(run.trace.command_mm[k][axis] - run.trace.command_mm[k - 1][axis]) / run.trace.period_s;
+        if (!rapid[run.trace.line[k]]) {
+          if (run.trace.line[k] > 0) in_feed = std::max(in_feed, speed);
+          continue;
+        }
         if (pass == 0) plateau.speed_mm_per_s = std::max(plateau.speed_mm_per_s, speed);
         if (pass == 1 && speed > kPlateauShare * plateau.speed_mm_per_s) at_top_s += run.trace.period_s;
       }
     }
-    plateau.held = at_top_s > kPlateauS;
+    plateau.held = at_top_s > kPlateauS && in_feed <= plateau.speed_mm_per_s / kPlateauShare;
   }
   return plateau;
 }
@@ -144,16 +152,37 @@ double traced_acceleration(const std::vector<FeedRun>& runs, int axis) {
   return highest.empty() ? 0 : highest.front();
 }
 
-/// Start values: those of the machine, or what the traces show at a glance. Equal accelerations would hide from
-/// the first step which axis limits.
-std::vector<LimitParameter> start_values(const std::vector<FeedRun>& runs, const Machine& machine) {
-  std::vector<LimitParameter> parameters = limit_parameters(machine);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double traced = traced_acceleration(runs, axis);
-    LimitParameter& p = parameters[static_cast<std::size_t>(axis)];
-    if (std::isinf(machine.axis[axis].acceleration_mm_per_s2) && traced > p.least) p.start = traced;
+std::array<double, 3> traced_accelerations(const std::vector<FeedRun>& runs) {
+  return {traced_acceleration(runs, 0), traced_acceleration(runs, 1), traced_acceleration(runs, 2)};
+}
+
+/// The corner law stands; its number is the one that the machine had, or no limit.
+Machine base_with_law(const Machine& start, const machine::Corner& corner) {
+  for (const auto& [name, machine] : machines_of_each_law(start)) {
+    if (machine.control.corner.law != corner.law) continue;
+    Machine m = machine;
+    m.control.corner.stop_angle_rad = corner.stop_angle_rad;
+    m.control.corner.threshold_rad = corner.threshold_rad;
+    return m;
   }
-  return parameters;
+  return start;
+}
+
+/// Every law, and angles under the best one. LinuxCNC's rounding knows neither a stop angle nor a threshold.
+LimitFit choose_law(FitFeedResult& result, const std::vector<TimedLines>& data,
+                    const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations) {
+  std::size_t best = 0;
+  std::vector<TriedLaw> tried = try_laws(data, result.machine, acceleration_mm_per_s2, max_iterations, best);
+  LimitFit chosen = tried[best].fit;
+  result.law = tried[best].name;
+  if (chosen.machine.control.corner.law != machine::CornerLaw::blend) {
+    const std::size_t laws = tried.size();
+    chosen = try_angles(data, chosen, tried, max_iterations);
+    for (std::size_t i = laws; i < tried.size(); ++i)
+      if (tried[i].fit.held_out_cost == chosen.held_out_cost) result.law += tried[i].name.substr(1);
+  }
+  for (const TriedLaw& law : tried) result.laws.push_back({law.name, law.held_out_percent, law.fit.held_out_cost});
+  return chosen;
 }
 
 /// Median of what rests took longer than programmed; 0 without rests.
@@ -166,7 +195,7 @@ double rest_latency_s(const std::vector<FeedRun>& runs) {
     for (const nc::Move& move : run.program.moves) {
       if (move.kind == nc::MoveKind::dwell) {
         dwell += move.dwell_s;
-      } else if (length_mm(run.program, move) > 0) {
+      } else if (length_mm(run.program, move) > kNoLengthMm) {
         if (after_line.size() <= last_line) after_line.resize(last_line + 1, 0.0);
         after_line[last_line] = dwell;
         dwell = 0;
@@ -223,6 +252,7 @@ std::string_view what_tells(std::string_view name) {
   if (name.find("arc_") != name.npos) return "run the circles of camber protocol";
   if (name.find("stop_acceleration") != name.npos) return "run a polygon program of camber protocol under G64";
   if (name.find("step_share") != name.npos) return "run a polygon program of camber protocol under G61";
+  if (name.find("stop_time") != name.npos) return "run the corners program of camber protocol";
   return "run the polygon programs of camber protocol in all planes";
 }
 
@@ -236,6 +266,25 @@ void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start
                                    false});
     }
   }
+}
+
+/// What LinuxCNC's rounding takes from a list of values.
+void add_listed(FitFeedResult& result) {
+  const machine::Control& control = result.machine.control;
+  result.parameters.push_back({"control.lookahead_blocks", static_cast<double>(control.lookahead_blocks), "1",
+                               std::nullopt, "chosen from a list", true});
+  result.parameters.push_back({"control.corner.short_line_time_ms", 1000 * control.corner.short_line_time_s, "ms",
+                               std::nullopt, "chosen from a list", true});
+}
+
+void add_angles(FitFeedResult& result) {
+  const machine::Corner& corner = result.machine.control.corner;
+  const auto add = [&](const char* name, double angle_rad) {
+    result.parameters.push_back(
+        {name, angle_rad * 180 / kPi, "deg", std::nullopt, "between the corners of the programs", true});
+  };
+  if (std::isfinite(corner.stop_angle_rad)) add("control.corner.stop_angle_degrees", corner.stop_angle_rad);
+  if (corner.threshold_rad > 0) add("control.corner.threshold_degrees", corner.threshold_rad);
 }
 
 void add_velocity(FitFeedResult& result, const std::vector<FeedRun>& runs, int axis) {
@@ -255,16 +304,38 @@ void add_velocity(FitFeedResult& result, const std::vector<FeedRun>& runs, int a
 }
 
 /// Jerk of each axis: one window for all, so that it does not bend the path.
-void add_smoothing(FitFeedResult& result, const std::vector<const ServoTrace*>& traces) {
-  const auto window_s = smoothing_time_s(traces);
-  if (!window_s) return;
+void add_jerk(FitFeedResult& result, const FittedValue& window_s) {
   for (int axis = 0; axis < 3; ++axis) {
     machine::Axis& a = result.machine.axis[axis];
     if (!std::isfinite(a.acceleration_mm_per_s2)) continue;
-    a.jerk_mm_per_s3 = a.acceleration_mm_per_s2 / window_s->value;
+    a.jerk_mm_per_s3 = a.acceleration_mm_per_s2 / window_s.value;
     result.parameters.push_back({std::string("axis.") + kAxes[axis] + ".jerk_mm_per_s3", a.jerk_mm_per_s3, "mm/s3",
-                                 a.jerk_mm_per_s3 * window_s->std_error / window_s->value,
+                                 a.jerk_mm_per_s3 * window_s.std_error / window_s.value,
                                  "rise of the commanded acceleration from rest", true});
+  }
+}
+
+/// What lies between the plan and the traced commands: a ramp of each axis, or, where the rise of the acceleration
+/// from rest agrees with it, a limit of jerk.
+void add_smoothing(FitFeedResult& result, const std::vector<FeedRun>& runs,
+                   const std::vector<const ServoTrace*>& traces) {
+  const auto rise_s = smoothing_time_s(traces);
+  std::array<std::optional<FittedValue>, 3> ramps;
+  bool any = false, agree = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    auto& ramp = ramps[static_cast<std::size_t>(axis)] = ramp_time_s(runs, result.machine, axis);
+    if (!ramp) continue;
+    any = true;
+    agree = agree && rise_s && std::abs(ramp->value - rise_s->value) < kSameWindow * ramp->value;
+  }
+  if (rise_s && (agree || !any)) return add_jerk(result, *rise_s);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& ramp = ramps[static_cast<std::size_t>(axis)];
+    if (!ramp) continue;
+    double& filter_s = result.machine.axis[axis].filter_s;
+    filter_s = std::max(filter_s, ramp->value);
+    result.parameters.push_back({std::string("axis.") + kAxes[axis] + ".filter_ms", 1000 * filter_s, "ms",
+                                 1000 * ramp->std_error, "ramp of the commands from rest", true});
   }
 }
 
@@ -339,10 +410,14 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
 
   const std::vector<TimedLines> data = timed_lines(runs, options.keep_back_every);
   for (int axis = 0; axis < 3; ++axis) add_velocity(result, runs, axis);
-  LimitFit limits = fit_limits(data, result.machine, start_values(runs, result.machine), options.max_iterations, true);
+  const double width_mm = result.machine.control.in_position_mm;
+  result.machine.control.in_position_mm = machine::kNoLimit;  // waits are between the parts
+  const Machine base_of_all = result.machine;
+  LimitFit limits = choose_law(result, data, traced_accelerations(runs), options.max_iterations / 4);
+  result.machine = base_with_law(base_of_all, limits.whole.control.corner);
   refine_block_time(limits, data, result.machine, options.max_iterations / 3);
   const double period = result.machine.control.period_s;
-  if (start.control.corner.law == machine::CornerLaw::blend) {
+  if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend) {
     choose(
         limits, data, {2 * period, 4 * period, 8 * period},
         [](Machine& m, double v) { m.control.corner.short_line_time_s = v; }, kListIterations);
@@ -354,11 +429,10 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
   const Machine base = result.machine;
   result.machine = limits.machine;
   add_limits(result, limits, base);
-  result.parameters.push_back({"control.lookahead_blocks", static_cast<double>(limits.machine.control.lookahead_blocks),
-                               "1", std::nullopt, "chosen from a list", true});
-  result.parameters.push_back({"control.corner.short_line_time_ms",
-                               1000 * limits.machine.control.corner.short_line_time_s, "ms", std::nullopt,
-                               "chosen from a list", true});
+  result.machine.control.in_position_mm = width_mm;
+  if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend)
+    add_listed(result);
+  add_angles(result);
   result.machine.control.rest_latency_s = rest_latency_s(runs);
   result.parameters.push_back({"control.rest_latency_ms", 1000 * result.machine.control.rest_latency_s, "ms",
                                std::nullopt, "median of the rests", true});
@@ -367,7 +441,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
     add_drive(result.machine, result.parameters, axis, result.drives[axis]);
     drives_converged = drives_converged && (!result.drives[axis].moved || result.drives[axis].converged);
   }
-  add_smoothing(result, traces);
+  add_smoothing(result, runs, traces);
   std::vector<const nc::Interpretation*> programs;
   for (const FeedRun& run : runs) programs.push_back(&run.program);
   result.machine.fitted_range = feedmodel::range_of(programs);

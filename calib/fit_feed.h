@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/control_laws.h"
 #include "calib/feed_accuracy.h"
 #include "calib/fit_drive.h"
 #include "calib/trace.h"
@@ -46,8 +47,17 @@ struct RunAccuracy {
   FeedAccuracy accuracy;
 };
 
+/// A corner law that was tried.
+struct JudgedCornerLaw {
+  std::string name;
+  double held_out_percent = 0;  ///< mean error of the times of the parts kept back
+  double held_out_cost = 0;     ///< what laws are chosen by: mean robust cost of a part kept back
+};
+
 struct FitFeedResult {
   machine::Machine machine;
+  std::vector<JudgedCornerLaw> laws;  ///< all that were tried, that of the start file first
+  std::string law;                    ///< the one that was taken
   std::vector<FitParameter> parameters;
   std::array<DriveFit, 3> drives;
   FitError fitted, held_out;
@@ -60,11 +70,12 @@ struct FitFeedResult {
 /// Puts what the fit of an axis' drive found into the machine and the list.
 void add_drive(machine::Machine& machine, std::vector<FitParameter>& parameters, int axis, const DriveFit& drive);
 
-/// `start` gives the control's dialect, corner law and period, and whatever the traces do not tell.
-/// Stage one fits each axis' servo (fit_drive). Stage two fits accelerations, the shares that arcs and stops take,
-/// corner steps and block time to the commanded times of parts, every third kept back, and takes from a list of
-/// values the look-ahead and the short-line time that predict best. Velocity limits are read where a rapid shows
-/// a plateau. Deterministic.
+/// `start` gives the control's dialect, and the values of whatever the traces do not tell; no fit begins at one of
+/// them. Stage one fits each axis' servo (fit_drive). Stage two fits, under every corner law, accelerations, the shares
+/// that arcs and stops take, the law's number and the block time to the commanded times of parts, every third kept
+/// back, and keeps the law that predicts those best; under LinuxCNC's rounding it takes from a list of values the
+/// look-ahead and the short-line time that predict best. Velocity limits are read where a rapid shows a plateau, the
+/// ramp after interpolation from the commanded starts. Deterministic.
 FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const machine::Machine& start, const FitFeedOptions& options);
 
 }  // namespace camber::calib

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "feedmodel/plan.h"
 
@@ -23,17 +24,51 @@ constexpr double kWideLossScale = 300.0;
 constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
 
 template <int axis>
-LimitParameter acceleration(const Machine& start, const char* name) {
-  LimitParameter p{.name = name,
-                   .unit = "mm/s2",
-                   .get = [](const Machine& m) { return m.axis[axis].acceleration_mm_per_s2; },
-                   .set = [](Machine& m, double v) { m.axis[axis].acceleration_mm_per_s2 = v; },
-                   .least = 5,
-                   .most = 50000,
-                   .start = 500,
-                   .fitted = {}};
-  if (std::isfinite(p.get(start))) p.start = p.get(start);
-  return p;
+LimitParameter acceleration(const char* name) {
+  return {.name = name,
+          .unit = "mm/s2",
+          .get = [](const Machine& m) { return m.axis[axis].acceleration_mm_per_s2; },
+          .set = [](Machine& m, double v) { m.axis[axis].acceleration_mm_per_s2 = v; },
+          .least = 5,
+          .most = 50000,
+          .start = 500,
+          .fitted = {}};
+}
+
+LimitParameter corner_number(const char* name, const char* unit, double (*get)(const Machine&),
+                             void (*set)(Machine&, double), double least, double most, double start) {
+  return {
+      .name = name, .unit = unit, .get = get, .set = set, .least = least, .most = most, .start = start, .fitted = {}};
+}
+
+/// The number of a corner law. That of the rounding is the program's (G64 P) or the machine file's.
+std::optional<LimitParameter> law_parameter(machine::CornerLaw law) {
+  switch (law) {
+    case machine::CornerLaw::speed_difference:
+      return corner_number(
+          "control.corner.speed_difference_mm_per_min", "mm/min",
+          [](const Machine& m) { return 60 * m.control.corner.speed_difference_mm_per_s; },
+          [](Machine& m, double v) { m.control.corner.speed_difference_mm_per_s = v / 60; }, 0.5, 60000, 200);
+    case machine::CornerLaw::angle:
+      return corner_number(
+          "control.corner.time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.time_s; },
+          [](Machine& m, double v) { m.control.corner.time_s = v / 1000; }, 0.01, 1000, 5);
+    case machine::CornerLaw::radius:
+      return corner_number(
+          "control.corner.acceleration_mm_per_s2", "mm/s2",
+          [](const Machine& m) { return m.control.corner.acceleration_mm_per_s2; },
+          [](Machine& m, double v) { m.control.corner.acceleration_mm_per_s2 = v; }, 0.1, 100000, 500);
+    case machine::CornerLaw::blend:
+    case machine::CornerLaw::exact_stop:
+      break;
+  }
+  return std::nullopt;
+}
+
+LimitParameter stop_time_parameter() {
+  return corner_number(
+      "control.corner.stop_time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.stop_time_s; },
+      [](Machine& m, double v) { m.control.corner.stop_time_s = v / 1000; }, 0.1, 2000, 30);
 }
 
 double scale_of(double time_s) { return kTimeNoise + kTimeShare * time_s; }
@@ -45,7 +80,7 @@ void residuals_of(const std::vector<TimedLines>& data, const Machine& machine, b
   std::vector<feedmodel::SegmentTime> segments;
   const nc::Interpretation* planned_program = nullptr;
   for (const TimedLines& lines : data) {
-    if (lines.program != planned_program) segments = feedmodel::segment_times(*lines.program, machine);
+    if (lines.program != planned_program) segments = feedmodel::plan_motion(*lines.program, machine).times;
     planned_program = lines.program;
     const std::vector<double> planned = planned_times_s(lines, machine, segments);
     for (std::size_t i = 0; i < planned.size(); ++i) {
@@ -164,39 +199,43 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
 
 }  // namespace
 
-std::vector<LimitParameter> limit_parameters(const Machine& start) {
+std::vector<LimitParameter> limit_parameters(const Machine& machine) {
   const auto share = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double), double value) {
     return LimitParameter{
         .name = name, .unit = "1", .get = get, .set = set, .least = 0.02, .most = 1, .start = value, .fitted = {}};
   };
   std::vector<LimitParameter> p;
-  p.push_back(acceleration<0>(start, "axis.x.acceleration_mm_per_s2"));
-  p.push_back(acceleration<1>(start, "axis.y.acceleration_mm_per_s2"));
-  p.push_back(acceleration<2>(start, "axis.z.acceleration_mm_per_s2"));
+  p.push_back(acceleration<0>("axis.x.acceleration_mm_per_s2"));
+  p.push_back(acceleration<1>("axis.y.acceleration_mm_per_s2"));
+  p.push_back(acceleration<2>("axis.z.acceleration_mm_per_s2"));
   p.push_back(share(
       "control.arc_normal_share", [](const Machine& m) { return m.control.arc_normal_fraction; },
       [](Machine& m, double v) { m.control.arc_normal_fraction = v; }, 0.9));
   p.push_back(share(
       "control.arc_tangential_share", [](const Machine& m) { return m.control.arc_tangential_fraction; },
       [](Machine& m, double v) { m.control.arc_tangential_fraction = v; }, 0.7));
-  p.push_back(share(
-      "control.stop_acceleration_share", [](const Machine& m) { return m.control.stop_acceleration_fraction; },
-      [](Machine& m, double v) { m.control.stop_acceleration_fraction = v; }, 0.7));
-  p.push_back({.name = "control.corner.step_share",
-               .unit = "1",
-               .get = [](const Machine& m) { return m.control.corner.step_fraction; },
-               .set = [](Machine& m, double v) { m.control.corner.step_fraction = v; },
-               .least = 1e-3,
-               .most = 0.7,
-               .start = start.control.corner.step_fraction > 0 ? start.control.corner.step_fraction : 0.05,
-               .fitted = {}});
+  if (machine.control.corner.law == machine::CornerLaw::blend) {
+    p.push_back(share(
+        "control.stop_acceleration_share", [](const Machine& m) { return m.control.stop_acceleration_fraction; },
+        [](Machine& m, double v) { m.control.stop_acceleration_fraction = v; }, 0.7));
+    p.push_back({.name = "control.corner.step_share",
+                 .unit = "1",
+                 .get = [](const Machine& m) { return m.control.corner.step_fraction; },
+                 .set = [](Machine& m, double v) { m.control.corner.step_fraction = v; },
+                 .least = 1e-3,
+                 .most = 0.7,
+                 .start = 0.05,
+                 .fitted = {}});
+  }
+  if (const auto law = law_parameter(machine.control.corner.law)) p.push_back(*law);
+  if (std::isfinite(machine.control.corner.stop_angle_rad)) p.push_back(stop_time_parameter());
   p.push_back({.name = "control.block_time_ms",
                .unit = "ms",
                .get = [](const Machine& m) { return 1000 * m.control.block_time_s; },
                .set = [](Machine& m, double v) { m.control.block_time_s = v / 1000; },
                .least = 0.01,
                .most = 50,
-               .start = 1000 * start.control.period_s,
+               .start = 1000 * machine.control.period_s,
                .fitted = {}});
   return p;
 }
@@ -223,15 +262,14 @@ std::vector<double> planned_times_s(const TimedLines& data, const Machine& machi
   return times;
 }
 
-void scan_start(const std::vector<TimedLines>& data, const Machine& base, std::vector<LimitParameter>& parameters,
-                std::size_t index) {
-  constexpr int kSteps = 48;
+double scan_start(const std::vector<TimedLines>& data, const Machine& base, std::vector<LimitParameter>& parameters,
+                  std::size_t index, int steps) {
   LimitParameter& p = parameters[index];
   std::vector<double> logs, residuals;
   for (const LimitParameter& q : parameters) logs.push_back(std::log(q.start));
   double least = INFINITY, best = p.start;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double u = static_cast<double>(i) / kSteps;
+  for (int i = 0; i <= steps; ++i) {
+    const double u = static_cast<double>(i) / steps;
     logs[index] = (1 - u) * std::log(p.least) + u * std::log(p.most);
     residuals_of(data, machine_at(base, parameters, logs.data()), false, residuals);
     const double cost = robust_cost(residuals);
@@ -240,6 +278,7 @@ void scan_start(const std::vector<TimedLines>& data, const Machine& base, std::v
     best = std::exp(logs[index]);
   }
   p.start = best;
+  return least;
 }
 
 LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, std::vector<LimitParameter> parameters,
@@ -250,7 +289,7 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
   for (const LimitParameter& p : fit.parameters) logs.push_back(std::log(p.start));
   std::vector<double> residuals;
   residuals_of(data, machine_at(start, fit.parameters, logs.data()), false, residuals);
-  fit.machine = start;
+  fit.machine = fit.whole = start;
   if (residuals.size() <= fit.parameters.size()) return fit;
 
   // A wide loss first: from far away every part looks like one that no plan explains.
@@ -274,14 +313,14 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
   }
   set_errors(fit, data, start, logs, residuals.size());
 
-  const Machine fitted = machine_at(start, fit.parameters, logs.data());
+  const Machine fitted = fit.whole = machine_at(start, fit.parameters, logs.data());
   for (const LimitParameter& p : fit.parameters)
     if (p.told) p.set(fit.machine, p.fitted.value);
   residuals_of(data, fitted, false, residuals);
   fit.fitted_cost = robust_cost(residuals);
   std::vector<double> milliseconds;
   for (const TimedLines& lines : data) {
-    const auto planned = planned_times_s(lines, fitted, feedmodel::segment_times(*lines.program, fitted));
+    const auto planned = planned_times_s(lines, fitted, feedmodel::plan_motion(*lines.program, fitted).times);
     for (std::size_t i = 0; i < planned.size(); ++i)
       if (lines.time_s[i] > 0 && !lines.kept_back[i])
         milliseconds.push_back(1000 * std::abs(planned[i] - lines.time_s[i]));

@@ -30,11 +30,13 @@ struct LimitParameter {
   bool told = false;  ///< the data tells it
 };
 
-/// Those that the fit knows, with the start values that the machine gives or that suit most controls.
-std::vector<LimitParameter> limit_parameters(const machine::Machine& start);
+/// Those that act under the machine's corner law, with start values that suit most controls (never the machine's own:
+/// a fit that begins at a wrong value may stay there). The block time is the last one.
+std::vector<LimitParameter> limit_parameters(const machine::Machine& machine);
 
 struct LimitFit {
-  machine::Machine machine;
+  machine::Machine machine;  ///< with the values that the data tell
+  machine::Machine whole;    ///< with all fitted values
   std::vector<LimitParameter> parameters;
   double fitted_cost = 0, held_out_cost = 0;  ///< mean robust cost of a part
   double residual_median_ms = 0;
@@ -49,12 +51,13 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const machine::Machine&
                     std::vector<LimitParameter> parameters, int max_iterations, bool far_away);
 
 /// Sets the start value of one parameter to the best of values spread evenly (in the logarithm) over its range,
-/// the others at their start: for those that change nothing over most of their range, such as a block time.
-void scan_start(const std::vector<TimedLines>& data, const machine::Machine& base,
-                std::vector<LimitParameter>& parameters, std::size_t index);
+/// the others at their start: for those that change nothing over most of their range, such as a block time. Returns
+/// the mean robust cost there.
+double scan_start(const std::vector<TimedLines>& data, const machine::Machine& base,
+                  std::vector<LimitParameter>& parameters, std::size_t index, int steps = 48);
 
 /// Seconds that the plan takes for each part: from the start of its first to the end of its last segment.
-/// `segments`: the plan of the whole program, segment_times(*data.program, machine).
+/// `segments`: the plan of the whole program, plan_motion(*data.program, machine).times.
 std::vector<double> planned_times_s(const TimedLines& data, const machine::Machine& machine,
                                     const std::vector<feedmodel::SegmentTime>& segments);
 

@@ -26,6 +26,9 @@ constexpr double kGapRad = 5.0 * kPi / 180.0;       // a gap worth telling
 constexpr double kWideGapRad = 12.0 * kPi / 180.0;  // and one in which a control's stop angle may well lie
 constexpr double kBluntRad = 120.0 * kPi / 180.0;   // sharper corners are stops for every law
 constexpr double kBetterBy = 0.05;                  // share by which a richer law must lower the held-out error
+constexpr double kThresholdRad = 5.0 * kPi / 180.0;
+constexpr double kKindShare = 0.1;  // of the length, that makes a stretch one of helices, or of arcs
+constexpr double kFacetMm = 1.0;
 constexpr double kSlightCorner = 0.5 * kPi / 180.0;
 constexpr std::size_t kFewestTools = 3;
 constexpr int kGeometryFolds = 5;
@@ -67,6 +70,7 @@ Data shortened(const std::vector<StretchRun>& runs) {
       item.judged.program_name = runs[r].program_name;
       item.judged.constant_feed_s = programmed_time_s(t.stretch, runs[r].program);
       item.program = r;
+      item.judged.kind = kind_of(t.stretch, runs[r].program);
       nc::Move rest = runs[r].program.moves[t.stretch.move_first];
       rest.kind = nc::MoveKind::dwell;
       rest.end_mm = rest.start_mm;
@@ -92,7 +96,7 @@ std::vector<double> times_s(const Data& data, const Machine& machine) {
   std::size_t at = 0;
   for (std::size_t p = 0; p < data.programs.size(); ++p) {
     double end_s = 0;
-    for (const feedmodel::SegmentTime& s : feedmodel::segment_times(data.programs[p], machine)) {
+    for (const feedmodel::SegmentTime& s : feedmodel::plan_motion(data.programs[p], machine).times) {
       while (at < data.items.size() && data.items[at].program == p && s.move >= data.items[at].move_end) ++at;
       const bool counts = at < data.items.size() && data.items[at].program == p && s.move >= data.items[at].move_first;
       if (counts) {
@@ -135,6 +139,11 @@ std::vector<LimitParameter> parameters_of(const StretchLaw& law) {
     p.push_back(positive(
         "control.corner.time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.time_s; },
         [](Machine& m, double v) { m.control.corner.time_s = v / 1000; }, 0.01, 1000, 8));
+  else if (law.corner == CornerLaw::radius)
+    p.push_back(positive(
+        "control.corner.acceleration_mm_per_s2", "mm/s2",
+        [](const Machine& m) { return m.control.corner.acceleration_mm_per_s2; },
+        [](Machine& m, double v) { m.control.corner.acceleration_mm_per_s2 = v; }, 0.1, 100000, 500));
   else
     p.push_back(positive(
         "control.corner.speed_difference_mm_per_min", "mm/min",
@@ -154,6 +163,8 @@ Machine base_of(const Machine& start, const StretchLaw& law) {
   Machine m = start;
   m.control.corner.law = law.corner;
   m.control.corner.stop_angle_rad = law.stop_angle_rad;
+  m.control.corner.threshold_rad = law.threshold_rad;
+  m.control.in_position_mm = machine::kNoLimit;  // waits are between the stretches
   m.control.path_acceleration_mm_per_s2 = machine::kNoLimit;
   if (!law.axis_acceleration)
     for (machine::Axis& axis : m.axis) axis.acceleration_mm_per_s2 = machine::kNoLimit;
@@ -244,8 +255,17 @@ struct Trial {
   std::vector<LimitParameter> parameters;
   Solution whole;
   std::vector<Solution> folds;
-  std::vector<double> fitted_s, held_out_s;
+  std::vector<double> fitted_s, held_out_s, kind_held_out_s;
 };
+
+/// The same stretches, a fold for each kind of motion.
+Data folded_by_kind(Data data) {
+  std::map<MotionKind, int> kinds;
+  for (const auto& item : data.items) kinds.try_emplace(item.judged.kind, static_cast<int>(kinds.size()));
+  for (auto& item : data.items) item.fold = kinds[item.judged.kind];
+  data.folds = static_cast<int>(kinds.size());
+  return data;
+}
 
 /// Fits again without each fold, from the whole fit.
 void hold_out(Trial& trial, const Data& data, const Machine& start, int max_iterations) {
@@ -271,6 +291,9 @@ Trial try_law(const Data& data, const Machine& start, const StretchLaw& law, int
   trial.whole = solve(data, base, trial.parameters, -1, rough.logs, kLossScale, max_iterations);
   trial.machine = machine_at(base, trial.parameters, trial.whole.logs.data());
   trial.fitted_s = times_s(data, trial.machine);
+  Trial by_kind = trial;
+  hold_out(by_kind, folded_by_kind(data), start, max_iterations);
+  trial.kind_held_out_s = by_kind.held_out_s;
   hold_out(trial, data, start, max_iterations);
   return trial;
 }
@@ -334,6 +357,30 @@ Machine stops_at_every_block(Machine m) {
 
 }  // namespace
 
+std::string_view name_of(MotionKind kind) {
+  constexpr std::string_view kNames[] = {"helices", "facets", "arcs", "lines"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+MotionKind kind_of(const FeedStretch& stretch, const nc::Interpretation& program) {
+  double helices = 0, arcs = 0, all = 0;
+  std::vector<double> lines;
+  for (std::size_t i = stretch.move_first; i < stretch.move_end; ++i) {
+    const nc::Move& move = program.moves[i];
+    const double length = length_mm(program, move);
+    all += length;
+    if (move.kind == nc::MoveKind::linear) lines.push_back(length);
+    if (move.kind != nc::MoveKind::arc) continue;
+    const bool rises = std::abs(program.arcs[move.arc].normal.dot(move.end_mm - move.start_mm)) > 1e-6;
+    (rises ? helices : arcs) += length;
+  }
+  if (helices > kKindShare * all) return MotionKind::helices;
+  const auto middle = lines.begin() + static_cast<std::ptrdiff_t>(lines.size() / 2);
+  std::nth_element(lines.begin(), middle, lines.end());
+  if (!lines.empty() && *middle < kFacetMm) return MotionKind::facets;
+  return arcs > kKindShare * all ? MotionKind::arcs : MotionKind::lines;
+}
+
 StretchErrors stretch_errors(const std::vector<double>& time_s, const std::vector<double>& predicted_s) {
   StretchErrors e;
   std::vector<double> errors;
@@ -358,12 +405,14 @@ std::vector<StretchLaw> candidate_laws(const std::vector<StretchRun>& runs) {
   for (const auto& gap : corner_gaps(runs))
     if (gap[0] > kSlightCorner && gap[1] < kBluntRad && gap[1] - gap[0] > kWideGapRad)
       stops.push_back(0.5 * (gap[0] + gap[1]));
-  for (CornerLaw corner : {CornerLaw::angle, CornerLaw::speed_difference}) {
-    for (double stop : stops) {
-      const char* name = corner == CornerLaw::angle ? "speed change along the path" : "speed difference by axis";
-      laws.push_back({std::isfinite(stop) ? fmt::format("{}, stop above {:.0f} deg", name, stop * 180 / kPi) : name,
-                      corner, stop, false});
-    }
+  for (const auto& [corner, name] : {std::pair(CornerLaw::angle, "speed change along the path"),
+                                     {CornerLaw::speed_difference, "speed difference by axis"},
+                                     {CornerLaw::radius, "radius of three points"}}) {
+    for (double stop : stops)
+      laws.push_back({.name = std::isfinite(stop) ? fmt::format("{}, stop above {:.0f} deg", name, stop * 180 / kPi)
+                                                  : std::string(name),
+                      .corner = corner,
+                      .stop_angle_rad = stop});
   }
   return laws;
 }
@@ -386,14 +435,21 @@ StretchFit fit_stretches(const std::vector<StretchRun>& runs, const Machine& sta
   const auto consider = [&](const StretchLaw& law) {
     Trial trial = try_law(data, start, law, options.max_iterations);
     fit.laws.push_back({law, stretch_errors(measured, trial.fitted_s), stretch_errors(measured, trial.held_out_s),
-                        mean_score(data, trial.held_out_s)});
-    const double better_by = law.axis_acceleration ? kBetterBy : 0.0;
+                        stretch_errors(measured, trial.kind_held_out_s),
+                        mean_score(data, trial.held_out_s) + mean_score(data, trial.kind_held_out_s)});
+    const bool richer = best && (law.axis_acceleration || law.threshold_rad > 0 ||
+                                 (std::isfinite(law.stop_angle_rad) && std::isinf(best->law.stop_angle_rad)));
+    const double better_by = richer ? kBetterBy : 0.0;
     if (best && fit.laws.back().score >= (1 - better_by) * fit.laws[fit.chosen].score) return;
     fit.chosen = fit.laws.size() - 1;
     best = std::move(trial);
   };
   for (const StretchLaw& law : laws) consider(law);
   if (options.laws.empty()) {
+    StretchLaw with_threshold = best->law;
+    with_threshold.threshold_rad = kThresholdRad;
+    with_threshold.name += ", no corner under 5 deg";
+    consider(with_threshold);
     StretchLaw with_axes = best->law;
     with_axes.axis_acceleration = true;
     with_axes.name += ", acceleration by axis";
@@ -410,12 +466,14 @@ StretchFit fit_stretches(const std::vector<StretchRun>& runs, const Machine& sta
     JudgedStretch s = data.items[i].judged;
     s.fitted_s = best->fitted_s[i];
     s.held_out_s = best->held_out_s[i];
+    s.kind_held_out_s = best->kind_held_out_s[i];
     s.stop_every_block_s = stopping[i];
     constant.push_back(s.constant_feed_s);
     fit.stretches.push_back(s);
   }
   fit.fitted = fit.laws[fit.chosen].fitted;
   fit.held_out = fit.laws[fit.chosen].held_out;
+  fit.machine.control.in_position_mm = start.control.in_position_mm;
   fit.constant_feed = stretch_errors(measured, constant);
   fit.stop_every_block = stretch_errors(measured, stopping);
   fit.converged = best->whole.converged;

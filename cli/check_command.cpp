@@ -1,6 +1,7 @@
 #include "cli/check_command.h"
 
 #include <algorithm>
+#include <optional>
 #include <ostream>
 
 #include <fmt/format.h>
@@ -8,7 +9,11 @@
 
 #include "base/numbers.h"
 #include "base/output_file.h"
+#include "feedmodel/control_options.h"
+#include "machine/job.h"
 #include "nc/program.h"
+#include "simulate/machine_checks.h"
+#include "simulate/setup_checks.h"
 
 namespace camber::cli {
 namespace {
@@ -22,9 +27,32 @@ std::vector<Diagnostic> in_order(std::vector<Diagnostic> list) {
   return list;
 }
 
+/// As the control of the job's machine, or of the machine, reads it.
+nc::InterpreterOptions options_of(const CheckCommand& command, const machine::Machine* machine,
+                                  const machine::Job* job) {
+  nc::InterpreterOptions options = command.interpreter;
+  if (job && !options.inch) options.inch = job->inch;
+  return machine ? feedmodel::interpreter_options(*machine, options) : options;
+}
+
 nc::Summary read_and_summarize(const CheckCommand& command, Diagnostics& found) {
+  std::optional<machine::Job> job;
+  std::optional<machine::Machine> machine;
+  if (!command.job.empty()) {
+    job = machine::read_job(command.job, found);
+    machine = job->machine;
+  } else if (!command.machine.empty()) {
+    machine = machine::read_machine(command.machine, found);
+  }
   const nc::Program text = nc::read_program(SourceText::read(command.program), found);
-  const nc::Interpretation moves = nc::interpret(text, command.interpreter, found);
+  const nc::Interpretation moves =
+      nc::interpret(text, options_of(command, machine ? &*machine : nullptr, job ? &*job : nullptr), found);
+  found.throw_if_errors();
+  if (machine) simulate::check_machine(*machine, text, moves, found);
+  if (job)
+    simulate::check_job(*job, text, moves, found);
+  else if (machine)
+    simulate::check_spindle(text, moves, found);
   found.throw_if_errors();
   return nc::summarize(text, moves);
 }

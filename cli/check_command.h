@@ -1,5 +1,5 @@
 #pragma once
-// camber check: read and interpret a program, report, change nothing.
+// camber check: read and interpret a program, report, change nothing; with a machine or a job also whether they fit.
 #include <iosfwd>
 #include <string>
 
@@ -11,7 +11,9 @@ namespace camber::cli {
 
 struct CheckCommand {
   std::string program;
-  std::string json;  ///< file for the figures; empty: none
+  std::string json;     ///< file for the figures; empty: none
+  std::string machine;  ///< machine.toml; empty: none
+  std::string job;      ///< job.toml, whose machine counts; empty: none
   nc::InterpreterOptions interpreter;
 };
 

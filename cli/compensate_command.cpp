@@ -78,7 +78,15 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   const machine::Job job = as_measured(told, arguments, diagnostics, compensate_options.progress, fit);
   if (arguments.header || arguments.header_hash)
     compensate_options.header = [&](const auto& c) { return header_of(job, c, arguments.header_hash); };
-  compensate::CompensationResult result = compensate::compensate(job, diagnostics, compensate_options);
+  compensate::CompensationResult result;
+  try {
+    result = compensate::compensate(job, diagnostics, compensate_options);
+  } catch (const compensate::BeyondModel& beyond) {
+    progress.clear();
+    settle(diagnostics, options);
+    print_error(beyond.what());
+    return kNumbersDidNotWorkOut;
+  }
   result.measured = fit;
   progress.clear();
   feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
@@ -100,6 +108,8 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
 
   if (!options.quiet) fmt::print("{}", report::compensate_text(result, compute_s));
   failed.throw_if_errors();
+  for (const std::string& doubt : result.doubts) print_error(doubt);
+  if (!result.doubts.empty()) return kNumbersDidNotWorkOut;
   if (const std::string unsettled = report::unsettled_sentence(result); !unsettled.empty()) {
     print_error(unsettled);
     return kNumbersDidNotWorkOut;

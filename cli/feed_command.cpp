@@ -14,6 +14,7 @@
 #include "feedmodel/timed_path.h"
 #include "machine/machine.h"
 #include "nc/program.h"
+#include "simulate/machine_checks.h"
 
 namespace camber::cli {
 
@@ -24,6 +25,10 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const nc::Interpretation moves =
       nc::interpret(program, feedmodel::interpreter_options(machine, arguments.interpreter), diagnostics);
+  diagnostics.throw_if_errors();
+  simulate::check_machine(machine, program, moves, diagnostics);
+  simulate::check_spindle(program, moves, diagnostics);
+  if (!arguments.output.empty()) feedmodel::check_feed_csv_size(moves, machine, arguments.output, diagnostics);
   feedmodel::check_range(moves, arguments.program, machine, diagnostics);
   progress.clear();
   settle(diagnostics, options);

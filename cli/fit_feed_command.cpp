@@ -16,6 +16,7 @@
 #include "calib/machine_log.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "feedmodel/control_options.h"
 #include "machine/machine.h"
 #include "nc/program.h"
 #include "report/block_time_plot.h"
@@ -58,7 +59,7 @@ void add_times(calib::StretchRun& run, const std::string& path, TraceKind kind, 
   run.timed.insert(run.timed.end(), timed.begin(), timed.end());
 }
 
-Runs read_runs(const FitFeedArguments& arguments, Diagnostics& diagnostics) {
+Runs read_runs(const FitFeedArguments& arguments, const machine::Machine& start, Diagnostics& diagnostics) {
   if (arguments.programs.size() != arguments.traces.size() || arguments.programs.empty())
     fail_on_file(arguments.machine,
                  fmt::format("{} programs and {} traces are given; each --program needs its --trace",
@@ -69,7 +70,8 @@ Runs read_runs(const FitFeedArguments& arguments, Diagnostics& diagnostics) {
   Runs runs;
   for (std::size_t i = 0; i < arguments.programs.size(); ++i) {
     const nc::Program program = nc::read_program(SourceText::read(arguments.programs[i]), diagnostics);
-    nc::Interpretation moves = nc::interpret(program, arguments.interpreter, diagnostics);
+    nc::Interpretation moves =
+        nc::interpret(program, feedmodel::interpreter_options(start, arguments.interpreter), diagnostics);
     diagnostics.throw_if_errors();
     const TraceKind kind = kind_of(arguments.traces[i]);
     if (kind == TraceKind::servo) {
@@ -96,7 +98,15 @@ void print_parameters(const std::vector<calib::FitParameter>& parameters) {
                p.std_error ? fmt::format("{:.2g}", *p.std_error) : "-", p.note);
 }
 
+void print_laws(const FitFeedResult& result) {
+  fmt::print("{:<52} {:>10} {:>10}\n", "corner law, parts kept back", "time, %", "cost");
+  for (const calib::JudgedCornerLaw& law : result.laws)
+    fmt::print("{:<52} {:>10.3f} {:>10.3f}\n", law.name, law.held_out_percent, law.held_out_cost);
+  fmt::print("taken: {}\n\n", result.law);
+}
+
 void print(const FitFeedResult& result) {
+  print_laws(result);
   print_parameters(result.parameters);
   constexpr const char* kAxes = "xyz";
   for (int i = 0; i < 3; ++i) {
@@ -150,20 +160,25 @@ void print(const calib::StretchFit& fit) {
   fmt::print("\n{:<76} {:>7} {:>7} {:>7} {:>7}\n",
              fmt::format("error of the stretch times, % ({} geometries, {} folds)", fit.stretches.size(), fit.folds),
              "mean", "p90", "worst", "total");
-  for (const calib::JudgedLaw& law : fit.laws) line("held out: " + law.law.name, law.held_out);
+  for (const calib::JudgedLaw& law : fit.laws) {
+    line("held out: " + law.law.name, law.held_out);
+    line("  each kind of motion by a fit on the others", law.kind_held_out);
+  }
   if (!fit.laws.empty()) {
     line("chosen, held out: " + fit.laws[fit.chosen].law.name, fit.held_out);
+    line("chosen, each kind of motion by a fit on the others", fit.laws[fit.chosen].kind_held_out);
     line("chosen, fitted to all", fit.fitted);
   }
   line("constant feed", fit.constant_feed);
   line("stop at every block", fit.stop_every_block);
-  fmt::print("\n{:<16} {:>4} {:>10} {:>9} {:>9} {:>10} {:>10}   %\n", "lines", "tool", "machine, s", "held out",
-             "fitted", "const feed", "stop each");
+  fmt::print("\n{:<16} {:>4} {:>8} {:>10} {:>9} {:>9} {:>9} {:>10} {:>10}   %\n", "lines", "tool", "kind", "machine, s",
+             "held out", "by kind", "fitted", "const feed", "stop each");
   for (const calib::JudgedStretch& s : fit.stretches) {
     const auto& t = s.timed;
-    fmt::print("{:<16} {:>4} {:>10.3f} {:>+9.2f} {:>+9.2f} {:>+10.2f} {:>+10.2f}\n",
-               fmt::format("{}-{}", t.stretch.line_first, t.stretch.line_last), t.stretch.tool, t.time_s,
-               percent(s.held_out_s, t.time_s), percent(s.fitted_s, t.time_s), percent(s.constant_feed_s, t.time_s),
+    fmt::print("{:<16} {:>4} {:>8} {:>10.3f} {:>+9.2f} {:>+9.2f} {:>+9.2f} {:>+10.2f} {:>+10.2f}\n",
+               fmt::format("{}-{}", t.stretch.line_first, t.stretch.line_last), t.stretch.tool, name_of(s.kind),
+               t.time_s, percent(s.held_out_s, t.time_s), percent(s.kind_held_out_s, t.time_s),
+               percent(s.fitted_s, t.time_s), percent(s.constant_feed_s, t.time_s),
                percent(s.stop_every_block_s, t.time_s));
   }
   for (const auto& gap : fit.unseen_corners_rad)
@@ -188,7 +203,9 @@ ordered_json report_of(const calib::StretchFit& fit) {
   report["baselines"] = {{"constant_feed", errors_json(fit.constant_feed)},
                          {"stop_at_every_block", errors_json(fit.stop_every_block)}};
   for (const calib::JudgedLaw& law : fit.laws)
-    report["laws"].push_back({{"name", law.law.name}, {"held_out", errors_json(law.held_out)}});
+    report["laws"].push_back({{"name", law.law.name},
+                              {"held_out", errors_json(law.held_out)},
+                              {"kind_held_out", errors_json(law.kind_held_out)}});
   for (const calib::JudgedStretch& s : fit.stretches)
     report["stretches"].push_back({{"program", s.program_name},
                                    {"line_first", s.timed.stretch.line_first},
@@ -196,6 +213,8 @@ ordered_json report_of(const calib::StretchFit& fit) {
                                    {"tool", s.timed.stretch.tool},
                                    {"time_s", s.timed.time_s},
                                    {"held_out_s", s.held_out_s},
+                                   {"kind", name_of(s.kind)},
+                                   {"kind_held_out_s", s.kind_held_out_s},
                                    {"fitted_s", s.fitted_s},
                                    {"constant_feed_s", s.constant_feed_s},
                                    {"stop_every_block_s", s.stop_every_block_s}});
@@ -222,6 +241,10 @@ ordered_json report_of(const FitFeedResult& result) {
                               {"time_error_percent", run.accuracy.time_error_percent},
                               {"speed_rms_percent", run.accuracy.speed_rms_percent},
                               {"speed_p95_percent", run.accuracy.speed_p95_percent}});
+  for (const calib::JudgedCornerLaw& law : result.laws)
+    report["laws"].push_back(
+        {{"name", law.name}, {"held_out", {{"part_time_percent", law.held_out_percent}, {"cost", law.held_out_cost}}}});
+  report["law"] = result.law;
   report["residual_median_ms"] = result.residual_median_ms;
   report["converged"] = result.converged;
   report["message"] = result.message;
@@ -289,7 +312,7 @@ int fit_to_times(const Runs& runs, const machine::Machine& start, const FitFeedA
 int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options) {
   Diagnostics diagnostics;
   const machine::Machine start = machine::read_machine(arguments.machine, diagnostics);
-  const Runs runs = read_runs(arguments, diagnostics);
+  const Runs runs = read_runs(arguments, start, diagnostics);
   settle(diagnostics, options);
   print_translation(start.translation, options);
   if (!arguments.block_time_plot.empty()) plot_block_time(runs, arguments, options);

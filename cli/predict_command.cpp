@@ -19,7 +19,11 @@
 #include "report/report_data.h"
 #include "report/summary.h"
 #include "simulate/collisions.h"
+#include "simulate/flute_reach.h"
+#include "simulate/machine_checks.h"
+#include "simulate/setup_checks.h"
 #include "simulate/turn.h"
+#include "simulate/verdict.h"
 
 namespace camber::cli {
 namespace {
@@ -76,6 +80,11 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   ProgressLine progress(options, "reading");
   const machine::Job job = machine::read_job(arguments.job, diagnostics);
   const auto program = simulate::simulate_motion(SourceText::read(job.program), job, {}, diagnostics);
+  simulate::check_machine(job.machine, program.text, program.moves, diagnostics);
+  simulate::check_tool_lengths(job, simulate::cutting_tools(program.moves, program.selected, program.holes),
+                               diagnostics);
+  feedmodel::check_feed_csv_size(program.moves, job.machine, arguments.output_folder + "/feed.csv", diagnostics);
+  diagnostics.throw_if_errors();
   progress.show("cutting as the target");
   simulate::Target target = [&] {
     if (job.part.program.empty()) return simulate::make_target(job, program, diagnostics);
@@ -89,6 +98,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
     predict_options.turn_from = simulate::turn_at_line(program, job, arguments.forces_at, diagnostics);
   progress.show("looking for collisions");
   simulate::check_collisions(job, program, target.blank, diagnostics);
+  simulate::check_flute_reach(job, program, target.blank, diagnostics);
   progress.clear();
   settle(diagnostics, options);
   print_translation(job.machine.translation, options);
@@ -116,10 +126,11 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
 
   if (!options.quiet) fmt::print("{}", report::predict_text(program, prediction, compute_s));
   failed.throw_if_errors();
-  const std::string unsettled = report::unsettled_sentence(program, prediction);
-  if (unsettled.empty()) return kDone;
-  print_error(unsettled);
-  return kNumbersDidNotWorkOut;
+  std::vector<std::string> wrong = simulate::doubts(job, program, prediction);
+  if (std::string unsettled = report::unsettled_sentence(program, prediction); !unsettled.empty())
+    wrong.push_back(std::move(unsettled));
+  for (const std::string& sentence : wrong) print_error(sentence);
+  return wrong.empty() ? kDone : kNumbersDidNotWorkOut;
 }
 
 }  // namespace camber::cli

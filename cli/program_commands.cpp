@@ -99,11 +99,19 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto arguments = std::make_shared<CheckCommand>();
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  auto* machine = command->add_option("--machine", arguments->machine,
+                                      "machine.toml: also whether the program keeps its axes, feeds and speeds");
+  machine->type_name("M.toml");
+  command
+      ->add_option("--job", arguments->job,
+                   "job.toml: the same for its machine, and whether its tools, stock and part fit the program")
+      ->type_name("J.toml")
+      ->excludes(machine);
   add_interpreter_options(*command, arguments->interpreter);
   add_language_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
-      check_outputs({arguments->json}, {arguments->program});
+      check_outputs({arguments->json}, {arguments->program, arguments->machine, arguments->job});
       return check(*arguments, options);
     };
   });

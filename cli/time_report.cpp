@@ -60,8 +60,8 @@ std::string tools_text(const CycleTime& time) {
 std::string histogram_text(const CycleTime& time) {
   std::string edges = "\ndistance mm, up to", g00 = "G0 positionings   ", g01 = "G1 cuts           ";
   for (std::size_t i = 0; i < time.g00.counts.size(); ++i) {
-    const bool last = i == std::size(feedmodel::kDistanceEdgesMm);
-    edges += fmt::format(" {:>6}", last ? "longer" : format_trimmed(feedmodel::kDistanceEdgesMm[i], 1));
+    const bool last = i == time.g00.edges_mm.size();
+    edges += fmt::format(" {:>6}", last ? "longer" : format_trimmed(time.g00.edges_mm[i], 1));
     g00 += fmt::format(" {:>6}", time.g00.counts[i]);
     g01 += fmt::format(" {:>6}", time.g01.counts[i]);
   }
@@ -128,8 +128,7 @@ ordered_json use_json(const CycleUse& use) {
 }
 
 ordered_json histogram_json(const feedmodel::DistanceHistogram& h) {
-  return {
-      {"up_to_mm", feedmodel::kDistanceEdgesMm}, {"counts", h.counts}, {"moves", h.moves}, {"length_mm", h.length_mm}};
+  return {{"up_to_mm", h.edges_mm}, {"counts", h.counts}, {"moves", h.moves}, {"length_mm", h.length_mm}};
 }
 
 ordered_json time_of(const CycleTime& time) {

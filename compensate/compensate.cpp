@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "compensate/fit_shift.h"
 #include "compensate/guard.h"
@@ -14,6 +15,10 @@
 #include "compensate/splits.h"
 #include "nc/emit.h"
 #include "simulate/collisions.h"
+#include "simulate/flute_reach.h"
+#include "simulate/machine_checks.h"
+#include "simulate/setup_checks.h"
+#include "simulate/verdict.h"
 
 namespace camber::compensate {
 
@@ -92,11 +97,15 @@ class Loop {
     if (early.operations.size() == 1 || job_.compensation.operations.given())
       check_compensated(program_, early.moves, diagnostics_);
     check_travel(job_, program_.text, program_.moves, diagnostics_);
+    simulate::check_machine(job_.machine, program_.text, program_.moves, diagnostics_);
+    simulate::check_tool_lengths(job_, simulate::cutting_tools(program_.moves, program_.selected, program_.holes),
+                                 diagnostics_);
     diagnostics_.throw_if_errors();
     if (!own_target_)
       target_program_.emplace(simulate::simulate_motion(SourceText::read(job.part.program), job, {}, diagnostics));
     target_.emplace(simulate::make_target(job, target_program(), diagnostics));
     simulate::check_collisions(job_, program_, target_->blank, diagnostics_);
+    simulate::check_flute_reach(job_, program_, target_->blank, diagnostics_);
     diagnostics_.throw_if_errors();
     workshop_.emplace(job_, program_, *target_, own_target_);
   }
@@ -135,7 +144,10 @@ class Loop {
 
   /// The program as given: its error, what of it is compensated, and the points of the path.
   void start(CompensationResult& out) {
-    last_.keep(workshop_->predict(program_, progress("as given")));
+    simulate::Prediction given = workshop_->predict(program_, progress("as given"));
+    out.doubts = simulate::doubts(job_, program_, given);
+    if (simulate::beyond_model(given)) throw BeyondModel(fmt::format("{}", fmt::join(out.doubts, "; ")));
+    last_.keep(std::move(given));
     out.finishing = find_finishing(job_, program_, last_.surface);
     check_compensated(program_, out.finishing.moves, diagnostics_);
     diagnostics_.throw_if_errors();
@@ -324,6 +336,9 @@ class Loop {
     out.blocks_after = program.text.source.line_count();
     out.blocks_changed = best_.emitted ? count_changed(program_.text, *best_.emitted) : 0;
     out.settled = first.unsettled == 0 && best.unsettled == 0;
+    const double imbalance = simulate::imbalance(best_.chip_mm3, best_.stock_mm3, job_.simulation.voxel_mm);
+    if (out.doubts.empty() && std::abs(imbalance) > simulate::kMaxImbalance)
+      out.doubts.push_back("in the emitted program " + simulate::imbalance_sentence(best_.chip_mm3, best_.stock_mm3));
   }
 
   /// The other grid and the uncertainty; the text last, since its header may tell of them.

@@ -2,6 +2,7 @@
 // The fixed-point loop: predict, move each point against its error, predict the emitted program again.
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,13 @@ struct CompensationResult {
   std::optional<Band> band;
   std::vector<std::string> unknown_parameters;  ///< with a standard error, but not of this job
   std::optional<MeasuredFit> measured;
+  /// Why the figures of the given or of the emitted program are not to be relied on (simulate/verdict.h); empty: none.
+  std::vector<std::string> doubts;
+};
+
+/// The program as given lies beyond the model: there is nothing to compensate by. what() says why.
+class BeyondModel : public std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 struct CompensateOptions {
@@ -77,7 +85,7 @@ struct CompensateOptions {
   std::function<std::string(const CompensationResult&)> header{};
 };
 
-/// Throws InputError. The program's text is not written anywhere.
+/// Throws InputError and BeyondModel. The program's text is not written anywhere.
 CompensationResult compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options);
 
 }  // namespace camber::compensate

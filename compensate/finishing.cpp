@@ -52,6 +52,8 @@ std::string comment_of(std::string_view line) {
   return std::string(line.substr(open + 1, (close == std::string_view::npos ? line.size() : close) - open - 1));
 }
 
+constexpr std::size_t kLongestComment = 400;  // std::regex needs stack for each character
+
 /// For each line whether the heading above it matches.
 std::vector<bool> lines_under(const SimulatedProgram& program, const std::string& pattern) {
   const std::regex wanted(pattern, std::regex::ECMAScript | std::regex::icase);
@@ -62,7 +64,7 @@ std::vector<bool> lines_under(const SimulatedProgram& program, const std::string
   for (std::size_t i = 0; i < lines; ++i) {
     const auto words = program.text.words_of(i);
     const bool change = std::ranges::any_of(words, [](const nc::Word& w) { return w.letter == 'M' && w.value == 6; });
-    const std::string comment = comment_of(program.text.source.line(i + 1));
+    const std::string comment = comment_of(program.text.source.line(i + 1)).substr(0, kLongestComment);
     if (change && !heading) in = false;
     if (!comment.empty()) {
       const bool matches = std::regex_search(comment, wanted);

@@ -84,6 +84,21 @@ void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double 
   }
 }
 
+/// Both ends of a plunge are shifted across Z by the same.
+void add_plunges(System& s, const ShiftPath& path, const Chain& chain) {
+  constexpr double kRigid = 1e4;  // of what else holds the path
+  double held = 0;
+  for (std::size_t i = chain.from; i < chain.from + chain.count; ++i)
+    held = std::max(held, kRigid * s.diagonal[i].trace());
+  const Matrix3d across = held * Vec3(1, 1, 0).asDiagonal();
+  for (std::size_t i = chain.from; i + 1 < chain.from + chain.count; ++i) {
+    if (!path.points()[i + 1].plunge) continue;
+    s.diagonal[i] += across;
+    s.diagonal[i + 1] += across;
+    s.upper[i] -= across;
+  }
+}
+
 /// Holds at rest what hardly any surface faces: along a row of a ball the normals differ by a few degrees, and a shift
 /// of several times the error along the surface would explain what little the error varies across the row.
 void add_rest(System& s, const Chain& chain) {
@@ -228,6 +243,7 @@ std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations
     add_stiffness(s, path, c, mu, kappa, weight, options.stiffness);
   }
   const std::vector<double> between = add_links(s, mu, weight, options);
+  for (const Chain& c : path.chains()) add_plunges(s, path, c);
   const std::vector<Vec3> shifts = solve(s, path, options.links, between);
   path.set_shifts(shifts);
   std::size_t limited = 0;
@@ -237,6 +253,7 @@ std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations
     p.shift_mm *= options.max_shift_mm / shift;
     ++limited;
   }
+  path.keep_plunges();
   return limited;
 }
 

@@ -28,6 +28,14 @@ int pieces_of(double length_mm, double spacing_mm, double shortest_mm) {
   return std::max(1, static_cast<int>(std::min<double>(wanted, std::floor(length_mm / shortest_mm + 1e-9))));
 }
 
+/// Along Z alone, in the text as well.
+bool is_plunge(const nc::Interpretation& program, const nc::Move& move) {
+  constexpr double kSamePlaceMm = 1e-9;
+  const Vec3 way = move.end_mm - move.start_mm;
+  return move.kind == nc::MoveKind::linear && program.frame_of(move).shift_only &&
+         std::hypot(way.x(), way.y()) < kSamePlaceMm;
+}
+
 }  // namespace
 
 ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm,
@@ -54,13 +62,15 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
     const int pieces = several_turns            ? 1
                        : std::isinf(spacing_mm) ? pieces_of_whole(program, move)
                                                 : pieces_of(length, spacing_mm, move.feed_mm_per_s * block_time_s);
+    const bool plunge = is_plunge(program, move);
     for (int i = 1; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
       points_.push_back({.move = m,
                          .share = u,
                          .along_mm = along + u * length,
                          .place_mm = nc::point_at(program, move, u),
-                         .fixed = !move.editable});
+                         .fixed = !move.editable,
+                         .plunge = plunge && move.editable});
       ++chains_.back().count;
     }
   }
@@ -91,6 +101,12 @@ std::vector<Vec3> ShiftPath::shifts() const {
 
 void ShiftPath::set_shifts(std::span<const Vec3> shifts) {
   for (std::size_t i = 0; i < points_.size(); ++i) points_[i].shift_mm = shifts[i];
+}
+
+void ShiftPath::keep_plunges() {
+  for (const Chain& chain : chains_)
+    for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i)
+      if (points_[i].plunge) points_[i].shift_mm.head<2>() = points_[i - 1].shift_mm.head<2>();
 }
 
 namespace {

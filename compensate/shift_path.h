@@ -18,6 +18,9 @@ struct ControlPoint {
   Vec3 place_mm = Vec3::Zero();
   Vec3 shift_mm = Vec3::Zero();
   bool fixed = false;  ///< where a rapid, a move of another operation or one that cannot be edited ends: stays
+  /// The piece that ends here runs along Z alone, a plunge or a retract, and gets no X and Y words: its shift across is
+  /// that of the point before.
+  bool plunge = false;
 };
 
 /// One unbroken run of moves that may be shifted: points[from] ... points[from + count - 1].
@@ -49,6 +52,8 @@ class ShiftPath {
   Vec3 shift_at(const PointInterval& place) const;
   std::vector<Vec3> shifts() const;
   void set_shifts(std::span<const Vec3> shifts);
+  /// Gives the points of plunges the shift across Z that they must have.
+  void keep_plunges();
 
   /// The moves whose points are shifted. Points between the ends of a line are kept where the path without them
   /// would stray by more than tolerance_mm; an arc stays one where one passes the shifted points within it, else it

@@ -1,6 +1,9 @@
 #include "compensate/trial.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "nc/emit/number_style.h"
 
 namespace camber::compensate {
 namespace {
@@ -26,23 +29,43 @@ machine::Operations moved_ranges(const machine::Operations& operations,
 
 }  // namespace
 
+nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program& program) {
+  constexpr int kFewest = 3, kMax = 4;  // millimetres
+  nc::EmitOptions out;
+  if (control.least_increment_mm) {
+    out.decimals_mm = std::max(0, static_cast<int>(std::ceil(-std::log10(*control.least_increment_mm) - 1e-9)));
+    out.decimals_inch = out.decimals_mm + 1;
+  } else {
+    const int own = nc::coordinate_decimals_of(program);
+    out.decimals_mm = std::clamp(own, kFewest, kMax);
+    out.decimals_inch = std::clamp(own, kFewest + 1, kMax + 1);
+  }
+  return out;
+}
+
 void Trial::keep(simulate::Prediction prediction) {
   surface = std::move(prediction.surface);
   loads = std::move(prediction.cut.loads);
   error_um = prediction.form_error_um;
   static_rounds = prediction.cut.rounds_max;
   unsettled = prediction.cut.unsettled;
+  chip_mm3 = prediction.cut.chip_mm3;
+  stock_mm3 = prediction.cut.stock_mm3;
 }
 
 TrialRunner::TrialRunner(const machine::Job& job, const simulate::SimulatedProgram& given,
                          const simulate::Target& target, bool own_target)
-    : job_(job), given_(given), target_(target), own_target_(own_target) {}
+    : job_(job),
+      given_(given),
+      target_(target),
+      own_target_(own_target),
+      decimals_(decimals_for(job.machine.control, given.text)) {}
 
 std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const std::vector<bool>& splits,
                                                  const std::vector<bool>& compensated) const {
   auto out = std::make_shared<Emitted>();
   out->splits = splits;
-  out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(splits, kViaTolerance_mm), {});
+  out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(splits, kViaTolerance_mm), decimals_);
   Diagnostics repeated;  // the emitted program's warnings are the given one's
   machine::Job job = job_;
   out->operations = moved_ranges(job_.operations, out->emission.block_of_line);
@@ -55,7 +78,7 @@ std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const st
 }
 
 std::string TrialRunner::text_of(const ShiftPath& path, const std::vector<bool>& splits) const {
-  nc::EmitOptions options;
+  nc::EmitOptions options = decimals_;
   options.header_comment = header;
   return nc::emit(given_.text, given_.moves, path.edits(splits, kViaTolerance_mm), options);
 }

@@ -29,10 +29,15 @@ struct Trial {
   removal::ErrorFigures error_um;
   int static_rounds = 0;
   std::size_t unsettled = 0;
+  double chip_mm3 = 0, stock_mm3 = 0;  ///< what the chips add up to and the stock loses
   Observed observed;
 
   void keep(simulate::Prediction prediction);
 };
+
+/// Decimals of the words that an edit adds or changes: those of the control's least increment, else as many as the
+/// program's coordinates have, three or four in millimetres, one more in inches.
+nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program& program);
 
 /// What all trials have in common. Everything passed must outlive the object.
 class TrialRunner {
@@ -61,6 +66,7 @@ class TrialRunner {
   const simulate::SimulatedProgram& given_;
   const simulate::Target& target_;
   bool own_target_;
+  nc::EmitOptions decimals_;
 };
 
 }  // namespace camber::compensate

@@ -42,6 +42,8 @@ std::vector<UncertainParameter> parameters_of_json(const std::string& path, cons
   return out;
 }
 
+constexpr std::size_t kLongestRow = 200;  // std::regex needs stack for each character
+
 std::vector<UncertainParameter> parameters_of_toml(const std::string& text) {
   static const std::regex line(R"(^#\s*([\w.]+):\s*(\S+)\s*\+-\s*(\S+))");
   std::vector<UncertainParameter> out;
@@ -50,7 +52,7 @@ std::vector<UncertainParameter> parameters_of_toml(const std::string& text) {
     const std::size_t end = std::min(text.find('\n', from), text.size());
     const std::string row = text.substr(from, end - from);
     std::smatch m;
-    if (std::regex_search(row, m, line)) {
+    if (row.size() <= kLongestRow && std::regex_search(row, m, line)) {
       const auto value = parse_number(m[2].str()), error = parse_number(m[3].str());
       if (value && error) out.push_back({m[1], *value, *error});
     }

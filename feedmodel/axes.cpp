@@ -22,6 +22,18 @@ Vec3 filter_times_s(const machine::Machine& machine) {
   return times;
 }
 
+double settling_time_s(const machine::Machine& machine) {
+  const Vec3 filters = filter_times_s(machine);
+  double max_s = 0;
+  for (int i = 0; i < 3; ++i) {
+    const machine::Axis& axis = machine.axis[i];
+    const double lag =
+        std::isinf(axis.position_gain_per_s) ? 0.0 : 1.0 / axis.position_gain_per_s + axis.velocity_lag_s;
+    max_s = std::max(max_s, filters[i] + kSettlingFoldings * (lag + axis.exponential_1_s + axis.exponential_2_s));
+  }
+  return max_s;
+}
+
 Axes::Axes(const machine::Machine& machine, const Vec3& start_mm) {
   const double period = machine.control.period_s;
   const Vec3 filters = filter_times_s(machine);
@@ -38,10 +50,6 @@ Axes::Axes(const machine::Machine& machine, const Vec3& start_mm) {
     };
     axes_[i].emplace(Axis{AxisFilter(window, start_mm[i]), lag_of(axis.exponential_1_s), lag_of(axis.exponential_2_s),
                           PositionLoop(loop, start_mm[i])});
-    const double lag = std::isinf(axis.position_gain_per_s) ? 0.0 : 1.0 / axis.position_gain_per_s;
-    settling_time_s_ = std::max(
-        settling_time_s_,
-        filters[i] + kSettlingFoldings * (lag + axis.velocity_lag_s + axis.exponential_1_s + axis.exponential_2_s));
   }
 }
 

@@ -15,6 +15,9 @@ namespace camber::feedmodel {
 /// all three, so that they do not bend the path.
 Vec3 filter_times_s(const machine::Machine& machine);
 
+/// How long, at most, the axes need to come to rest behind a command that rests; 0: they follow without lag.
+double settling_time_s(const machine::Machine& machine);
+
 class Axes {
  public:
   Axes(const machine::Machine& machine, const Vec3& start_mm);
@@ -22,8 +25,6 @@ class Axes {
   /// One period: the command at its end; returns the actual position at its end.
   Vec3 operator()(const Vec3& command_mm);
   Vec3 velocity_mm_per_s() const;
-  /// How long, at most, the axes need to come to rest behind a command that rests.
-  double settling_time_s() const { return settling_time_s_; }
 
  private:
   struct Axis {
@@ -32,7 +33,6 @@ class Axes {
     PositionLoop loop;
   };
   std::array<std::optional<Axis>, 3> axes_;
-  double settling_time_s_ = 0;
 };
 
 }  // namespace camber::feedmodel

@@ -18,18 +18,6 @@ namespace {
 
 using nc::EventKind;
 
-/// Moves before which the path rests, because the control waits for something that is not motion.
-std::vector<std::uint32_t> rests_of(const nc::Interpretation& program, const machine::Cycle& cycle) {
-  std::vector<std::uint32_t> rests;
-  for (const nc::Event& event : program.events) {
-    const bool quick = (event.kind == EventKind::tool_select && cycle.t_code_s == 0) ||
-                       (event.kind == EventKind::spindle_speed && cycle.s_code_s == 0) ||
-                       (event.kind == EventKind::m_code && cycle.m_code_s == 0);
-    if (!quick && (rests.empty() || rests.back() != event.before_move)) rests.push_back(event.before_move);
-  }
-  return rests;
-}
-
 /// Time of a turn of the index table from rest to rest; it may turn either way.
 double index_time_s(const machine::IndexTable& table, double turn_deg) {
   const double around = std::fabs(std::remainder(turn_deg, 360.0));
@@ -55,7 +43,8 @@ class CycleClock {
         rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)) {}
 
   CycleTime run() {
-    MotionTimes motion = motion_times(program_, machine_, rests_of(program_, machine_.cycle));
+    out_.g00 = out_.g01 = DistanceHistogram(machine_.cycle.histogram_step_mm);
+    MotionTimes motion = motion_times(program_, machine_);
     out_.below_full_rapid = motion.below_full_rapid;
     out_.speed_changes = motion.speed_changes;
     out_.unplaced_moves = motion.unplaced_moves;
@@ -271,9 +260,18 @@ CycleUse& CycleUse::operator+=(const CycleUse& other) {
   return *this;
 }
 
+DistanceHistogram::DistanceHistogram(double step_mm) {
+  constexpr int kSteps = 20;
+  if (step_mm > 0)
+    for (int i = 1; i <= kSteps; ++i) edges_mm.push_back(step_mm * i);
+  else
+    edges_mm.assign(std::begin(kDistanceEdgesMm), std::end(kDistanceEdgesMm));
+  counts.assign(edges_mm.size() + 1, 0);
+}
+
 void DistanceHistogram::add(double distance_mm) {
-  const auto* edge = std::lower_bound(std::begin(kDistanceEdgesMm), std::end(kDistanceEdgesMm), distance_mm);
-  ++counts[static_cast<std::size_t>(edge - std::begin(kDistanceEdgesMm))];
+  const auto edge = std::lower_bound(edges_mm.begin(), edges_mm.end(), distance_mm);
+  ++counts[static_cast<std::size_t>(edge - edges_mm.begin())];
   ++moves;
   length_mm += distance_mm;
 }

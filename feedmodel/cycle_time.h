@@ -55,10 +55,14 @@ struct CycleUse {
   CycleUse& operator+=(const CycleUse& other);  ///< `tool` stays
 };
 
-/// Moves by their length. Bin i holds lengths up to kDistanceEdgesMm[i], the last one what is longer.
+/// Moves by their length. Bin i holds lengths up to edges_mm[i], the last one what is longer. Edges: twenty multiples
+/// of a step, or, without one, kDistanceEdgesMm.
 inline constexpr double kDistanceEdgesMm[] = {0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
 struct DistanceHistogram {
-  std::vector<std::size_t> counts = std::vector<std::size_t>(std::size(kDistanceEdgesMm) + 1, 0);
+  explicit DistanceHistogram(double step_mm = 0);
+
+  std::vector<double> edges_mm;  ///< ascending
+  std::vector<std::size_t> counts;
   std::size_t moves = 0;
   double length_mm = 0;
 

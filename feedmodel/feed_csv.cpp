@@ -1,13 +1,28 @@
 #include "feedmodel/feed_csv.h"
 
+#include <filesystem>
+
+#include <fmt/format.h>
+
 #include "base/numbers.h"
 #include "base/units.h"
+#include "nc/durations.h"
 
 namespace camber::feedmodel {
 namespace {
 
 /// No "-0.000": the same bytes for a resting axis, whichever way it came to rest.
 double clean(double value, double half_step) { return value > -half_step && value < half_step ? 0.0 : value; }
+
+/// On the disk of the nearest folder above `path` that is there.
+double free_bytes_at(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code ec;
+  fs::path folder = fs::absolute(path, ec).lexically_normal();
+  while (!fs::is_directory(folder, ec) && folder.has_relative_path()) folder = folder.parent_path();
+  const fs::space_info space = fs::space(folder, ec);
+  return ec ? 1e18 : static_cast<double>(space.available);
+}
 
 }  // namespace
 
@@ -30,6 +45,24 @@ void FeedCsv::write(std::span<const TimedSample> samples) {
     text_.back() = '\n';
   }
   file_.stream() << text_;
+}
+
+void check_feed_csv_size(const nc::Interpretation& program, const machine::Machine& machine, const std::string& path,
+                         Diagnostics& diagnostics) {
+  check_feed_csv_size(nc::programmed_time_s(program), machine.control.period_s, free_bytes_at(path), path, diagnostics);
+}
+
+void check_feed_csv_size(double time_s, double period_s, double free_bytes, const std::string& path,
+                         Diagnostics& diagnostics) {
+  constexpr double kBytesPerRow = 85, kMany = 4e9;
+  const double rows = time_s / period_s, bytes = rows * kBytesPerRow;
+  const bool fits = bytes <= free_bytes;
+  if (fits && bytes <= kMany) return;
+  std::string message =
+      fmt::format("{:.1f} h of motion are {:.3g} rows, about {:.0f} GB", time_s / 3600, rows, bytes / 1e9);
+  if (!fits)
+    message += fmt::format(", but {:.0f} GB are free on the disk; a shorter program was expected", free_bytes / 1e9);
+  diagnostics.add({fits ? Severity::warning : Severity::error, {path, 0, 0}, std::move(message), "output-size", {}});
 }
 
 }  // namespace camber::feedmodel

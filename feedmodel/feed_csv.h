@@ -3,8 +3,10 @@
 #include <span>
 #include <string>
 
+#include "base/diagnostics.h"
 #include "base/output_file.h"
 #include "feedmodel/timed_path.h"
+#include "machine/machine.h"
 #include "nc/move.h"
 
 namespace camber::feedmodel {
@@ -24,5 +26,13 @@ class FeedCsv {
   OutputFile file_;
   std::string text_;
 };
+
+/// Says before the work what a file of very many rows would be: error [output-size] where it would not fit on the disk,
+/// a warning from some gigabytes on. `path`: of the file, which need not be there, nor its folder.
+void check_feed_csv_size(const nc::Interpretation& program, const machine::Machine& machine, const std::string& path,
+                         Diagnostics& diagnostics);
+/// The same for motion of `time_s` at `period_s`, with `free_bytes` on the disk.
+void check_feed_csv_size(double time_s, double period_s, double free_bytes, const std::string& path,
+                         Diagnostics& diagnostics);
 
 }  // namespace camber::feedmodel

@@ -11,6 +11,7 @@
 
 #include "base/units.h"
 #include "feedmodel/limits.h"
+#include "feedmodel/modes.h"
 
 namespace camber::feedmodel {
 namespace {
@@ -139,6 +140,7 @@ machine::FittedRange range_of(const std::vector<const nc::Interpretation*>& prog
 
 void check_range(const nc::Interpretation& program, const std::string& program_path, const machine::Machine& machine,
                  Diagnostics& diagnostics) {
+  check_modes(program, program_path, machine, diagnostics);
   const machine::FittedRange& r = machine.fitted_range;
   if (!r.known) return;
   Beyond feed, corner, line, arc, rate;

@@ -18,7 +18,8 @@ machine::FittedRange range_of(const std::vector<const nc::Interpretation*>& prog
 /// did not move, runs of more blocks a second. Longer lines, wider arcs and slower feeds hold nothing new.
 /// One warning for each [range-feed], [range-corner], [range-line], [range-arc], [range-axis],
 /// [range-blocks] with its share of the
-/// cutting length and the first blocks. Nothing where the machine file has no [fitted_range].
+/// cutting length and the first blocks. Nothing of these where the machine file has no [fitted_range]; check_modes in
+/// any case.
 void check_range(const nc::Interpretation& program, const std::string& program_path, const machine::Machine& machine,
                  Diagnostics& diagnostics);
 

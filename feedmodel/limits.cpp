@@ -21,7 +21,9 @@ double limit_in_plane(const Vec3& normal, const Vec3& limits) {
 }
 
 Vec3 velocity_limits_mm_per_s(const machine::Machine& m) {
-  return {m.axis[0].max_velocity_mm_per_s, m.axis[1].max_velocity_mm_per_s, m.axis[2].max_velocity_mm_per_s};
+  Vec3 limits;
+  for (int i = 0; i < 3; ++i) limits[i] = std::min(m.axis[i].max_velocity_mm_per_s, m.axis[i].max_feed_mm_per_s);
+  return limits;
 }
 
 Vec3 acceleration_limits_mm_per_s2(const machine::Machine& m) {

@@ -14,6 +14,7 @@ double limit_along(const Vec3& direction, const Vec3& limits);
 /// normal; axes that are square to the plane do not count.
 double limit_in_plane(const Vec3& normal, const Vec3& limits);
 
+/// Of feed moves.
 Vec3 velocity_limits_mm_per_s(const machine::Machine& machine);
 Vec3 acceleration_limits_mm_per_s2(const machine::Machine& machine);
 

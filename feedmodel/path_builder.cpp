@@ -5,9 +5,14 @@
 #include <cmath>
 #include <optional>
 
+#include "feedmodel/axis_places.h"
 #include "feedmodel/corner.h"
 #include "feedmodel/limits.h"
 #include "feedmodel/merge.h"
+#include "feedmodel/modes.h"
+#include "feedmodel/rapid.h"
+#include "feedmodel/rests.h"
+#include "feedmodel/yan_shirase.h"
 
 namespace camber::feedmodel {
 namespace {
@@ -28,9 +33,10 @@ constexpr double kNoLength = 1e-9;
 struct Element {
   Segment segment;
   bool line = true;
+  const machine::Control* settings = nullptr;  ///< the control's, in the mode that the program has selected
   nc::PathControl control = nc::PathControl::blend;
   double tolerance_mm = 0;
-  bool stops = false;           ///< G9, G61.1
+  bool stops = false;           ///< G9
   double from_s = 0;            ///< where the rounding at its start ends
   double less_fraction = 0;     ///< of its acceleration, kept free for the corners' speed steps
   double planned_fraction = 1;  ///< of its acceleration, that the look-ahead counts on
@@ -77,16 +83,42 @@ void set_arc_limits(Segment& s, const Vec3& acceleration, const machine::Control
   s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, turning);
 }
 
+/// The control's own limits on a programmed arc, beside those of its axes. Source: Takata 1999, eqs. 2.9, 2.10.
+void set_control_arc_limits(Segment& s, const machine::Machine& machine) {
+  const machine::Cycle& cycle = machine.cycle;
+  const double r = helix_curvature_radius(s.radius_mm, s.rise.norm() / s.turn_rad_per_mm);
+  s.acceleration_mm_per_s2 = std::min(s.acceleration_mm_per_s2, cycle.arc_acceleration_mm_per_s2);
+  s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, arc_speed(r, cycle.arc_acceleration_mm_per_s2, 1));
+  if (std::isinf(cycle.arc_tolerance_mm)) return;
+  for (const machine::Axis& axis : machine.axis)
+    s.speed_limit_mm_per_s =
+        std::min(s.speed_limit_mm_per_s, arc_servo_speed(r, cycle.arc_tolerance_mm, axis.position_gain_per_s,
+                                                         axis.feed_forward_percent, cycle.arc_loop_factor));
+}
+
+Vec3 speed_differences_mm_per_s(const machine::Machine& machine, const machine::Corner& corner) {
+  Vec3 out;
+  for (int i = 0; i < 3; ++i) {
+    const double own = machine.axis[i].speed_difference_mm_per_s;
+    out[i] = std::isinf(own) ? corner.speed_difference_mm_per_s : own;
+  }
+  return out;
+}
+
 class Builder {
  public:
-  Builder(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink,
-          const PathOptions& options)
-      : options_(options),
-        program_(program),
+  Builder(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink)
+      : program_(program),
+        machine_(machine),
         control_(machine.control),
         sink_(sink),
+        rests_(rests_of(program, machine.cycle)),
         velocity_(velocity_limits_mm_per_s(machine)),
-        acceleration_(acceleration_limits_mm_per_s2(machine)) {}
+        acceleration_(acceleration_limits_mm_per_s2(machine)),
+        rapid_velocity_(rapid_speeds_mm_per_s(machine)),
+        rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)),
+        feed_factor_(machine.cycle.feed_override_percent / 100.0),
+        places_(machine.tool_change) {}
 
   void run() {
     const auto& moves = program_.moves;
@@ -95,15 +127,20 @@ class Builder {
     for (std::size_t i = 0; i < moves.size();) {
       const nc::Move& move = moves[i];
       const nc::ModalState& state = program_.state_of(move);
-      const bool asked = next_rest < options_.rests.size() && options_.rests[next_rest] <= i;
-      while (next_rest < options_.rests.size() && options_.rests[next_rest] <= i) ++next_rest;
-      if (state.tool != tool || asked || (move.reference && options_.rest_at_rapids)) rest(0, i, move.start_mm);
+      const bool asked = next_rest < rests_.size() && rests_[next_rest] <= i;
+      while (next_rest < rests_.size() && rests_[next_rest] <= i) ++next_rest;
+      if (state.tool != tool || asked) rest(0, i, move.start_mm);
       tool = state.tool;
       std::size_t end = i + 1;
+      const AxisPlaces::Way way = places_.pass(move);
       if (move.kind == nc::MoveKind::dwell) {
         rest(move.dwell_s, i, move.start_mm);
-      } else if (!move.reference) {
-        end = merged_run_end(moves, i, merge_tolerance_mm(state, control_));
+      } else if (move.reference || (dog_leg_ && move.kind == nc::MoveKind::rapid)) {
+        position(i, way);
+      } else {
+        end = merged_run_end(moves, i, merge_tolerance_mm(state, settings_of(machine_, state)));
+        if (next_rest < rests_.size()) end = std::min<std::size_t>(end, rests_[next_rest]);
+        for (std::size_t k = i + 1; k < end; ++k) places_.pass(moves[k]);
         add(i, end);
       }
       i = end;
@@ -116,7 +153,35 @@ class Builder {
     Element element = element_of(first, end);
     if (element.segment.length_mm < kNoLength) return;
     if (previous_) join(*previous_, element);
+    if (positioned_ && element.segment.cutting && control_.rapid_change_s > 0)
+      wait(control_.rapid_change_s, *positioned_);
+    positioned_.reset();
     previous_ = element;
+  }
+
+  /// A positioning with every axis on its own, from rest to rest.
+  void position(std::size_t move, const AxisPlaces::Way& way) {
+    const bool rapid = program_.moves[move].kind == nc::MoveKind::rapid;
+    Segment s = line_segment(way.from_mm, way.to_mm);
+    if (!rapid || s.length_mm < kNoLength) {
+      if (program_.moves[move].reference) rest(0, move, way.to_mm, true);
+      return;
+    }
+    if (previous_) {
+      const bool cutting = previous_->segment.cutting;
+      emit(*previous_, previous_->segment.length_mm,
+           previous_->segment.acceleration_mm_per_s2 * (1.0 - previous_->less_fraction));
+      if (cutting && control_.rapid_change_s > 0) wait(control_.rapid_change_s, previous_->segment);
+      previous_.reset();
+    }
+    s.axes_apart = true;
+    s.way_mm = way.to_mm - way.from_mm;
+    s.axis_speed_mm_per_s = rapid_velocity_;
+    s.axis_acceleration_mm_per_s2 = rapid_acceleration_;
+    s.feed_command_mm_per_s = limit_along(s.along, rapid_velocity_);
+    s.move = static_cast<std::uint32_t>(move);
+    sink_(s);
+    positioned_ = s;
   }
 
   Element element_of(std::size_t first, std::size_t end) const {
@@ -132,9 +197,11 @@ class Builder {
       e.segment = arc_segment(move.start_mm, arc.center_mm, arc.normal, arc.sweep_rad,
                               arc.normal.dot(move.end_mm - move.start_mm));
     }
-    e.control = state.path_control;
-    e.tolerance_mm = state.blend_tolerance_mm > 0 ? state.blend_tolerance_mm : control_.corner.tolerance_mm;
+    e.settings = &settings_of(machine_, state);
+    e.control = path_control_of(machine_, state);
+    e.tolerance_mm = state.blend_tolerance_mm > 0 ? state.blend_tolerance_mm : e.settings->corner.tolerance_mm;
     e.stops = last.exact_stop;
+    e.segment.exact = e.stops || e.control == nc::PathControl::exact_stop;
     e.segment.move = static_cast<std::uint32_t>(end - 1);
     if (e.segment.length_mm >= kNoLength) set_limits(e, move);
     return e;
@@ -142,19 +209,20 @@ class Builder {
 
   void set_limits(Element& e, const nc::Move& move) const {
     Segment& s = e.segment;
-    s.speed_limit_mm_per_s = axis_speed_limit(s, velocity_);
-    if (s.radius_mm == 0) {
-      s.acceleration_mm_per_s2 = std::min(limit_along(s.along, acceleration_), control_.path_acceleration_mm_per_s2);
-      if (move.kind == nc::MoveKind::linear)
-        s.acceleration_mm_per_s2 = std::min(s.acceleration_mm_per_s2, options_.linear_acceleration_mm_per_s2);
-    } else {
-      set_arc_limits(s, acceleration_, control_);
-    }
     s.cutting = move.kind != nc::MoveKind::rapid;
-    if (!s.cutting) s.speed_limit_mm_per_s *= options_.rapid_factor;
-    const double feed = move.feed_mm_per_s * options_.feed_factor;
+    s.speed_limit_mm_per_s = s.axis_limit_mm_per_s = axis_speed_limit(s, s.cutting ? velocity_ : rapid_velocity_);
+    if (s.radius_mm == 0) {
+      s.acceleration_mm_per_s2 = std::min(limit_along(s.along, s.cutting ? acceleration_ : rapid_acceleration_),
+                                          e.settings->path_acceleration_mm_per_s2);
+      if (s.cutting)
+        s.acceleration_mm_per_s2 = std::min(s.acceleration_mm_per_s2, machine_.cycle.linear_acceleration_mm_per_s2);
+    } else {
+      set_arc_limits(s, acceleration_, *e.settings);
+      set_control_arc_limits(s, machine_);
+    }
+    const double feed = move.feed_mm_per_s * feed_factor_;
     s.feed_command_mm_per_s = s.cutting ? feed : s.speed_limit_mm_per_s;
-    s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, block_time_speed(s.length_mm, control_.block_time_s));
+    s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, block_time_speed(s.length_mm, e.settings->block_time_s));
     if (s.cutting) s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, feed);
   }
 
@@ -163,7 +231,7 @@ class Builder {
   /// The speed steps that the axes take in one period without being asked to round the corner.
   Junction step_junction(const Element& a, const Element& b, const Vec3& from, const Vec3& to) const {
     Junction j;
-    const double share = control_.corner.step_fraction;
+    const double share = a.settings->corner.step_fraction;
     const double arc_factor = a.line && b.line ? 1.0 : 0.5;
     Vec3 permitted = Vec3::Zero();
     if (share > 0) permitted = share * arc_factor * control_.period_s * acceleration_;
@@ -183,14 +251,21 @@ class Builder {
     if (std::isinf(options.tolerance_mm)) options.tolerance_mm = kOpenToleranceShare * shorter;
     options.room_mm = std::min(kBlendRoomShare * shorter, a.segment.length_mm - a.from_s);
     options.goal_speed_mm_per_s = std::max(a.segment.feed_command_mm_per_s, b.segment.feed_command_mm_per_s);
-    options.normal_fraction = control_.arc_normal_fraction;
+    options.normal_fraction = a.settings->arc_normal_fraction;
     options.velocity_mm_per_s = velocity_;
-    options.acceleration_mm_per_s2 = acceleration_.cwiseMin(control_.path_acceleration_mm_per_s2);
+    options.acceleration_mm_per_s2 = acceleration_.cwiseMin(a.settings->path_acceleration_mm_per_s2);
     Junction j;
     j.blend = blend_corner(from, to, options);
     if (j.blend)
       j.speed_mm_per_s = j.blend->speed_mm_per_s =
           std::min(j.blend->speed_mm_per_s, std::max(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s));
+    return j;
+  }
+
+  /// No corner: the limits of the two sides are all there is.
+  static Junction pass() {
+    Junction j;
+    j.speed_mm_per_s = kNoLimit;
     return j;
   }
 
@@ -202,12 +277,16 @@ class Builder {
 
   Junction junction(const Element& a, const Element& b) const {
     const Vec3 from = a.segment.direction_at(a.segment.length_mm), to = b.segment.direction_at(0);
-    if (control_.rapid_change_s > 0 && a.segment.cutting != b.segment.cutting) return stop(control_.rapid_change_s);
-    if (from.dot(to) < -1.0 + kReversal) return stop(control_.corner.stop_time_s);
-    if (control_.kind.stops_between_rapid_and_feed && a.segment.cutting != b.segment.cutting) return {};
-    if (options_.rest_at_rapids && !(a.segment.cutting && b.segment.cutting)) return {};
+    const machine::Control& settings = *a.settings;
+    const machine::Corner& corner = settings.corner;
+    const bool changes = a.segment.cutting != b.segment.cutting;
+    if (settings.rapid_change_s > 0 && changes) return stop(settings.rapid_change_s);
+    if (changes && (control_.kind.stops_between_rapid_and_feed || std::isfinite(control_.in_position_mm))) return {};
     if (a.stops || a.control == nc::PathControl::exact_stop) return {};
-    const machine::Corner& corner = control_.corner;
+    if (corner.threshold_rad > 0 && from.dot(to) > std::cos(std::min(corner.threshold_rad, kPi))) return pass();
+    const bool turns_round = from.dot(to) < -1.0 + kReversal;
+    if (turns_round && corner.law != CornerLaw::speed_difference && corner.law != CornerLaw::angle)
+      return stop(corner.stop_time_s);
     if (from.dot(to) < std::cos(std::min(corner.stop_angle_rad, kPi))) return stop(corner.stop_time_s);
     const bool exact = a.control == nc::PathControl::exact_path || b.control == nc::PathControl::exact_path;
     if (exact) return step_junction(a, b, from, to);
@@ -216,7 +295,12 @@ class Builder {
       case CornerLaw::exact_stop:
         return j;
       case CornerLaw::speed_difference:
-        j.speed_mm_per_s = speed_difference_limit(from, to, Vec3::Constant(corner.speed_difference_mm_per_s));
+        j.speed_mm_per_s = speed_difference_limit(from, to, speed_differences_mm_per_s(machine_, corner));
+        return j;
+      case CornerLaw::radius:
+        j.speed_mm_per_s = arc_speed(
+            three_point_radius(a.segment.point_at(0), b.segment.point_at(0), b.segment.point_at(b.segment.length_mm)),
+            corner.acceleration_mm_per_s2, 1);
         return j;
       case CornerLaw::angle:
         j.speed_mm_per_s = angle_limit(
@@ -258,17 +342,17 @@ class Builder {
     const Vec3 touch = a.segment.point_at(end_s);
     const Vec3 normal = from.cross(to).normalized();
     Segment arc = arc_segment(touch, touch + blend.radius_mm * normal.cross(from), normal, blend.turn_rad, 0);
-    arc.acceleration_mm_per_s2 = blend.acceleration_mm_per_s2 * control_.arc_tangential_fraction;
+    arc.acceleration_mm_per_s2 = blend.acceleration_mm_per_s2 * a.settings->arc_tangential_fraction;
     arc.speed_limit_mm_per_s =
         std::min(blend.speed_mm_per_s, std::max(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s));
-    arc.entry_limit_mm_per_s = arc.speed_limit_mm_per_s;
+    arc.entry_limit_mm_per_s = arc.axis_limit_mm_per_s = arc.speed_limit_mm_per_s;
     arc.feed_command_mm_per_s = std::max(a.segment.feed_command_mm_per_s, b.segment.feed_command_mm_per_s);
     arc.move = b.segment.move;
     arc.cutting = a.segment.cutting || b.segment.cutting;
     const double left = std::max(0.0, end_s - a.from_s);
-    const bool absorbed = left < control_.corner.short_line_time_s * blend.speed_mm_per_s;
+    const bool absorbed = left < a.settings->corner.short_line_time_s * blend.speed_mm_per_s;
     const double whole = absorbed ? left + arc.length_mm : arc.length_mm;
-    arc.speed_limit_mm_per_s = std::min(arc.speed_limit_mm_per_s, block_time_speed(whole, control_.block_time_s));
+    arc.speed_limit_mm_per_s = std::min(arc.speed_limit_mm_per_s, block_time_speed(whole, a.settings->block_time_s));
     if (absorbed) {
       a.segment.joined = true;
       a.segment.speed_limit_mm_per_s = std::min(a.segment.speed_limit_mm_per_s, arc.speed_limit_mm_per_s);
@@ -290,34 +374,42 @@ class Builder {
     sink_(s);
   }
 
-  void rest(double dwell_s, std::size_t move, const Vec3& where_mm) {
+  void rest(double dwell_s, std::size_t move, const Vec3& where_mm, bool gap = false) {
     if (previous_) {
-      const bool blended = previous_->control == nc::PathControl::blend && control_.corner.law == CornerLaw::blend;
-      const double share = (1.0 - previous_->less_fraction) * (blended ? control_.stop_acceleration_fraction : 1.0);
-      previous_->planned_fraction = blended ? control_.stop_acceleration_fraction : 1.0;
+      const bool blended =
+          previous_->control == nc::PathControl::blend && previous_->settings->corner.law == CornerLaw::blend;
+      const double share =
+          (1.0 - previous_->less_fraction) * (blended ? previous_->settings->stop_acceleration_fraction : 1.0);
+      previous_->planned_fraction = blended ? previous_->settings->stop_acceleration_fraction : 1.0;
       emit(*previous_, previous_->segment.length_mm, previous_->segment.acceleration_mm_per_s2 * share);
     }
     previous_.reset();
+    positioned_.reset();
     Segment s;
+    s.gap = gap;
     s.start_mm = where_mm;
     s.dwell_s = dwell_s > 0 ? dwell_s + control_.rest_latency_s : 0.0;
     s.move = static_cast<std::uint32_t>(move);
     sink_(s);
   }
 
-  const PathOptions& options_;
   const nc::Interpretation& program_;
+  const machine::Machine& machine_;
   const machine::Control& control_;
   const SegmentSink& sink_;
-  const Vec3 velocity_, acceleration_;
+  const std::vector<std::uint32_t> rests_;
+  const Vec3 velocity_, acceleration_, rapid_velocity_, rapid_acceleration_;
+  const double feed_factor_;
+  const bool dog_leg_ = machine_.cycle.rapid_path == machine::RapidPath::dogleg;
+  AxisPlaces places_;
   std::optional<Element> previous_;
+  std::optional<Segment> positioned_;  ///< the positioning just before
 };
 
 }  // namespace
 
-void build_segments(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink,
-                    const PathOptions& options) {
-  Builder(program, machine, sink, options).run();
+void build_segments(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink) {
+  Builder(program, machine, sink).run();
 }
 
 }  // namespace camber::feedmodel

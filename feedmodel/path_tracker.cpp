@@ -47,6 +47,7 @@ PathPlace closest_on_move(const nc::Interpretation& program, std::uint32_t index
 
 PathPlace PathTracker::search_all(const TimedSample& sample, PathPlace best) const {
   for (std::uint32_t move = place_.move; move <= sample.move; ++move) {
+    if (program_.moves[move].reference) continue;
     const PathPlace here =
         closest_on_move(program_, move, sample.position_mm, move == place_.move ? place_.u : 0.0, 1.0);
     if (here.distance_mm < best.distance_mm - kNearerMm) best = here;
@@ -60,12 +61,19 @@ PathPlace PathTracker::operator()(const TimedSample& sample) {
     last_position_mm_ = sample.position_mm;
     started_ = true;
   }
+  if (program_.moves[sample.move].reference) {  // its way is not the programmed one
+    place_ = {sample.move, 0, 0};
+    last_position_mm_ = sample.position_mm;
+    return place_;
+  }
+  while (place_.move < sample.move && program_.moves[place_.move].reference) place_ = {place_.move + 1, 0, 0};
   const double went_mm = (sample.position_mm - last_position_mm_).norm();
   double room_mm = options_.search_mm + went_mm + 2.0 * (sample.command_mm - sample.position_mm).norm();
   last_position_mm_ = sample.position_mm;
   PathPlace best = closest_on_move(program_, place_.move, sample.position_mm, place_.u, 1.0);
   if (place_.move < sample.move) room_mm -= (1.0 - place_.u) * nc::length_mm(program_, program_.moves[place_.move]);
   for (std::uint32_t move = place_.move + 1; move <= sample.move && room_mm > 0; ++move) {
+    if (program_.moves[move].reference) continue;
     const PathPlace here = closest_on_move(program_, move, sample.position_mm, 0.0, 1.0);
     if (here.distance_mm < best.distance_mm - kNearerMm) best = here;
     room_mm -= nc::length_mm(program_, program_.moves[move]);

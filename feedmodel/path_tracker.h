@@ -25,6 +25,7 @@ struct PathTrackerOptions {
 /// between the last place and the commanded move, searched a little further than the axes went: it never goes
 /// back, never passes the command, and does not jump to a neighbouring row or to the start of a closed figure. Only a
 /// position more than 1 mm off the path found so is looked for on all moves up to the command.
+/// During a move to or from a reference point the place is the start of that move, wherever the axes are.
 /// When the axes rest at the end of a motion the place is the end. Linear time over the whole path.
 class PathTracker {
  public:

@@ -2,29 +2,209 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "feedmodel/in_position.h"
 #include "feedmodel/path_builder.h"
+#include "feedmodel/rapid.h"
 
 namespace camber::feedmodel {
-
 namespace {
 
+using machine::AccelerationLaw;
+
+constexpr double kNoRamp = 1e-9;  // s; a shorter one is rounding of numbers
+
+/// A positioning is planned as a rest: its axes stop before and after it.
 PlanRow row_of(const Segment& s) {
-  return {.length_mm = s.length_mm,
-          .speed_limit_mm_per_s = s.speed_limit_mm_per_s,
+  return {.length_mm = s.axes_apart ? 0 : s.length_mm,
+          .speed_limit_mm_per_s = s.axes_apart ? 0 : s.speed_limit_mm_per_s,
           .acceleration_mm_per_s2 = s.acceleration_mm_per_s2,
           .planned_fraction = s.planned_fraction,
           .joined = s.joined,
           .entry_speed_mm_per_s = s.entry_limit_mm_per_s};
 }
 
+/// What each change of speed takes longer than constant acceleration has it.
+double delay_s(const machine::Cycle& cycle) {
+  return cycle.jerk_filter_s + (cycle.acceleration_law == AccelerationLaw::bell ? 0.5 * cycle.bell_time_s : 0.0);
+}
+
+/// How long the slowest axis of a positioning still brakes when the next one may begin.
+double overlap_time_s(const Segment& s, double overlap_percent) {
+  Eigen::Index slowest = 0;
+  axis_times_s(s.way_mm, s.axis_speed_mm_per_s, s.axis_acceleration_mm_per_s2).maxCoeff(&slowest);
+  const double speed = s.axis_speed_mm_per_s[slowest], acceleration = s.axis_acceleration_mm_per_s2[slowest];
+  if (std::isinf(acceleration)) return 0;
+  const double peak = std::min(speed, std::sqrt(acceleration * std::abs(s.way_mm[slowest])));
+  return std::min(overlap_percent / 100.0 * speed, peak) / acceleration;
+}
+
+class Planner {
+ public:
+  Planner(const nc::Interpretation& program, const machine::Machine& machine)
+      : program_(program), machine_(machine), delay_s_(delay_s(machine.cycle)) {}
+
+  MotionPlan run() {
+    build_segments(program_, machine_, [&](const Segment& s) { add(s); });
+    if (exponential()) {
+      time_exponential();
+    } else {
+      plan_speeds(plan_.rows, static_cast<std::size_t>(std::max(0, machine_.control.lookahead_blocks)));
+      time_linear();
+    }
+    return std::move(plan_);
+  }
+
+ private:
+  /// A segment kept until its time is known.
+  struct Kept {
+    std::size_t index = 0;
+    Segment segment;
+    double rest_s = 0;  ///< of the rests that follow
+  };
+
+  void add(const Segment& s) {
+    plan_.rows.push_back(row_of(s));
+    // The exponential law knows no corners; but no axis enters a block faster than it can go.
+    if (exponential()) plan_.rows.back().entry_speed_mm_per_s = s.axis_limit_mm_per_s;
+    plan_.times.push_back({.move = s.move, .rest = s.length_mm == 0, .cutting = s.cutting, .duration_s = s.dwell_s});
+    if (s.axes_apart) positionings_.push_back({plan_.rows.size() - 1, s, 0});
+    if (std::isfinite(machine_.control.in_position_mm)) note_stop(s);
+  }
+
+  /// Keeps the segments at whose end the control waits for the axes: exact stops, and where rapid and feed meet.
+  void note_stop(const Segment& s) {
+    if (s.length_mm == 0 && !s.gap) {
+      if (last_) last_->rest_s += s.dwell_s;
+      return;
+    }
+    if (last_ && (last_->segment.exact || s.gap || last_->segment.cutting != s.cutting)) checks_.push_back(*last_);
+    last_.reset();
+    if (!s.gap) last_ = {plan_.rows.size() - 1, s, 0};
+  }
+
+  bool exponential() const { return machine_.cycle.acceleration_law == AccelerationLaw::exponential; }
+
+  bool is_positioning(std::size_t i) const {
+    return next_positioning_ < positionings_.size() && positionings_[next_positioning_].index == i;
+  }
+
+  /// Returns where the segment ends.
+  double finish(std::size_t i) {
+    if (next_check_ < checks_.size() && checks_[next_check_].index == i) {
+      const Kept& stop = checks_[next_check_++];
+      const double wait_s = in_position_wait_s(machine_, stop.segment, motion_of(plan_, i, stop.segment, machine_));
+      plan_.times[i].wait_s = std::max(0.0, wait_s - stop.rest_s);
+    }
+    return plan_.times[i].end_s();
+  }
+
+  /// overlap_s: in, how early it may begin; out, how early the next one may.
+  void time_positioning(std::size_t i, double now_s, double& overlap_s) {
+    const Segment& s = positionings_[next_positioning_++].segment;
+    SegmentTime& time = plan_.times[i];
+    const SegmentMotion motion = positioning_motion(s, 2.0 * delay_s_);
+    time.duration_s = motion.duration_s;
+    time.start_s = now_s - std::min(overlap_s, motion.axes_s / 2.0);
+    const double percent = machine_.cycle.rapid_overlap_percent;
+    overlap_s = percent > 0 ? overlap_time_s(s, percent) : 0.0;
+    plan_.speed_changes += 2;
+  }
+
+  void time_linear() {
+    double now_s = 0, overlap_s = 0;
+    int ramp = 0;  // the change of speed under way: +1 accelerating, -1 braking
+    for (std::size_t i = 0; i < plan_.rows.size(); ++i) {
+      if (is_positioning(i)) {
+        time_positioning(i, now_s, overlap_s);
+        ramp = 0;
+      } else {
+        overlap_s = 0;
+        time_along(i, now_s, ramp);
+      }
+      now_s = finish(i);
+    }
+  }
+
+  void time_along(std::size_t i, double now_s, int& ramp) {
+    SegmentTime& time = plan_.times[i];
+    const Trapezoid profile = profile_of(plan_.rows, i);
+    time.start_s = start_of(profile, now_s);
+    if (time.rest) return;
+    const auto begins = [&](int kind, double phase_s) {
+      if (phase_s <= kNoRamp) return false;
+      const bool begun = kind != 0 && kind != ramp;
+      ramp = kind;
+      return begun;
+    };
+    time.accelerates = begins(+1, profile.accelerate_s);
+    begins(0, profile.cruise_s);
+    time.brakes = begins(-1, profile.brake_s);
+    const int changes = (time.accelerates ? 1 : 0) + (time.brakes ? 1 : 0);
+    plan_.speed_changes += static_cast<std::size_t>(changes);
+    time.duration_s = profile.duration_s() + changes * delay_s_;
+  }
+
+  /// A start from (almost) rest waits for the next period of the control.
+  double start_of(const Trapezoid& profile, double now_s) const {
+    const double period_s = machine_.control.period_s;
+    const bool from_rest = profile.length > 0 && profile.entry < profile.acceleration * period_s;
+    if (!from_rest || now_s <= 0 || std::isinf(profile.acceleration)) return now_s;
+    return std::max(now_s, std::ceil(now_s / period_s - 1e-9) * period_s);
+  }
+
+  /// Block by block; the speed at a block's end is the next one's start, and a stop costs T1 + T2.
+  void time_exponential() {
+    const double t1 = machine_.cycle.time_constant_1_s, t2 = machine_.cycle.time_constant_2_s;
+    double speed = 0, now_s = 0, overlap_s = 0;
+    for (std::size_t i = 0; i < plan_.rows.size(); ++i) {
+      SegmentTime& time = plan_.times[i];
+      time.start_s = now_s;
+      if (is_positioning(i)) {
+        time_positioning(i, now_s, overlap_s);
+        speed = 0;
+        now_s = finish(i);
+        continue;
+      }
+      overlap_s = 0;
+      PlanRow& row = plan_.rows[i];
+      row.entry_speed_mm_per_s = speed = std::min(speed, row.entry_speed_mm_per_s);
+      if (!time.rest) {
+        const ExponentialRamp ramp{speed, row.speed_limit_mm_per_s, t1, t2};
+        const bool at_once = std::isinf(ramp.command_mm_per_s);  // a rapid of axes without a limit
+        const double time_s = at_once ? 0.0 : ramp.time_of(row.length_mm);
+        const bool stops = stops_after(i);
+        time.duration_s = time_s + (stops ? t1 + t2 : 0.0);
+        speed = stops || at_once ? 0.0 : ramp.speed_at(time_s);
+      } else {
+        speed = 0;
+      }
+      now_s = finish(i);
+    }
+  }
+
+  bool stops_after(std::size_t i) const {
+    if (i + 1 >= plan_.times.size() || plan_.times[i + 1].rest) return true;
+    const nc::Move& move = program_.moves[plan_.times[i].move];
+    const bool exact = program_.state_of(move).path_control == nc::PathControl::exact_stop;
+    const bool cutting = plan_.times[i].cutting;
+    return move.exact_stop || exact || cutting != plan_.times[i + 1].cutting || !cutting;
+  }
+
+  const nc::Interpretation& program_;
+  const machine::Machine& machine_;
+  const double delay_s_;
+  MotionPlan plan_;
+  std::vector<Kept> positionings_, checks_;  // in order
+  std::size_t next_positioning_ = 0, next_check_ = 0;
+  std::optional<Kept> last_;  // the motion just before
+};
+
 }  // namespace
 
-std::vector<PlanRow> plan_path(const nc::Interpretation& program, const machine::Machine& machine) {
-  std::vector<PlanRow> rows;
-  build_segments(program, machine, [&](const Segment& s) { rows.push_back(row_of(s)); });
-  plan_speeds(rows, static_cast<std::size_t>(std::max(0, machine.control.lookahead_blocks)));
-  return rows;
+MotionPlan plan_motion(const nc::Interpretation& program, const machine::Machine& machine) {
+  return Planner(program, machine).run();
 }
 
 Trapezoid profile_of(const std::vector<PlanRow>& rows, std::size_t i) {
@@ -33,30 +213,27 @@ Trapezoid profile_of(const std::vector<PlanRow>& rows, std::size_t i) {
                         rows[i].acceleration_mm_per_s2);
 }
 
-double PlanClock::begin(const Trapezoid& profile) {
-  const bool from_rest = profile.length > 0 && profile.entry < profile.acceleration * period_s_;
-  if (from_rest && now_s_ > 0 && std::isfinite(profile.acceleration))
-    now_s_ = std::ceil(now_s_ / period_s_ - 1e-9) * period_s_;
-  return now_s_;
-}
-
-std::vector<SegmentTime> segment_times(const nc::Interpretation& program, const machine::Machine& machine) {
-  std::vector<PlanRow> rows;
-  std::vector<SegmentTime> times;
-  build_segments(program, machine, [&](const Segment& s) {
-    rows.push_back(row_of(s));
-    times.push_back({.move = s.move, .rest = s.length_mm == 0, .start_s = 0, .duration_s = s.dwell_s});
-  });
-  plan_speeds(rows, static_cast<std::size_t>(std::max(0, machine.control.lookahead_blocks)));
-  PlanClock clock(machine.control.period_s);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Trapezoid profile = profile_of(rows, i);
-    SegmentTime& time = times[i];
-    time.start_s = clock.begin(profile);
-    if (!time.rest) time.duration_s = profile.duration_s();
-    clock.advance(time.duration_s);
+SegmentMotion motion_of(const MotionPlan& plan, std::size_t i, const Segment& segment,
+                        const machine::Machine& machine) {
+  const machine::Cycle& cycle = machine.cycle;
+  const SegmentTime& time = plan.times[i];
+  const PlanRow& row = plan.rows[i];
+  if (segment.axes_apart) return positioning_motion(segment, 2.0 * delay_s(cycle));
+  SegmentMotion motion;
+  motion.duration_s = time.duration_s;
+  if (time.rest) return motion;
+  if (cycle.acceleration_law == AccelerationLaw::exponential) {
+    motion.kind = SegmentMotion::Kind::exponential;
+    motion.ramp = {row.entry_speed_mm_per_s, row.speed_limit_mm_per_s, cycle.time_constant_1_s,
+                   cycle.time_constant_2_s};
+    if (!std::isinf(row.speed_limit_mm_per_s)) motion.ramp_s = motion.ramp.time_of(row.length_mm);
+    return motion;
   }
-  return times;
+  motion.kind = SegmentMotion::Kind::along_path;
+  motion.along = profile_of(plan.rows, i);
+  motion.accelerate_extra_s = time.accelerates ? delay_s(cycle) : 0.0;
+  motion.brake_extra_s = time.brakes ? delay_s(cycle) : 0.0;
+  return motion;
 }
 
 }  // namespace camber::feedmodel

@@ -1,46 +1,45 @@
 #pragma once
-// The whole path's plan: how fast each segment is entered, and how long it takes.
+// The plan of a whole program: how fast each segment is entered, how it moves, when it begins, how long it takes. Every
+// command that reports a time, a feed or a place of the tool takes it from here.
 #include <cstdint>
 #include <vector>
 
 #include "feedmodel/lookahead.h"
-#include "feedmodel/profile.h"
-#include "feedmodel/segment.h"
+#include "feedmodel/segment_motion.h"
 #include "machine/machine.h"
 #include "nc/move.h"
 
 namespace camber::feedmodel {
 
-/// A row for each segment of build_segments, look-ahead done.
-std::vector<PlanRow> plan_path(const nc::Interpretation& program, const machine::Machine& machine);
-
-/// Speed over time in row i (entry and exit speeds are those of the plan).
-Trapezoid profile_of(const std::vector<PlanRow>& rows, std::size_t i);
-
-/// Adds up the time of the segments in order.
-class PlanClock {
- public:
-  explicit PlanClock(double period_s) : period_s_(period_s) {}
-
-  /// Start of a segment that begins now. A start from (almost) rest waits for the next period of the control:
-  /// from stop to stop a block lasts whole periods.
-  double begin(const Trapezoid& profile);
-  void advance(double duration_s) { now_s_ += duration_s; }
-  double now_s() const { return now_s_; }
-
- private:
-  double period_s_;
-  double now_s_ = 0;
-};
-
-/// Commanded start and duration of a segment and the move it ends in.
+/// A segment in time.
 struct SegmentTime {
-  std::uint32_t move = 0;
-  bool rest = false;
+  std::uint32_t move = 0;                    ///< that it ends in
+  bool rest = false;                         ///< a dwell or a stop; duration_s may be 0
+  bool cutting = false;                      ///< of a feed move
+  bool accelerates = false, brakes = false;  ///< a change of speed begins in it: what a jerk filter delays
   double start_s = 0, duration_s = 0;
+  double wait_s = 0;  ///< after it, until the axes are in position
+
+  double end_s() const { return start_s + duration_s + wait_s; }
 };
 
-/// The plan's times alone: what a fit of limits needs, at a small part of the cost of predict_feed.
-std::vector<SegmentTime> segment_times(const nc::Interpretation& program, const machine::Machine& machine);
+/// A motion that begins at (almost) rest begins at a whole period of the control. A positioning may begin before the
+/// one before it has ended (rapid_overlap_percent).
+struct MotionPlan {
+  std::vector<PlanRow> rows;       ///< one for each segment of build_segments, look-ahead done
+  std::vector<SegmentTime> times;  ///< the same
+  std::size_t speed_changes = 0;   ///< along the path and of positionings
+
+  double time_s() const { return times.empty() ? 0.0 : times.back().end_s(); }
+};
+
+/// Linear time; 80 bytes of memory a segment. Deterministic. Does not throw on valid input.
+MotionPlan plan_motion(const nc::Interpretation& program, const machine::Machine& machine);
+
+/// How segment i moves; `segment` is the i-th of build_segments.
+SegmentMotion motion_of(const MotionPlan& plan, std::size_t i, const Segment& segment, const machine::Machine& machine);
+
+/// Constant acceleration in row i (entry and exit speeds are those of the plan).
+Trapezoid profile_of(const std::vector<PlanRow>& rows, std::size_t i);
 
 }  // namespace camber::feedmodel

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -12,38 +13,56 @@ namespace {
 
 constexpr std::size_t kRun = 1024;  // samples handed out at once
 
+/// The path that the segments lay jumps by more than this only where the program does not say where the axes went.
+constexpr double kJumpMm = 0.1;
+
 /// Samples the segments at the control's period and sends the commands through the axes.
 class Sampler {
  public:
   Sampler(const machine::Machine& machine, const SampleSink& sink)
-      : machine_(machine), period_s_(machine.control.period_s), sink_(sink), clock_(machine.control.period_s) {
+      : machine_(machine), period_s_(machine.control.period_s), sink_(sink) {
     buffer_.reserve(kRun);
   }
 
-  void pass(const Segment& segment, const Trapezoid& profile) {
-    if (!axes_) axes_.emplace(machine_, segment.start_mm);
-    const double start_s = clock_.begin(profile);
-    clock_.advance(segment.length_mm > 0 ? profile.duration_s() : segment.dwell_s);
-    for (double t = time_of(next_); t < clock_.now_s(); t = time_of(++next_)) {
-      const double s = segment.length_mm > 0 ? profile.distance_at(t - start_s) : 0.0;
-      put(t, segment.point_at(s), segment.feed_command_mm_per_s, segment.move);
+  /// next_start_s: of the segment after it, which may begin before this one ends.
+  void pass(const Segment& segment, const SegmentMotion& motion, const SegmentTime& time, double next_start_s) {
+    if (!axes_ || (segment.start_mm - end_mm_).norm() > kJumpMm) axes_.emplace(machine_, segment.start_mm);
+    const double moves_until_s = time.start_s + motion.duration_s, end_s = std::min(time.end_s(), next_start_s);
+    for (double t = time_of(next_); t < end_s; t = time_of(++next_)) {
+      const Vec3 command_mm = motion.point_at(segment, t - time.start_s) + left_of_previous(t);
+      put(t, command_mm, t < moves_until_s ? segment.feed_command_mm_per_s : 0.0, segment.move);
     }
-    end_mm_ = segment.point_at(segment.length_mm);
+    end_mm_ = motion.point_at(segment, motion.duration_s);
+    end_s_ = time.end_s();
     move_ = segment.move;
+    previous_.reset();
+    if (next_start_s < moves_until_s) previous_ = {segment, motion, time.start_s};
   }
 
   /// The command rests; the axes come up.
   void settle() {
     if (!axes_) return;
-    const double end_s = clock_.now_s() + axes_->settling_time_s() + period_s_;
+    const double end_s = end_s_ + settling_time_s(machine_) + period_s_;
     for (double t = time_of(next_); t < end_s; t = time_of(++next_)) put(t, end_mm_, 0.0, move_);
     flush();
   }
 
-  double time_s() const { return clock_.now_s(); }
-
  private:
+  struct Overlapping {
+    Segment segment;
+    SegmentMotion motion;
+    double start_s = 0;
+  };
+
   double time_of(std::uint64_t k) const { return static_cast<double>(k) * period_s_; }
+
+  /// What a positioning that has not ended yet still has to go, as an offset.
+  Vec3 left_of_previous(double t_s) const {
+    if (!previous_) return Vec3::Zero();
+    const SegmentMotion& motion = previous_->motion;
+    return motion.point_at(previous_->segment, t_s - previous_->start_s) -
+           motion.point_at(previous_->segment, motion.duration_s);
+  }
 
   void put(double t_s, const Vec3& command_mm, double feed_mm_per_s, std::uint32_t move) {
     TimedSample sample;
@@ -66,10 +85,11 @@ class Sampler {
   double period_s_;
   const SampleSink& sink_;
   std::optional<Axes> axes_;
+  std::optional<Overlapping> previous_;
   std::vector<TimedSample> buffer_;
-  PlanClock clock_;
   std::uint64_t next_ = 0;  // sample to come
   Vec3 end_mm_ = Vec3::Zero();
+  double end_s_ = 0;
   std::uint32_t move_ = 0;
 };
 
@@ -87,17 +107,24 @@ std::size_t count_blocks(const nc::Interpretation& program) {
 }  // namespace
 
 FeedSummary predict_feed(const nc::Interpretation& program, const machine::Machine& machine, const SampleSink& sink) {
-  const std::vector<PlanRow> rows = plan_path(program, machine);
+  const MotionPlan plan = plan_motion(program, machine);
   FeedSummary summary;
   summary.blocks = count_blocks(program);
+  summary.time_s = plan.time_s();
+  double end_s = 0;
+  for (const SegmentTime& time : plan.times) {
+    if (time.cutting) summary.cutting_time_s += time.end_s() - end_s;
+    end_s = time.end_s();
+  }
   Sampler sampler(machine, sink);
   std::size_t i = 0;
   build_segments(program, machine, [&](const Segment& segment) {
-    const Trapezoid profile = profile_of(rows, i++);
-    if (segment.cutting) summary.cutting_time_s += segment.length_mm > 0 ? profile.duration_s() : segment.dwell_s;
-    sampler.pass(segment, profile);
+    const double next_start_s = i + 1 < plan.times.size() ? plan.times[i + 1].start_s : summary.time_s;
+    // The pause for a whole period belongs to the segment that waits for it.
+    const SegmentTime& time = plan.times[i];
+    sampler.pass(segment, motion_of(plan, i, segment, machine), time, std::min(next_start_s, time.end_s()));
+    ++i;
   });
-  summary.time_s = sampler.time_s();
   sampler.settle();
   return summary;
 }

@@ -27,8 +27,9 @@ Vec3 rapid_accelerations_mm_per_s2(const machine::Machine& machine) {
   Vec3 out;
   for (int i = 0; i < 3; ++i) {
     const machine::Axis& axis = machine.axis[i];
-    out[i] =
-        std::isinf(axis.rapid_acceleration_mm_per_s2) ? axis.acceleration_mm_per_s2 : axis.rapid_acceleration_mm_per_s2;
+    out[i] = std::min(
+        std::isinf(axis.rapid_acceleration_mm_per_s2) ? axis.acceleration_mm_per_s2 : axis.rapid_acceleration_mm_per_s2,
+        machine.control.path_acceleration_mm_per_s2);
   }
   return out;
 }

@@ -9,6 +9,7 @@ namespace camber::feedmodel {
 
 /// Top speed of each axis in G0, override taken: the lower of rapid and max_velocity.
 Vec3 rapid_speeds_mm_per_s(const machine::Machine& machine);
+/// Of each axis in G0, no more than the control has along the path.
 Vec3 rapid_accelerations_mm_per_s2(const machine::Machine& machine);
 
 /// Time of each axis from rest to rest: s/F + F/a where the distance s is at least F^2/a, else 2 sqrt(s/a).

@@ -6,6 +6,7 @@
 namespace camber::feedmodel {
 
 double spindle_start_s(const machine::Spindle& spindle, double speed_rpm) {
+  if (spindle.start_time_s > 0) return spindle.start_time_s * std::max(0.0, speed_rpm) / spindle.max_rpm;
   const double n = speed_rpm, n1 = spindle.constant_torque_rpm, n2 = spindle.constant_power_rpm;
   if (spindle.gd2_kgf_m2 <= 0 || n <= 0 || std::isinf(spindle.power_W) || std::isinf(n1)) return 0;
   const double flywheel = 1.03 * spindle.gd2_kgf_m2 / spindle.power_W;

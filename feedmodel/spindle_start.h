@@ -7,7 +7,8 @@ namespace camber::feedmodel {
 /// Time from rest to `speed_rpm` with constant torque up to N1, constant power up to N2 and falling power above:
 ///   t1 = 1.03 GD2 N1^2 / (375 P0),  t2 = 1.03 GD2 (N2^2 - N1^2) / (750 P0),
 ///   t3 = 1.03 GD2 (N3^3 - N2^3) / (1125 P0 N2).            [s], GD2 in kgf m2, N in rpm, P0 in W
-/// Within the first zone the time is proportional to the speed. 0 where the spindle has no GD2.
+/// Within the first zone the time is proportional to the speed. 0 where the spindle has no GD2. Where the time to
+/// max_rpm is given instead (start_time_s), the time is proportional to the speed throughout.
 /// Source: Takata 1999, eqs. 2.13-2.16, t3 as corrected (docs/errata.md).
 double spindle_start_s(const machine::Spindle& spindle, double speed_rpm);
 

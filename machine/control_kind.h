@@ -20,6 +20,13 @@ struct ControlKind {
   bool g64_p_merges = false;
   /// Stops between rapid and feed moves, whatever the corner law. (Control::rapid_change_s: stops and waits.)
   bool stops_between_rapid_and_feed = false;
+  /// Waits until the axes are in position where [control] in_position_mm is not given: between rapid and feed moves, at
+  /// exact stops.
+  bool waits_in_position = true;
+  /// G61 stops at every corner, instead of just following the path exactly.
+  bool g61_stops = true;
+  /// No segment passes in less than this many periods.
+  double min_segment_periods = 1;
   /// On helices, the acceleration along the path grows with the rise of the whole arc.
   bool helix_rise_frees_acceleration = false;
 
@@ -27,6 +34,7 @@ struct ControlKind {
   double usual_step_share = 0;          ///< Corner::step_fraction
   int usual_lookahead_blocks = 0;       ///< Control::lookahead_blocks
   double usual_short_line_periods = 0;  ///< Corner::short_line_time_s, in periods of the control
+  bool fits_short_lines = false;        ///< fit-feed tries several short-line times and look-aheads
 };
 
 /// All rows, in the order in which messages list them.

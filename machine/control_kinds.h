@@ -19,10 +19,14 @@ inline constexpr std::array kControlKinds{
                 .rapid_path = RapidPath::linear,
                 .g64_p_merges = true,
                 .stops_between_rapid_and_feed = true,
+                .waits_in_position = false,
+                .g61_stops = false,
+                .min_segment_periods = 1.02,  // TP_MIN_SEGMENT_CYCLES of its trajectory planner
                 .helix_rise_frees_acceleration = true,
                 .usual_step_share = 0.1,
                 .usual_lookahead_blocks = 50,
-                .usual_short_line_periods = 4},
+                .usual_short_line_periods = 4,
+                .fits_short_lines = true},
 };
 
 }  // namespace camber::machine

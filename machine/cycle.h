@@ -9,8 +9,9 @@ namespace camber::machine {
 enum class RapidPath { dogleg, linear };
 
 /// linear: constant acceleration along the path, with look-ahead. exponential: after interpolation, two time constants
-/// one behind the other (Yan & Shirase 1997, eqs. 2-5), block by block.
-enum class AccelerationLaw { linear, exponential };
+/// one behind the other (Yan & Shirase 1997, eqs. 2-5), block by block. bell: as linear, but the acceleration takes
+/// bell_time_s to build up and to die down, which makes each change of speed take half of that longer.
+enum class AccelerationLaw { linear, exponential, bell };
 
 /// sequential: an M, S or T code's time comes before the motion of its block; simultaneous: along with it.
 enum class CodeOrder { sequential, simultaneous };
@@ -20,6 +21,7 @@ struct Cycle {
   AccelerationLaw acceleration_law = AccelerationLaw::linear;
   double time_constant_1_s = 0;  ///< exponential: T1
   double time_constant_2_s = 0;  ///< exponential: T2
+  double bell_time_s = 0;        ///< bell
   double rapid_override_percent = 100;
   double feed_override_percent = 100;
   /// Between two rapids the second begins when the first has braked to this share of its speed; 0: at rest.
@@ -30,10 +32,11 @@ struct Cycle {
   double arc_loop_factor = 2;  ///< m of the arc tolerance: 8 with smooth high-gain position loops, else 2
   double jerk_filter_s = 0;    ///< T_filter: each change of speed takes so much longer
   CodeOrder code_order = CodeOrder::sequential;
-  double m_code_s = 0;         ///< each M code but M6 and M60
-  double s_code_s = 0;         ///< each S
-  double t_code_s = 0;         ///< each T
-  double pallet_change_s = 0;  ///< M60
+  double m_code_s = 0;           ///< each M code but M6 and M60
+  double s_code_s = 0;           ///< each S
+  double t_code_s = 0;           ///< each T
+  double histogram_step_mm = 0;  ///< of the histograms of G0 and G1 distances; 0: uneven steps, finer for short ones
+  double pallet_change_s = 0;    ///< M60
 };
 
 struct ToolChange {

@@ -8,7 +8,7 @@
 namespace camber::machine {
 
 inline constexpr std::array<std::string_view, 2> kRapidPathWords{"dogleg", "linear"};
-inline constexpr std::array<std::string_view, 2> kAccelerationLawWords{"linear", "exponential"};
+inline constexpr std::array<std::string_view, 3> kAccelerationLawWords{"linear", "exponential", "bell"};
 inline constexpr std::array<std::string_view, 2> kCodeOrderWords{"sequential", "simultaneous"};
 
 inline constexpr NumberRange kOverridePercent{.min = 0, .max = 1000, .above_min = true};
@@ -19,6 +19,7 @@ inline constexpr FileUnit kDegreesPerMinute{[](double v) { return rad_from_deg(v
 inline constexpr std::array kCycleKeys{
     NumberKey<Cycle>{"time_constant_1_ms", &Cycle::time_constant_1_s, kNotNegative, kMilliseconds},
     NumberKey<Cycle>{"time_constant_2_ms", &Cycle::time_constant_2_s, kNotNegative, kMilliseconds},
+    NumberKey<Cycle>{"bell_time_ms", &Cycle::bell_time_s, kNotNegative, kMilliseconds},
     NumberKey<Cycle>{"rapid_override_percent", &Cycle::rapid_override_percent, kOverridePercent},
     NumberKey<Cycle>{"feed_override_percent", &Cycle::feed_override_percent, kOverridePercent},
     NumberKey<Cycle>{"rapid_overlap_percent", &Cycle::rapid_overlap_percent, kOverlapPercent},
@@ -30,6 +31,7 @@ inline constexpr std::array kCycleKeys{
     NumberKey<Cycle>{"m_code_s", &Cycle::m_code_s, kNotNegative},
     NumberKey<Cycle>{"s_code_s", &Cycle::s_code_s, kNotNegative},
     NumberKey<Cycle>{"t_code_s", &Cycle::t_code_s, kNotNegative},
+    NumberKey<Cycle>{"histogram_step_mm", &Cycle::histogram_step_mm, kNotNegative},
     NumberKey<Cycle>{"pallet_change_s", &Cycle::pallet_change_s, kNotNegative},
 };
 

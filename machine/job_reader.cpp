@@ -101,9 +101,18 @@ void read_operations(TomlTable& table, const std::map<int, Tool>& tools, Operati
   }
 }
 
+constexpr std::size_t kLongestPattern = 400;  // std::regex needs stack for each character
+
 void read_compensated(TomlTable table, const std::map<int, Tool>& tools, CompensatedOperations& operations) {
   read_operations(table, tools, operations);
   operations.comments = table.text("comments", "");
+  if (operations.comments.size() > kLongestPattern) {
+    table.error_at("comments",
+                   fmt::format("comments has {} characters; at most {} were expected", operations.comments.size(),
+                               kLongestPattern),
+                   "regular-expression");
+    operations.comments.clear();
+  }
   try {
     const std::regex check(operations.comments, std::regex::ECMAScript | std::regex::icase);
   } catch (const std::regex_error&) {

@@ -2,7 +2,9 @@
 // What a machine and its control are. Read from machine.toml; a limit that is missing is no limit (infinity).
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -17,7 +19,8 @@ enum class CornerLaw {
   speed_difference,  ///< per-axis permitted speed step (Fanuc 1783): F_c = F / max(dV_axis / V_permitted)
   angle,             ///< F <= a dt / sqrt(2 (1 - cos theta))
   blend,             ///< corners rounded within a tolerance
-  exact_stop
+  exact_stop,
+  radius  ///< F <= sqrt(a r_eq), r_eq of the circle through the corner and its neighbours (Yan & Shirase 1997, eq. 16)
 };
 
 struct Corner {
@@ -25,6 +28,9 @@ struct Corner {
   double tolerance_mm = 0;                      ///< blend
   double speed_difference_mm_per_s = kNoLimit;  ///< speed_difference
   double time_s = 0;                            ///< angle: dt
+  double acceleration_mm_per_s2 = kNoLimit;     ///< radius: a
+  /// A corner that turns by less is no corner, whatever the law (Takata 1999, table 2.1: 5 degrees). 0: all are.
+  double threshold_rad = 0;
   /// Corners passed without rounding: the speed of an axis may jump by this share of what it gains in one period
   /// (dV = share x acceleration x period). 0: only corners without a change of direction are passed so.
   double step_fraction = 0;
@@ -33,6 +39,9 @@ struct Corner {
   double stop_angle_rad = kNoLimit;  ///< corners that turn by more are stopped at, whatever the law
   double stop_time_s = 0;            ///< such a stop lasts this long
 };
+
+/// In-position width of a control whose machine file does not give one.
+inline constexpr double kInPositionMm = 0.02;
 
 struct Control {
   ControlKind kind = default_control_kind();
@@ -49,12 +58,17 @@ struct Control {
   double rest_latency_s = 0;  ///< a rest (dwell) takes this much longer than programmed
   /// Along the path, beside what the axes allow (before interpolation).
   double path_acceleration_mm_per_s2 = kNoLimit;
-  /// Between rapid and feed moves it stops and waits so long (until the axes are in position); 0: no stop asked for.
+  /// Between rapid and feed moves it stops and waits at least so long; 0: no stop asked for.
   double rapid_change_s = 0;
+  std::optional<double> least_increment_mm{};  ///< of coordinates in an emitted program; not given: as the program has
+  /// Between rapid and feed moves, and at exact stops (G9, G61.1), it waits until every axis is this near to where it
+  /// is commanded. Infinite: it does not wait. Read from a file without the key: kInPositionMm, LinuxCNC infinite.
+  double in_position_mm = kNoLimit;
 };
 
 struct Axis {
   double max_velocity_mm_per_s = kNoLimit;
+  double max_feed_mm_per_s = kNoLimit;  ///< of feed moves, where it is lower than max_velocity
   double acceleration_mm_per_s2 = kNoLimit;
   double rapid_mm_per_s = kNoLimit;                ///< of G0, where it is lower than max_velocity
   double rapid_acceleration_mm_per_s2 = kNoLimit;  ///< of G0; infinity: the same as acceleration
@@ -64,8 +78,11 @@ struct Axis {
   double position_gain_per_s = kNoLimit;            ///< Kp of the position loop; infinity: no lag
   double velocity_lag_s = 0;                        ///< time constant of the velocity loop inside the position loop
   double feed_forward_percent = 0;
+  /// Corner law speed_difference: of this axis; infinite: that of the corner.
+  double speed_difference_mm_per_s = kNoLimit;
   double stiffness_N_per_mm = kNoLimit;  ///< static, tool against work; only across the tool (x, y)
   std::array<double, 2> travel_mm{-kNoLimit, kNoLimit};
+  bool given = true;  ///< false: the machine file says nothing of it, as if the machine had no such axis
 };
 
 /// What the programs held that a model was fitted on; beyond it the model is a guess. [least, greatest].
@@ -82,12 +99,15 @@ struct Spindle {
   double power_W = kNoLimit;              ///< of the motor
   double constant_torque_rpm = kNoLimit;  ///< N1: constant torque up to here
   double constant_power_rpm = kNoLimit;   ///< N2: constant power from N1 to here, falling above
+  double start_time_s = 0;                ///< from rest to max_rpm, instead of gd2 and power; 0: not given
   double orient_s = 0;                    ///< to turn the standing spindle into the place for a tool change
 };
 
 struct Machine {
   std::string path;  ///< of the file it was read from
   Control control;
+  /// Parameter sets that codes of the program select ([control.mode.NAME]): `control` with other values, by name.
+  std::vector<std::pair<std::string, Control>> modes;
   std::array<Axis, 3> axis;  ///< x, y, z
   Spindle spindle;
   Cycle cycle;

@@ -8,14 +8,19 @@
 
 namespace camber::machine {
 
-inline constexpr std::array<std::string_view, 4> kCornerLawWords{"speed_difference", "angle", "blend", "exact_stop"};
+inline constexpr std::array<std::string_view, 5> kCornerLawWords{"speed_difference", "angle", "blend", "exact_stop",
+                                                                 "radius"};
 inline constexpr std::array<std::string_view, 3> kAxisNames{"x", "y", "z"};
 
 inline constexpr NumberRange kShare{.min = 0, .max = 1, .above_min = true};
 inline constexpr NumberRange kArcShare{.min = 0, .max = 100, .above_min = true};
 inline constexpr NumberRange kPeriodMs{.min = 0, .max = 1000, .above_min = true};
 inline constexpr NumberRange kPercent{.min = 0, .max = 100};
+inline constexpr NumberRange kMinIncrementMm{.min = 1e-6, .max = 0.1};
 inline constexpr NumberRange kBlockCount{.min = 0, .max = 1e6, .whole = true};
+
+/// Parameter sets of a control, by what selects them: G05.1 Q1, G05 P10000 or G08 P1; G61; G61.1.
+inline constexpr std::array<std::string_view, 3> kModeNames{"high_speed_contouring", "g61", "g61_1"};
 
 inline constexpr std::array kControlKeys{
     NumberKey<Control>{"period_ms", &Control::period_s, kPeriodMs, kMilliseconds},
@@ -27,17 +32,24 @@ inline constexpr std::array kControlKeys{
     NumberKey<Control>{"stop_acceleration_share", &Control::stop_acceleration_fraction, kShare},
     NumberKey<Control>{"path_acceleration_mm_per_s2", &Control::path_acceleration_mm_per_s2, kPositiveOrInf},
     NumberKey<Control>{"rapid_change_ms", &Control::rapid_change_s, kNotNegative, kMilliseconds},
+    NumberKey<Control>{"in_position_mm", &Control::in_position_mm, kPositiveOrInf},
 };
 
 inline constexpr std::array kCornerKeys{
     NumberKey<Corner>{"tolerance_mm", &Corner::tolerance_mm, kNotNegativeOrInf},
     NumberKey<Corner>{"speed_difference_mm_per_min", &Corner::speed_difference_mm_per_s, kPositiveOrInf, kPerMinute},
     NumberKey<Corner>{"time_ms", &Corner::time_s, kNotNegative, kMilliseconds},
+    NumberKey<Corner>{"acceleration_mm_per_s2", &Corner::acceleration_mm_per_s2, kPositiveOrInf},
+    NumberKey<Corner>{"threshold_degrees", &Corner::threshold_rad, kNotNegative, kDegrees},
     NumberKey<Corner>{"step_share", &Corner::step_fraction, kNotNegative},
     NumberKey<Corner>{"short_line_time_ms", &Corner::short_line_time_s, kNotNegative, kMilliseconds},
     NumberKey<Corner>{"stop_angle_degrees", &Corner::stop_angle_rad, kPositiveOrInf, kDegrees},
     NumberKey<Corner>{"stop_time_ms", &Corner::stop_time_s, kNotNegative, kMilliseconds},
 };
+
+/// The number that each corner law cannot do without, in the order of kCornerLawWords; empty: none.
+inline constexpr std::array<std::string_view, 5> kCornerLawKeys{"speed_difference_mm_per_min", "time_ms",
+                                                                "tolerance_mm", "", "acceleration_mm_per_s2"};
 
 inline constexpr std::array kAxisKeys{
     NumberKey<Axis>{"max_velocity_mm_per_min", &Axis::max_velocity_mm_per_s, kPositiveOrInf, kPerMinute},
@@ -49,9 +61,11 @@ inline constexpr std::array kAxisKeys{
     NumberKey<Axis>{"position_gain_per_s", &Axis::position_gain_per_s, kPositiveOrInf},
     NumberKey<Axis>{"velocity_lag_ms", &Axis::velocity_lag_s, kNotNegative, kMilliseconds},
     NumberKey<Axis>{"feed_forward_percent", &Axis::feed_forward_percent, kPercent},
+    NumberKey<Axis>{"speed_difference_mm_per_min", &Axis::speed_difference_mm_per_s, kPositiveOrInf, kPerMinute},
     NumberKey<Axis>{"stiffness_N_per_um", &Axis::stiffness_N_per_mm, kPositiveOrInf, kNewtonsPerMicrometre},
     NumberKey<Axis>{"rapid_mm_per_min", &Axis::rapid_mm_per_s, kPositiveOrInf, kPerMinute},
     NumberKey<Axis>{"rapid_acceleration_mm_per_s2", &Axis::rapid_acceleration_mm_per_s2, kPositiveOrInf},
+    NumberKey<Axis>{"max_feed_mm_per_min", &Axis::max_feed_mm_per_s, kPositiveOrInf, kPerMinute},
 };
 
 inline constexpr std::array kSpindleKeys{
@@ -60,6 +74,7 @@ inline constexpr std::array kSpindleKeys{
     NumberKey<Spindle>{"power_W", &Spindle::power_W, kPositiveOrInf},
     NumberKey<Spindle>{"constant_torque_rpm", &Spindle::constant_torque_rpm, kPositiveOrInf},
     NumberKey<Spindle>{"constant_power_rpm", &Spindle::constant_power_rpm, kPositiveOrInf},
+    NumberKey<Spindle>{"start_time_s", &Spindle::start_time_s, kNotNegative},
     NumberKey<Spindle>{"orient_s", &Spindle::orient_s, kNotNegative},
 };
 

@@ -1,26 +1,13 @@
 // machine.toml into a Machine.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "machine/machine_keys.h"
 #include "machine/source_parameters.h"
 
 namespace camber::machine {
 namespace {
-
-/// The number that each law cannot do without.
-std::string_view key_of_law(CornerLaw law) {
-  switch (law) {
-    case CornerLaw::speed_difference:
-      return "speed_difference_mm_per_min";
-    case CornerLaw::angle:
-      return "time_ms";
-    case CornerLaw::blend:
-      return "tolerance_mm";
-    case CornerLaw::exact_stop:
-      break;
-  }
-  return {};
-}
 
 void read_corner(TomlTable table, Corner& corner) {
   const auto law = table.required_choice("law", kCornerLawWords);
@@ -28,9 +15,9 @@ void read_corner(TomlTable table, Corner& corner) {
   table.finish();
   if (!law) return;
   corner.law = static_cast<CornerLaw>(*law);
-  const std::string_view needed = key_of_law(corner.law);
+  const std::string_view needed = kCornerLawKeys[*law];
   for (const auto& k : kCornerKeys) {
-    const bool of_a_law = k.key == "tolerance_mm" || k.key == "speed_difference_mm_per_min" || k.key == "time_ms";
+    const bool of_a_law = std::ranges::find(kCornerLawKeys, k.key) != kCornerLawKeys.end();
     if (k.key == needed && !table.has(k.key)) table.missing(k.key, k.range.wanted());
     if (of_a_law && k.key != needed && table.has(k.key))
       table.error_at_name(k.key,
@@ -40,15 +27,36 @@ void read_corner(TomlTable table, Corner& corner) {
   }
 }
 
+/// A parameter set: the control's own values but for those that the table gives.
+void read_mode(TomlTable table, const Control& control, std::string name, Machine& machine) {
+  Control mode = control;
+  read_numbers<Control>(table, kControlKeys, mode);
+  if (auto corner = table.table("corner")) {
+    mode.corner = {};
+    read_corner(*corner, mode.corner);
+  }
+  table.finish();
+  machine.modes.emplace_back(std::move(name), mode);
+}
+
+void read_modes(TomlTable table, Machine& machine) {
+  for (const std::string_view name : kModeNames)
+    if (auto mode = table.table(name)) read_mode(*mode, machine.control, std::string(name), machine);
+  table.finish();
+}
+
 void read_control(TomlTable table, Control& control) {
   control.kind = control_kinds()[table.choice("dialect", control_kind_names(), 0)];
   read_numbers<Control>(table, kControlKeys, control);
+  control.least_increment_mm = table.optional_number("least_increment_mm", kMinIncrementMm);
   control.lookahead_blocks = static_cast<int>(table.number("lookahead_blocks", kBlockCount, control.lookahead_blocks));
   if (auto corner = table.table("corner")) read_corner(*corner, control.corner);
+  table.ignore("mode");
   table.finish();
 }
 
 void read_axis(TomlTable table, Axis& axis) {
+  axis.given = true;
   read_numbers<Axis>(table, kAxisKeys, axis);
   if (const auto travel = table.numbers("travel_mm", 2, kAnyNumberOrInf, "[least, greatest]")) {
     axis.travel_mm = {(*travel)[0], (*travel)[1]};
@@ -69,6 +77,7 @@ void read_axes(TomlTable table, std::array<Axis, 3>& axes) {
 
 void read_spindle(TomlTable table, Spindle& spindle) {
   read_numbers<Spindle>(table, kSpindleKeys, spindle);
+  if (spindle.start_time_s > 0 && !table.has("max_rpm")) table.missing("max_rpm", kPositiveOrInf.wanted());
   for (const auto& k : kSpindleKeys)
     if (spindle.gd2_kgf_m2 > 0 && (k.key == "power_W" || k.key == "constant_torque_rpm") && !table.has(k.key))
       table.missing(k.key, k.range.wanted());
@@ -88,6 +97,8 @@ void read_cycle(TomlTable table, Cycle& cycle) {
   read_numbers<Cycle>(table, kCycleKeys, cycle);
   if (cycle.acceleration_law == AccelerationLaw::exponential && !table.has("time_constant_1_ms"))
     table.missing("time_constant_1_ms", kNotNegative.wanted());
+  if (cycle.acceleration_law == AccelerationLaw::bell && !table.has("bell_time_ms"))
+    table.missing("bell_time_ms", kNotNegative.wanted());
   table.finish();
 }
 
@@ -123,8 +134,15 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
   const auto file = read_toml(path, "a machine description ([control], [axis.x] ...)", diagnostics);
   diagnostics.throw_if_errors();
   TomlTable top = TomlTable::top(*file, diagnostics);
+  for (Axis& axis : machine.axis) axis.given = false;
   if (auto source = top.table("source")) read_source(*source, machine);
-  if (auto control = top.table("control")) read_control(*control, machine.control);
+  bool width_given = false;
+  if (auto control = top.table("control")) {
+    width_given = control->has("in_position_mm");
+    read_control(*control, machine.control);
+    if (auto modes = control->table("mode")) read_modes(*modes, machine);
+  }
+  if (!width_given && machine.control.kind.waits_in_position) machine.control.in_position_mm = kInPositionMm;
   if (auto axes = top.table("axis")) read_axes(*axes, machine.axis);
   if (auto spindle = top.table("spindle")) read_spindle(*spindle, machine.spindle);
   machine.cycle.rapid_path = machine.control.kind.rapid_path;

@@ -1,6 +1,8 @@
 // A Machine as machine.toml.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "machine/machine_keys.h"
 
 namespace camber::machine {
@@ -10,18 +12,22 @@ std::string corner_text(const Corner& corner) {
   std::string out = fmt::format("corner = {{ law = \"{}\"", kCornerLawWords[static_cast<std::size_t>(corner.law)]);
   const Corner defaults;
   for (const auto& k : kCornerKeys) {
-    const bool of_this_law = (corner.law == CornerLaw::blend && k.key == "tolerance_mm") ||
-                             (corner.law == CornerLaw::angle && k.key == "time_ms") ||
-                             (corner.law == CornerLaw::speed_difference && k.key == "speed_difference_mm_per_min");
-    const bool of_no_law = k.key == "step_share" || k.key == "short_line_time_ms" || k.key == "stop_angle_degrees" ||
-                           k.key == "stop_time_ms";
+    const bool of_this_law = kCornerLawKeys[static_cast<std::size_t>(corner.law)] == k.key;
+    const bool of_no_law = std::ranges::find(kCornerLawKeys, k.key) == kCornerLawKeys.end();
     if (of_this_law || (of_no_law && corner.*k.field != defaults.*k.field))
       out += fmt::format(", {} = {}", k.key, toml_number(corner.*k.field, k.unit));
   }
   return out + " }\n";
 }
 
+std::string mode_text(std::string_view name, const Control& mode) {
+  return fmt::format("\n[control.mode.{}]\n", name) + toml_lines<Control>(kControlKeys, mode) +
+         corner_text(mode.corner);
+}
+
+/// Empty for an axis that is not given, unless something has set a number of it since.
 std::string axis_text(std::string_view name, const Axis& axis) {
+  if (!axis.given && toml_lines<Axis>(kAxisKeys, axis) == toml_lines<Axis>(kAxisKeys, Axis{})) return {};
   return fmt::format("\n[axis.{}]\n{}travel_mm = [{}, {}]\n", name, toml_lines<Axis>(kAxisKeys, axis),
                      toml_number(axis.travel_mm[0], kAsIs), toml_number(axis.travel_mm[1], kAsIs));
 }
@@ -56,7 +62,10 @@ std::string to_toml(const Machine& machine) {
   out += toml_line("dialect", machine.control.kind.name);
   out += toml_lines<Control>(kControlKeys, machine.control);
   out += toml_line("lookahead_blocks", machine.control.lookahead_blocks, kAsIs);
+  if (machine.control.least_increment_mm)
+    out += toml_line("least_increment_mm", *machine.control.least_increment_mm, kAsIs);
   out += corner_text(machine.control.corner);
+  for (const auto& [name, mode] : machine.modes) out += mode_text(name, mode);
   for (std::size_t i = 0; i < machine.axis.size(); ++i) out += axis_text(kAxisNames[i], machine.axis[i]);
   out += "\n[spindle]\n" + toml_lines<Spindle>(kSpindleKeys, machine.spindle);
   out += cycle_text(machine.cycle);

@@ -38,6 +38,7 @@ constexpr std::array kSinumerik{
 
 void set_axis(Machine& machine, const AxisParameter& p, int axis, double native, const std::string& where) {
   machine.axis[axis].*p.field = native * p.inside_factor;
+  machine.axis[axis].given = true;
   machine.translation.push_back(fmt::format("{} = {:g} {}: axis.{}.{} = {:g}", where, native, p.unit, kAxisNames[axis],
                                             p.key, native * p.inside_factor * p.key_factor));
 }

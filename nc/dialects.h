@@ -49,6 +49,8 @@ inline constexpr Dialect kLinuxCnc{.name = "linuxcnc",
                                    .radius_entry_square = false,
                                    .radius_exit_waits = false,
                                    .radius_look_ahead = 1'000'000,
+                                   .spiral_radius_fraction = 0.001,  // SPIRAL_RELATIVE_TOLERANCE in interp_internal.hh
+                                   .spiral_max_mm = 2.828,           // 100 times CENTER_ARC_RADIUS_TOLERANCE_MM
                                    .max_levels = 10};
 
 /// The first row is default_dialect().

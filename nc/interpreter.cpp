@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "nc/block_interpreter.h"
+#include "nc/durations.h"
 #include "nc/program_files.h"
 #include "nc/sequencer.h"
 
@@ -161,6 +162,7 @@ std::optional<Interpretation> try_absolute_centres(ProgramFiles& files, Interpre
   report.warning(
       program.words_of(first_arc->block).front().offset, "arc-centre",
       fmt::format("the {} arcs of the program fit with absolute centres only; G90.1 is assumed", out.arcs.size()));
+  check_durations(program, out, report);
   report.finish();
   return out;
 }
@@ -174,6 +176,7 @@ Interpretation interpret(const Program& program, const InterpreterOptions& wante
   Reporter report(program.source, diagnostics);
   if (run_program(files, options, report, out) && !options.absolute_arc_centre)
     if (auto absolute = try_absolute_centres(files, options, diagnostics)) return std::move(*absolute);
+  check_durations(program, out, report);
   report.finish();
   return out;
 }

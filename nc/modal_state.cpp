@@ -400,7 +400,8 @@ void BlockInterpreter::check_letters() {
             fmt::format("rotary axis {} is not read yet; X, Y and Z were expected", letter), std::string(1, letter));
     else
       report_.warning(words_.offset_of(letter), "rotary-axis",
-                      fmt::format("rotary axis {} is not read; it is taken to stand still at 0", letter));
+                      fmt::format("rotary axis {} is not read; it is taken to stand still at 0", letter),
+                      "rotary-zero");
   }
   for (const char letter : {'V', 'W', 'U'}) {
     if (!words_.has(letter) || (letter == 'U' && request_.dwell)) continue;

@@ -351,10 +351,13 @@ void BlockInterpreter::move_on_arc() {
 void BlockInterpreter::read_spiral_words(ArcWords& arc) {
   if (arc.r_mm) return;
   if (!words_.has('L')) {
-    if (options_.dialect_or_default().spiral_radius_difference_mm <= 0) return;
+    const Dialect dialect = options_.dialect_or_default();
+    if (dialect.spiral_radius_difference_mm <= 0 && dialect.spiral_radius_fraction <= 0) return;
     const ArcResult plain = make_arc(arc);
+    const double larger = std::max(plain.start_radius_mm, plain.end_radius_mm);
+    const double share_mm = std::min(dialect.spiral_radius_fraction * larger, dialect.spiral_max_mm);
     arc.spiral = plain.error.empty() && plain.radius_difference_mm > kArcRadiusWarningMm &&
-                 plain.radius_difference_mm <= options_.dialect_or_default().spiral_radius_difference_mm;
+                 plain.radius_difference_mm <= std::max(dialect.spiral_radius_difference_mm, share_mm);
     return;
   }
   const double turns = words_.value('L');

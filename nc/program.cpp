@@ -1,5 +1,6 @@
 #include "nc/program.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -34,15 +35,19 @@ constexpr std::array<double, 20> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1
 /// One pass over the text. Each block is read on its own; a block with an error keeps the words before it.
 class Scanner {
  public:
-  Scanner(Program& program, Reporter& report)
-      : program_(program), report_(report), text_(program.source.text().data()), size_(program.source.text().size()) {}
+  Scanner(Program& program, Reporter& report, Reporter& behind_end)
+      : program_(program),
+        main_report_(report),
+        behind_end_(behind_end),
+        text_(program.source.text().data()),
+        size_(program.source.text().size()) {}
 
   /// False when the text is of another language and reading on makes no sense.
   bool run() {
     program_.blocks.reserve(program_.source.line_count());
     program_.words.reserve(size_ / 4);  // pages that are not written to cost nothing
     std::size_t at = 0;
-    while (at < size_ && !foreign_ && !report_.full()) {
+    while (at < size_ && !foreign_ && !main_report_.full()) {
       const void* found = std::char_traits<char>::find(text_ + at, size_ - at, '\n');
       const std::size_t next = found ? static_cast<std::size_t>(static_cast<const char*>(found) - text_) : size_;
       std::size_t end = next;
@@ -61,6 +66,8 @@ class Scanner {
     block.first_word = static_cast<std::uint32_t>(program_.words.size());
     at_ = begin;
     end_ = end;
+    if (ended_) ended_ = !begins_program(begin, end);
+    report_ = ended_ ? &behind_end_ : &main_report_;
     skip_ = 0;
     flow_ = false;
     if (begin == 0 && end >= 3 && std::string_view(text_, 3) == "\xEF\xBB\xBF") at_ = 3;  // byte order mark
@@ -68,7 +75,7 @@ class Scanner {
     }
     std::size_t count = program_.words.size() - block.first_word;
     if (count > std::numeric_limits<std::uint16_t>::max()) {
-      report_.error(begin, "too-many-words", fmt::format("{} words in one block; at most 65535 are read", count));
+      report_->error(begin, "too-many-words", fmt::format("{} words in one block; at most 65535 are read", count));
       program_.words.resize(block.first_word);
       std::erase_if(program_.macro.words, [&](const ExpressionWord& w) { return w.word >= block.first_word; });
       count = 0;
@@ -77,14 +84,26 @@ class Scanner {
     block.skip = skip_;
     block.flow = flow_;
     program_.blocks.push_back(block);
+    for (std::size_t i = block.first_word; i < program_.words.size(); ++i)
+      ended_ |= program_.words[i].letter == 'M' && (program_.words[i].value == 2 || program_.words[i].value == 30);
+  }
+
+  /// An O word, or a colon for one.
+  bool begins_program(std::size_t begin, std::size_t end) const {
+    while (begin < end && is_blank(text_[begin])) ++begin;
+    return begin < end && (upper(text_[begin]) == 'O' || text_[begin] == ':');
+  }
+
+  void other_language(bool found) {
+    if (!ended_) foreign_ = found;
   }
 
   bool scan_item_or_fail(std::size_t block_begin) {
     try {
       return scan_item(block_begin);
     } catch (const MacroError& e) {
-      report_.error(e.offset, e.check, e.what());
-      program_.macro.broken = true;
+      report_->error(e.offset, e.check, e.what());
+      if (!ended_) program_.macro.broken = true;
       return false;
     }
   }
@@ -132,7 +151,7 @@ class Scanner {
         last_close > 0 && std::string_view(text_ + last_close + 1, end_ - last_close - 1).find_first_not_of(" \t\r") ==
                               std::string_view::npos;
     if (!closed_at_end)
-      report_.error(begin, "comment-open", fmt::format("the comment has no closing `{}` in its block", close), "open");
+      report_->error(begin, "comment-open", fmt::format("the comment has no closing `{}` in its block", close), "open");
     return false;
   }
 
@@ -197,12 +216,12 @@ class Scanner {
 
   bool add_word(char letter, std::size_t begin, std::size_t number, std::size_t end, double value) {
     if (end - begin > std::numeric_limits<std::uint16_t>::max()) {
-      report_.error(begin, "word-too-long", fmt::format("the word {} is longer than 65535 characters", letter));
+      report_->error(begin, "word-too-long", fmt::format("the word {} is longer than 65535 characters", letter));
       if (std::isnan(value)) program_.macro.words.pop_back();
       return false;
     }
     if (number - begin > std::numeric_limits<std::uint8_t>::max()) {
-      report_.error(begin, "word-too-long", fmt::format("more than 255 blanks between {} and its number", letter));
+      report_->error(begin, "word-too-long", fmt::format("more than 255 blanks between {} and its number", letter));
       if (std::isnan(value)) program_.macro.words.pop_back();
       return false;
     }
@@ -276,10 +295,10 @@ class Scanner {
     if (c == '"' || c == '=')
       return refuse_assignment(begin);
     else if (may_lack_number(letter) && (c == '\0' || is_letter(c) || c == '(' || c == ';')) {
-      report_.warning(begin, "no-number", fmt::format("{} has no number; it is taken as {}0", letter, letter));
+      report_->warning(begin, "no-number", fmt::format("{} has no number; it is taken as {}0", letter, letter));
       return add_word(letter, begin, begin + 1, begin + 1, 0);
     } else
-      report_.error(begin, "no-number", fmt::format("{} has no number; a number was expected", letter));
+      report_->error(begin, "no-number", fmt::format("{} has no number; a number was expected", letter));
     return false;
   }
 
@@ -295,13 +314,13 @@ class Scanner {
       return refuse_assignment(at_);
     const std::string rest = name.substr(1);
     if (rest == "NAN" || rest == "INF" || rest == "INFINITY") {
-      report_.error(at_, "not-a-number",
-                    fmt::format("{} is not a number; a number such as {}12.5 was expected", name, name[0]));
+      report_->error(at_, "not-a-number",
+                     fmt::format("{} is not a number; a number such as {}12.5 was expected", name, name[0]));
       return false;
     }
     ForeignWord word = explain_letters(name);
-    foreign_ = word.other_language;
-    report_.error(at_, word.check, std::move(word.message));
+    other_language(word.other_language);
+    report_->error(at_, word.check, std::move(word.message));
     return false;
   }
 
@@ -309,8 +328,8 @@ class Scanner {
     std::size_t end = begin;
     while (end < end_ && text_[end] != '=' && !is_blank(text_[end]) && text_[end] != '"') ++end;
     ForeignWord word = explain_assignment(std::string_view(text_ + begin, end - begin));
-    foreign_ = true;
-    report_.error(begin, word.check, std::move(word.message));
+    other_language(true);
+    report_->error(begin, word.check, std::move(word.message));
     return false;
   }
 
@@ -320,26 +339,35 @@ class Scanner {
     }
     if (c == ',') {
       const std::string name = letters_from(at_ + 1);
-      report_.error(at_, "corner-word",
-                    fmt::format("chamfers and roundings in a block (,{}) are not read yet; a word was expected",
-                                name.substr(0, 1)));
+      report_->error(at_, "corner-word",
+                     fmt::format("chamfers and roundings in a block (,{}) are not read yet; a word was expected",
+                                 name.substr(0, 1)));
     } else {
-      report_.error(at_, "unexpected-character",
-                    fmt::format("{} is not expected here; a word (a letter and a number) or a comment was expected",
-                                printable(static_cast<unsigned char>(c))));
+      report_->error(at_, "unexpected-character",
+                     fmt::format("{} is not expected here; a word (a letter and a number) or a comment was expected",
+                                 printable(static_cast<unsigned char>(c))));
     }
     return false;
   }
 
   Program& program_;
-  Reporter& report_;
+  Reporter& main_report_;
+  Reporter& behind_end_;
+  Reporter* report_ = &main_report_;
   const char* text_;
   std::size_t size_;
   std::size_t at_ = 0, end_ = 0;
   std::uint8_t skip_ = 0;
   bool flow_ = false;
   bool foreign_ = false;
+  bool ended_ = false;  ///< M2 or M30 was read, and no further program has begun
 };
+
+/// Blocks behind M30 may run: something jumps to block numbers.
+bool jumps_to_blocks(const MacroTables& macro) {
+  return macro.local_calls || std::any_of(macro.statements.begin(), macro.statements.end(),
+                                          [](const Statement& s) { return s.kind == StatementKind::go_to; });
+}
 
 }  // namespace
 
@@ -349,7 +377,8 @@ Program read_program(SourceText source, Diagnostics& diagnostics) {
   Program program;
   program.source = std::move(source);
   Reporter report(program.source, diagnostics);
-  const bool whole = Scanner(program, report).run();
+  Reporter behind_end(program.source, diagnostics);  // of text that no control reads
+  const bool whole = Scanner(program, report, behind_end).run();
   for (const MacroError& e : link_statements(program.macro)) {
     report.error(e.offset, e.check, e.what());
     program.macro.broken = true;
@@ -357,6 +386,10 @@ Program read_program(SourceText source, Diagnostics& diagnostics) {
   const bool stop = !whole;
   const bool wordless = program.words.empty() && program.macro.statements.empty() && !report.has_errors();
   report.finish();
+  if (jumps_to_blocks(program.macro)) {
+    program.macro.broken |= behind_end.has_errors();
+    behind_end.finish();
+  }
   if (wordless) {
     const bool blank = program.source.text().find_first_not_of(" \t\r\n") == std::string::npos;
     diagnostics.add({Severity::error,

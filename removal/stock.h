@@ -111,7 +111,7 @@ class MeshDistance {
  public:
   /// Reads a binary or ASCII STL (mm) and samples its distance on voxels within band_mm of its surface. Throws
   /// InputError [file-missing], [stl-format], [stl-empty], [stl-open] (an edge without a second triangle: the mesh
-  /// has no inside).
+  /// has no inside), [voxel-memory] (before anything is built).
   MeshDistance(const std::string& stl_path, double voxel_mm, double band_mm);
   ~MeshDistance();
   MeshDistance(MeshDistance&&) noexcept;

@@ -135,9 +135,8 @@ std::string distance_svg(const feedmodel::DistanceHistogram& histogram, const st
   for (std::size_t i = 0; i < bins; ++i) {
     const double x = 40 + width * static_cast<double>(i);
     const double height = static_cast<double>(histogram.counts[i]) / most * (kBottom - kTop);
-    const std::string label = i < std::size(feedmodel::kDistanceEdgesMm)
-                                  ? "≤ " + format_trimmed(feedmodel::kDistanceEdgesMm[i], 1)
-                                  : "longer";
+    const std::string label =
+        i < histogram.edges_mm.size() ? "≤ " + format_trimmed(histogram.edges_mm[i], 1) : "longer";
     out +=
         box(x, kBottom - height, width - 4, height, kColours[0], fmt::format("{} mm: {}", label, histogram.counts[i]));
     if (histogram.counts[i] > 0)

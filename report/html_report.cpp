@@ -54,13 +54,6 @@ std::string histogram_html(const ReportData& data, const PageData& page) {
          histogram_svg(data.surface, data.compared, page.scale_um) + "</div>\n";
 }
 
-/// What a script element may hold: no end tag inside.
-std::string script_safe(std::string text) {
-  for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at + 3))
-    text.insert(at + 1, "\\");
-  return text;
-}
-
 std::string scripts_html(const PageData& page) {
   std::string out = "<script type=\"application/json\" id=\"index\">" + script_safe(page.index) + "</script>\n";
   out += "<script type=\"text/plain\" id=\"arrays\">" + page.arrays + "</script>\n";

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -50,6 +51,8 @@ std::string corner_text(const machine::Corner& c) {
       return fmt::format("angle, {} ms", value_text(1000 * c.time_s));
     case machine::CornerLaw::blend:
       return fmt::format("blend, {} mm", value_text(c.tolerance_mm));
+    case machine::CornerLaw::radius:
+      return fmt::format("radius of three points, {} mm/s2", value_text(c.acceleration_mm_per_s2));
     case machine::CornerLaw::exact_stop:
       break;
   }
@@ -76,13 +79,28 @@ const char* type_name(machine::ToolType type) {
   return "general";
 }
 
+/// The string that `file` is in [material]; empty: none. By hand: std::regex needs stack for each character.
+std::string file_of_material(const std::string& text) {
+  std::istringstream lines(text);
+  bool in_material = false;
+  for (std::string line; std::getline(lines, line);) {
+    line.erase(0, std::min(line.find_first_not_of(" \t"), line.size()));
+    if (line.starts_with("[")) in_material = line.starts_with("[material]");
+    if (!in_material || !line.starts_with("file")) continue;
+    const std::size_t equals = line.find_first_not_of(" \t", 4), open = line.find('"');
+    if (equals == std::string::npos || line[equals] != '=' || open == std::string::npos) continue;
+    const std::size_t close = line.find('"', open + 1);
+    if (close != std::string::npos) return line.substr(open + 1, close - open - 1);
+  }
+  return {};
+}
+
 /// Where the material's coefficients were read: the job itself or the file that its [material] names.
 std::string material_path(const Job& job) {
   const auto text = file_text(job.path);
-  std::smatch found;
-  static const std::regex kFile(R"(\n\[material\][^\[]*\n\s*file\s*=\s*"([^"]+)\")");
-  if (!text || !std::regex_search(*text, found, kFile)) return job.path;
-  return (std::filesystem::path(job.path).parent_path() / found[1].str()).lexically_normal().string();
+  const std::string file = text ? file_of_material(*text) : "";
+  if (file.empty()) return job.path;
+  return (std::filesystem::path(job.path).parent_path() / file).lexically_normal().string();
 }
 
 }  // namespace

@@ -85,6 +85,17 @@ std::string html_text(std::string_view text) {
   return out;
 }
 
+std::string script_safe(const std::string& json) {
+  std::string out;
+  out.reserve(json.size());
+  for (const char c : json)
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
+  return out;
+}
+
 std::string number_text(double value, int decimals) {
   if (!std::isfinite(value)) return "–";
   const std::string text = fmt::format("{:.{}f}", value, decimals);

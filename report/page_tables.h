@@ -11,6 +11,10 @@ namespace camber::report {
 /// Text with &, <, > and quotes made harmless.
 std::string html_text(std::string_view text);
 
+/// JSON as a script element may hold it. A "<" stands in strings alone, where its escape means the same: without it
+/// neither an end tag nor "<!--<script", which hides the end tag, can come up.
+std::string script_safe(const std::string& json);
+
 /// A number of the page: `decimals` behind the point, a true minus sign; a dash where it is not finite.
 std::string number_text(double value, int decimals);
 

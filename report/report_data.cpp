@@ -9,6 +9,7 @@
 #include "report/model_tables.h"
 #include "report/page_tables.h"
 #include "report/summary.h"
+#include "simulate/verdict.h"
 
 namespace camber::report {
 namespace {
@@ -107,13 +108,18 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
   ReportData data;
   data.title = "Predicted form error of " + file_name(job.program);
   data.subtitle = job.path;
-  add_figures(data, p.form_error_um, nullptr, "form_error_um");
-  double force = 0;
-  for (const auto& l : p.cut.loads) force = std::max(force, l.lateral_max_N);
-  // Shown large: two of the error, the force, the time.
-  data.figures.insert(data.figures.begin() + 2, {"greatest lateral force", force, std::nullopt, "N", 1, "force_N.max"});
-  data.figures.insert(data.figures.begin() + 3,
-                      {"machine time", program.feed.time_s, std::nullopt, "s", 1, "machine_time_s"});
+  const Figure time{"machine time", program.feed.time_s, std::nullopt, "s", 1, "machine_time_s"};
+  if (simulate::beyond_model(p)) {
+    data.figures.push_back(time);
+  } else {
+    add_figures(data, p.form_error_um, nullptr, "form_error_um");
+    double force = 0;
+    for (const auto& l : p.cut.loads) force = std::max(force, l.lateral_max_N);
+    // Shown large: two of the error, the force, the time.
+    data.figures.insert(data.figures.begin() + 2,
+                        {"greatest lateral force", force, std::nullopt, "N", 1, "force_N.max"});
+    data.figures.insert(data.figures.begin() + 3, time);
+  }
   data.figures.push_back({"removed, by the chips", p.cut.chip_mm3, std::nullopt, "mm3", 2, "removed_mm3.path"});
   data.figures.push_back({"removed, by the stock", p.cut.stock_mm3, std::nullopt, "mm3", 2, "removed_mm3.stock"});
   data.surface = {p.surface.size(), [&](std::size_t i) { return sample_of(p.surface[i], program); }};
@@ -123,6 +129,7 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
   add_errors(rows, program.path, p.surface);
   data.path.push_back({"", program.text.source.text(), std::move(rows)});
   add_texts(data, job, diagnostics, unsettled_sentence(program, p));
+  for (std::string& sentence : simulate::doubts(job, program, p)) data.warnings.push_back(std::move(sentence));
   return data;
 }
 

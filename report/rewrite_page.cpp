@@ -143,7 +143,7 @@ std::string rewrite_page(const RewritePage& page) {
   if (page.measured_deviation_mm > 0)
     index["worst"] = {page.worst_place_mm.x(), page.worst_place_mm.y(), page.worst_place_mm.z()};
   if (!page.part.points.empty()) index["part"] = picture_json(arrays, page.part, "part");
-  out += "<script type=\"application/json\" id=\"index\">" + index.dump() + "</script>\n";
+  out += "<script type=\"application/json\" id=\"index\">" + script_safe(index.dump()) + "</script>\n";
   out += "<script type=\"text/plain\" id=\"arrays\">" + arrays.text() + "</script>\n";
   return out + fmt::format("<script>{}</script>\n</body>\n</html>\n", kPathScript);
 }

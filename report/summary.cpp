@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
+#include "simulate/verdict.h"
 
 namespace camber::report {
 namespace {
@@ -157,6 +158,27 @@ std::vector<std::size_t> unsettled_lines(const simulate::SimulatedProgram& progr
 
 }  // namespace
 
+namespace {
+
+/// Why there are no figures; those that there would be are null.
+void leave_out_figures(const simulate::SimulatedProgram& program, const simulate::Prediction& p, ordered_json& j) {
+  j["force_N"]["max"] = nullptr;
+  j["torque_Nm"]["max"] = nullptr;
+  j["power_W"] = {{"max", nullptr}, {"mean", nullptr}};
+  j["chip_thickness_mm"]["max"] = nullptr;
+  j["specific_energy_MPa"] = nullptr;
+  for (const char* group : {"form_error_um", "total_error_um"})
+    if (j.contains(group))
+      j[group] = {{"min", nullptr}, {"max", nullptr}, {"mean", nullptr}, {"rms", nullptr}, {"p95", nullptr}};
+  j["beyond_model"] = {
+      {"slender_tools", p.slender_tools},
+      {"tooth_passings", p.cut.beyond},
+      {"lines", simulate::lines_beyond_model(program, p)},
+      {"deflection_um", {{"max", 1000 * p.cut.deflection_max_mm}, {"limit", 1000 * p.cut.deflection_limit_mm}}}};
+}
+
+}  // namespace
+
 std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s) {
   ordered_json j;
   j["machine_time_s"] = program.feed.time_s;
@@ -179,6 +201,7 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
   for (const Reason reason : {Reason::pulled_in, Reason::pushed_out, Reason::swings})
     if (const auto lines = unsettled_lines(program, p, reason); !lines.empty())
       j["static"]["unsettled_reasons"].push_back({{"reason", name(reason)}, {"lines", lines}});
+  if (simulate::beyond_model(p)) leave_out_figures(program, p, j);
   return j.dump(2) + "\n";
 }
 
@@ -306,6 +329,7 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
   const double balance = p.cut.stock_mm3 > 0 ? 100 * (p.cut.chip_mm3 / p.cut.stock_mm3 - 1) : 0;
   fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the chips, {:.3f} mm3 by the stock ({:+.2f} %)\n",
                  p.cut.chip_mm3, p.cut.stock_mm3, balance);
+  if (simulate::beyond_model(p)) return out + "force, deflection and form error: beyond the model's range\n";
   fmt::format_to(std::back_inserter(out), "greatest lateral force {:.1f} N, torque {:.3f} Nm, chip {:.4f} mm\n",
                  largest_force_N(p), s.torque_max_Nm, s.chip_max_mm);
   fmt::format_to(std::back_inserter(out), "power {:.1f} W at most, {:.1f} W in the cut; {:.0f} J/cm3\n", s.power_max_W,

@@ -89,6 +89,7 @@ class Cutter {
       : stock_(stock),
         options_(options),
         rigid_(options.coupling == machine::Coupling::rigid),
+        diameter_mm_(tool.diameter_mm),
         top_mm_(engaged_top_mm(stock, tool, stamps)),
         envelope_(sampled_envelope(stock, tool, top_mm_, options)),
         model_(envelope_, material, deflection::beam_of(tool),
@@ -116,6 +117,7 @@ class Cutter {
       engage(all, from, deflections, loads, first_id, result);
     else
       settle(all, from, deflections, loads, first_id, result);
+    if (!options_.drilling) watch_range(stamps, deflections, result);
     if (tooth_marks_) {
       leave_uneven(stamps, from, deflections, contacts, first_id + static_cast<std::int32_t>(from), loads);
     } else {
@@ -155,6 +157,34 @@ class Cutter {
       turn[k] = removal::chips_of(blocks, chips);
     });
     for (const auto& [k, chips] : turn) keep_turn(chips, all[from + k], from + k, result);
+  }
+
+  /// The largest deflection that the fields and the beam describe at a stamp: the narrow band holds it with the chip,
+  /// the deflected cutter is looked for within kMaxDeflection_mm, and a beam bends little against its thickness.
+  double deflection_limit_mm(const Stamp& stamp) const {
+    constexpr double kOfDiameter = 0.1, kAtLimit = 0.98;
+    // Right after a rapid the motion is the rapid's, and no chip.
+    const double chip = stamp.first ? 0 : stamp.feed_per_tooth_mm.norm();
+    const double band = std::max(stock_.band_mm() / 4, stock_.band_mm() - chip);
+    const double deflected = kAtLimit * removal::DeflectedEngager::kMaxDeflection_mm;
+    return std::min({band, deflected, kOfDiameter * diameter_mm_});
+  }
+
+  /// Of a bending beam the tip moves most.
+  void watch_range(std::span<const Stamp> stamps, const DeflectionTable& deflections, CutResult& result) const {
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+      const float* tip = deflections.row(static_cast<std::ptrdiff_t>(k));
+      float largest = 0;
+      for (int i = 0; i < 2 * deflections.steps; i += 2)
+        largest = std::max(largest, tip[i] * tip[i] + tip[i + 1] * tip[i + 1]);
+      const double deflection = std::sqrt(static_cast<double>(largest)), limit = deflection_limit_mm(stamps[k]);
+      result.deflection_max_mm = std::max(result.deflection_max_mm, deflection);
+      if (deflection <= limit) continue;
+      result.deflection_limit_mm = result.beyond == 0 ? limit : std::min(result.deflection_limit_mm, limit);
+      ++result.beyond;
+      if (result.beyond_moves.empty() || result.beyond_moves.back() != stamps[k].move)
+        result.beyond_moves.push_back(stamps[k].move);
+    }
   }
 
   static void tell_contacts(const EnvelopeGrid& envelope, const DeflectionTable& deflections,
@@ -235,6 +265,7 @@ class Cutter {
   const Stock* blank_ = nullptr;  ///< before the first stamp
   const CutOptions& options_;
   bool rigid_;
+  double diameter_mm_;
   double top_mm_;
   EnvelopeGrid envelope_;
   ToothPassModel model_;

@@ -66,7 +66,11 @@ struct CutResult {
   std::size_t unsettled = 0;                   ///< stretches of tooth passings without a static equilibrium
   std::vector<std::uint32_t> unsettled_moves;  ///< of these tooth passings: Stamp::move, each once in a row
   std::vector<deflection::NoEquilibrium> unsettled_reasons;  ///< of the first passing of each
-  deflection::TurnForces turn;                               ///< empty without CutOptions::turn_from
+  std::size_t beyond = 0;                   ///< tooth passings with a deflection beyond the model's range
+  std::vector<std::uint32_t> beyond_moves;  ///< of these: Stamp::move, each once in a row
+  double deflection_max_mm = 0;             ///< of the edge at the tip, in any tooth passing
+  double deflection_limit_mm = 0;           ///< of those beyond, the least limit
+  deflection::TurnForces turn;              ///< empty without CutOptions::turn_from
 };
 
 /// Cuts `stock`: with the deflected cutter, or in rigid coupling, where no bending feeds back, with the undeflected

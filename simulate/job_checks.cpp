@@ -1,13 +1,13 @@
 #include "simulate/job_checks.h"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <set>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "base/free_memory.h"
 #include "deflection/beam.h"
 
 namespace camber::simulate {
@@ -116,15 +116,6 @@ double field_bytes(const Vec3& size, double voxel, double band_voxels) {
   const double area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
   return kCopies * kBytesPerVoxel * area / (voxel * voxel) * (2 * band_voxels + kLeaf);
 }
-
-namespace {
-double free_memory_bytes() {
-  std::ifstream in("/proc/meminfo");
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("MemAvailable:")) return 1024.0 * std::stod(line.substr(13));
-  return 1e18;
-}
-}  // namespace
 
 void check_memory(const machine::Job& job, const Vec3& lo, const Vec3& hi, double band_voxels,
                   Diagnostics& diagnostics) {

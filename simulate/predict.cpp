@@ -8,6 +8,7 @@
 #include "feedmodel/control_options.h"
 #include "nc/interpreter.h"
 #include "simulate/job_checks.h"
+#include "simulate/setup_checks.h"
 
 namespace camber::simulate {
 
@@ -45,6 +46,10 @@ removal::Stock raw_stock(const Job& job, double band, Diagnostics& diagnostics) 
   if (!job.stock.vdb.empty()) return removal::Stock::load(job.stock.vdb, voxel, band);
   if (job.stock.mesh.empty())
     fail_on_file(job.path, "has no stock; [stock] with box_mm, cylinder, mesh or vdb was expected", "stock-missing");
+  // What the stock alone needs is asked before the mesh takes its part.
+  const machine::Box box = stl_box(job.stock.mesh);
+  check_memory(job, box.min_mm, box.max_mm, band, diagnostics);
+  diagnostics.throw_if_errors();
   // A leaf of voxels is skipped by the distance at its centre, so the mesh's band must hold a leaf's half diagonal.
   const removal::MeshDistance mesh(job.stock.mesh, voxel, (band + 8) * voxel);
   check_memory(job, mesh.min_mm(), mesh.max_mm(), band, diagnostics);
@@ -58,6 +63,16 @@ void for_each_run(const Job& job, const removal::StampPath& path, Function f) {
     const std::span<const removal::Stamp> stamps(path.stamps.data() + run.from, run.count);
     f(run, job.tools.at(run.tool), stamps);
   }
+}
+
+/// Adds a run's deflections beyond the model's range.
+void add_range(const CutResult& run, CutResult& out) {
+  if (run.beyond > 0)
+    out.deflection_limit_mm =
+        out.beyond == 0 ? run.deflection_limit_mm : std::min(out.deflection_limit_mm, run.deflection_limit_mm);
+  out.beyond += run.beyond;
+  out.deflection_max_mm = std::max(out.deflection_max_mm, run.deflection_max_mm);
+  out.beyond_moves.insert(out.beyond_moves.end(), run.beyond_moves.begin(), run.beyond_moves.end());
 }
 
 void add_holes(removal::RunKind kind, const CutResult& run, HoleFigures& holes) {
@@ -100,29 +115,54 @@ SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmo
   return out;
 }
 
+namespace {
+
+Places places_of(const Job& job, const SimulatedProgram& program, const removal::Stock& blank) {
+  Places out{tip_extents(program.moves, program.selected, program.holes), 0, {blank.min_mm(), blank.max_mm()}};
+  for (const int tool : cutting_tools(program.moves, program.selected, program.holes))
+    out.radius_mm = std::max(out.radius_mm, job.tools.at(tool).diameter_mm / 2);
+  return out;
+}
+
+/// Less than this is what fields that touch may differ by.
+double nothing_mm3(const Job& job) { return std::pow(job.simulation.voxel_mm, 3); }
+
+}  // namespace
+
 Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics) {
   removal::Stock blank = raw_stock(job, band_voxels(job, target.path), diagnostics);
+  const Places where = places_of(job, target, blank);
+  check_places(target.text.source.name(), where, diagnostics);
+  diagnostics.throw_if_errors();
   const auto sweep_all = [&](removal::Stock& stock, double shrink_mm) {
+    double removed_mm3 = 0;
     for_each_run(job, target.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
       // An allowance lies on milled surface; holes are made from solid.
       if (shrink_mm > 0 && run.kind != removal::RunKind::milling) return;
-      sweep(stock, tool, stamps, static_cast<std::int32_t>(run.from), shrink_mm);
+      removed_mm3 += sweep(stock, tool, stamps, static_cast<std::int32_t>(run.from), shrink_mm);
     });
+    return removed_mm3;
   };
   std::optional<removal::Stock> whole;
   if (job.stock.allowance_mm > 0) {
     whole.emplace(blank);
-    sweep_all(blank, job.stock.allowance_mm);
+    if (sweep_all(blank, job.stock.allowance_mm) < nothing_mm3(job)) report_allowance(job, diagnostics);
+    diagnostics.throw_if_errors();
     blank.clear_stamps();
   }
   removal::Stock surface(blank);
-  sweep_all(surface, 0);
+  if (sweep_all(surface, 0) < nothing_mm3(job)) report_nothing_removed(target.text.source.name(), where, diagnostics);
+  diagnostics.throw_if_errors();
   removal::CutterPlaces places;
   for_each_run(job, target.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     places.add(static_cast<std::int32_t>(run.from), removal::shape_of(tool), stamps);
   });
   std::optional<removal::MeshDistance> part;
-  if (!job.part.mesh.empty()) part.emplace(job.part.mesh, job.simulation.voxel_mm, 10 * job.simulation.voxel_mm);
+  if (!job.part.mesh.empty()) {
+    part.emplace(job.part.mesh, job.simulation.voxel_mm, 10 * job.simulation.voxel_mm);
+    check_part_size(job.part.mesh, {part->min_mm(), part->max_mm()}, where.stock, diagnostics);
+    diagnostics.throw_if_errors();
+  }
   return {std::move(blank), std::move(surface),      std::move(places),
           std::move(part),  HoleStamps(target.path), std::move(whole)};
 }
@@ -171,6 +211,9 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
     if (run.kind != removal::RunKind::tapping) out.cut.stock_mm3 += cut_run.stock_mm3;
     out.cut.rounds_max = std::max(out.cut.rounds_max, cut_run.rounds_max);
     out.cut.unsettled += cut_run.unsettled;
+    add_range(cut_run, out.cut);
+    if (milling && slenderness(tool) > kMaxSlenderness && !std::ranges::count(out.slender_tools, run.tool))
+      out.slender_tools.push_back(run.tool);
     out.cut.unsettled_moves.insert(out.cut.unsettled_moves.end(), cut_run.unsettled_moves.begin(),
                                    cut_run.unsettled_moves.end());
     out.cut.unsettled_reasons.insert(out.cut.unsettled_reasons.end(), cut_run.unsettled_reasons.begin(),

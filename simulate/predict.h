@@ -46,7 +46,8 @@ struct Target {
 };
 
 /// Builds the blank (box or mesh, less what the target program leaves with the cutter shrunk by the allowance) and
-/// sweeps the target through it. Throws InputError (stock missing, memory).
+/// sweeps the target through it. Throws InputError (stock missing, memory, nothing removed, sizes that differ by the
+/// factor of the inch).
 Target make_target(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics);
 
 struct Prediction {
@@ -56,6 +57,7 @@ struct Prediction {
   std::vector<double> total_error_mm;          ///< against the part's mesh, one a point; empty without a mesh
   removal::ErrorFigures form_error_um;
   std::unique_ptr<removal::Stock> machined;
+  std::vector<int> slender_tools{};  ///< that cut, but are longer than the model covers (simulate/setup_checks.h)
 };
 
 /// `contacts`: also find where each stamp touches the target (only for the deflection at the contact).

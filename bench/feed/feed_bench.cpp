@@ -52,7 +52,7 @@ machine::Machine machine_of(int lookahead_blocks) {
 
 void BM_LookAhead(benchmark::State& state) {
   const auto blocks = static_cast<std::size_t>(state.range(0));
-  const auto rows = feedmodel::plan_path(wavy_spiral(blocks), machine_of(0));
+  const auto rows = feedmodel::plan_motion(wavy_spiral(blocks), machine_of(0)).rows;
   for (auto _ : state) {
     state.PauseTiming();
     auto copy = rows;
@@ -71,7 +71,7 @@ BENCHMARK(BM_LookAhead)
 void BM_Plan(benchmark::State& state) {
   const auto program = wavy_spiral(static_cast<std::size_t>(state.range(0)));
   const auto machine = machine_of(50);
-  for (auto _ : state) benchmark::DoNotOptimize(feedmodel::plan_path(program, machine).data());
+  for (auto _ : state) benchmark::DoNotOptimize(feedmodel::plan_motion(program, machine).times.data());
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 BENCHMARK(BM_Plan)->ArgName("blocks")->RangeMultiplier(10)->Range(10'000, 1'000'000)->Unit(benchmark::kMillisecond);

@@ -107,11 +107,24 @@ NumberStyle feed_style_of(const Program& program) {
   return style;
 }
 
-int feed_decimals_of(const Program& program) {
+namespace {
+
+template <class Wanted>
+int most_decimals(const Program& program, Wanted wanted) {
   int most = 0;
   for (const Word& w : program.words)
-    if (w.letter == 'F' && !std::isnan(w.value)) most = std::max(most, decimals_of(number_of(program, w)));
+    if (wanted(w.letter) && !std::isnan(w.value)) most = std::max(most, decimals_of(number_of(program, w)));
   return most;
+}
+
+}  // namespace
+
+int feed_decimals_of(const Program& program) {
+  return most_decimals(program, [](char letter) { return letter == 'F'; });
+}
+
+int coordinate_decimals_of(const Program& program) {
+  return most_decimals(program, [](char letter) { return letter >= 'X' && letter <= 'Z'; });
 }
 
 double rounded(double value, int decimals) {

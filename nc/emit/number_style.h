@@ -26,6 +26,9 @@ NumberStyle feed_style_of(const Program& program);
 /// Most decimals that an F word of the program has; 0 where none has a point.
 int feed_decimals_of(const Program& program);
 
+/// Most decimals that an X, Y or Z word of the program has; 0 where none has a point.
+int coordinate_decimals_of(const Program& program);
+
 /// Decimals of a number as written; -1 without a point.
 int decimals_of(std::string_view number);
 

@@ -8,7 +8,9 @@
 #include <openvdb/tools/MeshToVolume.h>
 
 #include "base/diagnostics.h"
+#include "base/free_memory.h"
 #include "base/stl.h"
+#include "removal/field/mesh_memory.h"
 
 namespace camber::removal {
 
@@ -25,6 +27,7 @@ MeshDistance::MeshDistance(const std::string& path, double voxel_mm, double band
                  fmt::format("the mesh is not closed: {} of its edges {} no second triangle, so it has no inside", open,
                              open == 1 ? "has" : "have"),
                  "stl-open");
+  require_mesh_memory(path, mesh, voxel_mm, band_mm, free_memory_bytes());
   Eigen::Vector3f lo = mesh.points.front(), hi = lo;
   std::vector<openvdb::Vec3s> points;
   for (const auto& p : mesh.points) {

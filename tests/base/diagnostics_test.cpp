@@ -24,6 +24,14 @@ TEST(Diagnostics, CountLinesWithCrLfAndWithoutALastLineEnd) {
   EXPECT_EQ(source.location(6).line, 3u);
 }
 
+TEST(Diagnostics, ControlCharactersDoNotReachTheTerminal) {
+  const SourceText source("a\x1b[2J.nc", "\tX\x1b[31m\x07 (\xc3\xa4 \xc2\x9b \x9b) F0\x7f\n");
+  EXPECT_EQ(to_string(source.diagnostic(Severity::error, 18, "F\x1b[0m is\nzero", "c")),
+            "a?[2J.nc:1:19: error: F?[0m is\nzero [c]\n"
+            "    \tX?[31m? (\xc3\xa4 ?? ?) F0?\n"
+            "    \t                 ^");
+}
+
 TEST(Diagnostics, StopAtTheTwentiethError) {
   Diagnostics all;
   for (int i = 0; i < 19; ++i) all.add({Severity::error, {"f", 1, 1}, "m", "c", ""});

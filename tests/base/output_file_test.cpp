@@ -1,10 +1,14 @@
 // Files are whole or not there, however the writing ends.
 #include "base/output_file.h"
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <vector>
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -66,20 +70,72 @@ void expect_part_removed(int signal) {
 TEST(OutputFile, AnInterruptRemovesThePart) { expect_part_removed(SIGINT); }
 TEST(OutputFile, ATerminationRemovesThePart) { expect_part_removed(SIGTERM); }
 
+/// Every file of the folder.
+std::vector<std::string> names_in(const tests::TempFolder& folder) {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) out.push_back(entry.path().filename());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 TEST(OutputFile, AFullDiskKeepsTheOldFile) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
   const tests::TempFolder folder;
-  const std::string path = folder.write("a.txt", "OLD");
-  std::filesystem::create_symlink("/dev/full", path + ".part");
-  try {
-    write_file(path, "NEW");
-    ADD_FAILURE() << "a full disk was not noticed";
-  } catch (const InputError& e) {
-    EXPECT_EQ(std::string(e.what()),
-              path + ": error: could not be written to its end (is the disk full?) [file-unwritable]");
+  const std::string path = folder.write("a.txt", "OLD"), message = folder / "message.txt";
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {  // a limit of the file size, as a full disk
+    remove_parts_on_signals();
+    const rlimit limit{1000, 1000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      write_file(path, std::string(5000, 'N'));
+    } catch (const InputError& e) {
+      std::ofstream(message) << e.what();
+    }
+    _exit(0);
   }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(tests::file_text(message),
+            path + ": error: could not be written to its end (is the disk full?) [file-unwritable]");
   EXPECT_EQ(tests::file_text(path), "OLD");
-  EXPECT_FALSE(std::filesystem::is_symlink(path + ".part"));
+  EXPECT_EQ(names_in(folder), (std::vector<std::string>{"a.txt", "message.txt"}));
+}
+
+TEST(OutputFile, FollowsNoLinkThatLiesAtThePart) {
+  const tests::TempFolder folder;
+  const std::string path = folder / "a.txt", victim = folder.write("victim.txt", "MINE");
+  std::filesystem::create_symlink("victim.txt", path + ".part");
+  write_file(path, "NEW");
+  EXPECT_EQ(tests::file_text(path), "NEW");
+  EXPECT_FALSE(std::filesystem::is_symlink(path));
+  EXPECT_EQ(tests::file_text(victim), "MINE");
+  EXPECT_TRUE(std::filesystem::is_symlink(path + ".part"));
+  // A link to nothing makes no file either.
+  std::filesystem::remove(victim);
+  write_file(path, "AGAIN");
+  EXPECT_EQ(tests::file_text(path), "AGAIN");
+  EXPECT_EQ(names_in(folder), (std::vector<std::string>{"a.txt", "a.txt.part"}));
+}
+
+TEST(OutputFile, LeavesAFileThatIsNamedLikeItsPart) {
+  const tests::TempFolder folder;
+  const std::string path = folder / "a.txt", other = folder.write("a.txt.part", "MINE");
+  write_file(path, "NEW");
+  EXPECT_EQ(tests::file_text(path), "NEW");
+  EXPECT_EQ(tests::file_text(other), "MINE");
+}
+
+TEST(OutputFile, TwoAtOnceDoNotShareAPart) {
+  const tests::TempFolder folder;
+  const std::string path = folder / "a.txt";
+  OutputFile first(path), second(path);
+  first.stream() << "FIRST";
+  second.stream() << "SECOND";
+  first.commit();
+  EXPECT_EQ(tests::file_text(path), "FIRST");
+  second.commit();
+  EXPECT_EQ(tests::file_text(path), "SECOND");
 }
 
 TEST(OutputFile, WritesWhatALinkPointsTo) {

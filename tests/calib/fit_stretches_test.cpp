@@ -66,7 +66,7 @@ nc::Interpretation figures() {
 /// Times as the planner itself has them, a program's rapids and clock included.
 std::vector<TimedStretch> planned(const nc::Interpretation& program, const machine::Machine& machine) {
   std::vector<TimedStretch> timed;
-  const auto segments = feedmodel::segment_times(program, machine);
+  const auto segments = feedmodel::plan_motion(program, machine).times;
   for (const FeedStretch& s : feed_stretches(program)) {
     double first = -1, end = 0;
     for (const auto& segment : segments) {
@@ -133,6 +133,9 @@ TEST(FitStretches, PredictsToolsOfTheNistBoxThatItHasNotSeen) {
   EXPECT_LT(fit.held_out.worst, 1.5);
   EXPECT_LT(std::abs(fit.held_out.total), 0.3);
   EXPECT_GT(fit.constant_feed.worst, 20);
+  // Each kind of motion (arcs, facets, lines) predicted by a fit on the others.
+  EXPECT_LT(fit.laws[fit.chosen].kind_held_out.mean, 0.6);
+  EXPECT_LT(fit.laws[fit.chosen].kind_held_out.worst, 3.0);
   EXPECT_GT(fit.machine.fitted_range.corner_rad[1], 0.5 * kPi);
 }
 

@@ -33,7 +33,7 @@ voxel_mm = 0.2
 /// A small job with the given lines between the header and the cut.
 void write_job(const TempFolder& folder, const std::string& start, const std::string& job = kJob) {
   folder.write("p.nc", kHeader + start + kCut);
-  folder.write("machine.toml", "[spindle]\nmax_rpm = 12000\n");
+  folder.write("machine.toml", "[axis.x]\n[axis.y]\n[axis.z]\n[spindle]\nmax_rpm = 12000\n");
   folder.write("job.toml", job);
 }
 

@@ -29,7 +29,7 @@ const std::string kWall =
 
 void write_job(const TempFolder& folder, const std::string& more = "", const std::string& program = kWall) {
   folder.write("p.nc", program);
-  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\ntravel_mm = [-100, 100]\n");
+  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\ntravel_mm = [-100, 100]\n[axis.y]\n[axis.z]\n");
   folder.write(
       "job.toml",
       "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\n"

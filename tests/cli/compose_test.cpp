@@ -31,7 +31,7 @@ void write_program(const TempFolder& folder, const std::string& name) {
 }
 
 void write_job(const TempFolder& folder, const std::string& name, const std::string& program) {
-  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n");
+  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n[axis.y]\n[axis.z]\n");
   folder.write(name, fmt::format(R"(program = "{}"
 machine = "machine.toml"
 [tool.1]

@@ -14,7 +14,7 @@ using nlohmann::json;
 using tests::run_camber;
 using tests::TempFolder;
 
-const std::string kMill = "[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\noverhang_mm = 30.0\n";
+const std::string kMill = "[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\noverhang_mm = 12.0\n";
 const std::string kDrill =
     "[tool.2]\ntype = \"drill\"\ndiameter_mm = 8.0\npoint_angle_deg = 140\nflutes = 2\noverhang_mm = 60.0\n";
 const std::string kTap = "[tool.3]\ntype = \"flat\"\ndiameter_mm = 6.0\nflutes = 3\noverhang_mm = 60.0\n";
@@ -25,9 +25,10 @@ const std::string kMillHead = "T1 M6\nS3000 M3\n";
 void write_job(const TempFolder& folder, const std::string& program, const std::string& tools, const std::string& stock,
                const std::string& simulation = "coupling = \"rigid\"\n", double voxel_mm = 0.2) {
   folder.write("p.nc", program);
-  folder.write("machine.toml",
-               "[axis.x]\nacceleration_mm_per_s2 = 500\nposition_gain_per_s = 40\n[axis.z]\nacceleration_mm_per_s2 = "
-               "500\nposition_gain_per_s = 40\n");
+  folder.write(
+      "machine.toml",
+      "[axis.x]\nacceleration_mm_per_s2 = 500\nposition_gain_per_s = 40\n[axis.y]\n[axis.z]\nacceleration_mm_per_s2 = "
+      "500\nposition_gain_per_s = 40\n");
   folder.write("job.toml", "program = \"p.nc\"\nmachine = \"machine.toml\"\n" + tools +
                                "[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n[stock]\n" + stock +
                                "\n[simulation]\nvoxel_mm = " + std::to_string(voxel_mm) + "\n" + simulation);
@@ -243,8 +244,9 @@ TEST(DrillingCollisions, AHoleThatIsCarvedLetsALaterRapidThrough) {
 TEST(DrillingCompensation, MovesTheWallAndLeavesTheCyclesAsTheyStand) {
   const TempFolder folder;
   const std::string cycles = kDrillHead + "G98 G83 X12 Y6 Z-8 R1 Q3 F240\nX20\nG80\n";
-  write_job(folder, kHead + cycles + kMillHead + "G0 X-4 Y-1.5 Z5\nG0 Z-3\nG1 X28 F600\nG0 Z5\nM30\n", kMill + kDrill,
-            "box_mm = [[0, 0, -6], [24, 12, 0]]", "coupling = \"rigid\"\n[compensation]\ntolerance_um = 2\n");
+  write_job(folder, kHead + cycles + kMillHead + "G0 X-4 Y-1.5 Z5\nG0 Z-3\nG1 X28 F600\nG0 Z5\nM30\n",
+            tests::replaced(kMill, "12.0", "16.0") + "helix_deg = 30\n" + kDrill, "box_mm = [[0, 0, -6], [24, 12, 0]]",
+            "coupling = \"rigid\"\n[compensation]\ntolerance_um = 0.5\nmax_overcut_um = 10\n");
   const auto run = run_camber(folder, "compensate job.toml -o c.nc --json c.json");
   ASSERT_TRUE(run.status == 0 || run.status == 3) << run.err;
   const std::string text = tests::file_text(folder / "c.nc");

@@ -32,7 +32,7 @@ TEST(FitForceCommand, WritesAMaterialThatAJobTakes) {
   EXPECT_GT(report["held_out"]["rms_N"].get<double>(), 0);
 
   folder.write("p.nc", "G21 G90 G54\nT1 M6\nS3000 M3\nG0 X4. Y0.5 Z3.\nG1 Z-0.3 F300\nX-1. F900\nG0 Z3.\nM30\n");
-  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n");
+  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n[axis.y]\n[axis.z]\n");
   folder.write("job.toml", R"(program = "p.nc"
 machine = "machine.toml"
 [tool.1]

@@ -1,9 +1,15 @@
 // predict as a user runs it: its files, and the same bytes whatever the number of threads.
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <map>
+#include <sstream>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "base/geometry.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -17,7 +23,7 @@ void write_job(const TempFolder& folder) {
   for (const char* y : {"0.5", "0.8", "1.1"})
     program += std::string("G0 X4. Y") + y + " Z3.\nG1 Z-0.3 F300\nX-1. F900\nG0 Z3.\n";
   folder.write("p.nc", program + "M30\n");
-  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n");
+  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n[axis.y]\n[axis.z]\n");
   folder.write("job.toml", R"(program = "p.nc"
 machine = "machine.toml"
 [tool.1]
@@ -61,6 +67,107 @@ TEST(Predict, GivesTheSameBytesOnOneAndTwoThreads) {
   for (const std::string name :
        {"feed.csv", "forces.csv", "form_error.csv", "form_error.vtp", "form_error.ply", "stock.vdb", "report.html"})
     EXPECT_EQ(tests::file_text(folder / ("one/" + name)), tests::file_text(folder / ("two/" + name))) << name;
+}
+
+/// A wall along X at y = 0, one millimetre of it cut by a slender end mill; the floor at z = -1.
+void write_wall_job(const TempFolder& folder, const std::string& axis_y, const std::string& more = "") {
+  folder.write("p.nc",
+               "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\nG0 X-4. Y-2.\nG0 Z-1.\nG1 X12. F600\nG0 Z5.\nM30\n");
+  folder.write("machine.toml", "[axis.x]\n[axis.y]\n" + axis_y + "[axis.z]\n");
+  folder.write("job.toml",
+               "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = "
+               "2\noverhang_mm = 20.0\n[material]\nktc_MPa = 400.0\nkrc_MPa = 140.0\nkre_N_per_mm = "
+               "10.0\n[stock]\nbox_mm = [[0, -0.5, "
+               "-2], [8, 2, 0]]\n[simulation]\nvoxel_mm = 0.1\ncoupling = \"rigid\"\n" +
+                   more);
+}
+
+/// The columns of a CSV by their names.
+std::map<std::string, std::vector<double>> columns_of(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line, cell;
+  std::getline(lines, line);
+  std::vector<std::string> names;
+  for (std::istringstream head(line); std::getline(head, cell, ',');) names.push_back(cell);
+  std::map<std::string, std::vector<double>> out;
+  while (std::getline(lines, line)) {
+    std::istringstream row(line);
+    for (const auto& name : names) {
+      std::getline(row, cell, ',');
+      out[name].push_back(cell.empty() ? std::nan("") : std::stod(cell));
+    }
+  }
+  return out;
+}
+
+TEST(Predict, TheAxisGivesWayByForceOverStiffness) {
+  // In rigid coupling the forces stay the same, and what the axis gives way by is theirs over the stiffness.
+  const auto deflections = [](const std::string& axis) {
+    const TempFolder folder;
+    write_wall_job(folder, axis);
+    const auto run = run_camber(folder, "-q predict job.toml -o r");
+    EXPECT_EQ(run.status, 0) << run.err;
+    return columns_of(tests::file_text(folder / "r/forces.csv"));
+  };
+  const auto stiff = deflections(""), soft = deflections("stiffness_N_per_um = 10\n"),
+             softer = deflections("stiffness_N_per_um = 5\n");
+  ASSERT_EQ(stiff.at("dy_um").size(), soft.at("dy_um").size());
+  std::size_t compared = 0;
+  for (std::size_t i = 0; i < stiff.at("dy_um").size(); ++i) {
+    EXPECT_EQ(stiff.at("fy_max_N")[i], soft.at("fy_max_N")[i]);
+    EXPECT_EQ(stiff.at("dx_um")[i], soft.at("dx_um")[i]);  // of the other axis
+    if (stiff.at("x_mm")[i] < 2 || stiff.at("x_mm")[i] > 6) continue;
+    // Where the edge passes the wall the chip is nothing, and a straight edge of 1 mm is pushed away by kre b = 10 N.
+    EXPECT_NEAR(soft.at("dy_um")[i] - stiff.at("dy_um")[i], -1.0, 0.05) << i;
+    EXPECT_NEAR(softer.at("dy_um")[i] - stiff.at("dy_um")[i], -2.0, 0.1) << i;
+    ++compared;
+  }
+  EXPECT_GT(compared, 10u);
+}
+
+/// What the job leaves if nothing bends: an L of 8 mm length.
+std::string wall_stl() {
+  constexpr std::array<std::array<double, 2>, 6> kOutline{{{-0.5, -2}, {2, -2}, {2, 0}, {0, 0}, {0, -1}, {-0.5, -1}}};
+  std::string out = "solid wall\n";
+  const auto facet = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    out += "facet normal 0 0 0\nouter loop\n";
+    for (const Vec3& p : {a, b, c})
+      out += "vertex " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
+    out += "endloop\nendfacet\n";
+  };
+  const auto at = [&](std::size_t i, double x) { return Vec3(x, kOutline[i % 6][0], kOutline[i % 6][1]); };
+  for (std::size_t i = 0; i < 6; ++i) {
+    facet(at(i, 0), at(i, 8), at(i + 1, 8));
+    facet(at(i, 0), at(i + 1, 8), at(i + 1, 0));
+  }
+  constexpr std::size_t kCap[4][3] = {{0, 1, 4}, {1, 2, 3}, {1, 3, 4}, {0, 4, 5}};
+  for (const auto& t : kCap) {
+    facet(at(t[0], 0), at(t[1], 0), at(t[2], 0));
+    facet(at(t[2], 8), at(t[1], 8), at(t[0], 8));
+  }
+  return out + "endsolid wall\n";
+}
+
+TEST(Predict, TotalErrorHoldsTheBending) {
+  const TempFolder folder;
+  write_wall_job(folder, "", "[part]\nmesh = \"part.stl\"\n");
+  folder.write("part.stl", wall_stl());
+  const auto run = run_camber(folder, "-q predict job.toml -o r");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto points = columns_of(tests::file_text(folder / "r/form_error.csv"));
+  double sum_um = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < points.at("x_mm").size(); ++i) {
+    const double x = points.at("x_mm")[i], z = points.at("z_mm")[i];
+    if (points.at("ny")[i] > -0.99 || x < 2 || x > 6 || z < -0.8 || z > -0.3) continue;
+    // The undeflected wall is the mesh's but for the feed marks, f^2 / (8 R) = 0.63 um: the rest of its error is
+    // bending.
+    EXPECT_NEAR(points.at("total_error_um")[i], points.at("error_um")[i], 0.7);
+    sum_um += std::abs(points.at("error_um")[i]);
+    ++count;
+  }
+  ASSERT_GT(count, 50);
+  EXPECT_GT(sum_um / count, 2);
 }
 
 TEST(Predict, IsSilentWithQuiet) {

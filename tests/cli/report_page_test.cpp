@@ -15,7 +15,7 @@ void write_job(const TempFolder& folder) {
   for (const char* y : {"0.5", "0.8", "1.1"})
     program += std::string("G0 X4. Y") + y + " Z3.\nG1 Z-0.3 F300\nX-1. F900\nG0 Z3.\n";
   folder.write("p.nc", program + "M30\n");
-  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n");
+  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n[axis.y]\n[axis.z]\n");
   folder.write("material.toml", "# ktc_MPa: 2000 +- 12 MPa\n[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n");
   folder.write("job.toml", R"(program = "p.nc"
 machine = "machine.toml"

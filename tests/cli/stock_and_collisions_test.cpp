@@ -19,9 +19,9 @@ const std::string kFlat = "[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes 
 void write_job(const TempFolder& folder, const std::string& program, const std::string& tools, const std::string& stock,
                const std::string& simulation = "") {
   folder.write("p.nc", program);
-  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n");
+  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n[axis.y]\n[axis.z]\n");
   folder.write("job.toml", "program = \"p.nc\"\nmachine = \"machine.toml\"\n" + tools +
-                               "[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n[stock]\n" + stock +
+                               "[material]\nktc_MPa = 20.0\nkrc_MPa = 7.0\n[stock]\n" + stock +
                                "\n[simulation]\nvoxel_mm = 0.2\ncoupling = \"rigid\"\n" + simulation);
 }
 
@@ -164,9 +164,9 @@ TEST(Collisions, ShankAndHolderAgainstStockAreErrors) {
   EXPECT_EQ(run.status, 1);
   EXPECT_NE(run.err.find("p.nc:6:1: error: the shank of T1 in stock at X"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("a longer overhang or less depth was expected [collision-shank]"), std::string::npos);
-  // A neck clears the wall.
-  write_job(folder, program,
-            kFlat + "flute_length_mm = 6\nneck_diameter_mm = 1.5\nneck_length_mm = 20\nshank_diameter_mm = 4\n", stock);
+  // A neck clears the wall where the cut before has left no more than the flutes reach.
+  write_job(folder, kHead + "G0 X-4 Y-6 Z9\nG0 Z-4\nG1 X12 F900\nG0 Z9\nX-4\nG0 Z-8\nG1 X12\nG0 Z9\nM30\n",
+            kFlat + "flute_length_mm = 6\nneck_diameter_mm = 2.5\nneck_length_mm = 20\nshank_diameter_mm = 4\n", stock);
   run = run_camber(folder, "predict job.toml -o r");
   EXPECT_EQ(run.status, 0) << run.err;
   // A holder 7 mm above the tip does not.

@@ -48,6 +48,15 @@ TEST(Finishing, IsWhatMakesTheSurface) {
   EXPECT_EQ(f.moves, (std::vector<bool>{false, false, false, true, true, true}));
 }
 
+TEST(Finishing, ALongCommentIsReadByItsFirstWords) {
+  const std::string long_text(420'000, 'x');
+  const auto program = machined("G21 G90\nG0 X0. Y0. Z5.\n(FINISH " + long_text + ")\nG1 X10. F100\n(" + long_text +
+                                " FINISH)\nG1 X20.\n");
+  machine::Job job;
+  job.compensation.operations.comments = "(finish|a)+.*";
+  EXPECT_EQ(find_finishing(job, program, {}).moves, (std::vector<bool>{false, true, false}));
+}
+
 TEST(Finishing, GoesByToolLinesAndComments) {
   const auto program = machined(kTwoTools);
   machine::Job job;

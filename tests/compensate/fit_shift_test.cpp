@@ -31,6 +31,34 @@ std::vector<Observation> observe(const ShiftPath& path, int moves, auto error_of
   return out;
 }
 
+TEST(FitShift, APlungeGetsNoShiftAcross) {
+  // Down, along X, down again, along X, up: 4 mm each.
+  nc::Interpretation program = line_program(5);
+  const std::vector<Vec3> places{{0, 0, 9}, {0, 0, 5}, {4, 0, 5}, {4, 0, 1}, {8, 0, 1}, {8, 0, 5}};
+  for (std::size_t i = 0; i < 5; ++i) {
+    program.moves[i].start_mm = places[i];
+    program.moves[i].end_mm = places[i + 1];
+  }
+  ShiftPath path(program, std::vector<bool>(5, true), 1.0);
+  std::vector<Observation> seen;
+  for (const std::uint32_t move : {1u, 3u})
+    for (double u = 0.05; u < 1; u += 0.1)
+      for (const Vec3& normal : {Vec3(0, 1, 0), Vec3(0, 0, 1)})
+        seen.push_back({path.find(move, u), normal, 0.02, 0.03});
+  fit_shift(path, seen, {});
+  const auto& points = path.points();
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (points[i].move == 0) {
+      EXPECT_EQ(points[i].shift_mm.head<2>().norm(), 0);  // a rapid ends where it starts
+    }
+    if (points[i].move % 2 == 0) {
+      EXPECT_EQ(points[i].shift_mm.head<2>(), points[i - 1].shift_mm.head<2>());
+    }
+  }
+  EXPECT_NEAR(path.shift_at(path.find(3, 0.5)).y(), -0.02, 0.002);
+  EXPECT_NEAR(points[points.size() - 5].shift_mm.z(), -0.02, 0.002);  // at the end of the second cut
+}
+
 TEST(FitShift, MovesThePathAgainstASmoothError) {
   const auto program = line_program(20);
   ShiftPath path(program, std::vector<bool>(20, true), 1.0);

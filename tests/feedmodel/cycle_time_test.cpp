@@ -145,6 +145,19 @@ TEST(CycleTime, AnEmptyProgramTakesNoTime) {
   EXPECT_EQ(time.all.k(), 0);
 }
 
+TEST(DistanceHistogram, HasTheStepThatTheMachineFileGives) {
+  machine::Machine m = quick_machine();
+  m.cycle.histogram_step_mm = 10;
+  tests::TestProgram p;
+  p.rapid(10, 0, 0).rapid(25, 0, 0).rapid(0, 0, 0).rapid(1000, 0, 0);
+  const CycleTime time = cycle_time(p.program, m);
+  ASSERT_EQ(time.g00.edges_mm.size(), 20u);
+  EXPECT_EQ(time.g00.counts[0], 1u);
+  EXPECT_EQ(time.g00.counts[1], 1u);
+  EXPECT_EQ(time.g00.counts[2], 1u);
+  EXPECT_EQ(time.g00.counts.back(), 1u);
+}
+
 TEST(DistanceHistogram, CountsUpToAndWithTheEdge) {
   DistanceHistogram h;
   for (const double d : {0.1, 0.100001, 1000.0, 1000.1}) h.add(d);

@@ -85,7 +85,7 @@ TEST(FittedRange, FineFacetsAreMoreBlocksASecond) {
 
 /// Time from the first to the last commanded motion.
 double time_s(const nc::Interpretation& program, const machine::Machine& machine) {
-  const auto times = segment_times(program, machine);
+  const auto times = plan_motion(program, machine).times;
   return times.back().start_s + times.back().duration_s;
 }
 

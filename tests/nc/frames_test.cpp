@@ -236,6 +236,13 @@ TEST(Spirals, AreToldFromMistakes) {
                      "below 0.05 mm was expected [arc-radius]"});
   InterpreterOptions o{.inch = false};
   o.dialect = *dialect_named("fanuc");
+  // LinuxCNC takes a thousandth of the radius.
+  const auto linuxcnc = as("linuxcnc");
+  const std::string large = "G0 X0 Y0 Z0\nG2 X2001 Y0 I1000 J0 F100\n";
+  EXPECT_EQ(read_text(large, linuxcnc).messages, Messages{});
+  EXPECT_EQ(read_text("G0 X0 Y0 Z0\nG2 X2003 Y0 I1000 J0 F100\n", linuxcnc).messages.size(), 1u);
+  EXPECT_EQ(read_text("G0 X0 Y0 Z0\nG2 X20.06 Y0 I10 J0 F100\n", linuxcnc).messages.size(), 1u);
+  EXPECT_EQ(read_text(large, as("fanuc")).messages.size(), 1u);
   o.dialect->spiral_radius_difference_mm = 12;
   EXPECT_NEAR(read_clean(spiral, o).moves.arcs[0].sweep_rad, kPi / 2, 1e-12);
   // A conical one: Z falls with the turn; ends in one direction are a full turn.

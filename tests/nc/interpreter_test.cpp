@@ -235,6 +235,10 @@ TEST(NcInterpreter, NamesWhatItDoesNotKnow) {
             Messages{"p.nc:1:7: error: rotary axis A is not read yet; X, Y and Z were expected [rotary-axis]"});
   EXPECT_EQ(read_text("G0 X1 A0").messages,
             Messages{"p.nc:1:7: warning: rotary axis A is not read; it is taken to stand still at 0 [rotary-axis]"});
+  EXPECT_EQ(
+      read_text("G0 X1 A0 B0\nY1 B0\n").messages,
+      Messages{"p.nc:1:7: warning: rotary axis A is not read; it is taken to stand still at 0 (and 2 more like it) "
+               "[rotary-axis]"});
   EXPECT_EQ(read_text("G0 X1 U5").messages,
             Messages{"p.nc:1:7: error: axis U is not read yet; X, Y and Z were expected [unknown-letter]"});
   EXPECT_EQ(

@@ -322,6 +322,11 @@ TEST(NcMacro, TellsWhatIsWrongWithCalls) {
             "p.nc:1:39: error: more than ten sets of I, J and K [macro-argument]");
 }
 
+TEST(NcMacro, ABlankMayStandBetweenTheSignAndTheName) {
+  EXPECT_EQ(run_linuxcnc("# <a b> = 3\nX# <ab> Y[# < a b > + 1]\n# 5 = 7\nZ# 5\n"), "3 4 0; 3 4 7");
+  EXPECT_EQ(run_linuxcnc("#<c> = 2\nX[EXISTS[# <c>]]\n"), "1 0 0");
+}
+
 TEST(NcMacro, CommentsInBracketsStayComments) {
   EXPECT_EQ(run_text("[VECTRIC #5] G1 X1 [TO 5] F100\n"), "1 0 0");
   EXPECT_EQ(run_text("#1 = 1 ( SELECT [ 1=G54, 2=G55 ] )\nX#1"), "1 0 0");

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "nc/emit.h"
 #include "tests/nc/nc_text.h"
 
 namespace camber::nc {
@@ -128,6 +129,18 @@ TEST(NcReader, GivesUpAfterTwentyDifferentErrors) {
   std::string text;
   for (int i = 0; i < 100; ++i) text += fmt::format("G1 X1 {}\n", static_cast<char>(0x80 + i % 26));
   EXPECT_EQ(read_text(text).messages.size(), 20u);
+}
+
+TEST(NcReader, TextBehindTheEndIsNoProgram) {
+  const std::string text = "%\nO1\nG21 G90\nG0 X1\nM30\nprint[\"Hello\"]\nT=\"MILL\" #<\n%\nX[1\n";
+  const Read r = read_clean(text);
+  EXPECT_EQ(r.moves.moves.size(), 1u);
+  EXPECT_EQ(emit(r.program, r.moves, {}, {}), text);
+  EXPECT_EQ(read_text("G0 X1\nM02\nprint[\"Hello\"]\n").messages, std::vector<std::string>{});
+  // A subprogram behind it is read, and so is everything where GOTO may go there.
+  EXPECT_EQ(read_text("G0 X1\nM30\nO7\nprint[\"Hello\"]\nM99\n").messages.size(), 1u);
+  EXPECT_EQ(read_text("#1=0\nIF[#1EQ1]GOTO9\nG0 X1\nM30\nN9 print[\"Hello\"]\n").messages.size(), 1u);
+  EXPECT_EQ(read_text("G0 X1\nprint[\"Hello\"]\nM30\n").messages.size(), 1u);
 }
 
 /// Real-looking text with random bytes in it: any answer but a crash or a hang.

@@ -113,6 +113,12 @@ class ReportPage : public testing::Test {
 
 TEST_F(ReportPage, ShowsPartAndPathAndLeadsFromOneToTheOther) { EXPECT_EQ(checked("compared", example()), ""); }
 
+TEST_F(ReportPage, IsWholeWhateverTheFilesAreCalled) {
+  ReportData data = example();
+  data.download_name = "<!--<script>.nc";
+  EXPECT_EQ(checked("compared", data), "");
+}
+
 TEST_F(ReportPage, ShowsTheStockInGreyAndNothingBehindIt) { EXPECT_EQ(checked("stock", behind_a_wall()), ""); }
 
 TEST_F(ReportPage, SaysSoWithoutWebGl) { EXPECT_EQ(checked("without_webgl", example()), ""); }

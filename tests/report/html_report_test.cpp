@@ -93,6 +93,17 @@ TEST(HtmlReport, ShowsTextAsText) {
   EXPECT_TRUE(holds(page, "download=\"out &quot;new&quot;.nc\""));
 }
 
+TEST(HtmlReport, FileNamesCannotHideTheEndOfAScript) {
+  for (const std::string name : {"<!--<script>.nc", "</script><b>.nc", "a<b\\u003c\".nc"}) {
+    ReportData data = example();
+    data.download_name = name;
+    const std::string page = html_report(data);
+    const std::size_t from = page.find("id=\"index\">"), to = page.find("</script>", from);
+    EXPECT_EQ(page.substr(from + 11, to - from - 11).find('<'), std::string::npos) << name;
+    EXPECT_EQ(index_of(page)["download"], name);
+  }
+}
+
 TEST(HtmlReport, ListsEveryFigure) {
   const std::string page = html_report(example());
   EXPECT_TRUE(holds(page,

@@ -1,0 +1,174 @@
+#include "calib/control_laws.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/units.h"
+#include "feedmodel/plan.h"
+
+namespace camber::calib {
+namespace {
+
+using machine::CornerLaw;
+using machine::Machine;
+
+constexpr double kBetterBy = 1e-3;        // share by which another law must lower the held-out cost
+constexpr double kRicherBetterBy = 0.05;  // and one with an angle more
+constexpr double kWideGapRad = 12.0 * kPi / 180.0;
+constexpr double kSlightRad = 0.5 * kPi / 180.0;
+constexpr double kBluntRad = 125.0 * kPi / 180.0;  // sharper corners are stops for every law, or all but stops
+constexpr int kCoarseSteps = 16;
+constexpr double kThresholdRad = 5.0 * kPi / 180.0;
+
+struct NamedLaw {
+  const char* name;
+  CornerLaw law;
+};
+constexpr NamedLaw kLaws[] = {{"rounding within a tolerance", CornerLaw::blend},
+                              {"speed difference by axis", CornerLaw::speed_difference},
+                              {"speed change by angle", CornerLaw::angle},
+                              {"radius of three points", CornerLaw::radius},
+                              {"exact stop", CornerLaw::exact_stop}};
+
+/// The law's number at a value that lets every corner pass, until the fit finds the real one.
+void set_law(machine::Corner& corner, CornerLaw law) {
+  if (corner.law == law) return;
+  corner = {.law = law, .tolerance_mm = law == CornerLaw::blend ? machine::kNoLimit : 0.0};
+}
+
+/// Angles between lines that follow each other, ascending.
+std::set<double> corner_angles(const std::vector<TimedLines>& data) {
+  std::set<double> angles{0.0};
+  for (const TimedLines& lines : data) {
+    const auto& moves = lines.program->moves;
+    for (std::size_t i = 1; i < moves.size(); ++i) {
+      if (moves[i].kind != nc::MoveKind::linear || moves[i - 1].kind != nc::MoveKind::linear) continue;
+      const Vec3 from = direction_at(*lines.program, moves[i - 1], 1.0),
+                 to = direction_at(*lines.program, moves[i], 0.0);
+      if (from.isZero() || to.isZero()) continue;
+      angles.insert(std::round(1e4 * std::acos(std::clamp(from.dot(to), -1.0, 1.0))) / 1e4);
+    }
+  }
+  return angles;
+}
+
+bool is_number_of_law(const LimitParameter& p) {
+  return p.name.starts_with("control.corner.") && p.name != "control.corner.step_share";
+}
+
+/// Start values of the law's number and of the accelerations, which make up for each other: the commands of a trace may
+/// have been smoothed, so that the accelerations seen in them are too low by a factor that all axes share.
+void start_together(const std::vector<TimedLines>& data, const Machine& base, std::vector<LimitParameter>& parameters) {
+  std::vector<LimitParameter> best = parameters;
+  double least = INFINITY;
+  for (const double factor : {1.0, 2.0, 4.0, 8.0}) {
+    std::vector<LimitParameter> here = parameters;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      here[axis].start = std::clamp(factor * here[axis].start, here[axis].least * 1.001, here[axis].most * 0.999);
+    double cost = scan_start(data, base, here, here.size() - 1, kCoarseSteps);
+    for (std::size_t i = 0; i < here.size(); ++i)
+      if (is_number_of_law(here[i])) cost = scan_start(data, base, here, i, kCoarseSteps);
+    if (cost >= least) continue;
+    least = cost;
+    best = here;
+  }
+  parameters = best;
+}
+
+LimitFit refit(const std::vector<TimedLines>& data, const Machine& machine, const LimitFit& from, int max_iterations) {
+  std::vector<LimitParameter> parameters = limit_parameters(machine);
+  for (LimitParameter& p : parameters)
+    for (const LimitParameter& q : from.parameters)
+      if (p.name == q.name) p.start = std::clamp(q.fitted.value, p.least * 1.001, p.most * 0.999);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].name == "control.corner.stop_time_ms") scan_start(data, machine, parameters, i);
+  return fit_limits(data, machine, std::move(parameters), max_iterations, false);
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, Machine>> machines_of_each_law(const Machine& start) {
+  std::vector<std::pair<std::string, Machine>> machines;
+  for (const bool own : {true, false}) {
+    for (const NamedLaw& named : kLaws) {
+      if ((named.law == start.control.corner.law) != own) continue;
+      Machine m = start;
+      set_law(m.control.corner, named.law);
+      for (machine::Axis& axis : m.axis) axis.speed_difference_mm_per_s = machine::kNoLimit;
+      machines.emplace_back(named.name, m);
+    }
+  }
+  return machines;
+}
+
+LimitFit fit_law(const std::vector<TimedLines>& data, const Machine& base,
+                 const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations) {
+  std::vector<LimitParameter> parameters = limit_parameters(base);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (acceleration_mm_per_s2[axis] > parameters[axis].least) parameters[axis].start = acceleration_mm_per_s2[axis];
+  start_together(data, base, parameters);
+  return fit_limits(data, base, std::move(parameters), max_iterations, true);
+}
+
+double held_out_percent(const std::vector<TimedLines>& data, const Machine& machine) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const TimedLines& lines : data) {
+    const auto planned = planned_times_s(lines, machine, feedmodel::plan_motion(*lines.program, machine).times);
+    for (std::size_t i = 0; i < planned.size(); ++i) {
+      if (lines.time_s[i] <= 0 || !lines.kept_back[i]) continue;
+      sum += 100 * std::abs(planned[i] / lines.time_s[i] - 1);
+      ++count;
+    }
+  }
+  return count ? sum / static_cast<double>(count) : 0;
+}
+
+std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const Machine& start,
+                               const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations,
+                               std::size_t& best) {
+  std::vector<TriedLaw> tried;
+  best = 0;
+  for (const auto& [name, machine] : machines_of_each_law(start)) {
+    LimitFit fit = fit_law(data, machine, acceleration_mm_per_s2, max_iterations);
+    const double percent = held_out_percent(data, fit.whole);
+    tried.push_back({name, std::move(fit), percent});
+    const double margin = best == 0 ? 1 - kBetterBy : 1.0;
+    if (tried.back().fit.held_out_cost < margin * tried[best].fit.held_out_cost) best = tried.size() - 1;
+  }
+  // An exact stop is every other law with a number that is nearly nothing: these must be clearly better.
+  for (std::size_t i = 0; i < tried.size(); ++i)
+    if (tried[i].fit.whole.control.corner.law == CornerLaw::exact_stop &&
+        tried[best].fit.held_out_cost > (1 - kRicherBetterBy) * tried[i].fit.held_out_cost)
+      best = i;
+  return tried;
+}
+
+LimitFit try_angles(const std::vector<TimedLines>& data, const LimitFit& standing, std::vector<TriedLaw>& tried,
+                    int max_iterations) {
+  LimitFit best = standing;
+  const auto consider = [&](const std::string& name, const Machine& machine) {
+    LimitFit fit = refit(data, machine, standing, max_iterations);
+    tried.push_back({name, fit, held_out_percent(data, fit.whole)});
+    if (fit.held_out_cost < (1 - kRicherBetterBy) * best.held_out_cost) best = std::move(fit);
+  };
+  const std::set<double> angles = corner_angles(data);
+  for (auto low = angles.begin(), high = std::next(low); high != angles.end(); ++low, ++high) {
+    if (*low < kSlightRad || *high > kBluntRad || *high - *low < kWideGapRad) continue;
+    Machine m = standing.whole;
+    m.control.corner.stop_angle_rad = (*low + *high) / 2;
+    consider(fmt::format("  and a stop above {:.0f} degrees", deg_from_rad(m.control.corner.stop_angle_rad)), m);
+  }
+  const auto slight = angles.lower_bound(kSlightRad);
+  if (slight != angles.end() && *slight < kThresholdRad) {
+    Machine m = standing.whole;
+    m.control.corner.threshold_rad = kThresholdRad;
+    consider("  and no corner under 5 degrees", m);
+  }
+  return best;
+}
+
+}  // namespace camber::calib

@@ -1,0 +1,42 @@
+#pragma once
+// Which laws a control may follow at corners: fit-feed tries each and keeps the one that predicts best.
+#include <string>
+#include <vector>
+
+#include "calib/fit_limits.h"
+#include "machine/machine.h"
+
+namespace camber::calib {
+
+/// A law that was tried, fitted to the same parts and judged on the same parts that were kept back.
+struct TriedLaw {
+  std::string name;
+  LimitFit fit;
+  double held_out_percent = 0;  ///< mean error of the times of the parts kept back
+};
+
+/// The machine with each corner law, that of `start` first: rounding within a tolerance (G64 P), speed difference by
+/// axis, speed change by angle, radius of three points, exact stop. `start` gives everything else.
+std::vector<std::pair<std::string, machine::Machine>> machines_of_each_law(const machine::Machine& start);
+
+/// Fits `base` (its law stands) from values that the data give: accelerations as commanded at most
+/// (acceleration_mm_per_s2; 0: the axis rests), the law's own number and the block time by a scan of their ranges.
+LimitFit fit_law(const std::vector<TimedLines>& data, const machine::Machine& base,
+                 const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations);
+
+/// Mean absolute error of the times of the parts that were kept back, %.
+double held_out_percent(const std::vector<TimedLines>& data, const machine::Machine& machine);
+
+/// Tries every law; the first is that of `start`. Index of the best: the least held-out cost, but the law of
+/// `start` unless another is better by a thousandth, and the exact stop, which has no number, unless another is better
+/// by 5 %.
+std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const machine::Machine& start,
+                               const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations,
+                               std::size_t& best);
+
+/// Tries, under the law of `standing`, a stop at corners sharper than each wide gap between the corners of the
+/// programs, and corners under 5 degrees passed as none. Keeps what lowers the held-out cost by 5 %.
+LimitFit try_angles(const std::vector<TimedLines>& data, const LimitFit& standing, std::vector<TriedLaw>& tried,
+                    int max_iterations);
+
+}  // namespace camber::calib

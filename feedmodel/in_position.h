@@ -1,0 +1,13 @@
+#pragma once
+// How long a control waits at a stop until its axes have come up.
+#include "feedmodel/segment_motion.h"
+#include "machine/machine.h"
+
+namespace camber::feedmodel {
+
+/// Time from the end of a segment's command until every axis is within control.in_position_mm of it, a multiple of the
+/// control's period: the axes are driven along the end of the segment, from at most twelve of their time constants
+/// before it. 0 where the control does not wait or the axes have no lag.
+double in_position_wait_s(const machine::Machine& machine, const Segment& segment, const SegmentMotion& motion);
+
+}  // namespace camber::feedmodel

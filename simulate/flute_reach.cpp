@@ -1,0 +1,147 @@
+#include "simulate/flute_reach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "removal/cutter.h"
+#include "simulate/cut.h"
+#include "simulate/tool_outline.h"
+
+namespace camber::simulate {
+namespace {
+
+constexpr double kStep_mm = 0.5;  // along the path, and on the cylinder above the flutes
+
+double radius_at(const machine::Tool& tool, double height_mm) {
+  const removal::CutterShape shape = removal::shape_of(tool);
+  return shape.profile.at(shape.profile.length_to_height_mm(height_mm)).radius_mm;
+}
+
+/// One tool's cylinder above its flutes against the stock.
+class UpperCylinder {
+ public:
+  UpperCylinder(const machine::Tool& tool, const removal::Stock& stock)
+      : stock_(stock), end_mm_(cutter_end_mm(tool)), radius_mm_(radius_at(tool, end_mm_)) {}
+
+  /// Whether the flutes end below the stock's top here, beside or in the stock.
+  bool near(const Vec3& tip) const {
+    const Vec3 &lo = stock_.min_mm(), &hi = stock_.max_mm();
+    const bool beside = (tip.head<2>().array() + radius_mm_ <= lo.head<2>().array()).any() ||
+                        (tip.head<2>().array() - radius_mm_ >= hi.head<2>().array()).any();
+    return !beside && tip.z() + end_mm_ + stock_.voxel_mm() < hi.z();
+  }
+
+  /// Height above the tip at which the cylinder meets material.
+  std::optional<double> meets(const removal::Stock::Probe& probe, const Vec3& tip) const {
+    const double voxel = stock_.voxel_mm();
+    const int n = std::max(12, static_cast<int>(std::ceil(2 * kPi * radius_mm_ / kStep_mm)));
+    for (double height = end_mm_ + voxel; tip.z() + height < stock_.max_mm().z(); height += kStep_mm)
+      for (int i = 0; i < n; ++i) {
+        const double phi = 2 * kPi * i / n;
+        const Vec3 p = tip + Vec3(radius_mm_ * std::cos(phi), radius_mm_ * std::sin(phi), height);
+        if (probe.distance_mm(p) < -voxel) return height;
+      }
+    return std::nullopt;
+  }
+
+ private:
+  const removal::Stock& stock_;
+  double end_mm_, radius_mm_;
+};
+
+class Search {
+ public:
+  Search(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+         Diagnostics& diagnostics)
+      : job_(job), program_(program), stock_(blank), diagnostics_(diagnostics) {}
+
+  void run(std::size_t last_needed) {
+    for (const auto& run : program_.path.runs) {
+      const std::size_t end = std::min(run.from + run.count, last_needed);
+      for (std::size_t at = run.from; at < end && said_.size() < kMaxLines;) {
+        const std::size_t to = stretch_end(run, at);
+        if (run.kind == removal::RunKind::milling) look_at(run.tool, at, to);
+        sweep(stock_, job_.tools.at(run.tool), std::span(program_.path.stamps).subspan(at, to - at),
+              static_cast<std::int32_t>(at), 0);
+        at = to;
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kMaxLines = 10;
+
+  /// Before the stretch is cut: what stands above the flutes there was not for its cutter to remove, as its tip rises
+  /// and falls by less than half of them.
+  std::size_t stretch_end(const removal::ToolRun& run, std::size_t from) const {
+    constexpr std::size_t kMax = 10000;
+    const double range = 0.5 * cutter_end_mm(job_.tools.at(run.tool));
+    const auto& stamps = program_.path.stamps;
+    double lo = stamps[from].pose.tip_mm.z(), hi = lo;
+    std::size_t to = from + 1;
+    for (; to < std::min(run.from + run.count, from + kMax); ++to) {
+      lo = std::min(lo, stamps[to].pose.tip_mm.z());
+      hi = std::max(hi, stamps[to].pose.tip_mm.z());
+      if (hi - lo > range) break;
+    }
+    return to;
+  }
+
+  void look_at(int tool, std::size_t from, std::size_t to) {
+    const UpperCylinder cylinder(job_.tools.at(tool), stock_);
+    const removal::Stock::Probe probe(stock_);
+    Vec3 last = Vec3::Constant(1e9);
+    for (std::size_t k = from; k < to && said_.size() < kMaxLines; ++k) {
+      const removal::Stamp& s = program_.path.stamps[k];
+      if ((s.pose.tip_mm - last).norm() < kStep_mm || !cylinder.near(s.pose.tip_mm)) continue;
+      last = s.pose.tip_mm;
+      const std::uint32_t block = program_.moves.moves[s.move].block;
+      if (said_.contains(block)) continue;
+      if (const auto height = cylinder.meets(probe, s.pose.tip_mm)) report(tool, block, *height);
+    }
+  }
+
+  void report(int number, std::uint32_t block, double height_mm) {
+    said_.insert(block);
+    const machine::Tool& tool = job_.tools.at(number);
+    const bool flutes = tool.flute_length_mm && *tool.flute_length_mm < tool.overhang_mm;
+    diagnostics_.add(program_.text.source.diagnostic(
+        Severity::error, program_.text.blocks[block].offset,
+        fmt::format("T{} meets material {:.1f} mm above its tip, but {} = {:g}; a cut that {} was expected", number,
+                    height_mm, flutes ? "flute_length_mm" : "overhang_mm", cutter_end_mm(tool),
+                    flutes ? "its flutes reach" : "ends below the holder"),
+        flutes ? "cut-above-flutes" : "cut-above-overhang"));
+  }
+
+  const machine::Job& job_;
+  const SimulatedProgram& program_;
+  removal::Stock stock_;
+  Diagnostics& diagnostics_;
+  std::set<std::uint32_t> said_;
+};
+
+/// One past the last stamp at which flutes end below the stock's top; 0: none.
+std::size_t last_needed(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank) {
+  std::size_t last = 0;
+  for (const auto& run : program.path.runs) {
+    if (run.kind != removal::RunKind::milling) continue;
+    const UpperCylinder cylinder(job.tools.at(run.tool), blank);
+    for (std::size_t k = run.from; k < run.from + run.count; ++k)
+      if (cylinder.near(program.path.stamps[k].pose.tip_mm)) last = k + 1;
+  }
+  return last;
+}
+
+}  // namespace
+
+void check_flute_reach(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+                       Diagnostics& diagnostics) {
+  if (const std::size_t last = last_needed(job, program, blank); last > 0)
+    Search(job, program, blank, diagnostics).run(last);
+}
+
+}  // namespace camber::simulate

@@ -1,0 +1,16 @@
+#pragma once
+// Material above the flutes, or above the holder's face: the simulation would take it without a force.
+#include "base/diagnostics.h"
+#include "machine/job.h"
+#include "removal/stock.h"
+#include "simulate/predict.h"
+
+namespace camber::simulate {
+
+/// Errors [cut-above-flutes] and [cut-above-overhang] at the blocks in which the cutter's cylinder meets material, by
+/// more than a voxel, above the flutes' end (flute_length_mm; without it overhang_mm). The undeflected cutter is swept
+/// through a copy of the blank; where no tip comes so low that its flutes end below the stock's top, nothing is.
+void check_flute_reach(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+                       Diagnostics& diagnostics);
+
+}  // namespace camber::simulate

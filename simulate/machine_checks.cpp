@@ -1,0 +1,149 @@
+#include "simulate/machine_checks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+
+namespace camber::simulate {
+namespace {
+
+constexpr double kStill_mm = 1e-9;
+constexpr double kRounding = 1e-3;  // of the feed: arcs are looked at in steps
+constexpr std::array<char, 3> kLetters{'X', 'Y', 'Z'};
+
+bool cuts(const nc::Move& m) { return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc; }
+
+/// Of the unit direction along the move, the largest magnitude of each component.
+Vec3 largest_direction(const nc::Interpretation& moves, const nc::Move& m) {
+  constexpr int kArcSteps = 64;
+  const int steps = m.kind == nc::MoveKind::arc ? kArcSteps : 1;
+  Vec3 out = Vec3::Zero();
+  for (int i = 0; i <= steps; ++i)
+    out = out.cwiseMax(nc::direction_at(moves, m, static_cast<double>(i) / steps).cwiseAbs());
+  return out;
+}
+
+class MachineCheck {
+ public:
+  MachineCheck(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
+               Diagnostics& diagnostics)
+      : machine_(machine), program_(program), moves_(moves), diagnostics_(diagnostics) {}
+
+  void run() {
+    for (const nc::Move& m : moves_.moves) {
+      if (m.kind == nc::MoveKind::dwell || m.reference) continue;
+      if (cuts(m)) look_at_spindle(m);
+      look_at_axes(m);
+    }
+    for (std::size_t a = 0; a < 3; ++a)
+      if (worst_[a].move) report_feed(a);
+  }
+
+ private:
+  void error(const nc::Move& m, const char* check, std::string message) {
+    diagnostics_.add(
+        program_.source.diagnostic(Severity::error, program_.blocks[m.block].offset, std::move(message), check));
+  }
+
+  void look_at_spindle(const nc::Move& m) {
+    const double rpm = moves_.state_of(m).spindle_speed_rpm;
+    if (rpm <= machine_.spindle.max_rpm || !said_rpm_.insert(rpm).second) return;
+    error(m, "spindle-limit",
+          fmt::format("S{:g} here, but the spindle of {} turns at up to {:g} rpm (max_rpm); no more was expected", rpm,
+                      machine_.path, machine_.spindle.max_rpm));
+  }
+
+  void look_at_axes(const nc::Move& m) {
+    if ((m.end_mm - m.start_mm).cwiseAbs().maxCoeff() <= kStill_mm && m.kind != nc::MoveKind::arc) return;
+    const Vec3 direction = largest_direction(moves_, m);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const machine::Axis& axis = machine_.axis[a];
+      const double share = direction[static_cast<Eigen::Index>(a)];
+      if (share <= kStill_mm) continue;
+      if (!axis.given && !said_missing_[a]) {
+        said_missing_[a] = true;
+        error(m, "axis-missing",
+              fmt::format("{} moves here, but {} has no [axis.{}]; an axis with its limits was expected", kLetters[a],
+                          machine_.path, static_cast<char>(kLetters[a] - 'A' + 'a')));
+      }
+      const double over = share * m.feed_mm_per_s / axis.max_velocity_mm_per_s;
+      if (!cuts(m) || over <= 1 + kRounding) continue;
+      if (over > worst_[a].over * (1 + kRounding)) worst_[a].over = over;
+      if (!worst_[a].move) worst_[a].move = &m;
+      ++worst_[a].count;
+    }
+  }
+
+  /// At its first place, with the largest speed of all.
+  void report_feed(std::size_t a) {
+    const double limit = mm_per_min_from_mm_per_s(machine_.axis[a].max_velocity_mm_per_s);
+    const std::size_t more = worst_[a].count - 1;
+    error(*worst_[a].move, "feed-limit",
+          fmt::format("the feed asks up to {:.0f} mm/min of {}{}, but {} allows {:g} (max_velocity_mm_per_min of "
+                      "[axis.{}]); no more was expected",
+                      worst_[a].over * limit, kLetters[a],
+                      more > 0 ? fmt::format(" in this move and {} more", more) : std::string(), machine_.path, limit,
+                      static_cast<char>(kLetters[a] - 'A' + 'a')));
+  }
+
+  struct Worst {
+    const nc::Move* move = nullptr;  ///< the first
+    double over = 1;                 ///< largest asked, over the limit
+    std::size_t count = 0;
+  };
+
+  const machine::Machine& machine_;
+  const nc::Program& program_;
+  const nc::Interpretation& moves_;
+  Diagnostics& diagnostics_;
+  std::set<double> said_rpm_;
+  std::array<bool, 3> said_missing_{};
+  std::array<Worst, 3> worst_{};
+};
+
+bool has_spindle(const nc::Interpretation& moves) {
+  return std::ranges::any_of(moves.states, [](const nc::ModalState& s) {
+    return s.spindle != nc::SpindleDirection::stopped || s.spindle_speed_rpm > 0;
+  });
+}
+
+}  // namespace
+
+void check_machine(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
+                   Diagnostics& diagnostics) {
+  MachineCheck(machine, program, moves, diagnostics).run();
+}
+
+void check_spindle(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics) {
+  const auto say = [&](const nc::Move& m, Severity severity, std::string message, const char* check) {
+    diagnostics.add(program.source.diagnostic(severity, program.blocks[m.block].offset, std::move(message), check));
+  };
+  std::set<std::tuple<int, double, nc::SpindleDirection>> said;
+  for (const nc::Move& m : moves.moves) {
+    if (!cuts(m) || m.reference) continue;
+    const nc::ModalState& s = moves.state_of(m);
+    const bool taps = m.cycle == 74 || m.cycle == 84;
+    if (taps || !said.insert({s.tool, s.spindle_speed_rpm, s.spindle}).second) continue;
+    if (!has_spindle(moves))
+      return say(m, Severity::warning,
+                 "the program never starts a spindle; S above zero and M3 were expected, unless it runs in air",
+                 "spindle-stopped");
+    if (s.spindle == nc::SpindleDirection::stopped || s.spindle_speed_rpm <= 0)
+      say(m, Severity::error,
+          fmt::format("T{} cuts here with the spindle {}; S above zero and M3 were expected", s.tool,
+                      s.spindle_speed_rpm <= 0 ? "at S0" : "stopped"),
+          "spindle-stopped");
+    else if (s.spindle == nc::SpindleDirection::counter_clockwise)
+      say(m, Severity::error,
+          fmt::format("T{} cuts here under M4, but cutters are right-hand; M3 was expected", s.tool),
+          "spindle-direction");
+  }
+}
+
+}  // namespace camber::simulate

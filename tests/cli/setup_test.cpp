@@ -1,0 +1,298 @@
+// A wrong set-up never looks like a perfect part: what check, predict, compensate and feed say of it, word for word.
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "base/geometry.h"
+#include "tests/support/run_camber.h"
+
+namespace camber {
+namespace {
+
+using tests::CamberRun;
+using tests::replaced;
+using tests::run_camber;
+using tests::TempFolder;
+
+const std::string kMachine =
+    "[axis.x]\nmax_velocity_mm_per_min = 3000\n[axis.y]\n[axis.z]\n[spindle]\nmax_rpm = 12000\n";
+/// A slot of 2 mm along X through a block from x = 0 to 8.
+const std::string kSlot =
+    "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\nG0 X-4 Y0 Z5\nG0 Z-2\nG1 X12 F900\nG0 Z5\nM30\n";
+/// A slot in wax: in steel this end mill would bend by more than the model covers.
+const std::string kJob =
+    "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\n"
+    "overhang_mm = 30.0\n[material]\nktc_MPa = 20.0\nkrc_MPa = 7.0\n[stock]\nbox_mm = [[0, -5, -5], [8, 5, 0]]\n"
+    "[simulation]\nvoxel_mm = 0.2\ncoupling = \"rigid\"\n";
+
+struct SetUp {
+  std::string program = kSlot, job = kJob, machine = kMachine;
+};
+
+void write(const TempFolder& folder, const SetUp& set_up) {
+  folder.write("p.nc", set_up.program);
+  folder.write("job.toml", set_up.job);
+  folder.write("machine.toml", set_up.machine);
+}
+
+/// predict and compensate refuse it with the same words and leave nothing; so does check where it can know.
+void expect_refused(const SetUp& set_up, const std::string& message, bool check_knows = true) {
+  const TempFolder folder;
+  write(folder, set_up);
+  for (const char* command : {"predict job.toml -o result", "compensate job.toml -o out.nc"}) {
+    const CamberRun run = run_camber(folder, command);
+    EXPECT_EQ(run.status, 1) << command;
+    EXPECT_EQ(run.err, message) << command;
+    EXPECT_EQ(run.out, "") << command;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "result"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
+  if (!check_knows) return;
+  const CamberRun run = run_camber(folder, "check p.nc --job job.toml");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err, message);
+}
+
+/// feed and check refuse what does not suit the machine with the same words as predict.
+void expect_refused_by_machine(const SetUp& set_up, const std::string& message) {
+  expect_refused(set_up, message);
+  const TempFolder folder;
+  write(folder, set_up);
+  for (const char* command : {"check p.nc --machine machine.toml", "feed p.nc --machine machine.toml -o feed.csv"}) {
+    const CamberRun run = run_camber(folder, command);
+    EXPECT_EQ(run.status, 1) << command;
+    EXPECT_EQ(run.err, message) << command;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "feed.csv"));
+}
+
+TEST(SetUp, TheRightOneIsSaidNothingOf) {
+  const TempFolder folder;
+  write(folder, {});
+  for (const char* command : {"check p.nc --job job.toml", "check p.nc --machine machine.toml",
+                              "feed p.nc --machine machine.toml", "predict job.toml -o result"}) {
+    const CamberRun run = run_camber(folder, command);
+    EXPECT_EQ(run.status, 0) << command;
+    EXPECT_EQ(run.err, "") << command;
+  }
+}
+
+TEST(SetUp, AxisThatTheMachineDoesNotHave) {
+  expect_refused_by_machine(
+      {.program = replaced(kSlot, "G1 X12 F900", "G1 X12 Y0.5 F900"), .machine = replaced(kMachine, "[axis.y]\n", "")},
+      "p.nc:6:1: error: Y moves here, but machine.toml has no [axis.y]; an axis with its limits was expected "
+      "[axis-missing]\n    G1 X12 Y0.5 F900\n    ^\n");
+}
+
+TEST(SetUp, SpindleSpeedOverTheMachines) {
+  expect_refused_by_machine({.program = replaced(kSlot, "S3000", "S20000")},
+                            "p.nc:6:1: error: S20000 here, but the spindle of machine.toml turns at up to 12000 rpm "
+                            "(max_rpm); no more was expected [spindle-limit]\n    G1 X12 F900\n    ^\n");
+}
+
+TEST(SetUp, FeedOverAnAxis) {
+  expect_refused_by_machine({.program = replaced(kSlot, "F900", "F9000")},
+                            "p.nc:6:1: error: the feed asks up to 9000 mm/min of X, but machine.toml allows 3000 "
+                            "(max_velocity_mm_per_min of [axis.x]); no more was expected [feed-limit]\n"
+                            "    G1 X12 F9000\n    ^\n");
+  // Along the diagonal each axis moves more slowly than the tool.
+  const TempFolder folder;
+  write(folder, {.program = "G21 G90\nT1 M6\nS3000 M3\nG0 X0 Y0 Z0\nG1 X10 Y10 F4200\nM30\n"});
+  EXPECT_EQ(run_camber(folder, "check p.nc --machine machine.toml").err, "");
+  // In an arc the feed comes to be along X, wherever it begins.
+  folder.write("p.nc",
+               "G21 G90 G17\nT1 M6\nS3000 M3\nG0 X0 Y0 Z0\nG2 X10 Y10 I10 J0 F4200\nG2 X10 Y-10 I0 J-10\nM30\n");
+  EXPECT_EQ(run_camber(folder, "check p.nc --machine machine.toml").err,
+            "p.nc:5:1: error: the feed asks up to 4200 mm/min of X in this move and 1 more, but machine.toml allows "
+            "3000 (max_velocity_mm_per_min of [axis.x]); no more was expected [feed-limit]\n"
+            "    G2 X10 Y10 I10 J0 F4200\n    ^\n");
+}
+
+TEST(SetUp, MissingSpindleSpeed) {
+  expect_refused_by_machine({.program = replaced(kSlot, "S3000 M3", "M3")},
+                            "p.nc:6:1: error: T1 cuts here with the spindle at S0; S above zero and M3 were expected "
+                            "[spindle-stopped]\n    G1 X12 F900\n    ^\n");
+}
+
+TEST(SetUp, SpindleTheWrongWay) {
+  expect_refused_by_machine({.program = replaced(kSlot, "M3\n", "M4\n")},
+                            "p.nc:6:1: error: T1 cuts here under M4, but cutters are right-hand; M3 was expected "
+                            "[spindle-direction]\n    G1 X12 F900\n    ^\n");
+}
+
+TEST(SetUp, ProgramThatRunsInAirIsWarnedOfAndTimed) {
+  const TempFolder folder;
+  write(folder, {.program = "G21 G90\nG0 X0 Y0 Z0\nG1 X10 F600\nM30\n"});
+  for (const char* command : {"check p.nc --machine machine.toml", "feed p.nc --machine machine.toml"}) {
+    const CamberRun run = run_camber(folder, command);
+    EXPECT_EQ(run.status, 0) << command;
+    EXPECT_EQ(run.err,
+              "p.nc:3:1: warning: the program never starts a spindle; S above zero and M3 were expected, unless it "
+              "runs in air [spindle-stopped]\n    G1 X10 F600\n    ^\n")
+        << command;
+  }
+}
+
+TEST(SetUp, StockThatLiesElsewhere) {
+  expect_refused({.job = replaced(kJob, "[[0, -5, -5], [8, 5, 0]]", "[[100, -5, -5], [108, 5, 0]]")},
+                 "p.nc: error: nothing is removed: the tip of the tool cuts from X-4.00 Y0.00 Z-2.00 to X12.00 Y0.00 "
+                 "Z-2.00, the stock lies from X100.00 Y-5.00 Z-5.00 to X108.00 Y5.00 Z0.00; moves through the stock "
+                 "were expected [nothing-removed]\n");
+}
+
+TEST(SetUp, PathAboveTheStock) {
+  expect_refused({.program = replaced(kSlot, "G0 Z-2", "G0 Z0.5")},
+                 "p.nc: error: nothing is removed: the tip of the tool cuts from X-4.00 Y0.00 Z0.50 to X12.00 Y0.00 "
+                 "Z0.50, the stock lies from X0.00 Y-5.00 Z-5.00 to X8.00 Y5.00 Z0.00; moves through the stock were "
+                 "expected [nothing-removed]\n");
+}
+
+TEST(SetUp, ProgramInInchesReadAsMillimetres) {
+  // 100 mm from the zero, so that the figures in inches pass the stock by.
+  expect_refused({.program = replaced(replaced(kSlot, "G0 X-4 Y0 Z5", "G0 X3.7 Y0 Z0.2"), "X12 F900", "X4.5 F36"),
+                  .job = replaced(kJob, "[[0, -5, -5], [8, 5, 0]]", "[[95, -5, -60], [115, 5, 0]]")},
+                 "p.nc: error: nothing is removed: the tip of the tool cuts from X3.70 Y0.00 Z-2.00 to X4.50 Y0.00 "
+                 "Z-2.00, the stock lies from X95.00 Y-5.00 Z-60.00 to X115.00 Y5.00 Z0.00; the program would fit at "
+                 "25.4 times its size: are its figures inches (G20, units = \"inch\")? [nothing-removed]\n");
+}
+
+TEST(SetUp, StockInInches) {
+  expect_refused({.program = replaced(replaced(kSlot, "G0 X-4 Y0 Z5", "G0 X94 Y0 Z5"), "X12 F900", "X116 F900"),
+                  .job = replaced(kJob, "[[0, -5, -5], [8, 5, 0]]", "[[3.74, -0.2, -0.2], [4.53, 0.2, 0]]")},
+                 "p.nc: error: nothing is removed: the tip of the tool cuts from X94.00 Y0.00 Z-2.00 to X116.00 Y0.00 "
+                 "Z-2.00, the stock lies from X3.74 Y-0.20 Z-0.20 to X4.53 Y0.20 Z0.00; the stock would fit at 25.4 "
+                 "times its size: is it in inches? [nothing-removed]\n");
+  // The same where both begin at zero and the path cuts the small stock away.
+  const std::string rows = replaced(kSlot, "G1 X12 F900", "G1 X12 F900\nG1 Y10\nG1 X-4");
+  expect_refused({.program = rows, .job = replaced(kJob, "[[0, -5, -5], [8, 5, 0]]", "[[0, 0, -0.2], [0.4, 0.4, 0]]")},
+                 "p.nc: error: the stock is as large as the program at 25.4 times its size: the tip of the tool cuts "
+                 "from X-4.00 Y0.00 Z-2.00 to X12.00 Y10.00 Z-2.00, the stock lies from X0.00 Y0.00 Z-0.20 to X0.40 "
+                 "Y0.40 Z0.00; a stock in mm was expected [stock-units]\n");
+}
+
+/// A closed box.
+std::string box_stl(const Vec3& lo, const Vec3& hi) {
+  const auto corner = [&](int i) {
+    return "vertex " + std::to_string(i & 1 ? hi.x() : lo.x()) + " " + std::to_string(i & 2 ? hi.y() : lo.y()) + " " +
+           std::to_string(i & 4 ? hi.z() : lo.z()) + "\n";
+  };
+  constexpr int kTriangles[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  std::string out = "solid box\n";
+  for (const auto& t : kTriangles) {
+    out += "facet normal 0 0 0\nouter loop\n";
+    for (const int c : t) out += corner(c);
+    out += "endloop\nendfacet\n";
+  }
+  return out + "endsolid box\n";
+}
+
+TEST(SetUp, PartInInches) {
+  const TempFolder folder;
+  write(folder, {.job = kJob + "[part]\nmesh = \"part.stl\"\n"});
+  folder.write("part.stl", box_stl(Vec3(0, -5, -5) / 25.4, Vec3(8, 5, -1) / 25.4));
+  const std::string message =
+      "part.stl: error: the part is as large as the stock at 25.4 times its size: the part is 0.31 x 0.39 x 0.16 mm, "
+      "the stock 8.00 x 10.00 x 5.00 mm; a mesh in mm was expected [part-units]\n";
+  for (const char* command :
+       {"check p.nc --job job.toml", "predict job.toml -o result", "compensate job.toml -o o.nc"}) {
+    const CamberRun run = run_camber(folder, command);
+    EXPECT_EQ(run.status, 1) << command;
+    EXPECT_EQ(run.err, message) << command;
+  }
+}
+
+TEST(SetUp, AllowanceLargerThanTheCut) {
+  expect_refused({.job = replaced(kJob, "[simulation]", "allowance_mm = 2.5\n[simulation]")},
+                 "job.toml: error: allowance_mm = 2.5: the cut before, with the cutter smaller by this much, takes "
+                 "nothing from the stock; an allowance smaller than what the program takes was expected "
+                 "[allowance-too-large]\n",
+                 false);
+}
+
+TEST(SetUp, CutAboveTheFlutes) {
+  const std::string neck = "flute_length_mm = 1.0\nneck_diameter_mm = 2.0\nneck_length_mm = 20\n[material]";
+  expect_refused({.job = replaced(kJob, "[material]", neck) + "collisions = \"off\"\n"},
+                 "p.nc:6:1: error: T1 meets material 1.2 mm above its tip, but flute_length_mm = 1; a cut that its "
+                 "flutes reach was expected [cut-above-flutes]\n    G1 X12 F900\n    ^\n",
+                 false);
+}
+
+TEST(SetUp, CutAboveTheOverhang) {
+  expect_refused({.job = replaced(kJob, "overhang_mm = 30.0", "overhang_mm = 1.5")},
+                 "p.nc:6:1: error: T1 meets material 1.7 mm above its tip, but overhang_mm = 1.5; a cut that ends "
+                 "below the holder was expected [cut-above-overhang]\n    G1 X12 F900\n    ^\n",
+                 false);
+}
+
+TEST(SetUp, SecondCutMayGoDeeperThanTheFlutes) {
+  const TempFolder folder;
+  write(folder, {.program = replaced(kSlot, "G1 X12 F900", "G1 X12 F900\nG0 Z5\nX-4\nZ-4\nG1 X12"),
+                 .job = replaced(kJob, "[material]",
+                                 "flute_length_mm = 2.5\nneck_diameter_mm = 3.0\nneck_length_mm = 20\n[material]")});
+  const CamberRun run = run_camber(folder, "predict job.toml -o result");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.err, "");
+}
+
+TEST(SetUp, SlenderToolHasNoFigures) {
+  const TempFolder folder;
+  write(folder, {.job = replaced(kJob, "overhang_mm = 30.0", "overhang_mm = 61.0")});
+  const std::string warning =
+      "job.toml: warning: T1: overhang_mm = 61 is 15.2 times its diameter; the model covers up to 15 times, so its "
+      "figures are not shown [tool-slender]\n";
+  const std::string beginning =
+      warning +
+      "camber: error: T1 with overhang_mm = 61 is 15.2 times as long as its diameter; the model covers up to 15 times: "
+      "no figures";
+  EXPECT_EQ(run_camber(folder, "check p.nc --job job.toml").err, warning);
+  const CamberRun run = run_camber(folder, "predict job.toml -o result");
+  EXPECT_EQ(run.status, 3);
+  EXPECT_EQ(run.err.substr(0, beginning.size()), beginning);
+  EXPECT_NE(run.out.find("force, deflection and form error: beyond the model's range\n"), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find("p95"), std::string::npos) << run.out;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "result/summary.json"));
+  for (const char* key : {"min", "max", "mean", "rms", "p95"}) EXPECT_TRUE(json["form_error_um"][key].is_null()) << key;
+  EXPECT_TRUE(json["force_N"]["max"].is_null());
+  EXPECT_EQ(json["beyond_model"]["slender_tools"], nlohmann::json::array({1}));
+  EXPECT_EQ(tests::file_text(folder / "result/report.html").find("form error, 95th percentile"), std::string::npos);
+  const CamberRun moved = run_camber(folder, "compensate job.toml -o out.nc");
+  EXPECT_EQ(moved.status, 3);
+  EXPECT_EQ(moved.err.substr(0, beginning.size()), beginning);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
+}
+
+TEST(SetUp, DeflectionBeyondTheModelHasNoFigures) {
+  const TempFolder folder;
+  write(folder, {.job = replaced(kJob, "ktc_MPa = 20.0", "ktc_MPa = 2000.0")});
+  const CamberRun run = run_camber(folder, "predict job.toml -o result");
+  EXPECT_EQ(run.status, 3);
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "result/summary.json"));
+  const auto& beyond = json["beyond_model"];
+  EXPECT_GT(beyond["deflection_um"]["max"], beyond["deflection_um"]["limit"]);
+  EXPECT_EQ(run.err, "camber: error: in " + std::to_string(beyond["tooth_passings"].get<int>()) +
+                         " tooth passings the tool bends further than the model covers, by up to " +
+                         std::to_string(std::lround(beyond["deflection_um"]["max"].get<double>())) + " um where " +
+                         std::to_string(std::lround(beyond["deflection_um"]["limit"].get<double>())) +
+                         " um are covered, in line 6: no figures; a shorter or thicker tool or a smaller cut was "
+                         "expected\n");
+  EXPECT_NE(run.out.find("force, deflection and form error: beyond the model's range\n"), std::string::npos) << run.out;
+}
+
+TEST(SetUp, NothingLeftToJudge) {
+  const TempFolder folder;
+  write(folder, {.program = replaced(kSlot, "G0 Z-2", "G0 Z-6"),
+                 .job = replaced(kJob, "[[0, -5, -5], [8, 5, 0]]", "[[0, -1, -5], [8, 1, 0]]")});
+  const CamberRun run = run_camber(folder, "predict job.toml -o result");
+  EXPECT_EQ(run.status, 3);
+  const std::string ending =
+      "camber: error: the program leaves no surface in the stock, so there is no form error to judge; a stock "
+      "that stands after the cut was expected\n";
+  EXPECT_TRUE(run.err.ends_with(ending)) << run.err;
+}
+
+}  // namespace
+}  // namespace camber
