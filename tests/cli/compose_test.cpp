@@ -22,7 +22,7 @@ constexpr double kTolerance_mm = 0.0015;
 
 /// A quarter circle as a CAM system writes it, in short lines.
 void write_program(const TempFolder& folder, const std::string& name) {
-  std::string program = "G21 G90 G17 G40 G49 G80 G54 G94\nT1 M6\nS3000 M3\nG0 X5. Y-1. Z3.\nG1 Z-0.3 F300\nY0. F600\n";
+  std::string program = "G21 G90 G17 G40 G49 G80 G54 G94\nT1 M6\nS3000 M3\nG0 X5. Y-1. Z3.\nG1 Z-0.3 F300\nY0. F900\n";
   for (int i = 1; i <= 60; ++i) {
     const double a = kPi / 2 * i / 60;
     program += fmt::format("X{:.3f} Y{:.3f}\n", 5 * std::cos(a), 5 * std::sin(a));
@@ -31,7 +31,8 @@ void write_program(const TempFolder& folder, const std::string& name) {
 }
 
 void write_job(const TempFolder& folder, const std::string& name, const std::string& program) {
-  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n[axis.y]\n[axis.z]\n");
+  folder.write("machine.toml",
+               "[control]\nleast_increment_mm = 0.0001\n[axis.x]\nacceleration_mm_per_s2 = 500\n[axis.y]\n[axis.z]\n");
   folder.write(name, fmt::format(R"(program = "{}"
 machine = "machine.toml"
 [tool.1]

@@ -66,6 +66,7 @@ TEST(ControlKinds, StopBetweenRapidAndFeedIfTheRowSaysSo) {
     SCOPED_TRACE(kind.name);
     machine::Machine machine = machine_with(kind);
     machine.control.corner = {.law = machine::CornerLaw::speed_difference, .speed_difference_mm_per_s = 5};
+    machine.cycle.rapid_path = machine::RapidPath::linear;  // a dog-leg rests at its end whatever the row says
     const auto segments = segments_of(straight.program, machine);
     ASSERT_EQ(segments.size(), 3u);
     EXPECT_EQ(segments[1].entry_limit_mm_per_s == 0, kind.stops_between_rapid_and_feed);
