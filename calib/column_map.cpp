@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <functional>
 #include <span>
 
 #include "base/units.h"
@@ -91,7 +93,10 @@ double interpolated(const Channel& c, std::size_t after, double t_s) {
 class Reader {
  public:
   Reader(const Channel& channel, const MappedColumn& column, bool hold)
-      : channel_(channel), column_(column), hold_(hold) {}
+      : channel_(channel), column_(column), hold_(hold) {
+    assert(channel.value.size() == channel.t_s.size());
+    assert(std::ranges::adjacent_find(channel.t_s, std::greater_equal{}) == channel.t_s.end());
+  }
 
   /// Nothing before the first sample, and for positions after the last.
   std::optional<double> at(double t_s) {

@@ -17,7 +17,7 @@ struct HeldOutRun {
   bool converged = false;
 };
 
-/// Needs at least two runs. Runs whose trace has no lines are fitted on, but not judged. Deterministic.
+/// Empty for fewer than two runs. Runs whose trace has no lines are fitted on, but not judged. Deterministic.
 std::vector<HeldOutRun> leave_one_out(std::vector<FeedRun> runs, const machine::Machine& start,
                                       const FitFeedOptions& options);
 

@@ -49,7 +49,7 @@ void write_report(const CompensateArguments& arguments, const machine::Job& job,
 
 /// The job as it was measured; the fit goes to `fit`.
 machine::Job as_measured(const machine::Job& job, const CompensateArguments& arguments, Diagnostics& diagnostics,
-                         const compensate::Progress& progress, std::optional<compensate::MeasuredFit>& fit) {
+                         const simulate::Progress& progress, std::optional<compensate::MeasuredFit>& fit) {
   if (arguments.measured.empty()) return job;
   const auto points = compensate::read_measured(arguments.measured);
   fit = compensate::fit_measured(job, arguments.measured, points, arguments.measured_program, diagnostics, progress);

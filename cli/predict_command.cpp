@@ -18,10 +18,7 @@
 #include "report/forces_csv.h"
 #include "report/report_data.h"
 #include "report/summary.h"
-#include "simulate/collisions.h"
-#include "simulate/flute_reach.h"
-#include "simulate/machine_checks.h"
-#include "simulate/setup_checks.h"
+#include "simulate/setup.h"
 #include "simulate/turn.h"
 #include "simulate/verdict.h"
 
@@ -79,26 +76,23 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
   const machine::Job job = machine::read_job(arguments.job, diagnostics);
-  const auto program = simulate::simulate_motion(SourceText::read(job.program), job, {}, diagnostics);
-  simulate::check_machine(job.machine, program.text, program.moves, diagnostics);
-  simulate::check_tool_lengths(job, simulate::cutting_tools(program.moves, program.selected, program.holes),
-                               diagnostics);
-  feedmodel::check_feed_csv_size(program.moves, job.machine, arguments.output_folder + "/feed.csv", diagnostics);
-  diagnostics.throw_if_errors();
-  progress.show("cutting as the target");
-  simulate::Target target = [&] {
-    if (job.part.program.empty()) return simulate::make_target(job, program, diagnostics);
-    Diagnostics of_target;
-    const auto original = simulate::simulate_motion(SourceText::read(job.part.program), job, {}, of_target);
-    return simulate::make_target(job, original, diagnostics);
-  }();
+  const auto check = [&](const simulate::SimulatedProgram& given) {
+    simulate::check_program(job, given, diagnostics);
+    feedmodel::check_feed_csv_size(given.moves, job.machine, arguments.output_folder + "/feed.csv", diagnostics);
+    diagnostics.throw_if_errors();
+    progress.show("cutting as the target");
+  };
+  Diagnostics of_original;  // a program like the job's: what is to be said of it, the job's own says too
+  simulate::Setup setup =
+      simulate::set_up(job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics});
+  setup.original.reset();
+  const simulate::SimulatedProgram& program = setup.program;
   feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
   simulate::PredictOptions predict_options;
   if (arguments.forces_at > 0)
     predict_options.turn_from = simulate::turn_at_line(program, job, arguments.forces_at, diagnostics);
   progress.show("looking for collisions");
-  simulate::check_collisions(job, program, target.blank, diagnostics);
-  simulate::check_flute_reach(job, program, target.blank, diagnostics);
+  simulate::check_clearance(job, setup, diagnostics);
   progress.clear();
   settle(diagnostics, options);
   print_translation(job.machine.translation, options);
@@ -108,11 +102,11 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   progress.show("cutting", 0);
   predict_options.progress = [&](double share) { progress.show("cutting", share); };
   predict_options.surface_read = [&] {
-    target.surface.clear();
+    setup.target.surface.clear();
     return_freed_memory();
   };
-  auto prediction = simulate::predict(job, target, program, predict_options);
-  target.blank.clear();  // nothing reads it any more, and the files need room
+  auto prediction = simulate::predict(job, setup.target, program, predict_options);
+  setup.target.blank.clear();  // nothing reads it any more, and the files need room
   const double compute_s = seconds_since(begin);
   progress.show("writing");
 

@@ -8,13 +8,13 @@
 namespace camber::cli {
 
 /// "nan" and "inf" are none.
-inline CLI::Validator number_from_to(double least, double most) {
+inline CLI::Validator number_from_to(double min, double max) {
   return CLI::Validator(
-      [least, most](std::string& text) {
+      [min, max](std::string& text) {
         const auto value = parse_number(text);
-        return value && *value >= least && *value <= most
+        return value && *value >= min && *value <= max
                    ? std::string()
-                   : fmt::format("{}: a number from {:g} to {:g} was expected", text, least, most);
+                   : fmt::format("{}: a number from {:g} to {:g} was expected", text, min, max);
       },
       "");
 }

@@ -14,10 +14,7 @@
 #include "compensate/shift_path.h"
 #include "compensate/splits.h"
 #include "nc/emit.h"
-#include "simulate/collisions.h"
-#include "simulate/flute_reach.h"
-#include "simulate/machine_checks.h"
-#include "simulate/setup_checks.h"
+#include "simulate/setup.h"
 #include "simulate/verdict.h"
 
 namespace camber::compensate {
@@ -84,30 +81,28 @@ double spacing_mm(const machine::Machine& machine) {
   return stops ? std::numeric_limits<double>::infinity() : kSpacing_mm;
 }
 
+/// What is known to be refused is refused before the long work.
+void check_given(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics) {
+  const Finishing early = find_finishing(job, program, {});
+  if (early.operations.size() == 1 || job.compensation.operations.given())
+    check_compensated(program, early.moves, diagnostics);
+  check_travel(job, program.text, program.moves, diagnostics);
+  simulate::check_program(job, program, diagnostics);
+}
+
 class Loop {
  public:
   Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options)
       : job_(job),
         diagnostics_(diagnostics),
         options_(options),
-        program_(simulate::simulate_motion(SourceText::read(job.program), job, {}, diagnostics)),
-        own_target_(job.part.program.empty()) {
-    // What is known to be refused is refused before the long work.
-    const Finishing early = find_finishing(job_, program_, {});
-    if (early.operations.size() == 1 || job_.compensation.operations.given())
-      check_compensated(program_, early.moves, diagnostics_);
-    check_travel(job_, program_.text, program_.moves, diagnostics_);
-    simulate::check_machine(job_.machine, program_.text, program_.moves, diagnostics_);
-    simulate::check_tool_lengths(job_, simulate::cutting_tools(program_.moves, program_.selected, program_.holes),
-                                 diagnostics_);
+        setup_(simulate::set_up(
+            job, {.check = [&](const SimulatedProgram& program) { check_given(job, program, diagnostics); }},
+            {.program = diagnostics, .original = diagnostics, .target = diagnostics})),
+        program_(setup_.program),
+        trials_(job, setup_) {
+    simulate::check_clearance(job_, setup_, diagnostics_);
     diagnostics_.throw_if_errors();
-    if (!own_target_)
-      target_program_.emplace(simulate::simulate_motion(SourceText::read(job.part.program), job, {}, diagnostics));
-    target_.emplace(simulate::make_target(job, target_program(), diagnostics));
-    simulate::check_collisions(job_, program_, target_->blank, diagnostics_);
-    simulate::check_flute_reach(job_, program_, target_->blank, diagnostics_);
-    diagnostics_.throw_if_errors();
-    workshop_.emplace(job_, program_, *target_, own_target_);
   }
 
   CompensationResult run() {
@@ -121,8 +116,6 @@ class Loop {
   }
 
  private:
-  const SimulatedProgram& target_program() const { return target_program_ ? *target_program_ : program_; }
-
   double tolerance_mm() const { return job_.compensation.tolerance_um / 1000; }
   double overcut_um() const { return job_.compensation.overcut_um(); }
 
@@ -138,13 +131,12 @@ class Loop {
   FitShiftOptions fit_options() const { return fit_options(stiffness_, links_, {}); }
 
   std::function<void(double)> progress(const std::string& what) const {
-    if (!options_.progress) return {};
-    return [this, what](double share) { options_.progress(what, share); };
+    return simulate::progress_of(options_.progress, what);
   }
 
   /// The program as given: its error, what of it is compensated, and the points of the path.
   void start(CompensationResult& out) {
-    simulate::Prediction given = workshop_->predict(program_, progress("as given"));
+    simulate::Prediction given = trials_.predict(program_, progress("as given"));
     out.doubts = simulate::doubts(job_, program_, given);
     if (simulate::beyond_model(given)) throw BeyondModel(fmt::format("{}", fmt::join(out.doubts, "; ")));
     last_.keep(std::move(given));
@@ -159,7 +151,7 @@ class Loop {
     links_ = row_links(*path_, kRowReach_mm);
     splits_.emplace(*path_);
     last_.shifts = path_->shifts();
-    last_.observed = workshop_->observe(*path_, nullptr, last_.surface);
+    last_.observed = trials_.observe(*path_, nullptr, last_.surface);
     first_observed_ = last_.observed;
     out.feed_before = program_.feed;
     out.surface_before = last_.surface;
@@ -224,7 +216,7 @@ class Loop {
         Vec3& shift = path_->points()[p].shift_mm;
         shift = from[p] + share * (shift - from[p]);
       }
-      next.emitted = workshop_->emit(*path_, splits_->kept(), compensated_);
+      next.emitted = trials_.emit(*path_, splits_->kept(), compensated_);
       thin.take_shifts(*path_);
       const RowTurn turn = row_turn(thin.path(), links, job_.compensation.max_angle_growth_rad);
       if (next.emitted->quality.over.empty() && turn.over.empty()) break;
@@ -234,8 +226,8 @@ class Loop {
     next.shifts = path_->shifts();
     round.largest_shift_mm = path_->largest_shift_mm();
     const std::size_t number = out.rounds.size();
-    next.keep(workshop_->predict(next.emitted->program, progress(fmt::format("round {}", number))));
-    next.observed = workshop_->observe(*path_, next.emitted.get(), next.surface);
+    next.keep(trials_.predict(next.emitted->program, progress(fmt::format("round {}", number))));
+    next.observed = trials_.observe(*path_, next.emitted.get(), next.surface);
     last_ = std::move(next);
     sensitivity_->learn(*path_, from, before, last_.observed);
     round.overcorrected_fraction = overcorrected_fraction(before, last_.observed, tolerance_mm());
@@ -326,10 +318,10 @@ class Loop {
     const double max_um = overcut_um();
     out.depth_after = depth_of(out.surface_after, best_.observed, max_um, true);
     out.depth_others = depth_of(out.surface_after, best_.observed, max_um, false);
-    out.depth_without_bending = depth_without_bending(job_, *target_, program, max_um);
+    out.depth_without_bending = depth_without_bending(job_, setup_.target, program, max_um);
     out.within_part = out.depth_after.held_um <= max_um;
     if (options_.max_stock_crossings > 0)
-      out.stock = removal::stock_shape(target_->surface, options_.max_stock_crossings);
+      out.stock = removal::stock_shape(setup_.target.surface, options_.max_stock_crossings);
     check_travel(job_, program.text, program.moves, diagnostics_);
     diagnostics_.throw_if_errors();
     out.blocks_before = program_.text.source.line_count();
@@ -346,31 +338,28 @@ class Loop {
     const Emitted* emitted = best_.emitted.get();
     const bool guarded = out.rounds[out.best].guard;
     for (const double voxel_mm : options_.recheck_voxels_mm)
-      out.rechecks.push_back(recheck(job_, voxel_mm, target_program(), program_,
-                                     {emitted, guarded ? free_.get() : nullptr}, *path_, fit_options(), own_target_,
-                                     options_.progress));
+      out.rechecks.push_back(recheck(job_, voxel_mm, setup_, {emitted, guarded ? free_.get() : nullptr}, *path_,
+                                     fit_options(), options_.progress));
     std::vector<std::string> names;
     std::vector<std::vector<double>> changes;
     for (const ParameterGroup& group : options_.uncertainty) {
       names.push_back(group.name);
-      changes.push_back(changes_mm(job_, group, *target_, program_, emitted, out.surface_after, out.unknown_parameters,
-                                   options_.progress));
+      changes.push_back(
+          changes_mm(job_, group, setup_, emitted, out.surface_after, out.unknown_parameters, options_.progress));
     }
     if (!names.empty()) out.band = band_of(out.surface_before, out.surface_after, names, changes, overcut_um() / 1000);
     out.text = emitted ? emitted->emission.text : program_.text.source.text();
     if (!options_.header || !emitted) return;
-    workshop_->header = options_.header(out);
-    out.text = workshop_->text_of(*path_, emitted->splits);
+    trials_.header = options_.header(out);
+    out.text = trials_.text_of(*path_, emitted->splits);
   }
 
   const machine::Job& job_;
   Diagnostics& diagnostics_;
   const CompensateOptions& options_;
-  SimulatedProgram program_;
-  bool own_target_;
-  std::optional<SimulatedProgram> target_program_;  ///< [part] program
-  std::optional<simulate::Target> target_;
-  std::optional<TrialRunner> workshop_;
+  simulate::Setup setup_;
+  const SimulatedProgram& program_;  ///< of the set-up: as given
+  TrialRunner trials_;
   std::vector<bool> compensated_;
   std::optional<ShiftPath> path_;
   std::optional<Sensitivity> sensitivity_;

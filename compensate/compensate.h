@@ -18,7 +18,7 @@
 #include "compensate/uncertainty.h"
 #include "machine/job.h"
 #include "removal/stock.h"
-#include "simulate/predict.h"
+#include "simulate/setup.h"
 
 namespace camber::compensate {
 
@@ -77,7 +77,7 @@ class BeyondModel : public std::runtime_error {
 };
 
 struct CompensateOptions {
-  std::function<void(const std::string& what, double share)> progress;
+  simulate::Progress progress;
   std::size_t max_stock_crossings = 0;        ///< of Compensation::stock; 0: none
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band

@@ -9,12 +9,10 @@
 #include <fmt/format.h>
 
 #include "base/numbers.h"
-#include "simulate/predict.h"
+#include "simulate/setup.h"
 
 namespace camber::compensate {
 namespace {
-
-using simulate::SimulatedProgram;
 
 struct Field {
   std::string_view text;
@@ -181,28 +179,18 @@ machine::Job softened(const machine::Job& job, double scale) {
 }
 
 MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const std::vector<MeasuredPoint>& points,
-                         const std::string& program, Diagnostics& diagnostics,
-                         const std::function<void(const std::string&, double)>& progress) {
+                         const std::string& program, Diagnostics& diagnostics, const simulate::Progress& progress) {
   Diagnostics repeated;
-  const auto machined = [&](const std::string& file, Diagnostics& into) {
-    return simulate::simulate_motion(SourceText::read(file), job, {}, into);
-  };
-  const SimulatedProgram cut =
-      machined(program.empty() ? job.program : program, program.empty() ? repeated : diagnostics);
-  const SimulatedProgram wanted = machined(job.part.program.empty() ? job.program : job.part.program, repeated);
-  const simulate::Target target = simulate::make_target(job, wanted, repeated);
+  const simulate::Setup setup =
+      simulate::set_up(job, {.program = program},
+                       {.program = program.empty() ? repeated : diagnostics, .original = repeated, .target = repeated});
 
   MeasuredFit out;
   std::optional<Neighbours> near;
   std::vector<double> measured;
   const auto predicted_at = [&](double scale) {
-    simulate::PredictOptions options;
-    options.contacts = false;
-    if (progress)
-      options.progress = [&](double share) {
-        progress(fmt::format("measured points, deflection x {:.3f}", scale), share);
-      };
-    const auto prediction = simulate::predict(softened(job, scale), target, cut, options);
+    const auto prediction = simulate::predict_surface(softened(job, scale), setup.target, setup.program, progress,
+                                                      fmt::format("measured points, deflection x {:.3f}", scale));
     ++out.predictions;
     if (!near) {
       near.emplace(prediction.surface, points, 1.5 * job.simulation.voxel_mm);

@@ -1,12 +1,12 @@
 #pragma once
 // The model set right by what was measured on a part: one scale of the deflection.
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "base/diagnostics.h"
 #include "base/geometry.h"
 #include "machine/job.h"
+#include "simulate/setup.h"
 
 namespace camber::compensate {
 
@@ -37,7 +37,6 @@ machine::Job softened(const machine::Job& job, double scale);
 /// three points lie on the job's surface, their predicted error hardly depends on the deflection, or the standard
 /// error of the scale is over a quarter of it.
 MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const std::vector<MeasuredPoint>& points,
-                         const std::string& program, Diagnostics& diagnostics,
-                         const std::function<void(const std::string&, double)>& progress);
+                         const std::string& program, Diagnostics& diagnostics, const simulate::Progress& progress);
 
 }  // namespace camber::compensate

@@ -7,26 +7,13 @@
 #include "compensate/safety.h"
 
 namespace camber::compensate {
-namespace {
 
-simulate::Prediction predict(const machine::Job& job, const simulate::Target& target,
-                             const simulate::SimulatedProgram& program, const std::string& what,
-                             const Progress& progress) {
-  simulate::PredictOptions options;
-  options.contacts = false;
-  if (progress) options.progress = [&](double share) { progress(what, share); };
-  return simulate::predict(job, target, program, options);
-}
-
-}  // namespace
-
-Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::SimulatedProgram& target_program,
-                const simulate::SimulatedProgram& given, const EmittedPair& emitted, const ShiftPath& path,
-                const FitShiftOptions& options, bool own_target, const Progress& progress) {
+Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup& given, const EmittedPair& emitted,
+                const ShiftPath& path, const FitShiftOptions& options, const simulate::Progress& progress) {
   machine::Job other = job;
   other.simulation.voxel_mm = voxel_mm;
   Diagnostics diagnostics;
-  const simulate::Target target = simulate::make_target(other, target_program, diagnostics);
+  const simulate::Target target = simulate::make_target(other, given.target_program(), diagnostics);
   FitShiftOptions own = options;
   own.smoothing_mm = std::max(options.smoothing_mm, smoothing_mm(voxel_mm));
   struct Judged {
@@ -35,10 +22,11 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Simula
     ErrorSplit split;
   };
   const auto judge = [&](const Emitted* program, const std::string& what) {
-    const auto& machined = program ? program->program : given;
-    auto prediction = predict(other, target, machined, fmt::format("{}, voxels of {:g} mm", what, voxel_mm), progress);
-    Observed observed =
-        observe(path, job, given, machined, program ? program->map : MoveMap(), prediction.surface, own_target);
+    const auto& machined = program ? program->program : given.program;
+    auto prediction = simulate::predict_surface(other, target, machined, progress,
+                                                fmt::format("{}, voxels of {:g} mm", what, voxel_mm));
+    Observed observed = observe(path, job, given.program, machined, program ? program->map : MoveMap(),
+                                prediction.surface, given.own_target());
     const ErrorSplit split = split_error(path, observed, own);
     return Judged{std::move(prediction), std::move(observed), split};
   };
@@ -55,16 +43,16 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Simula
   return out;
 }
 
-std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const simulate::Target& target,
-                               const simulate::SimulatedProgram& given, const Emitted* emitted,
-                               const std::vector<removal::SurfacePoint>& after, std::vector<std::string>& unknown,
-                               const Progress& progress) {
+std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const simulate::Setup& given,
+                               const Emitted* emitted, const std::vector<removal::SurfacePoint>& after,
+                               std::vector<std::string>& unknown, const simulate::Progress& progress) {
   machine::Job other = moved(job, group, unknown);
   if (emitted) other.operations = emitted->operations;
   Diagnostics repeated;
-  const auto& text = (emitted ? emitted->program : given).text.source;
+  const auto& text = (emitted ? emitted->program : given.program).text.source;
   const auto program = simulate::simulate_motion(text, other, {}, repeated);
-  const auto prediction = predict(other, target, program, "uncertainty: " + group.name, progress);
+  const auto prediction =
+      simulate::predict_surface(other, given.target, program, progress, "uncertainty: " + group.name);
   std::vector<double> out;
   out.reserve(after.size());
   for (std::size_t i = 0; i < after.size(); ++i) out.push_back(prediction.surface[i].error_mm - after[i].error_mm);

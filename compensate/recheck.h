@@ -1,16 +1,14 @@
 #pragma once
 // The emitted program predicted again under other conditions: another grid, other parameters.
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "compensate/error_split.h"
 #include "compensate/trial.h"
 #include "compensate/uncertainty.h"
+#include "simulate/setup.h"
 
 namespace camber::compensate {
-
-using Progress = std::function<void(const std::string& what, double share)>;
 
 /// Both programs on a grid of its own: other voxels, which lie elsewhere.
 struct Recheck {
@@ -25,16 +23,14 @@ struct EmittedPair {
   const Emitted* free = nullptr;  ///< the best one before the guard; null: the guard did nothing
 };
 
-/// `target`: the program that the part is judged against. `path`: of the given program. What the guard gives up is
-/// told by the same rule as in the rounds: what is left beyond that of the best program without it, on this grid.
-Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::SimulatedProgram& target,
-                const simulate::SimulatedProgram& given, const EmittedPair& emitted, const ShiftPath& path,
-                const FitShiftOptions& options, bool own_target, const Progress& progress);
+/// `path`: of the given program. What the guard gives up is told by the same rule as in the rounds: what is left beyond
+/// that of the best program without it, on this grid.
+Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup& given, const EmittedPair& emitted,
+                const ShiftPath& path, const FitShiftOptions& options, const simulate::Progress& progress);
 
 /// By how much each point of the emitted program's surface (`after`) moves when a group does.
-std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const simulate::Target& target,
-                               const simulate::SimulatedProgram& given, const Emitted* emitted,
-                               const std::vector<removal::SurfacePoint>& after, std::vector<std::string>& unknown,
-                               const Progress& progress);
+std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const simulate::Setup& given,
+                               const Emitted* emitted, const std::vector<removal::SurfacePoint>& after,
+                               std::vector<std::string>& unknown, const simulate::Progress& progress);
 
 }  // namespace camber::compensate

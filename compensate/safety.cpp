@@ -68,10 +68,7 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed
 Depth depth_without_bending(const machine::Job& job, const simulate::Target& target,
                             const simulate::SimulatedProgram& emitted, double tolerance_um) {
   removal::Stock stock(target.blank);
-  for (const auto& run : emitted.path.runs) {
-    const std::span<const removal::Stamp> stamps(emitted.path.stamps.data() + run.from, run.count);
-    simulate::sweep(stock, job.tools.at(run.tool), stamps, static_cast<std::int32_t>(run.from), 0);
-  }
+  simulate::sweep_path(stock, job, emitted.path, 0);
   Depth out;
   double over = 0, area = 0;
   std::vector<std::pair<double, double>> depths;

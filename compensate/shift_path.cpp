@@ -1,6 +1,7 @@
 #include "compensate/shift_path.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -77,6 +78,7 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
 }
 
 ShiftPath::PointInterval ShiftPath::find(std::uint32_t move, double share) const {
+  assert(contains(move));
   std::size_t i = first_of_move_[move];
   double from = 0;
   while (i + 2 < points_.size() && points_[i + 1].move == move && points_[i + 1].share < share) {
@@ -100,6 +102,7 @@ std::vector<Vec3> ShiftPath::shifts() const {
 }
 
 void ShiftPath::set_shifts(std::span<const Vec3> shifts) {
+  assert(shifts.size() == points_.size());
   for (std::size_t i = 0; i < points_.size(); ++i) points_[i].shift_mm = shifts[i];
 }
 
@@ -299,6 +302,7 @@ void ShiftPath::keep_strays(double tolerance_mm, std::vector<bool>& kept) const 
 }
 
 ShiftPath ShiftPath::thinned(const std::vector<bool>& kept) const {
+  assert(std::ranges::equal(ends_of_moves(), kept, [](bool end, bool keep) { return keep || !end; }));
   ShiftPath out = *this;
   out.points_.clear();
   out.chains_.clear();

@@ -53,26 +53,22 @@ void Trial::keep(simulate::Prediction prediction) {
   stock_mm3 = prediction.cut.stock_mm3;
 }
 
-TrialRunner::TrialRunner(const machine::Job& job, const simulate::SimulatedProgram& given,
-                         const simulate::Target& target, bool own_target)
-    : job_(job),
-      given_(given),
-      target_(target),
-      own_target_(own_target),
-      decimals_(decimals_for(job.machine.control, given.text)) {}
+TrialRunner::TrialRunner(const machine::Job& job, const simulate::Setup& given)
+    : job_(job), given_(given), decimals_(decimals_for(job.machine.control, given.program.text)) {}
 
 std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const std::vector<bool>& splits,
                                                  const std::vector<bool>& compensated) const {
   auto out = std::make_shared<Emitted>();
   out->splits = splits;
-  out->emission = nc::emit_edits(given_.text, given_.moves, path.edits(splits, kViaTolerance_mm), decimals_);
+  out->emission =
+      nc::emit_edits(given_.program.text, given_.program.moves, path.edits(splits, kViaTolerance_mm), decimals_);
   Diagnostics repeated;  // the emitted program's warnings are the given one's
   machine::Job job = job_;
   out->operations = moved_ranges(job_.operations, out->emission.block_of_line);
   job.operations = out->operations;
   out->program = simulate::simulate_motion(SourceText(job_.program, out->emission.text), job, {}, repeated);
-  out->map = MoveMap(given_.moves, out->program.moves, out->emission.block_of_line);
-  out->quality = path_quality(given_.moves, compensated, out->program.moves, out->map,
+  out->map = MoveMap(given_.program.moves, out->program.moves, out->emission.block_of_line);
+  out->quality = path_quality(given_.program.moves, compensated, out->program.moves, out->map,
                               job_.machine.control.block_time_s, job_.compensation.max_angle_growth_rad);
   return out;
 }
@@ -80,21 +76,21 @@ std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const st
 std::string TrialRunner::text_of(const ShiftPath& path, const std::vector<bool>& splits) const {
   nc::EmitOptions options = decimals_;
   options.header_comment = header;
-  return nc::emit(given_.text, given_.moves, path.edits(splits, kViaTolerance_mm), options);
+  return nc::emit(given_.program.text, given_.program.moves, path.edits(splits, kViaTolerance_mm), options);
 }
 
 simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& program,
                                           const std::function<void(double)>& progress) const {
   simulate::PredictOptions options;
-  options.contacts = true;
   options.progress = progress;
-  return simulate::predict(job_, target_, program, options);
+  return simulate::predict(job_, given_.target, program, options);
 }
 
 Observed TrialRunner::observe(const ShiftPath& path, const Emitted* emitted,
                               const std::vector<removal::SurfacePoint>& surface) const {
-  if (!emitted) return compensate::observe(path, job_, given_, given_, {}, surface, own_target_);
-  return compensate::observe(path, job_, given_, emitted->program, emitted->map, surface, own_target_);
+  const bool own = given_.own_target();
+  if (!emitted) return compensate::observe(path, job_, given_.program, given_.program, {}, surface, own);
+  return compensate::observe(path, job_, given_.program, emitted->program, emitted->map, surface, own);
 }
 
 }  // namespace camber::compensate

@@ -8,6 +8,7 @@
 #include "compensate/attribution.h"
 #include "compensate/path_quality.h"
 #include "nc/emit.h"
+#include "simulate/setup.h"
 
 namespace camber::compensate {
 
@@ -42,8 +43,7 @@ nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program&
 /// What all trials have in common. Everything passed must outlive the object.
 class TrialRunner {
  public:
-  TrialRunner(const machine::Job& job, const simulate::SimulatedProgram& given, const simulate::Target& target,
-              bool own_target);
+  TrialRunner(const machine::Job& job, const simulate::Setup& given);
 
   /// How near the arcs that an arc becomes pass its shifted points.
   static constexpr double kViaTolerance_mm = 0.0005;
@@ -63,9 +63,7 @@ class TrialRunner {
 
  private:
   const machine::Job& job_;
-  const simulate::SimulatedProgram& given_;
-  const simulate::Target& target_;
-  bool own_target_;
+  const simulate::Setup& given_;
   nc::EmitOptions decimals_;
 };
 

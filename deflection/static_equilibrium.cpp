@@ -21,7 +21,7 @@ constexpr double kFar2_mm2 = 1e4;   ///< no tool bends that far and cuts
 constexpr int kMaxHalvings = 5;
 
 using Coarse = Eigen::Matrix4d;
-using CoarseShift = Eigen::Vector4d;
+using CoarseDeflection = Eigen::Vector4d;
 using ByCoarse = Eigen::Matrix<double, 2, 4, Eigen::RowMajor>;
 
 }  // namespace
@@ -39,7 +39,7 @@ StaticEquilibrium::StaticEquilibrium(const removal::EnvelopeGrid& envelope, cons
     rings_.push_back({w, std::clamp(ring.profile.height_mm / heights.back(), 0.0, 1.0), sine,
                       sine > 0 ? ring.profile.parallel_curvature_per_mm / sine : 0.0});
   }
-  for (auto* v : {&read_, &shift_, &moved_, &side_, &left_, &step_}) v->assign(steps_ * nodes_ * 2, 0.0);
+  for (auto* v : {&read_, &deflection_, &moved_, &side_, &left_, &step_}) v->assign(steps_ * nodes_ * 2, 0.0);
   for (auto* v : {&by_own_, &by_side_}) v->assign(steps_ * nodes_ * 8, 0.0);
   coarse_.assign(steps_ * 4, 0.0);
   norm_.assign(steps_, 0.0);
@@ -84,14 +84,14 @@ void StaticEquilibrium::place_elements(std::span<const removal::DeflectedChipSam
   }
 }
 
-/// What follows from shift_.
-void StaticEquilibrium::place_shifts() {
+/// What follows from deflection_.
+void StaticEquilibrium::place_deflections() {
   const std::size_t row = 2 * nodes_;
   for (std::size_t m = 0; m < steps_; ++m) {
-    const double* ahead = shift_.data() + (m + 1 == steps_ ? 0 : m + 1) * row;
-    const double* behind = shift_.data() + (m == 0 ? steps_ - 1 : m - 1) * row;
+    const double* ahead = deflection_.data() + (m + 1 == steps_ ? 0 : m + 1) * row;
+    const double* behind = deflection_.data() + (m == 0 ? steps_ - 1 : m - 1) * row;
     for (std::size_t i = 0; i < row; ++i) {
-      moved_[m * row + i] = shift_[m * row + i] - read_[m * row + i];
+      moved_[m * row + i] = deflection_[m * row + i] - read_[m * row + i];
       side_[m * row + i] = ahead[i] - behind[i];
     }
   }
@@ -106,8 +106,8 @@ Vec2 StaticEquilibrium::at_ring(const std::vector<double>& deflection, const Rin
 
 double StaticEquilibrium::lean_mm(const Element& e, std::size_t m) const {
   const Ring& ring = rings_[e.ring];
-  const double* lower = shift_.data() + 2 * (m * nodes_ + static_cast<std::size_t>(ring.weight.lower));
-  const double* upper = shift_.data() + 2 * (m * nodes_ + static_cast<std::size_t>(ring.weight.upper));
+  const double* lower = deflection_.data() + 2 * (m * nodes_ + static_cast<std::size_t>(ring.weight.lower));
+  const double* upper = deflection_.data() + 2 * (m * nodes_ + static_cast<std::size_t>(ring.weight.upper));
   return e.by_step * e.normal.dot(at_ring(side_, ring, m)) +
          e.by_height * e.normal.dot(Vec2(upper[0] - lower[0], upper[1] - lower[1]));
 }
@@ -116,7 +116,7 @@ double StaticEquilibrium::lean_mm(const Element& e, std::size_t m) const {
 void StaticEquilibrium::balance(std::size_t m) {
   const std::size_t from = 2 * m * nodes_;
   double* left = left_.data() + from;
-  for (std::size_t i = 0; i < 2 * nodes_; ++i) left[i] = -shift_[from + i];
+  for (std::size_t i = 0; i < 2 * nodes_; ++i) left[i] = -deflection_[from + i];
   std::fill_n(by_own_.data() + 4 * from, 8 * nodes_, 0.0);
   std::fill_n(by_side_.data() + 4 * from, 8 * nodes_, 0.0);
   const machine::Material& material = model_.material();
@@ -182,10 +182,10 @@ void StaticEquilibrium::solve_coarse() {
   };
   // x_m = value_m - ahead_m x_(m+1) - border_m x_last.
   static thread_local std::vector<Coarse> ahead, border;
-  static thread_local std::vector<CoarseShift> value;
+  static thread_local std::vector<CoarseDeflection> value;
   ahead.resize(n), border.resize(n), value.resize(n);
   const auto right = [&](std::size_t m) {
-    CoarseShift out;
+    CoarseDeflection out;
     const double* first = left_.data() + 2 * m * nodes_;
     const double* last = first + 2 * (nodes_ - 1);
     out << first[0], first[1], last[0], last[1];
@@ -194,7 +194,7 @@ void StaticEquilibrium::solve_coarse() {
   for (std::size_t m = 0; m + 1 < n; ++m) {
     const Coarse side = block(by_side_, m);
     Coarse own = (1 + damping_[m]) * Coarse::Identity() - block(by_own_, m);
-    CoarseShift r = right(m);
+    CoarseDeflection r = right(m);
     Coarse b = Coarse::Zero();
     if (m == 0) {
       b = side;
@@ -211,9 +211,9 @@ void StaticEquilibrium::solve_coarse() {
     border[m] = lu.solve(b);
   }
   // The first step's deflection by the last one's.
-  CoarseShift first_value = value[n - 2];
+  CoarseDeflection first_value = value[n - 2];
   Coarse first_border = border[n - 2];
-  const CoarseShift before_value = first_value;
+  const CoarseDeflection before_value = first_value;
   const Coarse before_border = first_border;
   for (std::size_t m = n - 2; m-- > 0;) {
     first_value = value[m] - ahead[m] * first_value;
@@ -222,18 +222,19 @@ void StaticEquilibrium::solve_coarse() {
   const Coarse side = block(by_side_, n - 1);
   const Coarse own =
       (1 + damping_[n - 1]) * Coarse::Identity() - block(by_own_, n - 1) + side * first_border - side * before_border;
-  CoarseShift x = own.partialPivLu().solve(right(n - 1) + side * first_value - side * before_value);
-  const CoarseShift last = x;
-  Eigen::Map<CoarseShift>(coarse_.data() + 4 * (n - 1)) = x;
+  CoarseDeflection x = own.partialPivLu().solve(right(n - 1) + side * first_value - side * before_value);
+  const CoarseDeflection last = x;
+  Eigen::Map<CoarseDeflection>(coarse_.data() + 4 * (n - 1)) = x;
   for (std::size_t m = n - 1; m-- > 0;) {
-    x = value[m] - (m + 2 == n ? CoarseShift(CoarseShift::Zero()) : CoarseShift(ahead[m] * x)) - border[m] * last;
-    Eigen::Map<CoarseShift>(coarse_.data() + 4 * m) = x;
+    x = value[m] - (m + 2 == n ? CoarseDeflection(CoarseDeflection::Zero()) : CoarseDeflection(ahead[m] * x)) -
+        border[m] * last;
+    Eigen::Map<CoarseDeflection>(coarse_.data() + 4 * m) = x;
   }
 }
 
 /// Returns the sum of squares of what is left.
 double StaticEquilibrium::balance_all() {
-  place_shifts();
+  place_deflections();
   const auto row = static_cast<Eigen::Index>(2 * nodes_);
   const auto some = [&](const tbb::blocked_range<std::size_t>& range) {
     for (std::size_t m = range.begin(); m < range.end(); ++m) {
@@ -255,9 +256,9 @@ double StaticEquilibrium::balance_all() {
 void StaticEquilibrium::advance() {
   for (std::size_t m = 0; m < steps_; ++m) {
     const std::size_t ahead = m + 1 == steps_ ? 0 : m + 1, behind = m == 0 ? steps_ - 1 : m - 1;
-    const Eigen::Map<const CoarseShift> own(coarse_.data() + 4 * m);
-    const CoarseShift side = Eigen::Map<const CoarseShift>(coarse_.data() + 4 * ahead) -
-                             Eigen::Map<const CoarseShift>(coarse_.data() + 4 * behind);
+    const Eigen::Map<const CoarseDeflection> own(coarse_.data() + 4 * m);
+    const CoarseDeflection side = Eigen::Map<const CoarseDeflection>(coarse_.data() + 4 * ahead) -
+                                  Eigen::Map<const CoarseDeflection>(coarse_.data() + 4 * behind);
     const bool stays = norm_[m] < kExact_mm && own.lpNorm<Eigen::Infinity>() < kExact_mm;
     for (std::size_t i = 2 * m * nodes_; i < 2 * (m + 1) * nodes_; ++i)
       step_[i] = stays ? 0.0
@@ -281,7 +282,7 @@ void StaticEquilibrium::creep(Step& out) {
     const std::vector<double> before = norm_;
     solve_coarse();
     advance();
-    for (std::size_t i = 0; i < shift_.size(); ++i) shift_[i] += step_[i];
+    for (std::size_t i = 0; i < deflection_.size(); ++i) deflection_[i] += step_[i];
     if (!(balance_all() < kFar2_mm2)) break;
     out.solved = *std::ranges::max_element(norm_) < kExact_mm;
     if (out.solved) break;
@@ -302,8 +303,8 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
     for (std::size_t i = 0; i < nodes_; ++i)
       for (std::size_t a = 0; a < 2; ++a)
         read_[2 * (m * nodes_ + i) + a] = static_cast<double>(row[2 * (i * steps_ + m) + a]);
-  shift_ = read_;
-  place_shifts();
+  deflection_ = read_;
+  place_deflections();
   std::fill(stale_.begin(), stale_.end(), 1);
   place_elements(chips, passing, stamp);
   Step out;
@@ -314,10 +315,10 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
     if (out.solved || !(left2 < kFar2_mm2)) break;
     solve_coarse();
     advance();
-    const std::vector<double> from = shift_;
+    const std::vector<double> from = deflection_;
     double way = 1, next2 = 0;
     for (int half = 0;; ++half, way /= 2) {
-      for (std::size_t i = 0; i < shift_.size(); ++i) shift_[i] = from[i] + way * step_[i];
+      for (std::size_t i = 0; i < deflection_.size(); ++i) deflection_[i] = from[i] + way * step_[i];
       next2 = balance_all();
       if (next2 < (1 - 0.1 * way) * left2 || half == kMaxHalvings) break;
     }
@@ -328,7 +329,7 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
   std::size_t count = 0;
   for (std::size_t m = 0; m < steps_; ++m) {
     const Vec2 was(read_[2 * nodes_ * m], read_[2 * nodes_ * m + 1]),
-        is(shift_[2 * nodes_ * m], shift_[2 * nodes_ * m + 1]);
+        is(deflection_[2 * nodes_ * m], deflection_[2 * nodes_ * m + 1]);
     if (was.isZero() && is.isZero()) continue;
     change2 += (is - was).squaredNorm();
     size2 += is.squaredNorm();
@@ -345,7 +346,7 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
     for (std::size_t i = 0; i < nodes_; ++i)
       for (std::size_t a = 0; a < 2; ++a) {
         const std::size_t j = 2 * (m * nodes_ + i) + a;
-        row[2 * (i * steps_ + m) + a] = static_cast<float>(read_[j] + share * (shift_[j] - read_[j]));
+        row[2 * (i * steps_ + m) + a] = static_cast<float>(read_[j] + share * (deflection_[j] - read_[j]));
       }
   return out;
 }

@@ -50,7 +50,7 @@ class StaticEquilibrium {
   };
   void place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
                       const removal::Stamp& stamp);
-  void place_shifts();
+  void place_deflections();
   Vec2 at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const;
   double lean_mm(const Element& e, std::size_t m) const;
   void balance(std::size_t m);
@@ -69,7 +69,7 @@ class StaticEquilibrium {
   double max_lean_mm_ = 0;
   bool first_stamp_ = false;
   // [steps][nodes][2]:
-  std::vector<double> read_, shift_;
+  std::vector<double> read_, deflection_;
   std::vector<double> moved_, side_;  ///< deflection less the one that was read; of the step ahead less of that behind
   std::vector<double> left_;          ///< C F - delta
   std::vector<double> step_;          ///< Newton's

@@ -1,17 +1,25 @@
 #include "feedmodel/limits.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace camber::feedmodel {
+namespace {
+
+[[maybe_unused]] constexpr double kUnitVector = 1e-6;  ///< rounding of its squared length
+
+}  // namespace
 
 double limit_along(const Vec3& direction, const Vec3& limits) {
+  assert(direction.squaredNorm() <= 1 + kUnitVector && (limits.array() > 0).all());
   double slowest = 0;
   for (int i = 0; i < 3; ++i) slowest = std::max(slowest, std::abs(direction[i]) / limits[i]);
   return slowest > 0 ? 1.0 / slowest : machine::kNoLimit;
 }
 
 double limit_in_plane(const Vec3& normal, const Vec3& limits) {
+  assert(std::abs(normal.squaredNorm() - 1) <= kUnitVector && (limits.array() > 0).all());
   double least = machine::kNoLimit;
   for (int i = 0; i < 3; ++i) {
     const double in_plane = std::sqrt(std::max(0.0, 1.0 - normal[i] * normal[i]));

@@ -7,11 +7,11 @@ namespace camber::feedmodel {
 
 /// Largest of |direction_i| / limit_i: the time an axis needs for its share of 1 mm (or of 1 mm/s). The limit
 /// along the direction is its reciprocal; infinite when no axis that moves has a limit.
-/// direction: unit vector; limits > 0, infinity allowed.
+/// direction: unit vector, or the part of one that the limits are for; limits > 0, infinity allowed.
 double limit_along(const Vec3& direction, const Vec3& limits);
 
 /// Largest magnitude that every direction of a plane allows: min_i limit_i / sqrt(1 - n_i^2), n the plane's unit
-/// normal; axes that are square to the plane do not count.
+/// normal; axes that are square to the plane do not count. limits > 0, infinity allowed.
 double limit_in_plane(const Vec3& normal, const Vec3& limits);
 
 /// Of feed moves.

@@ -1,5 +1,7 @@
 #include "feedmodel/motion_times.h"
 
+#include <cassert>
+
 #include "feedmodel/axis_places.h"
 #include "feedmodel/plan.h"
 #include "feedmodel/rapid.h"
@@ -8,6 +10,7 @@ namespace camber::feedmodel {
 namespace {
 
 void add_plan(const MotionPlan& plan, MotionTimes& out) {
+  assert(plan.times.size() == plan.rows.size());
   double end_s = 0;
   for (std::size_t i = 0; i < plan.times.size(); ++i) {
     const SegmentTime& time = plan.times[i];

@@ -1,6 +1,7 @@
 #include "feedmodel/profile.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace camber::feedmodel {
@@ -8,6 +9,14 @@ namespace {
 
 double time_to(double from, double to, double acceleration) {
   return std::isinf(acceleration) ? 0.0 : std::abs(to - from) / acceleration;
+}
+
+/// NaN, the difference of two infinite speeds, counts as reachable.
+[[maybe_unused]] bool reachable(double entry, double exit, double limit, double gain) {
+  constexpr double kRounding = 1e-6;
+  const double most = std::max(entry, exit);
+  return !(most > limit * (1 + kRounding)) &&
+         !(std::abs(exit * exit - entry * entry) > gain + kRounding * (1 + most * most));
 }
 
 }  // namespace
@@ -20,6 +29,7 @@ Trapezoid make_trapezoid(double length_mm, double entry_mm_per_s, double exit_mm
   p.entry = entry_mm_per_s;
   p.exit = exit_mm_per_s;
   if (length_mm <= 0) return p;
+  assert(reachable(p.entry, p.exit, limit_mm_per_s, 2 * p.acceleration * length_mm));
   const double mean_square = (p.entry * p.entry + p.exit * p.exit) / 2.0;
   p.peak = std::min(limit_mm_per_s, std::sqrt(mean_square + p.acceleration * length_mm));
   p.peak = std::max({p.peak, p.entry, p.exit});

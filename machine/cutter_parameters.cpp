@@ -1,6 +1,7 @@
 #include "machine/cutter_parameters.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -109,6 +110,7 @@ std::string profile_fault(const CutterParameters& p) {
 }
 
 CornerEnds corner_ends(const CutterParameters& p) {
+  assert(profile_fault(p).empty());
   CornerEnds ends;
   if (p.corner_radius_mm > 0) {
     ends.bottom = meet_bottom(p).value().cwiseMax(0.0);

@@ -1,6 +1,7 @@
 #pragma once
 // The words of one block by their letters, and which of them something asked for.
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -27,6 +28,7 @@ class BlockWords {
   bool has_any(const char* letters) const;
   /// The value as written; the word counts as used. Precondition: has(letter).
   double value(char letter) {
+    assert(has(letter));
     used_ |= bit(letter);
     return value_[index(letter)];
   }
@@ -36,8 +38,15 @@ class BlockWords {
     return value(letter) * scale;
   }
   /// Multiplies the value of a word. Precondition: has(letter).
-  void scale(char letter, double factor) { value_[index(letter)] *= factor; }
-  const Word& word(char letter) const { return *word_[index(letter)]; }
+  void scale(char letter, double factor) {
+    assert(has(letter));
+    value_[index(letter)] *= factor;
+  }
+  /// Precondition: has(letter).
+  const Word& word(char letter) const {
+    assert(has(letter));
+    return *word_[index(letter)];
+  }
   void use(const char* letters);
   /// Words that nothing asked for: bits of the letters.
   std::uint32_t unused() const { return given_ & ~used_; }

@@ -106,7 +106,7 @@ class ExpressionReader {
   enum class What : std::uint8_t { value, open, bracketed, variable_number };
   std::uint32_t read(What what);
   void read_as(What what);
-  void binary(int least_priority);
+  void binary(int min_priority);
   void operand();
   void parameter();
   void variable_number();

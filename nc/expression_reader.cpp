@@ -163,13 +163,13 @@ void ExpressionReader::read_as(What what) {
 }
 
 /// Operators of the same priority go from left to right, ** too.
-void ExpressionReader::binary(int least_priority) {
+void ExpressionReader::binary(int min_priority) {
   operand();
   for (;;) {
     skip_blanks();
     std::size_t length = 0;
     const auto op = at_ < end_ ? operator_here(length) : std::nullopt;
-    if (!op || priority(*op) < least_priority) return;
+    if (!op || priority(*op) < min_priority) return;
     const std::size_t at = at_;
     at_ += length;
     has_logic_ |= *op == Op::logic_and || *op == Op::logic_or || *op == Op::logic_xor;

@@ -31,6 +31,7 @@ struct DeflectionTable {
   DeflectionTable(std::size_t stamp_count, int steps_per_pitch, std::vector<double> heights)
       : stamps(stamp_count), steps(steps_per_pitch), node_height_mm(std::move(heights)) {
     assert(std::ranges::is_sorted(node_height_mm));
+    assert(!node_height_mm.empty() && node_height_mm.front() == 0);
     values.assign((stamps + 1) * row_size(), 0.0f);
   }
   std::size_t nodes() const { return node_height_mm.size(); }

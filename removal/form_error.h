@@ -101,7 +101,7 @@ ErrorSpread error_spread(const std::vector<double>& error, const std::vector<dou
 class SurfaceMap {
  public:
   /// `places`: the cutters of the target's sweep, by the ids that its voxels name. `blank`: the surface wherever no
-  /// mark is deeper. `solid`: see surface_points. Nothing of them is needed afterwards.
+  /// mark is deeper. `solid`: see surface_points. All have the same voxels. Nothing of them is needed afterwards.
   SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank, const Stock* solid = nullptr);
   ~SurfaceMap();
 

@@ -1,6 +1,7 @@
 #include "removal/tool_path.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace camber::removal {
@@ -32,7 +33,16 @@ std::vector<bool> selected_moves(const nc::Interpretation& program, const machin
 
 StampBuilder::StampBuilder(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools,
                            std::vector<bool> selected, std::vector<HoleMove> holes)
-    : program_(program), tools_(tools), selected_(std::move(selected)), holes_(std::move(holes)), tracker_(program) {}
+    : program_(program), tools_(tools), selected_(std::move(selected)), holes_(std::move(holes)), tracker_(program) {
+  assert(selected_.size() == program.moves.size());
+  assert(holes_.empty() || holes_.size() == program.moves.size());
+  assert(std::ranges::all_of(program.moves, [&, i = std::size_t{0}](const nc::Move& move) mutable {
+    const bool stamped = selected_[i] || makes_hole(static_cast<std::uint32_t>(i));
+    ++i;
+    const nc::ModalState& state = program.state_of(move);
+    return !stamped || (tools.contains(state.tool) && state.spindle_speed_rpm > 0);
+  }));
+}
 
 void StampBuilder::add(std::span<const TimedSample> samples) {
   for (const TimedSample& s : samples) add(s);

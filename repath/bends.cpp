@@ -32,8 +32,8 @@ std::optional<Bent> Bends::arc(const Bent& before, const Section& stretch) const
   if (!stretch.room) return behind(before, stretch.arc);
   const std::uint32_t first = stretch.first, last = stretch.last;
   ArcRoom room = *stretch.room;
-  const double margin = kMargin * (room.max_sweep_rad - room.least_sweep_rad);
-  const double least = room.direction * (room.least_sweep_rad + margin),
+  const double margin = kMargin * (room.max_sweep_rad - room.min_sweep_rad);
+  const double least = room.direction * (room.min_sweep_rad + margin),
                most = room.direction * (room.max_sweep_rad - margin);
   const Primitive like{.first = first,
                        .last = last,
@@ -44,9 +44,9 @@ std::optional<Bent> Bends::arc(const Bent& before, const Section& stretch) const
   const auto sweeps =
       joints_.behind(before.primitive, before.sweeps, like, {std::min(least, most), std::max(least, most)});
   if (!sweeps) return std::nullopt;
-  room.least_sweep_rad = std::min(std::abs(sweeps->low_rad), std::abs(sweeps->high_rad));
+  room.min_sweep_rad = std::min(std::abs(sweeps->low_rad), std::abs(sweeps->high_rad));
   room.max_sweep_rad = std::max(std::abs(sweeps->low_rad), std::abs(sweeps->high_rad));
-  room.best_sweep_rad = std::clamp(room.best_sweep_rad, room.least_sweep_rad, room.max_sweep_rad);
+  room.best_sweep_rad = std::clamp(room.best_sweep_rad, room.min_sweep_rad, room.max_sweep_rad);
   if (stretch.best_sweep && room.best_sweep_rad == stretch.room->best_sweep_rad) return Bent{*stretch.arc, *sweeps};
   const auto arc = fitter_.arc_in(first, last, room);
   if (!arc) return std::nullopt;

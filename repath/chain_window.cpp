@@ -1,6 +1,8 @@
 #include "repath/chain_window.h"
 
 #include <algorithm>
+#include <cassert>
+#include <functional>
 #include <limits>
 
 namespace camber::repath {
@@ -35,6 +37,8 @@ std::array<std::optional<Bent>, 2> line_or_arc(const Bends& bends, const Bent& b
 
 std::vector<Primitive> ChainWindow::best(const Primitive& before, const Primitive* behind,
                                          std::span<const std::uint32_t> ends, const Limits& limits, ChainCost& cost) {
+  assert(!ends.empty() && before.last < ends.front());
+  assert(std::ranges::adjacent_find(ends, std::greater_equal{}) == ends.end() && ends.back() < path_.points.size());
   states_.assign(1, State{{.primitives_per_line_mm = limits.primitives_per_line_mm}, fixed(before), 0});
   if (at_.size() < ends.size() + 1) at_.resize(ends.size() + 1);
   for (std::size_t k = 0; k <= ends.size(); ++k) at_[k].clear();

@@ -1,6 +1,7 @@
 #include "repath/contact.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -107,6 +108,7 @@ double Underside::height_mm(double from_axis_mm) const {
 }
 
 Underside underside_of(const removal::CutterShape& shape) {
+  assert(!shape.general);
   const double corner = std::min(shape.corner_radius_mm, shape.radius_mm);
   return {shape.radius_mm - corner, corner};
 }

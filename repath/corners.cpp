@@ -50,7 +50,7 @@ std::vector<bool> corners_of(std::span<const Vec3> points, const CornerRule& rul
   for (std::size_t k = 1; k + 1 < n; ++k) {
     const double beside = std::max(turn[legs[k].back], turn[legs[k].ahead]);
     const bool stands_out = turn[k] > rule.always_rad || turn[k] > rule.times_beside * beside;
-    if (turn[k] <= rule.least_rad || !stands_out) continue;
+    if (turn[k] <= rule.min_turn_rad || !stands_out) continue;
     bool sharpest = true;  // its neighbours within the legs see a part of the same turn
     for (std::size_t i = legs[k].back + 1; sharpest && i < legs[k].ahead; ++i)
       sharpest = turn[i] < turn[k] || (turn[i] == turn[k] && i >= k);
@@ -75,7 +75,7 @@ std::vector<bool> ends_of(const Polyline& path, const std::vector<bool>& corners
 }
 
 std::vector<bool> corners_of(const Polyline& path, const FitOptions& options) {
-  return corners_of(in_space(path), {.least_rad = options.corner_rad, .leg_mm = corner_leg_mm(options)});
+  return corners_of(in_space(path), {.min_turn_rad = options.corner_rad, .leg_mm = corner_leg_mm(options)});
 }
 
 }  // namespace camber::repath

@@ -8,11 +8,11 @@
 
 namespace camber::repath {
 
-/// A vertex is a corner where the path turns by more than `least_rad` and more than `times_beside` as much as beside it
-/// (a coarse circle turns everywhere alike), or by more than `always_rad`. Turns are measured between legs of at least
-/// `leg_mm`, or to the path's ends.
+/// A vertex is a corner where the path turns by more than `min_turn_rad` and more than `times_beside` as much as beside
+/// it (a coarse circle turns everywhere alike), or by more than `always_rad`. Turns are measured between legs of at
+/// least `leg_mm`, or to the path's ends.
 struct CornerRule {
-  double least_rad = 0, times_beside = 2;
+  double min_turn_rad = 0, times_beside = 2;
   double always_rad = std::numeric_limits<double>::infinity();
   double leg_mm = 0;
 };

@@ -61,7 +61,7 @@ void DropCutter::build(std::uint32_t node, std::uint32_t begin, std::uint32_t en
 
 /// No less than what the box could lift the tip to. Its highest point may be the one that is nearest to the axis; and
 /// under the plane, height less underside is concave, so that it lies below its tangent at any place of the box.
-double DropCutter::most(const Node& node, const Vec2& axis) const {
+double DropCutter::upper_bound_mm(const Node& node, const Vec2& axis) const {
   const Vec2 nearest = axis.cwiseMax(node.min).cwiseMin(node.max);
   const double r = (nearest - axis).norm(), radius = cutter_.radius_mm();
   if (!(r < radius)) return kNothing;
@@ -97,17 +97,17 @@ void DropCutter::search(std::uint32_t at, const Vec2& axis, std::optional<DropCo
     return;
   }
   std::uint32_t first = node.begin, second = node.begin + 1;
-  double most_first = most(nodes_[first], axis), most_second = most(nodes_[second], axis);
-  if (most_second > most_first) std::swap(first, second), std::swap(most_first, most_second);
+  double max_first = upper_bound_mm(nodes_[first], axis), max_second = upper_bound_mm(nodes_[second], axis);
+  if (max_second > max_first) std::swap(first, second), std::swap(max_first, max_second);
   const auto worth = [&](double m) { return m > (best ? best->tip_mm : kNothing); };
-  if (worth(most_first)) search(first, axis, best);
-  if (worth(most_second)) search(second, axis, best);
+  if (worth(max_first)) search(first, axis, best);
+  if (worth(max_second)) search(second, axis, best);
 }
 
 std::optional<DropContact> DropCutter::at(const Vec2& axis, std::optional<std::uint32_t> near) const {
   std::optional<DropContact> best;
   if (near && *near < facets_.size()) offer(*near, axis, best);
-  if (most(nodes_[0], axis) > (best ? best->tip_mm : kNothing)) search(0, axis, best);
+  if (upper_bound_mm(nodes_[0], axis) > (best ? best->tip_mm : kNothing)) search(0, axis, best);
   return best;
 }
 

@@ -35,7 +35,7 @@ class DropCutter {
                                        ///< begin + 1
   };
   void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
-  double most(const Node& node, const Vec2& axis) const;
+  double upper_bound_mm(const Node& node, const Vec2& axis) const;
   void search(std::uint32_t node, const Vec2& axis, std::optional<DropContact>& best) const;
   void offer(std::uint32_t facet, const Vec2& axis, std::optional<DropContact>& best) const;
 

@@ -149,11 +149,19 @@ class Search {
   std::uint32_t farthest_ = 0;
 };
 
+[[maybe_unused]] bool repeats_a_point(const Polyline& path) {
+  for (std::size_t k = 1; k < path.points.size(); ++k)
+    if (path.at(k) == path.at(k - 1)) return true;
+  return false;
+}
+
 }  // namespace
 
 std::vector<Primitive> fit(const Polyline& path, const FitOptions& options, FitMemory* memory) {
   assert(options.tolerance_mm > 0 && options.increment_mm > 0 && options.width > 0);
   assert(path.heights.empty() || path.heights.size() == path.points.size());
+  assert(std::ranges::is_sorted(path.ends));
+  assert(!repeats_a_point(path));
   if (path.points.size() < 2) return {};
   return Search(path, options, memory).run();
 }

@@ -71,8 +71,8 @@ double corner_leg_mm(const FitOptions& options);
 /// The room of the arc from one point to another: the magnitude of its sweep lies between the two.
 /// Nothing where no arc fits.
 struct ArcRoom {
-  double least_sweep_rad = 0, max_sweep_rad = 0;  ///< magnitudes
-  double best_sweep_rad = 0;                      ///< goes through the points as well as it can (least squares)
+  double min_sweep_rad = 0, max_sweep_rad = 0;  ///< magnitudes
+  double best_sweep_rad = 0;                    ///< goes through the points as well as it can (least squares)
   int direction = 1;
 };
 
@@ -119,9 +119,9 @@ class Fitter {
   Fitter(const Polyline& path, const FitOptions& options, FitMemory* memory = nullptr);
   std::optional<Primitive> line(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> arc(std::uint32_t first, std::uint32_t last) const;
-  /// Ends of lines from `first`, ascending: the next point and the last `most` up to `end`. In space some of them may
-  /// be none, the next point always is one.
-  std::vector<std::uint32_t> line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t most) const;
+  /// Ends of lines from `first`, ascending: the next point and the last `max_ends` up to `end`. In space some of them
+  /// may be none, the next point always is one.
+  std::vector<std::uint32_t> line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t max_ends) const;
 
   std::optional<ArcRoom> room(std::uint32_t first, std::uint32_t last) const;
   /// As room(), and nothing where the stretch has too few points or is not flat.

@@ -112,7 +112,7 @@ class Wedge {
 
 /// The wedge narrows from point to point; a point in it is an end. In space a line that passes within the tolerance
 /// does so in every projection: what lies in the wedges of all three planes may be an end.
-std::vector<std::uint32_t> Fitter::line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t most) const {
+std::vector<std::uint32_t> Fitter::line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t max_ends) const {
   std::vector<std::uint32_t> ends{first + 1};
   const double tolerance = options_.tolerance_mm + kRoundingMm;
   const Vec3 start = path_.at(first);
@@ -134,7 +134,7 @@ std::vector<std::uint32_t> Fitter::line_ends(std::uint32_t first, std::uint32_t 
     if (!open) break;
   }
   // The next point stays: of the others a wedge is no proof, and there is always a line to it.
-  if (ends.size() > most + 1) ends.erase(ends.begin() + 1, ends.end() - most);
+  if (ends.size() > max_ends + 1) ends.erase(ends.begin() + 1, ends.end() - max_ends);
   return ends;
 }
 
@@ -231,10 +231,10 @@ std::optional<ArcRoom> Fitter::arc_room(std::uint32_t first, std::uint32_t last)
 }
 
 std::optional<Primitive> Fitter::arc_in(std::uint32_t first, std::uint32_t last, const ArcRoom& room) const {
-  const double span = room.max_sweep_rad - room.least_sweep_rad;
+  const double span = room.max_sweep_rad - room.min_sweep_rad;
   if (auto fitted = arc_with_sweep(first, last, room.direction, room.best_sweep_rad)) return fitted;
   for (const double share : {0.5, 0.25, 0.75}) {
-    if (auto fitted = arc_with_sweep(first, last, room.direction, room.least_sweep_rad + share * span)) return fitted;
+    if (auto fitted = arc_with_sweep(first, last, room.direction, room.min_sweep_rad + share * span)) return fitted;
     if (span < 1e-9) break;
   }
   return std::nullopt;

@@ -40,7 +40,7 @@ double slope_rad(const Polyline& path, const Primitive& p) {
 
 std::vector<bool> edges_of(const Polyline& path, const FitOptions& options) {
   return corners_of(in_space(path),
-                    {.least_rad = kEdgeRad, .times_beside = kEdgeTimesBeside, .leg_mm = corner_leg_mm(options)});
+                    {.min_turn_rad = kEdgeRad, .times_beside = kEdgeTimesBeside, .leg_mm = corner_leg_mm(options)});
 }
 
 std::vector<double> smooth_kinks_of(const Polyline& path, const FitOptions& options, std::span<const Primitive> chain) {

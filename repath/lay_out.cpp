@@ -1,5 +1,6 @@
 // New points for an old path.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -40,9 +41,11 @@ struct SmoothedPath::Piece {
 
 SmoothedPath::SmoothedPath(std::vector<Vec3> points, const ResegmentOptions& options, double increment_mm)
     : old_(std::move(points)), tolerance_(options.tolerance_mm), increment_(increment_mm) {
-  const std::vector<bool> corners = corners_of(
-      old_,
-      {.least_rad = options.corner_rad, .times_beside = 3, .always_rad = kSharp, .leg_mm = 5 * options.tolerance_mm});
+  assert(old_.size() >= 2 && std::ranges::adjacent_find(old_) == old_.end());
+  const std::vector<bool> corners = corners_of(old_, {.min_turn_rad = options.corner_rad,
+                                                      .times_beside = 3,
+                                                      .always_rad = kSharp,
+                                                      .leg_mm = 5 * options.tolerance_mm});
   const std::vector<double> turns = turns_of(old_, 5 * options.tolerance_mm);
   corner_at_.assign(old_.size(), 0);
   std::size_t begin = 0;

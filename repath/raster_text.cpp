@@ -1,6 +1,7 @@
 #include "repath/raster_text.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include <fmt/format.h>
 
@@ -41,6 +42,7 @@ std::string header(const RasterProgram& p) {
 }  // namespace
 
 std::string raster_text(const RasterProgram& p, std::span<const std::vector<Vec3>> chains) {
+  assert(std::ranges::all_of(chains, [](const auto& chain) { return chain.size() >= 2; }));
   std::string out = header(p);
   const std::string feed = number(p.feed_mm_per_min, 1), slow = number(kLeadInShare * p.feed_mm_per_min, 1);
   const auto word = [&](char axis, double value) { return axis + number(value, p.decimals); };

@@ -1,11 +1,13 @@
 #include "repath/smooth_curve.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace camber::repath {
 
 SmoothCurve::SmoothCurve(std::span<const Vec3> points, double tolerance_mm) {
+  assert(points.size() >= 2 && std::ranges::adjacent_find(points) == points.end());
   knots_.assign(points.size(), 0.0);
   for (std::size_t k = 1; k < points.size(); ++k) knots_[k] = knots_[k - 1] + (points[k] - points[k - 1]).norm();
   solve(points, 0);

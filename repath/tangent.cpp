@@ -117,7 +117,7 @@ void make_tangent(std::span<const Vec2> points, const FitOptions&, const Fitter&
     if (!chain[k].arc || points[chain[k].first] == points[chain[k].last]) continue;
     const auto room = fitter.room(chain[k].first, chain[k].last);
     if (!room) continue;
-    const double a = room->direction * room->least_sweep_rad, b = room->direction * room->max_sweep_rad;
+    const double a = room->direction * room->min_sweep_rad, b = room->direction * room->max_sweep_rad;
     const double margin = 0.05 * std::abs(b - a);
     bounds[k] = {std::min({std::min(a, b) + margin, sweep[k]}), std::max(std::max(a, b) - margin, sweep[k]), true};
   }

@@ -1,5 +1,7 @@
 #include "report/cycle_page.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -88,6 +90,8 @@ std::string dominance_sentence(const CycleTime& time) {
 }
 
 std::string cycle_page(const CyclePage& page) {
+  assert(!page.rows.empty());
+  assert(std::ranges::all_of(page.rows, [&](const CycleRow& row) { return row.values.size() >= page.keys.size(); }));
   const CycleTime& first = page.rows.front().time;
   const std::string title = html_text(page.title);
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";

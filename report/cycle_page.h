@@ -18,7 +18,7 @@ struct CycleRow {
 struct CyclePage {
   std::string title, subtitle;
   std::vector<std::string> keys;  ///< swept; empty: cases or a single run
-  std::vector<CycleRow> rows;     ///< at least one
+  std::vector<CycleRow> rows;     ///< at least one; each with a value a key
   std::vector<std::string> notes;
 };
 

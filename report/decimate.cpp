@@ -6,15 +6,15 @@
 
 namespace camber::report {
 
-std::vector<std::size_t> keep_extremes(std::span<const double> values, std::size_t most) {
+std::vector<std::size_t> keep_extremes(std::span<const double> values, std::size_t max_count) {
   std::vector<std::size_t> kept;
-  if (values.size() <= most) {
+  if (values.size() <= max_count) {
     kept.resize(values.size());
     std::iota(kept.begin(), kept.end(), std::size_t{0});
     return kept;
   }
   constexpr std::size_t kPerRun = 3;
-  const std::size_t runs = std::max<std::size_t>(1, most / kPerRun);
+  const std::size_t runs = std::max<std::size_t>(1, max_count / kPerRun);
   const std::size_t length = (values.size() + runs - 1) / runs;
   for (std::size_t from = 0; from < values.size(); from += length) {
     const auto run = values.subspan(from, std::min(length, values.size() - from));

@@ -101,12 +101,12 @@ PathPicture thinned(const PathPicture& full, double chord_mm) {
 
 }  // namespace
 
-PathPicture path_picture(const nc::Interpretation& program, const BlockRanges& rewritten, std::size_t most) {
+PathPicture path_picture(const nc::Interpretation& program, const BlockRanges& rewritten, std::size_t max_points) {
   double chord = kChordShare * extent_mm(program);
   const PathPicture full = Drawer(program, rewritten).draw(chord);
-  if (full.points.size() <= most) return full;
+  if (full.points.size() <= max_points) return full;
   PathPicture out = thinned(full, chord);
-  while (out.points.size() > most && chord < 1e6) {
+  while (out.points.size() > max_points && chord < 1e6) {
     chord *= 2;
     out = thinned(full, chord);
   }

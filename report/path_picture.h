@@ -24,9 +24,10 @@ struct PathPicture {
 /// Stretches of blocks, first and last, ascending, that were rewritten; what lies outside is `kept`.
 using BlockRanges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Arcs become chords within a part of the picture's size that no eye sees. Above `most` points those are left out that
-/// lie within a distance of the chord between the ones that stay; the distance is doubled until no more than `most` are
-/// left. Corners beyond it so always stay, and the outermost places to within it. Linear in the number of moves.
-PathPicture path_picture(const nc::Interpretation& program, const BlockRanges& rewritten, std::size_t most);
+/// Arcs become chords within a part of the picture's size that no eye sees. Above `max_points` points those are left
+/// out that lie within a distance of the chord between the ones that stay; the distance is doubled until no more than
+/// `max_points` are left. Corners beyond it so always stay, and the outermost places to within it. Linear in the number
+/// of moves.
+PathPicture path_picture(const nc::Interpretation& program, const BlockRanges& rewritten, std::size_t max_points);
 
 }  // namespace camber::report

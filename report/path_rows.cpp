@@ -112,14 +112,14 @@ void add_errors(std::vector<PathRow>& rows, const removal::StampPath& path,
   });
 }
 
-std::vector<std::size_t> rows_to_draw(std::span<const PathRow> rows, std::size_t most) {
+std::vector<std::size_t> rows_to_draw(std::span<const PathRow> rows, std::size_t max_rows) {
   std::vector<std::size_t> kept;
-  if (rows.size() <= most) {
+  if (rows.size() <= max_rows) {
     kept.resize(rows.size());
     std::iota(kept.begin(), kept.end(), std::size_t{0});
     return kept;
   }
-  const std::size_t runs = std::max<std::size_t>(1, most / (2 * kQuantities.size() + 1));
+  const std::size_t runs = std::max<std::size_t>(1, max_rows / (2 * kQuantities.size() + 1));
   const std::size_t length = (rows.size() + runs - 1) / runs;
   for (std::size_t from = 0; from < rows.size(); from += length) {
     const std::size_t to = std::min(rows.size(), from + length);

@@ -68,8 +68,8 @@ void add_errors(std::vector<PathRow>& rows, const removal::StampPath& path,
 /// together, so that a neighbouring row of a raster is not taken for the way.
 void add_shifts(std::vector<PathRow>& rows, const nc::Interpretation& program, const nc::Interpretation& as_given);
 
-/// Indices, ascending, of at most about `most` rows: of each run of neighbours the first and, for every quantity, those
-/// with its least and its greatest value. All where there are no more than `most`.
-std::vector<std::size_t> rows_to_draw(std::span<const PathRow> rows, std::size_t most);
+/// Indices, ascending, of at most about `max_rows` rows: of each run of neighbours the first and, for every quantity,
+/// those with its least and its greatest value. All where there are no more than `max_rows`.
+std::vector<std::size_t> rows_to_draw(std::span<const PathRow> rows, std::size_t max_rows);
 
 }  // namespace camber::report

@@ -1,6 +1,7 @@
 #include "simulate/holes.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace camber::simulate {
 
@@ -21,6 +22,7 @@ CutResult tap(removal::Stock& stock, const machine::Tool& tool, std::span<const 
 }
 
 HoleStamps::HoleStamps(const removal::StampPath& path) {
+  assert(std::ranges::is_sorted(path.runs, {}, &removal::ToolRun::from));
   for (const auto& run : path.runs)
     if (run.kind != removal::RunKind::milling)
       ranges_.emplace_back(static_cast<std::int32_t>(run.from), static_cast<std::int32_t>(run.from + run.count));

@@ -129,29 +129,31 @@ double nothing_mm3(const Job& job) { return std::pow(job.simulation.voxel_mm, 3)
 
 }  // namespace
 
+double sweep_path(removal::Stock& stock, const Job& job, const removal::StampPath& path, double shrink_mm) {
+  double removed_mm3 = 0;
+  for_each_run(job, path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    if (shrink_mm > 0 && run.kind != removal::RunKind::milling) return;
+    removed_mm3 += sweep(stock, tool, stamps, static_cast<std::int32_t>(run.from), shrink_mm);
+  });
+  return removed_mm3;
+}
+
 Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics) {
   removal::Stock blank = raw_stock(job, band_voxels(job, target.path), diagnostics);
   const Places where = places_of(job, target, blank);
   check_places(target.text.source.name(), where, diagnostics);
   diagnostics.throw_if_errors();
-  const auto sweep_all = [&](removal::Stock& stock, double shrink_mm) {
-    double removed_mm3 = 0;
-    for_each_run(job, target.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
-      // An allowance lies on milled surface; holes are made from solid.
-      if (shrink_mm > 0 && run.kind != removal::RunKind::milling) return;
-      removed_mm3 += sweep(stock, tool, stamps, static_cast<std::int32_t>(run.from), shrink_mm);
-    });
-    return removed_mm3;
-  };
   std::optional<removal::Stock> whole;
   if (job.stock.allowance_mm > 0) {
     whole.emplace(blank);
-    if (sweep_all(blank, job.stock.allowance_mm) < nothing_mm3(job)) report_allowance(job, diagnostics);
+    if (sweep_path(blank, job, target.path, job.stock.allowance_mm) < nothing_mm3(job))
+      report_allowance(job, diagnostics);
     diagnostics.throw_if_errors();
     blank.clear_stamps();
   }
   removal::Stock surface(blank);
-  if (sweep_all(surface, 0) < nothing_mm3(job)) report_nothing_removed(target.text.source.name(), where, diagnostics);
+  if (sweep_path(surface, job, target.path, 0) < nothing_mm3(job))
+    report_nothing_removed(target.text.source.name(), where, diagnostics);
   diagnostics.throw_if_errors();
   removal::CutterPlaces places;
   for_each_run(job, target.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {

@@ -50,6 +50,11 @@ struct Target {
 /// factor of the inch).
 Target make_target(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics);
 
+/// Sweeps the undeflected cutters of a path through the stock, each made smaller by shrink_mm along its normal; returns
+/// the volume removed, mm^3. With shrink_mm > 0 holes are left out: an allowance lies on milled surface, they are made
+/// from solid.
+double sweep_path(removal::Stock& stock, const machine::Job& job, const removal::StampPath& path, double shrink_mm);
+
 struct Prediction {
   CutResult cut;  ///< loads: one a stamp of the program; the volumes are without tapping, which has no chips
   HoleFigures holes;

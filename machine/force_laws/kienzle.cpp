@@ -1,6 +1,7 @@
 #include "machine/force_laws/kienzle.h"
 
 #include <algorithm>
+#include <cassert>
 #include <vector>
 
 #include <fmt/format.h>
@@ -93,6 +94,9 @@ void KienzleLaw::read(TomlTable& table, const MaterialPreset* preset, Coefficien
 }
 
 KienzlePair kienzle_from_catalogue(std::span<const CatalogueRow> rows) {
+  assert(std::ranges::all_of(rows, [](const CatalogueRow& r) { return r.feed_per_tooth_mm > 0 && r.kc_MPa > 0; }));
+  assert(std::ranges::any_of(
+      rows, [&](const CatalogueRow& r) { return r.feed_per_tooth_mm != rows.front().feed_per_tooth_mm; }));
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const auto& r : rows) {
     const double x = std::log(r.feed_per_tooth_mm), y = std::log(r.kc_MPa);

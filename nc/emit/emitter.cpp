@@ -66,6 +66,8 @@ Emitter::Emitter(const Program& program, const Interpretation& moves, std::span<
       style_(style_of(program)),
       text_(program),
       feeds_(program, moves) {
+  assert(std::ranges::is_sorted(edits, {}, &MoveEdit::move));
+  assert(edits.empty() || edits.back().move < moves.moves.size());
   if (std::any_of(edits.begin(), edits.end(), asks_for_feed)) feed_is_read_ = feed_is_read(program);
 }
 
@@ -134,7 +136,7 @@ void Emitter::run_block(std::size_t first, std::size_t end) {
 /// The coordinates of `move`, `edit` and at_ are those of the text.
 void Emitter::run_block_in_program(const Move& move, const MoveEdit* edit, const Vec3& last_end, int normal) {
   unit_mm_ = moves_.state_of(move).inch ? kMmPerInch : 1.0;
-  least_decimals_ = unit_mm_ == 1.0 ? options_.decimals_mm : options_.decimals_inch;
+  min_decimals_ = unit_mm_ == 1.0 ? options_.decimals_mm : options_.decimals_inch;
   BlockWriter writer(program_, move.block, style_);
   if (goes_to_machine_place(program_.words_of(move.block))) {
     leave_for_machine_place(writer, move, last_end);
@@ -262,7 +264,7 @@ Vec3 Emitter::set_end(BlockWriter& writer, const Move& move, const Vec3& wanted,
                       bool add_words) const {
   Vec3 after = at_;
   for (int axis = 0; axis < 3; ++axis) {
-    const int decimals = writer.decimals(kAxis[axis], least_decimals_) + more_decimals;
+    const int decimals = writer.decimals(kAxis[axis], min_decimals_) + more_decimals;
     const bool present = writer.find(kAxis[axis]) != nullptr;
     const bool away = std::abs(wanted[axis] - at_[axis]) > 0.5 * step_mm(decimals) + kSamePlaceMm;
     if (!present && !(away && add_words)) continue;

@@ -114,7 +114,7 @@ class Emitter {
   std::size_t end_ = 0;      ///< behind its last one
   const Frame* frame_ = nullptr;
   double unit_mm_ = 1;
-  int least_decimals_ = 4;
+  int min_decimals_ = 4;
 };
 
 }  // namespace camber::nc

@@ -86,11 +86,11 @@ WantedArc Emitter::wanted_arc(const BlockWriter& writer, const Move& move, const
 bool Emitter::is_as_before(const BlockWriter& writer, const Move& move, const WantedArc& wanted) const {
   if ((at_ - move.start_mm).cwiseAbs().maxCoeff() >= kSamePlaceMm) return false;
   for (int axis = 0; axis < 3; ++axis) {
-    const double half = 0.5 * step_mm(writer.decimals(kAxis[axis], least_decimals_));
+    const double half = 0.5 * step_mm(writer.decimals(kAxis[axis], min_decimals_));
     if (std::abs(wanted.end_mm[axis] - move.end_mm[axis]) > half) return false;
   }
   const Vec3 centre_shift = wanted.center_mm - arc_in_program(move).center_mm;
-  return centre_shift.cwiseAbs().maxCoeff() <= 0.5 * step_mm(least_decimals_);
+  return centre_shift.cwiseAbs().maxCoeff() <= 0.5 * step_mm(min_decimals_);
 }
 
 Arc Emitter::arc_in_program(const Move& move) const {
@@ -118,7 +118,7 @@ bool Emitter::write_arc(const Move& move, const MoveEdit* edit, const WantedArc&
     for (const int axis : {axes.first, axes.second}) wanted.end_mm[axis] = at_[axis];
   wanted.start_mm = at_;
   wanted.end_mm = set_end(writer, move, wanted.end_mm, more_decimals, true);
-  const int decimals = least_decimals_ + more_decimals;
+  const int decimals = min_decimals_ + more_decimals;
   const auto arc = round_arc(wanted, unit_mm_, decimals);
   if (!arc) return false;
   if (wanted.by_radius) {
@@ -154,7 +154,7 @@ bool Emitter::write_split(const Move& move, const MoveEdit& edit, const WantedAr
 /// Several arcs in place of one; false, and nothing is written, where the words of one of them do not close.
 bool Emitter::write_arc_pieces(const Move& move, const MoveEdit& edit, const WantedArc& whole, int more_decimals) {
   const PlaneAxes axes = axes_of(whole.plane);
-  const int decimals = least_decimals_ + more_decimals;
+  const int decimals = min_decimals_ + more_decimals;
   const Vec3 start = at_;
   const auto feed_before = feeds_.state();
   BlockWriter writer(program_, move.block, style_);

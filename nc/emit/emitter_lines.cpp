@@ -27,7 +27,7 @@ void Emitter::drill(BlockWriter& writer, const Move& move, const Vec3& last_end,
     const Vec3 before = at_;
     for (int axis = 0; axis < 3; ++axis) {
       if (axis == normal) continue;
-      const int decimals = writer.decimals(kAxis[axis], least_decimals_);
+      const int decimals = writer.decimals(kAxis[axis], min_decimals_);
       const bool away = std::abs(place[axis] - before[axis]) > 0.5 * step_mm(decimals) + kSamePlaceMm;
       if (!writer.find(kAxis[axis]) && !away) continue;
       writer.set(kAxis[axis], rounded(word_for(move, axis, place[axis]), decimals), decimals);
@@ -84,7 +84,7 @@ std::vector<Emitter::Piece> Emitter::pieces_of(const Move& move, const MoveEdit*
     not_made_.push_back({edit->move, EmitGap::subprogram});
     pieces.clear();
   }
-  const double near = step_mm(least_decimals_);
+  const double near = step_mm(min_decimals_);
   const auto close = [](const Vec3& a, const Vec3& b) { return (a - b).cwiseAbs().maxCoeff(); };
   while (!pieces.empty() && close(pieces.front().end_mm, at_) < 0.5 * near) pieces.erase(pieces.begin());
   while (!pieces.empty() && close(pieces.back().end_mm, end) < 2 * near) pieces.pop_back();
@@ -110,7 +110,7 @@ std::string Emitter::further_line(const BlockWriter& writer, const Move& move, c
   Vec3 after = at_;
   for (int axis = 0; axis < 3; ++axis) {
     // An end that stays keeps its decimals.
-    const int decimals = edit.end_mm ? least_decimals_ : writer.decimals(kAxis[axis], least_decimals_);
+    const int decimals = edit.end_mm ? min_decimals_ : writer.decimals(kAxis[axis], min_decimals_);
     const double value = rounded(word_for(move, axis, piece.end_mm[axis]), decimals);
     const double place = place_after(move, axis, value);
     if (std::abs(place - at_[axis]) < 0.5 * step_mm(decimals)) continue;
@@ -124,9 +124,9 @@ std::string Emitter::further_line(const BlockWriter& writer, const Move& move, c
       if (move.feed_mm_per_s > 0)
         if (const auto feed = feeds_.next(move, piece.feed_mm_per_s, nullptr)) words.push_back(*feed);
     } else if (asks_for_feed(edit)) {
-      words.push_back(feeds_.inverse_time(piece.feed_mm_per_s, length, least_decimals_));
+      words.push_back(feeds_.inverse_time(piece.feed_mm_per_s, length, min_decimals_));
     } else {
-      words.push_back({'F', mm_per_min_from_mm_per_s(piece.feed_mm_per_s) / length, least_decimals_});
+      words.push_back({'F', mm_per_min_from_mm_per_s(piece.feed_mm_per_s) / length, min_decimals_});
     }
   }
   at_ = after;

@@ -83,9 +83,9 @@ std::optional<NewWord> FeedWords::next(const Move& move, double feed_mm_per_s, c
   return word;
 }
 
-NewWord FeedWords::inverse_time(double feed_mm_per_s, double length_mm, int least_decimals) {
+NewWord FeedWords::inverse_time(double feed_mm_per_s, double length_mm, int min_decimals) {
   const double value = mm_per_min_from_mm_per_s(feed_mm_per_s) / length_mm;
-  const int decimals = std::max(least_decimals, decimals_for(value));
+  const int decimals = std::max(min_decimals, decimals_for(value));
   return {'F', value, decimals, &*style_};
 }
 

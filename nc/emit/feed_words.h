@@ -32,7 +32,7 @@ class FeedWords {
   std::optional<NewWord> next(const Move& move, double feed_mm_per_s, const Word* own);
 
   /// The F of a block in inverse time.
-  NewWord inverse_time(double feed_mm_per_s, double length_mm, int least_decimals);
+  NewWord inverse_time(double feed_mm_per_s, double length_mm, int min_decimals);
 
   /// The F word, in the state of `last` (a move behind which the feed is astray), that brings the modal feed back.
   NewWord restored(const Move& last);

@@ -110,7 +110,7 @@ NumberStyle feed_style_of(const Program& program) {
 namespace {
 
 template <class Wanted>
-int most_decimals(const Program& program, Wanted wanted) {
+int max_decimals(const Program& program, Wanted wanted) {
   int most = 0;
   for (const Word& w : program.words)
     if (wanted(w.letter) && !std::isnan(w.value)) most = std::max(most, decimals_of(number_of(program, w)));
@@ -120,11 +120,11 @@ int most_decimals(const Program& program, Wanted wanted) {
 }  // namespace
 
 int feed_decimals_of(const Program& program) {
-  return most_decimals(program, [](char letter) { return letter == 'F'; });
+  return max_decimals(program, [](char letter) { return letter == 'F'; });
 }
 
 int coordinate_decimals_of(const Program& program) {
-  return most_decimals(program, [](char letter) { return letter >= 'X' && letter <= 'Z'; });
+  return max_decimals(program, [](char letter) { return letter >= 'X' && letter <= 'Z'; });
 }
 
 double rounded(double value, int decimals) {

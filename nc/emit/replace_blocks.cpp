@@ -1,5 +1,6 @@
 #include "nc/emit.h"
 
+#include <cassert>
 #include <string_view>
 
 namespace camber::nc {
@@ -24,6 +25,8 @@ std::string replace_blocks(const Program& program, std::span<const BlockReplacem
   out.reserve(text.size());
   std::size_t copied = 0;
   for (const BlockReplacement& r : replacements) {
+    assert(r.first <= r.last && r.last < program.blocks.size());
+    assert(program.blocks[r.first].offset >= copied);
     out.append(text, copied, program.blocks[r.first].offset - copied);
     const std::string_view line_end = line_end_of(program, r.first);
     for (std::size_t i = 0; i < r.lines.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "removal/stock.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 
@@ -69,7 +70,8 @@ class CoarseGrid {
 }  // namespace
 
 StockShape stock_shape(const Stock& stock, std::size_t max_crossings) {
-  const auto most = static_cast<double>(std::max<std::size_t>(1, max_crossings));
+  assert(max_crossings >= 1);
+  const auto most = static_cast<double>(max_crossings);
   const Vec3 size = stock.max_mm() - stock.min_mm();
   const double area_mm2 = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
   // A face that lies along the grid is crossed once a cell.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -190,7 +191,7 @@ class UprightMarkQueue {
                                             static_cast<float>(p.error_mm),
                                             static_cast<float>(stamp.deflection().largest_mm)};
     for (std::size_t v = 0; v < kValues; ++v) lanes_[v].push_back(values[v]);
-    shift_.push_back(static_cast<std::int32_t>((stamp.deflection().row - first_row_) / 2));
+    deflection_index_.push_back(static_cast<std::int32_t>((stamp.deflection().row - first_row_) / 2));
   }
 
   /// Calls lowered(pair, height) for all that are lowered, in the order of add, and forgets them.
@@ -198,21 +199,21 @@ class UprightMarkQueue {
   void settle(Function lowered) {
     const std::size_t count = pairs_.size();
     if (count == 0) return;
-    while (shift_.size() % upright::MarkLanes::kLanes != 0) {
+    while (deflection_index_.size() % upright::MarkLanes::kLanes != 0) {
       for (auto& values : lanes_) values.push_back(values.back());
-      shift_.push_back(shift_.back());
+      deflection_index_.push_back(deflection_index_.back());
     }
-    height_.resize(shift_.size());
+    height_.resize(deflection_index_.size());
     const auto& l = lanes_;
     upright::mark_kernels().heights(
-        {static_cast<int>(shift_.size()), l[0].data(), l[1].data(), l[2].data(), l[3].data(), l[4].data(), l[5].data(),
-         l[6].data(), l[7].data(), shift_.data(), height_.data()},
+        {static_cast<int>(deflection_index_.size()), l[0].data(), l[1].data(), l[2].data(), l[3].data(), l[4].data(),
+         l[5].data(), l[6].data(), l[7].data(), deflection_index_.data(), height_.data()},
         tool_);
     for (std::size_t i = 0; i < count; ++i)
       if (height_[i] < lanes_[kHighest][i]) lowered(pairs_[i], static_cast<double>(height_[i]));
     pairs_.clear();
     for (auto& values : lanes_) values.clear();
-    shift_.clear();
+    deflection_index_.clear();
   }
 
  private:
@@ -221,7 +222,7 @@ class UprightMarkQueue {
   upright::MarkTool tool_;
   std::vector<Pair> pairs_;
   std::array<std::vector<float>, kValues> lanes_;
-  std::vector<std::int32_t> shift_;
+  std::vector<std::int32_t> deflection_index_;
   std::vector<float> height_;
 };
 
@@ -352,6 +353,7 @@ struct SurfaceMap::Impl {
 
 SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank, const Stock* solid)
     : impl_(std::make_unique<Impl>()) {
+  assert(blank.voxel_mm() == target.voxel_mm() && (!solid || solid->voxel_mm() == target.voxel_mm()));
   const double block_mm = kBlock * target.voxel_mm(), band = target.band_mm();
   const auto block_of = [&](const SurfacePoint& p) { return cube_of(p.place_mm, block_mm); };
   auto& points = impl_->points;

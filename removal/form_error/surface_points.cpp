@@ -2,6 +2,7 @@
 #include "removal/form_error.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -391,6 +392,7 @@ std::vector<std::vector<SurfacePoint>> by_tile(const Stock* machined, const Stoc
 }  // namespace
 
 std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target) {
+  assert(machined.voxel_mm() == target.voxel_mm());
   std::vector<SurfacePoint> points;
   for (const auto& part : by_tile(&machined, target, nullptr, nullptr))
     points.insert(points.end(), part.begin(), part.end());

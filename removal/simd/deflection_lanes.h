@@ -1,5 +1,5 @@
 #pragma once
-// Shifts of the deflected envelope at places, in vectors. Included by the files that are compiled for one instruction
+// Deflections of the envelope at places, in vectors. Included by the files that are compiled for one instruction
 // set, as removal/simd/upright_kernels_impl.h.
 #include <xsimd/xsimd.hpp>
 

@@ -37,8 +37,8 @@ struct StampPlace {
   float per_voxel;       ///< 1 / voxel_mm
   float feed_mm[3];      ///< motion since the stamp before
   float feed_length_mm;
-  float least_mm;      ///< a block whose normals all go along the motion by less than this makes no chip
-  float least_cap_mm;  ///< nor does a point whose motion allows no more than this; <= 0
+  float min_forward_mm;  ///< a block whose normals all go along the motion by less than this makes no chip
+  float min_cap_mm;      ///< nor does a point whose motion allows no more than this; <= 0
 };
 
 /// Points whose chip the fields of the stamps around decide.
@@ -74,7 +74,7 @@ struct BlankPoints {
   const std::int32_t* lane;  ///< of BlockPoints
   const std::int32_t* cell;  ///< lowest voxel of each point's cell
   const float* share[3];     ///< place in the cell
-  float voxel_mm, least_slope;
+  float voxel_mm, min_slope;
   float* thickness;  ///< in: of what is below the stamps' surfaces, mm; out: the blank's surface counts too
 };
 
@@ -88,7 +88,7 @@ struct BlockKernels {
   /// Thickness of what rounded cylinders left at shallow points: Kernels::thinnest of the eight corners of each cell.
   /// The lists are read and out is written up to a multiple of 8. No stamp in sight: 1e30.
   void (*thin_points)(const BlockPoints& points, const ShallowPoints& shallow, const ArenaView& arena,
-                      const FixedTips& tips, float flat, float corner, float least_slope, float* out);
+                      const FixedTips& tips, float flat, float corner, float min_slope, float* out);
   /// The blank's surface as one field more, read trilinearly: distance over slope.
   void (*thin_by_blank)(const BlockPoints& points, const BlankPoints& at);
 };

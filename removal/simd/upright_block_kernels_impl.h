@@ -39,7 +39,7 @@ struct BlockVectors {
 
   static int find_blocks(const BlockBounds& b, const StampPlace& s, const ArenaView& arena, std::int32_t* out) {
     int found = 0;
-    const F fx(s.feed_mm[0]), fy(s.feed_mm[1]), fz(s.feed_mm[2]), length(s.feed_length_mm), least(s.least_mm);
+    const F fx(s.feed_mm[0]), fy(s.feed_mm[1]), fz(s.feed_mm[2]), length(s.feed_length_mm), least(s.min_forward_mm);
     const F per_voxel(s.per_voxel), half(0.5f), base_z(static_cast<float>(s.base[2]) + s.fraction[2]);
     const I squares_x(arena.n[0] << kSquareShift), squares_y(arena.n[1] << kSquareShift);
     constexpr int kAhead = 4;
@@ -118,7 +118,7 @@ struct BlockVectors {
         const F around = load(p.cos_phi + k) * fy - load(p.sin_phi + k) * fx, around2 = around * around;
         const F cap =
             along + half * (load(p.k1 + k) * xsimd::max(zero, tangential2 - around2) + load(p.k2 + k) * around2);
-        const auto forward = cap > F(s.least_cap_mm);
+        const auto forward = cap > F(s.min_cap_mm);
         cap.store_aligned(caps + l);
         if (!xsimd::any(forward)) {
           zero.store_aligned(thickness + l);
@@ -159,7 +159,7 @@ struct BlockVectors {
   }
 
   static void thin_points(const BlockPoints& p, const ShallowPoints& shallow, const ArenaView& arena,
-                          const FixedTips& tips, float flat, float corner, float least_slope, float* out) {
+                          const FixedTips& tips, float flat, float corner, float min_slope, float* out) {
     constexpr int kCorners = 8;
     const F zero(0.0f), tiny(1e-12f), one(1.0f), step(tips.step_mm), none(1e30f);
     const RoundedCutter<F> cutter{F(flat), F(corner)};
@@ -188,7 +188,7 @@ struct BlockVectors {
         const auto place = cutter.place(rho, z);
         const auto normal = cutter.normal(place);
         const F outward = (x * nx + y * ny) / xsimd::max(rho, tiny);
-        const F slope = xsimd::min(xsimd::max(normal.radial * outward - normal.down * nz, F(least_slope)), one);
+        const F slope = xsimd::min(xsimd::max(normal.radial * outward - normal.down * nz, F(min_slope)), one);
         const I kept = xsimd::select(named, I(1), I(0));
         best = xsimd::min(best, xsimd::select(to_float(kept) > zero, place.distance / slope, none));
       }
@@ -215,7 +215,7 @@ struct BlockVectors {
       const F gy = along_y[0] + u * (along_y[1] - along_y[0]), gz = along_z[0] + u * (along_z[1] - along_z[0]);
       const F fall =
           -(gx * T::gather(p.nx, lane) + gy * T::gather(p.ny, lane) + gz * T::gather(p.nz, lane)) * per_voxel;
-      const F slope = xsimd::min(xsimd::max(fall, F(b.least_slope)), one);
+      const F slope = xsimd::min(xsimd::max(fall, F(b.min_slope)), one);
       const F depth = -distance, thickness = load(b.thickness + i);
       xsimd::min(thickness, xsimd::select(depth > zero, depth / slope, depth)).store_unaligned(b.thickness + i);
     }

@@ -118,8 +118,8 @@ struct Kernels {
   void (*read_points)(const PointLanes& points, int from, int count, const StampView& stamp, const TileView& tile,
                       LaneReading& out);
   /// Thickness of what a rounded cylinder left at each corner's tip, along the normal: distance over slope, the slope
-  /// at least `least_slope`; the least of them and its corner, at most 0 where one has cut the point away.
-  Thinnest (*thinnest)(CornerLanes& corners, float flat, float corner, float least_slope);
+  /// at least `min_slope`; the least of them and its corner, at most 0 where one has cut the point away.
+  Thinnest (*thinnest)(CornerLanes& corners, float flat, float corner, float min_slope);
   /// stock = max(stock, -cutter), at most band; voxels that change take the id.
   LineResult (*cut_line)(const LineCut& line);
   LineResult (*cut_line_deflected)(const LineCut& line, const LineDeflection& deflection);

@@ -105,7 +105,7 @@ struct Vectors {
     }
   }
 
-  static Thinnest thinnest(CornerLanes& c, float flat, float corner, float least_slope) {
+  static Thinnest thinnest(CornerLanes& c, float flat, float corner, float min_slope) {
     alignas(64) float each[8];
     const F zero(0.0f), tiny(1e-12f);
     const RoundedCutter<F> cutter{F(flat), F(corner)};
@@ -127,7 +127,7 @@ struct Vectors {
       const F depth = place.distance - load(c.deflection + l);
       const F outward = (x * F(c.normal[0]) + y * F(c.normal[1])) / xsimd::max(rho, tiny);
       const F fall = normal.radial * outward - normal.down * F(c.normal[2]);
-      const F slope = xsimd::min(xsimd::max(fall, F(least_slope)), F(1.0f));
+      const F slope = xsimd::min(xsimd::max(fall, F(min_slope)), F(1.0f));
       xsimd::select(load(c.valid + l) > zero, depth / slope, F(1e30f)).store_aligned(each + l);
     }
     Thinnest least{each[0], 0};

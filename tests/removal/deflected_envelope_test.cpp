@@ -41,7 +41,7 @@ DeflectionTable deflected_rows() {
 }
 
 /// The deflection of the envelope's point at an angle and height, by the definition of DeflectionTable.
-Vec3 shift_of(const DeflectionTable& deflections, int row, double phi, double height, double lag_per_mm) {
+Vec3 deflection_of(const DeflectionTable& deflections, int row, double phi, double height, double lag_per_mm) {
   double step = (phi - height * lag_per_mm) * kSteps * kFlutes / (2 * kPi);
   step -= kSteps * std::floor(step / kSteps);
   const int m0 = static_cast<int>(step) % kSteps, m1 = (m0 + 1) % kSteps;
@@ -132,8 +132,8 @@ TEST(DeflectedEnvelope, MarksLieOnTheDisplacedEnvelope) {
       Vec3 from = x;
       for (int i = 0; i < 30; ++i) {
         const double phi = std::atan2(from.y(), from.x()), rho = from.head<2>().norm();
-        from = x - shift_of(deflections, 0, phi, envelope.shape.profile.nearest({rho, from.z()}).place.y(),
-                            envelope.lag_per_mm);
+        from = x - deflection_of(deflections, 0, phi, envelope.shape.profile.nearest({rho, from.z()}).place.y(),
+                                 envelope.lag_per_mm);
       }
       EXPECT_NEAR(envelope.shape.distance_mm(from), 0, 2e-5);
       ++met;

@@ -41,7 +41,7 @@ TEST(SpareLines, ComesNearTheLeastSumOfBlocksAndLines) {
   fewest.max_kink_rad = kPi;
   FitOptions spare = fewest;
   spare.primitives_per_line_mm = 2;
-  double fewest_mm = 0, spared_mm = 0, spared_sum = 0, least_sum = 0;
+  double fewest_mm = 0, spared_mm = 0, spared_sum = 0, min_sum = 0;
   std::size_t fewest_blocks = 0, spared_blocks = 0;
   for (int i = 0; i < 60; ++i) {
     const Points points = gentle_curve(random);
@@ -53,12 +53,12 @@ TEST(SpareLines, ComesNearTheLeastSumOfBlocksAndLines) {
     EXPECT_LE(sum(spared), sum(few) + 1e-6);
     fewest_mm += lines_mm(points, few), spared_mm += lines_mm(points, spared);
     fewest_blocks += few.size(), spared_blocks += spared.size();
-    spared_sum += sum(spared), least_sum += sum(best);
+    spared_sum += sum(spared), min_sum += sum(best);
   }
   std::cout << fmt::format("lines {:.0f} mm in {} blocks, spared {:.0f} mm in {}; sum {:.0f}, least {:.0f}\n",
-                           fewest_mm, fewest_blocks, spared_mm, spared_blocks, spared_sum, least_sum);
+                           fewest_mm, fewest_blocks, spared_mm, spared_blocks, spared_sum, min_sum);
   EXPECT_LT(spared_mm, 0.92 * fewest_mm);
-  EXPECT_LT(spared_sum, 1.03 * least_sum);
+  EXPECT_LT(spared_sum, 1.03 * min_sum);
 }
 
 TEST(SpareLines, ABowOfManyPointsThatALineCouldBeBecomesArcs) {

@@ -104,7 +104,7 @@ TEST(InclinedPlane, RigidCouplingMatchesTheIndependentCalculations_slow) {
 TEST(InclinedPlane, StaticCouplingKeepsTheVolumeBalance_slow) {
   // The bent cutter's chips are as large as what the stock loses: the tilt of the bent envelope is not forgotten.
   const Result r = simulate(machine::Coupling::static_, 3, 1, 2);
-  // Two percent: the entry of each row, where the shift jumps, is not as well balanced as the steady middle.
+  // Two percent: the entry of each row, where the deflection jumps, is not as well balanced as the steady middle.
   EXPECT_NEAR(r.removed_share, 1, 0.02);
   EXPECT_GT(r.error_median_um, 10);
   EXPECT_LT(r.error_median_um, 30);

@@ -65,7 +65,7 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
   // What curvature adds to a chip at most.
   const double bulge = stamp.feed_per_tooth_mm.squaredNorm() / (2 * std::max(shape.corner_radius_mm, 0.1));
   StampPlace place = arena.place_of(stamp, -pitches_ * bulge - 1e-6);
-  place.least_cap_mm =
+  place.min_cap_mm =
       static_cast<float>((1 - pitches_) * stamp.feed_per_tooth_mm.squaredNorm() * max_curved_per_mm_ / 2);
   const BlockKernels& kernels = block_kernels();
   BlockBounds bounds = blocks_.bounds();

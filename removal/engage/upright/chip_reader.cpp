@@ -215,7 +215,7 @@ Thinnest ChipReader::thinnest_general(CornerLanes& corners) const {
       last = corners.row[c];
       const Vec2 guess(corners.guess[0], corners.guess[1]);
       from_tip.head<2>() -=
-          settled_shift(envelope_, deflections_, memory_.values() + 2 * corners.row[c], from_tip, guess);
+          settled_deflection(envelope_, deflections_, memory_.values() + 2 * corners.row[c], from_tip, guess);
       for (int a = 0; a < 2; ++a) corners.tip[a][c] = static_cast<float>(-from_tip[a]);
     }
     const auto depth = static_cast<float>(envelope_.shape.distance_mm(from_tip)) - corners.deflection[c];

@@ -49,9 +49,9 @@ RowProfile row_profile(const Profile& profile) {
 /// piece's, inside the same with the other sign (profile.h).
 CAMBER_VECTOR_CLONES
 void row_distances(const RowProfile& p, float r, float z, float voxel, int count, float* __restrict out) {
-  std::array<float, Tile::kSide + 7> least2, outward;
+  std::array<float, Tile::kSide + 7> min_squared, outward;
   for (int k = 0; k < count; ++k) {
-    least2[k] = 1e30f;
+    min_squared[k] = 1e30f;
     outward[k] = -(z + static_cast<float>(k) * voxel);
   }
   for (int i = 0; i < p.lines; ++i) {
@@ -61,7 +61,7 @@ void row_distances(const RowProfile& p, float r, float z, float voxel, int count
       const float dz = z + static_cast<float>(k) * voxel - l.z;
       const float along = std::min(std::max(dr * l.along_r + dz * l.along_z, 0.0f), l.length);
       const float er = dr - along * l.along_r, ez = dz - along * l.along_z;
-      least2[k] = std::min(least2[k], er * er + ez * ez);
+      min_squared[k] = std::min(min_squared[k], er * er + ez * ez);
       outward[k] = std::max(outward[k], dr * l.along_z - dz * l.along_r);
     }
   }
@@ -72,12 +72,12 @@ void row_distances(const RowProfile& p, float r, float z, float voxel, int count
       const float dz = z + static_cast<float>(k) * voxel - a.z;
       const float gap = std::sqrt(dr * dr + dz * dz) - a.radius;
       const bool in_wedge = (a.from_r * dz - a.from_z * dr >= 0) & (dr * a.to_z - dz * a.to_r >= 0);
-      least2[k] = in_wedge ? std::min(least2[k], gap * gap) : least2[k];
+      min_squared[k] = in_wedge ? std::min(min_squared[k], gap * gap) : min_squared[k];
       outward[k] = in_wedge ? std::max(outward[k], gap) : outward[k];
     }
   }
   for (int k = 0; k < count; ++k) {
-    const float d = std::sqrt(least2[k]);
+    const float d = std::sqrt(min_squared[k]);
     out[k] = outward[k] > 0 ? d : -d;
   }
 }
@@ -130,8 +130,8 @@ bool for_rows(const Tile& tile, ColumnCover& cover, const Index3& t, double voxe
 
 }  // namespace
 
-Vec2 settled_shift(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
-                   const Vec3& from_tip, Vec2 guess) {
+Vec2 settled_deflection(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
+                        const Vec3& from_tip, Vec2 guess) {
   constexpr auto close = static_cast<double>(Settling::kFieldClose_mm);
   const auto z = static_cast<float>(from_tip.z());
   for (int step = 0; step < Settling::kFieldSteps; ++step) {
@@ -188,7 +188,7 @@ bool carve_deflected_general(Tile& tile, ColumnCover& cover, const Index3& t, do
                       if (std::min(largest - row[static_cast<std::size_t>(k)], top) <= distance[k]) continue;
                       const auto x = static_cast<float>(dx), y = static_cast<float>(dy);
                       const auto z = static_cast<float>(z0 + k * voxel);
-                      const Vec2 s = settled_shift(envelope, deflections, deflection.row, {x, y, z}, Vec2::Zero());
+                      const Vec2 s = settled_deflection(envelope, deflections, deflection.row, {x, y, z}, Vec2::Zero());
                       const double d = exact.distance_mm({std::hypot(dx - s.x(), dy - s.y()), z});
                       const float v = std::min(static_cast<float>(-d), top);
                       if (v <= distance[k]) continue;

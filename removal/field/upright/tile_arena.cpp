@@ -175,7 +175,7 @@ ArenaView TileArena::view() const {
           tops_.heights().empty() ? &kAir : tops_.heights().data()};
 }
 
-StampPlace TileArena::place_of(const Stamp& stamp, double least_mm) const {
+StampPlace TileArena::place_of(const Stamp& stamp, double min_forward_mm) const {
   StampPlace place{};
   for (int a = 0; a < 3; ++a) {
     const double at = stamp.pose.tip_mm[a] / voxel_, base = std::floor(at);
@@ -185,7 +185,7 @@ StampPlace TileArena::place_of(const Stamp& stamp, double least_mm) const {
   }
   place.per_voxel = static_cast<float>(1 / voxel_);
   place.feed_length_mm = static_cast<float>(stamp.feed_per_tooth_mm.norm());
-  place.least_mm = static_cast<float>(least_mm);
+  place.min_forward_mm = static_cast<float>(min_forward_mm);
   return place;
 }
 

@@ -48,8 +48,8 @@ class TileArena {
   void read_tops(int reach_voxels, const std::function<const ColumnCover&(std::size_t tile)>& cover_of);
 
   ArenaView view() const;
-  /// Of a stamp that moves at most by its feed; see StampPlace::least_mm.
-  StampPlace place_of(const Stamp& stamp, double least_mm) const;
+  /// Of a stamp that moves at most by its feed; see StampPlace::min_forward_mm.
+  StampPlace place_of(const Stamp& stamp, double min_forward_mm) const;
 
  private:
   void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const Leave& leave,

@@ -1,0 +1,57 @@
+#pragma once
+// The way from a job's files to its first cut, the same for every command that cuts: read, time and stamp the program,
+// check it, read what it is judged against, sweep that through the blank.
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "base/diagnostics.h"
+#include "machine/job.h"
+#include "simulate/predict.h"
+
+namespace camber::simulate {
+
+/// A program and its target, before the first cut. Other programs of the same job (emitted ones, measured ones) may be
+/// cut against the same target: predict(job, setup.target, ...).
+struct Setup {
+  SimulatedProgram program;
+  std::optional<SimulatedProgram> original;  ///< what `target` was swept with; empty: `program`
+  Target target;
+
+  const SimulatedProgram& target_program() const { return original ? *original : program; }
+  bool own_target() const { return !original; }
+};
+
+struct SetupOptions {
+  std::string program{};  ///< file; empty: the job's. Whatever it is, the target is the job's
+  /// What the command asks of the program before the long work; errors that it adds to SetupFindings::program end it.
+  std::function<void(const SimulatedProgram&)> check{};
+};
+
+/// Where diagnostics go; may be one and the same.
+struct SetupFindings {
+  Diagnostics& program;   ///< of the program's text and motion, and of SetupOptions::check
+  Diagnostics& original;  ///< of the text and motion of a target program that is another one
+  Diagnostics& target;    ///< of stock, sweep and part
+};
+
+/// The target is [part] program where the job names one, else the job's program. Throws InputError.
+Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings);
+
+/// Whether the machine can run the program (machine_checks.h), and [tool-slender].
+void check_program(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics);
+
+/// Collisions (collisions.h), and material above the flutes (flute_reach.h).
+void check_clearance(const machine::Job& job, const Setup& setup, Diagnostics& diagnostics);
+
+/// Progress of several predictions: which one, and the share of it that is done.
+using Progress = std::function<void(const std::string& what, double share)>;
+
+/// `progress` of one of them; empty where that is.
+std::function<void(double)> progress_of(const Progress& progress, std::string what);
+
+/// The prediction of a program of which only the surface counts: no contacts (PredictOptions).
+Prediction predict_surface(const machine::Job& job, const Target& target, const SimulatedProgram& program,
+                           const Progress& progress, std::string what);
+
+}  // namespace camber::simulate
