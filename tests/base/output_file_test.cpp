@@ -46,6 +46,7 @@ void expect_part_removed(int signal) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
+    std::signal(signal, SIG_DFL);  // a shell's background jobs ignore SIGINT, and so would we
     remove_parts_on_signals();
     OutputFile file(path);
     file.stream() << "HALF";
