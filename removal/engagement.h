@@ -32,6 +32,10 @@ struct BlockBounds;
 // before left it; f the point's motion since then; B, f_m, f_t its parts along the normal, the meridian and the circle
 // of latitude; k1 and k2 the envelope's curvatures there.
 //
+// Deflected cutters. There the surface below a point was left at another rotation step, with another deflection, than
+// the stamp before has at the point: h = d up to B + ... + r, r the largest deflection of the stamp before, also where
+// B is negative. Beyond that B + ... counts.
+//
 // Level faces. A level face of the stock (the blank's top, the floor of an earlier pass, an allowance on a floor) cuts
 // a whole ring of a cutter's wall in two at once. There the chip holds the fraction of the ring's width that lies in
 // material, and its thickness is that in the middle of this part.
@@ -146,8 +150,8 @@ class RigidEngager {
 /// Maximum tilt of the deflected envelope (a deflection that jumps at an edge's entry is no slope).
 constexpr double kMaxTilt = 0.3;
 
-/// A depth that goes beyond what the motion allows by less than this factor is the surface that the tooth before left:
-/// it is known better than the motion's allowance, of which the smaller of the two would make a lower bound.
+/// A depth that goes beyond what the motion allows by less than this factor, or by less than its deflection, is the
+/// surface that the tooth before left: it is known better than the motion's allowance.
 constexpr float kBeyondCap = 2.0f;
 
 /// Points up to this far outside the material are reported, with a negative thickness.
@@ -157,7 +161,7 @@ constexpr float kNear_mm = 0.1f;
 struct DeflectedChipSample {
   ChipSample chip;     ///< its thickness is the smaller of the next two, negative for a point outside the material
   float depth_mm = 0;  ///< of the stock below the point, against the normal
-  float cap_mm = 0;    ///< what the motion allows; kBeyondCap times that where the depth is less
+  float cap_mm = 0;    ///< what the motion allows; the largest depth that counts where the depth is less
   std::array<float, 2> deeper{};  ///< d(depth)/d(deflection), by x and y
 };
 

@@ -155,13 +155,14 @@ std::span<const DeflectedChipSample> DeflectedEngager::read(std::size_t k) {
   m.find_touches(k);
   const std::size_t tiles = m.first_touch.size() - 1;
   if (m.chips_of_tile.size() < tiles) m.chips_of_tile.resize(tiles);
+  const float reach_mm = m.reader->reach_mm(k);
   tbb::parallel_for(std::size_t{0}, tiles, [&](std::size_t i) {
     auto& out = m.chips_of_tile[i];
     out.clear();
     const auto t = static_cast<std::size_t>(m.touches[m.first_touch[i]].tile);
     const TileStocks stocks{&m.arena[t], m.arena.blank(t)};
     for (std::size_t j = m.first_touch[i]; j < m.first_touch[i + 1]; ++j)
-      m.reader->read(stocks, m.arena.index(t), static_cast<std::int32_t>(k), m.touches[j].patch, out);
+      m.reader->read(stocks, m.arena.index(t), static_cast<std::int32_t>(k), reach_mm, m.touches[j].patch, out);
   });
   m.chips.clear();
   for (std::size_t i = 0; i < tiles; ++i)

@@ -29,6 +29,7 @@ struct StampView {
   float lag_per_mm;
   float per_rad;      ///< rotation steps / (4 pi)
   float max_tilt_mm;  ///< of the deflected envelope, along the motion
+  float reach_mm;     ///< points whose motion allows more than -reach_mm are read
 };
 
 /// A tile's voxels.

@@ -82,7 +82,7 @@ struct Vectors {
       const F bx = xsimd::floor(gx), by = xsimd::floor(gy), bz = xsimd::floor(gz);
       const I ix = to_int(bx) - I(tile.from[0]), iy = to_int(by) - I(tile.from[1]), iz = to_int(bz) - I(tile.from[2]);
       const auto inside = (ix >= I(0)) & (ix < I(kCore)) & (iy >= I(0)) & (iy < I(kCore)) & (iz >= I(0)) &
-                          (iz < I(kCore)) & (to_int(xsimd::select(cap > zero, one, zero)) == I(1));
+                          (iz < I(kCore)) & (to_int(xsimd::select(cap > F(-s.reach_mm), one, zero)) == I(1));
       const I cell = xsimd::select(inside, (ix * I(kSide) + iy) * I(kSide) + iz, I(0));
       const F u = gx - bx, v = gy - by, w = gz - bz;
       const auto d = [&](int i, int j, int m) {

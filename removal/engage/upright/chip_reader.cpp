@@ -74,9 +74,14 @@ ChipReader::VoxelPlace ChipReader::place_of(std::size_t k) const {
   return place;
 }
 
-void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t k, std::uint32_t patch,
+float ChipReader::reach_mm(std::size_t k) const {
+  return stamps_[k].first ? 0.0f : static_cast<float>(deflections_.largest_mm(static_cast<std::ptrdiff_t>(k) - 1));
+}
+
+void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t k, float reach_mm, std::uint32_t patch,
                       std::vector<DeflectedChipSample>& out) const {
-  const VoxelPlace& place = places_[static_cast<std::size_t>(k)];
+  VoxelPlace place = places_[static_cast<std::size_t>(k)];
+  place.view.reach_mm = reach_mm;
   TileView tile_view{stocks.now->distance.data(), {}};
   for (std::size_t a = 0; a < 3; ++a) tile_view.from[a] = tile[a] * Tile::kCore - place.base[a];
   const float air = 0.5f * static_cast<float>(voxel_mm_);
@@ -91,12 +96,13 @@ void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t
       // The trilinear field is never below the ridge's, but for curvature: so it tells what is in air, and what is
       // deeper than the chip.
       const float field = reading.field[l], cap = reading.cap[l];
+      const float limit = std::max(kBeyondCap * cap, cap + reach_mm);
       const std::uint32_t p = lanes_.point(range.from + from + l);
       const float half = wall_half_mm_[p / static_cast<std::uint32_t>(envelope_.steps)];
       if (field > std::max(air, half)) continue;
       const Vec3 normal(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]);
       const std::array<float, 2> along{envelope_.nx[p], envelope_.ny[p]};
-      if (-field > std::max(kBeyondCap * cap, half)) {
+      if (-field > std::max(limit, half)) {
         out.push_back({{p, cap, true}, -field, cap, along});
         continue;
       }
@@ -114,11 +120,11 @@ void ChipReader::read(const TileStocks& stocks, const Index3& tile, std::int32_t
         if (share == 0) continue;
         cell.move_up(part.middle_mm());
       }
-      const Depth below = -field > kBeyondCap * cap && share == 255
+      const Depth below = -field > limit && share == 255
                               ? Depth{-field, along}
                               : depth(stocks, cell, normal, cell.point_mm.head<2>() - straight);
       if (below.mm <= -kNear_mm) continue;
-      const float most = below.mm > kBeyondCap * cap ? cap : kBeyondCap * cap;
+      const float most = below.mm > limit ? cap : limit;
       out.push_back(
           {{p, std::min(below.mm, most), below.mm > kNearCap * cap, false, share}, below.mm, most, below.deeper});
     }

@@ -31,9 +31,13 @@ class ChipReader {
              std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections,
              const BendMemory& memory);
 
+  /// How much more than its motion allows a point of stamp k may take, since the stamp before was deflected otherwise
+  /// when it left the surface there, at another rotation step.
+  float reach_mm(std::size_t k) const;
   /// Appends the chips that stamp k takes in this tile with the points of a patch. Points that the motion leads into
-  /// the material, and that lie out of it by less than kNear_mm along the normal, tell that by a negative thickness.
-  void read(const TileStocks& stocks, const Index3& tile, std::int32_t k, std::uint32_t patch,
+  /// the material, or out of it by less than `reach_mm`, and that lie out of it by less than kNear_mm along the normal,
+  /// tell that by a negative thickness.
+  void read(const TileStocks& stocks, const Index3& tile, std::int32_t k, float reach_mm, std::uint32_t patch,
             std::vector<DeflectedChipSample>& out) const;
 
  private:
