@@ -54,11 +54,17 @@ bool StaticCut::rests(std::span<const float> row, const StaticEquilibrium::Step&
   return part * step.size_um < std::max(options_.settle_um, options_.settle_fraction * step.size_um);
 }
 
+/// The deflection of the stamp before, with this one's run-out.
+void StaticCut::start_from_before(std::size_t k, std::span<float> row) const {
+  std::copy_n(deflections_->row(static_cast<std::ptrdiff_t>(k) - 1), row.size(), row.begin());
+  if (from_ + k > 0) run_out_.add(from_ + k - 1, -1, deflections_->nodes(), row);
+  run_out_.add(from_ + k, 1, deflections_->nodes(), row);
+}
+
 StaticCut::Passing StaticCut::cut(std::size_t k) {
   const auto at = static_cast<std::ptrdiff_t>(k);
   const std::span<float> row(deflections_->row(at), deflections_->row_size());
-  const float* guess = deflections_->row(at - 1);
-  std::copy_n(guess, row.size(), row.begin());
+  start_from_before(k, row);
   Passing out;
   out.settled = false;
   swing_.clear();
@@ -66,11 +72,11 @@ StaticCut::Passing StaticCut::cut(std::size_t k) {
   while (!out.settled && out.rounds < options_.max_rounds) {
     const auto read = engager_.read(k);
     read_.assign(read.begin(), read.end());
-    const auto step = equilibrium_.solve(read_, from_ + k, stamps_[from_ + k], share, row);
+    const auto step = equilibrium_.solve(read_, from_ + k, stamps_[from_ + k], share, run_out_.of(from_ + k), row);
     ++out.rounds;
     if (!(deflections_->largest_mm(at) <= removal::DeflectedEngager::kMaxDeflection_mm)) {
       out.reason = beyond_reach(row);
-      std::copy_n(guess, row.size(), row.begin());
+      start_from_before(k, row);
       break;
     }
     const double next_um = step.rms_um * std::max(kTrust, step.rms_um / before_um);

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "deflection/run_out_offsets.h"
 #include "deflection/static_equilibrium.h"
 #include "removal/engagement.h"
 
@@ -22,14 +23,17 @@ struct SettleOptions {
 };
 
 /// What one tooth passing leaves alone decides the next: so each is brought to its equilibrium by readings of its chips
-/// and solutions for them (StaticEquilibrium), then cut.
+/// and solutions for them (StaticEquilibrium), then cut. Run-out of equally spaced teeth is an offset of the axis that
+/// turns with the tool: the rows hold it beside the deflection, and what each tooth takes follows from what the ones
+/// before have left.
 class StaticCut {
  public:
   StaticCut(removal::Stock& stock, const removal::Stock& blank, const removal::EnvelopeGrid& envelope,
             const ToothPassModel& model, std::span<const removal::Stamp> stamps, std::int32_t first_id,
-            const SettleOptions& options)
+            const SettleOptions& options, const RunOutOffsets& run_out)
       : stamps_(stamps),
         options_(options),
+        run_out_(run_out),
         envelope_(envelope),
         engager_(stock, blank, envelope, stamps, first_id),
         equilibrium_(envelope, model) {}
@@ -53,10 +57,12 @@ class StaticCut {
 
  private:
   NoEquilibrium beyond_reach(std::span<const float> row) const;
+  void start_from_before(std::size_t k, std::span<float> row) const;
   bool rests(std::span<const float> row, const StaticEquilibrium::Step& step) const;
 
   std::span<const removal::Stamp> stamps_;
   SettleOptions options_;
+  const RunOutOffsets& run_out_;
   const removal::EnvelopeGrid& envelope_;
   removal::DeflectedEngager engager_;
   StaticEquilibrium equilibrium_;

@@ -19,6 +19,7 @@ constexpr int kMaxDamped = 60;
 constexpr double kExact_mm = 2e-5;  ///< of delta - C F, at any node
 constexpr double kFar2_mm2 = 1e4;   ///< no tool bends that far and cuts
 constexpr int kMaxHalvings = 5;
+constexpr double kNothing_mm = 1e-8;  ///< of a deflection: rows are kept as floats
 
 using Coarse = Eigen::Matrix4d;
 using CoarseDeflection = Eigen::Vector4d;
@@ -112,11 +113,12 @@ double StaticEquilibrium::lean_mm(const Element& e, std::size_t m) const {
          e.by_height * e.normal.dot(Vec2(upper[0] - lower[0], upper[1] - lower[1]));
 }
 
-/// C F - delta at rotation step m, and how C F changes.
+/// C F + run-out - displacement at rotation step m, and how C F changes.
 void StaticEquilibrium::balance(std::size_t m) {
   const std::size_t from = 2 * m * nodes_;
   double* left = left_.data() + from;
-  for (std::size_t i = 0; i < 2 * nodes_; ++i) left[i] = -deflection_[from + i];
+  const Vec2 run_out = run_out_.empty() ? Vec2(Vec2::Zero()) : run_out_[m];
+  for (std::size_t i = 0; i < 2 * nodes_; ++i) left[i] = run_out[i % 2 == 0 ? 0 : 1] - deflection_[from + i];
   std::fill_n(by_own_.data() + 4 * from, 8 * nodes_, 0.0);
   std::fill_n(by_side_.data() + 4 * from, 8 * nodes_, 0.0);
   const machine::Material& material = model_.material();
@@ -298,7 +300,9 @@ void StaticEquilibrium::creep(Step& out) {
 }
 
 StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing,
-                                                 const removal::Stamp& stamp, double share, std::span<float> row) {
+                                                 const removal::Stamp& stamp, double share,
+                                                 std::span<const Vec2> run_out, std::span<float> row) {
+  run_out_ = run_out;
   for (std::size_t m = 0; m < steps_; ++m)
     for (std::size_t i = 0; i < nodes_; ++i)
       for (std::size_t a = 0; a < 2; ++a)
@@ -328,9 +332,10 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
   double change2 = 0, size2 = 0;
   std::size_t count = 0;
   for (std::size_t m = 0; m < steps_; ++m) {
-    const Vec2 was(read_[2 * nodes_ * m], read_[2 * nodes_ * m + 1]),
-        is(deflection_[2 * nodes_ * m], deflection_[2 * nodes_ * m + 1]);
-    if (was.isZero() && is.isZero()) continue;
+    const Vec2 offset = run_out.empty() ? Vec2(Vec2::Zero()) : run_out[m];
+    const Vec2 was = Vec2(read_[2 * nodes_ * m], read_[2 * nodes_ * m + 1]) - offset,
+               is = Vec2(deflection_[2 * nodes_ * m], deflection_[2 * nodes_ * m + 1]) - offset;
+    if (was.norm() < kNothing_mm && is.norm() < kNothing_mm) continue;
     change2 += (is - was).squaredNorm();
     size2 += is.squaredNorm();
     ++count;

@@ -26,10 +26,11 @@ class StaticEquilibrium {
     bool solved = true;
     int steps = 0;  ///< of Newton's method
   };
-  /// chips: as read with the deflections in `row` ([nodes][steps][2]). Goes `share` of the way from `row` to the
-  /// equilibrium; the chips' thickness follows.
+  /// chips: as read with the displacements in `row` ([nodes][steps][2]): deflections, and `run_out` where there is any:
+  /// the axis' offset at each rotation step, mm, or empty. Goes `share` of the way from `row` to the equilibrium
+  /// row = run_out + C F; the chips' thickness follows.
   Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const removal::Stamp& stamp,
-             double share, std::span<float> row);
+             double share, std::span<const Vec2> run_out, std::span<float> row);
 
  private:
   struct Ring {
@@ -68,6 +69,7 @@ class StaticEquilibrium {
   std::vector<std::size_t> first_;  ///< of a rotation step's elements
   double max_lean_mm_ = 0;
   bool first_stamp_ = false;
+  std::span<const Vec2> run_out_;  ///< of the rotation steps; empty: none
   // [steps][nodes][2]:
   std::vector<double> read_, deflection_;
   std::vector<double> moved_, side_;  ///< deflection less the one that was read; of the step ahead less of that behind

@@ -14,9 +14,15 @@ Teeth::Teeth(const machine::Tool& tool) : runout_mm_(tool.runout_mm), runout_ang
     offset_rad_.push_back(at);
     pitch_fraction_.push_back(pitch / mean);
     at += pitch;
-    even_ = even_ && std::abs(pitch - mean) < 1e-9;
+    evenly_spaced_ = evenly_spaced_ && std::abs(pitch - mean) < 1e-9;
   }
-  even_ = even_ && runout_mm_ == 0;
+  even_ = evenly_spaced_ && runout_mm_ == 0;
+}
+
+Teeth Teeth::without_run_out() const {
+  Teeth out = *this;
+  out.runout_mm_ = 0, out.even_ = evenly_spaced_;
+  return out;
 }
 
 int Teeth::offset_steps(int tooth, int steps) const {

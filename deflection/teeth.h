@@ -16,6 +16,9 @@ class Teeth {
 
   /// All teeth take the same chip.
   bool even() const { return even_; }
+  bool evenly_spaced() const { return evenly_spaced_; }
+  /// The same teeth on a cutter that turns true.
+  Teeth without_run_out() const;
   int count() const { return static_cast<int>(offset_rad_.size()); }
   double offset_rad(int tooth) const { return offset_rad_[static_cast<std::size_t>(tooth)]; }
   /// In steps of a turn of so many.
@@ -40,7 +43,7 @@ class Teeth {
   double room_mm(int tooth, double even_chip_mm, double sine, double lag_rad, double bulge_mm) const;
 
  private:
-  bool even_ = true;
+  bool even_ = true, evenly_spaced_ = true;
   std::vector<double> offset_rad_, pitch_fraction_;  ///< pitch to the next tooth / mean pitch
   double runout_mm_, runout_angle_rad_;
 };

@@ -18,6 +18,7 @@
 namespace camber::simulate {
 
 using deflection::kFine;
+using deflection::RunOutOffsets;
 using deflection::StaticCut;
 using deflection::Teeth;
 using deflection::ToothMarks;
@@ -95,11 +96,13 @@ class Cutter {
         model_(envelope_, material, deflection::beam_of(tool),
                deflection::node_heights(top_mm_,
                                         std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm))),
-               options.coupling == machine::Coupling::static_ ? options.edge_ramp_mm : 0.0, Teeth(tool),
+               rigid_ ? 0.0 : options.edge_ramp_mm, teeth_in_model(Teeth(tool), rigid_),
                options.axis_compliance_mm_per_N) {
     if (!options.blank) own_blank_.emplace(stock);
     blank_ = options.blank ? options.blank : &*own_blank_;
-    if (const Teeth teeth(tool); !teeth.even() && !options.drilling) tooth_marks_.emplace(envelope_, teeth);
+    const Teeth teeth(tool), modelled = teeth_in_model(teeth, rigid_);
+    if (!modelled.even() && !options.drilling) tooth_marks_.emplace(envelope_, modelled);
+    if (!rigid_ && teeth.evenly_spaced()) run_out_ = RunOutOffsets(teeth, model_.steps());
     if (!rigid_) removal::make_patches(envelope_, 0.6 * stock.band_mm());
   }
 
@@ -122,7 +125,7 @@ class Cutter {
       leave_uneven(stamps, from, deflections, contacts, first_id + static_cast<std::int32_t>(from), loads);
     } else {
       if (options_.surface) mark(stamps, deflections, first_id + static_cast<std::int32_t>(from));
-      tell_contacts(envelope_, deflections, contacts, loads);
+      tell_contacts(envelope_, run_out_.none() ? deflections : without_run_out(deflections, from), contacts, loads);
     }
     for (const StampLoad& load : loads) result.chip_mm3 += load.chip_mm3;
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
@@ -137,6 +140,18 @@ class Cutter {
   }
 
  private:
+  /// In static coupling the run-out of equally spaced teeth displaces the tool (StaticCut): to the chips they are even.
+  static Teeth teeth_in_model(const Teeth& teeth, bool rigid) {
+    return !rigid && teeth.evenly_spaced() ? teeth.without_run_out() : teeth;
+  }
+
+  DeflectionTable without_run_out(const DeflectionTable& rows, std::size_t from) const {
+    DeflectionTable out = rows;
+    for (std::size_t k = 0; k < out.stamps; ++k)
+      run_out_.add(from + k, -1, out.nodes(), {out.row(static_cast<std::ptrdiff_t>(k)), out.row_size()});
+    return out;
+  }
+
   /// Deflection straight from the chips.
   void engage(std::span<const Stamp> all, std::size_t from, DeflectionTable& deflections, std::vector<StampLoad>& loads,
               std::int32_t first_id, CutResult& result) {
@@ -228,7 +243,8 @@ class Cutter {
               std::int32_t first_id, CutResult& result) {
     if (!static_cut_)
       static_cut_.emplace(stock_, *blank_, envelope_, model_, all, first_id,
-                          deflection::SettleOptions{options_.max_rounds, options_.settle_um, options_.settle_fraction});
+                          deflection::SettleOptions{options_.max_rounds, options_.settle_um, options_.settle_fraction},
+                          run_out_);
     static_cut_->start(from, loads.size(), deflections);
     ToothPass pass;
     for (std::size_t k = 0; k < loads.size(); ++k) {
@@ -270,6 +286,7 @@ class Cutter {
   EnvelopeGrid envelope_;
   ToothPassModel model_;
   std::optional<ToothMarks> tooth_marks_;         ///< of teeth that are not even
+  RunOutOffsets run_out_;                         ///< static: of equally spaced teeth
   std::optional<removal::RigidEngager> engager_;  ///< rigid
   std::optional<StaticCut> static_cut_;
   bool settled_ = true;          ///< the last tooth passing

@@ -117,6 +117,19 @@ TEST(StaticPlane, CarbideIsAsJudged_slow) { expect_the_judged_plane(plane(600));
 
 TEST(StaticPlane, HighSpeedSteelIsAsJudged_slow) { expect_the_judged_plane(plane(210)); }
 
+/// The surface is left where an edge enters with next to no chip, on what the tooth before left in another bend.
+TEST(StaticPlane, UpMillingRowsOfHighSpeedSteelAreAsJudged_slow) {
+  InclinedPlane p = plane(210);
+  p.along_x = 1;
+  expect_the_judged_plane(p);
+}
+
+TEST(StaticPlane, RunOutIsAsJudged_slow) {
+  InclinedPlane p = plane(300);
+  p.pitch_deg = {180, 180}, p.run_out_mm = 0.01, p.run_out_deg = 20;
+  expect_the_judged_plane(p);
+}
+
 TEST(StaticWall, ErrorsAreAsJudged_slow) {
   for (const bool up : {true, false}) {
     FinishedWall w;

@@ -56,7 +56,9 @@ class PlaneJudge {
     std::vector<Period> read;
     double chips = 0;
     for (const bool bends : {false, true}) {
-      TimeDomainMilling milling(tool_, edge_law_of(p_.material, s_.ramp_mm), bends ? bent : rigid,
+      TurningTool tool = tool_;
+      if (!bends) tool.run_out_mm = 0;  // errors hold the run-out
+      TimeDomainMilling milling(tool, edge_law_of(p_.material, s_.ramp_mm), bends ? bent : rigid,
                                 static_cast<int>(std::lround(360 / s_.rotation_deg / p_.flutes)));
       milling.rigid = !bends;
       for (int row = 0; row < s_.bent_rows; ++row) {

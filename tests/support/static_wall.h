@@ -47,7 +47,9 @@ class WallJudge {
     JudgedWall f;
     double chips = 0;
     for (const bool bends : {false, true}) {
-      TimeDomainMilling milling(tool_, edge_law_of(w_.material, s_.ramp_mm), bends ? bent : rigid,
+      TurningTool tool = tool_;
+      if (!bends) tool.run_out_mm = 0;  // errors hold the run-out
+      TimeDomainMilling milling(tool, edge_law_of(w_.material, s_.ramp_mm), bends ? bent : rigid,
                                 static_cast<int>(std::lround(360 / s_.rotation_deg / w_.flutes)));
       milling.rigid = !bends;
       milling.give_up_after = s_.give_up_after;

@@ -1,0 +1,31 @@
+#pragma once
+// Run-out of equally spaced teeth: how far the tool's axis lies off the spindle's at each rotation step.
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/geometry.h"
+#include "deflection/teeth.h"
+
+namespace camber::deflection {
+
+class RunOutOffsets {
+ public:
+  /// None.
+  RunOutOffsets() = default;
+  /// Requires equally spaced teeth.
+  RunOutOffsets(const Teeth& teeth, int steps_per_pitch);
+
+  bool none() const { return offset_mm_.empty(); }
+  /// By the rotation steps of a tooth passing, mm, in the tool's frame; `passing` counts since the tool began. Empty
+  /// without run-out.
+  std::span<const Vec2> of(std::size_t passing) const;
+  /// Adds `times` the offsets to a row of removal::DeflectionTable, [nodes][steps][2].
+  void add(std::size_t passing, float times, std::size_t nodes, std::span<float> row) const;
+
+ private:
+  std::size_t steps_ = 0, teeth_ = 1;
+  std::vector<Vec2> offset_mm_;  ///< [tooth passings of a turn][steps]
+};
+
+}  // namespace camber::deflection
