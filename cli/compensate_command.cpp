@@ -16,6 +16,7 @@
 #include "nc/interpreter.h"
 #include "report/report_data.h"
 #include "report/summary.h"
+#include "report/verdict_text.h"
 
 namespace camber::cli {
 namespace {
@@ -73,6 +74,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   for (const auto& u : arguments.uncertainty)
     for (auto& group : compensate::read_uncertainty(u)) compensate_options.uncertainty.push_back(std::move(group));
   if (!arguments.report.empty()) compensate_options.max_stock_crossings = report::kMaxStockCrossings;
+  compensate_options.keep_anyway = arguments.keep_anyway;
   compensate_options.recheck_voxels_mm = arguments.check_voxels_mm;
   std::optional<compensate::MeasuredFit> fit;
   const machine::Job job = as_measured(told, arguments, diagnostics, compensate_options.progress, fit);
@@ -99,33 +101,25 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
       fmt::print(stderr, "camber: warning: --uncertainty: {} is no parameter of the job; left out [uncertainty]\n",
                  name);
   Diagnostics failed;
-  if (!arguments.dry_run) try_to_write([&] { write_file(arguments.output, result.text); }, failed);
+  const bool written = !arguments.dry_run && (result.better || arguments.keep_anyway);
+  if (written) try_to_write([&] { write_file(arguments.output, result.text); }, failed);
   if (!arguments.json.empty())
-    try_to_write([&] { write_file(arguments.json, report::compensate_json(result, compute_s)); }, failed);
+    try_to_write([&] { write_file(arguments.json, report::compensate_json(result, job.compensation, compute_s)); },
+                 failed);
   progress.show("writing the report");
   if (!arguments.report.empty()) try_to_write([&] { write_report(arguments, job, result, diagnostics); }, failed);
   progress.clear();
 
   if (!options.quiet) fmt::print("{}", report::compensate_text(result, compute_s));
   failed.throw_if_errors();
-  for (const std::string& doubt : result.doubts) print_error(doubt);
-  if (!result.doubts.empty()) return kNumbersDidNotWorkOut;
-  if (const std::string unsettled = report::unsettled_sentence(result); !unsettled.empty()) {
-    print_error(unsettled);
-    return kNumbersDidNotWorkOut;
+  const report::VerdictText verdict = report::verdict_text(result, job.compensation);
+  if (!verdict.success) {
+    print_error(verdict.headline);
+    for (const std::string& reason : verdict.reasons) print_error(reason);
   }
-  if (!result.within_part) {
-    print_error(
-        fmt::format("more than a thousandth of the surface lies {:.2f} um or more in the part, deepest ({:.2f} um) at "
-                    "X{:.3f} Y{:.3f} Z{:.3f}; no more than {:g} um ({}) were expected",
-                    result.depth_after.held_um, result.depth_after.deepest_um, result.depth_after.place_mm.x(),
-                    result.depth_after.place_mm.y(), result.depth_after.place_mm.z(), job.compensation.overcut_um(),
-                    job.compensation.max_overcut_um > 0 ? "max_overcut_um" : "tolerance_um"));
-    return kNumbersDidNotWorkOut;
-  }
-  if (result.stop == compensate::Stop::tolerance) return kDone;
-  print_error(report::left_over_sentence(result.split_after, job.compensation));
-  return kNumbersDidNotWorkOut;
+  if (!written && !arguments.dry_run)
+    print_error(fmt::format("{} was not written; --keep-anyway writes the round of the least error", arguments.output));
+  return verdict.success ? kDone : kNumbersDidNotWorkOut;
 }
 
 }  // namespace camber::cli

@@ -80,6 +80,8 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
                    "predict both programs again on a grid of this voxel, mm; may be repeated")
       ->check(CLI::PositiveNumber)
       ->type_name("MM");
+  command->add_flag("--keep-anyway", arguments->keep_anyway,
+                    "write the program even where it is no better than the given one");
   command->add_flag("--header", arguments->header,
                     "comment lines at the program's head: what was done, with what model");
   command->add_flag("--header-hash", arguments->header_hash, "the same, with a hash of everything that was read");

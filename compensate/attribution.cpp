@@ -39,9 +39,22 @@ std::vector<Observation> Observed::of_path() const {
   return out;
 }
 
+std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& given, const Observed& first,
+                           std::span<const removal::SurfacePoint> surface,
+                           std::span<const simulate::PathShare> own_target) {
+  std::vector<bool> out = first.compensated;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const std::int32_t stamp = surface[i].target_stamp;
+    if (stamp < 0 || static_cast<std::size_t>(stamp) >= own_target.size()) continue;
+    const std::uint32_t move = own_target[static_cast<std::size_t>(stamp)].move;
+    if (path.contains(move) && given.moves[move].editable) out[i] = true;
+  }
+  return out;
+}
+
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const MoveMap& map,
-                 std::span<const removal::SurfacePoint> surface, bool own_target) {
+                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathShare> own_target) {
   Observed out;
   out.points.resize(surface.size());
   out.compensated.assign(surface.size(), false);
@@ -52,15 +65,15 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const simulate:
     const auto& p = surface[i];
     Observation& o = out.points[i];
     o.normal = p.normal;
-    o.error_mm = p.error_mm;
+    o.error_mm = judged_mm(p, job.compensation.reference);
     o.area_mm2 = p.area_mm2;
     MoveMap::MovePlace at;
     if (known(p.machined_stamp, emitted)) {
       const auto& stamp = emitted.path.stamps[static_cast<std::size_t>(p.machined_stamp)];
       at = map.given(stamp.move, stamp.share);
-    } else if (own_target && known(p.target_stamp, given)) {
-      const auto& stamp = given.path.stamps[static_cast<std::size_t>(p.target_stamp)];
-      at = {stamp.move, stamp.share};
+    } else if (p.target_stamp >= 0 && static_cast<std::size_t>(p.target_stamp) < own_target.size()) {
+      const auto& stamp = own_target[static_cast<std::size_t>(p.target_stamp)];
+      at = {stamp.move, static_cast<double>(stamp.share)};
     } else {
       continue;
     }

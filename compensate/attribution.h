@@ -10,18 +10,34 @@
 
 namespace camber::compensate {
 
+/// The error that a compensation works on and is judged by: error_um, or deflection_um where [compensation] reference
+/// is the machine.
+inline double judged_mm(const removal::SurfacePoint& p, machine::Reference reference) {
+  return reference == machine::Reference::machine ? p.error_mm - p.contour_mm : p.error_mm;
+}
+
 /// The surface of one prediction as the fit sees it: one entry a surface point, in its order.
 struct Observed {
   std::vector<Observation> points;
   std::vector<bool> compensated;  ///< made by a move that may be shifted; the others' places mean nothing
+  /// What is judged: surface that the moves to compensate make, in the program as given or by the nominal path. The
+  /// same in every round. Empty: all.
+  std::vector<bool> reach{};
+  bool judged(std::size_t i) const { return reach.empty() || reach[i]; }
   /// Those that may be shifted.
   std::vector<Observation> of_path() const;
 };
 
-/// A point belongs to the stamp that cut the machined surface there; where nothing did, to the stamp of the target's
-/// sweep, if that is the program's own (`own_target`). `map`: from the emitted program's moves to those of `path`.
+/// Observed::reach, from the first observation of the program as given; `own_target`: see observe.
+std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& given, const Observed& first,
+                           std::span<const removal::SurfacePoint> surface,
+                           std::span<const simulate::PathShare> own_target);
+
+/// A point belongs to the stamp that cut the machined surface there; where nothing did, to the stamp of the nominal
+/// sweep, if that is the given program's own (`own_target`: Target::stamps; else empty). `map`: from the emitted
+/// program's moves to those of `path`.
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const MoveMap& map,
-                 std::span<const removal::SurfacePoint> surface, bool own_target);
+                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathShare> own_target);
 
 }  // namespace camber::compensate

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "compensate/choice.h"
 #include "compensate/fit_shift.h"
 #include "compensate/guard.h"
 #include "compensate/not_emitted.h"
@@ -27,6 +28,8 @@ std::string to_string(Stop stop) {
       return "tolerance";
     case Stop::stalled:
       return "stalled";
+    case Stop::depth_limit:
+      return "depth_limit";
     case Stop::rounds:
       break;
   }
@@ -44,6 +47,9 @@ constexpr int kGuardRounds = 5;      // beyond max_rounds, to stay out of the pa
 constexpr int kStiffenings = 12;     // of the path where its angles grow by more than the bound
 constexpr double kStiffer = 2.5;
 constexpr double kRowReach_mm = 1.0;
+constexpr double kGuardReach_mm = 2.0;   // a lift fades out over this length, or ...
+constexpr double kGuardSmoothings = 8;   // ... so many smoothing lengths
+constexpr double kLeftOver = 0.25;       // of the tolerance: what a shift can still correct is not worth a round
 constexpr double kSplit_mm = 0.0005;     // a split of a line in the first round must be worth this, ...
 constexpr double kLateSplit_mm = 0.002;  // ... a later one this
 
@@ -110,14 +116,14 @@ class Loop {
     start(out);
     converge(out);
     stay_out_of_part(out);
+    choose(out);
     finish(out);
     check(out);
     return out;
   }
 
  private:
-  double tolerance_mm() const { return job_.compensation.tolerance_um / 1000; }
-  double overcut_um() const { return job_.compensation.overcut_um(); }
+  double tolerance_mm() const { return job_.compensation.half_width_um() / 1000; }
 
   FitShiftOptions fit_options(std::span<const double> stiffness, std::span<const RowLink> links,
                               std::span<const double> link_stiffness) const {
@@ -136,11 +142,13 @@ class Loop {
 
   /// The program as given: its error, what of it is compensated, and the points of the path.
   void start(CompensationResult& out) {
-    simulate::Prediction given = trials_.predict(program_, progress("as given"));
-    out.doubts = simulate::doubts(job_, program_, given);
-    if (simulate::beyond_model(given)) throw BeyondModel(fmt::format("{}", fmt::join(out.doubts, "; ")));
-    last_.keep(std::move(given));
-    out.finishing = find_finishing(job_, program_, last_.surface);
+    auto given = std::make_shared<Trial>();
+    simulate::Prediction prediction = trials_.predict(program_, progress("as given"));
+    out.doubts = simulate::doubts(job_, program_, prediction);
+    if (simulate::beyond_model(prediction)) throw BeyondModel(fmt::format("{}", fmt::join(out.doubts, "; ")));
+    out.unseen_mm2 = prediction.unseen_mm2;
+    given->keep(std::move(prediction));
+    out.finishing = find_finishing(job_, program_, given->surface);
     check_compensated(program_, out.finishing.moves, diagnostics_);
     diagnostics_.throw_if_errors();
     nc::warn_of_uneditable(program_.text, program_.moves, out.finishing.moves, diagnostics_);
@@ -150,15 +158,24 @@ class Loop {
     stiffness_.assign(path_->points().size(), 1.0);
     links_ = row_links(*path_, kRowReach_mm);
     splits_.emplace(*path_);
-    last_.shifts = path_->shifts();
-    last_.observed = trials_.observe(*path_, nullptr, last_.surface);
-    first_observed_ = last_.observed;
+    given->shifts = path_->shifts();
+    given->observed = trials_.observe(*path_, nullptr, given->surface);
+    reach_ = reach_of(*path_, program_.moves, given->observed, given->surface, setup_.own_stamps());
+    given->observed.reach = reach_;
+    last_ = best_ = allowed_ = given;
+    first_observed_ = given->observed;
+    out.reference = job_.compensation.reference;
+    out.own_depth_limit = job_.compensation.depth_limit_um().has_value();
+    depth_limit_um_ = job_.compensation.depth_limit_um().value_or(0);
+    if (!out.own_depth_limit)
+      depth_limit_um_ = default_depth_limit_um(*path_, given->observed, fit_options(), 1000 * tolerance_mm());
+    out.depth_limit_um = depth_limit_um_;
+    out.plain_before = figures_of(*given);
     out.feed_before = program_.feed;
-    out.surface_before = last_.surface;
-    out.loads_before = last_.loads;
+    out.surface_before = last_->surface;
+    out.loads_before = last_->loads;
     record(out, {});
-    out.depth_before = depth_of(last_.surface, last_.observed, overcut_um(), true);
-    best_ = last_;
+    out.depth_before = depth_of(last_->surface, last_->observed, depth_limit_um_, true);
   }
 
   void converge(CompensationResult& out) {
@@ -177,30 +194,43 @@ class Loop {
     }
   }
 
-  /// Where the best round's surface lies deeper than the tolerance, further rounds lift the path there.
+  /// Where the best round's surface lies deeper than the limit, further rounds lift the path there.
   void stay_out_of_part(CompensationResult& out) {
-    if (out.best == 0) return;  // nothing was moved
-    Guard guard(overcut_um() / 1000);
+    if (out.best == 0 || out.rounds[out.best].deepest_um <= depth_limit_um_) return;
+    const double reach = std::max(kGuardReach_mm, kGuardSmoothings * fit_options().smoothing_mm);
+    Guard guard(*path_, depth_limit_um_ / 1000, reach);
     last_ = best_;
     free_correctable_um_ = out.rounds[out.best].split.correctable_um;
-    free_ = best_.emitted;
-    for (int i = 0; i < kGuardRounds && out.rounds[out.best].deepest_um > overcut_um(); ++i) {
-      guard.learn(last_.observed);
+    free_ = best_->emitted;
+    free_round_ = out.best;
+    double deepest_um = out.rounds[out.best].deepest_um;
+    for (int i = 0; i < kGuardRounds && deepest_um > depth_limit_um_; ++i) {
+      guard.learn(last_->observed, deepest_um / 1000);
       step(out, 1, &guard);
-      if (out.rounds.back().deepest_um < out.rounds[out.best].deepest_um) take(out);
+      deepest_um = out.rounds.back().deepest_um;
     }
+  }
+
+  /// What is written: the best round that keeps the limits; the program as given where none is better than that.
+  void choose(CompensationResult& out) {
+    out.better = allowed_index_ > 0 || out.rounds.size() == 1;
+    if (!out.better && options_.keep_anyway) return;
+    out.best = allowed_index_;
+    best_ = allowed_;
   }
 
   /// New shifts from the last trial's error, and their prediction.
   void step(CompensationResult& out, double share, const Guard* guard) {
-    const Observed before = last_.observed;
+    const std::shared_ptr<const Trial> from_trial = last_;
+    const Observed& before = from_trial->observed;
     std::vector<Observation> observations = wanted_of(before, guard);
     Round round;
     round.gain = sensitivity_->mean();
     round.step_fraction = share;
     round.guard = guard != nullptr;
-    const std::vector<Vec3> from = last_.shifts;
-    Trial next;
+    const std::vector<Vec3>& from = from_trial->shifts;
+    auto made = std::make_shared<Trial>();
+    Trial& next = *made;
     choose_splits(observations);
     ThinPath thin(*path_, splits_->kept());
     const std::vector<Observation> asked = thin.places_of(observations);
@@ -228,22 +258,17 @@ class Loop {
     const std::size_t number = out.rounds.size();
     next.keep(trials_.predict(next.emitted->program, progress(fmt::format("round {}", number))));
     next.observed = trials_.observe(*path_, next.emitted.get(), next.surface);
-    last_ = std::move(next);
-    sensitivity_->learn(*path_, from, before, last_.observed);
-    round.overcorrected_fraction = overcorrected_fraction(before, last_.observed, tolerance_mm());
+    next.observed.reach = reach_;
+    last_ = made;
+    sensitivity_->learn(*path_, from, before, last_->observed);
+    round.overcorrected_fraction = overcorrected_fraction(before, last_->observed, tolerance_mm());
     record(out, round);
   }
 
   /// The errors that the next shifts are to take away.
   std::vector<Observation> wanted_of(const Observed& observed, const Guard* guard) {
     std::vector<Observation> out = without_row_form(*path_, observed.of_path(), fit_options());
-    if (guard) {
-      Observed lifted = observed;
-      guard->apply_to(lifted);
-      const std::vector<Observation> raw = lifted.of_path();
-      for (std::size_t i = 0; i < out.size(); ++i)
-        if (raw[i].weight > 1) out[i] = raw[i];
-    }
+    if (guard) guard->apply_to(out);
     sensitivity_->apply_to(out);
     return out;
   }
@@ -264,14 +289,22 @@ class Loop {
     }
   }
 
-  void record(CompensationResult& out, Round round) const {
-    round.error_um = last_.error_um;
-    round.split = split_error(*path_, last_.observed, fit_options());
+  PlainFigures figures_of(const Trial& trial) const {
+    return plain_figures(trial.surface, trial.total_mm, trial.observed, job_.compensation);
+  }
+
+  void record(CompensationResult& out, Round round) {
+    round.error_um = judged_of(figures_of(*last_), job_.compensation.reference);
+    round.split = split_error(*path_, last_->observed, fit_options());
     if (round.guard) round.split.give_to_guard(free_correctable_um_);
-    round.deepest_um = depth_of(last_.surface, last_.observed, overcut_um(), true).held_um;
-    round.static_rounds = last_.static_rounds;
-    round.unsettled = last_.unsettled;
+    round.deepest_um = depth_of(last_->surface, last_->observed, depth_limit_um_, true).held_um;
+    round.static_rounds = last_->static_rounds;
+    round.unsettled = last_->unsettled;
     out.rounds.push_back(round);
+    figures_.push_back({round.error_um.rms, round.error_um.p95, round.deepest_um});
+    const std::size_t allowed = choose_round(figures_, depth_limit_um_);
+    if (allowed != allowed_index_) allowed_ = last_;  // only the newest round can take the place of another
+    allowed_index_ = allowed;
   }
 
   void take(CompensationResult& out) {
@@ -279,63 +312,86 @@ class Loop {
     best_ = last_;
   }
 
-  bool done(CompensationResult& out, int without_gain) const {
+  bool done(CompensationResult& out, int without_gain) {
     const auto& c = job_.compensation;
-    if (out.rounds[out.best].split.correctable_p95_um <= c.tolerance_um) {
-      out.stop = Stop::tolerance;
-      return true;
+    const double left_um = out.rounds[out.best].split.correctable_p95_um;
+    const bool ready = out.best > 0 || within_tolerance(out.plain_before, c);
+    ended_ = ready && left_um <= kLeftOver * c.half_width_um() ? Stop::stalled
+             : without_gain >= kPatience                       ? Stop::stalled
+                                                               : Stop::rounds;
+    return ended_ == Stop::stalled || static_cast<int>(out.rounds.size()) > c.max_rounds;
+  }
+
+  Stop verdict(const CompensationResult& out) const {
+    if (out.within_tolerance && out.within_part) return Stop::tolerance;
+    // The guard is the reason only where it made the error larger.
+    const bool guarded = out.rounds[out.best].guard && out.rounds[free_round_].error_um.rms < out.after_um.rms;
+    return guarded ? Stop::depth_limit : ended_;
+  }
+
+  /// One a point of the emitted program's surface: the line that made it.
+  std::vector<std::size_t> lines_of(const Trial& trial, const SimulatedProgram& program) const {
+    std::vector<std::size_t> out;
+    out.reserve(trial.surface.size());
+    for (const auto& p : trial.surface) {
+      const auto stamp = static_cast<std::size_t>(p.machined_stamp);
+      const bool known = p.machined_stamp >= 0 && stamp < program.path.stamps.size();
+      out.push_back(known ? program.moves.moves[program.path.stamps[stamp].move].block + 1 : 0);
     }
-    if (without_gain >= kPatience) {
-      out.stop = Stop::stalled;
-      return true;
-    }
-    out.stop = Stop::rounds;
-    return static_cast<int>(out.rounds.size()) > c.max_rounds;
+    return out;
   }
 
   void finish(CompensationResult& out) {
-    path_->set_shifts(best_.shifts);
+    path_->set_shifts(best_->shifts);
     const Round &first = out.rounds[0], &best = out.rounds[out.best];
-    const SimulatedProgram& program = best_.emitted ? best_.emitted->program : program_;
+    const SimulatedProgram& program = best_->emitted ? best_->emitted->program : program_;
     out.before_um = first.error_um;
     out.after_um = best.error_um;
     out.split_before = first.split;
     out.split_after = best.split;
-    out.surface_after = best_.surface;
-    out.loads_after = best_.loads;
+    out.surface_after = best_->surface;
+    out.loads_after = best_->loads;
     out.feed_after = program.feed;
     out.max_shift_mm = best.largest_shift_mm;
-    if (best_.emitted) {
-      warn_of_not_emitted(program_.text, program_.moves, best_.emitted->emission.not_made, diagnostics_);
-      out.quality = best_.emitted->quality;
+    if (best_->emitted) {
+      warn_of_not_emitted(program_.text, program_.moves, best_->emitted->emission.not_made, diagnostics_);
+      out.quality = best_->emitted->quality;
     }
     out.surface_steps =
-        surface_steps(*path_, row_links(*path_, kRowReach_mm, RowSense::any), first_observed_, best_.observed);
+        surface_steps(*path_, row_links(*path_, kRowReach_mm, RowSense::any), first_observed_, best_->observed);
     out.row_steps = row_steps(*path_, kRowReach_mm);
     const ThinPath thin(*path_, splits_->kept());
     out.row_turn_rad =
         row_turn(thin.path(), row_links(thin.path(), kRowReach_mm), job_.compensation.max_angle_growth_rad).max_rad;
-    const double max_um = overcut_um();
-    out.depth_after = depth_of(out.surface_after, best_.observed, max_um, true);
-    out.depth_others = depth_of(out.surface_after, best_.observed, max_um, false);
+    const double max_um = depth_limit_um_;
+    out.depth_after = depth_of(out.surface_after, best_->observed, max_um, true);
+    out.depth_others = depth_of(out.surface_after, best_->observed, max_um, false);
     out.depth_without_bending = depth_without_bending(job_, setup_.target, program, max_um);
     out.within_part = out.depth_after.held_um <= max_um;
+    out.plain_after = figures_of(*best_);
+    out.within_tolerance = within_tolerance(out.plain_after, job_.compensation);
+    out.stop = verdict(out);
+    if (!out.within_tolerance) {
+      std::vector<PointCause> points;
+      split_error(*path_, best_->observed, fit_options(), &points);
+      out.causes = causes_of(best.split, points, best_->observed, lines_of(*best_, program));
+    }
     if (options_.max_stock_crossings > 0)
       out.stock = removal::stock_shape(setup_.target.surface, options_.max_stock_crossings);
     check_travel(job_, program.text, program.moves, diagnostics_);
     diagnostics_.throw_if_errors();
     out.blocks_before = program_.text.source.line_count();
     out.blocks_after = program.text.source.line_count();
-    out.blocks_changed = best_.emitted ? count_changed(program_.text, *best_.emitted) : 0;
+    out.blocks_changed = best_->emitted ? count_changed(program_.text, *best_->emitted) : 0;
     out.settled = first.unsettled == 0 && best.unsettled == 0;
-    const double imbalance = simulate::imbalance(best_.chip_mm3, best_.stock_mm3, job_.simulation.voxel_mm);
+    const double imbalance = simulate::imbalance(best_->chip_mm3, best_->stock_mm3, job_.simulation.voxel_mm);
     if (out.doubts.empty() && std::abs(imbalance) > simulate::kMaxImbalance)
-      out.doubts.push_back("in the emitted program " + simulate::imbalance_sentence(best_.chip_mm3, best_.stock_mm3));
+      out.doubts.push_back("in the emitted program " + simulate::imbalance_sentence(best_->chip_mm3, best_->stock_mm3));
   }
 
   /// The other grid and the uncertainty; the text last, since its header may tell of them.
   void check(CompensationResult& out) {
-    const Emitted* emitted = best_.emitted.get();
+    const Emitted* emitted = best_->emitted.get();
     const bool guarded = out.rounds[out.best].guard;
     for (const double voxel_mm : options_.recheck_voxels_mm)
       out.rechecks.push_back(recheck(job_, voxel_mm, setup_, {emitted, guarded ? free_.get() : nullptr}, *path_,
@@ -347,11 +403,15 @@ class Loop {
       changes.push_back(
           changes_mm(job_, group, setup_, emitted, out.surface_after, out.unknown_parameters, options_.progress));
     }
-    if (!names.empty()) out.band = band_of(out.surface_before, out.surface_after, names, changes, overcut_um() / 1000);
+    if (!names.empty())
+      out.band = band_of(out.surface_before, out.surface_after, names, changes, depth_limit_um_ / 1000);
     out.text = emitted ? emitted->emission.text : program_.text.source.text();
     if (!options_.header || !emitted) return;
     trials_.header = options_.header(out);
     out.text = trials_.text_of(*path_, emitted->splits);
+    const std::size_t more = SourceText("", out.text).line_count() - out.blocks_after;
+    for (CauseFigure& cause : out.causes)
+      for (std::size_t& line : cause.lines) line += more;
   }
 
   const machine::Job& job_;
@@ -367,10 +427,16 @@ class Loop {
   std::vector<RowLink> links_;
   std::optional<Splits> splits_;
   bool split_once_ = false;
-  std::vector<double> link_stiffness_;  ///< one a link of the path that the splits leave
-  Trial last_, best_;
+  std::vector<double> link_stiffness_;                  ///< one a link of the path that the splits leave
+  std::shared_ptr<const Trial> last_, best_, allowed_;  ///< allowed_: the best one that keeps the limits
+  std::size_t allowed_index_ = 0;
+  std::vector<RoundFigures> figures_;  ///< one a round
+  std::vector<bool> reach_;
+  double depth_limit_um_ = 0;
+  Stop ended_ = Stop::rounds;            ///< why the rounds ended
   Observed first_observed_;              ///< of the program as given
   double free_correctable_um_ = 0;       ///< of the best round before the guard
+  std::size_t free_round_ = 0;           ///< that round
   std::shared_ptr<const Emitted> free_;  ///< its program
 };
 

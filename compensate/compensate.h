@@ -16,18 +16,20 @@
 #include "compensate/surface_steps.h"
 #include "compensate/trial.h"
 #include "compensate/uncertainty.h"
+#include "compensate/verdict.h"
 #include "machine/job.h"
 #include "removal/stock.h"
 #include "simulate/setup.h"
 
 namespace camber::compensate {
 
-/// tolerance: the 95th percentile of what the cutter can reach is within it; stalled: the rms no longer falls.
-enum class Stop { tolerance, stalled, rounds };
+/// Judged on the emitted text. tolerance: it is within tolerance and depth limit; depth_limit: the depth limit keeps
+/// the error over the tolerance; stalled: the rms no longer falls, or nothing is left that a shift can correct.
+enum class Stop { tolerance, stalled, rounds, depth_limit };
 std::string to_string(Stop stop);
 
 struct Round {
-  removal::ErrorFigures error_um;  ///< of the program that this round emitted
+  removal::ErrorFigures error_um;  ///< judged, of the program that this round emitted: see PlainFigures
   ErrorSplit split;
   double largest_shift_mm = 0;
   std::size_t limited_points = 0;     ///< cut to max_shift_mm
@@ -41,8 +43,16 @@ struct Round {
 };
 
 struct CompensationResult {
-  std::string text;  ///< the emitted program of the best round
-  removal::ErrorFigures before_um, after_um;
+  std::string text;    ///< the emitted program of the best round
+  bool better = true;  ///< that round is better than the program as given and keeps the limits
+  machine::Reference reference = machine::Reference::commanded;
+  removal::ErrorFigures before_um, after_um;  ///< judged: rounds[0] and rounds[best]
+  PlainFigures plain_before, plain_after;
+  bool within_tolerance = false;    ///< the emitted program
+  double depth_limit_um = 0;        ///< the job's, or default_depth_limit_um
+  bool own_depth_limit = false;     ///< the job gives one
+  double unseen_mm2 = 0;            ///< of the nominal surface, without a point
+  std::vector<CauseFigure> causes;  ///< of what is left, where it is over the tolerance
   ErrorSplit split_before, split_after;
   std::vector<Round> rounds;  ///< rounds[0]: the program as given
   std::size_t best = 0;       ///< index into rounds
@@ -62,7 +72,7 @@ struct CompensationResult {
   Depth depth_before, depth_after;  ///< into the part, compensated moves
   Depth depth_others;               ///< of moves that are not compensated
   Depth depth_without_bending;      ///< of the emitted program
-  bool within_part = true;          ///< depth_after is within the tolerance
+  bool within_part = true;          ///< depth_after is within the depth limit
   std::vector<Recheck> rechecks;    ///< one a voxel asked for
   std::optional<Band> band;
   std::vector<std::string> unknown_parameters;  ///< with a standard error, but not of this job
@@ -79,6 +89,7 @@ class BeyondModel : public std::runtime_error {
 struct CompensateOptions {
   simulate::Progress progress;
   std::size_t max_stock_crossings = 0;        ///< of Compensation::stock; 0: none
+  bool keep_anyway = false;                   ///< emit the round of the least error even where none is better
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.

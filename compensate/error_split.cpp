@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "compensate/row_form.h"
@@ -62,24 +63,70 @@ std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const
   return out;
 }
 
-ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options) {
+namespace {
+
+/// The judged observations and what fits of less and less freedom leave of them.
+struct Fits {
+  std::vector<std::size_t> index;  ///< into Observed, of each observation
+  std::vector<Observation> all;    ///< as observed
+  std::vector<Observation> asked;  ///< less the form across the rows
+  std::vector<double> at_one_place, smooth, limited;
+};
+
+Fits fits_of(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options) {
+  Fits out;
+  for (std::size_t i = 0; i < observed.points.size(); ++i) {
+    if (!observed.compensated[i] || !observed.judged(i)) continue;
+    out.index.push_back(i);
+    out.all.push_back(observed.points[i]);
+    out.all.back().weight = 1;
+  }
+  FitShiftOptions free = options;
+  free.max_shift_mm = std::numeric_limits<double>::infinity();
+  out.asked = without_row_form(path, out.all, options);
+  out.at_one_place = left_by(path, out.asked, stiff(options));
+  out.smooth = left_by(path, out.asked, free);
+  out.limited = left_by(path, out.asked, options);
+  return out;
+}
+
+/// The largest part of one observation's error.
+PointCause cause_of(const Fits& f, std::size_t i) {
+  const Observation& o = f.all[i];
+  const Cause fixed = o.opposed ? Cause::opposed : o.at_tip ? Cause::tip : Cause::bow;
+  const double form = o.error_mm - f.asked[i].error_mm;
+  PointCause out{Cause::correctable, f.asked[i].error_mm - f.limited[i]};
+  const auto offer = [&](Cause cause, double error_mm) {
+    if (std::abs(error_mm) > std::abs(out.error_mm)) out = {cause, error_mm};
+  };
+  offer(Cause::limited, f.limited[i] - f.smooth[i]);
+  offer(Cause::short_range, f.smooth[i] - f.at_one_place[i]);
+  offer(fixed, f.at_one_place[i] + form);
+  return out;
+}
+
+}  // namespace
+
+ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
+                       std::vector<PointCause>* causes) {
   ErrorSplit out;
   double area = 0, others = 0;
+  if (causes) causes->assign(observed.points.size(), {});
   for (std::size_t i = 0; i < observed.points.size(); ++i) {
     const Observation& o = observed.points[i];
+    if (!observed.judged(i)) continue;
     area += o.area_mm2;
-    if (!observed.compensated[i]) others += o.area_mm2 * o.error_mm * o.error_mm;
+    if (observed.compensated[i]) continue;
+    others += o.area_mm2 * o.error_mm * o.error_mm;
+    if (causes) (*causes)[i] = {Cause::not_compensated, o.error_mm};
   }
-  std::vector<Observation> all = observed.of_path();
-  for (Observation& o : all) o.weight = 1;
   if (area <= 0) return out;
   out.not_compensated_um = um(others / area);
 
-  FitShiftOptions free = options;
-  free.max_shift_mm = std::numeric_limits<double>::infinity();
-  const std::vector<Observation> asked = without_row_form(path, all, options);
-  const std::vector<double> at_one_place = left_by(path, asked, stiff(options)), smooth = left_by(path, asked, free),
-                            limited = left_by(path, asked, options);
+  const Fits f = fits_of(path, observed, options);
+  if (causes)
+    for (std::size_t i = 0; i < f.all.size(); ++i) (*causes)[f.index[i]] = cause_of(f, i);
+  const std::vector<Observation>& all = f.all;
   const auto every = [](const Observation&) { return true; };
   const auto errors = [](const std::vector<Observation>& of) {
     std::vector<double> values;
@@ -87,32 +134,55 @@ ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const Fi
     for (const Observation& o : of) values.push_back(o.error_mm);
     return values;
   };
-  const std::vector<double> error = errors(asked);
+  const std::vector<double> error = errors(f.asked);
   std::vector<double> taken, taken_um, areas;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    taken.push_back(error[i] - limited[i]);
+    taken.push_back(error[i] - f.limited[i]);
     taken_um.push_back(1000 * taken.back());
     areas.push_back(all[i].area_mm2);
   }
-  const double total = mean_square(error, all, area, every), left = mean_square(at_one_place, all, area, every),
-               left_smooth = std::max(left, mean_square(smooth, all, area, every)),
-               left_limited = std::max(left_smooth, mean_square(limited, all, area, every));
+  const double total = mean_square(error, all, area, every), left = mean_square(f.at_one_place, all, area, every),
+               left_smooth = std::max(left, mean_square(f.smooth, all, area, every)),
+               left_limited = std::max(left_smooth, mean_square(f.limited, all, area, every));
   // A smooth path is not the least squares' best: what the fit would still move counts where it would gain less.
   const double correctable = std::max(total - left_limited, mean_square(taken, all, area, every)),
                limited_by = left_limited - left_smooth,
                short_range = std::max(0.0, total - correctable - limited_by - left);
-  out.opposed_um = um(mean_square(at_one_place, all, area, [](const Observation& o) { return o.opposed; }));
-  out.tip_um = um(mean_square(at_one_place, all, area, [](const Observation& o) { return o.at_tip && !o.opposed; }));
+  out.opposed_um = um(mean_square(f.at_one_place, all, area, [](const Observation& o) { return o.opposed; }));
+  out.tip_um = um(mean_square(f.at_one_place, all, area, [](const Observation& o) { return o.at_tip && !o.opposed; }));
   out.short_range_um = um(short_range);
   out.limited_um = um(limited_by);
   out.correctable_um = um(correctable);
   const auto square = [](double value_um) { return value_um * value_um / 1e6; };
   out.bow_um = um(mean_square(errors(all), all, area, every) - correctable - limited_by - short_range -
                   square(out.opposed_um) - square(out.tip_um));
-  const removal::ErrorFigures f = removal::error_figures(taken_um, areas);
-  out.correctable_p95_um = f.p95;
-  out.correctable_max_um = std::max(std::abs(f.min), std::abs(f.max));
+  const removal::ErrorFigures figures = removal::error_figures(taken_um, areas);
+  out.correctable_p95_um = figures.p95;
+  out.correctable_max_um = std::max(std::abs(figures.min), std::abs(figures.max));
   return out;
+}
+
+double held_depth(std::vector<std::pair<double, double>> depth_and_area, double area_mm2) {
+  constexpr double kSpared = 0.001;
+  std::sort(depth_and_area.begin(), depth_and_area.end(), std::greater<>());
+  double spared = kSpared * area_mm2;
+  for (const auto& [depth, area] : depth_and_area)
+    if ((spared -= area) < 0) return std::max(0.0, depth);
+  return 0;
+}
+
+double default_depth_limit_um(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
+                              double tolerance_um) {
+  constexpr double kRoom = 1.25;
+  const Fits f = fits_of(path, observed, options);
+  std::vector<std::pair<double, double>> depths;
+  double area = 0;
+  for (std::size_t i = 0; i < f.all.size(); ++i) {
+    const double left_mm = f.at_one_place[i] + f.all[i].error_mm - f.asked[i].error_mm;
+    depths.emplace_back(-1000 * left_mm, f.all[i].area_mm2);
+    area += f.all[i].area_mm2;
+  }
+  return std::max(tolerance_um, kRoom * held_depth(std::move(depths), area));
 }
 
 }  // namespace camber::compensate

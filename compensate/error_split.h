@@ -1,6 +1,7 @@
 #pragma once
-// An error apart: what a shift of the path can take away, what none can, and what a limit holds back.
+// Error decomposition: what a shift of the path can take away, what none can, and what a limit holds back.
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "compensate/attribution.h"
@@ -9,7 +10,7 @@
 
 namespace camber::compensate {
 
-/// Root mean squares over the whole surface, um: squares add up to the error's,
+/// Root mean squares over the judged surface, um: squares add up to the error's,
 ///
 ///   rms^2 = correctable^2 + guard^2 + limited^2 + short_range^2 + opposed^2 + tip^2 + bow^2 + not_compensated^2
 ///
@@ -38,6 +39,27 @@ struct ErrorSplit {
 std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const Observation> observations,
                                           const FitShiftOptions& options);
 
-ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options);
+/// What a part of an error comes from.
+enum class Cause { correctable, guard, limited, short_range, opposed, tip, bow, not_compensated };
+
+/// The error point by point, one an entry of Observed: which cause most of it has, and how much that is.
+struct PointCause {
+  Cause cause = Cause::correctable;
+  double error_mm = 0;
+};
+
+/// `causes`: null where not wanted. The guard's part has no points of its own: they count as correctable.
+ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
+                       std::vector<PointCause>* causes = nullptr);
+
+/// The depth limit where a job gives none, um: `tolerance_um`, or a quarter more than how deep all but a thousandth of
+/// the surface would lie in the part if every place of the path had the shift that suits it best. A bow of +-7 um
+/// across a wall cannot be held to 5 um without giving up half of the correction; such a limit would fight it.
+/// `observed`: of the program as given.
+double default_depth_limit_um(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
+                              double tolerance_um);
+
+/// Depth that no more than a thousandth of `area_mm2` exceeds. Pairs of depth and area.
+double held_depth(std::vector<std::pair<double, double>> depth_and_area, double area_mm2);
 
 }  // namespace camber::compensate

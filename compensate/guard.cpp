@@ -1,29 +1,82 @@
 #include "compensate/guard.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
 
 namespace camber::compensate {
+namespace {
 
-std::size_t Guard::learn(const Observed& observed) {
-  if (weight_.empty()) weight_.assign(observed.points.size(), 1.0);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < observed.points.size(); ++i) {
-    if (!observed.compensated[i] || observed.points[i].error_mm >= -tolerance_mm_) continue;
-    weight_[i] = weight_[i] > 1 ? std::min(kGreatest, kGrowth * weight_[i]) : kFirst;
-    ++count;
-  }
-  return count;
+using Cell = std::array<long, 3>;
+
+Cell cell_of(const Vec3& p, double size) {
+  return {std::lround(std::floor(p.x() / size)), std::lround(std::floor(p.y() / size)),
+          std::lround(std::floor(p.z() / size))};
 }
 
-void Guard::apply_to(Observed& observed) const {
-  if (weight_.empty()) return;
-  for (std::size_t i = 0; i < observed.points.size(); ++i) {
-    if (weight_[i] <= 1) continue;
-    Observation& o = observed.points[i];
-    o.weight = weight_[i];
-    const double wanted = -kWanted * tolerance_mm_;
-    o.error_mm = o.error_mm < wanted ? o.error_mm - wanted : 0;
+/// Lifts up and down each axis apart, so that the larger of two of one sense stays.
+struct Lift {
+  Vec3 positive = Vec3::Zero(), negative = Vec3::Zero();
+  void raise(const Vec3& to) {
+    positive = positive.cwiseMax(to);
+    negative = negative.cwiseMin(to);
   }
+  void raise(const Lift& from, double share) {
+    positive = positive.cwiseMax(share * from.positive);
+    negative = negative.cwiseMin(share * from.negative);
+  }
+  Vec3 sum() const { return positive + negative; }
+};
+
+double fade(double distance, double reach) {
+  if (distance >= reach) return 0;
+  const double c = std::cos(kPi / 2 * distance / reach);
+  return c * c;
+}
+
+}  // namespace
+
+Guard::Guard(const ShiftPath& path, double limit_mm, double reach_mm) : limit_mm_(limit_mm), reach_mm_(reach_mm) {
+  for (const ControlPoint& p : path.points()) place_mm_.push_back(p.place_mm);
+  lift_mm_.assign(place_mm_.size(), Vec3::Zero());
+}
+
+void Guard::learn(const Observed& observed, double held_mm) {
+  std::map<std::size_t, Lift> asked;  // by the path's points
+  for (std::size_t i = 0; i < observed.points.size(); ++i) {
+    const Observation& o = observed.points[i];
+    if (!observed.compensated[i] || !observed.judged(i) || o.error_mm >= -limit_mm_) continue;
+    const double needed = std::min(-o.error_mm, std::max(held_mm, limit_mm_)) - kWanted * limit_mm_;
+    const std::size_t nearest = o.place.upper_fraction < 0.5 ? o.place.lower : o.place.lower + 1;
+    asked[nearest].raise(needed * o.normal);
+  }
+  std::map<Cell, std::vector<std::size_t>> cells;
+  for (std::size_t k = 0; k < place_mm_.size(); ++k) cells[cell_of(place_mm_[k], reach_mm_)].push_back(k);
+  std::map<std::size_t, Lift> spread;
+  for (const auto& [at, lift] : asked) {
+    const Cell c = cell_of(place_mm_[at], reach_mm_);
+    for (long i = c[0] - 1; i <= c[0] + 1; ++i)
+      for (long j = c[1] - 1; j <= c[1] + 1; ++j)
+        for (long k = c[2] - 1; k <= c[2] + 1; ++k) {
+          const auto near = cells.find({i, j, k});
+          if (near == cells.end()) continue;
+          for (const std::size_t n : near->second)
+            if (const double share = fade((place_mm_[n] - place_mm_[at]).norm(), reach_mm_); share > 0)
+              spread[n].raise(lift, share);
+        }
+  }
+  for (const auto& [at, lift] : spread) lift_mm_[at] += lift.sum();
+}
+
+double Guard::lift_mm(const Observation& o) const {
+  const Vec3 lift =
+      (1 - o.place.upper_fraction) * lift_mm_[o.place.lower] + o.place.upper_fraction * lift_mm_[o.place.lower + 1];
+  return std::max(0.0, o.normal.dot(lift));
+}
+
+void Guard::apply_to(std::vector<Observation>& observations) const {
+  for (Observation& o : observations) o.error_mm -= lift_mm(o);
 }
 
 }  // namespace camber::compensate

@@ -68,8 +68,9 @@ std::string material_line(const machine::Material& m) {
 
 std::string header_lines(const machine::Job& job, const CompensationResult& c, const std::string& version) {
   std::string out = fmt::format("CAMBER {} - PATH COMPENSATED FOR THE BENDING OF THE TOOL\n", version);
-  fmt::format_to(std::back_inserter(out), "PREDICTED ERROR RMS {:.1f} UM BEFORE, {:.1f} UM AFTER\n", c.before_um.rms,
-                 c.after_um.rms);
+  fmt::format_to(std::back_inserter(out),
+                 "PREDICTED ERROR RMS {:.1f} UM BEFORE, {:.1f} UM AFTER, 95 PERCENT WITHIN {:.1f} UM\n",
+                 c.before_um.rms, c.after_um.rms, c.after_um.p95);
   fmt::format_to(std::back_inserter(out), "LARGEST SHIFT {:.4f} MM OF {:g} ALLOWED, TOLERANCE {:g} UM\n",
                  c.max_shift_mm, job.compensation.max_shift_mm, job.compensation.tolerance_um);
   for (const auto& o : c.finishing.operations) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "compensate/safety.h"
+#include "compensate/verdict.h"
 
 namespace camber::compensate {
 
@@ -20,26 +21,32 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup&
     simulate::Prediction prediction;
     Observed observed;
     ErrorSplit split;
+    removal::ErrorFigures error_um;
   };
+  const auto stamps = given.own_target() ? std::span(target.stamps) : std::span<const simulate::PathShare>();
+  std::vector<bool> reach;
   const auto judge = [&](const Emitted* program, const std::string& what) {
     const auto& machined = program ? program->program : given.program;
     auto prediction = simulate::predict_surface(other, target, machined, progress,
                                                 fmt::format("{}, voxels of {:g} mm", what, voxel_mm));
-    Observed observed = observe(path, job, given.program, machined, program ? program->map : MoveMap(),
-                                prediction.surface, given.own_target());
+    Observed observed =
+        observe(path, job, given.program, machined, program ? program->map : MoveMap(), prediction.surface, stamps);
+    if (reach.empty()) reach = reach_of(path, given.program.moves, observed, prediction.surface, stamps);
+    observed.reach = reach;
     const ErrorSplit split = split_error(path, observed, own);
-    return Judged{std::move(prediction), std::move(observed), split};
+    const PlainFigures plain = plain_figures(prediction.surface, prediction.total_error_mm, observed, job.compensation);
+    return Judged{std::move(prediction), std::move(observed), split, judged_of(plain, job.compensation.reference)};
   };
   Recheck out;
   out.voxel_mm = voxel_mm;
   const Judged before = judge(nullptr, "as given");
-  out.before_um = before.prediction.form_error_um;
+  out.before_um = before.error_um;
   out.split_before = before.split;
   const Judged after = judge(emitted.last, "compensated");
-  out.after_um = after.prediction.form_error_um;
+  out.after_um = after.error_um;
   out.split_after = after.split;
   if (emitted.free) out.split_after.give_to_guard(judge(emitted.free, "without the guard").split.correctable_um);
-  out.deepest_um = depth_of(after.prediction.surface, after.observed, job.compensation.overcut_um(), true).deepest_um;
+  out.deepest_um = depth_of(after.prediction.surface, after.observed, 0, true).deepest_um;
   return out;
 }
 

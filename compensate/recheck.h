@@ -13,7 +13,7 @@ namespace camber::compensate {
 /// Both programs on a grid of its own: other voxels, which lie elsewhere.
 struct Recheck {
   double voxel_mm = 0;
-  removal::ErrorFigures before_um, after_um;
+  removal::ErrorFigures before_um, after_um;  ///< judged, of the surface in reach
   ErrorSplit split_before, split_after;
   double deepest_um = 0;  ///< into the part, compensated moves, of the emitted program
 };

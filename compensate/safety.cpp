@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "compensate/error_split.h"
 #include "simulate/cut.h"
 
 namespace camber::compensate {
@@ -16,8 +16,8 @@ namespace {
 
 constexpr char kAxisName[] = "XYZ";
 
-void add_point(Depth& out, const removal::SurfacePoint& p, double tolerance_um, double& over) {
-  const double deep_um = -1000 * p.error_mm;
+void add_point(Depth& out, const removal::SurfacePoint& p, double error_mm, double tolerance_um, double& over) {
+  const double deep_um = -1000 * error_mm;
   if (deep_um > out.deepest_um) {
     out.deepest_um = deep_um;
     out.place_mm = p.place_mm;
@@ -37,16 +37,6 @@ std::array<double, 2> extent_of(const nc::Interpretation& moves, const nc::Move&
   return out;
 }
 
-/// Depth that kSpared of the whole area exceeds at most.
-double held_um(std::vector<std::pair<double, double>> depth_and_area, double whole_area) {
-  constexpr double kSpared = 0.001;
-  std::sort(depth_and_area.begin(), depth_and_area.end(), std::greater<>());
-  double spared = kSpared * whole_area;
-  for (const auto& [depth, area] : depth_and_area)
-    if ((spared -= area) < 0) return std::max(0.0, depth);
-  return 0;
-}
-
 }  // namespace
 
 Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed& observed, double tolerance_um,
@@ -57,10 +47,11 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed
   for (std::size_t i = 0; i < surface.size(); ++i) {
     area += surface[i].area_mm2;
     if (observed.compensated[i] != compensated) continue;
-    add_point(out, surface[i], tolerance_um, over);
-    depths.emplace_back(-1000 * surface[i].error_mm, surface[i].area_mm2);
+    const double error_mm = observed.points[i].error_mm;
+    add_point(out, surface[i], error_mm, tolerance_um, over);
+    depths.emplace_back(-1000 * error_mm, surface[i].area_mm2);
   }
-  out.held_um = held_um(std::move(depths), area);
+  out.held_um = held_depth(std::move(depths), area);
   out.over_fraction = area > 0 ? over / area : 0;
   return out;
 }
@@ -76,10 +67,10 @@ Depth depth_without_bending(const machine::Job& job, const simulate::Target& tar
   target.holes.drop_from(surface);
   for (const auto& p : surface) {
     area += p.area_mm2;
-    add_point(out, p, tolerance_um, over);
+    add_point(out, p, p.error_mm, tolerance_um, over);
     depths.emplace_back(-1000 * p.error_mm, p.area_mm2);
   }
-  out.held_um = held_um(std::move(depths), area);
+  out.held_um = held_depth(std::move(depths), area);
   out.over_fraction = area > 0 ? over / area : 0;
   return out;
 }

@@ -19,7 +19,7 @@ struct Depth {
   double over_fraction = 0;  ///< of the area that lies deeper than the tolerance
 };
 
-/// Of the points that compensated moves made (`compensated` false: of the others).
+/// Of the points that compensated moves made (`compensated` false: of the others), by the judged error.
 Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed& observed, double tolerance_um,
                bool compensated);
 

@@ -46,7 +46,7 @@ nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program&
 void Trial::keep(simulate::Prediction prediction) {
   surface = std::move(prediction.surface);
   loads = std::move(prediction.cut.loads);
-  error_um = prediction.form_error_um;
+  total_mm = std::move(prediction.total_error_mm);
   static_rounds = prediction.cut.rounds_max;
   unsettled = prediction.cut.unsettled;
   chip_mm3 = prediction.cut.chip_mm3;
@@ -88,7 +88,7 @@ simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& prog
 
 Observed TrialRunner::observe(const ShiftPath& path, const Emitted* emitted,
                               const std::vector<removal::SurfacePoint>& surface) const {
-  const bool own = given_.own_target();
+  const std::span<const simulate::PathShare> own = given_.own_stamps();
   if (!emitted) return compensate::observe(path, job_, given_.program, given_.program, {}, surface, own);
   return compensate::observe(path, job_, given_.program, emitted->program, emitted->map, surface, own);
 }

@@ -95,12 +95,26 @@ struct CompensatedOperations : Operations {
   bool given() const { return !tools.empty() || !blocks.empty() || !comments.empty(); }
 };
 
+/// What compensation works on, and what its verdict is on.
+enum class Reference {
+  commanded,  ///< error_um: against the programmed path
+  machine     ///< deflection_um: servo lag and corner rounding stay in
+};
+
 struct CompensationSettings {
   double tolerance_um = 1.0;
+  Reference reference = Reference::commanded;
+  std::optional<std::array<double, 2>> profile_um;  ///< band of the finished surface; not given: tolerance_um
   double max_shift_mm = 0.1;
   int max_rounds = 8;
-  double max_overcut_um = 0;  ///< into the part, with the predicted deflection; 0: tolerance_um
-  double overcut_um() const { return max_overcut_um > 0 ? max_overcut_um : tolerance_um; }
+  double max_overcut_um = 0;  ///< into the part, with the predicted deflection; 0: not given
+  /// The depth limit that the job gives; nothing: compensation finds one (compensate::default_depth_limit_um).
+  std::optional<double> depth_limit_um() const {
+    if (profile_um) return -(*profile_um)[0];
+    return max_overcut_um > 0 ? std::optional(max_overcut_um) : std::nullopt;
+  }
+  /// Half of the band's width.
+  double half_width_um() const { return profile_um ? ((*profile_um)[1] - (*profile_um)[0]) / 2 : tolerance_um; }
   double max_angle_growth_rad = 3 * kPi / 180;  ///< between blocks of the path
   CompensatedOperations operations;
   std::optional<Vec3> work_offset_mm;  ///< of the program's zero, in machine coordinates: for the travel limits

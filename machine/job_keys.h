@@ -10,6 +10,7 @@ namespace camber::machine {
 inline constexpr std::array<std::string_view, 7> kToolTypeWords{"ball",         "flat",    "bull",   "drill",
                                                                 "tapered_ball", "chamfer", "general"};
 inline constexpr std::array<std::string_view, 2> kCouplingWords{"rigid", "static"};
+inline constexpr std::array<std::string_view, 2> kReferenceWords{"commanded", "machine"};
 inline constexpr std::array<std::string_view, 3> kCollisionsWords{"error", "warning", "off"};
 inline constexpr std::array<std::string_view, 2> kUnitWords{"mm", "inch"};
 

@@ -137,9 +137,29 @@ void read_simulation(TomlTable table, Simulation& simulation) {
   table.finish();
 }
 
+void read_profile(TomlTable& table, CompensationSettings& compensation) {
+  constexpr std::string_view kWanted = "[lower, upper], the band of the finished surface,";
+  if (const auto band = table.numbers("profile_um", 2, kAnyNumber, kWanted)) {
+    compensation.profile_um = {(*band)[0], (*band)[1]};
+    if ((*band)[0] >= 0 || (*band)[1] <= 0)
+      table.error_at("profile_um",
+                     fmt::format("profile_um = [{:g}, {:g}]; a lower end below zero (into the part) and an upper end "
+                                 "above it were expected",
+                                 (*band)[0], (*band)[1]),
+                     "value-range");
+  }
+  if (table.has("profile_um") && compensation.max_overcut_um > 0)
+    table.error_at_name("max_overcut_um",
+                        "[compensation] has profile_um and max_overcut_um, which is its lower end; one of them was "
+                        "expected",
+                        "profile");
+}
+
 void read_compensation(TomlTable table, const std::map<int, Tool>& tools, CompensationSettings& compensation) {
   read_numbers<CompensationSettings>(table, kCompensationKeys, compensation);
   compensation.max_rounds = static_cast<int>(table.number("max_rounds", kRounds, compensation.max_rounds));
+  if (table.choice("reference", kReferenceWords, 0) == 1) compensation.reference = Reference::machine;
+  read_profile(table, compensation);
   if (auto operations = table.table("operations")) read_compensated(*operations, tools, compensation.operations);
   constexpr std::string_view kOffset = "[x, y, z], the program's zero in machine coordinates,";
   if (const auto offset = table.numbers("work_offset_mm", 3, kAnyNumber, kOffset))

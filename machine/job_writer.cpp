@@ -76,6 +76,8 @@ std::string operations_text(const Operations& operations) {
 std::string compensation_text(const CompensationSettings& c) {
   std::string out = "\n[compensation]\n" + toml_lines<CompensationSettings>(kCompensationKeys, c);
   out += toml_line("max_rounds", c.max_rounds, kAsIs);
+  out += toml_line("reference", kReferenceWords[c.reference == Reference::machine ? 1 : 0]);
+  if (c.profile_um) out += fmt::format("profile_um = [{}, {}]\n", (*c.profile_um)[0], (*c.profile_um)[1]);
   if (c.work_offset_mm) out += fmt::format("work_offset_mm = {}\n", point_text(*c.work_offset_mm));
   if (!c.operations.given()) return out;
   out += "\n[compensation.operations]\n" + operations_lines(c.operations);

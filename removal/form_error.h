@@ -49,6 +49,7 @@ struct SurfacePoint {
   Vec3 crossing_mm = Vec3::Zero();   ///< where a grid line crosses the target's field, beside it
   Vec3 normal = Vec3::UnitZ();       ///< outward, unit
   double error_mm = 0;               ///< machined minus target along the normal; positive: material is left
+  double contour_mm = 0;             ///< of it, what servo lag and corner rounding do to the target program
   double area_mm2 = 0;               ///< of the target's surface that the point stands for
   std::int32_t target_stamp = -1;    ///< which stamp of the target's sweep made it
   std::int32_t machined_stamp = -1;  ///< which stamp cut the machined field there last; -1: none
@@ -69,8 +70,10 @@ std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& t
 /// `solid`: the stock that the target was cut from, before any allowance was taken off. With it the points reach up to
 /// the edges with the stock's faces: the last one of a row stands for what is left up to the edge, so that what part of
 /// a low wall is seen does not depend on where the grid lies. Without it (null) one voxel along the edges is left out.
+///
+/// `unseen_mm2` (null where not wanted): about how much of the surface that the target's sweep cut has no point.
 std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places,
-                                                      const Stock* solid = nullptr);
+                                                      const Stock* solid = nullptr, double* unseen_mm2 = nullptr);
 
 /// Area-weighted figures of an error, in the unit of the values.
 struct ErrorFigures {
@@ -109,12 +112,17 @@ class SurfaceMap {
   void mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamps, const DeflectionTable& deflections,
             std::int32_t first_id);
 
+  /// About how much of the surface that the target's sweep cut has no point, mm^2: it knows the ends of the surface to
+  /// half a voxel.
+  double unseen_mm2() const { return unseen_mm2_; }
+
   /// The points with what the marks and, where it still stands, the blank say. Ends the map.
   std::vector<SurfacePoint> take();
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  double unseen_mm2_ = 0;
 };
 
 }  // namespace camber::removal

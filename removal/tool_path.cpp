@@ -75,13 +75,15 @@ void StampBuilder::add(const TimedSample& sample) {
 void StampBuilder::stamp_at(double t_s, const TimedSample& sample, const feedmodel::PathPlace& place, int tool) {
   Stamp stamp;
   stamp.t_s = t_s;
-  stamp.share = place.u;
   stamp.move = place.move;
   stamp.first = !cutting_;
   const double span = have_last_ ? sample.t_s - last_.t_s : 0;
   const double u = span > 0 ? std::clamp((t_s - last_.t_s) / span, 0.0, 1.0) : 1.0;
   stamp.pose = nc::pose_at(program_, program_.moves[place.move], place.u);
   stamp.pose.tip_mm = have_last_ ? Vec3((1 - u) * last_.position_mm + u * sample.position_mm) : sample.position_mm;
+  // `place` is that of the sample, up to a period later.
+  const double from = cutting_ && path_.stamps.back().move == place.move ? path_.stamps.back().share : 0.0;
+  stamp.share = feedmodel::closest_on_move(program_, place.move, stamp.pose.tip_mm, std::min(from, place.u), place.u).u;
   if (cutting_) {
     stamp.feed_per_tooth_mm = stamp.pose.tip_mm - path_.stamps.back().pose.tip_mm;
     if (stamp.feed_per_tooth_mm.norm() < kStill_mm) return;

@@ -71,6 +71,12 @@ struct StampPath {
   std::vector<RapidStart> rapids;  ///< in order
 };
 
+/// The same tooth passings on the programmed moves themselves, without servo lag and corner rounding: each stamp of
+/// milling stands where the programmed path is nearest to the axes, so that feed marks and cusps stay in step. Where
+/// the axes cut a corner, and at the ends of a cut, stamps no farther apart are added: the whole of every `selected`
+/// move is covered. Stamps of holes stay as they are. `path`: of the same program; its `rapids` are left out.
+StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected, const StampPath& path);
+
 /// True for a move of the job's operations.
 bool in_operations(const nc::Interpretation& program, const nc::Move& move, const machine::Operations& operations);
 

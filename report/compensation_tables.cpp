@@ -8,7 +8,7 @@ namespace {
 std::string um(double value) { return fmt::format("{:.2f}", value); }
 
 TextTable split_table(const compensate::CompensationResult& c) {
-  TextTable table{"The error apart", {"part of the error", "before, um rms", "after, um rms"}, {}, {}};
+  TextTable table{"Error decomposition", {"part of the error", "before, um rms", "after, um rms"}, {}, {}};
   const auto add = [&](const char* name, double compensate::ErrorSplit::*part) {
     const double before = c.split_before.*part, after = c.split_after.*part;
     if (before > 0 || after > 0) table.rows.push_back({name, um(before), um(after)});

@@ -7,7 +7,7 @@
 
 namespace camber::report {
 
-/// The error apart; the depth into the part; the second prediction and the band, where they were asked for.
+/// Error decomposition; the depth into the part; the second prediction and the band, where they were asked for.
 std::vector<TextTable> compensation_tables(const compensate::CompensationResult& result);
 
 }  // namespace camber::report

@@ -54,16 +54,17 @@ void write_whole_numbers(std::ostream& out, std::string_view attributes, std::si
 
 void write_form_error_csv(const std::string& path, const FormErrorPoints& points) {
   OutputFile file(path);
-  std::string text = "x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block,tool\n";
+  std::string text = "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool\n";
   for (std::size_t i = 0; i < points.count; ++i) {
     const FormErrorPoint p = points.at(i);
     append_cells(text, 4, {p.place_mm.x(), p.place_mm.y(), p.place_mm.z()});
     append_cells(text, 5, {p.normal.x(), p.normal.y(), p.normal.z()});
-    append_cells(text, 3, {p.error_um});
+    append_cells(text, 3, {p.error_um, p.deflection_um(), p.contour_um});
     if (std::isfinite(p.total_error_um))
       append_cells(text, 3, {p.total_error_um});
     else
       text += ',';
+    append_cells(text, 6, {p.area_mm2});
     append_cells(text, 0, {static_cast<double>(p.block), static_cast<double>(p.tool)});
     text.back() = '\n';
     if (text.size() < kFlushBytes) continue;
@@ -87,6 +88,9 @@ void write_form_error_vtp(const std::string& path, const FormErrorPoints& points
              points.count);
   out << "<PointData Scalars=\"error_um\" Normals=\"normal\">\n";
   write_floats(out, R"(type="Float32" Name="error_um")", points, [](const auto& p) { return p.error_um; });
+  write_floats(out, R"(type="Float32" Name="deflection_um")", points, [](const auto& p) { return p.deflection_um(); });
+  write_floats(out, R"(type="Float32" Name="contour_um")", points, [](const auto& p) { return p.contour_um; });
+  write_floats(out, R"(type="Float32" Name="area_mm2")", points, [](const auto& p) { return p.area_mm2; });
   if (with_total)
     write_floats(out, R"(type="Float32" Name="total_error_um")", points,
                  [](const auto& p) { return p.total_error_um; });

@@ -13,7 +13,10 @@ namespace camber::report {
 struct FormErrorPoint {
   Vec3 place_mm = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
-  double error_um = 0;  ///< machined minus target surface along the normal; positive: material is left
+  double error_um = 0;    ///< machined minus nominal surface along the normal; positive: material is left
+  double contour_um = 0;  ///< of it, what servo lag and corner rounding do to the target program
+  double deflection_um() const { return error_um - contour_um; }
+  double area_mm2 = 0;                                               ///< that the point stands for
   double total_error_um = std::numeric_limits<double>::quiet_NaN();  ///< against the part's mesh; NaN: no mesh
   std::uint32_t block = 0;  ///< 1-based line of the program that made the surface here; 0: unknown
   int tool = 0;             ///< whose stamp made it; 0: unknown
@@ -25,17 +28,18 @@ struct FormErrorPoints {
   std::function<FormErrorPoint(std::size_t)> at;
 };
 
-/// Columns x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block,tool; total_error_um is empty where there is none.
+/// Columns x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool; every figure
+/// of the form error can be worked out from them again. total_error_um is empty where there is none.
 /// Throws InputError [file-unwritable].
 void write_form_error_csv(const std::string& path, const FormErrorPoints& points);
 
-/// The same points for ParaView (VTK PolyData, XML, base64): normals, error_um, block, tool and, where there is one,
-/// total_error_um. Throws InputError [file-unwritable].
+/// The same points for ParaView (VTK PolyData, XML, base64): normals, error_um, deflection_um, contour_um, area_mm2,
+/// block, tool and, where there is one, total_error_um. Throws InputError [file-unwritable].
 void write_form_error_vtp(const std::string& path, const FormErrorPoints& points);
 
 /// The same points as binary PLY with colours: blue where the cutter went too deep, white at zero, red where material
-/// is left; full colour at `full_um` and beyond. Properties x y z nx ny nz red green blue error_um block tool.
-/// Throws InputError [file-unwritable].
+/// is left; full colour at `full_um` and beyond. Properties x y z nx ny nz red green blue error_um deflection_um
+/// contour_um area_mm2 block tool. Throws InputError [file-unwritable].
 void write_form_error_ply(const std::string& path, const FormErrorPoints& points, double full_um);
 
 }  // namespace camber::report

@@ -28,7 +28,9 @@ void write_form_error_ply(const std::string& path, const FormErrorPoints& points
       full_um, points.count);
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) bytes += fmt::format("property float {}\n", name);
   for (const char* name : {"red", "green", "blue"}) bytes += fmt::format("property uchar {}\n", name);
-  bytes += "property float error_um\nproperty int block\nproperty int tool\nend_header\n";
+  bytes +=
+      "property float error_um\nproperty float deflection_um\nproperty float contour_um\nproperty float "
+      "area_mm2\nproperty int block\nproperty int tool\nend_header\n";
   constexpr std::size_t kFlushBytes = 1 << 20;
   const auto flush = [&] {
     file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -40,7 +42,8 @@ void write_form_error_ply(const std::string& path, const FormErrorPoints& points
     for (const Vec3& v : {p.place_mm, p.normal})
       for (int a = 0; a < 3; ++a) append_little_endian(bytes, static_cast<float>(v[a]));
     for (const std::uint8_t c : colour(full_um > 0 ? p.error_um / full_um : 0)) bytes += static_cast<char>(c);
-    append_little_endian(bytes, static_cast<float>(p.error_um));
+    for (const double v : {p.error_um, p.deflection_um(), p.contour_um, p.area_mm2})
+      append_little_endian(bytes, static_cast<float>(v));
     append_little_endian(bytes, p.block);
     append_little_endian(bytes, static_cast<std::uint32_t>(p.tool));
   }

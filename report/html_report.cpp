@@ -1,6 +1,7 @@
 #include "report/html_report.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include <fmt/format.h>
 
@@ -19,8 +20,10 @@ constexpr const char* kPartFrame =
     "<div class=\"bar\" id=\"part-controls\"></div>\n"
     "<div class=\"scene\" id=\"scene\"></div>\n"
     "<div class=\"bar legends\" id=\"legends\"></div>\n"
-    "<p class=\"note\">Form error: machined surface minus the undeflected sweep of the target program, along the "
-    "surface’s normal; red where material is left, blue where the cutter went too deep. Beyond the scale a colour "
+    "<p class=\"note\">Form error: machined surface minus the undeflected sweep of the path that the target program "
+    "commands, "
+    "along the surface’s normal; red where material is left, blue where the cutter went too deep. Beyond the scale a "
+    "colour "
     "stays "
     "as at its end.</p>\n</div>\n";
 
@@ -34,6 +37,19 @@ bool has_rows(const ReportData& data) {
   return std::any_of(data.path.begin(), data.path.end(), [](const auto& run) { return !run.rows.empty(); });
 }
 
+std::string verdict_html(const PageVerdict& verdict) {
+  std::string headline = verdict.headline;
+  if (!headline.empty()) headline[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(headline[0])));
+  std::string out = fmt::format("<div class=\"card verdict{}\" id=\"verdict\"><p><b>{}</b></p>\n",
+                                verdict.success ? " good" : "", html_text(headline));
+  if (!verdict.reasons.empty()) {
+    out += "<ul>\n";
+    for (const std::string& reason : verdict.reasons) out += fmt::format("<li>{}</li>\n", html_text(reason));
+    out += "</ul>\n";
+  }
+  return out + "</div>\n";
+}
+
 std::string head_html(const ReportData& data) {
   const std::string title = html_text(data.title);
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
@@ -41,11 +57,13 @@ std::string head_html(const ReportData& data) {
   out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   out +=
       fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);
-  out += fmt::format("<header><div><h1>{}</h1>\n<p class=\"sub\">{}</p></div>\n", title, html_text(data.subtitle));
+  out += fmt::format("<header><div><h1>{}</h1>\n<p class=\"sub\">{}</p></div></header>\n", title,
+                     html_text(data.subtitle));
+  if (data.verdict) out += verdict_html(*data.verdict);
   if (!data.download_name.empty())
-    out += fmt::format("<a class=\"download\" id=\"download\" hidden download=\"{0}\">Download {0}</a>\n",
+    out += fmt::format("<p><a class=\"download\" id=\"download\" hidden download=\"{0}\">Download {0}</a></p>\n",
                        html_text(data.download_name));
-  return out + "</header>\n";
+  return out;
 }
 
 std::string histogram_html(const ReportData& data, const PageData& page) {

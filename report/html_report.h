@@ -30,9 +30,17 @@ struct TextTable {
   std::string note;  ///< below the table; empty: none
 };
 
+/// Whether the run reached what was asked for, and why not; at the page's head.
+struct PageVerdict {
+  bool success = false;
+  std::string headline;
+  std::vector<std::string> reasons;
+};
+
 struct ReportData {
   std::string title;
-  std::string subtitle;         ///< e.g. the files that the page is about
+  std::string subtitle;  ///< e.g. the files that the page is about
+  std::optional<PageVerdict> verdict;
   std::vector<Figure> figures;  ///< the first four are shown large
   SurfaceSamples surface;
   bool compared = false;  ///< the surface's error_after_um and block_after count

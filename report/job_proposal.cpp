@@ -158,7 +158,9 @@ std::string job_text(const JobProposal& proposal) {
   }
   out += line(fmt::format("# operations = {{ tools = [{}] }}", cutting), "only these are simulated and compensated");
   out += tools + material_text() + "\n[stock]\n" + stock_text(proposal.summary, radius_mm);
-  return out + "\n[simulation]\nvoxel_mm = 0.1\n\n[compensation]\ntolerance_um = 1.0\nmax_shift_mm = 0.1\n";
+  out += "\n[simulation]\nvoxel_mm = 0.1\n\n[compensation]\n";
+  out += line("tolerance_um = 5.0", "95 % of the surface; or profile_um = [-5, 10], the band that the drawing gives");
+  return out + "max_shift_mm = 0.1\n";
 }
 
 }  // namespace camber::report

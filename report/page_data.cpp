@@ -92,6 +92,8 @@ json surface_json(const ReportData& data, const ReportOptions& options, PackedAr
     out["error"].push_back(arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.error_after_um; })));
     out["block"].push_back(whole(arrays, mesh.vertices, &S::block_after));
   }
+  if (std::ranges::any_of(mesh.vertices, [](const S& s) { return s.contour_um != 0; }))
+    out["contour"] = arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.contour_um; }));
   out["points"] = data.surface.size();
   return out;
 }

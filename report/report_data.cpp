@@ -9,6 +9,7 @@
 #include "report/model_tables.h"
 #include "report/page_tables.h"
 #include "report/summary.h"
+#include "report/verdict_text.h"
 #include "simulate/verdict.h"
 
 namespace camber::report {
@@ -22,7 +23,12 @@ std::uint32_t line_of(const SimulatedProgram& program, std::int32_t stamp) {
 }
 
 SurfaceSample sample_of(const removal::SurfacePoint& p, const SimulatedProgram& program) {
-  return {p.crossing_mm, p.normal, 1000 * p.error_mm, 0, p.area_mm2, line_of(program, p.machined_stamp), 0};
+  return {.place_mm = p.crossing_mm,
+          .normal = p.normal,
+          .error_um = 1000 * p.error_mm,
+          .contour_um = 1000 * p.contour_mm,
+          .area_mm2 = p.area_mm2,
+          .block = line_of(program, p.machined_stamp)};
 }
 
 void add_stock(ReportData& data, const removal::StockShape& stock) {
@@ -47,6 +53,17 @@ void add_figures(ReportData& data, const removal::ErrorFigures& before, const re
   add("form error, greatest (material left)", &removal::ErrorFigures::max, "max");
   add("form error, least (cut too deep)", &removal::ErrorFigures::min, "min");
   add("form error, mean", &removal::ErrorFigures::mean, "mean");
+}
+
+/// What the form error is made of.
+void add_parts(ReportData& data, const simulate::Prediction& p) {
+  const auto part = [&](const char* name, double value, const char* key) {
+    data.figures.push_back({name, value, std::nullopt, "um", 2, key});
+  };
+  part("of it deflection, rms", p.deflection_um.rms, "deflection_um.rms");
+  part("of it deflection, 95th percentile", p.deflection_um.p95, "deflection_um.p95");
+  part("of it servo lag and corner rounding, rms", p.contour_um.rms, "contour_um.rms");
+  part("of it servo lag and corner rounding, 95th percentile", p.contour_um.p95, "contour_um.p95");
 }
 
 void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& diagnostics,
@@ -91,7 +108,11 @@ TextTable limits_table(const machine::Job& job, const compensate::CompensationRe
 FormErrorPoints form_error_points(const SimulatedProgram& program, const simulate::Prediction& prediction) {
   return {prediction.surface.size(), [&program, &prediction](std::size_t i) {
             const auto& p = prediction.surface[i];
-            FormErrorPoint point{.place_mm = p.place_mm, .normal = p.normal, .error_um = 1000 * p.error_mm};
+            FormErrorPoint point{.place_mm = p.place_mm,
+                                 .normal = p.normal,
+                                 .error_um = 1000 * p.error_mm,
+                                 .contour_um = 1000 * p.contour_mm,
+                                 .area_mm2 = p.area_mm2};
             if (!prediction.total_error_mm.empty()) point.total_error_um = 1000 * prediction.total_error_mm[i];
             if (p.machined_stamp >= 0) {
               const auto stamp = static_cast<std::size_t>(p.machined_stamp);
@@ -113,6 +134,7 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
     data.figures.push_back(time);
   } else {
     add_figures(data, p.form_error_um, nullptr, "form_error_um");
+    add_parts(data, p);
     double force = 0;
     for (const auto& l : p.cut.loads) force = std::max(force, l.lateral_max_N);
     // Shown large: two of the error, the force, the time.
@@ -139,10 +161,21 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   data.title = "Compensation of " + file_name(job.program);
   data.subtitle = job.path;
   add_figures(data, c.before_um, &c.after_um, "{}_um");
+  const auto part = [&](const char* name, const removal::ErrorFigures& before, const removal::ErrorFigures& after,
+                        const char* key) {
+    data.figures.push_back({name, before.rms, after.rms, "um", 2, key});
+  };
+  const auto &given = c.plain_before, &emitted = c.plain_after;
+  part("error, rms", given.error_um, emitted.error_um, "{}.error_um.rms");
+  part("of it deflection, rms", given.deflection_um, emitted.deflection_um, "{}.deflection_um.rms");
+  part("of it servo lag and corner rounding, rms", given.contour_um, emitted.contour_um, "{}.contour_um.rms");
+  if (given.total_um && emitted.total_um)
+    part("against the part's mesh, rms", *given.total_um, *emitted.total_um, "{}.total_error_um.rms");
   data.figures.insert(data.figures.begin() + 2,
                       {"largest shift", 1000 * c.max_shift_mm, std::nullopt, "um", 1, "max_shift_um"});
   data.figures.insert(data.figures.begin() + 3,
                       {"machine time", c.feed_before.time_s, c.feed_after.time_s, "s", 1, "machine_time_s.{}"});
+  data.figures.push_back({"surface without a figure, about", c.unseen_mm2, std::nullopt, "mm2", 1, "unseen_mm2"});
   data.voxel_mm = job.simulation.voxel_mm;
   data.compared = c.surface_after.size() == c.surface_before.size();
   data.surface = {c.surface_before.size(),
@@ -160,10 +193,12 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
     add_errors(run->rows, run->program.path, run == &before ? c.surface_before : c.surface_after);
     data.path.push_back({run == &before ? "before" : "after", run->program.text.source.text(), std::move(run->rows)});
   }
-  data.download_name = file_name(output);
+  if (c.better || c.best > 0) data.download_name = file_name(output);  // else nothing is written
   data.tables = {rounds_table(c), limits_table(job, c)};
   for (TextTable& table : compensation_tables(c)) data.tables.push_back(std::move(table));
-  add_texts(data, job, diagnostics, unsettled_sentence(c));
+  add_texts(data, job, diagnostics, {});
+  const VerdictText verdict = verdict_text(c, job.compensation);
+  data.verdict = PageVerdict{verdict.success, verdict.headline, verdict.reasons};
   return data;
 }
 

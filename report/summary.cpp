@@ -10,22 +10,13 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "base/units.h"
+#include "report/figure_rows.h"
 #include "simulate/verdict.h"
 
 namespace camber::report {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json figures(const removal::ErrorFigures& f) {
-  return {{"min", f.min}, {"max", f.max}, {"mean", f.mean}, {"rms", f.rms}, {"p95", f.p95}, {"area_mm2", f.area_mm2}};
-}
-
-std::string figures_row(const std::string& name, const removal::ErrorFigures& f) {
-  return fmt::format("{:<12}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}", name, f.p95, f.rms, f.mean, f.min, f.max);
-}
-constexpr const char* kFiguresHead = "form error, um     p95      rms     mean      min      max";
 
 /// Area-weighted figures of |total error| against the mesh.
 removal::ErrorFigures total_error(const simulate::Prediction& p) {
@@ -47,7 +38,7 @@ ordered_json spread(const removal::ErrorSpread& s) {
 }
 
 ordered_json form_error(const simulate::Prediction& p) {
-  ordered_json j = figures(p.form_error_um);
+  ordered_json j = figures_json(p.form_error_um);
   std::vector<double> um, area;
   for (const auto& point : p.surface) {
     um.push_back(1000 * point.error_mm);
@@ -181,6 +172,7 @@ void leave_out_figures(const simulate::SimulatedProgram& program, const simulate
 
 std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s) {
   ordered_json j;
+  j["schema_version"] = kSchemaVersion;
   j["machine_time_s"] = program.feed.time_s;
   j["cutting_time_s"] = program.feed.cutting_time_s;
   j["compute_s"] = compute_s;
@@ -194,7 +186,10 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
   j["removed_mm3"] = {{"path", p.cut.chip_mm3}, {"stock", p.cut.stock_mm3}};
   if (p.holes.any()) j["holes"] = holes(p.holes);
   j["form_error_um"] = form_error(p);
-  if (!p.total_error_mm.empty()) j["total_error_um"] = figures(total_error(p));
+  j["deflection_um"] = figures_json(p.deflection_um);
+  j["contour_um"] = figures_json(p.contour_um);
+  j["unseen_mm2"] = p.unseen_mm2;
+  if (!p.total_error_mm.empty()) j["total_error_um"] = figures_json(total_error(p));
   j["static"] = {{"rounds_max", p.cut.rounds_max},
                  {"unsettled_stretches", p.cut.unsettled},
                  {"unsettled_lines", unsettled_lines(program, p)}};
@@ -202,123 +197,6 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
     if (const auto lines = unsettled_lines(program, p, reason); !lines.empty())
       j["static"]["unsettled_reasons"].push_back({{"reason", name(reason)}, {"lines", lines}});
   if (simulate::beyond_model(p)) leave_out_figures(program, p, j);
-  return j.dump(2) + "\n";
-}
-
-namespace {
-
-ordered_json split(const compensate::ErrorSplit& s) {
-  return {{"correctable", s.correctable_um},
-          {"correctable_p95", s.correctable_p95_um},
-          {"correctable_max", s.correctable_max_um},
-          {"guard", s.guard_um},
-          {"limited", s.limited_um},
-          {"not_correctable", s.not_correctable_um()},
-          {"short_range", s.short_range_um},
-          {"opposed", s.opposed_um},
-          {"tip", s.tip_um},
-          {"bow", s.bow_um},
-          {"not_compensated", s.not_compensated_um}};
-}
-
-ordered_json depth(const compensate::Depth& d) {
-  return {{"deepest_um", d.deepest_um},
-          {"held_um", d.held_um},
-          {"at_mm", {d.place_mm.x(), d.place_mm.y(), d.place_mm.z()}},
-          {"area_over_tolerance", d.over_fraction}};
-}
-
-ordered_json rounds(const compensate::CompensationResult& c) {
-  ordered_json out = ordered_json::array();
-  for (const auto& r : c.rounds) {
-    ordered_json row = figures(r.error_um);
-    row["split_um"] = split(r.split);
-    row["largest_shift_um"] = 1000 * r.largest_shift_mm;
-    row["limited_points"] = r.limited_points;
-    row["gain"] = r.gain;
-    row["step_share"] = r.step_fraction;
-    row["overcorrected_area"] = r.overcorrected_fraction;
-    row["deepest_um"] = r.deepest_um;
-    row["guard"] = r.guard;
-    row["static_rounds"] = r.static_rounds;
-    row["unsettled_stretches"] = r.unsettled;
-    out.push_back(std::move(row));
-  }
-  return out;
-}
-
-ordered_json recheck(const compensate::Recheck& r) {
-  return {{"voxel_mm", r.voxel_mm},
-          {"before_um", figures(r.before_um)},
-          {"after_um", figures(r.after_um)},
-          {"split_before_um", split(r.split_before)},
-          {"split_after_um", split(r.split_after)},
-          {"deepest_um", r.deepest_um}};
-}
-
-ordered_json band(const compensate::Band& b) {
-  ordered_json groups = ordered_json::array();
-  for (const auto& g : b.groups) groups.push_back({{"name", g.name}, {"rms_um", g.rms_um}});
-  return {{"groups", groups},   {"sigma_rms_um", b.sigma_rms_um}, {"rms_um", b.rms_um},
-          {"p95_um", b.p95_um}, {"deepest_um", b.deepest_um},     {"safe_share", b.safe_fraction}};
-}
-
-ordered_json measured(const compensate::MeasuredFit& m) {
-  return {{"deflection_scale", m.scale}, {"std_error", m.std_error},         {"points", m.points},
-          {"left_out", m.left_out},      {"rms_before_um", m.rms_before_um}, {"rms_after_um", m.rms_after_um},
-          {"predictions", m.predictions}};
-}
-
-ordered_json operations(const compensate::CompensationResult& c) {
-  ordered_json out = ordered_json::array();
-  for (const auto& o : c.finishing.operations)
-    out.push_back({{"tool", o.tool},
-                   {"lines", {o.first_line, o.last_line}},
-                   {"surface_share", o.surface_fraction},
-                   {"moves", o.moves},
-                   {"compensated_moves", o.compensated_moves}});
-  return out;
-}
-
-}  // namespace
-
-std::string compensate_json(const compensate::CompensationResult& c, double compute_s) {
-  ordered_json j;
-  j["before_um"] = figures(c.before_um);
-  j["after_um"] = figures(c.after_um);
-  j["split_before_um"] = split(c.split_before);
-  j["split_after_um"] = split(c.split_after);
-  j["rounds"] = rounds(c);
-  j["best_round"] = c.best;
-  j["stop"] = compensate::to_string(c.stop);
-  j["into_part"] = {{"within_tolerance", c.within_part},
-                    {"before", depth(c.depth_before)},
-                    {"after", depth(c.depth_after)},
-                    {"not_compensated", depth(c.depth_others)},
-                    {"without_bending", depth(c.depth_without_bending)}};
-  j["path"] = {
-      {"angle_growth_deg", deg_from_rad(c.quality.angle_growth_rad)},
-      {"angle_growth_line", c.quality.angle_line},
-      {"shortest_split_mm", c.quality.shortest_mm},
-      {"too_short_splits", c.quality.too_short},
-      {"row_turn_deg", deg_from_rad(c.row_turn_rad)},
-      {"row_step_p95_um", 1000 * c.row_steps.p95_mm},
-      {"row_step_max_um", 1000 * c.row_steps.max_mm},
-      {"surface_step_um",
-       {{"before", {{"p95", 1000 * c.surface_steps.before_p95_mm}, {"max", 1000 * c.surface_steps.before_max_mm}}},
-        {"after", {{"p95", 1000 * c.surface_steps.after_p95_mm}, {"max", 1000 * c.surface_steps.after_max_mm}}},
-        {"growth_deg", deg_from_rad(c.surface_steps.growth_rad)}}}};
-  j["operations"] = operations(c);
-  if (!c.rechecks.empty()) {
-    j["check"] = recheck(c.rechecks.front());
-    for (const auto& r : c.rechecks) j["checks"].push_back(recheck(r));
-  }
-  if (c.band) j["uncertainty"] = band(*c.band);
-  if (c.measured) j["measured"] = measured(*c.measured);
-  j["blocks"] = {{"before", c.blocks_before}, {"after", c.blocks_after}, {"changed", c.blocks_changed}};
-  j["max_shift_um"] = 1000 * c.max_shift_mm;
-  j["machine_time_s"] = {{"before", c.feed_before.time_s}, {"after", c.feed_after.time_s}};
-  j["compute_s"] = compute_s;
   return j.dump(2) + "\n";
 }
 
@@ -335,116 +213,10 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
   fmt::format_to(std::back_inserter(out), "power {:.1f} W at most, {:.1f} W in the cut; {:.0f} J/cm3\n", s.power_max_W,
                  s.power_mean_W, s.specific_energy_MPa);
   if (p.holes.any()) out += holes_text(p.holes);
-  fmt::format_to(std::back_inserter(out), "{}\n{}\n", kFiguresHead, figures_row("error", p.form_error_um));
+  fmt::format_to(std::back_inserter(out), "{}\n{}\n{}\n{}\n", kFiguresHead, figures_row("error", p.form_error_um),
+                 figures_row(" deflection", p.deflection_um), figures_row(" contour", p.contour_um));
   if (!p.total_error_mm.empty())
     fmt::format_to(std::back_inserter(out), "{}\n", figures_row("against part", total_error(p)));
-  return out;
-}
-
-namespace {
-
-constexpr const char* kSplitHead = "form error apart, um rms             before    after";
-
-std::string split_text(const compensate::ErrorSplit& before, const compensate::ErrorSplit& after) {
-  std::string out = fmt::format("{}\n", kSplitHead);
-  const auto row = [&](const char* name, double b, double a) {
-    if (b >= 0.005 || a >= 0.005) fmt::format_to(std::back_inserter(out), "{:<34}{:>9.2f}{:>9.2f}\n", name, b, a);
-  };
-  row("  a shift can correct", before.correctable_um, after.correctable_um);
-  row("  left so as not to cut too deep", before.guard_um, after.guard_um);
-  row("  held back by max_shift_mm", before.limited_um, after.limited_um);
-  row("  no shift can correct", before.not_correctable_um(), after.not_correctable_um());
-  row("    along the cutter: helix bow", before.bow_um, after.bow_um);
-  row("    surfaces that face each other", before.opposed_um, after.opposed_um);
-  row("    about a round tip's axis", before.tip_um, after.tip_um);
-  row("    too short along the path", before.short_range_um, after.short_range_um);
-  row("  moves that are not compensated", before.not_compensated_um, after.not_compensated_um);
-  return out;
-}
-
-std::string rounds_text(const compensate::CompensationResult& c) {
-  std::string out = fmt::format("{}\n", kFiguresHead);
-  for (std::size_t i = 0; i < c.rounds.size(); ++i) {
-    const auto& r = c.rounds[i];
-    std::string note = i == c.best ? "  <" : "";
-    if (r.guard) note += "  guard";
-    if (r.step_fraction < 1) note += fmt::format("  step x {:.2g}", r.step_fraction);
-    if (r.overcorrected_fraction >= 0.01) note += fmt::format("  {:.0f} % over", 100 * r.overcorrected_fraction);
-    fmt::format_to(std::back_inserter(out), "{}{}\n",
-                   figures_row(i == 0 ? "as given" : fmt::format("round {}", i), r.error_um), note);
-  }
-  return out;
-}
-
-std::string safety_text(const compensate::CompensationResult& c) {
-  std::string out = fmt::format("into the part: {:.2f} um before, {:.2f} um after (single points {:.2f} um)",
-                                c.depth_before.held_um, c.depth_after.held_um, c.depth_after.deepest_um);
-  if (c.depth_others.deepest_um > 0) out += fmt::format("\n  by other moves: {:.2f} um", c.depth_others.deepest_um);
-  return out + fmt::format("\nif the tool did not bend at all: {:.2f} um into the part\n",
-                           c.depth_without_bending.deepest_um);
-}
-
-std::string path_text(const compensate::CompensationResult& c) {
-  std::string out =
-      fmt::format("angles between blocks grow by {:.2f} degrees at most", deg_from_rad(c.quality.angle_growth_rad));
-  if (c.row_steps.pairs > 0) out += fmt::format("; row to row {:.1f} um (95 %)", 1000 * c.row_steps.p95_mm);
-  if (c.row_turn_rad > 0)
-    out += fmt::format("\nfrom row to row the shifts turn by {:.2f} degrees at most", deg_from_rad(c.row_turn_rad));
-  if (c.surface_steps.pairs > 0)
-    out += fmt::format("\nthe surface steps from row to row by {:.2f} um, before by {:.2f} um (95 %)",
-                       1000 * c.surface_steps.after_p95_mm, 1000 * c.surface_steps.before_p95_mm);
-  if (c.quality.shortest_mm > 0) out += fmt::format("\nshortest block of a split: {:.3f} mm", c.quality.shortest_mm);
-  return out + "\n";
-}
-
-std::string checks_text(const compensate::CompensationResult& c) {
-  std::string out;
-  const auto add = [&](fmt::string_view format, auto... a) {
-    fmt::vformat_to(std::back_inserter(out), format, fmt::make_format_args(a...));
-  };
-  if (c.measured)
-    add("measured: the deflection is {:.3f} +- {:.3f} of the model's ({} points)\n", c.measured->scale,
-        c.measured->std_error, c.measured->points);
-  for (const auto& r : c.rechecks)
-    add("on voxels of {:g} mm: rms {:.2f} um before, {:.2f} after; of what a shift can\ncorrect {:.2f} before, {:.2f} "
-        "after\n",
-        r.voxel_mm, r.before_um.rms, r.after_um.rms, r.split_before.correctable_um, r.split_after.correctable_um);
-  if (!c.band) return out;
-  add("with the model's uncertainty: rms {:.2f} um, 95 % within {:.2f} um\n", c.band->rms_um, c.band->p95_um);
-  for (const auto& g : c.band->groups) add("  {:<12}{:>8.2f} um rms for one standard error\n", g.name, g.rms_um);
-  add("safe share of the compensation: {:.0f} %\n", 100 * c.band->safe_fraction);
-  return out;
-}
-
-/// "compensated", "compensated in 3 of 4 moves", "simulated only".
-std::string compensated_of(const compensate::Operation& o) {
-  if (o.compensated_moves == 0) return "simulated only";
-  if (o.compensated_moves == o.moves) return "compensated";
-  return fmt::format("compensated in {} of {} moves", o.compensated_moves, o.moves);
-}
-
-}  // namespace
-
-std::string compensate_text(const compensate::CompensationResult& c, double compute_s) {
-  std::string out = rounds_text(c);
-  const char* why = c.stop == compensate::Stop::tolerance
-                        ? "the 95th percentile of what a shift can correct is within the tolerance"
-                    : c.stop == compensate::Stop::stalled ? "the error no longer falls"
-                                                          : "the largest number of rounds was reached";
-  fmt::format_to(std::back_inserter(out), "stopped: {}\n", why);
-  out += split_text(c.split_before, c.split_after) + safety_text(c) + path_text(c) + checks_text(c);
-  const auto& operations = c.finishing.operations;
-  for (const auto& o : operations)
-    if (operations.size() > 1 || o.compensated_moves < o.moves)
-      fmt::format_to(std::back_inserter(out), "T{}, lines {} to {}: {}, {:.0f} % of the surface\n", o.tool,
-                     o.first_line, o.last_line, compensated_of(o), 100 * o.surface_fraction);
-  fmt::format_to(std::back_inserter(out),
-                 "largest shift {:.1f} um; {} of {} blocks changed, {} blocks after\n"
-                 "machine time {:.1f} s before, {:.1f} s after; computed in {:.1f} s\n",
-                 1000 * c.max_shift_mm, c.blocks_changed, c.blocks_before, c.blocks_after, c.feed_before.time_s,
-                 c.feed_after.time_s, compute_s);
-  const std::size_t limited = c.rounds[c.best].limited_points;
-  if (limited > 0) fmt::format_to(std::back_inserter(out), "{} points of the path reached max_shift_mm\n", limited);
   return out;
 }
 
@@ -463,15 +235,6 @@ std::string unsettled_sentence(const simulate::SimulatedProgram& program, const 
 std::string unsettled_sentence(const compensate::CompensationResult& c) {
   if (c.settled) return {};
   return "the static deflection of some stretches did not settle; their figures are uncertain";
-}
-
-std::string left_over_sentence(const compensate::ErrorSplit& left, const machine::CompensationSettings& asked) {
-  std::string out = fmt::format("of what a shift can correct {:.2f} um (95th percentile) are left; tolerance_um = {:g}",
-                                left.correctable_p95_um, asked.tolerance_um);
-  // What keeps it from the tolerance is often the part, not the path.
-  if (left.guard_um > left.correctable_um)
-    out += fmt::format(", most of it left so as to cut no more than {:g} um into the part", asked.overcut_um());
-  return out;
 }
 
 }  // namespace camber::report

@@ -7,9 +7,14 @@
 
 namespace camber::report {
 
+/// Of the JSON. 2: error figures are against the path that CAM commanded (error_um = deflection_um + contour_um);
+/// before, they were against the undeflected sweep as the machine runs it, which is deflection_um now.
+inline constexpr int kSchemaVersion = 2;
+
 std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
                          double compute_s);
-std::string compensate_json(const compensate::CompensationResult& result, double compute_s);
+std::string compensate_json(const compensate::CompensationResult& result, const machine::CompensationSettings& asked,
+                            double compute_s);
 
 /// The same for a terminal, within 80 columns.
 std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
@@ -20,8 +25,5 @@ std::string compensate_text(const compensate::CompensationResult& result, double
 /// one.
 std::string unsettled_sentence(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction);
 std::string unsettled_sentence(const compensate::CompensationResult& result);
-
-/// A sentence about how far the compensation stayed from its tolerance, and whether the guard is why.
-std::string left_over_sentence(const compensate::ErrorSplit& left, const machine::CompensationSettings& asked);
 
 }  // namespace camber::report

@@ -122,6 +122,7 @@ void add_to(SurfaceSample& vertex, const SurfaceSample& s, bool first) {
   vertex.normal += s.normal;
   if (first || std::abs(s.error_um) > std::abs(vertex.error_um)) {
     vertex.error_um = s.error_um;
+    vertex.contour_um = s.contour_um;
     vertex.block = s.block;
   }
   if (first || std::abs(s.error_after_um) > std::abs(vertex.error_after_um)) {

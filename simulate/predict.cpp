@@ -7,6 +7,7 @@
 
 #include "feedmodel/control_options.h"
 #include "nc/interpreter.h"
+#include "simulate/contour.h"
 #include "simulate/job_checks.h"
 #include "simulate/setup_checks.h"
 
@@ -151,12 +152,13 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
     diagnostics.throw_if_errors();
     blank.clear_stamps();
   }
+  const removal::StampPath nominal = removal::nominal_path(target.moves, target.selected, target.path);
   removal::Stock surface(blank);
-  if (sweep_path(surface, job, target.path, 0) < nothing_mm3(job))
+  if (sweep_path(surface, job, nominal, 0) < nothing_mm3(job))
     report_nothing_removed(target.text.source.name(), where, diagnostics);
   diagnostics.throw_if_errors();
   removal::CutterPlaces places;
-  for_each_run(job, target.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+  for_each_run(job, nominal, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     places.add(static_cast<std::int32_t>(run.from), removal::shape_of(tool), stamps);
   });
   std::optional<removal::MeshDistance> part;
@@ -165,8 +167,12 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
     check_part_size(job.part.mesh, {part->min_mm(), part->max_mm()}, where.stock, diagnostics);
     diagnostics.throw_if_errors();
   }
-  return {std::move(blank), std::move(surface),      std::move(places),
-          std::move(part),  HoleStamps(target.path), std::move(whole)};
+  Target out{std::move(blank), std::move(surface),  std::move(places),
+             std::move(part),  HoleStamps(nominal), std::move(whole)};
+  out.stamps.reserve(nominal.stamps.size());
+  for (const auto& s : nominal.stamps) out.stamps.push_back({s.move, static_cast<float>(s.share)});
+  mark_contour(job, target.path, out);
+  return out;
 }
 
 Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
@@ -223,14 +229,21 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
     if (cut_options.turn_from) out.cut.turn = std::move(cut_run.turn);
   });
   out.surface = map.take();
+  for (std::size_t i = 0; i < out.surface.size(); ++i)
+    out.surface[i].contour_mm = static_cast<double>(target.contour_mm[i]);
+  out.unseen_mm2 = target.unseen_mm2;
   out.holes.surface_mm2 = target.holes.drop_from(out.surface);
-  std::vector<double> error_um, area;
+  std::vector<double> error_um, deflection_um, contour_um, area;
   for (const auto& p : out.surface) {
     error_um.push_back(1000 * p.error_mm);
+    deflection_um.push_back(1000 * (p.error_mm - p.contour_mm));
+    contour_um.push_back(1000 * p.contour_mm);
     area.push_back(p.area_mm2);
     if (target.part) out.total_error_mm.push_back(target.part->distance_mm(p.place_mm + p.error_mm * p.normal));
   }
   out.form_error_um = removal::error_figures(error_um, area);
+  out.deflection_um = removal::error_figures(deflection_um, area);
+  out.contour_um = removal::error_figures(contour_um, area);
   return out;
 }
 

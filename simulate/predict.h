@@ -34,20 +34,30 @@ struct SimulatedProgram {
 SimulatedProgram simulate_motion(SourceText source, const machine::Job& job, const feedmodel::SampleSink& samples,
                                  Diagnostics& diagnostics);
 
-/// What the part is judged against: the undeflected sweep of the target program through the blank.
+/// A place on a program's moves.
+struct PathShare {
+  std::uint32_t move = 0;
+  float share = 0;  ///< of the move's length
+};
+
+/// What the part is judged against, the nominal surface: the undeflected sweep of the target program's own moves
+/// through the blank, without servo lag and corner rounding (removal::nominal_path).
 struct Target {
   removal::Stock blank;          ///< before this job's first cut
-  removal::Stock surface;        ///< after the undeflected sweep; its stamps are the target program's
-  removal::CutterPlaces places;  ///< the target program's stamps, by the ids in `surface`
+  removal::Stock surface;        ///< the nominal one
+  removal::CutterPlaces places;  ///< the nominal path's stamps, by the ids in `surface`
   std::optional<removal::MeshDistance> part;
-  HoleStamps holes;                       ///< of the target program
+  HoleStamps holes;                       ///< of the nominal path
   std::optional<removal::Stock> whole{};  ///< the stock before the allowance was taken off; empty: `blank`
+  std::vector<PathShare> stamps{};        ///< the nominal path's, on the target program's moves
+  std::vector<float> contour_mm{};        ///< one a point of a SurfaceMap of this target; see Prediction::surface
+  double unseen_mm2 = 0;                  ///< of the nominal surface, without a point
   const removal::Stock& solid() const { return whole ? *whole : blank; }
 };
 
-/// Builds the blank (box or mesh, less what the target program leaves with the cutter shrunk by the allowance) and
-/// sweeps the target through it. Throws InputError (stock missing, memory, nothing removed, sizes that differ by the
-/// factor of the inch).
+/// Builds the blank (box or mesh, less what the target program, as the machine runs it, leaves with the cutter shrunk
+/// by the allowance), sweeps the nominal path through it and marks it with the undeflected sweep as the machine runs
+/// it. Throws InputError (stock missing, memory, nothing removed, sizes that differ by the factor of the inch).
 Target make_target(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics);
 
 /// Sweeps the undeflected cutters of a path through the stock, each made smaller by shrink_mm along its normal; returns
@@ -58,9 +68,14 @@ double sweep_path(removal::Stock& stock, const machine::Job& job, const removal:
 struct Prediction {
   CutResult cut;  ///< loads: one a stamp of the program; the volumes are without tapping, which has no chips
   HoleFigures holes;
-  std::vector<removal::SurfacePoint> surface;  ///< of the target, but for what its holes made
-  std::vector<double> total_error_mm;          ///< against the part's mesh, one a point; empty without a mesh
-  removal::ErrorFigures form_error_um;
+  /// Of the target, but for what its holes made. error_mm: machined minus nominal; contour_mm: the undeflected sweep of
+  /// the target program as this machine runs it, minus nominal; their difference is what bending (and, in a
+  /// compensated program, the shift) does.
+  std::vector<removal::SurfacePoint> surface;
+  std::vector<double> total_error_mm;   ///< against the part's mesh, one a point; empty without a mesh
+  removal::ErrorFigures form_error_um;  ///< error_mm; the sum of the next two, point by point
+  removal::ErrorFigures deflection_um, contour_um;
+  double unseen_mm2 = 0;  ///< of the nominal surface, without a point
   std::unique_ptr<removal::Stock> machined;
   std::vector<int> slender_tools{};  ///< that cut, but are longer than the model covers (simulate/setup_checks.h)
 };

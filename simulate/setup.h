@@ -3,6 +3,7 @@
 // check it, read what it is judged against, sweep that through the blank.
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "base/diagnostics.h"
@@ -20,6 +21,10 @@ struct Setup {
 
   const SimulatedProgram& target_program() const { return original ? *original : program; }
   bool own_target() const { return !original; }
+  /// Target::stamps where they are of `program`, else none.
+  std::span<const PathShare> own_stamps() const {
+    return own_target() ? std::span(target.stamps) : std::span<const PathShare>();
+  }
 };
 
 struct SetupOptions {

@@ -357,7 +357,7 @@ SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const St
   const double block_mm = kBlock * target.voxel_mm(), band = target.band_mm();
   const auto block_of = [&](const SurfacePoint& p) { return cube_of(p.place_mm, block_mm); };
   auto& points = impl_->points;
-  auto parts = surface_points(target, places, solid);
+  auto parts = surface_points(target, places, solid, &unseen_mm2_);
   std::size_t count = 0;
   for (const auto& part : parts) count += part.size();
   points.reserve(count);

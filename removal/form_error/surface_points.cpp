@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -330,7 +331,7 @@ Sharpened sharpen(SurfacePoint& p, int axis, const NamedCutters& cutters, const 
 
 /// `places`, `machined`, `solid`: null where not wanted.
 void collect(const Stock* machined, const Stock& target, const CutterPlaces* places, const Stock* solid,
-             const Index3& tile, std::vector<SurfacePoint>& out) {
+             const Index3& tile, std::vector<SurfacePoint>& out, double& cut_mm2) {
   if (!target.is_cut(tile)) return;
   std::optional<Stock::Probe> faces;
   if (solid) faces.emplace(*solid);
@@ -353,6 +354,8 @@ void collect(const Stock* machined, const Stock& target, const CutterPlaces* pla
           const double u = t0 / (static_cast<double>(t0) - t1);
           const Vec3 g = (1 - u) * gradient(b.target, i, j, k) + u * gradient(b.target, ni, nj, nk);
           const bool both_cut = b.target_stamp[here] != Stock::kUncut && b.target_stamp[next] != Stock::kUncut;
+          if (b.target_stamp[t0 < 0 ? next : here] != Stock::kUncut)
+            cut_mm2 += voxel * voxel * std::abs(g.normalized()[a]);
           const bool inner = both_cut && inside_cut(b, i, j, k, static_cast<float>(voxel)) &&
                              inside_cut(b, ni, nj, nk, static_cast<float>(voxel));
           if (!inner && (!faces || b.target_stamp[t0 < 0 ? next : here] == Stock::kUncut)) continue;
@@ -381,11 +384,17 @@ void collect(const Stock* machined, const Stock& target, const CutterPlaces* pla
 namespace {
 
 std::vector<std::vector<SurfacePoint>> by_tile(const Stock* machined, const Stock& target, const CutterPlaces* places,
-                                               const Stock* solid) {
+                                               const Stock* solid, double* unseen_mm2) {
   const std::vector<Index3> tiles = target.surface_tiles();
   std::vector<std::vector<SurfacePoint>> parts(tiles.size());
+  std::vector<double> cut_mm2(tiles.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, tiles.size(),
-                    [&](std::size_t i) { collect(machined, target, places, solid, tiles[i], parts[i]); });
+                    [&](std::size_t i) { collect(machined, target, places, solid, tiles[i], parts[i], cut_mm2[i]); });
+  if (!unseen_mm2) return parts;
+  double unseen = std::accumulate(cut_mm2.begin(), cut_mm2.end(), 0.0);
+  for (const auto& part : parts)
+    for (const SurfacePoint& p : part) unseen -= p.area_mm2;
+  *unseen_mm2 = std::max(0.0, unseen);
   return parts;
 }
 
@@ -394,14 +403,14 @@ std::vector<std::vector<SurfacePoint>> by_tile(const Stock* machined, const Stoc
 std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target) {
   assert(machined.voxel_mm() == target.voxel_mm());
   std::vector<SurfacePoint> points;
-  for (const auto& part : by_tile(&machined, target, nullptr, nullptr))
+  for (const auto& part : by_tile(&machined, target, nullptr, nullptr, nullptr))
     points.insert(points.end(), part.begin(), part.end());
   return points;
 }
 
 std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places,
-                                                      const Stock* solid) {
-  return by_tile(nullptr, target, &places, solid);
+                                                      const Stock* solid, double* unseen_mm2) {
+  return by_tile(nullptr, target, &places, solid, unseen_mm2);
 }
 
 }  // namespace camber::removal

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <regex>
 #include <vector>
 
 #include <sys/stat.h>
@@ -35,7 +36,7 @@ void write_job(const TempFolder& folder, const std::string& more = "", const std
       "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\n"
       "overhang_mm = 30.0\nhelix_deg = 30\n[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n[stock]\n"
       "box_mm = [[0, -0.5, -2], [8, 2, 0]]\nallowance_mm = 0.1\n[simulation]\nvoxel_mm = 0.2\n"
-      "coupling = \"rigid\"\n[compensation]\ntolerance_um = 3.0\nmax_overcut_um = 6.0\nmax_rounds = 3\n" +
+      "coupling = \"rigid\"\n[compensation]\ntolerance_um = 10.0\nmax_overcut_um = 6.0\nmax_rounds = 3\n" +
           more);
 }
 
@@ -69,6 +70,27 @@ TEST(CompensateCommand, WritesProgramAndFiguresAndTheSameBytesAgain) {
     EXPECT_LE(end - from, 80u) << run.out.substr(from, end - from);
     from = end + 1;
   }
+}
+
+TEST(CompensateCommand, NothingIsWrittenWhereNothingIsBetter) {
+  const TempFolder folder;
+  write_job(folder);
+  // Next to no error, and a tolerance below the decimals of the program.
+  std::string job = std::regex_replace(file_text(folder / "job.toml"), std::regex("helix_deg = 30"),
+                                       "helix_deg = 30\nyoungs_modulus_GPa = 1e9");
+  job = std::regex_replace(job, std::regex("tolerance_um = 10.0"), "tolerance_um = 0.000001");
+  folder.write("job.toml", job);
+  const auto run = run_camber(folder, "compensate job.toml -o a.nc --json a.json");
+  EXPECT_EQ(run.status, 3);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.nc"));
+  EXPECT_NE(run.err.find("camber: error: no better program was found\n"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("camber: error: a.nc was not written; --keep-anyway writes"), std::string::npos) << run.err;
+  const auto json = nlohmann::json::parse(file_text(folder / "a.json"));
+  EXPECT_EQ(json["better_than_given"], false);
+  EXPECT_EQ(json["verdict"]["success"], false);
+  EXPECT_EQ(json["before_um"], json["after_um"]);
+  EXPECT_EQ(run_camber(folder, "compensate job.toml -o a.nc --keep-anyway").status, 3);
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.nc"));
 }
 
 TEST(CompensateCommand, DryRunWritesNoProgram) {

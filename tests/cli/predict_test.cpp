@@ -1,4 +1,5 @@
 // predict as a user runs it: its files, and the same bytes whatever the number of threads.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -168,6 +169,49 @@ TEST(Predict, TotalErrorHoldsTheBending) {
   }
   ASSERT_GT(count, 50);
   EXPECT_GT(sum_um / count, 2);
+}
+
+/// Area-weighted rms of a column.
+double rms_of(const std::map<std::string, std::vector<double>>& points, const std::string& name) {
+  double squares = 0, area = 0;
+  for (std::size_t i = 0; i < points.at(name).size(); ++i) {
+    squares += points.at("area_mm2")[i] * std::pow(points.at(name)[i], 2);
+    area += points.at("area_mm2")[i];
+  }
+  return std::sqrt(squares / area);
+}
+
+TEST(Predict, EveryRowOfTheFormErrorAddsUpAndTheFiguresFollowFromTheColumns) {
+  const TempFolder folder;
+  write_wall_job(folder, "");
+  // A corner that lagging axes cut short: contour error and deflection on the same surface.
+  folder.write("p.nc",
+               "G21 G90 G17 G40 G49 G80 G54 G64\nT1 M6\nS3000 M3\nG0 X-4. Y1.\nG0 Z-1.\nG1 X5. F600\nY6.\nG0 "
+               "Z5.\nM30\n");
+  folder.write("machine.toml",
+               "[control]\ncorner = { law = \"blend\", tolerance_mm = 0.1 }\n[axis.x]\nposition_gain_per_s = "
+               "30\n[axis.y]\nposition_gain_per_s = 20\n[axis.z]\n");
+  const auto run = run_camber(folder, "-q predict job.toml -o r");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto points = columns_of(tests::file_text(folder / "r/form_error.csv"));
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "r/summary.json"));
+  EXPECT_EQ(json["schema_version"], 2);
+  constexpr double kRounded = 0.0016;  // three columns of three decimals
+  double area = 0;
+  for (std::size_t i = 0; i < points.at("error_um").size(); ++i) {
+    EXPECT_NEAR(points.at("error_um")[i], points.at("deflection_um")[i] + points.at("contour_um")[i], kRounded) << i;
+    area += points.at("area_mm2")[i];
+  }
+  const std::pair<const char*, const char*> kGroups[] = {
+      {"error_um", "form_error_um"}, {"deflection_um", "deflection_um"}, {"contour_um", "contour_um"}};
+  for (const auto& [column, group] : kGroups) {
+    EXPECT_NEAR(rms_of(points, column), json[group]["rms"].get<double>(), kRounded) << column;
+    EXPECT_NEAR(*std::max_element(points.at(column).begin(), points.at(column).end()), json[group]["max"].get<double>(),
+                kRounded)
+        << column;
+    EXPECT_NEAR(area, json[group]["area_mm2"].get<double>(), 1e-3);
+    EXPECT_GT(json[group]["rms"], 1) << column;
+  }
 }
 
 TEST(Predict, IsSilentWithQuiet) {

@@ -82,7 +82,8 @@ TEST(SeveralTools, EachCutsWithItsOwnShapeAndSignsItsPoints) {
   // 4 mm wide, 2 deep; and a V of 90 degrees, 1 deep.
   EXPECT_NEAR(removed_mm3(folder, "r"), 64 + 8, 0.5);
   const std::string csv = tests::file_text(folder / "r/form_error.csv");
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block,tool");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool");
   std::istringstream lines(csv);
   std::string line;
   std::getline(lines, line);

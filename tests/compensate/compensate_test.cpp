@@ -152,6 +152,42 @@ TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth_slow) {
   EXPECT_NEAR(std::max(guarded.depth_after.deepest_um, guarded.depth_others.deepest_um), deepest, 1e-9);
 }
 
+TEST(Compensate, NothingIsEmittedWhereNoRoundIsBetter_slow) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  Diagnostics diagnostics;
+  // Next to no error, and a tolerance below the decimals of the program.
+  job.tools[1].youngs_modulus_MPa = 1e12;
+  job.compensation.tolerance_um = 1e-6;
+  const CompensationResult none = compensate(job, diagnostics, {});
+  EXPECT_FALSE(none.better);
+  EXPECT_EQ(none.best, 0u);
+  EXPECT_EQ(none.text, plane_program());
+  EXPECT_EQ(none.after_um.rms, none.before_um.rms) << "the verdict is on what is emitted";
+  EXPECT_FALSE(none.within_tolerance);
+  EXPECT_GT(none.rounds.size(), 1u);
+}
+
+TEST(Compensate, TheFiguresAreOfTheEmittedProgram_slow) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  Diagnostics diagnostics;
+  const CompensationResult c = compensate(job, diagnostics, {});
+  ASSERT_TRUE(c.better);
+  machine::Job verify = job;
+  verify.program = folder.write("emitted.nc", c.text);
+  verify.part.program = job.program;
+  const auto emitted = simulate::simulate_motion(SourceText::read(verify.program), verify, {}, diagnostics);
+  const auto given = simulate::simulate_motion(SourceText::read(job.program), verify, {}, diagnostics);
+  const auto target = simulate::make_target(verify, given, diagnostics);
+  const auto fresh = simulate::predict(verify, target, emitted, {});
+  // Every move is compensated here, so that everything is in reach.
+  EXPECT_NEAR(fresh.form_error_um.rms, c.after_um.rms, 1e-6);
+  EXPECT_NEAR(fresh.form_error_um.p95, c.after_um.p95, 1e-6);
+  EXPECT_NEAR(fresh.form_error_um.area_mm2, c.plain_after.error_um.area_mm2, 1e-6);
+  EXPECT_EQ(c.within_tolerance, c.after_um.p95 <= job.compensation.tolerance_um);
+}
+
 TEST(Compensate, JudgesOnAnotherGridAndMovesTheParameters_slow) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);

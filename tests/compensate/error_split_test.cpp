@@ -109,25 +109,88 @@ TEST(ErrorSplit, TheGuardGetsWhatIsLeftBeyondTheBestWithoutIt) {
   EXPECT_NEAR(lower.guard_um, 0, 1e-12);
 }
 
-TEST(Guard, LiftsWhatLiesTooDeepAndLeavesTheRest) {
-  Wall wall;
-  wall.add([](double, double height) { return 0.010 * (height - 0.5); });  // -4.5 ... 4.5 um
-  Guard guard(0.002);
-  const std::vector<Vec3> from = wall.path.shifts();
+/// The surface after rounds of the guard: it follows the shift, which is fitted to the error less the lift.
+Observed guarded(Wall& wall, double limit_mm, double reach_mm) {
+  Guard guard(wall.path, limit_mm, reach_mm);
   Observed now = wall.observed;
-  for (int round = 0; round < 6 && guard.learn(now) > 0; ++round) {
-    Observed wanted = now;
+  const auto deepest = [&] {
+    double out = 0;
+    for (const auto& o : now.points) out = std::max(out, -o.error_mm);
+    return out;
+  };
+  for (int round = 0; round < 6 && deepest() > limit_mm; ++round) {
+    guard.learn(now, deepest());
+    std::vector<Observation> wanted = now.of_path();
     guard.apply_to(wanted);
-    const std::vector<Vec3> before = wall.path.shifts();
-    fit_shift(wall.path, wanted.of_path(), {});
-    for (std::size_t i = 0; i < now.points.size(); ++i)  // the surface follows the shift
+    fit_shift(wall.path, wanted, {});
+    for (std::size_t i = 0; i < now.points.size(); ++i)
       now.points[i].error_mm =
           wall.observed.points[i].error_mm + now.points[i].normal.dot(wall.path.shift_at(now.points[i].place));
   }
-  double deepest = 0;
-  for (const auto& o : now.points) deepest = std::min(deepest, o.error_mm);
-  EXPECT_GE(deepest, -0.002);
-  EXPECT_LT(deepest, -0.0005) << "no farther out than asked for";
+  return now;
+}
+
+double least_mm(const Observed& observed) {
+  double out = 0;
+  for (const auto& o : observed.points) out = std::min(out, o.error_mm);
+  return out;
+}
+
+TEST(Guard, LiftsWhatLiesTooDeepAndNoFartherThanAskedFor) {
+  Wall wall;
+  wall.add([](double, double height) { return 0.010 * (height - 0.5); });  // -4.5 ... 4.5 um
+  const double least = least_mm(guarded(wall, 0.002, 2));
+  EXPECT_GE(least, -0.002);
+  EXPECT_LT(least, -0.0005);
+}
+
+TEST(Guard, LiftsWithoutSpikes) {
+  constexpr double kReach_mm = 5, kDeep_mm = 0.014, kLimit_mm = 0.003;
+  Wall wall;  // one place bows, the rest is exact
+  wall.add([](double x, double height) { return std::abs(x - 20.5) < 0.5 ? kDeep_mm * (height - 0.5) / 0.45 : 0.0; });
+  EXPECT_GE(least_mm(guarded(wall, kLimit_mm, kReach_mm)), -kLimit_mm);
+  const auto& points = wall.path.points();
+  // cos^2 falls by no more than pi / 2 of its height over the reach; the fit smooths it further.
+  constexpr double kSteepest = kPi / 2 * kDeep_mm / kReach_mm;
+  double highest = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double step = (points[i].shift_mm - points[i - 1].shift_mm).norm();
+    EXPECT_LE(step, 1.05 * kSteepest * (points[i].place_mm - points[i - 1].place_mm).norm()) << i;
+    highest = std::max(highest, points[i].shift_mm.y());
+  }
+  EXPECT_GE(highest, kDeep_mm - kLimit_mm);
+  EXPECT_LE(highest, kDeep_mm);
+  EXPECT_NEAR(points[10].shift_mm.norm(), 0, 1e-4) << "ten millimetres away";
+}
+
+TEST(DepthLimit, LeavesRoomForWhatNoShiftTakesAway) {
+  Wall bow, even;
+  bow.add([](double, double height) { return 0.010 + 0.010 * (height - 0.5); });
+  even.add([](double, double) { return 0.010; });
+  // The best shift leaves -4.5 ... 4.5 um.
+  EXPECT_NEAR(default_depth_limit_um(bow.path, bow.observed, {}, 2), 1.25 * 4.5, 0.3);
+  EXPECT_EQ(default_depth_limit_um(bow.path, bow.observed, {}, 8), 8);
+  EXPECT_EQ(default_depth_limit_um(even.path, even.observed, {}, 2), 2);
+}
+
+TEST(ErrorSplit, NamesTheCauseOfEveryPoint) {
+  Wall wall;
+  wall.add([](double x, double height) { return x < 20 ? 0.010 : 0.020 * (height - 0.5); });
+  for (std::size_t i = 0; i < 100; ++i) wall.observed.compensated[i] = false;
+  std::vector<PointCause> causes;
+  split_error(wall.path, wall.observed, {}, &causes);
+  ASSERT_EQ(causes.size(), wall.observed.points.size());
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    const double x = wall.observed.points[i].place.lower + wall.observed.points[i].place.upper_fraction;
+    if (i < 100) {
+      EXPECT_EQ(causes[i].cause, Cause::not_compensated) << i;
+    } else if (x > 8 && x < 16) {
+      EXPECT_EQ(causes[i].cause, Cause::correctable) << i;
+      EXPECT_NEAR(causes[i].error_mm, 0.010, 0.001);
+    } else if (x > 24 && x < 36 && std::abs(wall.observed.points[i].error_mm) > 0.004) {
+      EXPECT_EQ(causes[i].cause, Cause::bow) << i;
+    }
+  }
 }
 
 TEST(Sensitivity, LearnsTheGainOfEveryStretch) {

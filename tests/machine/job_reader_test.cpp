@@ -162,6 +162,39 @@ TEST(JobReader, WritesTextThatReadsBack) {
   EXPECT_EQ(back.tools.at(1).helix_rad, job.tools.at(1).helix_rad);
 }
 
+TEST(JobReader, ReadsReferenceAndBand) {
+  const Result result = read(with_more("[compensation]\nreference = \"machine\"\nprofile_um = [-5, 10]\n"));
+  EXPECT_EQ(result.messages, "");
+  const CompensationSettings& c = result.job.compensation;
+  EXPECT_EQ(c.reference, Reference::machine);
+  EXPECT_EQ(c.profile_um, (std::array<double, 2>{-5, 10}));
+  EXPECT_EQ(c.depth_limit_um(), std::optional(5.0));
+  EXPECT_EQ(c.half_width_um(), 7.5);
+  const Result plain = read(with_more("[compensation]\nmax_overcut_um = 4\n"));
+  EXPECT_EQ(plain.job.compensation.reference, Reference::commanded);
+  EXPECT_EQ(plain.job.compensation.depth_limit_um(), std::optional(4.0)) << "the lower end of a band";
+  EXPECT_FALSE(read(kJob).job.compensation.depth_limit_um());
+  const Result back = read(replaced(replaced(to_toml(result.job), result.job.program, "finish.nc"),
+                                    result.job.machine_path, "machine.toml"));
+  EXPECT_EQ(back.messages, "") << "--effective-config reads back";
+  EXPECT_EQ(back.job.compensation.profile_um, c.profile_um);
+}
+
+TEST(JobReader, RefusesBandsThatAreNone) {
+  EXPECT_EQ(
+      read(with_more("[compensation]\nprofile_um = [2, 10]\n")).messages,
+      "job.toml:14:14: error: profile_um = [2, 10]; a lower end below zero (into the part) and an upper end above "
+      "it were expected [value-range]\n"
+      "    profile_um = [2, 10]\n"
+      "                 ^");
+  EXPECT_EQ(read(with_more("[compensation]\nmax_overcut_um = 3\nprofile_um = [-5, 10]\n")).messages,
+            "job.toml:14:1: error: [compensation] has profile_um and max_overcut_um, which is its lower end; one of "
+            "them was expected [profile]\n"
+            "    max_overcut_um = 3\n"
+            "    ^");
+  EXPECT_NE(read(with_more("[compensation]\nreference = \"cam\"\n")).messages.find("commanded"), std::string::npos);
+}
+
 TEST(JobReader, NamesMissingFilesAtTheirKey) {
   EXPECT_EQ(read(with("finish.nc", "sub/../finsh.nc")).messages,
             "job.toml:1:11: error: program: no such file: finsh.nc (paths count from the job's folder) "

@@ -17,16 +17,17 @@ FormErrorPoints those(std::vector<FormErrorPoint> points) {
 }
 
 std::vector<FormErrorPoint> two_points() {
-  return {{{1, 2, -3.25}, {0, 0, 1}, 12.3456, 13.5, 42, 3}, {{0, 0, 0}, {0, 0.6, 0.8}, -0.5, std::nan(""), 0}};
+  return {{{1, 2, -3.25}, {0, 0, 1}, 12.3456, 2.0456, 0.0075, 13.5, 42, 3},
+          {{0, 0, 0}, {0, 0.6, 0.8}, -0.5, 0, 0.01, std::nan(""), 0}};
 }
 
 TEST(FormErrorCsv, HasARowAPoint) {
   const tests::TempFolder folder;
   write_form_error_csv(folder / "e.csv", those(two_points()));
   EXPECT_EQ(tests::file_text(folder / "e.csv"),
-            "x_mm,y_mm,z_mm,nx,ny,nz,error_um,total_error_um,block,tool\n"
-            "1.0000,2.0000,-3.2500,0.00000,0.00000,1.00000,12.346,13.500,42,3\n"
-            "0.0000,0.0000,0.0000,0.00000,0.60000,0.80000,-0.500,,0,0\n");
+            "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool\n"
+            "1.0000,2.0000,-3.2500,0.00000,0.00000,1.00000,12.346,10.300,2.046,13.500,0.007500,42,3\n"
+            "0.0000,0.0000,0.0000,0.00000,0.60000,0.80000,-0.500,-0.500,0.000,,0.010000,0,0\n");
 }
 
 TEST(FormErrorVtp, HoldsEveryArray) {
@@ -34,7 +35,8 @@ TEST(FormErrorVtp, HoldsEveryArray) {
   write_form_error_vtp(folder / "e.vtp", those(two_points()));
   const std::string text = tests::file_text(folder / "e.vtp");
   EXPECT_NE(text.find("<Piece NumberOfPoints=\"2\" NumberOfVerts=\"2\""), std::string::npos);
-  for (const char* name : {"error_um", "total_error_um", "normal", "block", "tool", "connectivity", "offsets"})
+  for (const char* name : {"error_um", "deflection_um", "contour_um", "area_mm2", "total_error_um", "normal", "block",
+                           "tool", "connectivity", "offsets"})
     EXPECT_NE(text.find(std::string("Name=\"") + name + "\""), std::string::npos) << name;
   // 8 bytes of length (8), then 12.3456f and -0.5f.
   std::string bytes;
@@ -54,11 +56,11 @@ TEST(FormErrorVtp, LeavesTheTotalOutWhereThereIsNoMesh) {
 
 /// More than is written at once.
 FormErrorPoints many_points(std::size_t count) {
-  return {
-      count, [](std::size_t i) {
-        const double v = static_cast<double>(i);
-        return FormErrorPoint{{v, -v, 0.5 * v}, {0, 0, 1}, 0.25 * v, std::nan(""), static_cast<std::uint32_t>(i), 7};
-      }};
+  return {count, [](std::size_t i) {
+            const double v = static_cast<double>(i);
+            return FormErrorPoint{
+                {v, -v, 0.5 * v}, {0, 0, 1}, 0.25 * v, 0, 1, std::nan(""), static_cast<std::uint32_t>(i), 7};
+          }};
 }
 
 TEST(FormErrorVtp, OfManyPointsIsBase64OfAllBytesInOrder) {
@@ -80,7 +82,7 @@ TEST(FormErrorVtp, OfManyPointsIsBase64OfAllBytesInOrder) {
 }
 
 TEST(FormErrorPly, OfManyPointsHoldsEachOnce) {
-  constexpr std::size_t kCount = 60'000, kEach = 24 + 3 + 12;
+  constexpr std::size_t kCount = 60'000, kEach = 24 + 3 + 24;
   const tests::TempFolder folder;
   write_form_error_ply(folder / "e.ply", many_points(kCount), 1.0);
   const std::string text = tests::file_text(folder / "e.ply");
@@ -100,16 +102,16 @@ TEST(FormErrorPly, HoldsPlacesColoursAndWhatMadeThem) {
   const std::size_t end = text.find("end_header\n") + 11;
   EXPECT_EQ(text.substr(0, 36), "ply\nformat binary_little_endian 1.0\n");
   EXPECT_NE(text.find("element vertex 2\n"), std::string::npos);
-  // A vertex: six floats, three bytes, a float and two whole numbers.
-  ASSERT_EQ(text.size(), end + 2 * (24 + 3 + 12));
+  // A vertex: six floats, three bytes, four floats and two whole numbers.
+  ASSERT_EQ(text.size(), end + 2 * (24 + 3 + 24));
   std::string first, second;
   for (const float v : {1.0f, 2.0f, -3.25f, 0.0f, 0.0f, 1.0f}) append_little_endian(first, v);
   first += std::string("\xff\x00\x00", 3);  // material left beyond the scale: red
-  append_little_endian(first, 12.3456f);
+  for (const double v : {12.3456, 12.3456 - 2.0456, 2.0456, 0.0075}) append_little_endian(first, static_cast<float>(v));
   append_little_endian(first, std::uint32_t{42});
   append_little_endian(first, std::uint32_t{3});
-  EXPECT_EQ(text.substr(end, 39), first);
-  EXPECT_EQ(text.substr(end + 39 + 24, 3), "\x80\x80\xff") << "half as deep as the scale: light blue";
+  EXPECT_EQ(text.substr(end, 51), first);
+  EXPECT_EQ(text.substr(end + 51 + 24, 3), "\x80\x80\xff") << "half as deep as the scale: light blue";
 }
 
 TEST(Base64, AgreesWithRfc4648) {

@@ -104,6 +104,19 @@ TEST(HtmlReport, FileNamesCannotHideTheEndOfAScript) {
   }
 }
 
+TEST(HtmlReport, SaysItsVerdictAndTheReasonAboveTheDownload) {
+  ReportData data = example();
+  EXPECT_FALSE(holds(html_report(data), "id=\"verdict\""));
+  data.verdict = PageVerdict{false, "over the <tolerance>", {"4 um rms: a & b"}};
+  const std::string page = html_report(data);
+  const std::size_t at = page.find(
+      "id=\"verdict\"><p><b>Over the &lt;tolerance&gt;</b></p>\n"
+      "<ul>\n<li>4 um rms: a &amp; b</li>\n</ul>");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_LT(at, page.find("id=\"download\""));
+  EXPECT_LT(at, page.find("class=\"tiles\""));
+}
+
 TEST(HtmlReport, ListsEveryFigure) {
   const std::string page = html_report(example());
   EXPECT_TRUE(holds(page,

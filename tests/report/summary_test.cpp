@@ -1,26 +1,67 @@
 #include "report/summary.h"
+#include "report/verdict_text.h"
 
 #include <gtest/gtest.h>
 
 namespace camber::report {
 namespace {
 
-TEST(LeftOverSentence, NamesTheGuardOnlyWhereItLeavesMost) {
-  compensate::ErrorSplit left;
-  left.correctable_p95_um = 24.181;
-  left.correctable_um = 2;
-  left.guard_um = 1;
+TEST(VerdictText, JudgesTheEmittedProgramAndNamesTheCauses) {
+  compensate::CompensationResult c;
   machine::CompensationSettings asked;
-  asked.tolerance_um = 0.5;
-  EXPECT_EQ(left_over_sentence(left, asked),
-            "of what a shift can correct 24.18 um (95th percentile) are left; tolerance_um = 0.5");
-  left.guard_um = 10.9;
-  EXPECT_EQ(
-      left_over_sentence(left, asked),
-      "of what a shift can correct 24.18 um (95th percentile) are left; tolerance_um = 0.5, most of it left so as "
-      "to cut no more than 0.5 um into the part");
-  asked.max_overcut_um = 20;
-  EXPECT_TRUE(left_over_sentence(left, asked).ends_with("no more than 20 um into the part"));
+  asked.tolerance_um = 5;
+  c.within_tolerance = true;
+  c.after_um.p95 = 2.3;
+  VerdictText v = verdict_text(c, asked);
+  EXPECT_TRUE(v.success);
+  EXPECT_EQ(v.headline,
+            "within the tolerance: the form error of the emitted program is 2.30 um (95th percentile), tolerance_um = "
+            "5");
+  EXPECT_TRUE(v.reasons.empty());
+  c.within_tolerance = false;
+  c.after_um.p95 = 11.3;
+  c.causes = {{compensate::Cause::bow, 4.1, {12, 14}}};
+  v = verdict_text(c, asked);
+  EXPECT_FALSE(v.success);
+  EXPECT_EQ(v.headline,
+            "over the tolerance: the form error of the emitted program is 11.30 um (95th percentile), tolerance_um = "
+            "5");
+  EXPECT_EQ(v.reasons,
+            (std::vector<std::string>{"4.10 um rms differs along the cutter (helix bow), most in lines 12, 14; two "
+                                      "axial passes, a shorter tool or a lower feed would take it away"}));
+}
+
+TEST(VerdictText, IsOnTheBandOrTheDeflectionWhereTheJobAsksForIt) {
+  compensate::CompensationResult c;
+  machine::CompensationSettings asked;
+  asked.profile_um = {-5, 10};
+  c.plain_after.in_band_fraction = 0.9;
+  EXPECT_EQ(verdict_text(c, asked).headline,
+            "over the tolerance: 90.0 % of the area is within profile_um = [-5, 10], wanted are 95 %");
+  asked.profile_um.reset();
+  asked.reference = machine::Reference::machine;
+  EXPECT_EQ(verdict_text(c, asked).headline,
+            "over the tolerance: the deflection of the emitted program is 0.00 um (95th percentile), tolerance_um = 1");
+}
+
+TEST(VerdictText, NothingBetterTooDeepOrDoubtfulIsNoSuccess) {
+  const machine::CompensationSettings asked;
+  compensate::CompensationResult c;
+  c.within_tolerance = true;
+  c.within_part = false;
+  c.depth_limit_um = 5;
+  c.depth_after.held_um = 7;
+  VerdictText v = verdict_text(c, asked);
+  EXPECT_FALSE(v.success);
+  EXPECT_EQ(v.headline, "too deep in the part");
+  ASSERT_EQ(v.reasons.size(), 1u);
+  EXPECT_TRUE(v.reasons[0].ends_with("no more than 5 um were expected")) << v.reasons[0];
+  c.better = false;
+  EXPECT_EQ(verdict_text(c, asked).headline, "no better program was found");
+  c.doubts = {"chips and stock differ by 4 %"};
+  v = verdict_text(c, asked);
+  EXPECT_EQ(v.headline, "the figures are not to be relied on");
+  EXPECT_EQ(v.reasons.front(), c.doubts[0]);
 }
 
 TEST(CompensateText, TellsWhichPartOfAnOperationWasCompensated) {

@@ -53,7 +53,7 @@ const meshOf = (bytes, m) => ({ place: triples(bytes, m.place), triangles: trian
 function surfaceOf(bytes, s) {
   return {
     ...meshOf(bytes, s), normal: triples(bytes, s.normal),
-    error: s.error.map(a => read(bytes, a)), block: s.block.map(a => read(bytes, a)), points: s.points,
+    error: s.error.map(a => read(bytes, a)), contour: s.contour && read(bytes, s.contour), block: s.block.map(a => read(bytes, a)), points: s.points,
   };
 }
 

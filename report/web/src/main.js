@@ -15,6 +15,12 @@ function say(sentence) {
   byId('scene').classList.add('empty');
 }
 
+const LEGENDS = {
+  change: 'change of the form error (after \u2212 before), \u00b5m',
+  deflection: 'of it, deflection of the tool, \u00b5m',
+  contour: 'of it, servo lag and corner rounding, \u00b5m',
+};
+
 class Page {
   constructor(page) {
     Object.assign(this, { page, lines: [], mode: page.surface ? 'before' : 'plain', quantity: null });
@@ -45,7 +51,9 @@ class Page {
   controls() {
     const box = byId('part-controls'), { surface, stock, runs, scales } = this.page;
     if (surface) {
-      const modes = surface.error[1] ? [['before', 'Before'], ['after', 'After'], ['change', 'Change'], ['plain', 'Plain']] : [['before', 'Form error'], ['plain', 'Plain']];
+      const modes = surface.error[1] ? [['before', 'Before'], ['after', 'After'], ['change', 'Change']] : [['before', 'Form error']];
+      if (surface.contour) modes.push(...(surface.error[1] ? [] : [['deflection', 'Deflection']]), ['contour', 'Contour']);
+      modes.push(['plain', 'Plain']);
       box.append(choice('Surface', modes, mode => {
         this.mode = mode;
         if (mode === 'before' || mode === 'after') this.lastRun = mode === 'after' ? 1 : 0;
@@ -83,7 +91,7 @@ class Page {
     const known = quantity && this.page.runs[run][quantity] ? quantity : null;
     scene.setPath(run, known, known && this.range(known), known && QUANTITIES[known].diverging);
     const legends = [];
-    if (mode !== 'plain') legends.push(this.legend(mode === 'change' ? 'change of the form error (after \u2212 before), \u00b5m' : 'form error, \u00b5m', DIVERGING, [-limit, limit]));
+    if (mode !== 'plain') legends.push(this.legend(LEGENDS[mode] || 'form error, \u00b5m', DIVERGING, [-limit, limit]));
     if (known) legends.push(this.legend(`path: ${QUANTITIES[known].name}, ${QUANTITIES[known].unit}`, QUANTITIES[known].diverging ? DIVERGING : SEQUENTIAL, this.range(known)));
     if (quantity && !known) legends.push(element('span', { textContent: `${QUANTITIES[quantity].name} is not known for this program` }));
     byId('legends').replaceChildren(...legends);

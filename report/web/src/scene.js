@@ -11,16 +11,17 @@ import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeome
 import { DIVERGING, DIVERGING_GLSL, SEQUENTIAL, colourAt } from './colours.js';
 import { element } from './text.js';
 
-export const MODES = ['before', 'after', 'change', 'plain'];
+export const MODES = ['before', 'after', 'change', 'plain', 'deflection', 'contour'];
 
 const VERTEX = `
 attribute float error0;
 attribute float error1;
+attribute float contour;
 uniform int mode;
 varying float value;
 varying vec3 turned;
 void main() {
-  value = mode == 0 ? error0 : mode == 1 ? error1 : error1 - error0;
+  value = mode == 0 ? error0 : mode == 1 ? error1 : mode == 2 ? error1 - error0 : mode == 4 ? error0 - contour : contour;
   turned = normalize(normalMatrix * normal);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
@@ -114,6 +115,7 @@ export class PartScene {
     geometry.setAttribute('normal', new BufferAttribute(surface.normal, 3));
     geometry.setAttribute('error0', new BufferAttribute(surface.error[0], 1));
     geometry.setAttribute('error1', new BufferAttribute(surface.error[1] || surface.error[0], 1));
+    geometry.setAttribute('contour', new BufferAttribute(surface.contour || surface.error[0], 1));
     geometry.setIndex(new BufferAttribute(surface.triangles, 1));
     return new Mesh(geometry, new ShaderMaterial({
       vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide,

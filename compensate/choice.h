@@ -1,0 +1,18 @@
+#pragma once
+// Which round's program is written.
+#include <cstddef>
+#include <span>
+
+namespace camber::compensate {
+
+struct RoundFigures {
+  double rms_um = 0, p95_um = 0;  ///< judged error
+  double depth_um = 0;            ///< into the part, but for a thousandth of the surface
+};
+
+/// Index of the best round that keeps the limits; rounds[0], the program as given, where none does. A round keeps them
+/// if its rms is less and its 95th percentile no more than the given program's, and its depth no more than the limit or
+/// the given program's. Of these the ones within the limit come first, then the one of least rms.
+std::size_t choose_round(std::span<const RoundFigures> rounds, double depth_limit_um);
+
+}  // namespace camber::compensate

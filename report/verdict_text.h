@@ -1,0 +1,25 @@
+#pragma once
+// The verdict on a compensated program in words, the same for terminal, JSON and page.
+#include <string>
+#include <vector>
+
+#include "compensate/compensate.h"
+#include "machine/job.h"
+
+namespace camber::report {
+
+struct VerdictText {
+  bool success = false;              ///< exit status 0
+  std::string headline;              ///< "within the tolerance: ..."
+  std::vector<std::string> reasons;  ///< of no success: a sentence for each cause, worst first
+};
+
+/// The emitted program is what is judged: not to be relied on, no better than the given one, too deep in the part, or
+/// over the tolerance.
+VerdictText verdict_text(const compensate::CompensationResult& result, const machine::CompensationSettings& asked);
+
+/// Root mean square, 95th percentile and largest value of error, deflection, contour and, where there is a mesh, the
+/// error against it, before and after; of which area, and what of the surface has no figure.
+std::string plain_figures_text(const compensate::CompensationResult& result);
+
+}  // namespace camber::report
