@@ -137,8 +137,9 @@ TEST(FitFeedSlow, FitsTheSamplesTrace) {
     printf("sample 01, %s: Z %.2f mm/s2, held out %.3f %% of the time\n", shipped ? "as shipped" : "without limits", z,
            fit.held_out.part_time_percent);
     EXPECT_NEAR(z, 400, 8);
-    EXPECT_LT(fit.held_out.part_time_percent, 0.2);
-    EXPECT_LT(fit.held_out.speed_rms_percent, 3.0);
+    // Plunges of 0.2 s are parts: a millisecond is half a percent of them.
+    EXPECT_LT(fit.held_out.part_time_percent, 0.3);
+    EXPECT_LT(fit.held_out.speed_rms_percent, 1.0);
     for (const DriveFit& drive : fit.drives) EXPECT_LT(drive.held_out_rms_mm, 0.002);
   }
 }
