@@ -9,9 +9,11 @@
 
 #include "base/numbers.h"
 #include "base/output_file.h"
+#include "cli/check_page.h"
 #include "feedmodel/control_options.h"
 #include "machine/job.h"
 #include "nc/program.h"
+#include "report/planned_picture.h"
 #include "simulate/machine_checks.h"
 #include "simulate/setup_checks.h"
 
@@ -35,7 +37,18 @@ nc::InterpreterOptions options_of(const CheckCommand& command, const machine::Ma
   return machine ? feedmodel::interpreter_options(*machine, options) : options;
 }
 
-nc::Summary read_and_summarize(const CheckCommand& command, Diagnostics& found) {
+struct Checked {
+  nc::Summary summary;
+  report::PathPicture picture;  ///< where a page is asked for
+};
+
+/// As the control of the machine plans it, where a machine is known.
+report::PathPicture picture_of(const nc::Interpretation& moves, const machine::Machine* machine) {
+  return machine ? report::planned_picture(moves, *machine, report::kMaxPicturePoints)
+                 : report::program_picture(moves, report::kMaxPicturePoints);
+}
+
+Checked read_and_summarize(const CheckCommand& command, Diagnostics& found) {
   std::optional<machine::Job> job;
   std::optional<machine::Machine> machine;
   if (!command.job.empty()) {
@@ -54,18 +67,14 @@ nc::Summary read_and_summarize(const CheckCommand& command, Diagnostics& found) 
   else if (machine)
     simulate::check_spindle(text, moves, found);
   found.throw_if_errors();
-  return nc::summarize(text, moves);
+  Checked checked{nc::summarize(text, moves), {}};
+  if (!command.report.empty()) checked.picture = picture_of(moves, machine ? &*machine : nullptr);
+  return checked;
 }
 
 std::string unit_text(const nc::Summary& s) {
   if (s.has_mm && s.has_inch) return "mm and inch";
   return s.has_inch ? "inch" : "mm";
-}
-
-std::string range_text(const nc::Range& r, int decimals) {
-  if (r.empty()) return "-";
-  const std::string low = format_trimmed(r.min, decimals), high = format_trimmed(r.max, decimals);
-  return low == high ? low : fmt::format("{} to {}", low, high);
 }
 
 std::string extents_text(const nc::Extents& e) {
@@ -82,8 +91,7 @@ std::string tool_table(const std::vector<nc::ToolUse>& tools) {
   std::string out =
       "\n" + fmt::format(kRow, "tool", "line", "moves", "feed mm/min", "spindle rpm", "cut mm", "cut Z mm");
   for (const auto& t : tools) {
-    const std::string z =
-        t.cutting.empty() ? "-" : fmt::format("{:.2f} to {:.2f}", t.cutting.min_mm.z(), t.cutting.max_mm.z());
+    const std::string z = cut_depths_text(t);
     out += fmt::format(kRow, fmt::format("T{}", t.tool), t.line, t.cutting_moves, range_text(t.feed_mm_per_min, 1),
                        range_text(t.spindle_speed_rpm, 0), fmt::format("{:.1f}", t.cutting_length_mm), z);
   }
@@ -174,16 +182,18 @@ std::string check_json(const std::string& program, const nc::Summary& s, const D
 
 int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out) {
   Diagnostics found;
-  nc::Summary summary;
+  Checked checked;
   try {
-    summary = read_and_summarize(command, found);
+    checked = read_and_summarize(command, found);
   } catch (const InputError& e) {
     throw InputError(in_order(e.diagnostics()));
   }
   Diagnostics ordered;
   for (auto& d : in_order(found.all())) ordered.add(std::move(d));
-  if (!command.json.empty()) write_file(command.json, check_json(command.program, summary, ordered));
-  out << check_report(command.program, summary, ordered);
+  if (!command.json.empty()) write_file(command.json, check_json(command.program, checked.summary, ordered));
+  if (!command.report.empty())
+    write_file(command.report, check_page(command, checked.summary, ordered, std::move(checked.picture)));
+  out << check_report(command.program, checked.summary, ordered);
   diagnostics.append(ordered);
   return 0;
 }

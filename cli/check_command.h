@@ -12,14 +12,15 @@ namespace camber::cli {
 struct CheckCommand {
   std::string program;
   std::string json;     ///< file for the figures; empty: none
+  std::string report;   ///< page with the path's picture; empty: none
   std::string machine;  ///< machine.toml; empty: none
   std::string job;      ///< job.toml, whose machine counts; empty: none
   nc::InterpreterOptions interpreter;
 };
 
-/// Writes a short report to `out` and, where asked for, the same figures as JSON. Warnings go to `diagnostics` in the
-/// order of the file. Throws InputError, likewise in order, when the program cannot be read; then no file is written.
-/// Returns 0.
+/// Writes a short report to `out` and, where asked for, the same figures as JSON and as a page with a picture. Warnings
+/// go to `diagnostics` in the order of the file. Throws InputError, likewise in order, when the program cannot be read;
+/// then no file is written. Returns 0.
 int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out);
 
 /// The figures of a report as JSON text, with a line end.

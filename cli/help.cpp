@@ -12,9 +12,13 @@ namespace camber::cli {
 namespace {
 
 constexpr std::pair<const char*, const char*> kExamples[] = {
-    {"check", "camber check finish.nc --units mm"},
+    {"check",
+     "camber check finish.nc --units mm\n"
+     "  camber check finish.nc --machine machine.toml --report finish.html"},
     {"feed", "camber feed finish.nc --machine machine.toml -o feed.csv"},
-    {"time", "camber time finish.nc --machine machine.toml --sweep axis.acceleration_mm_per_s2=300:1200:4"},
+    {"time",
+     "camber time finish.nc --machine machine.toml --report time.html\n"
+     "  camber time finish.nc --machine machine.toml --sweep axis.all.acceleration_mm_per_s2=300:1200:4"},
     {"fit-feed", "camber fit-feed --program axes.nc --trace axes.csv --machine machine.toml -o fitted.toml"},
     {"protocol", "camber protocol --machine machine.toml -o programs"},
     {"fit-force", "camber fit-force --log slots.csv --job slots.toml -o material.toml"},

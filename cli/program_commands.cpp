@@ -107,11 +107,12 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
                    "job.toml: the same for its machine, and whether its tools, stock and part fit the program")
       ->type_name("J.toml")
       ->excludes(machine);
+  command->add_option("--report", arguments->report, "the page with the path's picture")->type_name("R.html");
   add_interpreter_options(*command, arguments->interpreter);
   add_language_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
-      check_outputs({arguments->json}, {arguments->program, arguments->machine, arguments->job});
+      check_outputs({arguments->json, arguments->report}, {arguments->program, arguments->machine, arguments->job});
       return check(*arguments, options);
     };
   });

@@ -18,6 +18,8 @@
 #include "machine/set_number.h"
 #include "nc/program.h"
 #include "report/cycle_page.h"
+#include "report/path_card.h"
+#include "report/planned_picture.h"
 
 namespace camber::cli {
 namespace {
@@ -41,12 +43,24 @@ report::CycleRow row_of(std::string name, std::vector<double> values, const nc::
   return row;
 }
 
+/// What was timed, and the path of the first of it where a page is asked for.
+struct Timed {
+  std::vector<report::CycleRow> rows{};
+  report::PathPicture picture{};
+};
+
+void add_picture(Timed& timed, const TimeArguments& arguments, const nc::Interpretation& moves,
+                 const machine::Machine& machine) {
+  if (!arguments.report.empty() && timed.rows.empty())
+    timed.picture = report::planned_picture(moves, machine, report::kMaxPicturePoints);
+}
+
 /// Every combination of the swept values, the last key running fastest.
-std::vector<report::CycleRow> sweep_rows(const std::vector<Sweep>& sweeps, const nc::Interpretation& moves,
-                                         const machine::Machine& machine, ProgressLine& progress) {
+Timed sweep_rows(const TimeArguments& arguments, const std::vector<Sweep>& sweeps, const nc::Interpretation& moves,
+                 const machine::Machine& machine, ProgressLine& progress) {
   std::size_t points = 1;
   for (const Sweep& sweep : sweeps) points *= sweep.values.size();
-  std::vector<report::CycleRow> rows;
+  Timed timed;
   for (std::size_t i = 0; i < points; ++i) {
     progress.show("timing", static_cast<double>(i) / static_cast<double>(points));
     machine::Machine changed = machine;
@@ -59,14 +73,14 @@ std::vector<report::CycleRow> sweep_rows(const std::vector<Sweep>& sweeps, const
       machine::set_number(changed, sweeps[k].key, values[k]);
       name += fmt::format("{}{}", k > 0 ? " / " : "", format_trimmed(values[k], 4));
     }
-    rows.push_back(row_of(std::move(name), std::move(values), moves, changed));
+    add_picture(timed, arguments, moves, changed);
+    timed.rows.push_back(row_of(std::move(name), std::move(values), moves, changed));
   }
-  return rows;
+  return timed;
 }
 
-std::vector<report::CycleRow> case_rows(const TimeArguments& arguments, const machine::Machine* machine,
-                                        Diagnostics& diagnostics) {
-  std::vector<report::CycleRow> rows;
+Timed case_rows(const TimeArguments& arguments, const machine::Machine* machine, Diagnostics& diagnostics) {
+  Timed timed;
   for (const machine::CycleCase& one : machine::read_cases(arguments.cases, machine, diagnostics)) {
     const std::string& program = one.program.empty() ? arguments.program : one.program;
     Diagnostics found;
@@ -76,9 +90,10 @@ std::vector<report::CycleRow> case_rows(const TimeArguments& arguments, const ma
       const auto same = [&](const Diagnostic& known) { return to_string(known) == to_string(d); };
       if (std::none_of(diagnostics.all().begin(), diagnostics.all().end(), same)) diagnostics.add(d);
     }
-    rows.push_back(row_of(one.title.empty() ? one.name : one.name + ": " + one.title, {}, moves, one.machine));
+    add_picture(timed, arguments, moves, one.machine);
+    timed.rows.push_back(row_of(one.title.empty() ? one.name : one.name + ": " + one.title, {}, moves, one.machine));
   }
-  return rows;
+  return timed;
 }
 
 std::vector<Sweep> checked_sweeps(const TimeArguments& arguments, const machine::Machine& machine) {
@@ -135,8 +150,9 @@ int run_time(const TimeArguments& arguments, const GlobalOptions& options) {
   std::optional<machine::Machine> machine;
   if (!arguments.machine.empty()) machine = machine::read_machine(arguments.machine, diagnostics);
   TimeReport out{.program = arguments.program, .machine = arguments.machine};
+  Timed timed;
   if (!arguments.cases.empty()) {
-    out.rows = case_rows(arguments, machine ? &*machine : nullptr, diagnostics);
+    timed = case_rows(arguments, machine ? &*machine : nullptr, diagnostics);
     out.machine = arguments.cases;
   } else {
     const std::vector<Sweep> sweeps = checked_sweeps(arguments, *machine);
@@ -147,12 +163,14 @@ int run_time(const TimeArguments& arguments, const GlobalOptions& options) {
       if (!arguments.trace.empty())
         out.accuracy = calib::cycle_accuracy(calib::read_trace(arguments.trace, diagnostics), moves, time);
       time.move_s = {};
-      out.rows.push_back({arguments.machine, {}, std::move(time)});
+      add_picture(timed, arguments, moves, *machine);
+      timed.rows.push_back({arguments.machine, {}, std::move(time)});
     } else {
       for (const Sweep& sweep : sweeps) out.keys.push_back(sweep.key);
-      out.rows = sweep_rows(sweeps, moves, *machine, progress);
+      timed = sweep_rows(arguments, sweeps, moves, *machine, progress);
     }
   }
+  out.rows = std::move(timed.rows);
   progress.clear();
   settle(diagnostics, options);
   out.notes = notes_of(out.rows);
@@ -163,6 +181,7 @@ int run_time(const TimeArguments& arguments, const GlobalOptions& options) {
                                                      .subtitle = out.machine,
                                                      .keys = out.keys,
                                                      .rows = out.rows,
+                                                     .picture = std::move(timed.picture),
                                                      .notes = out.notes}));
   return kDone;
 }

@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "report/page_parts.h"
 #include "report/page_tables.h"
+#include "report/path_card.h"
 
 namespace camber::report {
 namespace {
@@ -29,6 +30,9 @@ std::string card(const std::string& title, const std::string& body) {
   return body.empty() ? "" : fmt::format("<div class=\"card\"><h2>{}</h2>\n{}</div>\n", html_text(title), body);
 }
 
+/// Wider than a phone: it is moved sideways there.
+std::string wide(const std::string& body) { return body.empty() ? body : "<div class=\"wide\">\n" + body + "</div>\n"; }
+
 std::string feed_text(double mm_per_s) { return fmt::format("{:.0f}", mm_per_min_from_mm_per_s(mm_per_s)); }
 
 std::string use_cells(const CycleUse& use) {
@@ -40,7 +44,7 @@ std::string use_cells(const CycleUse& use) {
 }
 
 std::string table_head(const std::vector<std::string>& first) {
-  std::string out = "<div style=\"overflow-x:auto\"><table><thead><tr>";
+  std::string out = "<div class=\"wide\"><table><thead><tr>";
   for (const auto& name : first) out += "<th>" + html_text(name) + "</th>";
   for (const auto& kind : kCycleKinds) out += fmt::format("<th>{}, s</th>", kind.name);
   return out + "<th>total, s</th><th>F, mm/min</th><th>actual, mm/min</th><th>e</th><th>k</th></tr></thead><tbody>\n";
@@ -66,7 +70,7 @@ std::string tools_table(const CycleTime& time) {
 
 std::string notes_list(const std::vector<std::string>& notes) {
   if (notes.empty()) return {};
-  std::string out = "<ul>\n";
+  std::string out = "<ul class=\"notes\">\n";
   for (const auto& note : notes) out += "<li>" + html_text(note) + "</li>\n";
   return out + "</ul>\n";
 }
@@ -95,26 +99,33 @@ std::string cycle_page(const CyclePage& page) {
   const CycleTime& first = page.rows.front().time;
   const std::string title = html_text(page.title);
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  out += kPagePolicy;
   out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  out += fmt::format("<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle);
+  out +=
+      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);
   out += fmt::format("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n<div class=\"tiles\">\n", title, html_text(page.subtitle));
   const std::string of = page.rows.size() > 1 ? ", " + page.rows.front().name : "";
   out += tile("total time" + of, fmt::format("{:.1f} s", first.all.time.total_s()));
   out += tile("cutting", fmt::format("{:.1f} s", first.all.time.cutting_s));
   out += tile("positioning", fmt::format("{:.1f} s", first.all.time.positioning_s));
   out += tile("actual / commanded feed, e", fmt::format("{:.3f}", first.all.e())) + "</div>\n";
+  ProgramCard path;
+  if (!page.picture.points.empty()) path = program_card("The path" + of, page.picture);
+  out += path.card;
   out +=
-      card("Where the time goes",
-           split_bars_svg(page.rows) + fmt::format("<p class=\"note\">{}{}.</p>\n",
-                                                   page.rows.size() > 1 ? html_text(page.rows.front().name) + ": " : "",
-                                                   html_text(dominance_sentence(first))));
-  out += card("Total time over " + (page.keys.empty() ? "" : page.keys.front()), sweep_svg(page));
+      card("Where the time goes", wide(split_bars_svg(page.rows)) +
+                                      fmt::format("<p class=\"note\">{}{}.</p>\n",
+                                                  page.rows.size() > 1 ? html_text(page.rows.front().name) + ": " : "",
+                                                  html_text(dominance_sentence(first))));
+  out += card("Total time over " + (page.keys.empty() ? "" : page.keys.front()), wide(sweep_svg(page)));
   out += card(page.rows.size() > 1 ? "Side by side" : "By kind", rows_table(page));
   out += card("By tool" + of, tools_table(first));
   out += card("Distances" + of,
-              distance_svg(first.g00, "positionings, G0") + distance_svg(first.g01, "straight cuts, G1"));
-  out += card("Notes", notes_list(page.notes));
-  return out + "</main>\n</body>\n</html>\n";
+              wide(distance_svg(first.g00, "positionings, G0") + distance_svg(first.g01, "straight cuts, G1")));
+  std::vector<std::string> notes = page.notes;
+  if (page.picture.thinned) notes.push_back(thinned_note(page.picture, "The picture of the path"));
+  out += card("Notes", notes_list(notes));
+  return out + "</main>\n" + path.scripts + "</body>\n</html>\n";
 }
 
 }  // namespace camber::report

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "feedmodel/cycle_time.h"
+#include "report/path_picture.h"
 
 namespace camber::report {
 
@@ -19,13 +20,15 @@ struct CyclePage {
   std::string title, subtitle;
   std::vector<std::string> keys;  ///< swept; empty: cases or a single run
   std::vector<CycleRow> rows;     ///< at least one; each with a value a key
+  PathPicture picture;            ///< of the first row's program on its machine; without points: none
   std::vector<std::string> notes;
 };
 
 /// One sentence: what takes most of the time, and what of the cutting time acceleration, corners and short blocks cost.
 std::string dominance_sentence(const feedmodel::CycleTime& time);
 
-/// The page's text, UTF-8, self-contained, pictures as SVG. The same data give the same bytes.
+/// The page's text, UTF-8, self-contained: the path as report/web draws it, the other pictures as SVG. The same data
+/// give the same bytes.
 std::string cycle_page(const CyclePage& page);
 
 /// Bars of the kinds of time, a row each.

@@ -21,7 +21,7 @@ std::string text(double x, double y, const char* anchor, const std::string& what
 
 std::string open(double height) {
   return fmt::format(
-      "<svg viewBox=\"0 0 {} {:.0f}\" width=\"100%\" role=\"img\" font-size=\"12\" fill=\"#5c6877\" "
+      "<svg class=\"fixed\" viewBox=\"0 0 {} {:.0f}\" width=\"100%\" role=\"img\" font-size=\"12\" fill=\"#5c6877\" "
       "font-family=\"system-ui, sans-serif\">\n",
       kWidth, height);
 }

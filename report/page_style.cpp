@@ -12,7 +12,7 @@ const std::string_view kPageStyle = R"css(
 body { margin: 0; background: var(--page); color: var(--ink);
        font: 15px/1.45 system-ui, "Segoe UI", "DejaVu Sans", Arial, sans-serif; }
 main { max-width: 1240px; margin: 0 auto; padding: 22px 20px 40px; }
-h1 { font-size: 24px; margin: 0 0 2px; }
+h1 { font-size: 24px; margin: 0 0 2px; overflow-wrap: anywhere; }
 h2 { font-size: 16px; margin: 0 0 10px; }
 .sub { color: var(--soft); margin: 0 0 18px; overflow-wrap: anywhere; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(210px, 1fr)); gap: 12px; margin-bottom: 14px; }

@@ -12,6 +12,7 @@
 #include "report/packed_arrays.h"
 #include "report/page_parts.h"
 #include "report/page_tables.h"
+#include "report/path_card.h"
 
 namespace camber::report {
 namespace {
@@ -20,37 +21,9 @@ using nlohmann::json;
 
 constexpr double kWidth = 560, kHeight = 250, kLeft = 44, kRight = 10, kTop = 26, kBottom = 40;
 
-constexpr const char* kPictureFrame =
-    "<div class=\"card\" id=\"path\"><h2>The path</h2>\n"
-    "<noscript><p class=\"note\">The picture needs JavaScript; the tables below do without.</p></noscript>\n"
-    "<div class=\"bar\" id=\"path-controls\"></div>\n<div class=\"scene\" id=\"scene\"></div>\n"
-    "<div class=\"bar\" id=\"path-legend\"></div>\n"
-    "<p class=\"note screen\">Drag to turn, with the right button or Shift to move, wheel to zoom, double-click for "
-    "the "
-    "whole. Dots mark the ends of blocks where they are far enough apart; a ring marks the largest deviation.</p>\n"
-    "</div>\n";
-
-json picture_json(PackedArrays& arrays, const PathPicture& picture, const char* name) {
-  json out = {{"name", name}, {"place", json::array()}, {"thinned", picture.thinned}};
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values(picture.points.size());
-    std::transform(picture.points.begin(), picture.points.end(), values.begin(),
-                   [&](const Vec3& p) { return p[axis]; });
-    out["place"].push_back(arrays.add_quantised(values));
-  }
-  std::vector<std::uint32_t> values(picture.points.size());
-  for (std::size_t k = 0; k < values.size(); ++k)
-    values[k] = 2 * static_cast<std::uint32_t>(picture.kind[k]) + picture.ends[k];
-  out["kind"] = arrays.add_whole(values);
-  out["block"] = arrays.add_whole(picture.block);
-  return out;
-}
-
-std::string thinned_note(const PathPicture& picture, const char* name) {
-  if (!picture.thinned) return {};
-  return fmt::format("The picture of the program {} shows {} points; those left out lie within {:.2g} mm of it.", name,
-                     picture.points.size(), picture.chord_mm);
-}
+constexpr const char* kHint =
+    "Drag to turn, with the right button or Shift to move, wheel or two fingers to zoom, double-click for the whole. "
+    "Dots mark the ends of blocks where they are far enough apart; a ring marks the largest deviation.";
 
 std::string row(const std::string& name, const std::string& value, const char* unit, const char* key = nullptr) {
   const std::string shown = key != nullptr ? fmt::format("<span data-key=\"{}\">{}</span>", key, value) : value;
@@ -126,7 +99,7 @@ std::string rewrite_page(const RewritePage& page) {
   tiles.figures.assign(page.figures.begin(),
                        page.figures.begin() + static_cast<std::ptrdiff_t>(std::min(kLarge, page.figures.size())));
   tiles.figures.push_back({"largest deviation", page.max_deviation_mm, std::nullopt, "mm", 4, "max_deviation_mm"});
-  out += tiles_html(tiles) + kPictureFrame;
+  out += tiles_html(tiles) + path_card_html("The path", kHint);
   out += "<div class=\"columns\">\n";
   if (page.deviation) out += deviation_html(page);
   for (const ShareHistogram& h : page.histograms)
@@ -134,7 +107,8 @@ std::string rewrite_page(const RewritePage& page) {
   out += figures_html(figures);
   for (const auto& table : page.tables) out += table_html(table);
   std::vector<std::string> notes = page.notes;
-  for (const std::string& note : {thinned_note(page.before, "before"), thinned_note(page.after, "after")})
+  for (const std::string& note : {thinned_note(page.before, "The picture of the program before"),
+                                  thinned_note(page.after, "The picture of the program after")})
     if (!note.empty()) notes.push_back(note);
   out += list_html("Notes", "notes", notes) + "</div>\n</main>\n";
   PackedArrays arrays;
@@ -143,9 +117,7 @@ std::string rewrite_page(const RewritePage& page) {
   if (page.measured_deviation_mm > 0)
     index["worst"] = {page.worst_place_mm.x(), page.worst_place_mm.y(), page.worst_place_mm.z()};
   if (!page.part.points.empty()) index["part"] = picture_json(arrays, page.part, "part");
-  out += "<script type=\"application/json\" id=\"index\">" + script_safe(index.dump()) + "</script>\n";
-  out += "<script type=\"text/plain\" id=\"arrays\">" + arrays.text() + "</script>\n";
-  return out + fmt::format("<script>{}</script>\n</body>\n</html>\n", kPathScript);
+  return out + path_scripts_html(index, arrays) + "</body>\n</html>\n";
 }
 
 }  // namespace camber::report

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "report/html_report.h"
-#include "report/path_picture.h"
+#include "report/path_card.h"
 
 namespace camber::report {
 
@@ -35,9 +35,6 @@ struct RewritePage {
   std::vector<TextTable> tables;
   std::vector<std::string> notes;
 };
-
-/// Points of a picture, of each of the two paths, that the page draws at most.
-constexpr std::size_t kMaxPicturePoints = 80000;
 
 /// The page's text, UTF-8, self-contained. The same data give the same bytes. Does not throw.
 std::string rewrite_page(const RewritePage& page);

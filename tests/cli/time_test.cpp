@@ -61,7 +61,8 @@ TEST(Time, PrintsAndWritesTheSameFigures) {
   EXPECT_NE(run.out.find("tool change takes"), std::string::npos) << run.out;
   const std::string page = file_text(f.folder / "r.html");
   EXPECT_NE(page.find("<svg"), std::string::npos);
-  EXPECT_EQ(page.find("http"), std::string::npos);  // opens without a network
+  EXPECT_EQ(page.find("http:"), std::string::npos);  // opens without a network
+  EXPECT_EQ(page.find("https:"), std::string::npos);
 }
 
 TEST(Time, SweepsTheGrid) {

@@ -10,6 +10,7 @@ const { chromium } = createRequire(join(packages, 'package.json'))('playwright-c
 const executablePath = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
 
 const problems = [];
+let opened_ms = 0;  // until the page is ready
 function expect(condition, sentence) {
   if (!condition) problems.push(sentence);
 }
@@ -65,6 +66,18 @@ const strokes = page => page.evaluate(() => {
     if (px[i] > px[i + 2] + 60) out.arcs++;
   }
   return out;
+});
+
+// Colours of the canvas that many pixels have, greys left out.
+const hues = page => page.evaluate(() => {
+  const canvas = document.querySelector('#scene canvas'), { width, height } = canvas, count = new Map();
+  const px = canvas.getContext('2d').getImageData(0, 0, width, height).data;
+  for (let i = 0; i < px.length; i += 4) {
+    if (px[i + 3] < 250 || Math.max(px[i], px[i + 1], px[i + 2]) - Math.min(px[i], px[i + 1], px[i + 2]) < 40) continue;
+    const colour = px[i] << 16 | px[i + 1] << 8 | px[i + 2];
+    count.set(colour, (count.get(colour) || 0) + 1);
+  }
+  return [...count.values()].filter(n => n > 20).length;
 });
 
 // How often lines are crossed down a column of the canvas, a third from the left, and how many pixels show the part.
@@ -207,6 +220,85 @@ const CHECKS = {
     expect(/every 0.1 mm/.test(await page.locator('.notes').innerText()), 'the page does not say what before is');
   },
 
+  // A page of check or time: rapids orange, cutting blue, feeds as further views; a rapid, then cutting at two feeds.
+  async program(page) {
+    if (json) await expectNumbersOfJson(page);
+    await page.getByRole('button', { name: 'Top', exact: true }).click();
+    await painted(page);
+    const motion = await strokes(page);
+    expect(motion.lines > 100 && motion.arcs > 50, `rapid and cutting are ${JSON.stringify(motion)}`);
+    expect(/rapid/.test(await page.locator('#path-legend').innerText()), 'the legend does not name rapids');
+    await page.click('button[data-value=cutting]');
+    await painted(page);
+    const cutting = await strokes(page);
+    expect(cutting.lines > 100 && cutting.arcs === 0, `cutting alone is ${JSON.stringify(cutting)}`);
+    for (const feed of ['feed', 'speed']) {
+      const button = page.locator(`button[data-value=${feed}]`);
+      if (await button.count() === 0) {
+        expect(feed === 'speed' && /Without a machine file/.test(await page.locator('.notes').innerText()), `no view of ${feed}`);
+        continue;
+      }
+      await button.click();
+      await painted(page);
+      expect(await hues(page) >= 2, `${feed} has ${await hues(page)} colours`);
+      expect(/mm\/min/.test(await page.locator('#path-legend').innerText()), 'the legend has no unit');
+    }
+    await page.click('button[data-value=motion]');
+    const box = await page.locator('#scene canvas').boundingBox();
+    const tips = new Set();
+    for (let y = 4; y < box.height; y += 12) {
+      await page.locator('#scene canvas').hover({ position: { x: box.width / 2, y } });
+      if (await page.locator('.tip').isVisible()) tips.add(await page.locator('.tip').textContent());
+    }
+    expect([...tips].some(t => /^line \d+: cutting to X-?[\d.]+ Y-?[\d.]+ Z-?[\d.]+, F\d+/.test(t)), `the cursor reads ${JSON.stringify([...tips])}`);
+    if (await page.getByLabel('Tool').count() > 0) {
+      await page.getByLabel('Tool').selectOption('2');
+      await painted(page);
+      const one = await strokes(page);
+      expect(one.drawn > 20 && one.drawn < 0.8 * motion.drawn, `one tool is ${JSON.stringify(one)} of ${JSON.stringify(motion)}`);
+    }
+  },
+
+  // The same on a phone: nothing wider than the screen, print large enough, a pinch zooms.
+  async phone(page) {
+    await page.setViewportSize({ width: 390, height: 844 });
+    await painted(page);
+    const { wide, small } = await page.evaluate(() => {
+      const scale = svg => svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
+      const small = [...document.querySelectorAll('svg.fixed text')].map(t => 12 * scale(t.ownerSVGElement));
+      for (const e of document.querySelectorAll('main *:not(svg *)'))
+        if (e.childNodes.length && [...e.childNodes].some(n => n.nodeType === 3 && n.textContent.trim())) small.push(parseFloat(getComputedStyle(e).fontSize));
+      return { wide: document.documentElement.scrollWidth - document.documentElement.clientWidth, small: Math.min(...small) };
+    });
+    expect(wide <= 0, `the page is ${wide} pixels wider than the phone`);
+    expect(small >= 9, `the smallest print has ${small} pixels`);
+    const before = await strokes(page);
+    expect(before.drawn > 100, `the picture is blank: ${JSON.stringify(before)}`);
+    await page.evaluate(() => {
+      const canvas = document.querySelector('#scene canvas');
+      canvas.setPointerCapture = () => {};
+      const at = canvas.getBoundingClientRect();
+      const send = (type, id, x) => canvas.dispatchEvent(new PointerEvent(type, { pointerId: id, pointerType: 'touch', clientX: at.x + x, clientY: at.y + 150, bubbles: true }));
+      send('pointerdown', 1, 150);
+      send('pointerdown', 2, 200);
+      send('pointermove', 1, 50);
+      send('pointermove', 2, 300);
+      send('pointerup', 1, 50);
+      send('pointerup', 2, 300);
+    });
+    await painted(page);
+    const after = await strokes(page);
+    expect(after.drawn !== before.drawn, 'two fingers do not zoom');
+  },
+
+  async large_program(page) {
+    expect(opened_ms < 5000, `the page took ${opened_ms} ms`);
+    expect((await strokes(page)).drawn > 1000, 'the picture is blank');
+    await page.click('button[data-value=feed]');
+    await painted(page);
+    expect(await hues(page) >= 2, 'the feeds have one colour');
+  },
+
   async large_path(page) {
     expect((await strokes(page)).drawn > 1000, 'the picture is blank');
     expect(/those left out lie within/.test(await page.locator('.notes').innerText()), 'the page does not say that points were left out');
@@ -231,7 +323,9 @@ const CHECKS = {
   },
 };
 
-const webgl = check === 'without_webgl' ? ['--disable-gpu', '--disable-3d-apis'] : ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+// Pages with a path alone are drawn on a plain canvas, which an emulated graphics card slows down.
+const PLAIN = ['path', 'raster', 'large_path', 'program', 'phone', 'large_program'];
+const webgl = PLAIN.includes(check) ? ['--disable-gpu'] : check === 'without_webgl' ? ['--disable-gpu', '--disable-3d-apis'] : ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', ...webgl] });
 try {
   const context = await browser.newContext({ offline: true, viewport: { width: 900, height: 700 }, javaScriptEnabled: check !== 'without_script' });
@@ -240,8 +334,10 @@ try {
   page.on('console', m => { if (m.type() === 'error') problems.push(`console: ${m.text()}`); });
   page.on('pageerror', e => problems.push(`error on the page: ${e.message}`));
   page.on('request', r => { if (!/^(file|blob|data):/.test(r.url())) problems.push(`asks for ${r.url()}`); });
+  const asked = Date.now();
   await page.goto(pathToFileURL(file).href);
   if (check !== 'without_script') await page.waitForFunction(() => document.documentElement.dataset.ready === 'yes');
+  opened_ms = Date.now() - asked;
   await CHECKS[check](page);
 } catch (e) {
   problems.push(e.message);

@@ -1,0 +1,14 @@
+#pragma once
+// The path as the control plans it, with the feed that it comes to: corners rounded, rapids bent.
+#include "machine/machine.h"
+#include "nc/move.h"
+#include "report/path_picture.h"
+
+namespace camber::report {
+
+/// As program_picture, of the segments of feedmodel::plan_motion: commanded path, before the axes' filters and lag.
+/// Where the speed changes along a long segment its way is drawn in pieces, each with its mean speed. Linear in the
+/// number of blocks.
+PathPicture planned_picture(const nc::Interpretation& program, const machine::Machine& machine, std::size_t most);
+
+}  // namespace camber::report
