@@ -19,6 +19,7 @@
 #include "report/report_data.h"
 #include "report/summary.h"
 #include "simulate/setup.h"
+#include "simulate/spindle_power.h"
 #include "simulate/turn.h"
 #include "simulate/verdict.h"
 
@@ -107,6 +108,9 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   };
   auto prediction = simulate::predict(job, setup.target, program, predict_options);
   setup.target.blank.clear();  // nothing reads it any more, and the files need room
+  Diagnostics of_cut;
+  simulate::check_spindle_power(job.machine, program, prediction.cut.loads, of_cut);
+  diagnostics.append(of_cut);
   const double compute_s = seconds_since(begin);
   progress.show("writing");
 
@@ -120,6 +124,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
 
   if (!options.quiet) fmt::print("{}", report::predict_text(program, prediction, compute_s));
   failed.throw_if_errors();
+  settle(of_cut, options);
   std::vector<std::string> wrong = simulate::doubts(job, program, prediction);
   if (std::string unsettled = report::unsettled_sentence(program, prediction); !unsettled.empty())
     wrong.push_back(std::move(unsettled));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <regex>
 #include <sstream>
 #include <vector>
 
@@ -220,6 +221,56 @@ TEST(Predict, IsSilentWithQuiet) {
   const auto run = run_camber(folder, "-q predict job.toml -o result");
   EXPECT_EQ(run.status, 0);
   EXPECT_EQ(run.out + run.err, "");
+}
+
+/// A slot of 4 x 1 mm at 600 mm/min: Q = 40 mm3/s, and with K_tc = 2000 MPa alone P = K_tc Q = 80 W.
+void write_slot_job(const TempFolder& folder, const std::string& spindle, const std::string& more = "") {
+  folder.write("p.nc", "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\nG0 X-4. Y0.\nG0 Z-1.\nG1 X5. F600\n" + more +
+                           "G0 Z5.\nM30\n");
+  folder.write("machine.toml", "[axis.x]\n[axis.y]\n[axis.z]\n[spindle]\n" + spindle);
+  folder.write("job.toml", R"(program = "p.nc"
+machine = "machine.toml"
+[tool.1]
+type = "flat"
+diameter_mm = 4.0
+flutes = 2
+overhang_mm = 20.0
+[material]
+ktc_MPa = 2000.0
+krc_MPa = 700.0
+kte_N_per_mm = 0.0
+kre_N_per_mm = 0.0
+[stock]
+box_mm = [[0, -4, -2], [12, 4, 0]]
+[simulation]
+voxel_mm = 0.2
+coupling = "rigid"
+)");
+}
+
+TEST(Predict, WarnsWhereTheCutTakesMoreThanTheSpindleHas) {
+  const TempFolder folder;
+  write_slot_job(folder, "power_W = 70\n");
+  const auto run = run_camber(folder, "predict job.toml -o result");
+  ASSERT_EQ(run.status, 0) << run.err;
+  std::smatch found;
+  ASSERT_TRUE(std::regex_match(
+      run.err, found,
+      std::regex(
+          R"(p\.nc:6:1: warning: T1 takes (\d+) W at 3000 rpm, where the spindle has 70 W; at most power_W of the )"
+          R"(machine file was expected \[spindle-power\]\n    G1 X5\. F600\n    \^\n)")))
+      << run.err;
+  EXPECT_NEAR(std::stod(found[1]), 80, 2.5);  // K_tc Q; the voxels' share
+  EXPECT_NE(tests::file_text(folder / "result/report.html").find("[spindle-power]"), std::string::npos);
+  EXPECT_EQ(run_camber(folder, "--strict predict job.toml -o result").status, 1);
+
+  // Constant torque to 6000 rpm: at 3000 half of the power; both cutting lines take more.
+  write_slot_job(folder, "power_W = 100\nconstant_torque_rpm = 6000\n", "X8. F450\n");
+  const std::string err = run_camber(folder, "predict job.toml -o result").err;
+  EXPECT_NE(err.find("where the spindle has 50 W; 2 lines take more than it has; at most"), std::string::npos) << err;
+
+  write_slot_job(folder, "power_W = 90\n");
+  EXPECT_EQ(run_camber(folder, "predict job.toml -o result").err, "");
 }
 
 }  // namespace
