@@ -12,6 +12,7 @@
 #include "feedmodel/modes.h"
 #include "feedmodel/rapid.h"
 #include "feedmodel/rests.h"
+#include "feedmodel/spindle_start.h"
 #include "feedmodel/yan_shirase.h"
 
 namespace camber::feedmodel {
@@ -37,6 +38,7 @@ struct Element {
   nc::PathControl control = nc::PathControl::blend;
   double tolerance_mm = 0;
   bool stops = false;           ///< G9
+  bool taps = false;            ///< in step with the spindle, from rest to rest
   double from_s = 0;            ///< where the rounding at its start ends
   double less_fraction = 0;     ///< of its acceleration, kept free for the corners' speed steps
   double planned_fraction = 1;  ///< of its acceleration, that the look-ahead counts on
@@ -201,6 +203,7 @@ class Builder {
     e.control = path_control_of(machine_, state);
     e.tolerance_mm = state.blend_tolerance_mm > 0 ? state.blend_tolerance_mm : e.settings->corner.tolerance_mm;
     e.stops = last.exact_stop;
+    e.taps = move.kind == nc::MoveKind::linear && (move.cycle == 84 || move.cycle == 74);
     e.segment.exact = e.stops || e.control == nc::PathControl::exact_stop;
     e.segment.move = static_cast<std::uint32_t>(end - 1);
     if (e.segment.length_mm >= kNoLength) set_limits(e, move);
@@ -224,6 +227,13 @@ class Builder {
     s.feed_command_mm_per_s = s.cutting ? feed : s.speed_limit_mm_per_s;
     s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, block_time_speed(s.length_mm, e.settings->block_time_s));
     if (s.cutting) s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, feed);
+    if (e.taps) limit_to_spindle(s, program_.state_of(move).spindle_speed_rpm);
+  }
+
+  /// A tap feeds in step with the spindle, which runs up and stops within each stroke.
+  void limit_to_spindle(Segment& s, double spindle_speed_rpm) const {
+    const double start_s = spindle_start_s(machine_.spindle, spindle_speed_rpm);
+    if (start_s > 0) s.acceleration_mm_per_s2 = std::min(s.acceleration_mm_per_s2, s.speed_limit_mm_per_s / start_s);
   }
 
   // --- corners ---------------------------------------------------------------------------------------------
@@ -282,7 +292,7 @@ class Builder {
     const bool changes = a.segment.cutting != b.segment.cutting;
     if (settings.rapid_change_s > 0 && changes) return stop(settings.rapid_change_s);
     if (changes && (control_.kind.stops_between_rapid_and_feed || std::isfinite(control_.in_position_mm))) return {};
-    if (a.stops || a.control == nc::PathControl::exact_stop) return {};
+    if (a.stops || a.taps || b.taps || a.control == nc::PathControl::exact_stop) return {};
     if (corner.threshold_rad > 0 && from.dot(to) > std::cos(std::min(corner.threshold_rad, kPi))) return pass();
     const bool turns_round = from.dot(to) < -1.0 + kReversal;
     if (turns_round && corner.law != CornerLaw::speed_difference && corner.law != CornerLaw::angle)

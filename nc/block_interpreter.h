@@ -154,6 +154,7 @@ class BlockInterpreter {
   Vec3 target_from(const Vec3& start);
   Vec3 programmed_target();
   void read_spiral_words(ArcWords& arc);
+  void read_spiral_turns(ArcWords& arc);
   void prepare_cutting(char const* what);
   std::optional<double> cutting_feed(double length_mm, char const* g);
   std::optional<double> per_revolution_feed();
@@ -187,6 +188,7 @@ class BlockInterpreter {
   bool state_changed_ = true;
   std::uint32_t state_index_ = 0;
   Motion motion_ = Motion::none;
+  bool spiral_ = false;  ///< G2.1, G3.1
   Plane plane_ = Plane::xy;
   Cycle cycle_;
   std::size_t cycle_moves_ = 0;  ///< made by drilling cycles so far

@@ -178,6 +178,7 @@ bool BlockInterpreter::read_g_code(const Code& code, const GCode& meaning) {
 void BlockInterpreter::set_motion(const Code& code) {
   constexpr std::array kMotions = {Motion::rapid, Motion::linear, Motion::clockwise, Motion::counter_clockwise};
   motion_ = kMotions[static_cast<std::size_t>(code.tenths / 10)];
+  spiral_ = code.tenths % 10 != 0;
   cycle_ = {};
   request_.motion_given = true;
   request_.motion_word = code.word;
@@ -189,7 +190,7 @@ void BlockInterpreter::set_cycle(const Code& code) {
     return;
   }
   if (cycle_.g == 0) cycle_.initial_mm = programmed()[axes_of(plane_).normal];
-  cycle_.g = code.tenths / 10;
+  cycle_.g = code.tenths == 843 ? 74 : code.tenths / 10;  // G84.2, G84.3: tapping in step, right and left hand
   request_.cycle_given = true;
   request_.motion_word = code.word;
 }

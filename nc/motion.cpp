@@ -304,7 +304,7 @@ void BlockInterpreter::move_on_arc() {
   arc.plane = plane_;
   arc.clockwise = motion_ == Motion::clockwise;
   arc.absolute_centre = state_.absolute_arc_centre;
-  const char* g = arc.clockwise ? "G2" : "G3";
+  const char* g = spiral_ ? (arc.clockwise ? "G2.1" : "G3.1") : arc.clockwise ? "G2" : "G3";
   prepare_cutting(g);
   if (leaving_) {
     error(words_.offset(), "cutter-radius",
@@ -318,7 +318,9 @@ void BlockInterpreter::move_on_arc() {
   arc.j_mm = words_.scaled('J', unit_mm());
   arc.k_mm = words_.scaled('K', unit_mm());
   arc.r_mm = words_.scaled('R', unit_mm());
-  if (words_.has('P')) {
+  if (spiral_) {
+    read_spiral_turns(arc);
+  } else if (words_.has('P')) {
     const double turns = words_.value('P');
     arc.turns = turns == std::floor(turns) && turns >= 1 && turns < 1e6 ? static_cast<int>(turns) : 0;
     if (arc.turns == 0)
@@ -326,8 +328,9 @@ void BlockInterpreter::move_on_arc() {
             fmt::format("{} turns (P) on an arc; a whole number of one or more was expected", turns));
     arc.turns = std::max(arc.turns, 1);
   }
-  read_spiral_words(arc);
+  if (!spiral_) read_spiral_words(arc);
   ArcResult result = make_arc(arc);
+  if (spiral_ && arc.r_mm) result.error = "a spiral with R leaves its centre open; I J K were expected";
   const auto in_moves = frame_.plain || !result.error.empty() ? result.arc : from_program(frame_, result.arc);
   if (!in_moves)
     error(words_.offset(), "scaling",
@@ -342,8 +345,21 @@ void BlockInterpreter::move_on_arc() {
   out_.arcs.push_back(*in_moves);
   Move& move = add_move(MoveKind::arc, end_mm);
   move.arc = static_cast<std::uint32_t>(out_.arcs.size() - 1);
+  if (spiral_) move.editable = false;  // an arc in its place would need other words
   settle_axes();
   move.feed_mm_per_s = cutting_feed(length_mm(out_, move), g).value_or(0);
+}
+
+/// G2.1, G3.1: the radius runs evenly from that of the start to that of the end; P full turns before the rest of one.
+void BlockInterpreter::read_spiral_turns(ArcWords& arc) {
+  arc.spiral = true;
+  const double turns = words_.has('P') ? words_.value('P') : 0;
+  if (turns != std::floor(turns) || turns < 0 || turns > 1e6) {
+    error(words_.offset_of('P'), "arc-turns",
+          fmt::format("{} full turns (P) on a spiral; a whole number of zero or more was expected", turns));
+    return;
+  }
+  arc.turns = static_cast<int>(turns) + 1;
 }
 
 /// L, and Q with it: an Archimedean spiral (in G17 with Z a conical one); or radii that differ where the control

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "feedmodel/rapid.h"
 #include "feedmodel/spindle_start.h"
@@ -120,6 +121,27 @@ TEST(CycleTime, TheWayToTheReferencePointIsCountedWhereItIsKnown) {
   const CycleTime time = cycle_time(program, m);
   EXPECT_EQ(time.unplaced_moves, 0u);
   EXPECT_NEAR(time.all.time.positioning_s, 4 * kLongRapid, 1e-9);
+}
+
+TEST(CycleTime, TappingHoldsTheSpindlesRunUpAndStopInEachStroke) {
+  machine::Machine m = quick_machine();
+  m.spindle.max_rpm = 12000;
+  m.spindle.start_time_s = 2.4;
+  m.control.in_position_mm = std::numeric_limits<double>::infinity();
+  // 1200 rpm in 0.24 s, F 1200 mm/min = 20 mm/s: a stroke of 30 mm takes 30/20 + 0.24 s.
+  const auto cutting_s = [&](const std::string& cycle) {
+    return cycle_time(interpreted("G90 G0 X0 Y0 Z10\nS1200 M3\nG99 " + cycle + " X0 Y0 Z-28 R2 F1200\nG80\n"), m)
+        .all.time.cutting_s;
+  };
+  for (const char* cycle : {"G84", "G84.2", "G84.3", "G74"})
+    EXPECT_NEAR(cutting_s(cycle), 2 * (1.5 + 0.24), 1e-5) << cycle;
+  EXPECT_NEAR(cutting_s("G85"), 2 * (1.5 + 0.008), 1e-5);  // bored: the axes' acceleration alone
+  // Too shallow for the speed: 2 sqrt(s t/F).
+  const double shallow =
+      cycle_time(interpreted("G90 G0 X0 Y0 Z10\nS1200 M3\nG99 G84.2 X0 Y0 Z0.8 R2 F1200\nG80\n"), m).all.time.cutting_s;
+  EXPECT_NEAR(shallow, 2 * 2 * std::sqrt(1.2 * 0.24 / 20), 1e-5);
+  m.spindle.start_time_s = 0;
+  EXPECT_NEAR(cutting_s("G84.2"), 2 * (1.5 + 0.008), 1e-5);
 }
 
 TEST(CycleTime, AMachineWithoutLimitsTakesLengthOverFeed) {

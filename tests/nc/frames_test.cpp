@@ -251,6 +251,38 @@ TEST(Spirals, AreToldFromMistakes) {
   expect_near_mm(point_at(cone.moves, cone.moves.moves[1], 0.5), {-7.5, 0, -1.5}, 1e-9);
 }
 
+TEST(NcSpirals, OfG21HaveFullTurnsInPAndAnyRadii) {
+  const auto sweep = [](const std::string& words) {
+    const Read r = read_clean("G0 X10 Y0 Z0\n" + words + " F100\n");
+    expect_near_mm(r.moves.moves.back().end_mm, {0, 20, 0});
+    EXPECT_FALSE(r.moves.moves.back().editable);
+    return r.moves.arcs.at(0).sweep_rad;
+  };
+  EXPECT_NEAR(sweep("G3.1 X0 Y20 I-10 J0"), kPi / 2, 1e-12);
+  EXPECT_NEAR(sweep("G3.1 X0 Y20 I-10 J0 P2"), 4.5 * kPi, 1e-12);
+  EXPECT_NEAR(sweep("G2.1 X0 Y20 I-10 J0 P0"), -1.5 * kPi, 1e-12);
+  const Read r = read_clean("G0 X10 Y0 Z0\nG3.1 X0 Y20 I-10 J0 P1 F100\n");
+  EXPECT_NEAR((point_at(r.moves, r.moves.moves.back(), 0.5)).norm(), 15, 0.6);  // halfway from 10 to 20
+  // G2 that follows is an arc again.
+  EXPECT_NE(read_text("G0 X10 Y0 Z0\nG3.1 X0 Y20 I-10 J0 F100\nG3 X-10 Y0 I0 J-20\n").messages.size(), 0u);
+  EXPECT_EQ(read_text("G0 X10 Y0 Z0\nG2.1 X0 Y20 I-10 J0 P1.5 F100\n").messages,
+            Messages{"p.nc:2:21: error: 1.5 full turns (P) on a spiral; a whole number of zero or more was expected "
+                     "[arc-turns]"});
+  EXPECT_EQ(read_text("G0 X10 Y0 Z0\nG2.1 X0 Y20 R15 F100\n").messages.at(0),
+            "p.nc:2:1: error: a spiral with R leaves its centre open; I J K were expected [arc]");
+}
+
+TEST(NcCycles, TapInStepAsG84AndG74) {
+  for (const auto& [code, cycle] : {std::pair{"G84.2", 84}, {"G84.3", 74}}) {
+    const Read r = read_clean(std::string("G0 X0 Y0 Z10\nS500 M3\nG99 ") + code + " X5 Y0 Z-10 R2 F750\nG80\n");
+    ASSERT_EQ(r.moves.moves.size(), 5u);
+    for (std::size_t i = 1; i < 5; ++i) EXPECT_EQ(r.moves.moves[i].cycle, cycle) << code;
+    EXPECT_EQ(r.moves.moves[3].kind, MoveKind::linear);
+    EXPECT_EQ(r.moves.moves[4].kind, MoveKind::linear);  // out in feed
+    EXPECT_EQ(r.moves.moves[4].end_mm.z(), 2);
+  }
+}
+
 TEST(Literature, A1CentreOfAnArcByItsRadius) {
   for (const char* text : {"G0 X0 Y1 Z0\nG2 X1 Y0 R1 F100\n", "G0 X1 Y0 Z0\nG3 X0 Y1 R1 F100\n"})
     expect_near_mm(read_clean(text).moves.arcs[0].center_mm, {0, 0, 0}, 1e-12);
