@@ -28,4 +28,10 @@ bool below_full_rapid(const Vec3& distance_mm, const Vec3& speed_mm_per_s, const
 std::vector<Vec3> dog_leg(const Vec3& from_mm, const Vec3& to_mm, const Vec3& speed_mm_per_s,
                           const Vec3& acceleration_mm_per_s2);
 
+/// Places of the tool in a positioning, `from_mm` and `to_mm` included, in order, at most `step_mm` apart: along the
+/// straight line, or, with rapid_path = "dogleg", where each axis on its own is at the same instant (the bent ends as
+/// well). Between axes without a limit, which arrive at once, the way is straight.
+std::vector<Vec3> positioning_places(const machine::Machine& machine, const Vec3& from_mm, const Vec3& to_mm,
+                                     double step_mm);
+
 }  // namespace camber::feedmodel

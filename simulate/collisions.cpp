@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "feedmodel/rapid.h"
 #include "simulate/cut.h"
 #include "simulate/tool_outline.h"
 
@@ -195,9 +196,8 @@ class Search {
   template <class Function>
   void for_places(const RapidCheck& r, Function f) const {
     const nc::Move& m = program_.moves.moves[r.move];
-    const int n =
-        r.start_known ? std::max(1, static_cast<int>(std::ceil((m.end_mm - m.start_mm).norm() / kStep_mm))) : 0;
-    for (int i = 0; i <= n; ++i) f(n == 0 ? m.end_mm : Vec3(m.start_mm + (m.end_mm - m.start_mm) * i / n));
+    if (!r.start_known) return f(m.end_mm);
+    for (const Vec3& tip : feedmodel::positioning_places(job_.machine, m.start_mm, m.end_mm, kStep_mm)) f(tip);
   }
 
   void feel_rapid(const RapidCheck& r) {

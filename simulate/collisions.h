@@ -27,11 +27,11 @@ struct Collision {
 /// The undeflected cutter is swept through a copy of the blank; a rapid is looked at when its turn comes, shank, neck
 /// and holder before the stretch of path is cut that takes them there: the cutter below them must have made room long
 /// before. What lies above the stock, or beside it, is not looked at, and nothing is swept where no part of a tool
-/// ever comes so low. Rapids count as straight lines; leading rapids, those after a tool change and after a reference
-/// point whose start is not known count at their end; a rapid straight up is free where no part of the tool is narrower
-/// than what is below it. Less than a voxel of depth is no collision; places every half
-/// millimetre of path, half a millimetre apart on the outline. Rapids of a cycle within its hole are free: the tool has
-/// just been there.
+/// ever comes so low. Rapids follow the path of the machine's control, straight or with every axis on its own
+/// (feedmodel::positioning_places); leading rapids, those after a tool change and after a reference point whose start
+/// is not known count at their end; a rapid straight up is free where no part of the tool is narrower than what is
+/// below it. Less than a voxel of depth is no collision; places every half millimetre of path, half a millimetre apart
+/// on the outline. Rapids of a cycle within its hole are free: the tool has just been there.
 std::vector<Collision> find_collisions(const machine::Job& job, const SimulatedProgram& program,
                                        const removal::Stock& blank);
 

@@ -146,6 +146,34 @@ TEST(Collisions, RapidBackThroughTheSlotJustCutIsFree) {
   EXPECT_EQ(run.err, "");
 }
 
+/// A block from the origin to X20 Y20, and a machine that bends rapids or not.
+struct DogLeg {
+  std::string away;  ///< the rapid, from X-6 Y2 at depth, or to there
+  bool hits_bent, hits_straight;
+};
+
+TEST(Collisions, RapidsFollowTheWayOfTheControl) {
+  const std::string to_depth = "G0 Z-2\nG1 X3 F900\nX-6\n";
+  // Away: 45 degrees first, through the block; its straight line passes the corner at X0 Y20 by 2.35 mm (cutter: 2 mm).
+  // Back: the straight line enters the block at Y20, the dog-leg comes down at X-6.
+  for (const auto& [away, bent, straight] :
+       {DogLeg{"G0 X-6 Y2 Z5\n" + to_depth + "G0 X14 Y102\nG0 Z5\n", true, false},
+        DogLeg{"G0 X-6 Y2 Z5\n" + to_depth + "G0 Y102\nX54\nG0 X-6 Y2\nG0 Z5\n", false, true}}) {
+    for (const std::string path : {"dogleg", "linear"}) {
+      const TempFolder folder;
+      write_job(folder, kHead + away + "M30\n", kFlat, "box_mm = [[0, 0, -5], [20, 20, 0]]");
+      std::string machine = "[cycle]\nrapid_path = \"" + path + "\"\n";
+      for (const char* axis : {"x", "y", "z"})
+        machine += std::string("[axis.") + axis + "]\nmax_velocity_mm_per_min = 20000\nacceleration_mm_per_s2 = 5000\n";
+      folder.write("machine.toml", machine);
+      const auto run = run_camber(folder, "predict job.toml -o r");
+      const bool hits = path == "dogleg" ? bent : straight;
+      EXPECT_EQ(run.status, hits ? 1 : 0) << path << away << run.err;
+      EXPECT_EQ(run.err.find("[collision-rapid]") != std::string::npos, hits) << path << away << run.err;
+    }
+  }
+}
+
 TEST(Collisions, AreWarningsWhereAPartOfTheProgramIsLeftOut) {
   const TempFolder folder;
   write_job(folder, kHead + "G0 X-4 Y0 Z5\nG0 Z-2\nG1 X12 F900\nG0 X-4\nY6\nG1 X12\nG0 Z5\nM30\n",

@@ -7,6 +7,7 @@
 
 #include "feedmodel/cycle_time.h"
 #include "feedmodel/plan.h"
+#include "feedmodel/rapid.h"
 #include "feedmodel/timed_path.h"
 #include "tests/support/nc_program.h"
 #include "tests/support/random_motion.h"
@@ -154,6 +155,42 @@ TEST(OnePlan, EachAxisOfADogLegKeepsItsOwnSpeed) {
     if (s.move == 0) {
       ASSERT_NEAR(s.command_mm.y(), 10 * s.command_mm.x(), 1e-9);
     }
+}
+
+double distance_to_polyline(const Vec3& p, const std::vector<Vec3>& line) {
+  double least = INFINITY;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const Vec3 way = line[i] - line[i - 1];
+    const double u = std::clamp((p - line[i - 1]).dot(way) / std::max(1e-30, way.squaredNorm()), 0.0, 1.0);
+    least = std::min(least, (p - line[i - 1] - u * way).norm());
+  }
+  return least;
+}
+
+TEST(OnePlan, PlacesOfAPositioningAreThoseOfItsMotion) {
+  tests::Dice dice(20);
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const machine::Machine m = tests::random_machine(seed);
+    const Vec3 to(dice.between(-50, 50), dice.between(-50, 50), dice.between(-50, 50));
+    tests::TestProgram p;
+    p.rapid(to.x(), to.y(), to.z());
+    const auto places = positioning_places(m, Vec3::Zero(), to, 0.5);
+    EXPECT_EQ(places.front(), Vec3::Zero());
+    EXPECT_EQ(places.back(), to);
+    for (std::size_t i = 1; i < places.size(); ++i) ASSERT_LE((places[i] - places[i - 1]).norm(), 0.5 + 1e-12);
+    for (const TimedSample& s : samples_of(p.program, m)) {
+      ASSERT_LT(distance_to_polyline(s.command_mm, places), 0.02) << "machine " << seed;
+    }
+  }
+}
+
+TEST(OnePlan, AxesWithoutALimitArriveAtOnce) {
+  machine::Machine m;
+  EXPECT_EQ(positioning_places(m, {0, 0, 0}, {3, 4, 0}, 1).size(), 6u);
+  m.axis[0].max_velocity_mm_per_s = 100;  // Y is there before X begins
+  const auto places = positioning_places(m, {0, 0, 0}, {3, 4, 0}, 1);
+  EXPECT_LT(distance_to_polyline({0, 4, 0}, places), 1e-6);
+  EXPECT_GT(distance_to_polyline({1.5, 2, 0}, places), 1);
 }
 
 TEST(OnePlan, ExponentialBlocksMoveAsTheyAreTimed) {
