@@ -79,7 +79,7 @@ void start_together(const std::vector<TimedLines>& data, const Machine& base, st
 }
 
 LimitFit refit(const std::vector<TimedLines>& data, const Machine& machine, const LimitFit& from, int max_iterations) {
-  std::vector<LimitParameter> parameters = limit_parameters(machine);
+  std::vector<LimitParameter> parameters = limit_parameters(machine, any_logged(data));
   for (LimitParameter& p : parameters)
     for (const LimitParameter& q : from.parameters)
       if (p.name == q.name) p.start = std::clamp(q.fitted.value, p.least * 1.001, p.most * 0.999);
@@ -106,7 +106,7 @@ std::vector<std::pair<std::string, Machine>> machines_of_each_law(const Machine&
 
 LimitFit fit_law(const std::vector<TimedLines>& data, const Machine& base,
                  const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations) {
-  std::vector<LimitParameter> parameters = limit_parameters(base);
+  std::vector<LimitParameter> parameters = limit_parameters(base, any_logged(data));
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (acceleration_mm_per_s2[axis] > parameters[axis].least) parameters[axis].start = acceleration_mm_per_s2[axis];
   start_together(data, base, parameters);

@@ -9,6 +9,7 @@
 #include "calib/fit_limits.h"
 #include "calib/fit_ramp.h"
 #include "calib/fit_smoothing.h"
+#include "calib/logged_lines.h"
 #include "feedmodel/fitted_range.h"
 
 namespace camber::calib {
@@ -87,9 +88,8 @@ void add_timed_lines(const FeedRun& run, int keep_back_every, std::size_t& count
   }
 }
 
-std::vector<TimedLines> timed_lines(const std::vector<FeedRun>& runs, int keep_back_every) {
+std::vector<TimedLines> timed_lines(const std::vector<FeedRun>& runs, int keep_back_every, std::size_t& count) {
   std::vector<TimedLines> data;
-  std::size_t count = 0;
   for (const FeedRun& run : runs)
     if (!run.trace.line.empty()) add_timed_lines(run, keep_back_every, count, data);
   return data;
@@ -252,17 +252,28 @@ std::string_view what_tells(std::string_view name) {
   if (name.find("arc_") != name.npos) return "run the circles of camber protocol";
   if (name.find("stop_acceleration") != name.npos) return "run a polygon program of camber protocol under G64";
   if (name.find("step_share") != name.npos) return "run a polygon program of camber protocol under G61";
+  if (name.ends_with("rapid_change_ms")) return "log stretches of feed moves with rapids between them";
   if (name.find("stop_time") != name.npos) return "run the corners program of camber protocol";
   return "run the polygon programs of camber protocol in all planes";
 }
 
-void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start) {
+/// Which source told a parameter, where there are two.
+std::string source_of(const LimitParameter& p) {
+  constexpr double kMost = 0.9;
+  if (p.logged_share > kMost) return "from the logged times";
+  return p.logged_share < 1 - kMost ? "from the traces"
+                                    : fmt::format("{:.0f} % from the logged times", 100 * p.logged_share);
+}
+
+void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start, bool logged) {
   for (const LimitParameter& p : fit.parameters) {
     if (p.told) {
-      result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, "", true});
+      result.parameters.push_back(
+          {p.name, p.fitted.value, p.unit, p.fitted.std_error, logged ? source_of(p) : "", true});
     } else {
       result.parameters.push_back({p.name, p.get(start), p.unit, std::nullopt,
-                                   fmt::format("the traces do not tell; left as it was ({})", what_tells(p.name)),
+                                   fmt::format("the {} do not tell; left as it was ({})",
+                                               logged ? "traces and logs" : "traces", what_tells(p.name)),
                                    false});
     }
   }
@@ -372,6 +383,31 @@ void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_bac
   }
 }
 
+LoggedError error_of(const std::vector<LoggedTime>& logged, bool kept_back) {
+  LoggedError error;
+  for (const LoggedTime& t : logged) {
+    if (t.kept_back != kept_back) continue;
+    const double percent = 100 * std::abs(t.model_s / t.time_s - 1);
+    ++error.stretches;
+    error.mean += percent;
+    error.worst = std::max(error.worst, percent);
+  }
+  if (error.stretches > 0) error.mean /= static_cast<double>(error.stretches);
+  return error;
+}
+
+/// The logged stretches with the limits as they are written; their waits are still one number.
+void judge_logged(FitFeedResult& result, const std::vector<LoggedLines>& logged, const Machine& machine) {
+  for (const LoggedLines& l : logged) {
+    const auto model_s = planned_times_s(l.lines, machine, feedmodel::plan_motion(*l.program, machine).times);
+    for (std::size_t i = 0; i < model_s.size(); ++i)
+      result.logged.push_back({l.program_name, l.lines.parts[i], l.lines.kept_back[i] != 0, l.lines.time_s[i],
+                               l.lines.sigma_s[i], model_s[i]});
+  }
+  result.logged_fitted = error_of(result.logged, false);
+  result.logged_held_out = error_of(result.logged, true);
+}
+
 }  // namespace
 
 void add_drive(Machine& machine, std::vector<FitParameter>& parameters, int axis, const DriveFit& drive) {
@@ -400,6 +436,11 @@ void add_drive(Machine& machine, std::vector<FitParameter>& parameters, int axis
 }
 
 FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, const FitFeedOptions& options) {
+  return fit_feed(runs, {}, start, options);
+}
+
+FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<StretchRun>& logs, const Machine& start,
+                       const FitFeedOptions& options) {
   FitFeedResult result;
   result.machine = start;
   std::vector<const ServoTrace*> traces;
@@ -408,7 +449,10 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
   if (!traces.empty()) result.machine.control.period_s = traces.front()->period_s;
   set_control_defaults(result.machine.control);
 
-  const std::vector<TimedLines> data = timed_lines(runs, options.keep_back_every);
+  std::size_t parts = 0;
+  std::vector<TimedLines> data = timed_lines(runs, options.keep_back_every, parts);
+  const std::vector<LoggedLines> logged = logged_lines(logs, options.keep_back_every, parts);
+  for (const LoggedLines& l : logged) data.push_back(l.lines);
   for (int axis = 0; axis < 3; ++axis) add_velocity(result, runs, axis);
   const double width_mm = result.machine.control.in_position_mm;
   result.machine.control.in_position_mm = machine::kNoLimit;  // waits are between the parts
@@ -428,7 +472,8 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
   }
   const Machine base = result.machine;
   result.machine = limits.machine;
-  add_limits(result, limits, base);
+  add_limits(result, limits, base, !logged.empty());
+  judge_logged(result, logged, limits.machine);
   result.machine.control.in_position_mm = width_mm;
   if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend)
     add_listed(result);
@@ -444,6 +489,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, c
   add_smoothing(result, runs, traces);
   std::vector<const nc::Interpretation*> programs;
   for (const FeedRun& run : runs) programs.push_back(&run.program);
+  for (const LoggedLines& l : logged) programs.push_back(l.program.get());
   result.machine.fitted_range = feedmodel::range_of(programs);
   result.residual_median_ms = limits.residual_median_ms;
   judge(result, runs, options.keep_back_every);

@@ -8,6 +8,7 @@
 #include "calib/control_laws.h"
 #include "calib/feed_accuracy.h"
 #include "calib/fit_drive.h"
+#include "calib/stretch.h"
 #include "calib/trace.h"
 #include "machine/machine.h"
 #include "nc/move.h"
@@ -54,6 +55,20 @@ struct JudgedCornerLaw {
   double held_out_cost = 0;     ///< what laws are chosen by: mean robust cost of a part kept back
 };
 
+/// A stretch that a log or a table has the time of.
+struct LoggedTime {
+  std::string program_name;
+  Part part;
+  bool kept_back = false;
+  double time_s = 0, sigma_s = 0, model_s = 0;
+};
+
+/// Errors of logged times, %.
+struct LoggedError {
+  std::size_t stretches = 0;
+  double mean = 0, worst = 0;  ///< of the absolute errors
+};
+
 struct FitFeedResult {
   machine::Machine machine;
   std::vector<JudgedCornerLaw> laws;  ///< all that were tried, that of the start file first
@@ -61,6 +76,8 @@ struct FitFeedResult {
   std::vector<FitParameter> parameters;
   std::array<DriveFit, 3> drives;
   FitError fitted, held_out;
+  std::vector<LoggedTime> logged;  ///< one for each geometry; with the fitted machine
+  LoggedError logged_fitted, logged_held_out;
   std::vector<RunAccuracy> runs;  ///< all parts, with the fitted machine
   double residual_median_ms = 0;  ///< of the commanded times of the fitted parts
   bool converged = false;
@@ -77,5 +94,12 @@ void add_drive(machine::Machine& machine, std::vector<FitParameter>& parameters,
 /// look-ahead and the short-line time that predict best. Velocity limits are read where a rapid shows a plateau, the
 /// ramp after interpolation from the commanded starts. Deterministic.
 FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const machine::Machine& start, const FitFeedOptions& options);
+
+/// Servo traces and logged times in one fit: every time counts in units of what it is known to, so that each source
+/// tells what it tells best (drives, ramps and block times the traces; axes, arcs and feeds that no trace has, the
+/// logs). A note at each parameter says which of them told it. The wait between feed and rapid that logged times hold
+/// (control.rapid_change_ms) is fitted as well.
+FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<StretchRun>& logs,
+                       const machine::Machine& start, const FitFeedOptions& options);
 
 }  // namespace camber::calib

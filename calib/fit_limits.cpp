@@ -18,6 +18,7 @@ using machine::Machine;
 
 constexpr double kTimeNoise = 0.001;  // s; a part's time is known to about a period
 constexpr double kTimeShare = 0.002;  // and to this share of itself
+constexpr double kLogShare = 0.003;   // a model's error grows with the time; stretches of a log are long
 constexpr double kNoTime = 1e-9;      // s
 constexpr double kShiftPeriods = 0.5;
 constexpr double kWideLossScale = 300.0;
@@ -35,8 +36,8 @@ LimitParameter acceleration(const char* name) {
           .fitted = {}};
 }
 
-LimitParameter corner_number(const char* name, const char* unit, double (*get)(const Machine&),
-                             void (*set)(Machine&, double), double least, double most, double start) {
+LimitParameter a_number(const char* name, const char* unit, double (*get)(const Machine&),
+                        void (*set)(Machine&, double), double least, double most, double start) {
   return {
       .name = name, .unit = unit, .get = get, .set = set, .least = least, .most = most, .start = start, .fitted = {}};
 }
@@ -45,16 +46,16 @@ LimitParameter corner_number(const char* name, const char* unit, double (*get)(c
 std::optional<LimitParameter> law_parameter(machine::CornerLaw law) {
   switch (law) {
     case machine::CornerLaw::speed_difference:
-      return corner_number(
+      return a_number(
           "control.corner.speed_difference_mm_per_min", "mm/min",
           [](const Machine& m) { return 60 * m.control.corner.speed_difference_mm_per_s; },
           [](Machine& m, double v) { m.control.corner.speed_difference_mm_per_s = v / 60; }, 0.5, 60000, 200);
     case machine::CornerLaw::angle:
-      return corner_number(
+      return a_number(
           "control.corner.time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.time_s; },
           [](Machine& m, double v) { m.control.corner.time_s = v / 1000; }, 0.01, 1000, 5);
     case machine::CornerLaw::radius:
-      return corner_number(
+      return a_number(
           "control.corner.acceleration_mm_per_s2", "mm/s2",
           [](const Machine& m) { return m.control.corner.acceleration_mm_per_s2; },
           [](Machine& m, double v) { m.control.corner.acceleration_mm_per_s2 = v; }, 0.1, 100000, 500);
@@ -66,12 +67,15 @@ std::optional<LimitParameter> law_parameter(machine::CornerLaw law) {
 }
 
 LimitParameter stop_time_parameter() {
-  return corner_number(
+  return a_number(
       "control.corner.stop_time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.stop_time_s; },
       [](Machine& m, double v) { m.control.corner.stop_time_s = v / 1000; }, 0.1, 2000, 30);
 }
 
-double scale_of(double time_s) { return kTimeNoise + kTimeShare * time_s; }
+double scale_of(const TimedLines& lines, std::size_t part) {
+  const double time_s = lines.time_s[part];
+  return lines.logged() ? std::hypot(lines.sigma_s[part], kLogShare * time_s) : kTimeNoise + kTimeShare * time_s;
+}
 
 /// Residuals of the fitted parts, in units of what a part's time is known to.
 void residuals_of(const std::vector<TimedLines>& data, const Machine& machine, bool kept_back,
@@ -85,7 +89,7 @@ void residuals_of(const std::vector<TimedLines>& data, const Machine& machine, b
     const std::vector<double> planned = planned_times_s(lines, machine, segments);
     for (std::size_t i = 0; i < planned.size(); ++i) {
       if (lines.time_s[i] <= 0 || (lines.kept_back[i] != 0) != kept_back) continue;
-      residuals.push_back((planned[i] - lines.time_s[i]) / scale_of(lines.time_s[i]));
+      residuals.push_back((planned[i] - lines.time_s[i]) / scale_of(lines, i));
     }
   }
 }
@@ -141,14 +145,16 @@ std::unique_ptr<ceres::CostFunction> make_cost(const std::vector<TimedLines>& da
 /// What each residual of the fitted parts is of, in their order.
 struct Row {
   int group = 0;
-  double time_s = 0;
+  double scale_s = 0;
+  bool logged = false;
 };
 
 std::vector<Row> rows_of(const std::vector<TimedLines>& data) {
   std::vector<Row> rows;
   for (const TimedLines& lines : data)
     for (std::size_t i = 0; i < lines.time_s.size(); ++i)
-      if (lines.time_s[i] > 0 && !lines.kept_back[i]) rows.push_back({lines.group[i], lines.time_s[i]});
+      if (lines.time_s[i] > 0 && !lines.kept_back[i])
+        rows.push_back({lines.group[i], scale_of(lines, i), lines.logged()});
   return rows;
 }
 
@@ -163,9 +169,14 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
   cost->Evaluate(blocks, residuals.data(), jacobians);
   const Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> j(
       jacobian.data(), static_cast<Eigen::Index>(count), n);
+  const auto rows = rows_of(data);
   std::vector<int> told;
   for (int i = 0; i < n; ++i) {
     fit.parameters[i].told = j.col(i).norm() > 1.0;  // a change by a factor e moves some time by its noise
+    double logged = 0;
+    for (std::size_t row = 0; row < count; ++row)
+      if (rows[row].logged) logged += std::pow(j(static_cast<Eigen::Index>(row), i), 2);
+    fit.parameters[i].logged_share = logged > 0 ? logged / j.col(i).squaredNorm() : 0;
     fit.parameters[i].fitted = {std::exp(logs[i]), INFINITY};
     if (fit.parameters[i].told) told.push_back(i);
   }
@@ -175,7 +186,6 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(normal);
   if (!lu.isInvertible()) return;
   const Eigen::MatrixXd inverse = lu.inverse();
-  const auto rows = rows_of(data);
   std::map<int, Eigen::VectorXd> scores;
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(told.size()));
   for (std::size_t row = 0; row < count; ++row) {
@@ -183,7 +193,7 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
     for (std::size_t a = 0; a < told.size(); ++a) gradient(a) = j(static_cast<Eigen::Index>(row), told[a]);
     auto& score = scores.try_emplace(rows[row].group, Eigen::VectorXd::Zero(gradient.size())).first->second;
     score += gradient * residuals[row];
-    shift += gradient * (kShiftPeriods * base.control.period_s / scale_of(rows[row].time_s));
+    if (!rows[row].logged) shift += gradient * (kShiftPeriods * base.control.period_s / rows[row].scale_s);
   }
   Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
   for (const auto& [group, score] : scores) middle += score * score.transpose();
@@ -199,7 +209,11 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
 
 }  // namespace
 
-std::vector<LimitParameter> limit_parameters(const Machine& machine) {
+bool any_logged(const std::vector<TimedLines>& data) {
+  return std::any_of(data.begin(), data.end(), [](const TimedLines& lines) { return lines.logged(); });
+}
+
+std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged) {
   const auto share = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double), double value) {
     return LimitParameter{
         .name = name, .unit = "1", .get = get, .set = set, .least = 0.02, .most = 1, .start = value, .fitted = {}};
@@ -229,6 +243,10 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine) {
   }
   if (const auto law = law_parameter(machine.control.corner.law)) p.push_back(*law);
   if (std::isfinite(machine.control.corner.stop_angle_rad)) p.push_back(stop_time_parameter());
+  if (logged)
+    p.push_back(a_number(
+        "control.rapid_change_ms", "ms", [](const Machine& m) { return 1000 * m.control.rapid_change_s; },
+        [](Machine& m, double v) { m.control.rapid_change_s = v / 1000; }, 0.1, 5000, 30));
   p.push_back({.name = "control.block_time_ms",
                .unit = "ms",
                .get = [](const Machine& m) { return 1000 * m.control.block_time_s; },
@@ -257,7 +275,8 @@ std::vector<double> planned_times_s(const TimedLines& data, const Machine& machi
     // At a stop the line changes with the next period: half a period on average, which a fit can follow better than
     // whole ones.
     const bool stops = i >= segments.size() || segments[i].rest || segments[i].start_s > end + kNoTime;
-    times[p] = end - first + (stops ? 0.5 * machine.control.period_s : 0.0);
+    times[p] = end - first + (stops ? 0.5 * machine.control.period_s : 0.0) +
+               (data.logged() ? machine.control.rapid_change_s : 0.0);
   }
   return times;
 }

@@ -18,7 +18,13 @@ struct TimedLines {
   std::vector<double> time_s;   ///< of each part; 0: not in the trace
   std::vector<char> kept_back;  ///< of each part
   std::vector<int> group;       ///< of each part: what lies within one part of the program errs together
+  /// Of each part: what its time is known to. Empty: a servo trace's, about a period. The times of a log, which gives
+  /// it, end when the rapid behind the part begins, so that they hold the wait before it.
+  std::vector<double> sigma_s{};
+  bool logged() const { return !sigma_s.empty(); }
 };
+
+bool any_logged(const std::vector<TimedLines>& data);
 
 /// A number of the machine that the fit may change.
 struct LimitParameter {
@@ -28,11 +34,14 @@ struct LimitParameter {
   double least = 0, most = 0, start = 0;
   FittedValue fitted;
   bool told = false;  ///< the data tells it
+  /// Share of what the data tell about it (its squared derivatives) that comes from logged times.
+  double logged_share = 0;
 };
 
 /// Those that act under the machine's corner law, with start values that suit most controls (never the machine's own:
-/// a fit that begins at a wrong value may stay there). The block time is the last one.
-std::vector<LimitParameter> limit_parameters(const machine::Machine& machine);
+/// a fit that begins at a wrong value may stay there). The block time is the last one. `logged`: with the wait between
+/// feed and rapid, which logged times hold.
+std::vector<LimitParameter> limit_parameters(const machine::Machine& machine, bool logged = false);
 
 struct LimitFit {
   machine::Machine machine;  ///< with the values that the data tell
@@ -43,10 +52,11 @@ struct LimitFit {
   bool converged = false;
 };
 
-/// Standard errors: the sandwich (J'J)^-1 sum(s s') (J'J)^-1 over groups, s = J'r of a group, and beside it what a
-/// common shift of all times by half a period does, since a trace tells times to a period.
-/// Least squares (Cauchy loss: a trace may hold pauses that no plan explains) over the times of the parts.
-/// far_away: the start values may be wrong by much; a wide loss leads first.
+/// Least squares (Cauchy loss: a trace may hold pauses that no plan explains) over the times of the parts, each in
+/// units of what it is known to, whether a servo trace or a log has it. Standard errors: the sandwich (J'J)^-1 sum(s
+/// s') (J'J)^-1 over groups, s = J'r of a group, and beside it what a common shift of all traced times by half a period
+/// does, since a trace tells times to a period. far_away: the start values may be wrong by much; a wide loss leads
+/// first.
 LimitFit fit_limits(const std::vector<TimedLines>& data, const machine::Machine& start,
                     std::vector<LimitParameter> parameters, int max_iterations, bool far_away);
 
@@ -56,7 +66,8 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const machine::Machine&
 double scan_start(const std::vector<TimedLines>& data, const machine::Machine& base,
                   std::vector<LimitParameter>& parameters, std::size_t index, int steps = 48);
 
-/// Seconds that the plan takes for each part: from the start of its first to the end of its last segment.
+/// Seconds that the plan takes for each part: from the start of its first to the end of its last segment (of logged
+/// parts, with the wait before the rapid).
 /// `segments`: the plan of the whole program, plan_motion(*data.program, machine).times.
 std::vector<double> planned_times_s(const TimedLines& data, const machine::Machine& machine,
                                     const std::vector<feedmodel::SegmentTime>& segments);

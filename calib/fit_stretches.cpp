@@ -309,8 +309,36 @@ double jackknife_error(const Trial& trial, std::size_t parameter) {
   return std::sqrt((k - 1) / k * sum);
 }
 
-void add_parameters(StretchFit& fit, const Trial& trial) {
+/// Whether a change of the parameter by a factor e moves any time by what it is known to.
+bool tells(const Data& data, const Trial& trial, std::size_t parameter) {
+  Machine moved = trial.machine;
+  trial.parameters[parameter].set(moved, std::exp(trial.whole.logs[parameter] - 1));
+  const std::vector<double> times = times_s(data, moved);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    if (std::abs(times[i] - trial.fitted_s[i]) > known_to_s(data.items[i].judged.timed)) return true;
+  return false;
+}
+
+/// A number that no stretch tells is left as the machine file has it; that of the corner law, which the file may not
+/// have, as the fit began with it.
+FitParameter left_as_it_was(StretchFit& fit, const LimitParameter& p, const Machine& start) {
+  const bool of_law = p.name.starts_with("control.corner.");
+  if (!of_law) p.set(fit.machine, p.get(start));
+  return {p.name,
+          p.get(fit.machine),
+          p.unit,
+          std::nullopt,
+          fmt::format("the stretches do not tell; {} (run what camber protocol writes)",
+                      of_law ? "a usual value" : "left as it was"),
+          of_law};
+}
+
+void add_parameters(StretchFit& fit, const Data& data, const Trial& trial, const Machine& start) {
   for (std::size_t i = 0; i < trial.parameters.size(); ++i) {
+    if (!tells(data, trial, i)) {
+      fit.parameters.push_back(left_as_it_was(fit, trial.parameters[i], start));
+      continue;
+    }
     const double value = std::exp(trial.whole.logs[i]), error = jackknife_error(trial, i);
     FitParameter p{trial.parameters[i].name, value, trial.parameters[i].unit, std::nullopt, "", true};
     if (error < kToldShare)
@@ -459,7 +487,7 @@ StretchFit fit_stretches(const std::vector<StretchRun>& runs, const Machine& sta
   std::vector<const nc::Interpretation*> programs;
   for (const nc::Interpretation& program : data.programs) programs.push_back(&program);
   fit.machine.fitted_range = feedmodel::range_of(programs);
-  add_parameters(fit, *best);
+  add_parameters(fit, data, *best, start);
   const auto stopping = times_s(data, stops_at_every_block(fit.machine));
   std::vector<double> constant;
   for (std::size_t i = 0; i < data.items.size(); ++i) {

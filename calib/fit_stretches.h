@@ -67,12 +67,6 @@ struct StretchFit {
   std::string message;
 };
 
-struct StretchRun {
-  std::string program_name;
-  nc::Interpretation program;
-  std::vector<TimedStretch> timed;
-};
-
 struct FitStretchesOptions {
   int max_iterations = 30;
   std::vector<StretchLaw> laws;  ///< to choose from; empty: candidate_laws

@@ -93,7 +93,9 @@ class TableReader {
   }
 
   std::vector<TimedStretch> run() {
-    const std::size_t first = column("first_line"), last = column("last_line"), time = column("t_measured_median_s");
+    const auto plain_time = optional_column("time_s");
+    const std::size_t first = column("first_line"), last = column("last_line"),
+                      time = plain_time ? *plain_time : column("t_measured_median_s");
     const auto p10 = optional_column("t_p10"), p90 = optional_column("t_p90"), parts = optional_column("n_parts");
     std::vector<TimedStretch> table;
     for (std::size_t line = 2; line <= source_.line_count(); ++line) {
@@ -188,27 +190,6 @@ bool is_stretch_table(const std::string& path) {
 std::vector<TimedStretch> read_stretch_table(const std::string& path, const nc::Interpretation& program) {
   const SourceText source = SourceText::read(path);
   return TableReader(source, program).run();
-}
-
-std::vector<TimedStretch> traced_stretches(const ServoTrace& trace, const std::vector<FeedStretch>& stretches) {
-  std::vector<TimedStretch> timed;
-  std::size_t k = 0;
-  const std::size_t n = trace.line.size();
-  for (const FeedStretch& s : stretches) {
-    const auto inside = [&](std::size_t i) { return trace.line[i] >= s.line_first && trace.line[i] <= s.line_last; };
-    std::size_t first = k;
-    while (first < n && !inside(first)) ++first;
-    std::size_t end = first;
-    while (end < n && inside(end)) ++end;
-    if (end == n || end < first + 2) continue;
-    k = end;
-    const bool again = std::any_of(trace.line.begin() + static_cast<std::ptrdiff_t>(end), trace.line.end(),
-                                   [&](std::uint32_t line) { return line >= s.line_first && line <= s.line_last; });
-    const bool whole = std::none_of(trace.stretches.begin(), trace.stretches.end(),
-                                    [&](const Stretch& t) { return t.first > first && t.first < end; });
-    if (whole && !again) timed.push_back({s, static_cast<double>(end - first) * trace.period_s, trace.period_s});
-  }
-  return timed;
 }
 
 double programmed_time_s(const FeedStretch& stretch, const nc::Interpretation& program) {

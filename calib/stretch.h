@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "calib/trace.h"
 #include "nc/move.h"
 
 namespace camber::calib {
@@ -25,6 +24,13 @@ struct TimedStretch {
   double sigma_s = 0;  ///< what the time is known to
 };
 
+/// A program and the times that were logged of its stretches.
+struct StretchRun {
+  std::string program_name;
+  nc::Interpretation program;
+  std::vector<TimedStretch> timed;
+};
+
 /// All stretches of feed moves of a program. Two are of one geometry, turned or mirrored, when they have as many
 /// moves, the sorted lengths of which differ by less than 9 % of their mean, their programmed times by as
 /// much, and the sorted corners by less than 0.05 rad, on average.
@@ -33,13 +39,10 @@ std::vector<FeedStretch> feed_stretches(const nc::Interpretation& program);
 /// Whether a file is a table of stretch times: its header names line_first or first_line.
 bool is_stretch_table(const std::string& path);
 
-/// Reads a CSV with the columns first_line, last_line and t_measured_median_s (t_p10, t_p90 and n_parts tell the
-/// error, where they are there); lines that are no stretch of the program are errors [stretch-lines].
-/// Throws InputError: [stretch-column], [stretch-number], [stretch-lines], [file-missing].
+/// Reads a CSV with the columns first_line, last_line and t_measured_median_s, or time_s (t_p10, t_p90 and n_parts tell
+/// the error, where they are there); lines that are no stretch of the program are errors [stretch-lines]. Throws
+/// InputError: [stretch-column], [stretch-number], [stretch-lines], [file-missing].
 std::vector<TimedStretch> read_stretch_table(const std::string& path, const nc::Interpretation& program);
-
-/// The commanded times of stretches that a servo trace with lines holds without a pause.
-std::vector<TimedStretch> traced_stretches(const ServoTrace& trace, const std::vector<FeedStretch>& stretches);
 
 /// One for each geometry: the first of its stretches, with the mean time and what it is known to.
 /// The difference of a copy to the first is taken by the share of the programmed time.

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -38,6 +40,11 @@ TraceKind kind_of(const std::string& path) {
 struct Runs {
   std::vector<calib::FeedRun> servo;
   std::vector<calib::StretchRun> stretches;  ///< one for each program; empty where all traces are servo traces
+
+  /// Servo traces that tell which line they command: of these the fit of the limits takes block by block.
+  bool any_lines() const {
+    return std::any_of(servo.begin(), servo.end(), [](const calib::FeedRun& run) { return !run.trace.line.empty(); });
+  }
 };
 
 /// The stretches of one program belong together, however many logs tell of it: copies of a geometry must not be in
@@ -82,14 +89,10 @@ Runs read_runs(const FitFeedArguments& arguments, const machine::Machine& start,
       add_times(stretch_run(runs, arguments.programs[i], moves), arguments.traces[i], kind, diagnostics);
     }
   }
-  if (runs.stretches.empty()) return runs;
-  for (const calib::FeedRun& run : runs.servo) {
-    const auto timed = calib::traced_stretches(run.trace, calib::feed_stretches(run.program));
-    auto& into = stretch_run(runs, run.program_name, run.program).timed;
-    into.insert(into.end(), timed.begin(), timed.end());
-  }
   return runs;
 }
+
+double percent(double value, double reference) { return 100 * (value / reference - 1); }
 
 void print_parameters(const std::vector<calib::FitParameter>& parameters) {
   fmt::print("{:<44} {:>14} {:<7} {:>12}\n", "parameter", "value", "unit", "std error");
@@ -103,6 +106,25 @@ void print_laws(const FitFeedResult& result) {
   for (const calib::JudgedCornerLaw& law : result.laws)
     fmt::print("{:<52} {:>10.3f} {:>10.3f}\n", law.name, law.held_out_percent, law.held_out_cost);
   fmt::print("taken: {}\n\n", result.law);
+}
+
+/// Stretches of the logs: over all, and those that are off by the most.
+void print_logged(const FitFeedResult& result) {
+  if (result.logged.empty()) return;
+  const auto line = [](const char* name, const calib::LoggedError& e) {
+    fmt::print("{:<9} {:>4} logged stretches: time {:.2f} % mean, {:.2f} % worst\n", name, e.stretches, e.mean,
+               e.worst);
+  };
+  line("fitted", result.logged_fitted);
+  line("held out", result.logged_held_out);
+  constexpr std::size_t kShown = 5;
+  std::vector<calib::LoggedTime> worst = result.logged;
+  std::ranges::stable_sort(worst, std::greater<>(),
+                           [](const calib::LoggedTime& t) { return std::abs(t.model_s - t.time_s) / t.time_s; });
+  for (std::size_t i = 0; i < std::min(kShown, worst.size()); ++i)
+    fmt::print("  {}: lines {}-{}: {:.3f} s logged, {:.3f} s predicted ({:+.2f} %){}\n", worst[i].program_name,
+               worst[i].part.line_first, worst[i].part.line_last, worst[i].time_s, worst[i].model_s,
+               percent(worst[i].model_s, worst[i].time_s), worst[i].kept_back ? ", held out" : "");
 }
 
 void print(const FitFeedResult& result) {
@@ -125,6 +147,7 @@ void print(const FitFeedResult& result) {
     fmt::print("{}: {:.2f} s traced, {:.2f} s predicted ({:+.2f} %), path speed rms {:.2f} %, p95 {:.2f} %\n",
                run.program_name, run.accuracy.time_trace_s, run.accuracy.time_model_s, run.accuracy.time_error_percent,
                run.accuracy.speed_rms_percent, run.accuracy.speed_p95_percent);
+  print_logged(result);
   fmt::print("residual of the parts' times: median {:.2f} ms; {}\n", result.residual_median_ms, result.message);
 }
 
@@ -149,8 +172,6 @@ ordered_json parameters_json(const std::vector<calib::FitParameter>& parameters)
                     {"note", p.note}});
   return list;
 }
-
-double percent(double value, double reference) { return 100 * (value / reference - 1); }
 
 void print(const calib::StretchFit& fit) {
   print_parameters(fit.parameters);
@@ -241,6 +262,17 @@ ordered_json report_of(const FitFeedResult& result) {
                               {"time_error_percent", run.accuracy.time_error_percent},
                               {"speed_rms_percent", run.accuracy.speed_rms_percent},
                               {"speed_p95_percent", run.accuracy.speed_p95_percent}});
+  for (const calib::LoggedTime& t : result.logged)
+    report["logged"].push_back({{"program", t.program_name},
+                                {"line_first", t.part.line_first},
+                                {"line_last", t.part.line_last},
+                                {"held_out", t.kept_back},
+                                {"time_s", t.time_s},
+                                {"model_s", t.model_s}});
+  if (!result.logged.empty()) {
+    report["fitted"]["logged_time_percent"] = result.logged_fitted.mean;
+    report["held_out"]["logged_time_percent"] = result.logged_held_out.mean;
+  }
   for (const calib::JudgedCornerLaw& law : result.laws)
     report["laws"].push_back(
         {{"name", law.name}, {"held_out", {{"part_time_percent", law.held_out_percent}, {"cost", law.held_out_cost}}}});
@@ -296,7 +328,7 @@ void plot_block_time(const Runs& runs, const FitFeedArguments& arguments, const 
   fmt::print("{}\n", fit.message);
 }
 
-/// Times of stretches; the drives from the servo traces, where some are given beside them.
+/// Times of stretches; the drives from the servo traces without lines, where some are given beside them.
 int fit_to_times(const Runs& runs, const machine::Machine& start, const FitFeedArguments& arguments,
                  const GlobalOptions& options) {
   calib::StretchFit fit = calib::fit_stretches(runs.stretches, start, {});
@@ -316,9 +348,9 @@ int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options
   settle(diagnostics, options);
   print_translation(start.translation, options);
   if (!arguments.block_time_plot.empty()) plot_block_time(runs, arguments, options);
-  if (!runs.stretches.empty()) return fit_to_times(runs, start, arguments, options);
+  if (!runs.stretches.empty() && !runs.any_lines()) return fit_to_times(runs, start, arguments, options);
   ProgressLine progress(options, "fitting");
-  const FitFeedResult result = calib::fit_feed(runs.servo, start, {});
+  const FitFeedResult result = calib::fit_feed(runs.servo, runs.stretches, start, {});
   progress.clear();
   const int status = finish(result, result.machine, arguments, options);
   if (!arguments.leave_one_out) return status;

@@ -15,6 +15,8 @@
 namespace camber::calib {
 namespace {
 
+constexpr double kExtrapolation = 0.025;  // of a time, at feeds of two to ten times those that were fitted
+
 std::string nist(const char* file) { return fmt::format("{}/nist/{}", CAMBER_SHARED_DATA_DIR, file); }
 
 nc::Interpretation nist_program() {
@@ -137,6 +139,52 @@ TEST(FitStretches, PredictsToolsOfTheNistBoxThatItHasNotSeen) {
   EXPECT_LT(fit.laws[fit.chosen].kind_held_out.mean, 0.6);
   EXPECT_LT(fit.laws[fit.chosen].kind_held_out.worst, 3.0);
   EXPECT_GT(fit.machine.fitted_range.corner_rad[1], 0.5 * kPi);
+}
+
+TEST(FitStretches, LeavesWhatNoStretchTellsAsItWas) {
+  const machine::Machine known = known_machine();
+  StretchRun run{"figures", figures(), {}};
+  run.timed = planned(run.program, known);
+  std::erase_if(run.timed, [&](const TimedStretch& t) {
+    return kind_of(t.stretch, run.program) == MotionKind::arcs;  // no circle was logged
+  });
+  machine::Machine start;
+  start.control.arc_normal_fraction = 0.9;
+  const StretchFit fit = fit_stretches({run}, start, {.laws = {stop_law()}});
+  EXPECT_DOUBLE_EQ(fit.machine.control.arc_normal_fraction, 0.9);
+  const auto p = std::ranges::find(fit.parameters, "control.arc_normal_share", &FitParameter::name);
+  EXPECT_FALSE(p->written);
+  EXPECT_EQ(p->note, "the stretches do not tell; left as it was (run what camber protocol writes)");
+}
+
+/// Corners are laws of speed: times at two feeds tell those at others (the slightest corners hardly slow the slow
+/// ones).
+TEST(FitStretches, CornersOfSlowFeedsPredictThoseOfFastOnes) {
+  machine::Machine known = known_machine();
+  known.control.corner = {.law = machine::CornerLaw::speed_difference, .speed_difference_mm_per_s = 6};
+  const auto at_feeds = [](std::initializer_list<double> feeds) {
+    tests::TestProgram p;
+    int tool = 0;
+    for (const double feed : feeds)
+      for (const double turn : {0.15, 0.35, 0.8, 1.3, 2.0}) {
+        p.new_state().tool = ++tool;
+        p.rapid(0, 0, 0);
+        Vec3 at = Vec3::Zero();
+        for (int i = 0; i < 40; ++i) {
+          at += (2 + turn) * Vec3(std::cos(i * turn), std::sin(i * turn), 0);
+          p.line(at.x(), at.y(), 0, feed);
+        }
+      }
+    p.rapid(0, 0, 10);
+    return p.program;
+  };
+  StretchRun slow{"slow", at_feeds({800.0, 1500.0}), {}};
+  slow.timed = planned(slow.program, known);
+  const StretchFit fit = fit_stretches({slow}, {}, {});
+  const nc::Interpretation fast = at_feeds({4000.0, 8000.0});
+  const auto is = planned(fast, fit.machine), was = planned(fast, known);
+  for (std::size_t i = 0; i < was.size(); ++i)
+    EXPECT_NEAR(is[i].time_s / was[i].time_s, 1, kExtrapolation) << i << " under " << fit.laws[fit.chosen].law.name;
 }
 
 TEST(FitStretches, SaysThatTooFewTimesTellNothing) {
