@@ -32,7 +32,10 @@ constexpr double kFacetMm = 1.0;
 constexpr double kSlightCorner = 0.5 * kPi / 180.0;
 constexpr std::size_t kFewestTools = 3;
 constexpr int kGeometryFolds = 5;
-constexpr double kToldShare = 0.5;  // a value whose error is a larger share of it is not told
+constexpr double kFewestBlocks = 20;    // in a stretch that may tell the block time
+constexpr double kSlowed = 1.3;         // such a stretch takes this much longer than programmed
+constexpr double kShareOfBlocks = 0.9;  // of its time a block, at which the fit of the block time begins
+constexpr double kToldShare = 0.5;      // a value whose error is a larger share of it is not told
 
 /// The stretches that are fitted, from all programs, one after the other with a rest between.
 struct Data {
@@ -153,6 +156,10 @@ std::vector<LimitParameter> parameters_of(const StretchLaw& law) {
     p.push_back(positive(
         "control.corner.stop_time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.stop_time_s; },
         [](Machine& m, double v) { m.control.corner.stop_time_s = v / 1000; }, 0.1, 2000, 30));
+  if (law.block_time_s > 0)
+    p.push_back(positive(
+        "control.block_time_ms", "ms", [](const Machine& m) { return 1000 * m.control.block_time_s; },
+        [](Machine& m, double v) { m.control.block_time_s = v / 1000; }, 0.1, 500, 1000 * law.block_time_s));
   p.push_back(positive(
       "control.rapid_change_ms", "ms", [](const Machine& m) { return 1000 * m.control.rapid_change_s; },
       [](Machine& m, double v) { m.control.rapid_change_s = v / 1000; }, 0.1, 5000, 100));
@@ -277,6 +284,32 @@ void hold_out(Trial& trial, const Data& data, const Machine& start, int max_iter
     const auto times = times_s(data, machine_at(base, trial.parameters, trial.folds.back().logs.data()));
     for (std::size_t i = 0; i < times.size(); ++i)
       if (data.items[i].fold == fold) trial.held_out_s[i] = times[i];
+  }
+}
+
+/// Least time a block of all stretches: none of a control's blocks can take less than its block time. 0 where that
+/// stretch goes about as fast as it was programmed, so that its blocks were not too many.
+double likely_block_time_s(const Data& data) {
+  double least = INFINITY;
+  bool slowed = false;
+  for (const auto& item : data.items) {
+    const auto blocks = static_cast<double>(item.move_end - item.move_first);
+    const double block_s = item.judged.timed.time_s / blocks;
+    if (blocks < kFewestBlocks || block_s >= least) continue;
+    least = block_s;
+    slowed = item.judged.timed.time_s > kSlowed * item.judged.constant_feed_s;
+  }
+  return slowed ? kShareOfBlocks * least : 0;
+}
+
+/// Each law without a stop angle, with a block time as well: what many short blocks cost no other number may take up.
+void add_block_time(std::vector<StretchLaw>& laws, double block_time_s) {
+  for (std::size_t i = 0, n = laws.size(); i < n && block_time_s > 0; ++i) {
+    if (std::isfinite(laws[i].stop_angle_rad)) continue;
+    StretchLaw law = laws[i];
+    law.block_time_s = block_time_s;
+    law.name += ", block time";
+    laws.push_back(law);
   }
 }
 
@@ -452,7 +485,8 @@ StretchFit fit_stretches(const std::vector<StretchRun>& runs, const Machine& sta
   const Data data = shortened(runs);
   fit.folds = data.folds;
   fit.unseen_corners_rad = corner_gaps(runs);
-  const std::vector<StretchLaw> laws = options.laws.empty() ? candidate_laws(runs) : options.laws;
+  std::vector<StretchLaw> laws = options.laws.empty() ? candidate_laws(runs) : options.laws;
+  if (options.laws.empty()) add_block_time(laws, likely_block_time_s(data));
   if (data.items.size() <= parameters_of(laws.front()).size()) {
     fit.message = fmt::format("{} geometries are too few for {} numbers; nothing was fitted", data.items.size(),
                               parameters_of(laws.front()).size());
@@ -465,7 +499,7 @@ StretchFit fit_stretches(const std::vector<StretchRun>& runs, const Machine& sta
     fit.laws.push_back({law, stretch_errors(measured, trial.fitted_s), stretch_errors(measured, trial.held_out_s),
                         stretch_errors(measured, trial.kind_held_out_s),
                         mean_score(data, trial.held_out_s) + mean_score(data, trial.kind_held_out_s)});
-    const bool richer = best && (law.axis_acceleration || law.threshold_rad > 0 ||
+    const bool richer = best && (law.axis_acceleration || law.threshold_rad > 0 || law.block_time_s > 0 ||
                                  (std::isfinite(law.stop_angle_rad) && std::isinf(best->law.stop_angle_rad)));
     const double better_by = richer ? kBetterBy : 0.0;
     if (best && fit.laws.back().score >= (1 - better_by) * fit.laws[fit.chosen].score) return;

@@ -18,6 +18,7 @@ struct StretchLaw {
   double stop_angle_rad = machine::kNoLimit;
   double threshold_rad = 0;        ///< corners that turn by less are none
   bool axis_acceleration = false;  ///< accelerations of the axes (x and y alike) instead of one along the path
+  double block_time_s = 0;         ///< where the fit of it begins; 0: as the machine file has it, not fitted
 };
 
 /// Errors of stretch times, one for each geometry, in %.
@@ -74,7 +75,8 @@ struct FitStretchesOptions {
 
 /// Speed difference by axis and along the path and the radius of three points, each without and with a stop at corners
 /// sharper than the middle of each wide gap between the angles that the stretches hold; the best of them with no corner
-/// under 5 degrees, and with axis accelerations, as well.
+/// under 5 degrees, and with axis accelerations, as well. Where the stretch with the shortest blocks is far slower than
+/// programmed, each law without a stop is tried with a block time, too.
 std::vector<StretchLaw> candidate_laws(const std::vector<StretchRun>& runs);
 
 /// Acceleration, corner step, time of a stop, arc limit and the wait between rapid and feed, fitted (Cauchy loss) to

@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "feedmodel/limits.h"
 #include "feedmodel/modes.h"
+#include "feedmodel/motion_times.h"
 
 namespace camber::feedmodel {
 namespace {
@@ -72,22 +73,63 @@ void for_each_demand(const nc::Interpretation& program, const Use& use) {
     if (run.size() > kRunBlocks) run.pop_front();
     if (run.size() == kRunBlocks)
       d.blocks_per_s = static_cast<double>(kRunBlocks) / std::accumulate(run.begin(), run.end(), 0.0);
-    use(program.moves[i], d);
+    use(static_cast<std::uint32_t>(i), d);
   }
 }
+
+/// The machine, stopping at the end of every block: the slowest that its accelerations and block time allow for.
+machine::Machine stopping(machine::Machine m) {
+  const auto stop = [](machine::Control& control) {
+    control.corner = {.law = machine::CornerLaw::exact_stop};
+    control.merge_tolerance_mm = 0;
+  };
+  stop(m.control);
+  for (auto& [name, mode] : m.modes) stop(mode);
+  return m;
+}
+
+/// Between what times a guess lies: at the programmed feed, and with a stop after every block.
+class GuessSize {
+ public:
+  GuessSize(const nc::Interpretation& program, const machine::Machine& machine)
+      : program_(program), machine_(machine) {}
+
+  /// Of these moves together.
+  std::string of(const std::vector<std::uint32_t>& moves) {
+    if (predicted_s_.empty()) {
+      predicted_s_ = motion_times(program_, machine_).move_s;
+      stopping_s_ = motion_times(program_, stopping(machine_)).move_s;
+    }
+    double predicted = 0, least = 0, most = 0;
+    for (const std::uint32_t i : moves) {
+      const nc::Move& move = program_.moves[i];
+      predicted += predicted_s_[i];
+      most += std::max(stopping_s_[i], predicted_s_[i]);
+      least += length_mm(program_, move) / move.feed_mm_per_s * 100.0 / machine_.cycle.feed_override_percent;
+    }
+    return fmt::format("{:.3g} s, from {:.3g} s at the programmed feed to {:.3g} s with a stop after every block",
+                       predicted, std::min(least, predicted), most);
+  }
+
+ private:
+  const nc::Interpretation& program_;
+  const machine::Machine& machine_;
+  std::vector<double> predicted_s_, stopping_s_;
+};
 
 /// One kind of leaving the range.
 struct Beyond {
   double length_mm = 0;
-  std::vector<std::uint32_t> lines;
+  std::vector<std::uint32_t> lines, moves;
 
-  void add(const nc::Move& move, const Demand& d) {
+  void add(std::uint32_t index, const nc::Move& move, const Demand& d) {
+    moves.push_back(index);
     length_mm += d.length_mm;
     if (lines.empty() || lines.back() != move.block + 1) lines.push_back(move.block + 1);
   }
 
   void report(const std::string& path, double cutting_length_mm, const std::string& what, const char* check,
-              Diagnostics& diagnostics) const {
+              GuessSize& guess, Diagnostics& diagnostics) const {
     if (lines.empty()) return;
     std::string named;
     for (std::size_t i = 0; i < std::min(kBlocksNamed, lines.size()); ++i)
@@ -96,10 +138,10 @@ struct Beyond {
     diagnostics.add(
         {.severity = Severity::warning,
          .location = {path, lines.front(), 1},
-         .message = fmt::format("{:.1f} % of the cutting length ({} block{}: {} {}) has {}; the feed there is "
-                                "a guess",
+         .message = fmt::format("{:.1f} % of the cutting length ({} block{}: {} {}) has {}; the time there is "
+                                "a guess: {}",
                                 100 * length_mm / cutting_length_mm, lines.size(), lines.size() == 1 ? "" : "s",
-                                lines.size() == 1 ? "line" : "lines", named, what),
+                                lines.size() == 1 ? "line" : "lines", named, what, guess.of(moves)),
          .check = check,
          .source_line = {}});
   }
@@ -116,12 +158,13 @@ machine::FittedRange range_of(const std::vector<const nc::Interpretation*>& prog
   machine::FittedRange range;
   bool first = true, first_line = true, first_arc = true, first_rate = true;
   for (const nc::Interpretation* program : programs) {
-    for_each_demand(*program, [&](const nc::Move&, const Demand& d) {
+    for_each_demand(*program, [&](std::uint32_t, const Demand& d) {
       include(range.feed_mm_per_s, d.feed_mm_per_s, first);
       include(range.corner_rad, d.corner_rad, first);
       first = false;
       if (d.radius_mm > 0) {
         include(range.arc_radius_mm, d.radius_mm, first_arc);
+        include(range.arc_mm, d.length_mm, first_arc);
         first_arc = false;
       } else {
         include(range.line_mm, d.length_mm, first_line);
@@ -143,21 +186,24 @@ void check_range(const nc::Interpretation& program, const std::string& program_p
   check_modes(program, program_path, machine, diagnostics);
   const machine::FittedRange& r = machine.fitted_range;
   if (!r.known) return;
-  Beyond feed, corner, line, arc, rate;
+  Beyond feed, corner, line, arc, short_arc, rate;
   std::array<Beyond, 3> axis;
   double cutting_mm = 0;
-  for_each_demand(program, [&](const nc::Move& move, const Demand& d) {
+  for_each_demand(program, [&](std::uint32_t i, const Demand& d) {
+    const nc::Move& move = program.moves[i];
     cutting_mm += d.length_mm;
-    if (d.feed_mm_per_s > kBeyond * r.feed_mm_per_s[1]) feed.add(move, d);
-    if (d.corner_rad > kBeyond * r.corner_rad[1]) corner.add(move, d);
-    if (d.blocks_per_s > kBeyond * r.blocks_per_s[1]) rate.add(move, d);
-    if (d.radius_mm == 0 && d.length_mm * kBeyond < r.line_mm[0]) line.add(move, d);
-    if (d.radius_mm > 0 && (r.arc_radius_mm[1] == 0 || d.radius_mm * kBeyond < r.arc_radius_mm[0])) arc.add(move, d);
+    if (d.feed_mm_per_s > kBeyond * r.feed_mm_per_s[1]) feed.add(i, move, d);
+    if (d.corner_rad > kBeyond * r.corner_rad[1]) corner.add(i, move, d);
+    if (d.blocks_per_s > kBeyond * r.blocks_per_s[1]) rate.add(i, move, d);
+    if (d.radius_mm == 0 && d.length_mm * kBeyond < r.line_mm[0]) line.add(i, move, d);
+    if (d.radius_mm > 0 && (r.arc_radius_mm[1] == 0 || d.radius_mm * kBeyond < r.arc_radius_mm[0])) arc.add(i, move, d);
+    if (d.radius_mm > 0 && d.length_mm * kBeyond < r.arc_mm[0]) short_arc.add(i, move, d);
     for (int k = 0; k < 3; ++k)
-      if (d.axis[k] && !r.axis[k]) axis[k].add(move, d);
+      if (d.axis[k] && !r.axis[k]) axis[k].add(i, move, d);
   });
+  GuessSize guess(program, machine);
   const auto tell = [&](const Beyond& beyond, const std::string& what, const char* check) {
-    beyond.report(program_path, cutting_mm, what, check, diagnostics);
+    beyond.report(program_path, cutting_mm, what, check, guess, diagnostics);
   };
   tell(feed,
        fmt::format("a feed above {:.0f} mm/min, the highest that the machine was fitted on",
@@ -174,6 +220,8 @@ void check_range(const nc::Interpretation& program, const std::string& program_p
                                : fmt::format("arcs tighter than {:.3g} mm, the tightest that the machine was fitted on",
                                              r.arc_radius_mm[0]),
        "range-arc");
+  tell(short_arc, fmt::format("arcs shorter than {:.3g} mm, the shortest that the machine was fitted on", r.arc_mm[0]),
+       "range-arc-length");
   tell(rate,
        r.blocks_per_s[1] == 0 ? "runs of blocks, of which the machine was fitted on none"
                               : fmt::format("more than {:.0f} blocks a second, the most that the machine was fitted on",

@@ -1,48 +1,110 @@
 #include "feedmodel/modes.h"
 
 #include <algorithm>
+#include <array>
+#include <set>
+
+#include <fmt/format.h>
 
 namespace camber::feedmodel {
 namespace {
 
-constexpr std::string_view kContouring = "high_speed_contouring";
+using nc::Contouring;
+
+struct ContouringCode {
+  std::string_view set;   ///< its parameter set
+  std::string_view text;  ///< as programs have it
+};
+
+/// In the order of nc::Contouring.
+constexpr std::array<ContouringCode, 5> kContouring{
+    {{"", ""}, {"g08_p1", "G08 P1"}, {"g05_p10000", "G05 P10000"}, {"g05_1_q1", "G05.1 Q1"}, {"cycle832", "CYCLE832"}}};
+constexpr std::string_view kAnyContouring = "high_speed_contouring";
+
+const ContouringCode& contouring_of(const nc::ModalState& state) {
+  return kContouring[static_cast<std::size_t>(state.contouring)];
+}
+
+bool has_set(const machine::Machine& machine, std::string_view name) {
+  return std::ranges::any_of(machine.modes, [&](const auto& mode) { return mode.first == name; });
+}
+
+/// What the machine file does not know of the modes of a state.
+void unknown_modes(const nc::ModalState& state, const machine::Machine& machine, std::set<std::string>& messages) {
+  const auto add = [&](std::string_view code, std::string_view means, std::string_view sets) {
+    messages.insert(fmt::format("{} ({}) is on, and the machine file has no {}: [control] counts", code, means, sets));
+  };
+  const ContouringCode& contouring = contouring_of(state);
+  const bool any = state.high_speed_contouring && has_set(machine, kAnyContouring);
+  if (state.contouring != Contouring::none && !any && !has_set(machine, contouring.set))
+    add(contouring.text, "high-speed contouring",
+        fmt::format("[control.mode.{}]{}", contouring.set,
+                    state.high_speed_contouring ? fmt::format(" or [control.mode.{}]", kAnyContouring) : ""));
+  if (state.path_g == 62 && !has_set(machine, "g62")) add("G62", "automatic corner override", "[control.mode.g62]");
+  if (state.path_g == 63 && !has_set(machine, "g63")) add("G63", "tapping mode", "[control.mode.g63]");
+  const bool g61_1 = state.path_control == nc::PathControl::exact_stop && !machine.control.kind.g61_1_stops;
+  if (g61_1 && !has_set(machine, "g61_1")) add("G61.1", "high-accuracy mode", "[control.mode.g61_1]");
+}
 
 }  // namespace
 
 bool selects(const nc::ModalState& state, std::string_view name) {
-  if (name == kContouring) return state.high_speed_contouring;
+  if (name == kAnyContouring) return state.high_speed_contouring;
   if (name == "g61") return state.path_control == nc::PathControl::exact_path;
-  return name == "g61_1" && state.path_control == nc::PathControl::exact_stop;
+  if (name == "g61_1") return state.path_control == nc::PathControl::exact_stop;
+  if (name == "g62") return state.path_g == 62;
+  if (name == "g63") return state.path_g == 63;
+  if (name == "g64") return state.path_g == 64;
+  return state.contouring != Contouring::none && contouring_of(state).set == name;
+}
+
+std::size_t mode_of(const machine::Machine& machine, const nc::ModalState& state) {
+  for (std::size_t i = 0; i < machine.modes.size(); ++i)
+    if (selects(state, machine.modes[i].first)) return i + 1;
+  return 0;
+}
+
+const machine::Control& settings_of(const machine::Machine& machine, std::size_t mode) {
+  return mode == 0 ? machine.control : machine.modes[mode - 1].second;
 }
 
 const machine::Control& settings_of(const machine::Machine& machine, const nc::ModalState& state) {
-  for (const auto& [name, settings] : machine.modes)
-    if (selects(state, name)) return settings;
-  return machine.control;
+  return settings_of(machine, mode_of(machine, state));
+}
+
+machine::AccelerationTimes acceleration_law_of(const machine::Machine& machine, std::size_t mode) {
+  const auto& law = settings_of(machine, mode).acceleration_law;
+  const machine::Cycle& c = machine.cycle;
+  return law ? *law
+             : machine::AccelerationTimes{c.acceleration_law, c.time_constant_1_s, c.time_constant_2_s, c.bell_time_s};
 }
 
 nc::PathControl path_control_of(const machine::Machine& machine, const nc::ModalState& state) {
   for (const auto& [name, settings] : machine.modes)
-    if (name != kContouring && selects(state, name)) return nc::PathControl::blend;
-  const bool stops = state.path_control == nc::PathControl::exact_path && machine.control.kind.g61_stops;
-  return stops ? nc::PathControl::exact_stop : state.path_control;
+    if (name.starts_with("g6") && selects(state, name)) return nc::PathControl::blend;
+  const machine::ControlKind& kind = machine.control.kind;
+  if (state.path_control == nc::PathControl::exact_path && kind.g61_stops) return nc::PathControl::exact_stop;
+  const bool mode_only = state.path_control == nc::PathControl::exact_stop && !kind.g61_1_stops;
+  return mode_only ? nc::PathControl::blend : state.path_control;
 }
 
 void check_modes(const nc::Interpretation& program, const std::string& program_path, const machine::Machine& machine,
                  Diagnostics& diagnostics) {
-  const bool known = std::ranges::any_of(machine.modes, [](const auto& mode) { return mode.first == kContouring; });
-  if (known) return;
-  const auto first = std::ranges::find_if(program.moves, [&](const nc::Move& move) {
-    const bool cuts = move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc;
-    return cuts && program.state_of(move).high_speed_contouring;
-  });
-  if (first == program.moves.end()) return;
-  diagnostics.add({.severity = Severity::warning,
-                   .location = {program_path, std::size_t{first->block} + 1, 1},
-                   .message = "high-speed contouring (G05.1 Q1, G05 P10000, G08 P1) is on, and the machine file has no "
-                              "[control.mode.high_speed_contouring]: [control] counts",
-                   .check = "mode-unknown",
-                   .source_line = {}});
+  std::set<std::string> told;
+  std::uint32_t last = nc::Move::kNoArc;
+  for (const nc::Move& move : program.moves) {
+    if ((move.kind != nc::MoveKind::linear && move.kind != nc::MoveKind::arc) || move.state == last) continue;
+    last = move.state;
+    std::set<std::string> messages;
+    unknown_modes(program.state_of(move), machine, messages);
+    for (const std::string& message : messages)
+      if (told.insert(message).second)
+        diagnostics.add({.severity = Severity::warning,
+                         .location = {program_path, std::size_t{move.block} + 1, 1},
+                         .message = message,
+                         .check = "mode-unknown",
+                         .source_line = {}});
+  }
 }
 
 }  // namespace camber::feedmodel

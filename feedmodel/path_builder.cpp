@@ -199,7 +199,8 @@ class Builder {
       e.segment = arc_segment(move.start_mm, arc.center_mm, arc.normal, arc.sweep_rad,
                               arc.normal.dot(move.end_mm - move.start_mm));
     }
-    e.settings = &settings_of(machine_, state);
+    e.segment.mode = static_cast<std::uint8_t>(mode_of(machine_, state));
+    e.settings = &settings_of(machine_, std::size_t{e.segment.mode});
     e.control = path_control_of(machine_, state);
     e.tolerance_mm = state.blend_tolerance_mm > 0 ? state.blend_tolerance_mm : e.settings->corner.tolerance_mm;
     e.stops = last.exact_stop;
@@ -342,6 +343,7 @@ class Builder {
     s.start_mm = after.point_at(after.length_mm);
     s.dwell_s = wait_s;
     s.move = after.move;
+    s.mode = after.mode;
     s.cutting = after.cutting;
     sink_(s);
   }
@@ -358,6 +360,7 @@ class Builder {
     arc.entry_limit_mm_per_s = arc.axis_limit_mm_per_s = arc.speed_limit_mm_per_s;
     arc.feed_command_mm_per_s = std::max(a.segment.feed_command_mm_per_s, b.segment.feed_command_mm_per_s);
     arc.move = b.segment.move;
+    arc.mode = a.segment.mode;
     arc.cutting = a.segment.cutting || b.segment.cutting;
     const double left = std::max(0.0, end_s - a.from_s);
     const bool absorbed = left < a.settings->corner.short_line_time_s * blend.speed_mm_per_s;

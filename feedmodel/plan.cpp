@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "feedmodel/in_position.h"
+#include "feedmodel/modes.h"
 #include "feedmodel/path_builder.h"
 #include "feedmodel/rapid.h"
 
@@ -26,8 +27,9 @@ PlanRow row_of(const Segment& s) {
 }
 
 /// What each change of speed takes longer than constant acceleration has it.
-double delay_s(const machine::Cycle& cycle) {
-  return cycle.jerk_filter_s + (cycle.acceleration_law == AccelerationLaw::bell ? 0.5 * cycle.bell_time_s : 0.0);
+double delay_s(const machine::Machine& machine, std::size_t mode) {
+  const machine::AccelerationTimes law = acceleration_law_of(machine, mode);
+  return machine.cycle.jerk_filter_s + (law.law == AccelerationLaw::bell ? 0.5 * law.bell_time_s : 0.0);
 }
 
 /// How long the slowest axis of a positioning still brakes when the next one may begin.
@@ -42,17 +44,17 @@ double overlap_time_s(const Segment& s, double overlap_percent) {
 
 class Planner {
  public:
-  Planner(const nc::Interpretation& program, const machine::Machine& machine)
-      : program_(program), machine_(machine), delay_s_(delay_s(machine.cycle)) {}
+  Planner(const nc::Interpretation& program, const machine::Machine& machine) : program_(program), machine_(machine) {
+    for (std::size_t mode = 0; mode <= machine.modes.size(); ++mode) {
+      laws_.push_back(acceleration_law_of(machine, mode));
+      delay_s_.push_back(delay_s(machine, mode));
+    }
+  }
 
   MotionPlan run() {
     build_segments(program_, machine_, [&](const Segment& s) { add(s); });
-    if (exponential()) {
-      time_exponential();
-    } else {
-      plan_speeds(plan_.rows, static_cast<std::size_t>(std::max(0, machine_.control.lookahead_blocks)));
-      time_linear();
-    }
+    plan_all_speeds();
+    time_all();
     return std::move(plan_);
   }
 
@@ -67,8 +69,9 @@ class Planner {
   void add(const Segment& s) {
     plan_.rows.push_back(row_of(s));
     // The exponential law knows no corners; but no axis enters a block faster than it can go.
-    if (exponential()) plan_.rows.back().entry_speed_mm_per_s = s.axis_limit_mm_per_s;
-    plan_.times.push_back({.move = s.move, .rest = s.length_mm == 0, .cutting = s.cutting, .duration_s = s.dwell_s});
+    if (exponential(s.mode)) plan_.rows.back().entry_speed_mm_per_s = s.axis_limit_mm_per_s;
+    plan_.times.push_back(
+        {.move = s.move, .mode = s.mode, .rest = s.length_mm == 0, .cutting = s.cutting, .duration_s = s.dwell_s});
     if (s.axes_apart) positionings_.push_back({plan_.rows.size() - 1, s, 0});
     if (std::isfinite(machine_.control.in_position_mm)) note_stop(s);
   }
@@ -84,7 +87,26 @@ class Planner {
     if (!s.gap) last_ = {plan_.rows.size() - 1, s, 0};
   }
 
-  bool exponential() const { return machine_.cycle.acceleration_law == AccelerationLaw::exponential; }
+  bool exponential(std::size_t mode) const { return laws_[mode].law == AccelerationLaw::exponential; }
+  bool row_exponential(std::size_t i) const { return exponential(plan_.times[i].mode); }
+
+  /// Look-ahead over each stretch of rows without the exponential law; no control goes from one law to another without
+  /// a stop.
+  void plan_all_speeds() {
+    const auto depth = static_cast<std::size_t>(std::max(0, machine_.control.lookahead_blocks));
+    std::vector<PlanRow>& rows = plan_.rows;
+    const auto row = [&](std::size_t i) { return rows.begin() + static_cast<std::ptrdiff_t>(i); };
+    for (std::size_t from = 0, end = 0; from < rows.size(); from = end) {
+      const bool exponential = row_exponential(from);
+      while (end < rows.size() && row_exponential(end) == exponential) ++end;
+      if (from > 0) rows[from].entry_speed_mm_per_s = 0;
+      if (exponential) continue;
+      if (end - from == rows.size()) return plan_speeds(rows, depth);
+      std::vector<PlanRow> part(row(from), row(end));
+      plan_speeds(part, depth);
+      std::copy(part.begin(), part.end(), row(from));
+    }
+  }
 
   bool is_positioning(std::size_t i) const {
     return next_positioning_ < positionings_.size() && positionings_[next_positioning_].index == i;
@@ -104,7 +126,7 @@ class Planner {
   void time_positioning(std::size_t i, double now_s, double& overlap_s) {
     const Segment& s = positionings_[next_positioning_++].segment;
     SegmentTime& time = plan_.times[i];
-    const SegmentMotion motion = positioning_motion(s, 2.0 * delay_s_);
+    const SegmentMotion motion = positioning_motion(s, 2.0 * delay_s_[0]);
     time.duration_s = motion.duration_s;
     time.start_s = now_s - std::min(overlap_s, motion.axes_s / 2.0);
     const double percent = machine_.cycle.rapid_overlap_percent;
@@ -112,15 +134,22 @@ class Planner {
     plan_.speed_changes += 2;
   }
 
-  void time_linear() {
+  void time_all() {
     double now_s = 0, overlap_s = 0;
-    int ramp = 0;  // the change of speed under way: +1 accelerating, -1 braking
+    double speed = 0;  // at the end of the last block, under the exponential law
+    int ramp = 0;      // the change of speed under way: +1 accelerating, -1 braking
     for (std::size_t i = 0; i < plan_.rows.size(); ++i) {
       if (is_positioning(i)) {
         time_positioning(i, now_s, overlap_s);
         ramp = 0;
+        speed = 0;
+      } else if (row_exponential(i)) {
+        overlap_s = 0;
+        ramp = 0;
+        time_exponential(i, now_s, speed);
       } else {
         overlap_s = 0;
+        speed = 0;
         time_along(i, now_s, ramp);
       }
       now_s = finish(i);
@@ -143,7 +172,7 @@ class Planner {
     time.brakes = begins(-1, profile.brake_s);
     const int changes = (time.accelerates ? 1 : 0) + (time.brakes ? 1 : 0);
     plan_.speed_changes += static_cast<std::size_t>(changes);
-    time.duration_s = profile.duration_s() + changes * delay_s_;
+    time.duration_s = profile.duration_s() + changes * delay_s_[time.mode];
   }
 
   /// A start from (almost) rest waits for the next period of the control.
@@ -155,46 +184,36 @@ class Planner {
   }
 
   /// Block by block; the speed at a block's end is the next one's start, and a stop costs T1 + T2.
-  void time_exponential() {
-    const double t1 = machine_.cycle.time_constant_1_s, t2 = machine_.cycle.time_constant_2_s;
-    double speed = 0, now_s = 0, overlap_s = 0;
-    for (std::size_t i = 0; i < plan_.rows.size(); ++i) {
-      SegmentTime& time = plan_.times[i];
-      time.start_s = now_s;
-      if (is_positioning(i)) {
-        time_positioning(i, now_s, overlap_s);
-        speed = 0;
-        now_s = finish(i);
-        continue;
-      }
-      overlap_s = 0;
-      PlanRow& row = plan_.rows[i];
-      row.entry_speed_mm_per_s = speed = std::min(speed, row.entry_speed_mm_per_s);
-      if (!time.rest) {
-        const ExponentialRamp ramp{speed, row.speed_limit_mm_per_s, t1, t2};
-        const bool at_once = std::isinf(ramp.command_mm_per_s);  // a rapid of axes without a limit
-        const double time_s = at_once ? 0.0 : ramp.time_of(row.length_mm);
-        const bool stops = stops_after(i);
-        time.duration_s = time_s + (stops ? t1 + t2 : 0.0);
-        speed = stops || at_once ? 0.0 : ramp.speed_at(time_s);
-      } else {
-        speed = 0;
-      }
-      now_s = finish(i);
+  void time_exponential(std::size_t i, double now_s, double& speed) {
+    SegmentTime& time = plan_.times[i];
+    PlanRow& row = plan_.rows[i];
+    const double t1 = laws_[time.mode].time_constant_1_s, t2 = laws_[time.mode].time_constant_2_s;
+    time.start_s = now_s;
+    row.entry_speed_mm_per_s = speed = std::min(speed, row.entry_speed_mm_per_s);
+    if (time.rest) {
+      speed = 0;
+      return;
     }
+    const ExponentialRamp ramp{speed, row.speed_limit_mm_per_s, t1, t2};
+    const bool at_once = std::isinf(ramp.command_mm_per_s);  // a rapid of axes without a limit
+    const double time_s = at_once ? 0.0 : ramp.time_of(row.length_mm);
+    const bool stops = stops_after(i);
+    time.duration_s = time_s + (stops ? t1 + t2 : 0.0);
+    speed = stops || at_once ? 0.0 : ramp.speed_at(time_s);
   }
 
   bool stops_after(std::size_t i) const {
-    if (i + 1 >= plan_.times.size() || plan_.times[i + 1].rest) return true;
+    if (i + 1 >= plan_.times.size() || plan_.times[i + 1].rest || !row_exponential(i + 1)) return true;
     const nc::Move& move = program_.moves[plan_.times[i].move];
-    const bool exact = program_.state_of(move).path_control == nc::PathControl::exact_stop;
+    const bool exact = path_control_of(machine_, program_.state_of(move)) == nc::PathControl::exact_stop;
     const bool cutting = plan_.times[i].cutting;
     return move.exact_stop || exact || cutting != plan_.times[i + 1].cutting || !cutting;
   }
 
   const nc::Interpretation& program_;
   const machine::Machine& machine_;
-  const double delay_s_;
+  std::vector<machine::AccelerationTimes> laws_;  ///< by mode
+  std::vector<double> delay_s_;                   ///< by mode
   MotionPlan plan_;
   std::vector<Kept> positionings_, checks_;  // in order
   std::size_t next_positioning_ = 0, next_check_ = 0;
@@ -215,24 +234,23 @@ Trapezoid profile_of(const std::vector<PlanRow>& rows, std::size_t i) {
 
 SegmentMotion motion_of(const MotionPlan& plan, std::size_t i, const Segment& segment,
                         const machine::Machine& machine) {
-  const machine::Cycle& cycle = machine.cycle;
   const SegmentTime& time = plan.times[i];
   const PlanRow& row = plan.rows[i];
-  if (segment.axes_apart) return positioning_motion(segment, 2.0 * delay_s(cycle));
+  if (segment.axes_apart) return positioning_motion(segment, 2.0 * delay_s(machine, 0));
   SegmentMotion motion;
   motion.duration_s = time.duration_s;
   if (time.rest) return motion;
-  if (cycle.acceleration_law == AccelerationLaw::exponential) {
+  const machine::AccelerationTimes law = acceleration_law_of(machine, time.mode);
+  if (law.law == AccelerationLaw::exponential) {
     motion.kind = SegmentMotion::Kind::exponential;
-    motion.ramp = {row.entry_speed_mm_per_s, row.speed_limit_mm_per_s, cycle.time_constant_1_s,
-                   cycle.time_constant_2_s};
+    motion.ramp = {row.entry_speed_mm_per_s, row.speed_limit_mm_per_s, law.time_constant_1_s, law.time_constant_2_s};
     if (!std::isinf(row.speed_limit_mm_per_s)) motion.ramp_s = motion.ramp.time_of(row.length_mm);
     return motion;
   }
   motion.kind = SegmentMotion::Kind::along_path;
   motion.along = profile_of(plan.rows, i);
-  motion.accelerate_extra_s = time.accelerates ? delay_s(cycle) : 0.0;
-  motion.brake_extra_s = time.brakes ? delay_s(cycle) : 0.0;
+  motion.accelerate_extra_s = time.accelerates ? delay_s(machine, time.mode) : 0.0;
+  motion.brake_extra_s = time.brakes ? delay_s(machine, time.mode) : 0.0;
   return motion;
 }
 

@@ -14,6 +14,7 @@ namespace camber::feedmodel {
 /// A segment in time.
 struct SegmentTime {
   std::uint32_t move = 0;                    ///< that it ends in
+  std::uint8_t mode = 0;                     ///< parameter set of the control: see mode_of
   bool rest = false;                         ///< a dwell or a stop; duration_s may be 0
   bool cutting = false;                      ///< of a feed move
   bool accelerates = false, brakes = false;  ///< a change of speed begins in it: what a jerk filter delays

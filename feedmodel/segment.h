@@ -28,6 +28,7 @@ struct Segment {
   bool axes_apart = false;
   Vec3 way_mm = Vec3::Zero(), axis_speed_mm_per_s = Vec3::Zero(), axis_acceleration_mm_per_s2 = Vec3::Zero();
   std::uint32_t move = 0;  ///< last of the moves that were merged in it
+  std::uint8_t mode = 0;   ///< parameter set of the control: see mode_of
   bool cutting = false;
   bool joined = false;  ///< planned as one with the rounding that follows
   bool exact = false;   ///< the program asks for an exact stop at its end (G9, G61.1)

@@ -25,6 +25,8 @@ struct ControlKind {
   bool waits_in_position = true;
   /// G61 stops at every corner, instead of just following the path exactly.
   bool g61_stops = true;
+  /// G61.1 stops exactly; false: it is a mode of its own (Mazak: high-accuracy shape correction), not a stop.
+  bool g61_1_stops = true;
   /// No segment passes in less than this many periods.
   double min_segment_periods = 1;
   /// On helices, the acceleration along the path grows with the rise of the whole arc.

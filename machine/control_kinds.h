@@ -11,7 +11,7 @@ namespace camber::machine {
 inline constexpr std::array kControlKinds{
     ControlKind{.name = "fanuc", .nc_dialect = "fanuc"},
     ControlKind{.name = "haas", .nc_dialect = "haas"},
-    ControlKind{.name = "mazak", .nc_dialect = "mazak"},
+    ControlKind{.name = "mazak", .nc_dialect = "mazak", .g61_1_stops = false},
     // Motion: from its traces (docs/feed-model.md). Starting values: its defaults of [TRAJ] ARC_BLEND_KINK_RATIO and
     // ARC_BLEND_OPTIMIZATION_DEPTH; short lines from its traces.
     ControlKind{.name = "linuxcnc",

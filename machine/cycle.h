@@ -13,6 +13,13 @@ enum class RapidPath { dogleg, linear };
 /// bell_time_s to build up and to die down, which makes each change of speed take half of that longer.
 enum class AccelerationLaw { linear, exponential, bell };
 
+/// An acceleration law with its times, as Cycle has them.
+struct AccelerationTimes {
+  AccelerationLaw law = AccelerationLaw::linear;
+  double time_constant_1_s = 0, time_constant_2_s = 0;  ///< exponential
+  double bell_time_s = 0;                               ///< bell
+};
+
 /// sequential: an M, S or T code's time comes before the motion of its block; simultaneous: along with it.
 enum class CodeOrder { sequential, simultaneous };
 

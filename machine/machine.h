@@ -64,6 +64,7 @@ struct Control {
   /// Between rapid and feed moves, and at exact stops (G9, G61.1), it waits until every axis is this near to where it
   /// is commanded. Infinite: it does not wait. Read from a file without the key: kInPositionMm, LinuxCNC infinite.
   double in_position_mm = kNoLimit;
+  std::optional<AccelerationTimes> acceleration_law{};  ///< of a parameter set ([control.mode]); not given: [cycle]'s
 };
 
 struct Axis {
@@ -89,6 +90,7 @@ struct Axis {
 struct FittedRange {
   bool known = false;
   std::array<double, 2> feed_mm_per_s{}, corner_rad{}, line_mm{}, arc_radius_mm{};
+  std::array<double, 2> arc_mm{};        ///< lengths of arcs; 0, 0: not known
   std::array<double, 2> blocks_per_s{};  ///< at the programmed feed, over eight blocks in a row
   std::array<bool, 3> axis{};            ///< x, y, z moved
 };

@@ -19,8 +19,19 @@ inline constexpr NumberRange kPercent{.min = 0, .max = 100};
 inline constexpr NumberRange kMinIncrementMm{.min = 1e-6, .max = 0.1};
 inline constexpr NumberRange kBlockCount{.min = 0, .max = 1e6, .whole = true};
 
-/// Parameter sets of a control, by what selects them: G05.1 Q1, G05 P10000 or G08 P1; G61; G61.1.
-inline constexpr std::array<std::string_view, 3> kModeNames{"high_speed_contouring", "g61", "g61_1"};
+/// Parameter sets of a control, by what selects them; the first that a program's codes select counts.
+/// high_speed_contouring: any of the first three, where it has no set for itself.
+inline constexpr std::array<std::string_view, 10> kModeNames{
+    "g05_1_q1", "g05_p10000", "g08_p1", "cycle832", "high_speed_contouring", "g61", "g61_1", "g62", "g63", "g64"};
+
+/// Of a parameter set, beside the keys of [control]: its own acceleration law.
+inline constexpr std::array kModeLawKeys{
+    NumberKey<AccelerationTimes>{"time_constant_1_ms", &AccelerationTimes::time_constant_1_s, kNotNegative,
+                                 kMilliseconds},
+    NumberKey<AccelerationTimes>{"time_constant_2_ms", &AccelerationTimes::time_constant_2_s, kNotNegative,
+                                 kMilliseconds},
+    NumberKey<AccelerationTimes>{"bell_time_ms", &AccelerationTimes::bell_time_s, kNotNegative, kMilliseconds},
+};
 
 inline constexpr std::array kControlKeys{
     NumberKey<Control>{"period_ms", &Control::period_s, kPeriodMs, kMilliseconds},

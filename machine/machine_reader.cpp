@@ -27,6 +27,17 @@ void read_corner(TomlTable table, Corner& corner) {
   }
 }
 
+AccelerationTimes read_mode_law(TomlTable& table) {
+  AccelerationTimes times;
+  times.law = static_cast<AccelerationLaw>(table.choice("acceleration_law", kAccelerationLawWords, 0));
+  read_numbers<AccelerationTimes>(table, kModeLawKeys, times);
+  const char* needed = times.law == AccelerationLaw::exponential ? "time_constant_1_ms"
+                       : times.law == AccelerationLaw::bell      ? "bell_time_ms"
+                                                                 : nullptr;
+  if (needed && !table.has(needed)) table.missing(needed, kNotNegative.wanted());
+  return times;
+}
+
 /// A parameter set: the control's own values but for those that the table gives.
 void read_mode(TomlTable table, const Control& control, std::string name, Machine& machine) {
   Control mode = control;
@@ -35,6 +46,7 @@ void read_mode(TomlTable table, const Control& control, std::string name, Machin
     mode.corner = {};
     read_corner(*corner, mode.corner);
   }
+  if (table.has("acceleration_law")) mode.acceleration_law = read_mode_law(table);
   table.finish();
   machine.modes.emplace_back(std::move(name), mode);
 }
@@ -120,6 +132,7 @@ void read_fitted_range(TomlTable table, FittedRange& range) {
   read_range(table, "corner_degrees", kDegrees, range.corner_rad);
   read_range(table, "line_mm", kAsIs, range.line_mm);
   read_range(table, "arc_radius_mm", kAsIs, range.arc_radius_mm);
+  read_range(table, "arc_mm", kAsIs, range.arc_mm);
   read_range(table, "blocks_per_s", kAsIs, range.blocks_per_s);
   const std::string axes = table.text("axes", "xyz");
   for (std::size_t i = 0; i < range.axis.size(); ++i) range.axis[i] = axes.find(kAxisNames[i]) != std::string::npos;

@@ -21,8 +21,11 @@ std::string corner_text(const Corner& corner) {
 }
 
 std::string mode_text(std::string_view name, const Control& mode) {
-  return fmt::format("\n[control.mode.{}]\n", name) + toml_lines<Control>(kControlKeys, mode) +
-         corner_text(mode.corner);
+  std::string out = fmt::format("\n[control.mode.{}]\n", name) + toml_lines<Control>(kControlKeys, mode);
+  if (mode.acceleration_law)
+    out += toml_line("acceleration_law", kAccelerationLawWords[static_cast<std::size_t>(mode.acceleration_law->law)]) +
+           toml_lines<AccelerationTimes>(kModeLawKeys, *mode.acceleration_law);
+  return out + corner_text(mode.corner);
 }
 
 /// Empty for an axis that is not given, unless something has set a number of it since.
@@ -51,8 +54,9 @@ std::string fitted_range_text(const FittedRange& r) {
     if (r.axis[i]) axes += kAxisNames[i];
   return "\n[fitted_range]\n" + range_text("feed_mm_per_min", r.feed_mm_per_s, kPerMinute) +
          range_text("corner_degrees", r.corner_rad, kDegrees) + range_text("line_mm", r.line_mm, kAsIs) +
-         range_text("arc_radius_mm", r.arc_radius_mm, kAsIs) + range_text("blocks_per_s", r.blocks_per_s, kAsIs) +
-         toml_line("axes", axes);
+         range_text("arc_radius_mm", r.arc_radius_mm, kAsIs) +
+         (r.arc_mm[1] > 0 ? range_text("arc_mm", r.arc_mm, kAsIs) : "") +
+         range_text("blocks_per_s", r.blocks_per_s, kAsIs) + toml_line("axes", axes);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace camber::nc {
 namespace {
@@ -74,6 +75,8 @@ constexpr std::array kCodes = {
     Entry{593, {GGroup::work_offset}},
     Entry{610, {GGroup::path_control}},
     Entry{611, {GGroup::path_control}},
+    Entry{620, {GGroup::path_control}},
+    Entry{630, {GGroup::path_control}},
     Entry{640, {GGroup::path_control}},
     Entry{650, {GGroup::macro}},
     Entry{660, {GGroup::macro}},
@@ -125,6 +128,7 @@ static_assert(std::is_sorted(kCodes.begin(), kCodes.end(),
 }  // namespace
 
 GCode g_code(int tenths) {
+  if (tenths == std::lround(10 * kCycle832) || tenths == std::lround(10 * kCycle832Off)) return {GGroup::contouring};
   const auto it = std::lower_bound(kCodes.begin(), kCodes.end(), tenths,
                                    [](const Entry& e, int value) { return e.tenths < value; });
   return it != kCodes.end() && it->tenths == tenths ? it->code : GCode{};

@@ -5,6 +5,10 @@
 
 namespace camber::nc {
 
+/// CYCLE832 of a Sinumerik is read as the word G of this number, which no control has; its first argument, where it is
+/// 0 or missing, switches the mode off again (kCycle832Off).
+inline constexpr double kCycle832 = 83200, kCycle832Off = 83201;
+
 enum class GGroup {
   motion,         ///< G0 G1 G2 G3
   cycle,          ///< G80, G73, G74, G76, G81-G89
@@ -16,11 +20,11 @@ enum class GGroup {
   cutter_radius,  ///< G40 G41 G42 G41.1 G42.1
   tool_length,    ///< G43 G44 G49
   work_offset,    ///< G54 .. G59.3, G54.1
-  path_control,   ///< G61 G61.1 G64
+  path_control,   ///< G61 G61.1 G62 G63 G64
   return_level,   ///< G98 G99
   one_shot,       ///< G4 G9 G28 G29 G30 G53
   frame,          ///< G10 G15 G16 G50 G51 G50.1 G51.1 G52 G68 G69 G92: where coordinates lie
-  contouring,     ///< G05 G05.1 G08: high speed contouring
+  contouring,     ///< G05 G05.1 G08, and CYCLE832 (kCycle832): modes for fine paths
   macro,          ///< G65 G66 G67: the sequencer's
   no_effect,      ///< taken and without effect on the path
   not_read,       ///< known, not read yet

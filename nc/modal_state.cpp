@@ -233,6 +233,7 @@ void BlockInterpreter::set_path_control(int tenths) {
   state_.path_control = tenths == 610   ? PathControl::exact_path
                         : tenths == 611 ? PathControl::exact_stop
                                         : PathControl::blend;
+  state_.path_g = static_cast<std::uint8_t>(tenths / 10);
   if (tenths != 640) return;
   state_.blend_tolerance_mm = words_.scaled('P', unit_mm()).value_or(-1);
   state_.merge_tolerance_mm = words_.scaled('Q', unit_mm()).value_or(-1);
@@ -255,6 +256,10 @@ void BlockInterpreter::set_feed_mode(FeedMode mode) {
 }
 
 void BlockInterpreter::set_contouring(const Code& code) {
+  if (code.tenths >= static_cast<int>(10 * kCycle832)) {
+    state_.contouring = code.tenths == static_cast<int>(10 * kCycle832) ? Contouring::cycle832 : Contouring::none;
+    return;
+  }
   words_.use("PQRL");
   const char letter = code.tenths == 51 ? 'Q' : 'P';
   if (code.tenths == 50 && !words_.has('P')) {
@@ -263,6 +268,10 @@ void BlockInterpreter::set_contouring(const Code& code) {
     return;
   }
   state_.high_speed_contouring = words_.has(letter) && words_.value(letter) > 0;
+  state_.contouring = !state_.high_speed_contouring ? Contouring::none
+                      : code.tenths == 51           ? Contouring::g05_1_q1
+                      : code.tenths == 50           ? Contouring::g05_p10000
+                                                    : Contouring::g08_p1;
 }
 
 void BlockInterpreter::read_feed() {

@@ -13,6 +13,9 @@
 namespace camber::nc {
 
 enum class MoveKind : std::uint8_t { rapid, linear, arc, dwell };
+/// Which code has switched on a control's mode for fine paths: G08 P1, G05 P10000, G05.1 Q1, CYCLE832.
+enum class Contouring : std::uint8_t { none, g08_p1, g05_p10000, g05_1_q1, cycle832 };
+
 enum class PathControl : std::uint8_t { exact_path, exact_stop, blend };  ///< G61, G61.1/G09, G64
 enum class SpindleDirection : std::uint8_t { stopped, clockwise, counter_clockwise };
 enum class FeedMode : std::uint8_t { per_minute, inverse_time, per_revolution };  ///< G94, G93, G95
@@ -32,9 +35,11 @@ struct ModalState {
   bool coolant = false;
   bool absolute_arc_centre = false;    ///< G90.1
   bool high_speed_contouring = false;  ///< G08 P1, G05 P10000, G05.1 Q1
-  std::uint8_t plane_g = 17;           ///< 17, 18 or 19
-  bool cutter_radius = false;          ///< G41, G42 with a radius other than zero: the path was computed
-  std::uint32_t frame = 0;             ///< index into Interpretation::frames
+  Contouring contouring = Contouring::none;
+  std::uint8_t path_g = 0;     ///< 61 (G61, G61.1), 62, 63 or 64, as the program says; 0: none so far
+  std::uint8_t plane_g = 17;   ///< 17, 18 or 19
+  bool cutter_radius = false;  ///< G41, G42 with a radius other than zero: the path was computed
+  std::uint32_t frame = 0;     ///< index into Interpretation::frames
   bool operator==(const ModalState&) const = default;
 };
 

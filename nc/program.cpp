@@ -9,6 +9,7 @@
 
 #include "base/numbers.h"
 #include "nc/foreign.h"
+#include "nc/modal_codes.h"
 #include "nc/reporter.h"
 
 namespace camber::nc {
@@ -308,7 +309,24 @@ class Scanner {
     return name;
   }
 
+  /// CYCLE832(tolerance, type ...) of a Sinumerik as the mode that it is (kCycle832). What stands in its parentheses
+  /// is a comment here. False: at_ stands at other letters.
+  bool read_cycle_832() {
+    constexpr std::string_view kName = "CYCLE832";
+    if (end_ - at_ < kName.size()) return false;
+    for (std::size_t i = 0; i < kName.size(); ++i)
+      if (upper(text_[at_ + i]) != kName[i]) return false;
+    const std::size_t begin = at_;
+    at_ += kName.size();
+    const std::size_t first = behind_blanks() + 1;
+    const bool given = first < end_ && text_[first - 1] == '(';
+    const std::string_view arguments = given ? std::string_view(text_ + first, end_ - first) : std::string_view();
+    const bool off = arguments.empty() || arguments.find_first_not_of("0. ") == arguments.find_first_of(",)");
+    return add_word('G', begin, at_, at_, off ? kCycle832Off : kCycle832);
+  }
+
   bool refuse_letters() {
+    if (read_cycle_832()) return true;
     const std::string name = letters_from(at_);
     if (at_ + name.size() < end_ && (text_[at_ + name.size()] == '=' || name.find('_') != std::string::npos))
       return refuse_assignment(at_);

@@ -159,7 +159,7 @@ TEST(FitStretches, LeavesWhatNoStretchTellsAsItWas) {
 
 /// Corners are laws of speed: times at two feeds tell those at others (the slightest corners hardly slow the slow
 /// ones).
-TEST(FitStretches, CornersOfSlowFeedsPredictThoseOfFastOnes) {
+TEST(FitStretchesSlow, CornersOfSlowFeedsPredictThoseOfFastOnes) {
   machine::Machine known = known_machine();
   known.control.corner = {.law = machine::CornerLaw::speed_difference, .speed_difference_mm_per_s = 6};
   const auto at_feeds = [](std::initializer_list<double> feeds) {
@@ -185,6 +185,55 @@ TEST(FitStretches, CornersOfSlowFeedsPredictThoseOfFastOnes) {
   const auto is = planned(fast, fit.machine), was = planned(fast, known);
   for (std::size_t i = 0; i < was.size(); ++i)
     EXPECT_NEAR(is[i].time_s / was[i].time_s, 1, kExtrapolation) << i << " under " << fit.laws[fit.chosen].law.name;
+}
+
+/// Times of facets tell the block time; it and the accelerations predict what no stretch held: helices in short blocks
+/// and circles that are slower than any of them.
+TEST(FitStretchesSlow, BlockTimeAndAccelerationPredictHelicesAndSlowCircles) {
+  machine::Machine known = known_machine();
+  known.control.corner.stop_angle_rad = machine::kNoLimit;
+  known.control.block_time_s = 0.009;
+  StretchRun run{"figures", {}, {}};
+  tests::TestProgram p;
+  int tool = 0;
+  const auto zigzag = [&](double length, double turn, int count, double feed) {
+    Vec3 at = Vec3::Zero();
+    p.rapid(0, 0, 0);
+    for (int i = 0; i < count; ++i) {
+      at += length * Vec3(std::cos(turn * i), std::sin(turn * i), 0);
+      p.line(at.x(), at.y(), 0, feed);
+    }
+  };
+  for (const double feed : {1000.0, 2500.0, 4500.0}) {
+    p.new_state().tool = ++tool;
+    for (const double turn : {0.05, 0.3, 0.9}) zigzag(3, turn, 30, feed);
+    for (const double length : {0.1, 0.2, 0.5}) zigzag(length, 0.01, 120, feed);
+    for (const double r : {1.0, 3.0}) {
+      p.rapid(r, 0, 5).rapid(r, 0, 0);
+      for (int i = 0; i < 9; ++i) p.arc_xy(r, 0, 0, 0, 2 * kPi, feed);
+    }
+  }
+  p.rapid(0, 0, 10);
+  run.program = p.program;
+  run.timed = planned(run.program, known);
+  const StretchFit fit = fit_stretches({run}, {}, {});
+  EXPECT_NEAR(fit.machine.control.block_time_s, 0.009, 0.0003) << fit.laws[fit.chosen].law.name;
+  tests::TestProgram other;
+  other.rapid(2, 0, 0);
+  for (int i = 0; i < 360; ++i) {  // a helix in blocks of 0.2 mm
+    other.arc_xy(2 * std::cos((i + 1) * 0.1), 2 * std::sin((i + 1) * 0.1), 0, 0, 0.1, 3000);
+    nc::Move& move = other.program.moves.back();
+    other.program.arcs.back().center_mm.z() = move.start_mm.z() = -0.005 * i;
+    move.end_mm.z() = -0.005 * (i + 1);
+  }
+  other.rapid(0.4, 0, 0);
+  for (int i = 0; i < 12; ++i) other.arc_xy(0.4, 0, 0, 0, 2 * kPi, 3000);
+  other.rapid(0, 0, 10);
+  const auto is = planned(other.program, fit.machine), was = planned(other.program, known);
+  ASSERT_EQ(was.size(), 2u);
+  EXPECT_GT(was[0].time_s, 2 * programmed_time_s(was[0].stretch, other.program));  // by the block time
+  EXPECT_GT(was[1].time_s, 1.5 * programmed_time_s(was[1].stretch, other.program));
+  for (std::size_t i = 0; i < was.size(); ++i) EXPECT_NEAR(is[i].time_s / was[i].time_s, 1, kExtrapolation) << i;
 }
 
 TEST(FitStretches, SaysThatTooFewTimesTellNothing) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "feedmodel/plan.h"
 #include "tests/support/test_program.h"
@@ -55,18 +56,22 @@ TEST(FittedRange, NamesBlocksAndShareOfWhatLeavesIt) {
   EXPECT_EQ(
       texts[0],
       "p.nc:3:1: warning: 43.2 % of the cutting length (1 block: line 3) has a feed above 1000 mm/min, the highest "
-      "that the machine was fitted on; the feed there is a guess [range-feed]");
+      "that the machine was fitted on; the time there is a guess: 0.4 s, from 0.4 s at the programmed feed to 0.4 s "
+      "with a stop after every block [range-feed]");
   EXPECT_EQ(texts[1],
             "p.nc:2:1: warning: 21.6 % of the cutting length (1 block: line 2) has a corner sharper than 90.0 degrees, "
-            "the sharpest that the machine was fitted on; the feed there is a guess [range-corner]");
+            "the sharpest that the machine was fitted on; the time there is a guess: 0.6 s, from 0.6 s at the "
+            "programmed feed to 0.6 s with a stop after every block [range-corner]");
   EXPECT_EQ(
       texts[2],
       "p.nc:4:1: warning: 13.6 % of the cutting length (1 block: line 4) has arcs, of which the machine was fitted "
-      "on none; the feed there is a guess [range-arc]");
+      "on none; the time there is a guess: 0.377 s, from 0.377 s at the programmed feed to 0.377 s with a stop after "
+      "every block [range-arc]");
   EXPECT_EQ(
       texts[3],
       "p.nc:3:1: warning: 43.2 % of the cutting length (1 block: line 3) has motion of Z, which the machine was not "
-      "fitted on; the feed there is a guess [range-axis]");
+      "fitted on; the time there is a guess: 0.4 s, from 0.4 s at the programmed feed to 0.4 s with a stop after every "
+      "block [range-axis]");
 }
 
 TEST(FittedRange, FineFacetsAreMoreBlocksASecond) {
@@ -81,6 +86,39 @@ TEST(FittedRange, FineFacetsAreMoreBlocksASecond) {
                     "second"),
       std::string::npos)
       << texts[1];
+}
+
+/// A helix in short blocks and a small circle, on a machine that was fitted on long lines and wide circles.
+TEST(FittedRange, TellsTheSizeOfTheGuess) {
+  tests::TestProgram wide, tight;
+  wide.line(20, 0, 0, 3000).arc_xy(20, 0, 0, 0, 2 * kPi, 3000).line(20, 0, -5, 3000);
+  tight.rapid(2, 0, 0);
+  double phi = 0;
+  for (int i = 1; i <= 90; ++i, phi += kPi / 18)  // blocks of 0.35 mm, 143 a second at the programmed feed
+    tight.arc_xy(2 * std::cos(phi + kPi / 18), 2 * std::sin(phi + kPi / 18), 0, 0, kPi / 18, 3000);
+  machine::Machine m = fitted_on(wide.program);
+  for (machine::Axis& axis : m.axis) axis.acceleration_mm_per_s2 = 500;
+  m.control.corner = {.law = machine::CornerLaw::angle, .time_s = 10};
+  m.control.block_time_s = 0.02;
+  const auto texts = warnings(tight.program, m);
+  ASSERT_EQ(texts.size(), 3u);
+  // 0.349 mm in 20 ms: 17.45 mm/s, and 0.0349 s for each of the two ramps. Centripetal: sqrt(500 * 2) = 31.6 mm/s.
+  const double length = 5 * kPi * 2, time = length / 17.453 + 17.453 / 500,
+               stop = 90 * 2 * std::sqrt(length / 90 / 500);
+  for (const auto& [text, check] : {std::pair(texts[0], "[range-arc]"), {texts[1], "[range-arc-length]"}}) {
+    EXPECT_NE(text.find(check), std::string::npos) << text;
+    double predicted = 0, least = 0, most = 0;
+    const std::size_t at = text.find("a guess: ");
+    ASSERT_NE(at, std::string::npos) << text;
+    ASSERT_EQ(std::sscanf(text.c_str() + at, "a guess: %lf s, from %lf s at the programmed feed to %lf s", &predicted,
+                          &least, &most),
+              3)
+        << text;
+    EXPECT_NEAR(predicted, time, 0.006);  // three digits
+    EXPECT_NEAR(least, length / 50, 0.0006);
+    EXPECT_NEAR(most, stop, 0.006);
+  }
+  EXPECT_NE(texts[2].find("[range-blocks]"), std::string::npos) << texts[2];
 }
 
 /// Time from the first to the last commanded motion.
