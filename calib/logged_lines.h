@@ -11,7 +11,8 @@
 
 namespace camber::calib {
 
-/// The logged stretches of one program: one for each geometry, in the order of the program, a rest before each.
+/// The logged stretches of one program: one for each geometry, in the order of the program, each with the rapids
+/// around it, a rest before.
 struct LoggedLines {
   std::string program_name;
   std::unique_ptr<nc::Interpretation> program;  ///< these stretches alone; `lines` refers to it
