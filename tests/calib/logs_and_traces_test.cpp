@@ -120,5 +120,22 @@ TEST(LogsAndTraces, EachTellsWhatTheOtherDoesNot) {
   EXPECT_LT(both.logged_held_out.mean, 1.0);
 }
 
+/// LinuxCNC brakes with half its acceleration before a dwell, but not before the rapid behind a logged stretch.
+TEST(LogsAndTraces, StretchesEndInTheRapidBehindThem) {
+  Machine known = tests::synthetic_control(5, CornerLaw::blend);
+  const FeedRun traced = tests::traced_run(traced_program(), known, {.position_mm = 0.0005, .seed = 1});
+  const StretchRun logged = logged_run(logged_program(), known, 3);
+  Machine start;
+  start.control.kind = known.control.kind;
+  start.cycle.rapid_path = known.cycle.rapid_path;
+  start.control.corner = {.law = CornerLaw::blend, .tolerance_mm = machine::kNoLimit};
+  const FitFeedResult fit = fit_feed({traced}, {logged}, start, {});
+  EXPECT_EQ(fit.machine.control.corner.law, CornerLaw::blend) << fit.law;
+  EXPECT_LT(fit.logged_held_out.mean, 1.0);
+  const FitParameter& z = named(fit, "axis.z.acceleration_mm_per_s2");
+  ASSERT_TRUE(z.std_error) << z.note;
+  EXPECT_LT(std::abs(z.value - known.axis[2].acceleration_mm_per_s2), kSigmas * *z.std_error);
+}
+
 }  // namespace
 }  // namespace camber::calib

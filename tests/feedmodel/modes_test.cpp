@@ -217,6 +217,13 @@ TEST(Modes, LawsOfAccelerationFollowEachOther) {
     EXPECT_LT(jump, 75 * 0.001 * 1.01) << "no faster than the feed";
     return time_s;
   };
+  const machine::Machine again = machine_of(machine::to_toml(m));
+  ASSERT_EQ(again.modes.size(), 2u);
+  for (std::size_t mode = 0; mode <= 2; ++mode) {
+    EXPECT_EQ(acceleration_law_of(again, mode).law, acceleration_law_of(m, mode).law) << mode;
+    EXPECT_DOUBLE_EQ(acceleration_law_of(again, mode).time_constant_2_s,
+                     acceleration_law_of(m, mode).time_constant_2_s);
+  }
   const double exponential = time("X100\n"), linear = time("G05 P10000\nX100\n");
   EXPECT_NEAR(exponential, 1.4633, 1e-4);  // eqs. 4-5
   EXPECT_NEAR(linear, 100.0 / 75 + 75.0 / 877, 1e-9);
