@@ -30,14 +30,15 @@ HeldOutRun judge(const FeedRun& run, const FitFeedResult& fit) {
 
 }  // namespace
 
-std::vector<HeldOutRun> leave_one_out(std::vector<FeedRun> runs, const Machine& start, const FitFeedOptions& options) {
+std::vector<HeldOutRun> leave_one_out(std::vector<FeedRun> runs, const Machine& start, const FitFeedOptions& options,
+                                      const std::vector<StretchRun>& logs) {
   std::vector<HeldOutRun> result;
   for (std::size_t i = 0; i < runs.size() && runs.size() > 1; ++i) {
     if (runs[i].trace.line.empty()) continue;
     std::swap(runs[i], runs.back());
     const FeedRun held = std::move(runs.back());
     runs.pop_back();
-    result.push_back(judge(held, fit_feed(runs, start, options)));
+    result.push_back(judge(held, fit_feed(runs, logs, start, options)));
     runs.push_back(held);
     std::swap(runs[i], runs.back());
   }

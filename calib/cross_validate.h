@@ -18,7 +18,8 @@ struct HeldOutRun {
 };
 
 /// Empty for fewer than two runs. Runs whose trace has no lines are fitted on, but not judged. Deterministic.
+/// `logs`: logged times that every fit takes beside the traces.
 std::vector<HeldOutRun> leave_one_out(std::vector<FeedRun> runs, const machine::Machine& start,
-                                      const FitFeedOptions& options);
+                                      const FitFeedOptions& options, const std::vector<StretchRun>& logs = {});
 
 }  // namespace camber::calib

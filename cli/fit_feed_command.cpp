@@ -41,7 +41,7 @@ struct Runs {
   std::vector<calib::FeedRun> servo;
   std::vector<calib::StretchRun> stretches;  ///< one for each program; empty where all traces are servo traces
 
-  /// Servo traces that tell which line they command: of these the fit of the limits takes block by block.
+  /// Whether a servo trace tells which line it commands, so that the limits can be fitted block by block.
   bool any_lines() const {
     return std::any_of(servo.begin(), servo.end(), [](const calib::FeedRun& run) { return !run.trace.line.empty(); });
   }
@@ -355,7 +355,7 @@ int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options
   const int status = finish(result, result.machine, arguments, options);
   if (!arguments.leave_one_out) return status;
   progress.show("leaving out one after the other");
-  const auto left_out = calib::leave_one_out(runs.servo, start, {});
+  const auto left_out = calib::leave_one_out(runs.servo, start, {}, runs.stretches);
   progress.clear();
   print(left_out);
   return status;
