@@ -70,6 +70,7 @@ class PlaneJudge {
               q.tip.x() < to())
             read.push_back(q);
         }
+        while (!p_.pitch_deg.empty() && read.size() % p_.pitch_deg.size() != 0) read.pop_back();  // whole turns
       }
     }
     f.chips_of_surface = chips / before.volume_above(bent);
