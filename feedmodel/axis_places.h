@@ -13,7 +13,16 @@ namespace camber::feedmodel {
 /// change position until it is taken to another coordinate, and again after G28, G30 or G53 (which take it to 0).
 class AxisPlaces {
  public:
-  explicit AxisPlaces(const machine::ToolChange& change) : home_{change.x_mm, change.y_mm, change.z_mm} {}
+  explicit AxisPlaces(const machine::Machine& machine) {
+    const machine::ToolChange& change = machine.tool_change;
+    home_.fill(Vec3(change.x_mm, change.y_mm, change.z_mm));
+    for (std::size_t k = 0; k < machine.reference_points.size(); ++k) {
+      const machine::ReferencePoint& point = machine.reference_points[k];
+      const Vec3 given(point.x_mm, point.y_mm, point.z_mm);
+      for (int i = 0; i < 3; ++i)
+        if (std::isfinite(given[i])) home_[k + 1][i] = given[i];
+    }
+  }
 
   /// The way that the axes go in this move: axes that stand at, or go to, a place that is not known count for nothing.
   struct Way {
@@ -31,11 +40,17 @@ class AxisPlaces {
       const auto axis = static_cast<std::size_t>(i);
       const bool stays = move.start_mm[i] == move.end_mm[i];
       const bool was_home = at_home_[axis];
-      if (!stays) at_home_[axis] = move.end_mm[i] == 0.0;
+      const double old_home = home_[point_[axis]][i];
+      const bool goes = (move.reference_axes >> i & 1) != 0;
+      if (!stays || goes) {
+        at_home_[axis] = move.end_mm[i] == 0.0;
+        point_[axis] = move.reference_point;
+      }
       if (!was_home && !at_home_[axis]) continue;
-      const bool known = std::isfinite(home_[i]);
-      if (was_home) way.from_mm[i] = known ? home_[i] : way.to_mm[i];
-      if (at_home_[axis]) way.to_mm[i] = known ? home_[i] : way.from_mm[i];
+      const double home = home_[point_[axis]][i];
+      const bool known = std::isfinite(was_home ? old_home : home) && std::isfinite(home);
+      if (was_home) way.from_mm[i] = known ? old_home : way.to_mm[i];
+      if (at_home_[axis]) way.to_mm[i] = known ? home : way.from_mm[i];
       way.complete = way.complete && (known || stays);
     }
     at_mm_ = way.to_mm;
@@ -46,12 +61,13 @@ class AxisPlaces {
   Vec3 way_to_change() const {
     Vec3 way = Vec3::Zero();
     for (int i = 0; i < 3; ++i)
-      if (std::isfinite(home_[i]) && !at_home_[static_cast<std::size_t>(i)]) way[i] = home_[i] - at_mm_[i];
+      if (std::isfinite(home_[0][i]) && !at_home_[static_cast<std::size_t>(i)]) way[i] = home_[0][i] - at_mm_[i];
     return way;
   }
 
  private:
-  Vec3 home_;
+  std::array<Vec3, 4> home_;             ///< tool change position and first reference point, then the other points
+  std::array<std::uint8_t, 3> point_{};  ///< at which an axis stands, where it is at home
   std::array<bool, 3> at_home_{true, true, true};
   Vec3 at_mm_ = Vec3::Zero();
 };

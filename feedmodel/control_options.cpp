@@ -42,6 +42,7 @@ nc::InterpreterOptions interpreter_options(const machine::Machine& machine, std:
 nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given) {
   given.dialect = dialect_of(machine.control.kind);
   given.dwell_p_is_ms = given.dialect->dwell_p_is_ms;
+  for (int i = 0; i < 3; ++i) given.single_direction_mm[i] = machine.axis[i].g60_mm;
   return given;
 }
 

@@ -38,7 +38,7 @@ class CycleClock {
   CycleClock(const nc::Interpretation& program, const machine::Machine& machine)
       : program_(program),
         machine_(machine),
-        places_(machine.tool_change),
+        places_(machine),
         rapid_speed_(rapid_speeds_mm_per_s(machine)),
         rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)) {}
 

@@ -24,7 +24,7 @@ void add_plan(const MotionPlan& plan, MotionTimes& out) {
 
 void count_positionings(const nc::Interpretation& program, const machine::Machine& machine, MotionTimes& out) {
   const Vec3 speed = rapid_speeds_mm_per_s(machine), acceleration = rapid_accelerations_mm_per_s2(machine);
-  AxisPlaces places(machine.tool_change);
+  AxisPlaces places(machine);
   for (const nc::Move& move : program.moves) {
     const AxisPlaces::Way way = places.pass(move);
     out.unplaced_moves += !way.complete;

@@ -120,7 +120,7 @@ class Builder {
         rapid_velocity_(rapid_speeds_mm_per_s(machine)),
         rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)),
         feed_factor_(machine.cycle.feed_override_percent / 100.0),
-        places_(machine.tool_change) {}
+        places_(machine) {}
 
   void run() {
     const auto& moves = program_.moves;
@@ -179,6 +179,8 @@ class Builder {
     s.axes_apart = true;
     s.way_mm = way.to_mm - way.from_mm;
     s.axis_speed_mm_per_s = rapid_velocity_;
+    if (program_.moves[move].creeps)
+      s.axis_speed_mm_per_s = rapid_velocity_.cwiseMin(machine_.cycle.creep_feed_mm_per_s);
     s.axis_acceleration_mm_per_s2 = rapid_acceleration_;
     s.feed_command_mm_per_s = limit_along(s.along, rapid_velocity_);
     s.move = static_cast<std::uint32_t>(move);
@@ -228,6 +230,7 @@ class Builder {
     s.feed_command_mm_per_s = s.cutting ? feed : s.speed_limit_mm_per_s;
     s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, block_time_speed(s.length_mm, e.settings->block_time_s));
     if (s.cutting) s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, feed);
+    if (move.creeps) s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, machine_.cycle.creep_feed_mm_per_s);
     if (e.taps) limit_to_spindle(s, program_.state_of(move).spindle_speed_rpm);
   }
 

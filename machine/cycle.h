@@ -44,16 +44,26 @@ struct Cycle {
   double t_code_s = 0;           ///< each T
   double histogram_step_mm = 0;  ///< of the histograms of G0 and G1 distances; 0: uneven steps, finer for short ones
   double pallet_change_s = 0;    ///< M60
+  /// Speed of the last way of G60, where the rapids are faster.
+  double creep_feed_mm_per_s = std::numeric_limits<double>::infinity();
 };
 
 struct ToolChange {
   double chip_to_chip_s = 0;  ///< all of it but the start of the spindle; 0: the sum of the parts below
   double tool_to_tool_s = 0;
-  /// Where tools are changed, in the program's coordinates; G28 and G30 go there too. inf: not known, counts for
-  /// nothing.
+  /// Where tools are changed, in the program's coordinates; G28 goes there too, and G30 where its point is not given.
+  /// inf: not known, counts for nothing.
   double x_mm = std::numeric_limits<double>::infinity();
   double y_mm = std::numeric_limits<double>::infinity();
   double z_mm = std::numeric_limits<double>::infinity();
+};
+
+/// A reference point of G30 P2, P3, P4, in the program's coordinates. inf: as the tool change position.
+struct ReferencePoint {
+  double x_mm = std::numeric_limits<double>::infinity();
+  double y_mm = std::numeric_limits<double>::infinity();
+  double z_mm = std::numeric_limits<double>::infinity();
+  bool operator==(const ReferencePoint&) const = default;
 };
 
 /// An index table that turns about B.

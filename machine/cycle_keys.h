@@ -33,6 +33,7 @@ inline constexpr std::array kCycleKeys{
     NumberKey<Cycle>{"t_code_s", &Cycle::t_code_s, kNotNegative},
     NumberKey<Cycle>{"histogram_step_mm", &Cycle::histogram_step_mm, kNotNegative},
     NumberKey<Cycle>{"pallet_change_s", &Cycle::pallet_change_s, kNotNegative},
+    NumberKey<Cycle>{"creep_feed_mm_per_min", &Cycle::creep_feed_mm_per_s, kPositiveOrInf, kPerMinute},
 };
 
 inline constexpr std::array kToolChangeKeys{
@@ -41,6 +42,14 @@ inline constexpr std::array kToolChangeKeys{
     NumberKey<ToolChange>{"x_mm", &ToolChange::x_mm, kAnyNumberOrInf},
     NumberKey<ToolChange>{"y_mm", &ToolChange::y_mm, kAnyNumberOrInf},
     NumberKey<ToolChange>{"z_mm", &ToolChange::z_mm, kAnyNumberOrInf},
+};
+
+inline constexpr std::array<std::string_view, 3> kReferencePointNames{"2", "3", "4"};
+
+inline constexpr std::array kReferencePointKeys{
+    NumberKey<ReferencePoint>{"x_mm", &ReferencePoint::x_mm, kAnyNumberOrInf},
+    NumberKey<ReferencePoint>{"y_mm", &ReferencePoint::y_mm, kAnyNumberOrInf},
+    NumberKey<ReferencePoint>{"z_mm", &ReferencePoint::z_mm, kAnyNumberOrInf},
 };
 
 inline constexpr std::array kIndexKeys{

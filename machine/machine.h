@@ -73,6 +73,7 @@ struct Axis {
   double acceleration_mm_per_s2 = kNoLimit;
   double rapid_mm_per_s = kNoLimit;                ///< of G0, where it is lower than max_velocity
   double rapid_acceleration_mm_per_s2 = kNoLimit;  ///< of G0; infinity: the same as acceleration
+  double g60_mm = 0;  ///< last way of G60, with its sign: an axis always comes to its place in that direction
   double jerk_mm_per_s3 = kNoLimit;
   double filter_s = 0;                              ///< moving average after interpolation; 0: none
   double exponential_1_s = 0, exponential_2_s = 0;  ///< first-order lags after interpolation (Yan & Shirase); 0: none
@@ -114,6 +115,7 @@ struct Machine {
   Spindle spindle;
   Cycle cycle;
   ToolChange tool_change;
+  std::array<ReferencePoint, 3> reference_points;  ///< second to fourth
   IndexTable index;
   FittedRange fitted_range;
   std::vector<std::string> translation;  ///< of [source]: a line for each native parameter

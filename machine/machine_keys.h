@@ -17,6 +17,7 @@ inline constexpr NumberRange kArcShare{.min = 0, .max = 100, .above_min = true};
 inline constexpr NumberRange kPeriodMs{.min = 0, .max = 1000, .above_min = true};
 inline constexpr NumberRange kPercent{.min = 0, .max = 100};
 inline constexpr NumberRange kMinIncrementMm{.min = 1e-6, .max = 0.1};
+inline constexpr NumberRange kG60Mm{.min = -1000, .max = 1000};
 inline constexpr NumberRange kBlockCount{.min = 0, .max = 1e6, .whole = true};
 
 /// Parameter sets of a control, by what selects them; the first that a program's codes select counts.
@@ -76,6 +77,7 @@ inline constexpr std::array kAxisKeys{
     NumberKey<Axis>{"stiffness_N_per_um", &Axis::stiffness_N_per_mm, kPositiveOrInf, kNewtonsPerMicrometre},
     NumberKey<Axis>{"rapid_mm_per_min", &Axis::rapid_mm_per_s, kPositiveOrInf, kPerMinute},
     NumberKey<Axis>{"rapid_acceleration_mm_per_s2", &Axis::rapid_acceleration_mm_per_s2, kPositiveOrInf},
+    NumberKey<Axis>{"g60_mm", &Axis::g60_mm, kG60Mm},
     NumberKey<Axis>{"max_feed_mm_per_min", &Axis::max_feed_mm_per_s, kPositiveOrInf, kPerMinute},
 };
 

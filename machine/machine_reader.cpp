@@ -139,6 +139,15 @@ void read_fitted_range(TomlTable table, FittedRange& range) {
   table.finish();
 }
 
+void read_reference_points(TomlTable table, Machine& machine) {
+  for (std::size_t i = 0; i < kReferencePointNames.size(); ++i)
+    if (auto point = table.table(kReferencePointNames[i])) {
+      read_numbers<ReferencePoint>(*point, kReferencePointKeys, machine.reference_points[i]);
+      point->finish();
+    }
+  table.finish();
+}
+
 }  // namespace
 
 Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
@@ -164,6 +173,7 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
     read_numbers<ToolChange>(*change, kToolChangeKeys, machine.tool_change);
     change->finish();
   }
+  if (auto points = top.table("reference_point")) read_reference_points(*points, machine);
   if (auto index = top.table("index")) {
     machine.index.present = true;
     read_numbers<IndexTable>(*index, kIndexKeys, machine.index);

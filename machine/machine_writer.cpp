@@ -74,6 +74,10 @@ std::string to_toml(const Machine& machine) {
   out += "\n[spindle]\n" + toml_lines<Spindle>(kSpindleKeys, machine.spindle);
   out += cycle_text(machine.cycle);
   out += "\n[tool_change]\n" + toml_lines<ToolChange>(kToolChangeKeys, machine.tool_change);
+  for (std::size_t i = 0; i < machine.reference_points.size(); ++i)
+    if (const ReferencePoint& point = machine.reference_points[i]; point != ReferencePoint{})
+      out += fmt::format("\n[reference_point.{}]\n", kReferencePointNames[i]) +
+             toml_lines<ReferencePoint>(kReferencePointKeys, point);
   if (machine.index.present) out += "\n[index]\n" + toml_lines<IndexTable>(kIndexKeys, machine.index);
   out += fitted_range_text(machine.fitted_range);
   return out;

@@ -17,6 +17,9 @@ void for_each_table(Machine& machine, const Visit& visit) {
   visit(std::string("spindle"), std::span(kSpindleKeys), machine.spindle);
   visit(std::string("cycle"), std::span(kCycleKeys), machine.cycle);
   visit(std::string("tool_change"), std::span(kToolChangeKeys), machine.tool_change);
+  for (std::size_t i = 0; i < machine.reference_points.size(); ++i)
+    visit(fmt::format("reference_point.{}", kReferencePointNames[i]), std::span(kReferencePointKeys),
+          machine.reference_points[i]);
   visit(std::string("index"), std::span(kIndexKeys), machine.index);
 }
 

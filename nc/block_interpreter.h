@@ -69,6 +69,7 @@ class BlockInterpreter {
     const Word* reference_word = nullptr;
     Code frame_code{};  ///< a code whose words set a frame or an offset (G10, G52, G68 ...); no word: none
     bool return_from_reference = false;
+    bool single_direction = false;  ///< G60
   };
   /// Cutter radius compensation that is switched on.
   struct Radius {
@@ -155,6 +156,7 @@ class BlockInterpreter {
   Vec3 programmed_target();
   void read_spiral_words(ArcWords& arc);
   void read_spiral_turns(ArcWords& arc);
+  void position_in_one_direction();
   void prepare_cutting(char const* what);
   std::optional<double> cutting_feed(double length_mm, char const* g);
   std::optional<double> per_revolution_feed();

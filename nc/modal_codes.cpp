@@ -73,6 +73,7 @@ constexpr std::array kCodes = {
     Entry{591, {GGroup::work_offset}},
     Entry{592, {GGroup::work_offset}},
     Entry{593, {GGroup::work_offset}},
+    Entry{600, {GGroup::one_shot}},
     Entry{610, {GGroup::path_control}},
     Entry{611, {GGroup::path_control}},
     Entry{620, {GGroup::path_control}},

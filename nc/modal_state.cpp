@@ -146,6 +146,7 @@ bool BlockInterpreter::read_g_code(const Code& code, const GCode& meaning) {
         request_.reference_word = code.word;
       }
       request_.return_from_reference |= code.tenths == 290;
+      request_.single_direction |= code.tenths == 600;
       break;
     case GGroup::contouring:
       set_contouring(code);

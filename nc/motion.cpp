@@ -152,7 +152,32 @@ void BlockInterpreter::go_to_reference() {
     if (const auto& at = options_.reference_points_mm[point])
       settle_machine_axis(axis, (*at)[static_cast<Eigen::Index>(axis)], home);
   }
-  add_move(MoveKind::rapid, home);
+  Move& move = add_move(MoveKind::rapid, home);
+  move.reference_point = static_cast<std::uint8_t>(point & 3U);
+  for (unsigned axis = 0; axis < 3; ++axis)
+    if (none || goes[axis]) move.reference_axes = static_cast<std::uint8_t>((move.reference_axes | 1U << axis) & 7U);
+}
+
+/// G60: a rapid beyond or short of the place, a stop, and the last way always in the same direction.
+void BlockInterpreter::position_in_one_direction() {
+  check_unit();
+  if (motion_ != Motion::rapid && motion_ != Motion::none && motion_ != Motion::linear) {
+    error(words_.offset(), "single-direction", "G60 goes with G0 or G1; an arc or a cycle is active");
+    return;
+  }
+  const Vec3 end = target();
+  Vec3 before = end;
+  for (int axis = 0; axis < 3; ++axis)
+    if (words_.has(kAxisLetters[axis])) before[axis] -= options_.single_direction_mm[axis];
+  if (before != end) {
+    Move& first = add_move(MoveKind::rapid, before);
+    first.exact_stop = true;
+    first.editable = false;
+  }
+  Move& last = add_move(MoveKind::rapid, end);
+  last.creeps = before != end;
+  if (last.creeps) last.editable = false;
+  settle_axes();
 }
 
 void BlockInterpreter::go_in_machine_frame() {
@@ -175,6 +200,10 @@ void BlockInterpreter::go_in_machine_frame() {
 
 void BlockInterpreter::move() {
   const bool axes = words_.has_any("XYZ");
+  if (request_.single_direction && axes && cycle_.g == 0) {
+    position_in_one_direction();
+    return;
+  }
   if (cycle_.g != 0) {
     run_cycle();
     return;

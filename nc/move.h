@@ -66,7 +66,10 @@ struct Move {
   /// Part of a move to or from the reference point (G28, G30, G53) whose place in the work frame is not
   /// known: counts for nothing in material.
   bool reference : 1 = false;
-  bool canned : 1 = false;  ///< made by a drilling cycle: one of several moves of its block
+  std::uint8_t reference_point : 2 = 0;  ///< of a way to a reference point (G28, G30): 0 for the first, to 3
+  std::uint8_t reference_axes : 3 = 0;   ///< bit i: axis i goes to that point
+  bool creeps : 1 = false;               ///< the last way of G60
+  bool canned : 1 = false;               ///< made by a drilling cycle: one of several moves of its block
   /// The block's text says where the move goes, and says it for this move alone: it stands in the main program, is run
   /// once, and its words have numbers. Only the words of such a block may be changed. False in loops, in subprograms
   /// called more than once or from a file of their own, for expressions, under G41 and G42 and in polar coordinates.

@@ -123,6 +123,27 @@ TEST(CycleTime, TheWayToTheReferencePointIsCountedWhereItIsKnown) {
   EXPECT_NEAR(time.all.time.positioning_s, 4 * kLongRapid, 1e-9);
 }
 
+TEST(CycleTime, GoesToTheSecondToFourthReferencePointWhereTheyAreGiven) {
+  machine::Machine m = quick_machine();
+  m.tool_change = {.x_mm = 0, .y_mm = 0, .z_mm = 500};
+  m.reference_points[0] = {.z_mm = 200};
+  m.reference_points[1] = {.x_mm = 400};
+  const auto way_s = [&](const char* code) {
+    const std::string head = "G90 G0 X0 Y0 Z100\n";
+    return cycle_time(interpreted(head + "G91 " + code + "\n"), m).all.time.positioning_s -
+           cycle_time(interpreted(head), m).all.time.positioning_s;
+  };
+  const auto rest_to_rest_s = [](double mm) { return mm < 100 ? 2 * std::sqrt(mm / 2500) : mm / 500 + 0.2; };
+  EXPECT_NEAR(way_s("G28 Z0"), rest_to_rest_s(400), 1e-6);
+  EXPECT_NEAR(way_s("G30 Z0"), rest_to_rest_s(100), 1e-6);
+  EXPECT_NEAR(way_s("G30 P2 Z0"), rest_to_rest_s(100), 1e-6);
+  EXPECT_NEAR(way_s("G30 P3 X0"), rest_to_rest_s(400), 1e-6);
+  EXPECT_NEAR(way_s("G30 P4 Z0"), rest_to_rest_s(400), 1e-6);  // not given: the change position
+  // From the second point to the first, and back into the program.
+  EXPECT_NEAR(way_s("G30 Z0\nG28 Z0\nG90 G0 Z100"), rest_to_rest_s(100) + rest_to_rest_s(300) + rest_to_rest_s(400),
+              1e-6);
+}
+
 TEST(CycleTime, TappingHoldsTheSpindlesRunUpAndStopInEachStroke) {
   machine::Machine m = quick_machine();
   m.spindle.max_rpm = 12000;
@@ -142,6 +163,20 @@ TEST(CycleTime, TappingHoldsTheSpindlesRunUpAndStopInEachStroke) {
   EXPECT_NEAR(shallow, 2 * 2 * std::sqrt(1.2 * 0.24 / 20), 1e-5);
   m.spindle.start_time_s = 0;
   EXPECT_NEAR(cutting_s("G84.2"), 2 * (1.5 + 0.008), 1e-5);
+}
+
+TEST(CycleTime, ComesFromOneSideUnderG60) {
+  machine::Machine m = quick_machine();
+  nc::InterpreterOptions options;
+  options.single_direction_mm = Vec3(-1, 0, 0);
+  const auto time_s = [&](const char* text) {
+    return cycle_time(interpreted(text, options), m).all.time.positioning_s;
+  };
+  const double before = time_s("G90 G0 X0 Y0 Z0\n"), last_s = 2 * std::sqrt(1 / 2500.0);
+  EXPECT_NEAR(time_s("G90 G0 X0 Y0 Z0\nG60 X400\n") - before, 401 / 500.0 + 0.2 + last_s, 1e-6);
+  EXPECT_NEAR(time_s("G90 G0 X0 Y0 Z0\nG60 Y400\n") - before, kLongRapid, 1e-6);  // Y has no such way
+  m.cycle.creep_feed_mm_per_s = 10;
+  EXPECT_NEAR(time_s("G90 G0 X0 Y0 Z0\nG60 X400\n") - before, 401 / 500.0 + 0.2 + 1 / 10.0 + 10 / 2500.0, 1e-6);
 }
 
 TEST(CycleTime, AMachineWithoutLimitsTakesLengthOverFeed) {

@@ -35,6 +35,7 @@ std::string machine_message(std::string_view text) {
 TEST(CycleKeys, ReadsEveryInputInItsUnit) {
   const Machine m = machine_of(R"([axis.x]
 rapid_mm_per_min = 18000
+g60_mm = -0.5
 rapid_acceleration_mm_per_s2 = 3530
 [spindle]
 gd2_kgf_m2 = 0.1
@@ -60,6 +61,7 @@ m_code_s = 0.1
 s_code_s = 0.2
 t_code_s = 0.3
 pallet_change_s = 12
+creep_feed_mm_per_min = 15000
 [tool_change]
 chip_to_chip_s = 5.5
 tool_to_tool_s = 1.5
@@ -70,6 +72,8 @@ acceleration_deg_per_s2 = 360
 clamp_s = 0.4
 )");
   EXPECT_EQ(m.axis[0].rapid_mm_per_s, 300);
+  EXPECT_EQ(m.axis[0].g60_mm, -0.5);
+  EXPECT_EQ(m.cycle.creep_feed_mm_per_s, 250);
   EXPECT_EQ(m.axis[0].rapid_acceleration_mm_per_s2, 3530);
   EXPECT_EQ(m.spindle.gd2_kgf_m2, 0.1);
   EXPECT_EQ(m.spindle.constant_power_rpm, 6000);
@@ -178,6 +182,37 @@ TEST(Cases, TellsWhereACaseIsWrong) {
             "[case-set]\n"
             "    set = { \"spindle.max_rp\" = 9000 }\n"
             "                               ^");
+}
+
+TEST(CycleKeys, ReadsAndWritesReferencePointsTwoToFour) {
+  const Machine m =
+      machine_of("[axis.x]\n[reference_point.2]\nx_mm = -280\ny_mm = 0\nz_mm = 0\n[reference_point.4]\nz_mm = 7\n");
+  EXPECT_EQ(m.reference_points[0].x_mm, -280);
+  EXPECT_EQ(m.reference_points[1], ReferencePoint{});
+  EXPECT_EQ(m.reference_points[2].z_mm, 7);
+  const Machine again = machine_of(to_toml(m));
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(again.reference_points[k], m.reference_points[k]) << k;
+  Machine swept = m;
+  EXPECT_EQ(set_number(swept, "reference_point.3.y_mm", 50), "");
+  EXPECT_EQ(swept.reference_points[1].y_mm, 50);
+}
+
+TEST(CycleKeys, NamesWhatIsWrongWithThem) {
+  EXPECT_EQ(
+      machine_message("[axis.x]\ng60_mm = 2000\n"),
+      "m.toml:2:10: error: g60_mm is 2000; a number from -1000 to 1000 was expected [value-range]\n    g60_mm = 2000\n"
+      "             ^");
+  EXPECT_EQ(machine_message("[cycle]\ncreep_feed_mm_per_min = 0\n"),
+            "m.toml:2:25: error: creep_feed_mm_per_min is 0; a number greater than zero or inf was expected "
+            "[value-range]\n    "
+            "creep_feed_mm_per_min = 0\n                            ^");
+  EXPECT_EQ(machine_message("[reference_point.5]\nx_mm = 0\n"),
+            "m.toml:1:18: error: unknown key 5 in [reference_point]; did you mean 2? [key-unknown]\n    "
+            "[reference_point.5]\n                     ^");
+  EXPECT_EQ(
+      machine_message("[reference_point.2]\nw_mm = 0\n"),
+      "m.toml:2:1: error: unknown key w_mm in [reference_point.2]; did you mean x_mm? [key-unknown]\n    w_mm = 0\n"
+      "    ^");
 }
 
 }  // namespace
