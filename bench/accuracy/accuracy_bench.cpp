@@ -300,10 +300,25 @@ void shoulders() {
   }
 }
 
+/// Half as fine as the judge's own: a tenth of the time.
+bool coarse_judge = false;
+
+testing::JudgeSteps plane_steps() {
+  testing::JudgeSteps s;
+  if (coarse_judge) s.rotation_deg = 0.5, s.edge_mm = 0.04, s.grid_mm = 0.025, s.length_mm = 4.4;
+  return s;
+}
+
+testing::WallJudgeSteps wall_steps() {
+  testing::WallJudgeSteps s;
+  if (coarse_judge) s.rotation_deg = 0.5;
+  return s;
+}
+
 /// Static coupling of a ball on a plane, against the simulation in time.
 void static_plane(const std::string& name, testing::InclinedPlane p) {
   p.coupling = machine::Coupling::static_;
-  const auto want = testing::judged_figures(p);
+  const auto want = testing::judged_figures(p, plane_steps());
   const auto got = testing::camber_figures(p);
   const double mean = 100 * (got.mean_N - want.mean_N).norm() / want.mean_N.norm();
   std::printf(
@@ -359,7 +374,7 @@ void static_planes() {
 /// The same of a flat end mill along a wall and through a slot.
 void static_wall(const std::string& name, FinishedWall w) {
   w.coupling = machine::Coupling::static_;
-  const auto want = testing::judged_figures(w);
+  const auto want = testing::judged_figures(w, wall_steps());
   const auto got = testing::camber_figures(w);
   const double mean = 100 * (got.mean_N - want.mean_N).norm() / want.mean_N.norm();
   double largest = 0, worst = 0;
@@ -429,6 +444,7 @@ void judge() {
 
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
+  coarse_judge = argc > 2 && std::string(argv[2]) == "coarse";
   if (what == "plane") planes();
   if (what == "cutters") cutters();
   if (what == "uneven") uneven();
