@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -260,6 +261,7 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
 
 std::vector<double> planned_times_s(const TimedLines& data, const Machine& machine,
                                     const std::vector<feedmodel::SegmentTime>& segments) {
+  assert(data.program != nullptr);
   std::vector<double> times(data.parts.size(), 0.0);
   std::size_t i = 0;
   for (std::size_t p = 0; p < data.parts.size(); ++p) {
