@@ -192,7 +192,7 @@ int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostrea
   for (auto& d : in_order(found.all())) ordered.add(std::move(d));
   if (!command.json.empty()) write_file(command.json, check_json(command.program, checked.summary, ordered));
   if (!command.report.empty())
-    write_file(command.report, check_page(command, checked.summary, ordered, std::move(checked.picture)));
+    write_file(command.report, check_page(command, checked.summary, ordered, checked.picture));
   out << check_report(command.program, checked.summary, ordered);
   diagnostics.append(ordered);
   return 0;
