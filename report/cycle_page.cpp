@@ -8,7 +8,6 @@
 
 #include "base/numbers.h"
 #include "base/units.h"
-#include "report/page_parts.h"
 #include "report/page_tables.h"
 #include "report/path_card.h"
 
@@ -97,13 +96,7 @@ std::string cycle_page(const CyclePage& page) {
   assert(!page.rows.empty());
   assert(std::ranges::all_of(page.rows, [&](const CycleRow& row) { return row.values.size() >= page.keys.size(); }));
   const CycleTime& first = page.rows.front().time;
-  const std::string title = html_text(page.title);
-  std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  out += kPagePolicy;
-  out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  out +=
-      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);
-  out += fmt::format("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n<div class=\"tiles\">\n", title, html_text(page.subtitle));
+  std::string out = page_head(page.title, page.subtitle) + "<div class=\"tiles\">\n";
   const std::string of = page.rows.size() > 1 ? ", " + page.rows.front().name : "";
   out += tile("total time" + of, fmt::format("{:.1f} s", first.all.time.total_s()));
   out += tile("cutting", fmt::format("{:.1f} s", first.all.time.cutting_s));

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "report/page_parts.h"
+
 namespace camber::report {
 namespace {
 
@@ -144,6 +146,16 @@ std::string list_html(const std::string& title, const std::string& css_class, co
   std::string out = fmt::format("<div class=\"card {}\"><h2>{}</h2>\n<ul>\n", css_class, html_text(title));
   for (const auto& item : items) out += fmt::format("<li>{}</li>\n", html_text(item));
   return out + "</ul></div>\n";
+}
+
+std::string page_head(std::string_view page_title, std::string_view subtitle) {
+  const std::string title = html_text(page_title);
+  std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  out += kPagePolicy;
+  out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  out +=
+      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);
+  return out + fmt::format("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", title, html_text(subtitle));
 }
 
 }  // namespace camber::report

@@ -18,6 +18,8 @@ std::string script_safe(const std::string& json);
 /// A number of the page: `decimals` behind the point, a true minus sign; a dash where it is not finite.
 std::string number_text(double value, int decimals);
 
+/// A page from its first byte to the heading and the line below it.
+std::string page_head(std::string_view title, std::string_view subtitle);
 std::string tiles_html(const ReportData& data);
 std::string figures_html(const ReportData& data);
 std::string table_html(const TextTable& table);

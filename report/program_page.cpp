@@ -1,20 +1,11 @@
 #include "report/program_page.h"
 
-#include <fmt/format.h>
-
-#include "report/page_parts.h"
 #include "report/page_tables.h"
 
 namespace camber::report {
 
 std::string program_page(const ProgramPage& page) {
-  const std::string title = html_text(page.title);
-  std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  out += kPagePolicy;
-  out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  out +=
-      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);
-  out += fmt::format("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", title, html_text(page.subtitle));
+  std::string out = page_head(page.title, page.subtitle);
   ReportData figures;
   figures.figures = page.figures;
   ProgramCard path{"<div class=\"card\"><p class=\"missing\">The program moves nothing.</p></div>\n", ""};

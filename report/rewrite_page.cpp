@@ -10,7 +10,6 @@
 #include "base/numbers.h"
 #include "report/decimate.h"
 #include "report/packed_arrays.h"
-#include "report/page_parts.h"
 #include "report/page_tables.h"
 #include "report/path_card.h"
 
@@ -86,13 +85,7 @@ std::string shares_svg(const ShareHistogram& histogram) {
 }
 
 std::string rewrite_page(const RewritePage& page) {
-  const std::string title = html_text(page.title);
-  std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  out += kPagePolicy;
-  out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  out +=
-      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);
-  out += fmt::format("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", title, html_text(page.subtitle));
+  std::string out = page_head(page.title, page.subtitle);
   constexpr std::size_t kLarge = 3;
   ReportData figures, tiles;
   figures.figures = page.figures;

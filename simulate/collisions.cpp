@@ -169,7 +169,7 @@ class Search {
       const std::size_t end = run.from + run.count;
       for (std::size_t at = run.from; at < end && (at < last_needed_ || rapid != rapids_.end());) {
         for (; rapid != rapids_.end() && rapid->before_stamp <= at; ++rapid) feel_rapid(*rapid);
-        std::size_t to = stretch_end(run, at);
+        std::size_t to = level_stretch_end(job_.tools.at(run.tool), program_.path, run, at);
         if (rapid != rapids_.end()) to = std::min(to, std::max(at + 1, rapid->before_stamp));
         feel_stretch(run.tool, at, to);
         sweep(stock_, job_.tools.at(run.tool), std::span(program_.path.stamps).subspan(at, to - at),
@@ -226,22 +226,6 @@ class Search {
       if (const auto touch = feeler.touch(probe, s.pose.tip_mm, false))
         add({static_cast<Collision::Part>(touch->first), false, s.t_s, s.move, tool, touch->second});
     }
-  }
-
-  /// Within a stretch the tip rises and falls by less than half the flutes: what stands at the shank's height was not
-  /// for the cutter of the same stretch to remove.
-  std::size_t stretch_end(const removal::ToolRun& run, std::size_t from) const {
-    constexpr std::size_t kMax = 10000;
-    const double range = 0.5 * cutter_end_mm(job_.tools.at(run.tool));
-    const auto& stamps = program_.path.stamps;
-    double lo = stamps[from].pose.tip_mm.z(), hi = lo;
-    std::size_t to = from + 1;
-    for (; to < std::min(run.from + run.count, from + kMax); ++to) {
-      lo = std::min(lo, stamps[to].pose.tip_mm.z());
-      hi = std::max(hi, stamps[to].pose.tip_mm.z());
-      if (hi - lo > range) break;
-    }
-    return to;
   }
 
   void add(const Collision& c) {

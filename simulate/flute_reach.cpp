@@ -63,7 +63,7 @@ class Search {
     for (const auto& run : program_.path.runs) {
       const std::size_t end = std::min(run.from + run.count, last_needed);
       for (std::size_t at = run.from; at < end && said_.size() < kMaxLines;) {
-        const std::size_t to = stretch_end(run, at);
+        const std::size_t to = level_stretch_end(job_.tools.at(run.tool), program_.path, run, at);
         if (run.kind == removal::RunKind::milling) look_at(run.tool, at, to);
         sweep(stock_, job_.tools.at(run.tool), std::span(program_.path.stamps).subspan(at, to - at),
               static_cast<std::int32_t>(at), 0);
@@ -74,22 +74,6 @@ class Search {
 
  private:
   static constexpr std::size_t kMaxLines = 10;
-
-  /// Before the stretch is cut: what stands above the flutes there was not for its cutter to remove, as its tip rises
-  /// and falls by less than half of them.
-  std::size_t stretch_end(const removal::ToolRun& run, std::size_t from) const {
-    constexpr std::size_t kMax = 10000;
-    const double range = 0.5 * cutter_end_mm(job_.tools.at(run.tool));
-    const auto& stamps = program_.path.stamps;
-    double lo = stamps[from].pose.tip_mm.z(), hi = lo;
-    std::size_t to = from + 1;
-    for (; to < std::min(run.from + run.count, from + kMax); ++to) {
-      lo = std::min(lo, stamps[to].pose.tip_mm.z());
-      hi = std::max(hi, stamps[to].pose.tip_mm.z());
-      if (hi - lo > range) break;
-    }
-    return to;
-  }
 
   void look_at(int tool, std::size_t from, std::size_t to) {
     const UpperCylinder cylinder(job_.tools.at(tool), stock_);

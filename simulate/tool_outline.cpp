@@ -59,4 +59,18 @@ std::vector<OutlineRing> tool_outline(const machine::Tool& tool, double step, do
   return std::move(out.rings);
 }
 
+std::size_t level_stretch_end(const machine::Tool& tool, const removal::StampPath& path, const removal::ToolRun& run,
+                              std::size_t from) {
+  constexpr std::size_t kMax = 10000;
+  const double range = 0.5 * cutter_end_mm(tool);
+  double lo = path.stamps[from].pose.tip_mm.z(), hi = lo;
+  std::size_t to = from + 1;
+  for (; to < std::min(run.from + run.count, from + kMax); ++to) {
+    lo = std::min(lo, path.stamps[to].pose.tip_mm.z());
+    hi = std::max(hi, path.stamps[to].pose.tip_mm.z());
+    if (hi - lo > range) break;
+  }
+  return to;
+}
+
 }  // namespace camber::simulate
