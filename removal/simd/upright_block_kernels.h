@@ -18,6 +18,10 @@ struct BlockBounds {
   const float* bottom;  ///< height of the lowest of the points
   const float* reach;   ///< a voxel nearest to the centre with more than this tells that all points are in air, mm
   const float *nx, *ny, *nz, *spread;
+  /// Of blocks whose stamps are deflected, else null: the largest part of their normals that lies across the axis, and
+  /// their largest curvature, 1/mm.
+  const float *lateral = nullptr, *curvature = nullptr;
+  static constexpr float kLevel = 0.05f;  ///< below this lateral part a point counts as level: its envelope does not lean
 };
 
 /// Tiles with numbers. Tile number 0 is air, for what has none.
@@ -39,6 +43,9 @@ struct StampPlace {
   float feed_length_mm;
   float min_forward_mm;  ///< a block whose normals all go along the motion by less than this makes no chip
   float min_cap_mm;      ///< nor does a point whose motion allows no more than this; <= 0
+  float lateral_mm = 0;  ///< how much farther a deflected cutter's points may go into the material across the axis
+  float tilt_mm = 0;     ///< how much more it may, since its envelope leans
+  float slack_mm = 0;    ///< how far points may lie from where the block has them
 };
 
 /// Points whose chip the fields of the stamps around decide.

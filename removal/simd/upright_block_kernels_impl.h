@@ -4,6 +4,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "removal/field/rounded_cutter.h"
+#include "removal/simd/arena_lanes.h"
 #include "removal/simd/upright_block_kernels.h"
 #include "removal/simd/vector_table.h"
 
@@ -17,8 +18,9 @@ struct BlockVectors {
   using T = Table<A>;
   static constexpr int n = static_cast<int>(F::size);
   static constexpr int kSide = 17;  ///< Tile::kSide
-  static constexpr int kCoreBits = 4, kCore = 1 << kCoreBits;
+  static constexpr int kCoreBits = ArenaLanes<A>::kCoreBits, kCore = ArenaLanes<A>::kCore;
   static constexpr int kLanes = 8;
+  static constexpr float kLevel = BlockBounds::kLevel;
   static constexpr int kSquareBits = 2, kSquareShift = kCoreBits - kSquareBits;  ///< TopMap::kCellBits
 
   static F load(const float* p) { return F::load_unaligned(p); }
@@ -26,20 +28,15 @@ struct BlockVectors {
   static I to_int(const F& f) { return xsimd::batch_cast<std::int32_t>(f); }
   static F to_float(const I& i) { return xsimd::batch_cast<float>(i); }
 
-  /// Where voxels lie in the arena; outside it in the tile of air.
   static I cell_of(const StampPlace& s, const ArenaView& arena, const F& bx, const F& by, const F& bz) {
-    const I x = to_int(bx) + I(s.base[0]), y = to_int(by) + I(s.base[1]), z = to_int(bz) + I(s.base[2]);
-    const auto inside = (x >= I(0)) & (x < I(arena.n[0] * kCore)) & (y >= I(0)) & (y < I(arena.n[1] * kCore)) &
-                        (z >= I(0)) & (z < I(arena.n[2] * kCore));
-    const I tile = ((x >> kCoreBits) * I(arena.n[1]) + (y >> kCoreBits)) * I(arena.n[2]) + (z >> kCoreBits);
-    const I slot = xsimd::select(inside, T::gather(arena.slot, xsimd::select(inside, tile, I(0))), I(0));
-    const I last(kCore - 1);
-    return slot * I(arena.stride) + ((x & last) * I(kSide) + (y & last)) * I(kSide) + (z & last);
+    return ArenaLanes<A>::cell_of(s, arena, bx, by, bz);
   }
 
   static int find_blocks(const BlockBounds& b, const StampPlace& s, const ArenaView& arena, std::int32_t* out) {
     int found = 0;
     const F fx(s.feed_mm[0]), fy(s.feed_mm[1]), fz(s.feed_mm[2]), length(s.feed_length_mm), least(s.min_forward_mm);
+    const float most_mm = s.feed_length_mm + s.lateral_mm;  // between stamps, deflections and all
+    const F lateral(s.lateral_mm), tilt(s.tilt_mm), curving(0.5f * most_mm * most_mm), slack(s.slack_mm);
     const F per_voxel(s.per_voxel), half(0.5f), base_z(static_cast<float>(s.base[2]) + s.fraction[2]);
     const I squares_x(arena.n[0] << kSquareShift), squares_y(arena.n[1] << kSquareShift);
     constexpr int kAhead = 4;
@@ -52,7 +49,7 @@ struct BlockVectors {
     int count = 0;
     const auto take = [&](const Asked& a) {
       const F distance = T::gather(arena.distance, I::load_aligned(a.cell));
-      std::uint32_t bits = a.bits & T::bits(distance <= load(b.reach + a.first));
+      std::uint32_t bits = a.bits & T::bits(distance <= load(b.reach + a.first) + slack);
       for (int l = 0; bits != 0; bits >>= 1, ++l)
         if (bits & 1u) {
           out[found++] = a.first + l;
@@ -62,7 +59,11 @@ struct BlockVectors {
         }
     };
     for (int k = 0; k < b.count; k += n) {
-      const F into = fx * load(b.nx + k) + fy * load(b.ny + k) + fz * load(b.nz + k) + length * load(b.spread + k);
+      F into = fx * load(b.nx + k) + fy * load(b.ny + k) + fz * load(b.nz + k) + length * load(b.spread + k);
+      if (b.lateral) {
+        const F across = load(b.lateral + k);
+        into += lateral * across + curving * load(b.curvature + k) + xsimd::select(across < F(kLevel), F(0.0f), tilt);
+      }
       const auto forward = into > least;
       if (!xsimd::any(forward)) continue;
       const F gx = F(s.fraction[0]) + load(b.x + k) * per_voxel, gy = F(s.fraction[1]) + load(b.y + k) * per_voxel;
@@ -85,21 +86,6 @@ struct BlockVectors {
     }
     for (int i = count < kAhead ? 0 : count - kAhead; i < count; ++i) take(asked[i % kAhead]);
     return found;
-  }
-
-  /// Trilinear distance at a place in a cell.
-  static F field_at(const float* distance, const I& cell, const F& u, const F& v, const F& w) {
-    const auto along_z = [&](int i, int j) {
-      F a, b;
-      T::gather_pair(distance, cell + I((i * kSide + j) * kSide), a, b);
-      return a + w * (b - a);
-    };
-    const auto along_y = [&](int i) {
-      const F a = along_z(i, 0);
-      return a + v * (along_z(i, 1) - a);
-    };
-    const F a = along_y(0);
-    return a + u * (along_y(1) - a);
   }
 
   static void read_blocks(const BlockPoints& p, const std::int32_t* blocks, int count, const StampPlace& s,
@@ -129,7 +115,7 @@ struct BlockVectors {
         const F bx = xsimd::floor(gx), by = xsimd::floor(gy), bz = xsimd::floor(gz);
         const I cell = cell_of(s, arena, bx, by, bz);
         const F u = gx - bx, v = gy - by, w = gz - bz;
-        const F field = field_at(arena.distance, cell, u, v, w);
+        const F field = ArenaLanes<A>::field_at(arena.distance, cell, u, v, w);
         const F wall = load(p.wall_half + k), least = xsimd::max(cap, wall);
         const auto deep = forward & (-field > least);
         const auto near = forward & (-field <= least) & (field <= xsimd::max(F(air), wall));

@@ -3,6 +3,8 @@
 // the same operations in the same order whatever the width, so results do not depend on it.
 #include <cstdint>
 
+#include "removal/simd/upright_block_kernels.h"
+
 namespace camber::removal::upright {
 
 /// Lateral deflections of a stamp: [node][step][2], mm, as a row of DeflectionTable.
@@ -20,49 +22,37 @@ struct PointLanes {
   const std::int32_t *lower, *step;  ///< node below, rotation step
 };
 
-/// Where a stamp stands: the voxel below its tip is the origin of `fraction` and of TileView.
-struct StampView {
-  float fraction[3];  ///< of the tip in its voxel, voxels
-  float per_voxel;    ///< 1 / voxel_mm
-  float feed_mm[3];   ///< motion since the stamp before
+/// How a stamp's cutter is deflected.
+struct StampBend {
   DeflectionRow deflection;
   float lag_per_mm;
   float per_rad;      ///< rotation steps / (4 pi)
   float max_tilt_mm;  ///< of the deflected envelope, along the motion
-  float reach_mm;     ///< points whose motion allows more than -reach_mm are read
+  float reach_mm;     ///< points whose motion allows more than -reach_mm times their normal's lateral part are read
 };
 
-/// A tile's voxels.
-struct TileView {
-  const float* distance;
-  std::int32_t from[3];  ///< its first voxel, from the stamp's
-};
-
-/// What is told of each point.
+/// What is read at each point.
 struct LaneReading {
   static constexpr int kMax = 64;
   alignas(64) float cap[kMax];          ///< thickest chip that the motion allows, mm
-  alignas(64) float field[kMax];        ///< trilinear distance of the tile at the point, mm
+  alignas(64) float field[kMax];        ///< trilinear distance at the point, mm
   alignas(64) float fraction[3][kMax];  ///< of the point in its cell
-  alignas(64) std::int32_t cell[kMax];  ///< its cell's lowest voxel in the tile; -1: not in the tile, or no chip
+  alignas(64) std::int32_t cell[kMax];  ///< its cell's lowest voxel in the arena; -1: no chip
 };
 
-/// A point against the stamps whose fields meet in its cell.
-struct CornerLanes {
-  alignas(64) float tip[3][8];      ///< from the point, mm; out: with the deflection of a known row
-  alignas(64) float valid[8];       ///< 0: none
-  alignas(64) float deflection[8];  ///< how much farther out than that cutter's the surface lies there, mm
-  alignas(64) float known[8];       ///< 1: the stamp's deflections are in `rows`, else 0
-  alignas(64) std::int32_t row[8];  ///< there: first pair
-  float normal[3];
-  DeflectionRow rows;  ///< `now`: of many stamps; null: of none
-  float guess[2];      ///< of the deflections, mm
+/// Points, each against one of the stamps whose fields meet in its cell. The lists are read and written up to a
+/// multiple of 8.
+struct PairLanes {
+  int count;
+  float *x, *y, *z;                  ///< from the stamp's tip, mm; out: less the stamp's deflection there
+  const float *nx, *ny, *nz;         ///< normal of the point
+  const float *guess_x, *guess_y;    ///< of the deflection, mm; 0 where it is not known
+  const float* known;                ///< 1: the stamp's deflections are in `rows`, else 0
+  const std::int32_t* row;           ///< there: first pair
+  const float* farther;              ///< how much farther out than that cutter's the surface lies, mm
+  DeflectionRow rows;                ///< `now`: of many stamps; null: of none
   float lag_per_mm, steps_per_rad;
-};
-
-struct Thinnest {
-  float mm;
-  int corner;
+  float* thickness;                  ///< out, mm
 };
 
 /// A line of a tile's columns (removal/field/upright/column_cover.h), all with the same x, against a rounded cylinder.
@@ -116,11 +106,11 @@ struct LineResult {
 struct Kernels {
   int lanes;
   /// `count`: a multiple of 8, at most LaneReading::kMax.
-  void (*read_points)(const PointLanes& points, int from, int count, const StampView& stamp, const TileView& tile,
-                      LaneReading& out);
-  /// Thickness of what a rounded cylinder left at each corner's tip, along the normal: distance over slope, the slope
-  /// at least `min_slope`; the least of them and its corner, at most 0 where one has cut the point away.
-  Thinnest (*thinnest)(CornerLanes& corners, float flat, float corner, float min_slope);
+  void (*read_points)(const PointLanes& points, int from, int count, const StampPlace& stamp, const StampBend& bend,
+                      const ArenaView& arena, LaneReading& out);
+  /// Thickness of what a rounded cylinder left at a stamp, along the point's normal: distance over slope, the slope at
+  /// least `min_slope`; at most 0 where it has cut the point away.
+  void (*thin_pairs)(const PairLanes& pairs, float flat, float corner, float min_slope);
   /// stock = max(stock, -cutter), at most band; voxels that change take the id.
   LineResult (*cut_line)(const LineCut& line);
   LineResult (*cut_line_deflected)(const LineCut& line, const LineDeflection& deflection);

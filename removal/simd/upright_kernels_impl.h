@@ -7,6 +7,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "removal/field/rounded_cutter.h"
+#include "removal/simd/arena_lanes.h"
 #include "removal/simd/deflection_lanes.h"
 #include "removal/simd/upright_kernels.h"
 #include "removal/simd/vector_table.h"
@@ -20,7 +21,6 @@ struct Vectors {
   using I = xsimd::batch<std::int32_t, A>;
   static constexpr int n = static_cast<int>(F::size);
   static constexpr int kSide = 17;  ///< Tile::kSide
-  static constexpr int kCore = 16;
 
   static F load(const float* p) { return F::load_unaligned(p); }
   static I load(const std::int32_t* p) { return I::load_unaligned(p); }
@@ -36,8 +36,8 @@ struct Vectors {
     return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
   }
 
-  static void read_points(const PointLanes& p, int from, int count, const StampView& s, const TileView& tile,
-                          LaneReading& out) {
+  static void read_points(const PointLanes& p, int from, int count, const StampPlace& s, const StampBend& b,
+                          const ArenaView& arena, LaneReading& out) {
     const F zero(0.0f), one(1.0f);
     for (int l = 0; l < count; l += n) {
       const int k = from + l;
@@ -46,28 +46,28 @@ struct Vectors {
       const F cosine_phi = load(p.cos_phi + k), sine_phi = load(p.sin_phi + k);
       const F fx(s.feed_mm[0]), fy(s.feed_mm[1]), fz(s.feed_mm[2]);
       F mx = fx, my = fy, tilt = zero;
-      if (s.deflection.now) {
-        const I lower = load(p.lower + k), step = load(p.step + k), steps(s.deflection.steps);
+      if (b.deflection.now) {
+        const I lower = load(p.lower + k), step = load(p.step + k), steps(b.deflection.steps);
         const I lower_at = lower * steps;
-        const I upper_at = xsimd::min(lower + I(1), I(s.deflection.nodes - 1)) * steps;
+        const I upper_at = xsimd::min(lower + I(1), I(b.deflection.nodes - 1)) * steps;
         const F share = load(p.upper_fraction + k);
-        const Deflection low = at(s.deflection.now, lower_at, step), high = at(s.deflection.now, upper_at, step);
+        const Deflection low = at(b.deflection.now, lower_at, step), high = at(b.deflection.now, upper_at, step);
         const Deflection now{low.x + share * (high.x - low.x), low.y + share * (high.y - low.y)};
-        const Deflection before = between(s.deflection.before, lower_at, upper_at, share, step);
+        const Deflection before = between(b.deflection.before, lower_at, upper_at, share, step);
         // How much less the motion goes along the deflected envelope's normal than along n: n_bent = n - sum over the
         // surface directions e of e (d(deflection)/de . n).
         const I next = xsimd::select(step + I(1) == steps, I(0), step + I(1));
         const I last = xsimd::select(step == I(0), steps - I(1), step - I(1));
-        const Deflection ahead = between(s.deflection.now, lower_at, upper_at, share, next);
-        const Deflection behind = between(s.deflection.now, lower_at, upper_at, share, last);
-        const F by_angle = F(s.per_rad) * ((ahead.x - behind.x) * nx + (ahead.y - behind.y) * ny);
-        const F by_height = ((high.x - low.x) * nx + (high.y - low.y) * ny) / F(s.deflection.node_step_mm);
+        const Deflection ahead = between(b.deflection.now, lower_at, upper_at, share, next);
+        const Deflection behind = between(b.deflection.now, lower_at, upper_at, share, last);
+        const F by_angle = F(b.per_rad) * ((ahead.x - behind.x) * nx + (ahead.y - behind.y) * ny);
+        const F by_height = ((high.x - low.x) * nx + (high.y - low.y) * ny) / F(b.deflection.node_step_mm);
         const F sine = load(p.sine + k);
         const F around = cosine_phi * fy - sine_phi * fx;
         const F up = load(p.cosine + k) * (cosine_phi * fx + sine_phi * fy) + sine * fz;
-        tilt = around * by_angle * load(p.per_radius + k) + up * sine * (by_height - F(s.lag_per_mm) * by_angle);
-        tilt = xsimd::min(xsimd::max(tilt, F(-s.max_tilt_mm)), F(s.max_tilt_mm));
-        tilt = xsimd::select(sine < F(0.05f), zero, tilt);
+        tilt = around * by_angle * load(p.per_radius + k) + up * sine * (by_height - F(b.lag_per_mm) * by_angle);
+        tilt = xsimd::min(xsimd::max(tilt, F(-b.max_tilt_mm)), F(b.max_tilt_mm));
+        tilt = xsimd::select(sine < F(BlockBounds::kLevel), zero, tilt);
         x += now.x, y += now.y;
         mx += now.x - before.x, my += now.y - before.y;
       }
@@ -80,60 +80,47 @@ struct Vectors {
       const F gx = F(s.fraction[0]) + x * per_voxel, gy = F(s.fraction[1]) + y * per_voxel,
               gz = F(s.fraction[2]) + z * per_voxel;
       const F bx = xsimd::floor(gx), by = xsimd::floor(gy), bz = xsimd::floor(gz);
-      const I ix = to_int(bx) - I(tile.from[0]), iy = to_int(by) - I(tile.from[1]), iz = to_int(bz) - I(tile.from[2]);
-      const auto inside = (ix >= I(0)) & (ix < I(kCore)) & (iy >= I(0)) & (iy < I(kCore)) & (iz >= I(0)) &
-                          (iz < I(kCore)) & (to_int(xsimd::select(cap > F(-s.reach_mm), one, zero)) == I(1));
-      const I cell = xsimd::select(inside, (ix * I(kSide) + iy) * I(kSide) + iz, I(0));
+      // Across the axis alone a deflection brings a point nearer to the material.
+      const F lateral = xsimd::sqrt(nx * nx + ny * ny);
+      const auto forward = cap > -F(b.reach_mm) * lateral;
+      if (!xsimd::any(forward)) {
+        I(-1).store_unaligned(out.cell + l);
+        continue;
+      }
+      const I cell = ArenaLanes<A>::cell_of(s, arena, bx, by, bz);
       const F u = gx - bx, v = gy - by, w = gz - bz;
-      const auto d = [&](int i, int j, int m) {
-        return Table<A>::gather(tile.distance, cell + I((i * kSide + j) * kSide + m));
-      };
-      const auto along_z = [&](int i, int j) {
-        const F a = d(i, j, 0);
-        return a + w * (d(i, j, 1) - a);
-      };
-      const auto along_y = [&](int i) {
-        const F a = along_z(i, 0);
-        return a + v * (along_z(i, 1) - a);
-      };
-      const F a = along_y(0), field = a + u * (along_y(1) - a);
+      const F field = ArenaLanes<A>::field_at(arena.distance, cell, u, v, w);
       cap.store_unaligned(out.cap + l);
       field.store_unaligned(out.field + l);
       u.store_unaligned(out.fraction[0] + l), v.store_unaligned(out.fraction[1] + l),
           w.store_unaligned(out.fraction[2] + l);
-      xsimd::select(inside, cell, I(-1)).store_unaligned(out.cell + l);
+      xsimd::select(to_int(xsimd::select(forward, one, zero)) == I(1), cell, I(-1)).store_unaligned(out.cell + l);
     }
   }
 
-  static Thinnest thinnest(CornerLanes& c, float flat, float corner, float min_slope) {
-    alignas(64) float each[8];
+  static void thin_pairs(const PairLanes& p, float flat, float corner, float min_slope) {
     const F zero(0.0f), tiny(1e-12f);
     const RoundedCutter<F> cutter{F(flat), F(corner)};
-    for (int l = 0; l < 8; l += n) {
-      // From the tip to the point.
-      F x = -load(c.tip[0] + l), y = -load(c.tip[1] + l);
-      const F z = -load(c.tip[2] + l);
-      if (c.rows.now) {
-        const F known = load(c.known + l);
-        const Deflection guess{known * F(c.guess[0]), known * F(c.guess[1])};
-        const Deflection s = DeflectionLanes<A>::settled_at({flat, corner, c.lag_per_mm, c.steps_per_rad}, c.rows,
-                                                            load(c.row + l), x, y, z, guess);
+    for (int l = 0; l < p.count; l += n) {
+      F x = load(p.x + l), y = load(p.y + l);
+      const F z = load(p.z + l), nx = load(p.nx + l), ny = load(p.ny + l);
+      if (p.rows.now) {
+        const F known = load(p.known + l);
+        const Deflection guess{load(p.guess_x + l), load(p.guess_y + l)};
+        const Deflection s = DeflectionLanes<A>::settled_at({flat, corner, p.lag_per_mm, p.steps_per_rad}, p.rows,
+                                                            load(p.row + l), x, y, z, guess);
         x -= known * s.x, y -= known * s.y;
-        (-x).store_unaligned(c.tip[0] + l), (-y).store_unaligned(c.tip[1] + l);
+        x.store_unaligned(p.x + l), y.store_unaligned(p.y + l);
       }
       const F rho = xsimd::sqrt(x * x + y * y);
       const auto place = cutter.place(rho, z);
       const auto normal = cutter.normal(place);
-      const F depth = place.distance - load(c.deflection + l);
-      const F outward = (x * F(c.normal[0]) + y * F(c.normal[1])) / xsimd::max(rho, tiny);
-      const F fall = normal.radial * outward - normal.down * F(c.normal[2]);
+      const F depth = place.distance - load(p.farther + l);
+      const F outward = (x * nx + y * ny) / xsimd::max(rho, tiny);
+      const F fall = normal.radial * outward - normal.down * load(p.nz + l);
       const F slope = xsimd::min(xsimd::max(fall, F(min_slope)), F(1.0f));
-      xsimd::select(load(c.valid + l) > zero, depth / slope, F(1e30f)).store_aligned(each + l);
+      (depth / slope).store_unaligned(p.thickness + l);
     }
-    Thinnest least{each[0], 0};
-    for (int l = 1; l < 8; ++l)
-      if (each[l] < least.mm) least = {each[l], l};
-    return least;
   }
 
   /// Deflection of the envelope's point that is displaced to a place.
@@ -313,7 +300,7 @@ struct Vectors {
   }
 
   static constexpr Kernels table() {
-    return {n, &read_points, &thinnest, &cut_line, &cut_line_deflected, &cut_winners, &find_winners};
+    return {n, &read_points, &thin_pairs, &cut_line, &cut_line_deflected, &cut_winners, &find_winners};
   }
 };
 

@@ -109,37 +109,59 @@ TEST(Kernels, WideAndNarrowVectorsCutTheSameBits) {
   }
 }
 
+namespace {
+
+/// Points around a bull-nose cutter of 10 mm, some of stamps with deflections, some without.
+struct Pairs {
+  static constexpr int kCount = 27, kWhole = 32;
+  std::vector<float> x, y, z, nx, ny, nz, guess, known, farther, thickness = std::vector<float>(kWhole);
+  std::vector<std::int32_t> row = std::vector<std::int32_t>(kWhole, 0);
+  Bend bend{4, 60};
+
+  Pairs() {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> place(-1.0f, 1.0f);
+    for (int i = 0; i < kWhole; ++i) {
+      x.push_back(4.6f + 0.5f * place(random)), y.push_back(place(random)), z.push_back(1 + place(random));
+      const Vec3 normal = Vec3(0.8, 0.1 * static_cast<double>(place(random)), -0.5).normalized();
+      nx.push_back(static_cast<float>(normal.x())), ny.push_back(static_cast<float>(normal.y()));
+      nz.push_back(static_cast<float>(normal.z()));
+      guess.push_back(0), known.push_back(i % 3 == 0 ? 1.0f : 0.0f);
+      farther.push_back(known.back() > 0 ? 0.0f : 0.01f * place(random));
+    }
+  }
+  PairLanes lanes() {
+    return {kCount,      x.data(),     y.data(),       z.data(), nx.data(),      ny.data(),
+            nz.data(),   guess.data(), guess.data(),   known.data(), row.data(), farther.data(),
+            {bend.row.data(), nullptr, 4, 60, 1.5f},
+            0.1f,        19.1f,        thickness.data()};
+  }
+};
+
+}  // namespace
+
 TEST(Kernels, WideAndNarrowVectorsReadTheSameThicknesses) {
   if (!has_wide_vectors()) GTEST_SKIP() << "no AVX2 here";
-  std::mt19937 random(11);
-  std::uniform_real_distribution<float> place(-1.0f, 1.0f);
-  for (int n = 0; n < 200; ++n) {
-    CornerLanes c{};
-    for (int l = 0; l < 8; ++l) {
-      for (auto& axis : c.tip) axis[l] = place(random);
-      c.tip[2][l] += 3;
-      c.valid[l] = l == n % 8 || place(random) > 0 ? 1.0f : 0.0f;
-      c.deflection[l] = 0.01f * place(random);
-    }
-    c.normal[0] = 0.6f, c.normal[1] = 0, c.normal[2] = -0.8f;
-    EXPECT_EQ(kBaseKernels.thinnest(c, 3, 2, 0.25f).mm, kernels().thinnest(c, 3, 2, 0.25f).mm);
-  }
+  Pairs narrow, wide;
+  kBaseKernels.thin_pairs(narrow.lanes(), 3, 2, 0.25f);
+  kernels().thin_pairs(wide.lanes(), 3, 2, 0.25f);
+  EXPECT_EQ(narrow.thickness, wide.thickness);
+  EXPECT_EQ(narrow.x, wide.x);
 }
 
-TEST(Kernels, TheThinnestIsDistanceOverSlope) {
+TEST(Kernels, ThicknessIsDistanceOverSlope) {
   const CutterShape shape = bull();
-  CornerLanes c{};
-  const Vec3 normal = Vec3(0.6, 0.2, -0.7).normalized();
-  for (int a = 0; a < 3; ++a) c.normal[a] = static_cast<float>(normal[a]);
-  double thinnest = 1e9;
-  for (int l = 0; l < 8; ++l) {
-    const Vec3 tip(-4.9 - 0.02 * l, 0.1 * l, -1 + 0.01 * l);
-    for (int a = 0; a < 3; ++a) c.tip[a][l] = static_cast<float>(tip[a]);
-    c.valid[l] = l == 2 ? 0.0f : 1.0f;
-    c.deflection[l] = 0.001f * static_cast<float>(l);
-    const double slope = std::clamp(shape.gradient(-tip).dot(normal), 0.25, 1.0);
-    if (l != 2) thinnest = std::min(thinnest, (shape.distance_mm(-tip) - 0.001 * l) / slope);
+  for (const Kernels* kernel : {&kBaseKernels, &kernels()}) {
+    Pairs pairs;
+    const Pairs before = pairs;
+    kernel->thin_pairs(pairs.lanes(), 3, 2, 0.25f);
+    int moved = 0;
+    for (std::size_t i = 0; i < Pairs::kCount; ++i) {
+      const Vec3 from_tip(pairs.x[i], pairs.y[i], pairs.z[i]), normal(pairs.nx[i], pairs.ny[i], pairs.nz[i]);
+      const double fall = std::clamp(shape.gradient(from_tip).dot(normal), 0.25, 1.0);
+      EXPECT_NEAR(pairs.thickness[i], (shape.distance_mm(from_tip) - static_cast<double>(pairs.farther[i])) / fall, 1e-5);
+      moved += pairs.x[i] != before.x[i];
+    }
+    EXPECT_EQ(moved, 9);  // each third has a deflection
   }
-  for (const Kernels* kernel : {&kBaseKernels, &kernels()})
-    EXPECT_NEAR(kernel->thinnest(c, 3, 2, 0.25f).mm, thinnest, 1e-5);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Which chips the points of a patch take from a tile: the depth of the stock below them, and what the motion allows.
+// Which chips the points of patches take from the tiles: the depth of the stock below them, and what the motion allows.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -10,53 +10,67 @@
 #include "removal/engage/upright/bend_memory.h"
 #include "removal/engage/upright/patch_lanes.h"
 #include "removal/engagement.h"
-#include "removal/field/tile.h"
-#include "removal/stock.h"
+#include "removal/field/cell.h"
+#include "removal/field/upright/tile_arena.h"
 #include "removal/tool_path.h"
 
 namespace camber::removal::upright {
 
-/// A tile as it stands, and as the blank was there; null where the blank is solid all over.
-struct TileStocks {
-  const Tile* now = nullptr;
-  const float* blank = nullptr;
-};
-
 /// Reads for one stretch. How depth and chip are defined: removal/engagement.h.
 class ChipReader {
  public:
+  /// A shallow point, whose chip the fields of the stamps around decide.
+  struct Shallow {
+    std::uint32_t point;
+    std::uint8_t cut_255;
+    float cap_mm, limit_mm;  ///< what the motion allows; the largest depth that counts
+    float below_blank_mm;
+    CellShare share;    ///< in its cell
+    std::int32_t cell;  ///< in the arena
+    double up_mm;       ///< the place that is judged lies above the point
+    std::size_t first_pair;
+  };
+  /// What one thread needs; may be used for stamp after stamp.
+  struct Buffers {
+    std::vector<Shallow> shallow;
+    std::vector<float> x, y, z, nx, ny, nz, guess_x, guess_y, known, farther, thickness;
+    std::vector<std::int32_t> row;
+  };
+
   /// `all`: the stamps that ids in the stock count from `first_id`; `stamps`: those of the stretch. Rows of
   /// `deflections` are read as they stand; `memory` has those of stamps that were cut.
   ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
              std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections,
              const BendMemory& memory);
 
-  /// How much more than its motion allows a point of stamp k may take, since the stamp before was deflected otherwise
-  /// when it left the surface there, at another rotation step.
-  float reach_mm(std::size_t k) const;
-  /// Appends the chips that stamp k takes in this tile with the points of a patch. Points that the motion leads into
-  /// the material, or out of it by less than `reach_mm`, and that lie out of it by less than kNear_mm along the normal,
-  /// tell that by a negative thickness.
-  void read(const TileStocks& stocks, const Index3& tile, std::int32_t k, float reach_mm, std::uint32_t patch,
-            std::vector<DeflectedChipSample>& out) const;
+  /// Lists the patches that may take a chip at stamp k.
+  void find_patches(const TileArena& arena, std::size_t k, std::vector<std::int32_t>& out) const;
+  /// Appends the chips that stamp k takes with the points of these patches. Points that the motion leads into the
+  /// material, or that the deflection may, and that lie out of it by less than `near_mm` along the normal, say so by a
+  /// negative thickness.
+  void read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> patches, float near_mm,
+            Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
 
  private:
-  struct Cell;
-  /// What the kernels ask of a stamp, and the voxel from which it is told.
-  struct VoxelPlace {
-    StampView view;
-    Index3 base;
-  };
-  VoxelPlace place_of(std::size_t k) const;
   /// Of the stock below a point.
   struct Depth {
     float mm;
     std::array<float, 2> deeper;  ///< by a deflection in x and y
   };
-  /// `bend`: of the point itself.
-  Depth depth(const TileStocks& stocks, const Cell& cell, const Vec3& normal, const Vec2& deflection) const;
-  void place_corners(const TileStocks& stocks, const Cell& cell, CornerLanes& corners) const;
-  Thinnest thinnest_general(CornerLanes& corners) const;
+  /// A place and the stock around it.
+  struct Place;
+  float reach_mm(std::size_t k) const;
+  StampBend bend_of(std::size_t k) const;
+  void sort_points(const TileArena& arena, const LaneReading& reading, int first_lane, int count, float reach_mm,
+                   float near_mm, Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
+  bool place_in_ring(const TileArena& arena, float half_mm, Shallow& point) const;
+  void add_pairs(const TileArena& arena, const Stamp& stamp, Shallow& point, Buffers& buffers) const;
+  float farther_mm(const TileArena& arena, const Shallow& point, const Place& place,
+                   const std::array<std::int32_t, 8>& ids, std::int32_t id) const;
+  void thin_pairs(Buffers& buffers) const;
+  void thin_general(Buffers& buffers) const;
+  Depth depth(const TileArena& arena, const Shallow& point, std::size_t end_pair, const Buffers& buffers) const;
+  Vec3 normal(std::uint32_t point) const { return {envelope_.nx[point], envelope_.ny[point], envelope_.nz[point]}; }
 
   const EnvelopeGrid& envelope_;
   const PatchLanes& lanes_;
@@ -68,7 +82,6 @@ class ChipReader {
   const BendMemory& memory_;
   float node_step_mm_;
   const Kernels& kernels_;
-  std::vector<VoxelPlace> places_;   ///< of the stretch's stamps
   std::vector<float> wall_half_mm_;  ///< of the rings (removal/engage/upright/level_faces.h)
 };
 

@@ -1,12 +1,13 @@
 #include "removal/engage/upright/patch_lanes.h"
 
 #include <algorithm>
-
-#include "base/vector_clones.h"
+#include <cmath>
+#include <limits>
 
 namespace camber::removal::upright {
 
-PatchLanes::PatchLanes(const EnvelopeGrid& e, const std::vector<double>& node_height_mm) {
+PatchLanes::PatchLanes(const EnvelopeGrid& e, const std::vector<double>& node_height_mm, double voxel_mm,
+                       double band_mm) {
   std::vector<NodeWeight> weights(e.rings.size());
   if (!node_height_mm.empty())
     for (std::size_t r = 0; r < e.rings.size(); ++r)
@@ -34,27 +35,58 @@ PatchLanes::PatchLanes(const EnvelopeGrid& e, const std::vector<double>& node_he
       range.count += k < all;
     }
     range_.push_back(range);
-    normal_x_.push_back(static_cast<float>(patch.normal.x()));
-    normal_y_.push_back(static_cast<float>(patch.normal.y()));
-    normal_z_.push_back(static_cast<float>(patch.normal.z()));
-    normal_spread_.push_back(static_cast<float>(patch.normal_spread));
+    add_bounds(e, patch, voxel_mm, band_mm);
+  }
+  // What fills the last vector moves into nothing.
+  while (normal_x_.size() % kVector != 0) {
+    for (auto* v : {&centre_x_, &centre_y_, &centre_z_, &bottom_, &reach_, &normal_x_, &normal_y_, &normal_z_, &lateral_,
+                    &curvature_})
+      v->push_back(0);
+    normal_spread_.push_back(-1e9f);
   }
 }
 
-namespace {
-
-CAMBER_VECTOR_CLONES
-void along_normals(const float* nx, const float* ny, const float* nz, const float* spread, std::size_t count, float x,
-                   float y, float z, float length, float* __restrict out) {
-  for (std::size_t i = 0; i < count; ++i) out[i] = x * nx[i] + y * ny[i] + z * nz[i] + length * spread[i];
+void PatchLanes::add_bounds(const EnvelopeGrid& e, const EnvelopeGrid::Patch& patch, double voxel_mm, double band_mm) {
+  float bottom = std::numeric_limits<float>::infinity(), lateral = 0;
+  double curvature = 0;
+  for (int r = patch.ring_from; r < patch.ring_to; ++r) {
+    const auto& profile = e.rings[static_cast<std::size_t>(r)].profile;
+    curvature = std::max({curvature, profile.meridian_curvature_per_mm, profile.parallel_curvature_per_mm});
+    for (int i = patch.step_from; i < patch.step_to; ++i) {
+      const auto p = static_cast<std::size_t>(r) * static_cast<std::size_t>(e.steps) + static_cast<std::size_t>(i);
+      bottom = std::min(bottom, e.z[p]);
+      lateral = std::max(lateral, std::hypot(e.nx[p], e.ny[p]));
+      widest_mm_ = std::max(widest_mm_, (Vec2(e.x[p], e.y[p]) - patch.centre_from_tip.head<2>()).norm());
+    }
+  }
+  // From the voxel nearest to the centre; what the band does not reach across is never passed over.
+  const double reach = patch.radius_mm + 0.87 * voxel_mm;
+  reach_.push_back(reach < 0.999 * band_mm ? static_cast<float>(reach) : 1e9f);
+  bottom_.push_back(bottom);
+  lateral_.push_back(lateral);
+  curvature_.push_back(static_cast<float>(curvature));
+  centre_x_.push_back(static_cast<float>(patch.centre_from_tip.x()));
+  centre_y_.push_back(static_cast<float>(patch.centre_from_tip.y()));
+  centre_z_.push_back(static_cast<float>(patch.centre_from_tip.z()));
+  normal_x_.push_back(static_cast<float>(patch.normal.x()));
+  normal_y_.push_back(static_cast<float>(patch.normal.y()));
+  normal_z_.push_back(static_cast<float>(patch.normal.z()));
+  normal_spread_.push_back(static_cast<float>(patch.normal_spread));
 }
 
-}  // namespace
-
-void PatchLanes::motion_into(const Vec3& motion, std::vector<float>& out) const {
-  along_normals(normal_x_.data(), normal_y_.data(), normal_z_.data(), normal_spread_.data(), out.size(),
-                static_cast<float>(motion.x()), static_cast<float>(motion.y()), static_cast<float>(motion.z()),
-                static_cast<float>(motion.norm()), out.data());
+BlockBounds PatchLanes::bounds() const {
+  return {static_cast<int>(normal_x_.size()),
+          centre_x_.data(),
+          centre_y_.data(),
+          centre_z_.data(),
+          bottom_.data(),
+          reach_.data(),
+          normal_x_.data(),
+          normal_y_.data(),
+          normal_z_.data(),
+          normal_spread_.data(),
+          lateral_.data(),
+          curvature_.data()};
 }
 
 PointLanes PatchLanes::view() const {

@@ -14,7 +14,8 @@ class PatchLanes {
   static constexpr int kVector = 8;  ///< patches are filled up to whole vectors with copies of their last point
 
   /// `node_height_mm`: of the deflection tables that will be read; may be empty.
-  PatchLanes(const EnvelopeGrid& envelope, const std::vector<double>& node_height_mm);
+  /// `band_mm`, `voxel_mm`: of the stock that is read.
+  PatchLanes(const EnvelopeGrid& envelope, const std::vector<double>& node_height_mm, double voxel_mm, double band_mm);
 
   struct Range {
     int from = 0, count = 0;
@@ -22,12 +23,20 @@ class PatchLanes {
   Range range(std::uint32_t patch) const { return range_[patch]; }
   std::uint32_t point(int lane) const { return point_[static_cast<std::size_t>(lane)]; }
   PointLanes view() const;
-  /// Of each patch: how far a motion goes along its outward normals at most, mm. out.size(): the number of patches.
-  void motion_into(const Vec3& motion_mm, std::vector<float>& out) const;
+  /// The patches, filled up to whole vectors with some that are never found.
+  BlockBounds bounds() const;
+  /// How far seen from above a point of a patch lies from the patch's centre, at most.
+  double widest_mm() const { return widest_mm_; }
 
  private:
+  void add_bounds(const EnvelopeGrid& envelope, const EnvelopeGrid::Patch& patch, double voxel_mm, double band_mm);
+
   std::vector<Range> range_;
-  std::vector<float> normal_x_, normal_y_, normal_z_, normal_spread_;  ///< of the patches
+  double widest_mm_ = 0;
+  // Of the patches:
+  std::vector<float> centre_x_, centre_y_, centre_z_, bottom_, reach_;
+  std::vector<float> normal_x_, normal_y_, normal_z_, normal_spread_, lateral_, curvature_;
+  // Of the points:
   std::vector<std::uint32_t> point_;
   std::vector<float> x_, y_, z_, nx_, ny_, nz_, cos_phi_, sin_phi_, k1_, k2_, sine_, cosine_, per_radius_,
       upper_fraction_;
