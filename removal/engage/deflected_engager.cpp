@@ -49,8 +49,8 @@ struct DeflectedEngager::Impl {
   TileArena arena{};
   std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
   BendMemory memory{};
-  double removed_mm3 = 0;        ///< from tiles that were given back since the last commit
-  double max_deflection_mm = 0;  ///< of all stamps that were cut
+  double removed_mm3 = 0;               ///< from tiles that were given back since the last commit
+  double max_deflection_mm = 0;         ///< of all stamps that were cut
   std::vector<std::int32_t> patches{};  ///< that may take a chip
   std::vector<std::vector<DeflectedChipSample>> chips_of_group{};
   tbb::enumerable_thread_specific<ChipReader::Buffers> buffers{};

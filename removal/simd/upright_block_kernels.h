@@ -21,7 +21,8 @@ struct BlockBounds {
   /// Of blocks whose stamps are deflected, else null: the largest part of their normals that lies across the axis, and
   /// their largest curvature, 1/mm.
   const float *lateral = nullptr, *curvature = nullptr;
-  static constexpr float kLevel = 0.05f;  ///< below this lateral part a point counts as level: its envelope does not lean
+  static constexpr float kLevel =
+      0.05f;  ///< below this lateral part a point counts as level: its envelope does not lean
 };
 
 /// Tiles with numbers. Tile number 0 is air, for what has none.

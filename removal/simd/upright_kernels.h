@@ -44,15 +44,15 @@ struct LaneReading {
 /// multiple of 8.
 struct PairLanes {
   int count;
-  float *x, *y, *z;                  ///< from the stamp's tip, mm; out: less the stamp's deflection there
-  const float *nx, *ny, *nz;         ///< normal of the point
-  const float *guess_x, *guess_y;    ///< of the deflection, mm; 0 where it is not known
-  const float* known;                ///< 1: the stamp's deflections are in `rows`, else 0
-  const std::int32_t* row;           ///< there: first pair
-  const float* farther;              ///< how much farther out than that cutter's the surface lies, mm
-  DeflectionRow rows;                ///< `now`: of many stamps; null: of none
+  float *x, *y, *z;                ///< from the stamp's tip, mm; out: less the stamp's deflection there
+  const float *nx, *ny, *nz;       ///< normal of the point
+  const float *guess_x, *guess_y;  ///< of the deflection, mm; 0 where it is not known
+  const float* known;              ///< 1: the stamp's deflections are in `rows`, else 0
+  const std::int32_t* row;         ///< there: first pair
+  const float* farther;            ///< how much farther out than that cutter's the surface lies, mm
+  DeflectionRow rows;              ///< `now`: of many stamps; null: of none
   float lag_per_mm, steps_per_rad;
-  float* thickness;                  ///< out, mm
+  float* thickness;  ///< out, mm
 };
 
 /// A line of a tile's columns (removal/field/upright/column_cover.h), all with the same x, against a rounded cylinder.

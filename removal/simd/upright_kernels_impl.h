@@ -20,7 +20,8 @@ struct Vectors {
   using F = xsimd::batch<float, A>;
   using I = xsimd::batch<std::int32_t, A>;
   static constexpr int n = static_cast<int>(F::size);
-  static constexpr int kSide = 17;  ///< Tile::kSide
+  static constexpr int kSide = 17;     ///< Tile::kSide
+  static constexpr float kFarAir = 2;  ///< voxels: no cell with a surface in it reaches so far
 
   static F load(const float* p) { return F::load_unaligned(p); }
   static I load(const std::int32_t* p) { return I::load_unaligned(p); }
@@ -124,10 +125,10 @@ struct Vectors {
   }
 
   /// Deflection of the envelope's point that is displaced to a place.
-  static Deflection settled_at(const LineCut& c, const LineDeflection& b, const F& x, const F& y, const F& z) {
-    const F zero(0.0f);
+  static Deflection settled_at(const LineCut& c, const LineDeflection& b, const F& x, const F& y, const F& z,
+                               const Deflection& guess) {
     return DeflectionLanes<A>::settled_at({c.flat, c.corner, b.lag_per_mm, b.steps_per_rad}, b.deflection, I(0), x, y,
-                                          z, {zero, zero});
+                                          z, guess);
   }
 
   /// Calls f(first voxel of a vector) for all of a column from `low` up to `top`; the lowest vectors may overlap.
@@ -254,6 +255,22 @@ struct Vectors {
     }
   }
 
+  /// How far in the cutter places are: of the straight one, and at most of one that is deflected by `outwards` in their
+  /// direction and by no more than `largest` in any. A lateral deflection changes a distance by no more than the radial
+  /// part of its gradient; where that is 0, by nothing.
+  struct Inside {
+    F straight, most;
+  };
+  static Inside inside_of(const LineCut& c, const F& rho, const F& z, const F& outwards, const F& largest) {
+    const F zero(0.0f), one(1.0f);
+    const auto place = RoundedCutter<F>{F(c.flat), F(c.corner)}.place(rho, z);
+    const F at_most = place.outside + largest, a = xsimd::max(at_most, zero);
+    const F rounded = a / xsimd::max(xsimd::sqrt(a * a + place.below * place.below), F(1e-12f));
+    const F radial = xsimd::select(place.below > zero, xsimd::min(rounded * F(1.0001f), one),
+                                   xsimd::select(at_most < place.below, zero, one));
+    return {-place.distance, outwards * radial - place.distance};
+  }
+
   static LineResult cut_line_deflected(const LineCut& c, const LineDeflection& deflection) {
     LineResult result;
     const float per_voxel = 1 / c.voxel, dx2 = c.dx * c.dx;
@@ -261,6 +278,7 @@ struct Vectors {
     // How far a deflection moves the envelope outwards in each column; near the axis a deflection turns a place into
     // another direction.
     alignas(64) float slack[LineCut::kLine];
+    const F far_air(kFarAir * c.voxel + deflection.largest_mm);
     const F largest(deflection.largest_mm), axis_zone2(25 * deflection.largest_mm * deflection.largest_mm);
     for (int j = 0; j < LineCut::kLine; j += n) {
       const F dy = F(c.dy + static_cast<float>(j) * c.voxel) + steps;
@@ -280,19 +298,28 @@ struct Vectors {
       if (low >= top) continue;
       const F dy(y), rhos(rho), outwards(slack[j]);
       bool changed = false;
+      Deflection guess{F(0.0f), F(0.0f)};  // from vector to vector
       for_vectors(low, top, [&](int k) {
         float* stock = c.distance + j * LineCut::kColumns + k;
         const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
-        const F most = xsimd::min(outwards - distance(rhos, z, c.flat, c.corner), band);
+        const Inside inside = inside_of(c, rhos, z, outwards, largest);
+        const F most = xsimd::min(inside.most, band);
         const F old = load(stock);
-        if (!xsimd::any(most > old)) return;
+        const auto may = most > old;
+        if (!xsimd::any(may)) return;
         result.tried |= 1u << j;
-        const Deflection s = settled_at(c, deflection, dx, dy, z);
-        const F x = dx - s.x, yy = dy - s.y;
-        const F v = xsimd::min(-distance(xsimd::sqrt(x * x + yy * yy), z, c.flat, c.corner), band);
+        // Air that no surface is near only has to be known for air; where no deflection counts none is looked for.
+        const auto far = inside.straight > far_air;
+        const F known = xsimd::min(xsimd::select(far, inside.straight - largest, inside.straight), band);
+        F v = known;
+        if (xsimd::any(may & !(far | (inside.most <= inside.straight)))) {
+          guess = settled_at(c, deflection, dx, dy, z, guess);
+          const F x = dx - guess.x, yy = dy - guess.y;
+          v = xsimd::min(-distance(xsimd::sqrt(x * x + yy * yy), z, c.flat, c.corner), band);
+          v = xsimd::select(far, known, v);
+        }
         // Where the bound says no, rounding must not say yes.
-        changed |=
-            take(stock, c.stamp + j * LineCut::kColumns + k, xsimd::min(v, xsimd::select(most > old, v, old)), c.id);
+        changed |= take(stock, c.stamp + j * LineCut::kColumns + k, xsimd::min(v, xsimd::select(may, v, old)), c.id);
       });
       if (changed) result.changed |= 1u << j;
     }

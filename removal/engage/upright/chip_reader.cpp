@@ -78,8 +78,7 @@ void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std
       sort_points(arena, reading, range.from + from, count, bend.reach_mm, near_mm, b, out);
     }
   }
-  for (auto* v : {&b.x, &b.y, &b.z, &b.nx, &b.ny, &b.nz, &b.guess_x, &b.guess_y, &b.known, &b.farther}) v->clear();
-  b.row.clear();
+  make_room(b);
   for (Shallow& point : b.shallow) add_pairs(arena, stamps_[k], point, b);
   if (envelope_.shape.general)
     thin_general(b);
@@ -87,7 +86,7 @@ void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std
     thin_pairs(b);
   for (std::size_t i = 0; i < b.shallow.size(); ++i) {
     const Shallow& p = b.shallow[i];
-    const Depth below = depth(arena, p, i + 1 < b.shallow.size() ? b.shallow[i + 1].first_pair : b.x.size(), b);
+    const Depth below = depth(arena, p, i + 1 < b.shallow.size() ? b.shallow[i + 1].first_pair : b.pairs, b);
     if (below.mm <= -near_mm) continue;
     const float most = below.mm > p.limit_mm ? p.cap_mm : p.limit_mm;
     out.push_back({{p.point, std::min(below.mm, most), below.mm > kNearCap * p.cap_mm, false, p.cut_255},
@@ -160,40 +159,49 @@ bool ChipReader::place_in_ring(const TileArena& arena, float half_mm, Shallow& p
   const Place place(arena, p, voxel_mm_);
   const float* blank = arena.blank(place.tile);
   const auto half = static_cast<double>(half_mm);
-  const RingPart part = part_in_material(
-      {blank ? blank + place.in_tile : nullptr, arena.view().stamp + p.cell, p.share, place.point_mm, normal(p.point), half},
-      all_, first_id_, envelope_.shape, voxel_mm_);
+  const RingPart part = part_in_material({blank ? blank + place.in_tile : nullptr, arena.view().stamp + p.cell, p.share,
+                                          place.point_mm, normal(p.point), half},
+                                         all_, first_id_, envelope_.shape, voxel_mm_);
   p.cut_255 = part.cut_255(half);
   p.up_mm = part.middle_mm();
   return p.cut_255 > 0;
 }
 
+void ChipReader::make_room(Buffers& b) {
+  const std::size_t most = 8 * b.shallow.size() + PatchLanes::kVector;
+  b.pairs = 0;
+  if (b.x.size() >= most) return;
+  for (auto* v : {&b.x, &b.y, &b.z, &b.nx, &b.ny, &b.nz, &b.guess_x, &b.guess_y, &b.known, &b.farther, &b.thickness})
+    v->resize(most);
+  b.row.resize(most);
+}
+
 /// The stamps that a cell's corners name, with their deflections where they are known. Of the others each has the mean
 /// difference between the field and the straight cutter's, weighted as the corners.
 void ChipReader::add_pairs(const TileArena& arena, const Stamp& stamp, Shallow& p, Buffers& b) const {
-  p.first_pair = b.x.size();
+  p.first_pair = b.pairs;
   const Place place(arena, p, voxel_mm_);
   const std::int32_t* named = arena.view().stamp + p.cell;
-  const Vec3 n = normal(p.point);
   const Vec2 guess = place.point_mm.head<2>() - stamp.pose.tip_mm.head<2>() -
                      Vec2(static_cast<double>(envelope_.x[p.point]), static_cast<double>(envelope_.y[p.point]));
   std::array<std::int32_t, 8> ids;
   for (std::size_t c = 0; c < 8; ++c) ids[c] = named[cell_corner(static_cast<int>(c))] - first_id_;
   for (std::size_t c = 0; c < 8; ++c) {
-    if (ids[c] < 0 || std::find(ids.begin(), ids.begin() + c, ids[c]) != ids.begin() + c) continue;
-    const Vec3 tip = all_[static_cast<std::size_t>(ids[c])].pose.tip_mm, from_tip = place.point_mm - tip;
+    if (ids[c] < 0 || (c > 0 && ids[c] == ids[c - 1]) ||
+        std::find(ids.begin(), ids.begin() + c, ids[c]) != ids.begin() + c)
+      continue;
+    const std::size_t at = b.pairs++;
+    const Vec3 from_tip = place.point_mm - all_[static_cast<std::size_t>(ids[c])].pose.tip_mm;
     const bool known = memory_.knows(ids[c]);
-    b.x.push_back(static_cast<float>(from_tip.x()));
-    b.y.push_back(static_cast<float>(from_tip.y()));
-    b.z.push_back(static_cast<float>(from_tip.z()));
-    b.nx.push_back(static_cast<float>(n.x()));
-    b.ny.push_back(static_cast<float>(n.y()));
-    b.nz.push_back(static_cast<float>(n.z()));
-    b.guess_x.push_back(known ? static_cast<float>(guess.x()) : 0.0f);
-    b.guess_y.push_back(known ? static_cast<float>(guess.y()) : 0.0f);
-    b.known.push_back(known ? 1.0f : 0.0f);
-    b.row.push_back(known ? static_cast<std::int32_t>(memory_.at(ids[c]) / 2) : 0);
-    b.farther.push_back(known ? 0.0f : farther_mm(arena, p, place, ids, ids[c]));
+    b.x[at] = static_cast<float>(from_tip.x());
+    b.y[at] = static_cast<float>(from_tip.y());
+    b.z[at] = static_cast<float>(from_tip.z());
+    b.nx[at] = envelope_.nx[p.point], b.ny[at] = envelope_.ny[p.point], b.nz[at] = envelope_.nz[p.point];
+    b.guess_x[at] = known ? static_cast<float>(guess.x()) : 0.0f;
+    b.guess_y[at] = known ? static_cast<float>(guess.y()) : 0.0f;
+    b.known[at] = known ? 1.0f : 0.0f;
+    b.row[at] = known ? static_cast<std::int32_t>(memory_.at(ids[c]) / 2) : 0;
+    b.farther[at] = known ? 0.0f : farther_mm(arena, p, place, ids, ids[c]);
   }
 }
 
@@ -206,8 +214,7 @@ float ChipReader::farther_mm(const TileArena& arena, const Shallow& p, const Pla
   for (int c = 0; c < 8; ++c) {
     if (ids[static_cast<std::size_t>(c)] != id) continue;
     const Vec3 corner = place.corner_mm + voxel_mm_ * Vec3(c & 1, c >> 1 & 1, c >> 2 & 1);
-    const float difference =
-        distance[cell_corner(c)] + static_cast<float>(envelope_.shape.distance_mm(corner - tip));
+    const float difference = distance[cell_corner(c)] + static_cast<float>(envelope_.shape.distance_mm(corner - tip));
     const float w = corner_weight(c, p.share) + 1e-6f;
     weight += w;
     sum += w * difference;
@@ -216,27 +223,23 @@ float ChipReader::farther_mm(const TileArena& arena, const Shallow& p, const Pla
 }
 
 void ChipReader::thin_pairs(Buffers& b) const {
-  const int count = static_cast<int>(b.x.size());
-  const std::size_t whole = (b.x.size() + PatchLanes::kVector - 1) / PatchLanes::kVector * PatchLanes::kVector;
-  for (auto* v : {&b.x, &b.y, &b.z, &b.nx, &b.ny, &b.nz, &b.guess_x, &b.guess_y, &b.known, &b.farther, &b.thickness})
-    v->resize(whole);
-  b.row.resize(whole);
-  const bool any_known = std::ranges::find(b.known, 1.0f) != b.known.end();
+  const int count = static_cast<int>(b.pairs);
+  // What fills the last vector: anything, of a row that there is.
+  for (std::size_t i = b.pairs; i % PatchLanes::kVector != 0; ++i) b.row[i] = 0;
+  const bool any_known = std::find(b.known.begin(), b.known.begin() + count, 1.0f) != b.known.begin() + count;
   const DeflectionRow rows{any_known ? memory_.values() : nullptr, nullptr, static_cast<int>(deflections_.nodes()),
                            deflections_.steps, node_step_mm_};
-  kernels_.thin_pairs({count, b.x.data(), b.y.data(), b.z.data(), b.nx.data(), b.ny.data(), b.nz.data(),
-                       b.guess_x.data(), b.guess_y.data(), b.known.data(), b.row.data(), b.farther.data(), rows,
-                       static_cast<float>(envelope_.lag_per_mm), static_cast<float>(envelope_.steps / (2 * kPi)),
-                       b.thickness.data()},
-                      static_cast<float>(envelope_.shape.bottom_length_mm()),
-                      static_cast<float>(envelope_.shape.corner_radius_mm), kMinSlope);
-  for (auto* v : {&b.x, &b.y, &b.z}) v->resize(static_cast<std::size_t>(count));
+  kernels_.thin_pairs(
+      {count, b.x.data(), b.y.data(), b.z.data(), b.nx.data(), b.ny.data(), b.nz.data(), b.guess_x.data(),
+       b.guess_y.data(), b.known.data(), b.row.data(), b.farther.data(), rows, static_cast<float>(envelope_.lag_per_mm),
+       static_cast<float>(envelope_.steps / (2 * kPi)), b.thickness.data()},
+      static_cast<float>(envelope_.shape.bottom_length_mm()), static_cast<float>(envelope_.shape.corner_radius_mm),
+      kMinSlope);
 }
 
 /// As Kernels::thin_pairs, for any cutter.
 void ChipReader::thin_general(Buffers& b) const {
-  b.thickness.resize(b.x.size());
-  for (std::size_t i = 0; i < b.x.size(); ++i) {
+  for (std::size_t i = 0; i < b.pairs; ++i) {
     Vec3 from_tip(b.x[i], b.y[i], b.z[i]);
     if (b.known[i] > 0) {
       const Vec2 guess(b.guess_x[i], b.guess_y[i]);

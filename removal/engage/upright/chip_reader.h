@@ -33,6 +33,7 @@ class ChipReader {
   /// What one thread needs; may be used for stamp after stamp.
   struct Buffers {
     std::vector<Shallow> shallow;
+    std::size_t pairs = 0;  ///< of the lists below (PairLanes); they are longer
     std::vector<float> x, y, z, nx, ny, nz, guess_x, guess_y, known, farther, thickness;
     std::vector<std::int32_t> row;
   };
@@ -64,6 +65,7 @@ class ChipReader {
   void sort_points(const TileArena& arena, const LaneReading& reading, int first_lane, int count, float reach_mm,
                    float near_mm, Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
   bool place_in_ring(const TileArena& arena, float half_mm, Shallow& point) const;
+  static void make_room(Buffers& buffers);
   void add_pairs(const TileArena& arena, const Stamp& stamp, Shallow& point, Buffers& buffers) const;
   float farther_mm(const TileArena& arena, const Shallow& point, const Place& place,
                    const std::array<std::int32_t, 8>& ids, std::int32_t id) const;
