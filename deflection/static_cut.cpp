@@ -96,10 +96,11 @@ StaticCut::Passing StaticCut::cut(std::size_t k) {
     before_um = step.rms_um;
   }
   engager_.cut(k);
-  chips_.clear();
+  auto& chips = chips_[k % chips_.size()];
+  chips.clear();
   for (const removal::DeflectedChipSample& c : read_)
-    if (c.chip.thickness_mm > 0) chips_.push_back(c.chip);
-  out.chips = chips_;
+    if (c.chip.thickness_mm > 0) chips.push_back(c.chip);
+  out.chips = chips;
   return out;
 }
 

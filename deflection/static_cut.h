@@ -1,5 +1,6 @@
 #pragma once
 // The deflected cutter through the stock, each tooth passing in its static equilibrium before the next one.
+#include <array>
 #include <span>
 #include <vector>
 
@@ -46,7 +47,7 @@ class StaticCut {
     int rounds = 0;
     bool settled = true;
     NoEquilibrium reason = NoEquilibrium::swings;  ///< where it has not
-    std::span<const removal::ChipSample> chips;    ///< gone at the next call
+    std::span<const removal::ChipSample> chips;    ///< gone at the next call but one
   };
   /// Cuts stamps[from + k]. Where it finds no equilibrium, or one deflected beyond
   /// removal::DeflectedEngager::kMaxDeflection_mm, the cutter keeps the bend nearest to one, in the latter case that of
@@ -69,7 +70,7 @@ class StaticCut {
   std::size_t from_ = 0;
   removal::DeflectionTable* deflections_ = nullptr;
   std::vector<removal::DeflectedChipSample> read_;
-  std::vector<removal::ChipSample> chips_;
+  std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this passing and of the one before, in turns
   std::vector<float> swing_;  ///< the bend a few readings ago
 };
 

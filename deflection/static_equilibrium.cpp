@@ -194,6 +194,11 @@ void StaticEquilibrium::solve_coarse() {
     return out;
   };
   for (std::size_t m = 0; m + 1 < n; ++m) {
+    if (first_[m] == first_[m + 1]) {  // out of the cut
+      value[m] = right(m) / (1 + damping_[m]);
+      ahead[m].setZero(), border[m].setZero();
+      continue;
+    }
     const Coarse side = block(by_side_, m);
     Coarse own = (1 + damping_[m]) * Coarse::Identity() - block(by_own_, m);
     CoarseDeflection r = right(m);
@@ -207,10 +212,10 @@ void StaticEquilibrium::solve_coarse() {
     }
     Coarse a = -side;
     if (m + 2 == n) b += a, a.setZero();
-    const Eigen::PartialPivLU<Coarse> lu(own);
-    value[m] = lu.solve(r);
-    ahead[m] = lu.solve(a);
-    border[m] = lu.solve(b);
+    const Coarse inverse = own.inverse();
+    value[m] = inverse * r;
+    ahead[m] = inverse * a;
+    border[m] = inverse * b;
   }
   // The first step's deflection by the last one's.
   CoarseDeflection first_value = value[n - 2];

@@ -41,6 +41,9 @@ CutterShape shape_of(const machine::Tool& tool) {
 namespace {
 
 constexpr double kMaxTurn_rad = 0.06;  ///< of the profile's normal over one ring of a small corner
+/// A level bottom cuts where the tool descends, all of it alike: rings this wide, but for a few at its rim.
+constexpr double kBottom_mm = 0.5, kBottomOfRadius = 1.0 / 12;
+constexpr int kRimRings = 3;
 
 /// Cuts [from, to] in equal rings no wider than `step`.
 void add_rings(EnvelopeGrid& grid, double from, double to, double step) {
@@ -53,6 +56,8 @@ void add_rings(EnvelopeGrid& grid, double from, double to, double step) {
                           static_cast<float>(std::cos(p.normal_angle_rad))});
   }
 }
+
+bool is_level(const Profile::Piece& piece) { return !piece.arc && std::abs(piece.normal.x()) < 1e-12; }
 
 }  // namespace
 
@@ -71,7 +76,13 @@ EnvelopeGrid make_envelope(const machine::Tool& tool, double top_mm, double step
   for (const auto& piece : profile.pieces()) {
     const double to = piece.from_s_mm + piece.length_mm;
     const double step = piece.arc ? std::min(step_mm, kMaxTurn_rad * piece.radius_mm) : step_mm;
-    add_rings(grid, piece.from_s_mm, std::min(to, top), step);
+    double from = piece.from_s_mm;
+    if (const double wide = std::min(kBottom_mm, kBottomOfRadius * grid.shape.radius_mm), rim = to - kRimRings * step;
+        is_level(piece) && wide > step && rim > from && to <= top) {
+      add_rings(grid, from, rim, wide);
+      from = rim;
+    }
+    add_rings(grid, from, std::min(to, top), step);
     add_rings(grid, std::max(piece.from_s_mm, top), std::min(to, end), step);
   }
 

@@ -154,8 +154,8 @@ constexpr double kMaxTilt = 0.3;
 /// surface that the tooth before left: it is known better than the motion's allowance.
 constexpr float kBeyondCap = 2.0f;
 
-/// Points up to this far outside the material can be reported, with a negative thickness.
-constexpr float kMaxNear_mm = 0.1f;
+/// Points up to this far outside the material are reported, with a negative thickness.
+constexpr float kNear_mm = 0.1f;
 
 /// A chip sample of a deflected cutter, and its change with the deflection.
 struct DeflectedChipSample {
@@ -181,8 +181,8 @@ class DeflectedEngager {
   /// `deflections` is that of stamps[from + k]; it is read with its stamp and with the next one.
   void start(std::size_t from, std::size_t count, const DeflectionTable& deflections);
   /// Chips that stamps[from + k] takes after its predecessors were cut; valid until the next call. Points less than
-  /// `near_mm` (at most kMaxNear_mm) outside the material are among them, with a negative thickness.
-  std::span<const DeflectedChipSample> read(std::size_t k, float near_mm = kMaxNear_mm);
+  /// kNear_mm outside the material are among them, with a negative thickness.
+  std::span<const DeflectedChipSample> read(std::size_t k);
   void cut(std::size_t k);
   /// Writes all pending tiles to the stock. Returns the volume removed since the last commit, mm^3.
   double commit();

@@ -9,6 +9,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include "deflection/beam.h"
 #include "deflection/static_cut.h"
@@ -247,14 +248,18 @@ class Cutter {
                           run_out_);
     static_cut_->start(from, loads.size(), deflections);
     ToothPass pass;
+    tbb::task_group behind;  // the load of a tooth passing is summed up while the next one cuts
     for (std::size_t k = 0; k < loads.size(); ++k) {
       const Stamp& stamp = all[from + k];
       const auto passing = static_cut_->cut(k);
-      model_.evaluate(passing.chips, from + k, stamp.feed_per_tooth_mm, pass);
-      loads[k] = summarize(pass);
-      loads[k].chip_mm3 = removal::swept_chip_volume_mm3(envelope_, passing.chips, deflections,
-                                                         deflections.row(static_cast<std::ptrdiff_t>(k)));
-      keep_turn(passing.chips, stamp, from + k, result);
+      behind.wait();
+      behind.run([this, &loads, &pass, &stamp, &deflections, &result, chips = passing.chips, from, k] {
+        model_.evaluate(chips, from + k, stamp.feed_per_tooth_mm, pass);
+        loads[k] = summarize(pass);
+        loads[k].chip_mm3 = removal::swept_chip_volume_mm3(envelope_, chips, deflections,
+                                                           deflections.row(static_cast<std::ptrdiff_t>(k)));
+        keep_turn(chips, stamp, from + k, result);
+      });
       result.rounds_max = std::max(result.rounds_max, passing.rounds);
       if (!passing.settled) {
         if (settled_) ++result.unsettled;
@@ -265,6 +270,7 @@ class Cutter {
       }
       settled_ = passing.settled;
     }
+    behind.wait();
   }
 
   bool in_turn(std::size_t k) const {

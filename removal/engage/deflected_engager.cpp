@@ -104,8 +104,7 @@ void DeflectedEngager::start(std::size_t from, std::size_t count, const Deflecti
   m.reader.emplace(m.envelope, *m.lanes, m.all, m.stamps, m.first_id, m.stock.voxel_mm(), deflections, m.memory);
 }
 
-std::span<const DeflectedChipSample> DeflectedEngager::read(std::size_t k, float near_mm) {
-  assert(near_mm <= kMaxNear_mm);
+std::span<const DeflectedChipSample> DeflectedEngager::read(std::size_t k) {
   constexpr std::size_t kGroup = 32;  // patches that a thread reads at once
   Impl& m = *impl_;
   m.reader->find_patches(m.arena, k, m.patches);
@@ -114,8 +113,7 @@ std::span<const DeflectedChipSample> DeflectedEngager::read(std::size_t k, float
   tbb::parallel_for(std::size_t{0}, groups, [&](std::size_t g) {
     const std::size_t from = g * kGroup, count = std::min(kGroup, m.patches.size() - from);
     m.chips_of_group[g].clear();
-    m.reader->read(m.arena, k, std::span(m.patches).subspan(from, count), near_mm, m.buffers.local(),
-                   m.chips_of_group[g]);
+    m.reader->read(m.arena, k, std::span(m.patches).subspan(from, count), m.buffers.local(), m.chips_of_group[g]);
   });
   m.chips.clear();
   for (std::size_t g = 0; g < groups; ++g)

@@ -62,8 +62,8 @@ StampBend ChipReader::bend_of(std::size_t k) const {
           reach_mm(k)};
 }
 
-void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> patches, float near_mm,
-                      Buffers& b, std::vector<DeflectedChipSample>& out) const {
+void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> patches, Buffers& b,
+                      std::vector<DeflectedChipSample>& out) const {
   const StampPlace place = arena.place_of(stamps_[k], 0);
   const StampBend bend = bend_of(k);
   const ArenaView tiles = arena.view();
@@ -75,7 +75,7 @@ void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std
       const int count = std::min(range.count - from, LaneReading::kMax);
       const int whole = (count + PatchLanes::kVector - 1) / PatchLanes::kVector * PatchLanes::kVector;
       kernels_.read_points(view_, range.from + from, whole, place, bend, tiles, reading);
-      sort_points(arena, reading, range.from + from, count, bend.reach_mm, near_mm, b, out);
+      sort_points(arena, reading, range.from + from, count, bend.reach_mm, b, out);
     }
   }
   make_room(b);
@@ -87,7 +87,7 @@ void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std
   for (std::size_t i = 0; i < b.shallow.size(); ++i) {
     const Shallow& p = b.shallow[i];
     const Depth below = depth(arena, p, i + 1 < b.shallow.size() ? b.shallow[i + 1].first_pair : b.pairs, b);
-    if (below.mm <= -near_mm) continue;
+    if (below.mm <= -kNear_mm) continue;
     const float most = below.mm > p.limit_mm ? p.cap_mm : p.limit_mm;
     out.push_back({{p.point, std::min(below.mm, most), below.mm > kNearCap * p.cap_mm, false, p.cut_255},
                    below.mm,
@@ -98,7 +98,7 @@ void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std
 
 /// Deep points make their chips at once; air makes none.
 void ChipReader::sort_points(const TileArena& arena, const LaneReading& reading, int first_lane, int count,
-                             float reach_mm, float near_mm, Buffers& b, std::vector<DeflectedChipSample>& out) const {
+                             float reach_mm, Buffers& b, std::vector<DeflectedChipSample>& out) const {
   const float air = 0.5f * static_cast<float>(voxel_mm_);
   for (int l = 0; l < count; ++l) {
     if (reading.cell[l] < 0) continue;
@@ -130,7 +130,7 @@ void ChipReader::sort_points(const TileArena& arena, const LaneReading& reading,
       if (point.up_mm != 0)
         point.below_blank_mm -=
             static_cast<float>(point.up_mm * trilinear_gradient(lowest, point.share, voxel_mm_).z());
-      if (point.below_blank_mm <= -near_mm) continue;
+      if (point.below_blank_mm <= -kNear_mm) continue;
     }
     b.shallow.push_back(point);
   }

@@ -47,10 +47,10 @@ class ChipReader {
   /// Lists the patches that may take a chip at stamp k.
   void find_patches(const TileArena& arena, std::size_t k, std::vector<std::int32_t>& out) const;
   /// Appends the chips that stamp k takes with the points of these patches. Points that the motion leads into the
-  /// material, or that the deflection may, and that lie out of it by less than `near_mm` along the normal, say so by a
+  /// material, or that the deflection may, and that lie out of it by less than kNear_mm along the normal, say so by a
   /// negative thickness.
-  void read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> patches, float near_mm,
-            Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
+  void read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> patches, Buffers& buffers,
+            std::vector<DeflectedChipSample>& out) const;
 
  private:
   /// Of the stock below a point.
@@ -63,7 +63,7 @@ class ChipReader {
   float reach_mm(std::size_t k) const;
   StampBend bend_of(std::size_t k) const;
   void sort_points(const TileArena& arena, const LaneReading& reading, int first_lane, int count, float reach_mm,
-                   float near_mm, Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
+                   Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
   bool place_in_ring(const TileArena& arena, float half_mm, Shallow& point) const;
   static void make_room(Buffers& buffers);
   void add_pairs(const TileArena& arena, const Stamp& stamp, Shallow& point, Buffers& buffers) const;
