@@ -260,6 +260,7 @@ struct Vectors {
   /// part of its gradient; where that is 0, by nothing.
   struct Inside {
     F straight, most;
+    F radial;  ///< part of the gradient, at most
   };
   static Inside inside_of(const LineCut& c, const F& rho, const F& z, const F& outwards, const F& largest) {
     const F zero(0.0f), one(1.0f);
@@ -268,7 +269,7 @@ struct Vectors {
     const F rounded = a / xsimd::max(xsimd::sqrt(a * a + place.below * place.below), F(1e-12f));
     const F radial = xsimd::select(place.below > zero, xsimd::min(rounded * F(1.0001f), one),
                                    xsimd::select(at_most < place.below, zero, one));
-    return {-place.distance, outwards * radial - place.distance};
+    return {-place.distance, outwards * radial - place.distance, radial};
   }
 
   static LineResult cut_line_deflected(const LineCut& c, const LineDeflection& deflection) {
@@ -312,7 +313,7 @@ struct Vectors {
         const auto far = inside.straight > far_air;
         const F known = xsimd::min(xsimd::select(far, inside.straight - largest, inside.straight), band);
         F v = known;
-        if (xsimd::any(may & !(far | (inside.most <= inside.straight)))) {
+        if (xsimd::any(may & !(far | (inside.radial <= F(0.0f))))) {
           guess = settled_at(c, deflection, dx, dy, z, guess);
           const F x = dx - guess.x, yy = dy - guess.y;
           v = xsimd::min(-distance(xsimd::sqrt(x * x + yy * yy), z, c.flat, c.corner), band);
