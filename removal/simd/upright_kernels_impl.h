@@ -299,7 +299,9 @@ struct Vectors {
       if (low >= top) continue;
       const F dy(y), rhos(rho), outwards(slack[j]);
       bool changed = false;
-      Deflection guess{F(0.0f), F(0.0f)};  // from vector to vector
+      // The deflection at the column's foot is a good guess for all of it, however wide the vectors are.
+      Deflection guess{F(0.0f), F(0.0f)};
+      bool guessed = false;
       for_vectors(low, top, [&](int k) {
         float* stock = c.distance + j * LineCut::kColumns + k;
         const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
@@ -314,8 +316,10 @@ struct Vectors {
         const F known = xsimd::min(xsimd::select(far, inside.straight - largest, inside.straight), band);
         F v = known;
         if (xsimd::any(may & !(far | (inside.radial <= F(0.0f))))) {
-          guess = settled_at(c, deflection, dx, dy, z, guess);
-          const F x = dx - guess.x, yy = dy - guess.y;
+          if (!guessed) guess = settled_at(c, deflection, dx, dy, F(c.z + static_cast<float>(low) * c.voxel), guess);
+          guessed = true;
+          const Deflection s = settled_at(c, deflection, dx, dy, z, guess);
+          const F x = dx - s.x, yy = dy - s.y;
           v = xsimd::min(-distance(xsimd::sqrt(x * x + yy * yy), z, c.flat, c.corner), band);
           v = xsimd::select(far, known, v);
         }
