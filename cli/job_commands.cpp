@@ -101,10 +101,11 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
   auto* verify =
       command->add_option("--verify", "judge the program that an earlier run wrote, from its text; takes no job");
   verify->type_name("DIR|OUT.nc");
-  for (CLI::Option* other : command->get_options())
-    if (other != verify && !other->check_lname("json") && !other->check_lname("help")) verify->excludes(other);
-  command->callback([arguments, job, output, dry_run, verify, &options, &chosen] {
+  command->callback([arguments, command, job, output, dry_run, verify, &options, &chosen] {
     if (!verify->empty()) {
+      for (const CLI::Option* other : command->get_options())
+        if (other != verify && !other->check_lname("json") && !other->empty())
+          throw CLI::ExcludesError("--verify", other->get_name());
       chosen = [place = verify->as<std::string>(), json = arguments->json, &options] {
         return run_verify({place, json}, options);
       };
