@@ -19,12 +19,20 @@ std::string judged_name(const CompensationSettings& asked) {
 }
 
 /// "95 % of the form error is within 2.31 um, tolerance_um = 5".
-std::string figure_sentence(const compensate::PlainFigures& plain, const CompensationSettings& asked) {
+std::string figure_sentence(double p95_um, double in_band_fraction, const CompensationSettings& asked) {
   if (asked.profile_um)
     return fmt::format("{:.1f} % of the area is within profile_um = [{:g}, {:g}], wanted are 95 %",
-                       100 * plain.in_band_fraction, (*asked.profile_um)[0], (*asked.profile_um)[1]);
+                       100 * in_band_fraction, (*asked.profile_um)[0], (*asked.profile_um)[1]);
   return fmt::format("the {} of the emitted program is {:.2f} um (95th percentile), tolerance_um = {:g}",
-                     judged_name(asked), compensate::judged_of(plain, asked.reference).p95, asked.tolerance_um);
+                     judged_name(asked), p95_um, asked.tolerance_um);
+}
+
+std::string figure_sentence(const CompensationResult& c, const CompensationSettings& asked) {
+  return figure_sentence(c.after_um.p95, c.plain_after.in_band_fraction, asked);
+}
+
+std::string figure_sentence(const Verification& v, const CompensationSettings& asked) {
+  return figure_sentence(compensate::judged_of(v.plain, asked.reference).p95, v.plain.in_band_fraction, asked);
 }
 
 std::string too_deep_sentence(const compensate::Depth& depth, double limit_um) {
@@ -42,7 +50,7 @@ std::vector<std::string> shortfalls(const CompensationResult& c, const Compensat
     out.push_back("no round was better than the program as given and within the limits, so that program is judged");
   if (!c.within_part) out.push_back(too_deep_sentence(c.depth_after, c.depth_limit_um));
   if (c.within_tolerance) return out;
-  out.push_back(figure_sentence(c.plain_after, asked));
+  out.push_back(figure_sentence(c, asked));
   for (const auto& cause : c.causes) out.push_back(compensate::sentence(cause));
   return out;
 }
@@ -51,21 +59,20 @@ std::string headline(const CompensationResult& c, const CompensationSettings& as
   if (!c.doubts.empty() || !c.settled) return "the figures are not to be relied on";
   if (!c.better) return "no better program was found";
   if (!c.within_part) return "too deep in the part";
-  return (c.within_tolerance ? "within the tolerance: " : "over the tolerance: ") +
-         figure_sentence(c.plain_after, asked);
+  return (c.within_tolerance ? "within the tolerance: " : "over the tolerance: ") + figure_sentence(c, asked);
 }
 
 std::string headline(const Verification& v, const CompensationSettings& asked) {
   if (!v.doubts.empty() || !v.settled) return "the figures are not to be relied on";
   if (!v.within_part) return "too deep in the part";
-  return (v.within_tolerance ? "within the tolerance: " : "over the tolerance: ") + figure_sentence(v.plain, asked);
+  return (v.within_tolerance ? "within the tolerance: " : "over the tolerance: ") + figure_sentence(v, asked);
 }
 
 std::vector<std::string> shortfalls(const Verification& v, const CompensationSettings& asked) {
   std::vector<std::string> out = v.doubts;
   if (!v.settled) out.push_back(unsettled_sentence(v));
   if (!v.within_part) out.push_back(too_deep_sentence(v.depth, v.depth_limit_um));
-  if (!v.within_tolerance) out.push_back(figure_sentence(v.plain, asked));
+  if (!v.within_tolerance) out.push_back(figure_sentence(v, asked));
   return out;
 }
 
