@@ -5,11 +5,14 @@
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "nc/move.h"
 #include "removal/cutter.h"
 #include "removal/tool_path.h"
 #include "simulate/cut.h"
 #include "simulate/operations.h"
+#include "simulate/tool_outline.h"
 
 namespace camber::simulate {
 namespace {
@@ -145,7 +148,39 @@ void mark_not_judged(const machine::Operations& judged, const SimulatedProgram& 
   }
 }
 
+bool stands_in(const removal::Stock& stock, const machine::Tool& tool, const Vec3& tip) {
+  constexpr double kStep_mm = 0.5;
+  for (const OutlineRing& ring : tool_outline(tool, kStep_mm, stock.max_mm().z() - tip.z())) {
+    if (ring.part != OutlineRing::Part::cutter) continue;
+    const int n = std::max(1, static_cast<int>(std::ceil(2 * kPi * ring.radius_mm / kStep_mm)));
+    for (int i = 0; i < n; ++i) {
+      const double phi = 2 * kPi * i / n;
+      const Vec3 p = tip + Vec3(ring.radius_mm * std::cos(phi), ring.radius_mm * std::sin(phi), ring.height_mm);
+      if (stock.distance_mm(p) < -stock.voxel_mm()) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
+
+void check_region_start(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+                        Diagnostics& diagnostics) {
+  const auto& moves = program.moves.moves;
+  const auto first = static_cast<std::size_t>(std::ranges::find(program.selected, true) - program.selected.begin());
+  if (first == 0 || first >= moves.size()) return;
+  const nc::Move &m = moves[first], &before = moves[first - 1];
+  const bool goes_on = (before.kind == nc::MoveKind::linear || before.kind == nc::MoveKind::arc) && !before.reference &&
+                       program.moves.state_of(before).tool == program.moves.state_of(m).tool;
+  const auto tool = job.tools.find(program.moves.state_of(m).tool);
+  if (!goes_on || tool == job.tools.end() || !stands_in(blank, tool->second, m.start_mm)) return;
+  diagnostics.add(program.text.source.diagnostic(
+      Severity::warning, program.text.blocks[m.block].offset,
+      fmt::format("the job's operations begin here, in the middle of a cut: T{} stands in material, which goes without "
+                  "chips; a range that begins at a rapid was expected",
+                  tool->first),
+      "starts-in-material"));
+}
 
 void mark_region(const machine::Job& job, const SimulatedProgram& program,
                  std::span<const removal::SurfacePoint> points, Target& target) {

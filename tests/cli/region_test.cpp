@@ -127,6 +127,31 @@ TEST(Region, JudgedNamesMovesOfTheTarget) {
   EXPECT_TRUE(rows_of(second, [](double y, double) { return y < 0.99; }).empty());
 }
 
+TEST(Region, ThatBeginsInTheMiddleOfACutIsWarnedOf) {
+  const TempFolder folder;
+  folder.write("p.nc",
+               "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\nG0 X-4 Y0 Z5\nG0 Z-1\nG1 X-3 F900\nG1 X4\nG1 X12\n"
+               "G0 Z5\nM30\n");
+  folder.write("machine.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
+  const auto said_of = [&](const std::string& blocks) {
+    folder.write("job.toml", "program = \"p.nc\"\nmachine = \"machine.toml\"\noperations = { blocks = " + blocks +
+                                 " }\n" + tool(1) +
+                                 "[material]\nktc_MPa = 20.0\nkrc_MPa = 7.0\n[stock]\nbox_mm = [[0, -8, -5], [8, 8, 0]]\n"
+                                 "[simulation]\nvoxel_mm = 0.2\ncoupling = \"rigid\"\n");
+    return run_camber(folder, "predict job.toml -o r").err;
+  };
+  const std::string in_a_cut = said_of("[[8, 8]]");
+  EXPECT_NE(in_a_cut.find("p.nc:8:1: warning: the job's operations begin here, in the middle of a cut: T1 stands in "
+                          "material, which goes without chips; a range that begins at a rapid was expected "
+                          "[starts-in-material]"),
+            std::string::npos)
+      << in_a_cut;
+  // The chips of what the cutter stood in are missing, as the error behind says.
+  EXPECT_NE(in_a_cut.find("camber: error: the chips add up to"), std::string::npos) << in_a_cut;
+  EXPECT_EQ(said_of("[[7, 8]]"), "") << "the feed move before it ends beside the block";
+  EXPECT_EQ(said_of("[[5, 8]]"), "");
+}
+
 TEST(OperationsByComment, AreTheLinesUnderTheComment) {
   for (const auto& [comments, blocks] :
        {std::pair("first", "[[2, 9]]"), std::pair("SECOND slot", "[[9, 16]]"), std::pair("slot", "[[1, 16]]")}) {
