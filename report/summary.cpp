@@ -230,7 +230,7 @@ std::string region_text(const RegionFigures& region) {
                    region.border_mm2);
   if (region.not_judged_mm2 > 0)
     fmt::format_to(std::back_inserter(out), "left out, not of [part] judged: {:.1f} mm2\n", region.not_judged_mm2);
-  if (region.between) out += "other operations cut deeper nearly everywhere: no surface of the part yet\n";
+  if (region.between) out += "other operations cut deeper everywhere: no surface of the part yet, all is judged\n";
   return out;
 }
 

@@ -45,7 +45,7 @@ struct SurfaceRegion {
   std::vector<bool> left_out{};  ///< one a point; empty: none
   double border_mm2 = 0;         ///< left out: moves that the job leaves out cut deeper there
   double not_judged_mm2 = 0;     ///< left out: made by moves that [part] judged does not name
-  bool between = false;          ///< moves that the job leaves out cut deeper nearly everywhere: no border is left out
+  bool between = false;          ///< moves that the job leaves out cut deeper everywhere: no border is left out
 };
 
 /// What the part is judged against, the nominal surface: the undeflected sweep of the target program's own moves

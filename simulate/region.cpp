@@ -21,17 +21,26 @@ using removal::Stamp;
 
 /// What a tool leaves between two places of its path is d^2 / 8 R.
 double sample_spacing_mm(const machine::Tool& tool) {
-  constexpr double kRidge_mm = 0.0005, kLeast_mm = 0.02, kMost_mm = 0.2;
+  constexpr double kRidge_mm = 0.001, kLeast_mm = 0.02, kMost_mm = 0.2;
   const double corner = removal::shape_of(tool).corner_radius_mm;
   const double radius = corner > 0 ? corner : tool.diameter_mm / 2;
   return std::clamp(std::sqrt(8 * radius * kRidge_mm), kLeast_mm, kMost_mm);
 }
 
-/// The commanded sweep of the moves that the job leaves out, as far as it comes near the stock.
+machine::Box box_of(std::span<const removal::SurfacePoint> points) {
+  machine::Box out{Vec3::Constant(1e9), Vec3::Constant(-1e9)};
+  for (const auto& p : points) {
+    out.min_mm = out.min_mm.cwiseMin(p.place_mm);
+    out.max_mm = out.max_mm.cwiseMax(p.place_mm);
+  }
+  return out;
+}
+
+/// The commanded sweep of the moves that the job leaves out, as far as it comes near the job's surface.
 class OtherMoves {
  public:
-  OtherMoves(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& stock)
-      : job_(job), program_(program), stock_(stock) {
+  OtherMoves(const machine::Job& job, const SimulatedProgram& program, const machine::Box& surface)
+      : job_(job), program_(program), surface_(surface) {
     const auto& moves = program.moves.moves;
     for (std::size_t i = 0; i < moves.size(); ++i)
       if (program.selected[i]) offsets_.insert(program.moves.state_of(moves[i]).work_offset);
@@ -69,7 +78,7 @@ class OtherMoves {
   }
 
   bool near(const Vec3& tip, double radius_mm) const {
-    const Vec3 &lo = stock_.min_mm(), &hi = stock_.max_mm();
+    const Vec3 &lo = surface_.min_mm, &hi = surface_.max_mm;
     return tip.z() < hi.z() && tip.x() + radius_mm > lo.x() && tip.x() - radius_mm < hi.x() &&
            tip.y() + radius_mm > lo.y() && tip.y() - radius_mm < hi.y();
   }
@@ -90,7 +99,7 @@ class OtherMoves {
 
   const machine::Job& job_;
   const SimulatedProgram& program_;
-  const removal::Stock& stock_;
+  const machine::Box surface_;
   std::set<int> offsets_;
   std::vector<Run> runs_;
 };
@@ -115,7 +124,7 @@ double depth_mm(const removal::Stock& swept, const removal::CutterPlaces& places
 
 void mark_border(const machine::Job& job, const SimulatedProgram& program,
                  std::span<const removal::SurfacePoint> points, Target& target) {
-  const OtherMoves others(job, program, target.blank);
+  const OtherMoves others(job, program, box_of(points));
   if (others.empty()) return;
   removal::Stock swept(target.surface);
   swept.clear_stamps();

@@ -12,14 +12,14 @@ namespace camber::simulate {
 inline constexpr double kBorder_mm = 0.002;
 /// Where more of the surface than this is cut deeper by other moves, the job is a stage between (roughing) and there is
 /// no border: all of its surface is judged.
-inline constexpr double kBetween = 0.9;
+inline constexpr double kBetween = 0.99;
 
 /// Sets Target::region. `points`: of a SurfaceMap of the target; `program`: the target program.
 ///
 /// Border: points that the commanded sweep of the moves which the job leaves out, of tools that it describes and in
 /// work offsets that it cuts in, passes by more than kBorder_mm below. The region's raw edges are such places: the rest
 /// of the program takes them away, or has done so before. These moves are sampled so that what stands between two
-/// samples is below 0.5 um.
+/// samples is below 1 um.
 ///
 /// Not judged: points of moves that [part] judged does not name.
 void mark_region(const machine::Job& job, const SimulatedProgram& program,
