@@ -1,6 +1,7 @@
 #include "cli/compensate_command.h"
 
 #include <chrono>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include "compensate/header.h"
 #include "compensate/measured.h"
 #include "compensate/recheck.h"
+#include "compensate/verify.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/fitted_range.h"
 #include "nc/interpreter.h"
@@ -55,6 +57,14 @@ machine::Job as_measured(const machine::Job& job, const CompensateArguments& arg
   const auto points = compensate::read_measured(arguments.measured);
   fit = compensate::fit_measured(job, arguments.measured, points, arguments.measured_program, diagnostics, progress);
   return compensate::softened(job, fit->scale);
+}
+
+/// The program, and beside it the record by which it can be judged again; a pipe has nothing beside it.
+void write_program(const std::string& path, const machine::Job& job, const compensate::CompensationResult& result) {
+  write_file(path, result.text);
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(path, ec)) return;
+  write_file(compensate::record_path(path), compensate::record_json(compensate::make_record(job, result, path)));
 }
 
 std::string header_of(const machine::Job& job, const compensate::CompensationResult& c, bool hash) {
@@ -102,7 +112,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
                  name);
   Diagnostics failed;
   const bool written = !arguments.dry_run && (result.better || arguments.keep_anyway);
-  if (written) try_to_write([&] { write_file(arguments.output, result.text); }, failed);
+  if (written) try_to_write([&] { write_program(arguments.output, job, result); }, failed);
   if (!arguments.json.empty())
     try_to_write([&] { write_file(arguments.json, report::compensate_json(result, job.compensation, compute_s)); },
                  failed);

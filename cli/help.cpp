@@ -24,7 +24,9 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"fit-force", "camber fit-force --log slots.csv --job slots.toml -o material.toml"},
     {"init", "camber init finish.nc --tools tool.tbl --machine fitted.toml -o job.toml"},
     {"predict", "camber predict job.toml -o predicted"},
-    {"compensate", "camber compensate job.toml -o finish_compensated.nc --report report.html --json figures.json"},
+    {"compensate",
+     "camber compensate job.toml -o finish_compensated.nc --report report.html --json figures.json\n"
+     "  camber compensate --verify finish_compensated.nc"},
     {"compress", "camber compress finish.nc --tolerance-mm 0.002 -o finish_arcs.nc"},
     {"resegment",
      "camber resegment finish.nc --machine machine.toml --tolerance-mm 0.002 -o finish_even.nc\n"

@@ -1,4 +1,5 @@
 // predict and compensate on the command line.
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -9,6 +10,8 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/predict_command.h"
+#include "cli/verify_command.h"
+#include "compensate/verify.h"
 #include "machine/job.h"
 
 namespace camber::cli {
@@ -55,10 +58,18 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   });
 }
 
+/// Of the program that is to be written; empty: none.
+std::string record_of(const CompensateArguments& arguments) {
+  std::error_code ec;
+  const bool special =
+      std::filesystem::exists(arguments.output, ec) && !std::filesystem::is_regular_file(arguments.output, ec);
+  return arguments.dry_run || special ? "" : compensate::record_path(arguments.output);
+}
+
 void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("compensate", "move the path of a job against its form error");
   auto arguments = std::make_shared<CompensateArguments>();
-  command->add_option("job", arguments->job, "job.toml")->required()->type_name("J.toml");
+  auto* job = command->add_option("job", arguments->job, "job.toml")->type_name("J.toml");
   auto* output = command->add_option("-o,--output", arguments->output, "the new program")->type_name("OUT.nc");
   auto* dry_run = command->add_flag("--dry-run", arguments->dry_run, "do everything, but write no program");
   command
@@ -87,12 +98,26 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
   command->add_flag("--header-hash", arguments->header_hash, "the same, with a hash of everything that was read");
   command->add_option("--report", arguments->report, "a page with pictures of before and after")->type_name("R.html");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
-  command->callback([arguments, output, dry_run, &options, &chosen] {
+  auto* verify =
+      command->add_option("--verify", "judge the program that an earlier run wrote, from its text; takes no job");
+  verify->type_name("DIR|OUT.nc");
+  command->callback([arguments, command, job, output, dry_run, verify, &options, &chosen] {
+    if (!verify->empty()) {
+      for (const CLI::Option* other : command->get_options())
+        if (other != verify && !other->check_lname("json") && !other->empty())
+          throw CLI::ExcludesError("--verify", other->get_name());
+      chosen = [place = verify->as<std::string>(), json = arguments->json, &options] {
+        return run_verify({place, json}, options);
+      };
+      return;
+    }
+    if (job->empty()) throw CLI::RequiredError("J.toml or --verify DIR");
     if (output->empty() && dry_run->empty()) throw CLI::RequiredError("-o OUT.nc or --dry-run");
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);
-      check_outputs({arguments->dry_run ? "" : arguments->output, arguments->report, arguments->json},
-                    files_read(arguments->job, {arguments->measured, arguments->measured_program}));
+      check_outputs(
+          {arguments->dry_run ? "" : arguments->output, record_of(*arguments), arguments->report, arguments->json},
+          files_read(arguments->job, {arguments->measured, arguments->measured_program}));
       return run_compensate(*arguments, options);
     };
   });

@@ -42,7 +42,8 @@ std::vector<Observation> Observed::of_path() const {
 std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& given, const Observed& first,
                            std::span<const removal::SurfacePoint> surface,
                            std::span<const simulate::PathShare> own_target) {
-  std::vector<bool> out = first.compensated;
+  if (own_target.empty()) return first.compensated;
+  std::vector<bool> out(surface.size(), false);
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const std::int32_t stamp = surface[i].target_stamp;
     if (stamp < 0 || static_cast<std::size_t>(stamp) >= own_target.size()) continue;

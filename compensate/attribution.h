@@ -20,8 +20,8 @@ inline double judged_mm(const removal::SurfacePoint& p, machine::Reference refer
 struct Observed {
   std::vector<Observation> points;
   std::vector<bool> compensated;  ///< made by a move that may be shifted; the others' places mean nothing
-  /// What is judged: surface that the moves to compensate make, in the program as given or by the nominal path. The
-  /// same in every round. Empty: all.
+  /// What is judged: surface that the nominal path of the moves to compensate makes; where the target is another
+  /// program, what they make in the program as given. The same in every round. Empty: all.
   std::vector<bool> reach{};
   bool judged(std::size_t i) const { return reach.empty() || reach[i]; }
   /// Those that may be shifted.

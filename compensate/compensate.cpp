@@ -15,6 +15,7 @@
 #include "compensate/shift_path.h"
 #include "compensate/splits.h"
 #include "nc/emit.h"
+#include "simulate/operations.h"
 #include "simulate/setup.h"
 #include "simulate/verdict.h"
 
@@ -146,9 +147,15 @@ class Loop {
     simulate::Prediction prediction = trials_.predict(program_, progress("as given"));
     out.doubts = simulate::doubts(job_, program_, prediction);
     if (simulate::beyond_model(prediction)) throw BeyondModel(fmt::format("{}", fmt::join(out.doubts, "; ")));
+    out.own_target = setup_.own_target();
     out.unseen_mm2 = prediction.unseen_mm2;
+    out.border_mm2 = prediction.border_mm2;
+    out.not_judged_mm2 = prediction.not_judged_mm2;
+    out.between = prediction.between;
     given->keep(std::move(prediction));
     out.finishing = find_finishing(job_, program_, given->surface);
+    out.lines = line_roles(program_, out.finishing.moves);
+    out.operations = simulate::as_lines(job_.operations, program_.text, program_.moves);
     check_compensated(program_, out.finishing.moves, diagnostics_);
     diagnostics_.throw_if_errors();
     nc::warn_of_uneditable(program_.text, program_.moves, out.finishing.moves, diagnostics_);
@@ -406,9 +413,12 @@ class Loop {
     if (!names.empty())
       out.band = band_of(out.surface_before, out.surface_after, names, changes, depth_limit_um_ / 1000);
     out.text = emitted ? emitted->emission.text : program_.text.source.text();
+    if (emitted) out.block_of_line = emitted->emission.block_of_line;
     if (!options_.header || !emitted) return;
     trials_.header = options_.header(out);
-    out.text = trials_.text_of(*path_, emitted->splits);
+    nc::Emission with_header = trials_.text_of(*path_, emitted->splits);
+    out.text = std::move(with_header.text);
+    out.block_of_line = std::move(with_header.block_of_line);
     const std::size_t more = SourceText("", out.text).line_count() - out.blocks_after;
     for (CauseFigure& cause : out.causes)
       for (std::size_t& line : cause.lines) line += more;

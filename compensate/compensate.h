@@ -43,15 +43,22 @@ struct Round {
 };
 
 struct CompensationResult {
-  std::string text;    ///< the emitted program of the best round
-  bool better = true;  ///< that round is better than the program as given and keeps the limits
+  std::string text;                          ///< the emitted program of the best round
+  std::vector<std::uint32_t> block_of_line;  ///< of `text`, as nc::Emission has it; empty: the program as given
+  std::vector<LineRole> lines;               ///< of the given program, one a line
+  machine::Operations operations;            ///< the job's, as lines of the given program
+  bool own_target = true;                    ///< the given program is the target
+  bool better = true;                        ///< that round is better than the program as given and keeps the limits
   machine::Reference reference = machine::Reference::commanded;
   removal::ErrorFigures before_um, after_um;  ///< judged: rounds[0] and rounds[best]
   PlainFigures plain_before, plain_after;
-  bool within_tolerance = false;    ///< the emitted program
-  double depth_limit_um = 0;        ///< the job's, or default_depth_limit_um
-  bool own_depth_limit = false;     ///< the job gives one
-  double unseen_mm2 = 0;            ///< of the nominal surface, without a point
+  bool within_tolerance = false;  ///< the emitted program
+  double depth_limit_um = 0;      ///< the job's, or default_depth_limit_um
+  bool own_depth_limit = false;   ///< the job gives one
+  double unseen_mm2 = 0;          ///< of the nominal surface, without a point
+  /// Left out of the surface: see simulate::SurfaceRegion.
+  double border_mm2 = 0, not_judged_mm2 = 0;
+  bool between = false;
   std::vector<CauseFigure> causes;  ///< of what is left, where it is over the tolerance
   ErrorSplit split_before, split_after;
   std::vector<Round> rounds;  ///< rounds[0]: the program as given

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
-#include <regex>
-#include <string>
 
 #include <fmt/format.h>
 
 #include "removal/tool_path.h"
+#include "simulate/operations.h"
 
 namespace camber::compensate {
 namespace {
@@ -44,39 +43,6 @@ void share_surface(const SimulatedProgram& program, const std::vector<removal::S
   for (Operation& o : operations) o.surface_fraction = area > 0 ? o.surface_fraction / area : 0;
 }
 
-/// Text in round brackets or behind a semicolon; empty: none.
-std::string comment_of(std::string_view line) {
-  const std::size_t open = line.find_first_of("(;");
-  if (open == std::string_view::npos) return {};
-  const std::size_t close = line[open] == '(' ? line.find(')', open) : line.size();
-  return std::string(line.substr(open + 1, (close == std::string_view::npos ? line.size() : close) - open - 1));
-}
-
-constexpr std::size_t kLongestComment = 400;  // std::regex needs stack for each character
-
-/// For each line whether the heading above it matches.
-std::vector<bool> lines_under(const SimulatedProgram& program, const std::string& pattern) {
-  const std::regex wanted(pattern, std::regex::ECMAScript | std::regex::icase);
-  const std::size_t lines = program.text.blocks.size();
-  std::vector<bool> moves_here(lines, false), out(lines, false);
-  for (const nc::Move& m : program.moves.moves) moves_here[m.block] = true;
-  bool in = false, heading = false;
-  for (std::size_t i = 0; i < lines; ++i) {
-    const auto words = program.text.words_of(i);
-    const bool change = std::ranges::any_of(words, [](const nc::Word& w) { return w.letter == 'M' && w.value == 6; });
-    const std::string comment = comment_of(program.text.source.line(i + 1)).substr(0, kLongestComment);
-    if (change && !heading) in = false;
-    if (!comment.empty()) {
-      const bool matches = std::regex_search(comment, wanted);
-      in = heading ? in || matches : matches;
-      heading = true;
-    }
-    if (moves_here[i]) heading = false;
-    out[i] = in;
-  }
-  return out;
-}
-
 }  // namespace
 
 Finishing find_finishing(const machine::Job& job, const SimulatedProgram& program,
@@ -86,16 +52,27 @@ Finishing find_finishing(const machine::Job& job, const SimulatedProgram& progra
   out.operations = operations_of(program, of_move);
   share_surface(program, surface, of_move, out.operations);
   const auto& wanted = job.compensation.operations;
-  out.moves = removal::selected_moves(program.moves, wanted);
-  std::vector<bool> under;
-  if (!wanted.comments.empty()) under = lines_under(program, wanted.comments);
+  out.moves = removal::selected_moves(program.moves, simulate::as_lines(wanted, program.text, program.moves));
   for (std::size_t m = 0; m < out.moves.size(); ++m) {
     out.moves[m] = out.moves[m] && program.selected[m];
     if (!out.moves[m]) continue;
     Operation& operation = out.operations[of_move[m]];
-    if (!under.empty()) out.moves[m] = under[program.moves.moves[m].block];
     if (!wanted.given() && !surface.empty()) out.moves[m] = operation.surface_fraction >= kFinishingShare;
     if (out.moves[m]) ++operation.compensated_moves;
+  }
+  return out;
+}
+
+std::vector<LineRole> line_roles(const SimulatedProgram& program, const std::vector<bool>& compensated) {
+  std::vector<LineRole> out(program.text.blocks.size(), LineRole::none);
+  for (std::size_t m = 0; m < compensated.size(); ++m) {
+    if (!program.selected[m]) continue;
+    const nc::Move& move = program.moves.moves[m];
+    LineRole& role = out[move.block];
+    if (compensated[m] && move.editable)
+      role = LineRole::compensated;
+    else if (role == LineRole::none)
+      role = LineRole::only_simulated;
   }
   return out;
 }

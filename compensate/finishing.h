@@ -1,5 +1,6 @@
 #pragma once
 // Which of the simulated moves are compensated.
+#include <cstdint>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -33,6 +34,12 @@ inline constexpr double kFinishingShare = 0.05;
 /// other, without a move between them, are one heading.
 Finishing find_finishing(const machine::Job& job, const simulate::SimulatedProgram& program,
                          const std::vector<removal::SurfacePoint>& surface);
+
+/// What a line of a program is to a compensation.
+enum class LineRole : std::uint8_t { none, compensated, only_simulated };
+/// One a line; a line that both kinds of moves come from counts as compensated. Moves whose words may not be changed
+/// are simulated only.
+std::vector<LineRole> line_roles(const simulate::SimulatedProgram& program, const std::vector<bool>& compensated);
 
 /// Error [cutter-radius] at the first of `moves` that runs under G41 or G42: its path is made by the control, the text
 /// has no words for it. Error [nothing-to-compensate] where there is no move, or none whose words may be changed.

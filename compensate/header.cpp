@@ -82,6 +82,12 @@ std::string header_lines(const machine::Job& job, const CompensationResult& c, c
   return plain(out + material_line(job.material));
 }
 
+std::string hash_of(std::string_view text) {
+  std::uint64_t hash = kBasis;
+  add(hash, text);
+  return fmt::format("{:016X}", hash);
+}
+
 std::string hash_of_inputs(const machine::Job& job) {
   std::uint64_t hash = kBasis;
   const machine::Job plain_job = without_paths(job);

@@ -1,6 +1,7 @@
 #pragma once
 // What the emitted program says about itself, as comment lines.
 #include <string>
+#include <string_view>
 
 #include "compensate/compensate.h"
 #include "machine/job.h"
@@ -10,6 +11,9 @@ namespace camber::compensate {
 /// Lines of capitals, digits and blanks without brackets, for nc::EmitOptions::header_comment: what was done, with what
 /// model. `version`: of the program that did it.
 std::string header_lines(const machine::Job& job, const CompensationResult& result, const std::string& version);
+
+/// 16 hexadecimal digits of a text (FNV-1a, 64 bits: it tells versions apart, it proves nothing).
+std::string hash_of(std::string_view text);
 
 /// 16 hexadecimal digits over everything the result depends on: the contents of the program, the machine and of every
 /// file that the job reads, and the job with every default (FNV-1a, 64 bits: it tells versions apart, it proves

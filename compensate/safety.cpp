@@ -56,6 +56,21 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed
   return out;
 }
 
+Depth depth_of(const std::vector<removal::SurfacePoint>& surface, machine::Reference reference, double others_mm2,
+               double tolerance_um) {
+  Depth out;
+  double over = 0, area = others_mm2;
+  std::vector<std::pair<double, double>> depths;
+  for (const removal::SurfacePoint& p : surface) {
+    area += p.area_mm2;
+    add_point(out, p, judged_mm(p, reference), tolerance_um, over);
+    depths.emplace_back(-1000 * judged_mm(p, reference), p.area_mm2);
+  }
+  out.held_um = held_depth(std::move(depths), area);
+  out.over_fraction = area > 0 ? over / area : 0;
+  return out;
+}
+
 Depth depth_without_bending(const machine::Job& job, const simulate::Target& target,
                             const simulate::SimulatedProgram& emitted, double tolerance_um) {
   removal::Stock stock(target.blank);

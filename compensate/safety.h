@@ -23,6 +23,10 @@ struct Depth {
 Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed& observed, double tolerance_um,
                bool compensated);
 
+/// Of all points, by the judged error; `others_mm2`: area of the surface that is not among them.
+Depth depth_of(const std::vector<removal::SurfacePoint>& surface, machine::Reference reference, double others_mm2,
+               double tolerance_um);
+
 /// The emitted program carved by a tool that does not bend at all. Bounded by the largest shift and, where rows cross
 /// other rows, by what their shifts add.
 Depth depth_without_bending(const machine::Job& job, const simulate::Target& target,

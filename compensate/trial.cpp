@@ -6,9 +6,6 @@
 #include "nc/emit/number_style.h"
 
 namespace camber::compensate {
-namespace {
-
-/// The job's ranges of lines where the emitted program has them.
 machine::Operations moved_ranges(const machine::Operations& operations,
                                  const std::vector<std::uint32_t>& block_of_line) {
   machine::Operations out = operations;
@@ -26,8 +23,6 @@ machine::Operations moved_ranges(const machine::Operations& operations,
   }
   return out;
 }
-
-}  // namespace
 
 nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program& program) {
   constexpr int kFewest = 3, kMax = 4;  // millimetres
@@ -73,10 +68,10 @@ std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const st
   return out;
 }
 
-std::string TrialRunner::text_of(const ShiftPath& path, const std::vector<bool>& splits) const {
+nc::Emission TrialRunner::text_of(const ShiftPath& path, const std::vector<bool>& splits) const {
   nc::EmitOptions options = decimals_;
   options.header_comment = header;
-  return nc::emit(given_.program.text, given_.program.moves, path.edits(splits, kViaTolerance_mm), options);
+  return nc::emit_edits(given_.program.text, given_.program.moves, path.edits(splits, kViaTolerance_mm), options);
 }
 
 simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& program,

@@ -36,6 +36,10 @@ struct Trial {
   void keep(simulate::Prediction prediction);
 };
 
+/// Ranges of the given program's lines where the emitted program has them. `block_of_line`: of the emission.
+machine::Operations moved_ranges(const machine::Operations& operations,
+                                 const std::vector<std::uint32_t>& block_of_line);
+
 /// Decimals of the words that an edit adds or changes: those of the control's least increment, else as many as the
 /// program's coordinates have, three or four in millimetres, one more in inches.
 nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program& program);
@@ -52,7 +56,7 @@ class TrialRunner {
   std::shared_ptr<const Emitted> emit(const ShiftPath& path, const std::vector<bool>& splits,
                                       const std::vector<bool>& compensated) const;
   /// Only the text, with the header.
-  std::string text_of(const ShiftPath& path, const std::vector<bool>& splits) const;
+  nc::Emission text_of(const ShiftPath& path, const std::vector<bool>& splits) const;
   /// Does not throw for what the given program was warned of already.
   simulate::Prediction predict(const simulate::SimulatedProgram& program,
                                const std::function<void(double)>& progress) const;

@@ -66,15 +66,19 @@ struct StockDescription {
   double allowance_mm = 0;  ///< > 0: the blank was already cut by this program with the cutter shrunk by this much
 };
 
-struct Part {
-  std::string mesh;     ///< STL; empty: none
-  std::string program;  ///< NC program that is the target; empty: the job's own
-};
-
-/// Which moves are simulated and compensated; nothing given: all.
+/// Which moves are simulated, compensated or judged: those that everything given here names; nothing given: all.
 struct Operations {
   std::vector<int> tools;
   std::vector<std::array<int, 2>> blocks;  ///< 1-based line ranges, both ends included
+  std::string comments;                    ///< regular expression (ECMAScript, case does not count); empty: not given
+  bool given() const { return !tools.empty() || !blocks.empty() || !comments.empty(); }
+};
+
+struct Part {
+  std::string mesh;                      ///< STL; empty: none
+  std::string program;                   ///< NC program that is the target; empty: the job's own
+  std::optional<Operations> operations;  ///< of the target program; not given: the job's operations
+  std::optional<Operations> judged;      ///< moves of the target program whose surface is judged; not given: all
 };
 
 enum class Coupling { rigid, static_ };
@@ -87,12 +91,6 @@ struct Simulation {
   std::optional<Collisions> collisions;  ///< not given: error; a warning where moves of the program are left out
   double rotation_step_rad = kPi / 180.0;
   double envelope_step_mm = 0;  ///< of the samples along the profile; 0: chosen by the tool (simulate/predict.h)
-};
-
-/// Of the simulated moves, those that are compensated; nothing given: the finishing ones.
-struct CompensatedOperations : Operations {
-  std::string comments;  ///< regular expression (ECMAScript, case does not count); empty: not given
-  bool given() const { return !tools.empty() || !blocks.empty() || !comments.empty(); }
 };
 
 /// What compensation works on, and what its verdict is on.
@@ -116,7 +114,7 @@ struct CompensationSettings {
   /// Half of the band's width.
   double half_width_um() const { return profile_um ? ((*profile_um)[1] - (*profile_um)[0]) / 2 : tolerance_um; }
   double max_angle_growth_rad = 3 * kPi / 180;  ///< between blocks of the path
-  CompensatedOperations operations;
+  Operations operations;               ///< compensated, of the simulated moves; nothing given: the finishing ones
   std::optional<Vec3> work_offset_mm;  ///< of the program's zero, in machine coordinates: for the travel limits
 };
 

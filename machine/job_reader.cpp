@@ -84,27 +84,9 @@ void read_stock(TomlTable table, const fs::path& folder, StockDescription& stock
   table.finish();
 }
 
-void read_operations(TomlTable& table, const std::map<int, Tool>& tools, Operations& operations) {
-  for (const double t :
-       table.number_list("tools", kToolNumber, "tool numbers, as in [1, 9],").value_or(std::vector<double>{})) {
-    operations.tools.push_back(static_cast<int>(t));
-    if (!tools.contains(static_cast<int>(t)))
-      table.error_at("tools", fmt::format("operations ask for T{0}, but there is no [tool.{0}]", t), "tool-missing");
-  }
-  const auto rows = table.number_rows("blocks", 0, 2, kLineNumber, "ranges of lines, as in [[120, 900]],");
-  for (const auto& row : rows.value_or(std::vector<std::vector<double>>{})) {
-    operations.blocks.push_back({static_cast<int>(row[0]), static_cast<int>(row[1])});
-    if (row[0] > row[1])
-      table.error_at("blocks",
-                     fmt::format("blocks go from line {} to line {}; the first must not be greater", row[0], row[1]),
-                     "value-range");
-  }
-}
-
 constexpr std::size_t kLongestPattern = 400;  // std::regex needs stack for each character
 
-void read_compensated(TomlTable table, const std::map<int, Tool>& tools, CompensatedOperations& operations) {
-  read_operations(table, tools, operations);
+void read_comments(TomlTable& table, Operations& operations) {
   operations.comments = table.text("comments", "");
   if (operations.comments.size() > kLongestPattern) {
     table.error_at("comments",
@@ -122,7 +104,27 @@ void read_compensated(TomlTable table, const std::map<int, Tool>& tools, Compens
                    "regular-expression");
     operations.comments.clear();
   }
+}
+
+Operations read_operations(TomlTable table, const std::map<int, Tool>& tools) {
+  Operations operations;
+  for (const double t :
+       table.number_list("tools", kToolNumber, "tool numbers, as in [1, 9],").value_or(std::vector<double>{})) {
+    operations.tools.push_back(static_cast<int>(t));
+    if (!tools.contains(static_cast<int>(t)))
+      table.error_at("tools", fmt::format("operations ask for T{0}, but there is no [tool.{0}]", t), "tool-missing");
+  }
+  const auto rows = table.number_rows("blocks", 0, 2, kLineNumber, "ranges of lines, as in [[120, 900]],");
+  for (const auto& row : rows.value_or(std::vector<std::vector<double>>{})) {
+    operations.blocks.push_back({static_cast<int>(row[0]), static_cast<int>(row[1])});
+    if (row[0] > row[1])
+      table.error_at("blocks",
+                     fmt::format("blocks go from line {} to line {}; the first must not be greater", row[0], row[1]),
+                     "value-range");
+  }
+  read_comments(table, operations);
   table.finish();
+  return operations;
 }
 
 void read_simulation(TomlTable table, Simulation& simulation) {
@@ -160,26 +162,25 @@ void read_compensation(TomlTable table, const std::map<int, Tool>& tools, Compen
   compensation.max_rounds = static_cast<int>(table.number("max_rounds", kRounds, compensation.max_rounds));
   if (table.choice("reference", kReferenceWords, 0) == 1) compensation.reference = Reference::machine;
   read_profile(table, compensation);
-  if (auto operations = table.table("operations")) read_compensated(*operations, tools, compensation.operations);
+  if (const auto operations = table.table("operations")) compensation.operations = read_operations(*operations, tools);
   constexpr std::string_view kOffset = "[x, y, z], the program's zero in machine coordinates,";
   if (const auto offset = table.numbers("work_offset_mm", 3, kAnyNumber, kOffset))
     compensation.work_offset_mm = Vec3((*offset)[0], (*offset)[1], (*offset)[2]);
   table.finish();
 }
 
-void read_part(TomlTable table, const fs::path& folder, Part& part) {
+void read_part(TomlTable table, const fs::path& folder, const std::map<int, Tool>& tools, Part& part) {
   part.mesh = file_at(table, "mesh", folder);
   part.program = file_at(table, "program", folder);
+  if (const auto operations = table.table("operations")) part.operations = read_operations(*operations, tools);
+  if (const auto judged = table.table("judged")) part.judged = read_operations(*judged, tools);
   table.finish();
 }
 
 void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& diagnostics) {
   if (auto tools = top.table("tool")) read_tools(*tools, job.tools);
   if (job.tools.empty() && !top.has("tool")) top.missing("[tool.1]", "a table for each tool of the program");
-  if (auto operations = top.table("operations")) {
-    read_operations(*operations, job.tools, job.operations);
-    operations->finish();
-  }
+  if (const auto operations = top.table("operations")) job.operations = read_operations(*operations, job.tools);
   if (auto material = top.table("material"))
     job.material = read_material_table(*material, folder.string(), diagnostics);
   else if (!top.has("material"))
@@ -188,7 +189,7 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
     read_stock(*stock, folder, job.stock);
   else if (!top.has("stock"))
     top.missing("[stock]", "a table with box_mm, cylinder, mesh or vdb");
-  if (auto part = top.table("part")) read_part(*part, folder, job.part);
+  if (auto part = top.table("part")) read_part(*part, folder, job.tools, job.part);
   if (auto simulation = top.table("simulation")) read_simulation(*simulation, job.simulation);
   if (auto compensation = top.table("compensation")) read_compensation(*compensation, job.tools, job.compensation);
 }

@@ -52,25 +52,23 @@ std::string stock_text(const StockDescription& stock) {
   return out + toml_line("allowance_mm", stock.allowance_mm, kAsIs);
 }
 
-std::string part_text(const Part& part) {
-  if (part.mesh.empty() && part.program.empty()) return {};
-  std::string out = "\n[part]\n";
-  if (!part.mesh.empty()) out += toml_line("mesh", part.mesh);
-  if (!part.program.empty()) out += toml_line("program", part.program);
-  return out;
-}
-
-std::string operations_lines(const Operations& operations) {
-  std::string out;
+std::string operations_text(const std::string& name, const Operations& operations) {
+  std::string out = fmt::format("\n[{}]\n", name);
   if (!operations.tools.empty()) out += fmt::format("tools = [{}]\n", fmt::join(operations.tools, ", "));
   std::string rows;
   for (const auto& b : operations.blocks) rows += fmt::format("{}[{}, {}]", rows.empty() ? "" : ", ", b[0], b[1]);
-  return rows.empty() ? out : out + fmt::format("blocks = [{}]\n", rows);
+  if (!rows.empty()) out += fmt::format("blocks = [{}]\n", rows);
+  return operations.comments.empty() ? out : out + toml_line("comments", operations.comments);
 }
 
-std::string operations_text(const Operations& operations) {
-  const std::string lines = operations_lines(operations);
-  return lines.empty() ? lines : "\n[operations]\n" + lines;
+std::string part_text(const Part& part) {
+  if (part.mesh.empty() && part.program.empty() && !part.operations && !part.judged) return {};
+  std::string out = "\n[part]\n";
+  if (!part.mesh.empty()) out += toml_line("mesh", part.mesh);
+  if (!part.program.empty()) out += toml_line("program", part.program);
+  if (part.operations) out += operations_text("part.operations", *part.operations);
+  if (part.judged) out += operations_text("part.judged", *part.judged);
+  return out;
 }
 
 std::string compensation_text(const CompensationSettings& c) {
@@ -79,9 +77,7 @@ std::string compensation_text(const CompensationSettings& c) {
   out += toml_line("reference", kReferenceWords[c.reference == Reference::machine ? 1 : 0]);
   if (c.profile_um) out += fmt::format("profile_um = [{}, {}]\n", (*c.profile_um)[0], (*c.profile_um)[1]);
   if (c.work_offset_mm) out += fmt::format("work_offset_mm = {}\n", point_text(*c.work_offset_mm));
-  if (!c.operations.given()) return out;
-  out += "\n[compensation.operations]\n" + operations_lines(c.operations);
-  return c.operations.comments.empty() ? out : out + toml_line("comments", c.operations.comments);
+  return c.operations.given() ? out + operations_text("compensation.operations", c.operations) : out;
 }
 
 }  // namespace
@@ -89,7 +85,7 @@ std::string compensation_text(const CompensationSettings& c) {
 std::string to_toml(const Job& job) {
   std::string out = toml_line("program", job.program) + toml_line("machine", job.machine_path);
   if (job.inch) out += toml_line("units", kUnitWords[*job.inch ? 1 : 0]);
-  out += operations_text(job.operations);
+  if (job.operations.given()) out += operations_text("operations", job.operations);
   for (const auto& [number, tool] : job.tools) out += tool_text(tool);
   out += "\n[material]\n" + material_text(job.material);
   out += stock_text(job.stock) + part_text(job.part);

@@ -50,13 +50,16 @@ ForceLaw read_law(TomlTable& table, const MaterialPreset* preset) {
 }
 
 /// Keys of the other laws.
-void refuse_others(TomlTable& table, ForceLaw law) {
+void refuse_others(TomlTable& table, ForceLaw law, const MaterialPreset* preset) {
+  const ForceLawDescription& own = description(law);
+  const std::string of_preset =
+      preset ? fmt::format(", which preset \"{}\" has; its keys are {}", preset->name, fmt::join(own.keys, ", ")) : "";
   for (const auto& other : force_laws()) {
-    if (&other == &description(law)) continue;
+    if (&other == &own) continue;
     for (const auto key : other.keys) {
       if (!table.has(key)) continue;
       table.ignore(key);
-      table.error_at_name(key, fmt::format("{} does not belong to law \"{}\"", key, description(law).word),
+      table.error_at_name(key, fmt::format("{} does not belong to law \"{}\"{}", key, own.word, of_preset),
                           "key-unused");
     }
   }
@@ -73,7 +76,7 @@ Material read_material(TomlTable table) {
     for (const auto& law : force_laws())
       for (const auto key : law.keys) table.ignore(key);
   } else {
-    refuse_others(table, material.law);
+    refuse_others(table, material.law, preset);
     description(material.law).read(table, preset, material);
   }
   for (const auto& c : kEdgeTerms)

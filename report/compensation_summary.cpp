@@ -127,6 +127,9 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
   j["depth_limit_um"] = c.depth_limit_um;
   j["depth_limit_given"] = c.own_depth_limit;
   j["unseen_mm2"] = c.unseen_mm2;
+  j["border_mm2"] = c.border_mm2;
+  j["not_judged_mm2"] = c.not_judged_mm2;
+  j["stage_between"] = c.between;
   j["causes"] = causes(c);
   j["verdict"] = verdict(verdict_text(c, asked));
   j["split_before_um"] = split(c.split_before);
@@ -161,6 +164,30 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
   j["blocks"] = {{"before", c.blocks_before}, {"after", c.blocks_after}, {"changed", c.blocks_changed}};
   j["max_shift_um"] = 1000 * c.max_shift_mm;
   j["machine_time_s"] = {{"before", c.feed_before.time_s}, {"after", c.feed_after.time_s}};
+  j["compute_s"] = compute_s;
+  return j.dump(2) + "\n";
+}
+
+std::string verify_json(const compensate::Verification& v, const machine::CompensationSettings& asked,
+                        double compute_s) {
+  ordered_json j;
+  j["schema_version"] = kSchemaVersion;
+  const bool machine = v.reference == machine::Reference::machine;
+  j["reference"] = machine ? "machine" : "commanded";
+  j["judged"] = machine ? "deflection_um" : "error_um";
+  j["emitted"] = plain(v.plain);
+  j["judged_um"] = figures_json(compensate::judged_of(v.plain, v.reference));
+  j["recorded_um"] = {
+      {"rms", v.recorded_um.rms}, {"p95", v.recorded_um.p95}, {"min", v.recorded_um.min}, {"max", v.recorded_um.max}};
+  j["within_tolerance"] = v.within_tolerance;
+  j["depth_limit_um"] = v.depth_limit_um;
+  j["into_part"] = depth(v.depth);
+  j["unseen_mm2"] = v.unseen_mm2;
+  j["border_mm2"] = v.border_mm2;
+  j["not_judged_mm2"] = v.not_judged_mm2;
+  j["stage_between"] = v.between;
+  j["verdict"] = verdict(verdict_text(v, asked));
+  j["machine_time_s"] = v.machine_time_s;
   j["compute_s"] = compute_s;
   return j.dump(2) + "\n";
 }

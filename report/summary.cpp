@@ -202,6 +202,9 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
   j["deflection_um"] = figures_json(p.deflection_um);
   j["contour_um"] = figures_json(p.contour_um);
   j["unseen_mm2"] = p.unseen_mm2;
+  j["border_mm2"] = p.border_mm2;
+  j["not_judged_mm2"] = p.not_judged_mm2;
+  j["stage_between"] = p.between;
   if (!p.total_error_mm.empty()) j["total_error_um"] = figures_json(total_error(p));
   j["static"] = {{"rounds_max", p.cut.rounds_max},
                  {"unsettled_stretches", p.cut.unsettled},
@@ -230,6 +233,17 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
                  figures_row(" deflection", p.deflection_um), figures_row(" contour", p.contour_um));
   if (!p.total_error_mm.empty())
     fmt::format_to(std::back_inserter(out), "{}\n", figures_row("against part", total_error(p)));
+  return out + region_text({p.border_mm2, p.not_judged_mm2, p.between});
+}
+
+std::string region_text(const RegionFigures& region) {
+  std::string out;
+  if (region.border_mm2 > 0)
+    fmt::format_to(std::back_inserter(out), "left out, other operations cut deeper there: {:.1f} mm2\n",
+                   region.border_mm2);
+  if (region.not_judged_mm2 > 0)
+    fmt::format_to(std::back_inserter(out), "left out, not of [part] judged: {:.1f} mm2\n", region.not_judged_mm2);
+  if (region.between) out += "other operations cut deeper everywhere: no surface of the part yet, all is judged\n";
   return out;
 }
 
@@ -245,9 +259,15 @@ std::string unsettled_sentence(const simulate::SimulatedProgram& program, const 
       p.cut.unsettled, p.cut.unsettled > 1 ? "es" : "", why);
 }
 
-std::string unsettled_sentence(const compensate::CompensationResult& c) {
-  if (c.settled) return {};
-  return "the static deflection of some stretches did not settle; their figures are uncertain";
+namespace {
+
+std::string unsettled_sentence(bool settled) {
+  return settled ? "" : "the static deflection of some stretches did not settle; their figures are uncertain";
 }
+
+}  // namespace
+
+std::string unsettled_sentence(const compensate::CompensationResult& c) { return unsettled_sentence(c.settled); }
+std::string unsettled_sentence(const compensate::Verification& v) { return unsettled_sentence(v.settled); }
 
 }  // namespace camber::report

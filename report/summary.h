@@ -3,6 +3,7 @@
 #include <string>
 
 #include "compensate/compensate.h"
+#include "compensate/verify.h"
 #include "simulate/predict.h"
 
 namespace camber::report {
@@ -16,14 +17,26 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
 std::string compensate_json(const compensate::CompensationResult& result, const machine::CompensationSettings& asked,
                             double compute_s);
 
+std::string verify_json(const compensate::Verification& verification, const machine::CompensationSettings& asked,
+                        double compute_s);
+
 /// The same for a terminal, within 80 columns.
 std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
                          double compute_s);
 std::string compensate_text(const compensate::CompensationResult& result, double compute_s);
 
+/// Of a nominal surface, what is not judged (simulate/region.h).
+struct RegionFigures {
+  double border_mm2 = 0, not_judged_mm2 = 0;
+  bool between = false;
+};
+/// A line for each that is not zero.
+std::string region_text(const RegionFigures& region);
+
 /// A sentence about tooth passings without a static equilibrium, and the lines that they are in; empty where all have
 /// one.
 std::string unsettled_sentence(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction);
 std::string unsettled_sentence(const compensate::CompensationResult& result);
+std::string unsettled_sentence(const compensate::Verification& verification);
 
 }  // namespace camber::report

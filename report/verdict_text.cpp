@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -12,6 +11,7 @@ namespace camber::report {
 namespace {
 
 using compensate::CompensationResult;
+using compensate::Verification;
 using machine::CompensationSettings;
 
 std::string judged_name(const CompensationSettings& asked) {
@@ -19,20 +19,28 @@ std::string judged_name(const CompensationSettings& asked) {
 }
 
 /// "95 % of the form error is within 2.31 um, tolerance_um = 5".
-std::string figure_sentence(const CompensationResult& c, const CompensationSettings& asked) {
+std::string figure_sentence(double p95_um, double in_band_fraction, const CompensationSettings& asked) {
   if (asked.profile_um)
     return fmt::format("{:.1f} % of the area is within profile_um = [{:g}, {:g}], wanted are 95 %",
-                       100 * c.plain_after.in_band_fraction, (*asked.profile_um)[0], (*asked.profile_um)[1]);
+                       100 * in_band_fraction, (*asked.profile_um)[0], (*asked.profile_um)[1]);
   return fmt::format("the {} of the emitted program is {:.2f} um (95th percentile), tolerance_um = {:g}",
-                     judged_name(asked), c.after_um.p95, asked.tolerance_um);
+                     judged_name(asked), p95_um, asked.tolerance_um);
 }
 
-std::string too_deep_sentence(const CompensationResult& c) {
-  const Vec3& at = c.depth_after.place_mm;
+std::string figure_sentence(const CompensationResult& c, const CompensationSettings& asked) {
+  return figure_sentence(c.after_um.p95, c.plain_after.in_band_fraction, asked);
+}
+
+std::string figure_sentence(const Verification& v, const CompensationSettings& asked) {
+  return figure_sentence(compensate::judged_of(v.plain, asked.reference).p95, v.plain.in_band_fraction, asked);
+}
+
+std::string too_deep_sentence(const compensate::Depth& depth, double limit_um) {
+  const Vec3& at = depth.place_mm;
   return fmt::format(
       "more than a thousandth of the surface lies {:.2f} um or more in the part, deepest ({:.2f} um) at X{:.3f} "
       "Y{:.3f} Z{:.3f}; no more than {:.4g} um were expected",
-      c.depth_after.held_um, c.depth_after.deepest_um, at.x(), at.y(), at.z(), c.depth_limit_um);
+      depth.held_um, depth.deepest_um, at.x(), at.y(), at.z(), limit_um);
 }
 
 std::vector<std::string> shortfalls(const CompensationResult& c, const CompensationSettings& asked) {
@@ -40,7 +48,7 @@ std::vector<std::string> shortfalls(const CompensationResult& c, const Compensat
   if (!c.settled) out.push_back(unsettled_sentence(c));
   if (!c.better)
     out.push_back("no round was better than the program as given and within the limits, so that program is judged");
-  if (!c.within_part) out.push_back(too_deep_sentence(c));
+  if (!c.within_part) out.push_back(too_deep_sentence(c.depth_after, c.depth_limit_um));
   if (c.within_tolerance) return out;
   out.push_back(figure_sentence(c, asked));
   for (const auto& cause : c.causes) out.push_back(compensate::sentence(cause));
@@ -54,9 +62,22 @@ std::string headline(const CompensationResult& c, const CompensationSettings& as
   return (c.within_tolerance ? "within the tolerance: " : "over the tolerance: ") + figure_sentence(c, asked);
 }
 
-}  // namespace
+std::string headline(const Verification& v, const CompensationSettings& asked) {
+  if (!v.doubts.empty() || !v.settled) return "the figures are not to be relied on";
+  if (!v.within_part) return "too deep in the part";
+  return (v.within_tolerance ? "within the tolerance: " : "over the tolerance: ") + figure_sentence(v, asked);
+}
 
-VerdictText verdict_text(const CompensationResult& c, const CompensationSettings& asked) {
+std::vector<std::string> shortfalls(const Verification& v, const CompensationSettings& asked) {
+  std::vector<std::string> out = v.doubts;
+  if (!v.settled) out.push_back(unsettled_sentence(v));
+  if (!v.within_part) out.push_back(too_deep_sentence(v.depth, v.depth_limit_um));
+  if (!v.within_tolerance) out.push_back(figure_sentence(v, asked));
+  return out;
+}
+
+template <class Result>
+VerdictText verdict_of(const Result& c, const CompensationSettings& asked) {
   VerdictText out;
   out.headline = headline(c, asked);
   out.reasons = shortfalls(c, asked);
@@ -66,25 +87,56 @@ VerdictText verdict_text(const CompensationResult& c, const CompensationSettings
   return out;
 }
 
+constexpr const char* kPlainHead = "surface in reach, um";
+
+std::string plain_head() { return fmt::format("{:<25}{:>10}{:>10}{:>10}\n", kPlainHead, "rms", "p95", "largest"); }
+
+std::string plain_row(const std::string& name, const removal::ErrorFigures& f) {
+  return fmt::format("{:<25}{:>10.2f}{:>10.2f}{:>10.2f}\n", name, f.rms, f.p95,
+                     std::max(std::abs(f.min), std::abs(f.max)));
+}
+
+std::string seen_text(double area_mm2, double unseen_mm2, const RegionFigures& region, machine::Reference reference) {
+  std::string out =
+      fmt::format("of {:.1f} mm2; without a figure, at the blank's faces: about {:.1f} mm2\n", area_mm2, unseen_mm2) +
+      region_text(region);
+  if (reference == machine::Reference::machine)
+    out += "judged by the deflection: [compensation] reference is the machine\n";
+  return out;
+}
+
+}  // namespace
+
+VerdictText verdict_text(const CompensationResult& c, const CompensationSettings& asked) {
+  return verdict_of(c, asked);
+}
+
+VerdictText verdict_text(const Verification& v, const CompensationSettings& asked) { return verdict_of(v, asked); }
+
+std::string verify_text(const Verification& v, double compute_s) {
+  std::string out = plain_head() + plain_row("error", v.plain.error_um) +
+                    plain_row(" deflection", v.plain.deflection_um) + plain_row(" contour", v.plain.contour_um);
+  if (v.plain.total_um) out += plain_row("against part", *v.plain.total_um);
+  out += seen_text(v.plain.error_um.area_mm2, v.unseen_mm2, {v.border_mm2, v.not_judged_mm2, v.between}, v.reference);
+  out += plain_row("judged, now", compensate::judged_of(v.plain, v.reference)) +
+         plain_row("judged, by compensate", v.recorded_um);
+  return out + fmt::format(
+                   "into the part: {:.2f} um (single points {:.2f} um); limit {:.4g} um\n"
+                   "machine time {:.1f} s; computed in {:.1f} s\n",
+                   v.depth.held_um, v.depth.deepest_um, v.depth_limit_um, v.machine_time_s, compute_s);
+}
+
 std::string plain_figures_text(const CompensationResult& c) {
-  std::string out = fmt::format("{:<25}{:>10}{:>10}{:>10}\n", "surface in reach, um", "rms", "p95", "largest");
-  const auto row = [&](const std::string& name, const removal::ErrorFigures& f) {
-    fmt::format_to(std::back_inserter(out), "{:<25}{:>10.2f}{:>10.2f}{:>10.2f}\n", name, f.rms, f.p95,
-                   std::max(std::abs(f.min), std::abs(f.max)));
-  };
+  std::string out = plain_head();
   const auto rows = [&](const std::string& name, auto part) {
-    row(name + ", before", part(c.plain_before));
-    row(name + ", after", part(c.plain_after));
+    out += plain_row(name + ", before", part(c.plain_before)) + plain_row(name + ", after", part(c.plain_after));
   };
   rows("error", [](const auto& p) { return p.error_um; });
   rows(" deflection", [](const auto& p) { return p.deflection_um; });
-  row(" contour", c.plain_after.contour_um);
+  out += plain_row(" contour", c.plain_after.contour_um);
   if (c.plain_after.total_um) rows("against part", [](const auto& p) { return *p.total_um; });
-  fmt::format_to(std::back_inserter(out), "of {:.1f} mm2; without a figure, at the blank's faces: about {:.1f} mm2\n",
-                 c.plain_after.error_um.area_mm2, c.unseen_mm2);
-  if (c.reference == machine::Reference::machine)
-    out += "judged by the deflection: [compensation] reference is the machine\n";
-  return out;
+  return out + seen_text(c.plain_after.error_um.area_mm2, c.unseen_mm2, {c.border_mm2, c.not_judged_mm2, c.between},
+                         c.reference);
 }
 
 }  // namespace camber::report

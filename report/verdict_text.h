@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compensate/compensate.h"
+#include "compensate/verify.h"
 #include "machine/job.h"
 
 namespace camber::report {
@@ -17,6 +18,12 @@ struct VerdictText {
 /// The emitted program is what is judged: not to be relied on, no better than the given one, too deep in the part, or
 /// over the tolerance.
 VerdictText verdict_text(const compensate::CompensationResult& result, const machine::CompensationSettings& asked);
+
+/// The same of a program that was judged again.
+VerdictText verdict_text(const compensate::Verification& verification, const machine::CompensationSettings& asked);
+
+/// Its figures, for the terminal.
+std::string verify_text(const compensate::Verification& verification, double compute_s);
 
 /// Root mean square, 95th percentile and largest value of error, deflection, contour and, where there is a mesh, the
 /// error against it, before and after; of which area, and what of the surface has no figure.

@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 
 #include "feedmodel/rapid.h"
+#include "removal/tool_path.h"
 #include "simulate/cut.h"
+#include "simulate/operations.h"
 #include "simulate/tool_outline.h"
 
 namespace camber::simulate {
@@ -256,6 +258,55 @@ bool motion_left_out(const SimulatedProgram& program) {
   return false;
 }
 
+const char* name(Collision::Part part) {
+  if (part == Collision::Part::cutter) return "cutter";
+  return part == Collision::Part::shank ? "shank" : "holder";
+}
+
+const char* check_name(const Collision& c) {
+  if (c.rapid) return "collision-rapid";
+  return c.part == Collision::Part::shank ? "collision-shank" : "collision-holder";
+}
+
+/// "rapid through material: the cutter of T1 in stock at X1.00 Y2.00 Z3.00, 4.00 s into the program".
+std::string deed(const Collision& c) {
+  return fmt::format("{}the {} of T{} in stock at X{:.2f} Y{:.2f} Z{:.2f}, {:.2f} s into the program",
+                     c.rapid ? "rapid through material: " : "", name(c.part), c.tool, c.place_mm.x(), c.place_mm.y(),
+                     c.place_mm.z(), c.t_s);
+}
+
+void report(const SimulatedProgram& program, const Collision& c, Severity severity, const std::string& message,
+            Diagnostics& diagnostics) {
+  const std::size_t offset = program.text.blocks[program.moves.moves[c.move].block].offset;
+  diagnostics.add(program.text.source.diagnostic(severity, offset, message, check_name(c)));
+}
+
+void report_inside(const SimulatedProgram& program, const std::vector<Collision>& found, Severity severity,
+                   Diagnostics& diagnostics) {
+  constexpr std::size_t kMax = 10;
+  for (std::size_t i = 0; i < std::min(found.size(), kMax); ++i) {
+    const Collision& c = found[i];
+    const std::string more = i + 1 == kMax && found.size() > kMax ? fmt::format(" ({} more)", found.size() - kMax) : "";
+    report(program, c, severity,
+           fmt::format("{}{}; {} was expected", deed(c), more,
+                       c.rapid ? "a rapid clear of the stock" : "a longer overhang or less depth"),
+           diagnostics);
+  }
+}
+
+/// One line: what these moves meet may be gone before they run, since other moves are left out too.
+void report_outside(const SimulatedProgram& program, const std::vector<Collision>& found, Severity severity,
+                    Diagnostics& diagnostics) {
+  if (found.empty()) return;
+  const Collision& c = found.front();
+  report(
+      program, c, severity,
+      fmt::format("{} collision{} in moves outside the job's operations, the first one in line {}: {}; moves that the "
+                  "job leaves out may have cleared the way",
+                  found.size(), found.size() == 1 ? "" : "s", program.moves.moves[c.move].block + 1, deed(c)),
+      diagnostics);
+}
+
 }  // namespace
 
 std::vector<Collision> find_collisions(const machine::Job& job, const SimulatedProgram& program,
@@ -268,26 +319,13 @@ void check_collisions(const machine::Job& job, const SimulatedProgram& program, 
   const auto kind = job.simulation.collisions.value_or(motion_left_out(program) ? machine::Collisions::warning
                                                                                 : machine::Collisions::error);
   if (kind == machine::Collisions::off) return;
-  constexpr std::size_t kMax = 10;
-  const auto found = find_collisions(job, program, blank);
   const auto severity = kind == machine::Collisions::error ? Severity::error : Severity::warning;
-  for (std::size_t i = 0; i < std::min(found.size(), kMax); ++i) {
-    const Collision& c = found[i];
-    const char* part = c.part == Collision::Part::cutter  ? "cutter"
-                       : c.part == Collision::Part::shank ? "shank"
-                                                          : "holder";
-    const std::size_t offset = program.text.blocks[program.moves.moves[c.move].block].offset;
-    diagnostics.add(program.text.source.diagnostic(
-        severity, offset,
-        fmt::format("{} of T{} in stock at X{:.2f} Y{:.2f} Z{:.2f}, {:.2f} s into the program{}; {} was expected",
-                    c.rapid ? fmt::format("rapid through material: the {}", part) : fmt::format("the {}", part), c.tool,
-                    c.place_mm.x(), c.place_mm.y(), c.place_mm.z(), c.t_s,
-                    i + 1 == kMax && found.size() > kMax ? fmt::format(" ({} more)", found.size() - kMax) : "",
-                    c.rapid ? "a rapid clear of the stock" : "a longer overhang or less depth"),
-        c.rapid                            ? "collision-rapid"
-        : c.part == Collision::Part::shank ? "collision-shank"
-                                           : "collision-holder"));
-  }
+  const machine::Operations operations = as_lines(job.operations, program.text, program.moves);
+  std::vector<Collision> inside, outside;
+  for (const Collision& c : find_collisions(job, program, blank))
+    (removal::in_operations(program.moves, program.moves.moves[c.move], operations) ? inside : outside).push_back(c);
+  report_inside(program, inside, severity, diagnostics);
+  report_outside(program, outside, severity, diagnostics);
 }
 
 }  // namespace camber::simulate

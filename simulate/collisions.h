@@ -37,7 +37,8 @@ std::vector<Collision> find_collisions(const machine::Job& job, const SimulatedP
 
 /// The same as diagnostics at the blocks: [collision-rapid], [collision-shank], [collision-holder]. What they are the
 /// job says; where it does not, errors, or warnings if a part of the program's motion was left out (operations,
-/// cycles that are not carved): material may stand that would be gone.
+/// cycles that are not carved): material may stand that would be gone. Those of moves outside the job's operations are
+/// one diagnostic, at the first.
 void check_collisions(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                       Diagnostics& diagnostics);
 

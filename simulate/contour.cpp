@@ -31,15 +31,17 @@ void mark_straight(removal::SurfaceMap& map, const removal::EnvelopeGrid& outlin
 
 }  // namespace
 
-void mark_contour(const machine::Job& job, const removal::StampPath& path, Target& target) {
+std::vector<removal::SurfacePoint> mark_contour(const machine::Job& job, const removal::StampPath& path,
+                                                Target& target) {
   removal::SurfaceMap map(target.surface, target.places, target.blank, &target.solid());
   for (const auto& run : path.runs)
     mark_straight(map, outline_of(job.tools.at(run.tool)), std::span(path.stamps).subspan(run.from, run.count),
                   static_cast<std::int32_t>(run.from));
   target.unseen_mm2 = map.unseen_mm2();
-  const auto points = map.take();
+  std::vector<removal::SurfacePoint> points = map.take();
   target.contour_mm.reserve(points.size());
   for (const auto& p : points) target.contour_mm.push_back(static_cast<float>(p.error_mm));
+  return points;
 }
 
 }  // namespace camber::simulate

@@ -9,6 +9,8 @@
 #include "nc/interpreter.h"
 #include "simulate/contour.h"
 #include "simulate/job_checks.h"
+#include "simulate/operations.h"
+#include "simulate/region.h"
 #include "simulate/setup_checks.h"
 
 namespace camber::simulate {
@@ -101,8 +103,9 @@ SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmo
   out.text = nc::read_program(std::move(source), diagnostics);
   out.moves = nc::interpret(out.text, feedmodel::interpreter_options(job.machine, job.inch), diagnostics);
   diagnostics.throw_if_errors();
-  out.selected = removal::selected_moves(out.moves, job.operations);
-  out.holes = removal::hole_moves(out.moves, job.operations, job.tools);
+  const machine::Operations operations = as_lines(job.operations, out.text, out.moves);
+  out.selected = removal::selected_moves(out.moves, operations);
+  out.holes = removal::hole_moves(out.moves, operations, job.tools);
   for (std::size_t i = 0; i < out.holes.size(); ++i)
     if (out.holes[i] != removal::HoleMove::none) out.selected[i] = false;
   check_cutting(job, out.text, out.moves, out.selected, out.holes, diagnostics);
@@ -171,7 +174,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
              std::move(part),  HoleStamps(nominal), std::move(whole)};
   out.stamps.reserve(nominal.stamps.size());
   for (const auto& s : nominal.stamps) out.stamps.push_back({s.move, static_cast<float>(s.share)});
-  mark_contour(job, target.path, out);
+  mark_region(job, target, mark_contour(job, target.path, out), out);
   return out;
 }
 
@@ -231,6 +234,10 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
   out.surface = map.take();
   for (std::size_t i = 0; i < out.surface.size(); ++i)
     out.surface[i].contour_mm = static_cast<double>(target.contour_mm[i]);
+  drop_left_out(target.region, out.surface);
+  out.border_mm2 = target.region.border_mm2;
+  out.not_judged_mm2 = target.region.not_judged_mm2;
+  out.between = target.region.between;
   out.unseen_mm2 = target.unseen_mm2;
   out.holes.surface_mm2 = target.holes.drop_from(out.surface);
   std::vector<double> error_um, deflection_um, contour_um, area;

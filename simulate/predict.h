@@ -40,6 +40,14 @@ struct PathShare {
   float share = 0;  ///< of the move's length
 };
 
+/// Which points of a SurfaceMap are left out of a job's surface (simulate/region.h).
+struct SurfaceRegion {
+  std::vector<bool> left_out{};  ///< one a point; empty: none
+  double border_mm2 = 0;         ///< left out: moves that the job leaves out cut deeper there
+  double not_judged_mm2 = 0;     ///< left out: made by moves that [part] judged does not name
+  bool between = false;          ///< moves that the job leaves out cut deeper everywhere: no border is left out
+};
+
 /// What the part is judged against, the nominal surface: the undeflected sweep of the target program's own moves
 /// through the blank, without servo lag and corner rounding (removal::nominal_path).
 struct Target {
@@ -52,6 +60,7 @@ struct Target {
   std::vector<PathShare> stamps{};        ///< the nominal path's, on the target program's moves
   std::vector<float> contour_mm{};        ///< one a point of a SurfaceMap of this target; see Prediction::surface
   double unseen_mm2 = 0;                  ///< of the nominal surface, without a point
+  SurfaceRegion region{};                 ///< what of the nominal surface is judged
   const removal::Stock& solid() const { return whole ? *whole : blank; }
 };
 
@@ -68,14 +77,17 @@ double sweep_path(removal::Stock& stock, const machine::Job& job, const removal:
 struct Prediction {
   CutResult cut;  ///< loads: one a stamp of the program; the volumes are without tapping, which has no chips
   HoleFigures holes;
-  /// Of the target, but for what its holes made. error_mm: machined minus nominal; contour_mm: the undeflected sweep of
-  /// the target program as this machine runs it, minus nominal; their difference is what bending (and, in a
-  /// compensated program, the shift) does.
+  /// Of the target, but for what its holes made and what is not of the job's region (region.h). error_mm: machined
+  /// minus nominal; contour_mm: the undeflected sweep of the target program as this machine runs it, minus nominal;
+  /// their difference is what bending (and, in a compensated program, the shift) does.
   std::vector<removal::SurfacePoint> surface;
   std::vector<double> total_error_mm;   ///< against the part's mesh, one a point; empty without a mesh
   removal::ErrorFigures form_error_um;  ///< error_mm; the sum of the next two, point by point
   removal::ErrorFigures deflection_um, contour_um;
   double unseen_mm2 = 0;  ///< of the nominal surface, without a point
+  /// Of the nominal surface, not in `surface`: see SurfaceRegion.
+  double border_mm2 = 0, not_judged_mm2 = 0;
+  bool between = false;
   std::unique_ptr<removal::Stock> machined;
   std::vector<int> slender_tools{};  ///< that cut, but are longer than the model covers (simulate/setup_checks.h)
 };

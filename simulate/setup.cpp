@@ -5,23 +5,23 @@
 #include "simulate/collisions.h"
 #include "simulate/flute_reach.h"
 #include "simulate/machine_checks.h"
+#include "simulate/region.h"
 #include "simulate/setup_checks.h"
 
 namespace camber::simulate {
 
 Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings) {
   const bool other = !options.program.empty();
-  const auto motion_of = [&](const std::string& file, Diagnostics& diagnostics) {
-    return simulate_motion(SourceText::read(file), job, {}, diagnostics);
-  };
-  SimulatedProgram program = motion_of(other ? options.program : job.program, findings.program);
+  SimulatedProgram program =
+      simulate_motion(SourceText::read(other ? options.program : job.program), job, {}, findings.program);
   if (options.check) options.check(program);
   findings.program.throw_if_errors();
+  machine::Job of_target = job;
+  if (job.part.operations) of_target.operations = *job.part.operations;
   std::optional<SimulatedProgram> original;
-  if (!job.part.program.empty())
-    original.emplace(motion_of(job.part.program, findings.original));
-  else if (other)
-    original.emplace(motion_of(job.program, findings.original));
+  if (!job.part.program.empty() || other || job.part.operations)
+    original.emplace(simulate_motion(SourceText::read(job.part.program.empty() ? job.program : job.part.program),
+                                     of_target, {}, findings.original));
   Target target = make_target(job, original ? *original : program, findings.target);
   return {std::move(program), std::move(original), std::move(target)};
 }
@@ -33,6 +33,7 @@ void check_program(const machine::Job& job, const SimulatedProgram& program, Dia
 
 void check_clearance(const machine::Job& job, const Setup& setup, Diagnostics& diagnostics) {
   check_collisions(job, setup.program, setup.target.blank, diagnostics);
+  check_region_start(job, setup.program, setup.target.blank, diagnostics);
   check_flute_reach(job, setup.program, setup.target.blank, diagnostics);
 }
 

@@ -10,6 +10,7 @@
 #include "base/stl.h"
 #include "base/units.h"
 #include "simulate/job_checks.h"
+#include "simulate/operations.h"
 
 namespace camber::simulate {
 namespace {
@@ -189,8 +190,9 @@ void check_tool_lengths(const machine::Job& job, const std::vector<int>& tools, 
 
 void check_job(const machine::Job& job, const nc::Program& program, const nc::Interpretation& moves,
                Diagnostics& diagnostics) {
-  std::vector<bool> selected = removal::selected_moves(moves, job.operations);
-  const auto holes = removal::hole_moves(moves, job.operations, job.tools);
+  const machine::Operations operations = as_lines(job.operations, program, moves);
+  std::vector<bool> selected = removal::selected_moves(moves, operations);
+  const auto holes = removal::hole_moves(moves, operations, job.tools);
   for (std::size_t i = 0; i < holes.size(); ++i)
     if (holes[i] != removal::HoleMove::none) selected[i] = false;
   check_cutting(job, program, moves, selected, holes, diagnostics);

@@ -180,7 +180,30 @@ TEST(Collisions, AreWarningsWhereAPartOfTheProgramIsLeftOut) {
             "operations = { blocks = [[9, 9]] }\n" + kFlat, "box_mm = [[0, -8, -5], [8, 8, 0]]");
   const auto run = run_camber(folder, "predict job.toml -o r");
   EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.err.find("p.nc:7:1: warning: rapid through material"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("p.nc:7:1: warning: 1 collision in moves outside the job's operations, the first one in line "
+                         "7: rapid through material: the cutter of T1 in stock at X"),
+            std::string::npos)
+      << run.err;
+}
+
+TEST(Collisions, OfMovesOutsideTheOperationsAreOneLine) {
+  const TempFolder folder;
+  std::string program = kHead;
+  for (int y = -6; y <= 6; y += 3)
+    program += "G0 X-4 Y" + std::to_string(y) + " Z5\nG0 Z-2\nG1 X12 F900\nG0 X4\nG0 Z5\n";
+  program += "M30\n";
+  // Line 19, a cut of the region; every pass begins with a rapid down to Z-2 beside the block and ends with one back.
+  write_job(folder, program, "operations = { blocks = [[14, 18]] }\n" + kFlat, "box_mm = [[0, -8, -5], [8, 8, 0]]");
+  const auto run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("p.nc:7:1: warning: 4 collisions in moves outside the job's operations, the first one in line "
+                         "7: rapid through material: the cutter of T1 in stock at X"),
+            std::string::npos)
+      << run.err;
+  std::size_t lines = 0;
+  for (std::size_t at = run.err.find("[collision"); at != std::string::npos; at = run.err.find("[collision", at + 1))
+    ++lines;
+  EXPECT_EQ(lines, 1u) << run.err;
 }
 
 TEST(Collisions, ShankAndHolderAgainstStockAreErrors) {

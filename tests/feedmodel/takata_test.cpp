@@ -1,4 +1,5 @@
-// Rows B1-B24 of the checks taken from Takata 1999 (the arc lengths of B2 stand in tests/nc).
+// Rows B1-B24 of the checks taken from Takata 1999 (the arc lengths of B2 stand in tests/nc). Suite PrintedFigures:
+// rows that only do arithmetic on what the book prints; bench/cycle-time/table simulates these parts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -256,7 +257,7 @@ TEST(Takata, T21_ACornerUnderTheThresholdDoesNotSlow) {
   }
 }
 
-TEST(Takata, B12_MachineToolPart) {
+TEST(PrintedFigures, B12_MachineToolPart) {
   const CycleSplit t = split(1041, 44, 19, 44, 1).all.time;
   EXPECT_DOUBLE_EQ(t.total_s(), 1149);
   EXPECT_NEAR(error_percent(t.total_s(), 1049 + 62 + 44), -0.5, 0.05);
@@ -264,14 +265,14 @@ TEST(Takata, B12_MachineToolPart) {
   EXPECT_EQ(dominant_kind(t).key, "cutting_s");
 }
 
-TEST(Takata, B13_CarPart) {
+TEST(PrintedFigures, B13_CarPart) {
   const CycleSplit t = split(217, 87, 6, 105, 1).all.time;
   EXPECT_DOUBLE_EQ(t.total_s(), 416);
   EXPECT_NEAR(error_percent(t.total_s(), 210 + 94 + 105), 1.7, 0.05);
   EXPECT_NEAR(error_percent(t.cutting_s, 210), 3.3, 0.05);
 }
 
-TEST(Takata, B14_ThirdPart) {
+TEST(PrintedFigures, B14_ThirdPart) {
   const CycleSplit t = split(726, 64, 0, 11, 0).all.time;
   EXPECT_DOUBLE_EQ(t.total_s(), 801);
   EXPECT_NEAR(error_percent(t.total_s(), 796), 0.6, 0.05);
@@ -426,7 +427,7 @@ TEST(Takata, B23_ImprovedAgainstConventional) {
   EXPECT_NEAR(cases.back().all.time.total_s() / cases.front().all.time.total_s(), 378.0 / 1155, 0.05);
 }
 
-TEST(Takata, B24_CapabilityIsInMillimetres) {
+TEST(PrintedFigures, B24_CapabilityIsInMillimetres) {
   // No code of ours computes a C_P: the row is kept as a slip of the print, sigma "0.0118 um" for mm.
   const auto cp = [](double sigma_mm) { return (0.05 + 0.05) / (6 * sigma_mm); };
   EXPECT_NEAR(cp(0.0118), 1.41, 0.005);

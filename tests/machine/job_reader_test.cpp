@@ -162,6 +162,27 @@ TEST(JobReader, WritesTextThatReadsBack) {
   EXPECT_EQ(back.tools.at(1).helix_rad, job.tools.at(1).helix_rad);
 }
 
+TEST(JobReader, ReadsOperationsOfTheTargetAndWhatIsJudged) {
+  const TempFolder folder;
+  folder.write("finish.nc", "M30\n");
+  folder.write("machine.toml", "[spindle]\nmax_rpm = 12000\n");
+  Diagnostics diagnostics;
+  const std::string more =
+      "[part]\nprogram = \"finish.nc\"\noperations = { comments = \"wall|floor\" }\n"
+      "judged = { tools = [1], blocks = [[3, 9]] }\n[compensation]\noperations = { comments = \"wall\" }\n";
+  const Job job = read_job(folder.write("job.toml", with_more(more)), diagnostics);
+  ASSERT_TRUE(job.part.operations && job.part.judged);
+  EXPECT_EQ(job.part.operations->comments, "wall|floor");
+  EXPECT_EQ(job.part.judged->tools, std::vector<int>{1});
+  EXPECT_EQ(job.part.judged->blocks, (std::vector<std::array<int, 2>>{{3, 9}}));
+  EXPECT_EQ(job.compensation.operations.comments, "wall");
+  EXPECT_FALSE(job.operations.given());
+  const std::string text = to_toml(job);
+  EXPECT_EQ(to_toml(read_job(folder.write("again.toml", text), diagnostics)), text);
+  EXPECT_NE(read(with_more("[part]\njudged = { tools = [7] }\n")).messages.find("there is no [tool.7]"),
+            std::string::npos);
+}
+
 TEST(JobReader, ReadsReferenceAndBand) {
   const Result result = read(with_more("[compensation]\nreference = \"machine\"\nprofile_um = [-5, 10]\n"));
   EXPECT_EQ(result.messages, "");

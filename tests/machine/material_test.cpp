@@ -160,6 +160,12 @@ TEST(Material, RefusesWhatItCannotBe) {
             "job.toml:13:1: error: mc does not belong to law \"linear\" [key-unused]\n"
             "    mc = 0.2\n"
             "    ^");
+  EXPECT_EQ(
+      read("preset = \"Al6082-T6\"\nkrc_ratio = 0.3\n").messages,
+      "job.toml:12:1: error: krc_ratio does not belong to law \"linear\", which preset \"Al6082-T6\" has; its keys "
+      "are ktc_MPa, krc_MPa, kac_MPa [key-unused]\n"
+      "    krc_ratio = 0.3\n"
+      "    ^");
   EXPECT_EQ(read("law = \"kienzle\"\nkc1_1_MPa = 2000\nmc = 1.5\nkrc_ratio = 0.3\n").messages,
             "job.toml:13:6: error: mc is 1.5; a number from 0 to 0.9 was expected [value-range]\n"
             "    mc = 1.5\n"

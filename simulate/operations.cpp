@@ -1,0 +1,30 @@
+#include "simulate/operations.h"
+
+#include <algorithm>
+
+#include "nc/headings.h"
+
+namespace camber::simulate {
+
+machine::Operations as_lines(const machine::Operations& operations, const nc::Program& program,
+                             const nc::Interpretation& moves) {
+  if (operations.comments.empty()) return operations;
+  machine::Operations out;
+  out.tools = operations.tools;
+  const std::vector<bool> under = nc::lines_under(program, moves, operations.comments);
+  for (std::size_t i = 0; i < under.size(); ++i) {
+    const int line = static_cast<int>(i) + 1;
+    const bool in_ranges = operations.blocks.empty() || std::ranges::any_of(operations.blocks, [&](const auto& r) {
+                             return line >= r[0] && line <= r[1];
+                           });
+    if (!under[i] || !in_ranges) continue;
+    if (!out.blocks.empty() && out.blocks.back()[1] == line - 1)
+      out.blocks.back()[1] = line;
+    else
+      out.blocks.push_back({line, line});
+  }
+  if (out.blocks.empty()) out.blocks.push_back({0, 0});
+  return out;
+}
+
+}  // namespace camber::simulate

@@ -1,0 +1,14 @@
+#pragma once
+// Operations that a job names, in terms of a program's lines.
+#include "machine/job.h"
+#include "nc/move.h"
+#include "nc/program.h"
+
+namespace camber::simulate {
+
+/// The same operations without a regular expression: what it names becomes ranges of lines (nc/headings.h). Where no
+/// line is left, the range [0, 0], which no move stands in.
+machine::Operations as_lines(const machine::Operations& operations, const nc::Program& program,
+                             const nc::Interpretation& moves);
+
+}  // namespace camber::simulate

@@ -1,0 +1,206 @@
+#include "simulate/region.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "nc/move.h"
+#include "removal/cutter.h"
+#include "removal/tool_path.h"
+#include "simulate/cut.h"
+#include "simulate/operations.h"
+#include "simulate/tool_outline.h"
+
+namespace camber::simulate {
+namespace {
+
+using removal::Stamp;
+
+/// What a tool leaves between two places of its path is d^2 / 8 R.
+double sample_spacing_mm(const machine::Tool& tool) {
+  constexpr double kRidge_mm = 0.001, kLeast_mm = 0.02, kMost_mm = 0.2;
+  const double corner = removal::shape_of(tool).corner_radius_mm;
+  const double radius = corner > 0 ? corner : tool.diameter_mm / 2;
+  return std::clamp(std::sqrt(8 * radius * kRidge_mm), kLeast_mm, kMost_mm);
+}
+
+machine::Box box_of(std::span<const removal::SurfacePoint> points) {
+  machine::Box out{Vec3::Constant(1e9), Vec3::Constant(-1e9)};
+  for (const auto& p : points) {
+    out.min_mm = out.min_mm.cwiseMin(p.place_mm);
+    out.max_mm = out.max_mm.cwiseMax(p.place_mm);
+  }
+  return out;
+}
+
+/// The commanded sweep of the moves that the job leaves out, as far as it comes near the job's surface.
+class OtherMoves {
+ public:
+  OtherMoves(const machine::Job& job, const SimulatedProgram& program, const machine::Box& surface)
+      : job_(job), program_(program), surface_(surface) {
+    const auto& moves = program.moves.moves;
+    for (std::size_t i = 0; i < moves.size(); ++i)
+      if (program.selected[i]) offsets_.insert(program.moves.state_of(moves[i]).work_offset);
+    for (std::size_t i = 0; i < moves.size(); ++i)
+      if (left_out(i)) add(moves[i]);
+  }
+
+  bool empty() const { return runs_.empty(); }
+
+  /// Carves them out of `stock`; the ids of their stamps, and the cutters by these ids.
+  removal::CutterPlaces sweep_through(removal::Stock& stock) const {
+    removal::CutterPlaces places;
+    std::int32_t first_id = 0;
+    for (const Run& run : runs_) {
+      const machine::Tool& tool = job_.tools.at(run.tool);
+      sweep(stock, tool, run.stamps, first_id, 0);
+      places.add(first_id, removal::shape_of(tool), run.stamps);
+      first_id += static_cast<std::int32_t>(run.stamps.size());
+    }
+    return places;
+  }
+
+ private:
+  struct Run {
+    int tool = 0;
+    std::vector<Stamp> stamps;
+  };
+
+  bool left_out(std::size_t i) const {
+    const nc::Move& m = program_.moves.moves[i];
+    if (program_.selected[i] || program_.holes[i] != removal::HoleMove::none || m.reference) return false;
+    if (m.kind != nc::MoveKind::linear && m.kind != nc::MoveKind::arc) return false;
+    const nc::ModalState& state = program_.moves.state_of(m);
+    return job_.tools.contains(state.tool) && offsets_.contains(state.work_offset);
+  }
+
+  bool near(const Vec3& tip, double radius_mm) const {
+    const Vec3 &lo = surface_.min_mm, &hi = surface_.max_mm;
+    return tip.z() < hi.z() && tip.x() + radius_mm > lo.x() && tip.x() - radius_mm < hi.x() &&
+           tip.y() + radius_mm > lo.y() && tip.y() - radius_mm < hi.y();
+  }
+
+  void add(const nc::Move& m) {
+    const int number = program_.moves.state_of(m).tool;
+    const machine::Tool& tool = job_.tools.at(number);
+    const double length = nc::length_mm(program_.moves, m);
+    const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(length / sample_spacing_mm(tool))));
+    for (std::size_t k = 0; k <= steps; ++k) {
+      Stamp stamp;
+      stamp.pose = nc::pose_at(program_.moves, m, static_cast<double>(k) / static_cast<double>(steps));
+      if (!near(stamp.pose.tip_mm, tool.diameter_mm / 2)) continue;
+      if (runs_.empty() || runs_.back().tool != number) runs_.push_back({number, {}});
+      runs_.back().stamps.push_back(stamp);
+    }
+  }
+
+  const machine::Job& job_;
+  const SimulatedProgram& program_;
+  const machine::Box surface_;
+  std::set<int> offsets_;
+  std::vector<Run> runs_;
+};
+
+/// How far a point lies inside the sweep that set the voxels around it. A point whose surroundings have become air for
+/// more than a voxel and a half has no stamps there: that much is certain, whatever the field rounds.
+double depth_mm(const removal::Stock& swept, const removal::CutterPlaces& places, const Vec3& point) {
+  const double certain_mm = 1.5 * swept.voxel_mm(), from_field_mm = swept.distance_mm(point);
+  if (from_field_mm > certain_mm) return from_field_mm;
+  constexpr int kSide = 2;
+  removal::Index3 first{};
+  for (int a = 0; a < 3; ++a)
+    first[static_cast<std::size_t>(a)] = static_cast<int>(std::floor(point[a] / swept.voxel_mm()));
+  std::array<float, kSide * kSide * kSide> distance{};
+  std::array<std::int32_t, kSide * kSide * kSide> stamps{};
+  swept.read(first, kSide, distance.data(), stamps.data());
+  double deepest = 0;
+  for (const std::int32_t id : std::set<std::int32_t>(stamps.begin(), stamps.end()))
+    if (places.knows(id)) deepest = std::max(deepest, places.deepest_from(id, point).depth_mm);
+  return deepest;
+}
+
+void mark_border(const machine::Job& job, const SimulatedProgram& program,
+                 std::span<const removal::SurfacePoint> points, Target& target) {
+  const OtherMoves others(job, program, box_of(points));
+  if (others.empty()) return;
+  removal::Stock swept(target.surface);
+  swept.clear_stamps();
+  const removal::CutterPlaces places = others.sweep_through(swept);
+  std::vector<bool> border(points.size(), false);
+  double area = 0, whole = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    whole += points[i].area_mm2;
+    if (depth_mm(swept, places, points[i].place_mm) <= kBorder_mm) continue;
+    border[i] = true;
+    area += points[i].area_mm2;
+  }
+  target.region.between = area > kBetween * whole;
+  if (target.region.between || area == 0) return;
+  target.region.left_out = std::move(border);
+  target.region.border_mm2 = area;
+}
+
+void mark_not_judged(const machine::Operations& judged, const SimulatedProgram& program,
+                     std::span<const removal::SurfacePoint> points, Target& target) {
+  const std::vector<bool> named = removal::selected_moves(program.moves, as_lines(judged, program.text, program.moves));
+  SurfaceRegion& region = target.region;
+  if (region.left_out.empty()) region.left_out.assign(points.size(), false);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::int32_t stamp = points[i].target_stamp;
+    const bool known = stamp >= 0 && static_cast<std::size_t>(stamp) < target.stamps.size();
+    if (region.left_out[i] || (known && named[target.stamps[static_cast<std::size_t>(stamp)].move])) continue;
+    region.left_out[i] = true;
+    region.not_judged_mm2 += points[i].area_mm2;
+  }
+}
+
+bool stands_in(const removal::Stock& stock, const machine::Tool& tool, const Vec3& tip) {
+  constexpr double kStep_mm = 0.5;
+  for (const OutlineRing& ring : tool_outline(tool, kStep_mm, stock.max_mm().z() - tip.z())) {
+    if (ring.part != OutlineRing::Part::cutter) continue;
+    const int n = std::max(1, static_cast<int>(std::ceil(2 * kPi * ring.radius_mm / kStep_mm)));
+    for (int i = 0; i < n; ++i) {
+      const double phi = 2 * kPi * i / n;
+      const Vec3 p = tip + Vec3(ring.radius_mm * std::cos(phi), ring.radius_mm * std::sin(phi), ring.height_mm);
+      if (stock.distance_mm(p) < -stock.voxel_mm()) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+void check_region_start(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+                        Diagnostics& diagnostics) {
+  const auto& moves = program.moves.moves;
+  const auto first = static_cast<std::size_t>(std::ranges::find(program.selected, true) - program.selected.begin());
+  if (first == 0 || first >= moves.size()) return;
+  const nc::Move &m = moves[first], &before = moves[first - 1];
+  const bool goes_on = (before.kind == nc::MoveKind::linear || before.kind == nc::MoveKind::arc) && !before.reference &&
+                       program.moves.state_of(before).tool == program.moves.state_of(m).tool;
+  const auto tool = job.tools.find(program.moves.state_of(m).tool);
+  if (!goes_on || tool == job.tools.end() || !stands_in(blank, tool->second, m.start_mm)) return;
+  diagnostics.add(program.text.source.diagnostic(
+      Severity::warning, program.text.blocks[m.block].offset,
+      fmt::format("the job's operations begin here, in the middle of a cut: T{} stands in material, which goes without "
+                  "chips; a range that begins at a rapid was expected",
+                  tool->first),
+      "starts-in-material"));
+}
+
+void mark_region(const machine::Job& job, const SimulatedProgram& program,
+                 std::span<const removal::SurfacePoint> points, Target& target) {
+  mark_border(job, program, points, target);
+  if (job.part.judged) mark_not_judged(*job.part.judged, program, points, target);
+}
+
+void drop_left_out(const SurfaceRegion& region, std::vector<removal::SurfacePoint>& surface) {
+  if (region.left_out.empty()) return;
+  std::size_t i = 0;
+  std::erase_if(surface, [&](const removal::SurfacePoint&) { return static_cast<bool>(region.left_out[i++]); });
+}
+
+}  // namespace camber::simulate

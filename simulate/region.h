@@ -1,0 +1,36 @@
+#pragma once
+// The region that a job with operations makes: what of its nominal surface is the part's.
+#include <span>
+
+#include "removal/form_error.h"
+#include "simulate/predict.h"
+
+namespace camber::simulate {
+
+/// Moves that the job leaves out must cut deeper by more than this for a point to be border, mm. Less is what two
+/// passes at one height, or the ridge between two rows, may differ by.
+inline constexpr double kBorder_mm = 0.002;
+/// Where more of the surface than this is cut deeper by other moves, the job is a stage between (roughing) and there is
+/// no border: all of its surface is judged.
+inline constexpr double kBetween = 0.99;
+
+/// Sets Target::region. `points`: of a SurfaceMap of the target; `program`: the target program.
+///
+/// Border: points that the commanded sweep of the moves which the job leaves out, of tools that it describes and in
+/// work offsets that it cuts in, passes by more than kBorder_mm below. The region's raw edges are such places: the rest
+/// of the program takes them away, or has done so before. These moves are sampled so that what stands between two
+/// samples is below 1 um.
+///
+/// Not judged: points of moves that [part] judged does not name.
+void mark_region(const machine::Job& job, const SimulatedProgram& program,
+                 std::span<const removal::SurfacePoint> points, Target& target);
+
+/// Warning [starts-in-material] at the first move that is milled, where it goes on from a feed move that the job leaves
+/// out and its cutter stands in the blank there by more than a voxel: what lies within the cutter is gone without chips.
+void check_region_start(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+                        Diagnostics& diagnostics);
+
+/// Leaves the points of a map out that are not of the region; `surface` is in the map's order.
+void drop_left_out(const SurfaceRegion& region, std::vector<removal::SurfacePoint>& surface);
+
+}  // namespace camber::simulate
