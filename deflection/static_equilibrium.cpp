@@ -25,6 +25,15 @@ using Coarse = Eigen::Matrix4d;
 using CoarseDeflection = Eigen::Vector4d;
 using ByCoarse = Eigen::Matrix<double, 2, 4, Eigen::RowMajor>;
 
+/// Calls f(from, end) for parts of 0 ... count, on all threads where `elements` are worth it.
+template <class Function>
+void for_all(std::size_t count, std::size_t elements, Function f) {
+  constexpr std::size_t kWorthThreads = 1500, kParts = 8;
+  if (elements < kWorthThreads) return f(std::size_t{0}, count);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, count / kParts + 1),
+                    [&](const auto& range) { f(range.begin(), range.end()); });
+}
+
 }  // namespace
 
 StaticEquilibrium::StaticEquilibrium(const removal::EnvelopeGrid& envelope, const ToothPassModel& model)
@@ -58,31 +67,38 @@ void StaticEquilibrium::place_elements(std::span<const removal::DeflectedChipSam
   elements_.resize(found_.size());
   max_lean_mm_ = removal::kMaxTilt * feed.norm();
   first_stamp_ = stamp.first;
-  const double node_step = model_.node_height_mm()[1], per_rad = envelope_.steps / (4 * kPi);
   std::vector<std::size_t> at(first_.begin(), first_.end() - 1);
-  for (const EdgeElement& f : found_) {
-    const removal::DeflectedChipSample& bent = chips[f.chip];
-    const std::uint32_t r = bent.chip.point / static_cast<std::uint32_t>(envelope_.steps);
-    const Ring& ring = rings_[r];
-    const EdgeDirections d = model_.direction(bent.chip.point, envelope_.rings[r]);
-    Element& e = elements_[at[static_cast<std::size_t>(f.step)]++];
-    e.normal = d.normal.head<2>();
-    e.tangential = d.tangential.head<2>();
-    e.meridian = d.meridian.head<2>();
-    e.deeper = Vec2(static_cast<double>(bent.deeper[0]), static_cast<double>(bent.deeper[1]));
-    e.depth_mm = static_cast<double>(bent.depth_mm);
-    e.cap_mm = static_cast<double>(bent.cap_mm);
-    e.thickness_mm = f.thickness_mm;
-    e.width_mm = bent.chip.width_fraction() * envelope_.rings[r].width_mm;
-    e.ring = r, e.chip = f.chip;
-    // As removal/simd/upright_kernels_impl.h, read_points.
-    constexpr double kLevel = 0.05;
-    const double around = -feed.dot(d.tangential), up = feed.dot(d.meridian);
-    const bool leans = ring.sine >= kLevel;
-    e.by_step = leans ? per_rad * (around * ring.per_radius - up * ring.sine * envelope_.lag_per_mm) : 0;
-    e.by_height = leans ? up * ring.sine / node_step : 0;
-    e.lean_mm = lean_mm(e, static_cast<std::size_t>(f.step));
-  }
+  place_.resize(found_.size());
+  for (std::size_t i = 0; i < found_.size(); ++i) place_[i] = at[static_cast<std::size_t>(found_[i].step)]++;
+  for_all(found_.size(), found_.size(), [&](std::size_t from, std::size_t end) {
+    for (std::size_t i = from; i < end; ++i) elements_[place_[i]] = element(found_[i], chips[found_[i].chip], feed);
+  });
+}
+
+StaticEquilibrium::Element StaticEquilibrium::element(const EdgeElement& f, const removal::DeflectedChipSample& bent,
+                                                      const Vec3& feed) const {
+  const double node_step = model_.node_height_mm()[1], per_rad = envelope_.steps / (4 * kPi);
+  const std::uint32_t r = bent.chip.point / static_cast<std::uint32_t>(envelope_.steps);
+  const Ring& ring = rings_[r];
+  const EdgeDirections d = model_.direction(bent.chip.point, envelope_.rings[r]);
+  Element e;
+  e.normal = d.normal.head<2>();
+  e.tangential = d.tangential.head<2>();
+  e.meridian = d.meridian.head<2>();
+  e.deeper = Vec2(static_cast<double>(bent.deeper[0]), static_cast<double>(bent.deeper[1]));
+  e.depth_mm = static_cast<double>(bent.depth_mm);
+  e.cap_mm = static_cast<double>(bent.cap_mm);
+  e.thickness_mm = e.solved_mm = f.thickness_mm;
+  e.width_mm = bent.chip.width_fraction() * envelope_.rings[r].width_mm;
+  e.ring = r, e.chip = f.chip;
+  // As removal/simd/upright_kernels_impl.h, read_points.
+  constexpr double kLevel = 0.05;
+  const double around = -feed.dot(d.tangential), up = feed.dot(d.meridian);
+  const bool leans = ring.sine >= kLevel;
+  e.by_step = leans ? per_rad * (around * ring.per_radius - up * ring.sine * envelope_.lag_per_mm) : 0;
+  e.by_height = leans ? up * ring.sine / node_step : 0;
+  e.lean_mm = lean_mm(e, static_cast<std::size_t>(f.step));
+  return e;
 }
 
 /// What follows from deflection_.
@@ -243,19 +259,13 @@ void StaticEquilibrium::solve_coarse() {
 double StaticEquilibrium::balance_all() {
   place_deflections();
   const auto row = static_cast<Eigen::Index>(2 * nodes_);
-  const auto some = [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t m = range.begin(); m < range.end(); ++m) {
+  for_all(steps_, elements_.size(), [&](std::size_t from, std::size_t end) {
+    for (std::size_t m = from; m < end; ++m) {
       if (stale_[m] == 0) continue;
       balance(m);
       norm_[m] = Eigen::Map<const Eigen::VectorXd>(left_.data() + 2 * m * nodes_, row).lpNorm<Eigen::Infinity>();
     }
-  };
-  const tbb::blocked_range<std::size_t> all(0, steps_, 16);
-  constexpr std::size_t kWorthThreads = 4000;
-  if (elements_.size() < kWorthThreads)
-    some(all);
-  else
-    tbb::parallel_for(all, some);
+  });
   return Eigen::Map<const Eigen::VectorXd>(left_.data(), static_cast<Eigen::Index>(left_.size())).squaredNorm();
 }
 

@@ -51,6 +51,7 @@ class StaticEquilibrium {
   };
   void place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
                       const removal::Stamp& stamp);
+  Element element(const EdgeElement& found, const removal::DeflectedChipSample& chip, const Vec3& feed) const;
   void place_deflections();
   Vec2 at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const;
   double lean_mm(const Element& e, std::size_t m) const;
@@ -65,6 +66,7 @@ class StaticEquilibrium {
   std::size_t steps_, nodes_;
   std::vector<Ring> rings_;
   std::vector<EdgeElement> found_;
+  std::vector<std::size_t> place_;  ///< of those found, in elements_
   std::vector<Element> elements_;   ///< rotation step by rotation step
   std::vector<std::size_t> first_;  ///< of a rotation step's elements
   double max_lean_mm_ = 0;
