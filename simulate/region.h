@@ -26,7 +26,8 @@ void mark_region(const machine::Job& job, const SimulatedProgram& program,
                  std::span<const removal::SurfacePoint> points, Target& target);
 
 /// Warning [starts-in-material] at the first move that is milled, where it goes on from a feed move that the job leaves
-/// out and its cutter stands in the blank there by more than a voxel: what lies within the cutter is gone without chips.
+/// out and its cutter stands in the blank there by more than a voxel: what lies within the cutter is gone without
+/// chips.
 void check_region_start(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                         Diagnostics& diagnostics);
 

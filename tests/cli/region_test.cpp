@@ -134,10 +134,11 @@ TEST(Region, ThatBeginsInTheMiddleOfACutIsWarnedOf) {
                "G0 Z5\nM30\n");
   folder.write("machine.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
   const auto said_of = [&](const std::string& blocks) {
-    folder.write("job.toml", "program = \"p.nc\"\nmachine = \"machine.toml\"\noperations = { blocks = " + blocks +
-                                 " }\n" + tool(1) +
-                                 "[material]\nktc_MPa = 20.0\nkrc_MPa = 7.0\n[stock]\nbox_mm = [[0, -8, -5], [8, 8, 0]]\n"
-                                 "[simulation]\nvoxel_mm = 0.2\ncoupling = \"rigid\"\n");
+    folder.write("job.toml",
+                 "program = \"p.nc\"\nmachine = \"machine.toml\"\noperations = { blocks = " + blocks + " }\n" +
+                     tool(1) +
+                     "[material]\nktc_MPa = 20.0\nkrc_MPa = 7.0\n[stock]\nbox_mm = [[0, -8, -5], [8, 8, 0]]\n"
+                     "[simulation]\nvoxel_mm = 0.2\ncoupling = \"rigid\"\n");
     return run_camber(folder, "predict job.toml -o r").err;
   };
   const std::string in_a_cut = said_of("[[8, 8]]");
