@@ -10,6 +10,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "base/cancel.h"
 #include "deflection/beam.h"
 #include "deflection/static_cut.h"
 #include "deflection/tooth_marks.h"
@@ -161,6 +162,7 @@ class Cutter {
     std::mutex turn_lock;
     tbb::enumerable_thread_specific<ToothPass> passes;
     engager_->engage(from, loads.size(), [&](std::size_t k, std::span<const removal::ChipBlock> chips) {
+      cancellation_point();
       ToothPass& pass = passes.local();
       std::span<float> row(deflections.row(static_cast<std::ptrdiff_t>(k)),
                            options_.drilling ? 0 : deflections.row_size());
@@ -248,6 +250,7 @@ class Cutter {
     static_cut_->start(from, loads.size(), deflections);
     ToothPass pass;
     for (std::size_t k = 0; k < loads.size(); ++k) {
+      cancellation_point();
       const Stamp& stamp = all[from + k];
       const auto passing = static_cut_->cut(k);
       model_.evaluate(passing.chips, from + k, stamp.feed_per_tooth_mm, pass);
@@ -304,6 +307,7 @@ CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& 
   const std::size_t stretch =
       options.coupling == machine::Coupling::rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
   for (std::size_t from = 0; from < stamps.size(); from += stretch) {
+    cancellation_point();
     const std::size_t n = std::min(stretch, stamps.size() - from);
     cutter.cut(stamps, from, n, contacts.empty() ? contacts : contacts.subspan(from, n), first_id, result);
     if (options.progress) options.progress(static_cast<double>(from + n) / static_cast<double>(stamps.size()));
@@ -344,6 +348,7 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
   };
   tbb::enumerable_thread_specific<Buffers> buffers([&] { return Buffers{Stock::Probe(target), {}}; });
   tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+    cancellation_point();
     const Vec3& f = stamps[k].feed_per_tooth_mm;
     const double horizontal = f.head<2>().norm();
     const Vec2 along = horizontal > 0 ? Vec2(f.head<2>() / horizontal) : Vec2::UnitX(), aside(-along.y(), along.x());

@@ -7,7 +7,7 @@
 #include "calib/cycle_accuracy.h"
 #include "report/cycle_page.h"
 
-namespace camber::cli {
+namespace camber::api {
 
 struct TimeReport {
   std::string program, machine;
@@ -22,4 +22,4 @@ std::string time_text(const TimeReport& report);
 /// The same figures as JSON text, with a line end. Of the first row at the top; all rows in `sweep` or `cases`.
 std::string time_json(const TimeReport& report);
 
-}  // namespace camber::cli
+}  // namespace camber::api

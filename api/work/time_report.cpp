@@ -1,4 +1,4 @@
-#include "cli/time_report.h"
+#include "api/work/time_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "base/numbers.h"
 #include "base/units.h"
 
-namespace camber::cli {
+namespace camber::api {
 namespace {
 
 using calib::TimePair;
@@ -172,11 +172,11 @@ std::string time_text(const TimeReport& report) {
   std::string out = fmt::format("{} on {}\n", report.program, report.machine);
   const CycleTime& first = report.rows.front().time;
   if (report.rows.size() == 1 && report.keys.empty()) {
-    out +=
-        "\n" + kinds_text(first) + report::dominance_sentence(first) + "\n" + tools_text(first) + histogram_text(first);
+    out += "\n" + kinds_text(first) + report::dominance_sentence(first) + "\n" + tools_text(first) +
+           report::kRatiosSentence + "\n" + histogram_text(first);
     if (report.accuracy) out += accuracy_text(*report.accuracy);
   } else {
-    out += rows_text(report);
+    out += rows_text(report) + report::kRatiosSentence + "\n";
   }
   for (const auto& note : report.notes) out += "note: " + note + "\n";
   return out;
@@ -200,4 +200,4 @@ std::string time_json(const TimeReport& report) {
   return out.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace camber::cli
+}  // namespace camber::api
