@@ -71,7 +71,7 @@ class DebianPackage(unittest.TestCase):
                 self.assertEqual(faults, "", page.name)
 
     def test_it_depends_on_what_its_files_link(self):
-        depends = {re.split(r"[ (]", part.strip())[0] for part in self.field("Depends").split(",")}
+        depends = {re.split(r"[ (]", part.strip())[0] for part in re.split(r"[,|]", self.field("Depends"))}
         self.assertLessEqual({"libc6", "libstdc++6", "python3", "python3-numpy"}, depends)
         linked = ""
         for path in ("usr/bin/camber", "usr/lib/libcamber.so"):
@@ -80,8 +80,10 @@ class DebianPackage(unittest.TestCase):
             if library.startswith("libcamber"):
                 continue
             file = re.search(rf"\b{re.escape(library)} .*=> (\S+)", run("ldconfig", "-p"))[1]
-            owner = run("dpkg-query", "--search", os.path.realpath(file)).split(":")[0]
-            self.assertIn(owner, depends | {"libc6", "libgcc-s1"}, library)
+            if library in depends:  # liblapack.so.3 is what several packages provide
+                continue
+            found = run("dpkg-query", "--search", f"*/{os.path.basename(os.path.realpath(file))}")
+            self.assertTrue({line.split(":")[0] for line in found.splitlines()} & depends, f"{library}: {found}")
         self.assertFalse([name for name in depends if name.endswith("-dev")])
 
     def test_program_and_module_run_from_it(self):
