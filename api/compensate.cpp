@@ -1,3 +1,6 @@
+// The namespace compensate comes before the function of that name: clang takes it in no other order.
+#include "api/work/compensate.h"
+
 #include "camber/compensate.h"
 
 #include <chrono>
@@ -5,7 +8,6 @@
 #include "api/error_figures.h"
 #include "api/job.h"
 #include "api/run.h"
-#include "api/work/compensate.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
 

@@ -33,7 +33,6 @@ numpy.minimum.at(gouge, index, points.error_um[known])
 forces, feed = result.forces, result.feed
 at_s = numpy.array([forces.t_s[forces.block == line].mean() if (forces.block == line).any() else numpy.nan
                     for line in lines])
-order = numpy.argsort(at_s)
 
 # %% Plot
 if len(sys.argv) == 3:
@@ -41,7 +40,7 @@ if len(sys.argv) == 3:
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of what it draws with)
 
 figure, (error, force, speed) = plt.subplots(3, sharex=True, figsize=(10, 8), layout="constrained")
-error.fill_between(at_s[order], gouge[order], excess[order], alpha=0.5)
+error.vlines(at_s, gouge, excess, linewidth=2)
 error.axhline(0, color="black", linewidth=0.5)
 error.set_ylabel("form error, µm")
 force.plot(forces.t_s, forces.f_max_N, linewidth=0.7)
