@@ -192,7 +192,7 @@ class Signals(unittest.TestCase):
         self.everywhere("predict", call, self.timed(call))
 
     def test_compensate(self):
-        self.everywhere("compensate", lambda: camber.compensate(SAMPLE / "job.toml"), 6)
+        self.everywhere("compensate", lambda: camber.compensate(COARSE), 3)
 
     def test_fit_feed(self):
         call = lambda: camber.fit_feed([(SAMPLE / "trace_program.nc", SAMPLE / "trace.csv")], MACHINE)  # noqa: E731
