@@ -47,7 +47,7 @@ std::string harmless(std::string_view text, std::string_view kept) {
 
 }  // namespace
 
-std::string to_string(const Diagnostic& d) {
+std::string v0::to_string(const Diagnostic& d) {
   std::string out = harmless(d.location.file, "");
   if (d.location.line > 0) out += fmt::format(":{}:{}", d.location.line, d.location.column);
   out += fmt::format(": {}: {}", d.severity == Severity::error ? "error" : "warning", harmless(d.message, "\n\t"));
@@ -85,6 +85,13 @@ void Diagnostics::add(Diagnostic diagnostic) {
 
 void Diagnostics::throw_if_errors() const {
   if (has_errors()) throw InputError(all_);
+}
+
+void throw_if_any(const Diagnostics& diagnostics) {
+  if (diagnostics.all().empty()) return;
+  std::vector<Diagnostic> errors = diagnostics.all();
+  for (auto& d : errors) d.severity = Severity::error;
+  throw InputError(std::move(errors));
 }
 
 void Diagnostics::append(const Diagnostics& other) {

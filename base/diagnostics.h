@@ -1,44 +1,13 @@
 #pragma once
-// Diagnostics as a compiler prints them: file:line:column: error: what, and what was expected [check-name].
+// Collecting diagnostics (camber/diagnostics.h), and the text that they are about.
 #include <cstddef>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "camber/diagnostics.h"
+
 namespace camber {
-
-enum class Severity { warning, error };
-
-/// line and column are 1-based; line 0 means the file as a whole.
-struct SourceLocation {
-  std::string file;
-  std::size_t line = 0;
-  std::size_t column = 0;
-};
-
-struct Diagnostic {
-  Severity severity = Severity::error;
-  SourceLocation location;
-  std::string message;      ///< in shop words, with the value and what was expected
-  std::string check;        ///< name of the check, printed in brackets
-  std::string source_line;  ///< shown below with a caret; empty: not shown
-};
-
-/// "file:line:column: error: message [check]" and, where there is one, the source line with a caret.
-/// No newline at the end. Control characters and bytes that are no UTF-8 are printed as `?`: they come from the user's
-/// file, and a terminal would obey them.
-std::string to_string(const Diagnostic& diagnostic);
-
-/// The user's input is wrong. what() holds all diagnostics, one below the other.
-class InputError : public std::runtime_error {
- public:
-  explicit InputError(std::vector<Diagnostic> diagnostics);
-  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
-
- private:
-  std::vector<Diagnostic> diagnostics_;
-};
 
 /// Throws an InputError that holds one error about a file as a whole.
 [[noreturn]] void fail_on_file(std::string file, std::string message, std::string check);
@@ -61,6 +30,9 @@ class Diagnostics {
   std::vector<Diagnostic> all_;
   std::size_t errors_ = 0;
 };
+
+/// What --strict means: warnings are errors. Throws InputError where there is a diagnostic at all.
+void throw_if_any(const Diagnostics& diagnostics);
 
 /// A text file in memory that can tell line and column of an offset.
 class SourceText {

@@ -224,4 +224,18 @@ void write_file(const std::string& path, std::string_view content) {
   file.commit();
 }
 
+void make_folder(const std::string& path) {
+  std::error_code ec;
+  fs::create_directories(path, ec);
+  if (!fs::is_directory(path)) fail_on_file(path, "cannot be made a folder: " + ec.message(), "file-unwritable");
+}
+
+void try_to_write(const std::function<void()>& write, Diagnostics& failed) {
+  try {
+    write();
+  } catch (const InputError& problem) {
+    for (const Diagnostic& d : problem.diagnostics()) failed.add(d);
+  }
+}
+
 }  // namespace camber

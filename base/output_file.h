@@ -1,10 +1,13 @@
 #pragma once
 // Output files are written beside their place and renamed when they are whole.
 #include <fstream>
+#include <functional>
 #include <string>
 #include <string_view>
 
 namespace camber {
+
+class Diagnostics;
 
 /// Creates `path` + ".part", or where something has that name already, a part with a random name: no file or link that
 /// is there is written to. commit() flushes the part and renames it to `path`. Without commit() the part is removed
@@ -41,5 +44,12 @@ void require_writable(const std::string& path);
 
 /// The whole of a small file at once.
 void write_file(const std::string& path, std::string_view content);
+
+/// Makes a folder where it is not there. Throws InputError [file-unwritable].
+void make_folder(const std::string& path);
+
+/// Runs `write` and adds to `failed` what it could not write: when a disk is full, what still can be written is, and
+/// the figures are printed.
+void try_to_write(const std::function<void()>& write, Diagnostics& failed);
 
 }  // namespace camber

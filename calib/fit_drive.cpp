@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/cancel.h"
 #include "feedmodel/axis_filter.h"
 #include "feedmodel/position_loop.h"
 
@@ -68,6 +69,7 @@ class DriveResiduals {
       : traces_(traces), axis_(axis), model_(model), options_(options), every_(every) {}
 
   bool operator()(const double* const* parameters, double* residuals) const {
+    cancellation_point();
     std::size_t seen = 0, n = 0;
     run(traces_, axis_, model_, loop_options(model_, parameters[0], 0.001), options_, [&](double error, long slice) {
       if (share_of(slice) == Share::fitted && seen++ % every_ == 0) residuals[n++] = 1000.0 * error;

@@ -23,9 +23,6 @@ struct CheckCommand {
 /// then no file is written. Returns 0.
 int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out);
 
-/// The figures of a report as JSON text, with a line end.
-std::string check_json(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics);
-
 /// The report as it is printed.
 std::string check_report(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics);
 

@@ -5,29 +5,17 @@
 
 #include <fmt/format.h>
 
+#include "api/work/compensate.h"
 #include "base/output_file.h"
 #include "cli/console.h"
-#include "cli/outputs.h"
 #include "cli/progress.h"
-#include "compensate/header.h"
-#include "compensate/measured.h"
-#include "compensate/recheck.h"
 #include "compensate/verify.h"
-#include "feedmodel/control_options.h"
-#include "feedmodel/fitted_range.h"
-#include "nc/interpreter.h"
 #include "report/report_data.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
 
 namespace camber::cli {
 namespace {
-
-nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
-  Diagnostics ignored;  // said already
-  const auto text = nc::read_program(std::move(source), ignored);
-  return nc::interpret(text, feedmodel::interpreter_options(job.machine, job.inch), ignored);
-}
 
 /// Reads both programs once more, for their stamps and their feed.
 void write_report(const CompensateArguments& arguments, const machine::Job& job,
@@ -50,15 +38,6 @@ void write_report(const CompensateArguments& arguments, const machine::Job& job,
                                 {after, rows(after), result.loads_after}, arguments.output, diagnostics));
 }
 
-/// The job as it was measured; the fit goes to `fit`.
-machine::Job as_measured(const machine::Job& job, const CompensateArguments& arguments, Diagnostics& diagnostics,
-                         const simulate::Progress& progress, std::optional<compensate::MeasuredFit>& fit) {
-  if (arguments.measured.empty()) return job;
-  const auto points = compensate::read_measured(arguments.measured);
-  fit = compensate::fit_measured(job, arguments.measured, points, arguments.measured_program, diagnostics, progress);
-  return compensate::softened(job, fit->scale);
-}
-
 /// The program, and beside it the record by which it can be judged again; a pipe has nothing beside it.
 void write_program(const std::string& path, const machine::Job& job, const compensate::CompensationResult& result) {
   write_file(path, result.text);
@@ -67,41 +46,35 @@ void write_program(const std::string& path, const machine::Job& job, const compe
   write_file(compensate::record_path(path), compensate::record_json(compensate::make_record(job, result, path)));
 }
 
-std::string header_of(const machine::Job& job, const compensate::CompensationResult& c, bool hash) {
-  const std::string lines = compensate::header_lines(job, c, CAMBER_VERSION);
-  return hash ? lines + "\nINPUTS " + compensate::hash_of_inputs(job) : lines;
-}
-
 }  // namespace
 
 int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
-  const machine::Job told = machine::read_job(arguments.job, diagnostics);
-  compensate::CompensateOptions compensate_options;
-  compensate_options.progress = [&](const std::string& what, double share) { progress.show(what, share); };
-  for (const auto& u : arguments.uncertainty)
-    for (auto& group : compensate::read_uncertainty(u)) compensate_options.uncertainty.push_back(std::move(group));
-  if (!arguments.report.empty()) compensate_options.max_stock_crossings = report::kMaxStockCrossings;
-  compensate_options.keep_anyway = arguments.keep_anyway;
-  compensate_options.recheck_voxels_mm = arguments.check_voxels_mm;
-  std::optional<compensate::MeasuredFit> fit;
-  const machine::Job job = as_measured(told, arguments, diagnostics, compensate_options.progress, fit);
-  if (arguments.header || arguments.header_hash)
-    compensate_options.header = [&](const auto& c) { return header_of(job, c, arguments.header_hash); };
-  compensate::CompensationResult result;
+  const machine::Job given = machine::read_job(arguments.job, diagnostics);
+  const api::CompensateRequest request{
+      .uncertainty = arguments.uncertainty,
+      .measured = arguments.measured,
+      .measured_program = arguments.measured_program,
+      .check_voxels_mm = arguments.check_voxels_mm,
+      .keep_anyway = arguments.keep_anyway,
+      .header = arguments.header,
+      .header_hash = arguments.header_hash,
+      .max_stock_crossings = arguments.report.empty() ? 0 : report::kMaxStockCrossings,
+      .progress = [&](const std::string& what, double share) { progress.show(what, share); }};
+  api::CompensatedJob done;
   try {
-    result = compensate::compensate(job, diagnostics, compensate_options);
-  } catch (const compensate::BeyondModel& beyond) {
+    done = api::compensate_job(given, request, diagnostics);
+  } catch (const BeyondModel& beyond) {
     progress.clear();
     settle(diagnostics, options);
     print_error(beyond.what());
     return kNumbersDidNotWorkOut;
   }
-  result.measured = fit;
+  const machine::Job& job = done.job;
+  const compensate::CompensationResult& result = done.result;
   progress.clear();
-  feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
   settle(diagnostics, options);
   print_translation(job.machine.translation, options);
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

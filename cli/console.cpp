@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -46,13 +45,8 @@ void print_diagnostics(std::span<const Diagnostic> diagnostics, const GlobalOpti
 
 void settle(const Diagnostics& diagnostics, const GlobalOptions& options) {
   diagnostics.throw_if_errors();
-  if (!options.strict || diagnostics.warnings() == 0) {
-    print_diagnostics(diagnostics.all(), options);
-    return;
-  }
-  std::vector<Diagnostic> errors = diagnostics.all();
-  for (auto& d : errors) d.severity = Severity::error;
-  throw InputError(std::move(errors));
+  if (options.strict) throw_if_any(diagnostics);
+  print_diagnostics(diagnostics.all(), options);
 }
 
 void print_translation(std::span<const std::string> translation, const GlobalOptions& options) {

@@ -3,18 +3,15 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
+#include "api/work/feed.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/feed_csv.h"
-#include "feedmodel/fitted_range.h"
 #include "feedmodel/timed_path.h"
 #include "machine/machine.h"
 #include "nc/program.h"
-#include "simulate/machine_checks.h"
 
 namespace camber::cli {
 
@@ -24,12 +21,7 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
   const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const nc::Interpretation moves =
-      nc::interpret(program, feedmodel::interpreter_options(machine, arguments.interpreter), diagnostics);
-  diagnostics.throw_if_errors();
-  simulate::check_machine(machine, program, moves, diagnostics);
-  simulate::check_spindle(program, moves, diagnostics);
-  if (!arguments.output.empty()) feedmodel::check_feed_csv_size(moves, machine, arguments.output, diagnostics);
-  feedmodel::check_range(moves, arguments.program, machine, diagnostics);
+      api::moves_of_feed(program, machine, arguments.interpreter, arguments.output, diagnostics);
   progress.clear();
   settle(diagnostics, options);
   print_translation(machine.translation, options);
@@ -48,11 +40,7 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   if (!options.quiet)
     fmt::print("time          {:.3f} s\ncutting time  {:.3f} s\nblocks        {}\n", summary.time_s,
                summary.cutting_time_s, summary.blocks);
-  if (!arguments.json.empty()) {
-    const nlohmann::ordered_json report = {
-        {"time_s", summary.time_s}, {"cutting_time_s", summary.cutting_time_s}, {"blocks", summary.blocks}};
-    write_file(arguments.json, report.dump(2) + "\n");
-  }
+  if (!arguments.json.empty()) write_file(arguments.json, api::feed_json(summary));
   return kDone;
 }
 

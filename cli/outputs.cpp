@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "base/diagnostics.h"
 #include "base/output_file.h"
 
 namespace camber::cli {
@@ -52,20 +53,6 @@ void check_output_folder(const std::string& path) {
     fail_on_file(path,
                  fmt::format("in the folder {} nothing can be written: {}", nearest.string(), std::strerror(errno)),
                  "file-unwritable");
-}
-
-void make_folder(const std::string& path) {
-  std::error_code ec;
-  fs::create_directories(path, ec);
-  if (!fs::is_directory(path)) fail_on_file(path, "cannot be made a folder: " + ec.message(), "file-unwritable");
-}
-
-void try_to_write(const std::function<void()>& write, Diagnostics& failed) {
-  try {
-    write();
-  } catch (const InputError& problem) {
-    for (const Diagnostic& d : problem.diagnostics()) failed.add(d);
-  }
 }
 
 }  // namespace camber::cli

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "api/work/time.h"
 #include "base/numbers.h"
 #include "cli/check_command.h"
 #include "cli/command_line.h"
@@ -148,7 +149,7 @@ void add_time(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   sweep->check(CLI::Validator(
       [](std::string& text) {
         try {
-          parse_sweep(text);
+          api::parse_sweep(text);
         } catch (const std::invalid_argument& problem) {
           return std::string(problem.what());
         }

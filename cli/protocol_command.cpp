@@ -7,7 +7,7 @@
 #include "base/output_file.h"
 #include "calib/protocol.h"
 #include "cli/console.h"
-#include "cli/outputs.h"
+
 #include "machine/machine.h"
 
 namespace camber::cli {

@@ -18,15 +18,6 @@ struct TimeArguments {
   nc::InterpreterOptions interpreter;
 };
 
-/// A key of machine.toml and the values that it takes in turn.
-struct Sweep {
-  std::string key;
-  std::vector<double> values;
-};
-
-/// "axis.x.acceleration_mm_per_s2=3500:15000:4". Throws std::invalid_argument with a sentence for the user.
-Sweep parse_sweep(const std::string& text);
-
 /// Throws InputError. Returns kDone.
 int run_time(const TimeArguments& arguments, const GlobalOptions& options);
 

@@ -2,7 +2,6 @@
 // The fixed-point loop: predict, move each point against its error, predict the emitted program again.
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -88,10 +87,8 @@ struct CompensationResult {
   std::vector<std::string> doubts;
 };
 
-/// The program as given lies beyond the model: there is nothing to compensate by. what() says why.
-class BeyondModel : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+/// Thrown where the program as given lies beyond the model: there is nothing to compensate by. what() says why.
+using camber::BeyondModel;
 
 struct CompensateOptions {
   simulate::Progress progress;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/cancel.h"
 #include "feedmodel/axis_places.h"
 #include "feedmodel/corner.h"
 #include "feedmodel/limits.h"
@@ -127,6 +128,7 @@ class Builder {
     int tool = moves.empty() ? 0 : program_.state_of(moves.front()).tool;
     std::size_t next_rest = 0;
     for (std::size_t i = 0; i < moves.size();) {
+      cancellation_point();
       const nc::Move& move = moves[i];
       const nc::ModalState& state = program_.state_of(move);
       const bool asked = next_rest < rests_.size() && rests_[next_rest] <= i;

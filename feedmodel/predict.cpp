@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/cancel.h"
 #include "feedmodel/axes.h"
 #include "feedmodel/path_builder.h"
 #include "feedmodel/plan.h"
@@ -77,6 +78,7 @@ class Sampler {
   }
 
   void flush() {
+    cancellation_point();
     if (!buffer_.empty()) sink_(buffer_);
     buffer_.clear();
   }

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "base/cancel.h"
+
 namespace camber::nc {
 namespace {
 
@@ -43,6 +45,7 @@ void Sequencer::run_plain() {
   const Program& program = *at_.file;
   const std::size_t blocks = program.blocks.size();
   for (; at_.block < blocks && !report_.full(); ++at_.block) {
+    cancellation_point();
     if (program.blocks[at_.block].word_count == 0 || is_skipped(program.blocks[at_.block])) continue;
     if (!interpreter_.run(at_.block)) return;
   }
@@ -51,6 +54,7 @@ void Sequencer::run_plain() {
 void Sequencer::run_blocks() {
   go(at_);
   while (running_ && !report_.full()) {
+    cancellation_point();
     try {
       step();
     } catch (const MacroError& e) {

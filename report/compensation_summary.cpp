@@ -265,7 +265,10 @@ std::string checks_text(const compensate::CompensationResult& c) {
   if (!c.band) return out;
   add("with the model's uncertainty: rms {:.2f} um, 95 % within {:.2f} um\n", c.band->rms_um, c.band->p95_um);
   for (const auto& g : c.band->groups) add("  {:<12}{:>8.2f} um rms for one standard error\n", g.name, g.rms_um);
-  add("safe share of the compensation: {:.0f} %\n", 100 * c.band->safe_fraction);
+  add("safe share of the compensation: {:.0f} %\n  with so much of each shift no more than 5 % of the area is cut "
+      "below the "
+      "depth\n  limit, at 95 % confidence in each point\n",
+      100 * c.band->safe_fraction);
   return out;
 }
 

@@ -49,6 +49,8 @@ std::string table_head(const std::vector<std::string>& first) {
   return out + "<th>total, s</th><th>F, mm/min</th><th>actual, mm/min</th><th>e</th><th>k</th></tr></thead><tbody>\n";
 }
 
+std::string ratios_note() { return "<p>" + html_text(kRatiosSentence) + "</p>\n"; }
+
 std::string rows_table(const CyclePage& page) {
   std::string out = table_head(page.keys.empty() ? std::vector<std::string>{"case"} : page.keys);
   for (const CycleRow& row : page.rows) {
@@ -57,14 +59,14 @@ std::string rows_table(const CyclePage& page) {
     for (const double value : row.values) out += cell(format_trimmed(value, 4));
     out += use_cells(row.time.all) + "</tr>\n";
   }
-  return out + "</tbody></table></div>\n";
+  return out + "</tbody></table></div>\n" + ratios_note();
 }
 
 std::string tools_table(const CycleTime& time) {
   std::string out = table_head({"tool"});
   for (const CycleUse& use : time.tools)
     out += "<tr>" + cell(fmt::format("T{}", use.tool)) + use_cells(use) + "</tr>\n";
-  return out + "</tbody></table></div>\n";
+  return out + "</tbody></table></div>\n" + ratios_note();
 }
 
 std::string notes_list(const std::vector<std::string>& notes) {

@@ -24,6 +24,12 @@ struct CyclePage {
   std::vector<std::string> notes;
 };
 
+/// What e and k in the tables are; the limit is that of a program which stops after every block (Yan & Shirase 1997).
+inline constexpr const char* kRatiosSentence =
+    "e = actual / commanded feed; k = F^2 / (a d), a the acceleration, d the mean block length. With a stop after "
+    "every "
+    "block e would be 1 / (1 + k), from k = 1 on 1 / (2 sqrt(k)).";
+
 /// One sentence: what takes most of the time, and what of the cutting time acceleration, corners and short blocks cost.
 std::string dominance_sentence(const feedmodel::CycleTime& time);
 

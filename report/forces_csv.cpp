@@ -11,8 +11,10 @@ namespace {
 using removal::Stamp;
 using simulate::StampLoad;
 
+constexpr std::size_t kFlushBytes = 1 << 20;
+
 /// Loads of a row's teeth, taken together.
-struct Row {
+struct Turn {
   std::size_t teeth = 0;
   StampLoad load;
 
@@ -32,27 +34,66 @@ struct Row {
   }
 };
 
-void write_row(std::string& out, const Stamp& first, std::size_t line, const Row& row, double rpm, int flutes) {
-  const auto n = static_cast<double>(row.teeth);
+ForceRow row_of(const Stamp& first, std::size_t line, const Turn& turn, double rpm, int flutes) {
+  const auto n = static_cast<double>(turn.teeth);
   const double passing_s = 60.0 / (rpm * flutes);
-  const StampLoad& l = row.load;
-  append_cells(out, 4, {first.t_s});
-  append_cells(out, 0, {static_cast<double>(line)});
-  append_cells(out, 4, {first.pose.tip_mm.x(), first.pose.tip_mm.y(), first.pose.tip_mm.z()});
+  const StampLoad& l = turn.load;
+  return {.t_s = first.t_s,
+          .line = line,
+          .tip_mm = first.pose.tip_mm,
+          .force_max_N = l.force_max_N,
+          .lateral_max_N = l.lateral_max_N,
+          .force_mean_N = l.force_mean_N / n,
+          .deflection_um = 1000 * l.contact_deflection_mm / n,
+          .mrr_mm3_per_s = l.chip_mm3 / (n * passing_s),
+          .removed_mm3 = l.chip_mm3,
+          .torque_max_Nm = l.torque_max_Nmm / 1000,
+          .torque_mean_Nm = l.torque_mean_Nmm / (1000 * n),
+          .power_W = simulate::power_W(l.torque_mean_Nmm / n, rpm),
+          .chip_max_mm = l.chip_max_mm,
+          .chip_mean_mm = l.chip_area_mm2 > 0 ? l.chip_mm3 / l.chip_area_mm2 : 0.0,
+          .specific_energy_MPa = l.chip_mm3 > 0 ? l.work_Nmm / l.chip_mm3 : 0.0};
+}
+
+void append_row(std::string& out, const ForceRow& r) {
+  append_cells(out, 4, {r.t_s});
+  append_cells(out, 0, {static_cast<double>(r.line)});
+  append_cells(out, 4, {r.tip_mm.x(), r.tip_mm.y(), r.tip_mm.z()});
   append_cells(out, 3,
-               {l.force_max_N.x(), l.force_max_N.y(), l.force_max_N.z(), l.lateral_max_N, l.force_mean_N.x() / n,
-                l.force_mean_N.y() / n, l.force_mean_N.z() / n});
-  append_cells(out, 2, {1000 * l.contact_deflection_mm.x() / n, 1000 * l.contact_deflection_mm.y() / n});
-  append_cells(out, 5, {l.chip_mm3 / (n * passing_s)});
-  append_cells(out, 7, {l.chip_mm3});
-  append_cells(out, 6, {l.torque_max_Nmm / 1000, l.torque_mean_Nmm / (1000 * n)});
-  append_cells(out, 4, {simulate::power_W(l.torque_mean_Nmm / n, rpm)});
-  append_cells(out, 6, {l.chip_max_mm, l.chip_area_mm2 > 0 ? l.chip_mm3 / l.chip_area_mm2 : 0.0});
-  append_cells(out, 2, {l.chip_mm3 > 0 ? l.work_Nmm / l.chip_mm3 : 0.0});
+               {r.force_max_N.x(), r.force_max_N.y(), r.force_max_N.z(), r.lateral_max_N, r.force_mean_N.x(),
+                r.force_mean_N.y(), r.force_mean_N.z()});
+  append_cells(out, 2, {r.deflection_um.x(), r.deflection_um.y()});
+  append_cells(out, 5, {r.mrr_mm3_per_s});
+  append_cells(out, 7, {r.removed_mm3});
+  append_cells(out, 6, {r.torque_max_Nm, r.torque_mean_Nm});
+  append_cells(out, 4, {r.power_W});
+  append_cells(out, 6, {r.chip_max_mm, r.chip_mean_mm});
+  append_cells(out, 2, {r.specific_energy_MPa});
   out.back() = '\n';
 }
 
 }  // namespace
+
+void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgram& program,
+                        const simulate::Prediction& prediction, const std::function<void(const ForceRow&)>& take) {
+  const auto& stamps = program.path.stamps;
+  for (const auto& run : program.path.runs) {
+    if (run.kind == removal::RunKind::tapping) continue;  // no chips, no forces
+    const auto flutes = static_cast<std::size_t>(job.tools.at(run.tool).flutes);
+    const std::size_t end = run.from + run.count;
+    for (std::size_t from = run.from; from < end;) {
+      const nc::Move& move = program.moves.moves[stamps[from].move];
+      Turn turn;
+      std::size_t k = from;
+      while (k < end && turn.teeth < flutes && program.moves.moves[stamps[k].move].block == move.block &&
+             (k == from || !stamps[k].first))
+        turn.add(prediction.cut.loads[k++]);
+      const double rpm = program.moves.state_of(move).spindle_speed_rpm;
+      take(row_of(stamps[from], move.block + 1, turn, rpm, static_cast<int>(flutes)));
+      from = k;
+    }
+  }
+}
 
 void write_forces_csv(const std::string& path, const machine::Job& job, const simulate::SimulatedProgram& program,
                       const simulate::Prediction& prediction) {
@@ -61,25 +102,13 @@ void write_forces_csv(const std::string& path, const machine::Job& job, const si
                    "dx_um,dy_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,"
                    "specific_energy_MPa\n";
   std::string text;
-  const auto& stamps = program.path.stamps;
-  for (const auto& run : program.path.runs) {
-    if (run.kind == removal::RunKind::tapping) continue;  // no chips, no forces
-    const auto flutes = static_cast<std::size_t>(job.tools.at(run.tool).flutes);
-    const std::size_t end = run.from + run.count;
-    for (std::size_t from = run.from; from < end;) {
-      const nc::Move& move = program.moves.moves[stamps[from].move];
-      Row row;
-      std::size_t k = from;
-      while (k < end && row.teeth < flutes && program.moves.moves[stamps[k].move].block == move.block &&
-             (k == from || !stamps[k].first))
-        row.add(prediction.cut.loads[k++]);
-      const double rpm = program.moves.state_of(move).spindle_speed_rpm;
-      write_row(text, stamps[from], move.block + 1, row, rpm, static_cast<int>(flutes));
-      from = k;
-    }
+  for_each_force_row(job, program, prediction, [&](const ForceRow& row) {
+    append_row(text, row);
+    if (text.size() < kFlushBytes) return;
     file.stream() << text;
     text.clear();
-  }
+  });
+  file.stream() << text;
   file.commit();
 }
 

@@ -1,11 +1,34 @@
 #pragma once
-// forces.csv: loads along the path, a row a spindle turn or a block, whichever is shorter.
+// Loads along the path, a row a spindle turn or a block, whichever is shorter; forces.csv.
+#include <cstddef>
+#include <functional>
 #include <string>
+
+#include "base/geometry.h"
 
 #include "machine/job.h"
 #include "simulate/predict.h"
 
 namespace camber::report {
+
+/// The columns of forces.csv, see write_forces_csv.
+struct ForceRow {
+  double t_s = 0;
+  std::size_t line = 0;
+  Vec3 tip_mm = Vec3::Zero();
+  Vec3 force_max_N = Vec3::Zero();
+  double lateral_max_N = 0;
+  Vec3 force_mean_N = Vec3::Zero();
+  Vec2 deflection_um = Vec2::Zero();
+  double mrr_mm3_per_s = 0, removed_mm3 = 0;
+  double torque_max_Nm = 0, torque_mean_Nm = 0, power_W = 0;
+  double chip_max_mm = 0, chip_mean_mm = 0;
+  double specific_energy_MPa = 0;
+};
+
+/// Calls `take` with every row, in the order of the path.
+void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgram& program,
+                        const simulate::Prediction& prediction, const std::function<void(const ForceRow&)>& take);
 
 /// Columns: t_s,block,x_mm,y_mm,z_mm,fx_max_N,fy_max_N,fz_max_N,f_max_N,fx_mean_N,fy_mean_N,fz_mean_N,dx_um,dy_um,
 /// mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,specific_energy_MPa. Torque and

@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
+#include "base/cancel.h"
 #include "deflection/beam.h"
 #include "deflection/static_cut.h"
 #include "deflection/tooth_marks.h"
@@ -162,6 +163,7 @@ class Cutter {
     std::mutex turn_lock;
     tbb::enumerable_thread_specific<ToothPass> passes;
     engager_->engage(from, loads.size(), [&](std::size_t k, std::span<const removal::ChipBlock> chips) {
+      cancellation_point();
       ToothPass& pass = passes.local();
       std::span<float> row(deflections.row(static_cast<std::ptrdiff_t>(k)),
                            options_.drilling ? 0 : deflections.row_size());
@@ -250,6 +252,7 @@ class Cutter {
     ToothPass pass;
     tbb::task_group behind;  // the load of a tooth passing is summed up while the next one cuts
     for (std::size_t k = 0; k < loads.size(); ++k) {
+      cancellation_point();
       const Stamp& stamp = all[from + k];
       const auto passing = static_cut_->cut(k);
       behind.wait();
@@ -310,6 +313,7 @@ CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& 
   const std::size_t stretch =
       options.coupling == machine::Coupling::rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
   for (std::size_t from = 0; from < stamps.size(); from += stretch) {
+    cancellation_point();
     const std::size_t n = std::min(stretch, stamps.size() - from);
     cutter.cut(stamps, from, n, contacts.empty() ? contacts : contacts.subspan(from, n), first_id, result);
     if (options.progress) options.progress(static_cast<double>(from + n) / static_cast<double>(stamps.size()));
@@ -350,6 +354,7 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
   };
   tbb::enumerable_thread_specific<Buffers> buffers([&] { return Buffers{Stock::Probe(target), {}}; });
   tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+    cancellation_point();
     const Vec3& f = stamps[k].feed_per_tooth_mm;
     const double horizontal = f.head<2>().norm();
     const Vec2 along = horizontal > 0 ? Vec2(f.head<2>() / horizontal) : Vec2::UnitX(), aside(-along.y(), along.x());

@@ -1,3 +1,4 @@
+#include "base/cancel.h"
 #include "removal/form_error.h"
 
 #include <algorithm>
@@ -369,6 +370,7 @@ SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const St
   }
   impl_->left_mm.resize(count);
   tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
+    cancellation_point();
     TilePoints& tile = impl_->tiles[t];
     const std::size_t first = tile.all.first, end = first + tile.all.count;
     const std::span<SurfacePoint> own(points.data() + first, tile.all.count);
@@ -407,6 +409,7 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
   };
   tbb::enumerable_thread_specific<Room> rooms([&] { return Room{UprightCloseStamps(envelope, deflections)}; });
   tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
+    cancellation_point();
     TilePoints& tile = impl_->tiles[t];
     auto& [close, near_tips, distance, near] = rooms.local();
     near.clear();

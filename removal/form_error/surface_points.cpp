@@ -1,3 +1,4 @@
+#include "base/cancel.h"
 #include "removal/field/tile.h"
 #include "removal/form_error.h"
 
@@ -388,8 +389,10 @@ std::vector<std::vector<SurfacePoint>> by_tile(const Stock* machined, const Stoc
   const std::vector<Index3> tiles = target.surface_tiles();
   std::vector<std::vector<SurfacePoint>> parts(tiles.size());
   std::vector<double> cut_mm2(tiles.size(), 0.0);
-  tbb::parallel_for(std::size_t{0}, tiles.size(),
-                    [&](std::size_t i) { collect(machined, target, places, solid, tiles[i], parts[i], cut_mm2[i]); });
+  tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
+    cancellation_point();
+    collect(machined, target, places, solid, tiles[i], parts[i], cut_mm2[i]);
+  });
   if (!unseen_mm2) return parts;
   double unseen = std::accumulate(cut_mm2.begin(), cut_mm2.end(), 0.0);
   for (const auto& part : parts)

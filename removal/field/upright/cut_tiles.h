@@ -7,6 +7,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/cancel.h"
 #include "removal/field/upright/carve.h"
 #include "removal/field/upright/tile_arena.h"
 
@@ -20,6 +21,7 @@ void load_cut(const Stock& stock, TileArena& arena, const CutterShape& shape, co
   if (tiles.size() < arena.size()) tiles.resize(arena.size());
   const auto fresh = arena.fresh();
   tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
+    cancellation_point();
     const std::size_t t = fresh[i];
     tiles[t].emplace(CutTile{ColumnCover(arena[t], arena.index(t), stock.voxel_mm(), stock.band_mm(), shape, tip_of),
                              material_voxels(arena[t], stock.voxel_mm())});

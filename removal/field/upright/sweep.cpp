@@ -7,6 +7,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/cancel.h"
 #include "removal/engagement.h"
 #include "removal/field/slot_map.h"
 #include "removal/field/tile.h"
@@ -97,6 +98,7 @@ void Sweep::list_stamps() {
 }
 
 void Sweep::work(WorkTile& w) const {
+  cancellation_point();
   auto tile_copy = std::make_unique<Tile>();
   Tile& tile = *tile_copy;
   stock_.load(w.index, tile);

@@ -1,0 +1,84 @@
+// The namespace compensate comes before the function of that name: clang takes it in no other order.
+#include "api/work/compensate.h"
+
+#include "camber/compensate.h"
+
+#include <chrono>
+
+#include "api/error_figures.h"
+#include "api/job.h"
+#include "api/run.h"
+#include "report/summary.h"
+#include "report/verdict_text.h"
+
+namespace camber {
+namespace {
+
+using compensate::CompensationResult;
+
+std::vector<CompensatedPoint> points_of(const CompensationResult& c) {
+  std::vector<CompensatedPoint> out;
+  out.reserve(c.surface_before.size());
+  for (std::size_t i = 0; i < c.surface_before.size(); ++i) {
+    const removal::SurfacePoint& p = c.surface_before[i];
+    const double after_mm = i < c.surface_after.size() ? c.surface_after[i].error_mm : p.error_mm;
+    out.push_back({p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(),
+                   1000 * p.error_mm, 1000 * after_mm, p.area_mm2});
+  }
+  return out;
+}
+
+/// All but diagnostics and json.
+CompensateResult result_of(const CompensationResult& c, const machine::CompensationSettings& asked) {
+  const report::VerdictText verdict = report::verdict_text(c, asked);
+  CompensateResult out{.program = c.text,
+                       .better = c.better,
+                       .success = verdict.success,
+                       .headline = verdict.headline,
+                       .reasons = verdict.reasons,
+                       .before_um = api::figures_of(c.before_um),
+                       .after_um = api::figures_of(c.after_um),
+                       .best_round = c.best,
+                       .stop = compensate::to_string(c.stop),
+                       .blocks_before = c.blocks_before,
+                       .blocks_after = c.blocks_after,
+                       .blocks_changed = c.blocks_changed,
+                       .max_shift_mm = c.max_shift_mm,
+                       .surface = points_of(c)};
+  for (const auto& round : c.rounds) out.rounds.push_back({api::figures_of(round.error_um), round.largest_shift_mm});
+  return out;
+}
+
+}  // namespace
+
+CompensateResult v0::compensate(const Job& job, const CompensateOptions& options, const RunOptions& run_options) {
+  const auto begin = std::chrono::steady_clock::now();
+  CompensateResult result;
+  api::Run run(run_options);
+  run.execute([&] {
+    Diagnostics found = job.impl().found;
+    const api::CompensateRequest request{.uncertainty = options.uncertainty,
+                                         .measured = options.measured,
+                                         .measured_program = options.measured_program,
+                                         .check_voxels_mm = options.check_voxels_mm,
+                                         .keep_anyway = options.keep_anyway,
+                                         .header = options.header,
+                                         .header_hash = options.header_hash,
+                                         .progress = run.progress()};
+    const api::CompensatedJob done = api::compensate_job(job.impl().job, request, found);
+    for (const std::string& name : done.result.unknown_parameters)
+      found.add({Severity::warning,
+                 {job.path(), 0, 0},
+                 "uncertainty: " + name + " is no parameter of the job; left out",
+                 "uncertainty",
+                 {}});
+    run.settle(found);
+    const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result = result_of(done.result, done.job.compensation);
+    result.diagnostics = found.all();
+    result.json = report::compensate_json(done.result, done.job.compensation, compute_s);
+  });
+  return result;
+}
+
+}  // namespace camber

@@ -1,0 +1,69 @@
+#include "api/job.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "machine/set_number.h"
+
+namespace camber {
+
+const std::string& Machine::path() const { return impl_->machine.path; }
+const std::vector<Diagnostic>& Machine::diagnostics() const { return impl_->found.all(); }
+std::string Machine::to_toml() const { return machine::to_toml(impl_->machine); }
+
+void Machine::set(std::string_view key, double value) {
+  auto changed = std::make_shared<Impl>(*impl_);
+  const std::string wrong = machine::set_number(changed->machine, key, value);
+  if (!wrong.empty()) throw std::invalid_argument(wrong);
+  impl_ = std::move(changed);
+}
+
+Machine v0::read_machine(const std::string& path) {
+  auto impl = std::make_shared<Machine::Impl>();
+  impl->machine = machine::read_machine(path, impl->found);
+  impl->found.throw_if_errors();
+  return Machine(std::move(impl));
+}
+
+const std::string& Job::path() const { return impl_->job.path; }
+const std::string& Job::program_path() const { return impl_->job.program; }
+const std::vector<Diagnostic>& Job::diagnostics() const { return impl_->found.all(); }
+std::string Job::to_toml() const { return machine::to_toml(impl_->job); }
+
+Machine Job::machine() const {
+  auto impl = std::make_shared<Machine::Impl>();
+  impl->machine = impl_->job.machine;
+  return Machine(std::move(impl));
+}
+
+void Job::set_program(const std::string& path) {
+  auto changed = std::make_shared<Impl>(*impl_);
+  changed->job.program = path;
+  impl_ = std::move(changed);
+}
+
+void Job::set_machine(const Machine& machine) {
+  auto changed = std::make_shared<Impl>(*impl_);
+  changed->job.machine = machine.impl().machine;
+  changed->job.machine_path = machine.path();
+  impl_ = std::move(changed);
+}
+
+void Job::set_voxel_mm(double voxel_mm) {
+  if (!(voxel_mm > 0) || !std::isfinite(voxel_mm))
+    throw std::invalid_argument(fmt::format("voxel_mm = {}: a number greater than zero was expected", voxel_mm));
+  auto changed = std::make_shared<Impl>(*impl_);
+  changed->job.simulation.voxel_mm = voxel_mm;
+  impl_ = std::move(changed);
+}
+
+Job v0::read_job(const std::string& path) {
+  auto impl = std::make_shared<Job::Impl>();
+  impl->job = machine::read_job(path, impl->found);
+  impl->found.throw_if_errors();
+  return Job(std::move(impl));
+}
+
+}  // namespace camber

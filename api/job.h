@@ -1,0 +1,19 @@
+#pragma once
+// What stands behind camber::Machine and camber::Job.
+#include "base/diagnostics.h"
+#include "camber/job.h"
+#include "machine/job.h"
+
+namespace camber {
+
+struct Machine::Impl {
+  machine::Machine machine;
+  Diagnostics found;  ///< in its file
+};
+
+struct Job::Impl {
+  machine::Job job;
+  Diagnostics found;  ///< in its files
+};
+
+}  // namespace camber

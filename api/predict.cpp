@@ -1,0 +1,108 @@
+#include "camber/predict.h"
+
+#include <chrono>
+#include <limits>
+#include <optional>
+
+#include "api/error_figures.h"
+#include "api/feed_points.h"
+#include "api/job.h"
+#include "api/run.h"
+#include "api/work/predict.h"
+#include "base/output_file.h"
+#include "report/forces_csv.h"
+#include "report/report_data.h"
+#include "report/summary.h"
+
+namespace camber {
+namespace {
+
+ForceRow row_of(const report::ForceRow& r) {
+  return {.t_s = r.t_s,
+          .x_mm = r.tip_mm.x(),
+          .y_mm = r.tip_mm.y(),
+          .z_mm = r.tip_mm.z(),
+          .fx_max_N = r.force_max_N.x(),
+          .fy_max_N = r.force_max_N.y(),
+          .fz_max_N = r.force_max_N.z(),
+          .f_max_N = r.lateral_max_N,
+          .fx_mean_N = r.force_mean_N.x(),
+          .fy_mean_N = r.force_mean_N.y(),
+          .fz_mean_N = r.force_mean_N.z(),
+          .dx_um = r.deflection_um.x(),
+          .dy_um = r.deflection_um.y(),
+          .mrr_mm3_per_s = r.mrr_mm3_per_s,
+          .removed_mm3 = r.removed_mm3,
+          .torque_max_Nm = r.torque_max_Nm,
+          .torque_mean_Nm = r.torque_mean_Nm,
+          .power_W = r.power_W,
+          .h_max_mm = r.chip_max_mm,
+          .h_mean_mm = r.chip_mean_mm,
+          .specific_energy_MPa = r.specific_energy_MPa,
+          .block = static_cast<std::int64_t>(r.line)};
+}
+
+std::vector<ErrorPoint> points_of(const report::FormErrorPoints& points) {
+  std::vector<ErrorPoint> out;
+  out.reserve(points.count);
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const report::FormErrorPoint p = points.at(i);
+    out.push_back({p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(), p.error_um,
+                   p.deflection_um(), p.contour_um, p.total_error_um, p.area_mm2, p.block, p.tool});
+  }
+  return out;
+}
+
+/// All but json.
+PredictResult result_of(const machine::Job& job, const simulate::SimulatedProgram& program,
+                        const simulate::Prediction& p) {
+  PredictResult out{.machine_time_s = program.feed.time_s,
+                    .cutting_time_s = program.feed.cutting_time_s,
+                    .chips_mm3 = p.cut.chip_mm3,
+                    .stock_mm3 = p.cut.stock_mm3,
+                    .form_error_um = api::figures_of(p.form_error_um),
+                    .deflection_um = api::figures_of(p.deflection_um),
+                    .contour_um = api::figures_of(p.contour_um),
+                    .unseen_mm2 = p.unseen_mm2,
+                    .form_error = points_of(report::form_error_points(program, p)),
+                    .doubts = api::doubts_of(job, program, p)};
+  for (const auto& load : p.cut.loads) out.force_max_N = std::max(out.force_max_N, load.lateral_max_N);
+  report::for_each_force_row(job, program, p, [&](const report::ForceRow& row) { out.forces.push_back(row_of(row)); });
+  return out;
+}
+
+}  // namespace
+
+PredictResult v0::predict(const Job& given, const PredictOptions& options, const RunOptions& run_options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const machine::Job& job = given.impl().job;
+  PredictResult result;
+  api::Run run(run_options);
+  run.execute([&] {
+    Diagnostics found = given.impl().found;
+    const api::PredictRequest request{
+        .folder = options.output_folder,
+        .forces_at = options.forces_at,
+        .progress = [&](const std::string& what, std::optional<double> share) { run.show(what, share.value_or(0)); }};
+    api::PreparedJob prepared = api::prepare(job, request, found);
+    run.settle(found);
+    if (!request.folder.empty()) make_folder(request.folder);
+    Diagnostics of_cut;
+    auto prediction = api::predict_prepared(job, prepared, request, of_cut);
+    found.append(of_cut);
+    run.settle(of_cut);
+    const simulate::SimulatedProgram& program = prepared.setup.program;
+    result = result_of(job, program, prediction);
+    if (options.feed) feedmodel::predict_feed(program.moves, job.machine, api::points_sink(program.moves, result.feed));
+    const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result.json = report::predict_json(program, prediction, compute_s);
+    result.diagnostics = found.all();
+    if (request.folder.empty()) return;
+    Diagnostics failed;
+    api::write_prediction(job, program, prediction, request, result.json, found, failed);
+    failed.throw_if_errors();
+  });
+  return result;
+}
+
+}  // namespace camber

@@ -1,0 +1,57 @@
+#include "api/program.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "feedmodel/control_options.h"
+#include "machine/control_kind.h"
+
+namespace camber {
+namespace {
+
+/// The dialect of a control by its name, as --dialect has it.
+nc::Dialect dialect_of_control(const std::string& name, const std::string& path) {
+  const auto names = machine::control_kind_names();
+  const auto at = std::ranges::find(names, name);
+  if (at == names.end())
+    fail_on_file(path, fmt::format("dialect {}: one of {} was expected", name, fmt::join(names, ", ")), "dialect");
+  return feedmodel::dialect_of(machine::control_kinds()[static_cast<std::size_t>(at - names.begin())]);
+}
+
+nc::InterpreterOptions interpreter_options(const ReadOptions& options, const std::string& path) {
+  nc::InterpreterOptions out;
+  out.inch = options.inch;
+  out.skip_slash_blocks = options.skip_slash_blocks;
+  for (const int n : options.skip_switches) {
+    if (n < 1 || n > 9) fail_on_file(path, fmt::format("skip switch {}: 1 to 9 was expected", n), "skip-switch");
+    out.skip_switches |= static_cast<std::uint16_t>(1u << static_cast<unsigned>(n));
+  }
+  if (!options.dialect.empty()) out.dialect = dialect_of_control(options.dialect, path);
+  out.whole_numbers_are_increments = options.least_increments;
+  return out;
+}
+
+Program program_of(SourceText source, const ReadOptions& options) {
+  auto impl = std::make_shared<Program::Impl>();
+  impl->path = source.name();
+  impl->options = interpreter_options(options, impl->path);
+  impl->text = nc::read_program(std::move(source), impl->found);
+  return Program(std::move(impl));
+}
+
+}  // namespace
+
+const std::string& Program::path() const { return impl_->path; }
+const std::string& Program::text() const { return impl_->text.source.text(); }
+
+Program v0::read_program(const std::string& path, const ReadOptions& options) {
+  return program_of(SourceText::read(path), options);
+}
+
+Program v0::program_from_text(std::string name, std::string text, const ReadOptions& options) {
+  return program_of(SourceText(std::move(name), std::move(text)), options);
+}
+
+}  // namespace camber

@@ -1,0 +1,109 @@
+#include "api/work/check.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "feedmodel/control_options.h"
+#include "simulate/machine_checks.h"
+#include "simulate/setup_checks.h"
+
+namespace camber::api {
+namespace {
+
+using nlohmann::ordered_json;
+
+nc::InterpreterOptions options_of(nc::InterpreterOptions options, const machine::Machine* machine,
+                                  const machine::Job* job) {
+  if (job && !options.inch) options.inch = job->inch;
+  return machine ? feedmodel::interpreter_options(*machine, options) : options;
+}
+
+ordered_json extents_json(const nc::Extents& e) {
+  if (e.empty()) return nullptr;
+  return {{"min", {e.min_mm.x(), e.min_mm.y(), e.min_mm.z()}}, {"max", {e.max_mm.x(), e.max_mm.y(), e.max_mm.z()}}};
+}
+
+ordered_json range_json(const nc::Range& r) {
+  if (r.empty()) return nullptr;
+  return {{"min", r.min}, {"max", r.max}};
+}
+
+ordered_json tool_json(const nc::ToolUse& t) {
+  return {{"tool", t.tool},
+          {"line", t.line},
+          {"calls", t.calls},
+          {"cutting_moves", t.cutting_moves},
+          {"cutting_length_mm", t.cutting_length_mm},
+          {"rapid_length_mm", t.rapid_length_mm},
+          {"feed_mm_per_min", range_json(t.feed_mm_per_min)},
+          {"spindle_speed_rpm", range_json(t.spindle_speed_rpm)},
+          {"cutting_extents_mm", extents_json(t.cutting)}};
+}
+
+ordered_json diagnostic_json(const Diagnostic& d) {
+  return {{"severity", d.severity == Severity::error ? "error" : "warning"},
+          {"file", d.location.file},
+          {"line", d.location.line},
+          {"column", d.location.column},
+          {"message", d.message},
+          {"check", d.check}};
+}
+
+}  // namespace
+
+std::vector<Diagnostic> in_order(std::vector<Diagnostic> list) {
+  std::stable_sort(list.begin(), list.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
+  });
+  return list;
+}
+
+std::string unit_text(const nc::Summary& s) {
+  if (s.has_mm && s.has_inch) return "mm and inch";
+  return s.has_inch ? "inch" : "mm";
+}
+
+CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptions& options,
+                             const machine::Machine* machine, const machine::Job* job, Diagnostics& found) {
+  CheckedProgram checked{nc::interpret(text, options_of(options, machine, job), found), {}};
+  found.throw_if_errors();
+  if (machine) simulate::check_machine(*machine, text, checked.moves, found);
+  if (job)
+    simulate::check_job(*job, text, checked.moves, found);
+  else if (machine)
+    simulate::check_spindle(text, checked.moves, found);
+  found.throw_if_errors();
+  checked.summary = nc::summarize(text, checked.moves);
+  return checked;
+}
+
+std::string check_json(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics) {
+  ordered_json tools = ordered_json::array(), found = ordered_json::array();
+  for (const auto& t : s.tools) tools.push_back(tool_json(t));
+  for (const auto& d : diagnostics.all()) found.push_back(diagnostic_json(d));
+  const ordered_json report = {{"program", program},
+                               {"blocks", s.blocks},
+                               {"blocks_with_words", s.blocks_with_words},
+                               {"unit", unit_text(s)},
+                               {"moves",
+                                {{"rapid", s.rapids},
+                                 {"linear", s.lines},
+                                 {"arc", s.arcs},
+                                 {"dwell", s.dwells},
+                                 {"canned", s.canned},
+                                 {"cutter_radius", s.cutter_radius},
+                                 {"high_speed_contouring", s.high_speed_contouring},
+                                 {"reference", s.reference}}},
+                               {"cutting_length_mm", s.cutting_length_mm},
+                               {"rapid_length_mm", s.rapid_length_mm},
+                               {"dwell_s", s.dwell_s},
+                               {"cutting_extents_mm", extents_json(s.cutting)},
+                               {"rapid_extents_mm", extents_json(s.rapid)},
+                               {"tools", tools},
+                               {"warnings", diagnostics.warnings()},
+                               {"diagnostics", found}};
+  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace camber::api

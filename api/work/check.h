@@ -1,0 +1,32 @@
+#pragma once
+// The work of camber check: a program interpreted, checked and summarized.
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "machine/job.h"
+#include "nc/interpreter.h"
+#include "nc/summary.h"
+
+namespace camber::api {
+
+struct CheckedProgram {
+  nc::Interpretation moves;
+  nc::Summary summary;
+};
+
+/// As the control of `machine` reads it, where one is given; `job` (with its machine as `machine`) also has its tools,
+/// stock and part checked. `options`: what the user asks for. Throws InputError.
+CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptions& options,
+                             const machine::Machine* machine, const machine::Job* job, Diagnostics& found);
+
+/// By line and column.
+std::vector<Diagnostic> in_order(std::vector<Diagnostic> list);
+
+/// "mm", "inch" or "mm and inch".
+std::string unit_text(const nc::Summary& summary);
+
+/// The figures of a report as JSON text, with a line end.
+std::string check_json(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics);
+
+}  // namespace camber::api

@@ -1,0 +1,61 @@
+#include "api/work/compensate.h"
+
+#include <optional>
+
+#include "compensate/header.h"
+#include "compensate/measured.h"
+#include "compensate/recheck.h"
+#include "feedmodel/control_options.h"
+#include "feedmodel/fitted_range.h"
+#include "nc/interpreter.h"
+
+namespace camber::api {
+namespace {
+
+nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
+  Diagnostics ignored;  // said already
+  const auto text = nc::read_program(std::move(source), ignored);
+  return nc::interpret(text, feedmodel::interpreter_options(job.machine, job.inch), ignored);
+}
+
+/// The job as it was measured; the fit goes to `fit`.
+machine::Job as_measured(const machine::Job& job, const CompensateRequest& request, Diagnostics& diagnostics,
+                         const simulate::Progress& progress, std::optional<compensate::MeasuredFit>& fit) {
+  if (request.measured.empty()) return job;
+  const auto points = compensate::read_measured(request.measured);
+  fit = compensate::fit_measured(job, request.measured, points, request.measured_program, diagnostics, progress);
+  return compensate::softened(job, fit->scale);
+}
+
+std::string header_of(const machine::Job& job, const compensate::CompensationResult& c, bool hash) {
+  const std::string lines = compensate::header_lines(job, c, CAMBER_VERSION);
+  return hash ? lines + "\nINPUTS " + compensate::hash_of_inputs(job) : lines;
+}
+
+compensate::CompensateOptions options_of(const CompensateRequest& request) {
+  compensate::CompensateOptions options;
+  options.progress = request.progress;
+  for (const auto& u : request.uncertainty)
+    for (auto& group : compensate::read_uncertainty(u)) options.uncertainty.push_back(std::move(group));
+  options.max_stock_crossings = request.max_stock_crossings;
+  options.keep_anyway = request.keep_anyway;
+  options.recheck_voxels_mm = request.check_voxels_mm;
+  return options;
+}
+
+}  // namespace
+
+CompensatedJob compensate_job(const machine::Job& given, const CompensateRequest& request, Diagnostics& diagnostics) {
+  compensate::CompensateOptions options = options_of(request);
+  std::optional<compensate::MeasuredFit> fit;
+  CompensatedJob out{as_measured(given, request, diagnostics, options.progress, fit), {}};
+  const machine::Job& job = out.job;
+  if (request.header || request.header_hash)
+    options.header = [&](const auto& c) { return header_of(job, c, request.header_hash); };
+  out.result = compensate::compensate(job, diagnostics, options);
+  out.result.measured = fit;
+  feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
+  return out;
+}
+
+}  // namespace camber::api

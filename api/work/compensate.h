@@ -1,0 +1,30 @@
+#pragma once
+// The work of camber compensate: a job, as it was measured where points are given, compensated.
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "compensate/compensate.h"
+#include "machine/job.h"
+
+namespace camber::api {
+
+struct CompensateRequest {
+  std::vector<std::string> uncertainty;    ///< files or percentages
+  std::string measured, measured_program;  ///< files; empty: none
+  std::vector<double> check_voxels_mm;
+  bool keep_anyway = false;  ///< emit the round of the least error even where none is better
+  bool header = false, header_hash = false;
+  std::size_t max_stock_crossings = 0;  ///< see compensate::CompensateOptions
+  simulate::Progress progress;
+};
+
+struct CompensatedJob {
+  machine::Job job;  ///< what was compensated: the given one, or as it was measured
+  compensate::CompensationResult result;
+};
+
+/// Throws InputError and BeyondModel. Writes nothing.
+CompensatedJob compensate_job(const machine::Job& given, const CompensateRequest& request, Diagnostics& diagnostics);
+
+}  // namespace camber::api

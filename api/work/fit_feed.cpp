@@ -1,0 +1,191 @@
+#include "api/work/fit_feed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "calib/column_map.h"
+#include "calib/fit_drive.h"
+#include "calib/machine_log.h"
+#include "feedmodel/control_options.h"
+
+namespace camber::api {
+namespace {
+
+using calib::FitFeedResult;
+using nlohmann::ordered_json;
+
+/// What a trace file holds shows in its content.
+enum class TraceKind { servo, machine_log, stretch_table };
+
+TraceKind kind_of(const std::string& path) {
+  if (calib::is_machine_log(path)) return TraceKind::machine_log;
+  return calib::is_stretch_table(path) ? TraceKind::stretch_table : TraceKind::servo;
+}
+
+/// The stretches of one program belong together, however many logs tell of it: copies of a geometry must not be in
+/// two folds.
+calib::StretchRun& stretch_run(FeedRuns& runs, const std::string& name, const nc::Interpretation& program) {
+  for (calib::StretchRun& run : runs.stretches)
+    if (run.program_name == name) return run;
+  runs.stretches.push_back({name, program, {}});
+  return runs.stretches.back();
+}
+
+void add_times(calib::StretchRun& run, const std::string& path, TraceKind kind, Diagnostics& diagnostics) {
+  const auto timed =
+      kind == TraceKind::machine_log
+          ? calib::logged_stretches(calib::read_machine_log(path, diagnostics), calib::feed_stretches(run.program))
+          : calib::read_stretch_table(path, run.program);
+  if (timed.empty())
+    fail_on_file(path, "holds no whole stretch of feed moves of the program at 100 % override", "log-stretches");
+  run.timed.insert(run.timed.end(), timed.begin(), timed.end());
+}
+
+nc::Interpretation moves_of(const TracedProgram& traced, const machine::Machine& start, Diagnostics& diagnostics) {
+  const auto options = feedmodel::interpreter_options(start, traced.interpreter);
+  if (traced.text) return nc::interpret(*traced.text, options, diagnostics);
+  return nc::interpret(nc::read_program(SourceText::read(traced.program), diagnostics), options, diagnostics);
+}
+
+/// JSON has no infinity.
+ordered_json number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
+
+ordered_json error_json(const calib::FitError& e) {
+  return {{"parts", e.parts},
+          {"part_time_percent", e.part_time_percent},
+          {"speed_rms_percent", e.speed_rms_percent},
+          {"speed_p95_percent", e.speed_p95_percent}};
+}
+
+ordered_json parameters_json(const std::vector<calib::FitParameter>& parameters) {
+  ordered_json list = ordered_json::array();
+  for (const calib::FitParameter& p : parameters)
+    list.push_back({{"name", p.name},
+                    {"value", number(p.value)},
+                    {"unit", p.unit},
+                    {"std_error", p.std_error ? number(*p.std_error) : ordered_json(nullptr)},
+                    {"written", p.written},
+                    {"note", p.note}});
+  return list;
+}
+
+ordered_json errors_json(const calib::StretchErrors& e) {
+  return {{"stretch_time_mean_percent", e.mean},
+          {"stretch_time_p90_percent", e.p90},
+          {"stretch_time_worst_percent", e.worst},
+          {"total_time_percent", e.total}};
+}
+
+ordered_json report_of(const calib::StretchFit& fit) {
+  ordered_json report;
+  report["parameters"] = parameters_json(fit.parameters);
+  report["held_out"] = errors_json(fit.held_out);
+  report["held_out"]["stretches"] = fit.stretches.size();
+  report["fitted"] = errors_json(fit.fitted);
+  report["baselines"] = {{"constant_feed", errors_json(fit.constant_feed)},
+                         {"stop_at_every_block", errors_json(fit.stop_every_block)}};
+  for (const calib::JudgedLaw& law : fit.laws)
+    report["laws"].push_back({{"name", law.law.name},
+                              {"held_out", errors_json(law.held_out)},
+                              {"kind_held_out", errors_json(law.kind_held_out)}});
+  for (const calib::JudgedStretch& s : fit.stretches)
+    report["stretches"].push_back({{"program", s.program_name},
+                                   {"line_first", s.timed.stretch.line_first},
+                                   {"line_last", s.timed.stretch.line_last},
+                                   {"tool", s.timed.stretch.tool},
+                                   {"time_s", s.timed.time_s},
+                                   {"held_out_s", s.held_out_s},
+                                   {"kind", name_of(s.kind)},
+                                   {"kind_held_out_s", s.kind_held_out_s},
+                                   {"fitted_s", s.fitted_s},
+                                   {"constant_feed_s", s.constant_feed_s},
+                                   {"stop_every_block_s", s.stop_every_block_s}});
+  report["converged"] = fit.converged;
+  report["message"] = fit.message;
+  return report;
+}
+
+ordered_json report_of(const FitFeedResult& result) {
+  ordered_json report;
+  report["parameters"] = parameters_json(result.parameters);
+  report["held_out"] = error_json(result.held_out);
+  report["fitted"] = error_json(result.fitted);
+  for (int i = 0; i < 3; ++i)
+    report["drives"].push_back({{"axis", std::string(1, "xyz"[i])},
+                                {"moved", result.drives[i].moved},
+                                {"model", result.drives[i].model},
+                                {"fitted_rms_mm", result.drives[i].fitted_rms_mm},
+                                {"held_out_rms_mm", result.drives[i].held_out_rms_mm}});
+  for (const calib::RunAccuracy& run : result.runs)
+    report["runs"].push_back({{"program", run.program_name},
+                              {"time_trace_s", run.accuracy.time_trace_s},
+                              {"time_model_s", run.accuracy.time_model_s},
+                              {"time_error_percent", run.accuracy.time_error_percent},
+                              {"speed_rms_percent", run.accuracy.speed_rms_percent},
+                              {"speed_p95_percent", run.accuracy.speed_p95_percent}});
+  for (const calib::LoggedTime& t : result.logged)
+    report["logged"].push_back({{"program", t.program_name},
+                                {"line_first", t.part.line_first},
+                                {"line_last", t.part.line_last},
+                                {"held_out", t.kept_back},
+                                {"time_s", t.time_s},
+                                {"model_s", t.model_s}});
+  if (!result.logged.empty()) {
+    report["fitted"]["logged_time_percent"] = result.logged_fitted.mean;
+    report["held_out"]["logged_time_percent"] = result.logged_held_out.mean;
+  }
+  for (const calib::JudgedCornerLaw& law : result.laws)
+    report["laws"].push_back(
+        {{"name", law.name}, {"held_out", {{"part_time_percent", law.held_out_percent}, {"cost", law.held_out_cost}}}});
+  report["law"] = result.law;
+  report["residual_median_ms"] = result.residual_median_ms;
+  report["converged"] = result.converged;
+  report["message"] = result.message;
+  return report;
+}
+
+}  // namespace
+
+bool FeedRuns::any_lines() const {
+  return std::any_of(servo.begin(), servo.end(), [](const calib::FeedRun& run) { return !run.trace.line.empty(); });
+}
+
+FeedRuns read_runs(std::span<const TracedProgram> traced, const std::string& columns, const machine::Machine& start,
+                   Diagnostics& diagnostics) {
+  std::optional<calib::ColumnMap> map;
+  if (!columns.empty()) map = calib::read_column_map(columns, diagnostics);
+  FeedRuns runs;
+  for (const TracedProgram& one : traced) {
+    nc::Interpretation moves = moves_of(one, start, diagnostics);
+    diagnostics.throw_if_errors();
+    const TraceKind kind = kind_of(one.trace);
+    if (kind == TraceKind::servo) {
+      auto trace =
+          map ? calib::read_mapped_trace(one.trace, *map, diagnostics) : calib::read_trace(one.trace, diagnostics);
+      runs.servo.push_back({one.program, std::move(moves), std::move(trace)});
+    } else {
+      add_times(stretch_run(runs, one.program, moves), one.trace, kind, diagnostics);
+    }
+  }
+  return runs;
+}
+
+FeedFit fit_runs(const FeedRuns& runs, const machine::Machine& start) {
+  if (runs.stretches.empty() || runs.any_lines()) return calib::fit_feed(runs.servo, runs.stretches, start, {});
+  calib::StretchFit fit = calib::fit_stretches(runs.stretches, start, {});
+  std::vector<const calib::ServoTrace*> traces;
+  for (const calib::FeedRun& run : runs.servo) traces.push_back(&run.trace);
+  for (int axis = 0; axis < 3 && !traces.empty(); ++axis)
+    calib::add_drive(fit.machine, fit.parameters, axis, calib::fit_drive(traces, axis, {}));
+  return fit;
+}
+
+std::string fit_json(const FeedFit& fit) {
+  return std::visit([](const auto& result) { return report_of(result); }, fit).dump(2) + "\n";
+}
+
+}  // namespace camber::api

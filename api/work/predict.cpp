@@ -1,0 +1,123 @@
+#include "api/work/predict.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <tbb/task_group.h>
+
+#include "base/freed_memory.h"
+#include "base/output_file.h"
+#include "feedmodel/feed_csv.h"
+#include "feedmodel/fitted_range.h"
+#include "report/forces_at_csv.h"
+#include "report/forces_csv.h"
+#include "report/report_data.h"
+#include "report/summary.h"
+#include "simulate/spindle_power.h"
+#include "simulate/turn.h"
+#include "simulate/verdict.h"
+
+namespace camber::api {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Times the program once more to write feed.csv, a sample a period.
+std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& program, const machine::Job& job,
+                                        const std::string& path) {
+  feedmodel::FeedCsv csv(program.moves, path);
+  report::PathCollector collector(program.moves);
+  feedmodel::predict_feed(program.moves, job.machine, [&](std::span<const feedmodel::TimedSample> samples) {
+    csv.write(samples);
+    collector.add(samples);
+  });
+  csv.commit();
+  return collector.take();
+}
+
+/// What the folder holds but summary.json, side by side. The machined stock is given up once it is saved.
+void write_files(const machine::Job& job, const simulate::SimulatedProgram& program, simulate::Prediction& prediction,
+                 std::size_t forces_at, const fs::path& folder, const Diagnostics& diagnostics) {
+  const removal::StockShape stock = removal::stock_shape(*prediction.machined, report::kMaxStockCrossings);
+  const report::FormErrorPoints points = report::form_error_points(program, prediction);
+  tbb::task_group others;
+  others.run([&] {
+    prediction.machined->save(folder / "stock.vdb");
+    prediction.machined.reset();
+  });
+  others.run([&] { report::write_form_error_csv(folder / "form_error.csv", points); });
+  others.run([&] { report::write_form_error_vtp(folder / "form_error.vtp", points); });
+  others.run([&] {
+    report::write_forces_csv(folder / "forces.csv", job, program, prediction);
+    if (forces_at > 0)
+      report::write_forces_at_csv(folder / fmt::format("forces_at_{}.csv", forces_at), prediction.cut.turn);
+  });
+  others.run([&] { report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95); });
+  others.run_and_wait([&] {
+    auto feed = write_feed(program, job, folder / "feed.csv");
+    report::write_html_report(folder / "report.html",
+                              report::predict_report(job, program, prediction, stock, std::move(feed), diagnostics));
+  });
+}
+
+void show(const PredictRequest& request, const std::string& what, std::optional<double> share = {}) {
+  if (request.progress) request.progress(what, share);
+}
+
+}  // namespace
+
+PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diagnostics& diagnostics) {
+  const auto check = [&](const simulate::SimulatedProgram& given) {
+    simulate::check_program(job, given, diagnostics);
+    if (!request.folder.empty())
+      feedmodel::check_feed_csv_size(given.moves, job.machine, request.folder + "/feed.csv", diagnostics);
+    diagnostics.throw_if_errors();
+    show(request, "cutting as the target");
+  };
+  Diagnostics of_original;  // a program like the job's: what is to be said of it, the job's own says too
+  PreparedJob out{
+      simulate::set_up(job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics}),
+      {}};
+  out.setup.original.reset();
+  const simulate::SimulatedProgram& program = out.setup.program;
+  feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
+  if (request.forces_at > 0)
+    out.options.turn_from = simulate::turn_at_line(program, job, request.forces_at, diagnostics);
+  show(request, "looking for collisions");
+  simulate::check_clearance(job, out.setup, diagnostics);
+  return out;
+}
+
+simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prepared, const PredictRequest& request,
+                                      Diagnostics& of_cut) {
+  simulate::Setup& setup = prepared.setup;
+  show(request, "cutting", 0);
+  prepared.options.progress = [&](double share) { show(request, "cutting", share); };
+  prepared.options.surface_read = [&] {
+    setup.target.surface.clear();
+    return_freed_memory();
+  };
+  auto prediction = simulate::predict(job, setup.target, setup.program, prepared.options);
+  setup.target.blank.clear();  // nothing reads it any more, and the files need room
+  simulate::check_spindle_power(job.machine, setup.program, prediction.cut.loads, of_cut);
+  return prediction;
+}
+
+void write_prediction(const machine::Job& job, const simulate::SimulatedProgram& program,
+                      simulate::Prediction& prediction, const PredictRequest& request, const std::string& summary,
+                      const Diagnostics& diagnostics, Diagnostics& failed) {
+  const fs::path folder = request.folder;
+  try_to_write([&] { write_files(job, program, prediction, request.forces_at, folder, diagnostics); }, failed);
+  // The last: where it is new, so is all beside it.
+  if (!failed.has_errors()) try_to_write([&] { write_file(folder / "summary.json", summary); }, failed);
+}
+
+std::vector<std::string> doubts_of(const machine::Job& job, const simulate::SimulatedProgram& program,
+                                   const simulate::Prediction& prediction) {
+  std::vector<std::string> wrong = simulate::doubts(job, program, prediction);
+  if (std::string unsettled = report::unsettled_sentence(program, prediction); !unsettled.empty())
+    wrong.push_back(std::move(unsettled));
+  return wrong;
+}
+
+}  // namespace camber::api

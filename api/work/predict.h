@@ -1,0 +1,45 @@
+#pragma once
+// The work of camber predict: a job made ready, cut, judged, and written to a folder.
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "machine/job.h"
+#include "simulate/setup.h"
+
+namespace camber::api {
+
+/// What goes on, and the share of it that is done where that is known.
+using StepProgress = std::function<void(const std::string& what, std::optional<double> share)>;
+
+struct PredictRequest {
+  std::string folder;         ///< for the files; empty: none
+  std::size_t forces_at = 0;  ///< line whose forces are kept over one turn; 0: none
+  StepProgress progress;
+};
+
+struct PreparedJob {
+  simulate::Setup setup;
+  simulate::PredictOptions options;
+};
+
+/// All that comes before the long work; what it found should be shown now. Throws InputError.
+PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diagnostics& diagnostics);
+
+/// Cuts and judges. The target and the blank are given up on the way. `of_cut`: what only the cut shows.
+simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prepared, const PredictRequest& request,
+                                      Diagnostics& of_cut);
+
+/// Every file of the folder, summary.json last, and `json` where a file is named. Whatever cannot be written goes to
+/// `failed`. The machined stock is given up once it is saved.
+void write_prediction(const machine::Job& job, const simulate::SimulatedProgram& program,
+                      simulate::Prediction& prediction, const PredictRequest& request, const std::string& summary,
+                      const Diagnostics& diagnostics, Diagnostics& failed);
+
+/// A sentence for each reason why the figures are not to be relied on; empty: none.
+std::vector<std::string> doubts_of(const machine::Job& job, const simulate::SimulatedProgram& program,
+                                   const simulate::Prediction& prediction);
+
+}  // namespace camber::api

@@ -1,0 +1,177 @@
+#include "api/work/time.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "base/numbers.h"
+#include "calib/cycle_accuracy.h"
+#include "feedmodel/control_options.h"
+#include "feedmodel/fitted_range.h"
+#include "machine/cases.h"
+#include "machine/set_number.h"
+#include "report/cycle_page.h"
+#include "report/planned_picture.h"
+
+namespace camber::api {
+namespace {
+
+constexpr std::size_t kMaxPoints = 10000;
+
+nc::Interpretation moves_of(const nc::Program& program, const machine::Machine& machine, const TimeRequest& request,
+                            Diagnostics& diagnostics) {
+  nc::InterpreterOptions options = feedmodel::interpreter_options(machine, request.interpreter);
+  options.index_table = machine.index.present;
+  nc::Interpretation moves = nc::interpret(program, options, diagnostics);
+  feedmodel::check_range(moves, program.source.name(), machine, diagnostics);
+  return moves;
+}
+
+nc::Interpretation read_moves(const std::string& path, const machine::Machine& machine, const TimeRequest& request,
+                              Diagnostics& diagnostics) {
+  if (request.text && path == request.program) return moves_of(*request.text, machine, request, diagnostics);
+  return moves_of(nc::read_program(SourceText::read(path), diagnostics), machine, request, diagnostics);
+}
+
+report::CycleRow row_of(std::string name, std::vector<double> values, const nc::Interpretation& moves,
+                        const machine::Machine& machine) {
+  report::CycleRow row{std::move(name), std::move(values), feedmodel::cycle_time(moves, machine)};
+  row.time.move_s = {};
+  return row;
+}
+
+/// What was timed, and the path of the first of it where a page is asked for.
+struct Timed {
+  std::vector<report::CycleRow> rows{};
+  report::PathPicture picture{};
+};
+
+void add_picture(Timed& timed, const TimeRequest& request, const nc::Interpretation& moves,
+                 const machine::Machine& machine) {
+  if (request.picture && timed.rows.empty())
+    timed.picture = report::planned_picture(moves, machine, report::kMaxPicturePoints);
+}
+
+/// Every combination of the swept values, the last key running fastest.
+Timed sweep_rows(const TimeRequest& request, const std::vector<Sweep>& sweeps, const nc::Interpretation& moves,
+                 const machine::Machine& machine) {
+  std::size_t points = 1;
+  for (const Sweep& sweep : sweeps) points *= sweep.values.size();
+  Timed timed;
+  for (std::size_t i = 0; i < points; ++i) {
+    if (request.progress) request.progress(static_cast<double>(i) / static_cast<double>(points));
+    machine::Machine changed = machine;
+    std::vector<double> values(sweeps.size());
+    std::string name;
+    std::size_t rest = i;
+    for (std::size_t k = sweeps.size(); k-- > 0; rest /= sweeps[k].values.size())
+      values[k] = sweeps[k].values[rest % sweeps[k].values.size()];
+    for (std::size_t k = 0; k < sweeps.size(); ++k) {
+      machine::set_number(changed, sweeps[k].key, values[k]);
+      name += fmt::format("{}{}", k > 0 ? " / " : "", format_trimmed(values[k], 4));
+    }
+    add_picture(timed, request, moves, changed);
+    timed.rows.push_back(row_of(std::move(name), std::move(values), moves, changed));
+  }
+  return timed;
+}
+
+Timed case_rows(const TimeRequest& request, const machine::Machine* machine, Diagnostics& diagnostics) {
+  Timed timed;
+  for (const machine::CycleCase& one : machine::read_cases(request.cases, machine, diagnostics)) {
+    const std::string& program = one.program.empty() ? request.program : one.program;
+    Diagnostics found;
+    const nc::Interpretation moves = read_moves(program, one.machine, request, found);
+    found.throw_if_errors();
+    for (const Diagnostic& d : found.all()) {
+      const auto same = [&](const Diagnostic& known) { return to_string(known) == to_string(d); };
+      if (std::none_of(diagnostics.all().begin(), diagnostics.all().end(), same)) diagnostics.add(d);
+    }
+    add_picture(timed, request, moves, one.machine);
+    timed.rows.push_back(row_of(one.title.empty() ? one.name : one.name + ": " + one.title, {}, moves, one.machine));
+  }
+  return timed;
+}
+
+std::vector<Sweep> checked_sweeps(const TimeRequest& request, const machine::Machine& machine) {
+  std::vector<Sweep> sweeps;
+  std::size_t points = 1;
+  for (const std::string& text : request.sweeps) {
+    sweeps.push_back(parse_sweep(text));
+    points *= sweeps.back().values.size();
+    machine::Machine probe = machine;
+    for (const double value : sweeps.back().values) {
+      const std::string wrong = machine::set_number(probe, sweeps.back().key, value);
+      if (!wrong.empty()) fail_on_file(request.machine_path, "--sweep: " + wrong, "sweep-key");
+    }
+    if (points > kMaxPoints)
+      fail_on_file(request.machine_path, fmt::format("--sweep: more than {} points; fewer were expected", kMaxPoints),
+                   "sweep-points");
+  }
+  return sweeps;
+}
+
+std::vector<std::string> notes_of(const std::vector<report::CycleRow>& rows) {
+  std::vector<std::string> notes;
+  const std::size_t unplaced = rows.front().time.unplaced_moves;
+  if (unplaced > 0)
+    notes.push_back(fmt::format(
+        "{} moves to or from the reference point: its place is not known (x_mm, y_mm, z_mm of [tool_change] "
+        "in the machine file), that part of their way counts for nothing",
+        unplaced));
+  return notes;
+}
+
+}  // namespace
+
+Sweep parse_sweep(const std::string& text) {
+  const std::string wanted = "KEY=FROM:TO:N was expected, as in axis.x.acceleration_mm_per_s2=3500:15000:4";
+  const auto equals = text.find('='), first = text.find(':', equals), second = text.find(':', first + 1);
+  if (equals == std::string::npos || first == std::string::npos || second == std::string::npos)
+    throw std::invalid_argument(text + ": " + wanted);
+  const auto from = parse_number(std::string_view(text).substr(equals + 1, first - equals - 1));
+  const auto to = parse_number(std::string_view(text).substr(first + 1, second - first - 1));
+  const auto count = parse_number(std::string_view(text).substr(second + 1));
+  if (!from || !to || !count) throw std::invalid_argument(text + ": " + wanted);
+  if (*count < 2 || *count > 1000 || *count != static_cast<int>(*count))
+    throw std::invalid_argument(fmt::format("{}: {} points; a whole number from 2 to 1000 was expected", text, *count));
+  Sweep sweep{text.substr(0, equals), {}};
+  const int n = static_cast<int>(*count);
+  for (int i = 0; i < n; ++i) sweep.values.push_back(*from + (*to - *from) * i / (n - 1));
+  return sweep;
+}
+
+TimedProgram time_program(const TimeRequest& request, Diagnostics& diagnostics) {
+  TimedProgram out;
+  TimeReport& report = out.report;
+  report.program = request.program;
+  report.machine = request.cases.empty() ? request.machine_path : request.cases;
+  Timed timed;
+  if (!request.cases.empty()) {
+    timed = case_rows(request, request.machine, diagnostics);
+  } else {
+    const machine::Machine& machine = *request.machine;
+    const std::vector<Sweep> sweeps = checked_sweeps(request, machine);
+    const nc::Interpretation moves = read_moves(request.program, machine, request, diagnostics);
+    diagnostics.throw_if_errors();
+    if (sweeps.empty()) {
+      feedmodel::CycleTime time = feedmodel::cycle_time(moves, machine);
+      if (!request.trace.empty())
+        report.accuracy = calib::cycle_accuracy(calib::read_trace(request.trace, diagnostics), moves, time);
+      time.move_s = {};
+      add_picture(timed, request, moves, machine);
+      timed.rows.push_back({request.machine_path, {}, std::move(time)});
+    } else {
+      for (const Sweep& sweep : sweeps) report.keys.push_back(sweep.key);
+      timed = sweep_rows(request, sweeps, moves, machine);
+    }
+  }
+  report.rows = std::move(timed.rows);
+  report.notes = notes_of(report.rows);
+  out.picture = std::move(timed.picture);
+  return out;
+}
+
+}  // namespace camber::api

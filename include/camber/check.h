@@ -1,0 +1,46 @@
+#pragma once
+// What a program holds, and whether a machine or a job can run it.
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camber/job.h"
+#include "camber/program.h"
+#include "camber/run.h"
+
+namespace camber {
+inline namespace v0 {
+
+struct Box {
+  std::array<double, 3> min_mm{}, max_mm{};
+};
+
+struct ToolUse {
+  int tool = 0;          ///< 0: before any M6
+  std::size_t line = 0;  ///< of the M6 that brought it in first, or of its first move where there is none
+  std::size_t calls = 0, cutting_moves = 0;
+  double cutting_length_mm = 0, rapid_length_mm = 0;
+  std::optional<Box> cutting{};  ///< extents of its cutting moves
+};
+
+struct CheckResult {
+  std::size_t blocks = 0, blocks_with_words = 0;
+  std::size_t rapids = 0, lines = 0, arcs = 0, dwells = 0;
+  double cutting_length_mm = 0, rapid_length_mm = 0, dwell_s = 0;
+  std::optional<Box> cutting{}, rapid{};
+  std::vector<ToolUse> tools{};           ///< in the order of their first use
+  std::vector<Diagnostic> diagnostics{};  ///< warnings, in the order of the file
+  std::string json{};                     ///< every figure, as `camber check --json` writes them
+};
+
+/// Throws InputError when the program cannot be read or run.
+CAMBER_API CheckResult check(const Program& program, const RunOptions& run = {});
+/// Also whether the program keeps the machine's axes, feeds and speeds.
+CAMBER_API CheckResult check(const Program& program, const Machine& machine, const RunOptions& run = {});
+/// Also whether the job's tools, stock and part fit the program.
+CAMBER_API CheckResult check(const Program& program, const Job& job, const RunOptions& run = {});
+
+}  // namespace v0
+}  // namespace camber

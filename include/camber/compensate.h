@@ -1,0 +1,55 @@
+#pragma once
+// A job's program with its path moved against the form error.
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "camber/predict.h"
+
+namespace camber {
+inline namespace v0 {
+
+struct CompensateOptions {
+  std::vector<std::string> uncertainty{};    ///< what fit-force or fit-feed wrote, or percentages ("10")
+  std::string measured{};                    ///< points measured on a part, CSV; empty: none
+  std::string measured_program{};            ///< what that part was cut with; empty: the job's program
+  std::vector<double> check_voxels_mm{};     ///< predict both programs again on these grids
+  bool keep_anyway = false;                  ///< emit the round of the least error even where none is better
+  bool header = false, header_hash = false;  ///< comment lines at the program's head
+};
+
+struct CompensationRound {
+  ErrorFigures error_um{};
+  double largest_shift_mm = 0;
+};
+
+/// The same point of the surface, cut by the given and by the emitted program.
+struct CompensatedPoint {
+  double x_mm = 0, y_mm = 0, z_mm = 0, nx = 0, ny = 0, nz = 0;
+  double before_um = 0, after_um = 0;  ///< error_um of predict
+  double area_mm2 = 0;
+};
+
+struct CompensateResult {
+  std::string program{};  ///< text of the emitted program: that of the best round
+  bool better = false;    ///< it is better than the given one and keeps the limits; do not run it otherwise
+  bool success = false;   ///< within the tolerance and the limits, with figures that may be relied on
+  std::string headline{};
+  std::vector<std::string> reasons{};  ///< of no success, worst first
+  ErrorFigures before_um{}, after_um{};
+  std::vector<CompensationRound> rounds{};  ///< rounds[0]: the program as given
+  std::size_t best_round = 0;
+  std::string stop{};  ///< tolerance, stalled, rounds or depth_limit
+  std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
+  double max_shift_mm = 0;
+  std::vector<CompensatedPoint> surface{};
+  std::vector<Diagnostic> diagnostics{};  ///< warnings
+  std::string json{};                     ///< every figure, as `camber compensate --json` writes them
+};
+
+/// Writes no file. Throws InputError, BeyondModel, Cancelled.
+CAMBER_API CompensateResult compensate(const Job& job, const CompensateOptions& options = {},
+                                       const RunOptions& run = {});
+
+}  // namespace v0
+}  // namespace camber

@@ -1,0 +1,43 @@
+#pragma once
+// Where the axes really are at every period of the control.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "camber/machine.h"
+#include "camber/program.h"
+#include "camber/run.h"
+
+namespace camber {
+inline namespace v0 {
+
+/// A row of feed.csv: the predicted actual axes.
+struct FeedPoint {
+  double t_s = 0;
+  double x_mm = 0, y_mm = 0, z_mm = 0;
+  double vx_mm_per_min = 0, vy_mm_per_min = 0, vz_mm_per_min = 0;
+  double feed_cmd_mm_per_min = 0;  ///< programmed; on a rapid its top speed
+  double feed_mm_per_min = 0;
+  std::int64_t block = 0;  ///< 1-based line being commanded
+};
+
+struct FeedOptions {
+  bool points = true;  ///< keep the points; 80 bytes each
+};
+
+struct FeedResult {
+  double time_s = 0;
+  double cutting_time_s = 0;              ///< commanded time in G1, G2, G3
+  std::size_t blocks = 0;                 ///< blocks with motion
+  std::vector<FeedPoint> points{};        ///< one a period
+  std::vector<Diagnostic> diagnostics{};  ///< warnings
+  std::string json{};                     ///< every figure, as `camber feed --json` writes them
+};
+
+/// Throws InputError, Cancelled.
+CAMBER_API FeedResult feed(const Program& program, const Machine& machine, const FeedOptions& options = {},
+                           const RunOptions& run = {});
+
+}  // namespace v0
+}  // namespace camber

@@ -1,0 +1,47 @@
+#pragma once
+// A machine's feed model from programs and the traces that they left.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camber/machine.h"
+#include "camber/program.h"
+#include "camber/run.h"
+
+namespace camber {
+inline namespace v0 {
+
+/// A program that was run and what the machine did: a servo trace, an MTConnect log or a table of stretch times.
+struct FeedTrace {
+  Program program;
+  std::string trace;
+};
+
+struct FitFeedOptions {
+  std::string columns{};  ///< column map of the servo traces (TOML); empty: our CSV
+};
+
+struct FitParameter {
+  std::string name;  ///< key of the machine file
+  double value = 0;
+  std::string unit;
+  std::optional<double> std_error;  ///< not given: not fitted, or the data does not determine it
+  std::string note;
+  bool written = true;  ///< the machine file takes the value
+};
+
+struct FitFeedResult {
+  Machine machine;  ///< the fitted one
+  std::vector<FitParameter> parameters{};
+  bool converged = false;
+  std::string message{};                  ///< why it ended, and what it means
+  std::vector<Diagnostic> diagnostics{};  ///< warnings
+  std::string json{};                     ///< every figure, as `camber fit-feed --json` writes them
+};
+
+/// `start` gives the control's dialect and what the traces do not determine. Throws InputError, Cancelled.
+CAMBER_API FitFeedResult fit_feed(const std::vector<FeedTrace>& traces, const Machine& start,
+                                  const FitFeedOptions& options = {}, const RunOptions& run = {});
+
+}  // namespace v0
+}  // namespace camber

@@ -1,0 +1,45 @@
+#pragma once
+// Cycle time by kind of operation and by tool.
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "camber/machine.h"
+#include "camber/program.h"
+#include "camber/run.h"
+
+namespace camber {
+inline namespace v0 {
+
+/// Time of one tool, or of all.
+struct TimeUse {
+  int tool = 0;
+  std::size_t tool_changes = 0, cutting_moves = 0;
+  double cutting_s = 0, positioning_s = 0, spindle_s = 0, tool_change_s = 0, m_code_s = 0, dwell_s = 0, index_s = 0,
+         pallet_s = 0, total_s = 0;
+  double cutting_length_mm = 0, positioning_length_mm = 0;
+  double commanded_feed_mm_per_min = 0, average_feed_mm_per_min = 0;
+  double e = 0;  ///< average over commanded feed
+  double k = 0;  ///< F^2 / (a d): commanded feed, acceleration, mean block length; infinite without a limit
+};
+
+struct TimeOptions {
+  std::string trace{};                ///< a measured run to compare with; empty: none
+  std::vector<std::string> sweeps{};  ///< "axis.x.acceleration_mm_per_s2=3500:15000:4"
+};
+
+struct TimeResult {
+  TimeUse all{};
+  std::vector<TimeUse> tools{};  ///< in the order of their first use
+  std::vector<TimeUse> sweep{};  ///< all tools, a row a combination of the swept values
+  std::vector<std::string> notes{};
+  std::vector<Diagnostic> diagnostics{};  ///< warnings
+  std::string json{};                     ///< every figure, as `camber time --json` writes them
+};
+
+/// Throws InputError, Cancelled, std::invalid_argument for a sweep that cannot be read.
+CAMBER_API TimeResult time(const Program& program, const Machine& machine, const TimeOptions& options = {},
+                           const RunOptions& run = {});
+
+}  // namespace v0
+}  // namespace camber

@@ -1,0 +1,191 @@
+// The functions of the module. Where a function takes a program, a machine or a job, a path does as well.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calls.h"
+#include "camber/camber.h"
+#include "parts.h"
+
+namespace py = pybind11;
+using py::literals::operator""_a;
+
+namespace camber_python {
+namespace {
+
+using Path = std::filesystem::path;
+
+std::string path_of(const py::handle& object) { return object.cast<Path>().string(); }
+
+camber::Program program_of(const py::handle& object) {
+  if (py::isinstance<camber::Program>(object)) return object.cast<camber::Program>();
+  return camber::read_program(path_of(object));
+}
+
+camber::Machine machine_of(const py::handle& object) {
+  if (py::isinstance<camber::Machine>(object)) return object.cast<camber::Machine>();
+  return camber::read_machine(path_of(object));
+}
+
+camber::Job job_of(const py::handle& object) {
+  if (py::isinstance<camber::Job>(object)) return object.cast<camber::Job>();
+  return camber::read_job(path_of(object));
+}
+
+camber::ReadOptions read_options(const std::optional<std::string>& units, bool block_skip,
+                                 const std::vector<int>& skip_switches, const std::string& dialect,
+                                 bool least_increments) {
+  if (units && *units != "mm" && *units != "inch") throw py::value_error("units: mm or inch was expected");
+  return {.inch = units ? std::optional(*units == "inch") : std::nullopt,
+          .skip_slash_blocks = block_skip,
+          .skip_switches = skip_switches,
+          .dialect = dialect,
+          .least_increments = least_increments};
+}
+
+camber::CheckResult check(const py::object& program, const py::object& machine, const py::object& job,
+                          const py::object& progress, bool strict, int threads) {
+  if (!machine.is_none() && !job.is_none()) throw py::value_error("machine or job was expected, not both");
+  const camber::Program text = program_of(program);
+  std::optional<camber::Job> of_job;
+  std::optional<camber::Machine> on;
+  if (!job.is_none()) of_job = job_of(job);
+  if (!machine.is_none()) on = machine_of(machine);
+  camber::CheckResult result;
+  call({progress, strict, threads}, [&](const camber::RunOptions& run) {
+    result = of_job ? camber::check(text, *of_job, run) : on ? camber::check(text, *on, run) : camber::check(text, run);
+  });
+  return result;
+}
+
+camber::FeedResult feed(const py::object& program, const py::object& machine, bool points, const py::object& progress,
+                        bool strict, int threads) {
+  const camber::Machine on = machine_of(machine);
+  const camber::Program text = program_of(program);
+  camber::FeedResult result;
+  call({progress, strict, threads},
+       [&](const camber::RunOptions& run) { result = camber::feed(text, on, {.points = points}, run); });
+  return result;
+}
+
+camber::TimeResult time(const py::object& program, const py::object& machine, const std::optional<Path>& trace,
+                        const std::vector<std::string>& sweeps, const py::object& progress, bool strict, int threads) {
+  const camber::Machine on = machine_of(machine);
+  const camber::Program text = program_of(program);
+  camber::TimeResult result;
+  call({progress, strict, threads}, [&](const camber::RunOptions& run) {
+    result = camber::time(text, on, {.trace = trace ? trace->string() : std::string(), .sweeps = sweeps}, run);
+  });
+  return result;
+}
+
+camber::FitFeedResult fit_feed(const std::vector<std::pair<py::object, Path>>& traces, const py::object& machine,
+                               const std::optional<Path>& columns, const py::object& progress, bool strict,
+                               int threads) {
+  const camber::Machine start = machine_of(machine);
+  std::vector<camber::FeedTrace> runs;
+  for (const auto& [program, trace] : traces) runs.push_back({program_of(program), trace.string()});
+  std::optional<camber::FitFeedResult> result;
+  call({progress, strict, threads}, [&](const camber::RunOptions& run) {
+    result = camber::fit_feed(runs, start, {.columns = columns ? columns->string() : std::string()}, run);
+  });
+  return *std::move(result);
+}
+
+camber::PredictResult predict(const py::object& job, bool feed, const std::optional<Path>& output_folder,
+                              std::size_t forces_at, const py::object& progress, bool strict, int threads) {
+  const camber::Job given = job_of(job);
+  camber::PredictResult result;
+  call({progress, strict, threads}, [&](const camber::RunOptions& run) {
+    result = camber::predict(given,
+                             {.feed = feed,
+                              .output_folder = output_folder ? output_folder->string() : std::string(),
+                              .forces_at = forces_at},
+                             run);
+  });
+  return result;
+}
+
+camber::CompensateResult compensate(const py::object& job, const std::vector<std::string>& uncertainty,
+                                    const std::optional<Path>& measured, const std::optional<Path>& measured_program,
+                                    const std::vector<double>& check_voxels_mm, bool keep_anyway, bool header,
+                                    bool header_hash, const py::object& progress, bool strict, int threads) {
+  const camber::Job given = job_of(job);
+  const camber::CompensateOptions options{
+      .uncertainty = uncertainty,
+      .measured = measured ? measured->string() : std::string(),
+      .measured_program = measured_program ? measured_program->string() : std::string(),
+      .check_voxels_mm = check_voxels_mm,
+      .keep_anyway = keep_anyway,
+      .header = header,
+      .header_hash = header_hash};
+  camber::CompensateResult result;
+  call({progress, strict, threads},
+       [&](const camber::RunOptions& run) { result = camber::compensate(given, options, run); });
+  return result;
+}
+
+void add_readers(py::module_& module) {
+  module.def(
+      "read_program",
+      [](const Path& path, const std::optional<std::string>& units, bool block_skip,
+         const std::vector<int>& skip_switches, const std::string& dialect, bool least_increments) {
+        return camber::read_program(path.string(),
+                                    read_options(units, block_skip, skip_switches, dialect, least_increments));
+      },
+      "path"_a, py::kw_only(), "units"_a = py::none(), "block_skip"_a = false, "skip_switches"_a = std::vector<int>(),
+      "dialect"_a = "", "least_increments"_a = false);
+  module.def(
+      "program_from_text",
+      [](const std::string& name, const std::string& text, const std::optional<std::string>& units, bool block_skip,
+         const std::vector<int>& skip_switches, const std::string& dialect, bool least_increments) {
+        return camber::program_from_text(name, text,
+                                         read_options(units, block_skip, skip_switches, dialect, least_increments));
+      },
+      "name"_a, "text"_a, py::kw_only(), "units"_a = py::none(), "block_skip"_a = false,
+      "skip_switches"_a = std::vector<int>(), "dialect"_a = "", "least_increments"_a = false);
+  module.def(
+      "read_machine", [](const Path& path) { return camber::read_machine(path.string()); }, "path"_a);
+  module.def(
+      "read_job", [](const Path& path) { return camber::read_job(path.string()); }, "path"_a);
+}
+
+}  // namespace
+
+void add_functions(py::module_& module) {
+  add_readers(module);
+  module.def("check", check, "program"_a, py::kw_only(), "machine"_a = py::none(), "job"_a = py::none(),
+             "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "What a program holds, and whether a machine or a job can run it.");
+  module.def("feed", feed, "program"_a, "machine"_a, py::kw_only(), "points"_a = true, "progress"_a = py::none(),
+             "strict"_a = false, "threads"_a = 0, "Where the axes really are at every period of the control.");
+  module.def("time", time, "program"_a, "machine"_a, py::kw_only(), "trace"_a = py::none(),
+             "sweep"_a = std::vector<std::string>(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "Cycle time by kind of operation and by tool.");
+  module.def("fit_feed", fit_feed, "traces"_a, "machine"_a, py::kw_only(), "columns"_a = py::none(),
+             "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "A machine's feed model from pairs of a program and its trace.");
+  module.def("predict", predict, "job"_a, py::kw_only(), "feed"_a = false, "output_folder"_a = py::none(),
+             "forces_at"_a = 0, "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "Cutting force, deflection and form error of a job.");
+  module.def("compensate", compensate, "job"_a, py::kw_only(), "uncertainty"_a = std::vector<std::string>(),
+             "measured"_a = py::none(), "measured_program"_a = py::none(), "check_voxels_mm"_a = std::vector<double>(),
+             "keep_anyway"_a = false, "header"_a = false, "header_hash"_a = false, "progress"_a = py::none(),
+             "strict"_a = false, "threads"_a = 0, "A job's program with its path moved against the form error.");
+}
+
+}  // namespace camber_python
+
+PYBIND11_MODULE(_camber, module) {
+  module.attr("__version__") = camber::version();
+  camber_python::add_exceptions(module);
+  camber_python::add_inputs(module);
+  camber_python::add_results(module);
+  camber_python::add_functions(module);
+}

@@ -1,0 +1,226 @@
+// What the functions return: figures as attributes, rows as numpy arrays that share the result's memory.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "camber/camber.h"
+#include "columns.h"
+#include "parts.h"
+
+namespace py = pybind11;
+
+namespace camber_python {
+namespace {
+
+/// What every result has: `json`, the same parsed as `figures`, and `diagnostics`.
+template <class Result>
+py::class_<Result> result_class(py::module_& module, const char* name) {
+  return py::class_<Result>(module, name)
+      .def_readonly("json", &Result::json, "Every figure, as --json of the command line writes them.")
+      .def_property_readonly(
+          "figures", [](const Result& r) { return py::module_::import("json").attr("loads")(r.json); },
+          "json as a dictionary.")
+      .def_readonly("diagnostics", &Result::diagnostics, "Warnings.");
+}
+
+/// A property that is a table of the result's rows.
+template <class Result, class Row>
+void add_table(py::class_<Result>& of, const char* name, std::vector<Row> Result::*rows) {
+  of.def_property_readonly(name, [rows](const py::object& self) {
+    return Table<Row>{self, &(self.cast<const Result&>().*rows)};
+  });
+}
+
+void add_tables(py::module_& module) {
+  using camber::CompensatedPoint, camber::ErrorPoint, camber::FeedPoint, camber::ForceRow;
+  TableClass<FeedPoint>(module, "FeedPoints")
+      .add("t_s", &FeedPoint::t_s)
+      .add("block", &FeedPoint::block)
+      .add("x_mm", &FeedPoint::x_mm)
+      .add("y_mm", &FeedPoint::y_mm)
+      .add("z_mm", &FeedPoint::z_mm)
+      .add("vx_mm_per_min", &FeedPoint::vx_mm_per_min)
+      .add("vy_mm_per_min", &FeedPoint::vy_mm_per_min)
+      .add("vz_mm_per_min", &FeedPoint::vz_mm_per_min)
+      .add("feed_cmd_mm_per_min", &FeedPoint::feed_cmd_mm_per_min)
+      .add("feed_mm_per_min", &FeedPoint::feed_mm_per_min);
+  TableClass<ForceRow>(module, "ForceRows")
+      .add("t_s", &ForceRow::t_s)
+      .add("block", &ForceRow::block)
+      .add("x_mm", &ForceRow::x_mm)
+      .add("y_mm", &ForceRow::y_mm)
+      .add("z_mm", &ForceRow::z_mm)
+      .add("fx_max_N", &ForceRow::fx_max_N)
+      .add("fy_max_N", &ForceRow::fy_max_N)
+      .add("fz_max_N", &ForceRow::fz_max_N)
+      .add("f_max_N", &ForceRow::f_max_N)
+      .add("fx_mean_N", &ForceRow::fx_mean_N)
+      .add("fy_mean_N", &ForceRow::fy_mean_N)
+      .add("fz_mean_N", &ForceRow::fz_mean_N)
+      .add("dx_um", &ForceRow::dx_um)
+      .add("dy_um", &ForceRow::dy_um)
+      .add("mrr_mm3_per_s", &ForceRow::mrr_mm3_per_s)
+      .add("removed_mm3", &ForceRow::removed_mm3)
+      .add("torque_max_Nm", &ForceRow::torque_max_Nm)
+      .add("torque_mean_Nm", &ForceRow::torque_mean_Nm)
+      .add("power_W", &ForceRow::power_W)
+      .add("h_max_mm", &ForceRow::h_max_mm)
+      .add("h_mean_mm", &ForceRow::h_mean_mm)
+      .add("specific_energy_MPa", &ForceRow::specific_energy_MPa);
+  TableClass<ErrorPoint>(module, "ErrorPoints")
+      .add("x_mm", &ErrorPoint::x_mm)
+      .add("y_mm", &ErrorPoint::y_mm)
+      .add("z_mm", &ErrorPoint::z_mm)
+      .add("nx", &ErrorPoint::nx)
+      .add("ny", &ErrorPoint::ny)
+      .add("nz", &ErrorPoint::nz)
+      .add("error_um", &ErrorPoint::error_um)
+      .add("deflection_um", &ErrorPoint::deflection_um)
+      .add("contour_um", &ErrorPoint::contour_um)
+      .add("total_error_um", &ErrorPoint::total_error_um)
+      .add("area_mm2", &ErrorPoint::area_mm2)
+      .add("block", &ErrorPoint::block)
+      .add("tool", &ErrorPoint::tool);
+  TableClass<CompensatedPoint>(module, "CompensatedPoints")
+      .add("x_mm", &CompensatedPoint::x_mm)
+      .add("y_mm", &CompensatedPoint::y_mm)
+      .add("z_mm", &CompensatedPoint::z_mm)
+      .add("nx", &CompensatedPoint::nx)
+      .add("ny", &CompensatedPoint::ny)
+      .add("nz", &CompensatedPoint::nz)
+      .add("before_um", &CompensatedPoint::before_um)
+      .add("after_um", &CompensatedPoint::after_um)
+      .add("area_mm2", &CompensatedPoint::area_mm2);
+}
+
+void add_check(py::module_& module) {
+  using camber::CheckResult, camber::ToolUse;
+  py::class_<camber::Box>(module, "Box")
+      .def_readonly("min_mm", &camber::Box::min_mm)
+      .def_readonly("max_mm", &camber::Box::max_mm);
+  py::class_<ToolUse>(module, "ToolUse")
+      .def_readonly("tool", &ToolUse::tool)
+      .def_readonly("line", &ToolUse::line)
+      .def_readonly("calls", &ToolUse::calls)
+      .def_readonly("cutting_moves", &ToolUse::cutting_moves)
+      .def_readonly("cutting_length_mm", &ToolUse::cutting_length_mm)
+      .def_readonly("rapid_length_mm", &ToolUse::rapid_length_mm)
+      .def_readonly("cutting", &ToolUse::cutting);
+  result_class<CheckResult>(module, "CheckResult")
+      .def_readonly("blocks", &CheckResult::blocks)
+      .def_readonly("blocks_with_words", &CheckResult::blocks_with_words)
+      .def_readonly("rapids", &CheckResult::rapids)
+      .def_readonly("lines", &CheckResult::lines)
+      .def_readonly("arcs", &CheckResult::arcs)
+      .def_readonly("dwells", &CheckResult::dwells)
+      .def_readonly("cutting_length_mm", &CheckResult::cutting_length_mm)
+      .def_readonly("rapid_length_mm", &CheckResult::rapid_length_mm)
+      .def_readonly("dwell_s", &CheckResult::dwell_s)
+      .def_readonly("cutting", &CheckResult::cutting)
+      .def_readonly("rapid", &CheckResult::rapid)
+      .def_readonly("tools", &CheckResult::tools);
+}
+
+void add_feed_and_time(py::module_& module) {
+  using camber::FeedResult, camber::TimeResult, camber::TimeUse;
+  auto feed = result_class<FeedResult>(module, "FeedResult")
+                  .def_readonly("time_s", &FeedResult::time_s)
+                  .def_readonly("cutting_time_s", &FeedResult::cutting_time_s)
+                  .def_readonly("blocks", &FeedResult::blocks);
+  add_table(feed, "points", &FeedResult::points);
+  py::class_<TimeUse>(module, "TimeUse")
+      .def_readonly("tool", &TimeUse::tool)
+      .def_readonly("tool_changes", &TimeUse::tool_changes)
+      .def_readonly("cutting_moves", &TimeUse::cutting_moves)
+      .def_readonly("cutting_s", &TimeUse::cutting_s)
+      .def_readonly("positioning_s", &TimeUse::positioning_s)
+      .def_readonly("spindle_s", &TimeUse::spindle_s)
+      .def_readonly("tool_change_s", &TimeUse::tool_change_s)
+      .def_readonly("m_code_s", &TimeUse::m_code_s)
+      .def_readonly("dwell_s", &TimeUse::dwell_s)
+      .def_readonly("index_s", &TimeUse::index_s)
+      .def_readonly("pallet_s", &TimeUse::pallet_s)
+      .def_readonly("total_s", &TimeUse::total_s)
+      .def_readonly("cutting_length_mm", &TimeUse::cutting_length_mm)
+      .def_readonly("positioning_length_mm", &TimeUse::positioning_length_mm)
+      .def_readonly("commanded_feed_mm_per_min", &TimeUse::commanded_feed_mm_per_min)
+      .def_readonly("average_feed_mm_per_min", &TimeUse::average_feed_mm_per_min)
+      .def_readonly("e", &TimeUse::e)
+      .def_readonly("k", &TimeUse::k);
+  result_class<TimeResult>(module, "TimeResult")
+      .def_readonly("all", &TimeResult::all)
+      .def_readonly("tools", &TimeResult::tools)
+      .def_readonly("sweep", &TimeResult::sweep)
+      .def_readonly("notes", &TimeResult::notes);
+}
+
+void add_fit(py::module_& module) {
+  using camber::FitFeedResult, camber::FitParameter;
+  py::class_<FitParameter>(module, "FitParameter")
+      .def_readonly("name", &FitParameter::name)
+      .def_readonly("value", &FitParameter::value)
+      .def_readonly("unit", &FitParameter::unit)
+      .def_readonly("std_error", &FitParameter::std_error)
+      .def_readonly("note", &FitParameter::note)
+      .def_readonly("written", &FitParameter::written);
+  result_class<FitFeedResult>(module, "FitFeedResult")
+      .def_readonly("machine", &FitFeedResult::machine)
+      .def_readonly("parameters", &FitFeedResult::parameters)
+      .def_readonly("converged", &FitFeedResult::converged)
+      .def_readonly("message", &FitFeedResult::message);
+}
+
+void add_predict_and_compensate(py::module_& module) {
+  using camber::CompensateResult, camber::CompensationRound, camber::ErrorFigures, camber::PredictResult;
+  py::class_<ErrorFigures>(module, "ErrorFigures")
+      .def_readonly("min", &ErrorFigures::min)
+      .def_readonly("max", &ErrorFigures::max)
+      .def_readonly("mean", &ErrorFigures::mean)
+      .def_readonly("rms", &ErrorFigures::rms)
+      .def_readonly("p95", &ErrorFigures::p95)
+      .def_readonly("area_mm2", &ErrorFigures::area_mm2);
+  auto predict = result_class<PredictResult>(module, "PredictResult")
+                     .def_readonly("machine_time_s", &PredictResult::machine_time_s)
+                     .def_readonly("cutting_time_s", &PredictResult::cutting_time_s)
+                     .def_readonly("force_max_N", &PredictResult::force_max_N)
+                     .def_readonly("chips_mm3", &PredictResult::chips_mm3)
+                     .def_readonly("stock_mm3", &PredictResult::stock_mm3)
+                     .def_readonly("form_error_um", &PredictResult::form_error_um)
+                     .def_readonly("deflection_um", &PredictResult::deflection_um)
+                     .def_readonly("contour_um", &PredictResult::contour_um)
+                     .def_readonly("unseen_mm2", &PredictResult::unseen_mm2)
+                     .def_readonly("doubts", &PredictResult::doubts);
+  add_table(predict, "forces", &PredictResult::forces);
+  add_table(predict, "form_error", &PredictResult::form_error);
+  add_table(predict, "feed", &PredictResult::feed);
+  py::class_<CompensationRound>(module, "CompensationRound")
+      .def_readonly("error_um", &CompensationRound::error_um)
+      .def_readonly("largest_shift_mm", &CompensationRound::largest_shift_mm);
+  auto compensate = result_class<CompensateResult>(module, "CompensateResult")
+                        .def_readonly("program", &CompensateResult::program)
+                        .def_readonly("better", &CompensateResult::better)
+                        .def_readonly("success", &CompensateResult::success)
+                        .def_readonly("headline", &CompensateResult::headline)
+                        .def_readonly("reasons", &CompensateResult::reasons)
+                        .def_readonly("before_um", &CompensateResult::before_um)
+                        .def_readonly("after_um", &CompensateResult::after_um)
+                        .def_readonly("rounds", &CompensateResult::rounds)
+                        .def_readonly("best_round", &CompensateResult::best_round)
+                        .def_readonly("stop", &CompensateResult::stop)
+                        .def_readonly("blocks_before", &CompensateResult::blocks_before)
+                        .def_readonly("blocks_after", &CompensateResult::blocks_after)
+                        .def_readonly("blocks_changed", &CompensateResult::blocks_changed)
+                        .def_readonly("max_shift_mm", &CompensateResult::max_shift_mm);
+  add_table(compensate, "surface", &CompensateResult::surface);
+}
+
+}  // namespace
+
+void add_results(py::module_& module) {
+  add_tables(module);
+  add_check(module);
+  add_feed_and_time(module);
+  add_fit(module);
+  add_predict_and_compensate(module);
+}
+
+}  // namespace camber_python

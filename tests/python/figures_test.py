@@ -1,0 +1,186 @@
+"""The Python module's figures against the command line's --json, over the samples: equal to the last digit.
+
+CAMBER names the executable; the module is found by PYTHONPATH.
+"""
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import camber
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SAMPLES = ROOT / "samples"
+CAMBER = os.environ["CAMBER"]
+PROGRAMS = sorted(SAMPLES.glob("*/*.nc"))
+MACHINES = [SAMPLES / "01-finishing/machine.toml", SAMPLES / "machines/yan_shirase.toml"]
+
+
+def command_line(*arguments, expected=(0,)):
+    """What --json holds."""
+    with tempfile.TemporaryDirectory() as folder:
+        figures = os.path.join(folder, "figures.json")
+        run = subprocess.run([CAMBER, "-q", *map(str, arguments), "--json", figures], capture_output=True, text=True)
+        if run.returncode == 1 and 1 in expected:
+            return None
+        assert run.returncode in expected, f"{arguments}: {run.returncode}\n{run.stderr}"
+        with open(figures, encoding="utf8") as file:
+            return json.load(file)
+
+
+def without_compute(figures):
+    return {key: value for key, value in figures.items() if key != "compute_s"}
+
+
+class Figures(unittest.TestCase):
+    maxDiff = 4000
+
+    def equal(self, result, from_command_line):
+        self.assertEqual(without_compute(result.figures), without_compute(from_command_line))
+
+    def test_there_are_samples(self):
+        self.assertGreaterEqual(len(PROGRAMS), 8)
+
+    def test_check_of_every_program(self):
+        for program in PROGRAMS:
+            with self.subTest(program=program):
+                result, expected = camber.check(program), command_line("check", program)
+                self.equal(result, expected)
+                self.assertEqual(result.cutting_length_mm, expected["cutting_length_mm"])
+                self.assertEqual(result.cutting.min_mm, expected["cutting_extents_mm"]["min"])
+                self.assertEqual([t.tool for t in result.tools], [t["tool"] for t in expected["tools"]])
+
+    def test_check_of_every_job(self):
+        for job in sorted(SAMPLES.glob("*/job.toml")):
+            program = job.parent / "finish.nc"
+            if not program.exists() or "guide" in str(job):
+                continue
+            with self.subTest(job=job):
+                self.equal(camber.check(program, job=job), command_line("check", program, "--job", job))
+
+    def test_feed_of_every_program_on_two_machines(self):
+        for program in PROGRAMS:
+            for machine in MACHINES:
+                with self.subTest(program=program, machine=machine):
+                    expected = command_line("feed", program, "--machine", machine, expected=(0, 1))
+                    if expected is None:  # the machine cannot run it: the module refuses it as well
+                        self.assertRaises(camber.InputError, camber.feed, program, machine)
+                        continue
+                    result = camber.feed(program, machine)
+                    self.equal(result, expected)
+                    self.assertEqual(result.time_s, expected["time_s"])
+                    self.assertEqual(result.blocks, expected["blocks"])
+
+    def test_feed_points_are_the_rows_of_feed_csv(self):
+        program, machine = SAMPLES / "01-finishing/finish.nc", MACHINES[0]
+        points = camber.feed(program, machine).points
+        with tempfile.TemporaryDirectory() as folder:
+            table = os.path.join(folder, "feed.csv")
+            subprocess.run([CAMBER, "-q", "feed", program, "--machine", machine, "-o", table], check=True)
+            with open(table, encoding="utf8") as file:
+                names = file.readline().strip().split(",")
+                rows = [[float(cell) for cell in line.split(",")] for line in file]
+        self.assertEqual(len(points), len(rows))
+        self.assertEqual(set(names), set(points.columns))
+        for index, name in enumerate(names):
+            half_step = 0.51e-3 if "mm_per_min" in name else 0.51e-5
+            column = getattr(points, name)
+            self.assertLess(max(abs(column[i] - row[index]) for i, row in enumerate(rows)), half_step, name)
+
+    def test_time_of_every_program_on_two_machines(self):
+        for program in PROGRAMS:
+            for machine in MACHINES:
+                with self.subTest(program=program, machine=machine):
+                    result = camber.time(program, machine)
+                    expected = command_line("time", program, "--machine", machine)
+                    self.equal(result, expected)
+                    self.assertEqual(result.all.total_s, expected["total_s"])
+                    self.assertEqual(result.all.e, expected["e"])
+                    self.assertEqual(result.all.k if math.isfinite(result.all.k) else None, expected["k"])
+
+    def test_time_with_a_sweep(self):
+        program, machine = SAMPLES / "02-cycle-time/highspeed.nc", MACHINES[0]
+        sweep = "axis.x.acceleration_mm_per_s2=500:2000:4"
+        result = camber.time(program, machine, sweep=[sweep])
+        expected = command_line("time", program, "--machine", machine, "--sweep", sweep)
+        self.equal(result, expected)
+        self.assertEqual([row.total_s for row in result.sweep], [row["total_s"] for row in expected["sweep"]])
+
+    def test_fit_feed(self):
+        folder = SAMPLES / "01-finishing"
+        program, trace, machine = (folder / name for name in ("trace_program.nc", "trace.csv", "machine.toml"))
+        with tempfile.TemporaryDirectory() as out:
+            fitted = os.path.join(out, "fitted.toml")
+            expected = command_line("fit-feed", "--program", program, "--trace", trace, "--machine", machine, "-o",
+                                    fitted)
+            with open(fitted, encoding="utf8") as file:
+                text = file.read()
+        result = camber.fit_feed([(program, trace)], machine)
+        self.equal(result, expected)
+        self.assertEqual([p.value for p in result.parameters], [p["value"] for p in expected["parameters"]])
+        self.assertEqual(result.machine.to_toml(), text)
+
+    def jobs(self, out):
+        """The jobs of all samples: as they lie there, or with what other commands make for them."""
+        for name in ("01-finishing", "05-freeform", "06-wall", "07-pocket-corner"):
+            yield SAMPLES / name / "job.toml"
+        guide = out / "guide"
+        shutil.copytree(SAMPLES / "09-guide", guide)
+        shutil.copy(MACHINES[0], guide / "machine.toml")
+        (guide / "material.toml").write_text("[material]\nktc_MPa = 1860.0\nkrc_MPa = 700.0\nkac_MPa = 0.0\n"
+                                             "kte_N_per_mm = 15.0\nkre_N_per_mm = 15.0\nkae_N_per_mm = 0.0\n")
+        yield guide / "job.toml"
+        raster = out / "raster"
+        shutil.copytree(SAMPLES / "10-raster", raster)
+        subprocess.run([CAMBER, "-q", "resegment", "--part", raster / "part.stl", "--job", raster / "job.toml",
+                        "--scallop-mm", "0.02", "--tolerance-mm", "0.01", "--feed-mm-per-min", "1200",
+                        "--spindle-rpm", "12000", "-o", raster / "raster.nc"], check=True)
+        yield raster / "job.toml"
+
+    def test_predict_of_every_job(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            for number, job in enumerate(self.jobs(out)):
+                with self.subTest(job=job):
+                    result = camber.predict(job)
+                    expected = command_line("predict", job, "-o", out / f"predicted{number}", expected=(0, 3))
+                    self.equal(result, expected)
+                    figures = result.form_error_um
+                    if "beyond_model" in expected:
+                        self.assertTrue(result.doubts)
+                        continue
+                    self.assertEqual({k: getattr(figures, k) for k in ("min", "max", "mean", "rms", "p95")},
+                                     {k: expected["form_error_um"][k] for k in ("min", "max", "mean", "rms", "p95")})
+                    self.assertEqual(result.force_max_N, expected["force_N"]["max"])
+                    self.assertEqual(result.chips_mm3, expected["removed_mm3"]["path"])
+                    self.assertEqual(result.form_error.error_um.max(), expected["form_error_um"]["max"])
+                    with open(out / f"predicted{number}" / "forces.csv", encoding="utf8") as file:
+                        names = file.readline().strip().split(",")
+                        self.assertEqual(len(result.forces), sum(1 for _ in file))
+                    self.assertEqual(set(names), set(result.forces.columns))
+                    with open(out / f"predicted{number}" / "form_error.csv", encoding="utf8") as file:
+                        names = file.readline().strip().split(",")
+                        self.assertEqual(len(result.form_error), sum(1 for _ in file))
+                    self.assertEqual(set(names), set(result.form_error.columns))
+
+    def test_compensate_of_two_jobs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            jobs = list(self.jobs(out))
+            for job in (jobs[2], jobs[4]):
+                with self.subTest(job=job):
+                    emitted = out / "emitted.nc"
+                    expected = command_line("compensate", job, "-o", emitted, "--keep-anyway", expected=(0, 3))
+                    result = camber.compensate(job, keep_anyway=True)
+                    self.equal(result, expected)
+                    self.assertEqual(result.program.encode(), emitted.read_bytes())
+                    self.assertEqual(result.after_um.p95, expected["after_um"]["p95"])
+                    self.assertEqual(result.success, expected["verdict"]["success"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,238 @@
+"""What the module promises beside its figures: shared memory, exceptions, the GIL, signals, a quick import."""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy
+
+import camber
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SAMPLE = ROOT / "samples/01-finishing"
+MACHINE = SAMPLE / "machine.toml"
+COARSE = camber.read_job(SAMPLE / "job.toml")
+COARSE.set_voxel_mm(0.2)  # takes a second
+
+
+def resident_bytes():
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE")
+
+
+def long_program(minutes):
+    """Straight cuts that take so long."""
+    return camber.program_from_text(
+        "long.nc", "G21 G90 G94\nS3000 M3\nG0 X0 Y0 Z5\n" +
+        "".join(f"G1 X{200 * (i % 2)} F200\n" for i in range(1, minutes + 1)) + "M30\n")
+
+
+class Arrays(unittest.TestCase):
+    def test_a_million_points_without_a_copy(self):
+        result = camber.feed(long_program(20), MACHINE)  # a point a millisecond
+        points = result.points
+        self.assertGreater(len(points), 1_000_000)
+        before = resident_bytes()
+        columns = {name: getattr(points, name) for name in points.columns}
+        self.assertLess(resident_bytes() - before, 1_000_000)  # a copy of one column takes 8 MB
+        row = 80
+        for name, column in columns.items():
+            self.assertEqual(column.shape, (len(points),), name)
+            self.assertEqual(column.strides, (row,), name)
+            self.assertFalse(column.flags.owndata, name)
+            self.assertFalse(column.flags.writeable, name)
+        addresses = sorted(c.__array_interface__["data"][0] for c in columns.values())
+        self.assertEqual([a - addresses[0] for a in addresses], list(range(0, row, 8)))
+        # The same memory each time.
+        self.assertTrue(numpy.shares_memory(columns["t_s"], result.points.t_s))
+
+    def test_an_array_keeps_its_result_alive(self):
+        t_s = camber.feed(SAMPLE / "finish.nc", MACHINE).points.t_s
+        again = camber.feed(SAMPLE / "finish.nc", MACHINE)
+        numpy.testing.assert_array_equal(t_s, again.points.t_s)
+
+    def test_no_points_give_empty_arrays(self):
+        self.assertEqual(camber.feed(SAMPLE / "finish.nc", MACHINE, points=False).points.t_s.shape, (0,))
+
+
+class Inputs(unittest.TestCase):
+    def test_a_wrong_program_raises_with_its_place(self):
+        program = camber.program_from_text("wrong.nc", "G21\nG90\nG1 X10 F0\n")
+        with self.assertRaises(camber.InputError) as raised:
+            camber.check(program)
+        problem = raised.exception
+        self.assertEqual((problem.file, problem.line, problem.column), ("wrong.nc", 3, 8))
+        self.assertEqual(problem.id, next(d for d in problem.diagnostics if d.severity == "error").id)
+        self.assertIn("F0", problem.message)
+        self.assertIn("wrong.nc:3:8: error: " + problem.message, str(problem))
+        self.assertIsInstance(problem, ValueError)
+
+    def test_a_missing_file_raises(self):
+        with self.assertRaises(camber.InputError) as raised:
+            camber.check("nowhere.nc")
+        self.assertEqual((raised.exception.file, raised.exception.id), ("nowhere.nc", "file-missing"))
+
+    def test_strict_raises_on_warnings(self):
+        program = camber.program_from_text("no_unit.nc", "G90 G94\nS1000 M3\nG1 X10 F100\nM30\n")
+        self.assertEqual([d.severity for d in camber.check(program).diagnostics][:1], ["warning"])
+        with self.assertRaises(camber.InputError):
+            camber.check(program, strict=True)
+
+    def test_a_machine_is_changed_by_key(self):
+        machine = camber.read_machine(MACHINE)
+        before = camber.time(SAMPLE / "finish.nc", machine).all.total_s
+        machine.set("axis.all.acceleration_mm_per_s2", 100)
+        self.assertGreater(camber.time(SAMPLE / "finish.nc", machine).all.total_s, before)
+        with self.assertRaises(ValueError):
+            machine.set("axis.q.acceleration_mm_per_s2", 100)
+
+    def test_an_unknown_dialect_raises(self):
+        with self.assertRaises(camber.InputError):
+            camber.read_program(SAMPLE / "finish.nc", dialect="abacus")
+
+
+class Calls(unittest.TestCase):
+    def test_progress_is_called_and_stops(self):
+        seen = []
+        camber.predict(COARSE, progress=lambda what, done: seen.append((what, done)))
+        self.assertIn("cutting", {what for what, _ in seen})
+        self.assertTrue(all(0 <= done <= 1 for _, done in seen))
+        with self.assertRaises(camber.Cancelled):
+            camber.predict(COARSE, progress=lambda what, done: done < 0.3)
+
+    def test_an_exception_of_progress_passes(self):
+        def progress(what, done):
+            raise KeyError(what)
+        with self.assertRaises(KeyError):
+            camber.predict(COARSE, progress=progress)
+
+    def test_other_threads_run_meanwhile(self):
+        done, ticks = threading.Event(), []
+
+        def tick():
+            while not done.wait(0.01):
+                ticks.append(time.monotonic())
+        ticking = threading.Thread(target=tick)
+        ticking.start()
+        begin = time.monotonic()
+        camber.predict(COARSE)
+        took = time.monotonic() - begin
+        done.set()
+        ticking.join()
+        gaps = [b - a for a, b in zip(ticks, ticks[1:])]
+        self.assertGreater(len(ticks), 5 * took)  # a call that keeps the GIL leaves none
+        self.assertLess(max(gaps), max(0.5, took / 4))
+
+    def test_two_calls_at_once_and_one_is_stopped(self):
+        results = {}
+
+        def predict():
+            results["whole"] = camber.predict(COARSE).form_error_um.p95
+        other = threading.Thread(target=predict)
+        other.start()
+        with self.assertRaises(camber.Cancelled):
+            camber.predict(COARSE, progress=lambda what, done: done < 0.2)
+        other.join()
+        self.assertEqual(results["whole"], camber.predict(COARSE).form_error_um.p95)
+
+    def test_the_number_of_threads_changes_nothing(self):
+        job = COARSE
+        self.assertEqual(camber.predict(job, threads=1).figures["form_error_um"],
+                         camber.predict(job, threads=2).figures["form_error_um"])
+
+
+class Signals(unittest.TestCase):
+    """Ctrl-C is honoured within half a second, wherever a call is."""
+    LIMIT_S = 0.5
+
+    def interrupted(self, call, after_s):
+        """Seconds from SIGINT to KeyboardInterrupt; None where the call was done before."""
+        sent = []
+
+        def send():
+            sent.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
+        timer = threading.Timer(after_s, send)
+        timer.start()
+        try:
+            call()
+            timer.cancel()
+            timer.join()
+            if sent:
+                time.sleep(0.01)  # the signal comes now
+            return None
+        except KeyboardInterrupt:
+            return time.monotonic() - sent[0]
+
+    def everywhere(self, name, call, take_s):
+        latencies = []
+        for step in range(1, 6):
+            try:
+                latency = self.interrupted(call, take_s * step / 6)
+            except KeyboardInterrupt:
+                latency = None
+            if latency is not None:
+                latencies.append(latency)
+        self.assertGreaterEqual(len(latencies), 3, name)
+        print(f"{name}: {len(latencies)} interrupts, at most {1000 * max(latencies):.0f} ms", file=sys.stderr)
+        self.assertLess(max(latencies), self.LIMIT_S, name)
+
+    def timed(self, call):
+        begin = time.monotonic()
+        call()
+        return time.monotonic() - begin
+
+    def test_predict(self):
+        call = lambda: camber.predict(SAMPLE / "job.toml")  # noqa: E731
+        self.everywhere("predict", call, self.timed(call))
+
+    def test_compensate(self):
+        self.everywhere("compensate", lambda: camber.compensate(COARSE), 3)
+
+    def test_fit_feed(self):
+        call = lambda: camber.fit_feed([(SAMPLE / "trace_program.nc", SAMPLE / "trace.csv")], MACHINE)  # noqa: E731
+        self.everywhere("fit_feed", call, self.timed(call))
+
+    def test_feed(self):
+        program = long_program(40)
+        call = lambda: camber.feed(program, MACHINE, points=False)  # noqa: E731
+        self.everywhere("feed", call, self.timed(call))
+
+    def test_the_module_works_after_an_interrupt(self):
+        before = camber.predict(COARSE).json
+        self.interrupted(lambda: camber.predict(COARSE), 0.3)
+        after = camber.predict(COARSE).json
+        strip = lambda text: [line for line in text.splitlines() if "compute_s" not in line]  # noqa: E731
+        self.assertEqual(strip(before), strip(after))
+
+
+class Import(unittest.TestCase):
+    def test_it_takes_less_than_300_ms(self):
+        code = "import time; a = time.perf_counter(); import camber; print(time.perf_counter() - a)"
+        times = [float(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True).stdout)
+                 for _ in range(5)]
+        self.assertLess(min(times), 0.3)
+        print(f"import: {1000 * min(times):.0f} ms", file=sys.stderr)
+
+
+class Example(unittest.TestCase):
+    def test_the_plot_is_drawn(self):
+        try:
+            import matplotlib  # noqa: F401
+        except ImportError:
+            self.skipTest("no matplotlib")
+        with tempfile.TemporaryDirectory() as folder:
+            picture = os.path.join(folder, "error.png")
+            subprocess.run([sys.executable, ROOT / "examples/python/error_along_the_path.py", SAMPLE / "job.toml",
+                            picture], check=True)
+            with open(picture, "rb") as file:
+                self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
