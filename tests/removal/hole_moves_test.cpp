@@ -88,7 +88,7 @@ TEST(HoleMoves, StraightFeedsOfADrillAreDrilledButThoseOfAMillAreMilled) {
 
 TEST(HoleMoves, OperationsLeaveCyclesOut) {
   const Holes h = holes_of(kHead + "G81 X1 Y2 Z-7 R1 F300\nG80\nT2 M6\nS3000 M3\nG81 X4 Y2 Z-7 R1 F300\nG80\nM30\n",
-                           {.tools = {2}, .blocks = {}});
+                           {.tools = {2}, .blocks = {}, .comments = {}});
   EXPECT_EQ(h.count(HoleMove::drilled), 1u);
   ASSERT_EQ(h.path.runs.size(), 1u);
   EXPECT_EQ(h.path.runs[0].tool, 2);

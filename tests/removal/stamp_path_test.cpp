@@ -45,10 +45,10 @@ TEST(StampPath, SetsAStampEveryToothPassing) {
 }
 
 TEST(StampPath, TakesOnlyTheOperationsThatTheJobNames) {
-  const auto [moves, path] = stamps_of(kTwoTools, {.tools = {2}, .blocks = {}});
+  const auto [moves, path] = stamps_of(kTwoTools, {.tools = {2}, .blocks = {}, .comments = {}});
   ASSERT_EQ(path.runs.size(), 1u);
   EXPECT_EQ(path.runs[0].tool, 2);
-  const auto [moves2, path2] = stamps_of(kTwoTools, {.tools = {}, .blocks = {{1, 5}}});
+  const auto [moves2, path2] = stamps_of(kTwoTools, {.tools = {}, .blocks = {{1, 5}}, .comments = {}});
   ASSERT_EQ(path2.runs.size(), 1u);
   EXPECT_EQ(path2.runs[0].tool, 1);
 }
