@@ -71,7 +71,7 @@ class StaticCut {
   removal::DeflectionTable* deflections_ = nullptr;
   std::vector<removal::DeflectedChipSample> read_;
   std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this passing and of the one before, in turns
-  std::vector<float> swing_;  ///< the bend a few readings ago
+  std::vector<float> swing_;                               ///< the bend a few readings ago
 };
 
 }  // namespace camber::deflection

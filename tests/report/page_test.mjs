@@ -330,7 +330,7 @@ const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', .
 try {
   const context = await browser.newContext({ offline: true, viewport: { width: 900, height: 700 }, javaScriptEnabled: check !== 'without_script' });
   const page = await context.newPage();
-  page.setDefaultTimeout(20000);
+  page.setDefaultTimeout(60000);
   page.on('console', m => { if (m.type() === 'error') problems.push(`console: ${m.text()}`); });
   page.on('pageerror', e => problems.push(`error on the page: ${e.message}`));
   page.on('request', r => { if (!/^(file|blob|data):/.test(r.url())) problems.push(`asks for ${r.url()}`); });

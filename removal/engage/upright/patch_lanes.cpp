@@ -39,8 +39,8 @@ PatchLanes::PatchLanes(const EnvelopeGrid& e, const std::vector<double>& node_he
   }
   // What fills the last vector moves into nothing.
   while (normal_x_.size() % kVector != 0) {
-    for (auto* v : {&centre_x_, &centre_y_, &centre_z_, &bottom_, &reach_, &normal_x_, &normal_y_, &normal_z_, &lateral_,
-                    &curvature_})
+    for (auto* v : {&centre_x_, &centre_y_, &centre_z_, &bottom_, &reach_, &normal_x_, &normal_y_, &normal_z_,
+                    &lateral_, &curvature_})
       v->push_back(0);
     normal_spread_.push_back(-1e9f);
   }
