@@ -14,7 +14,10 @@ target_link_libraries(camber_library PRIVATE OpenVDB::openvdb TBB::tbb Ceres::ce
 if(BUILD_SHARED_LIBS)
   # Only the public names are shown, and those of OpenVDB's templates, whose static members libopenvdb shares.
   target_link_options(camber_library PRIVATE -fuse-ld=lld
-    -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/camber.map $<$<NOT:$<BOOL:${CAMBER_SANITIZE}>>:-Wl,-z,defs>)
+    -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/camber.map)
+  if(NOT CAMBER_SANITIZE) # the sanitizers' functions are in the executable
+    target_link_options(camber_library PRIVATE -Wl,-z,defs)
+  endif()
   set_target_properties(camber_library PROPERTIES LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/camber.map)
 endif()
 if(CAMBER_SANITIZE)
