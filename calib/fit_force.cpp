@@ -234,7 +234,8 @@ void report_run_out(const ForceProblem& problem, const Solution& s, const std::o
         const Eigen::MatrixXd block = cov->block(place.run_out, place.run_out, place.run_out_size, place.run_out_size);
         const Vec2 along = offset.normalized(), across(-along.y(), along.x());
         const auto variance = [&](const Vec2& d) {
-          return d.head(place.run_out_size).dot(block * d.head(place.run_out_size));
+          const Eigen::VectorXd change = d.head(place.run_out_size);
+          return change.dot(block * change);
         };
         fit.offset_std_error_mm = std::sqrt(std::max(0.0, variance(along)));
         offset_um.std_error = 1000 * fit.offset_std_error_mm;
