@@ -1,9 +1,9 @@
 #include "camber/check.h"
 
+#include "api/commands/check.h"
 #include "api/job.h"
 #include "api/program.h"
 #include "api/run.h"
-#include "api/work/check.h"
 
 namespace camber {
 namespace {

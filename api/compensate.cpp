@@ -1,5 +1,5 @@
 // The namespace compensate comes before the function of that name: clang takes it in no other order.
-#include "api/work/compensate.h"
+#include "api/commands/compensate.h"
 
 #include "camber/compensate.h"
 

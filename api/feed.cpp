@@ -1,10 +1,10 @@
 #include "camber/feed.h"
 
+#include "api/commands/feed.h"
 #include "api/feed_points.h"
 #include "api/job.h"
 #include "api/program.h"
 #include "api/run.h"
-#include "api/work/feed.h"
 #include "base/units.h"
 
 namespace camber {

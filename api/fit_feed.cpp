@@ -1,9 +1,9 @@
 #include "camber/fit_feed.h"
 
+#include "api/commands/fit_feed.h"
 #include "api/job.h"
 #include "api/program.h"
 #include "api/run.h"
-#include "api/work/fit_feed.h"
 
 namespace camber {
 namespace {

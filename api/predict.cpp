@@ -4,11 +4,11 @@
 #include <limits>
 #include <optional>
 
+#include "api/commands/predict.h"
 #include "api/error_figures.h"
 #include "api/feed_points.h"
 #include "api/job.h"
 #include "api/run.h"
-#include "api/work/predict.h"
 #include "base/output_file.h"
 #include "report/forces_csv.h"
 #include "report/report_data.h"

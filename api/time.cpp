@@ -1,9 +1,9 @@
 #include "camber/time.h"
 
+#include "api/commands/time.h"
 #include "api/job.h"
 #include "api/program.h"
 #include "api/run.h"
-#include "api/work/time.h"
 #include "base/units.h"
 
 namespace camber {

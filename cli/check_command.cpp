@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "api/work/check.h"
+#include "api/commands/check.h"
 #include "base/numbers.h"
 #include "base/output_file.h"
 #include "cli/check_page.h"

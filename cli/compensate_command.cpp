@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "api/work/compensate.h"
+#include "api/commands/compensate.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"

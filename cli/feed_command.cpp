@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "api/work/feed.h"
+#include "api/commands/feed.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "api/work/fit_feed.h"
+#include "api/commands/fit_feed.h"
 #include "base/output_file.h"
 #include "base/units.h"
 #include "calib/block_time.h"

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "api/work/predict.h"
+#include "api/commands/predict.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"

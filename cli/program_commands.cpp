@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "api/work/time.h"
+#include "api/commands/time.h"
 #include "base/numbers.h"
 #include "cli/check_command.h"
 #include "cli/command_line.h"

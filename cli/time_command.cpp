@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "api/work/time.h"
+#include "api/commands/time.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"

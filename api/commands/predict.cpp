@@ -1,4 +1,4 @@
-#include "api/work/predict.h"
+#include "api/commands/predict.h"
 
 #include <filesystem>
 

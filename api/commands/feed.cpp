@@ -1,4 +1,4 @@
-#include "api/work/feed.h"
+#include "api/commands/feed.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "api/work/compensate.h"
+#include "api/commands/compensate.h"
 
 #include <optional>
 

@@ -1,4 +1,4 @@
-#include "api/work/fit_feed.h"
+#include "api/commands/fit_feed.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "api/work/time.h"
+#include "api/commands/time.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "api/work/time_report.h"
+#include "api/commands/time_report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "api/work/check.h"
+#include "api/commands/check.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "api/work/time_report.h"
+#include "api/commands/time_report.h"
 #include "base/diagnostics.h"
 #include "machine/machine.h"
 #include "nc/interpreter.h"
