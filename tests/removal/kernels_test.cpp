@@ -86,6 +86,32 @@ TEST(Kernels, LinesAreCutToTheDistanceOfTheCutter) {
   }
 }
 
+TEST(Kernels, ADeflectedCutterCutsWhereItIs) {
+  const CutterShape shape = bull();
+  for (const double away_mm : {-0.02, 0.02}) {  // from the line's flank, and into it
+    Bend bend(4, 60);
+    for (std::size_t i = 0; i < bend.row.size(); ++i) bend.row[i] = i % 2 == 0 ? static_cast<float>(away_mm) : 0.0f;
+    std::fill(bend.outward.begin(), bend.outward.end(), static_cast<float>(std::max(0.0, away_mm)));
+    const LineDeflection lean{
+        {bend.row.data(), nullptr, 4, 60, 1.5f}, 0.02f, bend.outward.data(), StampDeflection::kSectors, 0.1f, 19.1f};
+    for (const Kernels* kernel : {&kBaseKernels, &kernels()}) {
+      Line line;
+      LineCut c = line.cut(4.7f);
+      c.shrink = 0;
+      kernel->cut_line_deflected(c, lean);
+      int near = 0;
+      for (int j = 0; j < kColumns; ++j)
+        for (int k = 0; k < kColumns; ++k) {
+          const double d = -shape.distance_mm({4.7 - away_mm, -0.35 + 0.1 * j, -0.3 + 0.1 * k});
+          if (std::abs(d) > 0.15) continue;  // cells with a surface in them
+          ++near;
+          ASSERT_NEAR(line.distance[static_cast<std::size_t>(j * kColumns + k)], d, 2e-4) << j << ' ' << k;
+        }
+      EXPECT_GT(near, 30);
+    }
+  }
+}
+
 TEST(Kernels, WideAndNarrowVectorsCutTheSameBits) {
   if (!has_wide_vectors()) GTEST_SKIP() << "no AVX2 here";
   Bend deflection(4, 60);
