@@ -2,7 +2,10 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 
+#include "compensate/expected.h"
+#include "compensate/hidden_rows.h"
 #include "removal/cutter.h"
 
 namespace camber::compensate {
@@ -35,7 +38,8 @@ void mark_opposed(Observed& observed) {
 std::vector<Observation> Observed::of_path() const {
   std::vector<Observation> out;
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (compensated[i]) out.push_back(points[i]);
+    if (compensated[i] && !points[i].above) out.push_back(points[i]);
+  out.insert(out.end(), hidden.begin(), hidden.end());
   return out;
 }
 
@@ -53,40 +57,105 @@ std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& give
   return out;
 }
 
+double foreign_fraction(const Observed& observed) {
+  double foreign = 0, area = 0;
+  for (std::size_t i = 0; i < observed.points.size(); ++i) {
+    if (!observed.judged(i)) continue;
+    area += observed.points[i].area_mm2;
+    if (observed.points[i].foreign) foreign += observed.points[i].area_mm2;
+  }
+  return area > 0 ? foreign / area : 0;
+}
+
+namespace {
+
+constexpr double kHidden_mm = 0.0005;  // above the surface: the owner did not cut there
+
+/// Surface points as places of one path.
+class Places {
+ public:
+  Places(const ShiftPath& path, const simulate::SimulatedProgram& given, const simulate::SimulatedProgram& emitted,
+         const MoveMap& map, std::span<const simulate::PathShare> own_target)
+      : path_(path), given_(given), emitted_(emitted), map_(map), own_target_(own_target) {}
+
+  /// Nothing where the point's stamp is of no move that may be shifted.
+  std::optional<ShiftPath::PointInterval> machined(const removal::SurfacePoint& p) const {
+    if (!was_cut(p)) return std::nullopt;
+    const auto& stamp = emitted_.path.stamps[static_cast<std::size_t>(p.machined_stamp)];
+    return find(map_.given(stamp.move, stamp.share));
+  }
+  std::optional<ShiftPath::PointInterval> owner(const removal::SurfacePoint& p) const {
+    if (p.target_stamp < 0 || static_cast<std::size_t>(p.target_stamp) >= own_target_.size()) return std::nullopt;
+    const auto& stamp = own_target_[static_cast<std::size_t>(p.target_stamp)];
+    return find({stamp.move, static_cast<double>(stamp.share)});
+  }
+  bool was_cut(const removal::SurfacePoint& p) const {
+    return p.machined_stamp >= 0 && static_cast<std::size_t>(p.machined_stamp) < emitted_.path.stamps.size();
+  }
+
+ private:
+  std::optional<ShiftPath::PointInterval> find(const MoveMap::MovePlace& at) const {
+    if (!path_.contains(at.move) || !given_.moves.moves[at.move].editable) return std::nullopt;
+    return path_.find(at.move, at.share);
+  }
+
+  const ShiftPath& path_;
+  const simulate::SimulatedProgram &given_, &emitted_;
+  const MoveMap& map_;
+  std::span<const simulate::PathShare> own_target_;
+};
+
+}  // namespace
+
+std::optional<ShiftPath::PointInterval> owner_place(const ShiftPath& path, const simulate::Setup& given,
+                                                    const removal::SurfacePoint& point) {
+  const MoveMap same;
+  return Places(path, given.program, given.program, same, given.own_stamps()).owner(point);
+}
+
+void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPath::PointInterval& place,
+               const ShiftPath& path, const machine::Job& job, const nc::Interpretation& given) {
+  o.place = place;
+  const ControlPoint &from = path.points()[place.lower], &to = path.points()[place.lower + 1];
+  const auto tool = job.tools.find(given.state_of(given.moves[to.move]).tool);
+  const Vec3 tip = from.place_mm + place.upper_fraction * (to.place_mm - from.place_mm);
+  const double corner_mm = tool != job.tools.end() ? removal::shape_of(tool->second).corner_radius_mm : 0;
+  o.from_centre_mm = point.place_mm - tip - corner_mm * Vec3::UnitZ();
+  o.at_tip = tool != job.tools.end() && round_tip(tool->second) && o.normal.z() > kTipNormal;
+}
+
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const MoveMap& map,
-                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathShare> own_target) {
+                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathShare> own_target,
+                 std::span<const Vec3> bending) {
+  const Places places(path, given, emitted, map, own_target);
+  const Rows rows(path);
   Observed out;
   out.points.resize(surface.size());
   out.compensated.assign(surface.size(), false);
-  const auto known = [](std::int32_t id, const simulate::SimulatedProgram& p) {
-    return id >= 0 && static_cast<std::size_t>(id) < p.path.stamps.size();
-  };
+  const std::vector<Vec3> offsets =
+      bending.empty() ? std::vector<Vec3>() : path_offsets(path, given.moves, emitted, map);
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const auto& p = surface[i];
     Observation& o = out.points[i];
     o.normal = p.normal;
     o.error_mm = judged_mm(p, job.compensation.reference);
     o.area_mm2 = p.area_mm2;
-    MoveMap::MovePlace at;
-    if (known(p.machined_stamp, emitted)) {
-      const auto& stamp = emitted.path.stamps[static_cast<std::size_t>(p.machined_stamp)];
-      at = map.given(stamp.move, stamp.share);
-    } else if (p.target_stamp >= 0 && static_cast<std::size_t>(p.target_stamp) < own_target.size()) {
-      const auto& stamp = own_target[static_cast<std::size_t>(p.target_stamp)];
-      at = {stamp.move, static_cast<double>(stamp.share)};
-    } else {
-      continue;
-    }
-    if (!path.contains(at.move) || !given.moves.moves[at.move].editable) continue;
+    const auto machined = places.machined(p), owner = places.owner(p);
+    o.foreign = owner && machined && rows.differ(*owner, *machined);
+    const bool owned = owner && (!places.was_cut(p) || (o.foreign && o.error_mm > 0));
+    if (!owned && !machined) continue;
     out.compensated[i] = true;
-    o.place = path.find(at.move, at.share);
-    const auto tool = job.tools.find(given.moves.state_of(given.moves.moves[at.move]).tool);
-    const ControlPoint &from = path.points()[o.place.lower], &to = path.points()[o.place.lower + 1];
-    const Vec3 tip = from.place_mm + o.place.upper_fraction * (to.place_mm - from.place_mm);
-    const double corner_mm = tool != job.tools.end() ? removal::shape_of(tool->second).corner_radius_mm : 0;
-    o.from_centre_mm = p.place_mm - tip - corner_mm * Vec3::UnitZ();
-    o.at_tip = tool != job.tools.end() && round_tip(tool->second) && p.normal.z() > kTipNormal;
+    o.own = !owned || !o.foreign;
+    set_place(o, p, owned ? *owner : *machined, path, job, given.moves);
+    if (!o.foreign || bending.empty()) continue;
+    Observation above = o;
+    above.own = false;
+    above.error_mm = expected_error_mm(job, p, *owner, offsets, bending);
+    if (above.error_mm <= o.error_mm + kHidden_mm) continue;
+    o.above = !o.own;
+    set_place(above, p, *owner, path, job, given.moves);
+    out.hidden.push_back(above);
   }
   mark_opposed(out);
   return out;

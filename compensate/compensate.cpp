@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "compensate/choice.h"
+#include "compensate/expected.h"
 #include "compensate/fit_shift.h"
 #include "compensate/guard.h"
 #include "compensate/not_emitted.h"
@@ -44,6 +45,7 @@ constexpr double kMinGain = 0.03;    // a round that lowers the rms by less has 
 constexpr int kPatience = 2;         // rounds without that gain before it counts
 constexpr double kWorse = 1.02;      // a round whose rms is over the best one's by this has over-corrected
 constexpr double kShorter = 0.5;     // then the next step starts at the best one's shifts, shorter
+constexpr double kForeign = 0.2;     // of the area, cut by another row than it should be: expected_errors are used
 constexpr int kGuardRounds = 5;      // beyond max_rounds, to stay out of the part
 constexpr int kStiffenings = 12;     // of the path where its angles grow by more than the bound
 constexpr double kStiffer = 2.5;
@@ -169,6 +171,13 @@ class Loop {
     given->observed = trials_.observe(*path_, nullptr, given->surface);
     reach_ = reach_of(*path_, program_.moves, given->observed, given->surface, setup_.own_stamps());
     given->observed.reach = reach_;
+    if (foreign_fraction(given->observed) > kForeign) {
+      trials_.bending = nominal_bending(job_, setup_, progress("nominal chips"));
+      scale_bending(*path_, job_, setup_, given->observed, given->surface, trials_.bending);
+      given->observed = trials_.observe(*path_, nullptr, given->surface);
+      given->observed.reach = reach_;
+      expected_ = expected_errors(*path_, job_, setup_, given->observed, given->surface, trials_.bending);
+    }
     last_ = best_ = allowed_ = given;
     first_observed_ = given->observed;
     out.reference = job_.compensation.reference;
@@ -186,17 +195,16 @@ class Loop {
   }
 
   void converge(CompensationResult& out) {
-    double share = 1;
     int without_gain = 0;
     while (!done(out, without_gain)) {
-      step(out, share, nullptr);
+      step(out, share_, nullptr);
       const double best = out.rounds[out.best].error_um.rms, now = out.rounds.back().error_um.rms;
       without_gain = now < (1 - kMinGain) * best ? 0 : without_gain + 1;
       if (now < best) {
         take(out);
       } else if (now > kWorse * best) {
         last_ = best_;
-        share *= kShorter;
+        share_ *= kShorter;
       }
     }
   }
@@ -213,7 +221,7 @@ class Loop {
     double deepest_um = out.rounds[out.best].deepest_um;
     for (int i = 0; i < kGuardRounds && deepest_um > depth_limit_um_; ++i) {
       guard.learn(last_->observed, deepest_um / 1000);
-      step(out, 1, &guard);
+      step(out, share_, &guard);
       deepest_um = out.rounds.back().deepest_um;
     }
   }
@@ -230,7 +238,9 @@ class Loop {
   void step(CompensationResult& out, double share, const Guard* guard) {
     const std::shared_ptr<const Trial> from_trial = last_;
     const Observed& before = from_trial->observed;
-    std::vector<Observation> observations = wanted_of(before, guard);
+    const bool by_expectation = !expected_.empty() && !guard;
+    std::vector<Observation> observations = by_expectation ? expected_ : wanted_of(before, guard);
+    expected_.clear();
     Round round;
     round.gain = sensitivity_->mean();
     round.step_fraction = share;
@@ -267,7 +277,8 @@ class Loop {
     next.observed = trials_.observe(*path_, next.emitted.get(), next.surface);
     next.observed.reach = reach_;
     last_ = made;
-    sensitivity_->learn(*path_, from, before, last_->observed);
+    // What rows do that come out of the shadow of others says nothing of their gain.
+    if (!by_expectation) sensitivity_->learn(*path_, from, before, last_->observed);
     round.overcorrected_fraction = overcorrected_fraction(before, last_->observed, tolerance_mm());
     record(out, round);
   }
@@ -435,6 +446,8 @@ class Loop {
   std::optional<Sensitivity> sensitivity_;
   std::vector<double> stiffness_;  ///< of the path, one a point
   std::vector<RowLink> links_;
+  double share_ = 1;                   ///< of a step that is taken; less after over-corrections
+  std::vector<Observation> expected_;  ///< for the first round; empty: as observed
   std::optional<Splits> splits_;
   bool split_once_ = false;
   std::vector<double> link_stiffness_;                  ///< one a link of the path that the splits leave

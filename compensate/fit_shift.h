@@ -20,6 +20,9 @@ struct Observation {
   double weight = 1;                   ///< of its area in the fit
   Vec3 from_centre_mm = Vec3::Zero();  ///< from the centre of the cutter's corner (its tip, if that is sharp)
   bool at_tip = false;                 ///< on the axis of a round tip, where the edges hardly move
+  bool own = true;                     ///< the place is the one that cut it
+  bool foreign = false;                ///< made by one row on the nominal path, cut by another
+  bool above = false;                  ///< the place passes above the surface: see Observed::hidden
   bool opposed = false;                ///< made at the same place as surface that faces the other way
 };
 

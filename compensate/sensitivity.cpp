@@ -46,6 +46,7 @@ void Sensitivity::learn(const ShiftPath& path, std::span<const Vec3> shifts_befo
   for (std::size_t i = 0; i < now.points.size(); ++i) {
     if (!now.compensated[i] || !before.compensated[i]) continue;
     const Observation& o = now.points[i];
+    if (!o.own || !before.points[i].own) continue;  // a row above the surface moves without changing it
     const std::size_t lower = o.place.lower;
     const double v = o.place.upper_fraction, u = 1 - v;
     const Vec3 old = u * shifts_before[lower] + v * shifts_before[lower + 1];

@@ -63,7 +63,8 @@ class TrialRunner {
   Observed observe(const ShiftPath& path, const Emitted* emitted,
                    const std::vector<removal::SurfacePoint>& surface) const;
 
-  std::string header{};  ///< comment lines for the emitted program
+  std::vector<Vec3> bending{};  ///< nominal_bending, where rows are hidden; else empty
+  std::string header{};         ///< comment lines for the emitted program
 
  private:
   const machine::Job& job_;

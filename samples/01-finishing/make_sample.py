@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes finish.nc and part.stl of this sample. Same files every time; needs nothing but Python 3.
+"""Makes finish.nc, to_and_fro.nc and part.stl of this sample. Same files every time; needs nothing but Python 3.
 
 The part is a block of 10 x 7 mm. Its top is made of two curved faces that meet in a sharp ridge, a "character
 line" as car bodies have it. With d = y - ridge_y(x), mm:
@@ -198,6 +198,34 @@ def program():
     return "\n".join(lines) + "\n"
 
 
+def raster_program():
+    """The same rows to and fro, joined by lines, with corners that the control rounds by 0.01 mm."""
+    lines = [
+        "%",
+        "O0102 (CAMBER SAMPLE 01 - FINISHING, TO AND FRO)",
+        "G21",
+        "G0 G17 G40 G49 G80 G90 G64 P0.01",
+        "T1 M6",
+        "G0 G90 G54 X%s Y%s S%d M3" % (number(ROW_FROM_X), number(FIRST_ROW_Y), SPINDLE),
+        "G43 H1 Z%s" % number(CLEARANCE_Z),
+        "M8",
+    ]
+    rows = int(round((LAST_ROW_Y - FIRST_ROW_Y) / ROW_STEP)) + 1
+    for row in range(rows):
+        y = FIRST_ROW_Y + row * ROW_STEP
+        points = row_points(y)[::-1 if row % 2 else 1]
+        start = number(points[0][1])
+        if row:
+            lines.append("Y%s Z%s" % (number(y), start))
+        else:
+            lines += ["G0 Z%s" % number(points[0][1] + 1), "G1 Z%s F%d" % (start, PLUNGE_FEED)]
+        for i, (x, z) in enumerate(points[1:]):
+            first = row == 0 and i == 0
+            lines.append("X%s Z%s%s" % (number(x), number(z), " F%d" % FEED if first else ""))
+    lines += ["G0 Z%s" % number(CLEARANCE_Z), "M9", "M5", "G91 G28 Z0.", "G90", "M30", "%"]
+    return "\n".join(lines) + "\n"
+
+
 # ---- the part ----------------------------------------------------------------------------------------------------
 
 def part_triangles():
@@ -249,6 +277,8 @@ def main():
     here = os.path.dirname(os.path.abspath(__file__))
     with open(os.path.join(here, "finish.nc"), "w", newline="\n") as f:
         f.write(program())
+    with open(os.path.join(here, "to_and_fro.nc"), "w", newline="\n") as f:
+        f.write(raster_program())
     with open(os.path.join(here, "part.stl"), "wb") as f:
         f.write(stl_bytes(part_triangles()))
 

@@ -1,0 +1,39 @@
+#pragma once
+// The error that each place of a path would leave, if every other place cut what it should.
+#include <functional>
+#include <vector>
+
+#include "compensate/attribution.h"
+#include "simulate/setup.h"
+
+namespace camber::compensate {
+
+/// Bending at the contact of every stamp of the nominal path under the force of the nominal chip, mm: one rigid
+/// prediction of that path. Along the tool's axis none.
+std::vector<Vec3> nominal_bending(const machine::Job& job, const simulate::Setup& given,
+                                  const std::function<void(double)>& progress);
+
+/// The error that `owner`, the place that makes the point on the nominal path, would leave there, mm:
+///
+///   e = n . o + n . d
+///
+/// o: how far the axes are off the programmed path (path_offsets); d: nominal_bending. With the right shift the cutter
+/// is where it was programmed and takes the nominal chip, so this is what that shift takes away, also of a row of which
+/// the surface shows nothing because its neighbour cuts deeper.
+double expected_error_mm(const machine::Job& job, const removal::SurfacePoint& point,
+                         const ShiftPath::PointInterval& owner, std::span<const Vec3> offsets,
+                         std::span<const Vec3> bending);
+
+/// The surface is made by the edge that cuts deepest of several that pass a point, and so lies deeper than the bending
+/// at the contact says. Scales `bending` by the least squares over the points that their own row has cut in the program
+/// as given, and returns the scale (0 to 1).
+double scale_bending(const ShiftPath& path, const machine::Job& job, const simulate::Setup& given,
+                     const Observed& observed, const std::vector<removal::SurfacePoint>& surface,
+                     std::vector<Vec3>& bending);
+
+/// expected_error_mm of the program as given at every point of the surface that has an owner.
+std::vector<Observation> expected_errors(const ShiftPath& path, const machine::Job& job, const simulate::Setup& given,
+                                         const Observed& observed, const std::vector<removal::SurfacePoint>& surface,
+                                         std::span<const Vec3> bending);
+
+}  // namespace camber::compensate
