@@ -45,7 +45,9 @@ CompensateResult result_of(const CompensationResult& c, const machine::Compensat
                        .blocks_changed = c.blocks_changed,
                        .max_shift_mm = c.max_shift_mm,
                        .surface = points_of(c)};
-  for (const auto& round : c.rounds) out.rounds.push_back({api::figures_of(round.error_um), round.largest_shift_mm});
+  for (const auto& round : c.rounds)
+    out.rounds.push_back({api::figures_of(round.error_um), round.largest_shift_mm, round.machine_time_s});
+  for (const auto& point : c.time_points) out.time_points.push_back({point.allowed_percent, point.round});
   return out;
 }
 
@@ -61,6 +63,7 @@ CompensateResult v0::compensate(const Job& job, const CompensateOptions& options
                                          .measured = options.measured,
                                          .measured_program = options.measured_program,
                                          .check_voxels_mm = options.check_voxels_mm,
+                                         .time_budget_percent = options.time_budget_percent,
                                          .keep_anyway = options.keep_anyway,
                                          .header = options.header,
                                          .header_hash = options.header_hash,

@@ -58,6 +58,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
       .measured = arguments.measured,
       .measured_program = arguments.measured_program,
       .check_voxels_mm = arguments.check_voxels_mm,
+      .time_budget_percent = arguments.time_budget_percent,
       .keep_anyway = arguments.keep_anyway,
       .header = arguments.header,
       .header_hash = arguments.header_hash,

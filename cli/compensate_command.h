@@ -17,6 +17,7 @@ struct CompensateArguments {
   std::vector<std::string> uncertainty;  ///< files or percentages
   std::string measured, measured_program;
   std::vector<double> check_voxels_mm;
+  std::optional<double> time_budget_percent{};
   bool keep_anyway = false;  ///< write the program even where it is no better than the given one
 };
 

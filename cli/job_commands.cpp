@@ -91,6 +91,11 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
                    "predict both programs again on a grid of this voxel, mm; may be repeated")
       ->check(CLI::PositiveNumber)
       ->type_name("MM");
+  command
+      ->add_option("--time-budget", arguments->time_budget_percent,
+                   "extra machine time, %, for lower feeds: the least error within it ([compensation] levers)")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->type_name("PERCENT");
   command->add_flag("--keep-anyway", arguments->keep_anyway,
                     "write the program even where it is no better than the given one");
   command->add_flag("--header", arguments->header,

@@ -49,8 +49,8 @@ double foreign_fraction(const Observed& observed);
 
 /// A point belongs to the stamp that cut the machined surface there; where nothing did, or the stamp of the nominal
 /// sweep is of another row and material is left, to that one, which should have removed it, if the target is the given
-/// program's own (`own_target`: Target::stamps; else empty). `map`: from the emitted program's moves to those of `path`. `bending` (one a stamp of
-/// the nominal path, or empty: no hidden points): see expected.h.
+/// program's own (`own_target`: Target::stamps; else empty). `map`: from the emitted program's moves to those of
+/// `path`. `bending` (one a stamp of the nominal path, or empty: no hidden points): see expected.h.
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const MoveMap& map,
                  std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathShare> own_target,

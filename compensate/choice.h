@@ -8,11 +8,13 @@ namespace camber::compensate {
 struct RoundFigures {
   double rms_um = 0, p95_um = 0;  ///< judged error
   double depth_um = 0;            ///< into the part, but for a thousandth of the surface
+  bool over_budget = false;       ///< takes more machine time than is allowed
 };
 
 /// Index of the best round that keeps the limits; rounds[0], the program as given, where none does. A round keeps them
 /// if its rms is less and its 95th percentile no more than the given program's, and its depth no more than the limit or
-/// the given program's. Of these the ones within the limit come first, then the one of least rms.
-std::size_t choose_round(std::span<const RoundFigures> rounds, double depth_limit_um);
+/// the given program's, within the time allowed. Of these the ones within the limit come first, then the one of least
+/// rms, or of the least 95th percentile where `by_p95` (the feed lever works on that).
+std::size_t choose_round(std::span<const RoundFigures> rounds, double depth_limit_um, bool by_p95 = false);
 
 }  // namespace camber::compensate

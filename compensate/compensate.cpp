@@ -1,6 +1,7 @@
 #include "compensate/compensate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +10,7 @@
 
 #include "compensate/choice.h"
 #include "compensate/expected.h"
+#include "compensate/feed_lever.h"
 #include "compensate/fit_shift.h"
 #include "compensate/guard.h"
 #include "compensate/not_emitted.h"
@@ -45,6 +47,11 @@ constexpr double kMinGain = 0.03;    // a round that lowers the rms by less has 
 constexpr int kPatience = 2;         // rounds without that gain before it counts
 constexpr double kWorse = 1.02;      // a round whose rms is over the best one's by this has over-corrected
 constexpr double kShorter = 0.5;     // then the next step starts at the best one's shifts, shorter
+constexpr std::array kRungs_percent{5.0, 10.0, 15.0, 25.0, 50.0, 100.0, 200.0};  // of extra time
+constexpr int kRungRounds = 2;
+constexpr int kBudgetRounds = 6;
+constexpr double kTimeRoom = 0.003;  // by which a budget may be exceeded
+constexpr double kWanted = 0.9;      // of the tolerance: what feeds are chosen for
 constexpr double kForeign = 0.2;     // of the area, cut by another row than it should be: expected_errors are used
 constexpr int kGuardRounds = 5;      // beyond max_rounds, to stay out of the part
 constexpr int kStiffenings = 12;     // of the path where its angles grow by more than the bound
@@ -69,6 +76,19 @@ std::size_t count_changed(const nc::Program& program, const Emitted& emitted) {
     met[given] = true;
   }
   return static_cast<std::size_t>(std::count(same.begin(), same.end(), false));
+}
+
+/// Places along the path where the feed fraction changes.
+std::size_t count_feed_changes(const ShiftPath& path) {
+  std::size_t out = 0;
+  for (const Chain& chain : path.chains()) {
+    double now = 1;
+    for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i) {
+      if (path.points()[i].feed_fraction != now) ++out;
+      now = path.points()[i].feed_fraction;
+    }
+  }
+  return out;
 }
 
 /// Share of the area whose error changed its sign and is still over the tolerance.
@@ -118,6 +138,7 @@ class Loop {
     CompensationResult out;
     start(out);
     converge(out);
+    lower_feeds(out);
     stay_out_of_part(out);
     choose(out);
     finish(out);
@@ -160,6 +181,8 @@ class Loop {
     out.operations = simulate::as_lines(job_.operations, program_.text, program_.moves);
     check_compensated(program_, out.finishing.moves, diagnostics_);
     diagnostics_.throw_if_errors();
+    if (job_.compensation.has(machine::Lever::feed)) check_feeds(program_, out.finishing.moves, diagnostics_);
+    diagnostics_.throw_if_errors();
     nc::warn_of_uneditable(program_.text, program_.moves, out.finishing.moves, diagnostics_);
     compensated_ = out.finishing.moves;
     path_.emplace(program_.moves, compensated_, spacing_mm(job_.machine), job_.machine.control.block_time_s);
@@ -168,6 +191,7 @@ class Loop {
     links_ = row_links(*path_, kRowReach_mm);
     splits_.emplace(*path_);
     given->shifts = path_->shifts();
+    given->fractions = FeedLever::fractions(*path_);
     given->observed = trials_.observe(*path_, nullptr, given->surface);
     reach_ = reach_of(*path_, program_.moves, given->observed, given->surface, setup_.own_stamps());
     given->observed.reach = reach_;
@@ -209,6 +233,56 @@ class Loop {
     }
   }
 
+  bool met(const CompensationResult& out) const {
+    return within_tolerance(figures_of(*best_), job_.compensation) &&
+           out.rounds[out.best].deepest_um <= depth_limit_um_;
+  }
+
+  /// What no shift takes away: lower feeds, rung by rung of machine time, until the tolerance is kept; with a budget
+  /// its least error.
+  void lower_feeds(CompensationResult& out) {
+    if (!job_.compensation.has(machine::Lever::feed)) return;
+    const bool splittable = !std::isinf(spacing_mm(job_.machine));
+    FeedLever lever(*path_, program_, splittable, job_.compensation.min_feed_percent / 100);
+    out.time_points.push_back({0, out.best});
+    const auto& budget = options_.time_budget_percent;
+    const std::vector<double> rungs =
+        budget ? std::vector<double>{*budget} : std::vector<double>(kRungs_percent.begin(), kRungs_percent.end());
+    for (const double percent : rungs) {
+      if (!budget && met(out)) return;
+      allowed_s_ = (1 + percent / 100 + kTimeRoom) * program_.feed.time_s;
+      last_ = best_;
+      const std::size_t before = out.best;
+      for (int i = 0; i < (budget ? kBudgetRounds : kRungRounds); ++i) {
+        if (i % 2 == 0)
+          step_with_feeds(out, lever, percent);
+        else
+          step(out, 1, nullptr);  // the shifts to these feeds
+        if (out.rounds.back().machine_time_s <= allowed_s_ &&
+            out.rounds.back().error_um.p95 < out.rounds[out.best].error_um.p95)
+          take(out);
+        if (!budget && met(out)) break;
+      }
+      if (out.best == before) return;  // the least feed, or nothing that a feed changes
+      out.time_points.push_back({percent, out.best});
+    }
+  }
+
+  void step_with_feeds(CompensationResult& out, FeedLever& lever, double percent) {
+    const std::shared_ptr<const Trial> from = last_;
+    const double wanted_mm = options_.time_budget_percent ? 0.0 : kWanted * tolerance_mm();
+    const double budget_s = percent / 100 * program_.feed.time_s;
+    double planned_s = 0;
+    step(out, 1, nullptr, [&](std::vector<Observation>& observations) {
+      const std::vector<Observation> all = from->observed.of_path();
+      planned_s = lever.choose(*path_, all, left_by_shift_mm(*path_, all, fit_options()), budget_s, wanted_mm).extra_s;
+      splits_->add_feed_changes(*path_);
+      lever.apply_to(observations, *path_, from->fractions);
+    });
+    lever.learn(*path_, from->fractions, from->shifts, from->observed, last_->observed, planned_s,
+                out.rounds.back().machine_time_s - program_.feed.time_s);
+  }
+
   /// Where the best round's surface lies deeper than the limit, further rounds lift the path there.
   void stay_out_of_part(CompensationResult& out) {
     if (out.best == 0 || out.rounds[out.best].deepest_um <= depth_limit_um_) return;
@@ -235,7 +309,9 @@ class Loop {
   }
 
   /// New shifts from the last trial's error, and their prediction.
-  void step(CompensationResult& out, double share, const Guard* guard) {
+  /// `prepare` may change the feeds of the path and the observations that the shifts are fitted to.
+  void step(CompensationResult& out, double share, const Guard* guard,
+            const std::function<void(std::vector<Observation>&)>& prepare = {}) {
     const std::shared_ptr<const Trial> from_trial = last_;
     const Observed& before = from_trial->observed;
     const bool by_expectation = !expected_.empty() && !guard;
@@ -248,6 +324,9 @@ class Loop {
     const std::vector<Vec3>& from = from_trial->shifts;
     auto made = std::make_shared<Trial>();
     Trial& next = *made;
+    path_->set_shifts(from);
+    FeedLever::set_fractions(*path_, from_trial->fractions);
+    if (prepare) prepare(observations);
     choose_splits(observations);
     ThinPath thin(*path_, splits_->kept());
     const std::vector<Observation> asked = thin.places_of(observations);
@@ -271,6 +350,7 @@ class Loop {
       for (const std::size_t link : turn.over) link_stiffness_[link] *= kStiffer;
     }
     next.shifts = path_->shifts();
+    next.fractions = FeedLever::fractions(*path_);
     round.largest_shift_mm = path_->largest_shift_mm();
     const std::size_t number = out.rounds.size();
     next.keep(trials_.predict(next.emitted->program, progress(fmt::format("round {}", number))));
@@ -318,9 +398,11 @@ class Loop {
     round.deepest_um = depth_of(last_->surface, last_->observed, depth_limit_um_, true).held_um;
     round.static_rounds = last_->static_rounds;
     round.unsettled = last_->unsettled;
+    round.machine_time_s = (last_->emitted ? last_->emitted->program : program_).feed.time_s;
+    round.slowed = count_feed_changes(*path_);
     out.rounds.push_back(round);
-    figures_.push_back({round.error_um.rms, round.error_um.p95, round.deepest_um});
-    const std::size_t allowed = choose_round(figures_, depth_limit_um_);
+    figures_.push_back({round.error_um.rms, round.error_um.p95, round.deepest_um, round.machine_time_s > allowed_s_});
+    const std::size_t allowed = choose_round(figures_, depth_limit_um_, job_.compensation.has(machine::Lever::feed));
     if (allowed != allowed_index_) allowed_ = last_;  // only the newest round can take the place of another
     allowed_index_ = allowed;
   }
@@ -361,6 +443,7 @@ class Loop {
 
   void finish(CompensationResult& out) {
     path_->set_shifts(best_->shifts);
+    FeedLever::set_fractions(*path_, best_->fractions);
     const Round &first = out.rounds[0], &best = out.rounds[out.best];
     const SimulatedProgram& program = best_->emitted ? best_->emitted->program : program_;
     out.before_um = first.error_um;
@@ -456,16 +539,26 @@ class Loop {
   std::vector<RoundFigures> figures_;  ///< one a round
   std::vector<bool> reach_;
   double depth_limit_um_ = 0;
-  Stop ended_ = Stop::rounds;            ///< why the rounds ended
-  Observed first_observed_;              ///< of the program as given
-  double free_correctable_um_ = 0;       ///< of the best round before the guard
-  std::size_t free_round_ = 0;           ///< that round
-  std::shared_ptr<const Emitted> free_;  ///< its program
+  double allowed_s_ = std::numeric_limits<double>::infinity();  ///< machine time
+  Stop ended_ = Stop::rounds;                                   ///< why the rounds ended
+  Observed first_observed_;                                     ///< of the program as given
+  double free_correctable_um_ = 0;                              ///< of the best round before the guard
+  std::size_t free_round_ = 0;                                  ///< that round
+  std::shared_ptr<const Emitted> free_;                         ///< its program
 };
 
 }  // namespace
 
 CompensationResult compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options) {
+  if (options.time_budget_percent && !job.compensation.has(machine::Lever::feed))
+    diagnostics.add({Severity::error,
+                     {job.path, 0, 0},
+                     fmt::format("a time budget of {:g} % has no lever to use it; levers = [\"shift\", \"feed\"] was "
+                                 "expected in [compensation]",
+                                 *options.time_budget_percent),
+                     "lever-missing",
+                     {}});
+  diagnostics.throw_if_errors();
   return Loop(job, diagnostics, options).run();
 }
 

@@ -37,8 +37,16 @@ struct Round {
   double overcorrected_fraction = 0;  ///< of the area: the error changed its sign and is still over the tolerance
   double deepest_um = 0;  ///< into the part, where compensated moves cut, but for a thousandth of the surface
   bool guard = false;     ///< a round of the guard against cutting into the part
+  double machine_time_s = 0;
+  std::size_t slowed = 0;  ///< changes of feed: stretches of the path with a feed of their own, and their ends
   int static_rounds = 0;
   std::size_t unsettled = 0;
+};
+
+/// Machine time against error: the best program that was found for a time.
+struct TimePoint {
+  double allowed_percent = 0;  ///< extra time; 0: only the path is shifted
+  std::size_t round = 0;       ///< index into CompensationResult::rounds
 };
 
 struct CompensationResult {
@@ -60,8 +68,9 @@ struct CompensationResult {
   bool between = false;
   std::vector<CauseFigure> causes;  ///< of what is left, where it is over the tolerance
   ErrorSplit split_before, split_after;
-  std::vector<Round> rounds;  ///< rounds[0]: the program as given
-  std::size_t best = 0;       ///< index into rounds
+  std::vector<Round> rounds;             ///< rounds[0]: the program as given
+  std::size_t best = 0;                  ///< index into rounds
+  std::vector<TimePoint> time_points{};  ///< with the feed lever; ascending
   Stop stop = Stop::rounds;
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double max_shift_mm = 0;
@@ -92,8 +101,10 @@ using camber::BeyondModel;
 
 struct CompensateOptions {
   simulate::Progress progress;
-  std::size_t max_stock_crossings = 0;        ///< of Compensation::stock; 0: none
-  bool keep_anyway = false;                   ///< emit the round of the least error even where none is better
+  std::size_t max_stock_crossings = 0;  ///< of Compensation::stock; 0: none
+  bool keep_anyway = false;             ///< emit the round of the least error even where none is better
+  /// Of the feed lever: the least error for so much more machine time. Not given: as much as the tolerance takes.
+  std::optional<double> time_budget_percent{};
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.

@@ -63,6 +63,14 @@ std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const
   return out;
 }
 
+std::vector<double> left_by_shift_mm(const ShiftPath& path, std::span<const Observation> observations,
+                                     const FitShiftOptions& options) {
+  const std::vector<Observation> asked = without_row_form(path, observations, options);
+  std::vector<double> left = left_by(path, asked, options);
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] += observations[i].error_mm - asked[i].error_mm;
+  return left;
+}
+
 namespace {
 
 /// The judged observations and what fits of less and less freedom leave of them.

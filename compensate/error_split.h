@@ -39,6 +39,10 @@ struct ErrorSplit {
 std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const Observation> observations,
                                           const FitShiftOptions& options);
 
+/// What the best smooth shift, within the largest one, would leave of each observation, mm.
+std::vector<double> left_by_shift_mm(const ShiftPath& path, std::span<const Observation> observations,
+                                     const FitShiftOptions& options);
+
 /// What a part of an error comes from.
 enum class Cause { correctable, guard, limited, short_range, opposed, tip, bow, not_compensated };
 

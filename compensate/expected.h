@@ -27,9 +27,9 @@ double expected_error_mm(const machine::Job& job, const removal::SurfacePoint& p
 /// The surface is made by the edge that cuts deepest of several that pass a point, and so lies deeper than the bending
 /// at the contact says. Scales `bending` by the least squares over the points that their own row has cut in the program
 /// as given, and returns the scale (0 to 1).
-double scale_bending(const ShiftPath& path, const machine::Job& job, const simulate::Setup& given,
-                     const Observed& observed, const std::vector<removal::SurfacePoint>& surface,
-                     std::vector<Vec3>& bending);
+void scale_bending(const ShiftPath& path, const machine::Job& job, const simulate::Setup& given,
+                   const Observed& observed, const std::vector<removal::SurfacePoint>& surface,
+                   std::vector<Vec3>& bending);
 
 /// expected_error_mm of the program as given at every point of the surface that has an owner.
 std::vector<Observation> expected_errors(const ShiftPath& path, const machine::Job& job, const simulate::Setup& given,

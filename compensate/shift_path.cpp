@@ -272,6 +272,17 @@ nc::MoveEdit ShiftPath::edit_of(std::size_t first, std::size_t last, const std::
   return edit;
 }
 
+/// Arcs have one feed, that of their end; a line's pieces have their own.
+void ShiftPath::set_feeds(std::size_t first, std::size_t last, const std::vector<bool>& kept,
+                          nc::MoveEdit& edit) const {
+  const nc::Move& move = program_->moves[edit.move];
+  edit.feed_mm_per_s = points_[last].feed_fraction * move.feed_mm_per_s;
+  if (move.kind == nc::MoveKind::arc) return;
+  std::size_t via = 0;
+  for (std::size_t i = first + 1; i < last; ++i)
+    if (kept[i]) edit.via[via++].feed_mm_per_s = points_[i].feed_fraction * move.feed_mm_per_s;
+}
+
 namespace {
 constexpr double kNothing_mm = 0.0002;  // a move whose shifts are all smaller is left as it is
 }
@@ -282,6 +293,13 @@ std::vector<bool> ShiftPath::ends_of_moves() const {
     out[i] = points_[i].fixed || points_[i].share >= 1 || points_[i].share <= 0 ||
              program_->moves[points_[i].move].kind == nc::MoveKind::arc;
   return out;
+}
+
+void ShiftPath::keep_feed_changes(std::vector<bool>& kept) const {
+  for (const Chain& chain : chains_)
+    for (std::size_t i = chain.from + 1; i + 1 < chain.from + chain.count; ++i)
+      if (points_[i].move == points_[i + 1].move && points_[i].feed_fraction != points_[i + 1].feed_fraction)
+        kept[i] = true;
 }
 
 void ShiftPath::keep_strays(double tolerance_mm, std::vector<bool>& kept) const {
@@ -335,9 +353,11 @@ std::vector<nc::MoveEdit> ShiftPath::edits(const std::vector<bool>& kept, double
     for (std::size_t first = chain.from; first + 1 < end;) {
       std::size_t last = first + 1;
       while (last + 1 < end && points_[last + 1].move == points_[first + 1].move) ++last;
-      bool shifted = false;
+      bool shifted = false, slowed = false;
       for (std::size_t i = first; i <= last; ++i) shifted = shifted || points_[i].shift_mm.norm() > kNothing_mm;
-      if (shifted) out.push_back(edit_of(first, last, kept, tolerance_mm));
+      for (std::size_t i = first + 1; i <= last; ++i) slowed = slowed || points_[i].feed_fraction != 1;
+      if (shifted || slowed) out.push_back(edit_of(first, last, kept, tolerance_mm));
+      if (slowed) set_feeds(first, last, kept, out.back());
       first = last;
     }
   }

@@ -17,7 +17,8 @@ struct ControlPoint {
   double along_mm = 0;  ///< path length since the chain's start
   Vec3 place_mm = Vec3::Zero();
   Vec3 shift_mm = Vec3::Zero();
-  bool fixed = false;  ///< where a rapid, a move of another operation or one that cannot be edited ends: stays
+  double feed_fraction = 1;  ///< of the programmed feed, on the piece that ends here
+  bool fixed = false;        ///< where a rapid, a move of another operation or one that cannot be edited ends: stays
   /// The piece that ends here runs along Z alone, a plunge or a retract, and gets no X and Y words: its shift across is
   /// that of the point before.
   bool plunge = false;
@@ -55,15 +56,17 @@ class ShiftPath {
   /// Gives the points of plunges the shift across Z that they must have.
   void keep_plunges();
 
-  /// The moves whose points are shifted. Points between the ends of a line are kept where the path without them
-  /// would stray by more than tolerance_mm; an arc stays one where one passes the shifted points within it, else it
-  /// becomes the fewest arcs that do.
+  /// The moves whose points are shifted, or whose feed is another one. Points between the ends of a line are kept where
+  /// the path without them would stray by more than tolerance_mm; an arc stays one where one passes the shifted points
+  /// within it, else it becomes the fewest arcs that do.
   std::vector<nc::MoveEdit> edits(double tolerance_mm) const;
   /// The same with lines split at the points that are kept (one a point) and nowhere else.
   std::vector<nc::MoveEdit> edits(const std::vector<bool>& kept, double tolerance_mm) const;
 
   /// One a point: true for the ends of moves, for every point of an arc and for what is fixed.
   std::vector<bool> ends_of_moves() const;
+  /// Keeps the points of lines at which the feed changes.
+  void keep_feed_changes(std::vector<bool>& kept) const;
   /// Keeps points of lines without which the shifted path would stray by more than tolerance_mm.
   void keep_strays(double tolerance_mm, std::vector<bool>& kept) const;
   /// The path of the kept points alone; ends_of_moves() must be among them.
@@ -73,6 +76,8 @@ class ShiftPath {
  private:
   nc::MoveEdit edit_of(std::size_t first_point, std::size_t last_point, const std::vector<bool>& kept,
                        double tolerance_mm) const;
+  void set_feeds(std::size_t first_point, std::size_t last_point, const std::vector<bool>& kept,
+                 nc::MoveEdit& edit) const;
   void edit_arc(std::size_t first_point, std::size_t last_point, double tolerance_mm, nc::MoveEdit& edit) const;
 
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);

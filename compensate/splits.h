@@ -19,6 +19,8 @@ class Splits {
 
   /// Adds points of lines where the shifted path strays by more than tolerance_mm from the one without them.
   std::size_t add_strays(const ShiftPath& path, double tolerance_mm);
+  /// Adds points of lines at which the feed changes.
+  void add_feed_changes(const ShiftPath& path) { path.keep_feed_changes(kept_); }
   const std::vector<bool>& kept() const { return kept_; }
 
  private:

@@ -24,6 +24,7 @@ struct Emitted {
 
 struct Trial {
   std::vector<Vec3> shifts;
+  std::vector<double> fractions;               ///< of the programmed feed, one a point of the path
   std::shared_ptr<const Emitted> emitted;      ///< none: the program as given
   std::vector<removal::SurfacePoint> surface;  ///< the same points in the same order, whatever the shifts
   std::vector<simulate::StampLoad> loads;

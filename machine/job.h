@@ -1,6 +1,8 @@
 #pragma once
 // A job: which program on which machine, with which tools, into which stock. Read from job.toml.
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -99,6 +101,12 @@ enum class Reference {
   machine     ///< deflection_um: servo lag and corner rounding stay in
 };
 
+/// What a compensation may change about a program.
+enum class Lever : std::uint8_t {
+  shift,  ///< points of the path
+  feed    ///< F words, where the error that no shift takes away exceeds the tolerance
+};
+
 struct CompensationSettings {
   double tolerance_um = 1.0;
   Reference reference = Reference::commanded;
@@ -113,6 +121,9 @@ struct CompensationSettings {
   }
   /// Half of the band's width.
   double half_width_um() const { return profile_um ? ((*profile_um)[1] - (*profile_um)[0]) / 2 : tolerance_um; }
+  std::vector<Lever> levers{Lever::shift};  ///< shift is always among them
+  bool has(Lever lever) const { return std::ranges::find(levers, lever) != levers.end(); }
+  double min_feed_percent = 20;                 ///< of the programmed feed; below it edges rub
   double max_angle_growth_rad = 3 * kPi / 180;  ///< between blocks of the path
   Operations operations;               ///< compensated, of the simulated moves; nothing given: the finishing ones
   std::optional<Vec3> work_offset_mm;  ///< of the program's zero, in machine coordinates: for the travel limits

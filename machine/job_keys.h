@@ -11,6 +11,7 @@ inline constexpr std::array<std::string_view, 7> kToolTypeWords{"ball",         
                                                                 "tapered_ball", "chamfer", "general"};
 inline constexpr std::array<std::string_view, 2> kCouplingWords{"rigid", "static"};
 inline constexpr std::array<std::string_view, 2> kReferenceWords{"commanded", "machine"};
+inline constexpr std::array<std::string_view, 2> kLeverWords{"shift", "feed"};
 inline constexpr std::array<std::string_view, 3> kCollisionsWords{"error", "warning", "off"};
 inline constexpr std::array<std::string_view, 2> kUnitWords{"mm", "inch"};
 
@@ -20,6 +21,7 @@ inline constexpr NumberRange kLineNumber{.min = 1, .max = 2e9, .whole = true};
 inline constexpr NumberRange kRounds{.min = 1, .max = 1000, .whole = true};
 inline constexpr NumberRange kHelixDeg{.min = 0, .max = 80};
 inline constexpr NumberRange kRatio{.min = 0, .max = 1, .above_min = true};
+inline constexpr NumberRange kMinFeedPercent{.min = 1, .max = 100};
 inline constexpr NumberRange kAngleGrowthDeg{.min = 0, .max = 90, .above_min = true};
 inline constexpr NumberRange kRotationStepDeg{.min = 0, .max = 10, .above_min = true};
 
@@ -79,6 +81,7 @@ inline constexpr std::array kCompensationKeys{
     NumberKey<CompensationSettings>{"max_overcut_um", &CompensationSettings::max_overcut_um, kNotNegative},
     NumberKey<CompensationSettings>{"max_angle_growth_deg", &CompensationSettings::max_angle_growth_rad,
                                     kAngleGrowthDeg, kDegrees},
+    NumberKey<CompensationSettings>{"min_feed_percent", &CompensationSettings::min_feed_percent, kMinFeedPercent},
 };
 
 }  // namespace camber::machine

@@ -157,11 +157,31 @@ void read_profile(TomlTable& table, CompensationSettings& compensation) {
                         "profile");
 }
 
+void read_levers(TomlTable& table, CompensationSettings& compensation) {
+  constexpr std::string_view kWanted = "a list of \"shift\" and \"feed\"";
+  const auto names = table.text_list("levers", kWanted);
+  if (!names) return;
+  compensation.levers.clear();
+  for (const std::string& name : *names) {
+    const auto word = std::ranges::find(kLeverWords, name);
+    if (word == kLeverWords.end()) {
+      table.error_at("levers", fmt::format("levers names \"{}\"; {} was expected", name, kWanted), "value-choice");
+      continue;
+    }
+    compensation.levers.push_back(static_cast<Lever>(word - kLeverWords.begin()));
+  }
+  if (!compensation.has(Lever::shift))
+    table.error_at("levers",
+                   "levers does not name \"shift\", which every compensation needs; [\"shift\", \"feed\"] was expected",
+                   "value-choice");
+}
+
 void read_compensation(TomlTable table, const std::map<int, Tool>& tools, CompensationSettings& compensation) {
   read_numbers<CompensationSettings>(table, kCompensationKeys, compensation);
   compensation.max_rounds = static_cast<int>(table.number("max_rounds", kRounds, compensation.max_rounds));
   if (table.choice("reference", kReferenceWords, 0) == 1) compensation.reference = Reference::machine;
   read_profile(table, compensation);
+  read_levers(table, compensation);
   if (const auto operations = table.table("operations")) compensation.operations = read_operations(*operations, tools);
   constexpr std::string_view kOffset = "[x, y, z], the program's zero in machine coordinates,";
   if (const auto offset = table.numbers("work_offset_mm", 3, kAnyNumber, kOffset))

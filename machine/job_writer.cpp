@@ -1,5 +1,6 @@
 // A Job as job.toml, with every default filled in.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "machine/job_keys.h"
 #include "machine/material_reader.h"
@@ -75,6 +76,9 @@ std::string compensation_text(const CompensationSettings& c) {
   std::string out = "\n[compensation]\n" + toml_lines<CompensationSettings>(kCompensationKeys, c);
   out += toml_line("max_rounds", c.max_rounds, kAsIs);
   out += toml_line("reference", kReferenceWords[c.reference == Reference::machine ? 1 : 0]);
+  std::vector<std::string_view> levers;
+  for (const Lever lever : c.levers) levers.push_back(kLeverWords[static_cast<std::size_t>(lever)]);
+  out += fmt::format("levers = [\"{}\"]\n", fmt::join(levers, "\", \""));
   if (c.profile_um) out += fmt::format("profile_um = [{}, {}]\n", (*c.profile_um)[0], (*c.profile_um)[1]);
   if (c.work_offset_mm) out += fmt::format("work_offset_mm = {}\n", point_text(*c.work_offset_mm));
   return c.operations.given() ? out + operations_text("compensation.operations", c.operations) : out;

@@ -114,7 +114,8 @@ camber::PredictResult predict(const py::object& job, bool feed, const std::optio
 
 camber::CompensateResult compensate(const py::object& job, const std::vector<std::string>& uncertainty,
                                     const std::optional<Path>& measured, const std::optional<Path>& measured_program,
-                                    const std::vector<double>& check_voxels_mm, bool keep_anyway, bool header,
+                                    const std::vector<double>& check_voxels_mm,
+                                    const std::optional<double>& time_budget_percent, bool keep_anyway, bool header,
                                     bool header_hash, const py::object& progress, bool strict, int threads) {
   const camber::Job given = job_of(job);
   const camber::CompensateOptions options{
@@ -122,6 +123,7 @@ camber::CompensateResult compensate(const py::object& job, const std::vector<std
       .measured = measured ? measured->string() : std::string(),
       .measured_program = measured_program ? measured_program->string() : std::string(),
       .check_voxels_mm = check_voxels_mm,
+      .time_budget_percent = time_budget_percent,
       .keep_anyway = keep_anyway,
       .header = header,
       .header_hash = header_hash};
@@ -176,8 +178,9 @@ void add_functions(py::module_& module) {
              "Cutting force, deflection and form error of a job.");
   module.def("compensate", compensate, "job"_a, py::kw_only(), "uncertainty"_a = std::vector<std::string>(),
              "measured"_a = py::none(), "measured_program"_a = py::none(), "check_voxels_mm"_a = std::vector<double>(),
-             "keep_anyway"_a = false, "header"_a = false, "header_hash"_a = false, "progress"_a = py::none(),
-             "strict"_a = false, "threads"_a = 0, "A job's program with its path moved against the form error.");
+             "time_budget_percent"_a = py::none(), "keep_anyway"_a = false, "header"_a = false, "header_hash"_a = false,
+             "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "A job's program with its path moved against the form error.");
 }
 
 }  // namespace camber_python

@@ -69,9 +69,25 @@ ordered_json rounds(const compensate::CompensationResult& c) {
     row["overcorrected_area"] = r.overcorrected_fraction;
     row["deepest_um"] = r.deepest_um;
     row["guard"] = r.guard;
+    row["machine_time_s"] = r.machine_time_s;
+    row["feed_changes"] = r.slowed;
     row["static_rounds"] = r.static_rounds;
     row["unsettled_stretches"] = r.unsettled;
     out.push_back(std::move(row));
+  }
+  return out;
+}
+
+ordered_json time_points(const compensate::CompensationResult& c) {
+  ordered_json out = ordered_json::array();
+  for (const auto& p : c.time_points) {
+    const compensate::Round& r = c.rounds[p.round];
+    out.push_back({{"allowed_percent", p.allowed_percent},
+                   {"machine_time_s", r.machine_time_s},
+                   {"p95_um", r.error_um.p95},
+                   {"rms_um", r.error_um.rms},
+                   {"feed_changes", r.slowed},
+                   {"round", p.round}});
   }
   return out;
 }
@@ -135,6 +151,7 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
   j["split_before_um"] = split(c.split_before);
   j["split_after_um"] = split(c.split_after);
   j["rounds"] = rounds(c);
+  j["time_points"] = time_points(c);
   j["best_round"] = c.best;
   j["stop"] = compensate::to_string(c.stop);
   j["into_part"] = {{"within_tolerance", c.within_part},
@@ -227,6 +244,19 @@ std::string rounds_text(const compensate::CompensationResult& c) {
   return out;
 }
 
+/// Machine time against error; empty without the feed lever.
+std::string time_points_text(const compensate::CompensationResult& c) {
+  if (c.time_points.empty()) return {};
+  std::string out = "extra time allowed    machine time, s        p95, um   rms, um   changes of feed\n";
+  for (const auto& p : c.time_points) {
+    const compensate::Round& r = c.rounds[p.round];
+    const double extra = c.feed_before.time_s > 0 ? 100 * (r.machine_time_s / c.feed_before.time_s - 1) : 0;
+    fmt::format_to(std::back_inserter(out), "{:>16.4g} %  {:>10.1f} ({:+6.1f} %) {:>9.2f} {:>9.2f} {:>17}\n",
+                   p.allowed_percent, r.machine_time_s, extra, r.error_um.p95, r.error_um.rms, r.slowed);
+  }
+  return out;
+}
+
 std::string safety_text(const compensate::CompensationResult& c) {
   std::string out =
       fmt::format("into the part: {:.2f} um before, {:.2f} um after (single points {:.2f} um);\n  limit {:.4g} um{}",
@@ -296,7 +326,7 @@ const char* reason(compensate::Stop stop) {
 }  // namespace
 
 std::string compensate_text(const compensate::CompensationResult& c, double compute_s) {
-  std::string out = rounds_text(c);
+  std::string out = rounds_text(c) + time_points_text(c);
   fmt::format_to(std::back_inserter(out), "stopped: {}\n", reason(c.stop));
   out += plain_figures_text(c) + split_text(c.split_before, c.split_after) + safety_text(c) + path_text(c) +
          checks_text(c);

@@ -38,6 +38,7 @@ compensate::CompensateOptions options_of(const CompensateRequest& request) {
   for (const auto& u : request.uncertainty)
     for (auto& group : compensate::read_uncertainty(u)) options.uncertainty.push_back(std::move(group));
   options.max_stock_crossings = request.max_stock_crossings;
+  options.time_budget_percent = request.time_budget_percent;
   options.keep_anyway = request.keep_anyway;
   options.recheck_voxels_mm = request.check_voxels_mm;
   return options;

@@ -1,5 +1,6 @@
 #pragma once
 // The work of camber compensate: a job, as it was measured where points are given, compensated.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@ struct CompensateRequest {
   std::vector<std::string> uncertainty;    ///< files or percentages
   std::string measured, measured_program;  ///< files; empty: none
   std::vector<double> check_voxels_mm;
-  bool keep_anyway = false;  ///< emit the round of the least error even where none is better
+  std::optional<double> time_budget_percent{};  ///< of the feed lever
+  bool keep_anyway = false;                     ///< emit the round of the least error even where none is better
   bool header = false, header_hash = false;
   std::size_t max_stock_crossings = 0;  ///< see compensate::CompensateOptions
   simulate::Progress progress;

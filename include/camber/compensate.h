@@ -1,6 +1,7 @@
 #pragma once
 // A job's program with its path moved against the form error.
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,10 +11,13 @@ namespace camber {
 inline namespace v0 {
 
 struct CompensateOptions {
-  std::vector<std::string> uncertainty{};    ///< what fit-force or fit-feed wrote, or percentages ("10")
-  std::string measured{};                    ///< points measured on a part, CSV; empty: none
-  std::string measured_program{};            ///< what that part was cut with; empty: the job's program
-  std::vector<double> check_voxels_mm{};     ///< predict both programs again on these grids
+  std::vector<std::string> uncertainty{};  ///< what fit-force or fit-feed wrote, or percentages ("10")
+  std::string measured{};                  ///< points measured on a part, CSV; empty: none
+  std::string measured_program{};          ///< what that part was cut with; empty: the job's program
+  std::vector<double> check_voxels_mm{};   ///< predict both programs again on these grids
+  /// Of the feed lever ([compensation] levers): the least error for so much more machine time, in percent; not given:
+  /// as much as the tolerance takes.
+  std::optional<double> time_budget_percent{};
   bool keep_anyway = false;                  ///< emit the round of the least error even where none is better
   bool header = false, header_hash = false;  ///< comment lines at the program's head
 };
@@ -21,6 +25,13 @@ struct CompensateOptions {
 struct CompensationRound {
   ErrorFigures error_um{};
   double largest_shift_mm = 0;
+  double machine_time_s = 0;
+};
+
+/// The best program for a machine time: a round's index, and the extra time that was allowed for it, in percent.
+struct TimePoint {
+  double allowed_percent = 0;
+  std::size_t round = 0;
 };
 
 /// The same point of the surface, cut by the given and by the emitted program.
@@ -39,7 +50,8 @@ struct CompensateResult {
   ErrorFigures before_um{}, after_um{};
   std::vector<CompensationRound> rounds{};  ///< rounds[0]: the program as given
   std::size_t best_round = 0;
-  std::string stop{};  ///< tolerance, stalled, rounds or depth_limit
+  std::vector<TimePoint> time_points{};  ///< with the feed lever: machine time against error
+  std::string stop{};                    ///< tolerance, stalled, rounds or depth_limit
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double max_shift_mm = 0;
   std::vector<CompensatedPoint> surface{};

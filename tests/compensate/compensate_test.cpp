@@ -5,6 +5,8 @@
 
 #include <cctype>
 #include <regex>
+#include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -56,6 +58,68 @@ machine::Job plane_job(const tests::TempFolder& folder) {
 std::string without_coordinates(const std::string& text) {
   static const std::regex coordinate(R"( ?[XYZIJK]-?[0-9.]+)");
   return std::regex_replace(text, coordinate, "");
+}
+
+TEST(Compensate, LowersTheFeedWhereNoShiftHelps_slow) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  job.machine.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01};
+  job.compensation.levers = {machine::Lever::shift, machine::Lever::feed};
+  Diagnostics diagnostics;
+  CompensateOptions options;
+  options.time_budget_percent = 20;
+  const CompensationResult c = compensate(job, diagnostics, options);
+  ASSERT_EQ(c.time_points.size(), 2u);
+  const Round &shifted = c.rounds[c.time_points[0].round], &slower = c.rounds[c.time_points[1].round];
+  EXPECT_LT(slower.error_um.p95, 0.9 * shifted.error_um.p95);
+  EXPECT_GT(slower.machine_time_s, 1.02 * shifted.machine_time_s);
+  EXPECT_LE(slower.machine_time_s, 1.204 * shifted.machine_time_s);
+  EXPECT_NEAR(c.feed_after.time_s, c.rounds[c.best].machine_time_s, 1e-9) << "of the text that is emitted";
+  EXPECT_GT(slower.slowed, 0u);
+
+  // Nothing but coordinates and F words is new.
+  static const std::regex feeds(R"( ?F[0-9.]+)");
+  const auto bare = [](const std::string& text) { return std::regex_replace(without_coordinates(text), feeds, ""); };
+  std::set<std::string> given, emitted;
+  std::istringstream before(bare(plane_program())), after(bare(c.text));
+  for (std::string line; std::getline(before, line);) given.insert(line);
+  for (std::string line; std::getline(after, line);) emitted.insert(line);
+  for (const std::string& line : emitted) EXPECT_TRUE(line.empty() || given.contains(line)) << line;
+}
+
+TEST(Compensate, NeedsTheFeedLeverForATimeBudget) {
+  const tests::TempFolder folder;
+  Diagnostics diagnostics;
+  CompensateOptions options;
+  options.time_budget_percent = 15;
+  const machine::Job job = plane_job(folder);
+  try {
+    compensate(job, diagnostics, options);
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.diagnostics().front().message,
+              "a time budget of 15 % has no lever to use it; levers = [\"shift\", \"feed\"] was expected in "
+              "[compensation]");
+    EXPECT_EQ(e.diagnostics().front().check, "lever-missing");
+  }
+}
+
+TEST(Compensate, RefusesTheFeedLeverWhereAVariableSetsTheFeed) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  std::string text = plane_program();
+  text.insert(text.find("T1 M6"), "#100=900\n");
+  for (std::size_t at; (at = text.find("F900")) != std::string::npos;) text.replace(at, 4, "F#100");
+  job.program = folder.write("variable.nc", text);
+  job.compensation.levers = {machine::Lever::shift, machine::Lever::feed};
+  Diagnostics diagnostics;
+  try {
+    compensate(job, diagnostics, {});
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.diagnostics().front().check, "lever-unusable");
+    EXPECT_EQ(e.diagnostics().front().message, "x");
+  }
 }
 
 TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates_slow) {

@@ -201,6 +201,31 @@ TEST(JobReader, ReadsReferenceAndBand) {
   EXPECT_EQ(back.job.compensation.profile_um, c.profile_um);
 }
 
+TEST(JobReader, ReadsLevers) {
+  const Result result = read(with_more("[compensation]\nlevers = [\"feed\", \"shift\"]\nmin_feed_percent = 30\n"));
+  EXPECT_EQ(result.messages, "");
+  EXPECT_TRUE(result.job.compensation.has(Lever::feed));
+  EXPECT_EQ(result.job.compensation.min_feed_percent, 30);
+  EXPECT_FALSE(read(kJob).job.compensation.has(Lever::feed));
+  const Result back = read(replaced(replaced(to_toml(result.job), result.job.program, "finish.nc"),
+                                    result.job.machine_path, "machine.toml"));
+  EXPECT_EQ(back.messages, "");
+  EXPECT_EQ(back.job.compensation.levers, result.job.compensation.levers);
+}
+
+TEST(JobReader, RefusesLeversThatAreNone) {
+  EXPECT_EQ(read(with_more("[compensation]\nlevers = [\"shift\", \"speed\"]\n")).messages,
+            "job.toml:14:10: error: levers names \"speed\"; a list of \"shift\" and \"feed\" was expected "
+            "[value-choice]\n"
+            "    levers = [\"shift\", \"speed\"]\n"
+            "             ^");
+  EXPECT_EQ(read(with_more("[compensation]\nlevers = [\"feed\"]\n")).messages,
+            "job.toml:14:10: error: levers does not name \"shift\", which every compensation needs; [\"shift\", "
+            "\"feed\"] was expected [value-choice]\n"
+            "    levers = [\"feed\"]\n"
+            "             ^");
+}
+
 TEST(JobReader, RefusesBandsThatAreNone) {
   EXPECT_EQ(
       read(with_more("[compensation]\nprofile_um = [2, 10]\n")).messages,

@@ -1,0 +1,45 @@
+#pragma once
+// The feed as a second lever: F words for the error that no shift of the path takes away.
+#include <span>
+#include <vector>
+
+#include "compensate/attribution.h"
+#include "compensate/feed_plan.h"
+#include "compensate/shift_path.h"
+
+namespace camber::compensate {
+
+/// Errors: [lever-unusable] where none of the moves' feeds can be changed in the text. `selected`: one a move.
+void check_feeds(const simulate::SimulatedProgram& program, const std::vector<bool>& selected,
+                 Diagnostics& diagnostics);
+
+/// How the feed along a path is chosen from what the last prediction left, and what is learned from the next one.
+/// Feeds stand in the points of a ShiftPath (feed_fraction). `path` gives the units and is not kept.
+class FeedLever {
+ public:
+  /// `given`: the program whose path this is, as the machine runs it. `splittable`: lines may be split where the feed
+  /// changes. `least`: fraction of the programmed feed.
+  FeedLever(const ShiftPath& path, const simulate::SimulatedProgram& given, bool splittable, double least);
+
+  /// Sets the feeds of `path` for the observations of its last prediction and `left_mm`, what the best shift would
+  /// leave of each. `budget_s`: of extra time.
+  FeedChoice choose(ShiftPath& path, std::span<const Observation> observations, std::span<const double> left_mm,
+                    double budget_s, double wanted_mm);
+  /// What the changed feeds will do to the observations, for the shift that goes with them. `before`: the fractions
+  /// that they were made with.
+  void apply_to(std::vector<Observation>& observations, const ShiftPath& path, std::span<const double> before) const;
+  /// From two predictions of the same surface, with their fractions and shifts; and the extra time of the second.
+  void learn(const ShiftPath& path, std::span<const double> fractions_before, std::span<const Vec3> shifts_before,
+             const Observed& before, const Observed& now, double predicted_s, double found_s);
+
+  static std::vector<double> fractions(const ShiftPath& path);
+  static void set_fractions(ShiftPath& path, std::span<const double> fractions);
+
+ private:
+  std::vector<FeedUnit> units_;
+  std::vector<std::size_t> unit_of_;  ///< of the piece that ends at each point
+  FeedModel model_;
+  double least_;
+};
+
+}  // namespace camber::compensate
