@@ -119,6 +119,17 @@ SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmo
   return out;
 }
 
+Motion motion_at(const SimulatedProgram& program, const Job& job, std::span<const feedmodel::TimedSample> samples) {
+  removal::StampBuilder builder(program.moves, job.tools, program.selected, program.holes);
+  builder.add(samples);
+  return {builder.take(), {0, 0, program.feed.blocks}};
+}
+
+void exchange(SimulatedProgram& program, Motion& motion) {
+  std::swap(program.path, motion.path);
+  std::swap(program.feed, motion.feed);
+}
+
 namespace {
 
 Places places_of(const Job& job, const SimulatedProgram& program, const removal::Stock& blank) {
