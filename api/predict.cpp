@@ -31,6 +31,7 @@ ForceRow row_of(const report::ForceRow& r) {
           .fz_mean_N = r.force_mean_N.z(),
           .dx_um = r.deflection_um.x(),
           .dy_um = r.deflection_um.y(),
+          .dz_um = r.deflection_um.z(),
           .mrr_mm3_per_s = r.mrr_mm3_per_s,
           .removed_mm3 = r.removed_mm3,
           .torque_max_Nm = r.torque_max_Nm,

@@ -17,11 +17,12 @@ std::vector<double> node_heights(double top_mm, double fluted_length_mm) {
 
 ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material,
                                const Beam& beam, std::vector<double> nodes, double edge_ramp_mm, Teeth teeth,
-                               const Vec2& axis_compliance)
+                               const Vec3& axis_compliance)
     : envelope_(envelope),
       material_(material),
       edge_ramp_mm_(edge_ramp_mm),
-      axis_compliance_(axis_compliance),
+      axis_compliance_(axis_compliance.head<2>()),
+      axial_compliance_mm_per_N_(beam.axial_compliance_mm_per_N(0) + axis_compliance.z()),
       teeth_(std::move(teeth)),
       node_height_mm_(std::move(nodes)) {
   for (int j = 0; j < teeth_.count(); ++j) tooth_step_.push_back(teeth_.offset_steps(j, envelope.steps));
@@ -133,6 +134,10 @@ void ToothPassModel::evaluate(std::span<const removal::ChipSample> chips, std::s
   });
   std::transform(deflection.begin(), deflection.end(), out.deflection_mm.begin(),
                  [](double v) { return static_cast<float>(v); });
+  if (!axial()) return;
+  for (std::size_t m = 0; m < steps; ++m)
+    for (const std::size_t at : {m, m + 1 < steps ? m + 1 : 0})
+      out.deflection_mm.push_back(static_cast<float>(axial_compliance_mm_per_N_ * out.force_N[at].z()));
 }
 
 void ToothPassModel::add_to_turn(std::span<const removal::ChipSample> chips, std::size_t pass, std::size_t passing,

@@ -58,6 +58,7 @@ void add_tables(py::module_& module) {
       .add("fz_mean_N", &ForceRow::fz_mean_N)
       .add("dx_um", &ForceRow::dx_um)
       .add("dy_um", &ForceRow::dy_um)
+      .add("dz_um", &ForceRow::dz_um)
       .add("mrr_mm3_per_s", &ForceRow::mrr_mm3_per_s)
       .add("removed_mm3", &ForceRow::removed_mm3)
       .add("torque_max_Nm", &ForceRow::torque_max_Nm)

@@ -212,7 +212,8 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
     cut_options.surface = &map;
     cut_options.coupling = job.simulation.coupling;
     cut_options.axis_compliance_mm_per_N = {1 / job.machine.axis[0].stiffness_N_per_mm,
-                                            1 / job.machine.axis[1].stiffness_N_per_mm};
+                                            1 / job.machine.axis[1].stiffness_N_per_mm,
+                                            1 / job.machine.axis[2].stiffness_N_per_mm};
     if (from == program.path.runs.front().from) cut_options.blank = &target.blank;
     cut_options.envelope_step_mm = envelope_step_mm(job, tool);
     cut_options.rotation_step_rad = job.simulation.rotation_step_rad;

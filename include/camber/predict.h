@@ -27,7 +27,7 @@ struct ForceRow {
   double fx_max_N = 0, fy_max_N = 0, fz_max_N = 0;  ///< signed values of largest magnitude
   double f_max_N = 0;                               ///< largest lateral force
   double fx_mean_N = 0, fy_mean_N = 0, fz_mean_N = 0;
-  double dx_um = 0, dy_um = 0;  ///< deflection at the contact's height as an edge passes the contact
+  double dx_um = 0, dy_um = 0, dz_um = 0;  ///< deflection at the contact's height as an edge passes the contact
   double mrr_mm3_per_s = 0, removed_mm3 = 0;
   double torque_max_Nm = 0, torque_mean_Nm = 0, power_W = 0;
   double h_max_mm = 0, h_mean_mm = 0;  ///< uncut chip thickness
