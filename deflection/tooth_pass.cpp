@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "deflection/edge_force.h"
 
@@ -15,6 +16,18 @@ std::vector<double> node_heights(double top_mm, double fluted_length_mm) {
   return out;
 }
 
+namespace {
+
+/// Of tool, holder and axis together. The bar's own stretch is hundredths of a micrometre under a finishing force: it
+/// counts where a spring stands behind it or its stiffness is given, and the tool is rigid along its axis where
+/// neither is.
+double axial_compliance_mm_per_N(const Beam& beam, double axis) {
+  const double springs = beam.axial_compliance_mm_per_N(std::numeric_limits<double>::infinity()) + axis;
+  return springs > 0 ? beam.axial_compliance_mm_per_N(0) + axis : 0;
+}
+
+}  // namespace
+
 ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material,
                                const Beam& beam, std::vector<double> nodes, double edge_ramp_mm, Teeth teeth,
                                const Vec3& axis_compliance)
@@ -22,7 +35,7 @@ ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const mach
       material_(material),
       edge_ramp_mm_(edge_ramp_mm),
       axis_compliance_(axis_compliance.head<2>()),
-      axial_compliance_mm_per_N_(beam.axial_compliance_mm_per_N(0) + axis_compliance.z()),
+      axial_compliance_mm_per_N_(deflection::axial_compliance_mm_per_N(beam, axis_compliance.z())),
       teeth_(std::move(teeth)),
       node_height_mm_(std::move(nodes)) {
   for (int j = 0; j < teeth_.count(); ++j) tooth_step_.push_back(teeth_.offset_steps(j, envelope.steps));

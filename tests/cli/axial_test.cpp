@@ -73,7 +73,8 @@ TEST(Axial, AFloorIsOffByForceTimesCompliance) {
     double compliance;  ///< mm/N
   };
   for (const Case& c :
-       {Case{"", "", "rigid", bar}, Case{"axial_stiffness_N_per_um = inf\n", "", "rigid", 0},
+       {Case{"", "", "rigid", 0}, Case{"", "stiffness_N_per_um = 20.0\n", "rigid", bar + 5e-5},
+        Case{"axial_stiffness_N_per_um = inf\n", "", "rigid", 0},
         Case{"root_axial_stiffness_N_per_um = 10.0\n", "", "rigid", bar + 1e-4},
         Case{"root_axial_stiffness_N_per_um = 10.0\n", "stiffness_N_per_um = 20.0\n", "rigid", bar + 1.5e-4},
         Case{"root_axial_stiffness_N_per_um = 10.0\n", "", "static", bar + 1e-4}}) {

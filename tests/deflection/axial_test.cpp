@@ -72,5 +72,16 @@ TEST(AxialDeflection, IsForceTimesComplianceAtEveryRotationStep) {
   }
 }
 
+TEST(AxialDeflection, IsNothingWithoutASpring) {
+  auto tool = stepped();
+  tool.root_axial_stiffness_N_per_mm = std::numeric_limits<double>::infinity();
+  const auto envelope = removal::make_envelope(tool, 4, 0.5, kPi / 36);
+  const machine::Material material{2000, 700, 400, 0, 0, 20};
+  const ToothPassModel rigid(envelope, material, beam_of(tool), {0, 2, 4}, 0, Teeth(tool));
+  EXPECT_FALSE(rigid.axial());
+  const ToothPassModel on_axis(envelope, material, beam_of(tool), {0, 2, 4}, 0, Teeth(tool), {0, 0, 1e-5});
+  EXPECT_NEAR(on_axis.axial_compliance_mm_per_N(), beam_of(tool).axial_compliance_mm_per_N(0) + 1e-5, 1e-18);
+}
+
 }  // namespace
 }  // namespace camber::deflection
