@@ -36,7 +36,7 @@ std::map<std::string, std::vector<double>> columns_of(const std::string& csv) {
   return out;
 }
 
-/// A slot of 1 mm depth in which kae alone loads the tool: 100 N pull it down all the time.
+/// A slot of 1 mm depth in which kae alone loads the tool: 100 N pull it down while its one tooth is in the cut.
 void write_slot(const TempFolder& folder, const std::string& spring, const std::string& axis_z,
                 const std::string& coupling) {
   folder.write("p.nc",
@@ -45,7 +45,7 @@ void write_slot(const TempFolder& folder, const std::string& spring, const std::
   folder.write(
       "job.toml",
       "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 8.0\nflutes = "
-      "2\noverhang_mm = 24.0\nyoungs_modulus_GPa = 600.0\n" +
+      "1\noverhang_mm = 24.0\nyoungs_modulus_GPa = 600.0\n" +
           spring +
           "[material]\nktc_MPa = 0.0\nkrc_MPa = 0.0\nkae_N_per_mm = 100.0\n[stock]\nbox_mm = [[0, -6, -2], [10, "
           "6, 0]]\n[simulation]\nvoxel_mm = 0.1\ncoupling = \"" +

@@ -18,8 +18,8 @@ using testing::make_tool;
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// Of a flat end mill, stiff across its axis; along it a spring.
-machine::Tool sprung(double diameter, double stiffness_N_per_mm) {
-  auto tool = make_tool(machine::ToolType::flat, diameter, 2, 0);
+machine::Tool sprung(double diameter, int flutes, double stiffness_N_per_mm) {
+  auto tool = make_tool(machine::ToolType::flat, diameter, flutes, 0);
   tool.youngs_modulus_MPa = 1e12;
   tool.root_axial_stiffness_N_per_mm = stiffness_N_per_mm;
   return tool;
@@ -41,7 +41,7 @@ TEST(AxialSpring, APlungeFollowsItsRecurrence) {
     options.settle_um = 0.01;
     options.settle_fraction = 0.001;
     const std::vector<Contact> contacts(stamps.size(), Contact{0, 0});
-    const CutResult result = cut(stock, sprung(2 * kRadius, kSpring), material, stamps, contacts, 0, options);
+    const CutResult result = cut(stock, sprung(2 * kRadius, 2, kSpring), material, stamps, contacts, 0, options);
     EXPECT_EQ(result.unsettled, 0u);
     double delta = 0;
     for (std::size_t n = 4; n < stamps.size(); ++n) {
@@ -55,7 +55,7 @@ TEST(AxialSpring, APlungeFollowsItsRecurrence) {
   }
 }
 
-/// In a slot one of two straight teeth is in the cut at any time: kae alone pulls the tool down by kae ap, all around.
+/// A straight tooth in a slot: kae alone pulls the tool down by kae ap while it is in the cut.
 TEST(AxialSpring, ASlotsForceBendsByItsCompliance) {
   constexpr double kDepth = 1, kKae = 60, kSpring = 8000;
   const machine::Material material{0, 0, 0, 0, 0, kKae};
@@ -66,7 +66,7 @@ TEST(AxialSpring, ASlotsForceBendsByItsCompliance) {
     const std::vector<Contact> contacts(stamps.size(), Contact{0.1, 0});
     CutOptions options;
     options.coupling = coupling;
-    const CutResult result = cut(stock, sprung(10, kSpring), material, stamps, contacts, 0, options);
+    const CutResult result = cut(stock, sprung(10, 1, kSpring), material, stamps, contacts, 0, options);
     EXPECT_EQ(result.unsettled, 0u);
     // What the tool is pulled down by it cuts deeper: delta = -c kae (ap - delta).
     const double g = coupling == machine::Coupling::static_ ? kKae / kSpring : 0;
