@@ -31,6 +31,7 @@ ForceRow row_of(const report::ForceRow& r) {
           .fz_mean_N = r.force_mean_N.z(),
           .dx_um = r.deflection_um.x(),
           .dy_um = r.deflection_um.y(),
+          .dz_um = r.deflection_um.z(),
           .mrr_mm3_per_s = r.mrr_mm3_per_s,
           .removed_mm3 = r.removed_mm3,
           .torque_max_Nm = r.torque_max_Nm,
@@ -48,14 +49,25 @@ std::vector<ErrorPoint> points_of(const report::FormErrorPoints& points) {
   for (std::size_t i = 0; i < points.count; ++i) {
     const report::FormErrorPoint p = points.at(i);
     out.push_back({p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(), p.error_um,
-                   p.deflection_um(), p.contour_um, p.total_error_um, p.area_mm2, p.block, p.tool});
+                   p.deflection_um(), p.contour_um, p.total_error_um, p.model_error_um, p.area_mm2, p.block, p.tool});
   }
   return out;
 }
 
+TraceComparison comparison_of(const simulate::TracedRun& t) {
+  return {.by_line = t.by_line,
+          .samples = static_cast<std::int64_t>(t.samples.size()),
+          .period_s = t.period_s,
+          .machine_time_s = t.model.feed.time_s,
+          .off_path_p95_um = 1000 * t.off_path_p95_mm,
+          .off_path_max_um = 1000 * t.off_path_max_mm,
+          .form_error_um = api::figures_of(t.predicted.form_error_um),
+          .difference_um = api::figures_of(t.difference_um)};
+}
+
 /// All but json.
-PredictResult result_of(const machine::Job& job, const simulate::SimulatedProgram& program,
-                        const simulate::Prediction& p) {
+PredictResult result_of(const machine::Job& job, const api::PreparedJob& prepared, const simulate::Prediction& p) {
+  const simulate::SimulatedProgram& program = prepared.setup.program;
   PredictResult out{.machine_time_s = program.feed.time_s,
                     .cutting_time_s = program.feed.cutting_time_s,
                     .chips_mm3 = p.cut.chip_mm3,
@@ -64,8 +76,9 @@ PredictResult result_of(const machine::Job& job, const simulate::SimulatedProgra
                     .deflection_um = api::figures_of(p.deflection_um),
                     .contour_um = api::figures_of(p.contour_um),
                     .unseen_mm2 = p.unseen_mm2,
-                    .form_error = points_of(report::form_error_points(program, p)),
+                    .form_error = points_of(report::form_error_points(program, p, prepared.traced_run())),
                     .doubts = api::doubts_of(job, program, p)};
+  if (prepared.traced) out.trace = comparison_of(*prepared.traced);
   for (const auto& load : p.cut.loads) out.force_max_N = std::max(out.force_max_N, load.lateral_max_N);
   report::for_each_force_row(job, program, p, [&](const report::ForceRow& row) { out.forces.push_back(row_of(row)); });
   return out;
@@ -83,6 +96,8 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
     const api::PredictRequest request{
         .folder = options.output_folder,
         .forces_at = options.forces_at,
+        .trace = options.trace,
+        .columns = options.columns,
         .progress = [&](const std::string& what, std::optional<double> share) { run.show(what, share.value_or(0)); }};
     api::PreparedJob prepared = api::prepare(job, request, found);
     run.settle(found);
@@ -92,14 +107,17 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
     found.append(of_cut);
     run.settle(of_cut);
     const simulate::SimulatedProgram& program = prepared.setup.program;
-    result = result_of(job, program, prediction);
-    if (options.feed) feedmodel::predict_feed(program.moves, job.machine, api::points_sink(program.moves, result.feed));
+    result = result_of(job, prepared, prediction);
+    if (options.feed && prepared.traced)
+      api::points_sink(program.moves, result.feed)(prepared.traced->samples);
+    else if (options.feed)
+      feedmodel::predict_feed(program.moves, job.machine, api::points_sink(program.moves, result.feed));
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    result.json = report::predict_json(program, prediction, compute_s);
+    result.json = report::predict_json(program, prediction, compute_s, prepared.traced_run());
     result.diagnostics = found.all();
     if (request.folder.empty()) return;
     Diagnostics failed;
-    api::write_prediction(job, program, prediction, request, result.json, found, failed);
+    api::write_prediction(job, prepared, prediction, request, result.json, found, failed);
     failed.throw_if_errors();
   });
   return result;

@@ -57,6 +57,7 @@ class Reader {
     diagnostics_.throw_if_errors();
     while (!rest.empty()) {
       line = next_line(rest);
+      ++row_;
       if (!trimmed(line).empty()) read_row(line);
     }
     diagnostics_.throw_if_errors();
@@ -64,6 +65,7 @@ class Reader {
       fail_on_file(trace_.path, fmt::format("the trace holds {} samples; at least two are needed", trace_.size()),
                    "trace-empty");
     find_gaps();
+    trace_.row = std::move(rows_);
     return std::move(trace_);
   }
 
@@ -137,6 +139,7 @@ class Reader {
     }
     store(values);
     row_offsets_.push_back(fields_[0].offset);
+    rows_.push_back(row_);
   }
 
   void store(const std::array<double, 9>& v) {
@@ -172,7 +175,8 @@ class Reader {
   ServoTrace trace_;
   std::vector<Column> columns_;
   std::vector<Field> fields_;
-  std::vector<std::size_t> row_offsets_;
+  std::vector<std::size_t> row_offsets_, rows_;
+  std::size_t row_ = 1;
   bool has_feed_ = false, has_line_ = false;
 };
 

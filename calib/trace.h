@@ -23,6 +23,7 @@ struct ServoTrace {
   std::vector<Vec3> command_mm, actual_mm;
   std::vector<double> feed_mm_per_s;  ///< empty without the column
   std::vector<std::uint32_t> line;  ///< 1-based line of the program being commanded, 0: none; empty without the column
+  std::vector<std::size_t> row;     ///< 1-based line of the file of each sample; empty where samples are put together
   std::array<bool, 3> has_command{}, has_actual{};
   std::vector<Stretch> stretches;  ///< in order; one when there is no gap
 

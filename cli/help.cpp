@@ -23,7 +23,9 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"protocol", "camber protocol --machine machine.toml -o programs"},
     {"fit-force", "camber fit-force --log slots.csv --job slots.toml -o material.toml"},
     {"init", "camber init finish.nc --tools tool.tbl --machine fitted.toml -o job.toml"},
-    {"predict", "camber predict job.toml -o predicted"},
+    {"predict",
+     "camber predict job.toml -o predicted\n"
+     "  camber predict job.toml -o traced --trace trace.csv"},
     {"compensate",
      "camber compensate job.toml -o finish_compensated.nc --report report.html --json figures.json\n"
      "  camber compensate --verify finish_compensated.nc"},

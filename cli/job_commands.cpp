@@ -45,6 +45,15 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
                    "write forces_at_LINE.csv: one turn of the spindle at this line, in degrees, tooth by tooth")
       ->check(CLI::Range(std::size_t{1}, std::size_t{2000000000}))
       ->type_name("LINE");
+  auto* trace = command->add_option("--trace", arguments->trace,
+                                    "cut where this servo trace of the program measured the axes, not where the feed "
+                                    "model has them; both error maps and their difference");
+  trace->type_name("T.csv");
+  command
+      ->add_option("--columns", arguments->columns,
+                   "a map of the trace's columns, if they are not t_s, x_act_mm, y_act_mm, z_act_mm ...")
+      ->type_name("MAP.toml")
+      ->needs(trace);
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);
@@ -52,7 +61,7 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       std::vector<std::string> outputs{arguments->json};
       for (const char* name : {"summary.json", "stock.vdb"}) outputs.push_back(arguments->output_folder + "/" + name);
       if (!std::filesystem::exists(arguments->output_folder)) outputs.resize(1);
-      check_outputs(outputs, files_read(arguments->job));
+      check_outputs(outputs, files_read(arguments->job, {arguments->trace, arguments->columns}));
       return run_predict(*arguments, options);
     };
   });

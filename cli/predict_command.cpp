@@ -30,8 +30,11 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
   const machine::Job job = machine::read_job(arguments.job, diagnostics);
-  const api::PredictRequest request{
-      .folder = arguments.output_folder, .forces_at = arguments.forces_at, .progress = steps_of(progress)};
+  const api::PredictRequest request{.folder = arguments.output_folder,
+                                    .forces_at = arguments.forces_at,
+                                    .trace = arguments.trace,
+                                    .columns = arguments.columns,
+                                    .progress = steps_of(progress)};
   api::PreparedJob prepared = api::prepare(job, request, diagnostics);
   const simulate::SimulatedProgram& program = prepared.setup.program;
   progress.clear();
@@ -46,12 +49,12 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   progress.show("writing");
 
   Diagnostics failed;
-  const std::string json = report::predict_json(program, prediction, compute_s);
-  api::write_prediction(job, program, prediction, request, json, diagnostics, failed);
+  const std::string json = report::predict_json(program, prediction, compute_s, prepared.traced_run());
+  api::write_prediction(job, prepared, prediction, request, json, diagnostics, failed);
   if (!arguments.json.empty()) try_to_write([&] { write_file(arguments.json, json); }, failed);
   progress.clear();
 
-  if (!options.quiet) fmt::print("{}", report::predict_text(program, prediction, compute_s));
+  if (!options.quiet) fmt::print("{}", report::predict_text(program, prediction, compute_s, prepared.traced_run()));
   failed.throw_if_errors();
   settle(of_cut, options);
   const std::vector<std::string> wrong = api::doubts_of(job, program, prediction);

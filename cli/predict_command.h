@@ -1,5 +1,5 @@
 #pragma once
-// camber predict J.toml -o DIR [--json R.json] [--forces-at LINE]
+// camber predict J.toml -o DIR [--json R.json] [--forces-at LINE] [--trace T.csv [--columns MAP.toml]]
 #include <string>
 
 #include "cli/global_options.h"
@@ -11,6 +11,8 @@ struct PredictArguments {
   std::string output_folder;
   std::string json;           ///< empty: only summary.json in the folder
   std::size_t forces_at = 0;  ///< line whose forces are written over one turn; 0: none
+  std::string trace;          ///< servo trace at whose positions is cut; empty: none
+  std::string columns;        ///< column map of the trace; empty: none
 };
 
 /// Writes feed.csv, forces.csv, form_error.csv, form_error.vtp, stock.vdb, report.html and summary.json, and

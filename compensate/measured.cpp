@@ -173,6 +173,8 @@ machine::Job softened(const machine::Job& job, double scale) {
   for (auto& [number, tool] : out.tools) {
     tool.youngs_modulus_MPa /= scale;
     tool.root_stiffness_N_per_mm /= scale;
+    tool.root_axial_stiffness_N_per_mm /= scale;
+    if (tool.axial_stiffness_N_per_mm) *tool.axial_stiffness_N_per_mm /= scale;
   }
   for (auto& axis : out.machine.axis) axis.stiffness_N_per_mm /= scale;
   return out;

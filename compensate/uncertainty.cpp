@@ -101,6 +101,8 @@ machine::Job moved(const machine::Job& job, const ParameterGroup& group, std::ve
     for (auto& [number, tool] : out.tools) {
       tool.youngs_modulus_MPa /= 1 + group.share;
       tool.root_stiffness_N_per_mm /= 1 + group.share;
+      tool.root_axial_stiffness_N_per_mm /= 1 + group.share;
+      if (tool.axial_stiffness_N_per_mm) *tool.axial_stiffness_N_per_mm /= 1 + group.share;
     }
   for (const auto& p : group.parameters) {
     if (const auto* coefficient = machine::find_coefficient(p.name))

@@ -31,8 +31,14 @@ double bending_diameter_mm(const machine::Tool& tool, double z) {
 
 }  // namespace
 
-Beam::Beam(std::vector<Section> sections, double root)
-    : sections_(std::move(sections)), root_compliance_mm_per_N_(root) {}
+Beam::Beam(std::vector<Section> sections, double root, double root_axial)
+    : sections_(std::move(sections)), root_compliance_mm_per_N_(root), root_axial_compliance_mm_per_N_(root_axial) {}
+
+double Beam::axial_compliance_mm_per_N(double z_force) const {
+  double w = root_axial_compliance_mm_per_N_;
+  for (const auto& s : sections_) w += std::max(0.0, s.to_mm - std::max(s.from_mm, z_force)) / s.axial_stiffness_N;
+  return w;
+}
 
 double Beam::compliance_mm_per_N(double a, double b) const {
   const double higher = std::max(a, b);
@@ -72,6 +78,7 @@ Beam beam_of(const machine::Tool& tool) {
     Beam::Section s{from, to, e * kPi / 64 * std::pow(d, 4)};
     const double kappa = 6 * (1 + kPoisson) / (7 + 6 * kPoisson), shear_modulus = e / (2 * (1 + kPoisson));
     if (tool.shear) s.shear_stiffness_N = kappa * shear_modulus * kPi / 4 * d * d;
+    if (!tool.axial_stiffness_N_per_mm) s.axial_stiffness_N = e * kPi / 4 * d * d;
     sections.push_back(s);
   };
   const double flutes = flute_length(tool), neck = std::min(flutes + tool.neck_length_mm, tool.overhang_mm);
@@ -79,7 +86,8 @@ Beam beam_of(const machine::Tool& tool) {
   for (int i = 0; i < slices; ++i) add(flutes * i / slices, flutes * (i + 1) / slices);
   add(flutes, neck);
   add(neck, tool.overhang_mm);
-  return Beam(std::move(sections), 1 / tool.root_stiffness_N_per_mm);
+  const double given = tool.axial_stiffness_N_per_mm ? 1 / *tool.axial_stiffness_N_per_mm : 0.0;
+  return Beam(std::move(sections), 1 / tool.root_stiffness_N_per_mm, given + 1 / tool.root_axial_stiffness_N_per_mm);
 }
 
 }  // namespace camber::deflection

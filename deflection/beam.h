@@ -1,5 +1,5 @@
 #pragma once
-// The tool as a stepped cantilever on a lateral spring.
+// The tool as a stepped cantilever on a lateral spring, and along its axis as a stepped bar on an axial one.
 #include <limits>
 #include <vector>
 
@@ -14,9 +14,10 @@ class Beam {
     double from_mm = 0, to_mm = 0;
     double bending_stiffness_N_mm2 = 0;                                  ///< E I
     double shear_stiffness_N = std::numeric_limits<double>::infinity();  ///< kappa G A; infinite: no shear
+    double axial_stiffness_N = std::numeric_limits<double>::infinity();  ///< E A
   };
 
-  Beam(std::vector<Section> sections, double root_compliance_mm_per_N);
+  Beam(std::vector<Section> sections, double root_compliance_mm_per_N, double root_axial_compliance_mm_per_N = 0);
 
   /// Deflection at height z_out under a unit lateral force at height z_force, mm/N:
   /// w = 1/k_root + sum over the sections of the integral of (z - z_out)(z - z_force) / (E I) dz from the higher
@@ -25,17 +26,22 @@ class Beam {
   /// face count as the face.
   double compliance_mm_per_N(double z_out_mm, double z_force_mm) const;
 
+  /// How far the tip yields along the axis under a unit axial force at height z_force, mm/N: 1/k_root + sum over the
+  /// sections above of length / (E A).
+  double axial_compliance_mm_per_N(double z_force_mm) const;
+
   /// First natural frequency of the beam alone, Hz (Rayleigh's quotient with the shape under a tip load), for the
   /// warning that a static deflection no longer holds. `density_kg_per_m3` of the shank.
   double first_frequency_hz(const machine::Tool& tool, double density_kg_per_m3) const;
 
  private:
   std::vector<Section> sections_;
-  double root_compliance_mm_per_N_;
+  double root_compliance_mm_per_N_, root_axial_compliance_mm_per_N_;
 };
 
 /// Fluted part with the effective diameter (of a tapered cutter the diameter at each height, in slices), then the neck,
-/// then the shank up to the overhang. With tool.shear, kappa = 6 (1 + nu) / (7 + 6 nu) of a round bar, nu = 0.3.
+/// then the shank up to the overhang; along the axis bars of these diameters, or the tool's axial stiffness where it is
+/// given. With tool.shear, kappa = 6 (1 + nu) / (7 + 6 nu) of a round bar, nu = 0.3.
 /// Source of kappa: Cowper, The shear coefficient in Timoshenko's beam theory, J. Appl. Mech. 33 (1966) 335-340.
 Beam beam_of(const machine::Tool& tool);
 

@@ -117,6 +117,11 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
         d[0] += static_cast<float>((compliance[n] + axis_compliance_.x()) * f[0]);
         d[1] += static_cast<float>((compliance[n] + axis_compliance_.y()) * f[1]);
       }
+      if (axial()) {
+        const auto z = static_cast<float>(axial_compliance_mm_per_N_ * f[2]);
+        d[0] += z;
+        d[at > 0 ? -1 : 2 * turn - 1] += z;  // of the step before: the next one's
+      }
     }
     if (j % kFine == 0)
       for (std::size_t i = 0; i < 4; ++i) sums[i * row + static_cast<std::size_t>(at / kFine)] += f[i];
@@ -139,6 +144,19 @@ void draw_between_steps(const double* x, const double* y, std::size_t count, flo
       *fine++ = static_cast<float>(x[m] + i * dx);
       *fine++ = static_cast<float>(y[m] + i * dy);
     }
+  }
+}
+
+/// The same of axial deflections, compliance times force: of each fine step its own and the next one's.
+void draw_axial(const double* force, double compliance, std::size_t count, float* fine) {
+  const auto at = [&](std::size_t i) {
+    const std::size_t m = i / kFine % count, next = m + 1 < count ? m + 1 : 0;
+    const double u = static_cast<double>(i % kFine) / kFine;
+    return static_cast<float>(compliance * (force[m] + u * (force[next] - force[m])));
+  };
+  for (std::size_t i = 0; i < count * kFine; ++i) {
+    *fine++ = at(i);
+    *fine++ = at(i + 1);
   }
 }
 
@@ -281,6 +299,8 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
     const double* x = sums.of(4 + 2 * n);
     draw_between_steps(x, x + sums.row(), steps, fine.data() + 2 * n * steps * kFine);
   }
+  if (axial() && !fine.empty())
+    draw_axial(sums.of(2), axial_compliance_mm_per_N_, steps, fine.data() + 2 * nodes * steps * kFine);
   for (const ChipEnd& e : ends) add_end(e, sums.of(0), sums.row(), fine);
   out.force_N.resize(steps);
   out.torque_Nmm.assign(sums.of(3), sums.of(3) + steps);

@@ -35,6 +35,9 @@ NoEquilibrium StaticCut::beyond_reach(std::span<const float> row) const {
     if (!std::isfinite(x) || !std::isfinite(y)) continue;
     inwards +=
         static_cast<double>(envelope_.nx[c.chip.point]) * x + static_cast<double>(envelope_.ny[c.chip.point]) * y;
+    if (deflections_->axial)
+      inwards += static_cast<double>(envelope_.nz[c.chip.point]) *
+                 static_cast<double>(deflections_->axial_mm(row.data(), static_cast<int>(step)));
   }
   return inwards > 0 ? NoEquilibrium::pulled_in : NoEquilibrium::pushed_out;
 }

@@ -21,9 +21,31 @@ constexpr double kFar2_mm2 = 1e4;   ///< no tool bends that far and cuts
 constexpr int kMaxHalvings = 5;
 constexpr double kNothing_mm = 1e-8;  ///< of a deflection: rows are kept as floats
 
-using Coarse = Eigen::Matrix4d;
-using CoarseDeflection = Eigen::Vector4d;
+/// Unknowns of a rotation step: the lateral deflections at the first and at the last node, and of a tool that yields
+/// along its axis the axial one.
+constexpr int kLateral = 4, kWithAxial = 5;
+template <int kUnknowns>
+using Coarse = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+template <int kUnknowns>
+using CoarseDeflection = Eigen::Matrix<double, kUnknowns, 1>;
+using LateralDeflection = CoarseDeflection<kLateral>;
 using ByCoarse = Eigen::Matrix<double, 2, 4, Eigen::RowMajor>;
+
+Coarse<kLateral> inverse_of(const Coarse<kLateral>& m) { return m.inverse(); }
+
+/// By blocks: of four unknowns Eigen has a fast inverse.
+Coarse<kWithAxial> inverse_of(const Coarse<kWithAxial>& m) {
+  const Coarse<kLateral> lateral = Coarse<kLateral>(m.topLeftCorner<4, 4>()).inverse();
+  const LateralDeflection from_axial = lateral * m.topRightCorner<4, 1>();
+  const Eigen::RowVector4d to_axial = m.bottomLeftCorner<1, 4>() * lateral;
+  const double rest = 1 / (m(4, 4) - m.bottomLeftCorner<1, 4>().dot(from_axial.transpose()));
+  Coarse<kWithAxial> out;
+  out.topLeftCorner<4, 4>() = lateral + rest * from_axial * to_axial;
+  out.topRightCorner<4, 1>() = -rest * from_axial;
+  out.bottomLeftCorner<1, 4>() = -rest * to_axial;
+  out(4, 4) = rest;
+  return out;
+}
 
 /// Calls f(from, end) for parts of 0 ... count, on all threads where `elements` are worth it.
 template <class Function>
@@ -40,7 +62,8 @@ StaticEquilibrium::StaticEquilibrium(const removal::EnvelopeGrid& envelope, cons
     : envelope_(envelope),
       model_(model),
       steps_(static_cast<std::size_t>(model.steps())),
-      nodes_(model.node_height_mm().size()) {
+      nodes_(model.node_height_mm().size()),
+      axial_(model.axial()) {
   const auto& heights = model.node_height_mm();
   for (const auto& ring : envelope.rings) {
     auto w = removal::node_weight(heights, ring.profile.height_mm);
@@ -52,6 +75,13 @@ StaticEquilibrium::StaticEquilibrium(const removal::EnvelopeGrid& envelope, cons
   for (auto* v : {&read_, &deflection_, &moved_, &side_, &left_, &step_}) v->assign(steps_ * nodes_ * 2, 0.0);
   for (auto* v : {&by_own_, &by_side_}) v->assign(steps_ * nodes_ * 8, 0.0);
   coarse_.assign(steps_ * 4, 0.0);
+  for (auto* v :
+       {&axial_read_, &axial_deflection_, &axial_moved_, &axial_side_, &axial_left_, &axial_step_, &axial_coarse_})
+    v->assign(steps_, 0.0);
+  if (axial_) {
+    for (auto* v : {&axial_by_own_, &axial_by_side_}) v->assign(steps_ * 5, 0.0);
+    for (auto* v : {&by_own_axial_, &by_side_axial_}) v->assign(steps_ * nodes_ * 2, 0.0);
+  }
   norm_.assign(steps_, 0.0);
   damping_.assign(steps_, 0.0);
   stale_.assign(steps_, 1);
@@ -86,6 +116,8 @@ StaticEquilibrium::Element StaticEquilibrium::element(const EdgeElement& f, cons
   e.tangential = d.tangential.head<2>();
   e.meridian = d.meridian.head<2>();
   e.deeper = Vec2(static_cast<double>(bent.deeper[0]), static_cast<double>(bent.deeper[1]));
+  e.normal_z = d.normal.z(), e.meridian_z = d.meridian.z();
+  e.deeper_z = static_cast<double>(bent.deeper[2]);
   e.depth_mm = static_cast<double>(bent.depth_mm);
   e.cap_mm = static_cast<double>(bent.cap_mm);
   e.thickness_mm = e.solved_mm = f.thickness_mm;
@@ -112,6 +144,14 @@ void StaticEquilibrium::place_deflections() {
       side_[m * row + i] = ahead[i] - behind[i];
     }
   }
+  if (axial_) place_axial();
+}
+
+void StaticEquilibrium::place_axial() {
+  for (std::size_t m = 0; m < steps_; ++m) {
+    axial_moved_[m] = axial_deflection_[m] - axial_read_[m];
+    axial_side_[m] = axial_deflection_[m + 1 == steps_ ? 0 : m + 1] - axial_deflection_[m == 0 ? steps_ - 1 : m - 1];
+  }
 }
 
 Vec2 StaticEquilibrium::at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const {
@@ -125,7 +165,7 @@ double StaticEquilibrium::lean_mm(const Element& e, std::size_t m) const {
   const Ring& ring = rings_[e.ring];
   const double* lower = deflection_.data() + 2 * (m * nodes_ + static_cast<std::size_t>(ring.weight.lower));
   const double* upper = deflection_.data() + 2 * (m * nodes_ + static_cast<std::size_t>(ring.weight.upper));
-  return e.by_step * e.normal.dot(at_ring(side_, ring, m)) +
+  return e.by_step * (e.normal.dot(at_ring(side_, ring, m)) + e.normal_z * axial_side_[m]) +
          e.by_height * e.normal.dot(Vec2(upper[0] - lower[0], upper[1] - lower[1]));
 }
 
@@ -137,6 +177,11 @@ void StaticEquilibrium::balance(std::size_t m) {
   for (std::size_t i = 0; i < 2 * nodes_; ++i) left[i] = run_out[i % 2 == 0 ? 0 : 1] - deflection_[from + i];
   std::fill_n(by_own_.data() + 4 * from, 8 * nodes_, 0.0);
   std::fill_n(by_side_.data() + 4 * from, 8 * nodes_, 0.0);
+  if (axial_) {
+    axial_left_[m] = -axial_deflection_[m];
+    for (auto* v : {&axial_by_own_, &axial_by_side_}) std::fill_n(v->data() + 5 * m, 5, 0.0);
+    for (auto* v : {&by_own_axial_, &by_side_axial_}) std::fill_n(v->data() + from, 2 * nodes_, 0.0);
+  }
   const machine::Material& material = model_.material();
   const double ramp = model_.edge_ramp_mm();
   const double nodes_apart = model_.node_height_mm()[1] / model_.node_height_mm().back();
@@ -145,8 +190,9 @@ void StaticEquilibrium::balance(std::size_t m) {
     Element& e = elements_[i];
     const Ring& ring = rings_[e.ring];
     const Vec2 moved = at_ring(moved_, ring, m);
-    const double depth = e.depth_mm + e.deeper.dot(moved), lean = lean_mm(e, m);
-    const double cap = e.cap_mm + (first_stamp_ ? 0.0 : e.normal.dot(moved)) - (bounded(lean) - bounded(e.lean_mm));
+    const double depth = e.depth_mm + e.deeper.dot(moved) + e.deeper_z * axial_moved_[m], lean = lean_mm(e, m);
+    const double cap = e.cap_mm + (first_stamp_ ? 0.0 : e.normal.dot(moved) + e.normal_z * axial_moved_[m]) -
+                       (bounded(lean) - bounded(e.lean_mm));
     const bool by_cap = cap < depth;
     const double h = e.thickness_mm + std::min(depth, cap) - std::min(e.depth_mm, e.cap_mm);
     e.solved_mm = h;
@@ -170,6 +216,12 @@ void StaticEquilibrium::balance(std::size_t m) {
         by_side[2 + a] = -e.by_step * up * n;
       }
     }
+    AxialChange by_axial{};
+    if (axial_) {
+      by_axial = {!by_cap ? e.deeper_z : first_stamp_ ? 0.0 : e.normal_z, leans ? -e.by_step * e.normal_z : 0.0};
+      const auto along = [&](const EdgeForce& of) { return -(of.radial_N * e.normal_z + of.axial_N * e.meridian_z); };
+      balance_axial(m, along(f), e.width_mm * along(k), by_own, by_side, by_axial);
+    }
     for (std::size_t n = 0; n < nodes_; ++n) {
       const Vec2 c = model_.compliance_mm_per_N(e.ring, n);
       for (int a = 0; a < 2; ++a) {
@@ -181,33 +233,64 @@ void StaticEquilibrium::balance(std::size_t m) {
         for (std::size_t b = 0; b < 4; ++b) of_own[b] += change * by_own[b];
         if (leans)
           for (std::size_t b = 0; b < 4; ++b) of_side[b] += change * by_side[b];
+        if (!axial_) continue;
+        by_own_axial_[from + row] += change * by_axial.own;
+        by_side_axial_[from + row] += change * by_axial.side;
       }
     }
   }
 }
 
+void StaticEquilibrium::balance_axial(std::size_t m, double force_z, double slope_z,
+                                      const std::array<double, 4>& by_own, const std::array<double, 4>& by_side,
+                                      const AxialChange& by_axial) {
+  const double c = model_.axial_compliance_mm_per_N(), change = c * slope_z;
+  axial_left_[m] += c * force_z;
+  for (std::size_t b = 0; b < 4; ++b) {
+    axial_by_own_[5 * m + b] += change * by_own[b];
+    axial_by_side_[5 * m + b] += change * by_side[b];
+  }
+  axial_by_own_[5 * m + 4] += change * by_axial.own;
+  axial_by_side_[5 * m + 4] += change * by_axial.side;
+}
+
 /// (1 - own_m) x_m - side_m (x_(m+1) - x_(m-1)) = left_m around the turn, for the deflections x at the first and last
-/// node: elimination with the last step's deflection kept as a border.
+/// node, and along the axis: elimination with the last step's deflection kept as a border.
+template <int kUnknowns>
 void StaticEquilibrium::solve_coarse() {
+  using Block = Coarse<kUnknowns>;
+  using Deflection = CoarseDeflection<kUnknowns>;
   const std::size_t n = steps_;
-  const auto block = [&](const std::vector<double>& v, std::size_t m) {
-    Coarse out;
+  const auto block = [&](bool of_side, std::size_t m) {
+    const std::vector<double>& v = of_side ? by_side_ : by_own_;
+    Block out;
     for (int half = 0; half < 2; ++half) {
       const std::size_t node = half == 0 ? 0 : nodes_ - 1;
-      out.middleRows<2>(2 * half) = Eigen::Map<const ByCoarse>(v.data() + 8 * (m * nodes_ + node));
+      out.template block<2, 4>(2 * half, 0) = Eigen::Map<const ByCoarse>(v.data() + 8 * (m * nodes_ + node));
+      if constexpr (kUnknowns == kWithAxial)
+        out.template block<2, 1>(2 * half, 4) =
+            Eigen::Map<const Vec2>((of_side ? by_side_axial_ : by_own_axial_).data() + 2 * (m * nodes_ + node));
     }
+    if constexpr (kUnknowns == kWithAxial)
+      out.row(4) =
+          Eigen::Map<const Eigen::Matrix<double, 1, 5>>((of_side ? axial_by_side_ : axial_by_own_).data() + 5 * m);
     return out;
   };
   // x_m = value_m - ahead_m x_(m+1) - border_m x_last.
-  static thread_local std::vector<Coarse> ahead, border;
-  static thread_local std::vector<CoarseDeflection> value;
+  static thread_local std::vector<Block> ahead, border;
+  static thread_local std::vector<Deflection> value;
   ahead.resize(n), border.resize(n), value.resize(n);
   const auto right = [&](std::size_t m) {
-    CoarseDeflection out;
+    Deflection out;
     const double* first = left_.data() + 2 * m * nodes_;
     const double* last = first + 2 * (nodes_ - 1);
-    out << first[0], first[1], last[0], last[1];
+    out.template head<4>() << first[0], first[1], last[0], last[1];
+    if constexpr (kUnknowns == kWithAxial) out[4] = axial_left_[m];
     return out;
+  };
+  const auto keep = [&](std::size_t m, const Deflection& x) {
+    Eigen::Map<LateralDeflection>(coarse_.data() + 4 * m) = x.template head<4>();
+    if constexpr (kUnknowns == kWithAxial) axial_coarse_[m] = x[4];
   };
   for (std::size_t m = 0; m + 1 < n; ++m) {
     if (first_[m] == first_[m + 1]) {  // out of the cut
@@ -215,10 +298,10 @@ void StaticEquilibrium::solve_coarse() {
       ahead[m].setZero(), border[m].setZero();
       continue;
     }
-    const Coarse side = block(by_side_, m);
-    Coarse own = (1 + damping_[m]) * Coarse::Identity() - block(by_own_, m);
-    CoarseDeflection r = right(m);
-    Coarse b = Coarse::Zero();
+    const Block side = block(true, m);
+    Block own = (1 + damping_[m]) * Block::Identity() - block(false, m);
+    Deflection r = right(m);
+    Block b = Block::Zero();
     if (m == 0) {
       b = side;
     } else {
@@ -226,32 +309,31 @@ void StaticEquilibrium::solve_coarse() {
       r -= side * value[m - 1];
       b = -side * border[m - 1];
     }
-    Coarse a = -side;
+    Block a = -side;
     if (m + 2 == n) b += a, a.setZero();
-    const Coarse inverse = own.inverse();
+    const Block inverse = inverse_of(own);
     value[m] = inverse * r;
     ahead[m] = inverse * a;
     border[m] = inverse * b;
   }
   // The first step's deflection by the last one's.
-  CoarseDeflection first_value = value[n - 2];
-  Coarse first_border = border[n - 2];
-  const CoarseDeflection before_value = first_value;
-  const Coarse before_border = first_border;
+  Deflection first_value = value[n - 2];
+  Block first_border = border[n - 2];
+  const Deflection before_value = first_value;
+  const Block before_border = first_border;
   for (std::size_t m = n - 2; m-- > 0;) {
     first_value = value[m] - ahead[m] * first_value;
     first_border = border[m] - ahead[m] * first_border;
   }
-  const Coarse side = block(by_side_, n - 1);
-  const Coarse own =
-      (1 + damping_[n - 1]) * Coarse::Identity() - block(by_own_, n - 1) + side * first_border - side * before_border;
-  CoarseDeflection x = own.partialPivLu().solve(right(n - 1) + side * first_value - side * before_value);
-  const CoarseDeflection last = x;
-  Eigen::Map<CoarseDeflection>(coarse_.data() + 4 * (n - 1)) = x;
+  const Block side = block(true, n - 1);
+  const Block own =
+      (1 + damping_[n - 1]) * Block::Identity() - block(false, n - 1) + side * first_border - side * before_border;
+  Deflection x = own.partialPivLu().solve(right(n - 1) + side * first_value - side * before_value);
+  const Deflection last = x;
+  keep(n - 1, x);
   for (std::size_t m = n - 1; m-- > 0;) {
-    x = value[m] - (m + 2 == n ? CoarseDeflection(CoarseDeflection::Zero()) : CoarseDeflection(ahead[m] * x)) -
-        border[m] * last;
-    Eigen::Map<CoarseDeflection>(coarse_.data() + 4 * m) = x;
+    x = value[m] - (m + 2 == n ? Deflection(Deflection::Zero()) : Deflection(ahead[m] * x)) - border[m] * last;
+    keep(m, x);
   }
 }
 
@@ -264,29 +346,50 @@ double StaticEquilibrium::balance_all() {
       if (stale_[m] == 0) continue;
       balance(m);
       norm_[m] = Eigen::Map<const Eigen::VectorXd>(left_.data() + 2 * m * nodes_, row).lpNorm<Eigen::Infinity>();
+      if (axial_) norm_[m] = std::max(norm_[m], std::abs(axial_left_[m]));
     }
   });
-  return Eigen::Map<const Eigen::VectorXd>(left_.data(), static_cast<Eigen::Index>(left_.size())).squaredNorm();
+  const auto squares = [](const std::vector<double>& v) {
+    return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())).squaredNorm();
+  };
+  return axial_ ? squares(left_) + squares(axial_left_) : squares(left_);
 }
 
 /// Newton's step of all nodes; rotation steps in balance stay.
 void StaticEquilibrium::advance() {
   for (std::size_t m = 0; m < steps_; ++m) {
     const std::size_t ahead = m + 1 == steps_ ? 0 : m + 1, behind = m == 0 ? steps_ - 1 : m - 1;
-    const Eigen::Map<const CoarseDeflection> own(coarse_.data() + 4 * m);
-    const CoarseDeflection side = Eigen::Map<const CoarseDeflection>(coarse_.data() + 4 * ahead) -
-                                  Eigen::Map<const CoarseDeflection>(coarse_.data() + 4 * behind);
-    const bool stays = norm_[m] < kExact_mm && own.lpNorm<Eigen::Infinity>() < kExact_mm;
+    const Eigen::Map<const LateralDeflection> own(coarse_.data() + 4 * m);
+    const LateralDeflection side = Eigen::Map<const LateralDeflection>(coarse_.data() + 4 * ahead) -
+                                   Eigen::Map<const LateralDeflection>(coarse_.data() + 4 * behind);
+    const bool stays =
+        norm_[m] < kExact_mm && own.lpNorm<Eigen::Infinity>() < kExact_mm && std::abs(axial_coarse_[m]) < kExact_mm;
     for (std::size_t i = 2 * m * nodes_; i < 2 * (m + 1) * nodes_; ++i)
       step_[i] = stays ? 0.0
                        : (left_[i] + Eigen::Map<const Eigen::RowVector4d>(by_own_.data() + 4 * i).dot(own) +
                           Eigen::Map<const Eigen::RowVector4d>(by_side_.data() + 4 * i).dot(side)) /
                              (1 + damping_[m]);
+    if (axial_) advance_axial(m, ahead, behind, stays);
     stale_[m] = stays ? 0 : 1;
   }
   const std::vector<char> moves = stale_;
   for (std::size_t m = 0; m < steps_; ++m)
     if (moves[m] != 0) stale_[m + 1 == steps_ ? 0 : m + 1] = stale_[m == 0 ? steps_ - 1 : m - 1] = 1;
+}
+
+/// Newton's step of the axial deflection, and what that adds to the lateral one's.
+void StaticEquilibrium::advance_axial(std::size_t m, std::size_t ahead, std::size_t behind, bool stays) {
+  axial_step_[m] = stays ? 0.0 : axial_coarse_[m];
+  if (stays) return;
+  const double side = axial_coarse_[ahead] - axial_coarse_[behind];
+  for (std::size_t i = 2 * m * nodes_; i < 2 * (m + 1) * nodes_; ++i)
+    step_[i] += (by_own_axial_[i] * axial_coarse_[m] + by_side_axial_[i] * side) / (1 + damping_[m]);
+}
+
+void StaticEquilibrium::step_from(const std::vector<double>& from, const std::vector<double>& axial_from, double way) {
+  for (std::size_t i = 0; i < deflection_.size(); ++i) deflection_[i] = from[i] + way * step_[i];
+  if (!axial_) return;
+  for (std::size_t m = 0; m < steps_; ++m) axial_deflection_[m] = axial_from[m] + way * axial_step_[m];
 }
 
 /// Where Newton's method swings about a corner of the force: a tool that creeps towards the balance, as a damped one
@@ -297,9 +400,9 @@ void StaticEquilibrium::creep(Step& out) {
   for (std::size_t m = 0; m < steps_; ++m) damping_[m] = norm_[m] < kExact_mm ? 0 : kFirst;
   for (int step = 0; step < kMaxDamped; ++step, ++out.steps) {
     const std::vector<double> before = norm_;
-    solve_coarse();
+    axial_ ? solve_coarse<kWithAxial>() : solve_coarse<kLateral>();
     advance();
-    for (std::size_t i = 0; i < deflection_.size(); ++i) deflection_[i] += step_[i];
+    step_from(deflection_, axial_deflection_, 1);
     if (!(balance_all() < kFar2_mm2)) break;
     out.solved = *std::ranges::max_element(norm_) < kExact_mm;
     if (out.solved) break;
@@ -322,7 +425,10 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
     for (std::size_t i = 0; i < nodes_; ++i)
       for (std::size_t a = 0; a < 2; ++a)
         read_[2 * (m * nodes_ + i) + a] = static_cast<double>(row[2 * (i * steps_ + m) + a]);
+  const removal::AxialRow axial_row(axial_ ? row.subspan(2 * steps_ * nodes_) : std::span<float>());
+  for (std::size_t m = 0; axial_ && m < steps_; ++m) axial_read_[m] = axial_row.at(m);
   deflection_ = read_;
+  axial_deflection_ = axial_read_;
   place_deflections();
   std::fill(stale_.begin(), stale_.end(), 1);
   place_elements(chips, passing, stamp);
@@ -332,12 +438,12 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
   for (; out.steps < kMaxSteps; ++out.steps) {
     out.solved = *std::ranges::max_element(norm_) < kExact_mm;
     if (out.solved || !(left2 < kFar2_mm2)) break;
-    solve_coarse();
+    axial_ ? solve_coarse<kWithAxial>() : solve_coarse<kLateral>();
     advance();
-    const std::vector<double> from = deflection_;
+    const std::vector<double> from = deflection_, axial_from = axial_deflection_;
     double way = 1, next2 = 0;
     for (int half = 0;; ++half, way /= 2) {
-      for (std::size_t i = 0; i < deflection_.size(); ++i) deflection_[i] = from[i] + way * step_[i];
+      step_from(from, axial_from, way);
       next2 = balance_all();
       if (next2 < (1 - 0.1 * way) * left2 || half == kMaxHalvings) break;
     }
@@ -350,9 +456,12 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
     const Vec2 offset = run_out.empty() ? Vec2(Vec2::Zero()) : run_out[m];
     const Vec2 was = Vec2(read_[2 * nodes_ * m], read_[2 * nodes_ * m + 1]) - offset,
                is = Vec2(deflection_[2 * nodes_ * m], deflection_[2 * nodes_ * m + 1]) - offset;
-    if (was.norm() < kNothing_mm && is.norm() < kNothing_mm) continue;
-    change2 += (is - was).squaredNorm();
-    size2 += is.squaredNorm();
+    const double axial_was = axial_read_[m], axial_is = axial_deflection_[m];
+    if (was.norm() < kNothing_mm && is.norm() < kNothing_mm && std::abs(axial_was) < kNothing_mm &&
+        std::abs(axial_is) < kNothing_mm)
+      continue;
+    change2 += (is - was).squaredNorm() + (axial_is - axial_was) * (axial_is - axial_was);
+    size2 += is.squaredNorm() + axial_is * axial_is;
     ++count;
   }
   if (count > 0) {
@@ -368,6 +477,8 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
         const std::size_t j = 2 * (m * nodes_ + i) + a;
         row[2 * (i * steps_ + m) + a] = static_cast<float>(read_[j] + share * (deflection_[j] - read_[j]));
       }
+  for (std::size_t m = 0; axial_ && m < steps_; ++m)
+    axial_row.set(m, axial_read_[m] + share * (axial_deflection_[m] - axial_read_[m]));
   return out;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // The bend at which the tool stands still: delta = C F(chip(delta)), tooth passing by tooth passing.
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -14,8 +15,9 @@ namespace camber::deflection {
 /// Solves the equilibrium of one tooth passing for chips that were read once: as the tool bends, the depth of a point
 /// and what the motion allows it change as the reading tells, the latter also with the lean of the deflected envelope,
 /// that is with the deflections of the rotation steps before and after; force follows by its law, with the edge's ramp,
-/// ceasing and beginning contact. Newton's method over all rotation steps at once; the deflection that feeds back is
-/// taken as a straight line over the height (what is left of delta - C F is that of all heights).
+/// ceasing and beginning contact. Newton's method over all rotation steps at once; the lateral deflection that feeds
+/// back is taken as a straight line over the height (what is left of delta - C F is that of all heights), the axial one
+/// is the same at all heights.
 class StaticEquilibrium {
  public:
   StaticEquilibrium(const removal::EnvelopeGrid& envelope, const ToothPassModel& model);
@@ -26,8 +28,8 @@ class StaticEquilibrium {
     bool solved = true;
     int steps = 0;  ///< of Newton's method
   };
-  /// chips: as read with the displacements in `row` ([nodes][steps][2]): deflections, and `run_out` where there is any:
-  /// the axis' offset at each rotation step, mm, or empty. Goes `share` of the way from `row` to the equilibrium
+  /// chips: as read with the displacements in `row` (of a DeflectionTable): deflections, and `run_out` where there is
+  /// any: the axis' offset at each rotation step, mm, or empty. Goes `share` of the way from `row` to the equilibrium
   /// row = run_out + C F; the chips' thickness follows.
   Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const removal::Stamp& stamp,
              double share, std::span<const Vec2> run_out, std::span<float> row);
@@ -40,6 +42,7 @@ class StaticEquilibrium {
   };
   struct Element {
     Vec2 normal, tangential, meridian, deeper;
+    double normal_z, meridian_z, deeper_z;
     double depth_mm, cap_mm;  ///< as read
     double thickness_mm;      ///< the lesser of them, or a tooth's that is not even
     double by_step,
@@ -53,12 +56,22 @@ class StaticEquilibrium {
                       const removal::Stamp& stamp);
   Element element(const EdgeElement& found, const removal::DeflectedChipSample& chip, const Vec3& feed) const;
   void place_deflections();
+  void place_axial();
   Vec2 at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const;
   double lean_mm(const Element& e, std::size_t m) const;
   void balance(std::size_t m);
+  /// What one element adds to the balance of the axial deflection, and to what that changes.
+  struct AxialChange {
+    double own, side;  ///< of the thickness, by the axial deflections of this step and of those beside it
+  };
+  void balance_axial(std::size_t m, double force_z, double slope_z, const std::array<double, 4>& by_own,
+                     const std::array<double, 4>& by_side, const AxialChange& by_axial);
   double balance_all();
+  template <int kUnknowns>
   void solve_coarse();
   void advance();
+  void advance_axial(std::size_t m, std::size_t ahead, std::size_t behind, bool stays);
+  void step_from(const std::vector<double>& from, const std::vector<double>& axial_from, double way);
   void creep(Step& out);
 
   const removal::EnvelopeGrid& envelope_;
@@ -72,6 +85,14 @@ class StaticEquilibrium {
   double max_lean_mm_ = 0;
   bool first_stamp_ = false;
   std::span<const Vec2> run_out_;  ///< of the rotation steps; empty: none
+  bool axial_;                     ///< the tool yields along its axis
+  // [steps]: the axial deflection, as the lateral ones below.
+  std::vector<double> axial_read_, axial_deflection_, axial_moved_, axial_side_, axial_left_, axial_step_;
+  std::vector<double> axial_coarse_;
+  /// [steps][5]: of C F along the axis, by the lateral deflections at the first and last node and by the axial one.
+  std::vector<double> axial_by_own_, axial_by_side_;
+  /// [steps][nodes][2]: of the lateral C F by the axial deflections.
+  std::vector<double> by_own_axial_, by_side_axial_;
   // [steps][nodes][2]:
   std::vector<double> read_, deflection_;
   std::vector<double> moved_, side_;  ///< deflection less the one that was read; of the step ahead less of that behind

@@ -23,7 +23,7 @@ int ToothMarks::instant(std::size_t passing, int point, int steps) const {
 removal::DeflectionTable ToothMarks::bending(const removal::DeflectionTable& deflections, std::size_t from,
                                              std::size_t count, std::size_t passing) const {
   const int pitch = deflections.steps, turn = pitch * teeth_.count();
-  removal::DeflectionTable out(count, turn, deflections.node_height_mm);
+  removal::DeflectionTable out(count, turn, deflections.node_height_mm, deflections.axial);
   const auto last = static_cast<std::ptrdiff_t>(deflections.stamps) - 1;
   for (std::size_t k = 0; k < count; ++k) {
     const auto stamp = static_cast<std::ptrdiff_t>(from + k);
@@ -36,6 +36,9 @@ removal::DeflectionTable ToothMarks::bending(const removal::DeflectionTable& def
         const float* v = row + 2 * (static_cast<int>(n) * pitch + m + later * pitch);
         std::copy_n(v, 2, to + 2 * (static_cast<int>(n) * turn + point));
       }
+      if (out.axial)
+        removal::AxialRow({to + out.lateral_size(), static_cast<std::size_t>(2 * turn)})
+            .set(static_cast<std::size_t>(point), static_cast<double>(deflections.axial_mm(row, m + later * pitch)));
     }
   }
   return out;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "deflection/edge_force.h"
 
@@ -15,13 +16,26 @@ std::vector<double> node_heights(double top_mm, double fluted_length_mm) {
   return out;
 }
 
+namespace {
+
+/// Of tool, holder and axis together. The bar's own stretch is hundredths of a micrometre under a finishing force: it
+/// counts where a spring stands behind it or its stiffness is given, and the tool is rigid along its axis where
+/// neither is.
+double axial_compliance_mm_per_N(const Beam& beam, double axis) {
+  const double springs = beam.axial_compliance_mm_per_N(std::numeric_limits<double>::infinity()) + axis;
+  return springs > 0 ? beam.axial_compliance_mm_per_N(0) + axis : 0;
+}
+
+}  // namespace
+
 ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material,
                                const Beam& beam, std::vector<double> nodes, double edge_ramp_mm, Teeth teeth,
-                               const Vec2& axis_compliance)
+                               const Vec3& axis_compliance)
     : envelope_(envelope),
       material_(material),
       edge_ramp_mm_(edge_ramp_mm),
-      axis_compliance_(axis_compliance),
+      axis_compliance_(axis_compliance.head<2>()),
+      axial_compliance_mm_per_N_(deflection::axial_compliance_mm_per_N(beam, axis_compliance.z())),
       teeth_(std::move(teeth)),
       node_height_mm_(std::move(nodes)) {
   for (int j = 0; j < teeth_.count(); ++j) tooth_step_.push_back(teeth_.offset_steps(j, envelope.steps));
@@ -133,6 +147,10 @@ void ToothPassModel::evaluate(std::span<const removal::ChipSample> chips, std::s
   });
   std::transform(deflection.begin(), deflection.end(), out.deflection_mm.begin(),
                  [](double v) { return static_cast<float>(v); });
+  if (!axial()) return;
+  for (std::size_t m = 0; m < steps; ++m)
+    for (const std::size_t at : {m, m + 1 < steps ? m + 1 : 0})
+      out.deflection_mm.push_back(static_cast<float>(axial_compliance_mm_per_N_ * out.force_N[at].z()));
 }
 
 void ToothPassModel::add_to_turn(std::span<const removal::ChipSample> chips, std::size_t pass, std::size_t passing,

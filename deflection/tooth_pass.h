@@ -25,7 +25,7 @@ struct ToothPass {
   double work_Nmm = 0;               ///< of the spindle over the tooth passing
   double chip_max_mm = 0;            ///< thickest chip
   double chip_area_mm2 = 0;          ///< of the envelope that cuts; the chips' volume over it is the mean thickness
-  std::vector<float> deflection_mm;  ///< [nodes][steps][2], as a row of removal::DeflectionTable
+  std::vector<float> deflection_mm;  ///< as a row of removal::DeflectionTable
 };
 
 /// One turn of the spindle, tooth by tooth. Turned clockwise by angle a from where tooth 1's edge at the tip points
@@ -51,8 +51,13 @@ class ToothPassModel {
  public:
   ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material, const Beam& beam,
                  std::vector<double> node_height_mm, double edge_ramp_mm, Teeth teeth,
-                 const Vec2& axis_compliance_mm_per_N = Vec2::Zero());
+                 const Vec3& axis_compliance_mm_per_N = Vec3::Zero());
 
+  /// The tool yields along its axis.
+  bool axial() const { return axial_compliance_mm_per_N_ > 0; }
+  /// Of the whole tool, machine and all, along its axis to an axial force at the tip. A force higher up stretches less
+  /// of the bar; of a hundred newtons that is hundredths of a micrometre.
+  double axial_compliance_mm_per_N() const { return axial_compliance_mm_per_N_; }
   int steps() const { return envelope_.steps_per_pitch; }
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
   /// `passing` counts tooth passings since the tool began: it tells which tooth stands where, which only matters where
@@ -61,7 +66,7 @@ class ToothPassModel {
                 ToothPass& out) const;
   /// The same of chips in blocks, the instants told at which each edge element enters the material and leaves it;
   /// without feedback.
-  /// fine_mm: takes the deflection, [nodes][steps * kFine][2], a row of removal::DeflectionTable.
+  /// fine_mm: takes the deflection of steps * kFine rotation steps, a row of removal::DeflectionTable.
   void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
                 const Vec3& feed_mm, ToothPass& out, std::span<float> fine_mm) const;
   /// The elements that chips are made by; of chips with negative thickness too.
@@ -106,6 +111,7 @@ class ToothPassModel {
   machine::Material material_;
   double edge_ramp_mm_;
   Vec2 axis_compliance_;  ///< of the machine's x and y axes, mm/N, the same at every height
+  double axial_compliance_mm_per_N_;
   Teeth teeth_;
   std::vector<int> tooth_step_;  ///< rotation steps from tooth 0 to each tooth
   std::vector<double> node_height_mm_;

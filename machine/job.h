@@ -46,7 +46,9 @@ struct Tool {
   bool shear = false;                     ///< deflection by shear as well (Timoshenko)
   double effective_diameter_ratio = 0.8;  ///< bending diameter of the fluted part / diameter
   double youngs_modulus_MPa = 600000;
-  double root_stiffness_N_per_mm = kNoLimit;  ///< lateral, holder and spindle
+  double root_stiffness_N_per_mm = kNoLimit;         ///< lateral, holder and spindle
+  double root_axial_stiffness_N_per_mm = kNoLimit;   ///< along the axis, holder and spindle
+  std::optional<double> axial_stiffness_N_per_mm{};  ///< of the tool itself along its axis; empty: from its geometry
 };
 
 struct Box {

@@ -38,6 +38,8 @@ inline constexpr std::array kToolKeys{
     NumberKey<Tool>{"effective_diameter_ratio", &Tool::effective_diameter_ratio, kRatio},
     NumberKey<Tool>{"youngs_modulus_GPa", &Tool::youngs_modulus_MPa, kPositive, kGigapascals},
     NumberKey<Tool>{"root_stiffness_N_per_um", &Tool::root_stiffness_N_per_mm, kPositiveOrInf, kNewtonsPerMicrometre},
+    NumberKey<Tool>{"root_axial_stiffness_N_per_um", &Tool::root_axial_stiffness_N_per_mm, kPositiveOrInf,
+                    kNewtonsPerMicrometre},
     NumberKey<Tool>{"runout_um", &Tool::runout_mm, kNotNegative, kMicrometres},
     NumberKey<Tool>{"runout_angle_deg", &Tool::runout_angle_rad, kRunoutAngleDeg, kDegrees},
 };

@@ -32,6 +32,8 @@ std::string tool_text(const Tool& tool) {
                           toml_number(h.upper_diameter_mm, kAsIs), toml_number(h.length_mm, kAsIs));
     out += fmt::format("holder_mm = [{}]\n", rows);
   }
+  if (tool.axial_stiffness_N_per_mm)
+    out += toml_line("axial_stiffness_N_per_um", *tool.axial_stiffness_N_per_mm, kNewtonsPerMicrometre);
   if (tool.shear) out += "shear = true\n";
   return out;
 }

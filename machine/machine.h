@@ -82,7 +82,7 @@ struct Axis {
   double feed_forward_percent = 0;
   /// Corner law speed_difference: of this axis; infinite: that of the corner.
   double speed_difference_mm_per_s = kNoLimit;
-  double stiffness_N_per_mm = kNoLimit;  ///< static, tool against work; only across the tool (x, y)
+  double stiffness_N_per_mm = kNoLimit;  ///< static, tool against work, along this axis
   std::array<double, 2> travel_mm{-kNoLimit, kNoLimit};
   bool given = true;  ///< false: the machine file says nothing of it, as if the machine had no such axis
 };

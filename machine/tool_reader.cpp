@@ -98,6 +98,8 @@ void read_holder(TomlTable& table, Tool& tool) {
 
 void read_lengths(TomlTable& table, Tool& tool) {
   tool.flute_length_mm = table.optional_number("flute_length_mm", kPositive);
+  if (const auto stiffness = table.optional_number("axial_stiffness_N_per_um", kPositiveOrInf))
+    tool.axial_stiffness_N_per_mm = N_per_mm_from_N_per_um(*stiffness);
   tool.shank_diameter_mm = table.number("shank_diameter_mm", kPositive, 0);
   tool.shear = table.boolean("shear", false);
   if (tool.flute_length_mm && tool.overhang_mm > 0 && *tool.flute_length_mm > tool.overhang_mm)

@@ -58,6 +58,7 @@ void add_tables(py::module_& module) {
       .add("fz_mean_N", &ForceRow::fz_mean_N)
       .add("dx_um", &ForceRow::dx_um)
       .add("dy_um", &ForceRow::dy_um)
+      .add("dz_um", &ForceRow::dz_um)
       .add("mrr_mm3_per_s", &ForceRow::mrr_mm3_per_s)
       .add("removed_mm3", &ForceRow::removed_mm3)
       .add("torque_max_Nm", &ForceRow::torque_max_Nm)
@@ -77,6 +78,7 @@ void add_tables(py::module_& module) {
       .add("deflection_um", &ErrorPoint::deflection_um)
       .add("contour_um", &ErrorPoint::contour_um)
       .add("total_error_um", &ErrorPoint::total_error_um)
+      .add("model_error_um", &ErrorPoint::model_error_um)
       .add("area_mm2", &ErrorPoint::area_mm2)
       .add("block", &ErrorPoint::block)
       .add("tool", &ErrorPoint::tool);
@@ -178,6 +180,16 @@ void add_predict_and_compensate(py::module_& module) {
       .def_readonly("rms", &ErrorFigures::rms)
       .def_readonly("p95", &ErrorFigures::p95)
       .def_readonly("area_mm2", &ErrorFigures::area_mm2);
+  using camber::TraceComparison;
+  py::class_<TraceComparison>(module, "TraceComparison")
+      .def_readonly("by_line", &TraceComparison::by_line)
+      .def_readonly("samples", &TraceComparison::samples)
+      .def_readonly("period_s", &TraceComparison::period_s)
+      .def_readonly("machine_time_s", &TraceComparison::machine_time_s)
+      .def_readonly("off_path_p95_um", &TraceComparison::off_path_p95_um)
+      .def_readonly("off_path_max_um", &TraceComparison::off_path_max_um)
+      .def_readonly("form_error_um", &TraceComparison::form_error_um)
+      .def_readonly("difference_um", &TraceComparison::difference_um);
   auto predict = result_class<PredictResult>(module, "PredictResult")
                      .def_readonly("machine_time_s", &PredictResult::machine_time_s)
                      .def_readonly("cutting_time_s", &PredictResult::cutting_time_s)
@@ -188,6 +200,7 @@ void add_predict_and_compensate(py::module_& module) {
                      .def_readonly("deflection_um", &PredictResult::deflection_um)
                      .def_readonly("contour_um", &PredictResult::contour_um)
                      .def_readonly("unseen_mm2", &PredictResult::unseen_mm2)
+                     .def_readonly("trace", &PredictResult::trace)
                      .def_readonly("doubts", &PredictResult::doubts);
   add_table(predict, "forces", &PredictResult::forces);
   add_table(predict, "form_error", &PredictResult::form_error);

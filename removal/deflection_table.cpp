@@ -28,8 +28,14 @@ float largest_square(const float* values, std::size_t pairs) {
 
 }  // namespace
 
-double DeflectionTable::largest_mm(std::ptrdiff_t k) const {
-  return std::sqrt(static_cast<double>(largest_square(row(k), row_size() / 2)));
+double DeflectionTable::largest_lateral_mm(std::ptrdiff_t k) const {
+  return std::sqrt(static_cast<double>(largest_square(row(k), lateral_size() / 2)));
+}
+
+double DeflectionTable::largest_axial_mm(std::ptrdiff_t k) const {
+  float largest = 0;
+  for (int m = 0; axial && m < steps; ++m) largest = std::max(largest, std::abs(axial_mm(row(k), m)));
+  return static_cast<double>(largest);
 }
 
 NodeWeight node_weight(const std::vector<double>& nodes, double height) {
@@ -41,7 +47,7 @@ NodeWeight node_weight(const std::vector<double>& nodes, double height) {
   return {lower, lower + 1, static_cast<float>(at - lower)};
 }
 
-Vec2 DeflectionTable::at(const float* row, double height_mm, double step) const {
+Vec3 DeflectionTable::at(const float* row, double height_mm, double step) const {
   const int before = static_cast<int>(step) % steps, after = (before + 1) % steps;
   const double fraction = step - std::floor(step);
   const NodeWeight w = node_weight(node_height_mm, height_mm);
@@ -54,7 +60,10 @@ Vec2 DeflectionTable::at(const float* row, double height_mm, double step) const 
   add(w.lower, after, (1 - w.upper_fraction) * fraction);
   add(w.upper, before, w.upper_fraction * (1 - fraction));
   add(w.upper, after, w.upper_fraction * fraction);
-  return sum;
+  const double z = axial ? (1 - fraction) * static_cast<double>(axial_mm(row, before)) +
+                               fraction * static_cast<double>(axial_mm(row, after))
+                         : 0.0;
+  return {sum.x(), sum.y(), z};
 }
 
 }  // namespace camber::removal

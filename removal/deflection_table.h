@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "base/geometry.h"
@@ -18,39 +19,67 @@ struct NodeWeight {
 };
 NodeWeight node_weight(const std::vector<double>& node_height_mm, double height_mm);
 
-/// Lateral deflections, along x and y of the tool's frame, by stamp, height and rotation step. The edge of any tooth
-/// passes the points of rotation step m at that instant of the tooth passing; between nodes the deflection is linear in
-/// height, beyond the last node it is the last node's. Row 0 belongs to the stamp before the stretch's first.
+/// Deflections in the tool's frame: lateral ones, along x and y, by stamp, height and rotation step, and axial ones,
+/// along z, by stamp and rotation step. The edge of any tooth passes the points of rotation step m at that instant of
+/// the tooth passing; between nodes the lateral deflection is linear in height, beyond the last node it is the last
+/// node's. Row 0 belongs to the stamp before the stretch's first.
 struct DeflectionTable {
   std::size_t stamps = 0;              ///< without row 0
   int steps = 0;                       ///< per pitch
   std::vector<double> node_height_mm;  ///< above the tip, ascending, evenly spaced, the first 0
-  std::vector<float> values;           ///< [stamps + 1][nodes][steps][2], mm
+  bool axial = false;                  ///< rows have axial deflections; else these are 0
+  /// [stamps + 1], of each [nodes][steps][2], mm, then, where they are axial, [steps][2]: the axial deflection of the
+  /// step and that of the next one.
+  std::vector<float> values;
 
   DeflectionTable() = default;
-  DeflectionTable(std::size_t stamp_count, int steps_per_pitch, std::vector<double> heights)
-      : stamps(stamp_count), steps(steps_per_pitch), node_height_mm(std::move(heights)) {
+  DeflectionTable(std::size_t stamp_count, int steps_per_pitch, std::vector<double> heights, bool with_axial = false)
+      : stamps(stamp_count), steps(steps_per_pitch), node_height_mm(std::move(heights)), axial(with_axial) {
     assert(std::ranges::is_sorted(node_height_mm));
     assert(!node_height_mm.empty() && node_height_mm.front() == 0);
     values.assign((stamps + 1) * row_size(), 0.0f);
   }
   std::size_t nodes() const { return node_height_mm.size(); }
-  std::size_t row_size() const { return nodes() * static_cast<std::size_t>(steps) * 2; }
+  std::size_t row_size() const { return lateral_size() + (axial ? static_cast<std::size_t>(steps) * 2 : 0); }
+  /// Of a row, without its axial deflections.
+  std::size_t lateral_size() const { return nodes() * static_cast<std::size_t>(steps) * 2; }
   /// Row of stamp k of the stretch; -1 is the stamp before it.
   float* row(std::ptrdiff_t k) { return values.data() + static_cast<std::size_t>(k + 1) * row_size(); }
   const float* row(std::ptrdiff_t k) const { return values.data() + static_cast<std::size_t>(k + 1) * row_size(); }
-  /// Largest deflection in a row, mm.
-  double largest_mm(std::ptrdiff_t k) const;
+  float axial_mm(const float* of_row, int step) const {
+    return axial ? of_row[lateral_size() + 2 * static_cast<std::size_t>(step)] : 0.0f;
+  }
+  /// Bounds of the deflections in a row, mm; `largest_mm` of their length.
+  double largest_lateral_mm(std::ptrdiff_t k) const;
+  double largest_axial_mm(std::ptrdiff_t k) const;
+  double largest_mm(std::ptrdiff_t k) const {
+    const double lateral = largest_lateral_mm(k);
+    return axial ? std::hypot(lateral, largest_axial_mm(k)) : lateral;
+  }
 
   /// Deflection of one row at a height and a rotation step (with its fraction), linear between nodes and steps.
   /// simd/deflection_lanes.h does the same for many places at once.
-  Vec2 at(const float* row, double height_mm, double step) const;
+  Vec3 at(const float* row, double height_mm, double step) const;
   /// Rotation step, from 0 to `steps`, at which an edge passes the envelope's point at an angle (rad, counter-clockwise
   /// from x) and a height. lag_per_mm: see EnvelopeGrid.
   double step_at(double angle_rad, double height_mm, double lag_per_mm, int flutes) const {
     const double step = (angle_rad - height_mm * lag_per_mm) * steps * flutes / (2 * kPi);
     return step - steps * std::floor(step / steps);
   }
+};
+
+/// The axial deflections of a row, after its lateral ones: of each rotation step its own and the next one's.
+class AxialRow {
+ public:
+  explicit AxialRow(std::span<float> values) : values_(values) {}
+  double at(std::size_t step) const { return static_cast<double>(values_[2 * step]); }
+  void set(std::size_t step, double mm) const {
+    values_[2 * step] = static_cast<float>(mm);
+    values_[(step == 0 ? values_.size() : 2 * step) - 1] = static_cast<float>(mm);
+  }
+
+ private:
+  std::span<float> values_;
 };
 
 }  // namespace camber::removal

@@ -162,7 +162,7 @@ struct DeflectedChipSample {
   ChipSample chip;     ///< its thickness is the smaller of the next two, negative for a point outside the material
   float depth_mm = 0;  ///< of the stock below the point, against the normal
   float cap_mm = 0;    ///< what the motion allows; the largest depth that counts where the depth is less
-  std::array<float, 2> deeper{};  ///< d(depth)/d(deflection), by x and y
+  std::array<float, 3> deeper{};  ///< d(depth)/d(deflection), by x, y and z
 };
 
 /// Engagement of the deflected cutter, stamp by stamp: read() gives the chips that a stamp takes with the deflection it

@@ -62,7 +62,7 @@ void append_row(std::string& out, const ForceRow& r) {
   append_cells(out, 3,
                {r.force_max_N.x(), r.force_max_N.y(), r.force_max_N.z(), r.lateral_max_N, r.force_mean_N.x(),
                 r.force_mean_N.y(), r.force_mean_N.z()});
-  append_cells(out, 2, {r.deflection_um.x(), r.deflection_um.y()});
+  append_cells(out, 2, {r.deflection_um.x(), r.deflection_um.y(), r.deflection_um.z()});
   append_cells(out, 5, {r.mrr_mm3_per_s});
   append_cells(out, 7, {r.removed_mm3});
   append_cells(out, 6, {r.torque_max_Nm, r.torque_mean_Nm});
@@ -98,9 +98,10 @@ void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgra
 void write_forces_csv(const std::string& path, const machine::Job& job, const simulate::SimulatedProgram& program,
                       const simulate::Prediction& prediction) {
   OutputFile file(path);
-  file.stream() << "t_s,block,x_mm,y_mm,z_mm,fx_max_N,fy_max_N,fz_max_N,f_max_N,fx_mean_N,fy_mean_N,fz_mean_N,"
-                   "dx_um,dy_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,"
-                   "specific_energy_MPa\n";
+  file.stream()
+      << "t_s,block,x_mm,y_mm,z_mm,fx_max_N,fy_max_N,fz_max_N,f_max_N,fx_mean_N,fy_mean_N,fz_mean_N,"
+         "dx_um,dy_um,dz_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,"
+         "specific_energy_MPa\n";
   std::string text;
   for_each_force_row(job, program, prediction, [&](const ForceRow& row) {
     append_row(text, row);

@@ -54,7 +54,9 @@ void write_whole_numbers(std::ostream& out, std::string_view attributes, std::si
 
 void write_form_error_csv(const std::string& path, const FormErrorPoints& points) {
   OutputFile file(path);
-  std::string text = "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool\n";
+  const bool traced = points.count > 0 && std::isfinite(points.at(0).model_error_um);
+  std::string text = "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool";
+  text += traced ? ",model_error_um,difference_um\n" : "\n";
   for (std::size_t i = 0; i < points.count; ++i) {
     const FormErrorPoint p = points.at(i);
     append_cells(text, 4, {p.place_mm.x(), p.place_mm.y(), p.place_mm.z()});
@@ -66,6 +68,7 @@ void write_form_error_csv(const std::string& path, const FormErrorPoints& points
       text += ',';
     append_cells(text, 6, {p.area_mm2});
     append_cells(text, 0, {static_cast<double>(p.block), static_cast<double>(p.tool)});
+    if (traced) append_cells(text, 3, {p.model_error_um, p.error_um - p.model_error_um});
     text.back() = '\n';
     if (text.size() < kFlushBytes) continue;
     file.stream() << text;
@@ -94,6 +97,12 @@ void write_form_error_vtp(const std::string& path, const FormErrorPoints& points
   if (with_total)
     write_floats(out, R"(type="Float32" Name="total_error_um")", points,
                  [](const auto& p) { return p.total_error_um; });
+  if (points.count > 0 && std::isfinite(points.at(0).model_error_um)) {
+    write_floats(out, R"(type="Float32" Name="model_error_um")", points,
+                 [](const auto& p) { return p.model_error_um; });
+    write_floats(out, R"(type="Float32" Name="difference_um")", points,
+                 [](const auto& p) { return p.error_um - p.model_error_um; });
+  }
   write_vectors(out, R"(type="Float32" Name="normal" NumberOfComponents="3")", points, &FormErrorPoint::normal);
   write_whole_numbers(out, R"(type="Int32" Name="block")", points.count,
                       [&](std::size_t i) { return points.at(i).block; });

@@ -18,6 +18,7 @@ struct FormErrorPoint {
   double deflection_um() const { return error_um - contour_um; }
   double area_mm2 = 0;                                               ///< that the point stands for
   double total_error_um = std::numeric_limits<double>::quiet_NaN();  ///< against the part's mesh; NaN: no mesh
+  double model_error_um = std::numeric_limits<double>::quiet_NaN();  ///< of a trace: the feed model's; NaN: no trace
   std::uint32_t block = 0;  ///< 1-based line of the program that made the surface here; 0: unknown
   int tool = 0;             ///< whose stamp made it; 0: unknown
 };
@@ -29,7 +30,8 @@ struct FormErrorPoints {
 };
 
 /// Columns x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool; every figure
-/// of the form error can be worked out from them again. total_error_um is empty where there is none.
+/// of the form error can be worked out from them again. total_error_um is empty where there is none. Of a trace
+/// model_error_um,difference_um follow: the feed model's error, and error_um minus that.
 /// Throws InputError [file-unwritable].
 void write_form_error_csv(const std::string& path, const FormErrorPoints& points);
 

@@ -39,7 +39,7 @@ void bars(std::string& out, const std::vector<double>& percent, double most, con
   out += "\"/>\n";
 }
 
-void key(std::string& out, double x, const char* colour, const char* name) {
+void key(std::string& out, double x, const char* colour, const std::string& name) {
   fmt::format_to(std::back_inserter(out), "<rect x=\"{:.0f}\" y=\"8\" width=\"12\" height=\"8\" fill=\"{}\"/>\n", x,
                  colour);
   text(out, x + 17, 16, "start", name);
@@ -60,7 +60,8 @@ std::vector<double> error_histogram(const SurfaceSamples& samples, double Surfac
   return out;
 }
 
-std::string histogram_svg(const SurfaceSamples& samples, bool compared, double limit_um) {
+std::string histogram_svg(const SurfaceSamples& samples, bool compared, double limit_um,
+                          const std::array<std::string, 2>& names) {
   constexpr const char *kGrey = "#9aa5b1", *kBlue = "#1668b8";
   const auto before = error_histogram(samples, &SurfaceSample::error_um, limit_um, kBins);
   const auto after = compared ? error_histogram(samples, &SurfaceSample::error_after_um, limit_um, kBins) : before;
@@ -78,8 +79,8 @@ std::string histogram_svg(const SurfaceSamples& samples, bool compared, double l
   if (compared) {
     bars(out, before, most, kGrey);
     bars(out, after, most, kBlue);
-    key(out, kWidth - 150, kGrey, "before");
-    key(out, kWidth - 70, kBlue, "after");
+    key(out, kWidth - 150, kGrey, names[0]);
+    key(out, kWidth - 70, kBlue, names[1]);
   } else {
     bars(out, before, most, kBlue);
   }

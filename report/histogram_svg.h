@@ -1,5 +1,6 @@
 #pragma once
 // How the form error is spread over the surface, as a picture that needs no script.
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@ namespace camber::report {
 std::vector<double> error_histogram(const SurfaceSamples& samples, double SurfaceSample::*error, double limit_um,
                                     int bins);
 
-/// Bars of the error; with `compared` before in grey and after in blue on one axis.
-std::string histogram_svg(const SurfaceSamples& samples, bool compared, double limit_um);
+/// Bars of the error; with `compared` error_um in grey and error_after_um in blue on one axis, named by `names`.
+std::string histogram_svg(const SurfaceSamples& samples, bool compared, double limit_um,
+                          const std::array<std::string, 2>& names = {"before", "after"});
 
 }  // namespace camber::report

@@ -69,7 +69,7 @@ std::string head_html(const ReportData& data) {
 std::string histogram_html(const ReportData& data, const PageData& page) {
   if (data.surface.empty()) return {};
   return "<div class=\"card\"><h2>How the error is spread</h2>\n" +
-         histogram_svg(data.surface, data.compared, page.scale_um) + "</div>\n";
+         histogram_svg(data.surface, data.compared, page.scale_um, data.names) + "</div>\n";
 }
 
 std::string scripts_html(const PageData& page) {

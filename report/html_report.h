@@ -1,5 +1,6 @@
 #pragma once
 // report.html: one self-contained page that opens without a network. Pictures are drawn by report/web.
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,8 +44,9 @@ struct ReportData {
   std::optional<PageVerdict> verdict;
   std::vector<Figure> figures;  ///< the first four are shown large
   SurfaceSamples surface;
-  bool compared = false;  ///< the surface's error_after_um and block_after count
-  double voxel_mm = 0.1;  ///< of the grid that the surface's points lie on
+  bool compared = false;                                ///< the surface's error_after_um and block_after count
+  std::array<std::string, 2> names{"before", "after"};  ///< of what is compared
+  double voxel_mm = 0.1;                                ///< of the grid that the surface's points lie on
   /// The stock around the machined surface, drawn in grey; on the lines of a grid of stock_cell_mm. Only places and
   /// normals count.
   SurfaceSamples stock;

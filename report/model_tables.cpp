@@ -165,6 +165,10 @@ TextTable tools_table(const Job& job) {
   add("root stiffness, N/µm", [](const Tool& t) {
     return t.root_stiffness_N_per_mm == kAny ? std::string("rigid") : value_text(t.root_stiffness_N_per_mm / 1000);
   });
+  add("root stiffness along the axis, N/µm", [](const Tool& t) {
+    return t.root_axial_stiffness_N_per_mm == kAny ? std::string("rigid")
+                                                   : value_text(t.root_axial_stiffness_N_per_mm / 1000);
+  });
   return table;
 }
 

@@ -158,6 +158,7 @@ PageData page_data(const ReportData& data, const ReportOptions& options) {
   index["scales"] = {page.scale_um, page.scale_after_um};
   if (!data.surface.empty()) index["surface"] = surface_json(data, options, arrays, page);
   if (!data.stock.empty()) index["stock"] = stock_json(data, arrays, page);
+  if (data.compared && data.names[0] != "before") index["names"] = data.names;
   index["runs"] = json::array();
   for (const auto& run : data.path) index["runs"].push_back(run_json(run, options, arrays, page));
   add_programs(data, options, page);

@@ -103,10 +103,31 @@ TextTable limits_table(const machine::Job& job, const compensate::CompensationRe
   return table;
 }
 
+/// The figures of both motions side by side.
+TextTable traced_table(const SimulatedProgram& program, const simulate::Prediction& p, const simulate::TracedRun& t) {
+  TextTable table{
+      "Feed model and trace",
+      {"", "95 %, µm", "rms, µm", "mean, µm", "least, µm", "greatest, µm", "machine time, s"},
+      {},
+      fmt::format("{}: {} samples, {:.4g} ms apart, matched to the program by {}; in the cut the axes were "
+                  "{:.2f} µm or less off the programmed path for 95 % of the samples, {:.2f} µm at most.",
+                  file_name(t.trace), t.samples.size(), 1000 * t.period_s, t.by_line ? "the column line" : "place",
+                  1000 * t.off_path_p95_mm, 1000 * t.off_path_max_mm)};
+  const auto add = [&](const char* name, const removal::ErrorFigures& e, const std::string& time) {
+    table.rows.push_back({name, number_text(e.p95, 2), number_text(e.rms, 2), number_text(e.mean, 2),
+                          number_text(e.min, 2), number_text(e.max, 2), time});
+  };
+  add("feed model", t.predicted.form_error_um, number_text(t.model.feed.time_s, 2));
+  add("trace", p.form_error_um, number_text(program.feed.time_s, 2));
+  add("trace − feed model", t.difference_um, "");
+  return table;
+}
+
 }  // namespace
 
-FormErrorPoints form_error_points(const SimulatedProgram& program, const simulate::Prediction& prediction) {
-  return {prediction.surface.size(), [&program, &prediction](std::size_t i) {
+FormErrorPoints form_error_points(const SimulatedProgram& program, const simulate::Prediction& prediction,
+                                  const simulate::TracedRun* traced) {
+  return {prediction.surface.size(), [&program, &prediction, traced](std::size_t i) {
             const auto& p = prediction.surface[i];
             FormErrorPoint point{.place_mm = p.place_mm,
                                  .normal = p.normal,
@@ -114,6 +135,7 @@ FormErrorPoints form_error_points(const SimulatedProgram& program, const simulat
                                  .contour_um = 1000 * p.contour_mm,
                                  .area_mm2 = p.area_mm2};
             if (!prediction.total_error_mm.empty()) point.total_error_um = 1000 * prediction.total_error_mm[i];
+            if (traced) point.model_error_um = 1000 * traced->predicted.surface[i].error_mm;
             if (p.machined_stamp >= 0) {
               const auto stamp = static_cast<std::size_t>(p.machined_stamp);
               const nc::Move& move = program.moves.moves[program.path.stamps[stamp].move];
@@ -153,6 +175,32 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
   add_texts(data, job, diagnostics, unsettled_sentence(program, p));
   for (std::string& sentence : simulate::doubts(job, program, p)) data.warnings.push_back(std::move(sentence));
   return data;
+}
+
+void add_traced(ReportData& data, const SimulatedProgram& program, const simulate::Prediction& p,
+                const simulate::TracedRun& t, std::vector<PathRow> model_rows) {
+  data.title += " where a trace measured the axes";
+  data.names = {"feed model", "trace"};
+  data.compared = true;
+  const auto line_of_model = [&program, &t](std::int32_t stamp) {
+    if (stamp < 0 || static_cast<std::size_t>(stamp) >= t.model.path.stamps.size()) return std::uint32_t{0};
+    return program.moves.moves[t.model.path.stamps[static_cast<std::size_t>(stamp)].move].block + 1;
+  };
+  data.surface = {p.surface.size(), [&p, &t, &program, line_of_model](std::size_t i) {
+                    const auto& model = t.predicted.surface[i];
+                    SurfaceSample sample = sample_of(p.surface[i], program);
+                    sample.error_after_um = sample.error_um;
+                    sample.block_after = sample.block;
+                    sample.error_um = 1000 * model.error_mm;
+                    sample.contour_um = 1000 * model.contour_mm;
+                    sample.block = line_of_model(model.machined_stamp);
+                    return sample;
+                  }};
+  data.path.back().name = data.names[1];
+  add_loads(model_rows, t.model.path, t.predicted.cut.loads);
+  add_errors(model_rows, t.model.path, t.predicted.surface);
+  data.path.insert(data.path.begin(), {data.names[0], program.text.source.text(), std::move(model_rows)});
+  data.tables.insert(data.tables.begin(), traced_table(program, p, t));
 }
 
 ReportData compensate_report(const machine::Job& job, const compensate::CompensationResult& c, CompensatedRun before,

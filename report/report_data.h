@@ -10,11 +10,13 @@
 #include "report/form_error.h"
 #include "report/html_report.h"
 #include "simulate/predict.h"
+#include "simulate/traced.h"
 
 namespace camber::report {
 
-/// Both must outlive what comes back.
-FormErrorPoints form_error_points(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction);
+/// All must outlive what comes back. `traced`: of a prediction at measured positions.
+FormErrorPoints form_error_points(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
+                                  const simulate::TracedRun* traced = nullptr);
 
 /// Crossings of the stock that a page draws in grey: about a fifteenth of a megabyte.
 constexpr std::size_t kMaxStockCrossings = 12000;
@@ -23,6 +25,11 @@ constexpr std::size_t kMaxStockCrossings = 12000;
 ReportData predict_report(const machine::Job& job, const simulate::SimulatedProgram& program,
                           const simulate::Prediction& prediction, const removal::StockShape& stock,
                           std::vector<PathRow> rows, const Diagnostics& diagnostics);
+
+/// Makes the page of a prediction at measured positions one of two maps, the feed model's and the trace's, and their
+/// difference. `model_rows`: along the feed model's motion. All must outlive `data`.
+void add_traced(ReportData& data, const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
+                const simulate::TracedRun& traced, std::vector<PathRow> model_rows);
 
 /// One of the two programs of a compensation.
 struct CompensatedRun {

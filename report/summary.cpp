@@ -182,7 +182,33 @@ double simulated_time_s(std::span<const removal::Stamp> stamps) {
 
 }  // namespace
 
-std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s) {
+namespace {
+
+ordered_json traced_json(const simulate::TracedRun& t) {
+  return {{"file", t.trace},
+          {"matched_by", t.by_line ? "line" : "place"},
+          {"samples", t.samples.size()},
+          {"period_s", t.period_s},
+          {"off_path_um", {{"p95", 1000 * t.off_path_p95_mm}, {"max", 1000 * t.off_path_max_mm}}},
+          {"model",
+           {{"machine_time_s", t.model.feed.time_s},
+            {"force_N", {{"max", largest_force_N(t.predicted)}}},
+            {"form_error_um", figures_json(t.predicted.form_error_um)},
+            {"deflection_um", figures_json(t.predicted.deflection_um)},
+            {"contour_um", figures_json(t.predicted.contour_um)}}},
+          {"difference_um", figures_json(t.difference_um)}};
+}
+
+std::string traced_text(const simulate::TracedRun& t) {
+  return fmt::format("{}\n{}\nthe feed model takes {:.1f} s; {} samples of the trace matched by {}\n",
+                     figures_row("feed model", t.predicted.form_error_um), figures_row("difference", t.difference_um),
+                     t.model.feed.time_s, t.samples.size(), t.by_line ? "line" : "place");
+}
+
+}  // namespace
+
+std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s,
+                         const simulate::TracedRun* traced) {
   ordered_json j;
   j["schema_version"] = kSchemaVersion;
   j["machine_time_s"] = program.feed.time_s;
@@ -212,11 +238,13 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
   for (const Reason reason : {Reason::pulled_in, Reason::pushed_out, Reason::swings})
     if (const auto lines = unsettled_lines(program, p, reason); !lines.empty())
       j["static"]["unsettled_reasons"].push_back({{"reason", name(reason)}, {"lines", lines}});
+  if (traced) j["trace"] = traced_json(*traced);
   if (simulate::beyond_model(p)) leave_out_figures(program, p, j);
   return j.dump(2) + "\n";
 }
 
-std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s) {
+std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s,
+                         const simulate::TracedRun* traced) {
   std::string out = fmt::format("machine time {:.1f} s, of it cutting {:.1f} s; computed in {:.1f} s\n",
                                 program.feed.time_s, program.feed.cutting_time_s, compute_s);
   const SpindleFigures s = spindle_figures(program, p);
@@ -233,6 +261,7 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
                  figures_row(" deflection", p.deflection_um), figures_row(" contour", p.contour_um));
   if (!p.total_error_mm.empty())
     fmt::format_to(std::back_inserter(out), "{}\n", figures_row("against part", total_error(p)));
+  if (traced) out += traced_text(*traced);
   return out + region_text({p.border_mm2, p.not_judged_mm2, p.between});
 }
 

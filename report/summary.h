@@ -5,6 +5,7 @@
 #include "compensate/compensate.h"
 #include "compensate/verify.h"
 #include "simulate/predict.h"
+#include "simulate/traced.h"
 
 namespace camber::report {
 
@@ -12,8 +13,9 @@ namespace camber::report {
 /// before, they were against the undeflected sweep as the machine runs it, which is deflection_um now.
 inline constexpr int kSchemaVersion = 2;
 
+/// `traced`: of a prediction at measured positions, else null.
 std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
-                         double compute_s);
+                         double compute_s, const simulate::TracedRun* traced = nullptr);
 std::string compensate_json(const compensate::CompensationResult& result, const machine::CompensationSettings& asked,
                             double compute_s);
 
@@ -22,7 +24,7 @@ std::string verify_json(const compensate::Verification& verification, const mach
 
 /// The same for a terminal, within 80 columns.
 std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
-                         double compute_s);
+                         double compute_s, const simulate::TracedRun* traced = nullptr);
 std::string compensate_text(const compensate::CompensationResult& result, double compute_s);
 
 /// Of a nominal surface, what is not judged (simulate/region.h).

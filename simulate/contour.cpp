@@ -39,6 +39,7 @@ std::vector<removal::SurfacePoint> mark_contour(const machine::Job& job, const r
                   static_cast<std::int32_t>(run.from));
   target.unseen_mm2 = map.unseen_mm2();
   std::vector<removal::SurfacePoint> points = map.take();
+  target.contour_mm.clear();
   target.contour_mm.reserve(points.size());
   for (const auto& p : points) target.contour_mm.push_back(static_cast<float>(p.error_mm));
   return points;

@@ -59,7 +59,7 @@ EnvelopeGrid sampled_envelope(const Stock& stock, const machine::Tool& tool, dou
                                 options.rotation_step_rad, stock.voxel_mm());
 }
 
-Vec2 deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
+Vec3 deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
                    const Contact& c) {
   const double step = deflections.step_at(c.angle_rad, c.height_mm, envelope.lag_per_mm, envelope.flutes);
   return deflections.at(row, c.height_mm, step);
@@ -114,7 +114,8 @@ class Cutter {
     const std::span<const Stamp> stamps = all.subspan(from, count);
     // Rigid: every row is written anew, and a hole's are not read.
     if (!rigid_ || deflections_.stamps != stamps.size())
-      deflections_ = DeflectionTable(stamps.size(), (rigid_ ? kFine : 1) * model_.steps(), model_.node_height_mm());
+      deflections_ = DeflectionTable(stamps.size(), (rigid_ ? kFine : 1) * model_.steps(), model_.node_height_mm(),
+                                     model_.axial());
     DeflectionTable& deflections = deflections_;
     if (!last_row_.empty()) std::copy(last_row_.begin(), last_row_.end(), deflections.row(-1));
     std::vector<StampLoad> loads(stamps.size());
@@ -193,8 +194,10 @@ class Cutter {
     for (std::size_t k = 0; k < stamps.size(); ++k) {
       const float* tip = deflections.row(static_cast<std::ptrdiff_t>(k));
       float largest = 0;
-      for (int i = 0; i < 2 * deflections.steps; i += 2)
-        largest = std::max(largest, tip[i] * tip[i] + tip[i + 1] * tip[i + 1]);
+      for (int m = 0; m < deflections.steps; ++m) {
+        const float x = tip[2 * m], y = tip[2 * m + 1], z = deflections.axial_mm(tip, m);
+        largest = std::max(largest, x * x + y * y + z * z);
+      }
       const double deflection = std::sqrt(static_cast<double>(largest)), limit = deflection_limit_mm(stamps[k]);
       result.deflection_max_mm = std::max(result.deflection_max_mm, deflection);
       if (deflection <= limit) continue;

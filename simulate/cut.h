@@ -20,7 +20,7 @@ struct StampLoad {
   Vec3 force_max_N = Vec3::Zero();                 ///< per component the signed value of largest magnitude
   double lateral_max_N = 0;                        ///< largest sqrt(Fx^2 + Fy^2)
   Vec3 force_mean_N = Vec3::Zero();                ///< over the tooth passing
-  Vec2 contact_deflection_mm = Vec2::Zero();       ///< at the contact's height as an edge passes it
+  Vec3 contact_deflection_mm = Vec3::Zero();       ///< at the contact's height as an edge passes it
   double chip_mm3 = 0;                             ///< volume of the chips
   double torque_max_Nmm = 0, torque_mean_Nmm = 0;  ///< over the tooth passing
   double work_Nmm = 0;                             ///< of the spindle over the tooth passing
@@ -49,7 +49,7 @@ struct CutOptions {
   double edge_ramp_mm = 0.002;              ///< static only, see edge_force
   double settle_um = 0.1;                   ///< see SettleOptions
   double settle_fraction = 0.01;
-  Vec2 axis_compliance_mm_per_N = Vec2::Zero();  ///< of the machine's x and y axes
+  Vec3 axis_compliance_mm_per_N = Vec3::Zero();  ///< of the machine's axes
   bool drilling = false;                         ///< straight down: see simulate/holes.h; with rigid coupling
   std::function<void(double)> progress;          ///< share done, 0 to 1
   const removal::Stock* blank = nullptr;   ///< the stock as it is before, where somebody keeps it anyway; saves a copy

@@ -119,6 +119,17 @@ SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmo
   return out;
 }
 
+Motion motion_at(const SimulatedProgram& program, const Job& job, std::span<const feedmodel::TimedSample> samples) {
+  removal::StampBuilder builder(program.moves, job.tools, program.selected, program.holes);
+  builder.add(samples);
+  return {builder.take(), {0, 0, program.feed.blocks}};
+}
+
+void exchange(SimulatedProgram& program, Motion& motion) {
+  std::swap(program.path, motion.path);
+  std::swap(program.feed, motion.feed);
+}
+
 namespace {
 
 Places places_of(const Job& job, const SimulatedProgram& program, const removal::Stock& blank) {
@@ -201,7 +212,8 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
     cut_options.surface = &map;
     cut_options.coupling = job.simulation.coupling;
     cut_options.axis_compliance_mm_per_N = {1 / job.machine.axis[0].stiffness_N_per_mm,
-                                            1 / job.machine.axis[1].stiffness_N_per_mm};
+                                            1 / job.machine.axis[1].stiffness_N_per_mm,
+                                            1 / job.machine.axis[2].stiffness_N_per_mm};
     if (from == program.path.runs.front().from) cut_options.blank = &target.blank;
     cut_options.envelope_step_mm = envelope_step_mm(job, tool);
     cut_options.rotation_step_rad = job.simulation.rotation_step_rad;

@@ -34,6 +34,19 @@ struct SimulatedProgram {
 SimulatedProgram simulate_motion(SourceText source, const machine::Job& job, const feedmodel::SampleSink& samples,
                                  Diagnostics& diagnostics);
 
+/// A program's motion.
+struct Motion {
+  removal::StampPath path;
+  feedmodel::FeedSummary feed;
+};
+
+/// Stamps at the positions of `samples`, in time order, each on a move of the program. Motion::feed keeps its blocks
+/// alone.
+Motion motion_at(const SimulatedProgram& program, const machine::Job& job,
+                 std::span<const feedmodel::TimedSample> samples);
+/// Gives the program another motion, and `motion` the one that it had.
+void exchange(SimulatedProgram& program, Motion& motion);
+
 /// A place on a program's moves.
 struct PathShare {
   std::uint32_t move = 0;

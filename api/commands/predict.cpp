@@ -7,6 +7,9 @@
 
 #include "base/freed_memory.h"
 #include "base/output_file.h"
+#include "calib/column_map.h"
+#include "calib/trace.h"
+#include "calib/traced_motion.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
 #include "report/forces_at_csv.h"
@@ -22,24 +25,68 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Times the program once more to write feed.csv, a sample a period.
-std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& program, const machine::Job& job,
-                                        const std::string& path) {
+/// Times the program once more to write feed.csv, a sample a period; of a trace its own samples.
+std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& program, const simulate::TracedRun* traced,
+                                        const machine::Job& job, const std::string& path) {
   feedmodel::FeedCsv csv(program.moves, path);
   report::PathCollector collector(program.moves);
-  feedmodel::predict_feed(program.moves, job.machine, [&](std::span<const feedmodel::TimedSample> samples) {
+  const auto take = [&](std::span<const feedmodel::TimedSample> samples) {
     csv.write(samples);
     collector.add(samples);
-  });
+  };
+  traced ? take(traced->samples) : static_cast<void>(feedmodel::predict_feed(program.moves, job.machine, take));
   csv.commit();
   return collector.take();
 }
 
+std::vector<report::PathRow> model_rows(const simulate::SimulatedProgram& program, const machine::Job& job) {
+  report::PathCollector collector(program.moves);
+  feedmodel::predict_feed(program.moves, job.machine,
+                          [&](std::span<const feedmodel::TimedSample> samples) { collector.add(samples); });
+  return collector.take();
+}
+
+/// The trace on the program's moves. Its gaps matter in the cut alone, and are errors there.
+calib::TracedMotion read_motion(const simulate::SimulatedProgram& program, const PredictRequest& request,
+                                Diagnostics& diagnostics) {
+  Diagnostics found;
+  const calib::ServoTrace trace =
+      request.columns.empty()
+          ? calib::read_trace(request.trace, found)
+          : calib::read_mapped_trace(request.trace, calib::read_column_map(request.columns, found), found);
+  for (const Diagnostic& d : found.all())
+    if (d.check != "trace-gap") diagnostics.add(d);
+  std::vector<bool> cut = program.selected;
+  for (std::size_t i = 0; i < program.holes.size(); ++i) cut[i] = cut[i] || removal::makes_hole(program.holes[i]);
+  return calib::traced_motion(trace, program.text, program.moves, cut, diagnostics);
+}
+
+/// Gives the program the measured motion; its own goes to the result.
+simulate::TracedRun exchange_motion(const machine::Job& job, simulate::SimulatedProgram& program,
+                                    const std::string& trace, calib::TracedMotion measured) {
+  simulate::TracedRun out{.trace = trace,
+                          .by_line = measured.by_line,
+                          .period_s = measured.period_s,
+                          .off_path_p95_mm = measured.off_path_p95_mm,
+                          .off_path_max_mm = measured.off_path_max_mm,
+                          .samples = std::move(measured.samples),
+                          .model = {},
+                          .predicted = {},
+                          .difference_um = {}};
+  out.model = simulate::motion_at(program, job, out.samples);
+  out.model.feed.time_s = measured.time_s;
+  out.model.feed.cutting_time_s = measured.cutting_time_s;
+  simulate::exchange(program, out.model);
+  return out;
+}
+
 /// What the folder holds but summary.json, side by side. The machined stock is given up once it is saved.
-void write_files(const machine::Job& job, const simulate::SimulatedProgram& program, simulate::Prediction& prediction,
+void write_files(const machine::Job& job, const PreparedJob& prepared, simulate::Prediction& prediction,
                  std::size_t forces_at, const fs::path& folder, const Diagnostics& diagnostics) {
+  const simulate::SimulatedProgram& program = prepared.setup.program;
+  const simulate::TracedRun* traced = prepared.traced_run();
   const removal::StockShape stock = removal::stock_shape(*prediction.machined, report::kMaxStockCrossings);
-  const report::FormErrorPoints points = report::form_error_points(program, prediction);
+  const report::FormErrorPoints points = report::form_error_points(program, prediction, traced);
   tbb::task_group others;
   others.run([&] {
     prediction.machined->save(folder / "stock.vdb");
@@ -54,9 +101,10 @@ void write_files(const machine::Job& job, const simulate::SimulatedProgram& prog
   });
   others.run([&] { report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95); });
   others.run_and_wait([&] {
-    auto feed = write_feed(program, job, folder / "feed.csv");
-    report::write_html_report(folder / "report.html",
-                              report::predict_report(job, program, prediction, stock, std::move(feed), diagnostics));
+    auto feed = write_feed(program, traced, job, folder / "feed.csv");
+    report::ReportData page = report::predict_report(job, program, prediction, stock, std::move(feed), diagnostics);
+    if (traced) report::add_traced(page, program, prediction, *traced, model_rows(program, job));
+    report::write_html_report(folder / "report.html", page);
   });
 }
 
@@ -67,11 +115,13 @@ void show(const PredictRequest& request, const std::string& what, std::optional<
 }  // namespace
 
 PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diagnostics& diagnostics) {
+  std::optional<calib::TracedMotion> measured;
   const auto check = [&](const simulate::SimulatedProgram& given) {
     simulate::check_program(job, given, diagnostics);
     if (!request.folder.empty())
       feedmodel::check_feed_csv_size(given.moves, job.machine, request.folder + "/feed.csv", diagnostics);
     diagnostics.throw_if_errors();
+    if (!request.trace.empty()) measured = read_motion(given, request, diagnostics);
     show(request, "cutting as the target");
   };
   Diagnostics of_original;  // a program like the job's: what is to be said of it, the job's own says too
@@ -81,10 +131,11 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   out.setup.original.reset();
   const simulate::SimulatedProgram& program = out.setup.program;
   feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
-  if (request.forces_at > 0)
-    out.options.turn_from = simulate::turn_at_line(program, job, request.forces_at, diagnostics);
   show(request, "looking for collisions");
   simulate::check_clearance(job, out.setup, diagnostics);
+  if (measured) out.traced = exchange_motion(job, out.setup.program, request.trace, *std::move(measured));
+  if (request.forces_at > 0)
+    out.options.turn_from = simulate::turn_at_line(program, job, request.forces_at, diagnostics);
   return out;
 }
 
@@ -97,17 +148,19 @@ simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prep
     setup.target.surface.clear();
     return_freed_memory();
   };
-  auto prediction = simulate::predict(job, setup.target, setup.program, prepared.options);
+  auto prediction = prepared.traced
+                        ? simulate::predict_traced(job, setup.target, setup.program, *prepared.traced, prepared.options)
+                        : simulate::predict(job, setup.target, setup.program, prepared.options);
   setup.target.blank.clear();  // nothing reads it any more, and the files need room
   simulate::check_spindle_power(job.machine, setup.program, prediction.cut.loads, of_cut);
   return prediction;
 }
 
-void write_prediction(const machine::Job& job, const simulate::SimulatedProgram& program,
-                      simulate::Prediction& prediction, const PredictRequest& request, const std::string& summary,
-                      const Diagnostics& diagnostics, Diagnostics& failed) {
+void write_prediction(const machine::Job& job, const PreparedJob& prepared, simulate::Prediction& prediction,
+                      const PredictRequest& request, const std::string& summary, const Diagnostics& diagnostics,
+                      Diagnostics& failed) {
   const fs::path folder = request.folder;
-  try_to_write([&] { write_files(job, program, prediction, request.forces_at, folder, diagnostics); }, failed);
+  try_to_write([&] { write_files(job, prepared, prediction, request.forces_at, folder, diagnostics); }, failed);
   // The last: where it is new, so is all beside it.
   if (!failed.has_errors()) try_to_write([&] { write_file(folder / "summary.json", summary); }, failed);
 }

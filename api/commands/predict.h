@@ -8,6 +8,7 @@
 #include "base/diagnostics.h"
 #include "machine/job.h"
 #include "simulate/setup.h"
+#include "simulate/traced.h"
 
 namespace camber::api {
 
@@ -17,12 +18,18 @@ using StepProgress = std::function<void(const std::string& what, std::optional<d
 struct PredictRequest {
   std::string folder;         ///< for the files; empty: none
   std::size_t forces_at = 0;  ///< line whose forces are kept over one turn; 0: none
+  std::string trace{};        ///< servo trace at whose positions is cut; empty: the feed model's
+  std::string columns{};      ///< column map of the trace; empty: its header names columns as Camber does
   StepProgress progress;
 };
 
+/// Of a prediction from a trace, `setup.program` has the measured motion and `traced` the feed model's.
 struct PreparedJob {
   simulate::Setup setup;
   simulate::PredictOptions options;
+  std::optional<simulate::TracedRun> traced{};
+
+  const simulate::TracedRun* traced_run() const { return traced ? &*traced : nullptr; }
 };
 
 /// All that comes before the long work; what it found should be shown now. Throws InputError.
@@ -34,9 +41,9 @@ simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prep
 
 /// Every file of the folder, summary.json last, and `json` where a file is named. Whatever cannot be written goes to
 /// `failed`. The machined stock is given up once it is saved.
-void write_prediction(const machine::Job& job, const simulate::SimulatedProgram& program,
-                      simulate::Prediction& prediction, const PredictRequest& request, const std::string& summary,
-                      const Diagnostics& diagnostics, Diagnostics& failed);
+void write_prediction(const machine::Job& job, const PreparedJob& prepared, simulate::Prediction& prediction,
+                      const PredictRequest& request, const std::string& summary, const Diagnostics& diagnostics,
+                      Diagnostics& failed);
 
 /// A sentence for each reason why the figures are not to be relied on; empty: none.
 std::vector<std::string> doubts_of(const machine::Job& job, const simulate::SimulatedProgram& program,

@@ -2,6 +2,7 @@
 // Cutting force, deflection and form error of a job.
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct ForceRow {
   double fx_max_N = 0, fy_max_N = 0, fz_max_N = 0;  ///< signed values of largest magnitude
   double f_max_N = 0;                               ///< largest lateral force
   double fx_mean_N = 0, fy_mean_N = 0, fz_mean_N = 0;
-  double dx_um = 0, dy_um = 0;  ///< deflection at the contact's height as an edge passes the contact
+  double dx_um = 0, dy_um = 0, dz_um = 0;  ///< deflection at the contact's height as an edge passes the contact
   double mrr_mm3_per_s = 0, removed_mm3 = 0;
   double torque_max_Nm = 0, torque_mean_Nm = 0, power_W = 0;
   double h_max_mm = 0, h_mean_mm = 0;  ///< uncut chip thickness
@@ -41,6 +42,7 @@ struct ErrorPoint {
   double deflection_um = 0;   ///< of it, by bending
   double contour_um = 0;      ///< of it, by servo lag and corner rounding
   double total_error_um = 0;  ///< against the part's mesh; NaN without one
+  double model_error_um = 0;  ///< with PredictOptions::trace: the feed model's error_um; else NaN
   double area_mm2 = 0;        ///< that the point stands for
   std::int64_t block = 0;     ///< 1-based line of the program that made the surface here; 0: unknown
   std::int64_t tool = 0;      ///< 0: unknown
@@ -50,6 +52,19 @@ struct PredictOptions {
   bool feed = false;            ///< also fill PredictResult::feed
   std::string output_folder{};  ///< write the files that `camber predict` writes here; empty: none
   std::size_t forces_at = 0;    ///< with output_folder: line whose forces are written over one turn; 0: none
+  /// Servo trace of the job's program: cuts where it measured the axes, not where the feed model has them. Empty: none.
+  std::string trace{};
+  std::string columns{};  ///< column map of the trace, as of `camber fit-feed --columns`; empty: none
+};
+
+/// Of PredictOptions::trace: what the feed model predicts beside it.
+struct TraceComparison {
+  bool by_line = false;  ///< samples were matched by the line column; else by place
+  std::int64_t samples = 0;
+  double period_s = 0;
+  double machine_time_s = 0;                        ///< by the feed model; PredictResult has the trace's
+  double off_path_p95_um = 0, off_path_max_um = 0;  ///< distance of the axes from the programmed path in the cut
+  ErrorFigures form_error_um{}, difference_um{};    ///< the feed model's; the trace's minus the feed model's
 };
 
 struct PredictResult {
@@ -58,6 +73,7 @@ struct PredictResult {
   double chips_mm3 = 0, stock_mm3 = 0;  ///< removed, by the chips and by the stock
   ErrorFigures form_error_um{}, deflection_um{}, contour_um{};
   double unseen_mm2 = 0;  ///< of the nominal surface, without a point
+  std::optional<TraceComparison> trace{};
   std::vector<ForceRow> forces{};
   std::vector<ErrorPoint> form_error{};
   std::vector<FeedPoint> feed{};          ///< empty unless asked for

@@ -51,6 +51,7 @@ struct DeflectedEngager::Impl {
   BendMemory memory{};
   double removed_mm3 = 0;               ///< from tiles that were given back since the last commit
   double max_deflection_mm = 0;         ///< of all stamps that were cut
+  double max_axial_mm = 0;              ///< the same along the axis
   std::vector<std::int32_t> patches{};  ///< that may take a chip
   std::vector<std::vector<DeflectedChipSample>> chips_of_group{};
   tbb::enumerable_thread_specific<ChipReader::Buffers> buffers{};
@@ -64,6 +65,7 @@ void DeflectedEngager::Impl::cut(std::size_t t, std::size_t k, const StampDeflec
   const Stamp& stamp = stamps[k];
   const double voxel = stock.voxel_mm(), band = stock.band_mm();
   if (tile.cover.all_air()) return;
+  tile.cover.allow_axial(max_axial_mm);
   if (tile_distance_mm(arena.index(t), voxel, envelope.shape, stamp.pose.tip_mm) > band + deflection.largest_mm) return;
   if (tile.cut &&
       !tile.cover.changeable_after(tile.last_tip_mm, tile.last_deflection_mm, stamp.pose.tip_mm, deflection.largest_mm))
@@ -126,6 +128,7 @@ void DeflectedEngager::cut(std::size_t k) {
   const StampDeflection deflection = StampDeflections(m.envelope, *m.deflections).of(static_cast<std::ptrdiff_t>(k));
   m.memory.add(m.deflections->row(static_cast<std::ptrdiff_t>(k)));
   m.max_deflection_mm = std::max(m.max_deflection_mm, deflection.largest_mm);
+  m.max_axial_mm = std::max(m.max_axial_mm, deflection.axial_mm);
   const auto reached = m.arena.reached_by(k);
   tbb::parallel_for(std::size_t{0}, reached.size(),
                     [&](std::size_t i) { m.cut(static_cast<std::size_t>(reached[i]), k, deflection); });

@@ -15,6 +15,13 @@ class RingDeflections {
     const Vec2 lower = node(w.lower, step);
     return lower + static_cast<double>(w.upper_fraction) * (node(w.upper, step) - lower);
   }
+  /// Axial, by a rotation step.
+  double axial_by_step(int step) const {
+    const int last = deflections_.steps - 1;
+    const float ahead = deflections_.axial_mm(row_, step == last ? 0 : step + 1);
+    const float behind = deflections_.axial_mm(row_, step == 0 ? last : step - 1);
+    return static_cast<double>(ahead - behind) / 2;
+  }
   /// By a rotation step.
   Vec2 by_step(const NodeWeight& w, int step) const {
     const int last = deflections_.steps - 1;
@@ -55,6 +62,8 @@ double swept_chip_volume_mm3(const EnvelopeGrid& e, std::span<const ChipSample> 
       const Vec2 by_angle = deflection.by_step(w, step) / turn;
       const Vec2 by_height = deflection.by_height(w, step) - e.lag_per_mm * by_angle;
       wider = by_angle.dot(around) / r + static_cast<double>(ring.sine * ring.cosine) * by_height.dot(out);
+      const double axial_by_height = -e.lag_per_mm * deflection.axial_by_step(step) / turn;
+      wider += static_cast<double>(ring.sine * ring.sine) * axial_by_height;
       wider = std::clamp(wider, -kMax, kMax);
     }
     volume += (h - 0.5 * (k1 + k2) * h * h + k1 * k2 * h * h * h / 3) * (1 + wider) * c.width_fraction() *

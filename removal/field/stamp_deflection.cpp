@@ -59,7 +59,7 @@ bool all_zero(const float* values, int count) {
 }  // namespace
 
 StampDeflection StampDeflections::of(std::ptrdiff_t stamp) const {
-  StampDeflection deflection{deflections_.row(stamp), 0, {}};
+  StampDeflection deflection{deflections_.row(stamp), 0, {}, deflections_.largest_axial_mm(stamp)};
   float largest2 = 0;
   const auto half_sector = static_cast<float>(kPi / StampDeflection::kSectors);
   static const SectorTable table;
@@ -91,6 +91,10 @@ StampDeflection StampDeflections::of(std::ptrdiff_t stamp) const {
     of_sector = std::max(of_sector, outward[o]);
   }
   deflection.largest_mm = std::sqrt(static_cast<double>(largest2));
+  if (deflection.axial_mm > 0) {
+    for (float& outwards : deflection.outward_mm) outwards += static_cast<float>(deflection.axial_mm);
+    deflection.largest_mm = std::hypot(deflection.largest_mm, deflection.axial_mm);
+  }
   return deflection;
 }
 

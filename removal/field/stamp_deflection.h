@@ -17,6 +17,7 @@ struct StampDeflection {
   double largest_mm = 0;  ///< bounds the length of every deflection in the row
   /// By the direction from the axis, sector 0 from -pi: bounds how far a deflection moves the envelope outwards there.
   std::array<float, kSectors> outward_mm{};
+  double axial_mm = 0;  ///< bounds their axial parts, which count in both of the bounds above
 };
 
 /// Bends of the stamps of one table.

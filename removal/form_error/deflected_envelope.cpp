@@ -57,8 +57,7 @@ double DeflectedEnvelope::envelope_height_mm(const Vec3& p) const {
 Vec3 DeflectedEnvelope::deflection_at(const Vec3& in_tool) const {
   const double height = envelope_height_mm(in_tool);
   const double step = deflections_.step_at(std::atan2(in_tool.y(), in_tool.x()), height, e_.lag_per_mm, e_.flutes);
-  const Vec2 lateral = deflections_.at(deflection_.row, height, step);
-  return {lateral.x(), lateral.y(), 0};
+  return deflections_.at(deflection_.row, height, step);
 }
 
 }  // namespace camber::removal

@@ -174,7 +174,7 @@ class UprightMarkQueue {
   UprightMarkQueue(const EnvelopeGrid& envelope, const DeflectionTable& deflections)
       : first_row_(deflections.values.data()),
         tool_{{first_row_, nullptr, static_cast<int>(deflections.nodes()), deflections.steps,
-               deflections.nodes() > 1 ? static_cast<float>(deflections.node_height_mm[1]) : 1.0f},
+               deflections.nodes() > 1 ? static_cast<float>(deflections.node_height_mm[1]) : 1.0f, deflections.axial},
               static_cast<float>(envelope.shape.bottom_length_mm()),
               static_cast<float>(envelope.shape.corner_radius_mm),
               static_cast<float>(envelope.lag_per_mm),

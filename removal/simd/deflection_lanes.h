@@ -23,7 +23,7 @@ struct DeflectionLanes {
   using I = xsimd::batch<std::int32_t, A>;
 
   struct Deflection {
-    F x, y;
+    F x, y, z = F(0.0f);
   };
   static I to_int(const F& f) { return xsimd::batch_cast<std::int32_t>(f); }
   static F to_float(const I& i) { return xsimd::batch_cast<float>(i); }
@@ -72,7 +72,14 @@ struct DeflectionLanes {
                      s11 = at(rows.now, high, m1);
     const F one(1.0f), w00 = (one - fn) * (one - fm), w01 = (one - fn) * fm, w10 = fn * (one - fm), w11 = fn * fm;
     return {w00 * s00.x + w01 * s01.x + w10 * s10.x + w11 * s11.x,
-            w00 * s00.y + w01 * s01.y + w10 * s10.y + w11 * s11.y};
+            w00 * s00.y + w01 * s01.y + w10 * s10.y + w11 * s11.y, axial_at(rows, offset, m0, fm)};
+  }
+
+  /// Axial deflection between a rotation step and the next one.
+  static F axial_at(const DeflectionRow& rows, const I& offset, const I& step, const F& fraction) {
+    if (!rows.axial) return F(0.0f);
+    const Deflection pair = at(rows.now, offset + I(rows.nodes * rows.steps), step);
+    return pair.x + fraction * (pair.y - pair.x);
   }
 
   /// The deflection s of the envelope's point that is displaced to a place: s = deflection_at(place - s), from a first
@@ -82,12 +89,13 @@ struct DeflectionLanes {
     const F zero(0.0f), close2(Settling::kFieldClose_mm * Settling::kFieldClose_mm);
     auto live = close2 > zero;
     for (int step = 0; step < Settling::kFieldSteps; ++step) {
-      const Deflection next = deflection_at(e, rows, offset, x - s.x, y - s.y, z);
-      const F turned_x = next.x - s.x, turned_y = next.y - s.y;
+      const Deflection next = deflection_at(e, rows, offset, x - s.x, y - s.y, z - s.z);
+      const F turned_x = next.x - s.x, turned_y = next.y - s.y, turned_z = next.z - s.z;
       const F share(Settling::share_of(step));
       s.x += xsimd::select(live, share * turned_x, zero);
       s.y += xsimd::select(live, share * turned_y, zero);
-      live = live & (turned_x * turned_x + turned_y * turned_y > close2);
+      s.z += xsimd::select(live, share * turned_z, zero);
+      live = live & (turned_x * turned_x + turned_y * turned_y + turned_z * turned_z > close2);
       if (!xsimd::any(live)) break;
     }
     return s;

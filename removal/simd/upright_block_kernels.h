@@ -47,6 +47,7 @@ struct StampPlace {
   float lateral_mm = 0;  ///< how much farther a deflected cutter's points may go into the material across the axis
   float tilt_mm = 0;     ///< how much more it may, since its envelope leans
   float slack_mm = 0;    ///< how far points may lie from where the block has them
+  float axial_mm = 0;    ///< of it along the axis; and how much farther they may go into the material along it
 };
 
 /// Points whose chip the fields of the stamps around decide.

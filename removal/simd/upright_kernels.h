@@ -7,12 +7,13 @@
 
 namespace camber::removal::upright {
 
-/// Lateral deflections of a stamp: [node][step][2], mm, as a row of DeflectionTable.
+/// Deflections of a stamp, mm, as a row of DeflectionTable.
 struct DeflectionRow {
   const float* now = nullptr;     ///< null: the undeflected cutter
   const float* before = nullptr;  ///< of the stamp before
   int nodes = 0, steps = 0;
   float node_step_mm = 1;
+  bool axial = false;  ///< the row has axial deflections
 };
 
 /// Envelope points side by side (see removal/engage/upright/patch_lanes.h): the arrays hold whole vectors of kLanes.
@@ -29,6 +30,7 @@ struct StampBend {
   float per_rad;      ///< rotation steps / (4 pi)
   float max_tilt_mm;  ///< of the deflected envelope, along the motion
   float reach_mm;     ///< points whose motion allows more than -reach_mm times their normal's lateral part are read
+  float axial_reach_mm = 0;  ///< the same of its axial part, added
 };
 
 /// What is read at each point.
@@ -44,13 +46,13 @@ struct LaneReading {
 /// multiple of 8.
 struct PairLanes {
   int count;
-  float *x, *y, *z;                ///< from the stamp's tip, mm; out: less the stamp's deflection there
-  const float *nx, *ny, *nz;       ///< normal of the point
-  const float *guess_x, *guess_y;  ///< of the deflection, mm; 0 where it is not known
-  const float* known;              ///< 1: the stamp's deflections are in `rows`, else 0
-  const std::int32_t* row;         ///< there: first pair
-  const float* farther;            ///< how much farther out than that cutter's the surface lies, mm
-  DeflectionRow rows;              ///< `now`: of many stamps; null: of none
+  float *x, *y, *z;                          ///< from the stamp's tip, mm; out: less the stamp's deflection there
+  const float *nx, *ny, *nz;                 ///< normal of the point
+  const float *guess_x, *guess_y, *guess_z;  ///< of the deflection, mm; 0 where it is not known
+  const float* known;                        ///< 1: the stamp's deflections are in `rows`, else 0
+  const std::int32_t* row;                   ///< there: first pair
+  const float* farther;                      ///< how much farther out than that cutter's the surface lies, mm
+  DeflectionRow rows;                        ///< `now`: of many stamps; null: of none
   float lag_per_mm, steps_per_rad;
   float* thickness;  ///< out, mm
 };
@@ -93,6 +95,7 @@ struct LineSearch {
 struct LineDeflection {
   DeflectionRow deflection;
   float largest_mm;         ///< of the row
+  float axial_mm;           ///< the largest along the axis
   const float* outward_mm;  ///< by sector, StampDeflection::kSectors of them
   int sectors;
   float lag_per_mm, steps_per_rad;

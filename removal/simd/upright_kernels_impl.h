@@ -43,10 +43,11 @@ struct Vectors {
     for (int l = 0; l < count; l += n) {
       const int k = from + l;
       F x = load(p.x + k), y = load(p.y + k);
-      const F z = load(p.z + k), nx = load(p.nx + k), ny = load(p.ny + k), nz = load(p.nz + k);
+      F z = load(p.z + k);
+      const F nx = load(p.nx + k), ny = load(p.ny + k), nz = load(p.nz + k);
       const F cosine_phi = load(p.cos_phi + k), sine_phi = load(p.sin_phi + k);
       const F fx(s.feed_mm[0]), fy(s.feed_mm[1]), fz(s.feed_mm[2]);
-      F mx = fx, my = fy, tilt = zero;
+      F mx = fx, my = fy, mz = fz, tilt = zero;
       if (b.deflection.now) {
         const I lower = load(p.lower + k), step = load(p.step + k), steps(b.deflection.steps);
         const I lower_at = lower * steps;
@@ -61,7 +62,15 @@ struct Vectors {
         const I last = xsimd::select(step == I(0), steps - I(1), step - I(1));
         const Deflection ahead = between(b.deflection.now, lower_at, upper_at, share, next);
         const Deflection behind = between(b.deflection.now, lower_at, upper_at, share, last);
-        const F by_angle = F(b.per_rad) * ((ahead.x - behind.x) * nx + (ahead.y - behind.y) * ny);
+        F by_step = (ahead.x - behind.x) * nx + (ahead.y - behind.y) * ny;
+        if (b.deflection.axial) {
+          const I axial_at(b.deflection.nodes * b.deflection.steps);
+          const Deflection own = at(b.deflection.now, axial_at, step), from = at(b.deflection.now, axial_at, last);
+          by_step += (own.y - from.x) * nz;
+          z += own.x;
+          mz += own.x - at(b.deflection.before, axial_at, step).x;
+        }
+        const F by_angle = F(b.per_rad) * by_step;
         const F by_height = ((high.x - low.x) * nx + (high.y - low.y) * ny) / F(b.deflection.node_step_mm);
         const F sine = load(p.sine + k);
         const F around = cosine_phi * fy - sine_phi * fx;
@@ -72,8 +81,8 @@ struct Vectors {
         x += now.x, y += now.y;
         mx += now.x - before.x, my += now.y - before.y;
       }
-      const F along = mx * nx + my * ny + fz * nz - tilt;
-      const F tangential2 = xsimd::max(zero, mx * mx + my * my + fz * fz - along * along);
+      const F along = mx * nx + my * ny + mz * nz - tilt;
+      const F tangential2 = xsimd::max(zero, mx * mx + my * my + mz * mz - along * along);
       const F around = cosine_phi * my - sine_phi * mx, around2 = around * around;
       const F cap =
           along + F(0.5f) * (load(p.k1 + k) * xsimd::max(zero, tangential2 - around2) + load(p.k2 + k) * around2);
@@ -81,9 +90,9 @@ struct Vectors {
       const F gx = F(s.fraction[0]) + x * per_voxel, gy = F(s.fraction[1]) + y * per_voxel,
               gz = F(s.fraction[2]) + z * per_voxel;
       const F bx = xsimd::floor(gx), by = xsimd::floor(gy), bz = xsimd::floor(gz);
-      // Across the axis alone a deflection brings a point nearer to the material.
+      // A lateral deflection brings a point nearer to the material across the axis alone, an axial one along it.
       const F lateral = xsimd::sqrt(nx * nx + ny * ny);
-      const auto forward = cap > -F(b.reach_mm) * lateral;
+      const auto forward = cap > -F(b.reach_mm) * lateral - F(b.axial_reach_mm) * xsimd::abs(nz);
       if (!xsimd::any(forward)) {
         I(-1).store_unaligned(out.cell + l);
         continue;
@@ -103,15 +112,19 @@ struct Vectors {
     const F zero(0.0f), tiny(1e-12f);
     const RoundedCutter<F> cutter{F(flat), F(corner)};
     for (int l = 0; l < p.count; l += n) {
-      F x = load(p.x + l), y = load(p.y + l);
-      const F z = load(p.z + l), nx = load(p.nx + l), ny = load(p.ny + l);
+      F x = load(p.x + l), y = load(p.y + l), z = load(p.z + l);
+      const F nx = load(p.nx + l), ny = load(p.ny + l);
       if (p.rows.now) {
         const F known = load(p.known + l);
-        const Deflection guess{load(p.guess_x + l), load(p.guess_y + l)};
+        const Deflection guess{load(p.guess_x + l), load(p.guess_y + l), load(p.guess_z + l)};
         const Deflection s = DeflectionLanes<A>::settled_at({flat, corner, p.lag_per_mm, p.steps_per_rad}, p.rows,
                                                             load(p.row + l), x, y, z, guess);
         x -= known * s.x, y -= known * s.y;
         x.store_unaligned(p.x + l), y.store_unaligned(p.y + l);
+        if (p.rows.axial) {
+          z -= known * s.z;
+          z.store_unaligned(p.z + l);
+        }
       }
       const F rho = xsimd::sqrt(x * x + y * y);
       const auto place = cutter.place(rho, z);
@@ -256,20 +269,21 @@ struct Vectors {
   }
 
   /// How far in the cutter places are: of the straight one, and at most of one that is deflected by `outwards` in their
-  /// direction and by no more than `largest` in any. A lateral deflection changes a distance by no more than the radial
-  /// part of its gradient; where that is 0, by nothing.
+  /// direction and by no more than `largest` in any, of it `axial` along the axis. A lateral deflection changes a
+  /// distance by no more than the radial part of its gradient; where that is 0, by nothing.
   struct Inside {
     F straight, most;
     F radial;  ///< part of the gradient, at most
   };
-  static Inside inside_of(const LineCut& c, const F& rho, const F& z, const F& outwards, const F& largest) {
+  static Inside inside_of(const LineCut& c, const F& rho, const F& z, const F& outwards, const F& largest,
+                          const F& axial) {
     const F zero(0.0f), one(1.0f);
     const auto place = RoundedCutter<F>{F(c.flat), F(c.corner)}.place(rho, z);
-    const F at_most = place.outside + largest, a = xsimd::max(at_most, zero);
-    const F rounded = a / xsimd::max(xsimd::sqrt(a * a + place.below * place.below), F(1e-12f));
-    const F radial = xsimd::select(place.below > zero, xsimd::min(rounded * F(1.0001f), one),
-                                   xsimd::select(at_most < place.below, zero, one));
-    return {-place.distance, outwards * radial - place.distance, radial};
+    const F at_most = place.outside + largest, a = xsimd::max(at_most, zero), below = place.below - axial;
+    const F rounded = a / xsimd::max(xsimd::sqrt(a * a + below * below), F(1e-12f));
+    const F radial =
+        xsimd::select(below > zero, xsimd::min(rounded * F(1.0001f), one), xsimd::select(at_most < below, zero, one));
+    return {-place.distance, outwards * radial - place.distance + axial, radial};
   }
 
   static LineResult cut_line_deflected(const LineCut& c, const LineDeflection& deflection) {
@@ -280,7 +294,8 @@ struct Vectors {
     // another direction.
     alignas(64) float slack[LineCut::kLine];
     const F far_air(kFarAir * c.voxel + deflection.largest_mm);
-    const F largest(deflection.largest_mm), axis_zone2(25 * deflection.largest_mm * deflection.largest_mm);
+    const F largest(deflection.largest_mm), axial(deflection.axial_mm),
+        axis_zone2(25 * deflection.largest_mm * deflection.largest_mm);
     for (int j = 0; j < LineCut::kLine; j += n) {
       const F dy = F(c.dy + static_cast<float>(j) * c.voxel) + steps;
       const F at = (DeflectionLanes<A>::atan2(dy, dx) + F(3.14159265f)) *
@@ -305,7 +320,7 @@ struct Vectors {
       for_vectors(low, top, [&](int k) {
         float* stock = c.distance + j * LineCut::kColumns + k;
         const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
-        const Inside inside = inside_of(c, rhos, z, outwards, largest);
+        const Inside inside = inside_of(c, rhos, z, outwards, largest, axial);
         const F most = xsimd::min(inside.most, band);
         const F old = load(stock);
         const auto may = most > old;
@@ -315,12 +330,12 @@ struct Vectors {
         const auto far = inside.straight > far_air;
         const F known = xsimd::min(xsimd::select(far, inside.straight - largest, inside.straight), band);
         F v = known;
-        if (xsimd::any(may & !(far | (inside.radial <= F(0.0f))))) {
+        if (xsimd::any(may & !(far | ((inside.radial <= F(0.0f)) & (axial <= F(0.0f)))))) {
           if (!guessed) guess = settled_at(c, deflection, dx, dy, F(c.z + static_cast<float>(low) * c.voxel), guess);
           guessed = true;
           const Deflection s = settled_at(c, deflection, dx, dy, z, guess);
           const F x = dx - s.x, yy = dy - s.y;
-          v = xsimd::min(-distance(xsimd::sqrt(x * x + yy * yy), z, c.flat, c.corner), band);
+          v = xsimd::min(-distance(xsimd::sqrt(x * x + yy * yy), z - s.z, c.flat, c.corner), band);
           v = xsimd::select(far, known, v);
         }
         // Where the bound says no, rounding must not say yes.

@@ -48,7 +48,8 @@ struct MarkVectors {
     const RoundedCutter<F> cutter{F(t.flat), F(t.corner)};
     F h = l.highest;
     for (int step = 0; step < Settling::kSteps; ++step) {
-      const F x = l.x + h * l.nx - deflection.x, y = l.y + h * l.ny - deflection.y, z = l.z + h * l.nz;
+      const F x = l.x + h * l.nx - deflection.x, y = l.y + h * l.ny - deflection.y;
+      const F z = l.z + h * l.nz - deflection.z;
       const F rho = xsimd::sqrt(x * x + y * y);
       const auto p = cutter.place(rho, z);
       if (step == 0) live = live & (p.distance < zero);
@@ -56,13 +57,15 @@ struct MarkVectors {
       const F slope = xsimd::min(xsimd::max(slope_against(cutter.normal(p), rho, x, y, l), flattest), one);
       const F change = xsimd::select(live, p.distance / slope, zero);
       h += change;
-      const Deflection s =
-          deflection_at(t, l.row, l.x + h * l.nx - deflection.x, l.y + h * l.ny - deflection.y, l.z + h * l.nz);
-      const F turned_x = s.x - deflection.x, turned_y = s.y - deflection.y;
-      live = live & !((xsimd::abs(change) < close) & (turned_x * turned_x + turned_y * turned_y < close2));
+      const Deflection s = deflection_at(t, l.row, l.x + h * l.nx - deflection.x, l.y + h * l.ny - deflection.y,
+                                         l.z + h * l.nz - deflection.z);
+      const F turned_x = s.x - deflection.x, turned_y = s.y - deflection.y, turned_z = s.z - deflection.z;
+      const F turned2 = turned_x * turned_x + turned_y * turned_y + turned_z * turned_z;
+      live = live & !((xsimd::abs(change) < close) & (turned2 < close2));
       const F share(Settling::share_of(step));
       deflection.x += xsimd::select(live, share * turned_x, zero);
       deflection.y += xsimd::select(live, share * turned_y, zero);
+      deflection.z += xsimd::select(live, share * turned_z, zero);
     }
     return xsimd::min(h, l.highest);
   }
@@ -80,7 +83,8 @@ struct MarkVectors {
         const F zero(0.0f);
         const F from_straight = settled(t, l, {zero, zero}, near);
         const Deflection first = deflection_at(t, l.row, x, y, z);
-        h = xsimd::min(from_straight, settled(t, l, deflection_at(t, l.row, x - first.x, y - first.y, z), near));
+        const Deflection guess = deflection_at(t, l.row, x - first.x, y - first.y, z - first.z);
+        h = xsimd::min(from_straight, settled(t, l, guess, near));
       }
       h.store_unaligned(m.height + k);
     }

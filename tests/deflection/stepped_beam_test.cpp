@@ -93,7 +93,7 @@ TEST(MachineAxes, AddTheirComplianceAtEveryHeight) {
   const auto tool = necked();
   const auto envelope = removal::make_envelope(tool, 4, 0.5, kPi / 36);
   const machine::Material material{2000, 700, 0, 0, 0, 0};
-  const Vec2 axes(1 / 20000.0, 1 / 50000.0);
+  const Vec3 axes(1 / 20000.0, 1 / 50000.0, 0);
   const ToothPassModel stiff(envelope, material, beam_of(tool), {0, 2, 4}, 0, Teeth(tool));
   const ToothPassModel soft(envelope, material, beam_of(tool), {0, 2, 4}, 0, Teeth(tool), axes);
   // One point of the wall, at some angle.

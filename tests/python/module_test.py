@@ -32,6 +32,25 @@ def long_program(minutes):
         "".join(f"G1 X{200 * (i % 2)} F200\n" for i in range(1, minutes + 1)) + "M30\n")
 
 
+
+class Trace(unittest.TestCase):
+    def test_its_own_motion_as_a_trace_gives_the_same_map(self):
+        plain = camber.predict(COARSE, feed=True)
+        self.assertIsNone(plain.trace)
+        self.assertTrue(numpy.isnan(plain.form_error.model_error_um).all())
+        points = plain.feed
+        with tempfile.TemporaryDirectory() as folder:
+            trace = pathlib.Path(folder) / "trace.csv"
+            columns = [points.t_s, points.x_mm, points.y_mm, points.z_mm, points.block]
+            numpy.savetxt(trace, numpy.column_stack(columns), delimiter=",", fmt=["%.7f"] * 4 + ["%d"],
+                          header="t_s,x_act_mm,y_act_mm,z_act_mm,line", comments="")
+            traced = camber.predict(COARSE, trace=trace)
+        self.assertTrue(traced.trace.by_line)
+        self.assertEqual(traced.trace.samples, len(points))
+        self.assertLess(traced.trace.difference_um.p95, 0.1)
+        numpy.testing.assert_allclose(traced.form_error.model_error_um, plain.form_error.error_um)
+
+
 class Arrays(unittest.TestCase):
     def test_a_million_points_without_a_copy(self):
         result = camber.feed(long_program(20), MACHINE)  # a point a millisecond

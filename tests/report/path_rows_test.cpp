@@ -57,7 +57,7 @@ TEST(PathRows, TakeTheLoadsOfTheirStamps) {
     path.stamps.push_back(stamp);
     simulate::StampLoad load;
     load.lateral_max_N = 10 + k;
-    load.contact_deflection_mm = Vec2(0.003, 0.004);
+    load.contact_deflection_mm = Vec3(0.003, 0.004, 0);
     load.chip_max_mm = 0.05;
     loads.push_back(load);
   }

@@ -66,7 +66,7 @@ Result simulate(machine::Coupling coupling, double width, double y_from, double 
     if (tip.x() < 3 || tip.x() > 5 || tip.y() < y_from - 2.1 || tip.y() > y_to - 2.1) continue;
     r.lateral_max_N += std::max(cut_result.loads[k].lateral_max_N, cut_result.loads[k + 1].lateral_max_N);
     r.force_mean_N += cut_result.loads[k].force_mean_N;
-    r.deflection_um += 1000 * cut_result.loads[k].contact_deflection_mm;
+    r.deflection_um += 1000 * cut_result.loads[k].contact_deflection_mm.head<2>();
     ++n;
   }
   r.lateral_max_N /= n;

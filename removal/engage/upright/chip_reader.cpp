@@ -34,16 +34,23 @@ ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, st
 /// How much more than its motion allows a point of stamp k may take, since the stamp before was deflected otherwise
 /// when it left the surface there, at another rotation step.
 float ChipReader::reach_mm(std::size_t k) const {
-  return stamps_[k].first ? 0.0f : static_cast<float>(deflections_.largest_mm(static_cast<std::ptrdiff_t>(k) - 1));
+  return stamps_[k].first ? 0.0f
+                          : static_cast<float>(deflections_.largest_lateral_mm(static_cast<std::ptrdiff_t>(k) - 1));
+}
+
+float ChipReader::axial_reach_mm(std::size_t k) const {
+  return stamps_[k].first ? 0.0f
+                          : static_cast<float>(deflections_.largest_axial_mm(static_cast<std::ptrdiff_t>(k) - 1));
 }
 
 void ChipReader::find_patches(const TileArena& arena, std::size_t k, std::vector<std::int32_t>& out) const {
   const Stamp& stamp = stamps_[k];
   const auto row = static_cast<std::ptrdiff_t>(k);
+  const std::ptrdiff_t before = stamp.first ? row : row - 1;
   const double moved = deflections_.largest_mm(row);
-  const double slewed = moved + (stamp.first ? moved : deflections_.largest_mm(row - 1));
   StampPlace place = arena.place_of(stamp, -1e-6);
-  place.lateral_mm = static_cast<float>(slewed);
+  place.lateral_mm = static_cast<float>(deflections_.largest_lateral_mm(row) + deflections_.largest_lateral_mm(before));
+  place.axial_mm = static_cast<float>(deflections_.largest_axial_mm(row) + deflections_.largest_axial_mm(before));
   place.tilt_mm = static_cast<float>(kMaxTilt * stamp.feed_per_tooth_mm.norm());
   place.slack_mm = static_cast<float>(moved + 1e-3 * voxel_mm_);
   const BlockBounds bounds = lanes_.bounds();
@@ -55,11 +62,12 @@ StampBend ChipReader::bend_of(std::size_t k) const {
   const Stamp& stamp = stamps_[k];
   const auto row = static_cast<std::ptrdiff_t>(k);
   return {{deflections_.row(row), stamp.first ? deflections_.row(row) : deflections_.row(row - 1),
-           static_cast<int>(deflections_.nodes()), deflections_.steps, node_step_mm_},
+           static_cast<int>(deflections_.nodes()), deflections_.steps, node_step_mm_, deflections_.axial},
           static_cast<float>(envelope_.lag_per_mm),
           static_cast<float>(envelope_.steps / (4 * kPi)),
           static_cast<float>(kMaxTilt * stamp.feed_per_tooth_mm.norm()),
-          reach_mm(k)};
+          reach_mm(k),
+          axial_reach_mm(k)};
 }
 
 void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> patches, Buffers& b,
@@ -75,7 +83,7 @@ void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std
       const int count = std::min(range.count - from, LaneReading::kMax);
       const int whole = (count + PatchLanes::kVector - 1) / PatchLanes::kVector * PatchLanes::kVector;
       kernels_.read_points(view_, range.from + from, whole, place, bend, tiles, reading);
-      sort_points(arena, reading, range.from + from, count, bend.reach_mm, b, out);
+      sort_points(arena, k, reading, range.from + from, count, bend, b, out);
     }
   }
   make_room(b);
@@ -97,8 +105,10 @@ void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std
 }
 
 /// Deep points make their chips at once; air makes none.
-void ChipReader::sort_points(const TileArena& arena, const LaneReading& reading, int first_lane, int count,
-                             float reach_mm, Buffers& b, std::vector<DeflectedChipSample>& out) const {
+void ChipReader::sort_points(const TileArena& arena, std::size_t k, const LaneReading& reading, int first_lane,
+                             int count, const StampBend& bend, Buffers& b,
+                             std::vector<DeflectedChipSample>& out) const {
+  const float* row = deflections_.row(static_cast<std::ptrdiff_t>(k));
   const float air = 0.5f * static_cast<float>(voxel_mm_);
   for (int l = 0; l < count; ++l) {
     if (reading.cell[l] < 0) continue;
@@ -108,8 +118,9 @@ void ChipReader::sort_points(const TileArena& arena, const LaneReading& reading,
     const std::uint32_t p = lanes_.point(first_lane + l), ring = p / static_cast<std::uint32_t>(envelope_.steps);
     const float half = wall_half_mm_[ring];
     if (field > std::max(air, half)) continue;
-    const float limit = std::max(kBeyondCap * cap, cap + reach_mm * envelope_.rings[ring].sine);
-    const std::array<float, 2> along{envelope_.nx[p], envelope_.ny[p]};
+    const float limit = std::max(kBeyondCap * cap, cap + bend.reach_mm * envelope_.rings[ring].sine +
+                                                       bend.axial_reach_mm * std::abs(envelope_.rings[ring].cosine));
+    const std::array<float, 3> along{envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]};
     if (-field > std::max(limit, half)) {
       out.push_back({{p, cap, true}, -field, cap, along});
       continue;
@@ -117,7 +128,8 @@ void ChipReader::sort_points(const TileArena& arena, const LaneReading& reading,
     Shallow point{p, 255, cap, limit, kSolid, {}, reading.cell[l], 0, 0};
     for (std::size_t a = 0; a < 3; ++a) point.share[a] = reading.fraction[a][l];
     if (std::abs(field) < half) {
-      if (!place_in_ring(arena, half, point)) continue;
+      const auto step = static_cast<int>(p % static_cast<std::uint32_t>(envelope_.steps)) % deflections_.steps;
+      if (!place_in_ring(arena, half, deflections_.axial_mm(row, step), point)) continue;
       if (-field > limit && point.cut_255 == 255) {
         out.push_back({{p, cap, true}, -field, cap, along});
         continue;
@@ -155,12 +167,13 @@ struct ChipReader::Place {
 };
 
 /// Takes the part of a ring that lies in material. False where there is none.
-bool ChipReader::place_in_ring(const TileArena& arena, float half_mm, Shallow& p) const {
+/// Floors that the tool left before count as displaced along its axis by `axial_mm`, as it is now.
+bool ChipReader::place_in_ring(const TileArena& arena, float half_mm, float axial_mm, Shallow& p) const {
   const Place place(arena, p, voxel_mm_);
   const float* blank = arena.blank(place.tile);
   const auto half = static_cast<double>(half_mm);
   const RingPart part = part_in_material({blank ? blank + place.in_tile : nullptr, arena.view().stamp + p.cell, p.share,
-                                          place.point_mm, normal(p.point), half},
+                                          place.point_mm, normal(p.point), half, static_cast<double>(axial_mm)},
                                          all_, first_id_, envelope_.shape, voxel_mm_);
   p.cut_255 = part.cut_255(half);
   p.up_mm = part.middle_mm();
@@ -171,7 +184,8 @@ void ChipReader::make_room(Buffers& b) {
   const std::size_t most = 8 * b.shallow.size() + PatchLanes::kVector;
   b.pairs = 0;
   if (b.x.size() >= most) return;
-  for (auto* v : {&b.x, &b.y, &b.z, &b.nx, &b.ny, &b.nz, &b.guess_x, &b.guess_y, &b.known, &b.farther, &b.thickness})
+  for (auto* v :
+       {&b.x, &b.y, &b.z, &b.nx, &b.ny, &b.nz, &b.guess_x, &b.guess_y, &b.known, &b.farther, &b.thickness, &b.guess_z})
     v->resize(most);
   b.row.resize(most);
 }
@@ -182,8 +196,10 @@ void ChipReader::add_pairs(const TileArena& arena, const Stamp& stamp, Shallow& 
   p.first_pair = b.pairs;
   const Place place(arena, p, voxel_mm_);
   const std::int32_t* named = arena.view().stamp + p.cell;
-  const Vec2 guess = place.point_mm.head<2>() - stamp.pose.tip_mm.head<2>() -
-                     Vec2(static_cast<double>(envelope_.x[p.point]), static_cast<double>(envelope_.y[p.point]));
+  Vec3 guess = place.point_mm - stamp.pose.tip_mm -
+               Vec3(static_cast<double>(envelope_.x[p.point]), static_cast<double>(envelope_.y[p.point]),
+                    static_cast<double>(envelope_.z[p.point]) + p.up_mm);
+  if (!deflections_.axial) guess.z() = 0;
   std::array<std::int32_t, 8> ids;
   for (std::size_t c = 0; c < 8; ++c) ids[c] = named[cell_corner(static_cast<int>(c))] - first_id_;
   for (std::size_t c = 0; c < 8; ++c) {
@@ -199,6 +215,7 @@ void ChipReader::add_pairs(const TileArena& arena, const Stamp& stamp, Shallow& 
     b.nx[at] = envelope_.nx[p.point], b.ny[at] = envelope_.ny[p.point], b.nz[at] = envelope_.nz[p.point];
     b.guess_x[at] = known ? static_cast<float>(guess.x()) : 0.0f;
     b.guess_y[at] = known ? static_cast<float>(guess.y()) : 0.0f;
+    b.guess_z[at] = known ? static_cast<float>(guess.z()) : 0.0f;
     b.known[at] = known ? 1.0f : 0.0f;
     b.row[at] = known ? static_cast<std::int32_t>(memory_.at(ids[c]) / 2) : 0;
     b.farther[at] = known ? 0.0f : farther_mm(arena, p, place, ids, ids[c]);
@@ -227,12 +244,16 @@ void ChipReader::thin_pairs(Buffers& b) const {
   // What fills the last vector: anything, of a row that there is.
   for (std::size_t i = b.pairs; i % PatchLanes::kVector != 0; ++i) b.row[i] = 0;
   const bool any_known = std::find(b.known.begin(), b.known.begin() + count, 1.0f) != b.known.begin() + count;
-  const DeflectionRow rows{any_known ? memory_.values() : nullptr, nullptr, static_cast<int>(deflections_.nodes()),
-                           deflections_.steps, node_step_mm_};
+  const DeflectionRow rows{any_known ? memory_.values() : nullptr,
+                           nullptr,
+                           static_cast<int>(deflections_.nodes()),
+                           deflections_.steps,
+                           node_step_mm_,
+                           deflections_.axial};
   kernels_.thin_pairs(
       {count, b.x.data(), b.y.data(), b.z.data(), b.nx.data(), b.ny.data(), b.nz.data(), b.guess_x.data(),
-       b.guess_y.data(), b.known.data(), b.row.data(), b.farther.data(), rows, static_cast<float>(envelope_.lag_per_mm),
-       static_cast<float>(envelope_.steps / (2 * kPi)), b.thickness.data()},
+       b.guess_y.data(), b.guess_z.data(), b.known.data(), b.row.data(), b.farther.data(), rows,
+       static_cast<float>(envelope_.lag_per_mm), static_cast<float>(envelope_.steps / (2 * kPi)), b.thickness.data()},
       static_cast<float>(envelope_.shape.bottom_length_mm()), static_cast<float>(envelope_.shape.corner_radius_mm),
       kMinSlope);
 }
@@ -242,10 +263,10 @@ void ChipReader::thin_general(Buffers& b) const {
   for (std::size_t i = 0; i < b.pairs; ++i) {
     Vec3 from_tip(b.x[i], b.y[i], b.z[i]);
     if (b.known[i] > 0) {
-      const Vec2 guess(b.guess_x[i], b.guess_y[i]);
-      from_tip.head<2>() -=
-          settled_deflection(envelope_, deflections_, memory_.values() + 2 * b.row[i], from_tip, guess);
+      const Vec3 guess(b.guess_x[i], b.guess_y[i], b.guess_z[i]);
+      from_tip -= settled_deflection(envelope_, deflections_, memory_.values() + 2 * b.row[i], from_tip, guess);
       b.x[i] = static_cast<float>(from_tip.x()), b.y[i] = static_cast<float>(from_tip.y());
+      b.z[i] = static_cast<float>(from_tip.z());
     }
     const auto depth = static_cast<float>(envelope_.shape.distance_mm(from_tip)) - b.farther[i];
     b.thickness[i] = depth / slope(envelope_.shape.gradient(from_tip).dot(Vec3(b.nx[i], b.ny[i], b.nz[i])));
@@ -258,7 +279,9 @@ ChipReader::Depth ChipReader::depth(const TileArena& arena, const Shallow& p, st
                                     const Buffers& b) const {
   const auto of_field = [&](float mm, const Vec3& outwards) {
     const auto fall = static_cast<double>(slope(outwards.dot(normal(p.point))));
-    return Depth{mm, {static_cast<float>(outwards.x() / fall), static_cast<float>(outwards.y() / fall)}};
+    return Depth{mm,
+                 {static_cast<float>(outwards.x() / fall), static_cast<float>(outwards.y() / fall),
+                  static_cast<float>(outwards.z() / fall)}};
   };
   float thinnest = kSolid;
   std::size_t of = p.first_pair;

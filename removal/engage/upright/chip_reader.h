@@ -34,7 +34,7 @@ class ChipReader {
   struct Buffers {
     std::vector<Shallow> shallow;
     std::size_t pairs = 0;  ///< of the lists below (PairLanes); they are longer
-    std::vector<float> x, y, z, nx, ny, nz, guess_x, guess_y, known, farther, thickness;
+    std::vector<float> x, y, z, nx, ny, nz, guess_x, guess_y, known, farther, thickness, guess_z;
     std::vector<std::int32_t> row;
   };
 
@@ -56,15 +56,16 @@ class ChipReader {
   /// Of the stock below a point.
   struct Depth {
     float mm;
-    std::array<float, 2> deeper;  ///< by a deflection in x and y
+    std::array<float, 3> deeper;  ///< by a deflection in x, y and z
   };
   /// A place and the stock around it.
   struct Place;
   float reach_mm(std::size_t k) const;
+  float axial_reach_mm(std::size_t k) const;
   StampBend bend_of(std::size_t k) const;
-  void sort_points(const TileArena& arena, const LaneReading& reading, int first_lane, int count, float reach_mm,
-                   Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
-  bool place_in_ring(const TileArena& arena, float half_mm, Shallow& point) const;
+  void sort_points(const TileArena& arena, std::size_t k, const LaneReading& reading, int first_lane, int count,
+                   const StampBend& bend, Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
+  bool place_in_ring(const TileArena& arena, float half_mm, float axial_mm, Shallow& point) const;
   static void make_room(Buffers& buffers);
   void add_pairs(const TileArena& arena, const Stamp& stamp, Shallow& point, Buffers& buffers) const;
   float farther_mm(const TileArena& arena, const Shallow& point, const Place& place,

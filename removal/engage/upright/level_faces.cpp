@@ -42,7 +42,8 @@ RingPart part_in_material(const RingPlace& ring, std::span<const Stamp> stamps, 
   for (int c = 0; c < 8; ++c) {
     const std::int32_t id = ring.ids[cell_corner(c)] - first_id;
     if (id < 0) continue;
-    const Vec3 from_tip = ring.point_mm - stamps[static_cast<std::size_t>(id)].pose.tip_mm;
+    Vec3 from_tip = ring.point_mm - stamps[static_cast<std::size_t>(id)].pose.tip_mm;
+    from_tip.z() -= ring.axial_mm;
     if (std::abs(from_tip.z()) >= ring.half_width_mm || shape.gradient(from_tip).z() > -1 + kUpright) continue;
     part.to_mm = std::min(part.to_mm, -from_tip.z());
   }

@@ -22,6 +22,7 @@ struct RingPlace {
   CellShare share;           ///< of the point in its cell
   Vec3 point_mm, normal;     ///< of the envelope
   double half_width_mm = 0;  ///< of the ring
+  double axial_mm = 0;       ///< how far along the axis the stamps' floors are displaced
 };
 
 /// Part of the ring's width that lies in material, up and down from its point, mm; nothing where from >= to.

@@ -69,15 +69,18 @@ bool carve_deflected(Tile& tile, ColumnCover& cover, const Index3& t, double vox
     return carve_deflected_general(tile, cover, t, voxel, band, envelope, stamp, deflections, deflection);
   const LineDeflection line_deflection{
       {deflection.row, nullptr, static_cast<int>(deflections.nodes()), deflections.steps,
-       deflections.nodes() > 1 ? static_cast<float>(deflections.node_height_mm[1]) : 1.0f},
+       deflections.nodes() > 1 ? static_cast<float>(deflections.node_height_mm[1]) : 1.0f, deflections.axial},
       static_cast<float>(deflection.largest_mm),
+      static_cast<float>(deflection.axial_mm),
       deflection.outward_mm.data(),
       StampDeflection::kSectors,
       static_cast<float>(envelope.lag_per_mm),
       static_cast<float>(envelope.steps / (2 * kPi))};
   const auto cut = kernels().cut_line_deflected;
-  return cut_lines(tile, cover, t, voxel, line_cut(t, voxel, band, envelope.shape, {stamp.tip_mm, stamp.id}), stamp,
-                   deflection.largest_mm, [&](const LineCut& line) { return cut(line, line_deflection); });
+  LineCut straight = line_cut(t, voxel, band, envelope.shape, {stamp.tip_mm, stamp.id});
+  straight.lowest = first_reached(stamp.tip_mm.z() - band - deflection.axial_mm, t[2] * Tile::kCore * voxel, voxel);
+  return cut_lines(tile, cover, t, voxel, straight, stamp, deflection.largest_mm,
+                   [&](const LineCut& line) { return cut(line, line_deflection); });
 }
 
 CAMBER_VECTOR_CLONES

@@ -93,7 +93,7 @@ double lowest_reached(const Profile& profile, double r, double reach) {
 }
 
 /// The deflection of the envelope's point nearest to a place.
-Eigen::Vector2f deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
+Eigen::Vector3f deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
                               float x, float y, float z) {
   const double height = envelope.shape.profile.nearest({std::hypot(x, y), z}).place.y();
   const double step = deflections.step_at(std::atan2(y, x), height, envelope.lag_per_mm, envelope.flutes);
@@ -130,16 +130,12 @@ bool for_rows(const Tile& tile, ColumnCover& cover, const Index3& t, double voxe
 
 }  // namespace
 
-Vec2 settled_deflection(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
-                        const Vec3& from_tip, Vec2 guess) {
+Vec3 settled_deflection(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
+                        const Vec3& from_tip, Vec3 guess) {
   constexpr auto close = static_cast<double>(Settling::kFieldClose_mm);
-  const auto z = static_cast<float>(from_tip.z());
   for (int step = 0; step < Settling::kFieldSteps; ++step) {
-    const Vec2 at = from_tip.head<2>() - guess;
-    const Vec2 turned =
-        deflection_at(envelope, deflections, row, static_cast<float>(at.x()), static_cast<float>(at.y()), z)
-            .cast<double>() -
-        guess;
+    const Eigen::Vector3f at = (from_tip - guess).cast<float>();
+    const Vec3 turned = deflection_at(envelope, deflections, row, at.x(), at.y(), at.z()).cast<double>() - guess;
     guess += static_cast<double>(Settling::share_of(step)) * turned;
     if (turned.squaredNorm() <= close * close) break;
   }
@@ -188,8 +184,8 @@ bool carve_deflected_general(Tile& tile, ColumnCover& cover, const Index3& t, do
                       if (std::min(largest - row[static_cast<std::size_t>(k)], top) <= distance[k]) continue;
                       const auto x = static_cast<float>(dx), y = static_cast<float>(dy);
                       const auto z = static_cast<float>(z0 + k * voxel);
-                      const Vec2 s = settled_deflection(envelope, deflections, deflection.row, {x, y, z}, Vec2::Zero());
-                      const double d = exact.distance_mm({std::hypot(dx - s.x(), dy - s.y()), z});
+                      const Vec3 s = settled_deflection(envelope, deflections, deflection.row, {x, y, z}, Vec3::Zero());
+                      const double d = exact.distance_mm({std::hypot(dx - s.x(), dy - s.y()), z - s.z()});
                       const float v = std::min(static_cast<float>(-d), top);
                       if (v <= distance[k]) continue;
                       distance[k] = v;

@@ -15,7 +15,7 @@ bool carve_deflected_general(Tile& tile, ColumnCover& cover, const Index3& tile_
 
 /// The deflection s of the envelope's point that is displaced to a place, s = deflection(place - s), by steps from a
 /// first guess. `row`: as those of `deflections`.
-Vec2 settled_deflection(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
-                        const Vec3& from_tip, Vec2 guess);
+Vec3 settled_deflection(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
+                        const Vec3& from_tip, Vec3 guess);
 
 }  // namespace camber::removal::upright

@@ -12,7 +12,7 @@ namespace {
 /// cutter's axis, is changed; nor one by more than `under` below the tip.
 struct NewTips {
   const float *x, *y, *z;
-  float deflection, reach, under;
+  float deflection, reach, under, axial;
 };
 
 /// A line of columns: out > 0 where the stamp may change one. Written without branches, for vectors.
@@ -31,7 +31,7 @@ inline bool test_line(const float* cx, const float* cy, const float* cz, const f
     const float threshold = -slack * (tips.reach + slack);
     const float highest = top_mm[j] - voxel;
     float lowest = tz - tips.under;
-    float margin = std::max(flat - threshold, -dz);
+    float margin = std::max(flat - threshold, tips.axial - dz);
     if constexpr (ball) {
       // The sphere of all that a stamp may change.
       const float left = reach2 - (px - tx) * (px - tx) - (py - ty) * (py - ty);
@@ -133,24 +133,26 @@ void ColumnCover::lower_top(const Tile& tile, int column) {
 bool ColumnCover::changeable(int i, int first, int end, const Eigen::Vector3f& tip, float deflection,
                              std::array<float, kLine>& out) const {
   const auto at = static_cast<std::size_t>(i * kLine);
-  return test_columns(x_.data() + at, y_.data() + at, z_.data() + at, deflection_.data() + at, top_mm_.data() + at,
-                      first, end, static_cast<float>(i) * voxel_, voxel_,
-                      {&tip.x(), &tip.y(), &tip.z(), deflection, radius_ + band_ + deflection, band_ + deflection},
-                      radius_, ball_, out.data());
+  return test_columns(
+      x_.data() + at, y_.data() + at, z_.data() + at, deflection_.data() + at, top_mm_.data() + at, first, end,
+      static_cast<float>(i) * voxel_, voxel_,
+      {&tip.x(), &tip.y(), &tip.z(), deflection, radius_ + band_ + deflection, band_ + deflection, axial_slack_},
+      radius_, ball_, out.data());
 }
 
 std::uint32_t ColumnCover::changeable_lines(int i_from, int i_to, int first, int end, const Eigen::Vector3f& tip,
                                             float* out) const {
   return test_lines(x_.data(), y_.data(), z_.data(), deflection_.data(), top_mm_.data(), i_from, i_to, first, end,
-                    voxel_, {&tip.x(), &tip.y(), &tip.z(), 0, radius_ + band_, band_}, radius_, ball_, out);
+                    voxel_, {&tip.x(), &tip.y(), &tip.z(), 0, radius_ + band_, band_, axial_slack_}, radius_, ball_,
+                    out);
 }
 
 bool ColumnCover::changeable_each(int i, int first, int end, const float* x, const float* y, const float* z,
                                   std::array<float, kLine>& out) const {
   const auto at = static_cast<std::size_t>(i * kLine);
   return test_columns_each(x_.data() + at, y_.data() + at, z_.data() + at, deflection_.data() + at, top_mm_.data() + at,
-                           first, end, static_cast<float>(i) * voxel_, voxel_, {x, y, z, 0.0f, radius_ + band_, band_},
-                           radius_, ball_, out.data());
+                           first, end, static_cast<float>(i) * voxel_, voxel_,
+                           {x, y, z, 0.0f, radius_ + band_, band_, axial_slack_}, radius_, ball_, out.data());
 }
 
 bool ColumnCover::changeable_after(const Vec3& before_mm, double before_deflection_mm, const Vec3& tip_mm,
@@ -166,7 +168,7 @@ bool ColumnCover::changeable_after(const Vec3& before_mm, double before_deflecti
     const double before = std::min(level - before_mm.z(), 0.0), now = std::min(level - tip_mm.z(), 0.0);
     return flat + 0.5 * (before * before - now * now) > threshold;
   }
-  return flat > threshold || step.z() < 0;
+  return flat > threshold || step.z() < static_cast<double>(axial_slack_);
 }
 
 void ColumnCover::cut(const Tile& tile, int i, int j, const Eigen::Vector3f& tip, float deflection_mm, bool changed) {

@@ -1,6 +1,7 @@
 #pragma once
 // Which columns of a tile a stamp can still change: most of a finishing cutter's disc lies where another stamp has cut
 // deeper.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -39,6 +40,12 @@ class ColumnCover {
   bool all_air() const { return air_columns_ == kColumns; }
   Eigen::Vector3f from_origin(const Vec3& place_mm) const { return (place_mm - origin_mm_).cast<float>(); }
 
+  /// Stamps may be displaced along the axis by up to this more against each other; it does not fall. What it lets pass
+  /// of flat bottoms, half a micrometre, no chip shows.
+  void allow_axial(double largest_mm) {
+    constexpr double kPassed_mm = 5e-4;
+    axial_slack_ = std::max(axial_slack_, static_cast<float>(2 * largest_mm - kPassed_mm));
+  }
   /// What a column remembers.
   struct Remembered {
     bool known;
@@ -81,7 +88,7 @@ class ColumnCover {
 
   void lower_top(const Tile& tile, int column);
 
-  float voxel_, band_, radius_;
+  float voxel_, band_, radius_, axial_slack_ = 0;
   bool ball_;
   Vec3 origin_mm_;
   int air_columns_ = 0;

@@ -15,8 +15,9 @@ function say(sentence) {
   byId('scene').classList.add('empty');
 }
 
+const capital = word => word[0].toUpperCase() + word.slice(1);
+
 const LEGENDS = {
-  change: 'change of the form error (after \u2212 before), \u00b5m',
   deflection: 'of it, deflection of the tool, \u00b5m',
   contour: 'of it, servo lag and corner rounding, \u00b5m',
 };
@@ -25,6 +26,8 @@ class Page {
   constructor(page) {
     Object.assign(this, { page, lines: [], mode: page.surface ? 'before' : 'plain', quantity: null });
     this.limit = page.scales[0];
+    this.names = page.names || ['before', 'after'];
+    LEGENDS.change = `change of the form error (${this.names[1]} \u2212 ${this.names[0]}), \u00b5m`;
     this.compared = Boolean(page.surface && page.surface.error[1]) || page.runs.length > 1;
     if (page.runs.length && byId('plots')) {
       this.plots = new Plots(byId('plots'), page.runs, t => this.selectTime(t));
@@ -51,7 +54,7 @@ class Page {
   controls() {
     const box = byId('part-controls'), { surface, stock, runs, scales } = this.page;
     if (surface) {
-      const modes = surface.error[1] ? [['before', 'Before'], ['after', 'After'], ['change', 'Change']] : [['before', 'Form error']];
+      const modes = surface.error[1] ? [['before', capital(this.names[0])], ['after', capital(this.names[1])], ['change', this.names[1] === 'after' ? 'Change' : 'Difference']] : [['before', 'Form error']];
       if (surface.contour) modes.push(...(surface.error[1] ? [] : [['deflection', 'Deflection']]), ['contour', 'Contour']);
       modes.push(['plain', 'Plain']);
       box.append(choice('Surface', modes, mode => {
@@ -119,7 +122,7 @@ class Page {
   // 'before +12.3 um, after -0.4 um' of a vertex.
   errors(vertex) {
     const { error } = this.page.surface;
-    return error[1] ? `${signed(error[0][vertex], 2)} \u00b5m before, ${signed(error[1][vertex], 2)} \u00b5m after` : `${signed(error[0][vertex], 2)} \u00b5m`;
+    return error[1] ? `${signed(error[0][vertex], 2)} \u00b5m ${this.names[0]}, ${signed(error[1][vertex], 2)} \u00b5m ${this.names[1]}` : `${signed(error[0][vertex], 2)} \u00b5m`;
   }
 
   async hover(tip, found, event) {
