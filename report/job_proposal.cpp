@@ -112,6 +112,19 @@ std::string profile_text(const ToolProposal& tool) {
   return out;
 }
 
+/// Drills that the program mills with are spotting or engraving tools.
+void mill_with_drills(const nc::Interpretation& moves, ToolsByNumber& tools) {
+  for (const nc::Move& m : moves.moves) {
+    const bool along = m.kind == nc::MoveKind::arc || (m.end_mm - m.start_mm).head<2>().norm() > 0;
+    if ((m.kind != nc::MoveKind::linear && m.kind != nc::MoveKind::arc) || m.reference || m.cycle != 0 || !along)
+      continue;
+    const auto tool = tools.find(moves.state_of(m).tool);
+    if (tool == tools.end() || tool->second.type != ToolType::drill) continue;
+    tool->second.type = ToolType::chamfer;
+    tool->second.doubt = fmt::format("the program mills with this drill from line {} on", m.block + 1);
+  }
+}
+
 /// depth_mm: of the tool's lowest cut below the blank's top.
 std::string tool_text(const nc::ToolUse& use, const ToolProposal& tool, double depth_mm) {
   std::string out = fmt::format("\n[tool.{}]\n", use.tool);
@@ -213,6 +226,7 @@ std::string job_text(const JobProposal& proposal) {
                                   : fmt::format("machine = {}\n", quoted(proposal.machine));
   ToolsByNumber by_number;
   for (const auto& tool : proposal.tools) by_number.emplace(tool.number, tool);
+  mill_with_drills(proposal.moves, by_number);
   const std::optional<StockProposal> stock = propose_stock(proposal.text, proposal.moves, by_number);
   std::string cutting, tools;
   for (const auto& use : proposal.summary.tools) {
