@@ -1,5 +1,6 @@
 #include "cli/command_line.h"
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <new>
@@ -75,11 +76,14 @@ std::string meant(const std::string& word, const CLI::App& app) {
 int refuse(const CLI::App& app, const CLI::ParseError& problem, int argc, const char* const* argv) {
   std::vector<std::string> unknown = app.remaining(true);
   const auto commands = app.get_subcommands();
-  if (unknown.empty() && commands.empty() && problem.get_name() == "RequiredError")
+  const bool extras = dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr;
+  if (unknown.empty() && commands.empty() && dynamic_cast<const CLI::RequiredError*>(&problem))
     for (int i = 1; i < argc && unknown.empty(); ++i)
       if (argv[i][0] != '-') unknown.emplace_back(argv[i]);
-  if (unknown.empty() || (problem.get_name() != "ExtrasError" && !commands.empty())) return app.exit(problem);
-  const std::string& word = unknown.front();
+  if (unknown.empty() || (!extras && !commands.empty())) return app.exit(problem);
+  const auto first =
+      std::ranges::find_if(unknown, [&](const std::string& w) { return (w.rfind("-", 0) == 0) == !commands.empty(); });
+  const std::string& word = first != unknown.end() ? *first : unknown.back();
   const std::string near = meant(word, app);
   const bool option = word.rfind("-", 0) == 0;
   const std::string of = commands.empty() ? "" : " of " + commands.front()->get_name();

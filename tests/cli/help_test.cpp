@@ -93,7 +93,8 @@ TEST(CommandLine, WritesJsonToStandardOutputAndEverythingElseToStandardError) {
 TEST(CommandLine, SaysThatItWasInterruptedAndLeavesNoEmptyFolder) {
   const TempFolder folder;
   std::filesystem::copy(CAMBER_SOURCE_DIR "/samples/01-finishing", folder / "sample");
-  const std::string command = "cd '" + (folder / "sample") + "' && { '" CAMBER_EXECUTABLE
+  const std::string command = "cd '" + (folder / "sample") +
+                              "' && { '" CAMBER_EXECUTABLE
                               "' predict job.toml -o new/out > ../out 2> ../err & } && p=$! && "
                               "for i in $(seq 600); do [ -d new/out ] && break; sleep 0.05; done && kill -TERM $p; "
                               "wait $p; echo $? > ../status";

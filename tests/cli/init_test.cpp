@@ -54,7 +54,8 @@ TEST(Init, WritesWhatProgramAndTablesTell) {
   write_program(folder);
   const auto run = run_camber(folder, "init p.nc --tools tool.tbl --machine m.toml -o job.toml");
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.out, "job.toml: 2 tools that cut; fill in what stands as \"# key =\", check what is marked \"typical\"\n");
+  EXPECT_EQ(run.out,
+            "job.toml: 2 tools that cut; fill in what stands as \"# key =\", check what is marked \"typical\"\n");
   const std::string job = tests::file_text(folder / "job.toml");
   EXPECT_EQ(job.substr(0, job.find("\n[material]")), kExpected);
   EXPECT_NE(job.find("# Its top: the program's Z0, below which all cutting lies.\n"
@@ -89,8 +90,8 @@ TEST(Init, MakesAJobThatRunsWithEveryPreset) {
   for (const auto& preset : machine::material_presets()) {
     const std::string name(preset.name);
     EXPECT_NE(help.find(name), std::string::npos) << name;
-    ASSERT_EQ(run_camber(folder, "-q init wall.nc --machine m.toml --material " + name + " -o " + name + ".toml").status,
-              0);
+    ASSERT_EQ(
+        run_camber(folder, "-q init wall.nc --machine m.toml --material " + name + " -o " + name + ".toml").status, 0);
     const std::string job = tests::replaced(tests::file_text(folder / (name + ".toml")), "voxel_mm = 0.1 ",
                                             "coupling = \"rigid\"\nvoxel_mm = 0.4 ");
     folder.write(name + ".toml", job);
@@ -118,8 +119,8 @@ TEST(Init, MakesAJobThatWaitsForWhatNobodySaid) {
   const auto empty = run_camber(folder, "predict job.toml -o out --effective-config");
   EXPECT_EQ(empty.status, 1);
   EXPECT_NE(empty.err.find("[material]"), std::string::npos) << empty.err;
-  folder.write("job.toml", tests::replaced(tests::replaced(tests::file_text(folder / "job.toml"), "# preset =",
-                                                           "preset = \"S55C\""),
+  folder.write("job.toml", tests::replaced(tests::replaced(tests::file_text(folder / "job.toml"),
+                                                           "# preset =", "preset = \"S55C\""),
                                            "# krc_ratio", "krc_ratio"));
   const auto filled = run_camber(folder, "predict job.toml -o out --effective-config");
   EXPECT_EQ(filled.status, 0) << filled.err;
