@@ -16,12 +16,15 @@ namespace {
 constexpr double kSide_mm = 2, kBelow_mm = 1, kAboveHighest_mm = 1;
 constexpr double kMaxCells = 240;  // along the longer side
 constexpr double kMinCell_mm = 0.25;
-constexpr double kTouch_mm = 0.02;  // rapids may lie on a surface
-constexpr double kUseful = 0.5;     // of what the program could remove: a box with less is no blank
-constexpr int kTops = 12;           // heights between the highest pass and the wanted top that are tried
+constexpr double kTouch_mm = 0.02;        // rapids may lie on a surface
+constexpr double kUseful = 0.5;           // of what the program could remove: a box with less is no blank
+constexpr double kHalfDiagonal = 0.7072;  // of a cell: the one that a line goes through is always met
+constexpr int kTops = 12;                 // heights between the highest pass and the wanted top that are tried
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-bool cuts(const nc::Move& m) { return (m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc) && !m.reference; }
+bool is_cut(const nc::Move& m) {
+  return (m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc) && !m.reference;
+}
 bool is_rapid(const nc::Move& m) { return m.kind == nc::MoveKind::rapid && !m.reference; }
 double across_mm(const nc::Move& m) { return (m.end_mm - m.start_mm).head<2>().norm(); }
 bool is_lateral(const nc::Move& m) { return m.kind == nc::MoveKind::arc || across_mm(m) > 0; }
@@ -150,7 +153,7 @@ class Map {
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
         const double d = std::hypot(x_mm(x) + cell_ / 2 - tip.x(), y_mm(y) + cell_ / 2 - tip.y());
-        if (d <= std::max(r, cell_ / 2)) act(index(x, y), tip.z() + p.height_mm(std::min(d, p.radius_mm)));
+        if (d <= std::max(r, kHalfDiagonal * cell_)) act(index(x, y), tip.z() + p.height_mm(std::min(d, p.radius_mm)));
       }
   }
 
@@ -204,7 +207,7 @@ class Proposer {
   nc::Extents swept_box() {
     nc::Extents box;
     for (const nc::Move& m : moves_.moves) {
-      if (!cuts(m)) continue;
+      if (!is_cut(m)) continue;
       const nc::Extents e = nc::extents_of(moves_, m);
       const double r = profile_of_move(m).radius_mm;
       box.add(e.min_mm - Vec3(r, r, 0));
@@ -213,12 +216,17 @@ class Proposer {
     return box;
   }
 
-  /// Height at which half of the way of all level rapids lies, or more.
+  /// Height at which half of the way of all level rapids lies, or more; where there are none, the lowest end of a
+  /// rapid.
   double travel_height_mm() const {
+    nc::KnownPlaces places(text_, moves_);
     std::vector<std::pair<double, double>> levels;
-    double all = 0;
+    double all = 0, lowest = kNever;
     for (const nc::Move& m : moves_.moves) {
-      if (!is_rapid(m) || std::abs(m.end_mm.z() - m.start_mm.z()) > kTouch_mm || across_mm(m) == 0) continue;
+      const nc::KnownPlaces::Ends known = places.next(m);
+      if (!is_rapid(m) || !known.end) continue;
+      lowest = std::min(lowest, m.end_mm.z());
+      if (!known.start || std::abs(m.end_mm.z() - m.start_mm.z()) > kTouch_mm || across_mm(m) == 0) continue;
       levels.emplace_back(m.end_mm.z(), across_mm(m));
       all += across_mm(m);
     }
@@ -226,7 +234,7 @@ class Proposer {
     double so_far = 0;
     for (const auto& [z, length] : levels)
       if ((so_far += length) >= all / 2) return z;
-    return kNever;
+    return lowest;
   }
 
   /// Of the cutting moves across, by their lower ends; plunges alone: their tops.
@@ -234,7 +242,7 @@ class Proposer {
     const double travel = travel_height_mm();
     double pass = -kNever, lowest = kNever;
     for (const nc::Move& m : moves_.moves) {
-      if (!cuts(m)) continue;
+      if (!is_cut(m)) continue;
       const double z = std::min(m.start_mm.z(), m.end_mm.z());
       lowest = std::min(lowest, z);
       if (is_lateral(m) && z < travel - kTouch_mm) pass = std::max(pass, z);
@@ -246,7 +254,7 @@ class Proposer {
     nc::KnownPlaces places(text_, moves_);
     for (const nc::Move& m : moves_.moves) {
       const nc::KnownPlaces::Ends known = places.next(m);
-      if (!cuts(m) && !(is_rapid(m) && known.end)) continue;
+      if (!is_cut(m) && !(is_rapid(m) && known.end)) continue;
       const Profile& p = profile_of_move(m);
       const double step = std::max(map.cell_mm() / 2, std::min(p.radius_mm / 4, 2.0));
       const int steps = std::clamp(static_cast<int>(std::ceil(nc::length_mm(moves_, m) / step)), 1, 20000);
@@ -265,7 +273,7 @@ class Proposer {
   /// The box of which the program removes most, with its top above the highest pass.
   void choose(const Map& map, double pass, double wanted, StockProposal& out) {
     std::vector<double> tops{wanted};
-    for (int i = 1; i < kTops; ++i) tops.push_back(wanted - (wanted - pass) * i / kTops);
+    for (int i = 1; i <= kTops; ++i) tops.push_back(wanted - (wanted - pass) * i / kTops);
     Rectangle best;
     double top = wanted, removed = 0, of_all = 0;
     for (const double z : tops) {
