@@ -4,9 +4,13 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 #include <random>
+#include <string_view>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -69,6 +73,38 @@ void leave(int slot) {
   if (slot >= 0) slots[static_cast<std::size_t>(slot)].state = 0;
 }
 
+/// Folders that were made, the outer ones first, and names of files that are whole, as a signal handler may read them.
+constexpr int kFolders = 16;
+std::array<Slot, kFolders> folders;
+
+constexpr std::size_t kNames = 4096;
+char written[kNames];
+std::atomic<std::size_t> written_length{0};
+
+void remember_folder(const std::string& path) {
+  if (path.size() + 1 > kLongestPath) return;
+  for (Slot& slot : folders) {
+    int free = 0;
+    if (!slot.state.compare_exchange_strong(free, 1)) continue;
+    std::memcpy(slot.path, path.c_str(), path.size() + 1);
+    slot.state = 2;
+    return;
+  }
+}
+
+/// Not safe against itself: files are committed by several threads, so under a lock.
+void remember_written(const std::string& path) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  const std::size_t from = written_length, gap = from > 0 ? 2 : 0;
+  if (from + gap + path.size() > kNames) return;
+  std::memcpy(written + from, ", ", gap);
+  std::memcpy(written + from + gap, path.data(), path.size());
+  written_length = from + gap + path.size();
+}
+
+std::atomic<int> standard_output{-1};  ///< where claimed
+
 constexpr std::array kEndingSignals{SIGINT, SIGTERM, SIGHUP};
 std::atomic<bool> ending{false};  ///< a signal ends the process: no part is opened any more
 std::atomic<int> opening{0};      ///< threads between asking that and having the part on the disk
@@ -97,12 +133,36 @@ class Opening {
   sigset_t before_;
 };
 
+/// For a signal handler: nothing but write().
+void say(const char* text, std::size_t length) {
+  while (length > 0) {
+    const ssize_t done = write(STDERR_FILENO, text, length);
+    if (done <= 0) return;
+    text += done;
+    length -= static_cast<std::size_t>(done);
+  }
+}
+
+void say_interrupted() {
+  constexpr std::string_view kClearLine = "\r\033[K", kNothing = "camber: interrupted: nothing was written\n",
+                             kSome = "camber: interrupted; written before, and whole: ";
+  if (isatty(STDERR_FILENO)) say(kClearLine.data(), kClearLine.size());
+  const std::size_t length = written_length;
+  if (length == 0) return say(kNothing.data(), kNothing.size());
+  say(kSome.data(), kSome.size());
+  say(written, length);
+  say("\n", 1);
+}
+
 extern "C" void remove_parts(int signal) {
   ending = true;
   constexpr timespec kMillisecond{0, 1'000'000};
   for (int i = 0; i < 2000 && opening > 0; ++i) nanosleep(&kMillisecond, nullptr);  // a disk may hang
   for (Slot& slot : slots)
     if (slot.state == 2) unlink(slot.path);
+  for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder)
+    if (folder->state == 2) rmdir(folder->path);
+  say_interrupted();
   std::signal(signal, SIG_DFL);
   raise(signal);
 }
@@ -150,8 +210,20 @@ void remove_parts_on_signals() {
   std::signal(SIGXFSZ, SIG_IGN);  // a limit of the file size is a failed write, as a full disk
 }
 
+void claim_standard_output() {
+  std::fflush(stdout);
+  standard_output = dup(STDOUT_FILENO);
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), place_(behind_links(path_)) {
   int reason = 0;
+  if (path_ == "-" && standard_output >= 0) {
+    part_path_ = place_;
+    stream_.open(fmt::format("/dev/fd/{}", standard_output.load()), std::ios::binary | std::ios::app);
+    if (!stream_) fail_on_file("standard output", "cannot be written", "file-unwritable");
+    return;
+  }
   {
     const Opening guard;
     errno = 0;
@@ -193,10 +265,11 @@ void OutputFile::commit() {
   }
   committed_ = true;
   leave(slot_);
+  remember_written(path_);
 }
 
 void require_writable(const std::string& path) {
-  if (path.empty()) return;
+  if (path.empty() || (path == "-" && standard_output >= 0)) return;
   const auto refuse = [&](const std::string& why) {
     fail_on_file(path, "cannot be written: " + why, "file-unwritable");
   };
@@ -226,8 +299,18 @@ void write_file(const std::string& path, std::string_view content) {
 
 void make_folder(const std::string& path) {
   std::error_code ec;
+  std::vector<std::string> missing;
+  for (fs::path at = fs::absolute(path).lexically_normal(); !fs::exists(at, ec) && at.has_relative_path();
+       at = at.parent_path())
+    missing.push_back(at.string());
+  for (auto folder = missing.rbegin(); folder != missing.rend(); ++folder) remember_folder(*folder);
   fs::create_directories(path, ec);
   if (!fs::is_directory(path)) fail_on_file(path, "cannot be made a folder: " + ec.message(), "file-unwritable");
+}
+
+void remove_empty_folders() {
+  for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder)
+    if (folder->state == 2) rmdir(folder->path);
 }
 
 void try_to_write(const std::function<void()>& write, Diagnostics& failed) {

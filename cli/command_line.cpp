@@ -1,5 +1,6 @@
 #include "cli/command_line.h"
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <new>
@@ -10,6 +11,7 @@
 
 #include "base/output_file.h"
 #include "cli/console.h"
+#include "machine/toml_table.h"
 
 namespace camber::cli {
 namespace {
@@ -54,6 +56,52 @@ int guarded(const Action& action, const GlobalOptions& options) {
   return kInputWrong;
 }
 
+/// Of the words that are offered, the one that was most likely meant; empty: none is near.
+std::string meant(const std::string& word, const CLI::App& app) {
+  std::vector<std::string> offered;
+  if (word.rfind("--", 0) != 0) {
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+      offered.push_back(command->get_name());
+    return machine::nearest_word(word, offered);
+  }
+  std::vector<const CLI::App*> asked{&app};
+  for (const CLI::App* command : app.get_subcommands()) asked.push_back(command);
+  for (const CLI::App* one : asked)
+    for (const CLI::Option* option : one->get_options())
+      for (const std::string& name : option->get_lnames()) offered.push_back("--" + name);
+  return machine::nearest_word(word.substr(0, word.find('=')), offered);
+}
+
+/// The words that nothing takes, with the nearest ones that something would.
+int refuse(const CLI::App& app, const CLI::ParseError& problem, int argc, const char* const* argv) {
+  std::vector<std::string> unknown = app.remaining(true);
+  const auto commands = app.get_subcommands();
+  const bool extras = dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr;
+  if (unknown.empty() && commands.empty() && dynamic_cast<const CLI::RequiredError*>(&problem))
+    for (int i = 1; i < argc && unknown.empty(); ++i)
+      if (argv[i][0] != '-') unknown.emplace_back(argv[i]);
+  if (unknown.empty() || (!extras && !commands.empty())) return app.exit(problem);
+  const auto first =
+      std::ranges::find_if(unknown, [&](const std::string& w) { return (w.rfind("-", 0) == 0) == !commands.empty(); });
+  const std::string& word = first != unknown.end() ? *first : unknown.back();
+  const std::string near = meant(word, app);
+  const bool option = word.rfind("-", 0) == 0;
+  const std::string of = commands.empty() ? "" : " of " + commands.front()->get_name();
+  fmt::print(stderr, "camber: there is no {} {}{}{}\nRun with --help for more information.\n",
+             option             ? "option"
+             : commands.empty() ? "command"
+                                : "further word",
+             word, option ? of : "", near.empty() ? "" : fmt::format("; did you mean {}?", near));
+  return kCommandLineWrong;
+}
+
+bool json_to_standard_output(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands())
+    if (const CLI::Option* json = command->get_option_no_throw("--json"); json && !json->empty())
+      return json->results().front() == "-";
+  return false;
+}
+
 }  // namespace
 
 int run(int argc, const char* const* argv) {
@@ -72,11 +120,15 @@ int run(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? kDone : kCommandLineWrong;
+    if (problem.get_exit_code() == 0) return app.exit(problem), kDone;
+    return refuse(app, problem, argc, argv) == 0 ? kDone : kCommandLineWrong;
   }
+  if (json_to_standard_output(app)) claim_standard_output();
   remove_parts_on_signals();
   const auto limit = thread_limit(options.threads);
-  return guarded(chosen, options);
+  const int status = guarded(chosen, options);
+  remove_empty_folders();
+  return status;
 }
 
 }  // namespace camber::cli

@@ -9,6 +9,7 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "cli/rounds_progress.h"
 #include "compensate/verify.h"
 #include "report/report_data.h"
 #include "report/summary.h"
@@ -53,17 +54,21 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
   const machine::Job given = machine::read_job(arguments.job, diagnostics);
-  const api::CompensateRequest request{
-      .uncertainty = arguments.uncertainty,
-      .measured = arguments.measured,
-      .measured_program = arguments.measured_program,
-      .check_voxels_mm = arguments.check_voxels_mm,
-      .time_budget_percent = arguments.time_budget_percent,
-      .keep_anyway = arguments.keep_anyway,
-      .header = arguments.header,
-      .header_hash = arguments.header_hash,
-      .max_stock_crossings = arguments.report.empty() ? 0 : report::kMaxStockCrossings,
-      .progress = [&](const std::string& what, double share) { progress.show(what, share); }};
+  RoundsProgress rounds(given.compensation.max_rounds,
+                        static_cast<int>(2 * arguments.check_voxels_mm.size() + arguments.uncertainty.size()));
+  const api::CompensateRequest request{.uncertainty = arguments.uncertainty,
+                                       .measured = arguments.measured,
+                                       .measured_program = arguments.measured_program,
+                                       .check_voxels_mm = arguments.check_voxels_mm,
+                                       .time_budget_percent = arguments.time_budget_percent,
+                                       .keep_anyway = arguments.keep_anyway,
+                                       .header = arguments.header,
+                                       .header_hash = arguments.header_hash,
+                                       .max_stock_crossings = arguments.report.empty() ? 0 : report::kMaxStockCrossings,
+                                       .progress = [&](const std::string& what, double share) {
+                                         const RoundsProgress::Whole whole = rounds.at(what, share);
+                                         progress.show_whole(whole.what, whole.share);
+                                       }};
   api::CompensatedJob done;
   try {
     done = api::compensate_job(given, request, diagnostics);

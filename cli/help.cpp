@@ -18,14 +18,12 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"feed", "camber feed finish.nc --machine machine.toml -o feed.csv"},
     {"time",
      "camber time finish.nc --machine machine.toml --report time.html\n"
-     "  camber time finish.nc --machine machine.toml --sweep axis.all.acceleration_mm_per_s2=300:1200:4"},
-    {"fit-feed", "camber fit-feed --program axes.nc --trace axes.csv --machine machine.toml -o fitted.toml"},
+     "  camber time finish.nc --machine machine.toml --sweep axis.x.acceleration_mm_per_s2=300:1200:4"},
+    {"fit-feed", "camber fit-feed --program trace_program.nc --trace trace.csv --machine machine.toml -o fitted.toml"},
     {"protocol", "camber protocol --machine machine.toml -o programs"},
-    {"fit-force", "camber fit-force --log slots.csv --job slots.toml -o material.toml"},
-    {"init", "camber init finish.nc --tools tool.tbl --machine fitted.toml -o job.toml"},
-    {"predict",
-     "camber predict job.toml -o predicted\n"
-     "  camber predict job.toml -o traced --trace trace.csv"},
+    {"fit-force", "camber fit-force --log means.csv --job job.toml -o material.toml"},
+    {"init", "camber init finish.nc --machine machine.toml --material S55C -o first_job.toml"},
+    {"predict", "camber predict job.toml -o predicted"},
     {"compensate",
      "camber compensate job.toml -o finish_compensated.nc --report report.html --json figures.json\n"
      "  camber compensate --verify finish_compensated.nc"},

@@ -5,12 +5,14 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "base/output_file.h"
 #include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
+#include "machine/material_presets.h"
 #include "nc/program.h"
 #include "report/job_proposal.h"
 
@@ -53,12 +55,13 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   const nc::Summary summary = nc::summarize(text, moves);
   const auto tools = all_tools(text.source, arguments, summary.has_inch);
   write_file(arguments.output, report::job_text({seen_from(arguments.program, arguments.output),
-                                                 seen_from(arguments.machine, arguments.output), summary, tools}));
+                                                 seen_from(arguments.machine, arguments.output), summary, tools, text,
+                                                 moves, arguments.material, arguments.interpreter.inch}));
   if (!options.quiet) {
     const auto cutting =
         std::count_if(summary.tools.begin(), summary.tools.end(), [](const auto& t) { return t.cutting_moves > 0; });
-    fmt::print("{}: {} tool{} that cut; fill in what stands as \"# key =\"\n", arguments.output, cutting,
-               cutting == 1 ? "" : "s");
+    fmt::print("{}: {} tool{} that cut; fill in what stands as \"# key =\", check what is marked \"typical\"\n",
+               arguments.output, cutting, cutting == 1 ? "" : "s");
   }
   return kDone;
 }
@@ -76,6 +79,11 @@ void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chose
       ->take_all()
       ->type_name("FILE");
   command->add_option("--machine", arguments->machine, "the machine that the job names")->type_name("M.toml");
+  std::vector<std::string> presets;
+  for (const auto& preset : machine::material_presets()) presets.emplace_back(preset.name);
+  command->add_option("--material", arguments->material, "a material preset")
+      ->check(CLI::IsMember(presets).description(""))
+      ->type_name(fmt::format("{}", fmt::join(presets, "|")));
   command->add_option("--units", arguments->interpreter.inch, "unit of a program that has neither G20 nor G21")
       ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"mm", false}, {"inch", true}}).description(""))
       ->type_name("mm|inch");

@@ -11,6 +11,7 @@ namespace camber::cli {
 struct InitArguments {
   std::string program, output, machine;
   std::vector<std::string> tools;  ///< tool tables and libraries; the first that knows something counts
+  std::string material{};          ///< preset; empty: to be filled in
   nc::InterpreterOptions interpreter;
 };
 

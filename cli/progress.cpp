@@ -50,13 +50,15 @@ ProgressLine::~ProgressLine() {
   drawing_.join();
 }
 
-void ProgressLine::show(std::string_view what, double share) { take(what, share); }
-void ProgressLine::show(std::string_view what) { take(what, std::nullopt); }
+void ProgressLine::show(std::string_view what, double share) { take(what, share, false); }
+void ProgressLine::show_whole(std::string_view what, double share) { take(what, share, true); }
+void ProgressLine::show(std::string_view what) { take(what, std::nullopt, false); }
 
-void ProgressLine::take(std::string_view what, std::optional<double> share) {
+void ProgressLine::take(std::string_view what, std::optional<double> share, bool whole) {
   if (!enabled_) return;
   const std::lock_guard lock(mutex_);
-  if (what != what_ || quiet_) begin_ = Clock::now();
+  if (!(whole && whole_) && (what != what_ || quiet_)) begin_ = Clock::now();
+  whole_ = whole;
   if (what != what_) what_ = what;
   share_ = share;
   quiet_ = false;

@@ -27,6 +27,8 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(std::string_view what, double share);
+  /// The same of several steps together: the time counts from the first of them.
+  void show_whole(std::string_view what, double share);
   /// A step whose share of work is not known begins.
   void show(std::string_view what);
   /// To be called before anything else is printed; nothing is shown until the next show().
@@ -35,14 +37,14 @@ class ProgressLine {
 
  private:
   using Clock = std::chrono::steady_clock;
-  void take(std::string_view what, std::optional<double> share);
+  void take(std::string_view what, std::optional<double> share, bool whole);
   void redraw_until_stopped();
   void draw(Clock::time_point now);
 
   bool enabled_ = false;
   std::mutex mutex_;  ///< of all below
   std::condition_variable wake_;
-  bool stop_ = false, quiet_ = false, shown_ = false;
+  bool stop_ = false, quiet_ = false, shown_ = false, whole_ = false;
   std::string what_;
   std::optional<double> share_;
   Clock::time_point begin_;

@@ -19,13 +19,17 @@ struct ToolProposal {
   std::optional<double> diameter_mm, corner_radius_mm, flute_length_mm, shank_diameter_mm, overhang_mm;
   std::optional<int> flutes;
   std::optional<double> youngs_modulus_GPa;
-  std::string doubt;  ///< what should be looked at; empty: nothing
+  std::optional<double> point_angle_deg;  ///< chamfer, drill: between opposite sides of the cone
+  std::string doubt;                      ///< what should be looked at; empty: nothing
 };
 
 /// Tools that a program's comments name, one a number, the first mention first: "(T3 D=0.125 CR=0.0625 - ZMIN=-0.54 -
 /// BALL END MILL)" (Fusion), "(T1| 3/4 FLAT ENDMILL|H0)" (Mastercam), "(T02 ID=002  DIA-0.5000  TOOL END MILL)"
-/// (SolidWorks CAM), and a comment beside T and M6. Sizes are in the program's unit; a bare size of 3 or more in a
-/// program in inches is taken as millimetres, with a doubt (a mill of 6 inches is rarer than one of 6 mm).
+/// (SolidWorks CAM), a comment beside T and M6, and one alone on its line, with type and size, up to eight lines above
+/// the change: "( 1/2\" DIA. 2 FLUTE E.M. )", "N146 T2", "N147 G91 G28 Z0 M06". Drills by their gauge ("#30 DRILL",
+/// "LET. B DRILL") have its diameter; taps and reamers stand as drills, with a doubt. Sizes are in the program's unit;
+/// a bare size of 3 or more in a program in inches is taken as millimetres, with a doubt (a mill of 6 inches is rarer
+/// than one of 6 mm).
 std::vector<ToolProposal> tools_in_comments(const SourceText& program, bool inch);
 
 /// LinuxCNC's tool table: "T1 P17 Z0.511 D0.125 ;remark" a line. D is in the machine's unit. Throws InputError

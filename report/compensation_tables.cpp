@@ -8,7 +8,7 @@ namespace {
 std::string um(double value) { return fmt::format("{:.2f}", value); }
 
 TextTable split_table(const compensate::CompensationResult& c) {
-  TextTable table{"Error decomposition", {"part of the error", "before, um rms", "after, um rms"}, {}, {}};
+  TextTable table{"Error decomposition", {"part of the error", "before, µm rms", "after, µm rms"}, {}, {}};
   const auto add = [&](const char* name, double compensate::ErrorSplit::*part) {
     const double before = c.split_before.*part, after = c.split_after.*part;
     if (before > 0 || after > 0) table.rows.push_back({name, um(before), um(after)});
@@ -29,7 +29,7 @@ TextTable split_table(const compensate::CompensationResult& c) {
 std::string place(const Vec3& p) { return fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", p.x(), p.y(), p.z()); }
 
 TextTable depth_table(const compensate::CompensationResult& c) {
-  TextTable table{"Into the part", {"", "all but a thousandth, um", "deepest point, um", "where"}, {}, {}};
+  TextTable table{"Into the part", {"", "all but a thousandth, µm", "deepest point, µm", "where"}, {}, {}};
   const auto add = [&](const char* name, const compensate::Depth& d) {
     table.rows.push_back({name, um(d.held_um), um(d.deepest_um), d.deepest_um > 0 ? place(d.place_mm) : ""});
   };
@@ -41,7 +41,7 @@ TextTable depth_table(const compensate::CompensationResult& c) {
 }
 
 TextTable band_table(const compensate::Band& band) {
-  TextTable table{"How sure", {"", "um"}, {}, {}};
+  TextTable table{"How sure", {"", "µm"}, {}, {}};
   for (const auto& group : band.groups) table.rows.push_back({"moves with " + group.name + ", rms", um(group.rms_um)});
   table.rows.push_back({"error to be expected, rms", um(band.rms_um)});
   table.rows.push_back({"95 % of the error with its uncertainty", um(band.p95_um)});

@@ -37,14 +37,26 @@ bool has_rows(const ReportData& data) {
   return std::any_of(data.path.begin(), data.path.end(), [](const auto& run) { return !run.rows.empty(); });
 }
 
+/// Sentences as they stand in a terminal say "um".
+std::string in_micrometres(std::string text) {
+  constexpr std::string_view kPlain = " um";
+  for (std::size_t at = text.find(kPlain); at != std::string::npos; at = text.find(kPlain, at + 1)) {
+    const std::size_t end = at + kPlain.size();
+    const bool word = end == text.size() || !std::isalnum(static_cast<unsigned char>(text[end]));
+    if (word) text.replace(at, kPlain.size(), " µm");
+  }
+  return text;
+}
+
 std::string verdict_html(const PageVerdict& verdict) {
-  std::string headline = verdict.headline;
+  std::string headline = in_micrometres(verdict.headline);
   if (!headline.empty()) headline[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(headline[0])));
   std::string out = fmt::format("<div class=\"card verdict{}\" id=\"verdict\"><p><b>{}</b></p>\n",
                                 verdict.success ? " good" : "", html_text(headline));
   if (!verdict.reasons.empty()) {
     out += "<ul>\n";
-    for (const std::string& reason : verdict.reasons) out += fmt::format("<li>{}</li>\n", html_text(reason));
+    for (const std::string& reason : verdict.reasons)
+      out += fmt::format("<li>{}</li>\n", html_text(in_micrometres(reason)));
     out += "</ul>\n";
   }
   return out + "</div>\n";

@@ -17,7 +17,7 @@ namespace {
 using nlohmann::json;
 
 /// Share of the surface whose error the colour scale is to hold.
-constexpr double kScaleShare = 0.995;
+constexpr double kScaleShare = 0.95;
 
 /// Half of a symmetric scale that holds kScaleShare of the points, a round number of um.
 double scale_um(const SurfaceSamples& samples, double SurfaceSample::*error) {
@@ -28,6 +28,22 @@ double scale_um(const SurfaceSamples& samples, double SurfaceSample::*error) {
   const auto at = size.begin() + static_cast<std::ptrdiff_t>(kScaleShare * static_cast<double>(size.size() - 1));
   std::nth_element(size.begin(), at, size.end());
   return nice_limit(*at);
+}
+
+/// From where the picture looks first: against the mean normal of the surface, from a little aside and above. Nothing
+/// where the surface faces all ways or upwards: the usual view shows it as well as any.
+json view_of(const SurfaceSamples& samples) {
+  constexpr double kOneWay = 0.3, kUpwards = 0.7, kAside_rad = 0.35, kAbove = 0.6;
+  Vec3 sum = Vec3::Zero();
+  double area = 0;
+  for (const SurfaceSample& s : samples.all()) {
+    sum += s.area_mm2 * s.normal;
+    area += s.area_mm2;
+  }
+  if (area <= 0 || sum.norm() < kOneWay * area || sum.z() > kUpwards * sum.norm()) return nullptr;
+  const double towards = std::atan2(sum.y(), sum.x()) - kAside_rad;
+  const auto rounded = [](double v) { return std::round(1000 * v) / 1000; };
+  return {rounded(std::cos(towards)), rounded(std::sin(towards)), sum.z() < -kUpwards * sum.norm() ? -kAbove : kAbove};
 }
 
 template <class Row, class Get>
@@ -156,6 +172,7 @@ PageData page_data(const ReportData& data, const ReportOptions& options) {
   page.scale_um = scale_um(data.surface, &SurfaceSample::error_um);
   page.scale_after_um = data.compared ? scale_um(data.surface, &SurfaceSample::error_after_um) : page.scale_um;
   index["scales"] = {page.scale_um, page.scale_after_um};
+  if (const json view = view_of(data.surface); !view.is_null()) index["view"] = view;
   if (!data.surface.empty()) index["surface"] = surface_json(data, options, arrays, page);
   if (!data.stock.empty()) index["stock"] = stock_json(data, arrays, page);
   if (data.compared && data.names[0] != "before") index["names"] = data.names;

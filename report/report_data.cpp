@@ -10,6 +10,7 @@
 #include "report/page_tables.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
+#include "report/worst_lines.h"
 #include "simulate/verdict.h"
 
 namespace camber::report {
@@ -75,6 +76,11 @@ void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& dia
   for (TextTable table :
        {material_table(job), tools_table(job), machine_table(job.machine), simulation_table(job), inputs_table(job)})
     data.tables.push_back(std::move(table));
+}
+
+void add_worst_lines(ReportData& data, const SimulatedProgram& program, bool after) {
+  TextTable table = worst_lines_table(data.surface, program.text.source.text(), after);
+  if (!table.rows.empty()) data.tables.insert(data.tables.begin(), std::move(table));
 }
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
@@ -172,8 +178,10 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
   add_loads(rows, program.path, p.cut.loads);
   add_errors(rows, program.path, p.surface);
   data.path.push_back({"", program.text.source.text(), std::move(rows)});
+  if (!simulate::beyond_model(p)) add_worst_lines(data, program, false);
   add_texts(data, job, diagnostics, unsettled_sentence(program, p));
-  for (std::string& sentence : simulate::doubts(job, program, p)) data.warnings.push_back(std::move(sentence));
+  if (std::vector<std::string> doubts = simulate::doubts(job, program, p); !doubts.empty())
+    data.verdict = PageVerdict{false, "these figures are not to be relied on", std::move(doubts)};
   return data;
 }
 
@@ -243,6 +251,7 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   }
   if (c.better || c.best > 0) data.download_name = file_name(output);  // else nothing is written
   data.tables = {rounds_table(c), limits_table(job, c)};
+  add_worst_lines(data, data.compared ? after.program : before.program, data.compared);
   for (TextTable& table : compensation_tables(c)) data.tables.push_back(std::move(table));
   add_texts(data, job, diagnostics, {});
   const VerdictText verdict = verdict_text(c, job.compensation);

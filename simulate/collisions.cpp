@@ -1,7 +1,6 @@
 #include "simulate/collisions.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "feedmodel/rapid.h"
+#include "nc/known_places.h"
 #include "removal/tool_path.h"
 #include "simulate/cut.h"
 #include "simulate/operations.h"
@@ -105,48 +105,21 @@ class HoleWatch {
   Vec2 place_ = Vec2::Zero();
 };
 
-/// G28, G30, G53: its words are no places of the work frame.
-bool goes_to_reference(const SimulatedProgram& program, const nc::Move& m) {
-  return std::ranges::any_of(program.text.words_of(m.block), [](const nc::Word& word) {
-    return word.letter == 'G' && (word.value == 28 || word.value == 30 || word.value == 53);
-  });
-}
-
-void learn_words(const SimulatedProgram& program, const nc::Move& m, std::array<bool, 3>& known) {
-  for (const auto& word : program.text.words_of(m.block))
-    if (word.letter >= 'X' && word.letter <= 'Z') known[static_cast<std::size_t>(word.letter - 'X')] = true;
-}
-
 std::vector<RapidCheck> rapids_of(const SimulatedProgram& program) {
   std::vector<RapidCheck> out;
   HoleWatch watch;
-  std::array<bool, 3> known{};
-  int tool = -1;
+  nc::KnownPlaces places(program.text, program.moves);
   const auto& stamps = program.path.stamps;
   std::size_t next = 0;
   for (std::uint32_t i = 0; i < program.moves.moves.size(); ++i) {
     const nc::Move& m = program.moves.moves[i];
     while (next < stamps.size() && stamps[next].move < i) ++next;
-    bool start_known = known[0] && known[1] && known[2];
-    if (m.reference) {
-      if (goes_to_reference(program, m))
-        known = {};
-      else  // on the way back the words tell the end
-        learn_words(program, m, known);
-      tool = program.moves.state_of(m).tool;
-      continue;
-    }
-    // A tool change may take the axes anywhere.
-    if (program.moves.state_of(m).tool != tool) start_known = false;
-    tool = program.moves.state_of(m).tool;
-    for (std::size_t a = 0; a < 3; ++a) known[a] = known[a] || m.start_mm[a] != m.end_mm[a];
-    learn_words(program, m, known);
-    if (m.kind != nc::MoveKind::rapid) known = {true, true, true};
-    if (watch.in_hole(m) || m.kind != nc::MoveKind::rapid || !(known[0] && known[1] && known[2])) continue;
+    const nc::KnownPlaces::Ends known = places.next(m);
+    if (m.reference || watch.in_hole(m) || m.kind != nc::MoveKind::rapid || !known.end) continue;
     const double t = next < stamps.size() ? stamps[next].t_s : stamps.empty() ? 0 : stamps.back().t_s;
     const auto timed = std::ranges::lower_bound(program.path.rapids, i, {}, &removal::RapidStart::move);
     const bool found = timed != program.path.rapids.end() && timed->move == i;
-    out.push_back({i, found ? timed->t_s : t, next, start_known});
+    out.push_back({i, found ? timed->t_s : t, next, known.start});
   }
   return out;
 }

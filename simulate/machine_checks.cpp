@@ -120,6 +120,28 @@ void check_machine(const machine::Machine& machine, const nc::Program& program, 
   MachineCheck(machine, program, moves, diagnostics).run();
 }
 
+void check_feeds(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics) {
+  constexpr double kAbsurd_mm_per_min = 100000;
+  const nc::Move* first = nullptr;
+  double fastest = 0;
+  std::size_t count = 0;
+  for (const nc::Move& m : moves.moves) {
+    const double feed = mm_per_min_from_mm_per_s(m.feed_mm_per_s);
+    if (!cuts(m) || m.reference || feed <= kAbsurd_mm_per_min) continue;
+    if (!first) first = &m;
+    fastest = std::max(fastest, feed);
+    ++count;
+  }
+  if (!first) return;
+  diagnostics.add(program.source.diagnostic(
+      Severity::warning, program.blocks[first->block].offset,
+      fmt::format(
+          "the feed is {:.0f} mm/min{}; no more than {:g} was expected of a milling machine (unit? G93 or G95?)",
+          fastest, count > 1 ? fmt::format(" at most in this move and {} more", count - 1) : std::string(),
+          kAbsurd_mm_per_min),
+      "feed-absurd"));
+}
+
 void check_spindle(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics) {
   const auto say = [&](const nc::Move& m, Severity severity, std::string message, const char* check) {
     diagnostics.add(program.source.diagnostic(severity, program.blocks[m.block].offset, std::move(message), check));

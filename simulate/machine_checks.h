@@ -14,6 +14,10 @@ namespace camber::simulate {
 void check_machine(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                    Diagnostics& diagnostics);
 
+/// Programmed feeds that no milling machine makes, more than 100 m/min: a warning [feed-absurd], once, at the first
+/// place.
+void check_feeds(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics);
+
 /// For a program without a job, where every line and arc counts as a cut: errors [spindle-stopped] and
 /// [spindle-direction] (cutters are right-hand; tapping aside). A program that never names a spindle speed nor starts
 /// the spindle is one to run in air, as `camber protocol` writes them: a warning then.

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "api/commands/predict.h"
 #include "feedmodel/control_options.h"
 #include "simulate/machine_checks.h"
 #include "simulate/setup_checks.h"
@@ -50,6 +51,24 @@ ordered_json diagnostic_json(const Diagnostic& d) {
           {"check", d.check}};
 }
 
+/// What predict would say of the job before its cut, as far as it is not said yet.
+void add_what_predict_says(machine::Job job, const std::string& program, Diagnostics& found) {
+  job.program = program;
+  Diagnostics of_predict;
+  std::vector<Diagnostic> said;
+  try {
+    prepare(job, {}, of_predict);
+    said = of_predict.all();
+  } catch (const InputError& refused) {
+    said = refused.diagnostics();
+  }
+  for (const Diagnostic& d : said)
+    if (std::ranges::none_of(found.all(), [&](const Diagnostic& f) {
+          return f.check == d.check && f.message == d.message && f.location.line == d.location.line;
+        }))
+      found.add(d);
+}
+
 }  // namespace
 
 std::vector<Diagnostic> in_order(std::vector<Diagnostic> list) {
@@ -69,10 +88,13 @@ CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptio
   CheckedProgram checked{nc::interpret(text, options_of(options, machine, job), found), {}};
   found.throw_if_errors();
   if (machine) simulate::check_machine(*machine, text, checked.moves, found);
+  simulate::check_feeds(text, checked.moves, found);
   if (job)
     simulate::check_job(*job, text, checked.moves, found);
-  else if (machine)
+  else
     simulate::check_spindle(text, checked.moves, found);
+  found.throw_if_errors();
+  if (job) add_what_predict_says(*job, text.source.name(), found);
   found.throw_if_errors();
   checked.summary = nc::summarize(text, checked.moves);
   return checked;

@@ -16,7 +16,8 @@ struct CheckedProgram {
 };
 
 /// As the control of `machine` reads it, where one is given; `job` (with its machine as `machine`) also has its tools,
-/// stock and part checked. `options`: what the user asks for. Throws InputError.
+/// stock and part checked, and then everything that predict looks at before its cut (predict.h, prepare). `options`:
+/// what the user asks for. Throws InputError.
 CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptions& options,
                              const machine::Machine* machine, const machine::Job* job, Diagnostics& found);
 

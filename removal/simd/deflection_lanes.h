@@ -61,7 +61,8 @@ struct DeflectionLanes {
     I m0 = to_int(step);
     const F fm = step - to_float(m0);
     const I all(rows.steps);
-    m0 = xsimd::select(m0 >= all, I(0), m0);
+    // Of a height that diverges, the remainder may be anything: the table is not left.
+    m0 = xsimd::select((m0 >= all) | (m0 < I(0)), I(0), m0);
     const I m1 = xsimd::select(m0 + I(1) == all, I(0), m0 + I(1));
     const F at_node =
         xsimd::min(xsimd::max(height / F(rows.node_step_mm), zero), F(static_cast<float>(rows.nodes - 1)));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/rounds_progress.h"
+#include "test_paths.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -27,22 +29,96 @@ std::vector<std::string> subcommands(const TempFolder& folder) {
   return out;
 }
 
-TEST(Help, HasAnExampleForEverySubcommandThatTheCommandLineTakes) {
+/// The lines below "Example:" of a help text.
+std::vector<std::string> examples_in(const std::string& help) {
+  const std::size_t at = help.find("Example:\n");
+  std::vector<std::string> out;
+  if (at == std::string::npos) return out;
+  std::istringstream lines(help.substr(at + 9));
+  for (std::string line; std::getline(lines, line);)
+    if (const std::size_t from = line.find("camber "); from != std::string::npos) out.push_back(line.substr(from + 7));
+  return out;
+}
+
+TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
   const TempFolder folder;
+  const std::string samples = CAMBER_SOURCE_DIR "/samples/";
+  for (const char* sample : {"01-finishing", "03-force-fit", "10-raster"})
+    std::filesystem::copy(samples + sample, folder / sample);
   const auto names = subcommands(folder);
   EXPECT_GE(names.size(), 11u);
   for (const auto& name : names) {
     const auto help = run_camber(folder, name + " --help");
     EXPECT_EQ(help.status, 0) << name;
-    const std::string mark = "Example:\n  camber ";
-    const std::size_t at = help.out.find(mark);
-    ASSERT_NE(at, std::string::npos) << name;
-    std::string example = help.out.substr(at + mark.size());
-    example = example.substr(0, example.find_first_of("\n>"));
-    EXPECT_EQ(example.rfind(name + " ", 0), 0u) << example;
-    // The files are missing, and that is what is wrong with it: not an option's name or value.
-    EXPECT_NE(run_camber(folder, example).status, 2) << example;
+    const auto examples = examples_in(help.out);
+    EXPECT_FALSE(examples.empty()) << name;
+    for (const std::string& example : examples) {
+      EXPECT_EQ(example.rfind(name + " ", 0), 0u) << example;
+      const bool part = example.find("--part") != std::string::npos;
+      const std::string from = folder / (name == "fit-force" ? "03-force-fit" : part ? "10-raster" : "01-finishing");
+      const std::string command = "export HOME='" + folder.path() +
+                                  "'; mkdir -p ~/.local/share/bash-completion/completions; cd '" + from + "' && '" +
+                                  CAMBER_EXECUTABLE "' " + example + " > '" + (folder / "said") + "' 2>&1";
+      const int status = WEXITSTATUS(std::system(command.c_str()));
+      EXPECT_TRUE(status == 0 || status == 3) << example << "\n" << tests::file_text(folder / "said");
+    }
   }
+}
+
+TEST(CommandLine, NamesTheNearestWordToOneThatItDoesNotKnow) {
+  const TempFolder folder;
+  const auto said = [&](const std::string& words) {
+    const auto run = run_camber(folder, words);
+    EXPECT_EQ(run.status, 2) << words;
+    return run.err;
+  };
+  const std::string more = "\nRun with --help for more information.\n";
+  EXPECT_EQ(said("predcit job.toml -o out"), "camber: there is no command predcit; did you mean predict?" + more);
+  EXPECT_EQ(said("compensate job.toml --reprot r.html -o x.nc"),
+            "camber: there is no option --reprot of compensate; did you mean --report?" + more);
+  EXPECT_EQ(said("check p.nc extra"), "camber: there is no further word extra" + more);
+}
+
+TEST(CommandLine, WritesJsonToStandardOutputAndEverythingElseToStandardError) {
+  const TempFolder folder;
+  folder.write("p.nc", "G21\nS1000 M3\nG0 X0 Y0 Z0\nG1 X10 F100\nM30\n");
+  const auto run = run_camber(folder, "check p.nc --json -");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out.rfind("{\n  \"program\": \"p.nc\"", 0), 0u) << run.out;
+  EXPECT_EQ(run.out.substr(run.out.size() - 2), "}\n");
+  EXPECT_NE(run.err.find("no warnings"), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "-"));
+}
+
+TEST(CommandLine, SaysThatItWasInterruptedAndLeavesNoEmptyFolder) {
+  const TempFolder folder;
+  std::filesystem::copy(CAMBER_SOURCE_DIR "/samples/01-finishing", folder / "sample");
+  const std::string command = "cd '" + (folder / "sample") +
+                              "' && { '" CAMBER_EXECUTABLE
+                              "' predict job.toml -o new/out > ../out 2> ../err & } && p=$! && "
+                              "for i in $(seq 600); do [ -d new/out ] && break; sleep 0.05; done && kill -TERM $p; "
+                              "wait $p; echo $? > ../status";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(tests::file_text(folder / "status"), "143\n");
+  EXPECT_NE(tests::file_text(folder / "err").find("camber: interrupted: nothing was written\n"), std::string::npos)
+      << tests::file_text(folder / "err");
+  EXPECT_FALSE(std::filesystem::exists(folder / "sample/new"));
+}
+
+TEST(Progress, OfACompensationCountsAllRoundsThatAreExpected) {
+  cli::RoundsProgress rounds(8, 0);
+  EXPECT_EQ(rounds.at("as given", 0.5).share, 0.5 / 4);
+  EXPECT_EQ(rounds.at("as given", 1).what, "as given");
+  EXPECT_EQ(rounds.at("round 1", 0).what, "round 1 of about 3 (8 at most)");
+  EXPECT_EQ(rounds.at("round 1", 0.5).share, 1.5 / 4);
+  rounds.at("round 2", 0), rounds.at("round 3", 0);
+  const auto fourth = rounds.at("round 4", 0);
+  EXPECT_EQ(fourth.what, "round 4 of about 4 (8 at most)");
+  EXPECT_EQ(fourth.share, 4.0 / 5);
+  cli::RoundsProgress few(1, 2);
+  few.at("as given", 1);
+  EXPECT_EQ(few.at("round 1", 1).share, 2.0 / 4);
+  EXPECT_EQ(few.at("voxel 0.1", 0.5).share, 2.5 / 4);
 }
 
 /// What bash offers for the words, the last of them being typed.

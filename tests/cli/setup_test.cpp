@@ -38,8 +38,8 @@ void write(const TempFolder& folder, const SetUp& set_up) {
   folder.write("machine.toml", set_up.machine);
 }
 
-/// predict and compensate refuse it with the same words and leave nothing; so does check where it can know.
-void expect_refused(const SetUp& set_up, const std::string& message, bool check_knows = true) {
+/// predict and compensate refuse it with the same words and leave nothing; so does check.
+void expect_refused(const SetUp& set_up, const std::string& message) {
   const TempFolder folder;
   write(folder, set_up);
   for (const char* command : {"predict job.toml -o result", "compensate job.toml -o out.nc"}) {
@@ -50,7 +50,6 @@ void expect_refused(const SetUp& set_up, const std::string& message, bool check_
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "result"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
-  if (!check_knows) return;
   const CamberRun run = run_camber(folder, "check p.nc --job job.toml");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err, message);
@@ -136,6 +135,32 @@ TEST(SetUp, ProgramThatRunsInAirIsWarnedOfAndTimed) {
   }
 }
 
+TEST(SetUp, ChecksOfAProgramAlone) {
+  const TempFolder folder;
+  folder.write("m4.nc", "G21\nT1 M6\nS1000 M4\nG0 X0 Y0 Z0\nG1 X10 F9995000\nX20\nM30\n");
+  const CamberRun wrong = run_camber(folder, "check m4.nc");
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_EQ(wrong.err,
+            "m4.nc:5:1: warning: the feed is 9995000 mm/min at most in this move and 1 more; no more than 100000 was "
+            "expected of a milling machine (unit? G93 or G95?) [feed-absurd]\n    G1 X10 F9995000\n    ^\n"
+            "m4.nc:5:1: error: T1 cuts here under M4, but cutters are right-hand; M3 was expected "
+            "[spindle-direction]\n    G1 X10 F9995000\n    ^\n");
+  folder.write("s0.nc", "G21\nT1 M6\nM3\nG0 X0 Y0 Z0\nG1 X10 F100\nM30\n");
+  EXPECT_EQ(run_camber(folder, "check s0.nc").err,
+            "s0.nc:5:1: error: T1 cuts here with the spindle at S0; S above zero and M3 were expected "
+            "[spindle-stopped]\n    G1 X10 F100\n    ^\n");
+}
+
+TEST(SetUp, CheckOfAJobFindsCollisionsAsPredictDoes) {
+  const TempFolder folder;
+  write(folder, {.program = replaced(kSlot, "G0 X-4 Y0 Z5\nG0 Z-2", "G0 X-4 Y0 Z5\nG0 X4 Y0 Z5\nG0 Z-2\nG0 X-4")});
+  const CamberRun check = run_camber(folder, "check p.nc --job job.toml"),
+                  predict = run_camber(folder, "predict job.toml -o result");
+  EXPECT_EQ(check.status, 1);
+  EXPECT_EQ(check.err, predict.err);
+  EXPECT_NE(check.err.find("[collision-rapid]"), std::string::npos) << check.err;
+}
+
 TEST(SetUp, StockThatLiesElsewhere) {
   expect_refused({.job = replaced(kJob, "[[0, -5, -5], [8, 5, 0]]", "[[100, -5, -5], [108, 5, 0]]")},
                  "p.nc: error: nothing is removed: the tip of the tool cuts from X-4.00 Y0.00 Z-2.00 to X12.00 Y0.00 "
@@ -209,23 +234,20 @@ TEST(SetUp, AllowanceLargerThanTheCut) {
   expect_refused({.job = replaced(kJob, "[simulation]", "allowance_mm = 2.5\n[simulation]")},
                  "job.toml: error: allowance_mm = 2.5: the cut before, with the cutter smaller by this much, takes "
                  "nothing from the stock; an allowance smaller than what the program takes was expected "
-                 "[allowance-too-large]\n",
-                 false);
+                 "[allowance-too-large]\n");
 }
 
 TEST(SetUp, CutAboveTheFlutes) {
   const std::string neck = "flute_length_mm = 1.0\nneck_diameter_mm = 2.0\nneck_length_mm = 20\n[material]";
   expect_refused({.job = replaced(kJob, "[material]", neck) + "collisions = \"off\"\n"},
                  "p.nc:6:1: error: T1 meets material 1.2 mm above its tip, but flute_length_mm = 1; a cut that its "
-                 "flutes reach was expected [cut-above-flutes]\n    G1 X12 F900\n    ^\n",
-                 false);
+                 "flutes reach was expected [cut-above-flutes]\n    G1 X12 F900\n    ^\n");
 }
 
 TEST(SetUp, CutAboveTheOverhang) {
   expect_refused({.job = replaced(kJob, "overhang_mm = 30.0", "overhang_mm = 1.5")},
                  "p.nc:6:1: error: T1 meets material 1.7 mm above its tip, but overhang_mm = 1.5; a cut that ends "
-                 "below the holder was expected [cut-above-overhang]\n    G1 X12 F900\n    ^\n",
-                 false);
+                 "below the holder was expected [cut-above-overhang]\n    G1 X12 F900\n    ^\n");
 }
 
 TEST(SetUp, SecondCutMayGoDeeperThanTheFlutes) {

@@ -29,8 +29,18 @@ TEST(ToolWords, AreReadAsTheirCamSystemsWriteThem) {
       {"|    6. BALL END MILL CRB|H47|XY STOCK TO LEAVE - .0001", true, ToolType::ball, 6.0, none},
       {" ID=002  DIA-0.5000  TOOL END MILL", true, ToolType::flat, 12.7, none},
       {"| 1/8 SPOTDRILL|H0", true, ToolType::drill, 3.175, none},
-      {"| NO. 33 DRILL|H0", true, ToolType::drill, none, none},
-      {"|   4.00-0.7 TAP RH|H0", true, std::nullopt, none, none},
+      {"| NO. 33 DRILL|H0", true, ToolType::drill, 0.113 * 25.4, none},
+      {"|   4.00-0.7 TAP RH|H0", true, ToolType::drill, 4.0, none},
+      // Comments above the change (NIST's D2MI programs).
+      {" 1/2\" DIA. 2 FLUTE STUBBY FULLERTON E.M.   ", true, ToolType::flat, 12.7, none},
+      {" 1/4\" DIA. X .032\" RADIUS 2 FLUTE STUBBY BULLNOSE E.M.   ", true, ToolType::bull, 6.35, 0.032 * 25.4},
+      {" #30 DRILL   ", true, ToolType::drill, 0.1285 * 25.4, none},
+      {" LET. B DRILL   ", true, ToolType::drill, 0.238 * 25.4, none},
+      {" .2505\" REAMER   ", true, ToolType::drill, 0.2505 * 25.4, none},
+      {" 1/4\" X .093\" CORNER ROUNDING E.M.   ", true, std::nullopt, 6.35, none},
+      {" 1/4\" 2 FLUTE E.M. WITH .020\" X 45 DEG CHAMFERS   ", true, ToolType::flat, 6.35, none},
+      {" 10. END_MILL_SPHER DIA. 10. ", false, ToolType::ball, 10.0, none},
+      {" #99 DRILL", true, ToolType::drill, none, none},
       {" 6MM 4 FLUTE BALL", false, ToolType::ball, 6.0, none},
       {" 3/0 BALL", false, ToolType::ball, none, none},
       {"", false, std::nullopt, none, none},
@@ -48,6 +58,10 @@ TEST(ToolWords, AreReadAsTheirCamSystemsWriteThem) {
     }
   }
   EXPECT_EQ(tool_of_words(" 6MM 4 FLUTE BALL", false).flutes, 4);
+  EXPECT_EQ(tool_of_words(" 1/2\" DIA. 2 FLUTE STUBBY E.M.", true).flutes, 2);
+  EXPECT_EQ(tool_of_words(" 1/4\" X 45\xb0 CHAMFER MILL", true).point_angle_deg, 90);
+  EXPECT_EQ(tool_of_words(" 1/4\" X 90\xc2\xb0 SPOT DRILL", true).point_angle_deg, 90);
+  EXPECT_EQ(tool_of_words(" .2505\" REAMER", true).doubt, "taps and reamers stand as drills: they make holes alone");
   EXPECT_EQ(tool_of_words("|    6. BALL END MILL", true).doubt,
             "the size 6. stands without a unit in a program in inches; taken as mm");
   EXPECT_EQ(tool_of_words("|    6. BALL END MILL", false).doubt, "");
@@ -70,6 +84,21 @@ TEST(ToolComments, AreFoundAnywhereInAProgram) {
   EXPECT_EQ(tools[2].type, ToolType::drill);
   EXPECT_EQ(tools[3].number, 4);
   EXPECT_FALSE(tools[3].type.has_value());
+}
+
+TEST(ToolComments, AloneOnALineBelongToTheChangeBelow) {
+  const auto tools = tools_in_comments(
+      SourceText("p.nc",
+                 "( 3\" FACE MILL   )\n( REV. )\nN102 T1\nN103 G91 G28 Z0 M6\nN104 T2 M01\nN105 G1 X1. Y2.\n"
+                 "( ROUGH .134 DEEP STEP )\n( 1/4\" DRILL )\nN110 X3.\nN146 T2\nN147 G91 G28 Z0 M06\nN148 T3 M01\n"
+                 "( #25 DRILL )\nT5 M6\n"),
+      true);
+  ASSERT_EQ(tools.size(), 2u);
+  EXPECT_EQ(tools[0].number, 1);
+  EXPECT_EQ(tools[0].from, "p.nc:1");
+  EXPECT_NEAR(*tools[0].diameter_mm, 76.2, 1e-9);
+  EXPECT_EQ(tools[1].number, 5);  // the 1/4" drill stands above a motion, so it is not the tool of the change
+  EXPECT_NEAR(*tools[1].diameter_mm, 0.1495 * 25.4, 1e-9);
 }
 
 TEST(ToolTable, OfLinuxCncIsRead) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/histogram_svg.h"
+#include "report/worst_lines.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::report {
@@ -111,7 +112,7 @@ TEST(HtmlReport, SaysItsVerdictAndTheReasonAboveTheDownload) {
   const std::string page = html_report(data);
   const std::size_t at = page.find(
       "id=\"verdict\"><p><b>Over the &lt;tolerance&gt;</b></p>\n"
-      "<ul>\n<li>4 um rms: a &amp; b</li>\n</ul>");
+      "<ul>\n<li>4 µm rms: a &amp; b</li>\n</ul>");
   ASSERT_NE(at, std::string::npos);
   EXPECT_LT(at, page.find("id=\"download\""));
   EXPECT_LT(at, page.find("class=\"tiles\""));
@@ -138,6 +139,31 @@ TEST(HtmlReport, ListsEveryTable) {
 
 TEST(HtmlReport, TakesRoundScalesThatHoldTheErrors) {
   EXPECT_EQ(index_of(html_report(example()))["scales"], (std::vector<double>{40, 2}));
+}
+
+TEST(HtmlReport, ListsTheWorstLinesByTheirSurface) {
+  std::vector<SurfaceSample> points;
+  for (std::uint32_t line = 1; line <= 12; ++line)
+    for (const double sign : {1.0, -1.0})
+      points.push_back({.error_um = sign * line, .error_after_um = 1, .area_mm2 = 2, .block = line, .block_after = 3});
+  points.push_back({.error_um = 500, .area_mm2 = 1e-3, .block = 13});  // too little surface to be a line's fault
+  const TextTable table = worst_lines_table(points, "G1 X1\r\nG1 X2\nG1 X3\n", false);
+  ASSERT_EQ(table.rows.size(), 10u);
+  EXPECT_EQ(table.rows.front(), (std::vector<std::string>{"12", "", "12.00", "12.00", "4.00"}));
+  EXPECT_EQ(table.rows.back(), (std::vector<std::string>{"3", "G1 X3", "3.00", "3.00", "4.00"}));
+  const TextTable after = worst_lines_table(points, "", true);
+  ASSERT_EQ(after.rows.size(), 1u);
+  EXPECT_EQ(after.rows.front(), (std::vector<std::string>{"3", "", "1.00", "1.00", "48.00"}));
+}
+
+TEST(HtmlReport, LooksAtAWallFromItsOutside) {
+  ReportData data;
+  data.surface = std::vector<SurfaceSample>{{.normal = {0, 1, 0}}, {.place_mm = {1, 0, 0}, .normal = {0, 1, 0}}};
+  const auto view = index_of(html_report(data))["view"];
+  EXPECT_GT(view[1], 0.9);
+  EXPECT_GT(view[2], 0);
+  data.surface = std::vector<SurfaceSample>{{.normal = {0, 1, 0}}, {.normal = {0, -1, 0}}};
+  EXPECT_FALSE(index_of(html_report(data)).contains("view"));
 }
 
 TEST(HtmlReport, HoldsTheProgramsAsLongAsThereIsRoom) {

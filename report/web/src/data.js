@@ -63,11 +63,11 @@ function runOf(bytes, run) {
   return out;
 }
 
-// {scales, download, surface, stock, runs}; runs without rows are left out.
+// {scales, view, download, surface, stock, runs}; runs without rows are left out.
 export async function readPage() {
   const index = JSON.parse(document.getElementById('index').textContent), bytes = await inflate(bytesOf('arrays'));
   return {
-    scales: index.scales, download: index.download,
+    scales: index.scales, view: index.view, download: index.download,
     surface: index.surface && surfaceOf(bytes, index.surface),
     stock: index.stock && meshOf(bytes, index.stock),
     runs: index.runs.filter(r => r.t.n > 0).map(r => runOf(bytes, r)),

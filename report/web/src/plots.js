@@ -33,6 +33,17 @@ function table(runs, series) {
   return parts.length > 1 ? uPlot.join(parts) : parts[0];
 }
 
+// From the first to the last moment at which something is cut, a little wider.
+function busyTime(runs, end) {
+  let from = Infinity, to = -Infinity;
+  for (const r of runs) for (let i = 0; i < r.t.length; i++) if (r.cutting[i] > 0.5) {
+    from = Math.min(from, r.t[i]);
+    to = Math.max(to, r.t[i]);
+  }
+  const aside = 0.02 * (to - from);
+  return to > from ? { min: Math.max(0, from - aside), max: Math.min(end, to + aside) } : null;
+}
+
 export class Plots {
   // `chosen(t)`: a click at that time.
   constructor(box, runs, chosen) {
@@ -40,6 +51,8 @@ export class Plots {
     const names = present(runs);
     this.end = Math.max(...runs.map(r => r.t[r.t.length - 1]));
     this.plots = names.map((q, i) => this.plot(q, i + 1 === names.length));
+    const busy = busyTime(runs, this.end);
+    if (busy) this.plots.forEach(p => p.setScale('x', busy));
     new ResizeObserver(() => this.resize(box.clientWidth)).observe(box);
   }
 

@@ -161,7 +161,7 @@ export class PartScene {
   }
 
   look(name) {
-    const [x, y, z] = VIEWS[name], length = Math.hypot(x, y, z), far = 20 * this.deep;
+    const [x, y, z] = name === 'oblique' && this.page.view || VIEWS[name], length = Math.hypot(x, y, z), far = 20 * this.deep;
     this.controls.target.set(...this.middle);
     this.camera.position.set(...this.middle.map((v, k) => v + [x, y, z][k] / length * far / 2));
     Object.assign(this.camera, { near: 0, far, zoom: 1 });
