@@ -227,7 +227,7 @@ void write_file(const std::string& path, std::string_view content) {
 void make_folder(const std::string& path) {
   std::error_code ec;
   fs::create_directories(path, ec);
-  if (!fs::is_directory(path)) fail_on_file(path, "cannot be made a folder: " + ec.message(), "file-unwritable");
+  if (!fs::is_directory(path)) fail_on_file(path, "cannot be created as a folder: " + ec.message(), "file-unwritable");
 }
 
 void try_to_write(const std::function<void()>& write, Diagnostics& failed) {

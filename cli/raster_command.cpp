@@ -202,10 +202,11 @@ int status_of(const Report& report, const repath::Fastest& result) {
   if (report.scallops_too_high())
     fmt::print(stderr,
                "resegment: scallops of up to {:.4f} mm remain where the surface is steep across the rows, which lie no "
-               "closer than {:.3f} mm; another --direction-deg or --boundary may do\n",
+               "closer than {:.3f} mm; another --direction-deg or --boundary may help\n",
                report.raster.spacing.largest_scallop_mm, report.raster.spacing.closest_mm);
   if (!result.within_limit)
-    fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the nearest was written\n",
+    fmt::print(stderr,
+               "resegment: no length keeps the axes within {:.1f} um of the path; the closest one was written\n",
                1000 * result.limit.max_mm);
   return report.scallops_too_high() || !result.within_limit ? kNumbersDidNotWorkOut : kDone;
 }
@@ -223,7 +224,7 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
   const machine::Tool& tool = chosen_tool(job, arguments);
   if (arguments.spindle_rpm > job.machine.spindle.max_rpm)
     fail_on_file(job.machine_path,
-                 fmt::format("the spindle turns at {:g} rpm at most; --spindle-rpm {:g} was asked for",
+                 fmt::format("the spindle turns at {:g} rpm at most; --spindle-rpm {:g} was given",
                              job.machine.spindle.max_rpm, arguments.spindle_rpm),
                  "spindle-speed");
   settle(diagnostics, options);

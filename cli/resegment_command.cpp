@@ -94,7 +94,7 @@ struct Report {
              "contour_{}_um.rms"},
             {"straight cuts", count(before.lines), count(after.lines), "", 0, "lines_before", "lines"},
             {"arcs", count(before.arcs), count(after.arcs), "", 0, "arcs_before", "arcs"},
-            {"length of the cuts", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
+            {"cutting length", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
   }
 
  private:
@@ -154,9 +154,9 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   }
   progress.clear();
   if (!options.quiet) fmt::print("{}", report.text());
-  if (!result.gains && !options.quiet) fmt::print("no length is faster: the program was left as it is\n");
+  if (!result.gains && !options.quiet) fmt::print("no length is faster: the program is unchanged\n");
   if (result.within_limit) return kDone;
-  fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the nearest was written\n",
+  fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the closest one was written\n",
              1000 * result.limit.max_mm);
   return kNumbersDidNotWorkOut;
 }

@@ -206,7 +206,7 @@ TEST(BadInput, OutputThatIsAnInput) {
   const auto run = run_camber(folder, "compensate job.toml -o ./p.nc");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err,
-            "./p.nc: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+            "./p.nc: error: would be overwritten, but it is an input; another name was expected [output-is-input]\n");
   EXPECT_EQ(tests::file_text(folder / "p.nc"), before);
 }
 

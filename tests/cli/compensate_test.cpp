@@ -157,7 +157,8 @@ TEST(CompensateCommand, UncertaintyGivesABandAndASafeShare) {
   const auto run =
       run_camber(folder, "compensate job.toml -o a.nc --json a.json --uncertainty 10 --uncertainty fit.json");
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.err, "camber: warning: --uncertainty: runout_um is no parameter of the job; left out [uncertainty]\n");
+  EXPECT_EQ(run.err,
+            "camber: warning: --uncertainty: runout_um is not a parameter of the job; ignored [uncertainty]\n");
   const auto band = nlohmann::json::parse(file_text(folder / "a.json"))["uncertainty"];
   ASSERT_EQ(band["groups"].size(), 3u);
   // In rigid coupling the deflection is the force times the compliance: ten per cent of either is ten of the error.

@@ -129,7 +129,7 @@ TEST(CompressCommand, TellsWhatIsWrong) {
   const auto over = run_camber(folder, "compress p.nc --tolerance-mm 0.01 -o p.nc");
   EXPECT_EQ(over.status, 1);
   EXPECT_EQ(over.err,
-            "p.nc: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+            "p.nc: error: would be overwritten, but it is an input; another name was expected [output-is-input]\n");
   folder.write("bad.nc", "G21\nG1 X1. F0\nM30\n");
   EXPECT_EQ(run_camber(folder, "compress bad.nc --tolerance-mm 0.01 -o out.nc").status, 1);
   EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));

@@ -53,7 +53,7 @@ TEST(Init, WritesWhatProgramAndTablesTell) {
   write_program(folder);
   const auto run = run_camber(folder, "init p.nc --tools tool.tbl --machine m.toml -o job.toml");
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.out, "job.toml: 2 tools that cut; fill in what stands as \"# key =\"\n");
+  EXPECT_EQ(run.out, "job.toml: 2 tools that cut; fill in the keys left as \"# key =\"\n");
   const std::string job = tests::file_text(folder / "job.toml");
   EXPECT_EQ(job.substr(0, job.find("\n[material]")), kExpected);
   EXPECT_NE(job.find("# Cutting moves of the tip: X 0.0 to 10.0, Y 0.0 to 5.0, Z -1.0 to 3.0 mm.\n"
@@ -87,7 +87,7 @@ TEST(Init, WritesOverNothing) {
   folder.write("job.toml", "mine");
   const auto run = run_camber(folder, "init p.nc -o job.toml");
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.err, "job.toml: error: is there already; a new name was expected [file-exists]\n");
+  EXPECT_EQ(run.err, "job.toml: error: already exists; a new name was expected [file-exists]\n");
   EXPECT_EQ(tests::file_text(folder / "job.toml"), "mine");
 }
 
