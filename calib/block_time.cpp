@@ -76,8 +76,8 @@ BlockTimeFit fit_block_time(const std::vector<std::pair<const nc::Interpretation
   }
   if (times.empty()) {
     fit.message = fit.runs.empty() ? "no run of lines of one length; run the saturation program of camber protocol"
-                                   : "every run of lines of one length reaches its feed: the block time is shorter "
-                                     "than what they ask for";
+                                   : "every run of lines of one length reaches its feed: the block time is too short "
+                                     "to show in these programs";
     return fit;
   }
   if (longest < kOtherLength * shortest) {

@@ -147,7 +147,7 @@ std::vector<Part> read_parts(const std::string& path) {
     const auto value = [&](std::string_view name) {
       const auto at = std::find(header.begin(), header.end(), name) - header.begin();
       const auto v = at < static_cast<std::ptrdiff_t>(fields.size()) ? parse_number(fields[at]) : std::nullopt;
-      if (!v) fail_on_file(path, "column " + std::string(name) + " is missing or holds no number", "parts-column");
+      if (!v) fail_on_file(path, "column " + std::string(name) + " is missing or not a number", "parts-column");
       return *v;
     };
     parts.push_back({static_cast<std::uint32_t>(value("line_first")), static_cast<std::uint32_t>(value("line_last")),

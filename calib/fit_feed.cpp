@@ -272,7 +272,7 @@ void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start
           {p.name, p.fitted.value, p.unit, p.fitted.std_error, logged ? source_of(p) : "", true});
     } else {
       result.parameters.push_back({p.name, p.get(start), p.unit, std::nullopt,
-                                   fmt::format("the {} do not tell; left as it was ({})",
+                                   fmt::format("not determined by the {}; start value kept ({})",
                                                logged ? "traces and logs" : "traces", what_tells(p.name)),
                                    false});
     }
@@ -310,7 +310,8 @@ void add_velocity(FitFeedResult& result, const std::vector<FeedRun>& runs, int a
   }
   result.parameters.push_back(
       {name, 60 * limit, "mm/min", std::nullopt,
-       fmt::format("no rapid holds a top speed (highest {:.0f} mm/min); left as it was", 60 * plateau.speed_mm_per_s),
+       fmt::format("no rapid reaches a constant top speed (highest {:.0f} mm/min); start value kept",
+                   60 * plateau.speed_mm_per_s),
        false});
 }
 

@@ -361,8 +361,8 @@ FitParameter left_as_it_was(StretchFit& fit, const LimitParameter& p, const Mach
           p.get(fit.machine),
           p.unit,
           std::nullopt,
-          fmt::format("the stretches do not tell; {} (run what camber protocol writes)",
-                      of_law ? "a usual value" : "left as it was"),
+          fmt::format("not determined by the stretches; {} (run what camber protocol writes)",
+                      of_law ? "a usual value" : "start value kept"),
           of_law};
 }
 
@@ -377,7 +377,7 @@ void add_parameters(StretchFit& fit, const Data& data, const Trial& trial, const
     if (error < kToldShare)
       p.std_error = value * error;
     else
-      p.note = "the stretches hardly tell it (run what camber protocol writes)";
+      p.note = "poorly determined by the stretches (run what camber protocol writes)";
     fit.parameters.push_back(p);
   }
   if (std::isfinite(trial.law.stop_angle_rad)) {

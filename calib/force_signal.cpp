@@ -69,8 +69,8 @@ void remove_drift(Signal& signal, const ForceLog& how, const std::string& path, 
   if (how.idle_s.empty()) {
     diagnostics.add({Severity::warning,
                      {path, 0, 0},
-                     "no idle_s in [force_log]: the forces are taken as they are, with whatever drift they hold; "
-                     "ranges in which the tool turns in air were expected",
+                     "no idle_s in [force_log]: the forces are taken as they are, including any drift; ranges in which "
+                     "the tool turns in air were expected",
                      "force-drift",
                      {}});
     return;

@@ -95,7 +95,7 @@ class LogReader {
     const auto seconds = seconds_of(stamp);
     if (!seconds) {
       report(Severity::error, offset,
-             fmt::format("\"{}\" is no time; one like 2017-02-14T14:56:22.905Z was expected", stamp), "log-time");
+             fmt::format("\"{}\" is not a time; one like 2017-02-14T14:56:22.905Z was expected", stamp), "log-time");
       return;
     }
     if (!begin_s_) begin_s_ = *seconds;

@@ -217,8 +217,8 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
   out.points = measured.size();
   out.left_out = points.size() - out.points;
   if (out.points < 3)
-    refuse(fmt::format("{} of {} points lie on surface that the job machines; three or more were expected", out.points,
-                       points.size()));
+    refuse(fmt::format("{} of {} points lie on a surface that the job machines; three or more were expected",
+                       out.points, points.size()));
   out.rms_before_um = rms_um(e0);
   std::vector<double> e1 = predicted_at(c1);
   for (;;) {
@@ -231,8 +231,8 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
     constexpr double kFlat_mm = 1e-4;  // a deflection twice as large would move the surface by less
     if (std::sqrt(jj / static_cast<double>(e1.size())) < kFlat_mm)
       refuse(
-          "the predicted error at the points hardly depends on the deflection; points where the tool bends across the "
-          "surface were expected");
+          "the predicted error at the points hardly depends on the deflection; points where the tool deflects normal "
+          "to the surface were expected");
     const double next = std::clamp(c1 + jr / jj, kMin, kMax);
     double left = 0;
     for (std::size_t i = 0; i < e1.size(); ++i) {
@@ -250,8 +250,8 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
   }
   if (out.std_error > kVague * out.scale)
     refuse(
-        fmt::format("the points do not tell the deflection: {:.2f} +- {:.2f} of the model's; a standard error below a "
-                    "quarter of it was expected",
+        fmt::format("the points do not determine the deflection: {:.2f} +- {:.2f} times the predicted one; a standard "
+                    "error below a quarter of it was expected",
                     out.scale, out.std_error));
   return out;
 }

@@ -32,7 +32,7 @@ std::vector<UncertainParameter> parameters_of_json(const std::string& path, cons
   std::vector<UncertainParameter> out;
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.contains("parameters") || !json["parameters"].is_array())
-    fail(path, "is no report of fit-force or fit-feed; \"parameters\" with name, value and std_error was expected");
+    fail(path, "is not a report of fit-force or fit-feed; \"parameters\" with name, value and std_error was expected");
   for (const auto& p : json["parameters"]) {
     if (!p.is_object() || !p.contains("name") || !p["name"].is_string()) continue;
     const auto value = p.find("value"), error = p.find("std_error");
@@ -85,8 +85,7 @@ std::vector<ParameterGroup> read_uncertainty(const std::string& given) {
   }
   if (groups.empty())
     fail(given,
-         "holds no standard error; what fit-force or fit-feed wrote (with -o or --json), or a percentage, was "
-         "expected");
+         "has no standard error; output of fit-force or fit-feed (with -o or --json), or a percentage, was expected");
   std::vector<ParameterGroup> out;
   for (auto& [name, group] : groups) out.push_back(std::move(group));
   return out;

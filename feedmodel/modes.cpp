@@ -32,7 +32,7 @@ bool has_set(const machine::Machine& machine, std::string_view name) {
 /// What the machine file does not know of the modes of a state.
 void unknown_modes(const nc::ModalState& state, const machine::Machine& machine, std::set<std::string>& messages) {
   const auto add = [&](std::string_view code, std::string_view means, std::string_view sets) {
-    messages.insert(fmt::format("{} ({}) is on, and the machine file has no {}: [control] counts", code, means, sets));
+    messages.insert(fmt::format("{} ({}) is on, and the machine file has no {}; [control] is used", code, means, sets));
   };
   const ContouringCode& contouring = contouring_of(state);
   const bool any = state.high_speed_contouring && has_set(machine, kAnyContouring);

@@ -429,7 +429,7 @@ openvdb::FloatGrid::Ptr read_float_grid(const std::string& path) {
     fail_on_file(path, std::string("cannot be read as .vdb: ") + e.what(), "vdb-format");
   }
   if (!found || found->getGridClass() != openvdb::GRID_LEVEL_SET || !(found->background() > 0))
-    fail_on_file(path, "holds no level set of floats; a stock.vdb that predict wrote was expected", "vdb-format");
+    fail_on_file(path, "has no level set of floats; a stock.vdb that predict wrote was expected", "vdb-format");
   return found;
 }
 
@@ -469,7 +469,7 @@ Stock Stock::load(const std::string& path, double voxel_mm, double band_voxels) 
   require_voxels(*grid, path, voxel_mm);
   const auto band = static_cast<float>(band_voxels * voxel_mm), old_band = grid->background();
   const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
-  if (box.empty()) fail_on_file(path, "holds no surface: nothing is left of the stock", "vdb-format");
+  if (box.empty()) fail_on_file(path, "has no surface: nothing is left of the stock", "vdb-format");
   Vec3 lo, hi;
   for (int a = 0; a < 3; ++a) {
     lo[a] = (box.min()[a] - 1) * voxel_mm + old_band;

@@ -21,8 +21,8 @@ using nlohmann::json;
 constexpr double kWidth = 560, kHeight = 250, kLeft = 44, kRight = 10, kTop = 26, kBottom = 40;
 
 constexpr const char* kHint =
-    "Drag to turn, with the right button or Shift to move, wheel or two fingers to zoom, double-click for the whole. "
-    "Dots mark the ends of blocks where they are far enough apart; a ring marks the largest deviation.";
+    "Drag to rotate, drag with the right button or Shift to pan, use the wheel or two fingers to zoom, double-click to "
+    "reset. Dots mark the ends of blocks where they are far enough apart; a ring marks the largest deviation.";
 
 std::string row(const std::string& name, const std::string& value, const char* unit, const char* key = nullptr) {
   const std::string shown = key != nullptr ? fmt::format("<span data-key=\"{}\">{}</span>", key, value) : value;
@@ -30,14 +30,14 @@ std::string row(const std::string& name, const std::string& value, const char* u
 }
 
 std::string deviation_html(const RewritePage& page) {
-  std::string out = "<div class=\"card\"><h2>How far the new path lies from the old one</h2>\n" +
+  std::string out = "<div class=\"card\"><h2>Deviation of the new path from the old one</h2>\n" +
                     shares_svg({"Histogram of the deviation", "% of the rewritten length", "deviation, µm", 0,
                                 1000 * page.tolerance_mm, 3, page.length_by_deviation_mm});
   out += "<table><tbody>\n" + row("tolerance", number_text(page.tolerance_mm, 4), "mm", "tolerance_mm");
-  out += row("largest, as the fit bounds it", number_text(page.max_deviation_mm, 4), "mm", "max_deviation_mm");
-  out += row("largest, of points laid densely on both paths", number_text(page.measured_deviation_mm, 4), "mm",
+  out += row("maximum, bound of the fit", number_text(page.max_deviation_mm, 4), "mm", "max_deviation_mm");
+  out += row("maximum, over points laid densely on both paths", number_text(page.measured_deviation_mm, 4), "mm",
              "measured_deviation_mm");
-  out += row("where that is",
+  out += row("position of the maximum",
              fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", page.worst_place_mm.x() + 0.0, page.worst_place_mm.y() + 0.0,
                          page.worst_place_mm.z() + 0.0),
              "");

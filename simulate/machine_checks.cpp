@@ -85,7 +85,7 @@ class MachineCheck {
     const double limit = mm_per_min_from_mm_per_s(machine_.axis[a].max_velocity_mm_per_s);
     const std::size_t more = worst_[a].count - 1;
     error(*worst_[a].move, "feed-limit",
-          fmt::format("the feed asks up to {:.0f} mm/min of {}{}, but {} allows {:g} (max_velocity_mm_per_min of "
+          fmt::format("the feed requires up to {:.0f} mm/min of {}{}, but {} allows {:g} (max_velocity_mm_per_min of "
                       "[axis.{}]); no more was expected",
                       worst_[a].over * limit, kLetters[a],
                       more > 0 ? fmt::format(" in this move and {} more", more) : std::string(), machine_.path, limit,

@@ -185,8 +185,8 @@ void check_region_start(const machine::Job& job, const SimulatedProgram& program
   if (!goes_on || tool == job.tools.end() || !stands_in(blank, tool->second, m.start_mm)) return;
   diagnostics.add(program.text.source.diagnostic(
       Severity::warning, program.text.blocks[m.block].offset,
-      fmt::format("the job's operations begin here, in the middle of a cut: T{} stands in material, which goes without "
-                  "chips; a range that begins at a rapid was expected",
+      fmt::format("the job's operations begin here, in the middle of a cut: T{} stands in material, which is removed "
+                  "without chips; a range that begins at a rapid was expected",
                   tool->first),
       "starts-in-material"));
 }

@@ -83,7 +83,7 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
   if (request.forces_at > 0)
     out.options.turn_from = simulate::turn_at_line(program, job, request.forces_at, diagnostics);
-  show(request, "looking for collisions");
+  show(request, "checking for collisions");
   simulate::check_clearance(job, out.setup, diagnostics);
   return out;
 }

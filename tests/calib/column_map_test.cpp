@@ -94,21 +94,21 @@ TEST(ColumnMap, SinumerikRowsWithMissingSamplesAndAHole) {
   EXPECT_EQ(t.trace.line[1], 3u);
   EXPECT_DOUBLE_EQ(t.trace.command_mm[1].x(), 10.5);
   EXPECT_EQ(t.messages,
-            "trace.txt: warning: 0.014 s are missing before 0.02 s (the samples are 0.002 s apart); what lies before "
-            "and after is used on its own [trace-gap]\n");
+            "trace.txt: warning: 0.014 s are missing before 0.02 s (the samples are 0.002 s apart); the parts before "
+            "and after are used separately [trace-gap]\n");
   EXPECT_EQ(t.trace.stretches.size(), 2u);
 }
 
 TEST(ColumnMap, ToldErrors) {
   EXPECT_EQ(read("[x_cmd]\nname = \"Y1\"\n", kSinumerik).messages,
             "trace.txt: error: x_cmd is \"Y1\", which the trace does not have; it has \"s1\", \"s2\" [map-column]");
-  EXPECT_EQ(read("[x_cmd]\nname = \"X\"\n", "<a><b/></a>").messages,
-            "trace.txt: error: the XML holds no traceData; a Sinumerik trace (traceDisplaySetup) was expected "
-            "[sinumerik-xml]");
+  EXPECT_EQ(
+      read("[x_cmd]\nname = \"X\"\n", "<a><b/></a>").messages,
+      "trace.txt: error: the XML has no traceData; a Sinumerik trace (traceDisplaySetup) was expected [sinumerik-xml]");
   EXPECT_EQ(read("[t]\nindex = 1\n[x_cmd]\nindex = 2\n", "t,x\n0,1\n0,2\n").messages,
             "trace.txt:3:1: error: time 0 s is not after the sample before it, 0 s [trace-time]\n    0,2\n    ^");
   EXPECT_EQ(read("[t]\nindex = 1\n[x_cmd]\nindex = 2\n", "t,x\nonly words, here\n").messages,
-            "trace.txt: error: the trace holds 0 samples of all its positions; at least two are needed [trace-empty]");
+            "trace.txt: error: the trace has 0 samples of all its positions; at least two are needed [trace-empty]");
   EXPECT_EQ(read("[x_cmd]\nindex = 2\n", "t,x\n0,1\n").messages,
             "map.toml: error: the map has neither [t] nor period_ms, and lines of numbers have no times of their own "
             "[map-time]");

@@ -76,8 +76,10 @@ TEST(ReadTrace, WarnsOfAnUnknownColumn) {
 
 TEST(ReadTrace, SplitsAtAGapAndSaysHowMuchIsMissing) {
   EXPECT_EQ(told("t_s,x_cmd_mm\n0,1\n0.001,1\n0.002,1\n0.252,1\n0.253,1\n"),
-            "trace.csv:5:1: warning: 0.249 s are missing before 0.252 s (the samples are 0.001 s apart); what lies "
-            "before and after is used on its own [trace-gap]\n    0.252,1\n    ^\n");
+            "trace.csv:5:1: warning: 0.249 s are missing before 0.252 s (the samples are 0.001 s apart); the parts "
+            "before and after are used separately [trace-gap]\n"
+            "    0.252,1\n"
+            "    ^\n");
 }
 
 }  // namespace

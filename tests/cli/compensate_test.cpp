@@ -62,7 +62,7 @@ TEST(CompensateCommand, WritesProgramAndFiguresAndTheSameBytesAgain) {
   EXPECT_LT(json["split_after_um"]["correctable"], 0.3 * json["split_before_um"]["correctable"].get<double>());
   EXPECT_EQ(json["into_part"]["within_tolerance"], true);
   EXPECT_LE(json["into_part"]["without_bending"]["deepest_um"], 100);
-  for (const char* row : {"a shift can correct", "if the tool did not bend at all", "stopped: "})
+  for (const char* row : {"a shift can correct", "with a rigid tool", "stopped: "})
     EXPECT_NE(run.out.find(row), std::string::npos) << row;
   std::size_t from = 0;
   while (from < run.out.size()) {
@@ -171,7 +171,7 @@ TEST(CompensateCommand, UncertaintyGivesABandAndASafeShare) {
   const auto wrong = run_camber(folder, "compensate job.toml -o b.nc --uncertainty machine.toml");
   EXPECT_EQ(wrong.status, 1);
   EXPECT_EQ(wrong.err,
-            "machine.toml: error: holds no standard error; what fit-force or fit-feed wrote (with -o or --json), or a "
+            "machine.toml: error: has no standard error; output of fit-force or fit-feed (with -o or --json), or a "
             "percentage, was expected [uncertainty]\n");
 }
 
@@ -193,7 +193,7 @@ TEST(CompensateCommand, MeasuredPointsSetTheModelRight) {
   const auto far = run_camber(folder, "compensate job.toml -o b.nc --measured far.csv");
   EXPECT_EQ(far.status, 1);
   EXPECT_EQ(far.err,
-            "far.csv: error: 0 of 2 points lie on surface that the job machines; three or more were expected "
+            "far.csv: error: 0 of 2 points lie on a surface that the job machines; three or more were expected "
             "[measured-untold]\n");
   folder.write("bad.csv", "x,y,z,nx,ny,nz,error\n1,2,3,0,0,1,five\n");
   const auto bad = run_camber(folder, "compensate job.toml -o b.nc --measured bad.csv");

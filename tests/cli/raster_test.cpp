@@ -169,7 +169,7 @@ TEST(RasterCommand, TellsWhatIsWrongWithThePart) {
             "empty.stl: error: is empty; an STL file was expected [stl-empty]\n");
   folder.write("text.stl", "solid nothing\nendsolid\n");
   EXPECT_EQ(said(folder, fmt::format("--part text.stl --job job.toml {}", kCut)),
-            "text.stl: error: is no STL file: neither 84 + 50 n bytes nor the word 'facet' [stl-format]\n");
+            "text.stl: error: is not an STL file: neither 84 + 50 n bytes nor the word 'facet' [stl-format]\n");
   folder.write("open.stl",
                "solid s\nfacet\nouter loop\nvertex 0 0 0\nvertex 8 0 0\nvertex 8 5 1\nendloop\nendfacet\nendsolid\n");
   EXPECT_EQ(said(folder, fmt::format("--part open.stl --job job.toml {}", kCut)),
