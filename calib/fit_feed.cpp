@@ -31,7 +31,7 @@ void set_control_defaults(machine::Control& control) {
   // No control takes up two blocks in one period.
   if (control.block_time_s == 0) control.block_time_s = control.kind.min_segment_periods * control.period_s;
   if (control.corner.law != machine::CornerLaw::blend) return;
-  if (control.corner.step_fraction == 0) control.corner.step_fraction = control.kind.usual_step_share;
+  if (control.corner.step_fraction == 0) control.corner.step_fraction = control.kind.default_step_fraction;
   if (control.lookahead_blocks == 0) control.lookahead_blocks = control.kind.usual_lookahead_blocks;
   if (control.corner.short_line_time_s == 0)
     control.corner.short_line_time_s = control.kind.usual_short_line_periods * control.period_s;
@@ -259,10 +259,10 @@ std::string_view what_tells(std::string_view name) {
 
 /// Which source told a parameter, where there are two.
 std::string source_of(const LimitParameter& p) {
-  constexpr double kMost = 0.9;
-  if (p.logged_share > kMost) return "from the logged times";
-  return p.logged_share < 1 - kMost ? "from the traces"
-                                    : fmt::format("{:.0f} % from the logged times", 100 * p.logged_share);
+  constexpr double kMax = 0.9;
+  if (p.logged_fraction > kMax) return "from the logged times";
+  return p.logged_fraction < 1 - kMax ? "from the traces"
+                                    : fmt::format("{:.0f} % from the logged times", 100 * p.logged_fraction);
 }
 
 void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start, bool logged) {

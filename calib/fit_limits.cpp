@@ -177,7 +177,7 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
     double logged = 0;
     for (std::size_t row = 0; row < count; ++row)
       if (rows[row].logged) logged += std::pow(j(static_cast<Eigen::Index>(row), i), 2);
-    fit.parameters[i].logged_share = logged > 0 ? logged / j.col(i).squaredNorm() : 0;
+    fit.parameters[i].logged_fraction = logged > 0 ? logged / j.col(i).squaredNorm() : 0;
     fit.parameters[i].fitted = {std::exp(logs[i]), INFINITY};
     if (fit.parameters[i].told) told.push_back(i);
   }

@@ -35,7 +35,7 @@ struct LimitParameter {
   FittedValue fitted;
   bool told = false;  ///< the data tells it
   /// Share of what the data tell about it (its squared derivatives) that comes from logged times.
-  double logged_share = 0;
+  double logged_fraction = 0;
 };
 
 /// Those that act under the machine's corner law, with start values that suit most controls (never the machine's own:

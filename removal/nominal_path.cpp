@@ -77,11 +77,11 @@ class NominalBuilder {
 
   /// Stamps up to a place, no farther apart than the axes' own.
   void reach(const Stamp& stamp, const Place& to) {
-    const double from_share = at_.move == to.move ? at_.share : 0.0;
-    const double way = (to.share - from_share) * nc::length_mm(program_, program_.moves[to.move]);
+    const double from_fraction = at_.move == to.move ? at_.share : 0.0;
+    const double way = (to.share - from_fraction) * nc::length_mm(program_, program_.moves[to.move]);
     const double step = stamp.feed_per_tooth_mm.norm();
     const int pieces = step > kStill_mm && way > kFarther * step ? static_cast<int>(std::ceil(way / step - 1e-9)) : 1;
-    for (int i = 1; i <= pieces; ++i) put(stamp, {to.move, from_share + (to.share - from_share) * i / pieces}, false);
+    for (int i = 1; i <= pieces; ++i) put(stamp, {to.move, from_fraction + (to.share - from_fraction) * i / pieces}, false);
     at_ = to;
   }
 

@@ -35,8 +35,8 @@ struct BlockVectors {
   static int find_blocks(const BlockBounds& b, const StampPlace& s, const ArenaView& arena, std::int32_t* out) {
     int found = 0;
     const F fx(s.feed_mm[0]), fy(s.feed_mm[1]), fz(s.feed_mm[2]), length(s.feed_length_mm), least(s.min_forward_mm);
-    const float most_mm = s.feed_length_mm + s.lateral_mm;  // between stamps, deflections and all
-    const F lateral(s.lateral_mm), tilt(s.tilt_mm), curving(0.5f * most_mm * most_mm), slack(s.slack_mm);
+    const float max_mm = s.feed_length_mm + s.lateral_mm;  // between stamps, deflections and all
+    const F lateral(s.lateral_mm), tilt(s.tilt_mm), curving(0.5f * max_mm * max_mm), slack(s.slack_mm);
     const F per_voxel(s.per_voxel), half(0.5f), base_z(static_cast<float>(s.base[2]) + s.fraction[2]);
     const I squares_x(arena.n[0] << kSquareShift), squares_y(arena.n[1] << kSquareShift);
     constexpr int kAhead = 4;
