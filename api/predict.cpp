@@ -80,10 +80,11 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
   api::Run run(run_options);
   run.execute([&] {
     Diagnostics found = given.impl().found;
-    const api::PredictRequest request{
-        .folder = options.output_folder,
-        .forces_at = options.forces_at,
-        .progress = [&](const std::string& what, std::optional<double> share) { run.show(what, share.value_or(0)); }};
+    const api::PredictRequest request{.folder = options.output_folder,
+                                      .forces_at = options.forces_at,
+                                      .progress = [&](const std::string& what, std::optional<double> fraction) {
+                                        run.show(what, fraction.value_or(0));
+                                      }};
     api::PreparedJob prepared = api::prepare(job, request, found);
     run.settle(found);
     if (!request.folder.empty()) make_folder(request.folder);

@@ -66,7 +66,7 @@ double speed_at(const Record& r, const Window& w, std::size_t k, std::size_t hal
   return to > from ? (r.actual_mm[to] - r.actual_mm[from]).norm() / (static_cast<double>(to - from) * r.period_s) : 0;
 }
 
-/// Speed at stations that lie evenly over the share of the length that the axes really went.
+/// Speed at stations that lie evenly over the fraction of the length that the axes really went.
 std::vector<double> speed_profile(const Record& r, const Window& w, const FeedAccuracyOptions& options) {
   std::vector<double> length{0.0};
   for (std::size_t k = w.first + 1; k < w.end; ++k)

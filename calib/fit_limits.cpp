@@ -17,10 +17,10 @@ namespace {
 
 using machine::Machine;
 
-constexpr double kTimeNoise = 0.001;  // s; a part's time is known to about a period
-constexpr double kTimeShare = 0.002;  // and to this share of itself
-constexpr double kLogShare = 0.003;   // a model's error grows with the time; stretches of a log are long
-constexpr double kNoTime = 1e-9;      // s
+constexpr double kTimeNoise = 0.001;     // s; a part's time is known to about a period
+constexpr double kTimeFraction = 0.002;  // and to this fraction of itself
+constexpr double kLogFraction = 0.003;   // a model's error grows with the time; stretches of a log are long
+constexpr double kNoTime = 1e-9;         // s
 constexpr double kShiftPeriods = 0.5;
 constexpr double kWideLossScale = 300.0;
 constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
@@ -75,7 +75,7 @@ LimitParameter stop_time_parameter() {
 
 double scale_of(const TimedLines& lines, std::size_t part) {
   const double time_s = lines.time_s[part];
-  return lines.logged() ? std::hypot(lines.sigma_s[part], kLogShare * time_s) : kTimeNoise + kTimeShare * time_s;
+  return lines.logged() ? std::hypot(lines.sigma_s[part], kLogFraction * time_s) : kTimeNoise + kTimeFraction * time_s;
 }
 
 /// Residuals of the fitted parts, in units of what a part's time is known to.
@@ -215,7 +215,8 @@ bool any_logged(const std::vector<TimedLines>& data) {
 }
 
 std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged) {
-  const auto share = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double), double value) {
+  const auto fraction = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double),
+                           double value) {
     return LimitParameter{
         .name = name, .unit = "1", .get = get, .set = set, .least = 0.02, .most = 1, .start = value, .fitted = {}};
   };
@@ -223,14 +224,14 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
   p.push_back(acceleration<0>("axis.x.acceleration_mm_per_s2"));
   p.push_back(acceleration<1>("axis.y.acceleration_mm_per_s2"));
   p.push_back(acceleration<2>("axis.z.acceleration_mm_per_s2"));
-  p.push_back(share(
+  p.push_back(fraction(
       "control.arc_normal_share", [](const Machine& m) { return m.control.arc_normal_fraction; },
       [](Machine& m, double v) { m.control.arc_normal_fraction = v; }, 0.9));
-  p.push_back(share(
+  p.push_back(fraction(
       "control.arc_tangential_share", [](const Machine& m) { return m.control.arc_tangential_fraction; },
       [](Machine& m, double v) { m.control.arc_tangential_fraction = v; }, 0.7));
   if (machine.control.corner.law == machine::CornerLaw::blend) {
-    p.push_back(share(
+    p.push_back(fraction(
         "control.stop_acceleration_share", [](const Machine& m) { return m.control.stop_acceleration_fraction; },
         [](Machine& m, double v) { m.control.stop_acceleration_fraction = v; }, 0.7));
     p.push_back({.name = "control.corner.step_share",

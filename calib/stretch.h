@@ -45,7 +45,7 @@ bool is_stretch_table(const std::string& path);
 std::vector<TimedStretch> read_stretch_table(const std::string& path, const nc::Interpretation& program);
 
 /// One for each geometry: the first of its stretches, with the mean time and what it is known to.
-/// The difference of a copy to the first is taken by the share of the programmed time.
+/// The difference of a copy to the first is taken by the fraction of the programmed time.
 std::vector<TimedStretch> one_for_each_geometry(const std::vector<TimedStretch>& all,
                                                 const nc::Interpretation& program);
 

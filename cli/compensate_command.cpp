@@ -62,7 +62,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
       .header = arguments.header,
       .header_hash = arguments.header_hash,
       .max_stock_crossings = arguments.report.empty() ? 0 : report::kMaxStockCrossings,
-      .progress = [&](const std::string& what, double share) { progress.show(what, share); }};
+      .progress = [&](const std::string& what, double fraction) { progress.show(what, fraction); }};
   api::CompensatedJob done;
   try {
     done = api::compensate_job(given, request, diagnostics);

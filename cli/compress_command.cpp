@@ -122,7 +122,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   compress_options.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
   compress_options.fit.max_kink_rad = rad_from_deg(arguments.tangent_deg);
   compress_options.fit.arcs = !arguments.lines_only;
-  compress_options.progress = [&](double share) { progress.show("compressing", share); };
+  compress_options.progress = [&](double fraction) { progress.show("compressing", fraction); };
   const repath::Compression result = repath::compress(program, moves, compress_options);
 
   Diagnostics again;  // what it says of the text was said above; an error is ours

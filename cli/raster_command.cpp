@@ -190,7 +190,7 @@ struct Report {
     for (const auto& c : result.tried)
       out["tried"].push_back({{"length_factor", c.length_factor},
                               {"feed_factor", c.feed_factor},
-                              {"corner_feed_share", c.corners.share},
+                              {"corner_feed_share", c.corners.fraction},
                               {"settle_s", c.corners.settle_s},
                               {"time_s", c.figures.time_s},
                               {"contour_um", um(c.figures)}});
@@ -238,7 +238,7 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
   const int decimals = arguments.tolerance_mm < kFineToleranceMm ? 4 : 3;
   if (decimals == 4) raster_options.increment_mm = 0.0001;
   ProgressLine progress(options, "laying rows");
-  raster_options.progress = [&](double share) { progress.show("laying rows", std::clamp(share, 0.0, 1.0)); };
+  raster_options.progress = [&](double fraction) { progress.show("laying rows", std::clamp(fraction, 0.0, 1.0)); };
   const repath::Raster raster = repath::make_raster(drop, raster_options);
   progress.clear();
   if (raster.chains.empty()) fail_on_file(part, "the cutter touches nothing inside the boundary", "boundary-empty");

@@ -52,9 +52,9 @@ report::PathPicture outline(const TriangleMesh& part) {
 }
 
 /// Amounts by value, from zero to a little above the greatest.
-report::ShareHistogram histogram(const std::string& title, const std::string& share_of, const std::string& axis,
-                                 const std::vector<std::pair<double, double>>& value_and_amount) {
-  report::ShareHistogram out{title, share_of, axis, 0, 1e-3, 4, std::vector<double>(kBins, 0)};
+report::FractionHistogram histogram(const std::string& title, const std::string& fraction_of, const std::string& axis,
+                                    const std::vector<std::pair<double, double>>& value_and_amount) {
+  report::FractionHistogram out{title, fraction_of, axis, 0, 1e-3, 4, std::vector<double>(kBins, 0)};
   for (const auto& [value, amount] : value_and_amount) out.to = std::max(out.to, 1.02 * value);
   for (const auto& [value, amount] : value_and_amount)
     out.amounts[std::min(kBins - 1, static_cast<std::size_t>(value / out.to * kBins))] += amount;

@@ -75,7 +75,7 @@ struct Report {
                                      {"gains", result.gains},
                                      {"length_factor", chosen().length_factor},
                                      {"feed_factor", chosen().feed_factor},
-                                     {"corner_feed_share", chosen().corners.share},
+                                     {"corner_feed_share", chosen().corners.fraction},
                                      {"settle_s", chosen().corners.settle_s}};
     if (!result.tried.empty()) report["fastest_unbounded"] = of(result.tried[result.unbounded]);
     report["tried"] = nlohmann::ordered_json::array();
@@ -104,8 +104,9 @@ struct Report {
   }
 
   static nlohmann::ordered_json of(const repath::Candidate& c) {
-    return {{"length_factor", c.length_factor}, {"feed_factor", c.feed_factor}, {"corner_feed_share", c.corners.share},
-            {"settle_s", c.corners.settle_s},   {"time_s", c.figures.time_s},   {"contour_um", of(c.figures)}};
+    return {
+        {"length_factor", c.length_factor}, {"feed_factor", c.feed_factor}, {"corner_feed_share", c.corners.fraction},
+        {"settle_s", c.corners.settle_s},   {"time_s", c.figures.time_s},   {"contour_um", of(c.figures)}};
   }
 
   static nlohmann::ordered_json of(const repath::ContourFigures& f) {
@@ -131,7 +132,7 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   fastest.interpreter = interpreter;
   ProgressLine progress(options, "timing the old blocks");
   const repath::ContourFigures before = repath::contour_figures(moves, moves, machine);
-  fastest.progress = [&](double share) { progress.show("timing new ones", share); };
+  fastest.progress = [&](double fraction) { progress.show("timing new ones", fraction); };
   const repath::Fastest result = repath::find_fastest(program, moves, machine, before, fastest);
 
   Diagnostics again;

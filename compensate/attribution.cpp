@@ -41,7 +41,7 @@ std::vector<Observation> Observed::of_path() const {
 
 std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& given, const Observed& first,
                            std::span<const removal::SurfacePoint> surface,
-                           std::span<const simulate::PathShare> own_target) {
+                           std::span<const simulate::PathFraction> own_target) {
   if (own_target.empty()) return first.compensated;
   std::vector<bool> out(surface.size(), false);
   for (std::size_t i = 0; i < surface.size(); ++i) {
@@ -55,7 +55,7 @@ std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& give
 
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const MoveMap& map,
-                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathShare> own_target) {
+                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target) {
   Observed out;
   out.points.resize(surface.size());
   out.compensated.assign(surface.size(), false);
@@ -71,16 +71,16 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const simulate:
     MoveMap::MovePlace at;
     if (known(p.machined_stamp, emitted)) {
       const auto& stamp = emitted.path.stamps[static_cast<std::size_t>(p.machined_stamp)];
-      at = map.given(stamp.move, stamp.share);
+      at = map.given(stamp.move, stamp.fraction);
     } else if (p.target_stamp >= 0 && static_cast<std::size_t>(p.target_stamp) < own_target.size()) {
       const auto& stamp = own_target[static_cast<std::size_t>(p.target_stamp)];
-      at = {stamp.move, static_cast<double>(stamp.share)};
+      at = {stamp.move, static_cast<double>(stamp.fraction)};
     } else {
       continue;
     }
     if (!path.contains(at.move) || !given.moves.moves[at.move].editable) continue;
     out.compensated[i] = true;
-    o.place = path.find(at.move, at.share);
+    o.place = path.find(at.move, at.fraction);
     const auto tool = job.tools.find(given.moves.state_of(given.moves.moves[at.move]).tool);
     const ControlPoint &from = path.points()[o.place.lower], &to = path.points()[o.place.lower + 1];
     const Vec3 tip = from.place_mm + o.place.upper_fraction * (to.place_mm - from.place_mm);

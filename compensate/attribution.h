@@ -31,13 +31,13 @@ struct Observed {
 /// Observed::reach, from the first observation of the program as given; `own_target`: see observe.
 std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& given, const Observed& first,
                            std::span<const removal::SurfacePoint> surface,
-                           std::span<const simulate::PathShare> own_target);
+                           std::span<const simulate::PathFraction> own_target);
 
 /// A point belongs to the stamp that cut the machined surface there; where nothing did, to the stamp of the nominal
 /// sweep, if that is the given program's own (`own_target`: Target::stamps; else empty). `map`: from the emitted
 /// program's moves to those of `path`.
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const MoveMap& map,
-                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathShare> own_target);
+                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target);
 
 }  // namespace camber::compensate

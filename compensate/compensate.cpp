@@ -186,17 +186,17 @@ class Loop {
   }
 
   void converge(CompensationResult& out) {
-    double share = 1;
+    double fraction = 1;
     int without_gain = 0;
     while (!done(out, without_gain)) {
-      step(out, share, nullptr);
+      step(out, fraction, nullptr);
       const double best = out.rounds[out.best].error_um.rms, now = out.rounds.back().error_um.rms;
       without_gain = now < (1 - kMinGain) * best ? 0 : without_gain + 1;
       if (now < best) {
         take(out);
       } else if (now > kWorse * best) {
         last_ = best_;
-        share *= kShorter;
+        fraction *= kShorter;
       }
     }
   }
@@ -227,13 +227,13 @@ class Loop {
   }
 
   /// New shifts from the last trial's error, and their prediction.
-  void step(CompensationResult& out, double share, const Guard* guard) {
+  void step(CompensationResult& out, double fraction, const Guard* guard) {
     const std::shared_ptr<const Trial> from_trial = last_;
     const Observed& before = from_trial->observed;
     std::vector<Observation> observations = wanted_of(before, guard);
     Round round;
     round.gain = sensitivity_->mean();
-    round.step_fraction = share;
+    round.step_fraction = fraction;
     round.guard = guard != nullptr;
     const std::vector<Vec3>& from = from_trial->shifts;
     auto made = std::make_shared<Trial>();
@@ -251,7 +251,7 @@ class Loop {
       thin.give_shifts(*path_);
       for (std::size_t p = 0; p < from.size(); ++p) {
         Vec3& shift = path_->points()[p].shift_mm;
-        shift = from[p] + share * (shift - from[p]);
+        shift = from[p] + fraction * (shift - from[p]);
       }
       next.emitted = trials_.emit(*path_, splits_->kept(), compensated_);
       thin.take_shifts(*path_);
@@ -291,7 +291,7 @@ class Loop {
   void stiffen(const std::vector<MoveMap::MovePlace>& places) {
     for (const auto& place : places) {
       if (!path_->contains(place.move)) continue;
-      const std::size_t at = path_->find(place.move, place.share).lower;
+      const std::size_t at = path_->find(place.move, place.fraction).lower;
       for (std::size_t i = at > 0 ? at - 1 : 0; i < std::min(at + 3, stiffness_.size()); ++i) stiffness_[i] *= kStiffer;
     }
   }

@@ -31,8 +31,8 @@ std::vector<Operation> operations_of(const SimulatedProgram& program, std::vecto
   return out;
 }
 
-void share_surface(const SimulatedProgram& program, const std::vector<removal::SurfacePoint>& surface,
-                   const std::vector<std::size_t>& of_move, std::vector<Operation>& operations) {
+void distribute_surface(const SimulatedProgram& program, const std::vector<removal::SurfacePoint>& surface,
+                        const std::vector<std::size_t>& of_move, std::vector<Operation>& operations) {
   double area = 0;
   for (const auto& p : surface) {
     area += p.area_mm2;
@@ -50,14 +50,14 @@ Finishing find_finishing(const machine::Job& job, const SimulatedProgram& progra
   Finishing out;
   std::vector<std::size_t> of_move;
   out.operations = operations_of(program, of_move);
-  share_surface(program, surface, of_move, out.operations);
+  distribute_surface(program, surface, of_move, out.operations);
   const auto& wanted = job.compensation.operations;
   out.moves = removal::selected_moves(program.moves, simulate::as_lines(wanted, program.text, program.moves));
   for (std::size_t m = 0; m < out.moves.size(); ++m) {
     out.moves[m] = out.moves[m] && program.selected[m];
     if (!out.moves[m]) continue;
     Operation& operation = out.operations[of_move[m]];
-    if (!wanted.given() && !surface.empty()) out.moves[m] = operation.surface_fraction >= kFinishingShare;
+    if (!wanted.given() && !surface.empty()) out.moves[m] = operation.surface_fraction >= kFinishingFraction;
     if (out.moves[m]) ++operation.compensated_moves;
   }
   return out;

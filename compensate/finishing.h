@@ -24,7 +24,7 @@ struct Finishing {
 };
 
 /// An operation that makes less of the surface than this is no finishing.
-inline constexpr double kFinishingShare = 0.05;
+inline constexpr double kFinishingFraction = 0.05;
 
 /// Of the moves that the job simulates: those that [compensation] operations names by tool, by lines and by comments;
 /// where it names none, the operations that made at least kFinishingShare of the surface (`surface`: of the program as

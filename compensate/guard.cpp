@@ -22,9 +22,9 @@ struct Lift {
     positive = positive.cwiseMax(to);
     negative = negative.cwiseMin(to);
   }
-  void raise(const Lift& from, double share) {
-    positive = positive.cwiseMax(share * from.positive);
-    negative = negative.cwiseMin(share * from.negative);
+  void raise(const Lift& from, double fraction) {
+    positive = positive.cwiseMax(fraction * from.positive);
+    negative = negative.cwiseMin(fraction * from.negative);
   }
   Vec3 sum() const { return positive + negative; }
 };
@@ -62,8 +62,8 @@ void Guard::learn(const Observed& observed, double held_mm) {
           const auto near = cells.find({i, j, k});
           if (near == cells.end()) continue;
           for (const std::size_t n : near->second)
-            if (const double share = fade((place_mm_[n] - place_mm_[at]).norm(), reach_mm_); share > 0)
-              spread[n].raise(lift, share);
+            if (const double fraction = fade((place_mm_[n] - place_mm_[at]).norm(), reach_mm_); fraction > 0)
+              spread[n].raise(lift, fraction);
         }
   }
   for (const auto& [at, lift] : spread) lift_mm_[at] += lift.sum();

@@ -128,7 +128,7 @@ class Neighbours {
     };
     std::map<Cell, std::vector<std::size_t>> cells;
     for (std::size_t i = 0; i < surface.size(); ++i) cells[cell_of(surface[i].place_mm)].push_back(i);
-    constexpr double kSameWay = 0.8, kNear = 0.25;  // a point counts 1/e at this share of the reach
+    constexpr double kSameWay = 0.8, kNear = 0.25;  // a point counts 1/e at this fraction of the reach
     of_.resize(points.size());
     for (std::size_t m = 0; m < points.size(); ++m) {
       const Cell c = cell_of(points[m].place_mm);

@@ -52,10 +52,10 @@ void Sensitivity::learn(const ShiftPath& path, std::span<const Vec3> shifts_befo
     const double step = o.normal.dot(path.shift_at(o.place) - old);
     const double change = o.error_mm - before.points[i].error_mm;
     const Sums s{o.area_mm2 * step * change, o.area_mm2 * step * step, o.area_mm2};
-    const auto add = [&](Sums& to, double share) {
-      to.products += share * s.products;
-      to.squares += share * s.squares;
-      to.area += share * s.area;
+    const auto add = [&](Sums& to, double fraction) {
+      to.products += fraction * s.products;
+      to.squares += fraction * s.squares;
+      to.area += fraction * s.area;
     };
     add(sums[lower], u);
     add(sums[lower + 1], v);

@@ -13,7 +13,7 @@ namespace camber::compensate {
 /// A place on the programmed path. Shifts are linear between neighbours of a chain.
 struct ControlPoint {
   std::uint32_t move = 0;
-  double share = 0;     ///< of the move's length
+  double fraction = 0;  ///< of the move's length
   double along_mm = 0;  ///< path length since the chain's start
   Vec3 place_mm = Vec3::Zero();
   Vec3 shift_mm = Vec3::Zero();
@@ -48,7 +48,7 @@ class ShiftPath {
   /// The move is one whose points may be shifted.
   bool contains(std::uint32_t move) const { return move < first_of_move_.size() && first_of_move_[move] != kNone; }
   /// `move` must be contained.
-  PointInterval find(std::uint32_t move, double share) const;
+  PointInterval find(std::uint32_t move, double fraction) const;
   Vec3 shift_at(const PointInterval& place) const;
   std::vector<Vec3> shifts() const;
   void set_shifts(std::span<const Vec3> shifts);

@@ -93,13 +93,13 @@ std::vector<ParameterGroup> read_uncertainty(const std::string& given) {
 
 machine::Job moved(const machine::Job& job, const ParameterGroup& group, std::vector<std::string>& unknown) {
   machine::Job out = job;
-  if (group.name == "force" && group.share > 0)
+  if (group.name == "force" && group.fraction > 0)
     for (const auto& c : machine::description(out.material.law).coefficients)
-      if (c.role != machine::CoefficientRole::shape) out.material.*c.field *= 1 + group.share;
-  if (group.name == "stiffness" && group.share > 0)
+      if (c.role != machine::CoefficientRole::shape) out.material.*c.field *= 1 + group.fraction;
+  if (group.name == "stiffness" && group.fraction > 0)
     for (auto& [number, tool] : out.tools) {
-      tool.youngs_modulus_MPa /= 1 + group.share;
-      tool.root_stiffness_N_per_mm /= 1 + group.share;
+      tool.youngs_modulus_MPa /= 1 + group.fraction;
+      tool.root_stiffness_N_per_mm /= 1 + group.fraction;
     }
   for (const auto& p : group.parameters) {
     if (const auto* coefficient = machine::find_coefficient(p.name))
@@ -144,10 +144,10 @@ Band band_of(const std::vector<removal::SurfacePoint>& before, const std::vector
     out.deepest_um = std::max(0.0, -1000 * low(i));
     if (passed >= kAreaDeepest * whole) break;
   }
-  const auto holds = [&](double share) {
+  const auto holds = [&](double fraction) {
     double over = 0;
     for (std::size_t i = 0; i < after.size(); ++i) {
-      const double e = (1 - share) * before[i].error_mm + share * after[i].error_mm;
+      const double e = (1 - fraction) * before[i].error_mm + fraction * after[i].error_mm;
       if (e - kOneSided * sigma[i] < -tolerance_mm) over += area[i];
     }
     return over <= kAreaAllowed * whole;

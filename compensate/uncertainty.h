@@ -21,7 +21,7 @@ struct UncertainParameter {
 struct ParameterGroup {
   std::string name;  ///< "cutting", "edge", "stiffness", "force", "drives", "limits"
   std::vector<UncertainParameter> parameters;
-  double share = 0;  ///< instead of parameters: a relative standard error of the whole group
+  double fraction = 0;  ///< instead of parameters: a relative standard error of the whole group
 };
 
 /// A percentage ("10", "10 %"): the forces and the tool's stiffness, each uncertain by so much, two groups. Otherwise
@@ -48,7 +48,7 @@ struct Band {
 /// First-order propagation: the standard error of each point of the surface is the root of the sum of squares of the
 /// groups' changes (`changes_mm`, one list a group, of the surface of the compensated program).
 ///
-/// safe_fraction: the largest share of the compensation with which, at 95 % confidence in each point, no more of the
+/// safe_fraction: the largest fraction of the compensation with which, at 95 % confidence in each point, no more of the
 /// area is cut deeper into the part than the tolerance than one twentieth; the error goes linearly from before to
 /// after.
 Band band_of(const std::vector<removal::SurfacePoint>& before, const std::vector<removal::SurfacePoint>& after,

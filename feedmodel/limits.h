@@ -5,7 +5,7 @@
 
 namespace camber::feedmodel {
 
-/// Largest of |direction_i| / limit_i: the time an axis needs for its share of 1 mm (or of 1 mm/s). The limit
+/// Largest of |direction_i| / limit_i: the time an axis needs for its fraction of 1 mm (or of 1 mm/s). The limit
 /// along the direction is its reciprocal; infinite when no axis that moves has a limit.
 /// direction: unit vector, or the part of one that the limits are for; limits > 0, infinity allowed.
 double limit_along(const Vec3& direction, const Vec3& limits);

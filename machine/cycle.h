@@ -31,7 +31,7 @@ struct Cycle {
   double bell_time_s = 0;        ///< bell
   double rapid_override_percent = 100;
   double feed_override_percent = 100;
-  /// Between two rapids the second begins when the first has braked to this share of its speed; 0: at rest.
+  /// Between two rapids the second begins when the first has braked to this fraction of its speed; 0: at rest.
   double rapid_overlap_percent = 0;
   double linear_acceleration_mm_per_s2 = std::numeric_limits<double>::infinity();  ///< cutting, before interpolation
   double arc_acceleration_mm_per_s2 = std::numeric_limits<double>::infinity();     ///< centripetal, F <= sqrt(a r)

@@ -31,7 +31,7 @@ struct Corner {
   double acceleration_mm_per_s2 = kNoLimit;     ///< radius: a
   /// A corner that turns by less is no corner, whatever the law (Takata 1999, table 2.1: 5 degrees). 0: all are.
   double threshold_rad = 0;
-  /// Corners passed without rounding: the speed of an axis may jump by this share of what it gains in one period
+  /// Corners passed without rounding: the speed of an axis may jump by this fraction of what it gains in one period
   /// (dV = share x acceleration x period). 0: only corners without a change of direction are passed so.
   double step_fraction = 0;
   /// A line that lasts less than this between two roundings is driven with the limits of the roundings.

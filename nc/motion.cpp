@@ -400,9 +400,9 @@ void BlockInterpreter::read_spiral_words(ArcWords& arc) {
     if (dialect.spiral_radius_difference_mm <= 0 && dialect.spiral_radius_fraction <= 0) return;
     const ArcResult plain = make_arc(arc);
     const double larger = std::max(plain.start_radius_mm, plain.end_radius_mm);
-    const double share_mm = std::min(dialect.spiral_radius_fraction * larger, dialect.spiral_max_mm);
+    const double relative_mm = std::min(dialect.spiral_radius_fraction * larger, dialect.spiral_max_mm);
     arc.spiral = plain.error.empty() && plain.radius_difference_mm > kArcRadiusWarningMm &&
-                 plain.radius_difference_mm <= std::max(dialect.spiral_radius_difference_mm, share_mm);
+                 plain.radius_difference_mm <= std::max(dialect.spiral_radius_difference_mm, relative_mm);
     return;
   }
   const double turns = words_.value('L');

@@ -93,11 +93,11 @@ struct Interpretation {
 
 /// Length along the path, mm (helices included).
 double length_mm(const Interpretation& program, const Move& move);
-/// Point at the share u in [0, 1] of the move's length.
+/// Point at the fraction u in [0, 1] of the move's length.
 Vec3 point_at(const Interpretation& program, const Move& move, double u);
 /// The tool there. Rotary axes are not read yet, so every pose is upright.
 ToolPose pose_at(const Interpretation& program, const Move& move, double u);
-/// Unit direction of motion at the share u; zero for a move without length.
+/// Unit direction of motion at the fraction u; zero for a move without length.
 Vec3 direction_at(const Interpretation& program, const Move& move, double u);
 
 }  // namespace camber::nc

@@ -85,10 +85,10 @@ ErrorFigures error_figures(const std::vector<double>& error, const std::vector<d
 
 /// How the area is spread over the error.
 struct ErrorSpread {
-  static constexpr std::array<double, 9> kShares{0.01, 0.05, 0.10, 0.25, 0.50, 0.75, 0.90, 0.95, 0.99};
-  std::array<double, kShares.size()> percentile{};  ///< of the signed error, by area
-  double bin_from = 0, bin_width = 0;               ///< in the unit of the values
-  std::vector<double> bin_area_mm2;                 ///< their sum is the whole area
+  static constexpr std::array<double, 9> kFractions{0.01, 0.05, 0.10, 0.25, 0.50, 0.75, 0.90, 0.95, 0.99};
+  std::array<double, kFractions.size()> percentile{};  ///< of the signed error, by area
+  double bin_from = 0, bin_width = 0;                  ///< in the unit of the values
+  std::vector<double> bin_area_mm2;                    ///< their sum is the whole area
 };
 /// Forty bins or fewer of a round width (1, 2 or 5 times a power of ten) from the least to the greatest error.
 ErrorSpread error_spread(const std::vector<double>& error, const std::vector<double>& area_mm2);

@@ -355,13 +355,13 @@ void Stock::clear() {
 double material_fraction(double d, double voxel) { return std::clamp(0.5 - 0.5 * d / voxel, 0.0, 1.0); }
 
 double Stock::volume_mm3() const {
-  double share = 0;
+  double fraction = 0;
   for (auto it = impl_->distance->tree().cbeginLeaf(); it; ++it)
-    for (openvdb::Index n = 0; n < 512; ++n) share += material_fraction(it->getValue(n), voxel_mm_);
+    for (openvdb::Index n = 0; n < 512; ++n) fraction += material_fraction(it->getValue(n), voxel_mm_);
   // Below leaf level only inactive tiles of one value are left.
   for (auto it = impl_->distance->tree().cbeginValueOff(); it; ++it)
-    if (!it.isVoxelValue() && it.getValue() < 0) share += static_cast<double>(it.getVoxelCount());
-  return share * std::pow(voxel_mm_, 3);
+    if (!it.isVoxelValue() && it.getValue() < 0) fraction += static_cast<double>(it.getVoxelCount());
+  return fraction * std::pow(voxel_mm_, 3);
 }
 
 std::vector<Index3> Stock::surface_tiles() const {

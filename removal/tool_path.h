@@ -20,7 +20,7 @@ struct Stamp {
   double t_s = 0;
   ToolPose pose;
   Vec3 feed_per_tooth_mm = Vec3::Zero();  ///< motion since the stamp before, one tooth passing earlier
-  double share = 0;                       ///< of `move`'s length at which the tip stands, 0 to 1
+  double fraction = 0;                    ///< of `move`'s length at which the tip stands, 0 to 1
   bool first = false;                     ///< after a rapid, a dwell or a tool change: no tooth passed just before
   std::uint32_t move = 0;  ///< index into Interpretation::moves, where the tip is (not what is commanded)
 };
@@ -102,7 +102,7 @@ class StampBuilder {
   void stamp_at(double t_s, const feedmodel::TimedSample& sample, const feedmodel::PathPlace& place, int tool);
   void drill(const feedmodel::TimedSample& sample, const feedmodel::PathPlace& place);
   void finish_hole(std::uint32_t move, double t_s);
-  void hole_stamp(std::uint32_t move, double share, double t_s);
+  void hole_stamp(std::uint32_t move, double fraction, double t_s);
   void append(const Stamp& stamp, int tool, RunKind kind);
   bool makes_hole(std::uint32_t move) const { return !holes_.empty() && removal::makes_hole(holes_[move]); }
   double passing_s(std::uint32_t move) const;

@@ -30,7 +30,7 @@ struct CompressOptions {
   bool switch_planes = false;  ///< runs in another plane get its G17 G18 G19 and the old one behind; else lines only
   bool whole_numbers_are_increments = false;  ///< numbers are written with a point
   FitOptions fit{};                           ///< tolerance and increment are set from the program
-  std::function<void(double)> progress{};     ///< share of the moves
+  std::function<void(double)> progress{};     ///< fraction of the moves
 };
 
 /// A stretch of blocks that are plain straight cuts at one feed, in one plane or in space.

@@ -14,10 +14,10 @@ namespace camber::repath {
 /// Lower feeds about the corners that are kept, where axes that lag cut them off or leave them late: in the last 0.8 mm
 /// before a corner and the first 0.4 mm behind it. Figures of trial: they are where the seconds buy most.
 struct CornerFeeds {
-  double share = 1;     ///< of the feed; 1: as elsewhere
+  double fraction = 1;  ///< of the feed; 1: as elsewhere
   double settle_s = 0;  ///< what lies between two sharp corners (60 degrees) that are no farther apart, as the step
                         ///< from row to row, takes at least so long: the axes catch up
-  bool any() const { return share != 1 || settle_s > 0; }
+  bool any() const { return fraction != 1 || settle_s > 0; }
 };
 
 struct ResegmentOptions {

@@ -17,7 +17,7 @@ namespace {
 using nlohmann::json;
 
 /// Share of the surface whose error the colour scale is to hold.
-constexpr double kScaleShare = 0.995;
+constexpr double kScaleFraction = 0.995;
 
 /// Half of a symmetric scale that holds kScaleShare of the points, a round number of um.
 double scale_um(const SurfaceSamples& samples, double SurfaceSample::*error) {
@@ -25,7 +25,7 @@ double scale_um(const SurfaceSamples& samples, double SurfaceSample::*error) {
   std::vector<double> size;
   size.reserve(samples.size());
   for (const SurfaceSample& s : samples.all()) size.push_back(std::abs(s.*error));
-  const auto at = size.begin() + static_cast<std::ptrdiff_t>(kScaleShare * static_cast<double>(size.size() - 1));
+  const auto at = size.begin() + static_cast<std::ptrdiff_t>(kScaleFraction * static_cast<double>(size.size() - 1));
   std::nth_element(size.begin(), at, size.end());
   return nice_limit(*at);
 }

@@ -31,8 +31,8 @@ removal::ErrorFigures total_error(const simulate::Prediction& p) {
 /// Percentiles of the signed error and its histogram, by area.
 ordered_json spread(const removal::ErrorSpread& s) {
   ordered_json percentiles = ordered_json::object();
-  for (std::size_t i = 0; i < s.kShares.size(); ++i)
-    percentiles[fmt::format("p{:02.0f}", 100 * s.kShares[i])] = s.percentile[i];
+  for (std::size_t i = 0; i < s.kFractions.size(); ++i)
+    percentiles[fmt::format("p{:02.0f}", 100 * s.kFractions[i])] = s.percentile[i];
   return {{"percentiles", percentiles},
           {"histogram", {{"from", s.bin_from}, {"width", s.bin_width}, {"area_mm2", s.bin_area_mm2}}}};
 }

@@ -35,9 +35,9 @@ SimulatedProgram simulate_motion(SourceText source, const machine::Job& job, con
                                  Diagnostics& diagnostics);
 
 /// A place on a program's moves.
-struct PathShare {
+struct PathFraction {
   std::uint32_t move = 0;
-  float share = 0;  ///< of the move's length
+  float fraction = 0;  ///< of the move's length
 };
 
 /// Which points of a SurfaceMap are left out of a job's surface (simulate/region.h).
@@ -57,7 +57,7 @@ struct Target {
   std::optional<removal::MeshDistance> part;
   HoleStamps holes;                       ///< of the nominal path
   std::optional<removal::Stock> whole{};  ///< the stock before the allowance was taken off; empty: `blank`
-  std::vector<PathShare> stamps{};        ///< the nominal path's, on the target program's moves
+  std::vector<PathFraction> stamps{};     ///< the nominal path's, on the target program's moves
   std::vector<float> contour_mm{};        ///< one a point of a SurfaceMap of this target; see Prediction::surface
   double unseen_mm2 = 0;                  ///< of the nominal surface, without a point
   SurfaceRegion region{};                 ///< what of the nominal surface is judged

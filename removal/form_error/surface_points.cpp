@@ -283,8 +283,8 @@ class Patch {
   /// What the point counts for: the points of all three axes cover the surface sum n_a^2 = 1 times.
   double area_mm2(double n_axis) const { return area_mm2_ * std::abs(n_axis) * (open_ ? std::abs(n_axis) : 1.0); }
   /// A place in it, from its point; shares from -0.5 to 0.5.
-  Vec3 place(const Vec2& share) const {
-    const Vec3 at = middle_ + share[0] * sides_[0] + share[1] * sides_[1];
+  Vec3 place(const Vec2& fraction) const {
+    const Vec3 at = middle_ + fraction[0] * sides_[0] + fraction[1] * sides_[1];
     const double length = at.norm();
     return open_ && length > farthest_ ? Vec3(farthest_ / length * at) : at;
   }

@@ -20,7 +20,7 @@ using testing::make_box;
 using testing::make_tool;
 
 constexpr double kLength = 8, kDepth = 2;
-constexpr double kFeed = 0.1, kStockShare = 0.0005;
+constexpr double kFeed = 0.1, kStockFraction = 0.0005;
 
 /// A chip's thickness is right to the order of c / R; the volume of a slot's chips falls short by about a quarter of
 /// it.
@@ -48,7 +48,7 @@ void expect_volume(const machine::Tool& tool, double area_mm2, const char* what)
   const Volumes v = slot(tool, 0);
   ::testing::Test::RecordProperty(
       what, fmt::format("{:.5f} {:.5f}", v.stock_mm3 / (area_mm2 * kLength), v.chips_mm3 / v.stock_mm3));
-  EXPECT_NEAR(v.stock_mm3 / (area_mm2 * kLength), 1, kStockShare) << what;
+  EXPECT_NEAR(v.stock_mm3 / (area_mm2 * kLength), 1, kStockFraction) << what;
   EXPECT_NEAR(v.chips_mm3 / v.stock_mm3, 1, balance_fraction(tool)) << what;
 }
 

@@ -77,8 +77,8 @@ Result simulate(machine::Coupling coupling, double width, double y_from, double 
     if (p.place_mm.x() > 3 && p.place_mm.x() < 5 && p.place_mm.y() > y_from && p.place_mm.y() < y_to)
       error.push_back(1000 * p.error_mm);
   std::sort(error.begin(), error.end());
-  const auto at = [&](double share) {
-    return error[static_cast<std::size_t>(share * static_cast<double>(error.size() - 1))];
+  const auto at = [&](double fraction) {
+    return error[static_cast<std::size_t>(fraction * static_cast<double>(error.size() - 1))];
   };
   r.error_p5_um = at(0.05);
   r.error_median_um = at(0.5);

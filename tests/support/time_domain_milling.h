@@ -263,14 +263,14 @@ class TimeDomainMilling {
         if (trial.lpNorm<Eigen::Infinity>() > kFar_mm) break;
         const Eigen::VectorXd step =
             (Eigen::MatrixXd::Identity(n, n) - flexibility_ * slope).partialPivLu().solve(left);
-        double share = 1;
+        double fraction = 1;
         const double before = left.norm();
         const Eigen::VectorXd from = trial;
-        for (int half = 0; half < 7; ++half, share /= 2) {
-          trial = from + share * step;
+        for (int half = 0; half < 7; ++half, fraction /= 2) {
+          trial = from + fraction * step;
           load(trial, force, &slope, &sum);
           left = flexibility_ * force - trial;
-          if (left.norm() < (1 - 0.1 * share) * before) break;
+          if (left.norm() < (1 - 0.1 * fraction) * before) break;
         }
       }
       trial.setZero();  // once more from the unbent tool
@@ -307,8 +307,8 @@ class TimeDomainMilling {
     const Edge& e = edge_[k % edge_.size()];
     const Vec3 area = 0.5 * (d.place - a.place).cross(b.place - c.place);
     const double mean_square = (a.chip * a.chip + b.chip * b.chip + c.chip * c.chip + d.chip * d.chip) / 4;
-    const double share = 1 - 0.5 * (e.k1 + e.k2) * mean_square / h + e.k1 * e.k2 * h * h / 3;
-    period.chip_mm3 += h * share * std::abs(area.dot(c.normal));
+    const double fraction = 1 - 0.5 * (e.k1 + e.k2) * mean_square / h + e.k1 * e.k2 * h * h / 3;
+    period.chip_mm3 += h * fraction * std::abs(area.dot(c.normal));
   }
 
   TurningTool tool_;
