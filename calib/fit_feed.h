@@ -33,7 +33,7 @@ struct FitParameter {
   std::string unit;
   std::optional<double> std_error;  ///< not given: not fitted, or the data does not tell
   std::string note;                 ///< why it has no error, where the reason is worth a word
-  bool written = true;              ///< the machine file takes the value
+  bool written = true;              ///< the value is written to the machine file
 };
 
 /// The model's error on parts of the traces.
@@ -81,7 +81,7 @@ struct FitFeedResult {
   std::vector<RunAccuracy> runs;  ///< all parts, with the fitted machine
   double residual_median_ms = 0;  ///< of the commanded times of the fitted parts
   bool converged = false;
-  std::string message;  ///< one sentence: why it ended, and what it means
+  std::string message;  ///< one sentence: how the fit ended
 };
 
 /// Puts what the fit of an axis' drive found into the machine and the list.
@@ -91,7 +91,7 @@ void add_drive(machine::Machine& machine, std::vector<FitParameter>& parameters,
 /// them. Stage one fits each axis' servo (fit_drive). Stage two fits, under every corner law, accelerations, the shares
 /// that arcs and stops take, the law's number and the block time to the commanded times of parts, every third kept
 /// back, and keeps the law that predicts those best; under LinuxCNC's rounding it takes from a list of values the
-/// look-ahead and the short-line time that predict best. Velocity limits are read where a rapid shows a plateau, the
+/// lookahead and the short-line time that predict best. Velocity limits are read where a rapid shows a plateau, the
 /// ramp after interpolation from the commanded starts. Deterministic.
 FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const machine::Machine& start, const FitFeedOptions& options);
 

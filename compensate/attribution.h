@@ -21,14 +21,14 @@ struct Observed {
   std::vector<Observation> points;
   std::vector<bool> compensated;  ///< made by a move that may be shifted; the others' places mean nothing
   /// What is judged: surface that the nominal path of the moves to compensate makes; where the target is another
-  /// program, what they make in the program as given. The same in every round. Empty: all.
+  /// program, what they make in the given program. The same in every round. Empty: all.
   std::vector<bool> reach{};
   bool judged(std::size_t i) const { return reach.empty() || reach[i]; }
   /// Those that may be shifted.
   std::vector<Observation> of_path() const;
 };
 
-/// Observed::reach, from the first observation of the program as given; `own_target`: see observe.
+/// Observed::reach, from the first observation of the given program; `own_target`: see observe.
 std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& given, const Observed& first,
                            std::span<const removal::SurfacePoint> surface,
                            std::span<const simulate::PathFraction> own_target);

@@ -7,10 +7,10 @@ namespace camber::compensate {
 
 struct RoundFigures {
   double rms_um = 0, p95_um = 0;  ///< judged error
-  double depth_um = 0;            ///< into the part, but for a thousandth of the surface
+  double depth_um = 0;            ///< gouge depth of 99.9 % of the surface
 };
 
-/// Index of the best round that keeps the limits; rounds[0], the program as given, where none does. A round keeps them
+/// Index of the best round that keeps the limits; rounds[0], the given program, where none does. A round keeps them
 /// if its rms is less and its 95th percentile no more than the given program's, and its depth no more than the limit or
 /// the given program's. Of these the ones within the limit come first, then the one of least rms.
 std::size_t choose_round(std::span<const RoundFigures> rounds, double depth_limit_um);

@@ -218,7 +218,7 @@ class Loop {
     }
   }
 
-  /// What is written: the best round that keeps the limits; the program as given where none is better than that.
+  /// What is written: the best round that keeps the limits; the given program where none is better than that.
   void choose(CompensationResult& out) {
     out.better = allowed_index_ > 0 || out.rounds.size() == 1;
     if (!out.better && options_.keep_anyway) return;
@@ -336,7 +336,7 @@ class Loop {
     return guarded ? Stop::depth_limit : ended_;
   }
 
-  /// One a point of the emitted program's surface: the line that made it.
+  /// One per point of the emitted program's surface: the line that made it.
   std::vector<std::size_t> lines_of(const Trial& trial, const SimulatedProgram& program) const {
     std::vector<std::size_t> out;
     out.reserve(trial.surface.size());
@@ -433,18 +433,18 @@ class Loop {
   std::vector<bool> compensated_;
   std::optional<ShiftPath> path_;
   std::optional<Sensitivity> sensitivity_;
-  std::vector<double> stiffness_;  ///< of the path, one a point
+  std::vector<double> stiffness_;  ///< of the path, one per point
   std::vector<RowLink> links_;
   std::optional<Splits> splits_;
   bool split_once_ = false;
-  std::vector<double> link_stiffness_;                  ///< one a link of the path that the splits leave
+  std::vector<double> link_stiffness_;                  ///< one per link of the path that the splits leave
   std::shared_ptr<const Trial> last_, best_, allowed_;  ///< allowed_: the best one that keeps the limits
   std::size_t allowed_index_ = 0;
   std::vector<RoundFigures> figures_;  ///< one a round
   std::vector<bool> reach_;
   double depth_limit_um_ = 0;
   Stop ended_ = Stop::rounds;            ///< why the rounds ended
-  Observed first_observed_;              ///< of the program as given
+  Observed first_observed_;              ///< of the given program
   double free_correctable_um_ = 0;       ///< of the best round before the guard
   std::size_t free_round_ = 0;           ///< that round
   std::shared_ptr<const Emitted> free_;  ///< its program

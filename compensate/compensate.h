@@ -43,24 +43,24 @@ struct Round {
 
 struct CompensationResult {
   std::string text;                          ///< the emitted program of the best round
-  std::vector<std::uint32_t> block_of_line;  ///< of `text`, as nc::Emission has it; empty: the program as given
-  std::vector<LineRole> lines;               ///< of the given program, one a line
+  std::vector<std::uint32_t> block_of_line;  ///< of `text`, as nc::Emission has it; empty: the given program
+  std::vector<LineRole> lines;               ///< of the given program, one per line
   machine::Operations operations;            ///< the job's, as lines of the given program
   bool own_target = true;                    ///< the given program is the target
-  bool better = true;                        ///< that round is better than the program as given and keeps the limits
+  bool better = true;                        ///< that round is better than the given program and keeps the limits
   machine::Reference reference = machine::Reference::commanded;
   removal::ErrorFigures before_um, after_um;  ///< judged: rounds[0] and rounds[best]
   PlainFigures plain_before, plain_after;
   bool within_tolerance = false;  ///< the emitted program
   double depth_limit_um = 0;      ///< the job's, or default_depth_limit_um
   bool own_depth_limit = false;   ///< the job gives one
-  double unseen_mm2 = 0;          ///< of the nominal surface, without a point
+  double unseen_mm2 = 0;          ///< area of the nominal surface without a point
   /// Left out of the surface: see simulate::SurfaceRegion.
   double border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;
   std::vector<CauseFigure> causes;  ///< of what is left, where it is over the tolerance
   ErrorSplit split_before, split_after;
-  std::vector<Round> rounds;  ///< rounds[0]: the program as given
+  std::vector<Round> rounds;  ///< rounds[0]: the given program
   std::size_t best = 0;       ///< index into rounds
   Stop stop = Stop::rounds;
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
@@ -79,7 +79,7 @@ struct CompensationResult {
   Depth depth_others;               ///< of moves that are not compensated
   Depth depth_without_bending;      ///< of the emitted program
   bool within_part = true;          ///< depth_after is within the depth limit
-  std::vector<Recheck> rechecks;    ///< one a voxel asked for
+  std::vector<Recheck> rechecks;    ///< one per voxel asked for
   std::optional<Band> band;
   std::vector<std::string> unknown_parameters;  ///< with a standard error, but not of this job
   std::optional<MeasuredFit> measured;
@@ -87,13 +87,13 @@ struct CompensationResult {
   std::vector<std::string> doubts;
 };
 
-/// Thrown where the program as given lies beyond the model: there is nothing to compensate by. what() says why.
+/// Thrown where the given program lies beyond the model: there is nothing to compensate by. what() says why.
 using camber::BeyondModel;
 
 struct CompensateOptions {
   simulate::Progress progress;
-  std::size_t max_stock_crossings = 0;        ///< of Compensation::stock; 0: none
-  bool keep_anyway = false;                   ///< emit the round of the least error even where none is better
+  std::size_t max_stock_crossings = 0;  ///< of Compensation::stock; 0: none
+  bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.

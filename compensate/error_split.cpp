@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStiff = 0.02;  // smoothing of a fit that may do almost anything, mm
 
-/// error + n . (change of the shift), one an observation.
+/// error + n . (change of the shift), one per observation.
 std::vector<double> left_by(const ShiftPath& old, std::span<const Observation> observations,
                             const FitShiftOptions& options) {
   ShiftPath path = old;

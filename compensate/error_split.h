@@ -42,20 +42,19 @@ std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const
 /// What a part of an error comes from.
 enum class Cause { correctable, guard, limited, short_range, opposed, tip, bow, not_compensated };
 
-/// The error point by point, one an entry of Observed: which cause most of it has, and how much that is.
+/// The error point by point, one per entry of Observed: which cause most of it has, and how much that is.
 struct PointCause {
   Cause cause = Cause::correctable;
   double error_mm = 0;
 };
 
-/// `causes`: null where not wanted. The guard's part has no points of its own: they count as correctable.
+/// `causes`: null: not needed. The guard's part has no points of its own: they count as correctable.
 ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
                        std::vector<PointCause>* causes = nullptr);
 
-/// The depth limit where a job gives none, um: `tolerance_um`, or a quarter more than how deep all but a thousandth of
-/// the surface would lie in the part if every place of the path had the shift that suits it best. A bow of +-7 um
-/// across a wall cannot be held to 5 um without giving up half of the correction; such a limit would fight it.
-/// `observed`: of the program as given.
+/// The depth limit where a job gives none, um: `tolerance_um`, or a quarter more than the gouge depth of 99.9 % of the
+/// surface if every place of the path had the shift that suits it best. A bow of +-7 um across a wall cannot be held to
+/// 5 um without giving up half of the correction; such a limit would fight it. `observed`: of the given program.
 double default_depth_limit_um(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
                               double tolerance_um);
 

@@ -27,10 +27,10 @@ struct FitShiftOptions {
   double smoothing_mm = 0.2;  ///< features of the shift shorter than this along the path are smoothed
   double decay_mm = 10;       ///< without surface to correct, the shift dies away over this length
   double max_shift_mm = 0.1;
-  /// One a point of the path: mu between it and the next is larger by this factor; empty: 1.
+  /// One per point of the path: mu between it and the next is larger by this factor; empty: 1.
   std::span<const double> stiffness{};
   std::span<const RowLink> links{};          ///< between rows
-  std::span<const double> link_stiffness{};  ///< one a link, as `stiffness`
+  std::span<const double> link_stiffness{};  ///< one per link, as `stiffness`
 };
 
 /// What a grid of these voxels can tell of a shift: on a coarser one a shorter feature follows the scatter of its

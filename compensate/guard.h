@@ -15,7 +15,7 @@ class Guard {
   /// Single points deeper than all but a thousandth of the surface ask for no more than those.
   Guard(const ShiftPath& path, double limit_mm, double reach_mm);
 
-  /// Adds lifts for what lies too deep; `held_mm`: depth that all but a thousandth of the surface keeps.
+  /// Adds lifts for what lies too deep; `held_mm`: depth that 99.9 % of the surface does not exceed.
   void learn(const Observed& observed, double held_mm);
   /// Errors as the fit is to see them: less the lift.
   void apply_to(std::vector<Observation>& observations) const;

@@ -13,7 +13,7 @@ namespace camber::compensate {
 struct MeasuredPoint {
   Vec3 place_mm = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
-  double error_mm = 0;  ///< along the normal, positive where material is left
+  double error_mm = 0;  ///< along the normal, positive: excess material
 };
 
 /// A table with a header; columns x_mm y_mm z_mm nx ny nz error_um (or x y z nx ny nz error, error in um), in any order

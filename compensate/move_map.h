@@ -30,7 +30,7 @@ class MoveMap {
     std::uint32_t move = 0;
     double from = 0, to = 1;  ///< fractions of the given move
   };
-  std::vector<Part> parts_;  ///< one an emitted move; empty: the same program
+  std::vector<Part> parts_;  ///< one per emitted move; empty: the same program
 };
 
 }  // namespace camber::compensate

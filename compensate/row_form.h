@@ -11,7 +11,7 @@ namespace camber::compensate {
 /// Over which the form is taken to stay.
 inline constexpr double kFormAlong_mm = 1.5;
 
-/// What no shift takes away, but which stays the same for millimetres along the path: of `left` (one an observation,
+/// What no shift takes away, but which stays the same for millimetres along the path: of `left` (one per observation,
 /// what the best shift of every point leaves, mm) the part that is a cubic of the place across the row,
 ///
 ///   left(l, t) ~ b0(l) + b1(l) t + b2(l) t^2 + b3(l) t^3,      t = (p - c) . (d x N),
@@ -22,7 +22,7 @@ inline constexpr double kFormAlong_mm = 1.5;
 ///
 /// Where the grid shows many points across (n within 2 smoothing_mm of path: a wall) their mean is told well enough,
 /// and a form that changes along the path would do harm: the form is less by 1 / (1 + (n / 40)^2). Where the surface
-/// faces more than one way (a wall and its floor, a corner) it is none. One an observation.
+/// faces more than one way (a wall and its floor, a corner) it is none. One per observation.
 std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observation> observations,
                                 const std::vector<double>& left_mm, double smoothing_mm);
 

@@ -14,9 +14,9 @@ namespace camber::compensate {
 /// How far the surface lies inside the part (inside the target's undeflected sweep).
 struct Depth {
   double deepest_um = 0;  ///< of single points; not negative
-  double held_um = 0;     ///< a thousandth of the surface at most lies deeper: what is held against the limit
+  double held_um = 0;     ///< 99.9 % of the surface is not deeper; compared with the depth limit
   Vec3 place_mm = Vec3::Zero();
-  double over_fraction = 0;  ///< of the area that lies deeper than the tolerance
+  double over_fraction = 0;  ///< fraction of the area deeper than the tolerance
 };
 
 /// Of the points that compensated moves made (`compensated` false: of the others), by the judged error.

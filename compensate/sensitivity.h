@@ -28,7 +28,7 @@ class Sensitivity {
   double mean() const;
 
  private:
-  std::vector<double> gain_;  ///< one a point of the path
+  std::vector<double> gain_;  ///< one per point of the path
 };
 
 }  // namespace camber::compensate

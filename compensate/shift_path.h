@@ -59,10 +59,10 @@ class ShiftPath {
   /// would stray by more than tolerance_mm; an arc stays one where one passes the shifted points within it, else it
   /// becomes the fewest arcs that do.
   std::vector<nc::MoveEdit> edits(double tolerance_mm) const;
-  /// The same with lines split at the points that are kept (one a point) and nowhere else.
+  /// The same with lines split at the points that are kept (one per point) and nowhere else.
   std::vector<nc::MoveEdit> edits(const std::vector<bool>& kept, double tolerance_mm) const;
 
-  /// One a point: true for the ends of moves, for every point of an arc and for what is fixed.
+  /// One per point: true for the ends of moves, for every point of an arc and for what is fixed.
   std::vector<bool> ends_of_moves() const;
   /// Keeps points of lines without which the shifted path would stray by more than tolerance_mm.
   void keep_strays(double tolerance_mm, std::vector<bool>& kept) const;

@@ -22,7 +22,7 @@ class Splits {
   const std::vector<bool>& kept() const { return kept_; }
 
  private:
-  std::vector<bool> kept_;  ///< one a point
+  std::vector<bool> kept_;  ///< one per point
 };
 
 /// The path of the kept points alone; between them its shifts are linear, as the emitted blocks are.
@@ -33,7 +33,7 @@ class ThinPath {
   ShiftPath& path() { return path_; }
   const ShiftPath& path() const { return path_; }
   std::vector<Observation> places_of(std::span<const Observation> observations) const;
-  /// The greatest of the values of the points that come to lie between two kept ones; one a kept point.
+  /// The greatest of the values of the points that come to lie between two kept ones; one per kept point.
   std::vector<double> greatest_of(std::span<const double> values) const;
   void take_shifts(const ShiftPath& whole);
   void give_shifts(ShiftPath& whole) const;

@@ -24,10 +24,10 @@ struct Emitted {
 
 struct Trial {
   std::vector<Vec3> shifts;
-  std::shared_ptr<const Emitted> emitted;      ///< none: the program as given
+  std::shared_ptr<const Emitted> emitted;      ///< none: the given program
   std::vector<removal::SurfacePoint> surface;  ///< the same points in the same order, whatever the shifts
   std::vector<simulate::StampLoad> loads;
-  std::vector<double> total_mm;  ///< against the part's mesh, one a point; empty without a mesh
+  std::vector<double> total_mm;  ///< against the part's mesh, one per point; empty without a mesh
   int static_rounds = 0;
   std::size_t unsettled = 0;
   double chip_mm3 = 0, stock_mm3 = 0;  ///< what the chips add up to and the stock loses

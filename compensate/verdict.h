@@ -19,7 +19,7 @@ struct PlainFigures {
   double in_band_fraction = 0;                    ///< of the area whose judged error is within tolerance or profile
 };
 
-/// `observed`: of the same surface, with its reach. `total_mm`: one a point, or empty.
+/// `observed`: of the same surface, with its reach. `total_mm`: one per point, or empty.
 PlainFigures plain_figures(const std::vector<removal::SurfacePoint>& surface, const std::vector<double>& total_mm,
                            const Observed& observed, const machine::CompensationSettings& asked);
 
@@ -36,7 +36,7 @@ struct CauseFigure {
   std::vector<std::size_t> lines;  ///< 1-based, the worst ones, ascending
 };
 
-/// Those that make a tenth of the mean square or more, the largest first. `lines`: of the judged program, one a point
+/// Those that make a tenth of the mean square or more, the largest first. `lines`: of the judged program, one per point
 /// of the surface; 0: unknown.
 std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<PointCause>& points,
                                    const Observed& observed, const std::vector<std::size_t>& lines);

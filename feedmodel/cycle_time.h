@@ -80,7 +80,7 @@ struct CycleTime {
   std::vector<double> move_s;  ///< time of each move of the program, dwells included
 };
 
-/// The time of the whole program. Cutting runs through the look-ahead plan of predict_feed (or, with the exponential
+/// The time of the whole program. Cutting runs through the lookahead plan of predict_feed (or, with the exponential
 /// law, block by block); positioning along the dog-leg path with every axis on its own, or along the straight line.
 /// Tools, spindle and codes come from the program's events. Deterministic; does not throw on valid input.
 /// Linear in the number of blocks; about 150 bytes of memory a block.

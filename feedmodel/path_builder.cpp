@@ -42,7 +42,7 @@ struct Element {
   bool taps = false;            ///< in step with the spindle, from rest to rest
   double from_s = 0;            ///< where the rounding at its start ends
   double less_fraction = 0;     ///< of its acceleration, kept free for the corners' speed steps
-  double planned_fraction = 1;  ///< of its acceleration, that the look-ahead counts on
+  double planned_fraction = 1;  ///< of its acceleration, that the lookahead counts on
 };
 
 /// How one element passes into the next.

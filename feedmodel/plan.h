@@ -27,7 +27,7 @@ struct SegmentTime {
 /// A motion that begins at (almost) rest begins at a whole period of the control. A positioning may begin before the
 /// one before it has ended (rapid_overlap_percent).
 struct MotionPlan {
-  std::vector<PlanRow> rows;       ///< one for each segment of build_segments, look-ahead done
+  std::vector<PlanRow> rows;       ///< one for each segment of build_segments, lookahead done
   std::vector<SegmentTime> times;  ///< the same
   std::size_t speed_changes = 0;   ///< along the path and of positionings
 

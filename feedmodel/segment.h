@@ -20,7 +20,7 @@ struct Segment {
   double speed_limit_mm_per_s = 0;
   double axis_limit_mm_per_s = machine::kNoLimit;  ///< what the axes' top speeds alone allow along it
   double acceleration_mm_per_s2 = 0;               ///< along the path
-  double planned_fraction = 1;                     ///< of the acceleration, that the look-ahead counts on
+  double planned_fraction = 1;                     ///< of the acceleration, that the lookahead counts on
   double entry_limit_mm_per_s = 0;                 ///< at its start: what the corner before it allows
   double feed_command_mm_per_s = 0;                ///< programmed (rapid: top speed of the axes along it)
   double dwell_s = 0;                              ///< a rest instead of a motion: length 0, speed limit 0

@@ -8,7 +8,7 @@ namespace camber::machine {
 /// dogleg: every axis with its own rapid, each until it has arrived; linear: along the straight line.
 enum class RapidPath { dogleg, linear };
 
-/// linear: constant acceleration along the path, with look-ahead. exponential: after interpolation, two time constants
+/// linear: constant acceleration along the path, with lookahead. exponential: after interpolation, two time constants
 /// one behind the other (Yan & Shirase 1997, eqs. 2-5), block by block. bell: as linear, but the acceleration takes
 /// bell_time_s to build up and to die down, which makes each change of speed take half of that longer.
 enum class AccelerationLaw { linear, exponential, bell };

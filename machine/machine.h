@@ -53,7 +53,7 @@ struct Control {
   double arc_normal_fraction = 1;      ///< of the acceleration, to turn: v <= sqrt(share a r)
   double arc_tangential_fraction = 1;  ///< of the acceleration, along an arc whose speed may reach that limit
   /// Of the acceleration, in a block that should be blended (G64) but ends in a stop; taken twice when the
-  /// look-ahead plans how fast that block may be entered.
+  /// lookahead plans how fast that block may be entered.
   double stop_acceleration_fraction = 1;
   double rest_latency_s = 0;  ///< a rest (dwell) takes this much longer than programmed
   /// Along the path, beside what the axes allow (before interpolation).

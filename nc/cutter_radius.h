@@ -19,7 +19,7 @@ struct CutterRadius {
   /// The entry move ends: false: as every other corner, beside its own end (LinuxCNC); true: square to the start of
   /// the next move (Fanuc, type A).
   bool entry_square_to_next = false;
-  int moves_without_plane_motion = 1;  ///< as many may stand between two moves in the plane: the control's look-ahead
+  int moves_without_plane_motion = 1;  ///< as many may stand between two moves in the plane: the control's lookahead
   std::string name = "G41";            ///< for messages
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// How far every point of the envelope is displaced at each stamp of a stretch of path. Filled by deflection/, read by
-// removal/; plain data.
+// Displacement of the envelope points at each stamp of a stretch of path. Plain data; filled by deflection/, read by
+// removal/.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -11,16 +11,16 @@
 
 namespace camber::removal {
 
-/// Where a height lies between two nodes.
+/// Linear interpolation weight of a height between two nodes.
 struct NodeWeight {
   int lower = 0, upper = 0;
   float upper_fraction = 0;
 };
 NodeWeight node_weight(const std::vector<double>& node_height_mm, double height_mm);
 
-/// Lateral deflections, along x and y of the tool's frame, by stamp, height and rotation step. The edge of any tooth
-/// passes the points of rotation step m at that instant of the tooth passing; between nodes the deflection is linear in
-/// height, beyond the last node it is the last node's. Row 0 belongs to the stamp before the stretch's first.
+/// Lateral deflections, along x and y of the tool's frame, by stamp, height and rotation step. At rotation step m of a
+/// tooth passing, the edges are at the points of rotation step m. Deflections are linear in height between nodes and
+/// constant beyond the last node. Row 0 belongs to the stamp before the first of the stretch.
 struct DeflectionTable {
   std::size_t stamps = 0;              ///< without row 0
   int steps = 0;                       ///< per pitch
@@ -43,10 +43,10 @@ struct DeflectionTable {
   double largest_mm(std::ptrdiff_t k) const;
 
   /// Deflection of one row at a height and a rotation step (with its fraction), linear between nodes and steps.
-  /// simd/deflection_lanes.h does the same for many places at once.
+  /// simd/deflection_lanes.h is the vectorized version.
   Vec2 at(const float* row, double height_mm, double step) const;
-  /// Rotation step, from 0 to `steps`, at which an edge passes the envelope's point at an angle (rad, counter-clockwise
-  /// from x) and a height. lag_per_mm: see EnvelopeGrid.
+  /// Rotation step in [0, `steps`) at which an edge passes the point of the envelope at an angle (rad,
+  /// counter-clockwise from x) and a height. lag_per_mm: see EnvelopeGrid.
   double step_at(double angle_rad, double height_mm, double lag_per_mm, int flutes) const {
     const double step = (angle_rad - height_mm * lag_per_mm) * steps * flutes / (2 * kPi);
     return step - steps * std::floor(step / steps);

@@ -1,4 +1,4 @@
-// How far a changed program's path lies from the path of the program as given.
+// How far a changed program's path lies from the path of the given program.
 #include <algorithm>
 #include <cmath>
 

@@ -28,7 +28,7 @@ ReportData predict_report(const machine::Job& job, const simulate::SimulatedProg
 struct CompensatedRun {
   const simulate::SimulatedProgram& program;
   std::vector<PathRow> rows;
-  /// One a stamp of `program`; none: the page has no forces of this run.
+  /// One per stamp of `program`; none: the page has no forces of this run.
   std::span<const simulate::StampLoad> loads{};
 };
 

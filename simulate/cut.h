@@ -59,7 +59,7 @@ struct CutOptions {
 };
 
 struct CutResult {
-  std::vector<StampLoad> loads;                ///< one a stamp
+  std::vector<StampLoad> loads;                ///< one per stamp
   double chip_mm3 = 0;                         ///< sum over the chips
   double stock_mm3 = 0;                        ///< change of the stock that engagement reads
   int rounds_max = 0;                          ///< of the static solution: readings of a tooth passing's chips
@@ -74,7 +74,7 @@ struct CutResult {
 };
 
 /// Cuts `stock`: with the deflected cutter, or in rigid coupling, where no bending feeds back, with the undeflected
-/// one; what the deflected one leaves is then in `surface` only. `contacts` (one a stamp, or empty) only serves
+/// one; what the deflected one leaves is then in `surface` only. `contacts` (one per stamp, or empty) only serves
 /// StampLoad::contact_deflection_mm. Stamp ids in the stock are first_id + index.
 CutResult cut(removal::Stock& stock, const machine::Tool& tool, const machine::Material& material,
               std::span<const removal::Stamp> stamps, std::span<const Contact> contacts, std::int32_t first_id,

@@ -42,7 +42,7 @@ struct PathFraction {
 
 /// Which points of a SurfaceMap are left out of a job's surface (simulate/region.h).
 struct SurfaceRegion {
-  std::vector<bool> left_out{};  ///< one a point; empty: none
+  std::vector<bool> left_out{};  ///< one per point; empty: none
   double border_mm2 = 0;         ///< left out: moves that the job leaves out cut deeper there
   double not_judged_mm2 = 0;     ///< left out: made by moves that [part] judged does not name
   bool between = false;          ///< moves that the job leaves out cut deeper everywhere: no border is left out
@@ -58,8 +58,8 @@ struct Target {
   HoleStamps holes;                       ///< of the nominal path
   std::optional<removal::Stock> whole{};  ///< the stock before the allowance was taken off; empty: `blank`
   std::vector<PathFraction> stamps{};     ///< the nominal path's, on the target program's moves
-  std::vector<float> contour_mm{};        ///< one a point of a SurfaceMap of this target; see Prediction::surface
-  double unseen_mm2 = 0;                  ///< of the nominal surface, without a point
+  std::vector<float> contour_mm{};        ///< one per point of a SurfaceMap of this target; see Prediction::surface
+  double unseen_mm2 = 0;                  ///< area of the nominal surface without a point
   SurfaceRegion region{};                 ///< what of the nominal surface is judged
   const removal::Stock& solid() const { return whole ? *whole : blank; }
 };
@@ -75,16 +75,16 @@ Target make_target(const machine::Job& job, const SimulatedProgram& target, Diag
 double sweep_path(removal::Stock& stock, const machine::Job& job, const removal::StampPath& path, double shrink_mm);
 
 struct Prediction {
-  CutResult cut;  ///< loads: one a stamp of the program; the volumes are without tapping, which has no chips
+  CutResult cut;  ///< loads: one per stamp of the program; the volumes are without tapping, which has no chips
   HoleFigures holes;
   /// Of the target, but for what its holes made and what is not of the job's region (region.h). error_mm: machined
   /// minus nominal; contour_mm: the undeflected sweep of the target program as this machine runs it, minus nominal;
   /// their difference is what bending (and, in a compensated program, the shift) does.
   std::vector<removal::SurfacePoint> surface;
-  std::vector<double> total_error_mm;   ///< against the part's mesh, one a point; empty without a mesh
+  std::vector<double> total_error_mm;   ///< against the part's mesh, one per point; empty without a mesh
   removal::ErrorFigures form_error_um;  ///< error_mm; the sum of the next two, point by point
   removal::ErrorFigures deflection_um, contour_um;
-  double unseen_mm2 = 0;  ///< of the nominal surface, without a point
+  double unseen_mm2 = 0;  ///< area of the nominal surface without a point
   /// Of the nominal surface, not in `surface`: see SurfaceRegion.
   double border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;

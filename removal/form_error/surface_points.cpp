@@ -330,7 +330,7 @@ Sharpened sharpen(SurfacePoint& p, int axis, const NamedCutters& cutters, const 
   return Sharpened::yes;
 }
 
-/// `places`, `machined`, `solid`: null where not wanted.
+/// `places`, `machined`, `solid`: null: not needed.
 void collect(const Stock* machined, const Stock& target, const CutterPlaces* places, const Stock* solid,
              const Index3& tile, std::vector<SurfacePoint>& out, double& cut_mm2) {
   if (!target.is_cut(tile)) return;
