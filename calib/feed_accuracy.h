@@ -1,5 +1,5 @@
 #pragma once
-// How well the feed model agrees with a servo trace: time and path speed of the actual axes, part by part.
+// Comparison of the feed model with a servo trace: time and path speed of the actual axes, part by part.
 #include <cstdint>
 #include <string>
 #include <vector>

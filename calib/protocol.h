@@ -23,7 +23,7 @@ struct ProtocolProgram {
 };
 
 /// - protocol_xy, _yz, _zx: closed polygons whose corners turn by 10, 20, 30, 60, 90, 120 and 180 degrees, sides of
-///   0.5, 1, 3 and 6 mm, 100 to 1500 mm/min: 140 parts a plane. Source: KAKEN report (LITERATURE_CHECKS E1).
+///   0.5, 1, 3 and 6 mm, 100 to 1500 mm/min: 140 parts a plane. Source: KAKEN report on deflection-compensated CAM.
 /// - corners: zigzags of 5 to 75 degrees, where a control's stop angle lies, at two feeds.
 /// - circles: full turns of 0.5 to 20 mm radius in three planes.
 /// - saturation: chords of 0.5 down to 0.01 mm on a wide circle at a feed that no control keeps up with: the speed that

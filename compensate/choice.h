@@ -1,5 +1,5 @@
 #pragma once
-// Which round's program is written.
+// Choice of the round to emit.
 #include <cstddef>
 #include <span>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The fixed-point loop: predict, move each point against its error, predict the emitted program again.
+// The compensation loop: predict, shift each point against its error, predict the emitted program again.
 #include <functional>
 #include <optional>
 #include <string>
@@ -32,11 +32,11 @@ struct Round {
   ErrorSplit split;
   double largest_shift_mm = 0;
   std::size_t limited_points = 0;     ///< cut to max_shift_mm
-  double gain = 1;                    ///< error over shift, the mean that the round's step divided by
+  double gain = 1;                    ///< mean sensitivity of the error to the shift, by which the step was divided
   double step_fraction = 1;           ///< of the step that was taken; less than 1 after an over-correction
   double overcorrected_fraction = 0;  ///< of the area: the error changed its sign and is still over the tolerance
   double deepest_um = 0;  ///< into the part, where compensated moves cut, but for a thousandth of the surface
-  bool guard = false;     ///< a round of the guard against cutting into the part
+  bool guard = false;     ///< a round of the guard against gouging
   int static_rounds = 0;
   std::size_t unsettled = 0;
 };
@@ -47,7 +47,7 @@ struct CompensationResult {
   std::vector<LineRole> lines;               ///< of the given program, one per line
   machine::Operations operations;            ///< the job's, as lines of the given program
   bool own_target = true;                    ///< the given program is the target
-  bool better = true;                        ///< that round is better than the given program and keeps the limits
+  bool better = true;                        ///< that round is better than the given program and within the limits
   machine::Reference reference = machine::Reference::commanded;
   removal::ErrorFigures before_um, after_um;  ///< judged: rounds[0] and rounds[best]
   PlainFigures plain_before, plain_after;
@@ -83,7 +83,7 @@ struct CompensationResult {
   std::optional<Band> band;
   std::vector<std::string> unknown_parameters;  ///< with a standard error, but not of this job
   std::optional<MeasuredFit> measured;
-  /// Why the figures of the given or of the emitted program are not to be relied on (simulate/verdict.h); empty: none.
+  /// Reasons why the figures of the given or the emitted program are not reliable (simulate/verdict.h); empty: none.
   std::vector<std::string> doubts;
 };
 

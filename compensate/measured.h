@@ -1,5 +1,5 @@
 #pragma once
-// The model set right by what was measured on a part: one scale of the deflection.
+// Correction of the model by points measured on a part: one scale of the deflection.
 #include <string>
 #include <vector>
 
@@ -22,14 +22,14 @@ struct MeasuredPoint {
 std::vector<MeasuredPoint> read_measured(const std::string& path);
 
 struct MeasuredFit {
-  double scale = 1;      ///< of the deflection: the forces are so much greater, or the tool so much softer
-  double std_error = 0;  ///< from the points' scatter about the fit
+  double scale = 1;                            ///< scale of the deflection: larger forces or a more compliant tool
+  double std_error = 0;                        ///< from the points' scatter about the fit
   std::size_t points = 0, left_out = 0;        ///< left out: no machined surface of the job there
   double rms_before_um = 0, rms_after_um = 0;  ///< measured less predicted, with the scale 1 and the fitted one
   int predictions = 0;
 };
 
-/// The job with tools and axes so much softer: deflection is compliance times force, a scale of either is the same.
+/// The job with the compliance of tools and axes multiplied by `scale`; scaling the forces would be equivalent.
 machine::Job softened(const machine::Job& job, double scale);
 
 /// Least squares of the points against the prediction of `program` (what the measured part was cut with; empty: the

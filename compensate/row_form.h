@@ -1,5 +1,5 @@
 #pragma once
-// The form that the cutter leaves across a row, wherever along the row it is: a ball's bow, a wall's.
+// The form of the surface across a row that is constant along the row: the bow of a ball, of a wall.
 #include <span>
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where lines are split, and the path with no freedom but what those splits give it.
+// Splits of lines, and the path restricted to the freedom of those splits.
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace camber::compensate {
 
-/// The points of a path that are ends of blocks in the emitted program. A split is not free: a control that rounds
-/// corners rounds shorter blocks by less, so that a new split moves the path near by micrometres. So they are chosen
-/// once, where the shift asks for them, and stay.
+/// The points of a path that are ends of blocks in the emitted program. A control that rounds corners rounds shorter
+/// blocks less, so that a new split moves the path nearby by micrometres. Splits are therefore chosen once, where the
+/// shift requires them, and kept.
 class Splits {
  public:
   /// The ends of moves, and every point of an arc (which becomes the fewest arcs when it is emitted).

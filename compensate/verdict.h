@@ -1,5 +1,5 @@
 #pragma once
-// The verdict on a program: plain figures of the surface that compensated moves make, and what is left of the error.
+// Verdict on a program: error figures of the surface of the compensated moves, and the causes of the remaining error.
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,13 +23,13 @@ struct PlainFigures {
 PlainFigures plain_figures(const std::vector<removal::SurfacePoint>& surface, const std::vector<double>& total_mm,
                            const Observed& observed, const machine::CompensationSettings& asked);
 
-/// What the verdict is on: error_um, or deflection_um where the reference is the machine.
+/// The judged error: error_um, or deflection_um if the reference is the machine.
 const removal::ErrorFigures& judged_of(const PlainFigures& figures, machine::Reference reference);
 
 /// The 95th percentile is within tolerance_um; with profile_um: 95 % of the area is within the band.
 bool within_tolerance(const PlainFigures& figures, const machine::CompensationSettings& asked);
 
-/// A part of what is left, and the lines of the program that have most of it.
+/// A part of the remaining error, and the lines of the program with most of it.
 struct CauseFigure {
   Cause cause = Cause::correctable;
   double rms_um = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// From commanded to actual position, axis by axis: filter, exponential lags, position loop.
+// Actual axis positions from the commanded ones: filter, exponential lags, position loop.
 #include <array>
 #include <optional>
 
@@ -15,7 +15,7 @@ namespace camber::feedmodel {
 /// all three, so that they do not bend the path.
 Vec3 filter_times_s(const machine::Machine& machine);
 
-/// How long, at most, the axes need to come to rest behind a command that rests; 0: they follow without lag.
+/// Upper bound of the settling time of the axes after the command stops; 0: no lag.
 double settling_time_s(const machine::Machine& machine);
 
 class Axes {

@@ -1,5 +1,5 @@
 #pragma once
-// Where the axes are while a program goes to the reference point, whose place in the work frame it does not tell.
+// Axis positions during moves to the reference point, which is not known in the work frame.
 #include <array>
 #include <cmath>
 

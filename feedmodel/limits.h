@@ -1,5 +1,5 @@
 #pragma once
-// What a block may ask of the axes: the largest speed and acceleration along a direction, in a plane, on an arc.
+// Limits of a block: maximum speed and acceleration along a direction, in a plane, on an arc.
 #include "base/geometry.h"
 #include "machine/machine.h"
 

@@ -21,7 +21,7 @@ PlaneAxes axes_of(Plane plane);
 struct ArcWords {
   Vec3 start_mm = Vec3::Zero(), end_mm = Vec3::Zero();
   Plane plane = Plane::xy;
-  bool clockwise = false;  ///< G2, seen against the plane's normal
+  bool clockwise = false;  ///< G2, seen against the normal of the plane
   std::optional<double> i_mm{}, j_mm{}, k_mm{}, r_mm{};
   bool absolute_centre = false;  ///< G90.1
   int turns = 1;                 ///< P, L: 1 is up to one full turn

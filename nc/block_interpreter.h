@@ -13,7 +13,7 @@
 
 namespace camber::nc {
 
-/// Where an axis stands in the work frame.
+/// State of knowledge of an axis position in the work frame.
 enum class AxisPlace : std::uint8_t {
   never,      ///< not programmed so far; its coordinate counts as 0
   reference,  ///< at the reference point or at a machine coordinate (G28, G30, G53)

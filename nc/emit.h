@@ -1,6 +1,6 @@
 #pragma once
-// Edits of a program: the user's text with new end points, feeds and splits for some of its moves, or with stretches of
-// blocks replaced, and nothing else changed. Every room that rewrites a program comes through here; what it takes is in
+// Edits of a program: the user's text with new end points, feeds and splits of some moves, or with replaced stretches
+// of blocks, and otherwise unchanged. All folders that rewrite a program use this header; the implementation is in
 // nc/emit/.
 #include <cstdint>
 #include <limits>

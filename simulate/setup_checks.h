@@ -1,6 +1,6 @@
 #pragma once
-// A wrong set-up must not look like a perfect part: what stock, part, tools and program say of each other before
-// anything is cut, and whether anything is cut at all.
+// Set-up checks: consistency of stock, part, tools and program before the simulation, and whether anything is cut at
+// all.
 #include <vector>
 
 #include "base/diagnostics.h"

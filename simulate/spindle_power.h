@@ -1,5 +1,5 @@
 #pragma once
-// The power that the cut takes against the power that the spindle has.
+// Comparison of cutting power and spindle power.
 #include "base/diagnostics.h"
 #include "machine/machine.h"
 #include "simulate/predict.h"
