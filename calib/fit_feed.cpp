@@ -257,7 +257,7 @@ std::string_view what_tells(std::string_view name) {
   return "run the polygon programs of camber protocol in all planes";
 }
 
-/// Which source told a parameter, where there are two.
+/// Which source determined a parameter, where there are two.
 std::string source_of(const LimitParameter& p) {
   constexpr double kMax = 0.9;
   if (p.logged_fraction > kMax) return "from the logged times";
@@ -267,7 +267,7 @@ std::string source_of(const LimitParameter& p) {
 
 void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start, bool logged) {
   for (const LimitParameter& p : fit.parameters) {
-    if (p.told) {
+    if (p.determined) {
       result.parameters.push_back(
           {p.name, p.fitted.value, p.unit, p.fitted.std_error, logged ? source_of(p) : "", true});
     } else {

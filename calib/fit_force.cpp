@@ -82,11 +82,11 @@ std::optional<double> only_feed_mm(const std::vector<MeasuredLog>& logs) {
   return first;
 }
 
-[[noreturn]] void refuse(const ForceProblem& problem, const std::vector<std::size_t>& untold, bool alone) {
+[[noreturn]] void refuse(const ForceProblem& problem, const std::vector<std::size_t>& undetermined, bool alone) {
   const auto& logs = problem.logs();
   std::vector<std::string> names, quoted;
   bool axial = true;
-  for (const std::size_t i : untold) {
+  for (const std::size_t i : undetermined) {
     names.emplace_back(problem.coefficient(i).key);
     quoted.push_back(fmt::format("\"{}\"", names.back()));
     axial = axial && problem.coefficient(i).component == machine::Component::axial;
@@ -128,15 +128,15 @@ void check_told(const ForceProblem& problem, const Eigen::VectorXd& p) {
     j.bottomRows(n - rows).setZero();
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  std::vector<std::size_t> untold;
+  std::vector<std::size_t> undetermined;
   constexpr double kTakesPart = 0.1;
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index k = 0; k < n; ++k)
       if (svd.singularValues()[k] < kMinSingular && std::abs(svd.matrixV()(i, k)) > kTakesPart) {
-        untold.push_back(static_cast<std::size_t>(i));
+        undetermined.push_back(static_cast<std::size_t>(i));
         break;
       }
-  if (!untold.empty()) refuse(problem, untold, false);
+  if (!undetermined.empty()) refuse(problem, undetermined, false);
 }
 
 void check_logs(const std::vector<MeasuredLog>& logs) {
@@ -168,7 +168,7 @@ void name_teeth(const ForceProblem& problem, Eigen::VectorXd& p) {
   }
 }
 
-/// Covariance of the parameters; nothing where the cuts leave no degree of freedom or a direction untold.
+/// Covariance of the parameters; nothing where the cuts leave no degree of freedom or a direction undetermined.
 std::optional<Eigen::MatrixXd> covariance(const Eigen::MatrixXd& j, const Eigen::VectorXd& r) {
   const Eigen::Index freedom = j.rows() - j.cols();
   if (freedom <= 0) return std::nullopt;

@@ -159,7 +159,7 @@ std::vector<Row> rows_of(const std::vector<TimedLines>& data) {
   return rows;
 }
 
-/// Standard errors from the Jacobian; parameters that hardly change any time are marked as not told.
+/// Standard errors from the Jacobian; parameters that hardly change any time are marked as not determined.
 void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machine& base,
                 const std::vector<double>& logs, std::size_t count) {
   const auto n = static_cast<int>(fit.parameters.size());
@@ -171,27 +171,27 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
   const Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> j(
       jacobian.data(), static_cast<Eigen::Index>(count), n);
   const auto rows = rows_of(data);
-  std::vector<int> told;
+  std::vector<int> determined;
   for (int i = 0; i < n; ++i) {
-    fit.parameters[i].told = j.col(i).norm() > 1.0;  // a change by a factor e moves some time by its noise
+    fit.parameters[i].determined = j.col(i).norm() > 1.0;  // a change by a factor e moves some time by its noise
     double logged = 0;
     for (std::size_t row = 0; row < count; ++row)
       if (rows[row].logged) logged += std::pow(j(static_cast<Eigen::Index>(row), i), 2);
     fit.parameters[i].logged_fraction = logged > 0 ? logged / j.col(i).squaredNorm() : 0;
     fit.parameters[i].fitted = {std::exp(logs[i]), INFINITY};
-    if (fit.parameters[i].told) told.push_back(i);
+    if (fit.parameters[i].determined) determined.push_back(i);
   }
-  Eigen::MatrixXd normal(told.size(), told.size());
-  for (std::size_t a = 0; a < told.size(); ++a)
-    for (std::size_t b = 0; b < told.size(); ++b) normal(a, b) = j.col(told[a]).dot(j.col(told[b]));
+  Eigen::MatrixXd normal(determined.size(), determined.size());
+  for (std::size_t a = 0; a < determined.size(); ++a)
+    for (std::size_t b = 0; b < determined.size(); ++b) normal(a, b) = j.col(determined[a]).dot(j.col(determined[b]));
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(normal);
   if (!lu.isInvertible()) return;
   const Eigen::MatrixXd inverse = lu.inverse();
   std::map<int, Eigen::VectorXd> scores;
-  Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(told.size()));
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(determined.size()));
   for (std::size_t row = 0; row < count; ++row) {
-    Eigen::VectorXd gradient(told.size());
-    for (std::size_t a = 0; a < told.size(); ++a) gradient(a) = j(static_cast<Eigen::Index>(row), told[a]);
+    Eigen::VectorXd gradient(determined.size());
+    for (std::size_t a = 0; a < determined.size(); ++a) gradient(a) = j(static_cast<Eigen::Index>(row), determined[a]);
     auto& score = scores.try_emplace(rows[row].group, Eigen::VectorXd::Zero(gradient.size())).first->second;
     score += gradient * residuals[row];
     if (!rows[row].logged) shift += gradient * (kShiftPeriods * base.control.period_s / rows[row].scale_s);
@@ -200,11 +200,11 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
   for (const auto& [group, score] : scores) middle += score * score.transpose();
   shift = inverse * shift;
   const Eigen::MatrixXd covariance = inverse * middle * inverse + shift * shift.transpose();
-  for (std::size_t a = 0; a < told.size(); ++a) {
-    LimitParameter& p = fit.parameters[told[a]];
+  for (std::size_t a = 0; a < determined.size(); ++a) {
+    LimitParameter& p = fit.parameters[determined[a]];
     const double log_error = std::sqrt(std::max(0.0, covariance(a, a)));
     p.fitted.std_error = p.fitted.value * log_error;
-    if (log_error > 0.5) p.told = false;
+    if (log_error > 0.5) p.determined = false;
   }
 }
 
@@ -337,7 +337,7 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
 
   const Machine fitted = fit.whole = machine_at(start, fit.parameters, logs.data());
   for (const LimitParameter& p : fit.parameters)
-    if (p.told) p.set(fit.machine, p.fitted.value);
+    if (p.determined) p.set(fit.machine, p.fitted.value);
   residuals_of(data, fitted, false, residuals);
   fit.fitted_cost = robust_cost(residuals);
   std::vector<double> milliseconds;

@@ -33,7 +33,7 @@ struct LimitParameter {
   void (*set)(machine::Machine&, double);
   double least = 0, most = 0, start = 0;
   FittedValue fitted;
-  bool told = false;  ///< determined by the data
+  bool determined = false;  ///< determined by the data
   /// Share of what the data tell about it (its squared derivatives) that comes from logged times.
   double logged_fraction = 0;
 };

@@ -92,8 +92,8 @@ void remove_drift(Signal& signal, const ForceLog& how, const std::string& path, 
   }
   // With a single short range the slope is a guess over the whole log: level only, unless the ranges lie apart.
   const double spread = n * stt - st * st;
-  const bool slope_told = how.idle_s.size() > 1 && spread > 0;
-  const Vec3 slope = slope_told ? Vec3((n * stf - st * sf) / spread) : Vec3(Vec3::Zero());
+  const bool slope_known = how.idle_s.size() > 1 && spread > 0;
+  const Vec3 slope = slope_known ? Vec3((n * stf - st * sf) / spread) : Vec3(Vec3::Zero());
   const Vec3 level = (sf - slope * st) / n;
   for (std::size_t i = 0; i < signal.t_s.size(); ++i) signal.force_N[i] -= level + slope * signal.t_s[i];
 }

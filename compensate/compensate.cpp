@@ -304,7 +304,7 @@ class Loop {
     round.error_um = judged_of(figures_of(*last_), job_.compensation.reference);
     round.split = split_error(*path_, last_->observed, fit_options());
     if (round.guard) round.split.give_to_guard(free_correctable_um_);
-    round.deepest_um = depth_of(last_->surface, last_->observed, depth_limit_um_, true).held_um;
+    round.deepest_um = depth_of(last_->surface, last_->observed, depth_limit_um_, true).gouge_depth_p999_um;
     round.static_rounds = last_->static_rounds;
     round.unsettled = last_->unsettled;
     out.rounds.push_back(round);
@@ -374,7 +374,7 @@ class Loop {
     out.depth_after = depth_of(out.surface_after, best_->observed, max_um, true);
     out.depth_others = depth_of(out.surface_after, best_->observed, max_um, false);
     out.depth_without_bending = depth_without_bending(job_, setup_.target, program, max_um);
-    out.within_part = out.depth_after.held_um <= max_um;
+    out.within_part = out.depth_after.gouge_depth_p999_um <= max_um;
     out.plain_after = figures_of(*best_);
     out.within_tolerance = within_tolerance(out.plain_after, job_.compensation);
     out.stop = verdict(out);

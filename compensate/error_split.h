@@ -59,6 +59,6 @@ double default_depth_limit_um(const ShiftPath& path, const Observed& observed, c
                               double tolerance_um);
 
 /// Depth that no more than a thousandth of `area_mm2` exceeds. Pairs of depth and area.
-double held_depth(std::vector<std::pair<double, double>> depth_and_area, double area_mm2);
+double depth_p999(std::vector<std::pair<double, double>> depth_and_area, double area_mm2);
 
 }  // namespace camber::compensate

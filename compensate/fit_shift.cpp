@@ -108,11 +108,11 @@ void add_rest(System& s, const Chain& chain) {
     if (k > 0) about += s.diagonal[chain.from + k - 1];
     if (k + 1 < chain.count) about += s.diagonal[chain.from + k + 1];
     const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(about);
-    const double told = kDeterminedFraction * eigen.eigenvalues()[2];
+    const double determined = kDeterminedFraction * eigen.eigenvalues()[2];
     rest[k].setZero();
     for (int i = 0; i < 3; ++i) {
       const Vec3 v = eigen.eigenvectors().col(i);
-      rest[k] += std::max(0.0, told - eigen.eigenvalues()[i]) * v * v.transpose();
+      rest[k] += std::max(0.0, determined - eigen.eigenvalues()[i]) * v * v.transpose();
     }
   }
   for (std::size_t k = 0; k < chain.count; ++k) s.diagonal[chain.from + k] += rest[k];

@@ -15,8 +15,8 @@ class Guard {
   /// Requests of single points are limited to the depth that 99.9 % of the surface does not exceed.
   Guard(const ShiftPath& path, double limit_mm, double reach_mm);
 
-  /// Adds lifts for points that are too deep; `held_mm`: depth that 99.9 % of the surface does not exceed.
-  void learn(const Observed& observed, double held_mm);
+  /// Adds lifts for points that are too deep; `depth_p999_mm`: depth that 99.9 % of the surface does not exceed.
+  void learn(const Observed& observed, double depth_p999_mm);
   /// Errors as the fit is to see them: less the lift.
   void apply_to(std::vector<Observation>& observations) const;
 

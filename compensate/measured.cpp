@@ -208,7 +208,7 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
       sum += (measured[i] - predicted[i]) * (measured[i] - predicted[i]);
     return 1000 * std::sqrt(sum / static_cast<double>(predicted.size()));
   };
-  const auto refuse = [&](const std::string& why) { fail_on_file(path, why, "measured-untold"); };
+  const auto refuse = [&](const std::string& why) { fail_on_file(path, why, "measured-not-identifiable"); };
 
   constexpr double kProbe = 1.15, kSame = 0.005, kMin = 0.2, kMax = 5, kVague = 0.25;
   constexpr int kPredictions = 6;

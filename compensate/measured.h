@@ -33,9 +33,9 @@ struct MeasuredFit {
 machine::Job softened(const machine::Job& job, double scale);
 
 /// Least squares of the points against the prediction of `program` (what the measured part was cut with; empty: the
-/// job's program), by Newton steps with the secant between predictions. Throws InputError [measured-untold]: fewer than
-/// three points lie on the job's surface, their predicted error hardly depends on the deflection, or the standard
-/// error of the scale is over a quarter of it.
+/// job's program), by Newton steps with the secant between predictions. Throws InputError [measured-not-identifiable]:
+/// fewer than three points lie on the job's surface, their predicted error hardly depends on the deflection, or the
+/// standard error of the scale is over a quarter of it.
 MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const std::vector<MeasuredPoint>& points,
                          const std::string& program, Diagnostics& diagnostics, const simulate::Progress& progress);
 

@@ -10,11 +10,11 @@
 namespace camber::compensate {
 namespace {
 
-constexpr int kTerms = 4;          // of a cubic
-constexpr double kMany = 40;       // points across and along, whose mean needs no help
-constexpr double kOneFace = 0.97;  // mean normal of a ball's row of 40 degrees
-constexpr double kTold = 1e-3;     // fraction of the moments below which a term is not told
-constexpr double kMin_mm = 0.005;  // rows narrower than this have no form
+constexpr int kTerms = 4;                 // of a cubic
+constexpr double kMany = 40;              // points across and along, whose mean needs no help
+constexpr double kOneFace = 0.97;         // mean normal of a ball's row of 40 degrees
+constexpr double kRegularization = 1e-3;  // fraction of the moments below which a term is not determined
+constexpr double kMin_mm = 0.005;         // rows narrower than this have no form
 
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 using Square = Eigen::Matrix<double, kTerms, kTerms>;
@@ -120,7 +120,7 @@ std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observati
   for (std::size_t i = 0; i < form.size(); ++i) {
     Square& m = moments[i].square;
     if (m(0, 0) <= 0 || !faces[i].one()) continue;
-    m.diagonal() *= 1 + kTold;
+    m.diagonal() *= 1 + kRegularization;
     const double points = moments[i].points * smoothing_mm / kFormAlong_mm / kMany;  // the weights' sum is 2 kFormAlong
     form[i] = m.ldlt().solve(moments[i].right) / (1 + points * points);
   }

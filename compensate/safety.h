@@ -13,8 +13,8 @@ namespace camber::compensate {
 
 /// Gouge depth: depth of the surface below the undeflected sweep of the target.
 struct Depth {
-  double deepest_um = 0;  ///< of single points; not negative
-  double held_um = 0;     ///< 99.9 % of the surface is not deeper; compared with the depth limit
+  double deepest_um = 0;           ///< of single points; not negative
+  double gouge_depth_p999_um = 0;  ///< 99.9 % of the surface is not deeper; compared with the depth limit
   Vec3 place_mm = Vec3::Zero();
   double over_fraction = 0;  ///< fraction of the area deeper than the tolerance
 };

@@ -199,7 +199,7 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
   out.within_tolerance = within_tolerance(out.plain, job.compensation);
   out.depth_limit_um = record.depth_limit_um;
   out.depth = depth_of(p.surface, out.reference, p.not_judged_mm2, out.depth_limit_um);
-  out.within_part = out.depth.held_um <= out.depth_limit_um;
+  out.within_part = out.depth.gouge_depth_p999_um <= out.depth_limit_um;
   out.settled = p.cut.unsettled == 0;
   out.unseen_mm2 = p.unseen_mm2;
   out.border_mm2 = p.border_mm2;

@@ -52,7 +52,8 @@ ordered_json verdict(const VerdictText& v) {
 
 ordered_json depth(const compensate::Depth& d) {
   return {{"deepest_um", d.deepest_um},
-          {"held_um", d.held_um},
+          {"gouge_depth_p999_um", d.gouge_depth_p999_um},
+          {"held_um", d.gouge_depth_p999_um},  // former name, for one more release
           {"at_mm", {d.place_mm.x(), d.place_mm.y(), d.place_mm.z()}},
           {"area_over_tolerance", d.over_fraction}};
 }
@@ -230,8 +231,8 @@ std::string rounds_text(const compensate::CompensationResult& c) {
 std::string safety_text(const compensate::CompensationResult& c) {
   std::string out =
       fmt::format("gouge depth: {:.2f} um before, {:.2f} um after (single points {:.2f} um);\n  limit {:.4g} um{}",
-                  c.depth_before.held_um, c.depth_after.held_um, c.depth_after.deepest_um, c.depth_limit_um,
-                  c.own_depth_limit ? "" : " (default)");
+                  c.depth_before.gouge_depth_p999_um, c.depth_after.gouge_depth_p999_um, c.depth_after.deepest_um,
+                  c.depth_limit_um, c.own_depth_limit ? "" : " (default)");
   if (c.depth_others.deepest_um > 0) out += fmt::format("\n  by other moves: {:.2f} um", c.depth_others.deepest_um);
   return out + fmt::format("\nwith a rigid tool: {:.2f} um\n", c.depth_without_bending.deepest_um);
 }

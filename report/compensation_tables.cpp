@@ -31,7 +31,8 @@ std::string place(const Vec3& p) { return fmt::format("X{:.3f} Y{:.3f} Z{:.3f}",
 TextTable depth_table(const compensate::CompensationResult& c) {
   TextTable table{"Gouge depth", {"", "99.9 % of the area, um", "deepest point, um", "where"}, {}, {}};
   const auto add = [&](const char* name, const compensate::Depth& d) {
-    table.rows.push_back({name, um(d.held_um), um(d.deepest_um), d.deepest_um > 0 ? place(d.place_mm) : ""});
+    table.rows.push_back(
+        {name, um(d.gouge_depth_p999_um), um(d.deepest_um), d.deepest_um > 0 ? place(d.place_mm) : ""});
   };
   add("before", c.depth_before);
   add("after", c.depth_after);

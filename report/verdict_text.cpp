@@ -40,7 +40,7 @@ std::string too_deep_sentence(const compensate::Depth& depth, double limit_um) {
   return fmt::format(
       "the gouge depth is {:.2f} um (exceeded by 0.1 % of the surface), deepest ({:.2f} um) at X{:.3f} Y{:.3f} "
       "Z{:.3f}; no more than {:.4g} um were expected",
-      depth.held_um, depth.deepest_um, at.x(), at.y(), at.z(), limit_um);
+      depth.gouge_depth_p999_um, depth.deepest_um, at.x(), at.y(), at.z(), limit_um);
 }
 
 std::vector<std::string> shortfalls(const CompensationResult& c, const CompensationSettings& asked) {
@@ -124,7 +124,7 @@ std::string verify_text(const Verification& v, double compute_s) {
   return out + fmt::format(
                    "gouge depth: {:.2f} um (single points {:.2f} um); limit {:.4g} um\n"
                    "machine time {:.1f} s; computed in {:.1f} s\n",
-                   v.depth.held_um, v.depth.deepest_um, v.depth_limit_um, v.machine_time_s, compute_s);
+                   v.depth.gouge_depth_p999_um, v.depth.deepest_um, v.depth_limit_um, v.machine_time_s, compute_s);
 }
 
 std::string plain_figures_text(const CompensationResult& c) {

@@ -194,7 +194,7 @@ TEST(CompensateCommand, MeasuredPointsSetTheModelRight) {
   EXPECT_EQ(far.status, 1);
   EXPECT_EQ(far.err,
             "far.csv: error: 0 of 2 points lie on a surface that the job machines; three or more were expected "
-            "[measured-untold]\n");
+            "[measured-not-identifiable]\n");
   folder.write("bad.csv", "x,y,z,nx,ny,nz,error\n1,2,3,0,0,1,five\n");
   const auto bad = run_camber(folder, "compensate job.toml -o b.nc --measured bad.csv");
   EXPECT_EQ(bad.status, 1);

@@ -58,8 +58,8 @@ void expect_the_same_figures(const TempFolder& folder, const std::string& option
     EXPECT_NEAR(v["emitted"]["contour_um"][figure], c["contour_um"][figure], kRounded_um) << figure;
   }
   EXPECT_EQ(v["verdict"]["success"], json_of(folder, "c.json")["verdict"]["success"]);
-  EXPECT_NEAR(v["into_part"]["held_um"], json_of(folder, "c.json")["into_part"]["after"]["held_um"].get<double>(),
-              kRounded_um);
+  EXPECT_NEAR(v["into_part"]["gouge_depth_p999_um"],
+              json_of(folder, "c.json")["into_part"]["after"]["gouge_depth_p999_um"].get<double>(), kRounded_um);
   EXPECT_NE(verified.out.find("judged, by compensate"), std::string::npos) << verified.out;
 }
 

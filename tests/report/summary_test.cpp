@@ -50,7 +50,7 @@ TEST(VerdictText, NothingBetterTooDeepOrDoubtfulIsNoSuccess) {
   c.within_tolerance = true;
   c.within_part = false;
   c.depth_limit_um = 5;
-  c.depth_after.held_um = 7;
+  c.depth_after.gouge_depth_p999_um = 7;
   VerdictText v = verdict_text(c, asked);
   EXPECT_FALSE(v.success);
   EXPECT_EQ(v.headline, "gouge too deep");
