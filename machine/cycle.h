@@ -39,12 +39,11 @@ struct Cycle {
   double arc_loop_factor = 2;  ///< m of the arc tolerance: 8 with smooth high-gain position loops, else 2
   double jerk_filter_s = 0;    ///< T_filter: added to the time of each change of speed
   CodeOrder code_order = CodeOrder::sequential;
-  double m_code_s = 0;  ///< each M code except M6 and M60
-  double s_code_s = 0;  ///< each S
-  double t_code_s = 0;  ///< each T
-  double histogram_step_mm =
-      0;  ///< step of the histograms of G0 and G1 distances; 0: non-uniform steps, finer for short distances
-  double pallet_change_s = 0;  ///< M60
+  double m_code_s = 0;           ///< each M code except M6 and M60
+  double s_code_s = 0;           ///< each S
+  double t_code_s = 0;           ///< each T
+  double histogram_step_mm = 0;  ///< step of the distance histograms; 0: non-uniform steps
+  double pallet_change_s = 0;    ///< M60
   /// Speed limit of the last distance of G60.
   double creep_feed_mm_per_s = std::numeric_limits<double>::infinity();
 };

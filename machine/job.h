@@ -35,9 +35,8 @@ struct Tool {
   std::vector<double>
       pitch_rad;         ///< pitch angles from each tooth to the next, in the order in which they cut; empty: equal
   double runout_mm = 0;  ///< offset of the cutter axis from the spindle axis
-  double runout_angle_rad =
-      0;                   ///< angle from tooth 1 to the direction of the run-out, against the direction of rotation
-  double overhang_mm = 0;  ///< holder face to tip
+  double runout_angle_rad = 0;            ///< from tooth 1 to the run-out, against the rotation
+  double overhang_mm = 0;                 ///< holder face to tip
   std::optional<double> flute_length_mm;  ///< not given: the whole overhang is fluted
   double neck_diameter_mm = 0;            ///< 0: no neck
   double neck_length_mm = 0;              ///< from the flutes up
