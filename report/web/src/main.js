@@ -17,8 +17,8 @@ function say(sentence) {
 
 const LEGENDS = {
   change: 'change of the form error (after \u2212 before), \u00b5m',
-  deflection: 'of it, deflection of the tool, \u00b5m',
-  contour: 'of it, servo lag and corner rounding, \u00b5m',
+  deflection: 'due to tool deflection, \u00b5m',
+  contour: 'due to servo lag and corner rounding, \u00b5m',
 };
 
 class Page {
