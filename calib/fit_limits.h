@@ -34,7 +34,7 @@ struct LimitParameter {
   double least = 0, most = 0, start = 0;
   FittedValue fitted;
   bool determined = false;  ///< determined by the data
-  /// Share of what the data tell about it (its squared derivatives) that comes from logged times.
+  /// Fraction of its squared derivatives that comes from logged times.
   double logged_fraction = 0;
 };
 

@@ -17,7 +17,7 @@ struct ProtocolPart {
 
 struct ProtocolProgram {
   std::string name;   ///< of the file
-  std::string tells;  ///< what it is for, one sentence
+  std::string tells;  ///< its purpose, one sentence
   std::string text;
   std::vector<ProtocolPart> parts;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Stretches of consecutive feed moves and how long a machine took for them.
+// Stretches of consecutive feed moves with their measured durations.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -21,7 +21,7 @@ struct FeedStretch {
 struct TimedStretch {
   FeedStretch stretch;
   double time_s = 0;
-  double sigma_s = 0;  ///< what the time is known to
+  double sigma_s = 0;  ///< uncertainty of the time
 };
 
 /// A program and the times that were logged of its stretches.

@@ -32,7 +32,7 @@ class ShiftPath {
  public:
   /// Lines and arcs longer than spacing_mm get points between their ends, but none closer than the control can process
   /// blocks at the move's feed, F T_b. Infinite: no move is split, and arcs have a point in the middle (full turns two)
-  /// that tells their radius.
+  /// that determine their radius.
   ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm,
             double block_time_s = 0);
 

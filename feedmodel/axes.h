@@ -12,7 +12,7 @@ namespace camber::feedmodel {
 
 /// Seconds of the moving average of every axis: its own filter, or what turns its acceleration into one with
 /// the given jerk (acceleration / jerk), whichever is longer. Jerk windows are those of the slowest axis for
-/// all three, so that they do not bend the path.
+/// all three, so that they do not distort the path.
 Vec3 filter_times_s(const machine::Machine& machine);
 
 /// Upper bound of the settling time of the axes after the command stops; 0: no lag.

@@ -24,7 +24,7 @@ class AxisPlaces {
     }
   }
 
-  /// The way that the axes go in this move: axes that stand at, or go to, a place that is not known count for nothing.
+  /// Axis displacements of this move; axes at, or moving to, an unknown position are ignored.
   struct Way {
     Vec3 from_mm, to_mm;
     bool complete = true;

@@ -75,9 +75,8 @@ struct CycleTime {
   DistanceHistogram g00, g01;
   std::size_t below_full_rapid = 0;  ///< positioning moves whose slowest axis does not reach its rapid rate
   std::size_t speed_changes = 0;     ///< along the path, of the linear law: what the jerk filter counts
-  std::size_t unplaced_moves =
-      0;                       ///< to or from a reference point whose place is not known: part of their way is missing
-  std::vector<double> move_s;  ///< time of each move of the program, dwells included
+  std::size_t unplaced_moves = 0;    ///< moves to or from an unknown reference point: part of their path is missing
+  std::vector<double> move_s;        ///< time of each move of the program, dwells included
 };
 
 /// The time of the whole program. Cutting runs through the lookahead plan of predict_feed (or, with the exponential

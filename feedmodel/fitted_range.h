@@ -10,7 +10,7 @@
 namespace camber::feedmodel {
 
 /// Feeds, corners between feed moves, lengths of lines, radii of curvature of arcs and axes that feed moves of the
-/// programs have: least and greatest of each.
+/// programs have: minimum and maximum of each.
 machine::FittedRange range_of(const std::vector<const nc::Interpretation*>& programs);
 
 /// Where a program leaves the range that the machine was fitted on: feeds above the highest, corners sharper than the

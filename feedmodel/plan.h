@@ -1,5 +1,5 @@
 #pragma once
-// The plan of a whole program: how fast each segment is entered, how it moves, when it begins, how long it takes. Every
+// The plan of a whole program: entry speed, motion, start and duration of each segment. Every
 // command that reports a time, a feed or a place of the tool takes it from here.
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Figures of Yan & Shirase 1997: how much of the commanded feed a program reaches, and their lookahead.
+// Equations of Yan & Shirase 1997: feed efficiency e, k, and their lookahead.
 #include <span>
 #include <vector>
 

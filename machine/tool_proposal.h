@@ -1,5 +1,5 @@
 #pragma once
-// What can be told of a tool from a comment, a tool table or a tool library, to begin a job file with.
+// Tool proposals for a draft job file, from comments, tool tables and tool libraries.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,7 +19,7 @@ struct ToolProposal {
   std::optional<double> diameter_mm, corner_radius_mm, flute_length_mm, shank_diameter_mm, overhang_mm;
   std::optional<int> flutes;
   std::optional<double> youngs_modulus_GPa;
-  std::string doubt;  ///< what should be looked at; empty: nothing
+  std::string doubt;  ///< what should be checked; empty: nothing
 };
 
 /// Tools that a program's comments name, one a number, the first mention first: "(T3 D=0.125 CR=0.0625 - ZMIN=-0.54 -

@@ -88,13 +88,13 @@ struct EditNotMade {
   EmitGap why = EmitGap::canned_cycle;
 };
 
-/// In shop words: what the edit's move is.
+/// Description of the edit's move for messages.
 std::string to_string(EmitGap why);
 
 struct Emission {
   std::string text;
   std::vector<EditNotMade> not_made;  ///< ascending
-  /// One entry a line of `text`: index of the block of the given program that the line stands for; kNoBlock: new.
+  /// One entry per line of `text`: index of the corresponding block of the given program; kNoBlock: new.
   std::vector<std::uint32_t> block_of_line;
 
   static constexpr std::uint32_t kNoBlock = std::numeric_limits<std::uint32_t>::max();

@@ -66,22 +66,22 @@ struct Move {
   /// Part of a move to or from the reference point (G28, G30, G53) whose place in the work frame is not
   /// known: counts for nothing in material.
   bool reference : 1 = false;
-  std::uint8_t reference_point : 2 = 0;  ///< of a way to a reference point (G28, G30): 0 for the first, to 3
+  std::uint8_t reference_point : 2 = 0;  ///< index of the reference point of G28, G30: 0 for the first, to 3
   std::uint8_t reference_axes : 3 = 0;   ///< bit i: axis i goes to that point
-  bool creeps : 1 = false;               ///< the last way of G60
+  bool creeps : 1 = false;               ///< the last distance of G60
   bool canned : 1 = false;               ///< made by a drilling cycle: one of several moves of its block
   /// True if the words of the block define this move and no other: the block is in the main program, runs once, and its
   /// words have numbers. Only such blocks may be edited. False in loops, in subprograms called more than once or from a
   /// file of their own, for expressions, under G41 and G42 and in polar coordinates.
   bool editable : 1 = true;
-  bool feed_given : 1 = false;        ///< an F word or a feed mode was read behind the move before, up to this block
+  bool feed_given : 1 = false;        ///< an F word or a feed mode was read since the previous move, up to this block
   bool feed_by_variable : 1 = false;  ///< the modal feed was set by an expression (F#1)
 
   static constexpr std::uint32_t kNoArc = std::numeric_limits<std::uint32_t>::max();
 };
 
 struct Interpretation {
-  std::vector<Move> moves;  ///< in order; each starts where the one before ended
+  std::vector<Move> moves;  ///< in order; each starts at the end of the previous one
   std::vector<Arc> arcs;
   std::vector<ModalState> states;
   std::vector<Event> events;           ///< beside the moves, in order

@@ -42,7 +42,7 @@ struct Fastest {
   std::size_t unbounded = 0;     ///< of `tried`: the fastest one, whatever its contour
   ContourLimit limit;
   bool gains = true;         ///< false: nothing is faster than the old program, which `path` then is
-  bool within_limit = true;  ///< false: no candidate keeps to it; the one that strays least is chosen
+  bool within_limit = true;  ///< false: no candidate keeps the limit; the one with the smallest deviation is chosen
 };
 
 /// Lays the program out with lengths from ten times L_b down to L_b at the programmed feed and predicts each on the

@@ -43,7 +43,7 @@ void report_allowance(const machine::Job& job, Diagnostics& diagnostics);
 
 /// The beam's lengths over their diameters, added up: of flutes, neck and shank.
 double slenderness(const machine::Tool& tool);
-/// Longer tools vibrate and bend in ways that a static beam does not describe.
+/// A static beam does not describe longer tools.
 constexpr double kMaxSlenderness = 15;
 
 /// Warnings [tool-slender] for tools of the list that are more slender than kMaxSlenderness.
