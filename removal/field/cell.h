@@ -10,7 +10,7 @@
 
 namespace camber::removal {
 
-/// A depth of more than this fraction of what the last motion allows ends at the surface of the tooth before.
+/// A depth of more than this share of what the last motion allows ends at the surface of the tooth before.
 constexpr float kNearCap = 0.8f;
 
 /// A surface that the normal meets at a grazing angle is taken at no more than twenty times its distance.
@@ -24,18 +24,18 @@ inline float slope(double along_normal) {
 constexpr int cell_corner(int c) { return Tile::offset(c & 1, c >> 1 & 1, c >> 2 & 1); }
 
 /// Place in a cell, from its lowest voxel, in voxels.
-using CellFraction = std::array<float, 3>;
+using CellShare = std::array<float, 3>;
 
-inline float corner_weight(int c, const CellFraction& f) {
+inline float corner_weight(int c, const CellShare& f) {
   return (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
 }
 
 /// `lowest`: the cell's lowest voxel in a tile.
-inline float trilinear(const float* lowest, const CellFraction& f) {
+inline float trilinear(const float* lowest, const CellShare& f) {
   float sum = 0;
   for (int c = 0; c < 8; ++c) sum += corner_weight(c, f) * lowest[cell_corner(c)];
   return sum;
 }
-Vec3 trilinear_gradient(const float* lowest, const CellFraction& f, double voxel_mm);
+Vec3 trilinear_gradient(const float* lowest, const CellShare& f, double voxel_mm);
 
 }  // namespace camber::removal

@@ -31,7 +31,7 @@ double DeflectedEnvelope::settled_mm(const Vec3& q, const Vec3& n, double highes
     h += change;
     const Vec3 turned = deflection_at(point_in_tool(pose_, q + h * n) - deflection) - deflection;
     if (std::abs(change) < close && turned.squaredNorm() < close * close) break;
-    deflection += static_cast<double>(Settling::fraction_of(step)) * turned;
+    deflection += static_cast<double>(Settling::share_of(step)) * turned;
   }
   return std::min(h, highest);
 }

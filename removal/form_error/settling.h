@@ -14,7 +14,7 @@ struct Settling {
 
   /// Where the deflection jumps against the motion of the edge, the envelope is torn, and the tooth draws the gap while
   /// the deflection: there plain steps alternate between both sides, and smaller ones find the place between them.
-  static constexpr float fraction_of(int step) { return step < 5 ? 1.0f : step < 16 ? 0.3f : 0.1f; }
+  static constexpr float share_of(int step) { return step < 5 ? 1.0f : step < 16 ? 0.3f : 0.1f; }
 };
 
 }  // namespace

@@ -84,9 +84,9 @@ struct DeflectionLanes {
     for (int step = 0; step < Settling::kFieldSteps; ++step) {
       const Deflection next = deflection_at(e, rows, offset, x - s.x, y - s.y, z);
       const F turned_x = next.x - s.x, turned_y = next.y - s.y;
-      const F fraction(Settling::fraction_of(step));
-      s.x += xsimd::select(live, fraction * turned_x, zero);
-      s.y += xsimd::select(live, fraction * turned_y, zero);
+      const F share(Settling::share_of(step));
+      s.x += xsimd::select(live, share * turned_x, zero);
+      s.y += xsimd::select(live, share * turned_y, zero);
       live = live & (turned_x * turned_x + turned_y * turned_y > close2);
       if (!xsimd::any(live)) break;
     }

@@ -55,7 +55,7 @@ struct ShallowPoints {
   std::int32_t* lane;  ///< of BlockPoints
   std::int32_t* cell;  ///< lowest voxel of its cell in the arena
   float* cap;          ///< thickest chip that the motion allows, mm
-  float* fraction[3];  ///< place in the cell
+  float* share[3];     ///< place in the cell
   std::int32_t* hit;   ///< which of the blocks that cut, times 8, plus the lane in it
 };
 
@@ -81,7 +81,7 @@ struct BlankPoints {
   const float* blank;        ///< distances, from the first tile of the arena on
   const std::int32_t* lane;  ///< of BlockPoints
   const std::int32_t* cell;  ///< lowest voxel of each point's cell
-  const float* fraction[3];  ///< place in the cell
+  const float* share[3];     ///< place in the cell
   float voxel_mm, min_slope;
   float* thickness;  ///< in: of what is below the stamps' surfaces, mm; out: the blank's surface counts too
 };

@@ -136,7 +136,7 @@ struct BlockVectors {
         shallow.lane[at] = first + l;
         shallow.cell[at] = cells[l];
         shallow.cap[at] = caps[l];
-        shallow.fraction[0][at] = u_of[l], shallow.fraction[1][at] = v_of[l], shallow.fraction[2][at] = w_of[l];
+        shallow.share[0][at] = u_of[l], shallow.share[1][at] = v_of[l], shallow.share[2][at] = w_of[l];
         shallow.hit[at] = hit * kLanes + l;
         const std::int32_t* named = arena.stamp + cells[l];  // thin_points reads them
         for (const int row : {0, kSide, kSide * kSide, kSide * kSide + kSide}) __builtin_prefetch(named + row);
@@ -186,7 +186,7 @@ struct BlockVectors {
     const F zero(0.0f), one(1.0f), per_voxel(1 / b.voxel_mm);
     for (int i = 0; i < b.count; i += n) {
       const I lane = load(b.lane + i), cell = load(b.cell + i);
-      const F u = load(b.fraction[0] + i), v = load(b.fraction[1] + i), w = load(b.fraction[2] + i);
+      const F u = load(b.share[0] + i), v = load(b.share[1] + i), w = load(b.share[2] + i);
       F value[2], along_y[2], along_z[2];  // on the cell's two faces across x
       for (int f = 0; f < 2; ++f) {
         F d00, d01, d10, d11;

@@ -32,9 +32,9 @@ struct Vectors {
   static Deflection at(const float* row, const I& node_offset, const I& step) {
     return DeflectionLanes<A>::at(row, node_offset, step);
   }
-  static Deflection between(const float* row, const I& lower, const I& upper, const F& fraction, const I& step) {
+  static Deflection between(const float* row, const I& lower, const I& upper, const F& share, const I& step) {
     const Deflection a = at(row, lower, step), b = at(row, upper, step);
-    return {a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y)};
+    return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
   }
 
   static void read_points(const PointLanes& p, int from, int count, const StampPlace& s, const StampBend& b,
@@ -51,16 +51,16 @@ struct Vectors {
         const I lower = load(p.lower + k), step = load(p.step + k), steps(b.deflection.steps);
         const I lower_at = lower * steps;
         const I upper_at = xsimd::min(lower + I(1), I(b.deflection.nodes - 1)) * steps;
-        const F fraction = load(p.upper_fraction + k);
+        const F share = load(p.upper_fraction + k);
         const Deflection low = at(b.deflection.now, lower_at, step), high = at(b.deflection.now, upper_at, step);
-        const Deflection now{low.x + fraction * (high.x - low.x), low.y + fraction * (high.y - low.y)};
-        const Deflection before = between(b.deflection.before, lower_at, upper_at, fraction, step);
+        const Deflection now{low.x + share * (high.x - low.x), low.y + share * (high.y - low.y)};
+        const Deflection before = between(b.deflection.before, lower_at, upper_at, share, step);
         // How much less the motion goes along the deflected envelope's normal than along n: n_bent = n - sum over the
         // surface directions e of e (d(deflection)/de . n).
         const I next = xsimd::select(step + I(1) == steps, I(0), step + I(1));
         const I last = xsimd::select(step == I(0), steps - I(1), step - I(1));
-        const Deflection ahead = between(b.deflection.now, lower_at, upper_at, fraction, next);
-        const Deflection behind = between(b.deflection.now, lower_at, upper_at, fraction, last);
+        const Deflection ahead = between(b.deflection.now, lower_at, upper_at, share, next);
+        const Deflection behind = between(b.deflection.now, lower_at, upper_at, share, last);
         const F by_angle = F(b.per_rad) * ((ahead.x - behind.x) * nx + (ahead.y - behind.y) * ny);
         const F by_height = ((high.x - low.x) * nx + (high.y - low.y) * ny) / F(b.deflection.node_step_mm);
         const F sine = load(p.sine + k);

@@ -60,9 +60,9 @@ struct MarkVectors {
           deflection_at(t, l.row, l.x + h * l.nx - deflection.x, l.y + h * l.ny - deflection.y, l.z + h * l.nz);
       const F turned_x = s.x - deflection.x, turned_y = s.y - deflection.y;
       live = live & !((xsimd::abs(change) < close) & (turned_x * turned_x + turned_y * turned_y < close2));
-      const F fraction(Settling::fraction_of(step));
-      deflection.x += xsimd::select(live, fraction * turned_x, zero);
-      deflection.y += xsimd::select(live, fraction * turned_y, zero);
+      const F share(Settling::share_of(step));
+      deflection.x += xsimd::select(live, share * turned_x, zero);
+      deflection.y += xsimd::select(live, share * turned_y, zero);
     }
     return xsimd::min(h, l.highest);
   }

@@ -48,7 +48,7 @@ void BlockReader::make_room(Buffers& b) const {
   b.blocks.resize(blocks), b.hit_block.resize(blocks), b.hit_deep.resize(blocks);
   for (auto* v : {&b.lane, &b.cell, &b.hit, &b.blank_point, &b.blank_lane, &b.blank_cell}) v->resize(points);
   for (auto* v : {&b.hit_thickness, &b.cap, &b.thickness, &b.depth, &b.blank_thickness}) v->resize(points);
-  for (std::size_t a = 0; a < 3; ++a) b.fraction[a].resize(points), b.blank_fraction[a].resize(points);
+  for (std::size_t a = 0; a < 3; ++a) b.share[a].resize(points), b.blank_fraction[a].resize(points);
 }
 
 BlockReader::Point BlockReader::point(const Stamp& stamp, int lane) const {
@@ -76,7 +76,7 @@ std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t
                         b.lane.data(),
                         b.cell.data(),
                         b.cap.data(),
-                        {b.fraction[0].data(), b.fraction[1].data(), b.fraction[2].data()},
+                        {b.share[0].data(), b.share[1].data(), b.share[2].data()},
                         b.hit.data()};
   kernels.read_blocks(blocks_.points(), b.blocks.data(), found, place, arena.view(),
                       0.5f * static_cast<float>(voxel_mm_), hits, shallow);
@@ -155,7 +155,7 @@ RingPart BlockReader::part_of_ring(const TileArena& arena, const Stamp& stamp, c
   const Point p = point(stamp, points.lane[i]);
   return part_in_material({blank ? blank + cell % (2 * Tile::kVolume) : nullptr,
                            arena.view().stamp + cell,
-                           {points.fraction[0][i], points.fraction[1][i], points.fraction[2][i]},
+                           {points.share[0][i], points.share[1][i], points.share[2][i]},
                            p.place_mm,
                            p.normal,
                            static_cast<double>(blocks_.wall_half_mm(points.lane[i]))},
@@ -175,7 +175,7 @@ void BlockReader::thin_by_blank(const TileArena& arena, const ShallowPoints& poi
     b.blank_lane[to] = points.lane[i];
     b.blank_cell[to] = static_cast<std::int32_t>(cell - tile * Tile::kVolume);
     for (const int corner : {0, 1, 2, 3}) __builtin_prefetch(arena.blanks() + b.blank_cell[to] + cell_corner(corner));
-    for (std::size_t a = 0; a < 3; ++a) b.blank_fraction[a][to] = points.fraction[a][i];
+    for (std::size_t a = 0; a < 3; ++a) b.blank_fraction[a][to] = points.share[a][i];
     b.blank_thickness[to] = b.thickness[at];
     ++count;
   }
@@ -202,14 +202,14 @@ float BlockReader::below_blank(const TileArena& arena, const ShallowPoints& poin
   const float* blank = arena.blank(static_cast<std::size_t>(cell / (2 * Tile::kVolume)));
   if (!blank) return thinnest;
   const float* lowest = blank + cell % (2 * Tile::kVolume);
-  const CellFraction fraction{points.fraction[0][i], points.fraction[1][i], points.fraction[2][i]};
+  const CellShare share{points.share[0][i], points.share[1][i], points.share[2][i]};
   const float distance =
-      trilinear(lowest, fraction) + up_mm * static_cast<float>(trilinear_gradient(lowest, fraction, voxel_mm_).z());
+      trilinear(lowest, share) + up_mm * static_cast<float>(trilinear_gradient(lowest, share, voxel_mm_).z());
   // A slope is at most 1: what is deeper than the thinnest so far cannot become thinner.
   if (distance >= 0 || -distance >= thinnest) return std::min(thinnest, -distance);
   const auto p = blocks_.point(static_cast<std::uint32_t>(points.lane[i] / kLanes), points.lane[i] % kLanes);
   const Vec3 normal(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]);
-  return std::min(thinnest, -distance / slope(-trilinear_gradient(lowest, fraction, voxel_mm_).dot(normal)));
+  return std::min(thinnest, -distance / slope(-trilinear_gradient(lowest, share, voxel_mm_).dot(normal)));
 }
 
 /// As BlockKernels::thin_points, for any cutter.

@@ -26,7 +26,7 @@ class BlockReader {
     std::vector<std::int32_t> blank_point, blank_lane, blank_cell;
     std::vector<float> blank_thickness;
     std::array<std::vector<float>, 3> blank_fraction;
-    std::array<std::vector<float>, 3> fraction;
+    std::array<std::vector<float>, 3> share;
     std::vector<ChipBlock> chips;
   };
 

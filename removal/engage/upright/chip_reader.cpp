@@ -115,7 +115,7 @@ void ChipReader::sort_points(const TileArena& arena, const LaneReading& reading,
       continue;
     }
     Shallow point{p, 255, cap, limit, kSolid, {}, reading.cell[l], 0, 0};
-    for (std::size_t a = 0; a < 3; ++a) point.fraction[a] = reading.fraction[a][l];
+    for (std::size_t a = 0; a < 3; ++a) point.share[a] = reading.fraction[a][l];
     if (std::abs(field) < half) {
       if (!place_in_ring(arena, half, point)) continue;
       if (-field > limit && point.cut_255 == 255) {
@@ -126,10 +126,10 @@ void ChipReader::sort_points(const TileArena& arena, const LaneReading& reading,
     const auto tile = static_cast<std::size_t>(point.cell / (2 * Tile::kVolume));
     if (const float* blank = arena.blank(tile)) {
       const float* lowest = blank + point.cell % (2 * Tile::kVolume);
-      point.below_blank_mm = -trilinear(lowest, point.fraction);
+      point.below_blank_mm = -trilinear(lowest, point.share);
       if (point.up_mm != 0)
         point.below_blank_mm -=
-            static_cast<float>(point.up_mm * trilinear_gradient(lowest, point.fraction, voxel_mm_).z());
+            static_cast<float>(point.up_mm * trilinear_gradient(lowest, point.share, voxel_mm_).z());
       if (point.below_blank_mm <= -kNear_mm) continue;
     }
     b.shallow.push_back(point);
@@ -149,7 +149,7 @@ struct ChipReader::Place {
                       index[1] * Tile::kCore + in_tile / Tile::kSide % Tile::kSide,
                       index[2] * Tile::kCore + in_tile % Tile::kSide);
     corner_mm = voxel_mm * lowest;
-    point_mm = corner_mm + voxel_mm * Vec3(p.fraction[0], p.fraction[1], p.fraction[2]);
+    point_mm = corner_mm + voxel_mm * Vec3(p.share[0], p.share[1], p.share[2]);
     point_mm.z() += p.up_mm;
   }
 };
@@ -159,8 +159,8 @@ bool ChipReader::place_in_ring(const TileArena& arena, float half_mm, Shallow& p
   const Place place(arena, p, voxel_mm_);
   const float* blank = arena.blank(place.tile);
   const auto half = static_cast<double>(half_mm);
-  const RingPart part = part_in_material({blank ? blank + place.in_tile : nullptr, arena.view().stamp + p.cell,
-                                          p.fraction, place.point_mm, normal(p.point), half},
+  const RingPart part = part_in_material({blank ? blank + place.in_tile : nullptr, arena.view().stamp + p.cell, p.share,
+                                          place.point_mm, normal(p.point), half},
                                          all_, first_id_, envelope_.shape, voxel_mm_);
   p.cut_255 = part.cut_255(half);
   p.up_mm = part.middle_mm();
@@ -215,7 +215,7 @@ float ChipReader::farther_mm(const TileArena& arena, const Shallow& p, const Pla
     if (ids[static_cast<std::size_t>(c)] != id) continue;
     const Vec3 corner = place.corner_mm + voxel_mm_ * Vec3(c & 1, c >> 1 & 1, c >> 2 & 1);
     const float difference = distance[cell_corner(c)] + static_cast<float>(envelope_.shape.distance_mm(corner - tip));
-    const float w = corner_weight(c, p.fraction) + 1e-6f;
+    const float w = corner_weight(c, p.share) + 1e-6f;
     weight += w;
     sum += w * difference;
   }
@@ -268,7 +268,7 @@ ChipReader::Depth ChipReader::depth(const TileArena& arena, const Shallow& p, st
   if (p.below_blank_mm < std::max(0.0f, thinnest)) {
     const float* lowest =
         arena.blank(static_cast<std::size_t>(p.cell / (2 * Tile::kVolume))) + p.cell % (2 * Tile::kVolume);
-    const Vec3 outwards = -trilinear_gradient(lowest, p.fraction, voxel_mm_);
+    const Vec3 outwards = -trilinear_gradient(lowest, p.share, voxel_mm_);
     const float mm = p.below_blank_mm / slope(outwards.dot(normal(p.point)));
     if (mm < thinnest) return of_field(mm, outwards);
   }

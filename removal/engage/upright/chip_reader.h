@@ -25,9 +25,9 @@ class ChipReader {
     std::uint8_t cut_255;
     float cap_mm, limit_mm;  ///< what the motion allows; the largest depth that counts
     float below_blank_mm;
-    CellFraction fraction;  ///< in its cell
-    std::int32_t cell;      ///< in the arena
-    double up_mm;           ///< the place that is judged lies above the point
+    CellShare share;    ///< in its cell
+    std::int32_t cell;  ///< in the arena
+    double up_mm;       ///< the place that is judged lies above the point
     std::size_t first_pair;
   };
   /// What one thread needs; may be used for stamp after stamp.

@@ -27,9 +27,9 @@ RingPart part_in_material(const RingPlace& ring, std::span<const Stamp> stamps, 
                           const CutterShape& shape, double voxel_mm) {
   RingPart part{-ring.half_width_mm, ring.half_width_mm};
   if (ring.blank) {
-    const auto above = static_cast<double>(trilinear(ring.blank, ring.fraction));  // the blank's face
+    const auto above = static_cast<double>(trilinear(ring.blank, ring.share));  // the blank's face
     if (std::abs(above) < ring.half_width_mm) {
-      const Vec3 up = trilinear_gradient(ring.blank, ring.fraction, voxel_mm);
+      const Vec3 up = trilinear_gradient(ring.blank, ring.share, voxel_mm);
       if (std::abs(up.dot(ring.normal)) < kUpright * std::abs(up.z())) {
         const double face = -above / up.z();
         if (up.z() > 0)

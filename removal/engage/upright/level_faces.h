@@ -1,6 +1,6 @@
 #pragma once
-// Level faces of the stock across a cutter's wall: which fraction of the width that a sampled point stands for they
-// leave in material.
+// Level faces of the stock across a cutter's wall: which share of the width that a sampled point stands for they leave
+// in material.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,7 +19,7 @@ std::vector<float> wall_half_widths_mm(const EnvelopeGrid& envelope);
 struct RingPlace {
   const float* blank;        ///< lowest voxel of the point's cell in the blank; null: solid
   const std::int32_t* ids;   ///< the same of the stamps that the stock's voxels name
-  CellFraction fraction;     ///< of the point in its cell
+  CellShare share;           ///< of the point in its cell
   Vec3 point_mm, normal;     ///< of the envelope
   double half_width_mm = 0;  ///< of the ring
 };

@@ -85,12 +85,12 @@ double material_voxels(const Tile& tile, double voxel_mm) {
   const auto scale = static_cast<float>(0.5 / voxel_mm);
   double sum = 0;
   for (int i = 0; i < Tile::kCore; ++i) {
-    std::array<float, Tile::kCore> fraction{};
+    std::array<float, Tile::kCore> share{};
     for (int j = 0; j < Tile::kCore; ++j) {
       const float* d = tile.distance.data() + Tile::offset(i, j, 0);
-      for (int k = 0; k < Tile::kCore; ++k) fraction[k] += std::min(std::max(0.5f - scale * d[k], 0.0f), 1.0f);
+      for (int k = 0; k < Tile::kCore; ++k) share[k] += std::min(std::max(0.5f - scale * d[k], 0.0f), 1.0f);
     }
-    for (const float v : fraction) sum += static_cast<double>(v);
+    for (const float v : share) sum += static_cast<double>(v);
   }
   return sum;
 }

@@ -140,7 +140,7 @@ Vec2 settled_deflection(const EnvelopeGrid& envelope, const DeflectionTable& def
         deflection_at(envelope, deflections, row, static_cast<float>(at.x()), static_cast<float>(at.y()), z)
             .cast<double>() -
         guess;
-    guess += static_cast<double>(Settling::fraction_of(step)) * turned;
+    guess += static_cast<double>(Settling::share_of(step)) * turned;
     if (turned.squaredNorm() <= close * close) break;
   }
   return guess;
