@@ -21,7 +21,7 @@ struct SteadyCut {
   bool circular_chip = false;
 };
 
-/// Offset offset of the cutter axis from the spindle axis, in the tool's frame: x towards tooth 1's edge at the tip,
+/// Offset of the cutter axis from the spindle axis, in the tool's frame: x towards tooth 1's edge at the tip,
 /// counter-clockwise seen from above.
 using RunOut = Vec2;
 
