@@ -142,7 +142,7 @@ TEST(CompensateCommand, RefusesBlocksUnderCutterRadiusCompensation) {
   const auto run = run_camber(folder, "compensate job.toml -o a.nc");
   EXPECT_EQ(run.status, 1);
   EXPECT_NE(run.err.find("p.nc:9:1: error: 3 moves to compensate run under cutter radius compensation (G41, G42), from "
-                         "here on: the control makes their path"),
+                         "here on: the control computes their path"),
             std::string::npos)
       << run.err;
   EXPECT_EQ(files_of(folder), kInputs);

@@ -85,7 +85,7 @@ TEST(CompressCommand, TheLeastTimeWhereArcsAreFaster) {
   const auto [r, out] = figures(feeds + " --block-s 0");
   EXPECT_NEAR(r["time_at_feeds_before_s"], r["length_before_mm"].get<double>() / 4.5, 1e-6);
   EXPECT_LT(r["time_at_feeds_after_s"], 0.6 * r["time_at_feeds_before_s"].get<double>());
-  EXPECT_NE(out.find("at the feeds given"), std::string::npos) << out;
+  EXPECT_NE(out.find("at the given feeds"), std::string::npos) << out;
   for (const auto& [wrong, message] : std::vector<std::pair<std::string, std::string>>{
            {" --line-feed-mm-per-min 270", "--line-feed-mm-per-min requires --arc-feed-mm-per-min"},
            {" --block-s 1", "--block-s requires --line-feed-mm-per-min"},
