@@ -267,7 +267,8 @@ TEST(Predict, WarnsWhereTheCutTakesMoreThanTheSpindleHas) {
   // Constant torque to 6000 rpm: at 3000 half of the power; both cutting lines take more.
   write_slot_job(folder, "power_W = 100\nconstant_torque_rpm = 6000\n", "X8. F450\n");
   const std::string err = run_camber(folder, "predict job.toml -o result").err;
-  EXPECT_NE(err.find("where the spindle provides 50 W; 2 lines need more than that; at most"), std::string::npos) << err;
+  EXPECT_NE(err.find("where the spindle provides 50 W; 2 lines need more than that; at most"), std::string::npos)
+      << err;
 
   write_slot_job(folder, "power_W = 90\n");
   EXPECT_EQ(run_camber(folder, "predict job.toml -o result").err, "");

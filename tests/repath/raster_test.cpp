@@ -225,7 +225,7 @@ struct Case {
   CutterShape cutter;
   Height height;
   double degrees;
-  double min_fraction;      ///< of the scallop asked for that is used up at the worst place
+  double min_fraction;   ///< of the scallop asked for that is used up at the worst place
   double rim_mm = kRim;  ///< beside the border that is left out
 };
 
