@@ -72,7 +72,7 @@ CompensateResult v0::compensate(const Job& job, const CompensateOptions& options
     for (const std::string& name : done.result.unknown_parameters)
       found.add({Severity::warning,
                  {job.path(), 0, 0},
-                 "uncertainty: " + name + " is no parameter of the job; left out",
+                 "uncertainty: " + name + " is not a parameter of the job; ignored",
                  "uncertainty",
                  {}});
     run.settle(found);

@@ -25,7 +25,7 @@ std::vector<FitParameter> parameters_of(const std::vector<calib::FitParameter>& 
 
 FitFeedResult v0::fit_feed(const std::vector<FeedTrace>& traces, const Machine& start, const FitFeedOptions& options,
                            const RunOptions& run_options) {
-  if (traces.empty()) fail_on_file(start.path(), "no program with its trace is given", "fit-runs");
+  if (traces.empty()) fail_on_file(start.path(), "a program and its trace are required", "fit-runs");
   FitFeedResult result{.machine = start};
   api::Run run(run_options);
   run.execute([&] {

@@ -53,17 +53,18 @@ TimeResult v0::time(const Program& program, const Machine& machine, const TimeOp
   run.execute([&] {
     Diagnostics found = machine.impl().found;
     found.append(program.impl().found);
-    const api::TimedProgram timed = api::time_program({.program = program.path(),
-                                                       .text = &program.impl().text,
-                                                       .machine_path = machine.path(),
-                                                       .machine = &machine.impl().machine,
-                                                       .trace = options.trace,
-                                                       .cases = {},
-                                                       .sweeps = options.sweeps,
-                                                       .interpreter = program.impl().options,
-                                                       .picture = false,
-                                                       .progress = [&](double share) { run.show("timing", share); }},
-                                                      found);
+    const api::TimedProgram timed =
+        api::time_program({.program = program.path(),
+                           .text = &program.impl().text,
+                           .machine_path = machine.path(),
+                           .machine = &machine.impl().machine,
+                           .trace = options.trace,
+                           .cases = {},
+                           .sweeps = options.sweeps,
+                           .interpreter = program.impl().options,
+                           .picture = false,
+                           .progress = [&](double fraction) { run.show("timing", fraction); }},
+                          found);
     run.settle(found);
     result = result_of(timed.report, found);
   });

@@ -1,11 +1,11 @@
 #pragma once
-// Long work that a caller may stop (camber/run.h). The stop token belongs to a thread; whoever starts work gives it to
-// every thread that works for it, so that calls at the same time do not stop one another.
+// Cancellation of long calculations (camber/run.h). Each thread has a stop token; whoever starts threads passes it on,
+// so that concurrent calls are independent.
 #include <stop_token>
 
 namespace camber {
 
-/// While it lives, cancellation_point() on this thread asks `token`.
+/// During its lifetime cancellation_point() on this thread checks `token`.
 class CancelScope {
  public:
   explicit CancelScope(std::stop_token token);
@@ -17,11 +17,11 @@ class CancelScope {
   std::stop_token before_;
 };
 
-/// The same from now on, for threads that work for one caller after another.
+/// Sets the token permanently, for worker threads that serve several callers.
 void set_stop_token(std::stop_token token);
 
-/// Throws Cancelled where a stop was requested of this thread's work. Takes a few nanoseconds; loops that run for
-/// longer than a tenth of a second call it.
+/// Throws Cancelled if a stop was requested. Takes a few nanoseconds; to be called in loops that run longer than a
+/// tenth of a second.
 void cancellation_point();
 
 }  // namespace camber

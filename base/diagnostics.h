@@ -9,10 +9,10 @@
 
 namespace camber {
 
-/// Throws an InputError that holds one error about a file as a whole.
+/// Throws an InputError with one error about a file as a whole.
 [[noreturn]] void fail_on_file(std::string file, std::string message, std::string check);
 
-/// Collects what a reader finds. After `kMaxErrors` errors `add` throws the InputError itself.
+/// Collects the diagnostics of a reader. After `kMaxErrors` errors `add` throws the InputError itself.
 class Diagnostics {
  public:
   static constexpr std::size_t kMaxErrors = 20;
@@ -31,10 +31,10 @@ class Diagnostics {
   std::size_t errors_ = 0;
 };
 
-/// What --strict means: warnings are errors. Throws InputError where there is a diagnostic at all.
+/// Implements --strict (warnings are errors). Throws InputError if there is any diagnostic.
 void throw_if_any(const Diagnostics& diagnostics);
 
-/// A text file in memory that can tell line and column of an offset.
+/// A text file in memory; maps offsets to line and column.
 class SourceText {
  public:
   SourceText() = default;

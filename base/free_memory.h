@@ -1,9 +1,9 @@
 #pragma once
-// Memory that is still to be had.
+// Available memory.
 
 namespace camber {
 
-/// Bytes that the system can give without swapping; 1e18 where it does not say.
+/// Bytes available without swapping; 1e18 if unknown.
 double free_memory_bytes();
 
 }  // namespace camber

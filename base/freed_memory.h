@@ -3,9 +3,8 @@
 
 namespace camber {
 
-/// Hands freed memory back to the system: glibc keeps it, scattered over its heaps, where large arrays that are made
-/// next find no room. Worth a call where hundreds of megabytes in small pieces have just been freed. With another C
-/// library it does nothing.
+/// Returns freed memory to the system (glibc keeps it, fragmented over its heaps). To be called after freeing hundreds
+/// of megabytes in small pieces. With another C library it does nothing.
 void return_freed_memory();
 
 }  // namespace camber

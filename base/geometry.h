@@ -1,5 +1,5 @@
 #pragma once
-// The vector that every folder passes around: millimetres unless the name says otherwise.
+// Vector types; millimetres unless the name says otherwise.
 #include <Eigen/Core>
 
 namespace camber {

@@ -305,7 +305,7 @@ void make_folder(const std::string& path) {
     missing.push_back(at.string());
   for (auto folder = missing.rbegin(); folder != missing.rend(); ++folder) remember_folder(*folder);
   fs::create_directories(path, ec);
-  if (!fs::is_directory(path)) fail_on_file(path, "cannot be made a folder: " + ec.message(), "file-unwritable");
+  if (!fs::is_directory(path)) fail_on_file(path, "cannot be created as a folder: " + ec.message(), "file-unwritable");
 }
 
 void remove_empty_folders() {

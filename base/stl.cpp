@@ -57,7 +57,8 @@ TriangleMesh read_binary(const SourceText& source) {
     std::memcpy(v.data(), bytes.data() + kHeader + i * kTriangle, sizeof v);
     for (const float x : v)
       if (!std::isfinite(x))
-        fail_on_file(source.name(), fmt::format("triangle {} has a coordinate that is no number", i + 1), "stl-format");
+        fail_on_file(source.name(), fmt::format("triangle {} has a coordinate that is not a number", i + 1),
+                     "stl-format");
     builder.add(
         {Eigen::Vector3f(v[3], v[4], v[5]), Eigen::Vector3f(v[6], v[7], v[8]), Eigen::Vector3f(v[9], v[10], v[11])});
   }
@@ -123,8 +124,8 @@ TriangleMesh read_stl(const std::string& path) {
   else if (source.text().find("facet") != std::string::npos)
     mesh = read_ascii(source);
   else
-    fail_on_file(path, "is no STL file: neither 84 + 50 n bytes nor the word 'facet'", "stl-format");
-  if (mesh.triangles.empty()) fail_on_file(path, "holds no triangle", "stl-empty");
+    fail_on_file(path, "is not an STL file: neither 84 + 50 n bytes nor the word 'facet'", "stl-format");
+  if (mesh.triangles.empty()) fail_on_file(path, "has no triangle", "stl-empty");
   return mesh;
 }
 

@@ -12,13 +12,13 @@ namespace camber {
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> points;  ///< mm, equal ones joined
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  /// Every edge has exactly two triangles, of opposite direction.
+  /// True if every edge has exactly two triangles, of opposite direction.
   bool closed() const { return open_edges() == 0; }
-  /// Edges that are not so.
+  /// Number of edges for which this is not so.
   std::size_t open_edges() const;
 };
 
-/// Binary or ASCII. Triangles without area are left out. Throws InputError [file-missing], [stl-format], [stl-empty].
+/// Binary or ASCII. Degenerate triangles are skipped. Throws InputError [file-missing], [stl-format], [stl-empty].
 TriangleMesh read_stl(const std::string& path);
 
 }  // namespace camber

@@ -1,5 +1,5 @@
 #pragma once
-// Where a tool stands: its tip and its axis.
+// Tool pose: tip and axis.
 #include "base/geometry.h"
 
 namespace camber {

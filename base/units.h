@@ -1,5 +1,5 @@
 #pragma once
-// Conversions at the doors. Inside Camber everything is mm, s, N, MPa and rad.
+// Unit conversions for reading and writing. Internal units are mm, s, N, MPa and rad.
 #include "base/geometry.h"
 
 namespace camber {

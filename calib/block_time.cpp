@@ -11,7 +11,7 @@ namespace {
 constexpr double kSameLength = 0.03;
 constexpr std::size_t kFewestLines = 20;
 constexpr double kReached = 0.95;  // of the programmed feed
-constexpr double kMinShare = 0.05;
+constexpr double kMinFraction = 0.05;
 constexpr double kOtherLength = 1.2;  // lengths that differ by less are one
 
 bool continues(const nc::Interpretation& program, std::size_t i, double chord_mm) {
@@ -67,7 +67,7 @@ BlockTimeFit fit_block_time(const std::vector<std::pair<const nc::Interpretation
   std::vector<double> times;
   double resolution_s = 0;
   for (ChordRun& r : fit.runs) {
-    r.saturated = r.speed_mm_per_s < kReached * r.feed_mm_per_s && r.block_time_s < (1 + kMinShare) * least;
+    r.saturated = r.speed_mm_per_s < kReached * r.feed_mm_per_s && r.block_time_s < (1 + kMinFraction) * least;
     if (!r.saturated) continue;
     times.push_back(r.block_time_s);
     resolution_s = std::max(resolution_s, r.resolution_s);
@@ -76,8 +76,8 @@ BlockTimeFit fit_block_time(const std::vector<std::pair<const nc::Interpretation
   }
   if (times.empty()) {
     fit.message = fit.runs.empty() ? "no run of lines of one length; run the saturation program of camber protocol"
-                                   : "every run of lines of one length reaches its feed: the block time is shorter "
-                                     "than what they ask for";
+                                   : "every run of lines of one length reaches its feed: the block time is too short "
+                                     "to show in these programs";
     return fit;
   }
   if (longest < kOtherLength * shortest) {

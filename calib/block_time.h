@@ -17,8 +17,8 @@ struct ChordRun {
   double feed_mm_per_s = 0;   ///< programmed
   double speed_mm_per_s = 0;  ///< V_s, mean over the middle half
   double block_time_s = 0;    ///< T = L_b / V_s
-  double resolution_s = 0;    ///< what T is known to: a period over so many blocks
-  bool saturated = false;     ///< slower than the feed, and with the least T of all
+  double resolution_s = 0;    ///< uncertainty of T: a period over the number of blocks
+  bool saturated = false;     ///< slower than the feed, and with the smallest T
 };
 
 struct BlockTimeFit {
@@ -29,8 +29,8 @@ struct BlockTimeFit {
 
 /// T_b = 60000 L_b / V_s (ms, mm, mm/min).   Source: Takata 1999.
 /// Every limit but the block time makes T longer the shorter the chords are compared with what limits, so the
-/// saturated runs are those whose T lies within 5 % of the least: two lengths at least must agree. Lines come from the
-/// trace's line column. Runs have at least 20 lines whose lengths agree within 3 %.
+/// saturated runs are those whose T lies within 5 % of the minimum: at least two lengths must agree. Lines come from
+/// the trace's line column. Runs have at least 20 lines whose lengths agree within 3 %.
 BlockTimeFit fit_block_time(const std::vector<std::pair<const nc::Interpretation*, const ServoTrace*>>& runs);
 
 }  // namespace camber::calib

@@ -121,7 +121,7 @@ void report_gaps(const ServoTrace& trace, const std::vector<std::size_t>& gaps, 
     diagnostics.add({.severity = Severity::warning,
                      .location = {trace.path, 0, 0},
                      .message = fmt::format("{:.6g} s are missing before {:.6g} s (the samples are {:.6g} s apart); "
-                                            "what lies before and after is used on its own",
+                                            "the parts before and after are used separately",
                                             trace.t_s[gaps[n]] - trace.t_s[gaps[n] - 1] - trace.period_s,
                                             trace.t_s[gaps[n]], trace.period_s),
                      .check = "trace-gap",
@@ -197,7 +197,7 @@ ServoTrace trace_of(const std::string& path, const std::vector<Channel>& channel
   }
   if (trace.size() < 2)
     fail_on_file(path,
-                 fmt::format("the trace holds {} samples of all its positions; at least two are needed", trace.size()),
+                 fmt::format("the trace has {} samples of all its positions; at least two are needed", trace.size()),
                  "trace-empty");
   report_gaps(trace, set_stretches(trace), diagnostics);
   return trace;

@@ -1,5 +1,5 @@
 #pragma once
-// Traces of other tools: which of their columns is what, and in what unit.
+// Column maps: columns and units of traces in other formats.
 #include <array>
 #include <optional>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace camber::calib {
 
-/// What a servo trace may hold, in the order of the columns of ColumnMap.
+/// The quantities of a servo trace, in the order of ColumnMap.
 enum class Quantity { time, x_cmd, y_cmd, z_cmd, x_act, y_act, z_act, feed, line };
 inline constexpr std::size_t kQuantities = 9;
 inline constexpr std::array<std::string_view, kQuantities> kQuantityKeys{"t",     "x_cmd", "y_cmd", "z_cmd", "x_act",

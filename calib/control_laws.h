@@ -8,11 +8,11 @@
 
 namespace camber::calib {
 
-/// A law that was tried, fitted to the same parts and judged on the same parts that were kept back.
+/// A law that was tried, fitted to the same parts and judged on the same parts that were held out.
 struct TriedLaw {
   std::string name;
   LimitFit fit;
-  double held_out_percent = 0;  ///< mean error of the times of the parts kept back
+  double held_out_percent = 0;  ///< mean error of the times of the parts held out
 };
 
 /// The machine with each corner law, that of `start` first: rounding within a tolerance (G64 P), speed difference by
@@ -24,7 +24,7 @@ std::vector<std::pair<std::string, machine::Machine>> machines_of_each_law(const
 LimitFit fit_law(const std::vector<TimedLines>& data, const machine::Machine& base,
                  const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations);
 
-/// Mean absolute error of the times of the parts that were kept back, %.
+/// Mean absolute error of the times of the parts that were held out, %.
 double held_out_percent(const std::vector<TimedLines>& data, const machine::Machine& machine);
 
 /// Tries every law; the first is that of `start`. Index of the best: the least held-out cost, but the law of

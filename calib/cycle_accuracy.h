@@ -1,5 +1,5 @@
 #pragma once
-// How well a program's predicted time agrees with a measured run.
+// Comparison of a predicted program time with a measured run.
 #include <cstdint>
 #include <vector>
 

@@ -66,7 +66,7 @@ double speed_at(const Record& r, const Window& w, std::size_t k, std::size_t hal
   return to > from ? (r.actual_mm[to] - r.actual_mm[from]).norm() / (static_cast<double>(to - from) * r.period_s) : 0;
 }
 
-/// Speed at stations that lie evenly over the share of the length that the axes really went.
+/// Speed at stations that lie evenly over the fraction of the length that the axes really went.
 std::vector<double> speed_profile(const Record& r, const Window& w, const FeedAccuracyOptions& options) {
   std::vector<double> length{0.0};
   for (std::size_t k = w.first + 1; k < w.end; ++k)
@@ -147,7 +147,7 @@ std::vector<Part> read_parts(const std::string& path) {
     const auto value = [&](std::string_view name) {
       const auto at = std::find(header.begin(), header.end(), name) - header.begin();
       const auto v = at < static_cast<std::ptrdiff_t>(fields.size()) ? parse_number(fields[at]) : std::nullopt;
-      if (!v) fail_on_file(path, "column " + std::string(name) + " is missing or holds no number", "parts-column");
+      if (!v) fail_on_file(path, "column " + std::string(name) + " is missing or not a number", "parts-column");
       return *v;
     };
     parts.push_back({static_cast<std::uint32_t>(value("line_first")), static_cast<std::uint32_t>(value("line_last")),

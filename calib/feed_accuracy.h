@@ -1,5 +1,5 @@
 #pragma once
-// How well the feed model agrees with a servo trace: time and path speed of the actual axes, part by part.
+// Comparison of the feed model with a servo trace: time and path speed of the actual axes, part by part.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -40,7 +40,7 @@ struct FeedAccuracy {
 };
 
 struct FeedAccuracyOptions {
-  std::size_t stations = 2000;    ///< a part, evenly over the share of path length
+  std::size_t stations = 2000;    ///< a part, evenly over the fraction of path length
   double speed_window_s = 0.004;  ///< speeds are taken over this time: a trace is rounded to 0.1 um
 };
 
@@ -56,7 +56,7 @@ PartTimes part_times(const FeedAccuracy& accuracy);
 FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program,
                                     const std::vector<Part>& parts, const FeedAccuracyOptions& options);
 
-/// Path speed of the actual axes over the share of path length, predicted against traced. A part begins with its
+/// Path speed of the actual axes over the fraction of path length, predicted against traced. A part begins with its
 /// first commanded sample and ends when another line is commanded (its tail, where the axes still come up
 /// while line is 0, belongs to it). Parts that the trace does not hold are left out.
 FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program, const machine::Machine& machine,

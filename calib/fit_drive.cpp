@@ -22,7 +22,7 @@ constexpr double kEnoughMm = 0.001;    // a residual under this needs no filter 
 constexpr double kNearlyAsGood = 2.0;  // times the least held-out error
 constexpr std::size_t kMaxResiduals = 60000;
 
-enum class Share { fitted, held_out };
+enum class Part { fitted, held_out };
 
 struct Model {
   int parameters = 1;  ///< gain; gain and lag; gain, lag and feed-forward
@@ -60,7 +60,7 @@ void run(const std::vector<const ServoTrace*>& traces, int axis, const Model& mo
   }
 }
 
-Share share_of(long slice) { return slice % 3 == 2 ? Share::held_out : Share::fitted; }
+Part part_of(long slice) { return slice % 3 == 2 ? Part::held_out : Part::fitted; }
 
 class DriveResiduals {
  public:
@@ -72,7 +72,7 @@ class DriveResiduals {
     cancellation_point();
     std::size_t seen = 0, n = 0;
     run(traces_, axis_, model_, loop_options(model_, parameters[0], 0.001), options_, [&](double error, long slice) {
-      if (share_of(slice) == Share::fitted && seen++ % every_ == 0) residuals[n++] = 1000.0 * error;
+      if (part_of(slice) == Part::fitted && seen++ % every_ == 0) residuals[n++] = 1000.0 * error;
     });
     return true;
   }
@@ -90,7 +90,7 @@ std::size_t fitted_samples(const std::vector<const ServoTrace*>& traces, int axi
   std::size_t n = 0;
   const double p[3] = {3.0, -6.0, 0.0};
   run(traces, axis, model, loop_options(model, p, 0.001), options,
-      [&](double, long slice) { n += share_of(slice) == Share::fitted; });
+      [&](double, long slice) { n += part_of(slice) == Part::fitted; });
   return n;
 }
 
@@ -147,9 +147,9 @@ void solve(Candidate& c, const std::vector<const ServoTrace*>& traces, int axis,
   double sum[2] = {0, 0};
   std::size_t n[2] = {0, 0};
   run(traces, axis, c.model, loop_options(c.model, c.p, 0.001), options, [&](double error, long slice) {
-    const int share = static_cast<int>(share_of(slice));
-    sum[share] += error * error;
-    ++n[share];
+    const int fraction = static_cast<int>(part_of(slice));
+    sum[fraction] += error * error;
+    ++n[fraction];
   });
   c.fitted_rms_mm = n[0] ? std::sqrt(sum[0] / static_cast<double>(n[0])) : 0;
   c.held_out_rms_mm = n[1] ? std::sqrt(sum[1] / static_cast<double>(n[1])) : c.fitted_rms_mm;

@@ -10,7 +10,7 @@ namespace camber::calib {
 
 struct FittedValue {
   double value = 0;
-  double std_error = 0;  ///< infinite: the data does not tell
+  double std_error = 0;  ///< infinite: not determined by the data
 };
 
 struct DriveFit {
@@ -22,8 +22,8 @@ struct DriveFit {
 };
 
 struct DriveFitOptions {
-  double slice_s = 2.0;              ///< the traces are cut in slices of this length; every third is kept back
-  double better_by = 0.05;           ///< a richer model must lower the held-out error by this share
+  double slice_s = 2.0;              ///< the traces are cut in slices of this length; every third is held out
+  double better_by = 0.05;           ///< a richer model must lower the held-out error by this fraction
   double better_by_mm = 5e-5;        ///< and by this much (half of what traces are rounded to)
   std::size_t max_samples = 150000;  ///< of each trace, from its start
   double moved_mm = 0.5;             ///< range that an axis must have gone

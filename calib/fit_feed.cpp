@@ -18,20 +18,20 @@ namespace {
 using machine::Machine;
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
-constexpr double kPlateauShare = 0.999;  // of the highest speed
-constexpr double kPlateauS = 0.02;       // at least this long at it, or it was just passed through
+constexpr double kPlateauFraction = 0.999;  // of the highest speed
+constexpr double kPlateauS = 0.02;          // at least this long at it, or it was just passed through
 constexpr std::uint32_t kMaxBlocksApart = 60;
-constexpr double kSameWindow = 0.3;     // two estimates of one window differ by less than this share of it
-constexpr int kListIterations = 6;      // for each value of a list
-constexpr double kNoLengthMm = 1e-9;    // rounding of numbers, not a move
-constexpr double kSettledShare = 1e-3;  // gain of cost under which a richer law is not worth it
+constexpr double kSameWindow = 0.3;        // two estimates of one window differ by less than this fraction of it
+constexpr int kListIterations = 6;         // for each value of a list
+constexpr double kNoLengthMm = 1e-9;       // rounding of numbers, not a move
+constexpr double kSettledFraction = 1e-3;  // gain of cost under which a richer law is not worth it
 
 /// The usual values of this kind of control for keys that the start file leaves out and the traces may not determine.
 void set_control_defaults(machine::Control& control) {
   // No control takes up two blocks in one period.
   if (control.block_time_s == 0) control.block_time_s = control.kind.min_segment_periods * control.period_s;
   if (control.corner.law != machine::CornerLaw::blend) return;
-  if (control.corner.step_fraction == 0) control.corner.step_fraction = control.kind.usual_step_share;
+  if (control.corner.step_fraction == 0) control.corner.step_fraction = control.kind.default_step_fraction;
   if (control.lookahead_blocks == 0) control.lookahead_blocks = control.kind.usual_lookahead_blocks;
   if (control.corner.short_line_time_s == 0)
     control.corner.short_line_time_s = control.kind.usual_short_line_periods * control.period_s;
@@ -122,10 +122,10 @@ Plateau rapid_plateau(const std::vector<FeedRun>& runs, int axis) {
           continue;
         }
         if (pass == 0) plateau.speed_mm_per_s = std::max(plateau.speed_mm_per_s, speed);
-        if (pass == 1 && speed > kPlateauShare * plateau.speed_mm_per_s) at_top_s += run.trace.period_s;
+        if (pass == 1 && speed > kPlateauFraction * plateau.speed_mm_per_s) at_top_s += run.trace.period_s;
       }
     }
-    plateau.held = at_top_s > kPlateauS && in_feed <= plateau.speed_mm_per_s / kPlateauShare;
+    plateau.held = at_top_s > kPlateauS && in_feed <= plateau.speed_mm_per_s / kPlateauFraction;
   }
   return plateau;
 }
@@ -232,7 +232,7 @@ void choose(LimitFit& best, const std::vector<TimedLines>& data, const std::vect
     auto parameters = best.parameters;
     for (LimitParameter& p : parameters) p.start = std::clamp(p.fitted.value, p.least * 1.001, p.most * 0.999);
     const LimitFit fit = fit_limits(data, m, std::move(parameters), iterations, false);
-    const double gain = kSettledShare * (1 + standing.fitted_cost);
+    const double gain = kSettledFraction * (1 + standing.fitted_cost);
     if (fit.fitted_cost + fit.held_out_cost < standing.fitted_cost + standing.held_out_cost - gain) standing = fit;
   }
   best = standing;
@@ -257,22 +257,22 @@ std::string_view what_tells(std::string_view name) {
   return "run the polygon programs of camber protocol in all planes";
 }
 
-/// Which source told a parameter, where there are two.
+/// Which source determined a parameter, where there are two.
 std::string source_of(const LimitParameter& p) {
-  constexpr double kMost = 0.9;
-  if (p.logged_share > kMost) return "from the logged times";
-  return p.logged_share < 1 - kMost ? "from the traces"
-                                    : fmt::format("{:.0f} % from the logged times", 100 * p.logged_share);
+  constexpr double kMax = 0.9;
+  if (p.logged_fraction > kMax) return "from the logged times";
+  return p.logged_fraction < 1 - kMax ? "from the traces"
+                                      : fmt::format("{:.0f} % from the logged times", 100 * p.logged_fraction);
 }
 
 void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start, bool logged) {
   for (const LimitParameter& p : fit.parameters) {
-    if (p.told) {
+    if (p.determined) {
       result.parameters.push_back(
           {p.name, p.fitted.value, p.unit, p.fitted.std_error, logged ? source_of(p) : "", true});
     } else {
       result.parameters.push_back({p.name, p.get(start), p.unit, std::nullopt,
-                                   fmt::format("the {} do not tell; left as it was ({})",
+                                   fmt::format("not determined by the {}; start value kept ({})",
                                                logged ? "traces and logs" : "traces", what_tells(p.name)),
                                    false});
     }
@@ -310,7 +310,8 @@ void add_velocity(FitFeedResult& result, const std::vector<FeedRun>& runs, int a
   }
   result.parameters.push_back(
       {name, 60 * limit, "mm/min", std::nullopt,
-       fmt::format("no rapid holds a top speed (highest {:.0f} mm/min); left as it was", 60 * plateau.speed_mm_per_s),
+       fmt::format("no rapid reaches a constant top speed (highest {:.0f} mm/min); start value kept",
+                   60 * plateau.speed_mm_per_s),
        false});
 }
 

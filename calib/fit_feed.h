@@ -1,5 +1,5 @@
 #pragma once
-// fit-feed: the feed model of a machine from programs and the servo traces that they left.
+// fit-feed: feed model of a machine from programs and their servo traces.
 #include <array>
 #include <optional>
 #include <string>
@@ -15,7 +15,7 @@
 
 namespace camber::calib {
 
-/// One program and what was traced while it ran.
+/// A program and the trace of its run.
 struct FeedRun {
   std::string program_name;
   nc::Interpretation program;
@@ -23,7 +23,7 @@ struct FeedRun {
 };
 
 struct FitFeedOptions {
-  int keep_back_every = 3;  ///< each so-manieth part is not fitted but predicted
+  int keep_back_every = 3;  ///< every n-th part is held out
   int max_iterations = 60;
 };
 
@@ -31,9 +31,9 @@ struct FitParameter {
   std::string name;  ///< key of the machine file, e.g. "axis.x.acceleration_mm_per_s2"
   double value = 0;
   std::string unit;
-  std::optional<double> std_error;  ///< not given: not fitted, or the data does not tell
+  std::optional<double> std_error;  ///< not given: not fitted, or the data does not determine it
   std::string note;                 ///< why it has no error, where the reason is worth a word
-  bool written = true;              ///< the machine file takes the value
+  bool written = true;              ///< the value is written to the machine file
 };
 
 /// The model's error on parts of the traces.
@@ -51,8 +51,8 @@ struct RunAccuracy {
 /// A corner law that was tried.
 struct JudgedCornerLaw {
   std::string name;
-  double held_out_percent = 0;  ///< mean error of the times of the parts kept back
-  double held_out_cost = 0;     ///< what laws are chosen by: mean robust cost of a part kept back
+  double held_out_percent = 0;  ///< mean error of the times of the parts held out
+  double held_out_cost = 0;     ///< what laws are chosen by: mean robust cost of a part held out
 };
 
 /// A stretch that a log or a table has the time of.
@@ -81,24 +81,24 @@ struct FitFeedResult {
   std::vector<RunAccuracy> runs;  ///< all parts, with the fitted machine
   double residual_median_ms = 0;  ///< of the commanded times of the fitted parts
   bool converged = false;
-  std::string message;  ///< one sentence: why it ended, and what it means
+  std::string message;  ///< one sentence: how the fit ended
 };
 
-/// Puts what the fit of an axis' drive found into the machine and the list.
+/// Writes the result of the drive fit of an axis to the machine and the list.
 void add_drive(machine::Machine& machine, std::vector<FitParameter>& parameters, int axis, const DriveFit& drive);
 
-/// `start` gives the control's dialect, and the values of whatever the traces do not tell; no fit begins at one of
-/// them. Stage one fits each axis' servo (fit_drive). Stage two fits, under every corner law, accelerations, the shares
-/// that arcs and stops take, the law's number and the block time to the commanded times of parts, every third kept
-/// back, and keeps the law that predicts those best; under LinuxCNC's rounding it takes from a list of values the
-/// look-ahead and the short-line time that predict best. Velocity limits are read where a rapid shows a plateau, the
+/// `start` gives the control's dialect, and the values of parameters that the traces do not determine; no fit starts
+/// from them. Stage one fits each axis' servo (fit_drive). Stage two fits, under every corner law, accelerations, the
+/// shares that arcs and stops take, the law's number and the block time to the commanded times of parts, every third
+/// held out, and takes the law that predicts those best; under LinuxCNC's rounding it takes from a list of values the
+/// lookahead and the short-line time that predict best. Velocity limits are read where a rapid shows a plateau, the
 /// ramp after interpolation from the commanded starts. Deterministic.
 FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const machine::Machine& start, const FitFeedOptions& options);
 
-/// Servo traces and logged times in one fit: every time counts in units of what it is known to, so that each source
-/// tells what it tells best (drives, ramps and block times the traces; axes, arcs and feeds that no trace has, the
-/// logs). A note at each parameter says which of them told it. The wait between feed and rapid that logged times hold
-/// (control.rapid_change_ms) is fitted as well.
+/// Servo traces and logged times in one fit: every time is weighted by its uncertainty, so that each source determines
+/// what it contains (traces: drives, ramps, block times; logs: axes, arcs and feeds that no trace has). A note at each
+/// parameter names the source. The wait between feed and rapid that logged times hold (control.rapid_change_ms) is
+/// fitted as well.
 FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<StretchRun>& logs,
                        const machine::Machine& start, const FitFeedOptions& options);
 

@@ -82,11 +82,11 @@ std::optional<double> only_feed_mm(const std::vector<MeasuredLog>& logs) {
   return first;
 }
 
-[[noreturn]] void refuse(const ForceProblem& problem, const std::vector<std::size_t>& untold, bool alone) {
+[[noreturn]] void refuse(const ForceProblem& problem, const std::vector<std::size_t>& undetermined, bool alone) {
   const auto& logs = problem.logs();
   std::vector<std::string> names, quoted;
   bool axial = true;
-  for (const std::size_t i : untold) {
+  for (const std::size_t i : undetermined) {
     names.emplace_back(problem.coefficient(i).key);
     quoted.push_back(fmt::format("\"{}\"", names.back()));
     axial = axial && problem.coefficient(i).component == machine::Component::axial;
@@ -97,18 +97,19 @@ std::optional<double> only_feed_mm(const std::vector<MeasuredLog>& logs) {
       axial && no_fz ? "the log has no fz, the force along the axis"
       : alone        ? fmt::format("none of the measured forces depends on {}", names.size() > 1 ? "them" : "it")
       : feed ? fmt::format("all cuts have one feed per tooth, {:.4g} mm; cuts at different feeds were expected", *feed)
-             : "the cuts tell a combination of them alone; cuts at other feeds, depths or widths, or the force "
-               "that is not measured, were expected";
-  fail_on_file(logs.front().path,
-               fmt::format("cannot tell {}: {} (hold = [{}] in [force_log] keeps the values of [material])",
-                           fmt::join(names, " and "), why, fmt::join(quoted, ", ")),
-               "fit-untold");
+             : "they determine only a combination; cuts at other feeds, depths or widths, or the force that is not "
+               "measured, were expected";
+  fail_on_file(
+      logs.front().path,
+      fmt::format("the cuts do not determine {}: {} (hold = [{}] in [force_log] keeps the values of [material])",
+                  fmt::join(names, " and "), why, fmt::join(quoted, ", ")),
+      "not-identifiable");
 }
 
 /// Refuses coefficients that the cuts cannot tell, at p. Run-out and phases take no part.
 void check_told(const ForceProblem& problem, const Eigen::VectorXd& p) {
   const auto n = static_cast<Eigen::Index>(problem.coefficient_count());
-  if (n == 0) fail_on_file(problem.logs().front().path, "hold leaves no coefficient to fit", "fit-untold");
+  if (n == 0) fail_on_file(problem.logs().front().path, "hold leaves no coefficient to fit", "not-identifiable");
   Eigen::MatrixXd j = problem.jacobian(p).leftCols(n);
   const double largest = j.colwise().norm().maxCoeff();
   std::vector<std::size_t> empty;
@@ -127,15 +128,15 @@ void check_told(const ForceProblem& problem, const Eigen::VectorXd& p) {
     j.bottomRows(n - rows).setZero();
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  std::vector<std::size_t> untold;
+  std::vector<std::size_t> undetermined;
   constexpr double kTakesPart = 0.1;
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index k = 0; k < n; ++k)
       if (svd.singularValues()[k] < kMinSingular && std::abs(svd.matrixV()(i, k)) > kTakesPart) {
-        untold.push_back(static_cast<std::size_t>(i));
+        undetermined.push_back(static_cast<std::size_t>(i));
         break;
       }
-  if (!untold.empty()) refuse(problem, untold, false);
+  if (!undetermined.empty()) refuse(problem, undetermined, false);
 }
 
 void check_logs(const std::vector<MeasuredLog>& logs) {
@@ -167,7 +168,7 @@ void name_teeth(const ForceProblem& problem, Eigen::VectorXd& p) {
   }
 }
 
-/// Covariance of the parameters; nothing where the cuts leave no degree of freedom or a direction untold.
+/// Covariance of the parameters; nothing where the cuts leave no degree of freedom or a direction undetermined.
 std::optional<Eigen::MatrixXd> covariance(const Eigen::MatrixXd& j, const Eigen::VectorXd& r) {
   const Eigen::Index freedom = j.rows() - j.cols();
   if (freedom <= 0) return std::nullopt;
@@ -206,10 +207,11 @@ void report_coefficients(const ForceProblem& problem, const Solution& s, const s
       if (&problem.coefficient(i) != &c) continue;
       const auto at = static_cast<Eigen::Index>(i);
       parameter.value = s.p[at];
-      parameter.note = cov ? "" : "as many values as parameters: no error to tell";
+      parameter.note = cov ? "" : "as many values as parameters: no standard error";
       if (!cov) continue;
       parameter.std_error = std::sqrt(std::max(0.0, (*cov)(at, at)));
-      if (*parameter.std_error > std::abs(parameter.value)) parameter.note = "hardly told: the error exceeds the value";
+      if (*parameter.std_error > std::abs(parameter.value))
+        parameter.note = "poorly determined: the error exceeds the value";
     }
     out.parameters.push_back(std::move(parameter));
   }
@@ -226,7 +228,7 @@ void report_run_out(const ForceProblem& problem, const Solution& s, const std::o
     if (place.run_out_size == 0)
       fit.note = "not fitted: a single tooth cuts after itself";
     else if (place.run_out_size == 1)
-      fit.note = "half the difference of the teeth's radii; two teeth with so little lag tell no angle";
+      fit.note = "half the difference of the teeth's radii; two teeth with so little lag do not determine an angle";
     if (place.run_out_size > 0) {
       ForceParameter offset_um{"run_out_um", "um", 1000 * fit.offset_mm, std::nullopt, fit.note};
       ForceParameter angle_deg{"run_out_angle_deg", "deg", deg_from_rad(fit.angle_rad), std::nullopt, fit.note};
@@ -296,9 +298,8 @@ FitForceResult fit_force(const std::vector<MeasuredLog>& logs) {
   const bool waveforms = std::ranges::any_of(logs, [](const auto& log) { return log.how.waveform; });
   out.held_out_rms_N = waveforms ? std::optional(problem.held_out_rms_N(best.p)) : left_out_rms_N(problem, j, r);
   out.plausible = plausible(out.material);
-  out.message = !out.plausible
-                    ? "a tangential or radial coefficient came out negative, as no cutter has it; look at the "
-                      "axes and signs of [force_log]"
+  out.message = !out.plausible ? "a tangential or radial coefficient is negative, which no cutter has; check the axes "
+                                 "and signs of [force_log]"
                 : best.converged ? "the fit converged"
                                  : "the fit did not converge; its values are uncertain";
   return out;

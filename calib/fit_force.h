@@ -1,5 +1,5 @@
 #pragma once
-// fit-force: coefficients of a force law from what a dynamometer measured in steady cuts.
+// fit-force: coefficients of a force law from dynamometer measurements of steady cuts.
 #include <array>
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@ namespace camber::calib {
 struct ForceParameter {
   std::string name, unit;
   double value = 0;
-  std::optional<double> std_error;  ///< nothing: held, or as many values as parameters
+  std::optional<double> std_error;  ///< not given: kept by `hold`, or as many values as parameters
   std::string note;
 };
 
@@ -27,7 +27,7 @@ struct CutResidual {
 /// Of one log.
 struct RunOutFit {
   std::string log;
-  double offset_mm = 0, angle_rad = 0;  ///< from tooth 1's edge at the tip; tooth 1 is the one that stands out most
+  double offset_mm = 0, angle_rad = 0;  ///< from tooth 1's edge at the tip; tooth 1 is the longest one
   double offset_std_error_mm = 0;
   std::string note;
 };
@@ -47,9 +47,9 @@ struct FitForceResult {
 /// Fits the law of the logs (all of one law) to all their cuts at once, by least squares (Ceres): means against
 /// SteadyCutModel::mean_N, waveforms against waveform_N with one run-out a log and one phase a cut.
 ///
-/// What the cuts cannot tell is refused, InputError [fit-untold], with the names of the coefficients and the reason:
-/// a singular value of the Jacobian (columns scaled to one) below 1e-3. A coefficient that [force_log] holds keeps the
-/// material's value. Errors [force-log]: logs of different laws or held values.
+/// Coefficients that the cuts do not determine are refused, InputError [not-identifiable], with their names and the
+/// reason: a singular value of the Jacobian (columns scaled to one) below 1e-3. A coefficient that [force_log] holds
+/// keeps the material's value. Errors [force-log]: logs of different laws or held values.
 FitForceResult fit_force(const std::vector<MeasuredLog>& logs);
 
 }  // namespace camber::calib

@@ -17,10 +17,10 @@ namespace {
 
 using machine::Machine;
 
-constexpr double kTimeNoise = 0.001;  // s; a part's time is known to about a period
-constexpr double kTimeShare = 0.002;  // and to this share of itself
-constexpr double kLogShare = 0.003;   // a model's error grows with the time; stretches of a log are long
-constexpr double kNoTime = 1e-9;      // s
+constexpr double kTimeNoise = 0.001;     // s; a part's time is known to about a period
+constexpr double kTimeFraction = 0.002;  // and to this fraction of itself
+constexpr double kLogFraction = 0.003;   // a model's error grows with the time; stretches of a log are long
+constexpr double kNoTime = 1e-9;         // s
 constexpr double kShiftPeriods = 0.5;
 constexpr double kWideLossScale = 300.0;
 constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
@@ -75,7 +75,7 @@ LimitParameter stop_time_parameter() {
 
 double scale_of(const TimedLines& lines, std::size_t part) {
   const double time_s = lines.time_s[part];
-  return lines.logged() ? std::hypot(lines.sigma_s[part], kLogShare * time_s) : kTimeNoise + kTimeShare * time_s;
+  return lines.logged() ? std::hypot(lines.sigma_s[part], kLogFraction * time_s) : kTimeNoise + kTimeFraction * time_s;
 }
 
 /// Residuals of the fitted parts, in units of what a part's time is known to.
@@ -159,7 +159,7 @@ std::vector<Row> rows_of(const std::vector<TimedLines>& data) {
   return rows;
 }
 
-/// Standard errors from the Jacobian; parameters that hardly change any time are marked as not told.
+/// Standard errors from the Jacobian; parameters that hardly change any time are marked as not determined.
 void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machine& base,
                 const std::vector<double>& logs, std::size_t count) {
   const auto n = static_cast<int>(fit.parameters.size());
@@ -171,27 +171,27 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
   const Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> j(
       jacobian.data(), static_cast<Eigen::Index>(count), n);
   const auto rows = rows_of(data);
-  std::vector<int> told;
+  std::vector<int> determined;
   for (int i = 0; i < n; ++i) {
-    fit.parameters[i].told = j.col(i).norm() > 1.0;  // a change by a factor e moves some time by its noise
+    fit.parameters[i].determined = j.col(i).norm() > 1.0;  // a change by a factor e moves some time by its noise
     double logged = 0;
     for (std::size_t row = 0; row < count; ++row)
       if (rows[row].logged) logged += std::pow(j(static_cast<Eigen::Index>(row), i), 2);
-    fit.parameters[i].logged_share = logged > 0 ? logged / j.col(i).squaredNorm() : 0;
+    fit.parameters[i].logged_fraction = logged > 0 ? logged / j.col(i).squaredNorm() : 0;
     fit.parameters[i].fitted = {std::exp(logs[i]), INFINITY};
-    if (fit.parameters[i].told) told.push_back(i);
+    if (fit.parameters[i].determined) determined.push_back(i);
   }
-  Eigen::MatrixXd normal(told.size(), told.size());
-  for (std::size_t a = 0; a < told.size(); ++a)
-    for (std::size_t b = 0; b < told.size(); ++b) normal(a, b) = j.col(told[a]).dot(j.col(told[b]));
+  Eigen::MatrixXd normal(determined.size(), determined.size());
+  for (std::size_t a = 0; a < determined.size(); ++a)
+    for (std::size_t b = 0; b < determined.size(); ++b) normal(a, b) = j.col(determined[a]).dot(j.col(determined[b]));
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(normal);
   if (!lu.isInvertible()) return;
   const Eigen::MatrixXd inverse = lu.inverse();
   std::map<int, Eigen::VectorXd> scores;
-  Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(told.size()));
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(determined.size()));
   for (std::size_t row = 0; row < count; ++row) {
-    Eigen::VectorXd gradient(told.size());
-    for (std::size_t a = 0; a < told.size(); ++a) gradient(a) = j(static_cast<Eigen::Index>(row), told[a]);
+    Eigen::VectorXd gradient(determined.size());
+    for (std::size_t a = 0; a < determined.size(); ++a) gradient(a) = j(static_cast<Eigen::Index>(row), determined[a]);
     auto& score = scores.try_emplace(rows[row].group, Eigen::VectorXd::Zero(gradient.size())).first->second;
     score += gradient * residuals[row];
     if (!rows[row].logged) shift += gradient * (kShiftPeriods * base.control.period_s / rows[row].scale_s);
@@ -200,11 +200,11 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
   for (const auto& [group, score] : scores) middle += score * score.transpose();
   shift = inverse * shift;
   const Eigen::MatrixXd covariance = inverse * middle * inverse + shift * shift.transpose();
-  for (std::size_t a = 0; a < told.size(); ++a) {
-    LimitParameter& p = fit.parameters[told[a]];
+  for (std::size_t a = 0; a < determined.size(); ++a) {
+    LimitParameter& p = fit.parameters[determined[a]];
     const double log_error = std::sqrt(std::max(0.0, covariance(a, a)));
     p.fitted.std_error = p.fitted.value * log_error;
-    if (log_error > 0.5) p.told = false;
+    if (log_error > 0.5) p.determined = false;
   }
 }
 
@@ -215,7 +215,8 @@ bool any_logged(const std::vector<TimedLines>& data) {
 }
 
 std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged) {
-  const auto share = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double), double value) {
+  const auto fraction = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double),
+                           double value) {
     return LimitParameter{
         .name = name, .unit = "1", .get = get, .set = set, .least = 0.02, .most = 1, .start = value, .fitted = {}};
   };
@@ -223,14 +224,14 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
   p.push_back(acceleration<0>("axis.x.acceleration_mm_per_s2"));
   p.push_back(acceleration<1>("axis.y.acceleration_mm_per_s2"));
   p.push_back(acceleration<2>("axis.z.acceleration_mm_per_s2"));
-  p.push_back(share(
+  p.push_back(fraction(
       "control.arc_normal_share", [](const Machine& m) { return m.control.arc_normal_fraction; },
       [](Machine& m, double v) { m.control.arc_normal_fraction = v; }, 0.9));
-  p.push_back(share(
+  p.push_back(fraction(
       "control.arc_tangential_share", [](const Machine& m) { return m.control.arc_tangential_fraction; },
       [](Machine& m, double v) { m.control.arc_tangential_fraction = v; }, 0.7));
   if (machine.control.corner.law == machine::CornerLaw::blend) {
-    p.push_back(share(
+    p.push_back(fraction(
         "control.stop_acceleration_share", [](const Machine& m) { return m.control.stop_acceleration_fraction; },
         [](Machine& m, double v) { m.control.stop_acceleration_fraction = v; }, 0.7));
     p.push_back({.name = "control.corner.step_share",
@@ -336,7 +337,7 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
 
   const Machine fitted = fit.whole = machine_at(start, fit.parameters, logs.data());
   for (const LimitParameter& p : fit.parameters)
-    if (p.told) p.set(fit.machine, p.fitted.value);
+    if (p.determined) p.set(fit.machine, p.fitted.value);
   residuals_of(data, fitted, false, residuals);
   fit.fitted_cost = robust_cost(residuals);
   std::vector<double> milliseconds;

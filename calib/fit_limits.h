@@ -33,9 +33,9 @@ struct LimitParameter {
   void (*set)(machine::Machine&, double);
   double least = 0, most = 0, start = 0;
   FittedValue fitted;
-  bool told = false;  ///< the data tells it
-  /// Share of what the data tell about it (its squared derivatives) that comes from logged times.
-  double logged_share = 0;
+  bool determined = false;  ///< determined by the data
+  /// Fraction of its squared derivatives that comes from logged times.
+  double logged_fraction = 0;
 };
 
 /// Those that act under the machine's corner law, with start values that suit most controls (never the machine's own:

@@ -1,5 +1,5 @@
 #pragma once
-// The ramp after interpolation: how long an axis' command is averaged before it is sent to the drives.
+// The ramp after interpolation: width of the moving average of an axis command.
 #include <optional>
 #include <vector>
 

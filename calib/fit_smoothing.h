@@ -1,5 +1,5 @@
 #pragma once
-// Whether a control limits jerk: how long its commanded acceleration takes to rise from rest.
+// Jerk limit of a control, from the rise time of its commanded acceleration after rest.
 #include <optional>
 #include <vector>
 

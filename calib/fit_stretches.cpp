@@ -19,7 +19,7 @@ namespace {
 using machine::CornerLaw;
 using machine::Machine;
 
-constexpr double kTimeShare = 0.003;                // a model's error grows with the time
+constexpr double kTimeFraction = 0.003;             // a model's error grows with the time
 constexpr double kLossScale = 3.0;                  // residuals beyond count less and less
 constexpr double kWideLossScale = 100.0;            // first, from far away
 constexpr double kGapRad = 5.0 * kPi / 180.0;       // a gap worth telling
@@ -27,15 +27,15 @@ constexpr double kWideGapRad = 12.0 * kPi / 180.0;  // and one in which a contro
 constexpr double kBluntRad = 120.0 * kPi / 180.0;   // sharper corners are stops for every law
 constexpr double kBetterBy = 0.05;                  // share by which a richer law must lower the held-out error
 constexpr double kThresholdRad = 5.0 * kPi / 180.0;
-constexpr double kKindShare = 0.1;  // of the length, that makes a stretch one of helices, or of arcs
+constexpr double kKindFraction = 0.1;  // of the length, that makes a stretch one of helices, or of arcs
 constexpr double kFacetMm = 1.0;
 constexpr double kSlightCorner = 0.5 * kPi / 180.0;
 constexpr std::size_t kFewestTools = 3;
 constexpr int kGeometryFolds = 5;
-constexpr double kFewestBlocks = 20;    // in a stretch that may tell the block time
-constexpr double kSlowed = 1.3;         // such a stretch takes this much longer than programmed
-constexpr double kShareOfBlocks = 0.9;  // of its time a block, at which the fit of the block time begins
-constexpr double kToldShare = 0.5;      // a value whose error is a larger share of it is not told
+constexpr double kFewestBlocks = 20;         // in a stretch that may tell the block time
+constexpr double kSlowed = 1.3;              // such a stretch takes this much longer than programmed
+constexpr double kFractionOfBlocks = 0.9;    // of its time a block, at which the fit of the block time begins
+constexpr double kDeterminedFraction = 0.5;  // a value whose error is a larger fraction of it is not told
 
 /// The stretches that are fitted, from all programs, one after the other with a rest between.
 struct Data {
@@ -194,8 +194,9 @@ class StretchResiduals {
     const auto times = times_s(data_, machine_at(base_, parameters_, logs[0]));
     for (std::size_t i = 0; i < times.size(); ++i) {
       const TimedStretch& t = data_.items[i].judged.timed;
-      const double r =
-          data_.items[i].fold == left_out_ ? 0.0 : (times[i] - t.time_s) / std::hypot(t.sigma_s, kTimeShare * t.time_s);
+      const double r = data_.items[i].fold == left_out_
+                           ? 0.0
+                           : (times[i] - t.time_s) / std::hypot(t.sigma_s, kTimeFraction * t.time_s);
       out[i] = std::copysign(loss_scale_ * std::sqrt(std::log1p(r * r / (loss_scale_ * loss_scale_))), r);
     }
     return true;
@@ -238,7 +239,7 @@ Solution solve(const Data& data, const Machine& base, const std::vector<LimitPar
   return {std::move(logs), summary.termination_type == ceres::CONVERGENCE};
 }
 
-double known_to_s(const TimedStretch& t) { return std::hypot(t.sigma_s, kTimeShare * t.time_s); }
+double known_to_s(const TimedStretch& t) { return std::hypot(t.sigma_s, kTimeFraction * t.time_s); }
 
 double mean_score(const Data& data, const std::vector<double>& predicted_s) {
   double sum = 0;
@@ -299,7 +300,7 @@ double likely_block_time_s(const Data& data) {
     least = block_s;
     slowed = item.judged.timed.time_s > kSlowed * item.judged.constant_feed_s;
   }
-  return slowed ? kShareOfBlocks * least : 0;
+  return slowed ? kFractionOfBlocks * least : 0;
 }
 
 /// Each law without a stop angle, with a block time as well: what many short blocks cost no other number may take up.
@@ -361,8 +362,8 @@ FitParameter left_as_it_was(StretchFit& fit, const LimitParameter& p, const Mach
           p.get(fit.machine),
           p.unit,
           std::nullopt,
-          fmt::format("the stretches do not tell; {} (run what camber protocol writes)",
-                      of_law ? "a usual value" : "left as it was"),
+          fmt::format("not determined by the stretches; {} (run what camber protocol writes)",
+                      of_law ? "a usual value" : "start value kept"),
           of_law};
 }
 
@@ -374,10 +375,10 @@ void add_parameters(StretchFit& fit, const Data& data, const Trial& trial, const
     }
     const double value = std::exp(trial.whole.logs[i]), error = jackknife_error(trial, i);
     FitParameter p{trial.parameters[i].name, value, trial.parameters[i].unit, std::nullopt, "", true};
-    if (error < kToldShare)
+    if (error < kDeterminedFraction)
       p.std_error = value * error;
     else
-      p.note = "the stretches hardly tell it (run what camber protocol writes)";
+      p.note = "poorly determined by the stretches (run what camber protocol writes)";
     fit.parameters.push_back(p);
   }
   if (std::isfinite(trial.law.stop_angle_rad)) {
@@ -435,11 +436,11 @@ MotionKind kind_of(const FeedStretch& stretch, const nc::Interpretation& program
     const bool rises = std::abs(program.arcs[move.arc].normal.dot(move.end_mm - move.start_mm)) > 1e-6;
     (rises ? helices : arcs) += length;
   }
-  if (helices > kKindShare * all) return MotionKind::helices;
+  if (helices > kKindFraction * all) return MotionKind::helices;
   const auto middle = lines.begin() + static_cast<std::ptrdiff_t>(lines.size() / 2);
   std::nth_element(lines.begin(), middle, lines.end());
   if (!lines.empty() && *middle < kFacetMm) return MotionKind::facets;
-  return arcs > kKindShare * all ? MotionKind::arcs : MotionKind::lines;
+  return arcs > kKindFraction * all ? MotionKind::arcs : MotionKind::lines;
 }
 
 StretchErrors stretch_errors(const std::vector<double>& time_s, const std::vector<double>& predicted_s) {

@@ -1,5 +1,5 @@
 #pragma once
-// fit-feed from times alone: the limits of a control from how long a machine took for stretches of feed moves
+// fit-feed from times alone: limits of a control from the durations of stretches of feed moves
 // (machine logs, or a table of times).
 #include <string>
 #include <string_view>

@@ -34,7 +34,7 @@ class ForceProblem {
   machine::Material material_at(const Eigen::VectorXd& p) const;
   deflection::RunOut run_out_at(std::size_t log, const Eigen::VectorXd& p) const;
 
-  /// Model minus measured, N; waveform steps weighted by the square root of their share of samples.
+  /// Model minus measured, N; waveform steps weighted by the square root of their fraction of samples.
   Eigen::VectorXd residuals(const Eigen::VectorXd& p) const;
   /// By central differences; a phase touches its own cut only.
   Eigen::MatrixXd jacobian(const Eigen::VectorXd& p) const;

@@ -69,8 +69,8 @@ void remove_drift(Signal& signal, const ForceLog& how, const std::string& path, 
   if (how.idle_s.empty()) {
     diagnostics.add({Severity::warning,
                      {path, 0, 0},
-                     "no idle_s in [force_log]: the forces are taken as they are, with whatever drift they hold; "
-                     "ranges in which the tool turns in air were expected",
+                     "no idle_s in [force_log]: the forces are taken as they are, including any drift; ranges in which "
+                     "the tool turns in air were expected",
                      "force-drift",
                      {}});
     return;
@@ -92,8 +92,8 @@ void remove_drift(Signal& signal, const ForceLog& how, const std::string& path, 
   }
   // With a single short range the slope is a guess over the whole log: level only, unless the ranges lie apart.
   const double spread = n * stt - st * st;
-  const bool slope_told = how.idle_s.size() > 1 && spread > 0;
-  const Vec3 slope = slope_told ? Vec3((n * stf - st * sf) / spread) : Vec3(Vec3::Zero());
+  const bool slope_known = how.idle_s.size() > 1 && spread > 0;
+  const Vec3 slope = slope_known ? Vec3((n * stf - st * sf) / spread) : Vec3(Vec3::Zero());
   const Vec3 level = (sf - slope * st) / n;
   for (std::size_t i = 0; i < signal.t_s.size(); ++i) signal.force_N[i] -= level + slope * signal.t_s[i];
 }

@@ -12,7 +12,7 @@
 
 namespace camber::calib {
 
-/// A steady cut and what was measured, as forces on the tool in the cut's frame (x feed, y left of it, z up).
+/// A steady cut and its measured forces on the tool, in the frame of the cut (x feed, y left of it, z up).
 struct MeasuredCut {
   std::string name;  ///< "log.csv:3", or with its time
   deflection::SteadyCut cut;

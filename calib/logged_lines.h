@@ -19,7 +19,7 @@ struct LoggedLines {
   TimedLines lines;
 };
 
-/// Of every `keep_back_every`-th stretch the time is kept back. `count`: of the parts before, which goes on, so that no
+/// Of every `keep_back_every`-th stretch the time is held out. `count`: of the parts before, which goes on, so that no
 /// two parts are of one group.
 std::vector<LoggedLines> logged_lines(const std::vector<StretchRun>& runs, int keep_back_every, std::size_t& count);
 

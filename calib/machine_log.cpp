@@ -19,7 +19,7 @@ constexpr double kHoleS = 3.0;           // an adapter that counts seconds is ne
 constexpr double kFullOverride = 100.0;  // %
 constexpr double kOverrideNoise = 0.5;   // %
 constexpr std::size_t kBrokenShown = 3;
-constexpr double kBrokenShare = 0.05;
+constexpr double kBrokenFraction = 0.05;
 constexpr std::size_t kFewestEvents = 3;
 
 /// Seconds since 1970 of 2017-02-14T14:56:22.9058750Z.
@@ -61,7 +61,7 @@ class LogReader {
       begin = end + 1;
     }
     diagnostics_.throw_if_errors();
-    if (static_cast<double>(broken_) > kBrokenShare * static_cast<double>(lines_))
+    if (static_cast<double>(broken_) > kBrokenFraction * static_cast<double>(lines_))
       fail_on_file(log_.path,
                    fmt::format("{} of {} lines are not timestamp|item|value; is this a machine log?", broken_, lines_),
                    "log-fields");
@@ -95,7 +95,7 @@ class LogReader {
     const auto seconds = seconds_of(stamp);
     if (!seconds) {
       report(Severity::error, offset,
-             fmt::format("\"{}\" is no time; one like 2017-02-14T14:56:22.905Z was expected", stamp), "log-time");
+             fmt::format("\"{}\" is not a time; one like 2017-02-14T14:56:22.905Z was expected", stamp), "log-time");
       return;
     }
     if (!begin_s_) begin_s_ = *seconds;

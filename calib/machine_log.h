@@ -37,7 +37,7 @@ MachineLog read_machine_log(const std::string& path, Diagnostics& diagnostics);
 /// the first that names another one. Left out are those cut at an override other than 100 %, with a feed hold
 /// (feed 0 for longer than `hold_s`), with a hole in the log (no event at all for `hole_s`), or of which less than
 /// three events tell.
-/// The error of each end is up to one interval of the adapter; `sigma_s` tells it.
+/// The error of each end is up to one interval of the adapter; see `sigma_s`.
 std::vector<TimedStretch> logged_stretches(const MachineLog& log, const std::vector<FeedStretch>& stretches);
 
 }  // namespace camber::calib

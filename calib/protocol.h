@@ -17,13 +17,13 @@ struct ProtocolPart {
 
 struct ProtocolProgram {
   std::string name;   ///< of the file
-  std::string tells;  ///< what it is for, one sentence
+  std::string tells;  ///< its purpose, one sentence
   std::string text;
   std::vector<ProtocolPart> parts;
 };
 
 /// - protocol_xy, _yz, _zx: closed polygons whose corners turn by 10, 20, 30, 60, 90, 120 and 180 degrees, sides of
-///   0.5, 1, 3 and 6 mm, 100 to 1500 mm/min: 140 parts a plane. Source: KAKEN report (LITERATURE_CHECKS E1).
+///   0.5, 1, 3 and 6 mm, 100 to 1500 mm/min: 140 parts a plane. Source: KAKEN report on deflection-compensated CAM.
 /// - corners: zigzags of 5 to 75 degrees, where a control's stop angle lies, at two feeds.
 /// - circles: full turns of 0.5 to 20 mm radius in three planes.
 /// - saturation: chords of 0.5 down to 0.01 mm on a wide circle at a feed that no control keeps up with: the speed that

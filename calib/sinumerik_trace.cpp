@@ -79,14 +79,14 @@ std::vector<Channel> read_sinumerik_channels(const SourceText& source) {
   const pugi::xml_parse_result parsed =
       document.load_buffer(source.text().data(), source.text().size(), pugi::parse_default, pugi::encoding_utf8);
   if (!parsed)
-    throw InputError(
-        {source.diagnostic(Severity::error,
-                           std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, parsed.offset)),
-                                    source.text().empty() ? 0 : source.text().size() - 1),
-                           fmt::format("the XML ends its sense here: {}", parsed.description()), "sinumerik-xml")});
+    throw InputError({source.diagnostic(Severity::error,
+                                        std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, parsed.offset)),
+                                                 source.text().empty() ? 0 : source.text().size() - 1),
+                                        fmt::format("the XML cannot be read from here on: {}", parsed.description()),
+                                        "sinumerik-xml")});
   const pugi::xml_node data = trace_data(document);
   if (!data)
-    fail_on_file(source.name(), "the XML holds no traceData; a Sinumerik trace (traceDisplaySetup) was expected",
+    fail_on_file(source.name(), "the XML has no traceData; a Sinumerik trace (traceDisplaySetup) was expected",
                  "sinumerik-xml");
   FrameReader reader(source);
   for (const pugi::xml_node& frame : data.children("dataFrame")) reader.read(frame);

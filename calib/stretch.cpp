@@ -13,11 +13,11 @@
 namespace camber::calib {
 namespace {
 
-constexpr double kCopyLengthShare = 0.09;  // copies at other offsets differ by so much in their lengths, on average
-constexpr double kCopyCornerRad = 0.05;    // and so much in their corners
-constexpr double kTimeFloor = 0.02;        // s; an adapter's clock and median
-constexpr double kNormalP10P90 = 2.563;    // distance of the 10th and 90th percentile of a normal distribution
-constexpr double kMedianShare = 1.253;     // error of a median over that of a mean
+constexpr double kCopyLengthFraction = 0.09;  // copies at other offsets differ by so much in their lengths, on average
+constexpr double kCopyCornerRad = 0.05;       // and so much in their corners
+constexpr double kTimeFloor = 0.02;           // s; an adapter's clock and median
+constexpr double kNormalP10P90 = 2.563;       // distance of the 10th and 90th percentile of a normal distribution
+constexpr double kMedianFraction = 1.253;     // error of a median over that of a mean
 
 bool is_feed(const nc::Move& move) { return move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc; }
 
@@ -52,8 +52,8 @@ double mean(const std::vector<double>& values) { return mean_difference(values, 
 
 bool is_copy(const Shape& a, const Shape& b) {
   return a.length_mm.size() == b.length_mm.size() &&
-         mean_difference(a.length_mm, b.length_mm) < kCopyLengthShare * mean(a.length_mm) &&
-         std::abs(a.programmed_s - b.programmed_s) < kCopyLengthShare * a.programmed_s &&
+         mean_difference(a.length_mm, b.length_mm) < kCopyLengthFraction * mean(a.length_mm) &&
+         std::abs(a.programmed_s - b.programmed_s) < kCopyLengthFraction * a.programmed_s &&
          mean_difference(a.corner_rad, b.corner_rad) < kCopyCornerRad;
 }
 
@@ -110,7 +110,7 @@ class TableReader {
       if (p10 && p90) {
         const double n = parts ? std::max(1.0, number(fields, *parts, line)) : 1.0;
         scatter =
-            kMedianShare * (number(fields, *p90, line) - number(fields, *p10, line)) / kNormalP10P90 / std::sqrt(n);
+            kMedianFraction * (number(fields, *p90, line) - number(fields, *p10, line)) / kNormalP10P90 / std::sqrt(n);
       }
       row.sigma_s = std::hypot(kTimeFloor, scatter);
       table.push_back(row);

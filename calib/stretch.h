@@ -1,5 +1,5 @@
 #pragma once
-// Stretches of consecutive feed moves and how long a machine took for them.
+// Stretches of consecutive feed moves with their measured durations.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -21,7 +21,7 @@ struct FeedStretch {
 struct TimedStretch {
   FeedStretch stretch;
   double time_s = 0;
-  double sigma_s = 0;  ///< what the time is known to
+  double sigma_s = 0;  ///< uncertainty of the time
 };
 
 /// A program and the times that were logged of its stretches.
@@ -45,7 +45,7 @@ bool is_stretch_table(const std::string& path);
 std::vector<TimedStretch> read_stretch_table(const std::string& path, const nc::Interpretation& program);
 
 /// One for each geometry: the first of its stretches, with the mean time and what it is known to.
-/// The difference of a copy to the first is taken by the share of the programmed time.
+/// The difference of a copy to the first is taken by the fraction of the programmed time.
 std::vector<TimedStretch> one_for_each_geometry(const std::vector<TimedStretch>& all,
                                                 const nc::Interpretation& program);
 

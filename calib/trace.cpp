@@ -62,7 +62,7 @@ class Reader {
     }
     diagnostics_.throw_if_errors();
     if (trace_.size() < 2)
-      fail_on_file(trace_.path, fmt::format("the trace holds {} samples; at least two are needed", trace_.size()),
+      fail_on_file(trace_.path, fmt::format("the trace has {} samples; at least two are needed", trace_.size()),
                    "trace-empty");
     find_gaps();
     trace_.row = std::move(rows_);
@@ -92,7 +92,8 @@ class Reader {
         report(Severity::warning, field, fmt::format("column \"{}\" is not known and is left out", field.text),
                "trace-column");
       } else if (seen[index]) {
-        report(Severity::error, field, fmt::format("column {} stands twice in the header", field.text), "trace-column");
+        report(Severity::error, field, fmt::format("column {} appears twice in the header", field.text),
+               "trace-column");
       } else {
         seen[index] = true;
       }
@@ -164,8 +165,8 @@ class Reader {
 
   void report_gap(std::size_t i, double step_s) {
     report(Severity::warning, {{}, row_offsets_[i]},
-           fmt::format("{:.6g} s are missing before {:.6g} s (the samples are {:.6g} s apart); what lies before and "
-                       "after is used on its own",
+           fmt::format("{:.6g} s are missing before {:.6g} s (the samples are {:.6g} s apart); the parts before and "
+                       "after are used separately",
                        step_s - trace_.period_s, trace_.t_s[i], trace_.period_s),
            "trace-gap");
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Servo traces: what the control commanded and where the axes were, sample by sample.
+// Servo traces: commanded and actual axis positions, sample by sample.
 #include <array>
 #include <cstdint>
 #include <string>

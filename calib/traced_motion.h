@@ -33,7 +33,7 @@ inline constexpr double kMaxTypicalOffPath_mm = 0.5;
 /// runs; without it each commanded position (or actual one) follows the path from the place before it. Lines that a
 /// control merges into one segment count as commanded together.
 ///
-/// `cut`: one a move, those that are to be cut. There a trace must be whole. Errors, at the line of the trace:
+/// `cut`: one per move, those that are to be cut. There a trace must be whole. Errors, at the line of the trace:
 /// [trace-column] (one of x_act_mm y_act_mm z_act_mm is missing), [trace-gap] (a gap in the cut; elsewhere gaps do not
 /// matter), [trace-program] (lines that the program does not have or does not run in this order, positions off its
 /// path, parts of the cut passed over), [trace-end] (the trace ends before the cut does). Throws InputError.

@@ -17,22 +17,22 @@ namespace camber::cli {
 namespace {
 
 constexpr const char* kDescription =
-    "Camber predicts how far the cutter bends along an NC program and moves the path the other way.";
+    "Camber predicts the cutter deflection along an NC program and shifts the path to compensate it.";
 constexpr const char* kExitStatus =
-    "Exit status: 0 done; 1 the input is wrong; 2 the command line is wrong; 3 done as far as possible, but the "
-    "numbers did not work out.";
+    "Exit status: 0 success; 1 the input is wrong; 2 the command line is wrong; 3 finished, but the numbers did not "
+    "work out.";
 constexpr int kMaxThreads = 1024;
 
 void add_global_options(CLI::App& app, GlobalOptions& options) {
   app.set_version_flag("--version", std::string("camber ") + CAMBER_VERSION);
   app.add_flag("--strict", options.strict, "warnings become errors");
   auto* quiet = app.add_flag("-q,--quiet", options.quiet, "print errors only");
-  app.add_flag("-v,--verbose", options.verbosity, "say more; twice: still more")->excludes(quiet);
-  app.add_option("--threads", options.threads, "number of threads; 0: as many as the computer has")
+  app.add_flag("-v,--verbose", options.verbosity, "verbose; twice: more verbose")->excludes(quiet);
+  app.add_option("--threads", options.threads, "number of threads; 0: all processors")
       ->check(CLI::Range(0, kMaxThreads))
       ->type_name("N");
   app.add_flag("--effective-config", options.effective_config,
-               "print the job and the machine with every default filled in, and stop");
+               "print the job and the machine with all defaults filled in, and exit");
 }
 
 /// Limits the threads for as long as it lives.
@@ -50,8 +50,7 @@ int guarded(const Action& action, const GlobalOptions& options) {
   } catch (const std::bad_alloc&) {
     print_error("not enough memory; a larger voxel_mm, a smaller stock or fewer threads need less [memory]");
   } catch (const std::exception& problem) {
-    print_error(
-        fmt::format("this should not have happened: {}; please report it with the files [internal]", problem.what()));
+    print_error(fmt::format("internal error: {}; please report it with the files [internal]", problem.what()));
   }
   return kInputWrong;
 }

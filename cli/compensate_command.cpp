@@ -87,7 +87,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
 
   for (const auto& name : result.unknown_parameters)
     if (!options.quiet)
-      fmt::print(stderr, "camber: warning: --uncertainty: {} is no parameter of the job; left out [uncertainty]\n",
+      fmt::print(stderr, "camber: warning: --uncertainty: {} is not a parameter of the job; ignored [uncertainty]\n",
                  name);
   Diagnostics failed;
   const bool written = !arguments.dry_run && (result.better || arguments.keep_anyway);
@@ -107,7 +107,8 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
     for (const std::string& reason : verdict.reasons) print_error(reason);
   }
   if (!written && !arguments.dry_run)
-    print_error(fmt::format("{} was not written; --keep-anyway writes the round of the least error", arguments.output));
+    print_error(
+        fmt::format("{} was not written; --keep-anyway writes the round with the smallest error", arguments.output));
   return verdict.success ? kDone : kNumbersDidNotWorkOut;
 }
 

@@ -48,9 +48,9 @@ std::string text_report(const Figures& before, const Figures& after, const repat
   if (before.time_s) out += fmt::format("time       {:>9.1f} s {:>10.1f} s\n", *before.time_s, *after.time_s);
   if (before.time_at_feeds_s)
     out +=
-        fmt::format("at the feeds given {:>5.1f} s {:>10.1f} s   / {:.2f}, without rapids\n", *before.time_at_feeds_s,
+        fmt::format("at the given feeds {:>5.1f} s {:>10.1f} s   / {:.2f}, without rapids\n", *before.time_at_feeds_s,
                     *after.time_at_feeds_s, *before.time_at_feeds_s / *after.time_at_feeds_s);
-  out += fmt::format("largest deviation {:.4f} mm in {} rewritten runs; largest kink beside an arc {:.1f} degrees\n",
+  out += fmt::format("largest deviation {:.4f} mm in {} rewritten runs; largest kink at an arc {:.1f} degrees\n",
                      result.max_deviation_mm, result.runs.size(), deg_from_rad(result.max_kink_rad));
   return out;
 }
@@ -90,9 +90,9 @@ std::vector<report::Figure> page_figures(const Figures& before, const Figures& a
       {"blocks", count(before.blocks), count(after.blocks), "", 0, "blocks_{}"},
       {"straight cuts", count(before.lines), count(after.lines), "", 0, "lines_before", "lines"},
       {"arcs", count(before.arcs), count(after.arcs), "", 0, "arcs_before", "arcs"},
-      {"length of the cuts", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
+      {"cutting length", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
   if (before.time_at_feeds_s)
-    out.insert(out.begin() + 1, {"cuts at the feeds given", *before.time_at_feeds_s, *after.time_at_feeds_s, "s", 1,
+    out.insert(out.begin() + 1, {"cuts at the given feeds", *before.time_at_feeds_s, *after.time_at_feeds_s, "s", 1,
                                  "time_at_feeds_{}_s"});
   if (before.time_s && after.time_s)
     out.insert(out.begin() + 1, {"time", *before.time_s, *after.time_s, "s", 1, "time_{}_s"});
@@ -122,7 +122,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   compress_options.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
   compress_options.fit.max_kink_rad = rad_from_deg(arguments.tangent_deg);
   compress_options.fit.arcs = !arguments.lines_only;
-  compress_options.progress = [&](double share) { progress.show("compressing", share); };
+  compress_options.progress = [&](double fraction) { progress.show("compressing", fraction); };
   const repath::Compression result = repath::compress(program, moves, compress_options);
 
   Diagnostics again;  // what it says of the text was said above; an error is ours

@@ -31,7 +31,7 @@ void print_parameters(const std::vector<calib::FitParameter>& parameters) {
 }
 
 void print_laws(const FitFeedResult& result) {
-  fmt::print("{:<52} {:>10} {:>10}\n", "corner law, parts kept back", "time, %", "cost");
+  fmt::print("{:<52} {:>10} {:>10}\n", "corner law, held-out parts", "time, %", "cost");
   for (const calib::JudgedCornerLaw& law : result.laws)
     fmt::print("{:<52} {:>10.3f} {:>10.3f}\n", law.name, law.held_out_percent, law.held_out_cost);
   fmt::print("taken: {}\n\n", result.law);
@@ -77,7 +77,7 @@ void print(const FitFeedResult& result) {
                run.program_name, run.accuracy.time_trace_s, run.accuracy.time_model_s, run.accuracy.time_error_percent,
                run.accuracy.speed_rms_percent, run.accuracy.speed_p95_percent);
   print_logged(result);
-  fmt::print("residual of the parts' times: median {:.2f} ms; {}\n", result.residual_median_ms, result.message);
+  fmt::print("residual of part times: median {:.2f} ms; {}\n", result.residual_median_ms, result.message);
 }
 
 void print(const calib::StretchFit& fit) {
@@ -183,7 +183,7 @@ int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options
   progress.clear();
   const int status = finish(fit, arguments, options);
   if (!arguments.leave_one_out || std::holds_alternative<calib::StretchFit>(fit)) return status;
-  progress.show("leaving out one after the other");
+  progress.show("leave-one-out fits");
   const auto left_out = calib::leave_one_out(runs.servo, start, {}, runs.stretches);
   progress.clear();
   print(left_out);

@@ -13,12 +13,14 @@ namespace camber::cli {
 void add_force_commands(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("fit-force", "fit cutting force coefficients to dynamometer logs");
   auto arguments = std::make_shared<FitForceArguments>();
-  command->add_option("--log", arguments->logs, "what the dynamometer measured: samples, or a table of means")
+  command->add_option("--log", arguments->logs, "dynamometer log: samples, or a table of means")
       ->required()
       ->expected(1)
       ->take_all()
       ->type_name("FORCE.csv");
-  command->add_option("--job", arguments->jobs, "its tool and [force_log]; once for each log, or once for all")
+  command
+      ->add_option("--job", arguments->jobs,
+                   "job.toml with the tool and [force_log]; once for each log, or once for all")
       ->required()
       ->expected(1)
       ->take_all()

@@ -37,9 +37,9 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
 }  // namespace
 
 void add_help(CLI::App& app, Action& chosen) {
-  auto* completion = app.add_subcommand("completion", "a script that completes camber's words in a shell");
+  auto* completion = app.add_subcommand("completion", "print a completion script for a shell");
   auto shell = std::make_shared<std::string>();
-  completion->add_option("shell", *shell, "for which shell")
+  completion->add_option("shell", *shell, "the shell")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
       ->type_name("bash|zsh|fish");

@@ -47,7 +47,7 @@ std::vector<machine::ToolProposal> all_tools(const SourceText& program, const In
 int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   std::error_code ec;
   if (fs::exists(arguments.output, ec))
-    fail_on_file(arguments.output, "is there already; a new name was expected", "file-exists");
+    fail_on_file(arguments.output, "already exists; a new name was expected", "file-exists");
   Diagnostics diagnostics;
   const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const nc::Interpretation moves = nc::interpret(text, arguments.interpreter, diagnostics);
@@ -60,14 +60,14 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   if (!options.quiet) {
     const auto cutting =
         std::count_if(summary.tools.begin(), summary.tools.end(), [](const auto& t) { return t.cutting_moves > 0; });
-    fmt::print("{}: {} tool{} that cut; fill in what stands as \"# key =\", check what is marked \"typical\"\n",
+    fmt::print("{}: {} tool{} that cut; fill in the keys left as \"# key =\", check what is marked \"typical\"\n",
                arguments.output, cutting, cutting == 1 ? "" : "s");
   }
   return kDone;
 }
 
 void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand("init", "begin a job file from a program and tool tables");
+  auto* command = app.add_subcommand("init", "write a draft job file from a program and tool tables");
   auto arguments = std::make_shared<InitArguments>();
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   command->add_option("-o,--output", arguments->output, "the new job file")->required()->type_name("job.toml");
@@ -84,7 +84,7 @@ void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chose
   command->add_option("--material", arguments->material, "a material preset")
       ->check(CLI::IsMember(presets).description(""))
       ->type_name(fmt::format("{}", fmt::join(presets, "|")));
-  command->add_option("--units", arguments->interpreter.inch, "unit of a program that has neither G20 nor G21")
+  command->add_option("--units", arguments->interpreter.inch, "unit of a program without G20 and G21")
       ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"mm", false}, {"inch", true}}).description(""))
       ->type_name("mm|inch");
   command->callback([arguments, &options, &chosen] {

@@ -39,10 +39,10 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto arguments = std::make_shared<PredictArguments>();
   command->add_option("job", arguments->job, "job.toml")->required()->type_name("J.toml");
   command->add_option("-o,--output", arguments->output_folder, "folder for the results")->required()->type_name("DIR");
-  command->add_option("--json", arguments->json, "write the figures here as well")->type_name("R.json");
+  command->add_option("--json", arguments->json, "also write the figures to this file")->type_name("R.json");
   command
       ->add_option("--forces-at", arguments->forces_at,
-                   "write forces_at_LINE.csv: one turn of the spindle at this line, in degrees, tooth by tooth")
+                   "write forces_at_LINE.csv: forces over one revolution of the spindle at this line, tooth by tooth")
       ->check(CLI::Range(std::size_t{1}, std::size_t{2000000000}))
       ->type_name("LINE");
   auto* trace = command->add_option("--trace", arguments->trace,
@@ -76,23 +76,23 @@ std::string record_of(const CompensateArguments& arguments) {
 }
 
 void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand("compensate", "move the path of a job against its form error");
+  auto* command = app.add_subcommand("compensate", "shift the path of a job against its form error");
   auto arguments = std::make_shared<CompensateArguments>();
   auto* job = command->add_option("job", arguments->job, "job.toml")->type_name("J.toml");
   auto* output = command->add_option("-o,--output", arguments->output, "the new program")->type_name("OUT.nc");
   auto* dry_run = command->add_flag("--dry-run", arguments->dry_run, "do everything, but write no program");
   command
       ->add_option("--uncertainty", arguments->uncertainty,
-                   "what fit-force or fit-feed wrote, or a percentage: how sure the residual error is")
+                   "output of fit-force or fit-feed, or a percentage: uncertainty of the residual error")
       ->type_name("FILE|PERCENT")
       ->take_all();
   auto* measured =
       command->add_option("--measured", arguments->measured,
-                          "points measured on a part (x_mm y_mm z_mm nx ny nz error_um): sets the model right first");
+                          "points measured on a part (x_mm y_mm z_mm nx ny nz error_um): scales the model first");
   measured->type_name("POINTS.csv");
   command
       ->add_option("--measured-program", arguments->measured_program,
-                   "what the measured part was cut with, if not the job's program")
+                   "program that the measured part was cut with; default: the job's")
       ->type_name("P.nc")
       ->needs(measured);
   command
@@ -106,14 +106,13 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
       ->check(CLI::Range(0.0, 1000.0))
       ->type_name("PERCENT");
   command->add_flag("--keep-anyway", arguments->keep_anyway,
-                    "write the program even where it is no better than the given one");
+                    "write the program even if it is no better than the given one");
   command->add_flag("--header", arguments->header,
-                    "comment lines at the program's head: what was done, with what model");
-  command->add_flag("--header-hash", arguments->header_hash, "the same, with a hash of everything that was read");
-  command->add_option("--report", arguments->report, "a page with pictures of before and after")->type_name("R.html");
+                    "add comment lines at the head of the program: what was done, with which model");
+  command->add_flag("--header-hash", arguments->header_hash, "the same, with a hash of all inputs");
+  command->add_option("--report", arguments->report, "report page with before and after")->type_name("R.html");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
-  auto* verify =
-      command->add_option("--verify", "judge the program that an earlier run wrote, from its text; takes no job");
+  auto* verify = command->add_option("--verify", "judge an emitted program from its text; takes no job");
   verify->type_name("DIR|OUT.nc");
   command->callback([arguments, command, job, output, dry_run, verify, &options, &chosen] {
     if (!verify->empty()) {

@@ -37,10 +37,11 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
     require_writable(outputs[i]);
     for (const auto& input : inputs)
       if (!input.empty() && same_file(outputs[i], input))
-        fail_on_file(outputs[i], "would be written over, but it is read; another name was expected", "output-is-input");
+        fail_on_file(outputs[i], "would be overwritten, but it is an input; another name was expected",
+                     "output-is-input");
     for (std::size_t k = 0; k < i; ++k)
       if (!outputs[k].empty() && same_file(outputs[i], outputs[k]))
-        fail_on_file(outputs[i], "is to be written twice; another name was expected", "output-twice");
+        fail_on_file(outputs[i], "is given for two outputs; another name was expected", "output-twice");
   }
 }
 
@@ -48,7 +49,7 @@ void check_output_folder(const std::string& path) {
   std::error_code ec;
   const fs::path nearest = nearest_folder(path);
   if (!fs::is_directory(nearest, ec))
-    fail_on_file(path, fmt::format("cannot be made a folder: {} is a file", nearest.string()), "file-unwritable");
+    fail_on_file(path, fmt::format("cannot be created as a folder: {} is a file", nearest.string()), "file-unwritable");
   if (access(nearest.c_str(), W_OK | X_OK) != 0)
     fail_on_file(path,
                  fmt::format("in the folder {} nothing can be written: {}", nearest.string(), std::strerror(errno)),

@@ -18,8 +18,8 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }
 
 api::StepProgress steps_of(ProgressLine& progress) {
-  return [&progress](const std::string& what, std::optional<double> share) {
-    share ? progress.show(what, *share) : progress.show(what);
+  return [&progress](const std::string& what, std::optional<double> fraction) {
+    fraction ? progress.show(what, *fraction) : progress.show(what);
   };
 }
 

@@ -28,17 +28,17 @@ namespace camber::cli {
 namespace {
 
 void add_interpreter_options(CLI::App& command, nc::InterpreterOptions& interpreter) {
-  command.add_option("--units", interpreter.inch, "unit of a program that has neither G20 nor G21")
+  command.add_option("--units", interpreter.inch, "unit of a program without G20 and G21")
       ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"mm", false}, {"inch", true}}).description(""))
       ->type_name("mm|inch");
-  command.add_flag("--block-skip", interpreter.skip_slash_blocks, "leave out blocks that begin with / or /1 to /9");
+  command.add_flag("--block-skip", interpreter.skip_slash_blocks, "skip blocks that begin with / or /1 to /9");
   command
       .add_option_function<std::vector<int>>(
           "--skip-switch",
           [&interpreter](const std::vector<int>& switches) {
             for (const int n : switches) interpreter.skip_switches |= static_cast<std::uint16_t>(1u << n);
           },
-          "leave out blocks that begin with /N; / is /1")
+          "skip blocks that begin with /N; / is /1")
       ->check(CLI::Range(1, 9))
       ->delimiter(',')
       ->expected(1)
@@ -67,8 +67,8 @@ void add_language_options(CLI::App& command, nc::InterpreterOptions& interpreter
           [&interpreter](ControlRow row) {
             interpreter.dialect = feedmodel::dialect_of(machine::control_kinds()[static_cast<std::size_t>(row)]);
           },
-          fmt::format("control that the program is for; not given: what its text shows (O-words: {}, M97: {}), else "
-                      "{}, with a dwell's P in seconds",
+          fmt::format("control of the program; default: from its text (O-words: {}, M97: {}), else {}, with P of a "
+                      "dwell in seconds",
                       name_of_dialect_with(&nc::Dialect::shown_by_o_words),
                       name_of_dialect_with(&nc::Dialect::shown_by_m97), nc::default_dialect().name))
       ->transform(CLI::CheckedTransformer(rows_of_controls()).description(""))
@@ -96,19 +96,17 @@ int check(const CheckCommand& command, const GlobalOptions& options) {
 }
 
 void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand("check", "read and interpret a program, report, change nothing");
+  auto* command = app.add_subcommand("check", "read and interpret a program and report problems; change nothing");
   auto arguments = std::make_shared<CheckCommand>();
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
-  auto* machine = command->add_option("--machine", arguments->machine,
-                                      "machine.toml: also whether the program keeps its axes, feeds and speeds");
+  auto* machine =
+      command->add_option("--machine", arguments->machine, "machine.toml: also check axes, feeds and spindle speeds");
   machine->type_name("M.toml");
-  command
-      ->add_option("--job", arguments->job,
-                   "job.toml: the same for its machine, and whether its tools, stock and part fit the program")
+  command->add_option("--job", arguments->job, "job.toml: also check its machine, tools, stock and part")
       ->type_name("J.toml")
       ->excludes(machine);
-  command->add_option("--report", arguments->report, "the page with the path's picture")->type_name("R.html");
+  command->add_option("--report", arguments->report, "report page with a picture of the path")->type_name("R.html");
   add_interpreter_options(*command, arguments->interpreter);
   add_language_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
@@ -120,11 +118,11 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
 }
 
 void add_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand("feed", "actual feed along a program, and its time");
+  auto* command = app.add_subcommand("feed", "predict the predict the actual feed along a program, and its time");
   auto arguments = std::make_shared<FeedArguments>();
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
-  command->add_option("-o,--output", arguments->output, "the axes at every period")->type_name("feed.csv");
+  command->add_option("-o,--output", arguments->output, "axis positions at every period")->type_name("feed.csv");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
@@ -137,14 +135,14 @@ void add_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
 }
 
 void add_time(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand("time", "cycle time by kind of operation and by tool, and what-if");
+  auto* command = app.add_subcommand("time", "cycle time by kind of operation and by tool; what-if sweeps");
   auto arguments = std::make_shared<TimeArguments>();
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   auto* machine = command->add_option("--machine", arguments->machine, "machine.toml")->type_name("M.toml");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
-  auto* trace = command->add_option("--trace", arguments->trace, "a measured run to set it against");
+  auto* trace = command->add_option("--trace", arguments->trace, "measured run to compare with");
   trace->type_name("T.csv");
-  auto* sweep = command->add_option("--sweep", arguments->sweeps, "what if: a number of the machine takes N values");
+  auto* sweep = command->add_option("--sweep", arguments->sweeps, "sweep a machine parameter over N values");
   sweep->expected(1)->take_all()->type_name("KEY=FROM:TO:N")->needs(machine)->excludes(trace);
   sweep->check(CLI::Validator(
       [](std::string& text) {
@@ -156,9 +154,9 @@ void add_time(CLI::App& app, const GlobalOptions& options, Action& chosen) {
         return std::string();
       },
       ""));
-  auto* cases = command->add_option("--case", arguments->cases, "machines side by side");
+  auto* cases = command->add_option("--case", arguments->cases, "machines to compare");
   cases->type_name("cases.toml")->excludes(trace)->excludes(sweep);
-  command->add_option("--report", arguments->report, "the page with pictures")->type_name("R.html");
+  command->add_option("--report", arguments->report, "report page")->type_name("R.html");
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     if (arguments->machine.empty() && arguments->cases.empty())
@@ -181,15 +179,12 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->expected(1)
       ->take_all()
       ->type_name("P.nc");
-  command
-      ->add_option("--trace", arguments->traces,
-                   "what the machine did: servo trace, MTConnect log or table of stretch times")
+  command->add_option("--trace", arguments->traces, "servo trace, MTConnect log or table of stretch times of that run")
       ->required()
       ->expected(1)
       ->take_all()
       ->type_name("T");
-  command
-      ->add_option("--columns", arguments->columns, "what the columns of the servo traces are, where they are not ours")
+  command->add_option("--columns", arguments->columns, "column map of servo traces in another format")
       ->type_name("C.toml");
   command->add_option("--machine", arguments->machine, "machine to start from")->required()->type_name("M.toml");
   command->add_option("-o,--output", arguments->output, "the fitted machine")->required()->type_name("fitted.toml");
@@ -198,12 +193,12 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->add_option("--block-time-plot", arguments->block_time_plot, "speed against block length of the saturated runs")
       ->type_name("P.svg");
   command->add_flag("--leave-one-out", arguments->leave_one_out,
-                    "predict each servo trace by a fit on the others as well (takes a fit for each)");
+                    "also predict each servo trace by a fit on the others (one fit per trace)");
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     if (arguments->programs.size() != arguments->traces.size())
       throw CLI::ValidationError("--trace",
-                                 fmt::format("{} programs and {} traces; as many of one as of the other were expected",
+                                 fmt::format("{} programs and {} traces; the same number of both was expected",
                                              arguments->programs.size(), arguments->traces.size()));
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);
@@ -228,8 +223,7 @@ CLI::Validator length_validator() {
 /// What every command takes that writes a path anew.
 template <class Arguments>
 void add_rewriting(CLI::App& command, Arguments& arguments) {
-  command
-      .add_option("--tolerance-mm", arguments.tolerance_mm, "the new path lies within this of the old one, and back")
+  command.add_option("--tolerance-mm", arguments.tolerance_mm, "maximum distance between the new and the old path")
       ->required()
       ->check(length_validator())
       ->type_name("X");
@@ -239,45 +233,45 @@ void add_rewriting(CLI::App& command, Arguments& arguments) {
 }
 
 void add_feeds_by_kind(CLI::App& command, CompressArguments& arguments, CLI::Option* lines_only) {
-  auto* line = command
-                   .add_option("--line-feed-mm-per-min", arguments.line_feed_mm_per_min,
-                               "what the control reaches on lines where it runs arcs faster: the least time instead of "
-                               "the fewest blocks")
-                   ->check(number_from_to(0.1, 1e6))
-                   ->excludes(lines_only)
-                   ->type_name("V");
-  auto* arc = command.add_option("--arc-feed-mm-per-min", arguments.arc_feed_mm_per_min, "what it reaches on arcs")
-                  ->check(number_from_to(0.1, 1e6))
-                  ->needs(line)
-                  ->type_name("W");
+  auto* line =
+      command
+          .add_option("--line-feed-mm-per-min", arguments.line_feed_mm_per_min,
+                      "feed that the control reaches on lines, if it runs arcs faster: minimize time instead of blocks")
+          ->check(number_from_to(0.1, 1e6))
+          ->excludes(lines_only)
+          ->type_name("V");
+  auto* arc =
+      command.add_option("--arc-feed-mm-per-min", arguments.arc_feed_mm_per_min, "feed that it reaches on arcs")
+          ->check(number_from_to(0.1, 1e6))
+          ->needs(line)
+          ->type_name("W");
   line->needs(arc);
-  command.add_option("--block-s", arguments.block_s, "what a block costs it beside its way; else 0.005")
+  command.add_option("--block-s", arguments.block_s, "additional time per block; default 0.005")
       ->check(number_from_to(0, 10))
       ->needs(line)
       ->type_name("S");
 }
 
 void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand("compress", "many G1 to few G1, G2 and G3 within a tolerance");
+  auto* command = app.add_subcommand("compress", "replace many G1 by few G1, G2 and G3 within a tolerance");
   auto arguments = std::make_shared<CompressArguments>();
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   add_rewriting(*command, *arguments);
-  command->add_option("--machine", arguments->machine, "machine.toml: tells the times before and after")
+  command->add_option("--machine", arguments->machine, "machine.toml: also predict the times before and after")
       ->type_name("M.toml");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
   auto* lines_only = command->add_flag("--lines-only", arguments->lines_only, "no arcs");
   command
-      ->add_option("--tangent-deg", arguments->tangent_deg,
-                   "most that an arc may kink against its neighbour where the program is smooth; else 1; 180: any kink")
+      ->add_option(
+          "--tangent-deg", arguments->tangent_deg,
+          "maximum kink between an arc and its neighbour where the program is smooth; default 1; 180: any kink")
       ->check(number_from_to(0.05, 180))
       ->type_name("A");
-  command
-      ->add_flag("--helices", arguments->helices,
-                 "arcs along which the third axis moves evenly too, where the path is one in space")
+  command->add_flag("--helices", arguments->helices, "also use helical arcs where the path is three-dimensional")
       ->excludes(lines_only);
   add_feeds_by_kind(*command, *arguments, lines_only);
   command->add_flag("--switch-planes", arguments->switch_planes,
-                    "arcs in planes other than the program's own too, with G17 G18 G19 around them");
+                    "also use arcs in other planes than the program's, with G17 G18 G19 around them");
   add_interpreter_options(*command, arguments->interpreter);
   add_language_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
@@ -296,23 +290,22 @@ void add_compress(CLI::App& app, const GlobalOptions& options, Action& chosen) {
 }
 
 void add_resegment(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command =
-      app.add_subcommand("resegment", "runs of G1 laid out again, in segments just long enough for the control");
+  auto* command = app.add_subcommand("resegment", "divide runs of G1 into segments just long enough for the control");
   auto arguments = std::make_shared<ResegmentArguments>();
   auto* program = command->add_option("program", arguments->program, "NC program")->type_name("P.nc");
   auto* machine =
       command->add_option("--machine", arguments->machine, "machine.toml")->type_name("M.toml")->needs(program);
   add_rewriting(*command, *arguments);
-  command->add_option("--length-mm", arguments->length_mm, "of the segments; else the fastest is looked for")
+  command->add_option("--length-mm", arguments->length_mm, "segment length; default: the fastest one")
       ->check(length_validator())
       ->type_name("L");
   command
       ->add_option("--contour-mm", arguments->contour_mm,
-                   "most that the predicted axes may stray from the old path; else neither the largest error nor the "
-                   "rms is more than with the old blocks, or the tolerance; a raster has no limit unless it is given")
+                   "maximum deviation of the predicted axes from the old path; default: maximum and rms not above "
+                   "those of the old blocks, or the tolerance; for a raster no limit")
       ->check(length_validator())
       ->type_name("C");
-  command->add_option("--json", arguments->json, "the figures, of all lengths tried")->type_name("R.json");
+  command->add_option("--json", arguments->json, "write the figures of all lengths tried")->type_name("R.json");
   add_interpreter_options(*command, arguments->interpreter);
   add_language_options(*command, arguments->interpreter);
   const auto raster = add_raster_options(*command, *program);
@@ -332,7 +325,7 @@ void add_resegment(CLI::App& app, const GlobalOptions& options, Action& chosen) 
 }
 
 void add_protocol(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand("protocol", "programs to run on a machine so that fit-feed has what it needs");
+  auto* command = app.add_subcommand("protocol", "write programs that provide fit-feed with the data it needs");
   auto arguments = std::make_shared<ProtocolArguments>();
   command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
   command->add_option("-o,--output", arguments->folder, "folder for the programs")->required()->type_name("DIR");

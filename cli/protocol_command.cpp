@@ -27,8 +27,8 @@ int run_protocol(const ProtocolArguments& arguments, const GlobalOptions& option
   }
   if (!options.quiet)
     fmt::print(
-        "Run them without a workpiece, the origin in free space, and record commanded and actual position of the "
-        "axes with the line of the program.\n");
+        "Run them without a workpiece and with the origin in free space. Record commanded and actual axis positions "
+        "with the line of the program.\n");
   return kDone;
 }
 

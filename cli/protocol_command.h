@@ -11,7 +11,7 @@ struct ProtocolArguments {
   std::string folder;
 };
 
-/// Writes the programs, a .parts.csv beside each, and prints what each tells. Throws InputError.
+/// Writes the programs, a .parts.csv beside each, and prints the purpose of each. Throws InputError.
 int run_protocol(const ProtocolArguments& arguments, const GlobalOptions& options);
 
 }  // namespace camber::cli

@@ -190,7 +190,7 @@ struct Report {
     for (const auto& c : result.tried)
       out["tried"].push_back({{"length_factor", c.length_factor},
                               {"feed_factor", c.feed_factor},
-                              {"corner_feed_share", c.corners.share},
+                              {"corner_feed_share", c.corners.fraction},
                               {"settle_s", c.corners.settle_s},
                               {"time_s", c.figures.time_s},
                               {"contour_um", um(c.figures)}});
@@ -202,10 +202,11 @@ int status_of(const Report& report, const repath::Fastest& result) {
   if (report.scallops_too_high())
     fmt::print(stderr,
                "resegment: scallops of up to {:.4f} mm remain where the surface is steep across the rows, which lie no "
-               "closer than {:.3f} mm; another --direction-deg or --boundary may do\n",
+               "closer than {:.3f} mm; another --direction-deg or --boundary may help\n",
                report.raster.spacing.largest_scallop_mm, report.raster.spacing.closest_mm);
   if (!result.within_limit)
-    fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the nearest was written\n",
+    fmt::print(stderr,
+               "resegment: no length keeps the axes within {:.1f} um of the path; the closest one was written\n",
                1000 * result.limit.max_mm);
   return report.scallops_too_high() || !result.within_limit ? kNumbersDidNotWorkOut : kDone;
 }
@@ -223,7 +224,7 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
   const machine::Tool& tool = chosen_tool(job, arguments);
   if (arguments.spindle_rpm > job.machine.spindle.max_rpm)
     fail_on_file(job.machine_path,
-                 fmt::format("the spindle turns at {:g} rpm at most; --spindle-rpm {:g} was asked for",
+                 fmt::format("the spindle turns at {:g} rpm at most; --spindle-rpm {:g} was given",
                              job.machine.spindle.max_rpm, arguments.spindle_rpm),
                  "spindle-speed");
   settle(diagnostics, options);
@@ -237,7 +238,7 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
   const int decimals = arguments.tolerance_mm < kFineToleranceMm ? 4 : 3;
   if (decimals == 4) raster_options.increment_mm = 0.0001;
   ProgressLine progress(options, "laying rows");
-  raster_options.progress = [&](double share) { progress.show("laying rows", std::clamp(share, 0.0, 1.0)); };
+  raster_options.progress = [&](double fraction) { progress.show("laying rows", std::clamp(fraction, 0.0, 1.0)); };
   const repath::Raster raster = repath::make_raster(drop, raster_options);
   progress.clear();
   if (raster.chains.empty()) fail_on_file(part, "the cutter touches nothing inside the boundary", "boundary-empty");

@@ -47,10 +47,10 @@ RasterOptions::RasterOptions(CLI::App& command, CLI::Option& program) {
   for (const char* of_programs : {"--units", "--block-skip", "--skip-switch", "--dialect", "--least-increments"})
     command.get_option(of_programs)->needs(&program);
   const std::string group = "A raster on a part instead of a program";
-  part_ = command.add_option("--part", arguments_.part, "the part as STL; not given: the job's [part] mesh")
+  part_ = command.add_option("--part", arguments_.part, "the part as STL; default: the job's [part] mesh")
               ->type_name("part.stl")
               ->excludes(&program);
-  job_ = command.add_option("--job", arguments_.job, "job.toml: gives machine, tool and stock")
+  job_ = command.add_option("--job", arguments_.job, "job.toml with machine, tool and stock")
              ->type_name("J.toml")
              ->excludes(&program);
   const auto with_job = [&](CLI::Option* option, const char* type) {
@@ -59,7 +59,7 @@ RasterOptions::RasterOptions(CLI::App& command, CLI::Option& program) {
   part_->needs(job_)->group(group);
   job_->group(group);
   required_ = {
-      with_job(command.add_option("--scallop-mm", arguments_.scallop_mm, "largest height between rows")
+      with_job(command.add_option("--scallop-mm", arguments_.scallop_mm, "maximum scallop height between rows")
                    ->check(number_from_to(1e-5, 10)),
                "H"),
       with_job(command.add_option("--feed-mm-per-min", arguments_.feed_mm_per_min, "programmed feed")
@@ -68,10 +68,10 @@ RasterOptions::RasterOptions(CLI::App& command, CLI::Option& program) {
       with_job(
           command.add_option("--spindle-rpm", arguments_.spindle_rpm, "spindle speed")->check(number_from_to(1, 1e6)),
           "S")};
-  with_job(command.add_option("--tool", arguments_.tool, "of the job's tools; needed where it has several")
+  with_job(command.add_option("--tool", arguments_.tool, "tool of the job; required if it has several")
                ->check(CLI::Range(0, 99999999)),
            "N");
-  with_job(command.add_option("--direction-deg", arguments_.direction_deg, "of the rows, from +X; else 0")
+  with_job(command.add_option("--direction-deg", arguments_.direction_deg, "direction of the rows, from +X; default 0")
                ->check(number_from_to(-360, 360)),
            "A");
   with_job(command
@@ -85,12 +85,12 @@ RasterOptions::RasterOptions(CLI::App& command, CLI::Option& program) {
                        at = end + 1;
                      }
                    },
-                   "rectangle that is worked; else the part's own")
+                   "rectangle to machine; default: that of the part")
                ->check(rectangle_validator()),
            "X0,Y0,X1,Y1");
   with_job(command
                .add_option("--clearance-mm", arguments_.clearance_mm,
-                           "Z of moves over the part; else 5 mm above stock and part")
+                           "Z of moves over the part; default 5 mm above stock and part")
                ->check(number_from_to(-1e6, 1e6)),
            "Z");
 }

@@ -52,9 +52,9 @@ report::PathPicture outline(const TriangleMesh& part) {
 }
 
 /// Amounts by value, from zero to a little above the greatest.
-report::ShareHistogram histogram(const std::string& title, const std::string& share_of, const std::string& axis,
-                                 const std::vector<std::pair<double, double>>& value_and_amount) {
-  report::ShareHistogram out{title, share_of, axis, 0, 1e-3, 4, std::vector<double>(kBins, 0)};
+report::FractionHistogram histogram(const std::string& title, const std::string& fraction_of, const std::string& axis,
+                                    const std::vector<std::pair<double, double>>& value_and_amount) {
+  report::FractionHistogram out{title, fraction_of, axis, 0, 1e-3, 4, std::vector<double>(kBins, 0)};
   for (const auto& [value, amount] : value_and_amount) out.to = std::max(out.to, 1.02 * value);
   for (const auto& [value, amount] : value_and_amount)
     out.amounts[std::min(kBins - 1, static_cast<std::size_t>(value / out.to * kBins))] += amount;
@@ -84,14 +84,14 @@ std::vector<report::Figure> figures(const RasterResult& r) {
            "um", 1, "contour_{}_um.max"},
           {"contour error, rms", 1000 * r.contour_before.contour_rms_mm, 1000 * r.contour_after.contour_rms_mm, "um", 1,
            "contour_{}_um.rms"},
-          {"length of the cuts", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"},
+          {"cutting length", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"},
           {"rows", count(r.raster.spacing.rows_mm.size()), std::nullopt, "", 0, "rows"},
           {"pieces of rows", count(r.raster.pieces), std::nullopt, "", 0, "pieces"},
           {"links along the surface", count(r.raster.links), std::nullopt, "", 0, "links.surface"},
           {"links over the clearance plane", count(r.raster.chains.size() - 1), std::nullopt, "", 0, "links.clearance"},
-          {"least distance of rows", least, std::nullopt, "mm", 3, "row_spacing_mm.min"},
-          {"greatest distance of rows", most, std::nullopt, "mm", 3, "row_spacing_mm.max"},
-          {"scallop asked for", r.scallop_mm, std::nullopt, "mm", 4, "scallop_mm.asked"},
+          {"minimum row distance", least, std::nullopt, "mm", 3, "row_spacing_mm.min"},
+          {"maximum row distance", most, std::nullopt, "mm", 3, "row_spacing_mm.max"},
+          {"requested scallop", r.scallop_mm, std::nullopt, "mm", 4, "scallop_mm.asked"},
           {"largest scallop", r.raster.spacing.largest_scallop_mm, std::nullopt, "mm", 4, "scallop_mm.largest"},
           {"tolerance", r.tolerance_mm, std::nullopt, "mm", 4, "tolerance_mm"}};
 }
@@ -116,16 +116,15 @@ report::RewritePage raster_page(const RasterResult& r) {
   const report::BlockRanges all{{0, ~0u}};
   page.before = report::path_picture(r.before, all, report::kMaxPicturePoints);
   page.after = report::path_picture(r.after, all, report::kMaxPicturePoints);
-  page.histograms = {
-      histogram("How far rows lie apart", "% of the spaces", "distance of neighbouring rows, mm",
-                spaces(r.raster.spacing.rows_mm)),
-      histogram("How long segments are", "% of the length cut", "length of a segment, mm", segments(r.after))};
+  page.histograms = {histogram("Row distance", "% of the spaces", "distance of neighbouring rows, mm",
+                               spaces(r.raster.spacing.rows_mm)),
+                     histogram("Segment length", "% of the length cut", "length of a segment, mm", segments(r.after))};
   page.tables.push_back(tried_table(r.result.tried));
   page.notes.push_back(
       fmt::format("Before: the same rows with a point every {} mm. After: the program that was written.",
                   format_trimmed(r.compared_step_mm, 3)));
   if (r.raster.spacing.steep_fraction > 0)
-    page.notes.push_back("Scallops stay higher than asked for where the surface is steep across the rows.");
+    page.notes.push_back("Scallops are higher than requested where the surface is steep across the rows.");
   return page;
 }
 

@@ -75,7 +75,7 @@ struct Report {
                                      {"gains", result.gains},
                                      {"length_factor", chosen().length_factor},
                                      {"feed_factor", chosen().feed_factor},
-                                     {"corner_feed_share", chosen().corners.share},
+                                     {"corner_feed_share", chosen().corners.fraction},
                                      {"settle_s", chosen().corners.settle_s}};
     if (!result.tried.empty()) report["fastest_unbounded"] = of(result.tried[result.unbounded]);
     report["tried"] = nlohmann::ordered_json::array();
@@ -94,7 +94,7 @@ struct Report {
              "contour_{}_um.rms"},
             {"straight cuts", count(before.lines), count(after.lines), "", 0, "lines_before", "lines"},
             {"arcs", count(before.arcs), count(after.arcs), "", 0, "arcs_before", "arcs"},
-            {"length of the cuts", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
+            {"cutting length", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
   }
 
  private:
@@ -104,8 +104,9 @@ struct Report {
   }
 
   static nlohmann::ordered_json of(const repath::Candidate& c) {
-    return {{"length_factor", c.length_factor}, {"feed_factor", c.feed_factor}, {"corner_feed_share", c.corners.share},
-            {"settle_s", c.corners.settle_s},   {"time_s", c.figures.time_s},   {"contour_um", of(c.figures)}};
+    return {
+        {"length_factor", c.length_factor}, {"feed_factor", c.feed_factor}, {"corner_feed_share", c.corners.fraction},
+        {"settle_s", c.corners.settle_s},   {"time_s", c.figures.time_s},   {"contour_um", of(c.figures)}};
   }
 
   static nlohmann::ordered_json of(const repath::ContourFigures& f) {
@@ -131,7 +132,7 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   fastest.interpreter = interpreter;
   ProgressLine progress(options, "timing the old blocks");
   const repath::ContourFigures before = repath::contour_figures(moves, moves, machine);
-  fastest.progress = [&](double share) { progress.show("timing new ones", share); };
+  fastest.progress = [&](double fraction) { progress.show("timing new ones", fraction); };
   const repath::Fastest result = repath::find_fastest(program, moves, machine, before, fastest);
 
   Diagnostics again;
@@ -154,9 +155,9 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   }
   progress.clear();
   if (!options.quiet) fmt::print("{}", report.text());
-  if (!result.gains && !options.quiet) fmt::print("no length is faster: the program was left as it is\n");
+  if (!result.gains && !options.quiet) fmt::print("no length is faster: the program is unchanged\n");
   if (result.within_limit) return kDone;
-  fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the nearest was written\n",
+  fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the closest one was written\n",
              1000 * result.limit.max_mm);
   return kNumbersDidNotWorkOut;
 }

@@ -33,7 +33,7 @@ report::TextTable tried_table(std::span<const repath::Candidate> tried) {
       {}};
   for (const auto& c : tried)
     table.rows.push_back({fmt::format("{:.2f}", c.length_factor), fmt::format("{:.2f}", c.feed_factor),
-                          fmt::format("{:.2f}", c.corners.share), fmt::format("{:.3f}", c.corners.settle_s),
+                          fmt::format("{:.2f}", c.corners.fraction), fmt::format("{:.3f}", c.corners.settle_s),
                           fmt::format("{:.1f}", c.figures.time_s),
                           fmt::format("{:.1f}", 1000 * c.figures.contour_max_mm),
                           fmt::format("{:.1f}", 1000 * c.figures.contour_rms_mm)});
@@ -42,7 +42,7 @@ report::TextTable tried_table(std::span<const repath::Candidate> tried) {
 
 std::string feeds_text(const repath::Candidate& c) {
   std::string out = fmt::format("length x {:.2f}, feed x {:.2f}", c.length_factor, c.feed_factor);
-  if (c.corners.share != 1) out += fmt::format(", x {:.2f} about corners", c.corners.share);
+  if (c.corners.fraction != 1) out += fmt::format(", x {:.2f} about corners", c.corners.fraction);
   if (c.corners.settle_s > 0) out += fmt::format(", {:.3f} s between them", c.corners.settle_s);
   return out;
 }

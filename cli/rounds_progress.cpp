@@ -20,16 +20,14 @@ RoundsProgress::Whole RoundsProgress::at(std::string_view what, double share) {
   if (what != step_) {
     step_ = what;
     ++begun_;
+    if (rounds_ == 0 && !is_round(what)) ++before_;
+    if (is_round(what)) ++rounds_;
   }
-  const int rounds = begun_ - 1;  // behind the program as given
-  if (is_round(what)) expected_rounds_ = std::max(expected_rounds_, rounds);
-  if (!is_round(what) && rounds > 0 && !rounds_over_) {
-    rounds_over_ = true;
-    expected_rounds_ = rounds - 1;
-  }
-  const int expected = std::max(begun_, 1 + expected_rounds_ + further_);
+  if (is_round(what)) expected_rounds_ = std::max(expected_rounds_, rounds_);
+  if (!is_round(what) && rounds_ > 0) expected_rounds_ = rounds_;
+  const int expected = std::max(begun_, before_ + expected_rounds_ + further_);
   std::string text(what);
-  if (is_round(what)) text += fmt::format(" of about {} ({} at most)", expected_rounds_, std::max(max_rounds_, rounds));
+  if (is_round(what)) text += fmt::format(" of about {} ({} at most)", expected_rounds_, std::max(max_rounds_, rounds_));
   return {std::move(text), (begun_ - 1 + std::clamp(share, 0.0, 1.0)) / expected};
 }
 

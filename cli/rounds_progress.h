@@ -24,7 +24,8 @@ class RoundsProgress {
   int max_rounds_, further_;
   int expected_rounds_;
   int begun_ = 0;  ///< steps, the one that goes on included
-  bool rounds_over_ = false;
+  int before_ = 0;  ///< steps before the first round
+  int rounds_ = 0;  ///< begun
   std::string step_;
 };
 

@@ -25,7 +25,7 @@ int run_time(const TimeArguments& arguments, const GlobalOptions& options) {
                                                .sweeps = arguments.sweeps,
                                                .interpreter = arguments.interpreter,
                                                .picture = !arguments.report.empty(),
-                                               .progress = [&](double share) { progress.show("timing", share); }},
+                                               .progress = [&](double fraction) { progress.show("timing", fraction); }},
                                               diagnostics);
   const api::TimeReport& out = timed.report;
   progress.clear();

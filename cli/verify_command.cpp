@@ -34,7 +34,7 @@ int run_verify(const VerifyArguments& arguments, const GlobalOptions& options) {
   compensate::Verification result;
   try {
     result = compensate::verify(job, record, diagnostics,
-                                [&](const std::string& what, double share) { progress.show(what, share); });
+                                [&](const std::string& what, double fraction) { progress.show(what, fraction); });
   } catch (const compensate::BeyondModel& beyond) {
     progress.clear();
     settle(diagnostics, options);

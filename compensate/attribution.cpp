@@ -45,7 +45,7 @@ std::vector<Observation> Observed::of_path() const {
 
 std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& given, const Observed& first,
                            std::span<const removal::SurfacePoint> surface,
-                           std::span<const simulate::PathShare> own_target) {
+                           std::span<const simulate::PathFraction> own_target) {
   if (own_target.empty()) return first.compensated;
   std::vector<bool> out(surface.size(), false);
   for (std::size_t i = 0; i < surface.size(); ++i) {
@@ -75,19 +75,19 @@ constexpr double kHidden_mm = 0.0005;  // above the surface: the owner did not c
 class Places {
  public:
   Places(const ShiftPath& path, const simulate::SimulatedProgram& given, const simulate::SimulatedProgram& emitted,
-         const MoveMap& map, std::span<const simulate::PathShare> own_target)
+         const MoveMap& map, std::span<const simulate::PathFraction> own_target)
       : path_(path), given_(given), emitted_(emitted), map_(map), own_target_(own_target) {}
 
   /// Nothing where the point's stamp is of no move that may be shifted.
   std::optional<ShiftPath::PointInterval> machined(const removal::SurfacePoint& p) const {
     if (!was_cut(p)) return std::nullopt;
     const auto& stamp = emitted_.path.stamps[static_cast<std::size_t>(p.machined_stamp)];
-    return find(map_.given(stamp.move, stamp.share));
+    return find(map_.given(stamp.move, stamp.fraction));
   }
   std::optional<ShiftPath::PointInterval> owner(const removal::SurfacePoint& p) const {
     if (p.target_stamp < 0 || static_cast<std::size_t>(p.target_stamp) >= own_target_.size()) return std::nullopt;
     const auto& stamp = own_target_[static_cast<std::size_t>(p.target_stamp)];
-    return find({stamp.move, static_cast<double>(stamp.share)});
+    return find({stamp.move, static_cast<double>(stamp.fraction)});
   }
   bool was_cut(const removal::SurfacePoint& p) const {
     return p.machined_stamp >= 0 && static_cast<std::size_t>(p.machined_stamp) < emitted_.path.stamps.size();
@@ -96,13 +96,13 @@ class Places {
  private:
   std::optional<ShiftPath::PointInterval> find(const MoveMap::MovePlace& at) const {
     if (!path_.contains(at.move) || !given_.moves.moves[at.move].editable) return std::nullopt;
-    return path_.find(at.move, at.share);
+    return path_.find(at.move, at.fraction);
   }
 
   const ShiftPath& path_;
   const simulate::SimulatedProgram &given_, &emitted_;
   const MoveMap& map_;
-  std::span<const simulate::PathShare> own_target_;
+  std::span<const simulate::PathFraction> own_target_;
 };
 
 }  // namespace
@@ -126,7 +126,7 @@ void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPa
 
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const MoveMap& map,
-                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathShare> own_target,
+                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target,
                  std::span<const Vec3> bending) {
   const Places places(path, given, emitted, map, own_target);
   const Rows rows(path);

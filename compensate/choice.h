@@ -1,5 +1,5 @@
 #pragma once
-// Which round's program is written.
+// Choice of the round to emit.
 #include <cstddef>
 #include <span>
 
@@ -7,11 +7,11 @@ namespace camber::compensate {
 
 struct RoundFigures {
   double rms_um = 0, p95_um = 0;  ///< judged error
-  double depth_um = 0;            ///< into the part, but for a thousandth of the surface
+  double depth_um = 0;            ///< gouge depth of 99.9 % of the surface
   bool over_budget = false;       ///< takes more machine time than is allowed
 };
 
-/// Index of the best round that keeps the limits; rounds[0], the program as given, where none does. A round keeps them
+/// Index of the best round that keeps the limits; rounds[0], the given program, where none does. A round keeps them
 /// if its rms is less and its 95th percentile no more than the given program's, and its depth no more than the limit or
 /// the given program's, within the time allowed. Of these the ones within the limit come first, then the one of least
 /// rms, or of the least 95th percentile where `by_p95` (the feed lever works on that).

@@ -300,7 +300,7 @@ class Loop {
     }
   }
 
-  /// What is written: the best round that keeps the limits; the program as given where none is better than that.
+  /// What is written: the best round that keeps the limits; the given program where none is better than that.
   void choose(CompensationResult& out) {
     out.better = allowed_index_ > 0 || out.rounds.size() == 1;
     if (!out.better && options_.keep_anyway) return;
@@ -310,7 +310,7 @@ class Loop {
 
   /// New shifts from the last trial's error, and their prediction.
   /// `prepare` may change the feeds of the path and the observations that the shifts are fitted to.
-  void step(CompensationResult& out, double share, const Guard* guard,
+  void step(CompensationResult& out, double fraction, const Guard* guard,
             const std::function<void(std::vector<Observation>&)>& prepare = {}) {
     const std::shared_ptr<const Trial> from_trial = last_;
     const Observed& before = from_trial->observed;
@@ -319,7 +319,7 @@ class Loop {
     expected_.clear();
     Round round;
     round.gain = sensitivity_->mean();
-    round.step_fraction = share;
+    round.step_fraction = fraction;
     round.guard = guard != nullptr;
     const std::vector<Vec3>& from = from_trial->shifts;
     auto made = std::make_shared<Trial>();
@@ -340,7 +340,7 @@ class Loop {
       thin.give_shifts(*path_);
       for (std::size_t p = 0; p < from.size(); ++p) {
         Vec3& shift = path_->points()[p].shift_mm;
-        shift = from[p] + share * (shift - from[p]);
+        shift = from[p] + fraction * (shift - from[p]);
       }
       next.emitted = trials_.emit(*path_, splits_->kept(), compensated_);
       thin.take_shifts(*path_);
@@ -382,7 +382,7 @@ class Loop {
   void stiffen(const std::vector<MoveMap::MovePlace>& places) {
     for (const auto& place : places) {
       if (!path_->contains(place.move)) continue;
-      const std::size_t at = path_->find(place.move, place.share).lower;
+      const std::size_t at = path_->find(place.move, place.fraction).lower;
       for (std::size_t i = at > 0 ? at - 1 : 0; i < std::min(at + 3, stiffness_.size()); ++i) stiffness_[i] *= kStiffer;
     }
   }
@@ -395,7 +395,7 @@ class Loop {
     round.error_um = judged_of(figures_of(*last_), job_.compensation.reference);
     round.split = split_error(*path_, last_->observed, fit_options());
     if (round.guard) round.split.give_to_guard(free_correctable_um_);
-    round.deepest_um = depth_of(last_->surface, last_->observed, depth_limit_um_, true).held_um;
+    round.deepest_um = depth_of(last_->surface, last_->observed, depth_limit_um_, true).gouge_depth_p999_um;
     round.static_rounds = last_->static_rounds;
     round.unsettled = last_->unsettled;
     round.machine_time_s = (last_->emitted ? last_->emitted->program : program_).feed.time_s;
@@ -429,7 +429,7 @@ class Loop {
     return guarded ? Stop::depth_limit : ended_;
   }
 
-  /// One a point of the emitted program's surface: the line that made it.
+  /// One per point of the emitted program's surface: the line that made it.
   std::vector<std::size_t> lines_of(const Trial& trial, const SimulatedProgram& program) const {
     std::vector<std::size_t> out;
     out.reserve(trial.surface.size());
@@ -468,7 +468,7 @@ class Loop {
     out.depth_after = depth_of(out.surface_after, best_->observed, max_um, true);
     out.depth_others = depth_of(out.surface_after, best_->observed, max_um, false);
     out.depth_without_bending = depth_without_bending(job_, setup_.target, program, max_um);
-    out.within_part = out.depth_after.held_um <= max_um;
+    out.within_part = out.depth_after.gouge_depth_p999_um <= max_um;
     out.plain_after = figures_of(*best_);
     out.within_tolerance = within_tolerance(out.plain_after, job_.compensation);
     out.stop = verdict(out);
@@ -527,13 +527,13 @@ class Loop {
   std::vector<bool> compensated_;
   std::optional<ShiftPath> path_;
   std::optional<Sensitivity> sensitivity_;
-  std::vector<double> stiffness_;  ///< of the path, one a point
+  std::vector<double> stiffness_;  ///< of the path, one per point
   std::vector<RowLink> links_;
   double share_ = 1;                   ///< of a step that is taken; less after over-corrections
   std::vector<Observation> expected_;  ///< for the first round; empty: as observed
   std::optional<Splits> splits_;
   bool split_once_ = false;
-  std::vector<double> link_stiffness_;                  ///< one a link of the path that the splits leave
+  std::vector<double> link_stiffness_;                  ///< one per link of the path that the splits leave
   std::shared_ptr<const Trial> last_, best_, allowed_;  ///< allowed_: the best one that keeps the limits
   std::size_t allowed_index_ = 0;
   std::vector<RoundFigures> figures_;  ///< one a round
@@ -541,7 +541,7 @@ class Loop {
   double depth_limit_um_ = 0;
   double allowed_s_ = std::numeric_limits<double>::infinity();  ///< machine time
   Stop ended_ = Stop::rounds;                                   ///< why the rounds ended
-  Observed first_observed_;                                     ///< of the program as given
+  Observed first_observed_;                                     ///< of the given program
   double free_correctable_um_ = 0;                              ///< of the best round before the guard
   std::size_t free_round_ = 0;                                  ///< that round
   std::shared_ptr<const Emitted> free_;                         ///< its program

@@ -1,5 +1,5 @@
 #pragma once
-// The fixed-point loop: predict, move each point against its error, predict the emitted program again.
+// The compensation loop: predict, shift each point against its error, predict the emitted program again.
 #include <functional>
 #include <optional>
 #include <string>
@@ -32,11 +32,11 @@ struct Round {
   ErrorSplit split;
   double largest_shift_mm = 0;
   std::size_t limited_points = 0;     ///< cut to max_shift_mm
-  double gain = 1;                    ///< error over shift, the mean that the round's step divided by
+  double gain = 1;                    ///< mean sensitivity of the error to the shift, by which the step was divided
   double step_fraction = 1;           ///< of the step that was taken; less than 1 after an over-correction
   double overcorrected_fraction = 0;  ///< of the area: the error changed its sign and is still over the tolerance
   double deepest_um = 0;  ///< into the part, where compensated moves cut, but for a thousandth of the surface
-  bool guard = false;     ///< a round of the guard against cutting into the part
+  bool guard = false;     ///< a round of the guard against gouging
   double machine_time_s = 0;
   std::size_t slowed = 0;  ///< changes of feed: stretches of the path with a feed of their own, and their ends
   int static_rounds = 0;
@@ -51,24 +51,24 @@ struct TimePoint {
 
 struct CompensationResult {
   std::string text;                          ///< the emitted program of the best round
-  std::vector<std::uint32_t> block_of_line;  ///< of `text`, as nc::Emission has it; empty: the program as given
-  std::vector<LineRole> lines;               ///< of the given program, one a line
+  std::vector<std::uint32_t> block_of_line;  ///< of `text`, as nc::Emission has it; empty: the given program
+  std::vector<LineRole> lines;               ///< of the given program, one per line
   machine::Operations operations;            ///< the job's, as lines of the given program
   bool own_target = true;                    ///< the given program is the target
-  bool better = true;                        ///< that round is better than the program as given and keeps the limits
+  bool better = true;                        ///< that round is better than the given program and within the limits
   machine::Reference reference = machine::Reference::commanded;
   removal::ErrorFigures before_um, after_um;  ///< judged: rounds[0] and rounds[best]
   PlainFigures plain_before, plain_after;
   bool within_tolerance = false;  ///< the emitted program
   double depth_limit_um = 0;      ///< the job's, or default_depth_limit_um
   bool own_depth_limit = false;   ///< the job gives one
-  double unseen_mm2 = 0;          ///< of the nominal surface, without a point
+  double unseen_mm2 = 0;          ///< area of the nominal surface without a point
   /// Left out of the surface: see simulate::SurfaceRegion.
   double border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;
   std::vector<CauseFigure> causes;  ///< of what is left, where it is over the tolerance
   ErrorSplit split_before, split_after;
-  std::vector<Round> rounds;             ///< rounds[0]: the program as given
+  std::vector<Round> rounds;             ///< rounds[0]: the given program
   std::size_t best = 0;                  ///< index into rounds
   std::vector<TimePoint> time_points{};  ///< with the feed lever; ascending
   Stop stop = Stop::rounds;
@@ -88,21 +88,21 @@ struct CompensationResult {
   Depth depth_others;               ///< of moves that are not compensated
   Depth depth_without_bending;      ///< of the emitted program
   bool within_part = true;          ///< depth_after is within the depth limit
-  std::vector<Recheck> rechecks;    ///< one a voxel asked for
+  std::vector<Recheck> rechecks;    ///< one per voxel asked for
   std::optional<Band> band;
   std::vector<std::string> unknown_parameters;  ///< with a standard error, but not of this job
   std::optional<MeasuredFit> measured;
-  /// Why the figures of the given or of the emitted program are not to be relied on (simulate/verdict.h); empty: none.
+  /// Reasons why the figures of the given or the emitted program are not reliable (simulate/verdict.h); empty: none.
   std::vector<std::string> doubts;
 };
 
-/// Thrown where the program as given lies beyond the model: there is nothing to compensate by. what() says why.
+/// Thrown where the given program lies beyond the model: there is nothing to compensate by. what() says why.
 using camber::BeyondModel;
 
 struct CompensateOptions {
   simulate::Progress progress;
   std::size_t max_stock_crossings = 0;  ///< of Compensation::stock; 0: none
-  bool keep_anyway = false;             ///< emit the round of the least error even where none is better
+  bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
   /// Of the feed lever: the least error for so much more machine time. Not given: as much as the tolerance takes.
   std::optional<double> time_budget_percent{};
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well

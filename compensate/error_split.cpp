@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStiff = 0.02;  // smoothing of a fit that may do almost anything, mm
 
-/// error + n . (change of the shift), one an observation.
+/// error + n . (change of the shift), one per observation.
 std::vector<double> left_by(const ShiftPath& old, std::span<const Observation> observations,
                             const FitShiftOptions& options) {
   ShiftPath path = old;
@@ -170,7 +170,7 @@ ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const Fi
   return out;
 }
 
-double held_depth(std::vector<std::pair<double, double>> depth_and_area, double area_mm2) {
+double depth_p999(std::vector<std::pair<double, double>> depth_and_area, double area_mm2) {
   constexpr double kSpared = 0.001;
   std::sort(depth_and_area.begin(), depth_and_area.end(), std::greater<>());
   double spared = kSpared * area_mm2;
@@ -190,7 +190,7 @@ double default_depth_limit_um(const ShiftPath& path, const Observed& observed, c
     depths.emplace_back(-1000 * left_mm, f.all[i].area_mm2);
     area += f.all[i].area_mm2;
   }
-  return std::max(tolerance_um, kRoom * held_depth(std::move(depths), area));
+  return std::max(tolerance_um, kRoom * depth_p999(std::move(depths), area));
 }
 
 }  // namespace camber::compensate

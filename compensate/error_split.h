@@ -1,5 +1,5 @@
 #pragma once
-// Error decomposition: what a shift of the path can take away, what none can, and what a limit holds back.
+// Error decomposition: correctable by a shift of the path, not correctable, and prevented by a limit.
 #include <span>
 #include <utility>
 #include <vector>
@@ -18,16 +18,16 @@ namespace camber::compensate {
 /// any shift at every point of the path; then smooth along the path; then within the largest shift. The shifts are
 /// fitted to the error less the form across the rows, so that they do not follow where the grid shows a row.
 struct ErrorSplit {
-  double correctable_um = 0;      ///< a shift within the limits takes it away
+  double correctable_um = 0;      ///< correctable by a shift within the limits
   double correctable_p95_um = 0;  ///< 95th percentile of its magnitude
   double correctable_max_um = 0;
-  double guard_um = 0;            ///< given up by the guard, so as not to cut into the part
-  double limited_um = 0;          ///< a shift over max_shift_mm would take it away
-  double short_range_um = 0;      ///< changes along the path in less than a smooth path can
-  double opposed_um = 0;          ///< surfaces that face each other, made at one place (a slot)
-  double tip_um = 0;              ///< about the axis of a round tip
-  double bow_um = 0;              ///< changes along the cutter's profile where the cutter is at one place: helix bow
-  double not_compensated_um = 0;  ///< made by moves that are not compensated
+  double guard_um = 0;            ///< given up by the guard to keep the depth limit
+  double limited_um = 0;          ///< needs a shift over max_shift_mm
+  double short_range_um = 0;      ///< changes along the path faster than a smooth path can
+  double opposed_um = 0;          ///< opposite surfaces generated at one path position (a slot)
+  double tip_um = 0;              ///< near the axis of a round tip
+  double bow_um = 0;              ///< varies along the cutter profile at one path position: helix bow
+  double not_compensated_um = 0;  ///< due to moves that are not compensated
 
   double not_correctable_um() const;  ///< short_range, opposed, tip and bow together
 
@@ -46,24 +46,23 @@ std::vector<double> left_by_shift_mm(const ShiftPath& path, std::span<const Obse
 /// What a part of an error comes from.
 enum class Cause { correctable, guard, limited, short_range, opposed, tip, bow, not_compensated };
 
-/// The error point by point, one an entry of Observed: which cause most of it has, and how much that is.
+/// The error point by point, one per entry of Observed: which cause most of it has, and how much that is.
 struct PointCause {
   Cause cause = Cause::correctable;
   double error_mm = 0;
 };
 
-/// `causes`: null where not wanted. The guard's part has no points of its own: they count as correctable.
+/// `causes`: null: not needed. The guard's part has no points of its own: they count as correctable.
 ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
                        std::vector<PointCause>* causes = nullptr);
 
-/// The depth limit where a job gives none, um: `tolerance_um`, or a quarter more than how deep all but a thousandth of
-/// the surface would lie in the part if every place of the path had the shift that suits it best. A bow of +-7 um
-/// across a wall cannot be held to 5 um without giving up half of the correction; such a limit would fight it.
-/// `observed`: of the program as given.
+/// The depth limit where a job gives none, um: `tolerance_um`, or a quarter more than the gouge depth of 99.9 % of the
+/// surface if every place of the path had the shift that suits it best. A bow of +-7 um across a wall cannot be kept
+/// within 5 um without giving up half of the correction. `observed`: of the given program.
 double default_depth_limit_um(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
                               double tolerance_um);
 
 /// Depth that no more than a thousandth of `area_mm2` exceeds. Pairs of depth and area.
-double held_depth(std::vector<std::pair<double, double>> depth_and_area, double area_mm2);
+double depth_p999(std::vector<std::pair<double, double>> depth_and_area, double area_mm2);
 
 }  // namespace camber::compensate

@@ -25,13 +25,13 @@ double expected_error_mm(const machine::Job& job, const removal::SurfacePoint& p
                          std::span<const Vec3> bending);
 
 /// The surface is made by the edge that cuts deepest of several that pass a point, and so lies deeper than the bending
-/// at the contact says. Scales `bending` by the least squares over the points that their own row has cut in the program
-/// as given, and returns the scale (0 to 1).
+/// at the contact says. Scales `bending` by the least squares over the points that their own row has cut in the given
+/// program, and returns the scale (0 to 1).
 void scale_bending(const ShiftPath& path, const machine::Job& job, const simulate::Setup& given,
                    const Observed& observed, const std::vector<removal::SurfacePoint>& surface,
                    std::vector<Vec3>& bending);
 
-/// expected_error_mm of the program as given at every point of the surface that has an owner.
+/// expected_error_mm of the given program at every point of the surface that has an owner.
 std::vector<Observation> expected_errors(const ShiftPath& path, const machine::Job& job, const simulate::Setup& given,
                                          const Observed& observed, const std::vector<removal::SurfacePoint>& surface,
                                          std::span<const Vec3> bending);

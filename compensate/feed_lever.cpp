@@ -18,7 +18,7 @@ std::vector<double> times_of(const ShiftPath& path, const simulate::SimulatedPro
   const auto& stamps = given.path.stamps;
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     if (stamps[i].first || !path.contains(stamps[i].move)) continue;
-    out[path.find(stamps[i].move, stamps[i].share).lower + 1] += stamps[i].t_s - stamps[i - 1].t_s;
+    out[path.find(stamps[i].move, stamps[i].fraction).lower + 1] += stamps[i].t_s - stamps[i - 1].t_s;
   }
   return out;
 }

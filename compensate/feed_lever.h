@@ -9,7 +9,7 @@
 
 namespace camber::compensate {
 
-/// Errors: [lever-unusable] where none of the moves' feeds can be changed in the text. `selected`: one a move.
+/// Errors: [lever-unusable] where none of the moves' feeds can be changed in the text. `selected`: one per move.
 void check_feeds(const simulate::SimulatedProgram& program, const std::vector<bool>& selected,
                  Diagnostics& diagnostics);
 

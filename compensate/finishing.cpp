@@ -31,8 +31,8 @@ std::vector<Operation> operations_of(const SimulatedProgram& program, std::vecto
   return out;
 }
 
-void share_surface(const SimulatedProgram& program, const std::vector<removal::SurfacePoint>& surface,
-                   const std::vector<std::size_t>& of_move, std::vector<Operation>& operations) {
+void distribute_surface(const SimulatedProgram& program, const std::vector<removal::SurfacePoint>& surface,
+                        const std::vector<std::size_t>& of_move, std::vector<Operation>& operations) {
   double area = 0;
   for (const auto& p : surface) {
     area += p.area_mm2;
@@ -50,14 +50,14 @@ Finishing find_finishing(const machine::Job& job, const SimulatedProgram& progra
   Finishing out;
   std::vector<std::size_t> of_move;
   out.operations = operations_of(program, of_move);
-  share_surface(program, surface, of_move, out.operations);
+  distribute_surface(program, surface, of_move, out.operations);
   const auto& wanted = job.compensation.operations;
   out.moves = removal::selected_moves(program.moves, simulate::as_lines(wanted, program.text, program.moves));
   for (std::size_t m = 0; m < out.moves.size(); ++m) {
     out.moves[m] = out.moves[m] && program.selected[m];
     if (!out.moves[m]) continue;
     Operation& operation = out.operations[of_move[m]];
-    if (!wanted.given() && !surface.empty()) out.moves[m] = operation.surface_fraction >= kFinishingShare;
+    if (!wanted.given() && !surface.empty()) out.moves[m] = operation.surface_fraction >= kFinishingFraction;
     if (out.moves[m]) ++operation.compensated_moves;
   }
   return out;
@@ -92,26 +92,26 @@ void check_compensated(const SimulatedProgram& program, const std::vector<bool>&
   if (all == 0)
     diagnostics.add({Severity::error,
                      {program.text.source.name(), 0, 0},
-                     "[compensation] operations names no move that is simulated; a tool, lines or a comment of "
-                     "cutting moves was expected",
+                     "[compensation] operations selects no simulated move; a tool, lines or a comment of cutting moves "
+                     "was expected",
                      "nothing-to-compensate",
                      {}});
   if (!first && all > 0 && editable == 0) {
     const auto made = static_cast<std::size_t>(std::find(moves.begin(), moves.end(), true) - moves.begin());
-    diagnostics.add(program.text.source.diagnostic(
-        Severity::error, program.text.blocks[program.moves.moves[made].block].offset,
-        "all moves to compensate, from here on, are made by a loop, an expression or a subprogram that is called more "
-        "than once or stands in another file; the text has no words of their own: a program without these was expected",
-        "nothing-to-compensate"));
+    diagnostics.add(
+        program.text.source.diagnostic(Severity::error, program.text.blocks[program.moves.moves[made].block].offset,
+                                       "all moves to compensate, from here on, come from a loop, an expression or a "
+                                       "subprogram that is called more than once or is in another file, and have no "
+                                       "words of their own in the text; a program without these was expected",
+                                       "nothing-to-compensate"));
   }
   if (!first) return;
   diagnostics.add(program.text.source.diagnostic(
       Severity::error, program.text.blocks[first->block].offset,
-      fmt::format(
-          "{} move{} to compensate run{} under cutter radius compensation (G41, G42), from here on: the control "
-          "makes their path, the text has no words for it; a program for the cutter's centre, or [compensation] "
-          "operations without these blocks, was expected",
-          count, count == 1 ? "" : "s", count == 1 ? "s" : ""),
+      fmt::format("{} move{} to compensate run{} under cutter radius compensation (G41, G42), from here on: the "
+                  "control computes their path, and the text has no words for it; a program of the cutter centre, or "
+                  "[compensation] operations without these blocks, was expected",
+                  count, count == 1 ? "" : "s", count == 1 ? "s" : ""),
       "cutter-radius"));
 }
 

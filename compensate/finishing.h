@@ -19,16 +19,16 @@ struct Operation {
 };
 
 struct Finishing {
-  std::vector<bool> moves;  ///< one a move of the program: compensated
+  std::vector<bool> moves;  ///< one per move of the program: compensated
   std::vector<Operation> operations;
 };
 
 /// An operation that makes less of the surface than this is no finishing.
-inline constexpr double kFinishingShare = 0.05;
+inline constexpr double kFinishingFraction = 0.05;
 
 /// Of the moves that the job simulates: those that [compensation] operations names by tool, by lines and by comments;
-/// where it names none, the operations that made at least kFinishingShare of the surface (`surface`: of the program as
-/// given; empty: all operations).
+/// where it names none, the operations that made at least kFinishingShare of the surface (`surface`: of the given
+/// program; empty: all operations).
 ///
 /// A comment names the moves behind it, up to the next tool change or the next comment; comments on lines behind each
 /// other, without a move between them, are one heading.
@@ -37,7 +37,7 @@ Finishing find_finishing(const machine::Job& job, const simulate::SimulatedProgr
 
 /// What a line of a program is to a compensation.
 enum class LineRole : std::uint8_t { none, compensated, only_simulated };
-/// One a line; a line that both kinds of moves come from counts as compensated. Moves whose words may not be changed
+/// One per line; a line that both kinds of moves come from counts as compensated. Moves whose words may not be changed
 /// are simulated only.
 std::vector<LineRole> line_roles(const simulate::SimulatedProgram& program, const std::vector<bool>& compensated);
 

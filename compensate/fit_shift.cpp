@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Matrix3d;
 
-/// Directions with less than this share of the best told one's observations are held at rest.
-constexpr double kToldShare = 0.05;
+/// Directions with less than this fraction of the best told one's observations are held at rest.
+constexpr double kDeterminedFraction = 0.05;
 
 /// Normal equations of one path: diagonal[i] s_i + upper[i] s_(i+1) + upper[i-1]^T s_(i-1) = right[i].
 struct System {
@@ -46,10 +46,10 @@ std::vector<double> weight_about(const ShiftPath& path, std::span<const Observat
   const auto& points = path.points();
   std::vector<Sums> own(points.size());
   for (const Observation& o : observations)
-    for (const auto& [at, share] :
+    for (const auto& [at, fraction] :
          {std::pair{o.place.lower, 1 - o.place.upper_fraction}, std::pair{o.place.lower + 1, o.place.upper_fraction}}) {
-      own[at].weighted += share * o.area_mm2 * o.weight;
-      own[at].area += share * o.area_mm2;
+      own[at].weighted += fraction * o.area_mm2 * o.weight;
+      own[at].area += fraction * o.area_mm2;
     }
   std::vector<Sums> about = own;
   for (const Chain& c : path.chains()) {
@@ -108,11 +108,11 @@ void add_rest(System& s, const Chain& chain) {
     if (k > 0) about += s.diagonal[chain.from + k - 1];
     if (k + 1 < chain.count) about += s.diagonal[chain.from + k + 1];
     const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(about);
-    const double told = kToldShare * eigen.eigenvalues()[2];
+    const double determined = kDeterminedFraction * eigen.eigenvalues()[2];
     rest[k].setZero();
     for (int i = 0; i < 3; ++i) {
       const Vec3 v = eigen.eigenvectors().col(i);
-      rest[k] += std::max(0.0, told - eigen.eigenvalues()[i]) * v * v.transpose();
+      rest[k] += std::max(0.0, determined - eigen.eigenvalues()[i]) * v * v.transpose();
     }
   }
   for (std::size_t k = 0; k < chain.count; ++k) s.diagonal[chain.from + k] += rest[k];

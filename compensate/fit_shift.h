@@ -1,5 +1,5 @@
 #pragma once
-// From the form error to new shifts of the path's points.
+// Fit of the shifts of the path nodes to the form error.
 #include <algorithm>
 #include <span>
 #include <vector>
@@ -19,21 +19,21 @@ struct Observation {
   double gain = 1;                     ///< by how much the error changes with the shift along the normal
   double weight = 1;                   ///< of its area in the fit
   Vec3 from_centre_mm = Vec3::Zero();  ///< from the centre of the cutter's corner (its tip, if that is sharp)
-  bool at_tip = false;                 ///< on the axis of a round tip, where the edges hardly move
+  bool at_tip = false;                 ///< on the axis of a round tip, where the cutting speed is almost zero
   bool own = true;                     ///< the place is the one that cut it
   bool foreign = false;                ///< made by one row on the nominal path, cut by another
   bool above = false;                  ///< the place passes above the surface: see Observed::hidden
-  bool opposed = false;                ///< made at the same place as surface that faces the other way
+  bool opposed = false;                ///< generated at the same path position as an opposite surface
 };
 
 struct FitShiftOptions {
   double smoothing_mm = 0.2;  ///< features of the shift shorter than this along the path are smoothed
-  double decay_mm = 10;       ///< without surface to correct, the shift dies away over this length
+  double decay_mm = 10;       ///< without surface to correct, the shift decays over this length
   double max_shift_mm = 0.1;
-  /// One a point of the path: mu between it and the next is larger by this factor; empty: 1.
+  /// One per point of the path: mu between it and the next is larger by this factor; empty: 1.
   std::span<const double> stiffness{};
   std::span<const RowLink> links{};          ///< between rows
-  std::span<const double> link_stiffness{};  ///< one a link, as `stiffness`
+  std::span<const double> link_stiffness{};  ///< one per link, as `stiffness`
 };
 
 /// What a grid of these voxels can tell of a shift: on a coarser one a shorter feature follows the scatter of its

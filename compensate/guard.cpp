@@ -22,9 +22,9 @@ struct Lift {
     positive = positive.cwiseMax(to);
     negative = negative.cwiseMin(to);
   }
-  void raise(const Lift& from, double share) {
-    positive = positive.cwiseMax(share * from.positive);
-    negative = negative.cwiseMin(share * from.negative);
+  void raise(const Lift& from, double fraction) {
+    positive = positive.cwiseMax(fraction * from.positive);
+    negative = negative.cwiseMin(fraction * from.negative);
   }
   Vec3 sum() const { return positive + negative; }
 };
@@ -42,12 +42,12 @@ Guard::Guard(const ShiftPath& path, double limit_mm, double reach_mm) : limit_mm
   lift_mm_.assign(place_mm_.size(), Vec3::Zero());
 }
 
-void Guard::learn(const Observed& observed, double held_mm) {
+void Guard::learn(const Observed& observed, double depth_p999_mm) {
   std::map<std::size_t, Lift> asked;  // by the path's points
   for (std::size_t i = 0; i < observed.points.size(); ++i) {
     const Observation& o = observed.points[i];
     if (!observed.compensated[i] || !observed.judged(i) || o.error_mm >= -limit_mm_) continue;
-    const double needed = std::min(-o.error_mm, std::max(held_mm, limit_mm_)) - kWanted * limit_mm_;
+    const double needed = std::min(-o.error_mm, std::max(depth_p999_mm, limit_mm_)) - kWanted * limit_mm_;
     const std::size_t nearest = o.place.upper_fraction < 0.5 ? o.place.lower : o.place.lower + 1;
     asked[nearest].raise(needed * o.normal);
   }
@@ -62,8 +62,8 @@ void Guard::learn(const Observed& observed, double held_mm) {
           const auto near = cells.find({i, j, k});
           if (near == cells.end()) continue;
           for (const std::size_t n : near->second)
-            if (const double share = fade((place_mm_[n] - place_mm_[at]).norm(), reach_mm_); share > 0)
-              spread[n].raise(lift, share);
+            if (const double fraction = fade((place_mm_[n] - place_mm_[at]).norm(), reach_mm_); fraction > 0)
+              spread[n].raise(lift, fraction);
         }
   }
   for (const auto& [at, lift] : spread) lift_mm_[at] += lift.sum();

@@ -1,27 +1,27 @@
 #pragma once
-// Keeps the surface out of the part: where it came out too deep, the path is lifted, and smoothly so.
+// Guard against gouging: lifts the path smoothly where the surface is too deep.
 #include <vector>
 
 #include "compensate/attribution.h"
 
 namespace camber::compensate {
 
-/// What a shift cannot make flat is left as excess material rather than cut too deep: the fit aims at material left on
-/// (a lift) instead of at zero. A point of the surface that lies deeper than the limit asks for a lift of the path at
-/// its place, along its normal; each lift fades out over `reach_mm` around, along the path and across rows, as
-/// cos^2. So the lift changes by no more than pi / 2 of its height over that length, whatever single points ask for.
+/// What a shift cannot make flat is left as excess material rather than overcut: the fit aims at excess material (a
+/// lift) instead of zero. A point of the surface that lies deeper than the limit requests a lift of its path position
+/// along its normal. Each lift fades out over `reach_mm`, along the path and across rows, as cos^2, so that its slope
+/// is at most pi / 2 of its height over that length.
 class Guard {
  public:
-  /// Single points deeper than all but a thousandth of the surface ask for no more than those.
+  /// Requests of single points are limited to the depth that 99.9 % of the surface does not exceed.
   Guard(const ShiftPath& path, double limit_mm, double reach_mm);
 
-  /// Adds lifts for what lies too deep; `held_mm`: depth that all but a thousandth of the surface keeps.
-  void learn(const Observed& observed, double held_mm);
+  /// Adds lifts for points that are too deep; `depth_p999_mm`: depth that 99.9 % of the surface does not exceed.
+  void learn(const Observed& observed, double depth_p999_mm);
   /// Errors as the fit is to see them: less the lift.
   void apply_to(std::vector<Observation>& observations) const;
 
  private:
-  static constexpr double kWanted = 0.8;  ///< of the limit: where a lift brings a point to
+  static constexpr double kWanted = 0.8;  ///< fraction of the limit that a lift aims at
   double lift_mm(const Observation& o) const;
 
   double limit_mm_, reach_mm_;

@@ -67,7 +67,7 @@ std::string material_line(const machine::Material& m) {
 }  // namespace
 
 std::string header_lines(const machine::Job& job, const CompensationResult& c, const std::string& version) {
-  std::string out = fmt::format("CAMBER {} - PATH COMPENSATED FOR THE BENDING OF THE TOOL\n", version);
+  std::string out = fmt::format("CAMBER {} - PATH COMPENSATED FOR TOOL DEFLECTION\n", version);
   fmt::format_to(std::back_inserter(out),
                  "PREDICTED ERROR RMS {:.1f} UM BEFORE, {:.1f} UM AFTER, 95 PERCENT WITHIN {:.1f} UM\n",
                  c.before_um.rms, c.after_um.rms, c.after_um.p95);

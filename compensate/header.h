@@ -1,5 +1,5 @@
 #pragma once
-// What the emitted program says about itself, as comment lines.
+// Header comment of the emitted program.
 #include <string>
 #include <string_view>
 
@@ -12,12 +12,12 @@ namespace camber::compensate {
 /// model. `version`: of the program that did it.
 std::string header_lines(const machine::Job& job, const CompensationResult& result, const std::string& version);
 
-/// 16 hexadecimal digits of a text (FNV-1a, 64 bits: it tells versions apart, it proves nothing).
+/// 16 hexadecimal digits of a text (FNV-1a, 64 bits; distinguishes versions, not cryptographic).
 std::string hash_of(std::string_view text);
 
 /// 16 hexadecimal digits over everything the result depends on: the contents of the program, the machine and of every
-/// file that the job reads, and the job with every default (FNV-1a, 64 bits: it tells versions apart, it proves
-/// nothing). Throws InputError where a file cannot be read.
+/// file that the job reads, and the job with every default (FNV-1a, 64 bits; distinguishes versions, not
+/// cryptographic). Throws InputError where a file cannot be read.
 std::string hash_of_inputs(const machine::Job& job);
 
 }  // namespace camber::compensate

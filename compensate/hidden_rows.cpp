@@ -40,10 +40,10 @@ std::vector<Vec3> path_offsets(const ShiftPath& path, const nc::Interpretation& 
                                const simulate::SimulatedProgram& emitted, const MoveMap& map) {
   Means means(path.points().size());
   for (const removal::Stamp& stamp : emitted.path.stamps) {
-    const MoveMap::MovePlace place = map.given(stamp.move, stamp.share);
+    const MoveMap::MovePlace place = map.given(stamp.move, stamp.fraction);
     if (!path.contains(place.move)) continue;
-    means.add(path.find(place.move, place.share),
-              stamp.pose.tip_mm - nc::point_at(given, given.moves[place.move], place.share));
+    means.add(path.find(place.move, place.fraction),
+              stamp.pose.tip_mm - nc::point_at(given, given.moves[place.move], place.fraction));
   }
   return means.take();
 }

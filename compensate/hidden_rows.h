@@ -8,7 +8,7 @@
 
 namespace camber::compensate {
 
-/// By how much the tool is off the programmed path (servo lag, corner rounding, the shift itself), one a point of
+/// By how much the tool is off the programmed path (servo lag, corner rounding, the shift itself), one per point of
 /// `path`, mm: the mean over the stamps near it. `map`: from the moves of `emitted` to those of `given`.
 std::vector<Vec3> path_offsets(const ShiftPath& path, const nc::Interpretation& given,
                                const simulate::SimulatedProgram& emitted, const MoveMap& map);
@@ -22,7 +22,7 @@ class Rows {
 
  private:
   const ShiftPath& path_;
-  std::vector<std::size_t> chain_of_;  ///< one a point
+  std::vector<std::size_t> chain_of_;  ///< one per point
 };
 
 }  // namespace camber::compensate

@@ -128,7 +128,7 @@ class Neighbours {
     };
     std::map<Cell, std::vector<std::size_t>> cells;
     for (std::size_t i = 0; i < surface.size(); ++i) cells[cell_of(surface[i].place_mm)].push_back(i);
-    constexpr double kSameWay = 0.8, kNear = 0.25;  // a point counts 1/e at this share of the reach
+    constexpr double kSameWay = 0.8, kNear = 0.25;  // a point counts 1/e at this fraction of the reach
     of_.resize(points.size());
     for (std::size_t m = 0; m < points.size(); ++m) {
       const Cell c = cell_of(points[m].place_mm);
@@ -210,7 +210,7 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
       sum += (measured[i] - predicted[i]) * (measured[i] - predicted[i]);
     return 1000 * std::sqrt(sum / static_cast<double>(predicted.size()));
   };
-  const auto refuse = [&](const std::string& why) { fail_on_file(path, why, "measured-untold"); };
+  const auto refuse = [&](const std::string& why) { fail_on_file(path, why, "measured-not-identifiable"); };
 
   constexpr double kProbe = 1.15, kSame = 0.005, kMin = 0.2, kMax = 5, kVague = 0.25;
   constexpr int kPredictions = 6;
@@ -219,8 +219,8 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
   out.points = measured.size();
   out.left_out = points.size() - out.points;
   if (out.points < 3)
-    refuse(fmt::format("{} of {} points lie on surface that the job machines; three or more were expected", out.points,
-                       points.size()));
+    refuse(fmt::format("{} of {} points lie on a surface that the job machines; three or more were expected",
+                       out.points, points.size()));
   out.rms_before_um = rms_um(e0);
   std::vector<double> e1 = predicted_at(c1);
   for (;;) {
@@ -233,8 +233,8 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
     constexpr double kFlat_mm = 1e-4;  // a deflection twice as large would move the surface by less
     if (std::sqrt(jj / static_cast<double>(e1.size())) < kFlat_mm)
       refuse(
-          "the predicted error at the points hardly depends on the deflection; points where the tool bends across the "
-          "surface were expected");
+          "the predicted error at the points hardly depends on the deflection; points where the tool deflects normal "
+          "to the surface were expected");
     const double next = std::clamp(c1 + jr / jj, kMin, kMax);
     double left = 0;
     for (std::size_t i = 0; i < e1.size(); ++i) {
@@ -252,8 +252,8 @@ MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const
   }
   if (out.std_error > kVague * out.scale)
     refuse(
-        fmt::format("the points do not tell the deflection: {:.2f} +- {:.2f} of the model's; a standard error below a "
-                    "quarter of it was expected",
+        fmt::format("the points do not determine the deflection: {:.2f} +- {:.2f} times the predicted one; a standard "
+                    "error below a quarter of it was expected",
                     out.scale, out.std_error));
   return out;
 }

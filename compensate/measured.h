@@ -1,5 +1,5 @@
 #pragma once
-// The model set right by what was measured on a part: one scale of the deflection.
+// Correction of the model by points measured on a part: one scale of the deflection.
 #include <string>
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace camber::compensate {
 struct MeasuredPoint {
   Vec3 place_mm = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
-  double error_mm = 0;  ///< along the normal, positive where material is left
+  double error_mm = 0;  ///< along the normal, positive: excess material
 };
 
 /// A table with a header; columns x_mm y_mm z_mm nx ny nz error_um (or x y z nx ny nz error, error in um), in any order
@@ -22,20 +22,20 @@ struct MeasuredPoint {
 std::vector<MeasuredPoint> read_measured(const std::string& path);
 
 struct MeasuredFit {
-  double scale = 1;      ///< of the deflection: the forces are so much greater, or the tool so much softer
-  double std_error = 0;  ///< from the points' scatter about the fit
+  double scale = 1;                            ///< scale of the deflection: larger forces or a more compliant tool
+  double std_error = 0;                        ///< from the points' scatter about the fit
   std::size_t points = 0, left_out = 0;        ///< left out: no machined surface of the job there
   double rms_before_um = 0, rms_after_um = 0;  ///< measured less predicted, with the scale 1 and the fitted one
   int predictions = 0;
 };
 
-/// The job with tools and axes so much softer: deflection is compliance times force, a scale of either is the same.
+/// The job with the compliance of tools and axes multiplied by `scale`; scaling the forces would be equivalent.
 machine::Job softened(const machine::Job& job, double scale);
 
 /// Least squares of the points against the prediction of `program` (what the measured part was cut with; empty: the
-/// job's program), by Newton steps with the secant between predictions. Throws InputError [measured-untold]: fewer than
-/// three points lie on the job's surface, their predicted error hardly depends on the deflection, or the standard
-/// error of the scale is over a quarter of it.
+/// job's program), by Newton steps with the secant between predictions. Throws InputError [measured-not-identifiable]:
+/// fewer than three points lie on the job's surface, their predicted error hardly depends on the deflection, or the
+/// standard error of the scale is over a quarter of it.
 MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const std::vector<MeasuredPoint>& points,
                          const std::string& program, Diagnostics& diagnostics, const simulate::Progress& progress);
 

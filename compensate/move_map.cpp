@@ -48,10 +48,10 @@ MoveMap::MoveMap(const nc::Interpretation& given, const nc::Interpretation& emit
   }
 }
 
-MoveMap::MovePlace MoveMap::given(std::uint32_t emitted_move, double share) const {
-  if (parts_.empty()) return {emitted_move, share};
+MoveMap::MovePlace MoveMap::given(std::uint32_t emitted_move, double fraction) const {
+  if (parts_.empty()) return {emitted_move, fraction};
   const Part& p = parts_[emitted_move];
-  return {p.move, std::clamp(p.from + share * (p.to - p.from), 0.0, 1.0)};
+  return {p.move, std::clamp(p.from + fraction * (p.to - p.from), 0.0, 1.0)};
 }
 
 }  // namespace camber::compensate

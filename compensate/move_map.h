@@ -10,10 +10,10 @@ namespace camber::compensate {
 
 class MoveMap {
  public:
-  /// A place on a move: the share of its length.
+  /// A place on a move: the fraction of its length.
   struct MovePlace {
     std::uint32_t move = 0;
-    double share = 0;
+    double fraction = 0;
   };
 
   /// The given program to itself.
@@ -23,14 +23,14 @@ class MoveMap {
   MoveMap(const nc::Interpretation& given, const nc::Interpretation& emitted,
           std::span<const std::uint32_t> block_of_line);
 
-  MovePlace given(std::uint32_t emitted_move, double share) const;
+  MovePlace given(std::uint32_t emitted_move, double fraction) const;
 
  private:
   struct Part {
     std::uint32_t move = 0;
-    double from = 0, to = 1;  ///< shares of the given move
+    double from = 0, to = 1;  ///< fractions of the given move
   };
-  std::vector<Part> parts_;  ///< one an emitted move; empty: the same program
+  std::vector<Part> parts_;  ///< one per emitted move; empty: the same program
 };
 
 }  // namespace camber::compensate

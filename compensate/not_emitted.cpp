@@ -29,7 +29,7 @@ void warn_of_not_emitted(const nc::Program& program, const nc::Interpretation& m
   for (const auto& [why, of_kind] : lines) {
     const auto words = program.words_of(*of_kind.begin() - 1);
     const std::string what = why == nc::EmitGap::subprogram || why == nc::EmitGap::arc_not_split
-                                 ? "bends within a line are not written"
+                                 ? "splits of a line are not written"
                                  : "shifts are not written";
     diagnostics.add(program.source.diagnostic(
         Severity::warning, words.empty() ? program.blocks[*of_kind.begin() - 1].offset : words.front().offset,

@@ -34,7 +34,7 @@ PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool
   const auto split = [&](std::size_t m) {
     const MoveMap::MovePlace first = map.given(static_cast<std::uint32_t>(m), 0),
                              last = map.given(static_cast<std::uint32_t>(m), 1);
-    return last.share - first.share < 1 - 1e-9;
+    return last.fraction - first.fraction < 1 - 1e-9;
   };
   for (std::size_t m = 0; m < emitted.moves.size(); ++m) {
     const nc::Move& move = emitted.moves[m];

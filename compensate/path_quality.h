@@ -1,5 +1,5 @@
 #pragma once
-// Is the emitted path as good a path as the given one: no new facets, no crumbs.
+// Quality of the emitted path: growth of the angles between blocks, short blocks.
 #include <span>
 #include <vector>
 
@@ -10,10 +10,10 @@
 namespace camber::compensate {
 
 struct PathQuality {
-  double angle_growth_rad = 0;  ///< by how much the path turns more between two blocks than it did, the worst place
-  std::size_t angle_line = 0;   ///< of the emitted program; 0: it grows nowhere
-  double shortest_mm = 0;       ///< of the blocks that came out of a split; 0: none was split
-  std::size_t too_short = 0;    ///< of them, shorter than the control can process: F T_b
+  double angle_growth_rad = 0;           ///< largest growth of an angle between two blocks
+  std::size_t angle_line = 0;            ///< of the emitted program; 0: it grows nowhere
+  double shortest_mm = 0;                ///< of the blocks that came out of a split; 0: none was split
+  std::size_t too_short = 0;             ///< of them, shorter than the control can process: F T_b
   std::vector<MoveMap::MovePlace> over;  ///< places of the given program where the angle grows by more than the bound
 };
 

@@ -23,7 +23,7 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup&
     ErrorSplit split;
     removal::ErrorFigures error_um;
   };
-  const auto stamps = given.own_target() ? std::span(target.stamps) : std::span<const simulate::PathShare>();
+  const auto stamps = given.own_target() ? std::span(target.stamps) : std::span<const simulate::PathFraction>();
   std::vector<bool> reach;
   const auto judge = [&](const Emitted* program, const std::string& what) {
     const auto& machined = program ? program->program : given.program;

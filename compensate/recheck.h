@@ -23,8 +23,8 @@ struct EmittedPair {
   const Emitted* free = nullptr;  ///< the best one before the guard; null: the guard did nothing
 };
 
-/// `path`: of the given program. What the guard gives up is told by the same rule as in the rounds: what is left beyond
-/// that of the best program without it, on this grid.
+/// `path`: of the given program. What the guard gives up follows from the same rule as in the rounds: the additional
+/// correctable error compared with the best program without it, on this grid.
 Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup& given, const EmittedPair& emitted,
                 const ShiftPath& path, const FitShiftOptions& options, const simulate::Progress& progress);
 

@@ -10,11 +10,11 @@
 namespace camber::compensate {
 namespace {
 
-constexpr int kTerms = 4;          // of a cubic
-constexpr double kMany = 40;       // points across and along, whose mean needs no help
-constexpr double kOneFace = 0.97;  // mean normal of a ball's row of 40 degrees
-constexpr double kTold = 1e-3;     // share of the moments below which a term is not told
-constexpr double kMin_mm = 0.005;  // rows narrower than this have no form
+constexpr int kTerms = 4;                 // of a cubic
+constexpr double kMany = 40;              // points across and along, whose mean needs no help
+constexpr double kOneFace = 0.97;         // mean normal of a ball's row of 40 degrees
+constexpr double kRegularization = 1e-3;  // fraction of the moments below which a term is not determined
+constexpr double kMin_mm = 0.005;         // rows narrower than this have no form
 
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 using Square = Eigen::Matrix<double, kTerms, kTerms>;
@@ -58,7 +58,7 @@ struct Moments {
   Moments operator+(const Moments& o) const { return {square + o.square, right + o.right, points + o.points}; }
 };
 
-void share_out(const ShiftPath::PointInterval& place, auto add) {
+void distribute(const ShiftPath::PointInterval& place, auto add) {
   add(place.lower, 1 - place.upper_fraction);
   add(place.lower + 1, place.upper_fraction);
 }
@@ -66,8 +66,8 @@ void share_out(const ShiftPath::PointInterval& place, auto add) {
 std::vector<Facing> facing(const ShiftPath& path, std::span<const Observation> observations) {
   std::vector<Facing> out(path.points().size());
   for (const Observation& o : observations)
-    share_out(o.place, [&](std::size_t i, double share) {
-      out[i] = out[i] + Facing{o.normal, 1} * (share * o.area_mm2);
+    distribute(o.place, [&](std::size_t i, double fraction) {
+      out[i] = out[i] + Facing{o.normal, 1} * (fraction * o.area_mm2);
     });
   spread_along(out, path);
   return out;
@@ -108,10 +108,10 @@ std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observati
   for (std::size_t i = 0; i < across.size(); ++i) {
     across[i] /= scale;
     const Terms t = terms_of(across[i]);
-    share_out(observations[i].place, [&](std::size_t at, double share) {
-      const double a = share * observations[i].area_mm2;
+    distribute(observations[i].place, [&](std::size_t at, double fraction) {
+      const double a = fraction * observations[i].area_mm2;
       moments[at].square += a * t * t.transpose();
-      moments[at].points += share;
+      moments[at].points += fraction;
       moments[at].right += a * left_mm[i] * t;
     });
   }
@@ -120,13 +120,13 @@ std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observati
   for (std::size_t i = 0; i < form.size(); ++i) {
     Square& m = moments[i].square;
     if (m(0, 0) <= 0 || !faces[i].one()) continue;
-    m.diagonal() *= 1 + kTold;
+    m.diagonal() *= 1 + kRegularization;
     const double points = moments[i].points * smoothing_mm / kFormAlong_mm / kMany;  // the weights' sum is 2 kFormAlong
     form[i] = m.ldlt().solve(moments[i].right) / (1 + points * points);
   }
   for (std::size_t i = 0; i < out.size(); ++i)
-    share_out(observations[i].place,
-              [&](std::size_t at, double share) { out[i] += share * form[at].dot(terms_of(across[i])); });
+    distribute(observations[i].place,
+               [&](std::size_t at, double fraction) { out[i] += fraction * form[at].dot(terms_of(across[i])); });
   return out;
 }
 

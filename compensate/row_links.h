@@ -1,5 +1,5 @@
 #pragma once
-// Which points of a path lie beside each other in neighbouring rows.
+// Links between nodes of neighbouring rows.
 #include <cstddef>
 #include <span>
 #include <vector>

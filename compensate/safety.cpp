@@ -51,7 +51,7 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed
     add_point(out, surface[i], error_mm, tolerance_um, over);
     depths.emplace_back(-1000 * error_mm, surface[i].area_mm2);
   }
-  out.held_um = held_depth(std::move(depths), area);
+  out.gouge_depth_p999_um = depth_p999(std::move(depths), area);
   out.over_fraction = area > 0 ? over / area : 0;
   return out;
 }
@@ -66,7 +66,7 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, machine::Refer
     add_point(out, p, judged_mm(p, reference), tolerance_um, over);
     depths.emplace_back(-1000 * judged_mm(p, reference), p.area_mm2);
   }
-  out.held_um = held_depth(std::move(depths), area);
+  out.gouge_depth_p999_um = depth_p999(std::move(depths), area);
   out.over_fraction = area > 0 ? over / area : 0;
   return out;
 }
@@ -85,7 +85,7 @@ Depth depth_without_bending(const machine::Job& job, const simulate::Target& tar
     add_point(out, p, p.error_mm, tolerance_um, over);
     depths.emplace_back(-1000 * p.error_mm, p.area_mm2);
   }
-  out.held_um = held_depth(std::move(depths), area);
+  out.gouge_depth_p999_um = depth_p999(std::move(depths), area);
   out.over_fraction = area > 0 ? over / area : 0;
   return out;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What must never happen on the machine, checked on the emitted program.
+// Safety checks of the emitted program: gouge depth and axis travel.
 #include <array>
 #include <string>
 #include <vector>
@@ -11,12 +11,12 @@
 
 namespace camber::compensate {
 
-/// How far the surface lies inside the part (inside the target's undeflected sweep).
+/// Gouge depth: depth of the surface below the undeflected sweep of the target.
 struct Depth {
-  double deepest_um = 0;  ///< of single points; not negative
-  double held_um = 0;     ///< a thousandth of the surface at most lies deeper: what is held against the limit
+  double deepest_um = 0;           ///< of single points; not negative
+  double gouge_depth_p999_um = 0;  ///< 99.9 % of the surface is not deeper; compared with the depth limit
   Vec3 place_mm = Vec3::Zero();
-  double over_fraction = 0;  ///< of the area that lies deeper than the tolerance
+  double over_fraction = 0;  ///< fraction of the area deeper than the tolerance
 };
 
 /// Of the points that compensated moves made (`compensated` false: of the others), by the judged error.
@@ -27,8 +27,8 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed
 Depth depth_of(const std::vector<removal::SurfacePoint>& surface, machine::Reference reference, double others_mm2,
                double tolerance_um);
 
-/// The emitted program carved by a tool that does not bend at all. Bounded by the largest shift and, where rows cross
-/// other rows, by what their shifts add.
+/// Gouge depth of the emitted program cut by a rigid tool. Bounded by the largest shift and, where rows cross other
+/// rows, by the sum of their shifts.
 Depth depth_without_bending(const machine::Job& job, const simulate::Target& target,
                             const simulate::SimulatedProgram& emitted, double tolerance_um);
 

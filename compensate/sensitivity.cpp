@@ -8,7 +8,7 @@ namespace camber::compensate {
 namespace {
 
 constexpr double kAverage_mm = 2.0;  // length of path over which a gain is averaged
-constexpr double kTold_mm = 0.001;   // a change of the shift that tells as much as the whole path does
+constexpr double kPrior_mm = 0.001;  // change of the shift with the weight of the whole path's mean
 
 struct Sums {
   double products = 0, squares = 0, area = 0;
@@ -53,21 +53,22 @@ void Sensitivity::learn(const ShiftPath& path, std::span<const Vec3> shifts_befo
     const double step = o.normal.dot(path.shift_at(o.place) - old);
     const double change = o.error_mm - before.points[i].error_mm;
     const Sums s{o.area_mm2 * step * change, o.area_mm2 * step * step, o.area_mm2};
-    const auto add = [&](Sums& to, double share) {
-      to.products += share * s.products;
-      to.squares += share * s.squares;
-      to.area += share * s.area;
+    const auto add = [&](Sums& to, double fraction) {
+      to.products += fraction * s.products;
+      to.squares += fraction * s.squares;
+      to.area += fraction * s.area;
     };
     add(sums[lower], u);
     add(sums[lower + 1], v);
     add(whole, 1);
   }
-  const double told = kTold_mm * kTold_mm;
-  const double mean = (whole.products + told * whole.area) / std::max(whole.squares + told * whole.area, 1e-30);
+  const double prior_mm2 = kPrior_mm * kPrior_mm;
+  const double mean =
+      (whole.products + prior_mm2 * whole.area) / std::max(whole.squares + prior_mm2 * whole.area, 1e-30);
   for (const Chain& c : path.chains()) average(sums, path, c);
   for (std::size_t i = 0; i < gain_.size(); ++i) {
     const Sums& s = sums[i];
-    const double prior = std::max(told * s.area, 1e-12);
+    const double prior = std::max(prior_mm2 * s.area, 1e-12);
     gain_[i] = std::clamp((s.products + prior * mean) / (s.squares + prior), kMin, kGreatest);
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-// How much the error really changes with a shift, place by place: what a Newton step divides by.
+// Local sensitivity of the error to the shift, the divisor of a Newton step.
 #include <span>
 #include <vector>
 
@@ -8,14 +8,14 @@
 
 namespace camber::compensate {
 
-/// A cutter that is moved into the work takes a thicker chip, bends more and moves the surface by less than the
-/// shift; one that is moved across rows may move it by more. From two predictions,
+/// A cutter shifted into the work takes a thicker chip and deflects more, so that the surface moves by less than the
+/// shift; shifted across rows, the surface may move by more. From two predictions,
 ///
 ///   g = sum a (n . ds) de / sum a (n . ds)^2
 ///
 /// with a the area, ds the change of the shift and de that of the error at the same points of the surface, averaged
-/// along the path over a few millimetres and drawn to the whole path's g where the shift hardly changed. A gain over
-/// one is what an over-correction looks like: the next step is shorter by it.
+/// along the path over a few millimetres and blended with the g of the whole path where the shift hardly changed. A
+/// gain over one indicates an over-correction; the next step is shorter by it.
 class Sensitivity {
  public:
   static constexpr double kMin = 0.4, kGreatest = 1.6;
@@ -28,7 +28,7 @@ class Sensitivity {
   double mean() const;
 
  private:
-  std::vector<double> gain_;  ///< one a point of the path
+  std::vector<double> gain_;  ///< one per point of the path
 };
 
 }  // namespace camber::compensate

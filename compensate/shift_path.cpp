@@ -53,7 +53,7 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
     }
     if (!open) {
       chains_.push_back({points_.size(), 1});
-      points_.push_back({.move = m, .share = 0, .along_mm = 0, .place_mm = move.start_mm, .fixed = true});
+      points_.push_back({.move = m, .fraction = 0, .along_mm = 0, .place_mm = move.start_mm, .fixed = true});
       open = true;
     }
     first_of_move_[m] = points_.size() - 1;
@@ -67,7 +67,7 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
     for (int i = 1; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
       points_.push_back({.move = m,
-                         .share = u,
+                         .fraction = u,
                          .along_mm = along + u * length,
                          .place_mm = nc::point_at(program, move, u),
                          .fixed = !move.editable,
@@ -77,16 +77,16 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
   }
 }
 
-ShiftPath::PointInterval ShiftPath::find(std::uint32_t move, double share) const {
+ShiftPath::PointInterval ShiftPath::find(std::uint32_t move, double fraction) const {
   assert(contains(move));
   std::size_t i = first_of_move_[move];
   double from = 0;
-  while (i + 2 < points_.size() && points_[i + 1].move == move && points_[i + 1].share < share) {
+  while (i + 2 < points_.size() && points_[i + 1].move == move && points_[i + 1].fraction < fraction) {
     ++i;
-    from = points_[i].share;
+    from = points_[i].fraction;
   }
-  const double to = points_[i + 1].share;
-  return {i, std::clamp((share - from) / (to - from), 0.0, 1.0)};
+  const double to = points_[i + 1].fraction;
+  return {i, std::clamp((fraction - from) / (to - from), 0.0, 1.0)};
 }
 
 Vec3 ShiftPath::shift_at(const PointInterval& place) const {
@@ -172,8 +172,8 @@ bool all_on_circle(const nc::Arc& arc, const std::vector<Vec3>& points, std::siz
     while (turned < before - kPi) turned += 2 * kPi;
     if (i > a && turned <= before) return false;
     before = turned;
-    const double share = static_cast<double>(i - a) / static_cast<double>(b - a);
-    const double level = (points[a] + share * (points[b] - points[a]) - points[i]).dot(arc.normal);
+    const double fraction = static_cast<double>(i - a) / static_cast<double>(b - a);
+    const double level = (points[a] + fraction * (points[b] - points[a]) - points[i]).dot(arc.normal);
     if (std::abs(level) > tolerance_mm) return false;
   }
   return true;
@@ -290,7 +290,7 @@ constexpr double kNothing_mm = 0.0002;  // a move whose shifts are all smaller i
 std::vector<bool> ShiftPath::ends_of_moves() const {
   std::vector<bool> out(points_.size());
   for (std::size_t i = 0; i < points_.size(); ++i)
-    out[i] = points_[i].fixed || points_[i].share >= 1 || points_[i].share <= 0 ||
+    out[i] = points_[i].fixed || points_[i].fraction >= 1 || points_[i].fraction <= 0 ||
              program_->moves[points_[i].move].kind == nc::MoveKind::arc;
   return out;
 }

@@ -13,7 +13,7 @@ namespace camber::compensate {
 /// A place on the programmed path. Shifts are linear between neighbours of a chain.
 struct ControlPoint {
   std::uint32_t move = 0;
-  double share = 0;     ///< of the move's length
+  double fraction = 0;  ///< of the move's length
   double along_mm = 0;  ///< path length since the chain's start
   Vec3 place_mm = Vec3::Zero();
   Vec3 shift_mm = Vec3::Zero();
@@ -33,7 +33,7 @@ class ShiftPath {
  public:
   /// Lines and arcs longer than spacing_mm get points between their ends, but none closer than the control can process
   /// blocks at the move's feed, F T_b. Infinite: no move is split, and arcs have a point in the middle (full turns two)
-  /// that tells their radius.
+  /// that determine their radius.
   ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm,
             double block_time_s = 0);
 
@@ -49,7 +49,7 @@ class ShiftPath {
   /// The move is one whose points may be shifted.
   bool contains(std::uint32_t move) const { return move < first_of_move_.size() && first_of_move_[move] != kNone; }
   /// `move` must be contained.
-  PointInterval find(std::uint32_t move, double share) const;
+  PointInterval find(std::uint32_t move, double fraction) const;
   Vec3 shift_at(const PointInterval& place) const;
   std::vector<Vec3> shifts() const;
   void set_shifts(std::span<const Vec3> shifts);
@@ -60,10 +60,10 @@ class ShiftPath {
   /// the path without them would stray by more than tolerance_mm; an arc stays one where one passes the shifted points
   /// within it, else it becomes the fewest arcs that do.
   std::vector<nc::MoveEdit> edits(double tolerance_mm) const;
-  /// The same with lines split at the points that are kept (one a point) and nowhere else.
+  /// The same with lines split at the points that are kept (one per point) and nowhere else.
   std::vector<nc::MoveEdit> edits(const std::vector<bool>& kept, double tolerance_mm) const;
 
-  /// One a point: true for the ends of moves, for every point of an arc and for what is fixed.
+  /// One per point: true for the ends of moves, for every point of an arc and for what is fixed.
   std::vector<bool> ends_of_moves() const;
   /// Keeps the points of lines at which the feed changes.
   void keep_feed_changes(std::vector<bool>& kept) const;

@@ -1,5 +1,5 @@
 #pragma once
-// Where lines are split, and the path with no freedom but what those splits give it.
+// Splits of lines, and the path restricted to the freedom of those splits.
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace camber::compensate {
 
-/// The points of a path that are ends of blocks in the emitted program. A split is not free: a control that rounds
-/// corners rounds shorter blocks by less, so that a new split moves the path near by micrometres. So they are chosen
-/// once, where the shift asks for them, and stay.
+/// The points of a path that are ends of blocks in the emitted program. A control that rounds corners rounds shorter
+/// blocks less, so that a new split moves the path nearby by micrometres. Splits are therefore chosen once, where the
+/// shift requires them, and kept.
 class Splits {
  public:
   /// The ends of moves, and every point of an arc (which becomes the fewest arcs when it is emitted).
@@ -24,7 +24,7 @@ class Splits {
   const std::vector<bool>& kept() const { return kept_; }
 
  private:
-  std::vector<bool> kept_;  ///< one a point
+  std::vector<bool> kept_;  ///< one per point
 };
 
 /// The path of the kept points alone; between them its shifts are linear, as the emitted blocks are.
@@ -35,7 +35,7 @@ class ThinPath {
   ShiftPath& path() { return path_; }
   const ShiftPath& path() const { return path_; }
   std::vector<Observation> places_of(std::span<const Observation> observations) const;
-  /// The greatest of the values of the points that come to lie between two kept ones; one a kept point.
+  /// The greatest of the values of the points that come to lie between two kept ones; one per kept point.
   std::vector<double> greatest_of(std::span<const double> values) const;
   void take_shifts(const ShiftPath& whole);
   void give_shifts(ShiftPath& whole) const;

@@ -16,9 +16,9 @@ std::vector<std::optional<double>> mean_errors_mm(const ShiftPath& path, const O
   for (std::size_t i = 0; i < observed.points.size(); ++i) {
     if (!observed.compensated[i]) continue;
     const Observation& o = observed.points[i];
-    const auto add = [&](std::size_t at, double share) {
-      sums[at].error += share * o.area_mm2 * o.error_mm;
-      sums[at].area += share * o.area_mm2;
+    const auto add = [&](std::size_t at, double fraction) {
+      sums[at].error += fraction * o.area_mm2 * o.error_mm;
+      sums[at].area += fraction * o.area_mm2;
     };
     add(o.place.lower, 1 - o.place.upper_fraction);
     add(o.place.lower + 1, o.place.upper_fraction);

@@ -1,5 +1,5 @@
 #pragma once
-// How the surface steps from row to row, before and after: the pattern that an eye sees.
+// Steps of the surface from row to row, before and after compensation.
 #include <cstddef>
 #include <span>
 
@@ -9,7 +9,7 @@
 namespace camber::compensate {
 
 /// Differences of the mean error between points of neighbouring rows, of one sense or the other. Up and down milling
-/// need different shifts in truth: what counts is that the surfaces that they leave differ less than before.
+/// require different shifts; the criterion is that the steps between their surfaces become smaller.
 struct SurfaceSteps {
   double before_p95_mm = 0, before_max_mm = 0;
   double after_p95_mm = 0, after_max_mm = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// One shifted path: emitted, read again as the control will read it, and predicted.
+// A trial: a shifted path, emitted, read again from its text and predicted.
 #include <functional>
 #include <memory>
 #include <string>
@@ -24,14 +24,14 @@ struct Emitted {
 
 struct Trial {
   std::vector<Vec3> shifts;
-  std::vector<double> fractions;               ///< of the programmed feed, one a point of the path
-  std::shared_ptr<const Emitted> emitted;      ///< none: the program as given
+  std::vector<double> fractions;               ///< of the programmed feed, one per point of the path
+  std::shared_ptr<const Emitted> emitted;      ///< none: the given program
   std::vector<removal::SurfacePoint> surface;  ///< the same points in the same order, whatever the shifts
   std::vector<simulate::StampLoad> loads;
-  std::vector<double> total_mm;  ///< against the part's mesh, one a point; empty without a mesh
+  std::vector<double> total_mm;  ///< against the part's mesh, one per point; empty without a mesh
   int static_rounds = 0;
   std::size_t unsettled = 0;
-  double chip_mm3 = 0, stock_mm3 = 0;  ///< what the chips add up to and the stock loses
+  double chip_mm3 = 0, stock_mm3 = 0;  ///< volume of the chips and volume lost by the stock
   Observed observed;
 
   void keep(simulate::Prediction prediction);
@@ -45,7 +45,7 @@ machine::Operations moved_ranges(const machine::Operations& operations,
 /// program's coordinates have, three or four in millimetres, one more in inches.
 nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program& program);
 
-/// What all trials have in common. Everything passed must outlive the object.
+/// Runs trials. Everything passed must outlive the object.
 class TrialRunner {
  public:
   TrialRunner(const machine::Job& job, const simulate::Setup& given);
@@ -58,7 +58,7 @@ class TrialRunner {
                                       const std::vector<bool>& compensated) const;
   /// Only the text, with the header.
   nc::Emission text_of(const ShiftPath& path, const std::vector<bool>& splits) const;
-  /// Does not throw for what the given program was warned of already.
+  /// Does not throw for problems that were already reported for the given program.
   simulate::Prediction predict(const simulate::SimulatedProgram& program,
                                const std::function<void(double)>& progress) const;
   Observed observe(const ShiftPath& path, const Emitted* emitted,

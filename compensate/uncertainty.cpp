@@ -32,7 +32,7 @@ std::vector<UncertainParameter> parameters_of_json(const std::string& path, cons
   std::vector<UncertainParameter> out;
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.contains("parameters") || !json["parameters"].is_array())
-    fail(path, "is no report of fit-force or fit-feed; \"parameters\" with name, value and std_error was expected");
+    fail(path, "is not a report of fit-force or fit-feed; \"parameters\" with name, value and std_error was expected");
   for (const auto& p : json["parameters"]) {
     if (!p.is_object() || !p.contains("name") || !p["name"].is_string()) continue;
     const auto value = p.find("value"), error = p.find("std_error");
@@ -85,8 +85,7 @@ std::vector<ParameterGroup> read_uncertainty(const std::string& given) {
   }
   if (groups.empty())
     fail(given,
-         "holds no standard error; what fit-force or fit-feed wrote (with -o or --json), or a percentage, was "
-         "expected");
+         "has no standard error; output of fit-force or fit-feed (with -o or --json), or a percentage, was expected");
   std::vector<ParameterGroup> out;
   for (auto& [name, group] : groups) out.push_back(std::move(group));
   return out;
@@ -94,15 +93,15 @@ std::vector<ParameterGroup> read_uncertainty(const std::string& given) {
 
 machine::Job moved(const machine::Job& job, const ParameterGroup& group, std::vector<std::string>& unknown) {
   machine::Job out = job;
-  if (group.name == "force" && group.share > 0)
+  if (group.name == "force" && group.fraction > 0)
     for (const auto& c : machine::description(out.material.law).coefficients)
-      if (c.role != machine::CoefficientRole::shape) out.material.*c.field *= 1 + group.share;
-  if (group.name == "stiffness" && group.share > 0)
+      if (c.role != machine::CoefficientRole::shape) out.material.*c.field *= 1 + group.fraction;
+  if (group.name == "stiffness" && group.fraction > 0)
     for (auto& [number, tool] : out.tools) {
-      tool.youngs_modulus_MPa /= 1 + group.share;
-      tool.root_stiffness_N_per_mm /= 1 + group.share;
-      tool.root_axial_stiffness_N_per_mm /= 1 + group.share;
-      if (tool.axial_stiffness_N_per_mm) *tool.axial_stiffness_N_per_mm /= 1 + group.share;
+      tool.youngs_modulus_MPa /= 1 + group.fraction;
+      tool.root_stiffness_N_per_mm /= 1 + group.fraction;
+      tool.root_axial_stiffness_N_per_mm /= 1 + group.fraction;
+      if (tool.axial_stiffness_N_per_mm) *tool.axial_stiffness_N_per_mm /= 1 + group.fraction;
     }
   for (const auto& p : group.parameters) {
     if (const auto* coefficient = machine::find_coefficient(p.name))
@@ -147,10 +146,10 @@ Band band_of(const std::vector<removal::SurfacePoint>& before, const std::vector
     out.deepest_um = std::max(0.0, -1000 * low(i));
     if (passed >= kAreaDeepest * whole) break;
   }
-  const auto holds = [&](double share) {
+  const auto holds = [&](double fraction) {
     double over = 0;
     for (std::size_t i = 0; i < after.size(); ++i) {
-      const double e = (1 - share) * before[i].error_mm + share * after[i].error_mm;
+      const double e = (1 - fraction) * before[i].error_mm + fraction * after[i].error_mm;
       if (e - kOneSided * sigma[i] < -tolerance_mm) over += area[i];
     }
     return over <= kAreaAllowed * whole;

@@ -1,5 +1,5 @@
 #pragma once
-// How sure a residual error is, when the model's parameters are known so well and no better.
+// Uncertainty of the residual error due to the standard errors of the model parameters.
 #include <functional>
 #include <optional>
 #include <string>
@@ -17,11 +17,11 @@ struct UncertainParameter {
   double value = 0, std_error = 0;
 };
 
-/// Parameters that are moved together by one standard error each.
+/// Parameters that are changed together by one standard error each.
 struct ParameterGroup {
   std::string name;  ///< "cutting", "edge", "stiffness", "force", "drives", "limits"
   std::vector<UncertainParameter> parameters;
-  double share = 0;  ///< instead of parameters: a relative standard error of the whole group
+  double fraction = 0;  ///< instead of parameters: a relative standard error of the whole group
 };
 
 /// A percentage ("10", "10 %"): the forces and the tool's stiffness, each uncertain by so much, two groups. Otherwise
@@ -29,7 +29,7 @@ struct ParameterGroup {
 /// "# NAME: VALUE +- ERROR UNIT". Errors [uncertainty]: neither, or a file without a standard error.
 std::vector<ParameterGroup> read_uncertainty(const std::string& file_or_percent);
 
-/// The job with one group moved by one standard error. Parameters that the job has not are named in `unknown`.
+/// The job with one group changed by one standard error. Parameters that the job does not have are listed in `unknown`.
 machine::Job moved(const machine::Job& job, const ParameterGroup& group, std::vector<std::string>& unknown);
 
 struct Band {
@@ -39,18 +39,17 @@ struct Band {
   };
   std::vector<Group> groups;
   double sigma_rms_um = 0;   ///< rms over the surface of the standard error of the error
-  double rms_um = 0;         ///< of the residual to be expected: sqrt(rms^2 + sigma^2)
+  double rms_um = 0;         ///< expected residual: sqrt(rms^2 + sigma^2)
   double p95_um = 0;         ///< 95th percentile of |error| + 1.96 sigma
-  double deepest_um = 0;     ///< into the part, of the error less 1.64 sigma, at the 99th percentile of the area
+  double deepest_um = 0;     ///< gouge depth: 99th percentile by area of the error minus 1.64 sigma
   double safe_fraction = 1;  ///< see band_of
 };
 
 /// First-order propagation: the standard error of each point of the surface is the root of the sum of squares of the
 /// groups' changes (`changes_mm`, one list a group, of the surface of the compensated program).
 ///
-/// safe_fraction: the largest share of the compensation with which, at 95 % confidence in each point, no more of the
-/// area is cut deeper into the part than the tolerance than one twentieth; the error goes linearly from before to
-/// after.
+/// safe_fraction: the largest fraction of the compensation with which, at 95 % confidence in each point, at most 5 % of
+/// the area is cut deeper than the tolerance. The error is interpolated linearly between before and after.
 Band band_of(const std::vector<removal::SurfacePoint>& before, const std::vector<removal::SurfacePoint>& after,
              const std::vector<std::string>& names, const std::vector<std::vector<double>>& changes_mm,
              double tolerance_mm);

@@ -24,21 +24,21 @@ CauseWords words_of(Cause cause) {
     case Cause::correctable:
       return {"could still be corrected by a shift", "more rounds (max_rounds) or a finer voxel_mm"};
     case Cause::guard:
-      return {"is left so as not to cut deeper than the depth limit", "a lower feed or a wider band (profile_um)"};
+      return {"is given up to keep the depth limit", "a lower feed or a wider band (profile_um)"};
     case Cause::limited:
-      return {"is held back by max_shift_mm", "a larger max_shift_mm, a shorter tool or a lower feed"};
+      return {"is limited by max_shift_mm", "a larger max_shift_mm, a shorter tool or a lower feed"};
     case Cause::short_range:
       return {"changes along the path faster than a smooth shift can (entries, corners)", "a lower feed there"};
     case Cause::opposed:
-      return {"is on surfaces that face each other and are made in one pass", "a finishing pass for each side"};
+      return {"is on opposite surfaces that one pass generates", "a finishing pass for each side"};
     case Cause::tip:
-      return {"is about the axis of a round tip", "a tilted tool or another path there"};
+      return {"is near the axis of a round tip", "a tilted tool or another path there"};
     case Cause::bow:
       return {"differs along the cutter (helix bow)", "two axial passes, a shorter tool or a lower feed"};
     case Cause::not_compensated:
       break;
   }
-  return {"is made by moves that are not compensated", "naming them in [compensation] operations"};
+  return {"is due to moves that are not compensated", "naming them in [compensation] operations"};
 }
 
 double part_of(const ErrorSplit& s, Cause cause) {
@@ -131,7 +131,7 @@ std::string sentence(const CauseFigure& c) {
   const std::string where =
       c.lines.empty() ? ""
                       : fmt::format(", most in line{} {}", c.lines.size() > 1 ? "s" : "", fmt::join(c.lines, ", "));
-  return fmt::format("{:.2f} um rms {}{}; {} would take it away", c.rms_um, words.what, where, words.remedy);
+  return fmt::format("{:.2f} um rms {}{}; {} would remove it", c.rms_um, words.what, where, words.remedy);
 }
 
 }  // namespace camber::compensate

@@ -1,5 +1,5 @@
 #pragma once
-// The verdict on a program: plain figures of the surface that compensated moves make, and what is left of the error.
+// Verdict on a program: error figures of the surface of the compensated moves, and the causes of the remaining error.
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,24 +19,24 @@ struct PlainFigures {
   double in_band_fraction = 0;                    ///< of the area whose judged error is within tolerance or profile
 };
 
-/// `observed`: of the same surface, with its reach. `total_mm`: one a point, or empty.
+/// `observed`: of the same surface, with its reach. `total_mm`: one per point, or empty.
 PlainFigures plain_figures(const std::vector<removal::SurfacePoint>& surface, const std::vector<double>& total_mm,
                            const Observed& observed, const machine::CompensationSettings& asked);
 
-/// What the verdict is on: error_um, or deflection_um where the reference is the machine.
+/// The judged error: error_um, or deflection_um if the reference is the machine.
 const removal::ErrorFigures& judged_of(const PlainFigures& figures, machine::Reference reference);
 
 /// The 95th percentile is within tolerance_um; with profile_um: 95 % of the area is within the band.
 bool within_tolerance(const PlainFigures& figures, const machine::CompensationSettings& asked);
 
-/// A part of what is left, and the lines of the program that have most of it.
+/// A part of the remaining error, and the lines of the program with most of it.
 struct CauseFigure {
   Cause cause = Cause::correctable;
   double rms_um = 0;
   std::vector<std::size_t> lines;  ///< 1-based, the worst ones, ascending
 };
 
-/// Those that make a tenth of the mean square or more, the largest first. `lines`: of the judged program, one a point
+/// Those that make a tenth of the mean square or more, the largest first. `lines`: of the judged program, one per point
 /// of the surface; 0: unknown.
 std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<PointCause>& points,
                                    const Observed& observed, const std::vector<std::size_t>& lines);

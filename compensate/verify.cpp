@@ -56,15 +56,15 @@ std::vector<LineRun> runs_of(const CompensationResult& c) {
 }
 
 [[noreturn]] void fail_on_record(const std::string& path) {
-  fail_on_file(path, "is no record of camber compensate; one that it wrote beside a program was expected",
+  fail_on_file(path, "is not a record of camber compensate; the record beside an emitted program was expected",
                "record-format");
 }
 
 void check_text(const std::string& path, const std::string& hash, const char* since) {
   if (hash_of(SourceText::read(path).text()) == hash) return;
   fail_on_file(path,
-               fmt::format("is not what it was {}, so the record does not say which line is which; that program, or "
-                           "camber compensate once more, was expected",
+               fmt::format("has changed since {}, so the record no longer matches its lines; the unchanged program, or "
+                           "a new run of camber compensate, was expected",
                            since),
                "program-edited");
 }
@@ -163,19 +163,19 @@ std::string find_record(const std::string& place) {
   if (found.size() == 1) return found.front();
   if (found.empty())
     fail_on_file(place,
-                 "holds no record (*.record.json); the folder of a program that camber compensate wrote was expected",
+                 "has no record (*.record.json); the folder of a program that camber compensate wrote was expected",
                  "record-missing");
   for (std::string& path : found) path.resize(path.size() - kEnding.size());
-  fail_on_file(place,
-               fmt::format("holds the records of {} programs; one of them was expected: {}", found.size(),
-                           fmt::join(found, ", ")),
-               "record-several");
+  fail_on_file(
+      place,
+      fmt::format("has the records of {} programs; one of them was expected: {}", found.size(), fmt::join(found, ", ")),
+      "record-several");
 }
 
 void check_record(const Record& record, const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
-  check_text((folder / record.program).string(), record.program_hash, "when camber compensate wrote it");
-  check_text((folder / record.given).lexically_normal().string(), record.given_hash, "when it was compensated");
+  check_text((folder / record.program).string(), record.program_hash, "camber compensate wrote it");
+  check_text((folder / record.given).lexically_normal().string(), record.given_hash, "it was compensated");
 }
 
 Verification verify(const machine::Job& job, const Record& record, Diagnostics& diagnostics,
@@ -199,7 +199,7 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
   out.within_tolerance = within_tolerance(out.plain, job.compensation);
   out.depth_limit_um = record.depth_limit_um;
   out.depth = depth_of(p.surface, out.reference, p.not_judged_mm2, out.depth_limit_um);
-  out.within_part = out.depth.held_um <= out.depth_limit_um;
+  out.within_part = out.depth.gouge_depth_p999_um <= out.depth_limit_um;
   out.settled = p.cut.unsettled == 0;
   out.unseen_mm2 = p.unseen_mm2;
   out.border_mm2 = p.border_mm2;

@@ -1,6 +1,6 @@
 #pragma once
-// An emitted program judged again, from its text: the record that compensate leaves beside it, the job with which
-// predict judges it, and the verdict.
+// Judging an emitted program again from its text: the record beside it, the job with which predict judges it, and the
+// verdict.
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -17,11 +17,11 @@ struct LineRun {
   std::size_t emitted = 0, given = 0, count = 0;
 };
 
-/// What is needed to judge an emitted program as compensate did.
+/// Data needed to judge an emitted program as compensate did.
 struct Record {
   std::string program, program_hash;  ///< file name beside the record; hash of its text
   std::string given, given_hash;      ///< path of the given program, from the record's folder
-  std::string job;                    ///< TOML; paths count from the record's folder
+  std::string job;                    ///< TOML; paths are relative to the record's folder
   double depth_limit_um = 0;
   removal::ErrorFigures judged_um;  ///< what compensate found
   std::vector<LineRun> lines;       ///< ascending; lines that are in none of them are new
@@ -58,7 +58,7 @@ struct Verification {
   double unseen_mm2 = 0, border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;
   removal::ErrorFigures recorded_um;  ///< what compensate found
-  std::vector<std::string> doubts;    ///< why the figures are not to be relied on (simulate/verdict.h)
+  std::vector<std::string> doubts;    ///< reasons why the figures are not reliable (simulate/verdict.h)
   double machine_time_s = 0;
 };
 

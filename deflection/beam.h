@@ -7,7 +7,7 @@
 
 namespace camber::deflection {
 
-/// Heights are measured from the tip; the holder's face is at `length_mm`.
+/// Heights are measured from the tip; the holder face is at the end of the last section.
 class Beam {
  public:
   struct Section {
@@ -22,8 +22,8 @@ class Beam {
   /// Deflection at height z_out under a unit lateral force at height z_force, mm/N:
   /// w = 1/k_root + sum over the sections of the integral of (z - z_out)(z - z_force) / (E I) dz from the higher
   /// of the two heights to the holder, and of 1 / (kappa G A) dz where shear counts. Euler-Bernoulli, with shear
-  /// Timoshenko (Castigliano; both parts exact); symmetric in its arguments (Maxwell). Heights beyond the holder's
-  /// face count as the face.
+  /// Timoshenko (Castigliano; both parts exact); symmetric in its arguments (Maxwell). Heights beyond the holder face
+  /// are treated as the face.
   double compliance_mm_per_N(double z_out_mm, double z_force_mm) const;
 
   /// How far the tip yields along the axis under a unit axial force at height z_force, mm/N: 1/k_root + sum over the
@@ -31,7 +31,7 @@ class Beam {
   double axial_compliance_mm_per_N(double z_force_mm) const;
 
   /// First natural frequency of the beam alone, Hz (Rayleigh's quotient with the shape under a tip load), for the
-  /// warning that a static deflection no longer holds. `density_kg_per_m3` of the shank.
+  /// warning that a static deflection is no longer valid. `density_kg_per_m3` of the shank.
   double first_frequency_hz(const machine::Tool& tool, double density_kg_per_m3) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Where, between two samples, an edge enters the material and leaves it.
+// Instants, between two samples, at which an edge enters and leaves the material.
 #include <span>
 #include <vector>
 
@@ -8,24 +8,24 @@
 
 namespace camber::deflection {
 
-/// An end of a chip on one ring of the envelope. Lengths of time are in rotation steps.
+/// An end of a chip on one ring of the envelope. Times are in rotation steps.
 struct ChipEnd {
   std::uint32_t point = 0;  ///< of the envelope: the last sample in the cut
   int ring = 0;
-  int step = 0;               ///< of the pitch, at which an even tooth is there
+  int step = 0;               ///< rotation step of the pitch at which a uniform tooth is there
   int side = 1;               ///< 1: the next sample, at the larger angle, is out of the cut; -1: the one before
-  double at = 0.5;            ///< from the sample outwards, 0 to 1: where the chip of the ring's middle ends
-  double ramp = 0;            ///< how long the end takes to cross the ring's width; 0: all at once, or not known
+  double at = 0.5;            ///< from the sample outwards, 0 to 1: end of the chip in the middle of the ring
+  double ramp = 0;            ///< time over which the end crosses the ring width; 0: at once, or not known
   double thickness_mm = 0;    ///< at the sample
-  double fall_mm = 0;         ///< of the thickness, a step outwards; 0: the chip ends at its full thickness
+  double fall_mm = 0;         ///< decrease of the thickness per step outwards; 0: the chip ends at its full thickness
   double width_fraction = 1;  ///< of the ring that is in the cut at the sample
 };
 
-/// Ends of all chips of a stamp, ring by ring. A sample out of the cut tells by its negative thickness how far the
-/// material is; where it does not, the chip is drawn out from its last two samples.
+/// Ends of all chips of a stamp, ring by ring. For a sample out of the cut the negative thickness is the distance to
+/// the material; without it, the chip is extrapolated from its last two samples.
 class ChipEnds {
  public:
-  /// The result is good until the next call.
+  /// The result is valid until the next call.
   std::span<const ChipEnd> find(const removal::EnvelopeGrid& envelope, const removal::EnvelopeBlocks& blocks,
                                 std::span<const removal::ChipBlock> chips);
 

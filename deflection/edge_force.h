@@ -4,8 +4,8 @@
 
 namespace camber::deflection {
 
-/// Components along the edge's motion, the envelope's outward normal and the meridian that points up and
-/// outward, as the work feels them; the tool feels the opposite. N.
+/// Components along the motion of the edge, the outward normal of the envelope and the meridian that points up and
+/// outward, acting on the work; the force on the tool is the opposite. N.
 struct EdgeForce {
   double tangential_N = 0, radial_N = 0, axial_N = 0;
 };
@@ -14,9 +14,9 @@ struct EdgeForce {
 /// [N] = ([MPa][mm] + [N/mm])[mm]
 /// Source of the directions on a general cutter: Engin & Altintas 2001. chip_thickness_mm: uncut, along the normal;
 /// zero or less means in air, and the force is zero.
-/// edge_ramp_mm > 0: below this thickness the force is the chord from zero, the edge terms' as well as the law's, whose
-/// slope may grow without bound at zero as Kienzle's does (a tool that the edge force alone can push out of the cut has
-/// no equilibrium with a force that jumps).
+/// edge_ramp_mm > 0: below this thickness the force (cutting and edge terms) is the chord from zero. Without it the
+/// slope of a law may be unbounded at zero, as Kienzle's is, and a tool that the edge force alone can push out of the
+/// cut has no equilibrium with a force that jumps.
 EdgeForce edge_force(const machine::Material& material, double chip_thickness_mm, double chip_width_mm,
                      double edge_ramp_mm = 0);
 

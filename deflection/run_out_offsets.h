@@ -1,5 +1,5 @@
 #pragma once
-// Run-out of equally spaced teeth: how far the tool's axis lies off the spindle's at each rotation step.
+// Run-out of equally spaced teeth: offset of the tool axis from the spindle axis at each rotation step.
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -17,8 +17,8 @@ class RunOutOffsets {
   RunOutOffsets(const Teeth& teeth, int steps_per_pitch);
 
   bool none() const { return offset_mm_.empty(); }
-  /// By the rotation steps of a tooth passing, mm, in the tool's frame; `passing` counts since the tool began. Empty
-  /// without run-out.
+  /// By the rotation steps of a tooth passing, mm, in the tool's frame; `passing` counts since the start of the tool.
+  /// Empty without run-out.
   std::span<const Vec2> of(std::size_t passing) const;
   /// Adds `times` the offsets to a row of removal::DeflectionTable, [nodes][steps][2].
   void add(std::size_t passing, float times, std::size_t nodes, std::span<float> row) const;

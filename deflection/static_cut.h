@@ -1,5 +1,5 @@
 #pragma once
-// The deflected cutter through the stock, each tooth passing in its static equilibrium before the next one.
+// Cutting with the deflected cutter: each tooth passing is brought to its static equilibrium before the next one.
 #include <array>
 #include <span>
 #include <vector>
@@ -10,23 +10,25 @@
 
 namespace camber::deflection {
 
-/// Why a tooth passing has no static equilibrium that was found.
+/// Why no static equilibrium was found for a tooth passing.
 enum class NoEquilibrium {
-  pulled_in,   ///< the force grows faster with the chip than the tool resists: it bends into the material without end
-  pushed_out,  ///< the tool bends away by more than removal::DeflectedEngager::kMaxDeflection_mm
-  swings,      ///< reading after reading asks for another bend
+  pulled_in,   ///< the force grows faster with the chip than the restoring force: the deflection into the material
+               ///< diverges
+  pushed_out,  ///< the tool deflects away by more than removal::DeflectedEngager::kMaxDeflection_mm
+  swings,      ///< the deflection alternates from reading to reading
 };
 
 struct SettleOptions {
-  int max_rounds = 40;     ///< readings of one stamp's chips
-  double settle_um = 0.1;  ///< change of the deflection that the next reading may bring, rms over the cut, or ...
-  double settle_fraction = 0.01;  ///< ... this share of its rms
+  int max_rounds = 40;     ///< maximum number of readings of the chips of a stamp
+  double settle_um = 0.1;  ///< converged if the next reading changes the deflection by less than this, rms over the
+                           ///< cut, or by less than ...
+  double settle_fraction = 0.01;  ///< ... this fraction of its rms
 };
 
-/// What one tooth passing leaves alone decides the next: so each is brought to its equilibrium by readings of its chips
-/// and solutions for them (StaticEquilibrium), then cut. Run-out of equally spaced teeth is an offset of the axis that
-/// turns with the tool: the rows hold it beside the deflection, and what each tooth takes follows from what the ones
-/// before have left.
+/// The surface left by one tooth passing determines the next one. Each is brought to its equilibrium by reading its
+/// chips and solving for them (StaticEquilibrium), repeatedly, and then cut. Run-out of equally spaced teeth is an
+/// offset of the axis that turns with the tool: the rows contain deflection plus offset, and the chip of each tooth
+/// follows from the surface left by the previous ones.
 class StaticCut {
  public:
   StaticCut(removal::Stock& stock, const removal::Stock& blank, const removal::EnvelopeGrid& envelope,
@@ -47,13 +49,12 @@ class StaticCut {
     int rounds = 0;
     bool settled = true;
     NoEquilibrium reason = NoEquilibrium::swings;  ///< where it has not
-    std::span<const removal::ChipSample> chips;    ///< gone at the next call but one
+    std::span<const removal::ChipSample> chips;    ///< valid until the call after the next
   };
-  /// Cuts stamps[from + k]. Where it finds no equilibrium, or one deflected beyond
-  /// removal::DeflectedEngager::kMaxDeflection_mm, the cutter keeps the bend nearest to one, in the latter case that of
-  /// the stamp before.
+  /// Cuts stamps[from + k]. If the static deflection does not converge, the closest approximation is used; if it
+  /// exceeds removal::DeflectedEngager::kMaxDeflection_mm, that of the previous stamp.
   Passing cut(std::size_t k);
-  /// Leaves the stock as cut. Returns the volume that was taken since the last commit, mm^3.
+  /// Writes the cut to the stock. Returns the volume removed since the last commit, mm^3.
   double commit() { return engager_.commit(); }
 
  private:
@@ -70,8 +71,8 @@ class StaticCut {
   std::size_t from_ = 0;
   removal::DeflectionTable* deflections_ = nullptr;
   std::vector<removal::DeflectedChipSample> read_;
-  std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this passing and of the one before, in turns
-  std::vector<float> swing_;                               ///< the bend a few readings ago
+  std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this passing and of the previous one, alternating
+  std::vector<float> swing_;                               ///< the deflection a few readings ago
 };
 
 }  // namespace camber::deflection

@@ -1,5 +1,5 @@
 #pragma once
-// The bend at which the tool stands still: delta = C F(chip(delta)), tooth passing by tooth passing.
+// Static equilibrium of force and deflection, delta = C F(chip(delta)), for one tooth passing.
 #include <array>
 #include <cstddef>
 #include <span>
@@ -12,19 +12,19 @@
 
 namespace camber::deflection {
 
-/// Solves the equilibrium of one tooth passing for chips that were read once: as the tool bends, the depth of a point
-/// and what the motion allows it change as the reading tells, the latter also with the lean of the deflected envelope,
-/// that is with the deflections of the rotation steps before and after; force follows by its law, with the edge's ramp,
-/// ceasing and beginning contact. Newton's method over all rotation steps at once; the lateral deflection that feeds
-/// back is taken as a straight line over the height (what is left of delta - C F is that of all heights), the axial one
-/// is the same at all heights.
+/// Solves the equilibrium of one tooth passing for chips that were read once. With the deflection, the depth of a point
+/// and its motion bound change linearly as read; the bound also depends on the tilt of the deflected envelope, that is
+/// on the deflections of the previous and next rotation steps. Force follows from its law, including the edge ramp and
+/// loss and start of contact. Newton's method over all rotation steps at once; the lateral deflection that feeds back
+/// is taken as a straight line over the height (what is left of delta - C F is that of all heights), the axial one is
+/// the same at all heights.
 class StaticEquilibrium {
  public:
   StaticEquilibrium(const removal::EnvelopeGrid& envelope, const ToothPassModel& model);
 
   struct Step {
-    double rms_um = 0;   ///< of the change, at the tip over the rotation steps in the cut
-    double size_um = 0;  ///< the same of the deflection
+    double rms_um = 0;   ///< rms of the change at the tip over the rotation steps in the cut
+    double size_um = 0;  ///< the same for the deflection
     bool solved = true;
     int steps = 0;  ///< of Newton's method
   };

@@ -1,5 +1,5 @@
 #pragma once
-// Forces of a straight cut at constant depth and width, without a stock: what dynamometer tests are made of.
+// Forces of a straight cut at constant depth and width, without a stock, as in dynamometer tests.
 #include <vector>
 
 #include "base/geometry.h"
@@ -8,7 +8,7 @@
 
 namespace camber::deflection {
 
-/// Where the work lies, seen along the tool's feed: under M3 up milling has it on the left, down milling on the right.
+/// Side of the work, seen along the feed of the tool: under M3 left for up milling, right for down milling.
 enum class Milling { up, down };
 
 struct SteadyCut {
@@ -16,12 +16,12 @@ struct SteadyCut {
   double axial_depth_mm = 0;
   double radial_depth_mm = 0;  ///< up to the diameter; at the diameter: a slot
   Milling milling = Milling::up;
-  /// Chips as the circles of the teeth before leave them, to second order in feed / radius (removal/engagement.h), with
-  /// the little that a tooth cuts behind the feed's quadrant; else h = f sin(phi) sin(kappa), as closed forms have it.
+  /// Circular chip: to second order in feed / radius (removal/engagement.h), including the small cut behind the
+  /// quadrant of the feed. Otherwise h = f sin(phi) sin(kappa), as in the closed forms.
   bool circular_chip = false;
 };
 
-/// Offset of the cutter's axis from the spindle's, in the tool's frame: x towards tooth 1's edge at the tip,
+/// Offset of the cutter axis from the spindle axis, in the tool's frame: x towards tooth 1's edge at the tip,
 /// counter-clockwise seen from above.
 using RunOut = Vec2;
 
@@ -50,9 +50,10 @@ class SteadyCutModel {
  private:
   struct Ring {
     double radius_mm = 0, width_mm = 0, lag_rad = 0;
-    double sine = 0, cosine = 0;               ///< of the profile's normal angle
-    double entry_rad = 0, exit_rad = 0;        ///< counter-clockwise from the feed, entry < exit; equal: never cuts
-    bool fades_in = false, fades_out = false;  ///< there the chip begins or ends at nothing, not at the work's side
+    double sine = 0, cosine = 0;         ///< of the profile's normal angle
+    double entry_rad = 0, exit_rad = 0;  ///< counter-clockwise from the feed, entry < exit; equal: never cuts
+    bool fades_in = false,
+         fades_out = false;  ///< there the chip begins or ends at zero thickness, not at the side of the work
     double meridian_curvature = 0, parallel_curvature = 0;  ///< 1/mm; 0 with the closed forms' chip
   };
   /// What a motion by `feed` along the feed's direction takes at phi.

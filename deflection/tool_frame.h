@@ -1,6 +1,6 @@
 #pragma once
-// The directions of an edge on the cutter's envelope, and its force in the tool's frame (base/tool_pose.h). Only here
-// do tangential, radial and axial become x, y, z.
+// The directions of an edge on the cutter's envelope, and its force in the tool's frame (base/tool_pose.h). This is the
+// only conversion from tangential, radial, axial to x, y, z.
 //
 // The tool turns clockwise seen from above (M3). At the angle phi (counter-clockwise from x) and the profile's normal
 // angle kappa (0: down, pi/2: outwards) the edge moves along t, the envelope's outward normal is n, and m is the

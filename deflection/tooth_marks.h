@@ -1,5 +1,6 @@
 #pragma once
-// Teeth that are not even: where the tool stands as each of them passes a place, for the marks that they leave.
+// Non-uniform teeth (unequal pitch, run-out): tool deflection at the instant at which each tooth passes, for the marks
+// that they leave.
 #include <cstddef>
 
 #include "deflection/teeth.h"
@@ -8,22 +9,22 @@
 
 namespace camber::deflection {
 
-/// Even teeth pass all points of a rotation step at one instant of a tooth passing, and a row of that many deflections
-/// says all. Of others each comes at its own instant, and stands out by its own throw: their rows hold a deflection for
-/// every point of the turn, as if the tool had one tooth.
+/// Uniform teeth pass all points of a rotation step at one instant of a tooth passing, so one row of deflections
+/// suffices. Non-uniform teeth pass at different instants and with different run-out: their rows contain a deflection
+/// for every point of the revolution, as if the tool had one tooth.
 class ToothMarks {
  public:
   ToothMarks(const removal::EnvelopeGrid& envelope, const Teeth& teeth);
 
-  /// For reading the tables: the cutter, with one tooth, and no points.
+  /// The cutter with one tooth and no points, for reading the tables.
   const removal::EnvelopeGrid& envelope() const { return envelope_; }
 
-  /// Takes from the passings' deflections those of stamps from ... from + count - 1, each point's at the instant at
-  /// which that tooth is there whose turn it is. `passing`: number of the stamp `from`. An instant of the passing after
-  /// the table's last is taken from that one, as if it went on alike.
+  /// Selects, for stamps from ... from + count - 1, the deflection of each point at the instant at which its tooth
+  /// passes. `passing`: number of the stamp `from`. An instant of the passing after the table's last is taken from the
+  /// last one.
   removal::DeflectionTable bending(const removal::DeflectionTable& deflections, std::size_t from, std::size_t count,
                                    std::size_t passing) const;
-  /// Adds the run-out: the cutter's axis turns about the spindle's.
+  /// Adds the run-out: the rotation of the cutter axis about the spindle axis.
   void add_run_out(removal::DeflectionTable& deflections, std::size_t passing) const;
 
  private:

@@ -14,27 +14,27 @@
 
 namespace camber::deflection {
 
-/// Deflections between rotation steps stand this many times as close: an edge that enters the material all at once
-/// changes the force within less than a step.
+/// Number of deflections per rotation step: an edge that enters the material at once changes the force within less than
+/// a step.
 constexpr int kFine = 4;
 
 /// One tooth passing. Sized once, filled for many stamps.
 struct ToothPass {
   std::vector<Vec3> force_N;         ///< per rotation step, on the tool, tool's frame
-  std::vector<double> torque_Nmm;    ///< per rotation step, that the spindle must give
-  double work_Nmm = 0;               ///< of the spindle over the tooth passing
+  std::vector<double> torque_Nmm;    ///< spindle torque per rotation step
+  double work_Nmm = 0;               ///< work work of the spindle over the tooth passing
   double chip_max_mm = 0;            ///< thickest chip
-  double chip_area_mm2 = 0;          ///< of the envelope that cuts; the chips' volume over it is the mean thickness
+  double chip_area_mm2 = 0;          ///< area of the envelope in the cut; chip volume / area is the mean thickness
   std::vector<float> deflection_mm;  ///< as a row of removal::DeflectionTable
 };
 
-/// One turn of the spindle, tooth by tooth. Turned clockwise by angle a from where tooth 1's edge at the tip points
-/// along +X, the edge of tooth t stands at t pitches minus a, counter-clockwise from +X.
+/// One revolution of the spindle, tooth by tooth. Turned clockwise by angle a from where tooth 1's edge at the tip
+/// points along +X, the edge of tooth t stands at t pitches minus a, counter-clockwise from +X.
 struct TurnForces {
   struct Tooth {
     Vec3 force_N = Vec3::Zero();  ///< on the tool, tool's frame
     double torque_Nmm = 0;
-    double chip_max_mm = 0;  ///< thickest along the edge at this instant
+    double chip_max_mm = 0;  ///< maximum along the edge at this instant
   };
   std::vector<std::vector<Tooth>> teeth;  ///< [flutes][rotation steps of a turn]
 };
@@ -60,16 +60,15 @@ class ToothPassModel {
   double axial_compliance_mm_per_N() const { return axial_compliance_mm_per_N_; }
   int steps() const { return envelope_.steps_per_pitch; }
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
-  /// `passing` counts tooth passings since the tool began: it tells which tooth stands where, which only matters where
-  /// the teeth are not even. feed_mm: motion in one mean pitch.
+  /// `passing` counts tooth passings since the start of the tool and identifies the tooth; it only matters for
+  /// non-uniform teeth. feed_mm: motion in one mean pitch.
   void evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const Vec3& feed_mm,
                 ToothPass& out) const;
-  /// The same of chips in blocks, the instants told at which each edge element enters the material and leaves it;
-  /// without feedback.
-  /// fine_mm: takes the deflection of steps * kFine rotation steps, a row of removal::DeflectionTable.
+  /// The same for chips in blocks, with the instants at which each edge element enters and leaves the material; without
+  /// feedback. fine_mm: takes the deflection of steps * kFine rotation steps, a row of removal::DeflectionTable.
   void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
                 const Vec3& feed_mm, ToothPass& out, std::span<float> fine_mm) const;
-  /// The elements that chips are made by; of chips with negative thickness too.
+  /// The edge elements of the chips, including those with negative thickness.
   void edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const Vec3& feed_mm,
                      std::vector<EdgeElement>& out) const;
   EdgeDirections direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
@@ -87,18 +86,18 @@ class ToothPassModel {
   /// Calls f(chip number, rotation step, thickness) for the elements of chips.
   template <class Chips, class Function>
   void for_each_element(const Chips& chips, std::size_t passing, const Vec3& feed, Function f) const;
-  /// How much deeper than even teeth tooth j cuts into an older surface, along the normal. One that the same tool cut
-  /// lies as deep as the tooth that stands out most left it.
+  /// Additional depth of tooth j in an older surface compared with uniform teeth, along the normal. A surface cut by
+  /// the same tool is as deep as its longest tooth left it.
   double deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const;
-  /// What tooth j takes where even teeth would take the chip.
+  /// Chip of tooth j where uniform teeth would take `chip`.
   double tooth_chip_mm(int j, const removal::ChipSample& chip, const EdgeDirections& d,
                        const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const;
-  /// The same of a block of points; nothing is cut off below, so that what is not in the cut tells how far off it is.
+  /// The same for a block of points, without clipping at zero: negative values are distances to the material.
   removal::ChipBlock tooth_block(int j, const removal::EnvelopeBlocks& blocks, const removal::ChipBlock& even,
                                  const Vec3& feed) const;
-  /// What the motion in one mean pitch allows at a point, along the normal (removal/engagement.h).
+  /// Motion bound of one mean pitch at a point, along the normal (removal/engagement.h).
   struct MotionChip {
-    double even_mm, bulge_mm;  ///< the latter what curvature adds to it
+    double even_mm, bulge_mm;  ///< bulge_mm: the part due to curvature
   };
   MotionChip motion_chip(const EdgeDirections& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
   /// Adds the force and deflection of one edge element at rotation step m.
@@ -119,9 +118,9 @@ class ToothPassModel {
 };
 
 /// Heights for a cutter that is engaged up to `top_mm`: evenly spaced, where 12 nodes suffice at most 2 mm or a tenth
-/// of the fluted length L apart. Below a force F a beam is straight, above it bent by F (z - z_F) / (E I): a straight
-/// line between nodes a tenth of L apart beside a force is off by less than a twentieth of a percent of F L^3 / (3 E
-/// I).
+/// of the fluted length L apart. Below a force F a beam is straight, above it its curvature is F (z - z_F) / (E I):
+/// linear interpolation between nodes a tenth of L apart beside a force has an error of less than a twentieth of a
+/// percent of F L^3 / (3 E I).
 std::vector<double> node_heights(double top_mm, double fluted_length_mm = 0);
 
 }  // namespace camber::deflection

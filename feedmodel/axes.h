@@ -1,5 +1,5 @@
 #pragma once
-// From commanded to actual position, axis by axis: filter, exponential lags, position loop.
+// Actual axis positions from the commanded ones: filter, exponential lags, position loop.
 #include <array>
 #include <optional>
 
@@ -12,10 +12,10 @@ namespace camber::feedmodel {
 
 /// Seconds of the moving average of every axis: its own filter, or what turns its acceleration into one with
 /// the given jerk (acceleration / jerk), whichever is longer. Jerk windows are those of the slowest axis for
-/// all three, so that they do not bend the path.
+/// all three, so that they do not distort the path.
 Vec3 filter_times_s(const machine::Machine& machine);
 
-/// How long, at most, the axes need to come to rest behind a command that rests; 0: they follow without lag.
+/// Upper bound of the settling time of the axes after the command stops; 0: no lag.
 double settling_time_s(const machine::Machine& machine);
 
 class Axes {

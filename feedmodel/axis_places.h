@@ -1,5 +1,5 @@
 #pragma once
-// Where the axes are while a program goes to the reference point, whose place in the work frame it does not tell.
+// Axis positions during moves to the reference point, which is not known in the work frame.
 #include <array>
 #include <cmath>
 
@@ -24,7 +24,7 @@ class AxisPlaces {
     }
   }
 
-  /// The way that the axes go in this move: axes that stand at, or go to, a place that is not known count for nothing.
+  /// Axis displacements of this move; axes at, or moving to, an unknown position are ignored.
   struct Way {
     Vec3 from_mm, to_mm;
     bool complete = true;

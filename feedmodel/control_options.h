@@ -1,5 +1,5 @@
 #pragma once
-// How a machine's control reads a program. Joins the table of controls to the table of NC dialects.
+// Interpreter options of a machine's control. Joins the table of controls to the table of NC dialects.
 #include <optional>
 
 #include "machine/machine.h"

@@ -1,5 +1,5 @@
 #pragma once
-// How fast, and how, the control passes from one segment to the next.
+// Corner laws: speed and rounding between two segments.
 #include <optional>
 
 #include "base/geometry.h"
@@ -22,7 +22,7 @@ struct Blend {
   double radius_mm = 0;
   double turn_rad = 0;
   double speed_mm_per_s = 0;
-  double acceleration_mm_per_s2 = 0;  ///< of the axes in the arc's plane, before any share is taken
+  double acceleration_mm_per_s2 = 0;  ///< of the axes in the plane of the arc, before any fraction is applied
 };
 
 struct BlendOptions {

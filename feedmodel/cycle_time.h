@@ -1,5 +1,5 @@
 #pragma once
-// How long a program takes on a machine, and with what: cutting, positioning, spindle, tools, codes.
+// Cycle time of a program on a machine: cutting, positioning, spindle, tools, codes.
 #include <cstdint>
 #include <iterator>
 #include <string_view>
@@ -10,8 +10,8 @@
 
 namespace camber::feedmodel {
 
-/// Time by kind of operation. Of actions that run at the same time the motion keeps its whole time; the others count
-/// with what they take longer. Source: Takata 1999, eqs. 2.1-2.2.
+/// Time by kind of operation. Of simultaneous actions, the motion keeps its whole time and the others count the time by
+/// which they are longer. Source: Takata 1999, eqs. 2.1-2.2.
 struct CycleSplit {
   double cutting_s = 0, positioning_s = 0, spindle_s = 0, tool_change_s = 0, m_code_s = 0, dwell_s = 0, index_s = 0,
          pallet_s = 0;
@@ -33,10 +33,10 @@ inline constexpr CycleKind kCycleKinds[] = {
     {"index_s", "index table", &CycleSplit::index_s},     {"pallet_s", "pallet", &CycleSplit::pallet_s},
 };
 
-/// The kind that takes the most time.
+/// The kind with the longest time.
 const CycleKind& dominant_kind(const CycleSplit& split);
 
-/// Of one tool, or of all.
+/// Times of one tool, or of all.
 struct CycleUse {
   int tool = 0;
   std::size_t tool_changes = 0;  ///< that brought it in
@@ -73,14 +73,13 @@ struct CycleTime {
   CycleUse all;
   std::vector<CycleUse> tools;  ///< in the order of their first use
   DistanceHistogram g00, g01;
-  std::size_t below_full_rapid = 0;  ///< positionings of g00 whose slowest axis does not come to its rapid
+  std::size_t below_full_rapid = 0;  ///< positioning moves whose slowest axis does not reach its rapid rate
   std::size_t speed_changes = 0;     ///< along the path, of the linear law: what the jerk filter counts
-  std::size_t unplaced_moves =
-      0;                       ///< to or from a reference point whose place is not known: part of their way is missing
-  std::vector<double> move_s;  ///< time of each move of the program, dwells included
+  std::size_t unplaced_moves = 0;    ///< moves to or from an unknown reference point: part of their path is missing
+  std::vector<double> move_s;        ///< time of each move of the program, dwells included
 };
 
-/// The time of the whole program. Cutting runs through the look-ahead plan of predict_feed (or, with the exponential
+/// The time of the whole program. Cutting runs through the lookahead plan of predict_feed (or, with the exponential
 /// law, block by block); positioning along the dog-leg path with every axis on its own, or along the straight line.
 /// Tools, spindle and codes come from the program's events. Deterministic; does not throw on valid input.
 /// Linear in the number of blocks; about 150 bytes of memory a block.

@@ -7,11 +7,11 @@
 namespace camber::feedmodel {
 namespace {
 
-constexpr double kSameShare = 1e-6;  // T1 and T2 closer than this count as equal: the difference would lose digits
+constexpr double kSameFraction = 1e-6;  // T1 and T2 closer than this count as equal: the difference would lose digits
 
 double decay(double t_s, double lag_s) { return lag_s > 0 ? std::exp(-t_s / lag_s) : 0.0; }
 
-bool equal_lags(double t1, double t2) { return std::abs(t1 - t2) <= kSameShare * std::max(t1, t2); }
+bool equal_lags(double t1, double t2) { return std::abs(t1 - t2) <= kSameFraction * std::max(t1, t2); }
 
 }  // namespace
 

@@ -11,7 +11,7 @@
 
 namespace camber::feedmodel {
 
-/// Streams samples to a file that gets its name when it is whole. Columns: t_s,block,x_mm,y_mm,z_mm,
+/// Streams samples to a file that is renamed when complete. Columns: t_s,block,x_mm,y_mm,z_mm,
 /// vx_mm_per_min,vy_mm_per_min,vz_mm_per_min,feed_cmd_mm_per_min,feed_mm_per_min; positions (to 0.01 um) and
 /// speeds are the predicted actual axes, block the 1-based line being commanded.
 class FeedCsv {
@@ -27,8 +27,8 @@ class FeedCsv {
   std::string text_;
 };
 
-/// Says before the work what a file of very many rows would be: error [output-size] where it would not fit on the disk,
-/// a warning from some gigabytes on. `path`: of the file, which need not be there, nor its folder.
+/// Checks the size of the file in advance: error [output-size] if it would not fit on the disk, a warning above some
+/// gigabytes. `path`: of the file, which need not be there, nor its folder.
 void check_feed_csv_size(const nc::Interpretation& program, const machine::Machine& machine, const std::string& path,
                          Diagnostics& diagnostics);
 /// The same for motion of `time_s` at `period_s`, with `free_bytes` on the disk.

@@ -138,10 +138,10 @@ struct Beyond {
     diagnostics.add(
         {.severity = Severity::warning,
          .location = {path, lines.front(), 1},
-         .message = fmt::format("{:.1f} % of the cutting length ({} block{}: {} {}) has {}; the time there is "
-                                "a guess: {}",
-                                100 * length_mm / cutting_length_mm, lines.size(), lines.size() == 1 ? "" : "s",
-                                lines.size() == 1 ? "line" : "lines", named, what, guess.of(moves)),
+         .message = fmt::format(
+             "{:.1f} % of the cutting length ({} block{}: {} {}) has {}; the time there is an extrapolation: {}",
+             100 * length_mm / cutting_length_mm, lines.size(), lines.size() == 1 ? "" : "s",
+             lines.size() == 1 ? "line" : "lines", named, what, guess.of(moves)),
          .check = check,
          .source_line = {}});
   }

@@ -1,5 +1,5 @@
 #pragma once
-// How long a control waits at a stop until its axes have come up.
+// In-position wait of a control at a stop.
 #include "feedmodel/segment_motion.h"
 #include "machine/machine.h"
 

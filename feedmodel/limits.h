@@ -1,11 +1,11 @@
 #pragma once
-// What a block may ask of the axes: the largest speed and acceleration along a direction, in a plane, on an arc.
+// Limits of a block: maximum speed and acceleration along a direction, in a plane, on an arc.
 #include "base/geometry.h"
 #include "machine/machine.h"
 
 namespace camber::feedmodel {
 
-/// Largest of |direction_i| / limit_i: the time an axis needs for its share of 1 mm (or of 1 mm/s). The limit
+/// Largest of |direction_i| / limit_i: the time an axis needs for its fraction of 1 mm (or of 1 mm/s). The limit
 /// along the direction is its reciprocal; infinite when no axis that moves has a limit.
 /// direction: unit vector, or the part of one that the limits are for; limits > 0, infinity allowed.
 double limit_along(const Vec3& direction, const Vec3& limits);

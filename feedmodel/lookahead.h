@@ -1,5 +1,5 @@
 #pragma once
-// Look-ahead: how fast each segment may be entered so that the path ahead can still be kept.
+// Look-ahead: maximum entry speed of each segment such that the limits ahead can be met.
 #include <cstddef>
 #include <vector>
 
@@ -11,7 +11,7 @@ struct PlanRow {
   double acceleration_mm_per_s2 = 0;
   double planned_fraction = 1;      ///< of the acceleration, that may be counted on for braking
   bool joined = false;              ///< counts as one with the next for the horizon
-  double entry_speed_mm_per_s = 0;  ///< in: what the corner allows; out: what the plan takes
+  double entry_speed_mm_per_s = 0;  ///< in: limit of the corner; out: planned speed
 };
 
 /// Lowers the entry speeds, in place, to what constant acceleration can keep: v_i^2 <= v_{i+1}^2 + 2 a_i L_i

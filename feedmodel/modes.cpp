@@ -32,7 +32,7 @@ bool has_set(const machine::Machine& machine, std::string_view name) {
 /// What the machine file does not know of the modes of a state.
 void unknown_modes(const nc::ModalState& state, const machine::Machine& machine, std::set<std::string>& messages) {
   const auto add = [&](std::string_view code, std::string_view means, std::string_view sets) {
-    messages.insert(fmt::format("{} ({}) is on, and the machine file has no {}: [control] counts", code, means, sets));
+    messages.insert(fmt::format("{} ({}) is on, and the machine file has no {}; [control] is used", code, means, sets));
   };
   const ContouringCode& contouring = contouring_of(state);
   const bool any = state.high_speed_contouring && has_set(machine, kAnyContouring);
@@ -90,7 +90,7 @@ nc::PathControl path_control_of(const machine::Machine& machine, const nc::Modal
 
 void check_modes(const nc::Interpretation& program, const std::string& program_path, const machine::Machine& machine,
                  Diagnostics& diagnostics) {
-  std::set<std::string> told;
+  std::set<std::string> reported;
   std::uint32_t last = nc::Move::kNoArc;
   for (const nc::Move& move : program.moves) {
     if ((move.kind != nc::MoveKind::linear && move.kind != nc::MoveKind::arc) || move.state == last) continue;
@@ -98,7 +98,7 @@ void check_modes(const nc::Interpretation& program, const std::string& program_p
     std::set<std::string> messages;
     unknown_modes(program.state_of(move), machine, messages);
     for (const std::string& message : messages)
-      if (told.insert(message).second)
+      if (reported.insert(message).second)
         diagnostics.add({.severity = Severity::warning,
                          .location = {program_path, std::size_t{move.block} + 1, 1},
                          .message = message,

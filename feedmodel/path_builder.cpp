@@ -22,10 +22,10 @@ namespace {
 using machine::CornerLaw;
 using machine::kNoLimit;
 
-/// LinuxCNC, G64 without P: the rounding may reach this share of the shorter side (and never past its middle).
-constexpr double kOpenToleranceShare = 0.25;
-/// A block gives at most this share of its length to the rounding of one end.
-constexpr double kBlendRoomShare = 0.5;
+/// LinuxCNC, G64 without P: the rounding may reach this fraction of the shorter side (and never past its middle).
+constexpr double kOpenToleranceFraction = 0.25;
+/// A block gives at most this fraction of its length to the rounding of one end.
+constexpr double kBlendRoomFraction = 0.5;
 /// 1 + cos of the angle between the directions under which the corner is a reversal: the axes stop.
 constexpr double kReversal = 1e-6;
 /// Shorter pieces than this (mm) are rounding of numbers, not path.
@@ -42,7 +42,7 @@ struct Element {
   bool taps = false;            ///< in step with the spindle, from rest to rest
   double from_s = 0;            ///< where the rounding at its start ends
   double less_fraction = 0;     ///< of its acceleration, kept free for the corners' speed steps
-  double planned_fraction = 1;  ///< of its acceleration, that the look-ahead counts on
+  double planned_fraction = 1;  ///< of its acceleration, that the lookahead counts on
 };
 
 /// How one element passes into the next.
@@ -56,11 +56,11 @@ struct Junction {
 double axis_speed_limit(const Segment& s, const Vec3& velocity) {
   if (s.radius_mm == 0) return limit_along(s.along, velocity);
   const Vec3 normal = s.along.cross(s.across);
-  const double in_plane = s.radius_mm * s.turn_rad_per_mm;  // share of the speed that lies in the plane
+  const double in_plane = s.radius_mm * s.turn_rad_per_mm;  // fraction of the speed that lies in the plane
   return std::min(limit_in_plane(normal, velocity) / in_plane, limit_along(s.rise, velocity));
 }
 
-/// Limits of an arc. Along it a share of the acceleration is left beside the one that turns the motion: the
+/// Limits of an arc. Along it a fraction of the acceleration is left beside the one that turns the motion: the
 /// given share where the axes could reach the speed at which the turning takes its whole share, else
 /// sqrt(1 - (v^2 / (r a))^2) with the axes' top speed v.
 void set_arc_limits(Segment& s, const Vec3& acceleration, const machine::Control& control) {
@@ -72,17 +72,17 @@ void set_arc_limits(Segment& s, const Vec3& acceleration, const machine::Control
   const double rise_per_rad = s.rise.norm() / s.turn_rad_per_mm;
   const double curvature_radius = helix_curvature_radius(s.radius_mm, rise_per_rad);
   const double turning = arc_speed(curvature_radius, plane, control.arc_normal_fraction);
-  double share = control.arc_tangential_fraction;
+  double fraction = control.arc_tangential_fraction;
   if (s.speed_limit_mm_per_s < turning && !std::isinf(a)) {
     const double used = s.speed_limit_mm_per_s * s.speed_limit_mm_per_s / (curvature_radius * a);
-    share = std::max(share, std::sqrt(std::max(0.0, 1.0 - used * used)));
-  } else if (control.kind.helix_rise_frees_acceleration && rise_per_rad > 0 && share < 1) {
+    fraction = std::max(fraction, std::sqrt(std::max(0.0, 1.0 - used * used)));
+  } else if (control.kind.helix_rise_frees_acceleration && rise_per_rad > 0 && fraction < 1) {
     // The traced helices leave more to the path the more the whole arc rises (not the rise of one radian).
     const double used =
         control.arc_normal_fraction / (helix_curvature_radius(s.radius_mm, s.rise.norm() * s.length_mm) / s.radius_mm);
-    share = std::max(share, std::sqrt(std::max(0.0, 1.0 - used * used)));
+    fraction = std::max(fraction, std::sqrt(std::max(0.0, 1.0 - used * used)));
   }
-  s.acceleration_mm_per_s2 = std::isinf(a) ? a : a * share;
+  s.acceleration_mm_per_s2 = std::isinf(a) ? a : a * fraction;
   s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, turning);
 }
 
@@ -247,16 +247,16 @@ class Builder {
   /// The speed steps that the axes take in one period without being asked to round the corner.
   Junction step_junction(const Element& a, const Element& b, const Vec3& from, const Vec3& to) const {
     Junction j;
-    const double share = a.settings->corner.step_fraction;
+    const double fraction = a.settings->corner.step_fraction;
     const double arc_factor = a.line && b.line ? 1.0 : 0.5;
     Vec3 permitted = Vec3::Zero();
-    if (share > 0) permitted = share * arc_factor * control_.period_s * acceleration_;
+    if (fraction > 0) permitted = fraction * arc_factor * control_.period_s * acceleration_;
     j.speed_mm_per_s = speed_difference_limit(from, to, permitted);
     // A step that is less than what the path gains in a period is none: the control stops and starts anew.
     const double least = std::min(a.segment.acceleration_mm_per_s2, b.segment.acceleration_mm_per_s2);
     if (j.speed_mm_per_s < least * control_.period_s) j.speed_mm_per_s = 0;
     const double reference = std::min(a.segment.speed_limit_mm_per_s, b.segment.speed_limit_mm_per_s);
-    j.less_fraction = share * (j.speed_mm_per_s > reference ? reference / j.speed_mm_per_s : 1.0);
+    j.less_fraction = fraction * (j.speed_mm_per_s > reference ? reference / j.speed_mm_per_s : 1.0);
     return j;
   }
 
@@ -264,8 +264,8 @@ class Builder {
     BlendOptions options;
     const double shorter = std::min(a.segment.length_mm, b.segment.length_mm);
     options.tolerance_mm = std::min(a.tolerance_mm, b.tolerance_mm);
-    if (std::isinf(options.tolerance_mm)) options.tolerance_mm = kOpenToleranceShare * shorter;
-    options.room_mm = std::min(kBlendRoomShare * shorter, a.segment.length_mm - a.from_s);
+    if (std::isinf(options.tolerance_mm)) options.tolerance_mm = kOpenToleranceFraction * shorter;
+    options.room_mm = std::min(kBlendRoomFraction * shorter, a.segment.length_mm - a.from_s);
     options.goal_speed_mm_per_s = std::max(a.segment.feed_command_mm_per_s, b.segment.feed_command_mm_per_s);
     options.normal_fraction = a.settings->arc_normal_fraction;
     options.velocity_mm_per_s = velocity_;
@@ -396,10 +396,10 @@ class Builder {
     if (previous_) {
       const bool blended =
           previous_->control == nc::PathControl::blend && previous_->settings->corner.law == CornerLaw::blend;
-      const double share =
+      const double fraction =
           (1.0 - previous_->less_fraction) * (blended ? previous_->settings->stop_acceleration_fraction : 1.0);
       previous_->planned_fraction = blended ? previous_->settings->stop_acceleration_fraction : 1.0;
-      emit(*previous_, previous_->segment.length_mm, previous_->segment.acceleration_mm_per_s2 * share);
+      emit(*previous_, previous_->segment.length_mm, previous_->segment.acceleration_mm_per_s2 * fraction);
     }
     previous_.reset();
     positioned_.reset();

@@ -10,7 +10,7 @@ namespace camber::feedmodel {
 
 using SegmentSink = std::function<void(const Segment&)>;
 
-/// Hands the segments out in order; each starts where the one before ended, but after a move to or from a reference
+/// Hands the segments out in order; each starts at the end of the previous one, but after a move to or from a reference
 /// point that is not known (a rest with `gap`). Rests (length 0) are dwells, tool changes, codes that the path waits
 /// for (rests_of), and the end of the program. Positionings are single segments where each axis moves on its own
 /// (rapid_path = "dogleg"); ways to a reference point that is known always are. Moves without length are left out.

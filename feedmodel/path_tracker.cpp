@@ -13,14 +13,14 @@ constexpr double kNearerMm = 1e-9;
 /// So far from the path the place is lost (a control may cut a corner between rapids widely): search up to the command.
 constexpr double kLostMm = 1.0;
 
-double share_on_line(const nc::Move& move, const Vec3& point_mm) {
+double fraction_on_line(const nc::Move& move, const Vec3& point_mm) {
   const Vec3 line = move.end_mm - move.start_mm;
   const double square = line.squaredNorm();
   return square > 0 ? (point_mm - move.start_mm).dot(line) / square : 1.0;
 }
 
 /// Of the turns on which the point's angle lies, the one nearest to where the search begins.
-double share_on_arc(const nc::Move& move, const nc::Arc& arc, const Vec3& point_mm, double from_u) {
+double fraction_on_arc(const nc::Move& move, const nc::Arc& arc, const Vec3& point_mm, double from_u) {
   const auto in_plane = [&](Vec3 v) -> Vec3 { return v - arc.normal * arc.normal.dot(v); };
   const Vec3 start = in_plane(move.start_mm - arc.center_mm), at = in_plane(point_mm - arc.center_mm);
   double angle = std::atan2(arc.normal.dot(start.cross(at)), start.dot(at));
@@ -37,9 +37,9 @@ PathPlace closest_on_move(const nc::Interpretation& program, std::uint32_t index
   const nc::Move& move = program.moves[index];
   double u = 1.0;
   if (move.kind == nc::MoveKind::arc) {
-    u = share_on_arc(move, program.arcs[move.arc], point_mm, from_u);
+    u = fraction_on_arc(move, program.arcs[move.arc], point_mm, from_u);
   } else if (move.kind != nc::MoveKind::dwell) {
-    u = share_on_line(move, point_mm);
+    u = fraction_on_line(move, point_mm);
   }
   u = std::clamp(u, from_u, std::max(from_u, to_u));
   return {index, u, (nc::point_at(program, move, u) - point_mm).norm()};

@@ -11,7 +11,7 @@ namespace camber::feedmodel {
 /// A place on the programmed path.
 struct PathPlace {
   std::uint32_t move = 0;
-  double u = 0;            ///< share of the move's length, in [0, 1]
+  double u = 0;            ///< fraction of the move's length, in [0, 1]
   double distance_mm = 0;  ///< from the actual position to that place
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The plan of a whole program: how fast each segment is entered, how it moves, when it begins, how long it takes. Every
+// The plan of a whole program: entry speed, motion, start and duration of each segment. Every
 // command that reports a time, a feed or a place of the tool takes it from here.
 #include <cstdint>
 #include <vector>
@@ -27,7 +27,7 @@ struct SegmentTime {
 /// A motion that begins at (almost) rest begins at a whole period of the control. A positioning may begin before the
 /// one before it has ended (rapid_overlap_percent).
 struct MotionPlan {
-  std::vector<PlanRow> rows;       ///< one for each segment of build_segments, look-ahead done
+  std::vector<PlanRow> rows;       ///< one for each segment of build_segments, lookahead done
   std::vector<SegmentTime> times;  ///< the same
   std::size_t speed_changes = 0;   ///< along the path and of positionings
 

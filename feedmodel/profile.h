@@ -16,9 +16,9 @@ struct Trapezoid {
   double speed_at(double t_s) const;
 };
 
-/// The fastest way over `length`: v_peak = min(limit, sqrt((v0^2 + v1^2)/2 + a L)).
+/// The fastest profile over `length`: v_peak = min(limit, sqrt((v0^2 + v1^2)/2 + a L)).
 /// Source: Yan & Shirase 1997, eqs. 6-11; Takata 1999, eqs. 2.7-2.8.
-/// entry and exit must be reachable from each other (the look-ahead sees to it; rounding is forgiven) and not
+/// entry and exit must be reachable from each other (the lookahead sees to it; rounding is forgiven) and not
 /// above the limit.
 Trapezoid make_trapezoid(double length_mm, double entry_mm_per_s, double exit_mm_per_s, double limit_mm_per_s,
                          double acceleration_mm_per_s2);

@@ -24,7 +24,7 @@ double rapid_time_s(const Vec3& distance_mm, const Vec3& speed_mm_per_s, const V
 bool below_full_rapid(const Vec3& distance_mm, const Vec3& speed_mm_per_s, const Vec3& acceleration_mm_per_s2);
 
 /// The path of a positioning: its start, the places where an axis has arrived while others still move, its end.
-/// With acceleration the path between them is bent near the ends. Source: Yan & Shirase 1997 (dog-leg path).
+/// With acceleration the path between them is curved near the ends. Source: Yan & Shirase 1997 (dog-leg path).
 std::vector<Vec3> dog_leg(const Vec3& from_mm, const Vec3& to_mm, const Vec3& speed_mm_per_s,
                           const Vec3& acceleration_mm_per_s2);
 

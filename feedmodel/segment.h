@@ -18,13 +18,14 @@ struct Segment {
   double length_mm = 0;
 
   double speed_limit_mm_per_s = 0;
-  double axis_limit_mm_per_s = machine::kNoLimit;  ///< what the axes' top speeds alone allow along it
+  double axis_limit_mm_per_s = machine::kNoLimit;  ///< limit of the maximum axis speeds along it
   double acceleration_mm_per_s2 = 0;               ///< along the path
-  double planned_fraction = 1;                     ///< of the acceleration, that the look-ahead counts on
-  double entry_limit_mm_per_s = 0;                 ///< at its start: what the corner before it allows
+  double planned_fraction = 1;                     ///< of the acceleration, that the lookahead counts on
+  double entry_limit_mm_per_s = 0;                 ///< at its start: limit of the corner before it
   double feed_command_mm_per_s = 0;                ///< programmed (rapid: top speed of the axes along it)
   double dwell_s = 0;                              ///< a rest instead of a motion: length 0, speed limit 0
-  /// A positioning from rest to rest, every axis on its own (dog-leg path): the axes' way, speeds and accelerations.
+  /// A positioning move from rest to rest, each axis on its own (dog-leg path): distance, speed and acceleration of the
+  /// axes.
   bool axes_apart = false;
   Vec3 way_mm = Vec3::Zero(), axis_speed_mm_per_s = Vec3::Zero(), axis_acceleration_mm_per_s2 = Vec3::Zero();
   std::uint32_t move = 0;  ///< last of the moves that were merged in it
@@ -32,7 +33,7 @@ struct Segment {
   bool cutting = false;
   bool joined = false;  ///< planned as one with the rounding that follows
   bool exact = false;   ///< the program asks for an exact stop at its end (G9, G61.1)
-  bool gap = false;     ///< a rest after which the axes stand at a place that the program does not tell
+  bool gap = false;     ///< a rest after which the axis positions are unknown
 
   Vec3 point_at(double s_mm) const;
   Vec3 direction_at(double s_mm) const;  ///< unit

@@ -6,7 +6,7 @@
 namespace camber::feedmodel {
 namespace {
 
-/// Beyond this share of its time a delay would turn the motion back: then all of the phase is slowed alike.
+/// Beyond this fraction of its time a delay would turn the motion back: then all of the phase is slowed alike.
 constexpr double kMaxDelay = 2.0 / 3.0;
 
 double distance_along(const SegmentMotion& m, double t_s) {
@@ -36,9 +36,9 @@ double planned_time(double t_s, double plain_s, double extra_s) {
   if (t_s <= 0) return 0;
   const double whole_s = plain_s + extra_s;
   if (t_s >= whole_s) return plain_s;
-  const double x = t_s / whole_s, share = extra_s / whole_s;
-  if (share > kMaxDelay) return plain_s * x;
-  return whole_s * (x - share * x * x * (3 - 2 * x));
+  const double x = t_s / whole_s, fraction = extra_s / whole_s;
+  if (fraction > kMaxDelay) return plain_s * x;
+  return whole_s * (x - fraction * x * x * (3 - 2 * x));
 }
 
 Vec3 SegmentMotion::point_at(const Segment& segment, double t_s) const {

@@ -1,5 +1,5 @@
 #pragma once
-// Figures of Yan & Shirase 1997: how much of the commanded feed a program reaches, and their look-ahead.
+// Equations of Yan & Shirase 1997: feed efficiency e, k, and their lookahead.
 #include <span>
 #include <vector>
 
@@ -15,7 +15,7 @@ double block_feed_number(double feed_mm_per_s, double acceleration_mm_per_s2, do
 /// reached when every block stops. Source: eqs. 19-20.
 double stop_at_every_block_efficiency(double k);
 
-/// A block in which the look-ahead brakes.
+/// A block in which the lookahead brakes.
 struct BrakingBlock {
   double entry_mm_per_s = 0, exit_mm_per_s = 0;
 };

@@ -19,7 +19,7 @@ std::string file_at(TomlTable& table, std::string_view key, const fs::path& fold
   const std::string path = (folder / given).lexically_normal().string();
   std::error_code ec;
   if (!fs::is_regular_file(path, ec))
-    table.error_at(key, fmt::format("{}: no such file: {} (paths count from the cases' folder)", key, path),
+    table.error_at(key, fmt::format("{}: no such file: {} (paths are relative to the folder of the cases)", key, path),
                    "file-missing");
   return path;
 }

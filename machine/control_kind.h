@@ -33,10 +33,10 @@ struct ControlKind {
   bool helix_rise_frees_acceleration = false;
 
   // Starting values of fit-feed for the corner law "blend", for keys that machine.toml leaves out. 0: not known
-  double usual_step_share = 0;          ///< Corner::step_fraction
+  double default_step_fraction = 0;     ///< Corner::step_fraction
   int usual_lookahead_blocks = 0;       ///< Control::lookahead_blocks
   double usual_short_line_periods = 0;  ///< Corner::short_line_time_s, in periods of the control
-  bool fits_short_lines = false;        ///< fit-feed tries several short-line times and look-aheads
+  bool fits_short_lines = false;        ///< fit-feed tries several short-line times and lookaheads
 };
 
 /// All rows, in the order in which messages list them.

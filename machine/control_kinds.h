@@ -23,7 +23,7 @@ inline constexpr std::array kControlKinds{
                 .g61_stops = false,
                 .min_segment_periods = 1.02,  // TP_MIN_SEGMENT_CYCLES of its trajectory planner
                 .helix_rise_frees_acceleration = true,
-                .usual_step_share = 0.1,
+                .default_step_fraction = 0.1,
                 .usual_lookahead_blocks = 50,
                 .usual_short_line_periods = 4,
                 .fits_short_lines = true},

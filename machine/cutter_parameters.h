@@ -33,7 +33,7 @@ struct CornerEnds {
   double bottom_normal_rad = 0, wall_normal_rad = 0;  ///< of the arc's outward normal from -z towards +r
 };
 
-/// Returns what is wrong with a profile, in a sentence; empty where it is sound: bottom, corner and wall meet and every
+/// Returns a sentence on what is wrong with a profile; empty if it is valid: bottom, corner and wall meet and every
 /// angle on the way up is steeper than the one before (no undercut, no inward corner).
 std::string profile_fault(const CutterParameters& parameters);
 

@@ -32,7 +32,7 @@ struct ForceLog {
   bool on_work = false;  ///< the columns are forces on the work (a dynamometer under it)
   ForceLaw law = ForceLaw::linear;
   Tool tool;
-  std::optional<Material> material;                 ///< [material], for what is held
+  std::optional<Material> material;                 ///< [material], for the coefficients to keep
   std::vector<std::string> hold;                    ///< names of coefficients that keep the material's value
   std::array<std::optional<LogQuantity>, 3> force;  ///< feed, left of it, up; N. Nothing: not measured
   LogQuantity time;                                 ///< s

@@ -88,7 +88,7 @@ std::vector<ToolProposal> read_hsm_library(const std::string& path) {
     fail_on_file(path,
                  fmt::format("{}; a tool library of HSMWorks (XML with tool-library) was expected",
                              result ? fmt::format("its root is <{}>", root)
-                                    : fmt::format("this is no XML ({})", result.description())),
+                                    : fmt::format("this is not XML ({})", result.description())),
                  "tool-library");
   std::vector<ToolProposal> out;
   std::size_t index = 0;

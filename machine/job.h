@@ -1,5 +1,5 @@
 #pragma once
-// A job: which program on which machine, with which tools, into which stock. Read from job.toml.
+// A job: program, machine, tools, material, stock and settings. Read from job.toml.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace camber::machine {
 
 enum class ToolType { ball, flat, bull, drill, tapered_ball, chamfer, general };
 
-/// One part of a holder: a cylinder or a cone about the axis.
+/// One segment of a holder: a cylinder or a cone about the axis.
 struct HolderPart {
   double lower_diameter_mm = 0, upper_diameter_mm = 0, length_mm = 0;
 };
@@ -34,16 +34,17 @@ struct Tool {
   double corner_centre_r_mm = 0, corner_centre_z_mm = 0;  ///< general: centre of the corner's arc
   int flutes = 2;
   double helix_rad = 0;
-  std::vector<double> pitch_rad;  ///< from each tooth to the next, as they follow in the cut; empty: equal
-  double runout_mm = 0;           ///< of the cutter's axis from the spindle's
-  double runout_angle_rad = 0;    ///< from tooth 1 to the direction of the run-out, against the turning direction
-  double overhang_mm = 0;         ///< holder face to tip
+  std::vector<double>
+      pitch_rad;         ///< pitch angles from each tooth to the next, in the order in which they cut; empty: equal
+  double runout_mm = 0;  ///< offset of the cutter axis from the spindle axis
+  double runout_angle_rad = 0;            ///< from tooth 1 to the run-out, against the rotation
+  double overhang_mm = 0;                 ///< holder face to tip
   std::optional<double> flute_length_mm;  ///< not given: the whole overhang is fluted
   double neck_diameter_mm = 0;            ///< 0: no neck
   double neck_length_mm = 0;              ///< from the flutes up
   double shank_diameter_mm = 0;           ///< 0: as the cutter
   std::vector<HolderPart> holder;         ///< from the holder's face up
-  bool shear = false;                     ///< deflection by shear as well (Timoshenko)
+  bool shear = false;                     ///< include shear deflection (Timoshenko)
   double effective_diameter_ratio = 0.8;  ///< bending diameter of the fluted part / diameter
   double youngs_modulus_MPa = 600000;
   double root_stiffness_N_per_mm = kNoLimit;         ///< lateral, holder and spindle
@@ -67,14 +68,14 @@ struct StockDescription {
   std::optional<Cylinder> cylinder;
   std::string mesh;         ///< STL path; empty: none
   std::string vdb;          ///< stock.vdb of another job; empty: none
-  double allowance_mm = 0;  ///< > 0: the blank was already cut by this program with the cutter shrunk by this much
+  double allowance_mm = 0;  ///< > 0: the blank was already cut by this program with the cutter reduced by this much
 };
 
-/// Which moves are simulated, compensated or judged: those that everything given here names; nothing given: all.
+/// Selection of moves to simulate, compensate or judge: moves that match every given criterion; none given: all.
 struct Operations {
   std::vector<int> tools;
-  std::vector<std::array<int, 2>> blocks;  ///< 1-based line ranges, both ends included
-  std::string comments;                    ///< regular expression (ECMAScript, case does not count); empty: not given
+  std::vector<std::array<int, 2>> blocks;  ///< 1-based line ranges, inclusive
+  std::string comments;                    ///< regular expression (ECMAScript, case-insensitive); empty: not given
   bool given() const { return !tools.empty() || !blocks.empty() || !comments.empty(); }
 };
 
@@ -86,7 +87,7 @@ struct Part {
 };
 
 enum class Coupling { rigid, static_ };
-/// What a rapid through material, or a shank or holder that meets stock, is.
+/// Severity of a rapid through material, or of a shank or holder in stock.
 enum class Collisions { error, warning, off };
 
 struct Simulation {
@@ -94,13 +95,13 @@ struct Simulation {
   Coupling coupling = Coupling::static_;
   std::optional<Collisions> collisions;  ///< not given: error; a warning where moves of the program are left out
   double rotation_step_rad = kPi / 180.0;
-  double envelope_step_mm = 0;  ///< of the samples along the profile; 0: chosen by the tool (simulate/predict.h)
+  double envelope_step_mm = 0;  ///< sample spacing along the profile; 0: chosen for the tool (simulate/predict.h)
 };
 
-/// What compensation works on, and what its verdict is on.
+/// The error that compensation corrects and judges.
 enum class Reference {
   commanded,  ///< error_um: against the programmed path
-  machine     ///< deflection_um: servo lag and corner rounding stay in
+  machine     ///< deflection_um: servo lag and corner rounding are not corrected
 };
 
 /// What a compensation may change about a program.
@@ -115,20 +116,20 @@ struct CompensationSettings {
   std::optional<std::array<double, 2>> profile_um;  ///< band of the finished surface; not given: tolerance_um
   double max_shift_mm = 0.1;
   int max_rounds = 8;
-  double max_overcut_um = 0;  ///< into the part, with the predicted deflection; 0: not given
-  /// The depth limit that the job gives; nothing: compensation finds one (compensate::default_depth_limit_um).
+  double max_overcut_um = 0;  ///< maximum gouge depth, with the predicted deflection; 0: not given
+  /// Depth limit of the job; not given: compensation determines one (compensate::default_depth_limit_um).
   std::optional<double> depth_limit_um() const {
     if (profile_um) return -(*profile_um)[0];
     return max_overcut_um > 0 ? std::optional(max_overcut_um) : std::nullopt;
   }
-  /// Half of the band's width.
+  /// Half of the width of the band.
   double half_width_um() const { return profile_um ? ((*profile_um)[1] - (*profile_um)[0]) / 2 : tolerance_um; }
   std::vector<Lever> levers{Lever::shift};  ///< shift is always among them
   bool has(Lever lever) const { return std::ranges::find(levers, lever) != levers.end(); }
   double min_feed_percent = 20;                 ///< of the programmed feed; below it edges rub
   double max_angle_growth_rad = 3 * kPi / 180;  ///< between blocks of the path
-  Operations operations;               ///< compensated, of the simulated moves; nothing given: the finishing ones
-  std::optional<Vec3> work_offset_mm;  ///< of the program's zero, in machine coordinates: for the travel limits
+  Operations operations;                        ///< simulated moves to compensate; none given: the finishing moves
+  std::optional<Vec3> work_offset_mm;           ///< program zero in machine coordinates, for the travel limits
 };
 
 struct Job {
@@ -149,7 +150,7 @@ struct Job {
 /// Reads the job and its machine file. Throws InputError with file:line:column.
 Job read_job(const std::string& path, Diagnostics& diagnostics);
 
-/// job.toml text with every default filled in; paths as they were resolved.
+/// Text of a job.toml with all defaults filled in and resolved paths.
 std::string to_toml(const Job& job);
 
 }  // namespace camber::machine

@@ -24,7 +24,7 @@ std::string file_at(TomlTable& table, std::string_view key, const fs::path& fold
   const std::string path = (folder / given).lexically_normal().string();
   std::error_code ec;
   if (!fs::exists(path, ec))
-    table.error_at(key, fmt::format("{}: no such file: {} (paths count from the job's folder)", key, path),
+    table.error_at(key, fmt::format("{}: no such file: {} (paths are relative to the job's folder)", key, path),
                    "file-missing");
   else if (fs::is_directory(path, ec))
     table.error_at(key, fmt::format("{}: {} is a folder; a file was expected", key, path), "file-unreadable");
@@ -98,10 +98,11 @@ void read_comments(TomlTable& table, Operations& operations) {
   try {
     const std::regex check(operations.comments, std::regex::ECMAScript | std::regex::icase);
   } catch (const std::regex_error&) {
-    table.error_at("comments",
-                   fmt::format("comments = \"{}\" is no regular expression; one as in \"finish|contour\" was expected",
-                               operations.comments),
-                   "regular-expression");
+    table.error_at(
+        "comments",
+        fmt::format("comments = \"{}\" is not a regular expression; one such as \"finish|contour\" was expected",
+                    operations.comments),
+        "regular-expression");
     operations.comments.clear();
   }
 }
@@ -112,7 +113,7 @@ Operations read_operations(TomlTable table, const std::map<int, Tool>& tools) {
        table.number_list("tools", kToolNumber, "tool numbers, as in [1, 9],").value_or(std::vector<double>{})) {
     operations.tools.push_back(static_cast<int>(t));
     if (!tools.contains(static_cast<int>(t)))
-      table.error_at("tools", fmt::format("operations ask for T{0}, but there is no [tool.{0}]", t), "tool-missing");
+      table.error_at("tools", fmt::format("operations name T{0}, but there is no [tool.{0}]", t), "tool-missing");
   }
   const auto rows = table.number_rows("blocks", 0, 2, kLineNumber, "ranges of lines, as in [[120, 900]],");
   for (const auto& row : rows.value_or(std::vector<std::vector<double>>{})) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a machine and its control are. Read from machine.toml; a limit that is missing is no limit (infinity).
+// Machine and control, read from machine.toml. A missing limit is no limit (infinity).
 #include <array>
 #include <limits>
 #include <optional>
@@ -29,18 +29,18 @@ struct Corner {
   double speed_difference_mm_per_s = kNoLimit;  ///< speed_difference
   double time_s = 0;                            ///< angle: dt
   double acceleration_mm_per_s2 = kNoLimit;     ///< radius: a
-  /// A corner that turns by less is no corner, whatever the law (Takata 1999, table 2.1: 5 degrees). 0: all are.
+  /// Corners that turn by less are ignored, under any law (Takata 1999, table 2.1: 5 degrees). 0: none are ignored.
   double threshold_rad = 0;
-  /// Corners passed without rounding: the speed of an axis may jump by this share of what it gains in one period
-  /// (dV = share x acceleration x period). 0: only corners without a change of direction are passed so.
+  /// Corners without rounding: permitted speed step, as a fraction of the speed that an axis gains in one period (dV =
+  /// fraction x acceleration x period). 0: only for corners without a change of direction.
   double step_fraction = 0;
-  /// A line that lasts less than this between two roundings is driven with the limits of the roundings.
+  /// A line between two roundings that lasts less than this gets the limits of the roundings.
   double short_line_time_s = 0;
-  double stop_angle_rad = kNoLimit;  ///< corners that turn by more are stopped at, whatever the law
-  double stop_time_s = 0;            ///< such a stop lasts this long
+  double stop_angle_rad = kNoLimit;  ///< the control stops at corners that turn by more, under any law
+  double stop_time_s = 0;            ///< duration of such a stop
 };
 
-/// In-position width of a control whose machine file does not give one.
+/// Default in-position width.
 inline constexpr double kInPositionMm = 0.02;
 
 struct Control {
@@ -48,46 +48,46 @@ struct Control {
   double period_s = 0.001;  ///< of interpolation and of feed.csv
   double block_time_s = 0;  ///< block processing time T_b
   Corner corner;
-  double merge_tolerance_mm = 0;       ///< short lines within it are merged; 0: none
-  int lookahead_blocks = 0;            ///< segments seen ahead, at the last of which it could stop; 0: all
-  double arc_normal_fraction = 1;      ///< of the acceleration, to turn: v <= sqrt(share a r)
-  double arc_tangential_fraction = 1;  ///< of the acceleration, along an arc whose speed may reach that limit
-  /// Of the acceleration, in a block that should be blended (G64) but ends in a stop; taken twice when the
-  /// look-ahead plans how fast that block may be entered.
+  double merge_tolerance_mm = 0;  ///< short lines within it are merged; 0: none
+  int lookahead_blocks = 0;  ///< lookahead: number of segments, at the last of which a stop is possible; 0: unlimited
+  double arc_normal_fraction = 1;      ///< of the acceleration, for centripetal acceleration: v <= sqrt(fraction a r)
+  double arc_tangential_fraction = 1;  ///< of the acceleration, available along an arc at that limit
+  /// Fraction of the acceleration in a blended block (G64) that ends in a stop; applied twice when the lookahead plans
+  /// the entry speed of that block.
   double stop_acceleration_fraction = 1;
-  double rest_latency_s = 0;  ///< a rest (dwell) takes this much longer than programmed
-  /// Along the path, beside what the axes allow (before interpolation).
+  double rest_latency_s = 0;  ///< a dwell takes this much longer than programmed
+  /// Limit along the path, in addition to the axes (before interpolation).
   double path_acceleration_mm_per_s2 = kNoLimit;
-  /// Between rapid and feed moves it stops and waits at least so long; 0: no stop asked for.
+  /// Minimum wait at the stop between rapid and feed moves; 0: no stop.
   double rapid_change_s = 0;
   std::optional<double> least_increment_mm{};  ///< of coordinates in an emitted program; not given: as the program has
-  /// Between rapid and feed moves, and at exact stops (G9, G61.1), it waits until every axis is this near to where it
-  /// is commanded. Infinite: it does not wait. Read from a file without the key: kInPositionMm, LinuxCNC infinite.
+  /// In-position width: between rapid and feed moves, and at exact stops (G9, G61.1), the control waits until every
+  /// axis is within it. Infinite: no wait. Read from a file without the key: kInPositionMm, LinuxCNC infinite.
   double in_position_mm = kNoLimit;
   std::optional<AccelerationTimes> acceleration_law{};  ///< of a parameter set ([control.mode]); not given: [cycle]'s
 };
 
 struct Axis {
   double max_velocity_mm_per_s = kNoLimit;
-  double max_feed_mm_per_s = kNoLimit;  ///< of feed moves, where it is lower than max_velocity
+  double max_feed_mm_per_s = kNoLimit;  ///< limit of feed moves, if lower than max_velocity
   double acceleration_mm_per_s2 = kNoLimit;
-  double rapid_mm_per_s = kNoLimit;                ///< of G0, where it is lower than max_velocity
-  double rapid_acceleration_mm_per_s2 = kNoLimit;  ///< of G0; infinity: the same as acceleration
-  double g60_mm = 0;  ///< last way of G60, with its sign: an axis always comes to its place in that direction
+  double rapid_mm_per_s = kNoLimit;                ///< rapid rate (G0), if lower than max_velocity
+  double rapid_acceleration_mm_per_s2 = kNoLimit;  ///< acceleration of G0; infinite: the same as acceleration
+  double g60_mm = 0;                               ///< last distance of G60, signed: the direction of approach
   double jerk_mm_per_s3 = kNoLimit;
   double filter_s = 0;                              ///< moving average after interpolation; 0: none
   double exponential_1_s = 0, exponential_2_s = 0;  ///< first-order lags after interpolation (Yan & Shirase); 0: none
   double position_gain_per_s = kNoLimit;            ///< Kp of the position loop; infinity: no lag
   double velocity_lag_s = 0;                        ///< time constant of the velocity loop inside the position loop
   double feed_forward_percent = 0;
-  /// Corner law speed_difference: of this axis; infinite: that of the corner.
+  /// Corner law speed_difference: value for this axis; infinite: that of the corner law.
   double speed_difference_mm_per_s = kNoLimit;
   double stiffness_N_per_mm = kNoLimit;  ///< static, tool against work, along this axis
   std::array<double, 2> travel_mm{-kNoLimit, kNoLimit};
-  bool given = true;  ///< false: the machine file says nothing of it, as if the machine had no such axis
+  bool given = true;  ///< false: the machine file does not have this axis
 };
 
-/// What the programs held that a model was fitted on; beyond it the model is a guess. [least, greatest].
+/// Range of the programs that a model was fitted on; beyond it the model extrapolates. [min, max].
 struct FittedRange {
   bool known = false;
   std::array<double, 2> feed_mm_per_s{}, corner_rad{}, line_mm{}, arc_radius_mm{};
@@ -98,12 +98,12 @@ struct FittedRange {
 
 struct Spindle {
   double max_rpm = kNoLimit;
-  double gd2_kgf_m2 = 0;                  ///< flywheel effect of spindle, motor and tool; 0: it starts at once
+  double gd2_kgf_m2 = 0;                  ///< flywheel effect of spindle, motor and tool; 0: starts immediately
   double power_W = kNoLimit;              ///< of the motor
   double constant_torque_rpm = kNoLimit;  ///< N1: constant torque up to here
   double constant_power_rpm = kNoLimit;   ///< N2: constant power from N1 to here, falling above
   double start_time_s = 0;                ///< from rest to max_rpm, instead of gd2 and power; 0: not given
-  double orient_s = 0;                    ///< to turn the standing spindle into the place for a tool change
+  double orient_s = 0;                    ///< time of the spindle orientation for a tool change
 };
 
 struct Machine {

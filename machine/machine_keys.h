@@ -12,8 +12,8 @@ inline constexpr std::array<std::string_view, 5> kCornerLawWords{"speed_differen
                                                                  "radius"};
 inline constexpr std::array<std::string_view, 3> kAxisNames{"x", "y", "z"};
 
-inline constexpr NumberRange kShare{.min = 0, .max = 1, .above_min = true};
-inline constexpr NumberRange kArcShare{.min = 0, .max = 100, .above_min = true};
+inline constexpr NumberRange kFraction{.min = 0, .max = 1, .above_min = true};
+inline constexpr NumberRange kArcFraction{.min = 0, .max = 100, .above_min = true};
 inline constexpr NumberRange kPeriodMs{.min = 0, .max = 1000, .above_min = true};
 inline constexpr NumberRange kPercent{.min = 0, .max = 100};
 inline constexpr NumberRange kMinIncrementMm{.min = 1e-6, .max = 0.1};
@@ -38,10 +38,10 @@ inline constexpr std::array kControlKeys{
     NumberKey<Control>{"period_ms", &Control::period_s, kPeriodMs, kMilliseconds},
     NumberKey<Control>{"block_time_ms", &Control::block_time_s, kNotNegative, kMilliseconds},
     NumberKey<Control>{"merge_tolerance_mm", &Control::merge_tolerance_mm, kNotNegative},
-    NumberKey<Control>{"arc_normal_share", &Control::arc_normal_fraction, kArcShare},
-    NumberKey<Control>{"arc_tangential_share", &Control::arc_tangential_fraction, kShare},
+    NumberKey<Control>{"arc_normal_share", &Control::arc_normal_fraction, kArcFraction},
+    NumberKey<Control>{"arc_tangential_share", &Control::arc_tangential_fraction, kFraction},
     NumberKey<Control>{"rest_latency_ms", &Control::rest_latency_s, kNotNegative, kMilliseconds},
-    NumberKey<Control>{"stop_acceleration_share", &Control::stop_acceleration_fraction, kShare},
+    NumberKey<Control>{"stop_acceleration_share", &Control::stop_acceleration_fraction, kFraction},
     NumberKey<Control>{"path_acceleration_mm_per_s2", &Control::path_acceleration_mm_per_s2, kPositiveOrInf},
     NumberKey<Control>{"rapid_change_ms", &Control::rapid_change_s, kNotNegative, kMilliseconds},
     NumberKey<Control>{"in_position_mm", &Control::in_position_mm, kPositiveOrInf},

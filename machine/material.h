@@ -1,5 +1,5 @@
 #pragma once
-// What a material asks of the cutter: the coefficients of the force law.
+// Material: force law and its coefficients.
 #include <string_view>
 
 #include "machine/force_laws/list.h"

@@ -6,7 +6,7 @@ namespace camber::machine {
 
 namespace {
 
-constexpr std::string_view kTypical = "typical value for the group of materials, the milling factor already in";
+constexpr std::string_view kTypical = "typical value for the group of materials, including the factor for milling";
 constexpr std::string_view kTypicalRange =
     "not stated; tangential force only; Kienzle's law is a fit to chips of 0.05 mm and more";
 constexpr std::string_view kCatalogue =

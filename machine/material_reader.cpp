@@ -92,7 +92,7 @@ Material read_material_table(TomlTable table, const std::string& folder, Diagnos
   table.finish();
   std::error_code ec;
   if (!std::filesystem::is_regular_file(path, ec)) {
-    table.error_at("file", fmt::format("file: no such file: {} (paths count from the job's folder)", path),
+    table.error_at("file", fmt::format("file: no such file: {} (paths are relative to the job's folder)", path),
                    "file-missing");
     return {};
   }

@@ -13,7 +13,7 @@ namespace camber::machine {
 /// `preset` names a set of the library; other keys override its values. The law is `law`, else the preset's, else
 /// what the keys show (kc1_1_MPa or kc_by_feed: kienzle), else linear. Kienzle's tangential pair is kc1_1_MPa and mc,
 /// or kc_by_feed = [[feed per tooth mm, kc MPa], ...] as catalogues give it; the radial and axial pairs are kr1_1_MPa
-/// and mr, ka1_1_MPa and ma, or krc_ratio and kac_ratio (share of the tangential force, same exponent).
+/// and mr, ka1_1_MPa and ma, or krc_ratio and kac_ratio (fraction of the tangential force, same exponent).
 /// Checks: [material-preset], [material-law], [key-unused], [key-missing], [value-range].
 Material read_material(TomlTable table);
 

@@ -48,7 +48,7 @@ std::string set_number(Machine& machine, std::string_view key, double value) {
   });
   if (found) return wrong;
   const std::string near = nearest_word(key, number_keys());
-  return fmt::format("{} is no number of a machine{}", key,
+  return fmt::format("{} is not a machine parameter{}", key,
                      near.empty() ? "; a key such as axis.x.acceleration_mm_per_s2 was expected"
                                   : fmt::format("; did you mean {}?", near));
 }

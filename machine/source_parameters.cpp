@@ -164,7 +164,7 @@ void read_linuxcnc(TomlTable table, Machine& machine) {
   const std::size_t before = machine.translation.size();
   IniReader(read_ini(path.string()), machine).read();
   if (machine.translation.size() == before)
-    table.error_at("ini", fmt::format("\"{}\" holds no MAX_VELOCITY, MAX_ACCELERATION or SERVO_PERIOD", file),
+    table.error_at("ini", fmt::format("\"{}\" has no MAX_VELOCITY, MAX_ACCELERATION or SERVO_PERIOD", file),
                    "source-ini");
 }
 

@@ -115,7 +115,7 @@ std::vector<ToolProposal> read_tool_library(const std::string& path) {
     library = json::parse(source.text());
   } catch (const json::parse_error& e) {
     fail_at(source, e.byte > 0 ? std::min<std::size_t>(e.byte - 1, source.text().size()) : 0,
-            "this is no JSON; a tool library of Fusion (File, Export, JSON) was expected", "tool-library");
+            "this is not JSON; a tool library of Fusion (File, Export, JSON) was expected", "tool-library");
   }
   const auto data = library.is_object() ? library.find("data") : library.end();
   if (!library.is_object() || data == library.end() || !data->is_array())

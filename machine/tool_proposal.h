@@ -1,5 +1,5 @@
 #pragma once
-// What can be told of a tool from a comment, a tool table or a tool library, to begin a job file with.
+// Tool proposals for a draft job file, from comments, tool tables and tool libraries.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,7 +20,7 @@ struct ToolProposal {
   std::optional<int> flutes;
   std::optional<double> youngs_modulus_GPa;
   std::optional<double> point_angle_deg;  ///< chamfer, drill: between opposite sides of the cone
-  std::string doubt;                      ///< what should be looked at; empty: nothing
+  std::string doubt;                      ///< what should be checked; empty: nothing
 };
 
 /// Tools that a program's comments name, one a number, the first mention first: "(T3 D=0.125 CR=0.0625 - ZMIN=-0.54 -

@@ -68,7 +68,7 @@ void read_bare_size(const std::string& words, bool inch, ToolProposal& tool) {
   bool in_inch = says_inch || (inch && !says_mm);
   if (in_inch && !says_inch && *size >= kLargestBareInch) {
     in_inch = false;
-    tool.doubt = fmt::format("the size {} stands without a unit in a program in inches; taken as mm", m[1].str());
+    tool.doubt = fmt::format("the size {} has no unit in a program in inches; taken as mm", m[1].str());
   }
   tool.diameter_mm = *size * (in_inch ? kMmPerInch : 1);
 }

@@ -23,17 +23,17 @@ SourceText read_zip_entry(const std::string& path, const std::string& name, cons
   if (!std::filesystem::exists(path, ec)) fail_on_file(path, "no such file", "file-missing");
   int error = 0;
   const std::unique_ptr<zip_t, Close> zip(zip_open(path.c_str(), ZIP_RDONLY, &error));
-  if (!zip) fail_on_file(path, fmt::format("is no zip file; one with {} in it was expected", name), check);
+  if (!zip) fail_on_file(path, fmt::format("is not a zip file; one with {} in it was expected", name), check);
   const zip_int64_t at = zip_name_locate(zip.get(), name.c_str(), ZIP_FL_NODIR);
   if (at < 0) fail_on_file(path, fmt::format("is a zip file without {}", name), check);
   zip_stat_t stat;
   const auto index = static_cast<zip_uint64_t>(at);
   if (zip_stat_index(zip.get(), index, 0, &stat) != 0 || (stat.valid & ZIP_STAT_SIZE) == 0 || stat.size > kMax_bytes)
-    fail_on_file(path, fmt::format("holds {} of more than {} MB", name, kMax_bytes >> 20), check);
+    fail_on_file(path, fmt::format("contains {} of more than {} MB", name, kMax_bytes >> 20), check);
   const std::unique_ptr<zip_file_t, Close> file(zip_fopen_index(zip.get(), index, 0));
   std::string text(stat.size, '\0');
   if (!file || zip_fread(file.get(), text.data(), stat.size) != static_cast<zip_int64_t>(stat.size))
-    fail_on_file(path, fmt::format("holds {}, which cannot be read: damaged, or under a password", name), check);
+    fail_on_file(path, fmt::format("contains {}, which cannot be read: damaged, or under a password", name), check);
   return SourceText(path + "/" + name, std::move(text));
 }
 

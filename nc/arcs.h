@@ -21,7 +21,7 @@ PlaneAxes axes_of(Plane plane);
 struct ArcWords {
   Vec3 start_mm = Vec3::Zero(), end_mm = Vec3::Zero();
   Plane plane = Plane::xy;
-  bool clockwise = false;  ///< G2, seen against the plane's normal
+  bool clockwise = false;  ///< G2, seen against the normal of the plane
   std::optional<double> i_mm{}, j_mm{}, k_mm{}, r_mm{};
   bool absolute_centre = false;  ///< G90.1
   int turns = 1;                 ///< P, L: 1 is up to one full turn
@@ -38,7 +38,7 @@ struct ArcResult {
 /// Centre and sweep. R: the arc up to half a turn, for R < 0 the larger one (the centre lies at
 /// sqrt(R^2 - (chord/2)^2) from the chord's middle; Yan & Shirase 1997 eq. 1 in vector form). A chord longer than
 /// 2 R by no more than 0.01 mm is taken as half a turn. Start and end at one place (within 1e-6 mm): a full turn
-/// (I J K only). The sweep is counted at the given centre, so radii that differ do not bend the end.
+/// (I J K only). The sweep is counted at the given centre, so a radius difference does not change the end.
 ArcResult make_arc(const ArcWords& words);
 
 }  // namespace camber::nc

@@ -1,5 +1,5 @@
 #pragma once
-// The state of the interpreter and what it does with one block. Internal to nc/; see interpreter.h for the door.
+// Interpreter state and execution of one block. Internal to nc/; the interface is interpreter.h.
 #include <array>
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace camber::nc {
 
-/// Where an axis stands in the work frame.
+/// State of knowledge of an axis position in the work frame.
 enum class AxisPlace : std::uint8_t {
   never,      ///< not programmed so far; its coordinate counts as 0
   reference,  ///< at the reference point or at a machine coordinate (G28, G30, G53)
@@ -33,9 +33,9 @@ struct MachineFacts {
   int selected_tool = 0;
 };
 
-/// A block that is run: where its text stands and which words act.
+/// A block to execute: position of its text, and its words.
 struct RunBlock {
-  const Program& program;       ///< the file that it stands in
+  const Program& program;       ///< its file
   std::uint32_t block = 0;      ///< in that file
   std::span<const Word> words;  ///< with numbers for values
   std::uint32_t called_from;    ///< Move::block: the block itself, or of the main program the one that called the file
@@ -59,7 +59,7 @@ class BlockInterpreter {
 
  private:
   enum class Motion : std::uint8_t { none, rapid, linear, clockwise, counter_clockwise };
-  /// What the G codes of one block ask for beside the modal state.
+  /// Non-modal actions of the G codes of one block.
   struct Request {
     bool dwell = false, exact_stop = false, machine_frame = false, reference = false;
     bool motion_given = false, cycle_given = false, feed_mode_given = false;
@@ -215,7 +215,7 @@ class BlockInterpreter {
   std::map<int, ToolOffset> tool_offsets_;
   Radius radius_;
   int radius_number_ = -1;  ///< the last D
-  bool leaving_ = false;    ///< G40 was read; the cutter still stands beside the contour
+  bool leaving_ = false;    ///< G40 was read; the cutter is still beside the contour
   Vec3 beside_mm_ = Vec3::Zero();
 
   Vec3 position_mm_ = Vec3::Zero();

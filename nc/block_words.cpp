@@ -27,7 +27,7 @@ void BlockWords::read(std::span<const Word> words, Reporter& report) {
       m_.push_back({tenths_of(w.value), &w});
     } else {
       if (has(w.letter) && w.letter != 'N')
-        report.error(w.offset, "word-twice", fmt::format("{} stands twice in the block; one was expected", w.letter));
+        report.error(w.offset, "word-twice", fmt::format("{} appears twice in the block; one was expected", w.letter));
       given_ |= bit(w.letter);
       value_[index(w.letter)] = w.value;
       word_[index(w.letter)] = &w;

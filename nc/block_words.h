@@ -20,11 +20,11 @@ struct Code {
 
 class BlockWords {
  public:
-  /// Sorts the words of a block. A letter that stands twice (other than G, M and N) is an error.
+  /// Sorts the words of a block. A repeated letter (other than G, M and N) is an error.
   void read(std::span<const Word> words, Reporter& report);
 
   bool has(char letter) const { return (given_ & bit(letter)) != 0; }
-  /// True when any of the letters stands in the block.
+  /// True if the block has any of the letters.
   bool has_any(const char* letters) const;
   /// The value as written; the word counts as used. Precondition: has(letter).
   double value(char letter) {

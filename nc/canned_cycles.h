@@ -32,7 +32,7 @@ struct CycleStep {
 /// G81: feed in, rapid out. G82, G86, G89: dwell at the bottom. G73, G83: in pecks. G84, G74 (tapping), G85, G89:
 /// out in feed. G76: bored, shifted off the wall, out in rapid, shifted back. G87: shifted, in rapid down to R, shifted
 /// back, bored upwards to Z, shifted, out in rapid, shifted back. G88: as G86 (the retract by hand is taken as a
-/// rapid). Steps that go nowhere are left out. Pecks are at most kMaxPecks.
+/// rapid). Steps without motion are omitted. Pecks are at most kMaxPecks.
 std::vector<CycleStep> hole_steps(const CycleHole& hole, const PlaneAxes& axes);
 
 inline constexpr double kMaxPecks = 100000;

@@ -19,7 +19,7 @@ struct CutterRadius {
   /// The entry move ends: false: as every other corner, beside its own end (LinuxCNC); true: square to the start of
   /// the next move (Fanuc, type A).
   bool entry_square_to_next = false;
-  int moves_without_plane_motion = 1;  ///< as many may stand between two moves in the plane: the control's look-ahead
+  int moves_without_plane_motion = 1;  ///< maximum number between two moves in the plane: the lookahead of the control
   std::string name = "G41";            ///< for messages
 };
 
@@ -36,9 +36,10 @@ struct CutterRadiusResult {
 /// Rewrites the moves from `first` to the end as the path of the cutter's centre and marks them as not editable: the
 /// text has other coordinates. The first move in the plane is the entry: from where the tool stands to beside its
 /// programmed end. Inside corners are cut short where the offset lines or arcs meet; the move that follows the last one
-/// (after G40) starts from `end_mm`. Told as problems: an entry on an arc or not longer than the radius, inside corners
-/// and arcs too small for the radius, a spiral, more moves without motion in the plane than the control looks ahead.
-/// Only neighbours are looked at: a slot narrower than the cutter with several moves at its bottom is not seen.
+/// (after G40) starts from `end_mm`. Reported as problems: an entry on an arc or not longer than the radius, inside
+/// corners and arcs too small for the radius, a spiral, more moves without motion in the plane than the control looks
+/// ahead. Only neighbouring moves are examined: a slot narrower than the cutter with several moves at its bottom is not
+/// detected.
 CutterRadiusResult compensate_radius(Interpretation& program, std::size_t first, const CutterRadius& cutter);
 
 }  // namespace camber::nc

@@ -65,7 +65,7 @@ struct Dialect {
   int radius_look_ahead = 1;  ///< CutterRadius::moves_without_plane_motion
   /// Arcs by I J K whose radii differ by up to this are spirals (3410 = 0); 0: only those with L are.
   double spiral_radius_difference_mm = 0;
-  /// And by up to this share of the larger radius, as long as it is less than spiral_max_mm.
+  /// And by up to this fraction of the larger radius, as long as it is less than spiral_max_mm.
   double spiral_radius_fraction = 0;
   double spiral_max_mm = 0;
 

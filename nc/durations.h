@@ -1,5 +1,5 @@
 #pragma once
-// How long the moves of a program are meant to take.
+// Programmed durations of moves.
 #include "nc/move.h"
 #include "nc/program.h"
 #include "nc/reporter.h"
@@ -8,10 +8,10 @@ namespace camber::nc {
 
 /// Length over programmed feed, or the dwell; 0 for rapids.
 double programmed_time_s(const Interpretation& program, const Move& move);
-/// Of all moves, the rapids left out.
+/// Sum over all moves without rapids.
 double programmed_time_s(const Interpretation& program);
 
-/// No line, arc or dwell that anybody wants lasts longer: a day.
+/// Upper bound of a plausible line, arc or dwell: a day.
 constexpr double kMaxMove_s = 24 * 3600;
 
 /// Error [block-time] for moves that take longer than kMaxMove_s: a feed or a dwell in a wrong unit, or a wrong digit.

@@ -1,6 +1,6 @@
 #pragma once
-// Edits of a program: the user's text with new end points, feeds and splits for some of its moves, or with stretches of
-// blocks replaced, and nothing else changed. Every room that rewrites a program comes through here; what it takes is in
+// Edits of a program: the user's text with new end points, feeds and splits of some moves, or with replaced stretches
+// of blocks, and otherwise unchanged. All folders that rewrite a program use this header; the implementation is in
 // nc/emit/.
 #include <cstdint>
 #include <limits>
@@ -88,13 +88,13 @@ struct EditNotMade {
   EmitGap why = EmitGap::canned_cycle;
 };
 
-/// In shop words: what the edit's move is.
+/// Description of the edit's move for messages.
 std::string to_string(EmitGap why);
 
 struct Emission {
   std::string text;
   std::vector<EditNotMade> not_made;  ///< ascending
-  /// One entry a line of `text`: index of the block of the given program that the line stands for; kNoBlock: new.
+  /// One entry per line of `text`: index of the corresponding block of the given program; kNoBlock: new.
   std::vector<std::uint32_t> block_of_line;
 
   static constexpr std::uint32_t kNoBlock = std::numeric_limits<std::uint32_t>::max();

@@ -1,5 +1,5 @@
 #pragma once
-// What the program asks of the machine beside moving: tools, spindle, M, S and T codes, index table, pallet.
+// Events of a program other than moves: tools, spindle, M, S and T codes, index table, pallet.
 #include <cstdint>
 
 namespace camber::nc {
@@ -17,7 +17,7 @@ enum class EventKind : std::uint8_t {
   pallet                      ///< M60
 };
 
-/// Events stand in the order in which the control acts on them. One of the same block as the move `before_move` acts
+/// Events are in the order of execution. One of the same block as the move `before_move` acts
 /// together with it; one whose block has no move, or whose code acts at the block's end (M0 M1 M2 M5 M9 M30 M60),
 /// acts alone, before that move. `before_move` is Interpretation::moves.size() behind the last move.
 struct Event {

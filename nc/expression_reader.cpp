@@ -179,8 +179,7 @@ void ExpressionReader::binary(int min_priority) {
 }
 
 void ExpressionReader::operand() {
-  if (++depth_ > kMaxDepth)
-    throw MacroError(at_, "expression", fmt::format("more than {} brackets in brackets", kMaxDepth));
+  if (++depth_ > kMaxDepth) throw MacroError(at_, "expression", fmt::format("more than {} nested brackets", kMaxDepth));
   const char c = peek();
   const std::size_t begin = at_;
   std::size_t length = 0;
@@ -220,7 +219,7 @@ void ExpressionReader::parameter() {
 void ExpressionReader::variable_number() {
   const char c = peek();
   if (c != '#' && c != '[' && !is_digit(c))
-    throw MacroError(at_, "expression", "# has no number; a number, [ or <name> was expected behind it");
+    throw MacroError(at_, "expression", "# has no number; a number, [ or <name> was expected after it");
   operand();
 }
 
@@ -233,7 +232,7 @@ std::uint32_t ExpressionReader::read_name() {
   }
   if (at_ >= end_) throw MacroError(begin, "expression", "the name has no closing `>`");
   ++at_;
-  if (name.empty()) throw MacroError(begin, "expression", "<> holds no name");
+  if (name.empty()) throw MacroError(begin, "expression", "<> has no name");
   for (std::size_t i = 0; i < out_.names.size(); ++i)
     if (out_.names[i] == name) return static_cast<std::uint32_t>(i);
   out_.names.push_back(name);

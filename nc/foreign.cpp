@@ -29,7 +29,7 @@ bool among(const std::array<std::string_view, N>& names, std::string_view name) 
 /// "Camber reads programs in the style of Fanuc, Haas and LinuxCNC".
 std::string expected() {
   const std::span<const Dialect> all = dialects();
-  std::string out = "Camber reads programs in the style of ";
+  std::string out = "Camber reads programs for ";
   for (std::size_t i = 0; i < all.size(); ++i)
     out += fmt::format("{}{}", i == 0 ? "" : i + 1 < all.size() ? ", " : " and ", all[i].title);
   return out;
@@ -39,13 +39,13 @@ std::string expected() {
 
 ForeignWord explain_letters(std::string_view name) {
   if (among(kSiemens, name))
-    return {fmt::format("{} belongs to a Siemens Sinumerik program, which is not read yet; {}", name, expected()),
+    return {fmt::format("{} belongs to a Siemens Sinumerik program, which is not supported; {}", name, expected()),
             "siemens", true};
   if (among(kOWord, name))
     return {fmt::format("{} without its O number; O100 {} or O<name> {} was expected", name, name, name), "statement",
             false};
   if (among(kHeidenhain, name))
-    return {fmt::format("{} belongs to a Heidenhain program, which is not read yet; {}", name, expected()),
+    return {fmt::format("{} belongs to a Heidenhain program, which is not supported; {}", name, expected()),
             "heidenhain", true};
   if (name.size() == 2)
     return {fmt::format("{} has no number; a number was expected", name.front()), "no-number", false};
@@ -53,7 +53,7 @@ ForeignWord explain_letters(std::string_view name) {
 }
 
 ForeignWord explain_assignment(std::string_view address) {
-  return {fmt::format("{}= belongs to a Siemens Sinumerik program, which is not read yet; {}", address, expected()),
+  return {fmt::format("{}= belongs to a Siemens Sinumerik program, which is not supported; {}", address, expected()),
           "siemens", true};
 }
 

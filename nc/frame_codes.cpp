@@ -47,7 +47,7 @@ void BlockInterpreter::read_frame_code(const Code& code) {
       polar_angle_deg_ = std::atan2(p[axes.second], p[axes.first]) * 180 / kPi;
       if (!not_editable_told_)
         report_.warning(code.word->offset, "not-editable",
-                        "moves in polar coordinates (G16) are read, but compensation will leave them as they are");
+                        "moves in polar coordinates (G16) are read, but compensation leaves them unchanged");
       not_editable_told_ = true;
     }
   } else if (t == 690) {
@@ -282,7 +282,7 @@ void BlockInterpreter::set_work_offset_data(bool touch_off) {
   const int p = static_cast<int>(words_.value('P'));
   const bool extended = touch_off && options_.dialect_or_default().g10_l20_is_g54_1;
   if (!extended && p > 9) {
-    error(at, "work-offset", fmt::format("{} P{} is no work offset; P0 to P9 was expected", name, p));
+    error(at, "work-offset", fmt::format("{} P{} is not a work offset; P0 to P9 was expected", name, p));
     words_.use("XYZR");
     return;
   }
@@ -302,12 +302,11 @@ void BlockInterpreter::set_work_offset_data(bool touch_off) {
     return;
   }
   if (!external && !offset.known && !adds && number == state_.work_offset && !out_.moves.empty())
-    report_.warning(
-        at, "work-offsets",
-        fmt::format("{} sets the work offset that the program has moved in; where it lay before is not known, "
-                    "it is taken to lie there",
-                    name),
-        "G10");
+    report_.warning(at, "work-offsets",
+                    fmt::format("{} sets the work offset that the program has moved in; its previous position is not "
+                                "known and is assumed to be the same",
+                                name),
+                    "G10");
   for (int axis = 0; axis < 3; ++axis) {
     if (!words_.has(kAxisLetters[axis])) continue;
     const double given = words_.value(kAxisLetters[axis]) * unit_mm();

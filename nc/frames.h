@@ -1,5 +1,5 @@
 #pragma once
-// The shifts, turns, mirrors and scales between what is programmed and where the tool goes.
+// Coordinate frames: shifts, rotations, mirror images and scales between programmed and actual coordinates.
 #include <optional>
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 #pragma once
-// Comments as headings: which lines of a program stand under a comment.
+// Comments as headings: the lines of a program to which a comment applies.
 #include <string>
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace camber::nc {
 
-/// For each line whether the comment above it matches `pattern`, a regular expression (ECMAScript, case does not
-/// count). A comment names the lines behind it, up to the next tool change or the next comment; comments on lines
-/// behind each other, without a move between them, are one heading. Of a comment its first 400 characters are read.
+/// For each line whether the comment above it matches `pattern`, a regular expression (ECMAScript, case-insensitive). A
+/// comment names the lines behind it, up to the next tool change or the next comment; comments on lines behind each
+/// other, without a move between them, are one heading. Of a comment its first 400 characters are read.
 std::vector<bool> lines_under(const Program& program, const Interpretation& moves, const std::string& pattern);
 
 }  // namespace camber::nc

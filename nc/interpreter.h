@@ -40,7 +40,7 @@ struct InterpreterOptions {
   /// Machine coordinates of the reference points: G28, G30 P2, P3, P4.
   std::array<std::optional<Vec3>, 4> reference_points_mm{};
 
-  Vec3 single_direction_mm = Vec3::Zero();  ///< last way of G60 to its place, for each axis; 0: none
+  Vec3 single_direction_mm = Vec3::Zero();  ///< last distance of G60, for each axis; 0: none
 
   const Dialect& dialect_or_default() const { return dialect ? *dialect : default_dialect(); }
 };

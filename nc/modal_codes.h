@@ -1,5 +1,5 @@
 #pragma once
-// What every G and M code is: its modal group, and what to say of those that are not read.
+// G and M codes: modal group, and messages for unsupported ones.
 #include <string_view>
 #include <vector>
 
@@ -26,8 +26,8 @@ enum class GGroup {
   frame,          ///< G10 G15 G16 G50 G51 G50.1 G51.1 G52 G68 G69 G92: where coordinates lie
   contouring,     ///< G05 G05.1 G08, and CYCLE832 (kCycle832): modes for fine paths
   macro,          ///< G65 G66 G67: the sequencer's
-  no_effect,      ///< taken and without effect on the path
-  not_read,       ///< known, not read yet
+  no_effect,      ///< read, without effect on the path
+  not_read,       ///< known, not supported
   turning,        ///< of lathes and mill-turn machines
   unknown
 };
@@ -51,7 +51,7 @@ enum class MGroup {
   spindle,       ///< M3 M4 M5, M13 M14 (with coolant)
   tool,          ///< M6
   coolant,       ///< M7 M8 M9
-  no_effect,     ///< taken and without effect on the path
+  no_effect,     ///< read, without effect on the path
   subprogram,    ///< M97 M98 M99: the sequencer's
   interruption,  ///< M96: not read yet
   unknown

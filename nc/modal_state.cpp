@@ -157,7 +157,7 @@ bool BlockInterpreter::read_g_code(const Code& code, const GCode& meaning) {
       if (code.tenths == 1870 || code.tenths == 1030) words_.use("PE");
       break;
     case GGroup::not_read:
-      error(code.word->offset, "not-read", fmt::format("{} ({}) is not read yet", code_text(code), meaning.name),
+      error(code.word->offset, "not-read", fmt::format("{} ({}) is not supported", code_text(code), meaning.name),
             code_text(code));
       request_.skip_motion |= meaning.owns_words;
       words_.use("D");
@@ -264,7 +264,7 @@ void BlockInterpreter::set_contouring(const Code& code) {
   words_.use("PQRL");
   const char letter = code.tenths == 51 ? 'Q' : 'P';
   if (code.tenths == 50 && !words_.has('P')) {
-    error(code.word->offset, "not-read", "G5 (spline) is not read yet");
+    error(code.word->offset, "not-read", "G5 (spline) is not supported");
     request_.skip_motion = true;
     return;
   }
@@ -351,7 +351,7 @@ bool BlockInterpreter::read_m_codes_before() {
         break;
       case MGroup::interruption:
         error(code.word->offset, "not-read",
-              fmt::format("interruption by a macro ({}) is not read yet", code_text(code)), "M96");
+              fmt::format("interruption by a macro ({}) is not supported", code_text(code)), "M96");
         request_.skip_motion = true;
         break;
       case MGroup::subprogram:
@@ -361,7 +361,7 @@ bool BlockInterpreter::read_m_codes_before() {
           error(code.word->offset, "unknown-m", fmt::format("{} is not an M code", code_text(code)));
         else
           report_.warning(code.word->offset, "unknown-m",
-                          fmt::format("{} is not known; it is taken to have no effect on the path", code_text(code)));
+                          fmt::format("{} is not known; it is assumed to have no effect on the path", code_text(code)));
         words_.use("PQR");
         break;
       case MGroup::no_effect:
@@ -408,16 +408,16 @@ void BlockInterpreter::check_letters() {
       add_event(EventKind::index, words_.value(letter));
     else if (words_.value(letter) != 0)
       error(words_.offset_of(letter), "rotary-axis",
-            fmt::format("rotary axis {} is not read yet; X, Y and Z were expected", letter), std::string(1, letter));
+            fmt::format("rotary axis {} is not supported; X, Y and Z were expected", letter), std::string(1, letter));
     else
       report_.warning(words_.offset_of(letter), "rotary-axis",
-                      fmt::format("rotary axis {} is not read; it is taken to stand still at 0", letter),
+                      fmt::format("rotary axis {} is not supported; it is assumed to stay at 0", letter),
                       "rotary-zero");
   }
   for (const char letter : {'V', 'W', 'U'}) {
     if (!words_.has(letter) || (letter == 'U' && request_.dwell)) continue;
     error(words_.offset_of(letter), "unknown-letter",
-          fmt::format("axis {} is not read yet; X, Y and Z were expected", letter), std::string(1, letter));
+          fmt::format("axis {} is not supported; X, Y and Z were expected", letter), std::string(1, letter));
     words_.use("UVW");
   }
 }

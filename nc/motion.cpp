@@ -133,7 +133,7 @@ void BlockInterpreter::go_to_reference() {
     const double p = words_.value('P');
     if (p != 2 && p != 3 && p != 4) {
       error(words_.offset_of('P'), "reference",
-            fmt::format("G30 P{} is no reference point; P2, P3 or P4 was expected", p));
+            fmt::format("G30 P{} is not a reference point; P2, P3 or P4 was expected", p));
       return;
     }
     point = static_cast<std::size_t>(p) - 1;
@@ -242,12 +242,12 @@ void BlockInterpreter::prepare_cutting(const char* what) {
     if (place_[axis] == AxisPlace::never) {
       report_.warning(
           words_.offset(), "start-unknown",
-          fmt::format("{} before {} was programmed; the tool is taken to stand at {}0", what, letter, letter));
+          fmt::format("{} before {} was programmed; the tool is assumed to be at {}0", what, letter, letter));
       place_[axis] = AxisPlace::known;
     } else {
-      report_.warning(words_.offset(), "at-reference",
-                      fmt::format("{} while {} stands at the reference point; the move counts for nothing in material",
-                                  what, letter));
+      report_.warning(
+          words_.offset(), "at-reference",
+          fmt::format("{} while {} is at the reference point; the move is ignored for material removal", what, letter));
     }
   }
   if (first_cut_offset_ == 0) first_cut_offset_ = state_.work_offset;
@@ -255,7 +255,7 @@ void BlockInterpreter::prepare_cutting(const char* what) {
       !(frames_.offsets.known(state_.work_offset) && frames_.offsets.known(first_cut_offset_)))
     report_.warning(
         words_.offset(), "work-offsets",
-        "the program cuts in more than one work offset; their distance is not known, all are taken as one frame");
+        "the program cuts in more than one work offset; their distance is not known, and all are treated as one frame");
 }
 
 std::optional<double> BlockInterpreter::cutting_feed(double length_mm, const char* g) {
@@ -400,9 +400,9 @@ void BlockInterpreter::read_spiral_words(ArcWords& arc) {
     if (dialect.spiral_radius_difference_mm <= 0 && dialect.spiral_radius_fraction <= 0) return;
     const ArcResult plain = make_arc(arc);
     const double larger = std::max(plain.start_radius_mm, plain.end_radius_mm);
-    const double share_mm = std::min(dialect.spiral_radius_fraction * larger, dialect.spiral_max_mm);
+    const double relative_mm = std::min(dialect.spiral_radius_fraction * larger, dialect.spiral_max_mm);
     arc.spiral = plain.error.empty() && plain.radius_difference_mm > kArcRadiusWarningMm &&
-                 plain.radius_difference_mm <= std::max(dialect.spiral_radius_difference_mm, share_mm);
+                 plain.radius_difference_mm <= std::max(dialect.spiral_radius_difference_mm, relative_mm);
     return;
   }
   const double turns = words_.value('L');

@@ -1,5 +1,5 @@
 #pragma once
-// What the interpreted program makes the machine do. Positions are the tool tip, mm, in the frame of the
+// Moves of an interpreted program. Positions are the tool tip, mm, in the frame of the
 // work offset that was active at the first move (docs/nc-language.md, Frames).
 #include <cstdint>
 #include <limits>
@@ -20,7 +20,7 @@ enum class PathControl : std::uint8_t { exact_path, exact_stop, blend };  ///< G
 enum class SpindleDirection : std::uint8_t { stopped, clockwise, counter_clockwise };
 enum class FeedMode : std::uint8_t { per_minute, inverse_time, per_revolution };  ///< G94, G93, G95
 
-/// Modal facts that hold during a move; many moves share one.
+/// Modal state during a move; shared by many moves.
 struct ModalState {
   int tool = 0;  ///< in the spindle (after M6)
   double spindle_speed_rpm = 0;
@@ -66,26 +66,26 @@ struct Move {
   /// Part of a move to or from the reference point (G28, G30, G53) whose place in the work frame is not
   /// known: counts for nothing in material.
   bool reference : 1 = false;
-  std::uint8_t reference_point : 2 = 0;  ///< of a way to a reference point (G28, G30): 0 for the first, to 3
+  std::uint8_t reference_point : 2 = 0;  ///< index of the reference point of G28, G30: 0 for the first, to 3
   std::uint8_t reference_axes : 3 = 0;   ///< bit i: axis i goes to that point
-  bool creeps : 1 = false;               ///< the last way of G60
+  bool creeps : 1 = false;               ///< the last distance of G60
   bool canned : 1 = false;               ///< made by a drilling cycle: one of several moves of its block
-  /// The block's text says where the move goes, and says it for this move alone: it stands in the main program, is run
-  /// once, and its words have numbers. Only the words of such a block may be changed. False in loops, in subprograms
-  /// called more than once or from a file of their own, for expressions, under G41 and G42 and in polar coordinates.
+  /// True if the words of the block define this move and no other: the block is in the main program, runs once, and its
+  /// words have numbers. Only such blocks may be edited. False in loops, in subprograms called more than once or from a
+  /// file of their own, for expressions, under G41 and G42 and in polar coordinates.
   bool editable : 1 = true;
-  bool feed_given : 1 = false;        ///< an F word or a feed mode was read behind the move before, up to this block
+  bool feed_given : 1 = false;        ///< an F word or a feed mode was read since the previous move, up to this block
   bool feed_by_variable : 1 = false;  ///< the modal feed was set by an expression (F#1)
 
   static constexpr std::uint32_t kNoArc = std::numeric_limits<std::uint32_t>::max();
 };
 
 struct Interpretation {
-  std::vector<Move> moves;  ///< in order; each starts where the one before ended
+  std::vector<Move> moves;  ///< in order; each starts at the end of the previous one
   std::vector<Arc> arcs;
   std::vector<ModalState> states;
   std::vector<Event> events;           ///< beside the moves, in order
-  std::vector<Frame> frames{Frame{}};  ///< where the text's coordinates lie; the first is the identity
+  std::vector<Frame> frames{Frame{}};  ///< frames of the text's coordinates; the first is the identity
 
   const ModalState& state_of(const Move& m) const { return states[m.state]; }
   const Frame& frame_of(const Move& m) const { return frames[states[m.state].frame]; }
@@ -93,11 +93,11 @@ struct Interpretation {
 
 /// Length along the path, mm (helices included).
 double length_mm(const Interpretation& program, const Move& move);
-/// Point at the share u in [0, 1] of the move's length.
+/// Point at the fraction u in [0, 1] of the move's length.
 Vec3 point_at(const Interpretation& program, const Move& move, double u);
-/// The tool there. Rotary axes are not read yet, so every pose is upright.
+/// The tool there. Rotary axes are not supported, so every pose is upright.
 ToolPose pose_at(const Interpretation& program, const Move& move, double u);
-/// Unit direction of motion at the share u; zero for a move without length.
+/// Unit direction of motion at the fraction u; zero for a move without length.
 Vec3 direction_at(const Interpretation& program, const Move& move, double u);
 
 }  // namespace camber::nc

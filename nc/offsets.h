@@ -1,5 +1,5 @@
 #pragma once
-// Work offsets and tool offsets: what the program (G10) or the caller says of them.
+// Work offsets and tool offsets from the program (G10) or the caller.
 #include <map>
 #include <optional>
 

@@ -358,7 +358,7 @@ class Scanner {
     if (c == ',') {
       const std::string name = letters_from(at_ + 1);
       report_->error(at_, "corner-word",
-                     fmt::format("chamfers and roundings in a block (,{}) are not read yet; a word was expected",
+                     fmt::format("chamfers and roundings in a block (,{}) are not supported; a word was expected",
                                  name.substr(0, 1)));
     } else {
       report_->error(at_, "unexpected-character",
@@ -413,7 +413,7 @@ Program read_program(SourceText source, Diagnostics& diagnostics) {
     diagnostics.add({Severity::error,
                      {program.source.name(), 0, 0},
                      blank ? "the file is empty; an NC program was expected"
-                           : "the file holds no NC words; an NC program was expected",
+                           : "the file has no NC words; an NC program was expected",
                      "empty-program",
                      {}});
   }

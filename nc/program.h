@@ -1,5 +1,5 @@
 #pragma once
-// An NC program as text: blocks and words, each with its place in the file. Nothing is interpreted here.
+// An NC program as text: blocks and words with their positions in the file, without interpretation.
 #include <cstdint>
 #include <span>
 #include <string>

@@ -15,7 +15,7 @@ void BlockInterpreter::read_radius_code(const Code& code) {
   }
   const bool by_value = code.tenths % 10 != 0;
   if (by_value && !options_.dialect_or_default().g41_1_has_diameter) {
-    error(code.word->offset, "not-read", fmt::format("{} (normal direction control) is not read yet", code_text(code)),
+    error(code.word->offset, "not-read", fmt::format("{} (normal direction control) is not supported", code_text(code)),
           code_text(code));
     words_.use("D");
     return;
@@ -35,9 +35,9 @@ void BlockInterpreter::read_radius_code(const Code& code) {
   not_editable_told_ = true;
   report_.warning(
       code.word->offset, "not-editable",
-      fmt::format("the path under {} is computed here, cutter radius {:.4f} mm; compensation will leave these "
-                  "moves as they are",
-                  code_text(code), std::abs(*radius_mm)));
+      fmt::format(
+          "the path under {} is computed here, cutter radius {:.4f} mm; compensation leaves these moves unchanged",
+          code_text(code), std::abs(*radius_mm)));
 }
 
 /// The radius for D, or for the tool in the spindle where no D was given; zero, with a warning, where none is known.
@@ -53,7 +53,7 @@ std::optional<double> BlockInterpreter::radius_of(const Code& code) {
     const double d = words_.value('D');
     if (d != std::floor(d) || d < 0 || d > 1e6) {
       error(words_.offset_of('D'), "cutter-radius",
-            fmt::format("D{} is no number of an offset; a whole number of zero or more was expected", d));
+            fmt::format("D{} is not an offset number; a whole number of zero or more was expected", d));
       return std::nullopt;
     }
     radius_number_ = static_cast<int>(d);
@@ -65,9 +65,9 @@ std::optional<double> BlockInterpreter::radius_of(const Code& code) {
     if (const auto radius_mm = found->second.effective_radius_mm()) return radius_mm;
   report_.warning(
       code.word->offset, "radius-unknown",
-      fmt::format("no radius is given for D{}; {} takes 0, as where the program is written for the cutter's "
-                  "centre and D holds the wear only",
-                  number, code_text(code)),
+      fmt::format(
+          "no radius is given for D{}; {} takes 0, as in a program of the cutter centre, where D has the wear only",
+          number, code_text(code)),
       fmt::format("D{}", number));
   return 0.0;
 }
@@ -100,7 +100,7 @@ void BlockInterpreter::end_radius() {
   const double facing = a[axes.first] * b[axes.second] - a[axes.second] * b[axes.first];
   if (std::abs(a[axes.normal]) > 1e-12 || std::abs(b[axes.normal]) > 1e-12) {
     report_.error(radius.offset, "cutter-radius",
-                  fmt::format("G{} in a plane that G68 has turned out of the machine's axes is not read yet",
+                  fmt::format("G{} in a plane that G68 has rotated out of the machine axes is not supported",
                               radius.g_tenths / 10));
     return;
   }

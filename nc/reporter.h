@@ -1,5 +1,5 @@
 #pragma once
-// Diagnostics about one NC program: said once, with a count, and handed over in the order of the file.
+// Diagnostics of one NC program: each reported once, with a count, in the order of the file.
 #include <cstddef>
 #include <map>
 #include <string>

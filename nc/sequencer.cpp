@@ -279,9 +279,9 @@ void Sequencer::fail_as_endless() {
       entered = when;
     }
   if (loop) report_.set_source(loop->first->source);
-  throw MacroError(
-      loop ? loop->second : at_.file->blocks[at_.block].offset, "endless-loop",
-      fmt::format("the loop does not end: {} blocks were run again; it is not read on", options_.max_repeated_blocks));
+  throw MacroError(loop ? loop->second : at_.file->blocks[at_.block].offset, "endless-loop",
+                   fmt::format("the loop does not end: {} blocks were run again; the rest is not read",
+                               options_.max_repeated_blocks));
 }
 
 // --- words ----------------------------------------------------------------------------------------------------------
@@ -331,7 +331,7 @@ void Sequencer::warn_of_blocks_behind_the_end() {
     if (block.word_count == 0 && !block.flow) continue;
     if (flow && ((files_.runs(program)[b] > 0) || block.flow || program_number(program, b))) return;
     report_.warning(program.words_of(b).front().offset, "after-end",
-                    "the blocks behind the end of the program (M2, M30) are not run");
+                    "the blocks after the end of the program (M2, M30) are not run");
     return;
   }
 }

@@ -42,8 +42,8 @@ void Sequencer::enter(Call call, bool o_word) {
   if (call.times == 0) return;
   if (frames_.size() >= static_cast<std::size_t>(dialect_.max_levels))
     throw MacroError(call.offset, "call-depth",
-                     fmt::format("calls inside calls deeper than {} levels; a {} control reads no more",
-                                 dialect_.max_levels, dialect_.name));
+                     fmt::format("calls nested deeper than {} levels; a {} control reads no more", dialect_.max_levels,
+                                 dialect_.name));
   const BlockPlace caller{at_.file, at_.block == 0 ? 0 : at_.block - 1};
   const std::uint32_t from = caller.file == &files_.main() ? caller.block : frames_.back().called_from;
   if (call.locals) {
@@ -81,7 +81,7 @@ void Sequencer::end_of_program_text() {
   const std::size_t offset = at_.file->blocks[block].offset;
   if (frames_.empty()) {
     if (at_.block < at_.file->blocks.size())
-      report_.warning(offset, "program-end", "the program runs into the next one; it is taken to end here (M30)");
+      report_.warning(offset, "program-end", "the program runs into the next one; it is assumed to end here (M30)");
     running_ = false;
     return;
   }

@@ -136,7 +136,7 @@ void StatementReader::read_if(std::size_t begin) {
   const bool then = take("THEN");
   const bool alone = at_block_end();
   if (alone && !then)
-    throw MacroError(begin, "statement", "IF [condition] with nothing behind it; GOTO or THEN was expected");
+    throw MacroError(begin, "statement", "IF [condition] with nothing after it; GOTO or THEN was expected");
   add(alone ? StatementKind::branch_if : StatementKind::condition, begin);
   add_value(condition);
 }
@@ -161,7 +161,7 @@ void StatementReader::read_assignment() {
   const std::uint32_t target = named ? expressions().read_name() : expressions().read_variable_number();
   skip_blanks();
   if (at_ >= end_ || text_[at_] != '=')
-    throw MacroError(begin, "statement", "a variable stands alone; #number = value was expected");
+    throw MacroError(begin, "statement", "a variable without an assignment; #number = value was expected");
   ++at_;
   const std::uint32_t value = expressions().read_open();
   add(named ? StatementKind::assign_name : StatementKind::assign_number, begin, named ? target : Statement::kNoLabel);
@@ -195,7 +195,7 @@ StatementReader::Found StatementReader::read_o_word() {
   if (!read_o_keyword(begin, label, computed != Statement::kNone)) {
     if (c == '<') return Found::ignored;
     if (computed != Statement::kNone)
-      throw MacroError(begin, "statement", "a computed O number may only be called; CALL was expected behind it");
+      throw MacroError(begin, "statement", "a computed O number may only be called; CALL was expected after it");
     return at_ = begin, Found::nothing;
   }
   if (computed != Statement::kNone) {

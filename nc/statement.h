@@ -59,7 +59,7 @@ struct MacroTables {
   std::vector<Statement> statements;
   std::vector<std::uint32_t> values;  ///< of statements: indexes into Expressions::list
   std::vector<std::string> labels;    ///< of O-words and DO loops: "100", "name", "DO 1"
-  bool calls = false;                 ///< M97, M98, M99, G65 or G66 stands in the program
+  bool calls = false;                 ///< the program has M97, M98, M99, G65 or G66
   bool local_calls = false;           ///< M97
   bool broken = false;                ///< something of it could not be read: loops and calls are not to be run
   bool flow() const { return calls || !statements.empty() || !words.empty(); }

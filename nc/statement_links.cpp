@@ -47,7 +47,7 @@ class Linker {
       case Kind::leave_loop:
       case Kind::next_turn:
         s.partner = find(s, Kind::loop);
-        if (s.partner == Statement::kNone) fail(i, fmt::format("{} stands in no loop of this number", name(i)));
+        if (s.partner == Statement::kNone) fail(i, fmt::format("{} is in no loop of this number", name(i)));
         return;
       default:
         return;
@@ -73,8 +73,8 @@ class Linker {
   void leave_inner(std::uint32_t opener) {
     while (!open_.empty() && open_.back() != opener) {
       const std::uint32_t inner = open_.back();
-      fail(inner, fmt::format("{} is not closed before the end of what it stands in; {} was expected", name(inner),
-                              closer(inner)));
+      fail(inner, fmt::format("{} is not closed before the end of the enclosing structure; {} was expected",
+                              name(inner), closer(inner)));
       open_.pop_back();
     }
   }

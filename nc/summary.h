@@ -28,7 +28,7 @@ struct Range {
 
 struct ToolUse {
   int tool = 0;           ///< 0: before any M6
-  std::size_t line = 0;   ///< of the M6 that brought it in first, or of its first move where there is none
+  std::size_t line = 0;   ///< of its first M6; without one, of its first move
   std::size_t calls = 0;  ///< times it was brought in and used
   std::size_t cutting_moves = 0;
   double cutting_length_mm = 0, rapid_length_mm = 0;

@@ -185,8 +185,8 @@ void SystemVariables::set(int number, Value value, std::size_t offset) {
     throw MacroError(offset, "variable", fmt::format("#{} cannot be set by a program", number));
   if (number == 3000)
     throw MacroError(offset, "alarm",
-                     fmt::format("the program stops here with alarm {} {}; it is not read on", 3000 + value.value_or(0),
-                                 message_of_block()));
+                     fmt::format("the program stops here with alarm {} {}; the rest is not read",
+                                 3000 + value.value_or(0), message_of_block()));
   if (number == 3001) {
     clock_3001_ = clock_s() - value.value_or(0) / 1000;
   } else if (number == 3002) {
@@ -195,10 +195,9 @@ void SystemVariables::set(int number, Value value, std::size_t offset) {
     if (!out_.moves.empty()) out_.moves.back().exact_stop = true;
   } else if (within(number, 2000, 2999) || within(number, 5201, 5400) || within(number, 7001, 7960) ||
              within(number, 10001, 19999)) {
-    report_.warning(
-        offset, "variable",
-        fmt::format("#{} (an offset) is set by the program; it is taken to leave the path as it is", number),
-        "offset set");
+    report_.warning(offset, "variable",
+                    fmt::format("#{} (an offset) is set by the program; it is assumed not to affect the path", number),
+                    "offset set");
   } else if (!within(number, 1000, 1199) && !within(number, 3003, 3012) && !within(number, 3901, 3902)) {
     throw MacroError(offset, "variable",
                      fmt::format("#{} cannot be set on a {} control that Camber knows", number, dialect_.name));

@@ -67,11 +67,11 @@ void add_exceptions(py::module_& module) {
       .def_readonly("id", &camber::Diagnostic::check)
       .def("__str__", [](const camber::Diagnostic& d) { return camber::to_string(d); })
       .def("__repr__", [](const camber::Diagnostic& d) { return "<camber.Diagnostic " + camber::to_string(d) + ">"; });
-  input_error = new_exception(module, "InputError", PyExc_ValueError,
-                              "The input is wrong. file, line, column, id and message are of the first error; "
-                              "diagnostics holds all.");
-  beyond_model = new_exception(module, "BeyondModel", PyExc_ArithmeticError,
-                               "The figures cannot be worked out: the input lies beyond what the model covers.");
+  input_error = new_exception(
+      module, "InputError", PyExc_ValueError,
+      "The input is wrong. file, line, column, id and message are those of the first error; diagnostics has all.");
+  beyond_model =
+      new_exception(module, "BeyondModel", PyExc_ArithmeticError, "The input is beyond the range of the model.");
   cancelled = new_exception(module, "Cancelled", PyExc_RuntimeError, "progress returned False.");
   py::register_exception_translator(translate);
 }

@@ -168,15 +168,15 @@ void add_functions(py::module_& module) {
   add_readers(module);
   module.def("check", check, "program"_a, py::kw_only(), "machine"_a = py::none(), "job"_a = py::none(),
              "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
-             "What a program holds, and whether a machine or a job can run it.");
+             "Statistics of a program, and whether a machine or a job can run it.");
   module.def("feed", feed, "program"_a, "machine"_a, py::kw_only(), "points"_a = true, "progress"_a = py::none(),
-             "strict"_a = false, "threads"_a = 0, "Where the axes really are at every period of the control.");
+             "strict"_a = false, "threads"_a = 0, "Actual axis positions and feed at every interpolation period.");
   module.def("time", time, "program"_a, "machine"_a, py::kw_only(), "trace"_a = py::none(),
              "sweep"_a = std::vector<std::string>(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Cycle time by kind of operation and by tool.");
   module.def("fit_feed", fit_feed, "traces"_a, "machine"_a, py::kw_only(), "columns"_a = py::none(),
              "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
-             "A machine's feed model from pairs of a program and its trace.");
+             "Fits the feed model of a machine to pairs of a program and its trace.");
   module.def("predict", predict, "job"_a, py::kw_only(), "feed"_a = false, "output_folder"_a = py::none(),
              "forces_at"_a = 0, "trace"_a = py::none(), "columns"_a = py::none(), "progress"_a = py::none(),
              "strict"_a = false, "threads"_a = 0, "Cutting force, deflection and form error of a job.");
@@ -184,7 +184,7 @@ void add_functions(py::module_& module) {
              "measured"_a = py::none(), "measured_program"_a = py::none(), "check_voxels_mm"_a = std::vector<double>(),
              "time_budget_percent"_a = py::none(), "keep_anyway"_a = false, "header"_a = false, "header_hash"_a = false,
              "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
-             "A job's program with its path moved against the form error.");
+             "Compensates the program of a job: shifts its path against the form error.");
 }
 
 }  // namespace camber_python

@@ -15,7 +15,7 @@ namespace {
 template <class Result>
 py::class_<Result> result_class(py::module_& module, const char* name) {
   return py::class_<Result>(module, name)
-      .def_readonly("json", &Result::json, "Every figure, as --json of the command line writes them.")
+      .def_readonly("json", &Result::json, "All figures, as --json of the command line writes them.")
       .def_property_readonly(
           "figures", [](const Result& r) { return py::module_::import("json").attr("loads")(r.json); },
           "json as a dictionary.")

@@ -1,6 +1,6 @@
 #pragma once
-// How far every point of the envelope is displaced at each stamp of a stretch of path. Filled by deflection/, read by
-// removal/; plain data.
+// Displacement of the envelope points at each stamp of a stretch of path. Plain data; filled by deflection/, read by
+// removal/.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace camber::removal {
 
-/// Where a height lies between two nodes.
+/// Linear interpolation weight of a height between two nodes.
 struct NodeWeight {
   int lower = 0, upper = 0;
   float upper_fraction = 0;
@@ -58,10 +58,10 @@ struct DeflectionTable {
   }
 
   /// Deflection of one row at a height and a rotation step (with its fraction), linear between nodes and steps.
-  /// simd/deflection_lanes.h does the same for many places at once.
+  /// simd/deflection_lanes.h is the vectorized version.
   Vec3 at(const float* row, double height_mm, double step) const;
-  /// Rotation step, from 0 to `steps`, at which an edge passes the envelope's point at an angle (rad, counter-clockwise
-  /// from x) and a height. lag_per_mm: see EnvelopeGrid.
+  /// Rotation step in [0, `steps`) at which an edge passes the point of the envelope at an angle (rad,
+  /// counter-clockwise from x) and a height. lag_per_mm: see EnvelopeGrid.
   double step_at(double angle_rad, double height_mm, double lag_per_mm, int flutes) const {
     const double step = (angle_rad - height_mm * lag_per_mm) * steps * flutes / (2 * kPi);
     return step - steps * std::floor(step / steps);

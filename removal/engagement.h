@@ -1,6 +1,6 @@
 #pragma once
-// Engagement: which chip every point of the cutter's envelope takes at every stamp, read from the stock as the stamps
-// before left it; and the stock that is left.
+// Tool engagement: the chip at every point of the cutter envelope at every stamp, read from the stock left by the
+// previous stamps; and carving of the stock.
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -20,7 +20,7 @@ struct BlockPoints;  // removal/simd/upright_block_kernels.h
 struct BlockBounds;
 }  // namespace upright
 
-// How depth and chip are defined
+// Definitions of depth and chip thickness
 //
 // Depth. A trilinear field rounds the ridges where two cuts meet, and most of a finishing chip lies near a ridge (6 %
 // of its volume was lost at 0.1 mm voxels). So the depth of a point is the largest of the smooth fields that meet in
@@ -28,42 +28,42 @@ struct BlockBounds;
 // at the point itself. For deflected stamps the difference between the corners' values and the undeflected cutter's is
 // added, with the trilinear weights.
 //
-// Chip. h = min(d, max(0, B + (k1 f_m^2 + k2 f_t^2) / 2)): d is the depth of the point in the stock as the stamp
-// before left it; f the point's motion since then; B, f_m, f_t its parts along the normal, the meridian and the circle
-// of latitude; k1 and k2 the envelope's curvatures there.
+// Chip. h = min(d, max(0, B + (k1 f_m^2 + k2 f_t^2) / 2)): d is the depth of the point in the stock left by the
+// previous stamp; f its motion since then; B, f_m, f_t the components of f along the normal, the meridian and the
+// circle of latitude; k1 and k2 the curvatures of the envelope there.
 //
-// Deflected cutters. There the surface below a point was left at another rotation step, with another deflection, than
-// the stamp before has at the point: h = d up to B + ... + r, r the largest deflection of the stamp before, also where
-// B is negative. Beyond that B + ... counts.
+// Deflected cutters. The previous stamp left the surface below a point at another rotation step, with another
+// deflection, than it has at the point. Therefore h = d up to B + ... + r with r the largest deflection of the previous
+// stamp, also where B is negative; beyond that h = B + ...
 //
-// Level faces. A level face of the stock (the blank's top, the floor of an earlier pass, an allowance on a floor) cuts
-// a whole ring of a cutter's wall in two at once. There the chip holds the fraction of the ring's width that lies in
-// material, and its thickness is that in the middle of this part.
+// Level faces. A level face of the stock (the blank's top, the floor of an earlier pass, an allowance on a floor)
+// divides a whole ring of a cutter's wall at once. The chip then has the fraction of the ring width that is in
+// material, and the thickness in the middle of that part.
 //
-// Threads. Space is cut in tiles that take the stamps in order, all tiles at once; no result depends on the number of
-// threads.
+// Threads. Space is divided into tiles; each tile processes the stamps in order, and tiles are processed in parallel.
+// Results do not depend on the number of threads.
 
-/// What one envelope point takes at one stamp.
+/// The chip at one envelope point at one stamp.
 struct ChipSample {
   std::uint32_t point = 0;     ///< index into EnvelopeGrid
   float thickness_mm = 0;      ///< uncut, along the envelope normal, > 0
-  bool after_tooth = false;    ///< bounded below by what the tooth before left, not by older surface
+  bool after_tooth = false;    ///< bounded by the surface of the previous tooth, not by an older one
   bool own_surface = false;    ///< an older surface that the same tool cut
-  std::uint8_t cut_255 = 255;  ///< how much of the ring's width is in the cut, in 255ths
+  std::uint8_t cut_255 = 255;  ///< fraction of the ring width in the cut, in 255ths
   double width_fraction() const { return cut_255 / 255.0; }
 };
 
 /// The chip samples of one block of EnvelopeBlocks.
 struct ChipBlock {
   std::uint32_t block = 0;
-  std::uint16_t after_tooth = 0, own_surface = 0;  ///< a bit a point
-  /// 0: no chip; negative: no chip, the material lies that far outwards along the normal
+  std::uint16_t after_tooth = 0, own_surface = 0;  ///< one bit per point
+  /// 0: no chip; negative: no chip; distance to the material along the outward normal
   std::array<float, 8> thickness_mm{};
   std::array<std::uint8_t, 8> cut_255{};
 };
 
-/// Two neighbouring rings by four rotation steps, all of one pitch; the steps of a ring side by side. Where an edge
-/// of the grid leaves places over, these are no points.
+/// Two neighbouring rings by four rotation steps, all of one pitch; the steps of a ring side by side. Lanes beyond an
+/// edge of the grid have no point (kNoPoint).
 class EnvelopeBlocks {
  public:
   static constexpr int kSteps = 4, kRings = 2, kLanes = kSteps * kRings;
@@ -84,9 +84,9 @@ class EnvelopeBlocks {
   }
   const float* cos_phi(std::uint32_t block) const { return cos_phi_.data() + kLanes * block; }
   const float* sin_phi(std::uint32_t block) const { return sin_phi_.data() + kLanes * block; }
-  /// Blocks from here on lie higher above the tip.
+  /// First block that lies entirely above this height over the tip.
   int up_to(double height_mm) const;
-  /// How far seen from above a point of a block lies from the block's centre, at most.
+  /// Largest horizontal distance of a point from the centre of its block.
   double widest_mm() const { return widest_mm_; }
   float wall_half_mm(int lane_of_all) const { return wall_half_[static_cast<std::size_t>(lane_of_all)]; }
   upright::BlockPoints points() const;
@@ -106,16 +106,16 @@ class EnvelopeBlocks {
 
 std::vector<ChipSample> chips_of(const EnvelopeBlocks& blocks, std::span<const ChipBlock> chips);
 
-/// Volume that the chips of one stamp hold, mm^3: sum of (h - H h^2 + K h^3 / 3) dA, with the mean and Gaussian
+/// Volume of the chips of one stamp, mm^3: sum of (h - H h^2 + K h^3 / 3) dA, with the mean and Gaussian
 /// curvature of the envelope. Source: parallel surfaces (Steiner).
 double chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const ChipSample> chips);
 double chip_volume_mm3(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const ChipBlock> chips);
 
-/// As chip_volume_mm3 of undeflected chips, the area being that which the edge sweeps as the tool bends: a chip's
-/// thickness lies along the envelope's normal n, and the surface p + delta has the area
+/// As chip_volume_mm3 of undeflected chips, with the area that the edge sweeps as the tool deflects: chip thickness is
+/// along the normal n of the envelope, and the surface p + delta has the area
 ///   n . (d(p + delta)/dphi x d(p + delta)/ds) dphi ds = (1 + d(delta)/(r dphi) . t + d(delta)/ds . m) dA,
-/// t along the circle of latitude, m along the meridian. A bend that changes by 5 % of the length of the way that the
-/// edge goes changes the volume by as much. `row`: of the stamp, as those of `deflections`.
+/// t along the circle of latitude, m along the meridian. A deflection that changes by 5 % of the path length of the
+/// edge changes the volume by 5 %. `row`: of the stamp, as those of `deflections`.
 double swept_chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const ChipSample> chips,
                              const DeflectionTable& deflections, const float* row);
 
@@ -123,14 +123,14 @@ double swept_chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const ChipS
 /// span is valid during the call only.
 using ChipSink = std::function<void(std::size_t k, std::span<const ChipBlock>)>;
 
-/// Engagement of the undeflected cutter, batch by batch: the chips of a batch's stamps are read from the tiles as they
-/// stand, then the batch is cut. For one run of one tool.
+/// Engagement of the undeflected cutter, batch by batch: the chips of the stamps of a batch are read from the unchanged
+/// tiles, then the batch is cut. For one run of one tool.
 class RigidEngager {
  public:
   /// `blank`: the stock before stamps[0]. Ids in the stock are first_id + index; smaller ids count as blank.
-  /// `pitches`: the largest number of tooth passings before a tooth of the one that left its chip; 1 for even teeth.
-  /// With more, points whose chip would need the motion in up to `pitches` passings are reported too, with a negative
-  /// thickness. Requires upright stamps; everything passed must outlive the object.
+  /// `pitches`: largest number of tooth passings between a tooth and the one that left the surface of its chip; 1 for
+  /// uniform teeth. With more, points whose chip would need the motion in up to `pitches` passings are reported too,
+  /// with a negative thickness. Requires upright stamps; everything passed must outlive the object.
   RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
                std::int32_t first_id, int pitches = 1);
   ~RigidEngager();
@@ -147,11 +147,11 @@ class RigidEngager {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Maximum tilt of the deflected envelope (a deflection that jumps at an edge's entry is no slope).
+/// Maximum tilt of the deflected envelope (a jump of the deflection at the entry of an edge is not a slope).
 constexpr double kMaxTilt = 0.3;
 
-/// A depth that goes beyond what the motion allows by less than this factor, or by less than its deflection, is the
-/// surface that the tooth before left: it is known better than the motion's allowance.
+/// A depth that exceeds the motion bound by less than this factor, or by less than its deflection, is attributed to the
+/// surface of the previous tooth, which is more accurate than the bound.
 constexpr float kBeyondCap = 2.0f;
 
 /// Points up to this far outside the material are reported, with a negative thickness.
@@ -161,12 +161,12 @@ constexpr float kNear_mm = 0.1f;
 struct DeflectedChipSample {
   ChipSample chip;     ///< its thickness is the smaller of the next two, negative for a point outside the material
   float depth_mm = 0;  ///< of the stock below the point, against the normal
-  float cap_mm = 0;    ///< what the motion allows; the largest depth that counts where the depth is less
+  float cap_mm = 0;    ///< motion bound; the largest depth that counts where the depth is smaller
   std::array<float, 3> deeper{};  ///< d(depth)/d(deflection), by x, y and z
 };
 
-/// Engagement of the deflected cutter, stamp by stamp: read() gives the chips that a stamp takes with the deflection it
-/// has, as often as that changes; then cut() carves it. For one run of one tool.
+/// Engagement of the deflected cutter, stamp by stamp: read() returns the chips of a stamp with its current deflection
+/// and is called again when that changes; then cut() carves the stamp. For one run of one tool.
 class DeflectedEngager {
  public:
   static constexpr double kMaxDeflection_mm = 0.5;
@@ -193,7 +193,7 @@ class DeflectedEngager {
 };
 
 struct SweepOptions {
-  double shrink_mm = 0;       ///< cutter smaller by this along its normal (the blank's allowance)
+  double shrink_mm = 0;       ///< cutter reduced by this along its normal (allowance of the blank)
   std::int32_t first_id = 0;  ///< id of stamps[0], written to the voxels that it sets last
 };
 

@@ -68,9 +68,9 @@ ErrorSpread error_spread(const std::vector<double>& error, const std::vector<dou
   std::size_t next = 0;
   for (const auto& [value, i] : order) {
     below += area[i];
-    for (; next < out.kShares.size() && below >= out.kShares[next] * whole; ++next) out.percentile[next] = value;
+    for (; next < out.kFractions.size() && below >= out.kFractions[next] * whole; ++next) out.percentile[next] = value;
   }
-  for (; next < out.kShares.size(); ++next) out.percentile[next] = order.back().value;
+  for (; next < out.kFractions.size(); ++next) out.percentile[next] = order.back().value;
   const double least = order.front().value, greatest = order.back().value;
   // The width leaves room for a bin that the round beginning cuts off.
   out.bin_width = round_width(std::max((greatest - least) / (kMaxBins - 1), 1e-6));

@@ -1,6 +1,5 @@
 #pragma once
-// The form error: points of the target's surface, each with the height of the machined surface along its normal, and
-// figures of it.
+// Form error: points of the target surface with the height of the machined surface along their normals, and statistics.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -29,8 +28,7 @@ class CutterPlaces {
     std::int32_t id;
     double depth_mm;  ///< of the point inside that cutter
   };
-  /// The stamp that the point lies deepest in, of those met going from a known stamp along its run while it grows
-  /// deeper.
+  /// Local search from a known stamp along its run: the stamp in which the point lies deepest.
   Depth deepest_from(std::int32_t id, const Vec3& point) const;
 
  private:
@@ -48,16 +46,16 @@ struct SurfacePoint {
   Vec3 place_mm = Vec3::Zero();      ///< on the target's surface
   Vec3 crossing_mm = Vec3::Zero();   ///< where a grid line crosses the target's field, beside it
   Vec3 normal = Vec3::UnitZ();       ///< outward, unit
-  double error_mm = 0;               ///< machined minus target along the normal; positive: material is left
+  double error_mm = 0;               ///< machined minus target along the normal; positive: excess material
   double contour_mm = 0;             ///< of it, what servo lag and corner rounding do to the target program
-  double area_mm2 = 0;               ///< of the target's surface that the point stands for
-  std::int32_t target_stamp = -1;    ///< which stamp of the target's sweep made it
-  std::int32_t machined_stamp = -1;  ///< which stamp cut the machined field there last; -1: none
+  double area_mm2 = 0;               ///< of the target's surface represented by the point
+  std::int32_t target_stamp = -1;    ///< stamp of the target sweep that generated it
+  std::int32_t machined_stamp = -1;  ///< stamp that last cut the machined field there; -1: none
 };
 
-/// Points where grid lines cross the target's surface, in a fixed order. A crossing along axis a stands for
-/// voxel^2 |n_a|: along all three axes these add up to the surface's area, since sum n_a^2 = 1. Only surface that the
-/// target's sweep has cut, leaving out one voxel along its edges. Errors are cut off at the band. Both stocks must have
+/// Points where grid lines cross the target's surface, in a fixed order. A crossing along axis a represents the area
+/// voxel^2 |n_a|; over all three axes these add up to the surface area, since sum n_a^2 = 1. Only surface that the
+/// target's sweep has cut, leaving out one voxel along its edges. Errors are clipped to the band. Both stocks must have
 /// the same voxels.
 std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target);
 
@@ -71,7 +69,7 @@ std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& t
 /// the edges with the stock's faces: the last one of a row stands for what is left up to the edge, so that what part of
 /// a low wall is seen does not depend on where the grid lies. Without it (null) one voxel along the edges is left out.
 ///
-/// `unseen_mm2` (null where not wanted): about how much of the surface that the target's sweep cut has no point.
+/// `unseen_mm2` (null: not needed): about how much of the surface that the target's sweep cut has no point.
 std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places,
                                                       const Stock* solid = nullptr, double* unseen_mm2 = nullptr);
 
@@ -83,14 +81,14 @@ struct ErrorFigures {
 };
 ErrorFigures error_figures(const std::vector<double>& error, const std::vector<double>& area_mm2);
 
-/// How the area is spread over the error.
+/// Distribution of the area over the error.
 struct ErrorSpread {
-  static constexpr std::array<double, 9> kShares{0.01, 0.05, 0.10, 0.25, 0.50, 0.75, 0.90, 0.95, 0.99};
-  std::array<double, kShares.size()> percentile{};  ///< of the signed error, by area
-  double bin_from = 0, bin_width = 0;               ///< in the unit of the values
-  std::vector<double> bin_area_mm2;                 ///< their sum is the whole area
+  static constexpr std::array<double, 9> kFractions{0.01, 0.05, 0.10, 0.25, 0.50, 0.75, 0.90, 0.95, 0.99};
+  std::array<double, kFractions.size()> percentile{};  ///< of the signed error, by area
+  double bin_from = 0, bin_width = 0;                  ///< in the unit of the values
+  std::vector<double> bin_area_mm2;                    ///< their sum is the whole area
 };
-/// Forty bins or fewer of a round width (1, 2 or 5 times a power of ten) from the least to the greatest error.
+/// Forty bins or fewer of a round width (1, 2 or 5 times a power of ten) from the minimum to the maximum error.
 ErrorSpread error_spread(const std::vector<double>& error, const std::vector<double>& area_mm2);
 
 /// Points of the target's surface (as compare_surfaces has them, moved along their grid line onto the cutters that made
@@ -98,13 +96,13 @@ ErrorSpread error_spread(const std::vector<double>& error, const std::vector<dou
 ///
 /// A field between voxels rounds the ridges between two cuts. The deflected cutter leaves other ridges than the
 /// straight one, sharper by the jump of the deflection as an edge enters the cut, so that rounding does not cancel
-/// between two fields: 3.5 % of the error were lost at 0.1 mm voxels (docs/engagement.md). Here every point meets every
-/// envelope itself: the height e at which x = q + e n - delta(s, phi) lies on the straight envelope, (s, phi) belonging
-/// to x; the least height of all stamps stays. Nothing depends on the number of threads.
+/// between two fields: 3.5 % of the error were lost at 0.1 mm voxels (docs/engagement.md). Here every point is
+/// intersected with every envelope: the height e at which x = q + e n - delta(s, phi) lies on the undeflected envelope,
+/// with (s, phi) of x; the minimum over all stamps is kept. Results do not depend on the number of threads.
 class SurfaceMap {
  public:
   /// `places`: the cutters of the target's sweep, by the ids that its voxels name. `blank`: the surface wherever no
-  /// mark is deeper. `solid`: see surface_points. All have the same voxels. Nothing of them is needed afterwards.
+  /// mark is deeper. `solid`: see surface_points. All have the same voxels. They are not needed afterwards.
   SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank, const Stock* solid = nullptr);
   ~SurfaceMap();
 
@@ -112,11 +110,10 @@ class SurfaceMap {
   void mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamps, const DeflectionTable& deflections,
             std::int32_t first_id);
 
-  /// About how much of the surface that the target's sweep cut has no point, mm^2: it knows the ends of the surface to
-  /// half a voxel.
+  /// Approximate area of the target surface without a point, mm^2; the ends of the surface are known to half a voxel.
   double unseen_mm2() const { return unseen_mm2_; }
 
-  /// The points with what the marks and, where it still stands, the blank say. Ends the map.
+  /// Returns the points with the errors from the marks and, where uncut, from the blank. Ends the map.
   std::vector<SurfacePoint> take();
 
  private:

@@ -31,10 +31,10 @@ class NominalBuilder {
       open_ = true;
       put(stamp, at_, true);
     }
-    const Vec3 goal = place_of({stamp.move, stamp.share});
+    const Vec3 goal = place_of({stamp.move, stamp.fraction});
     for (std::uint32_t m = at_.move; m < stamp.move; ++m)
       if (!straight_past(m, goal)) reach(stamp, {m, 1});
-    reach(stamp, {stamp.move, stamp.share});
+    reach(stamp, {stamp.move, stamp.fraction});
     next_ = stamp.move;
     last_ = stamp;
   }
@@ -54,7 +54,7 @@ class NominalBuilder {
  private:
   struct Place {
     std::uint32_t move = 0;
-    double share = 0;
+    double fraction = 0;
   };
 
   /// True where the tool cuts from one move on to the other.
@@ -65,7 +65,7 @@ class NominalBuilder {
     return true;
   }
 
-  Vec3 place_of(const Place& p) const { return nc::point_at(program_, program_.moves[p.move], p.share); }
+  Vec3 place_of(const Place& p) const { return nc::point_at(program_, program_.moves[p.move], p.fraction); }
 
   bool straight_past(std::uint32_t move, const Vec3& goal) const {
     const Vec3 from = out_.stamps.back().pose.tip_mm, chord = goal - from, vertex = program_.moves[move].end_mm - from;
@@ -77,20 +77,21 @@ class NominalBuilder {
 
   /// Stamps up to a place, no farther apart than the axes' own.
   void reach(const Stamp& stamp, const Place& to) {
-    const double from_share = at_.move == to.move ? at_.share : 0.0;
-    const double way = (to.share - from_share) * nc::length_mm(program_, program_.moves[to.move]);
+    const double from_fraction = at_.move == to.move ? at_.fraction : 0.0;
+    const double way = (to.fraction - from_fraction) * nc::length_mm(program_, program_.moves[to.move]);
     const double step = stamp.feed_per_tooth_mm.norm();
     const int pieces = step > kStill_mm && way > kFarther * step ? static_cast<int>(std::ceil(way / step - 1e-9)) : 1;
-    for (int i = 1; i <= pieces; ++i) put(stamp, {to.move, from_share + (to.share - from_share) * i / pieces}, false);
+    for (int i = 1; i <= pieces; ++i)
+      put(stamp, {to.move, from_fraction + (to.fraction - from_fraction) * i / pieces}, false);
     at_ = to;
   }
 
   void put(const Stamp& like, const Place& at, bool first) {
     Stamp stamp = like;
     stamp.move = at.move;
-    stamp.share = at.share;
+    stamp.fraction = at.fraction;
     stamp.first = first;
-    stamp.pose = nc::pose_at(program_, program_.moves[at.move], at.share);
+    stamp.pose = nc::pose_at(program_, program_.moves[at.move], at.fraction);
     if (!first) stamp.feed_per_tooth_mm = stamp.pose.tip_mm - out_.stamps.back().pose.tip_mm;
     if (!first && stamp.feed_per_tooth_mm.norm() < kStill_mm) return;
     out_.stamps.push_back(stamp);

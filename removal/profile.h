@@ -1,5 +1,5 @@
 #pragma once
-// The profile of a turning cutter in its meridian plane: bottom, corner, wall, and the cylinder above.
+// The profile of a rotating cutter in its meridian plane: bottom, corner, wall, and the cylinder above.
 #include <array>
 #include <limits>
 #include <vector>
@@ -18,13 +18,13 @@ struct ProfilePoint {
   double parallel_curvature_per_mm = 0;  ///< normal curvature along the circle of latitude
 };
 
-/// Lines and at most one arc, convex, from the axis upwards; the last line has no end. Points are (r, z).
+/// Lines and at most one arc, convex, from the axis upwards; the last line is unbounded. Points are (r, z).
 class Profile {
  public:
   struct Piece {
     bool arc = false;
     double from_s_mm = 0, length_mm = 0;
-    Vec2 start = Vec2::Zero(), end = Vec2::Zero();  ///< the last piece's end stands for "no end"
+    Vec2 start = Vec2::Zero(), end = Vec2::Zero();  ///< the end of the last piece means "unbounded"
     double normal_from_rad = 0, normal_to_rad = 0;  ///< a line's are the same
     Vec2 along = Vec2::Zero();                      ///< a line's direction
     Vec2 normal = Vec2::Zero();                     ///< a line's outward normal
@@ -40,7 +40,7 @@ class Profile {
   const std::vector<Piece>& pieces() const { return pieces_; }
   double largest_radius_mm() const { return pieces_.back().start.x(); }
 
-  /// Where the profile is nearest to a point of the meridian plane, r >= 0.
+  /// Nearest point of the profile to a point of the meridian plane, r >= 0.
   struct Nearest {
     double distance_mm = 0;      ///< signed, negative inside; exact
     Vec2 place = Vec2::Zero();   ///< on the profile

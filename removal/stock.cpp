@@ -355,13 +355,13 @@ void Stock::clear() {
 double material_fraction(double d, double voxel) { return std::clamp(0.5 - 0.5 * d / voxel, 0.0, 1.0); }
 
 double Stock::volume_mm3() const {
-  double share = 0;
+  double fraction = 0;
   for (auto it = impl_->distance->tree().cbeginLeaf(); it; ++it)
-    for (openvdb::Index n = 0; n < 512; ++n) share += material_fraction(it->getValue(n), voxel_mm_);
+    for (openvdb::Index n = 0; n < 512; ++n) fraction += material_fraction(it->getValue(n), voxel_mm_);
   // Below leaf level only inactive tiles of one value are left.
   for (auto it = impl_->distance->tree().cbeginValueOff(); it; ++it)
-    if (!it.isVoxelValue() && it.getValue() < 0) share += static_cast<double>(it.getVoxelCount());
-  return share * std::pow(voxel_mm_, 3);
+    if (!it.isVoxelValue() && it.getValue() < 0) fraction += static_cast<double>(it.getVoxelCount());
+  return fraction * std::pow(voxel_mm_, 3);
 }
 
 std::vector<Index3> Stock::surface_tiles() const {
@@ -429,7 +429,7 @@ openvdb::FloatGrid::Ptr read_float_grid(const std::string& path) {
     fail_on_file(path, std::string("cannot be read as .vdb: ") + e.what(), "vdb-format");
   }
   if (!found || found->getGridClass() != openvdb::GRID_LEVEL_SET || !(found->background() > 0))
-    fail_on_file(path, "holds no level set of floats; a stock.vdb that predict wrote was expected", "vdb-format");
+    fail_on_file(path, "has no level set of floats; a stock.vdb that predict wrote was expected", "vdb-format");
   return found;
 }
 
@@ -469,7 +469,7 @@ Stock Stock::load(const std::string& path, double voxel_mm, double band_voxels) 
   require_voxels(*grid, path, voxel_mm);
   const auto band = static_cast<float>(band_voxels * voxel_mm), old_band = grid->background();
   const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
-  if (box.empty()) fail_on_file(path, "holds no surface: nothing is left of the stock", "vdb-format");
+  if (box.empty()) fail_on_file(path, "has no surface: nothing is left of the stock", "vdb-format");
   Vec3 lo, hi;
   for (int a = 0; a < 3; ++a) {
     lo[a] = (box.min()[a] - 1) * voxel_mm + old_band;

@@ -1,6 +1,6 @@
 #pragma once
 // The stock: a narrow-band signed distance field (OpenVDB), negative inside the material, and for every voxel
-// the stamp that set it last; the bodies that a stock is made from (box, cylinder, mesh); what a stock looks like.
+// the stamp that set it last; bodies for building a stock (box, cylinder, mesh); points for drawing a stock.
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -23,7 +23,7 @@ class Stock {
   static constexpr std::int32_t kUncut = -1;
 
   /// Samples a signed distance (mm, negative inside, 1-Lipschitz) over a box. `band_voxels`: half width of the
-  /// narrow band; values beyond it are cut off. Outside the box there is air.
+  /// narrow band; values are clipped to it. Outside the box is air.
   Stock(const std::function<double(const Vec3&)>& distance_mm, const Vec3& min_mm, const Vec3& max_mm, double voxel_mm,
         double band_voxels);
   /// Reads what save() wrote, with its voxels; the band is widened or narrowed to `band_voxels`. Throws InputError
@@ -44,7 +44,7 @@ class Stock {
   float voxel(const Index3& index) const;
   std::int32_t stamp(const Index3& index) const;
 
-  /// Many readings by one thread, while the stock stays as it is.
+  /// Fast repeated reading by one thread while the stock is unchanged.
   class Probe {
    public:
     explicit Probe(const Stock& stock);
@@ -63,11 +63,11 @@ class Stock {
 
   /// Tiles are numbered so that tile t owns the voxels t * kCore ... t * kCore + kCore - 1. Thread safe.
   void load(const Index3& tile, Tile& out) const;
-  /// A cube of side^3 voxels from `first` on, rows along z, then y, then x; `stamp` null where not wanted. Thread safe.
+  /// A cube of side^3 voxels from `first` on, rows along z, then y, then x; `stamp` null: not needed. Thread safe.
   void read(const Index3& first, int side, float* distance, std::int32_t* stamp) const;
   /// False where no stamp has set a voxel of the tile's core. Thread safe.
   bool is_cut(const Index3& tile) const;
-  /// True where the tile and its upper layer hold nothing but air. Thread safe.
+  /// True if the tile and its upper layer contain only air. Thread safe.
   bool is_air(const Index3& tile) const;
   /// True where the tile and its upper layer are deeper in material than the band. Thread safe.
   bool is_solid(const Index3& tile) const;
@@ -77,14 +77,14 @@ class Stock {
   };
   /// Writes the cores of tiles back, each once. Not thread safe.
   void store(std::span<const StoredTile> tiles);
-  /// Forgets which stamps cut what: the stock is a blank.
+  /// Clears all stamp ids: the stock becomes a blank.
   void clear_stamps();
-  /// Leaves air everywhere, and gives the memory back.
+  /// Sets everything to air and frees the memory.
   void clear();
 
   /// Volume of material in the box, mm^3 (first-order smeared step over one voxel each way).
   double volume_mm3() const;
-  /// Coordinates of tiles that hold a part of the narrow band, in a fixed order.
+  /// Indices of the tiles with a part of the narrow band, in a fixed order.
   std::vector<Index3> surface_tiles() const;
   std::size_t memory_bytes() const;
   /// Writes the distance field (name "stock", level set) as .vdb. Throws InputError [file-unwritable].
@@ -98,10 +98,10 @@ class Stock {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Share of a voxel that is material, from its distance: 1 inside, 0 outside, linear over one voxel each way.
+/// Fraction of a voxel that is material, from its distance: 1 inside, 0 outside, linear over one voxel each way.
 double material_fraction(double distance_mm, double voxel_mm);
 
-/// Signed distance to an upright cylinder, exact. base: middle of its lower face.
+/// Signed distance to an upright cylinder, exact. base: centre of its lower face.
 double cylinder_distance_mm(const Vec3& point, const Vec3& base_mm, double radius_mm, double height_mm);
 
 /// Signed distance to a box, exact.
@@ -127,7 +127,7 @@ class MeshDistance {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Where a line between two points of the grid leaves the material.
+/// Crossing of a grid line with the surface of the stock.
 struct StockCrossing {
   Vec3 place_mm;
   Vec3 outward;  ///< along the line: an axis or its opposite
@@ -140,8 +140,7 @@ struct StockShape {
 
 /// Crossings of the stock's surface with the lines of the finest grid that has no more than `max_crossings`; 1 or
 /// more. Each lies where the voxels put it, but for a thousandth of a cell
-/// between the two points. What is thinner than a cell between two points of the
-/// grid is not seen.
+/// between the two points. Features thinner than a cell between two grid points are missed.
 StockShape stock_shape(const Stock& stock, std::size_t max_crossings);
 
 }  // namespace camber::removal

@@ -82,8 +82,9 @@ void StampBuilder::stamp_at(double t_s, const TimedSample& sample, const feedmod
   stamp.pose = nc::pose_at(program_, program_.moves[place.move], place.u);
   stamp.pose.tip_mm = have_last_ ? Vec3((1 - u) * last_.position_mm + u * sample.position_mm) : sample.position_mm;
   // `place` is that of the sample, up to a period later.
-  const double from = cutting_ && path_.stamps.back().move == place.move ? path_.stamps.back().share : 0.0;
-  stamp.share = feedmodel::closest_on_move(program_, place.move, stamp.pose.tip_mm, std::min(from, place.u), place.u).u;
+  const double from = cutting_ && path_.stamps.back().move == place.move ? path_.stamps.back().fraction : 0.0;
+  stamp.fraction =
+      feedmodel::closest_on_move(program_, place.move, stamp.pose.tip_mm, std::min(from, place.u), place.u).u;
   if (cutting_) {
     stamp.feed_per_tooth_mm = stamp.pose.tip_mm - path_.stamps.back().pose.tip_mm;
     if (stamp.feed_per_tooth_mm.norm() < kStill_mm) return;
@@ -118,8 +119,9 @@ void StampBuilder::drill(const TimedSample& sample, const feedmodel::PathPlace& 
   const double feed_fraction = m.feed_mm_per_s * passing / (m.end_mm - m.start_mm).norm();
   for (; next_s_ <= sample.t_s; next_s_ += passing) {
     const double u = span > 0 ? std::clamp((next_s_ - last_.t_s) / span, 0.0, 1.0) : 1.0;
-    const double share = (1 - u) * hole_fraction_ + u * place.u;
-    hole_stamp(place.move, cutting_ ? std::min(share, path_.stamps.back().share + feed_fraction) : share, next_s_);
+    const double fraction = (1 - u) * hole_fraction_ + u * place.u;
+    hole_stamp(place.move, cutting_ ? std::min(fraction, path_.stamps.back().fraction + feed_fraction) : fraction,
+               next_s_);
   }
   hole_fraction_ = place.u;
 }
@@ -129,22 +131,22 @@ void StampBuilder::finish_hole(std::uint32_t move, double t_s) {
   const nc::Move& m = program_.moves[move];
   const bool begun = cutting_ && path_.stamps.back().move == move;
   if (!begun) cutting_ = false;
-  const double length = (m.end_mm - m.start_mm).norm(), from = begun ? path_.stamps.back().share : 0.0;
+  const double length = (m.end_mm - m.start_mm).norm(), from = begun ? path_.stamps.back().fraction : 0.0;
   const double feed = m.feed_mm_per_s * passing_s(move);
   const int steps = feed > 0 ? std::max(1, static_cast<int>(std::ceil((1 - from) * length / feed - 1e-9))) : 1;
   for (int i = begun ? 1 : 0; i <= steps; ++i) hole_stamp(move, from + (1 - from) * i / steps, t_s);
   cutting_ = false;
 }
 
-void StampBuilder::hole_stamp(std::uint32_t move, double share, double t_s) {
+void StampBuilder::hole_stamp(std::uint32_t move, double fraction, double t_s) {
   const nc::Move& m = program_.moves[move];
   const Vec3 way = m.end_mm - m.start_mm;
   Stamp stamp;
   stamp.t_s = t_s;
-  stamp.share = share;
+  stamp.fraction = fraction;
   stamp.move = move;
   stamp.first = !cutting_;
-  stamp.pose = {m.start_mm + share * way, nc::pose_at(program_, m, share).axis};
+  stamp.pose = {m.start_mm + fraction * way, nc::pose_at(program_, m, fraction).axis};
   stamp.feed_per_tooth_mm = cutting_ ? Vec3(stamp.pose.tip_mm - path_.stamps.back().pose.tip_mm)
                                      : Vec3(way.normalized() * m.feed_mm_per_s * passing_s(move));
   if (cutting_ && stamp.feed_per_tooth_mm.norm() < kStill_mm) return;

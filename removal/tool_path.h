@@ -1,5 +1,5 @@
 #pragma once
-// The tool's path as removal sees it: stamps, one tooth passing apart, and the moves that make holes.
+// Tool path for material removal: stamps one tooth passing apart, and the moves that make holes.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -20,31 +20,31 @@ struct Stamp {
   double t_s = 0;
   ToolPose pose;
   Vec3 feed_per_tooth_mm = Vec3::Zero();  ///< motion since the stamp before, one tooth passing earlier
-  double share = 0;                       ///< of `move`'s length at which the tip stands, 0 to 1
-  bool first = false;                     ///< after a rapid, a dwell or a tool change: no tooth passed just before
+  double fraction = 0;                    ///< of `move`'s length at which the tip stands, 0 to 1
+  bool first = false;                     ///< after a rapid, a dwell or a tool change: no previous tooth passing
   std::uint32_t move = 0;  ///< index into Interpretation::moves, where the tip is (not what is commanded)
 };
 
-/// What code with "upright" in its name or namespace requires.
+/// Precondition of code with "upright" in its name or namespace.
 inline bool all_upright(std::span<const Stamp> stamps) {
   return std::ranges::all_of(stamps, [](const Stamp& s) { return s.pose.upright(); });
 }
 
 enum class HoleMove : std::uint8_t {
-  none,        ///< of no hole, or of none of the job's operations
+  none,        ///< not of a hole, or not of the job's operations
   drilled,     ///< straight down: carved, with chips and forces
-  tapped,      ///< G74, G84: carved; a tap's chip is none of ours
-  way_out,     ///< fed straight up out of the hole just made: nothing is left to cut
+  tapped,      ///< G74, G84: carved, without chips and forces
+  way_out,     ///< fed straight up out of the hole: nothing to cut
   not_carved,  ///< G87 (bored upwards, from below) and cycles along another axis than the tool's
 };
 constexpr bool makes_hole(HoleMove m) { return m == HoleMove::drilled || m == HoleMove::tapped; }
 
-/// One a move of the program. A cycle's feed moves count for every cutter; of moves outside cycles, straight ones
+/// One per move of the program. A cycle's feed moves count for every cutter; of moves outside cycles, straight ones
 /// up and down count where the job says that the tool is a drill (cycles written out by a CAM program).
 std::vector<HoleMove> hole_moves(const nc::Interpretation& program, const machine::Operations& operations,
                                  const std::map<int, machine::Tool>& tools);
 
-/// How many holes such moves make: pecks of one place and block are one hole.
+/// Number of holes; pecks at one position of one block are one hole.
 struct HoleCount {
   std::size_t drilled = 0, tapped = 0;
 };
@@ -52,14 +52,14 @@ HoleCount count_holes(const nc::Interpretation& program, const std::vector<HoleM
 
 enum class RunKind : std::uint8_t { milling, drilling, tapping };
 
-/// Stamps from ... from + count - 1 are cut by one tool, one after the other.
+/// Stamps from ... from + count - 1 are consecutive cuts of one tool.
 struct ToolRun {
   int tool = 0;
   std::size_t from = 0, count = 0;
   RunKind kind = RunKind::milling;
 };
 
-/// When a rapid begins; rapids too short to hold a sample take the time of the next one.
+/// When a rapid begins; rapids without a sample have the time of the next one.
 struct RapidStart {
   std::uint32_t move = 0;  ///< index into Interpretation::moves
   double t_s = 0;
@@ -80,12 +80,12 @@ StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool
 /// True for a move of the job's operations.
 bool in_operations(const nc::Interpretation& program, const nc::Move& move, const machine::Operations& operations);
 
-/// Which moves are milled: lines and arcs of the job's operations whose place in the work frame is known. Drilling
+/// Milling moves: lines and arcs of the job's operations with a known position in the work frame. Drilling
 /// cycles are not among them (hole_moves()).
 std::vector<bool> selected_moves(const nc::Interpretation& program, const machine::Operations& operations);
 
-/// Takes the samples of predict_feed in order and sets a stamp every tooth passing, 60 / (rpm * flutes) s, while
-/// the actual position lies on a selected move. Stamps that have not moved since the one before are left out.
+/// Takes the samples of predict_feed in order and places a stamp at every tooth passing, 60 / (rpm * flutes) s, while
+/// the actual position lies on a selected move. Stamps without motion since the previous one are skipped.
 /// Every selected move's tool must be in `tools` and its spindle must turn.
 ///
 /// Moves that make holes get stamps as well, in runs of their own: on the commanded axis, and one at the commanded
@@ -102,7 +102,7 @@ class StampBuilder {
   void stamp_at(double t_s, const feedmodel::TimedSample& sample, const feedmodel::PathPlace& place, int tool);
   void drill(const feedmodel::TimedSample& sample, const feedmodel::PathPlace& place);
   void finish_hole(std::uint32_t move, double t_s);
-  void hole_stamp(std::uint32_t move, double share, double t_s);
+  void hole_stamp(std::uint32_t move, double fraction, double t_s);
   void append(const Stamp& stamp, int tool, RunKind kind);
   bool makes_hole(std::uint32_t move) const { return !holes_.empty() && removal::makes_hole(holes_[move]); }
   double passing_s(std::uint32_t move) const;

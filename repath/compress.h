@@ -17,7 +17,7 @@ namespace camber::repath {
 /// A control that runs arcs faster than lines, whatever is programmed.
 struct FeedsByKind {
   double line_mm_per_s = 0, arc_mm_per_s = 0;  ///< greater than zero, the second greater than the first
-  double block_s = 0.005;                      ///< what a block costs beside its way; zero or more
+  double block_s = 0.005;                      ///< additional time per block; zero or more
 };
 
 /// Seconds of all cuts at these feeds: lines_mm / line + arcs_mm / arc + cuts * block_s. Rapids are not counted.
@@ -25,12 +25,12 @@ double cutting_time_s(const nc::Interpretation& moves, const FeedsByKind& feeds)
 
 struct CompressOptions {
   double tolerance_mm = 0.01;
-  std::optional<FeedsByKind> feeds{};  ///< the least time at these; without them the fewest blocks
+  std::optional<FeedsByKind> feeds{};  ///< minimize the time at these feeds; otherwise the number of blocks
   bool helices = false;                ///< arcs whose third axis moves evenly with the angle, where the path does
   bool switch_planes = false;  ///< runs in another plane get its G17 G18 G19 and the old one behind; else lines only
   bool whole_numbers_are_increments = false;  ///< numbers are written with a point
   FitOptions fit{};                           ///< tolerance and increment are set from the program
-  std::function<void(double)> progress{};     ///< share of the moves
+  std::function<void(double)> progress{};     ///< fraction of the moves
 };
 
 /// A stretch of blocks that are plain straight cuts at one feed, in one plane or in space.

@@ -1,5 +1,5 @@
 #pragma once
-// What a machine makes of a path: how long it takes and how far it strays from the one that was meant.
+// Predicted time of a path, and deviation of the axes from the reference path.
 #include <vector>
 
 #include "feedmodel/timed_path.h"

@@ -21,7 +21,7 @@ constexpr double kAlmostSameTime = 1.005;  ///< is worth fewer blocks
 
 constexpr double kPredictedBlocks = 3e6;  ///< by all trials of feeds together
 constexpr double kFewestTrials = 12, kMaxTrials = 70;
-constexpr double kFirstFeed = 0.7, kMinFeed = 0.25, kMinShare = 0.1;
+constexpr double kFirstFeed = 0.7, kMinFeed = 0.25, kMinFraction = 0.1;
 constexpr double kAim = 0.998;    ///< of the limit
 constexpr double kNearer = 0.99;  ///< than the old program, by so much: worth another one where none keeps to the limit
 
@@ -85,7 +85,7 @@ class Search {
     if (out_.within_limit)
       out_.gains = asked_for || !old_keeps || chosen.figures.time_s * kMinGain < before_.time_s;
     else  // the old program may be the nearest that there is
-      out_.gains = asked_for || out_.limit.share(chosen.figures) < kNearer * out_.limit.share(before_);
+      out_.gains = asked_for || out_.limit.fraction(chosen.figures) < kNearer * out_.limit.fraction(before_);
     if (out_.gains) {
       out_.path = resegmenter_.lay_out(layout_of(chosen));
     } else {
@@ -146,7 +146,7 @@ class Search {
   bool choose(const Candidate& c, bool keeps) const {
     const Candidate& chosen = out_.tried[out_.chosen];
     if (keeps != out_.within_limit) return keeps;
-    return keeps ? beats(c, chosen) : out_.limit.share(c.figures) < out_.limit.share(chosen.figures);
+    return keeps ? beats(c, chosen) : out_.limit.fraction(c.figures) < out_.limit.fraction(chosen.figures);
   }
 
   bool beats(const Candidate& c, const Candidate& other) const {
@@ -208,12 +208,12 @@ class Search {
         best = *found, best_time = found->figures.time_s;
     }
     for (const double lags : {0.0, 2.0, 4.5}) take({1, lags * lag});
-    for (double share = 0.7; share > kMinShare && take({share, best.corners.settle_s}); share *= 0.7) {
+    for (double fraction = 0.7; fraction > kMinFraction && take({fraction, best.corners.settle_s}); fraction *= 0.7) {
     }
     for (const double finer : {1.2, 1 / 1.2, 1.1, 1 / 1.1})
-      if (best.corners.settle_s > 0) take({best.corners.share, finer * best.corners.settle_s});
+      if (best.corners.settle_s > 0) take({best.corners.fraction, finer * best.corners.settle_s});
     for (const double finer : {1.15, 1 / 1.15})
-      if (best.corners.share < 1) take({std::min(1.0, finer * best.corners.share), best.corners.settle_s});
+      if (best.corners.fraction < 1) take({std::min(1.0, finer * best.corners.fraction), best.corners.settle_s});
   }
 
   /// With the candidate's corners, from its feed on: how far the axes stray grows with a power of the feed, which two
@@ -225,7 +225,7 @@ class Search {
     double power = kFirstPower, feed_before = 0, strays_before = 0;
     for (int step = 0; step < kSteps && out_.tried.size() < last_trial_; ++step) {
       const Candidate now = out_.tried[predict(c)];
-      const double strays = out_.limit.share(now.figures);
+      const double strays = out_.limit.fraction(now.figures);
       if (strays <= 1 && (!out || now.figures.time_s < out->figures.time_s)) out = now;
       if (strays <= 1 && (strays > kNear || c.feed_factor == 1)) break;
       if (step > 0 && feed_before != c.feed_factor)
@@ -251,7 +251,7 @@ class Search {
 
 }  // namespace
 
-double ContourLimit::share(const ContourFigures& f) const {
+double ContourLimit::fraction(const ContourFigures& f) const {
   return std::max(f.contour_max_mm / max_mm, f.contour_rms_mm / rms_mm);
 }
 

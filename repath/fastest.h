@@ -22,7 +22,7 @@ struct ContourLimit {
 
   bool holds(const ContourFigures& f) const { return f.contour_max_mm <= max_mm && f.contour_rms_mm <= rms_mm; }
   /// How much of it is used, of the one that is nearer to it: 1 at the limit.
-  double share(const ContourFigures& f) const;
+  double fraction(const ContourFigures& f) const;
 };
 
 struct FastestOptions {
@@ -32,7 +32,7 @@ struct FastestOptions {
   bool keep_old = true;   ///< where nothing is faster than the old program, that is what comes out
   bool fewest_blocks = false;  ///< a shorter length is only taken where it saves more than 0.5 % of the time
   nc::InterpreterOptions interpreter;
-  std::function<void(double)> progress{};  ///< share of the most trials that there may be
+  std::function<void(double)> progress{};  ///< fraction of the most trials that there may be
 };
 
 struct Fastest {
@@ -42,7 +42,7 @@ struct Fastest {
   std::size_t unbounded = 0;     ///< of `tried`: the fastest one, whatever its contour
   ContourLimit limit;
   bool gains = true;         ///< false: nothing is faster than the old program, which `path` then is
-  bool within_limit = true;  ///< false: no candidate keeps to it; the one that strays least is chosen
+  bool within_limit = true;  ///< false: no candidate keeps the limit; the one with the smallest deviation is chosen
 };
 
 /// Lays the program out with lengths from ten times L_b down to L_b at the programmed feed and predicts each on the

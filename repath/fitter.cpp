@@ -233,8 +233,8 @@ std::optional<ArcRoom> Fitter::arc_room(std::uint32_t first, std::uint32_t last)
 std::optional<Primitive> Fitter::arc_in(std::uint32_t first, std::uint32_t last, const ArcRoom& room) const {
   const double span = room.max_sweep_rad - room.min_sweep_rad;
   if (auto fitted = arc_with_sweep(first, last, room.direction, room.best_sweep_rad)) return fitted;
-  for (const double share : {0.5, 0.25, 0.75}) {
-    if (auto fitted = arc_with_sweep(first, last, room.direction, room.min_sweep_rad + share * span)) return fitted;
+  for (const double fraction : {0.5, 0.25, 0.75}) {
+    if (auto fitted = arc_with_sweep(first, last, room.direction, room.min_sweep_rad + fraction * span)) return fitted;
     if (span < 1e-9) break;
   }
   return std::nullopt;

@@ -17,7 +17,7 @@ constexpr double kRoundingRad = 1e-9;
 constexpr double kEdgeRad = 5 * kPi / 180;
 constexpr double kEdgeTimesBeside = 3;
 /// Of what the program turns at a point: how well its chords say the direction there.
-constexpr double kShareOfArcs = 0.125, kShareOfLines = 0.6;
+constexpr double kFractionOfArcs = 0.125, kFractionOfLines = 0.6;
 constexpr double kTimesOfBlocks = 2;
 constexpr double kAlwaysSharpRad = 60 * kPi / 180;  ///< also where the path turns as much beside it; as in resegment
 constexpr double kClimb = 0.5;                      ///< of the bound: slopes that differ by more
@@ -88,8 +88,10 @@ double Joints::max_kink_rad(const Primitive& before, const Primitive& p) const {
   const bool climbs = std::abs(slope_rad(path_, p) - slope_rad(path_, before)) > kClimb * max_kink_rad_;
   // Beside an arc of the program a line may turn as the block did that lay there.
   const bool as_drawn = !before.arc && !p.arc;
-  const double share = edges_[at] || climbs || as_drawn ? 1 : arc_before && arc_behind ? kShareOfArcs : kShareOfLines;
-  return std::max(max_kink_rad_, share * std::min(turn_[at], blocks_turn_[at]));
+  const double fraction = edges_[at] || climbs || as_drawn ? 1
+                          : arc_before && arc_behind       ? kFractionOfArcs
+                                                           : kFractionOfLines;
+  return std::max(max_kink_rad_, fraction * std::min(turn_[at], blocks_turn_[at]));
 }
 
 double Joints::chord_angle_rad(const Primitive& p) const {
@@ -112,9 +114,9 @@ std::optional<Sweeps> Joints::behind(const Primitive& before, const Sweeps& of_b
   if (most == kInfinity) return of_p;
   const double climb = slope_rad(path_, p) - slope_rad(path_, before);
   if (std::abs(climb) > most) return std::nullopt;
-  const double share = before.arc && p.arc ? share_tried_ : 1;
+  const double fraction = before.arc && p.arc ? fraction_tried_ : 1;
   const double room =
-      std::max(0.0, share * std::sqrt(most * most - climb * climb) - rounding_rad(before) - rounding_rad(p));
+      std::max(0.0, fraction * std::sqrt(most * most - climb * climb) - rounding_rad(before) - rounding_rad(p));
   // Directions behind the joint less the direction of the chord before it.
   const double chords = wrapped(chord_angle_rad(p) - chord_angle_rad(before));
   const double low = 0.5 * of_before.low_rad - room, high = 0.5 * of_before.high_rad + room;

@@ -30,8 +30,8 @@ class Joints {
   /// blocks of the path as they were may always follow each other.
   double max_kink_rad(const Primitive& before, const Primitive& p) const;
 
-  /// Of a kink between arcs the share that behind() gives away; rounding of centres takes from the rest.
-  void give_away(double share) { share_tried_ = share; }
+  /// Of a kink between arcs the fraction that behind() gives away; rounding of centres takes from the rest.
+  void give_away(double fraction) { fraction_tried_ = fraction; }
 
   /// Of the sweeps of `p` those that some sweep of the primitive before can be joined to; nothing where there is none.
   /// In space what the slopes leave of the kink is left to the directions from above.
@@ -55,7 +55,7 @@ class Joints {
   const std::vector<bool>& corners_;
   double max_kink_rad_, increment_mm_;
   bool bounded_;
-  double share_tried_ = 1;
+  double fraction_tried_ = 1;
   std::vector<double> turn_;         ///< of the path at each of its points, between legs as for corners
   std::vector<double> blocks_turn_;  ///< between the two blocks that meet there
   struct KeptAngle {

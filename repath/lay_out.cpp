@@ -11,8 +11,8 @@
 namespace camber::repath {
 namespace {
 
-constexpr double kSmoothShare = 0.5;  ///< of the tolerance; the rest is for the chords
-constexpr double kCurveShare = 0.75;  ///< of the curve between the points
+constexpr double kSmoothFraction = 0.5;  ///< of the tolerance; the rest is for the chords
+constexpr double kCurveFraction = 0.75;  ///< of the curve between the points
 constexpr double kSharp = kPi / 3;
 constexpr double kShorter = 0.8;
 constexpr double kBeforeCornerMm = 0.8, kBehindCornerMm = 0.4;  ///< reach of corners; see CornerFeeds
@@ -67,7 +67,7 @@ SmoothedPath::SmoothedPath(SmoothedPath&&) noexcept = default;
 void SmoothedPath::smooth(std::size_t first, std::size_t last) {
   if (last == first + 1) return straight(first);
   SmoothCurve curve(std::span<const Vec3>(old_).subspan(first, last - first + 1),
-                    std::max(0.0, kSmoothShare * tolerance_ - kRounding * increment_));
+                    std::max(0.0, kSmoothFraction * tolerance_ - kRounding * increment_));
   const std::vector<std::size_t> left = leaves(curve, first);
   if (left.empty()) {
     pieces_.push_back({first, last, std::move(curve)});
@@ -85,13 +85,14 @@ void SmoothedPath::smooth(std::size_t first, std::size_t last) {
 
 void SmoothedPath::straight(std::size_t first) { pieces_.push_back({first, first + 1, std::nullopt}); }
 
-/// The old segments from which the curve keeps farther than its share.
+/// The old segments from which the curve keeps farther than its fraction.
 std::vector<std::size_t> SmoothedPath::leaves(const SmoothCurve& curve, std::size_t first) const {
   const auto& knots = curve.knots_mm();
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i + 1 < knots.size(); ++i)
-    for (const double share : {0.25, 0.5, 0.75})
-      if (to_path_mm(curve.at(knots[i] + share * (knots[i + 1] - knots[i])), first + i) > kCurveShare * tolerance_) {
+    for (const double fraction : {0.25, 0.5, 0.75})
+      if (to_path_mm(curve.at(knots[i] + fraction * (knots[i + 1] - knots[i])), first + i) >
+          kCurveFraction * tolerance_) {
         found.push_back(first + i);
         break;
       }

@@ -1,5 +1,5 @@
 #pragma once
-// The tip's path over a part above a straight line: points so close that what lies between them is known too.
+// Tip path over a part along a straight line, with points dense enough to bound the error between them.
 #include <optional>
 #include <vector>
 

@@ -7,7 +7,7 @@ namespace camber::repath {
 namespace {
 
 constexpr std::size_t kBins = 50;
-constexpr double kSagittaShare = 0.002;
+constexpr double kSagittaFraction = 0.002;
 
 /// Moves first ... last - 1 of a run.
 struct Range {
@@ -141,8 +141,8 @@ DeviationFigures measure_deviation(const nc::Interpretation& before, const nc::I
   const auto new_ranges = ranges_of(after, runs, &RewrittenRun::first_block_after, &RewrittenRun::last_block_after);
   Measure measure(tolerance_mm);
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    Chain old_chain(before, old_ranges[k], kSagittaShare * tolerance_mm);
-    Chain new_chain(after, new_ranges[k], kSagittaShare * tolerance_mm);
+    Chain old_chain(before, old_ranges[k], kSagittaFraction * tolerance_mm);
+    Chain new_chain(after, new_ranges[k], kSagittaFraction * tolerance_mm);
     measure.add(old_chain, new_chain);
   }
   return std::move(measure).figures();

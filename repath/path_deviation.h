@@ -1,5 +1,5 @@
 #pragma once
-// How far a rewritten path lies from the old one, by points laid densely on both.
+// Deviation of a rewritten path from the old one, by points laid densely on both.
 #include <span>
 #include <vector>
 
@@ -16,7 +16,7 @@ struct DeviationFigures {
   double length_mm = 0;                        ///< of the new path in the rewritten runs
 };
 
-/// Neither uses nor trusts what the fitters say. Points of the new path, at most half of the old blocks' mean length
+/// Independent of the fitters. Points of the new path, at most half of the old blocks' mean length
 /// apart, against the old one, and ends and middles of the old blocks against the new one, whose arcs are chords with a
 /// sagitta of at most a five hundredth of the tolerance: figures are right to within that. The nearest point is looked
 /// for along the way, a few steps ahead of the one before. Linear in the number of blocks.

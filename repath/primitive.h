@@ -1,5 +1,5 @@
 #pragma once
-// A line or an arc that stands for a stretch of a polyline, and how far the two are apart.
+// A line or an arc that replaces a stretch of a polyline, and its deviation.
 #include <cstdint>
 #include <limits>
 #include <optional>

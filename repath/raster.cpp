@@ -6,9 +6,9 @@
 namespace camber::repath {
 namespace {
 
-constexpr double kChordShare = 0.15;  ///< of the tolerance
-constexpr double kRounding = 0.87;    ///< increments: half a cube's diagonal
-constexpr double kSampleMm = 0.5;     ///< along the rows, for the scallops
+constexpr double kChordFraction = 0.15;  ///< of the tolerance
+constexpr double kRounding = 0.87;       ///< increments: half a cube's diagonal
+constexpr double kSampleMm = 0.5;        ///< along the rows, for the scallops
 constexpr double kShortestRowMm = 0.05;
 constexpr double kBeyond = 0.1;  ///< radii
 
@@ -62,8 +62,8 @@ class RasterMaker {
   /// Where a row ends that runs on over the border as long as it touches nothing outside: what lies at the border
   /// between the contacts of two rows is cut from there.
   double beyond(double end, int direction, double v) const {
-    for (const double share : {1.0, 0.5, 0.25}) {
-      const double u = end + direction * share * kBeyond * part_.cutter().radius_mm();
+    for (const double fraction : {1.0, 0.5, 0.25}) {
+      const double u = end + direction * fraction * kBeyond * part_.cutter().radius_mm();
       const auto contact = part_.at(frame_.place(u, v), near_);
       if (contact && touches(options_.boundary, *contact)) return u;
     }
@@ -73,7 +73,7 @@ class RasterMaker {
   std::vector<Interval> pieces_of(double v) {
     const double radius = part_.cutter().radius_mm(), begin = sampler_.u_min_mm() - radius;
     const double width = sampler_.u_max_mm() - sampler_.u_min_mm() + 2 * radius;
-    const double step = longest_chord_mm(part_.cutter(), kChordShare * options_.tolerance_mm);
+    const double step = longest_chord_mm(part_.cutter(), kChordFraction * options_.tolerance_mm);
     const int n = static_cast<int>(std::ceil(width / step));
     std::vector<Interval> out;
     bool was = false, gap_in_air = false;
@@ -116,7 +116,7 @@ class RasterMaker {
     const double radius = part_.cutter().radius_mm();
     if ((to - from).norm() > 2 * radius) return false;
     const auto path = offset_path(
-        part_, from, to, {.chord_mm = kChordShare * options_.tolerance_mm, .increment_mm = options_.increment_mm});
+        part_, from, to, {.chord_mm = kChordFraction * options_.tolerance_mm, .increment_mm = options_.increment_mm});
     if (path.empty()) return false;
     const double lower_end = std::min(path.front().tip.z(), path.back().tip.z());
     return std::all_of(path.begin(), path.end(), [&](const OffsetPoint& p) { return p.tip.z() > lower_end - radius; });
@@ -139,7 +139,7 @@ std::vector<Vec3> points_of(const DropCutter& part, const std::vector<Leg>& chai
   std::vector<Vec3> out;
   for (const Leg& leg : chain)
     for (const OffsetPoint& p : offset_path(part, leg.from, leg.to,
-                                            {.chord_mm = kChordShare * options.tolerance_mm,
+                                            {.chord_mm = kChordFraction * options.tolerance_mm,
                                             .increment_mm = options.increment_mm,
                                             .step_mm = step_mm})) {
       const Vec3 rounded =
@@ -150,7 +150,7 @@ std::vector<Vec3> points_of(const DropCutter& part, const std::vector<Leg>& chai
 }
 
 double tolerance_left_mm(const RasterOptions& options) {
-  return (1 - kChordShare) * options.tolerance_mm - kRounding * options.increment_mm;
+  return (1 - kChordFraction) * options.tolerance_mm - kRounding * options.increment_mm;
 }
 
 }  // namespace camber::repath

@@ -13,7 +13,7 @@ struct RasterOptions {
   double scallop_mm = 0.005;
   double tolerance_mm = 0.005;             ///< of the program's path from the offset surface
   double increment_mm = 0.001;             ///< that the points are rounded to
-  std::function<void(double)> progress{};  ///< told the share of the rows that is laid; may be empty
+  std::function<void(double)> progress{};  ///< called with the completed fraction of the rows; may be empty
 };
 
 /// A stretch of the raster as seen from above; the tip's height follows from the part.

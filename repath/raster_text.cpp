@@ -8,7 +8,7 @@
 namespace camber::repath {
 namespace {
 
-constexpr double kLeadInShare = 1.0 / 3;  ///< of the feed
+constexpr double kLeadInFraction = 1.0 / 3;  ///< of the feed
 
 /// With a point always: 12. and not 12, which some controls take for increments; the zeros behind are left out.
 std::string number(double value, int decimals) {
@@ -44,7 +44,7 @@ std::string header(const RasterProgram& p) {
 std::string raster_text(const RasterProgram& p, std::span<const std::vector<Vec3>> chains) {
   assert(std::ranges::all_of(chains, [](const auto& chain) { return chain.size() >= 2; }));
   std::string out = header(p);
-  const std::string feed = number(p.feed_mm_per_min, 1), slow = number(kLeadInShare * p.feed_mm_per_min, 1);
+  const std::string feed = number(p.feed_mm_per_min, 1), slow = number(kLeadInFraction * p.feed_mm_per_min, 1);
   const auto word = [&](char axis, double value) { return axis + number(value, p.decimals); };
   for (const auto& chain : chains) {
     const Vec3& start = chain.front();

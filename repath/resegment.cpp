@@ -14,7 +14,7 @@ namespace camber::repath {
 
 namespace {
 
-constexpr double kSagittaShare = 0.02;  ///< of the tolerance: lines that stand for arcs
+constexpr double kSagittaFraction = 0.02;  ///< of the tolerance: lines that stand for arcs
 
 }  // namespace
 
@@ -37,7 +37,7 @@ const Resegmenter::Prepared& Resegmenter::prepared(const Run& stretch) {
   const auto [at, is_new] = prepared_.try_emplace({stretch.first_move, stretch.last_move});
   Prepared& out = at->second;
   if (!is_new) return out;
-  out.path = space_path_of(moves_, stretch, kSagittaShare * options_.tolerance_mm);
+  out.path = space_path_of(moves_, stretch, kSagittaFraction * options_.tolerance_mm);
   if (out.path.points.size() < 3) return out;
   const bool inch = moves_.state_of(moves_.moves[stretch.first_move]).inch;
   ResegmentOptions options = options_;

@@ -1,5 +1,5 @@
 #pragma once
-// A program with its runs of short lines laid out again: in segments as long as the control wants them.
+// Resegmenting: runs of short lines replaced by segments just long enough for the control.
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -14,18 +14,18 @@ namespace camber::repath {
 /// Lower feeds about the corners that are kept, where axes that lag cut them off or leave them late: in the last 0.8 mm
 /// before a corner and the first 0.4 mm behind it. Figures of trial: they are where the seconds buy most.
 struct CornerFeeds {
-  double share = 1;     ///< of the feed; 1: as elsewhere
+  double fraction = 1;  ///< of the feed; 1: as elsewhere
   double settle_s = 0;  ///< what lies between two sharp corners (60 degrees) that are no farther apart, as the step
                         ///< from row to row, takes at least so long: the axes catch up
-  bool any() const { return share != 1 || settle_s > 0; }
+  bool any() const { return fraction != 1 || settle_s > 0; }
 };
 
 struct ResegmentOptions {
   double tolerance_mm = 0.01;  ///< largest distance between the old and the new path, both ways
-  double length_mm = 0;        ///< of segments; 0: length_factor times what the control asks for
-  double block_time_s = 0;     ///< T_b; 0: the mean length of the old blocks stands for L_b
+  double length_mm = 0;        ///< segment length; 0: length_factor times L_b
+  double block_time_s = 0;     ///< T_b; 0: the mean length of the old blocks is used as L_b
   double length_factor = 1;    ///< at least 1
-  double feed_factor = 1;      ///< the runs that are laid out again get this much of their feed
+  double feed_factor = 1;      ///< factor on the feed of the rewritten runs
   CornerFeeds corners{};       ///< of that feed
   double corner_rad = 5 * kPi / 180;
   bool whole_numbers_are_increments = false;
@@ -41,7 +41,7 @@ struct SpacePath {
   static constexpr std::uint32_t kInside = std::numeric_limits<std::uint32_t>::max();  ///< an arc: no block ends there
   std::vector<Vec3> points;
   std::vector<std::uint32_t> block;
-  double sagitta_mm = 0;  ///< how far the lines between the points may be from arcs; 0: there is none
+  double sagitta_mm = 0;  ///< maximum deviation of the lines between the points from arcs; 0: no arcs
 };
 /// `sagitta_mm`: of the lines that stand for arcs, greater than zero.
 SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double sagitta_mm);
@@ -52,7 +52,7 @@ struct SegmentPlace {
   double between_corners_mm = 0;  ///< greater than zero: it is part of a step of that length between sharp corners
 };
 
-/// A path laid out again.
+/// A resegmented path.
 struct Layout {
   std::vector<Vec3> points;              ///< from the first to the last one of the old path
   std::vector<std::uint32_t> old_point;  ///< the last old point that is not behind each

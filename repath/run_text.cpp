@@ -126,7 +126,7 @@ class PointWriter : RunBlockWriter {
     double out = feeds.factor;
     if (layout.place.empty()) return out;
     const SegmentPlace& place = layout.place[k];
-    if (place.near_corner) out *= feeds.corners.share;
+    if (place.near_corner) out *= feeds.corners.fraction;
     if (place.between_corners_mm > 0 && feeds.corners.settle_s > 0)
       out = std::min(out, 60 * place.between_corners_mm / feeds.corners.settle_s / feed_mm_per_min_);
     return std::max(out, kMinFeedFactor);

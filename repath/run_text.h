@@ -1,5 +1,5 @@
 #pragma once
-// A chain of primitives as blocks, in the way in which the program writes.
+// A chain of primitives as NC blocks, in the style of the program.
 #include <string>
 #include <vector>
 

@@ -77,7 +77,7 @@ struct RowSpacing {
 /// Rows over the boundary, as far apart as the scallop allows at the worst place along each, but no closer than a tenth
 /// of what it allows on a level plane; no farther than twice that and three quarters of the diameter. One row on either
 /// side lies on the border or beyond, as far as the cutter touches inside. `increment_mm`: v is rounded to it.
-/// `progress`: told the share of the boundary that is done; may be empty.
+/// `progress`: called with the completed fraction of the boundary; may be empty.
 RowSpacing space_rows(const RowSampler& sampler, const Underside& cutter, double scallop_mm, double increment_mm,
                       const std::function<void(double)>& progress = {});
 

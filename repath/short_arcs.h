@@ -1,5 +1,5 @@
 #pragma once
-// Which arcs of a run are laid out again with the lines about them, and which stay.
+// Selection of the arcs of a run that are rewritten together with the neighbouring lines.
 #include <vector>
 
 #include "repath/resegment.h"

@@ -13,7 +13,7 @@ namespace {
 struct Effort {
   std::size_t beside = 0;
   std::uint32_t ends = 0;
-  double share = 1;  ///< of the bound; see Joints::give_away
+  double fraction = 1;  ///< of the bound; see Joints::give_away
 };
 constexpr std::array kEfforts{Effort{4, 12, 1.0}, Effort{4, 12, 0.9}, Effort{8, 12, 0.8}, Effort{8, 32, 0.9}};
 constexpr std::size_t kMaxPrimitives = 40;  ///< of one stretch
@@ -29,7 +29,7 @@ class Smoother {
   void run(std::vector<Primitive>& chain) {
     if (!joints_.bounded()) return;
     for (const Effort& effort : kEfforts) {
-      joints_.give_away(effort.share);
+      joints_.give_away(effort.fraction);
       chain = smoothed(chain, effort);
     }
     give_way(joints_, chain);

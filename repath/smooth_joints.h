@@ -1,5 +1,5 @@
 #pragma once
-// A chain whose joints kink no more than FitOptions::max_kink_rad allows.
+// A chain whose kinks are at most FitOptions::max_kink_rad.
 #include <vector>
 
 #include "repath/fit.h"

@@ -139,8 +139,8 @@ void make_tangent(std::span<const Vec2> points, const FitOptions&, const Fitter&
   for (std::size_t k = 0; k < n; ++k) {
     if (!bounds[k].free || sweep[k] == chain[k].sweep_rad) continue;
     const int direction = sweep[k] > 0 ? 1 : -1;
-    for (const double share : {1.0, 0.7, 0.4}) {
-      const double wish = chain[k].sweep_rad + share * (sweep[k] - chain[k].sweep_rad);
+    for (const double fraction : {1.0, 0.7, 0.4}) {
+      const double wish = chain[k].sweep_rad + fraction * (sweep[k] - chain[k].sweep_rad);
       if (const auto arc = fitter.arc_with_sweep(chain[k].first, chain[k].last, direction, std::abs(wish))) {
         chain[k] = *arc;
         break;

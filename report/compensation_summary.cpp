@@ -52,7 +52,8 @@ ordered_json verdict(const VerdictText& v) {
 
 ordered_json depth(const compensate::Depth& d) {
   return {{"deepest_um", d.deepest_um},
-          {"held_um", d.held_um},
+          {"gouge_depth_p999_um", d.gouge_depth_p999_um},
+          {"held_um", d.gouge_depth_p999_um},  // former name, for one more release
           {"at_mm", {d.place_mm.x(), d.place_mm.y(), d.place_mm.z()}},
           {"area_over_tolerance", d.over_fraction}};
 }
@@ -219,12 +220,12 @@ std::string split_text(const compensate::ErrorSplit& before, const compensate::E
     if (b >= 0.005 || a >= 0.005) fmt::format_to(std::back_inserter(out), "{:<34}{:>9.2f}{:>9.2f}\n", name, b, a);
   };
   row("  a shift can correct", before.correctable_um, after.correctable_um);
-  row("  left so as not to cut too deep", before.guard_um, after.guard_um);
-  row("  held back by max_shift_mm", before.limited_um, after.limited_um);
+  row("  given up to keep the depth limit", before.guard_um, after.guard_um);
+  row("  limited by max_shift_mm", before.limited_um, after.limited_um);
   row("  no shift can correct", before.not_correctable_um(), after.not_correctable_um());
   row("    along the cutter: helix bow", before.bow_um, after.bow_um);
-  row("    surfaces that face each other", before.opposed_um, after.opposed_um);
-  row("    about a round tip's axis", before.tip_um, after.tip_um);
+  row("    opposite surfaces", before.opposed_um, after.opposed_um);
+  row("    near the axis of a round tip", before.tip_um, after.tip_um);
   row("    too short along the path", before.short_range_um, after.short_range_um);
   row("  moves that are not compensated", before.not_compensated_um, after.not_compensated_um);
   return out;
@@ -259,12 +260,11 @@ std::string time_points_text(const compensate::CompensationResult& c) {
 
 std::string safety_text(const compensate::CompensationResult& c) {
   std::string out =
-      fmt::format("into the part: {:.2f} um before, {:.2f} um after (single points {:.2f} um);\n  limit {:.4g} um{}",
-                  c.depth_before.held_um, c.depth_after.held_um, c.depth_after.deepest_um, c.depth_limit_um,
-                  c.own_depth_limit ? "" : " (default)");
+      fmt::format("gouge depth: {:.2f} um before, {:.2f} um after (single points {:.2f} um);\n  limit {:.4g} um{}",
+                  c.depth_before.gouge_depth_p999_um, c.depth_after.gouge_depth_p999_um, c.depth_after.deepest_um,
+                  c.depth_limit_um, c.own_depth_limit ? "" : " (default)");
   if (c.depth_others.deepest_um > 0) out += fmt::format("\n  by other moves: {:.2f} um", c.depth_others.deepest_um);
-  return out + fmt::format("\nif the tool did not bend at all: {:.2f} um into the part\n",
-                           c.depth_without_bending.deepest_um);
+  return out + fmt::format("\nwith a rigid tool: {:.2f} um\n", c.depth_without_bending.deepest_um);
 }
 
 std::string path_text(const compensate::CompensationResult& c) {
@@ -286,18 +286,18 @@ std::string checks_text(const compensate::CompensationResult& c) {
     fmt::vformat_to(std::back_inserter(out), format, fmt::make_format_args(a...));
   };
   if (c.measured)
-    add("measured: the deflection is {:.3f} +- {:.3f} of the model's ({} points)\n", c.measured->scale,
+    add("measured: the deflection is {:.3f} +- {:.3f} times the predicted one ({} points)\n", c.measured->scale,
         c.measured->std_error, c.measured->points);
   for (const auto& r : c.rechecks)
-    add("on voxels of {:g} mm: rms {:.2f} um before, {:.2f} after; of what a shift can\ncorrect {:.2f} before, {:.2f} "
-        "after\n",
+    add("on voxels of {:g} mm: rms {:.2f} um before, {:.2f} after;\n"
+        "  correctable by a shift: {:.2f} before, {:.2f} after\n",
         r.voxel_mm, r.before_um.rms, r.after_um.rms, r.split_before.correctable_um, r.split_after.correctable_um);
   if (!c.band) return out;
-  add("with the model's uncertainty: rms {:.2f} um, 95 % within {:.2f} um\n", c.band->rms_um, c.band->p95_um);
+  add("with the model uncertainty: rms {:.2f} um, 95 % within {:.2f} um\n", c.band->rms_um, c.band->p95_um);
   for (const auto& g : c.band->groups) add("  {:<12}{:>8.2f} um rms for one standard error\n", g.name, g.rms_um);
-  add("safe share of the compensation: {:.0f} %\n  with so much of each shift no more than 5 % of the area is cut "
-      "below the "
-      "depth\n  limit, at 95 % confidence in each point\n",
+  add("safe share of the compensation: {:.0f} %\n"
+      "  with this fraction of each shift at most 5 % of the area is cut below the depth\n"
+      "  limit, at 95 % confidence in each point\n",
       100 * c.band->safe_fraction);
   return out;
 }

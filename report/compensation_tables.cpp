@@ -14,40 +14,41 @@ TextTable split_table(const compensate::CompensationResult& c) {
     if (before > 0 || after > 0) table.rows.push_back({name, um(before), um(after)});
   };
   using Split = compensate::ErrorSplit;
-  add("a shift of the path takes away", &Split::correctable_um);
-  add("given up so as not to cut into the part", &Split::guard_um);
-  add("a shift over max_shift_mm would take away", &Split::limited_um);
-  add("about the axis of a round tip", &Split::tip_um);
-  add("differs along the cutter's profile (helix bow)", &Split::bow_um);
-  add("on surfaces that face each other", &Split::opposed_um);
-  add("changes faster than a smooth path can", &Split::short_range_um);
-  add("made by moves that are not compensated", &Split::not_compensated_um);
-  table.note = "Squares add up to the square of the whole error.";
+  add("correctable by a shift of the path", &Split::correctable_um);
+  add("given up to keep the depth limit", &Split::guard_um);
+  add("needs a shift over max_shift_mm", &Split::limited_um);
+  add("near the axis of a round tip", &Split::tip_um);
+  add("differs along the cutter profile (helix bow)", &Split::bow_um);
+  add("on opposite surfaces", &Split::opposed_um);
+  add("changes along the path faster than a smooth path can", &Split::short_range_um);
+  add("due to moves that are not compensated", &Split::not_compensated_um);
+  table.note = "The squares add up to the square of the total error.";
   return table;
 }
 
 std::string place(const Vec3& p) { return fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", p.x(), p.y(), p.z()); }
 
 TextTable depth_table(const compensate::CompensationResult& c) {
-  TextTable table{"Into the part", {"", "all but a thousandth, µm", "deepest point, µm", "where"}, {}, {}};
+  TextTable table{"Gouge depth", {"", "all but a thousandth, µm", "deepest point, µm", "where"}, {}, {}};
   const auto add = [&](const char* name, const compensate::Depth& d) {
-    table.rows.push_back({name, um(d.held_um), um(d.deepest_um), d.deepest_um > 0 ? place(d.place_mm) : ""});
+    table.rows.push_back(
+        {name, um(d.gouge_depth_p999_um), um(d.deepest_um), d.deepest_um > 0 ? place(d.place_mm) : ""});
   };
   add("before", c.depth_before);
   add("after", c.depth_after);
-  add("after, by moves that are not compensated", c.depth_others);
-  add("after, if the tool did not bend at all", c.depth_without_bending);
+  add("after, of moves that are not compensated", c.depth_others);
+  add("after, with a rigid tool", c.depth_without_bending);
   return table;
 }
 
 TextTable band_table(const compensate::Band& band) {
   TextTable table{"How sure", {"", "µm"}, {}, {}};
   for (const auto& group : band.groups) table.rows.push_back({"moves with " + group.name + ", rms", um(group.rms_um)});
-  table.rows.push_back({"error to be expected, rms", um(band.rms_um)});
+  table.rows.push_back({"expected error, rms", um(band.rms_um)});
   table.rows.push_back({"95 % of the error with its uncertainty", um(band.p95_um)});
   table.note = fmt::format(
-      "Safe share of the compensation: {:.0f} %. With so much of each shift, at 95 % confidence in each point, no more "
-      "than 5 % of the area is cut deeper into the part than the depth limit.",
+      "Safe share of the compensation: {:.0f} %. With this fraction of each shift at most 5 % of the area is cut below "
+      "the depth limit, at 95 % confidence in each point.",
       100 * band.safe_fraction);
   return table;
 }

@@ -88,7 +88,7 @@ std::string dominance_sentence(const CycleTime& time) {
     out += fmt::format("; {:.1f} s of cutting ({:.0f} %) go to acceleration, corners, arcs and short blocks",
                        std::max(0.0, lost_s), std::max(0.0, 100 * lost_s / time.all.time.cutting_s));
   if (time.below_full_rapid > 0)
-    out += fmt::format("; {} of {} positionings ({:.0f} %) are too short for full rapid", time.below_full_rapid,
+    out += fmt::format("; {} of {} positioning moves ({:.0f} %) are too short for full rapid", time.below_full_rapid,
                        time.g00.moves,
                        100.0 * static_cast<double>(time.below_full_rapid) / static_cast<double>(time.g00.moves));
   return out;

@@ -13,13 +13,13 @@ namespace camber::report {
 struct FormErrorPoint {
   Vec3 place_mm = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
-  double error_um = 0;    ///< machined minus nominal surface along the normal; positive: material is left
+  double error_um = 0;    ///< machined minus nominal surface along the normal; positive: excess material
   double contour_um = 0;  ///< of it, what servo lag and corner rounding do to the target program
   double deflection_um() const { return error_um - contour_um; }
-  double area_mm2 = 0;                                               ///< that the point stands for
+  double area_mm2 = 0;                                               ///< represented by the point
   double total_error_um = std::numeric_limits<double>::quiet_NaN();  ///< against the part's mesh; NaN: no mesh
   double model_error_um = std::numeric_limits<double>::quiet_NaN();  ///< of a trace: the feed model's; NaN: no trace
-  std::uint32_t block = 0;  ///< 1-based line of the program that made the surface here; 0: unknown
+  std::uint32_t block = 0;  ///< 1-based line that generated the surface here; 0: unknown
   int tool = 0;             ///< whose stamp made it; 0: unknown
 };
 

@@ -12,8 +12,8 @@ namespace camber::report {
 namespace {
 
 /// Blue, white, red for -1, 0, 1.
-std::array<std::uint8_t, 3> colour(double share) {
-  const double s = std::clamp(share, -1.0, 1.0), faded = 1 - std::abs(s);
+std::array<std::uint8_t, 3> colour(double fraction) {
+  const double s = std::clamp(fraction, -1.0, 1.0), faded = 1 - std::abs(s);
   const auto byte = [](double v) { return static_cast<std::uint8_t>(std::lround(255 * v)); };
   return s < 0 ? std::array{byte(faded), byte(faded), byte(1)} : std::array{byte(1), byte(faded), byte(faded)};
 }

@@ -14,8 +14,8 @@ namespace {
 constexpr int kBins = 80;
 constexpr double kWidth = 560, kHeight = 250, kLeft = 44, kRight = 10, kTop = 26, kBottom = 40;
 
-double x_at(double share) { return kLeft + share * (kWidth - kLeft - kRight); }
-double y_at(double share) { return kHeight - kBottom - share * (kHeight - kTop - kBottom); }
+double x_at(double fraction) { return kLeft + fraction * (kWidth - kLeft - kRight); }
+double y_at(double fraction) { return kHeight - kBottom - fraction * (kHeight - kTop - kBottom); }
 
 std::string signed_text(double value) {
   if (value == 0) return "0";
@@ -71,10 +71,11 @@ std::string histogram_svg(const SurfaceSamples& samples, bool compared, double l
       "<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Histogram of the form "
       "error\">\n",
       kWidth, kHeight);
-  for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+  for (const double fraction : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     fmt::format_to(std::back_inserter(out), "<path stroke=\"#e3e8ee\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", x_at(0),
-                   y_at(share), x_at(1));
-    if (share != 0.25 && share != 0.75) text(out, kLeft - 6, y_at(share) + 4, "end", fmt::format("{:g}", share * most));
+                   y_at(fraction), x_at(1));
+    if (fraction != 0.25 && fraction != 0.75)
+      text(out, kLeft - 6, y_at(fraction) + 4, "end", fmt::format("{:g}", fraction * most));
   }
   if (compared) {
     bars(out, before, most, kGrey);
@@ -84,12 +85,12 @@ std::string histogram_svg(const SurfaceSamples& samples, bool compared, double l
   } else {
     bars(out, before, most, kBlue);
   }
-  for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-    text(out, x_at(share), kHeight - kBottom + 17,
-         share == 0   ? "start"
-         : share == 1 ? "end"
-                      : "middle",
-         signed_text((2 * share - 1) * limit_um));
+  for (const double fraction : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    text(out, x_at(fraction), kHeight - kBottom + 17,
+         fraction == 0   ? "start"
+         : fraction == 1 ? "end"
+                         : "middle",
+         signed_text((2 * fraction - 1) * limit_um));
   }
   text(out, kLeft - 36, 16, "start", "% of the surface");
   text(out, x_at(0.5), kHeight - 6, "middle", "form error, µm");

@@ -21,17 +21,16 @@ constexpr const char* kPartFrame =
     "<div class=\"scene\" id=\"scene\"></div>\n"
     "<div class=\"bar legends\" id=\"legends\"></div>\n"
     "<p class=\"note\">Form error: machined surface minus the undeflected sweep of the path that the target program "
-    "commands, "
-    "along the surface’s normal; red where material is left, blue where the cutter went too deep. Beyond the scale a "
-    "colour "
-    "stays "
-    "as at its end.</p>\n</div>\n";
+    "commands, along the normal of the surface; red is excess material, blue is a gouge. Values beyond the scale have "
+    "the colour of its end.</p>\n"
+    "</div>\n";
 
 constexpr const char* kPlotsFrame =
-    "<div class=\"card\" id=\"along\"><h2>Along the path</h2>\n<div id=\"selected\" class=\"selected\"></div>\n"
+    "<div class=\"card\" id=\"along\"><h2>Along the path</h2>\n"
+    "<div id=\"selected\" class=\"selected\"></div>\n"
     "<div id=\"plots\"></div>\n"
-    "<p class=\"note screen\">Click a plot to see the place on the part and the line of the program; drag to zoom, "
-    "double-click for the whole.</p></div>\n";
+    "<p class=\"note screen\">Click a plot to show the position on the part and the line of the program; drag to zoom, "
+    "double-click to reset.</p></div>\n";
 
 bool has_rows(const ReportData& data) {
   return std::any_of(data.path.begin(), data.path.end(), [](const auto& run) { return !run.rows.empty(); });
@@ -80,7 +79,7 @@ std::string head_html(const ReportData& data) {
 
 std::string histogram_html(const ReportData& data, const PageData& page) {
   if (data.surface.empty()) return {};
-  return "<div class=\"card\"><h2>How the error is spread</h2>\n" +
+  return "<div class=\"card\"><h2>Error distribution</h2>\n" +
          histogram_svg(data.surface, data.compared, page.scale_um, data.names) + "</div>\n";
 }
 

@@ -142,7 +142,7 @@ TextTable material_table(const Job& job) {
   };
   for (const auto& c : law.coefficients) add(std::string(c.key), m.*c.field, c.unit == "1" ? "" : c.unit);
   table.note = fmt::format("{}.", law.title);
-  if (!m.preset.empty()) table.note += fmt::format(" It began with the preset {}.", m.preset);
+  if (!m.preset.empty()) table.note += fmt::format(" Based on the preset {}.", m.preset);
   if (errors.empty()) table.note += " No standard errors are stated: the coefficients were not fitted by fit-force.";
   return table;
 }
@@ -202,7 +202,7 @@ TextTable simulation_table(const Job& job) {
   table.rows = {{"voxel", value_text(job.simulation.voxel_mm) + " mm"},
                 {"rotation step", value_text(deg_from_rad(job.simulation.rotation_step_rad), 4) + "°"},
                 {"coupling", job.simulation.coupling == machine::Coupling::rigid ? "rigid" : "static"},
-                {"stock to leave of the pass before", value_text(job.stock.allowance_mm) + " mm"}};
+                {"stock allowance of the previous pass", value_text(job.stock.allowance_mm) + " mm"}};
   return table;
 }
 

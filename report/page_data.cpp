@@ -25,7 +25,7 @@ double scale_um(const SurfaceSamples& samples, double SurfaceSample::*error) {
   std::vector<double> size;
   size.reserve(samples.size());
   for (const SurfaceSample& s : samples.all()) size.push_back(std::abs(s.*error));
-  const auto at = size.begin() + static_cast<std::ptrdiff_t>(kScaleShare * static_cast<double>(size.size() - 1));
+  const auto at = size.begin() + static_cast<std::ptrdiff_t>(kScaleFraction * static_cast<double>(size.size() - 1));
   std::nth_element(size.begin(), at, size.end());
   return nice_limit(*at);
 }
@@ -87,7 +87,7 @@ json mesh_json(const SurfaceMesh& mesh, PackedArrays& arrays) {
 json stock_json(const ReportData& data, PackedArrays& arrays, PageData& page) {
   const SurfaceMesh mesh = surface_mesh(data.stock, data.stock_cell_mm, 4 * data.stock.size());
   page.left_out.push_back(
-      fmt::format("Grey is the stock that stays, in cells of {:.3g} mm; what is thinner than a cell may be missing.",
+      fmt::format("Grey is the remaining stock, in cells of {:.3g} mm; features thinner than a cell may be missing.",
                   mesh.cell_mm));
   return mesh_json(mesh, arrays);
 }
@@ -97,7 +97,7 @@ json surface_json(const ReportData& data, const ReportOptions& options, PackedAr
   if (mesh.cell_mm > 1.5 * data.voxel_mm)
     page.left_out.push_back(
         fmt::format("The surface is drawn in cells of {:.3g} mm ({} vertices for {} points); each shows the error of "
-                    "greatest magnitude in it.",
+                    "largest magnitude in it.",
                     mesh.cell_mm, mesh.vertices.size(), data.surface.size()));
   using S = SurfaceSample;
   json out = mesh_json(mesh, arrays);
@@ -118,8 +118,8 @@ json run_json(const PathRun& run, const ReportOptions& options, PackedArrays& ar
   const auto kept = rows_to_draw(run.rows, options.max_rows);
   if (kept.size() < run.rows.size())
     page.left_out.push_back(
-        fmt::format("Path and plots{} are drawn through {} of {} moments: of each run of neighbours the first and, of "
-                    "every quantity, the least and the greatest.",
+        fmt::format("Path and plots{} are drawn through {} of {} rows: of each group of neighbours the first and, for "
+                    "every quantity, the minimum and the maximum.",
                     run.name.empty() ? "" : " " + run.name, kept.size(), run.rows.size()));
   std::vector<PathRow> rows;
   rows.reserve(kept.size());

@@ -57,14 +57,14 @@ ProgramCard program_card(std::string_view title, const PathPicture& picture) {
   PackedArrays arrays;
   const json index = {{"paths", json::array({picture_json(arrays, picture, "")})}, {"motion", true}};
   const std::string hint =
-      "Drag to turn, with the right button or Shift to move, wheel or two fingers to zoom, double-click for the whole. "
-      "The cursor reads out line, place and feed.";
+      "Drag to rotate, drag with the right button or Shift to pan, use the wheel or two fingers to zoom, double-click "
+      "to reset. The cursor shows line, position and feed.";
   return {path_card_html(title, hint), path_scripts_html(index, arrays)};
 }
 
 std::string thinned_note(const PathPicture& picture, std::string_view which) {
   if (!picture.thinned) return {};
-  std::string out = fmt::format("{} shows {} points; those left out lie within {:.2g} mm of it", which,
+  std::string out = fmt::format("{} shows {} points; omitted points lie within {:.2g} mm of it", which,
                                 picture.points.size(), picture.chord_mm);
   if (!picture.feed_mm_per_min.empty())
     out += fmt::format(", their feeds within {:.2g} mm/min", picture.feed_step_mm_per_min);

@@ -9,10 +9,10 @@
 namespace camber::report {
 namespace {
 
-constexpr double kChordShare = 1.0 / 20000;  ///< of the greatest extent
-constexpr std::size_t kLongestStep = 48;     ///< points that are left out at once
-constexpr double kFeedStep = 1.0 / 50;       ///< of the highest feed: no eye tells such colours from each other
-constexpr double kFeedStepGrowth = 1.25;     ///< programmed feeds change seldom: most points are saved elsewhere
+constexpr double kChordFraction = 1.0 / 20000;  ///< of the greatest extent
+constexpr std::size_t kLongestStep = 48;        ///< points that are left out at once
+constexpr double kFeedStep = 1.0 / 50;          ///< of the highest feed: no eye tells such colours from each other
+constexpr double kFeedStepGrowth = 1.25;        ///< programmed feeds change seldom: most points are saved elsewhere
 
 bool cuts(const nc::Move& m) { return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc; }
 
@@ -157,7 +157,7 @@ class Thinner {
 
 }  // namespace
 
-double picture_chord_mm(const nc::Interpretation& program) { return kChordShare * extent_mm(program); }
+double picture_chord_mm(const nc::Interpretation& program) { return kChordFraction * extent_mm(program); }
 
 int chords_of(double sweep_rad, double radius_mm, double chord_mm) {
   const double radius = std::max(radius_mm, chord_mm);

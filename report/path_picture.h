@@ -1,5 +1,5 @@
 #pragma once
-// A program's path as points for a picture, arcs and lines told apart.
+// A program's path as points for a picture, lines and arcs distinguished.
 #include <cstdint>
 #include <span>
 #include <utility>

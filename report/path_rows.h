@@ -26,7 +26,7 @@ struct PathRow {
   double deflection_um = kNothingHere;  ///< at the contact's height
   double chip_um = kNothingHere;        ///< thickest chip
   double error_um = kNothingHere;       ///< of greatest magnitude of the surface made here
-  double shift_um = kNothingHere;       ///< distance from the path of the program as given
+  double shift_um = kNothingHere;       ///< distance from the path of the given program
 };
 
 /// One run of the program: as given, or compensated.
@@ -56,15 +56,15 @@ class PathCollector {
 };
 
 /// Gives each row the loads of the stamps from it to the next row (or, where there is none, of the last one, if the
-/// next is the following tooth passing). `loads`: one a stamp, or none.
+/// next is the following tooth passing). `loads`: one per stamp, or none.
 void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path, std::span<const simulate::StampLoad> loads);
 
 /// Gives the rows the error of greatest magnitude of the surface that their stamps made.
 void add_errors(std::vector<PathRow>& rows, const removal::StampPath& path,
                 std::span<const removal::SurfacePoint> surface);
 
-/// Gives each cutting row of a changed program how far that program's path lies there from the path of the program as
-/// given, worked out every half millimetre; what the control does to corners is in neither. Both paths are followed
+/// Gives each cutting row of a changed program how far that program's path lies there from the path of the given
+/// program, worked out every half millimetre; what the control does to corners is in neither. Both paths are followed
 /// together, so that a neighbouring row of a raster is not taken for the way.
 void add_shifts(std::vector<PathRow>& rows, const nc::Interpretation& program, const nc::Interpretation& as_given);
 

@@ -1,4 +1,4 @@
-// How far a changed program's path lies from the path of the program as given.
+// How far a changed program's path lies from the path of the given program.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace {
 constexpr double kArcChord_mm = 0.0001;  // arcs are taken as chords within a tenth of a micrometre
 constexpr double kPiece_mm = 0.5;        // of lines
 constexpr double kReach_mm = 2.0;        // both ways along the path from where the next place is expected
-constexpr double kReachShare = 0.05;     // of the way to it
+constexpr double kReachFraction = 0.05;  // of the way to it
 
 /// A path: corners, on lines at most kPiece_mm apart, and the length up to each.
 struct Polyline {
@@ -55,7 +55,7 @@ class Follower {
 
   /// `moved_mm`: how far the point lies from the one before.
   Found nearest(const Vec3& p, double moved_mm) {
-    const double expected = at_mm_ + moved_mm, reach = kReach_mm + kReachShare * moved_mm;
+    const double expected = at_mm_ + moved_mm, reach = kReach_mm + kReachFraction * moved_mm;
     const auto begin = path_.length_mm.begin();
     auto i = static_cast<std::size_t>(std::lower_bound(begin, path_.length_mm.end(), expected - reach) - begin);
     i = std::min(i > 0 ? i - 1 : 0, path_.corner.size() - 2);

@@ -1,5 +1,5 @@
 #pragma once
-// The path as the control plans it, with the feed that it comes to: corners rounded, rapids bent.
+// The path as the control plans it, with the actual feed: corners rounded, dog-leg rapids.
 #include "machine/machine.h"
 #include "nc/move.h"
 #include "report/path_picture.h"

@@ -51,8 +51,8 @@ void add_figures(ReportData& data, const removal::ErrorFigures& before, const re
   };
   add("form error, 95th percentile", &removal::ErrorFigures::p95, "p95");
   add("form error, rms", &removal::ErrorFigures::rms, "rms");
-  add("form error, greatest (material left)", &removal::ErrorFigures::max, "max");
-  add("form error, least (cut too deep)", &removal::ErrorFigures::min, "min");
+  add("form error, maximum (excess material)", &removal::ErrorFigures::max, "max");
+  add("form error, minimum (gouge)", &removal::ErrorFigures::min, "min");
   add("form error, mean", &removal::ErrorFigures::mean, "mean");
 }
 
@@ -61,10 +61,10 @@ void add_parts(ReportData& data, const simulate::Prediction& p) {
   const auto part = [&](const char* name, double value, const char* key) {
     data.figures.push_back({name, value, std::nullopt, "um", 2, key});
   };
-  part("of it deflection, rms", p.deflection_um.rms, "deflection_um.rms");
-  part("of it deflection, 95th percentile", p.deflection_um.p95, "deflection_um.p95");
-  part("of it servo lag and corner rounding, rms", p.contour_um.rms, "contour_um.rms");
-  part("of it servo lag and corner rounding, 95th percentile", p.contour_um.p95, "contour_um.p95");
+  part("due to deflection, rms", p.deflection_um.rms, "deflection_um.rms");
+  part("due to deflection, 95th percentile", p.deflection_um.p95, "deflection_um.p95");
+  part("due to servo lag and corner rounding, rms", p.contour_um.rms, "contour_um.rms");
+  part("due to servo lag and corner rounding, 95th percentile", p.contour_um.p95, "contour_um.p95");
 }
 
 void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& diagnostics,
@@ -72,7 +72,7 @@ void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& dia
   for (const auto& d : diagnostics.all()) data.warnings.push_back(to_string(d));
   if (!unsettled.empty()) data.warnings.push_back(unsettled);
   data.notes.push_back(
-      "Left out of the model: bending of the work, chatter, heat and wear; the deflection of the tool is static.");
+      "Not in the model: deflection of the workpiece, chatter, thermal growth and wear. Tool deflection is static.");
   for (TextTable table :
        {material_table(job), tools_table(job), machine_table(job.machine), simulation_table(job), inputs_table(job)})
     data.tables.push_back(std::move(table));
@@ -102,8 +102,8 @@ TextTable rounds_table(const compensate::CompensationResult& c) {
 TextTable limits_table(const machine::Job& job, const compensate::CompensationResult& c) {
   TextTable table{"Limits and changes", {}, {}, {}};
   table.rows = {{"tolerance", fmt::format("{:g} µm", job.compensation.tolerance_um)},
-                {"largest shift allowed", fmt::format("{:g} µm", 1000 * job.compensation.max_shift_mm)},
-                {"points of the path held at it", std::to_string(c.rounds[c.best].limited_points)},
+                {"maximum shift", fmt::format("{:g} µm", 1000 * job.compensation.max_shift_mm)},
+                {"path points at this limit", std::to_string(c.rounds[c.best].limited_points)},
                 {"blocks", fmt::format("{} before, {} after", c.blocks_before, c.blocks_after)},
                 {"blocks changed", std::to_string(c.blocks_changed)}};
   return table;
@@ -167,7 +167,7 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
     for (const auto& l : p.cut.loads) force = std::max(force, l.lateral_max_N);
     // Shown large: two of the error, the force, the time.
     data.figures.insert(data.figures.begin() + 2,
-                        {"greatest lateral force", force, std::nullopt, "N", 1, "force_N.max"});
+                        {"maximum lateral force", force, std::nullopt, "N", 1, "force_N.max"});
     data.figures.insert(data.figures.begin() + 3, time);
   }
   data.figures.push_back({"removed, by the chips", p.cut.chip_mm3, std::nullopt, "mm3", 2, "removed_mm3.path"});
@@ -223,15 +223,15 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   };
   const auto &given = c.plain_before, &emitted = c.plain_after;
   part("error, rms", given.error_um, emitted.error_um, "{}.error_um.rms");
-  part("of it deflection, rms", given.deflection_um, emitted.deflection_um, "{}.deflection_um.rms");
-  part("of it servo lag and corner rounding, rms", given.contour_um, emitted.contour_um, "{}.contour_um.rms");
+  part("due to deflection, rms", given.deflection_um, emitted.deflection_um, "{}.deflection_um.rms");
+  part("due to servo lag and corner rounding, rms", given.contour_um, emitted.contour_um, "{}.contour_um.rms");
   if (given.total_um && emitted.total_um)
     part("against the part's mesh, rms", *given.total_um, *emitted.total_um, "{}.total_error_um.rms");
   data.figures.insert(data.figures.begin() + 2,
                       {"largest shift", 1000 * c.max_shift_mm, std::nullopt, "um", 1, "max_shift_um"});
   data.figures.insert(data.figures.begin() + 3,
                       {"machine time", c.feed_before.time_s, c.feed_after.time_s, "s", 1, "machine_time_s.{}"});
-  data.figures.push_back({"surface without a figure, about", c.unseen_mm2, std::nullopt, "mm2", 1, "unseen_mm2"});
+  data.figures.push_back({"surface without a form error, about", c.unseen_mm2, std::nullopt, "mm2", 1, "unseen_mm2"});
   data.voxel_mm = job.simulation.voxel_mm;
   data.compared = c.surface_after.size() == c.surface_before.size();
   data.surface = {c.surface_before.size(),

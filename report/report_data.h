@@ -35,7 +35,7 @@ void add_traced(ReportData& data, const simulate::SimulatedProgram& program, con
 struct CompensatedRun {
   const simulate::SimulatedProgram& program;
   std::vector<PathRow> rows;
-  /// One a stamp of `program`; none: the page has no forces of this run.
+  /// One per stamp of `program`; none: the page has no forces of this run.
   std::span<const simulate::StampLoad> loads{};
 };
 

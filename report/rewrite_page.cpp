@@ -21,8 +21,8 @@ using nlohmann::json;
 constexpr double kWidth = 560, kHeight = 250, kLeft = 44, kRight = 10, kTop = 26, kBottom = 40;
 
 constexpr const char* kHint =
-    "Drag to turn, with the right button or Shift to move, wheel or two fingers to zoom, double-click for the whole. "
-    "Dots mark the ends of blocks where they are far enough apart; a ring marks the largest deviation.";
+    "Drag to rotate, drag with the right button or Shift to pan, use the wheel or two fingers to zoom, double-click to "
+    "reset. Dots mark the ends of blocks where they are far enough apart; a ring marks the largest deviation.";
 
 std::string row(const std::string& name, const std::string& value, const char* unit, const char* key = nullptr) {
   const std::string shown = key != nullptr ? fmt::format("<span data-key=\"{}\">{}</span>", key, value) : value;
@@ -30,14 +30,14 @@ std::string row(const std::string& name, const std::string& value, const char* u
 }
 
 std::string deviation_html(const RewritePage& page) {
-  std::string out = "<div class=\"card\"><h2>How far the new path lies from the old one</h2>\n" +
-                    shares_svg({"Histogram of the deviation", "% of the rewritten length", "deviation, µm", 0,
-                                1000 * page.tolerance_mm, 3, page.length_by_deviation_mm});
+  std::string out = "<div class=\"card\"><h2>Deviation of the new path from the old one</h2>\n" +
+                    fractions_svg({"Histogram of the deviation", "% of the rewritten length", "deviation, µm", 0,
+                                   1000 * page.tolerance_mm, 3, page.length_by_deviation_mm});
   out += "<table><tbody>\n" + row("tolerance", number_text(page.tolerance_mm, 4), "mm", "tolerance_mm");
-  out += row("largest, as the fit bounds it", number_text(page.max_deviation_mm, 4), "mm", "max_deviation_mm");
-  out += row("largest, of points laid densely on both paths", number_text(page.measured_deviation_mm, 4), "mm",
+  out += row("maximum, bound of the fit", number_text(page.max_deviation_mm, 4), "mm", "max_deviation_mm");
+  out += row("maximum, over points laid densely on both paths", number_text(page.measured_deviation_mm, 4), "mm",
              "measured_deviation_mm");
-  out += row("where that is",
+  out += row("position of the maximum",
              fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", page.worst_place_mm.x() + 0.0, page.worst_place_mm.y() + 0.0,
                          page.worst_place_mm.z() + 0.0),
              "");
@@ -47,13 +47,13 @@ std::string deviation_html(const RewritePage& page) {
 
 }  // namespace
 
-std::string shares_svg(const ShareHistogram& histogram) {
+std::string fractions_svg(const FractionHistogram& histogram) {
   const auto& length = histogram.amounts;
   const double all = std::accumulate(length.begin(), length.end(), 0.0);
   if (!(all > 0)) return "<p class=\"note\">Nothing was rewritten.</p>\n";
   const double most = nice_limit(100 * *std::max_element(length.begin(), length.end()) / all);
-  const auto x = [](double share) { return kLeft + share * (kWidth - kLeft - kRight); };
-  const auto y = [](double share) { return kHeight - kBottom - share * (kHeight - kTop - kBottom); };
+  const auto x = [](double fraction) { return kLeft + fraction * (kWidth - kLeft - kRight); };
+  const auto y = [](double fraction) { return kHeight - kBottom - fraction * (kHeight - kTop - kBottom); };
   std::string out =
       fmt::format("<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n", kWidth,
                   kHeight, html_text(histogram.title));
@@ -61,10 +61,10 @@ std::string shares_svg(const ShareHistogram& histogram) {
     fmt::format_to(std::back_inserter(out), "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", at_x,
                    at_y, anchor, what);
   };
-  for (const double share : {0.0, 0.5, 1.0}) {
-    fmt::format_to(std::back_inserter(out), "<path stroke=\"#e3e8ee\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", x(0), y(share),
-                   x(1));
-    text(kLeft - 6, y(share) + 4, "end", fmt::format("{:g}", share * most));
+  for (const double fraction : {0.0, 0.5, 1.0}) {
+    fmt::format_to(std::back_inserter(out), "<path stroke=\"#e3e8ee\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", x(0),
+                   y(fraction), x(1));
+    text(kLeft - 6, y(fraction) + 4, "end", fmt::format("{:g}", fraction * most));
   }
   out += "<path fill=\"#1668b8\" d=\"";
   const double bins = static_cast<double>(length.size());
@@ -73,13 +73,13 @@ std::string shares_svg(const ShareHistogram& histogram) {
       fmt::format_to(std::back_inserter(out), "M{:.1f} {:.1f}V{:.2f}H{:.1f}V{:.1f}Z", x(static_cast<double>(i) / bins),
                      y(0), y(100 * length[i] / all / most), x((static_cast<double>(i) + 0.9) / bins), y(0));
   out += "\"/>\n";
-  for (const double share : {0.0, 0.5, 1.0})
-    text(x(share), kHeight - kBottom + 17,
-         share == 0   ? "start"
-         : share == 1 ? "end"
-                      : "middle",
-         format_trimmed(histogram.from + share * (histogram.to - histogram.from), histogram.decimals));
-  text(kLeft - 36, 16, "start", html_text(histogram.share_of));
+  for (const double fraction : {0.0, 0.5, 1.0})
+    text(x(fraction), kHeight - kBottom + 17,
+         fraction == 0   ? "start"
+         : fraction == 1 ? "end"
+                         : "middle",
+         format_trimmed(histogram.from + fraction * (histogram.to - histogram.from), histogram.decimals));
+  text(kLeft - 36, 16, "start", html_text(histogram.fraction_of));
   text(x(0.5), kHeight - 6, "middle", html_text(histogram.axis));
   return out + "</svg>\n";
 }
@@ -95,8 +95,8 @@ std::string rewrite_page(const RewritePage& page) {
   out += tiles_html(tiles) + path_card_html("The path", kHint);
   out += "<div class=\"columns\">\n";
   if (page.deviation) out += deviation_html(page);
-  for (const ShareHistogram& h : page.histograms)
-    out += "<div class=\"card\"><h2>" + html_text(h.title) + "</h2>\n" + shares_svg(h) + "</div>\n";
+  for (const FractionHistogram& h : page.histograms)
+    out += "<div class=\"card\"><h2>" + html_text(h.title) + "</h2>\n" + fractions_svg(h) + "</div>\n";
   out += figures_html(figures);
   for (const auto& table : page.tables) out += table_html(table);
   std::vector<std::string> notes = page.notes;

@@ -10,10 +10,10 @@
 namespace camber::report {
 
 /// Bars of amounts, as per cent of their sum, in equal bins from one value to another.
-struct ShareHistogram {
+struct FractionHistogram {
   std::string title;
-  std::string share_of;  ///< "% of the rewritten length"
-  std::string axis;      ///< "deviation, um"
+  std::string fraction_of;  ///< "% of the rewritten length"
+  std::string axis;         ///< "deviation, um"
   double from = 0, to = 1;
   int decimals = 3;  ///< of the axis' numbers, at most
   std::vector<double> amounts;
@@ -31,7 +31,7 @@ struct RewritePage {
   std::size_t runs = 0;                        ///< rewritten
   PathPicture before, after;
   PathPicture part;  ///< drawn below both; empty: none. The page then opens with the view from the top
-  std::vector<ShareHistogram> histograms;
+  std::vector<FractionHistogram> histograms;
   std::vector<TextTable> tables;
   std::vector<std::string> notes;
 };
@@ -40,6 +40,6 @@ struct RewritePage {
 std::string rewrite_page(const RewritePage& page);
 
 /// Needs no script. A sentence where the amounts are all zero.
-std::string shares_svg(const ShareHistogram& histogram);
+std::string fractions_svg(const FractionHistogram& histogram);
 
 }  // namespace camber::report

@@ -31,8 +31,8 @@ removal::ErrorFigures total_error(const simulate::Prediction& p) {
 /// Percentiles of the signed error and its histogram, by area.
 ordered_json spread(const removal::ErrorSpread& s) {
   ordered_json percentiles = ordered_json::object();
-  for (std::size_t i = 0; i < s.kShares.size(); ++i)
-    percentiles[fmt::format("p{:02.0f}", 100 * s.kShares[i])] = s.percentile[i];
+  for (std::size_t i = 0; i < s.kFractions.size(); ++i)
+    percentiles[fmt::format("p{:02.0f}", 100 * s.kFractions[i])] = s.percentile[i];
   return {{"percentiles", percentiles},
           {"histogram", {{"from", s.bin_from}, {"width", s.bin_width}, {"area_mm2", s.bin_area_mm2}}}};
 }
@@ -99,8 +99,7 @@ std::string holes_text(const simulate::HoleFigures& h) {
   if (h.count.tapped > 0)
     fmt::format_to(std::back_inserter(out), "{} holes tapped: {:.3f} mm3, carved without chips or forces\n",
                    h.count.tapped, h.tapped_mm3);
-  fmt::format_to(std::back_inserter(out), "surface that holes made, not in the form error: {:.1f} mm2\n",
-                 h.surface_mm2);
+  fmt::format_to(std::back_inserter(out), "hole surfaces, not in the form error: {:.1f} mm2\n", h.surface_mm2);
   return out;
 }
 
@@ -245,17 +244,18 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
 
 std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s,
                          const simulate::TracedRun* traced) {
-  std::string out = fmt::format("machine time {:.1f} s, of it cutting {:.1f} s; computed in {:.1f} s\n",
-                                program.feed.time_s, program.feed.cutting_time_s, compute_s);
+  std::string out = fmt::format("machine time {:.1f} s, cutting {:.1f} s; computed in {:.1f} s\n", program.feed.time_s,
+                                program.feed.cutting_time_s, compute_s);
   const SpindleFigures s = spindle_figures(program, p);
   const double balance = p.cut.stock_mm3 > 0 ? 100 * (p.cut.chip_mm3 / p.cut.stock_mm3 - 1) : 0;
   fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the chips, {:.3f} mm3 by the stock ({:+.2f} %)\n",
                  p.cut.chip_mm3, p.cut.stock_mm3, balance);
   if (simulate::beyond_model(p)) return out + "force, deflection and form error: beyond the model's range\n";
-  fmt::format_to(std::back_inserter(out), "greatest lateral force {:.1f} N, torque {:.3f} Nm, chip {:.4f} mm\n",
-                 largest_force_N(p), s.torque_max_Nm, s.chip_max_mm);
-  fmt::format_to(std::back_inserter(out), "power {:.1f} W at most, {:.1f} W in the cut; {:.0f} J/cm3\n", s.power_max_W,
-                 s.power_mean_W, s.specific_energy_MPa);
+  fmt::format_to(std::back_inserter(out),
+                 "maximum lateral force {:.1f} N, torque {:.3f} Nm, chip thickness {:.4f} mm\n", largest_force_N(p),
+                 s.torque_max_Nm, s.chip_max_mm);
+  fmt::format_to(std::back_inserter(out), "power {:.1f} W maximum, {:.1f} W mean in the cut; {:.0f} J/cm3\n",
+                 s.power_max_W, s.power_mean_W, s.specific_energy_MPa);
   if (p.holes.any()) out += holes_text(p.holes);
   fmt::format_to(std::back_inserter(out), "{}\n{}\n{}\n{}\n", kFiguresHead, figures_row("error", p.form_error_um),
                  figures_row(" deflection", p.deflection_um), figures_row(" contour", p.contour_um));
@@ -268,11 +268,11 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
 std::string region_text(const RegionFigures& region) {
   std::string out;
   if (region.border_mm2 > 0)
-    fmt::format_to(std::back_inserter(out), "left out, other operations cut deeper there: {:.1f} mm2\n",
+    fmt::format_to(std::back_inserter(out), "not judged, other operations cut deeper there: {:.1f} mm2\n",
                    region.border_mm2);
   if (region.not_judged_mm2 > 0)
-    fmt::format_to(std::back_inserter(out), "left out, not of [part] judged: {:.1f} mm2\n", region.not_judged_mm2);
-  if (region.between) out += "other operations cut deeper everywhere: no surface of the part yet, all is judged\n";
+    fmt::format_to(std::back_inserter(out), "not judged, outside [part] judged: {:.1f} mm2\n", region.not_judged_mm2);
+  if (region.between) out += "other operations cut deeper everywhere: an intermediate stage, everything is judged\n";
   return out;
 }
 
@@ -291,7 +291,7 @@ std::string unsettled_sentence(const simulate::SimulatedProgram& program, const 
 namespace {
 
 std::string unsettled_sentence(bool settled) {
-  return settled ? "" : "the static deflection of some stretches did not settle; their figures are uncertain";
+  return settled ? "" : "the static deflection of some stretches did not converge; their figures are uncertain";
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace camber::report {
 struct SurfaceSample {
   Vec3 place_mm = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
-  double error_um = 0;            ///< positive: material is left
+  double error_um = 0;            ///< positive: excess material
   double contour_um = 0;          ///< of error_um, what servo lag and corner rounding do
   double error_after_um = 0;      ///< of the compensated program, where there is one
   double area_mm2 = 1;            ///< weight in the histogram

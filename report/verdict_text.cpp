@@ -21,7 +21,7 @@ std::string judged_name(const CompensationSettings& asked) {
 /// "95 % of the form error is within 2.31 um, tolerance_um = 5".
 std::string figure_sentence(double p95_um, double in_band_fraction, const CompensationSettings& asked) {
   if (asked.profile_um)
-    return fmt::format("{:.1f} % of the area is within profile_um = [{:g}, {:g}], wanted are 95 %",
+    return fmt::format("{:.1f} % of the area is within profile_um = [{:g}, {:g}]; 95 % was expected",
                        100 * in_band_fraction, (*asked.profile_um)[0], (*asked.profile_um)[1]);
   return fmt::format("the {} of the emitted program is {:.2f} um (95th percentile), tolerance_um = {:g}",
                      judged_name(asked), p95_um, asked.tolerance_um);
@@ -38,16 +38,17 @@ std::string figure_sentence(const Verification& v, const CompensationSettings& a
 std::string too_deep_sentence(const compensate::Depth& depth, double limit_um) {
   const Vec3& at = depth.place_mm;
   return fmt::format(
-      "more than a thousandth of the surface lies {:.2f} um or more in the part, deepest ({:.2f} um) at X{:.3f} "
-      "Y{:.3f} Z{:.3f}; no more than {:.4g} um were expected",
-      depth.held_um, depth.deepest_um, at.x(), at.y(), at.z(), limit_um);
+      "the gouge depth is {:.2f} um (exceeded by 0.1 % of the surface), deepest ({:.2f} um) at X{:.3f} Y{:.3f} "
+      "Z{:.3f}; no more than {:.4g} um were expected",
+      depth.gouge_depth_p999_um, depth.deepest_um, at.x(), at.y(), at.z(), limit_um);
 }
 
 std::vector<std::string> shortfalls(const CompensationResult& c, const CompensationSettings& asked) {
   std::vector<std::string> out = c.doubts;
   if (!c.settled) out.push_back(unsettled_sentence(c));
   if (!c.better)
-    out.push_back("no round was better than the program as given and within the limits, so that program is judged");
+    out.push_back(
+        "no round was both better than the given program and within the limits, so the given program is judged");
   if (!c.within_part) out.push_back(too_deep_sentence(c.depth_after, c.depth_limit_um));
   if (c.within_tolerance) return out;
   out.push_back(figure_sentence(c, asked));
@@ -56,15 +57,15 @@ std::vector<std::string> shortfalls(const CompensationResult& c, const Compensat
 }
 
 std::string headline(const CompensationResult& c, const CompensationSettings& asked) {
-  if (!c.doubts.empty() || !c.settled) return "the figures are not to be relied on";
+  if (!c.doubts.empty() || !c.settled) return "the figures are not reliable";
   if (!c.better) return "no better program was found";
-  if (!c.within_part) return "too deep in the part";
+  if (!c.within_part) return "gouge too deep";
   return (c.within_tolerance ? "within the tolerance: " : "over the tolerance: ") + figure_sentence(c, asked);
 }
 
 std::string headline(const Verification& v, const CompensationSettings& asked) {
-  if (!v.doubts.empty() || !v.settled) return "the figures are not to be relied on";
-  if (!v.within_part) return "too deep in the part";
+  if (!v.doubts.empty() || !v.settled) return "the figures are not reliable";
+  if (!v.within_part) return "gouge too deep";
   return (v.within_tolerance ? "within the tolerance: " : "over the tolerance: ") + figure_sentence(v, asked);
 }
 
@@ -97,11 +98,11 @@ std::string plain_row(const std::string& name, const removal::ErrorFigures& f) {
 }
 
 std::string seen_text(double area_mm2, double unseen_mm2, const RegionFigures& region, machine::Reference reference) {
-  std::string out =
-      fmt::format("of {:.1f} mm2; without a figure, at the blank's faces: about {:.1f} mm2\n", area_mm2, unseen_mm2) +
-      region_text(region);
+  std::string out = fmt::format("of {:.1f} mm2; without a figure, at the faces of the blank: about {:.1f} mm2\n",
+                                area_mm2, unseen_mm2) +
+                    region_text(region);
   if (reference == machine::Reference::machine)
-    out += "judged by the deflection: [compensation] reference is the machine\n";
+    out += "judged by deflection_um: [compensation] reference = \"machine\"\n";
   return out;
 }
 
@@ -121,9 +122,9 @@ std::string verify_text(const Verification& v, double compute_s) {
   out += plain_row("judged, now", compensate::judged_of(v.plain, v.reference)) +
          plain_row("judged, by compensate", v.recorded_um);
   return out + fmt::format(
-                   "into the part: {:.2f} um (single points {:.2f} um); limit {:.4g} um\n"
+                   "gouge depth: {:.2f} um (single points {:.2f} um); limit {:.4g} um\n"
                    "machine time {:.1f} s; computed in {:.1f} s\n",
-                   v.depth.held_um, v.depth.deepest_um, v.depth_limit_um, v.machine_time_s, compute_s);
+                   v.depth.gouge_depth_p999_um, v.depth.deepest_um, v.depth_limit_um, v.machine_time_s, compute_s);
 }
 
 std::string plain_figures_text(const CompensationResult& c) {

@@ -24,21 +24,21 @@ struct Collision {
 
 /// First collision of every block, in order of time.
 ///
-/// The undeflected cutter is swept through a copy of the blank; a rapid is looked at when its turn comes, shank, neck
-/// and holder before the stretch of path is cut that takes them there: the cutter below them must have made room long
-/// before. What lies above the stock, or beside it, is not looked at, and nothing is swept where no part of a tool
-/// ever comes so low. Rapids follow the path of the machine's control, straight or with every axis on its own
-/// (feedmodel::positioning_places); leading rapids, those after a tool change and after a reference point whose start
-/// is not known count at their end; a rapid straight up is free where no part of the tool is narrower than what is
-/// below it. Less than a voxel of depth is no collision; places every half millimetre of path, half a millimetre apart
-/// on the outline. Rapids of a cycle within its hole are free: the tool has just been there.
+/// The undeflected cutter is swept through a copy of the blank; a rapid is checked at its time; shank, neck and holder
+/// are checked before their stretch of path is cut, because the cutter must have made room earlier. Positions above or
+/// beside the stock are skipped, and nothing is swept if no part of a tool comes that low. Rapids follow the path of
+/// the machine's control, straight or with every axis on its own (feedmodel::positioning_places); leading rapids, those
+/// after a tool change and after a reference point whose start is not known are checked at their end only; a rapid
+/// straight up is accepted if no part of the tool is narrower than the part below it. Less than a voxel of depth is no
+/// collision; places every half millimetre of path, half a millimetre apart on the outline. Rapids of a cycle within
+/// its hole are accepted.
 std::vector<Collision> find_collisions(const machine::Job& job, const SimulatedProgram& program,
                                        const removal::Stock& blank);
 
-/// The same as diagnostics at the blocks: [collision-rapid], [collision-shank], [collision-holder]. What they are the
-/// job says; where it does not, errors, or warnings if a part of the program's motion was left out (operations,
-/// cycles that are not carved): material may stand that would be gone. Those of moves outside the job's operations are
-/// one diagnostic, at the first.
+/// The same as diagnostics at the blocks: [collision-rapid], [collision-shank], [collision-holder]. Their severity is
+/// that of the job; by default errors, or warnings if a part of the program is not simulated (operations, cycles that
+/// are not carved), because the stock then contains material that the machine has removed. Collisions of moves outside
+/// the job's operations are one diagnostic, at the first.
 void check_collisions(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                       Diagnostics& diagnostics);
 

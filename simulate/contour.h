@@ -1,5 +1,5 @@
 #pragma once
-// The contour error: what servo lag and corner rounding do to the surface, without bending.
+// Contour error: the effect of servo lag and corner rounding on the surface, without deflection.
 #include <vector>
 
 #include "simulate/predict.h"

@@ -17,13 +17,14 @@ namespace camber::simulate {
 
 /// The loads of one tooth passing. Forces act on the tool, in machine axes.
 struct StampLoad {
-  Vec3 force_max_N = Vec3::Zero();                 ///< per component the signed value of largest magnitude
-  double lateral_max_N = 0;                        ///< largest sqrt(Fx^2 + Fy^2)
-  Vec3 force_mean_N = Vec3::Zero();                ///< over the tooth passing
-  Vec3 contact_deflection_mm = Vec3::Zero();       ///< at the contact's height as an edge passes it
-  double chip_mm3 = 0;                             ///< volume of the chips
+  Vec3 force_max_N = Vec3::Zero();   ///< per component the signed value of maximum magnitude
+  double lateral_max_N = 0;          ///< largest sqrt(Fx^2 + Fy^2)
+  Vec3 force_mean_N = Vec3::Zero();  ///< over the tooth passing
+  Vec3 contact_deflection_mm =
+      Vec3::Zero();     ///< at the height of the contact, at the instant at which an edge passes it
+  double chip_mm3 = 0;  ///< volume of the chips
   double torque_max_Nmm = 0, torque_mean_Nmm = 0;  ///< over the tooth passing
-  double work_Nmm = 0;                             ///< of the spindle over the tooth passing
+  double work_Nmm = 0;                             ///< work work of the spindle over the tooth passing
   double chip_max_mm = 0;                          ///< thickest chip
   double chip_area_mm2 = 0;                        ///< chip_mm3 over it is the mean thickness
 };
@@ -33,7 +34,7 @@ constexpr double power_W(double torque_mean_Nmm, double spindle_speed_rpm) {
   return torque_mean_Nmm / 1000 * 2 * kPi * spindle_speed_rpm / 60;
 }
 
-/// Where the envelope generates the surface: the point at which an edge leaves its mark.
+/// Contact point: where the envelope generates the surface.
 struct Contact {
   double height_mm = 0;
   double angle_rad = 0;
@@ -43,50 +44,49 @@ struct CutOptions {
   machine::Coupling coupling = machine::Coupling::static_;
   double envelope_step_mm = 0.1;
   double rotation_step_rad = kPi / 180;
-  std::size_t stretch_stamps = 400;         ///< kept in memory at a time; static
-  std::size_t rigid_stretch_stamps = 1500;  ///< rigid: engaged and kept in memory at a time
-  int max_rounds = 40;                      ///< of the static solution of one tooth passing
+  std::size_t stretch_stamps = 400;         ///< stamps in memory at a time, static
+  std::size_t rigid_stretch_stamps = 1500;  ///< stamps in memory at a time, rigid
+  int max_rounds = 40;                      ///< maximum iterations of one tooth passing
   double edge_ramp_mm = 0.002;              ///< static only, see edge_force
   double settle_um = 0.1;                   ///< see SettleOptions
   double settle_fraction = 0.01;
   Vec3 axis_compliance_mm_per_N = Vec3::Zero();  ///< of the machine's axes
   bool drilling = false;                         ///< straight down: see simulate/holes.h; with rigid coupling
-  std::function<void(double)> progress;          ///< share done, 0 to 1
-  const removal::Stock* blank = nullptr;   ///< the stock as it is before, where somebody keeps it anyway; saves a copy
-  removal::SurfaceMap* surface = nullptr;  ///< takes the marks of the deflected cutter, if given
-  /// First stamp of a turn whose forces are kept tooth by tooth, in CutResult::turn.
+  std::function<void(double)> progress;          ///< completed fraction, 0 to 1
+  const removal::Stock* blank = nullptr;         ///< copy of the uncut stock if available; saves a copy
+  removal::SurfaceMap* surface = nullptr;        ///< takes the marks of the deflected cutter, if given
+  /// First stamp of a revolution whose forces are recorded tooth by tooth in CutResult::turn.
   std::optional<std::size_t> turn_from;
 };
 
 struct CutResult {
-  std::vector<StampLoad> loads;                ///< one a stamp
+  std::vector<StampLoad> loads;                ///< one per stamp
   double chip_mm3 = 0;                         ///< sum over the chips
   double stock_mm3 = 0;                        ///< change of the stock that engagement reads
   int rounds_max = 0;                          ///< of the static solution: readings of a tooth passing's chips
   std::size_t unsettled = 0;                   ///< stretches of tooth passings without a static equilibrium
-  std::vector<std::uint32_t> unsettled_moves;  ///< of these tooth passings: Stamp::move, each once in a row
+  std::vector<std::uint32_t> unsettled_moves;  ///< their Stamp::move, without consecutive repetitions
   std::vector<deflection::NoEquilibrium> unsettled_reasons;  ///< of the first passing of each
   std::size_t beyond = 0;                   ///< tooth passings with a deflection beyond the model's range
-  std::vector<std::uint32_t> beyond_moves;  ///< of these: Stamp::move, each once in a row
+  std::vector<std::uint32_t> beyond_moves;  ///< their Stamp::move, without consecutive repetitions
   double deflection_max_mm = 0;             ///< of the edge at the tip, in any tooth passing
-  double deflection_limit_mm = 0;           ///< of those beyond, the least limit
+  double deflection_limit_mm = 0;           ///< smallest limit among those exceeded
   deflection::TurnForces turn;              ///< empty without CutOptions::turn_from
 };
 
-/// Cuts `stock`: with the deflected cutter, or in rigid coupling, where no bending feeds back, with the undeflected
-/// one; what the deflected one leaves is then in `surface` only. `contacts` (one a stamp, or empty) only serves
-/// StampLoad::contact_deflection_mm. Stamp ids in the stock are first_id + index.
+/// Cuts `stock`: with the deflected cutter, or in rigid coupling (no feedback of the deflection) with the undeflected
+/// one; the surface of the deflected cutter is then only in `surface`. `contacts` (one per stamp, or empty) is used
+/// only for StampLoad::contact_deflection_mm. Stamp ids in the stock are first_id + index.
 CutResult cut(removal::Stock& stock, const machine::Tool& tool, const machine::Material& material,
               std::span<const removal::Stamp> stamps, std::span<const Contact> contacts, std::int32_t first_id,
               const CutOptions& options);
 
-/// Cuts `stock` with the undeflected cutter, made smaller by shrink_mm along its normal. Returns the
-/// volume that it took, mm^3.
+/// Cuts `stock` with the undeflected cutter, reduced by shrink_mm along its normal. Returns the volume removed, mm^3.
 double sweep(removal::Stock& stock, const machine::Tool& tool, std::span<const removal::Stamp> stamps,
              std::int32_t first_id, double shrink_mm);
 
 /// The contact of every stamp with a target surface: of the points at which the envelope moves tangentially
-/// (f . n = 0), the middle of those that lie deepest in the target, within 1 um.
+/// (f . n = 0), the middle of the points deepest in the target, within 1 um.
 std::vector<Contact> find_contacts(const removal::Stock& target, const machine::Tool& tool,
                                    std::span<const removal::Stamp> stamps);
 

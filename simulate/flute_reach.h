@@ -1,5 +1,5 @@
 #pragma once
-// Material above the flutes, or above the holder's face: the simulation would take it without a force.
+// Checks for material above the flutes or above the holder face, which would be cut without a force.
 #include "base/diagnostics.h"
 #include "machine/job.h"
 #include "removal/stock.h"

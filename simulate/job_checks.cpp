@@ -44,7 +44,7 @@ void warn_of_not_carved(const nc::Program& program, const nc::Interpretation& mo
     if (holes[i] != HoleMove::not_carved || !said.insert(move.cycle).second) continue;
     diagnostics.add(program.source.diagnostic(
         Severity::warning, program.blocks[move.block].offset,
-        fmt::format("the holes of G{} stay in the stock: a cycle that feeds straight down along Z was expected",
+        fmt::format("the holes of G{} are not carved; a cycle that feeds straight down along Z was expected",
                     move.cycle),
         "cycle-not-carved"));
   }
@@ -57,13 +57,12 @@ void warn_of_vibration(const machine::Tool& tool, double rpm, const nc::Program&
   const double first_hz = deflection::beam_of(tool).first_frequency_hz(tool, density);
   const double tooth_hz = rpm / 60 * tool.flutes;
   if (tooth_hz <= first_hz / 3) return;
-  diagnostics.add(program.source.diagnostic(
-      Severity::warning, offset,
-      fmt::format(
-          "T{} passes {:.0f} teeth a second, more than a third of its first natural frequency of about {:.0f} Hz: "
-          "a static deflection no longer holds",
-          tool.number, tooth_hz, first_hz),
-      "tooth-frequency"));
+  diagnostics.add(
+      program.source.diagnostic(Severity::warning, offset,
+                                fmt::format("T{} passes {:.0f} teeth a second, more than a third of its first natural "
+                                            "frequency of about {:.0f} Hz: a static deflection is no longer valid",
+                                            tool.number, tooth_hz, first_hz),
+                                "tooth-frequency"));
 }
 
 }  // namespace

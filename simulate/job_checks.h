@@ -1,5 +1,5 @@
 #pragma once
-// What must hold of a job and its program before anything is cut.
+// Checks of a job and its program before the simulation.
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -12,8 +12,8 @@ namespace camber::simulate {
 
 /// Errors at the program's blocks: [nothing-to-cut], [tool-missing], [tool-type], [spindle-stopped],
 /// [spindle-direction]; warnings: [tooth-frequency] (the tooth passing frequency exceeds a third of the tool's
-/// first natural frequency, where a static deflection no longer holds; milling only), [cycle-not-carved] (a cycle whose
-/// holes stay in the stock).
+/// first natural frequency, above which a static deflection is no longer valid; milling only), [cycle-not-carved] (a
+/// cycle whose holes are not carved).
 void check_cutting(const machine::Job& job, const nc::Program& program, const nc::Interpretation& moves,
                    const std::vector<bool>& selected, const std::vector<removal::HoleMove>& holes,
                    Diagnostics& diagnostics);

@@ -64,15 +64,15 @@ class MachineCheck {
     const Vec3 direction = largest_direction(moves_, m);
     for (std::size_t a = 0; a < 3; ++a) {
       const machine::Axis& axis = machine_.axis[a];
-      const double share = direction[static_cast<Eigen::Index>(a)];
-      if (share <= kStill_mm) continue;
+      const double fraction = direction[static_cast<Eigen::Index>(a)];
+      if (fraction <= kStill_mm) continue;
       if (!axis.given && !said_missing_[a]) {
         said_missing_[a] = true;
         error(m, "axis-missing",
               fmt::format("{} moves here, but {} has no [axis.{}]; an axis with its limits was expected", kLetters[a],
                           machine_.path, static_cast<char>(kLetters[a] - 'A' + 'a')));
       }
-      const double over = share * m.feed_mm_per_s / axis.max_velocity_mm_per_s;
+      const double over = fraction * m.feed_mm_per_s / axis.max_velocity_mm_per_s;
       if (!cuts(m) || over <= 1 + kRounding) continue;
       if (over > worst_[a].over * (1 + kRounding)) worst_[a].over = over;
       if (!worst_[a].move) worst_[a].move = &m;
@@ -85,7 +85,7 @@ class MachineCheck {
     const double limit = mm_per_min_from_mm_per_s(machine_.axis[a].max_velocity_mm_per_s);
     const std::size_t more = worst_[a].count - 1;
     error(*worst_[a].move, "feed-limit",
-          fmt::format("the feed asks up to {:.0f} mm/min of {}{}, but {} allows {:g} (max_velocity_mm_per_min of "
+          fmt::format("the feed requires up to {:.0f} mm/min of {}{}, but {} allows {:g} (max_velocity_mm_per_min of "
                       "[axis.{}]); no more was expected",
                       worst_[a].over * limit, kLetters[a],
                       more > 0 ? fmt::format(" in this move and {} more", more) : std::string(), machine_.path, limit,

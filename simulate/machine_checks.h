@@ -1,5 +1,5 @@
 #pragma once
-// What must hold of a program on a machine before it runs.
+// Checks of a program on a machine before it runs.
 #include "base/diagnostics.h"
 #include "machine/machine.h"
 #include "nc/move.h"
@@ -9,7 +9,7 @@ namespace camber::simulate {
 
 /// Errors at the program's blocks, each said once with its first place:
 ///  [axis-missing]   the program moves an axis that the machine file does not have;
-///  [feed-limit]     the programmed feed asks more of an axis than its max_velocity_mm_per_min;
+///  [feed-limit]     the programmed feed requires more of an axis than its max_velocity_mm_per_min;
 ///  [spindle-limit]  S is over the spindle's max_rpm in a line or an arc.
 void check_machine(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                    Diagnostics& diagnostics);
@@ -19,8 +19,8 @@ void check_machine(const machine::Machine& machine, const nc::Program& program, 
 void check_feeds(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics);
 
 /// For a program without a job, where every line and arc counts as a cut: errors [spindle-stopped] and
-/// [spindle-direction] (cutters are right-hand; tapping aside). A program that never names a spindle speed nor starts
-/// the spindle is one to run in air, as `camber protocol` writes them: a warning then.
+/// [spindle-direction] (cutters are right-hand; tapping aside). A program without any spindle speed or start may be one
+/// to run in air, as `camber protocol` writes them: only a warning.
 void check_spindle(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics);
 
 }  // namespace camber::simulate

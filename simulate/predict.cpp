@@ -184,7 +184,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
   Target out{std::move(blank), std::move(surface),  std::move(places),
              std::move(part),  HoleStamps(nominal), std::move(whole)};
   out.stamps.reserve(nominal.stamps.size());
-  for (const auto& s : nominal.stamps) out.stamps.push_back({s.move, static_cast<float>(s.share)});
+  for (const auto& s : nominal.stamps) out.stamps.push_back({s.move, static_cast<float>(s.fraction)});
   mark_region(job, target, mark_contour(job, target.path, out), out);
   return out;
 }
@@ -218,8 +218,8 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
     cut_options.envelope_step_mm = envelope_step_mm(job, tool);
     cut_options.rotation_step_rad = job.simulation.rotation_step_rad;
     if (options.progress)
-      cut_options.progress = [&](double share) {
-        options.progress((static_cast<double>(from) + share * static_cast<double>(stamps.size())) / all);
+      cut_options.progress = [&](double fraction) {
+        options.progress((static_cast<double>(from) + fraction * static_cast<double>(stamps.size())) / all);
       };
     if (options.turn_from && *options.turn_from >= from && *options.turn_from < from + stamps.size())
       cut_options.turn_from = *options.turn_from - from;

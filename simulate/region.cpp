@@ -21,10 +21,10 @@ using removal::Stamp;
 
 /// What a tool leaves between two places of its path is d^2 / 8 R.
 double sample_spacing_mm(const machine::Tool& tool) {
-  constexpr double kRidge_mm = 0.001, kLeast_mm = 0.02, kMost_mm = 0.2;
+  constexpr double kRidge_mm = 0.001, kMin_mm = 0.02, kMax_mm = 0.2;
   const double corner = removal::shape_of(tool).corner_radius_mm;
   const double radius = corner > 0 ? corner : tool.diameter_mm / 2;
-  return std::clamp(std::sqrt(8 * radius * kRidge_mm), kLeast_mm, kMost_mm);
+  return std::clamp(std::sqrt(8 * radius * kRidge_mm), kMin_mm, kMax_mm);
 }
 
 machine::Box box_of(std::span<const removal::SurfacePoint> points) {
@@ -185,8 +185,8 @@ void check_region_start(const machine::Job& job, const SimulatedProgram& program
   if (!goes_on || tool == job.tools.end() || !stands_in(blank, tool->second, m.start_mm)) return;
   diagnostics.add(program.text.source.diagnostic(
       Severity::warning, program.text.blocks[m.block].offset,
-      fmt::format("the job's operations begin here, in the middle of a cut: T{} stands in material, which goes without "
-                  "chips; a range that begins at a rapid was expected",
+      fmt::format("the job's operations begin here, in the middle of a cut: T{} stands in material, which is removed "
+                  "without chips; a range that begins at a rapid was expected",
                   tool->first),
       "starts-in-material"));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The region that a job with operations makes: what of its nominal surface is the part's.
+// The region of a job with operations: the part of its nominal surface that is a surface of the part.
 #include <span>
 
 #include "removal/form_error.h"
@@ -7,11 +7,11 @@
 
 namespace camber::simulate {
 
-/// Moves that the job leaves out must cut deeper by more than this for a point to be border, mm. Less is what two
-/// passes at one height, or the ridge between two rows, may differ by.
+/// A point is border if moves outside the job's operations cut deeper by more than this, mm. Smaller differences occur
+/// between passes at one height and at the ridge between rows.
 inline constexpr double kBorder_mm = 0.002;
-/// Where more of the surface than this is cut deeper by other moves, the job is a stage between (roughing) and there is
-/// no border: all of its surface is judged.
+/// Where more of the surface than this is cut deeper by other moves, the job is an intermediate stage (roughing)
+/// without border: all of its surface is judged.
 inline constexpr double kBetween = 0.99;
 
 /// Sets Target::region. `points`: of a SurfaceMap of the target; `program`: the target program.
@@ -26,7 +26,7 @@ void mark_region(const machine::Job& job, const SimulatedProgram& program,
                  std::span<const removal::SurfacePoint> points, Target& target);
 
 /// Warning [starts-in-material] at the first move that is milled, where it goes on from a feed move that the job leaves
-/// out and its cutter stands in the blank there by more than a voxel: what lies within the cutter is gone without
+/// out and its cutter stands in the blank there by more than a voxel: the material within the cutter is removed without
 /// chips.
 void check_region_start(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                         Diagnostics& diagnostics);

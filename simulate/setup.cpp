@@ -39,7 +39,7 @@ void check_clearance(const machine::Job& job, const Setup& setup, Diagnostics& d
 
 std::function<void(double)> progress_of(const Progress& progress, std::string what) {
   if (!progress) return {};
-  return [progress, what = std::move(what)](double share) { progress(what, share); };
+  return [progress, what = std::move(what)](double fraction) { progress(what, fraction); };
 }
 
 Prediction predict_surface(const machine::Job& job, const Target& target, const SimulatedProgram& program,

@@ -22,8 +22,8 @@ struct Setup {
   const SimulatedProgram& target_program() const { return original ? *original : program; }
   bool own_target() const { return !original; }
   /// Target::stamps where they are of `program`, else none.
-  std::span<const PathShare> own_stamps() const {
-    return own_target() ? std::span(target.stamps) : std::span<const PathShare>();
+  std::span<const PathFraction> own_stamps() const {
+    return own_target() ? std::span(target.stamps) : std::span<const PathFraction>();
   }
 };
 
@@ -49,8 +49,8 @@ void check_program(const machine::Job& job, const SimulatedProgram& program, Dia
 /// Collisions (collisions.h), a region that begins in material (region.h), material above the flutes (flute_reach.h).
 void check_clearance(const machine::Job& job, const Setup& setup, Diagnostics& diagnostics);
 
-/// Progress of several predictions: which one, and the share of it that is done.
-using Progress = std::function<void(const std::string& what, double share)>;
+/// Progress of several predictions: which one, and the fraction of it that is done.
+using Progress = std::function<void(const std::string& what, double fraction)>;
 
 /// `progress` of one of them; empty where that is.
 std::function<void(double)> progress_of(const Progress& progress, std::string what);

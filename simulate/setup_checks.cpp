@@ -161,8 +161,8 @@ void check_part_size(const std::string& part, const machine::Box& mesh, const ma
 
 void report_allowance(const machine::Job& job, Diagnostics& diagnostics) {
   add(Severity::error, job.path,
-      fmt::format("allowance_mm = {:g}: the cut before, with the cutter smaller by this much, takes nothing from the "
-                  "stock; an allowance smaller than what the program takes was expected",
+      fmt::format("allowance_mm = {:g}: the cut before, with the cutter smaller by this much, removes nothing from the "
+                  "stock; an allowance smaller than the depth of cut was expected",
                   job.stock.allowance_mm),
       "allowance-too-large", diagnostics);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// A wrong set-up must not look like a perfect part: what stock, part, tools and program say of each other before
-// anything is cut, and whether anything is cut at all.
+// Set-up checks: consistency of stock, part, tools and program before the simulation, and whether anything is cut at
+// all.
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -43,7 +43,7 @@ void report_allowance(const machine::Job& job, Diagnostics& diagnostics);
 
 /// The beam's lengths over their diameters, added up: of flutes, neck and shank.
 double slenderness(const machine::Tool& tool);
-/// Longer tools vibrate and bend in ways that a static beam does not describe.
+/// A static beam does not describe longer tools.
 constexpr double kMaxSlenderness = 15;
 
 /// Warnings [tool-slender] for tools of the list that are more slender than kMaxSlenderness.

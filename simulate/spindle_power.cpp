@@ -18,9 +18,9 @@ struct Overload {
 };
 
 std::string message_of(int tool, const Overload& o) {
-  std::string out = fmt::format("T{} takes {:.0f} W at {:g} rpm, where the spindle has {:.0f} W", tool, o.taken_W,
+  std::string out = fmt::format("T{} takes {:.0f} W at {:g} rpm, where the spindle provides {:.0f} W", tool, o.taken_W,
                                 o.speed_rpm, o.available_W);
-  if (o.blocks.size() > 1) out += fmt::format("; {} lines take more than it has", o.blocks.size());
+  if (o.blocks.size() > 1) out += fmt::format("; {} lines need more than that", o.blocks.size());
   return out + "; at most power_W of the machine file was expected";
 }
 

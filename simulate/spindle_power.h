@@ -1,5 +1,5 @@
 #pragma once
-// The power that the cut takes against the power that the spindle has.
+// Comparison of cutting power and spindle power.
 #include "base/diagnostics.h"
 #include "machine/machine.h"
 #include "simulate/predict.h"
@@ -11,7 +11,7 @@ namespace camber::simulate {
 double spindle_power_at(const machine::Spindle& spindle, double speed_rpm);
 
 /// Warning [spindle-power] for each tool that takes more, at the line where it is most beyond it; the power is the mean
-/// over a tooth passing. `loads`: one a stamp of the program's path.
+/// over a tooth passing. `loads`: one per stamp of the program's path.
 void check_spindle_power(const machine::Machine& machine, const SimulatedProgram& program,
                          std::span<const StampLoad> loads, Diagnostics& diagnostics);
 

@@ -22,7 +22,7 @@ struct TracedRun {
   removal::ErrorFigures difference_um;  ///< error at the measured positions minus the feed model's
 };
 
-/// The error at the measured positions minus the feed model's, one a point, mm. `measured`: of the same target.
+/// The error at the measured positions minus the feed model's, one per point, mm. `measured`: of the same target.
 double difference_mm(const TracedRun& run, const Prediction& measured, std::size_t point);
 
 /// Predicts `program`, which has the measured motion, and fills `run` from its model: both cut the same target. The

@@ -24,7 +24,7 @@ std::string deflection_sentence(const SimulatedProgram& program, const Predictio
   constexpr std::size_t kNamed = 5;
   const std::vector<std::size_t> lines = lines_beyond_model(program, p);
   return fmt::format(
-      "in {} tooth passings the tool bends further than the model covers, by up to {:.0f} um where {:.0f} um are "
+      "in {} tooth passings the tool deflects further than the model covers, by up to {:.0f} um where {:.0f} um are "
       "covered, in line{} {}{}: no figures; a shorter or thicker tool or a smaller cut was expected",
       p.cut.beyond, 1000 * p.cut.deflection_max_mm, 1000 * p.cut.deflection_limit_mm, lines.size() > 1 ? "s" : "",
       fmt::join(std::span(lines).first(std::min(lines.size(), kNamed)), ", "),
@@ -66,8 +66,8 @@ std::vector<std::string> doubts(const machine::Job& job, const SimulatedProgram&
     out.push_back(imbalance_sentence(p.cut.chip_mm3, p.cut.stock_mm3));
   if (p.surface.empty() && p.holes.surface_mm2 <= 0)
     out.push_back(
-        "the program leaves no surface in the stock, so there is no form error to judge; a stock that stands after the "
-        "cut was expected");
+        "the program leaves no surface in the stock, so there is no form error to judge; a stock of which material "
+        "remains was expected");
   return out;
 }
 

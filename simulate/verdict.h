@@ -1,5 +1,5 @@
 #pragma once
-// Whether the figures of a prediction may be relied on.
+// Reliability of the figures of a prediction.
 #include <string>
 #include <vector>
 
@@ -13,13 +13,13 @@ constexpr double kMaxImbalance = 0.03;
 /// Volume of the chips over the stock's change, less 1; 0 where next to nothing (a thousand voxels) is removed.
 double imbalance(double chip_mm3, double stock_mm3, double voxel_mm);
 
-/// A tool or a deflection lies beyond what the model covers: no figure of forces and errors is to be shown.
+/// True if a tool or a deflection is beyond the model: forces and errors must not be reported.
 bool beyond_model(const Prediction& prediction);
 
 /// Lines in which a deflection is beyond the model's range, ascending.
 std::vector<std::size_t> lines_beyond_model(const SimulatedProgram& program, const Prediction& prediction);
 
-/// A sentence for each reason why the figures are not to be relied on: beyond the model, chips against stock, no
+/// One sentence for each reason why the figures are not reliable: beyond the model, chips against stock, no
 /// surface that could be judged. Empty: none.
 std::vector<std::string> doubts(const machine::Job& job, const SimulatedProgram& program, const Prediction& prediction);
 /// One of them.

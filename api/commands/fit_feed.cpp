@@ -41,7 +41,7 @@ void add_times(calib::StretchRun& run, const std::string& path, TraceKind kind, 
           ? calib::logged_stretches(calib::read_machine_log(path, diagnostics), calib::feed_stretches(run.program))
           : calib::read_stretch_table(path, run.program);
   if (timed.empty())
-    fail_on_file(path, "holds no whole stretch of feed moves of the program at 100 % override", "log-stretches");
+    fail_on_file(path, "has no complete stretch of feed moves of the program at 100 % override", "log-stretches");
   run.timed.insert(run.timed.end(), timed.begin(), timed.end());
 }
 

@@ -131,7 +131,7 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   out.setup.original.reset();
   const simulate::SimulatedProgram& program = out.setup.program;
   feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
-  show(request, "looking for collisions");
+  show(request, "checking for collisions");
   simulate::check_clearance(job, out.setup, diagnostics);
   if (measured) out.traced = exchange_motion(job, out.setup.program, request.trace, *std::move(measured));
   if (request.forces_at > 0)

@@ -45,7 +45,7 @@ void write_prediction(const machine::Job& job, const PreparedJob& prepared, simu
                       const PredictRequest& request, const std::string& summary, const Diagnostics& diagnostics,
                       Diagnostics& failed);
 
-/// A sentence for each reason why the figures are not to be relied on; empty: none.
+/// A sentence for each reason reasons why the figures are not reliable; empty: none.
 std::vector<std::string> doubts_of(const machine::Job& job, const simulate::SimulatedProgram& program,
                                    const simulate::Prediction& prediction);
 

@@ -117,10 +117,10 @@ std::vector<std::string> notes_of(const std::vector<report::CycleRow>& rows) {
   std::vector<std::string> notes;
   const std::size_t unplaced = rows.front().time.unplaced_moves;
   if (unplaced > 0)
-    notes.push_back(fmt::format(
-        "{} moves to or from the reference point: its place is not known (x_mm, y_mm, z_mm of [tool_change] "
-        "in the machine file), that part of their way counts for nothing",
-        unplaced));
+    notes.push_back(
+        fmt::format("{} moves to or from the reference point: its position is not known (x_mm, y_mm, z_mm of "
+                    "[tool_change] in the machine file); that part of their path is ignored",
+                    unplaced));
   return notes;
 }
 

@@ -54,11 +54,13 @@ std::string tools_text(const CycleTime& time) {
   std::string out = head("  tool");
   for (const CycleUse& use : time.tools)
     out += fmt::format("{:>6}{}\n", fmt::format("T{}", use.tool), use_columns(use));
-  return out + fmt::format("{:>6}{}\n", "all", use_columns(time.all));
+  return out + fmt::format("{:>6}{}\n", "all", use_columns(time.all)) +
+         "F: mean commanded feed; actual: mean actual feed; e = actual / F, 1 is as programmed;\n"
+         "k = F^2 / (a d) with acceleration a and mean block length d: the larger, the less of F is reached\n";
 }
 
 std::string histogram_text(const CycleTime& time) {
-  std::string edges = "\ndistance mm, up to", g00 = "G0 positionings   ", g01 = "G1 cuts           ";
+  std::string edges = "\ndistance mm, up to", g00 = "G0 positioning    ", g01 = "G1 cuts           ";
   for (std::size_t i = 0; i < time.g00.counts.size(); ++i) {
     const bool last = i == time.g00.edges_mm.size();
     edges += fmt::format(" {:>6}", last ? "longer" : format_trimmed(time.g00.edges_mm[i], 1));

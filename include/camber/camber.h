@@ -1,5 +1,5 @@
 #pragma once
-// All of Camber's library.
+// The whole public interface of the Camber library.
 #include "camber/check.h"
 #include "camber/compensate.h"
 #include "camber/diagnostics.h"

@@ -1,5 +1,5 @@
 #pragma once
-// What a program holds, and whether a machine or a job can run it.
+// Statistics of a program, and whether a machine or a job can run it.
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -19,7 +19,7 @@ struct Box {
 
 struct ToolUse {
   int tool = 0;          ///< 0: before any M6
-  std::size_t line = 0;  ///< of the M6 that brought it in first, or of its first move where there is none
+  std::size_t line = 0;  ///< of its first M6; without one, of its first move
   std::size_t calls = 0, cutting_moves = 0;
   double cutting_length_mm = 0, rapid_length_mm = 0;
   std::optional<Box> cutting{};  ///< extents of its cutting moves
@@ -32,14 +32,14 @@ struct CheckResult {
   std::optional<Box> cutting{}, rapid{};
   std::vector<ToolUse> tools{};           ///< in the order of their first use
   std::vector<Diagnostic> diagnostics{};  ///< warnings, in the order of the file
-  std::string json{};                     ///< every figure, as `camber check --json` writes them
+  std::string json{};                     ///< all figures, as `camber check --json` writes them
 };
 
 /// Throws InputError when the program cannot be read or run.
 CAMBER_API CheckResult check(const Program& program, const RunOptions& run = {});
-/// Also whether the program keeps the machine's axes, feeds and speeds.
+/// Also checks axes, feeds and spindle speeds against the machine.
 CAMBER_API CheckResult check(const Program& program, const Machine& machine, const RunOptions& run = {});
-/// Also whether the job's tools, stock and part fit the program.
+/// Also checks the job's tools, stock and part.
 CAMBER_API CheckResult check(const Program& program, const Job& job, const RunOptions& run = {});
 
 }  // namespace v0

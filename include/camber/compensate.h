@@ -1,5 +1,5 @@
 #pragma once
-// A job's program with its path moved against the form error.
+// Compensation: the program of a job with its path shifted against the form error.
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -11,15 +11,15 @@ namespace camber {
 inline namespace v0 {
 
 struct CompensateOptions {
-  std::vector<std::string> uncertainty{};  ///< what fit-force or fit-feed wrote, or percentages ("10")
+  std::vector<std::string> uncertainty{};  ///< files written by fit-force or fit-feed, or percentages ("10")
   std::string measured{};                  ///< points measured on a part, CSV; empty: none
-  std::string measured_program{};          ///< what that part was cut with; empty: the job's program
+  std::string measured_program{};          ///< program that the measured part was cut with; empty: the job's program
   std::vector<double> check_voxels_mm{};   ///< predict both programs again on these grids
   /// Of the feed lever ([compensation] levers): the least error for so much more machine time, in percent; not given:
   /// as much as the tolerance takes.
   std::optional<double> time_budget_percent{};
-  bool keep_anyway = false;                  ///< emit the round of the least error even where none is better
-  bool header = false, header_hash = false;  ///< comment lines at the program's head
+  bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
+  bool header = false, header_hash = false;  ///< write comment lines at the head of the program
 };
 
 struct CompensationRound {
@@ -43,12 +43,12 @@ struct CompensatedPoint {
 
 struct CompensateResult {
   std::string program{};  ///< text of the emitted program: that of the best round
-  bool better = false;    ///< it is better than the given one and keeps the limits; do not run it otherwise
-  bool success = false;   ///< within the tolerance and the limits, with figures that may be relied on
+  bool better = false;    ///< better than the given program and within the limits; otherwise do not run it
+  bool success = false;   ///< within the tolerance and the limits, with reliable figures
   std::string headline{};
-  std::vector<std::string> reasons{};  ///< of no success, worst first
+  std::vector<std::string> reasons{};  ///< reasons why it is not, worst first
   ErrorFigures before_um{}, after_um{};
-  std::vector<CompensationRound> rounds{};  ///< rounds[0]: the program as given
+  std::vector<CompensationRound> rounds{};  ///< rounds[0]: the given program
   std::size_t best_round = 0;
   std::vector<TimePoint> time_points{};  ///< with the feed lever: machine time against error
   std::string stop{};                    ///< tolerance, stalled, rounds or depth_limit
@@ -56,7 +56,7 @@ struct CompensateResult {
   double max_shift_mm = 0;
   std::vector<CompensatedPoint> surface{};
   std::vector<Diagnostic> diagnostics{};  ///< warnings
-  std::string json{};                     ///< every figure, as `camber compensate --json` writes them
+  std::string json{};                     ///< all figures, as `camber compensate --json` writes them
 };
 
 /// Writes no file. Throws InputError, BeyondModel, Cancelled.

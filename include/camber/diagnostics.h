@@ -22,17 +22,17 @@ struct CAMBER_API SourceLocation {
 struct CAMBER_API Diagnostic {
   Severity severity = Severity::error;
   SourceLocation location;
-  std::string message;      ///< in shop words, with the value and what was expected
-  std::string check;        ///< name of the check, printed in brackets: stable, for programs that sort diagnostics
+  std::string message;      ///< with the value and what was expected
+  std::string check;        ///< name of the check, printed in brackets; stable
   std::string source_line;  ///< shown below with a caret; empty: not shown
 };
 
 /// "file:line:column: error: message [check]" and, where there is one, the source line with a caret.
-/// No newline at the end. Control characters and bytes that are no UTF-8 are printed as `?`: they come from the user's
-/// file, and a terminal would obey them.
+/// No newline at the end. Control characters and invalid UTF-8 are printed as `?`, because a terminal would interpret
+/// them.
 CAMBER_API std::string to_string(const Diagnostic& diagnostic);
 
-/// The user's input is wrong. what() holds all diagnostics, one below the other.
+/// The user's input is wrong. what() contains all diagnostics, one per line.
 class CAMBER_API InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<Diagnostic> diagnostics);
@@ -42,7 +42,7 @@ class CAMBER_API InputError : public std::runtime_error {
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// The figures cannot be worked out: the input is readable, but lies beyond what the model covers.
+/// The input is valid, but beyond the range of the model, so there are no results.
 class CAMBER_API BeyondModel : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// What the shared library shows to its users; everything else in it is hidden.
+// Symbol visibility: marks what the shared library exports.
 #if defined(__GNUC__)
 #define CAMBER_API __attribute__((visibility("default")))
 #else

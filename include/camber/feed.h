@@ -1,5 +1,5 @@
 #pragma once
-// Where the axes really are at every period of the control.
+// Actual axis positions and feed at every interpolation period.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -17,7 +17,7 @@ struct FeedPoint {
   double t_s = 0;
   double x_mm = 0, y_mm = 0, z_mm = 0;
   double vx_mm_per_min = 0, vy_mm_per_min = 0, vz_mm_per_min = 0;
-  double feed_cmd_mm_per_min = 0;  ///< programmed; on a rapid its top speed
+  double feed_cmd_mm_per_min = 0;  ///< programmed; for a rapid its maximum speed
   double feed_mm_per_min = 0;
   std::int64_t block = 0;  ///< 1-based line being commanded
 };
@@ -30,9 +30,9 @@ struct FeedResult {
   double time_s = 0;
   double cutting_time_s = 0;              ///< commanded time in G1, G2, G3
   std::size_t blocks = 0;                 ///< blocks with motion
-  std::vector<FeedPoint> points{};        ///< one a period
+  std::vector<FeedPoint> points{};        ///< one per interpolation period
   std::vector<Diagnostic> diagnostics{};  ///< warnings
-  std::string json{};                     ///< every figure, as `camber feed --json` writes them
+  std::string json{};                     ///< all figures, as `camber feed --json` writes them
 };
 
 /// Throws InputError, Cancelled.

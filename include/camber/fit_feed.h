@@ -1,5 +1,5 @@
 #pragma once
-// A machine's feed model from programs and the traces that they left.
+// Fits the feed model of a machine to programs and their traces.
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,14 +11,14 @@
 namespace camber {
 inline namespace v0 {
 
-/// A program that was run and what the machine did: a servo trace, an MTConnect log or a table of stretch times.
+/// A program, and a record of its run: a servo trace, an MTConnect log or a table of stretch times.
 struct FeedTrace {
   Program program;
   std::string trace;
 };
 
 struct FitFeedOptions {
-  std::string columns{};  ///< column map of the servo traces (TOML); empty: our CSV
+  std::string columns{};  ///< column map of the servo traces (TOML); empty: Camber's own CSV
 };
 
 struct FitParameter {
@@ -27,19 +27,20 @@ struct FitParameter {
   std::string unit;
   std::optional<double> std_error;  ///< not given: not fitted, or the data does not determine it
   std::string note;
-  bool written = true;  ///< the machine file takes the value
+  bool written = true;  ///< the value is written to the machine file
 };
 
 struct FitFeedResult {
   Machine machine;  ///< the fitted one
   std::vector<FitParameter> parameters{};
   bool converged = false;
-  std::string message{};                  ///< why it ended, and what it means
+  std::string message{};                  ///< how the fit ended
   std::vector<Diagnostic> diagnostics{};  ///< warnings
-  std::string json{};                     ///< every figure, as `camber fit-feed --json` writes them
+  std::string json{};                     ///< all figures, as `camber fit-feed --json` writes them
 };
 
-/// `start` gives the control's dialect and what the traces do not determine. Throws InputError, Cancelled.
+/// `start` provides the dialect of the control and the parameters that the traces do not determine. Throws InputError,
+/// Cancelled.
 CAMBER_API FitFeedResult fit_feed(const std::vector<FeedTrace>& traces, const Machine& start,
                                   const FitFeedOptions& options = {}, const RunOptions& run = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-// A job: which program on which machine, with which tools, into which stock, as job.toml describes it.
+// A job: program, machine, tools, material and stock, as in job.toml.
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,12 +15,12 @@ class CAMBER_API Job {
   const std::string& path() const;
   const std::string& program_path() const;
   Machine machine() const;
-  /// What was noticed while it was read: warnings.
+  /// Warnings found while reading.
   const std::vector<Diagnostic>& diagnostics() const;
-  /// The text of a job.toml with every default filled in and paths as they were resolved.
+  /// Text of an equivalent job.toml with all defaults filled in and resolved paths.
   std::string to_toml() const;
 
-  /// A study changes one of these and runs the job again.
+  /// Setters for parameter studies.
   void set_program(const std::string& path);
   void set_machine(const Machine& machine);
   /// Greater than zero, else std::invalid_argument.

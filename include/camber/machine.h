@@ -14,9 +14,9 @@ inline namespace v0 {
 class CAMBER_API Machine {
  public:
   const std::string& path() const;
-  /// What was noticed while it was read: warnings.
+  /// Warnings found while reading.
   const std::vector<Diagnostic>& diagnostics() const;
-  /// The text of a machine.toml that reads back to the same values, every default filled in.
+  /// Text of an equivalent machine.toml with all defaults filled in.
   std::string to_toml() const;
 
   /// Sets a number by its key in the file, in the file's unit: "axis.x.acceleration_mm_per_s2"; "axis.all.KEY" sets

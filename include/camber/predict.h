@@ -20,14 +20,16 @@ struct ErrorFigures {
   double area_mm2 = 0;
 };
 
-/// A row of forces.csv: a spindle turn or a block, whichever is shorter. Forces act on the tool, in machine axes.
+/// A row of forces.csv: one spindle revolution or one block, whichever is shorter. Forces act on the tool, in machine
+/// axes.
 struct ForceRow {
   double t_s = 0;
-  double x_mm = 0, y_mm = 0, z_mm = 0;              ///< of the tool's tip at the row's first tooth
-  double fx_max_N = 0, fy_max_N = 0, fz_max_N = 0;  ///< signed values of largest magnitude
+  double x_mm = 0, y_mm = 0, z_mm = 0;              ///< tool tip at the first tooth passing of the row
+  double fx_max_N = 0, fy_max_N = 0, fz_max_N = 0;  ///< signed values of maximum magnitude
   double f_max_N = 0;                               ///< largest lateral force
   double fx_mean_N = 0, fy_mean_N = 0, fz_mean_N = 0;
-  double dx_um = 0, dy_um = 0, dz_um = 0;  ///< deflection at the contact's height as an edge passes the contact
+  double dx_um = 0, dy_um = 0,
+         dz_um = 0;  ///< deflection at the height of the contact, at the instant at which an edge passes it
   double mrr_mm3_per_s = 0, removed_mm3 = 0;
   double torque_max_Nm = 0, torque_mean_Nm = 0, power_W = 0;
   double h_max_mm = 0, h_mean_mm = 0;  ///< uncut chip thickness
@@ -38,20 +40,21 @@ struct ForceRow {
 /// A row of form_error.csv: a point of the nominal surface.
 struct ErrorPoint {
   double x_mm = 0, y_mm = 0, z_mm = 0, nx = 0, ny = 0, nz = 0;
-  double error_um = 0;        ///< machined minus nominal along the normal; positive: material is left
-  double deflection_um = 0;   ///< of it, by bending
-  double contour_um = 0;      ///< of it, by servo lag and corner rounding
+  double error_um = 0;        ///< machined minus nominal surface, along the normal; positive: excess material
+  double deflection_um = 0;   ///< part due to tool deflection
+  double contour_um = 0;      ///< part due to servo lag and corner rounding
   double total_error_um = 0;  ///< against the part's mesh; NaN without one
   double model_error_um = 0;  ///< with PredictOptions::trace: the feed model's error_um; else NaN
-  double area_mm2 = 0;        ///< that the point stands for
-  std::int64_t block = 0;     ///< 1-based line of the program that made the surface here; 0: unknown
+  double area_mm2 = 0;        ///< represented by the point
+  std::int64_t block = 0;     ///< 1-based line that generated the surface here; 0: unknown
   std::int64_t tool = 0;      ///< 0: unknown
 };
 
 struct PredictOptions {
   bool feed = false;            ///< also fill PredictResult::feed
-  std::string output_folder{};  ///< write the files that `camber predict` writes here; empty: none
-  std::size_t forces_at = 0;    ///< with output_folder: line whose forces are written over one turn; 0: none
+  std::string output_folder{};  ///< also write the files of `camber predict` to this folder; empty: none
+  std::size_t forces_at =
+      0;  ///< with output_folder: line for which the forces over one revolution are written; 0: none
   /// Servo trace of the job's program: cuts where it measured the axes, not where the feed model has them. Empty: none.
   std::string trace{};
   std::string columns{};  ///< column map of the trace, as of `camber fit-feed --columns`; empty: none
@@ -70,19 +73,19 @@ struct TraceComparison {
 struct PredictResult {
   double machine_time_s = 0, cutting_time_s = 0;
   double force_max_N = 0;               ///< largest lateral force
-  double chips_mm3 = 0, stock_mm3 = 0;  ///< removed, by the chips and by the stock
+  double chips_mm3 = 0, stock_mm3 = 0;  ///< removed volume, from the chips and from the stock
   ErrorFigures form_error_um{}, deflection_um{}, contour_um{};
-  double unseen_mm2 = 0;  ///< of the nominal surface, without a point
+  double unseen_mm2 = 0;  ///< area of the nominal surface without a point
   std::optional<TraceComparison> trace{};
   std::vector<ForceRow> forces{};
   std::vector<ErrorPoint> form_error{};
   std::vector<FeedPoint> feed{};          ///< empty unless asked for
-  std::vector<std::string> doubts{};      ///< why the figures are not to be relied on; empty: none
+  std::vector<std::string> doubts{};      ///< reasons why the figures are not reliable; empty: none
   std::vector<Diagnostic> diagnostics{};  ///< warnings
-  std::string json{};                     ///< every figure, as `camber predict --json` writes them
+  std::string json{};                     ///< all figures, as `camber predict --json` writes them
 };
 
-/// Where the figures lie beyond the model or did not converge, `doubts` says so (the command line ends with status 3).
+/// If the figures are beyond the model or did not converge, `doubts` says so (exit status 3 on the command line).
 /// Throws InputError, Cancelled.
 CAMBER_API PredictResult predict(const Job& job, const PredictOptions& options = {}, const RunOptions& run = {});
 

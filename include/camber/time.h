@@ -11,7 +11,7 @@
 namespace camber {
 inline namespace v0 {
 
-/// Time of one tool, or of all.
+/// Times of one tool, or of all tools.
 struct TimeUse {
   int tool = 0;
   std::size_t tool_changes = 0, cutting_moves = 0;
@@ -19,22 +19,23 @@ struct TimeUse {
          pallet_s = 0, total_s = 0;
   double cutting_length_mm = 0, positioning_length_mm = 0;
   double commanded_feed_mm_per_min = 0, average_feed_mm_per_min = 0;
-  double e = 0;  ///< average over commanded feed
-  double k = 0;  ///< F^2 / (a d): commanded feed, acceleration, mean block length; infinite without a limit
+  double e = 0;  ///< feed efficiency: average actual feed over commanded feed; 1 is as programmed
+  double k = 0;  ///< F^2 / (a d) with commanded feed, acceleration and mean block length: the larger, the less of the
+                 ///< feed is reached. Infinite without an acceleration limit
 };
 
 struct TimeOptions {
-  std::string trace{};                ///< a measured run to compare with; empty: none
+  std::string trace{};                ///< trace of trace of a measured run to compare with; empty: none
   std::vector<std::string> sweeps{};  ///< "axis.x.acceleration_mm_per_s2=3500:15000:4"
 };
 
 struct TimeResult {
   TimeUse all{};
   std::vector<TimeUse> tools{};  ///< in the order of their first use
-  std::vector<TimeUse> sweep{};  ///< all tools, a row a combination of the swept values
+  std::vector<TimeUse> sweep{};  ///< all tools, one row per combination of the swept values
   std::vector<std::string> notes{};
   std::vector<Diagnostic> diagnostics{};  ///< warnings
-  std::string json{};                     ///< every figure, as `camber time --json` writes them
+  std::string json{};                     ///< all figures, as `camber time --json` writes them
 };
 
 /// Throws InputError, Cancelled, std::invalid_argument for a sweep that cannot be read.

@@ -7,7 +7,7 @@
 
 namespace camber::nc {
 
-/// What an arc should be once its ends stand in the text.
+/// An arc after rounding of its ends in the text.
 struct WantedArc {
   Vec3 start_mm, end_mm;  ///< as the text says them
   Vec3 center_mm;         ///< wished; moved along the line that keeps both radii equal

@@ -45,7 +45,7 @@ void warn_of_uneditable(const Program& program, const Interpretation& interpreta
   diagnostics.add(program.source.diagnostic(
       Severity::warning, program.blocks[first->block].offset,
       fmt::format("{} cutting move{} from here on {} made by a loop, an expression or a subprogram that is called more "
-                  "than once or stands in another file; the text has no words of their own, they stay as they are",
+                  "than once or is in another file; the text has no words of their own, so they stay unchanged",
                   count, count == 1 ? "" : "s", count == 1 ? "is" : "are"),
       "not-editable"));
 }

@@ -32,7 +32,7 @@ int coordinate_decimals_of(const Program& program);
 /// Decimals of a number as written; -1 without a point.
 int decimals_of(std::string_view number);
 
-/// The double that a number with so many decimals is read as.
+/// The double that a number with `decimals` decimals is read as.
 double rounded(double value, int decimals);
 
 /// `value` rounded, in the style; `like`: the text of the number that it replaces, whose own style wins.

@@ -13,7 +13,7 @@ struct Settling {
   static constexpr float kFlattest = 0.3f;  ///< slope of an envelope against a point's normal, at least
 
   /// Where the deflection jumps against the motion of the edge, the envelope is torn, and the tooth draws the gap while
-  /// it bends: there plain steps swing between both sides, and smaller ones find the place between them.
+  /// the deflection: there plain steps alternate between both sides, and smaller ones find the place between them.
   static constexpr float share_of(int step) { return step < 5 ? 1.0f : step < 16 ? 0.3f : 0.1f; }
 };
 

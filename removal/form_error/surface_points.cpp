@@ -283,8 +283,8 @@ class Patch {
   /// What the point counts for: the points of all three axes cover the surface sum n_a^2 = 1 times.
   double area_mm2(double n_axis) const { return area_mm2_ * std::abs(n_axis) * (open_ ? std::abs(n_axis) : 1.0); }
   /// A place in it, from its point; shares from -0.5 to 0.5.
-  Vec3 place(const Vec2& share) const {
-    const Vec3 at = middle_ + share[0] * sides_[0] + share[1] * sides_[1];
+  Vec3 place(const Vec2& fraction) const {
+    const Vec3 at = middle_ + fraction[0] * sides_[0] + fraction[1] * sides_[1];
     const double length = at.norm();
     return open_ && length > farthest_ ? Vec3(farthest_ / length * at) : at;
   }
@@ -297,10 +297,10 @@ class Patch {
 };
 
 /// Puts a point of the trilinear surface along its grid line onto the cutters that made it, and aside: rows and feed
-/// marks that are in step with the grid would else be met at the same places of every cusp. `untold` where the cutters
-/// tell no place: the point is left as it was. `beyond`: so near an edge that a deflection of the other surface takes
-/// it off.
-enum class Sharpened { yes, untold, beyond };
+/// marks that are in step with the grid would else be met at the same places of every cusp. `undetermined` where the
+/// cutters tell no place: the point is left as it was. `beyond`: so near an edge that a deflection of the other surface
+/// takes it off.
+enum class Sharpened { yes, undetermined, beyond };
 Sharpened sharpen(SurfacePoint& p, int axis, const NamedCutters& cutters, const CutterPlaces& places,
                   const Around& around, const Stock::Probe* solid, const Vec2& scatter, double voxel) {
   constexpr double kSame = 0.9;  // between normals a voxel apart on one smooth surface
@@ -310,7 +310,7 @@ Sharpened sharpen(SurfacePoint& p, int axis, const NamedCutters& cutters, const 
     q.place_mm = p.place_mm;
     cutter = cutters.settle(q.place_mm, p.normal, voxel);
   }
-  if (!cutter) return Sharpened::untold;
+  if (!cutter) return Sharpened::undetermined;
   q.normal = cutters.normal(*cutter, q.place_mm);
   if (std::abs(q.normal[axis]) <= kGrazing) return Sharpened::beyond;
   Ends ends;
@@ -330,7 +330,7 @@ Sharpened sharpen(SurfacePoint& p, int axis, const NamedCutters& cutters, const 
   return Sharpened::yes;
 }
 
-/// `places`, `machined`, `solid`: null where not wanted.
+/// `places`, `machined`, `solid`: null: not needed.
 void collect(const Stock* machined, const Stock& target, const CutterPlaces* places, const Stock* solid,
              const Index3& tile, std::vector<SurfacePoint>& out, double& cut_mm2) {
   if (!target.is_cut(tile)) return;
@@ -369,8 +369,8 @@ void collect(const Stock* machined, const Stock& target, const CutterPlaces* pla
           p.area_mm2 = voxel * voxel * std::abs(p.normal[a]);
           const Sharpened sharp = places ? sharpen(p, a, NamedCutters(b, i, j, k, a, *places), *places, around,
                                                    faces ? &*faces : nullptr, scatter_of(at, a), voxel)
-                                         : Sharpened::untold;
-          if (sharp == Sharpened::beyond || (sharp == Sharpened::untold && !inner)) continue;
+                                         : Sharpened::undetermined;
+          if (sharp == Sharpened::beyond || (sharp == Sharpened::undetermined && !inner)) continue;
           if (std::abs(p.normal[a]) <= kGrazing) continue;
           if (machined) p.error_mm = -((1 - u) * b.machined[here] + u * b.machined[next]);
           p.target_stamp = b.target_stamp[u < 0.5 ? here : next];

@@ -16,7 +16,7 @@ struct BlockBounds {
   int count;  ///< a multiple of 8
   const float *x, *y, *z;
   const float* bottom;  ///< height of the lowest of the points
-  const float* reach;   ///< a voxel nearest to the centre with more than this tells that all points are in air, mm
+  const float* reach;   ///< if the voxel nearest to the centre has more than this, all points are in air, mm
   const float *nx, *ny, *nz, *spread;
   /// Of blocks whose stamps are deflected, else null: the largest part of their normals that lies across the axis, and
   /// their largest curvature, 1/mm.

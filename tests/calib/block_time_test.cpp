@@ -64,7 +64,7 @@ TEST(BlockTime, SaysWhyItTellsNothing) {
   const BlockTimeFit reached = fit_block_time({{&slow, &of_slow}});
   EXPECT_FALSE(reached.block_time_s);
   EXPECT_EQ(reached.message,
-            "every run of lines of one length reaches its feed: the block time is shorter than what they ask for");
+            "every run of lines of one length reaches its feed: the block time is too short to show in these programs");
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ double value_of(const FitFeedResult& result, const std::string& name) {
   return NAN;
 }
 
-constexpr double kLimitShare = 0.03;  // block times are known to a period of 1 ms
-constexpr double kDriveShare = 1e-3;
+constexpr double kLimitFraction = 0.03;  // block times are known to a period of 1 ms
+constexpr double kDriveFraction = 1e-3;
 
 TEST(FitFeed, GivesTheParametersOfASyntheticMachineBack) {
   const machine::Machine known = known_machine();
@@ -40,11 +40,11 @@ TEST(FitFeed, GivesTheParametersOfASyntheticMachineBack) {
   EXPECT_TRUE(fit.converged) << fit.message;
   for (int i = 0; i < 3; ++i) {
     const machine::Axis &is = fit.machine.axis[i], &was = known.axis[i];
-    EXPECT_NEAR(is.acceleration_mm_per_s2 / was.acceleration_mm_per_s2, 1, kLimitShare) << i;
-    EXPECT_NEAR(is.position_gain_per_s / was.position_gain_per_s, 1, kDriveShare) << i;
-    EXPECT_NEAR(is.velocity_lag_s / was.velocity_lag_s, 1, kDriveShare) << i;
+    EXPECT_NEAR(is.acceleration_mm_per_s2 / was.acceleration_mm_per_s2, 1, kLimitFraction) << i;
+    EXPECT_NEAR(is.position_gain_per_s / was.position_gain_per_s, 1, kDriveFraction) << i;
+    EXPECT_NEAR(is.velocity_lag_s / was.velocity_lag_s, 1, kDriveFraction) << i;
   }
-  EXPECT_NEAR(fit.machine.control.arc_normal_fraction, 0.8, 0.8 * kLimitShare);
+  EXPECT_NEAR(fit.machine.control.arc_normal_fraction, 0.8, 0.8 * kLimitFraction);
   EXPECT_TRUE(std::isinf(value_of(fit, "axis.x.max_velocity_mm_per_min")));  // no rapid shows it: not invented
   EXPECT_LT(fit.held_out.part_time_percent, 1.0);
   EXPECT_LT(fit.held_out.speed_rms_percent, 2.0);

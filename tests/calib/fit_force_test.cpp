@@ -108,17 +108,18 @@ TEST(FitForce, StandardErrorsAreThoseOfAStraightLine) {
 
 TEST(FitForce, RefusesOneFeedForItTellsNoEdgeTerms) {
   EXPECT_EQ(fit(slot_means({0.05, 0.05}), means_job()).messages,
-            "log.csv: error: cannot tell ktc_MPa and kte_N_per_mm and krc_MPa and kre_N_per_mm and kac_MPa and "
-            "kae_N_per_mm: all cuts have one feed per tooth, 0.05 mm; cuts at different feeds were expected (hold = "
-            "[\"ktc_MPa\", \"kte_N_per_mm\", \"krc_MPa\", \"kre_N_per_mm\", \"kac_MPa\", \"kae_N_per_mm\"] in "
-            "[force_log] keeps the values of [material]) [fit-untold]");
+            "log.csv: error: the cuts do not determine ktc_MPa and kte_N_per_mm and krc_MPa and kre_N_per_mm and "
+            "kac_MPa and kae_N_per_mm: all cuts have one feed per tooth, 0.05 mm; cuts at different feeds were "
+            "expected (hold = [\"ktc_MPa\", \"kte_N_per_mm\", \"krc_MPa\", \"kre_N_per_mm\", \"kac_MPa\", "
+            "\"kae_N_per_mm\"] in [force_log] keeps the values of [material]) [not-identifiable]");
 }
 
 TEST(FitForce, RefusesAxialCoefficientsWithoutAxialForceUnlessHeld) {
   const std::string log = slot_means({0.02, 0.05, 0.1}), without = replaced(means_job(), "fz = \"fz\"\n", "");
-  EXPECT_EQ(fit(log, without).messages,
-            "log.csv: error: cannot tell kac_MPa and kae_N_per_mm: the log has no fz, the force along the axis (hold = "
-            "[\"kac_MPa\", \"kae_N_per_mm\"] in [force_log] keeps the values of [material]) [fit-untold]");
+  EXPECT_EQ(
+      fit(log, without).messages,
+      "log.csv: error: the cuts do not determine kac_MPa and kae_N_per_mm: the log has no fz, the force along the axis "
+      "(hold = [\"kac_MPa\", \"kae_N_per_mm\"] in [force_log] keeps the values of [material]) [not-identifiable]");
   const std::string held =
       without +
       "hold = [\"kac_MPa\", \"kae_N_per_mm\"]\n[material]\nktc_MPa = 1\nkrc_MPa = 1\nkac_MPa = 111\n"
@@ -133,9 +134,10 @@ TEST(FitForce, RefusesAxialCoefficientsWithoutAxialForceUnlessHeld) {
 TEST(FitForce, RefusesAFeedForceAloneInASlot) {
   const std::string without = replaced(replaced(means_job(), "fz = \"fz\"\n", ""), "fy = \"fy\"\n", "");
   const std::string job = without + "hold = [\"kac_MPa\", \"kae_N_per_mm\"]\n[material]\nktc_MPa = 1\nkrc_MPa = 1\n";
-  EXPECT_EQ(fit(slot_means({0.02, 0.05, 0.1}), job).messages,
-            "log.csv: error: cannot tell ktc_MPa and kte_N_per_mm: none of the measured forces depends on them (hold = "
-            "[\"ktc_MPa\", \"kte_N_per_mm\"] in [force_log] keeps the values of [material]) [fit-untold]");
+  EXPECT_EQ(
+      fit(slot_means({0.02, 0.05, 0.1}), job).messages,
+      "log.csv: error: the cuts do not determine ktc_MPa and kte_N_per_mm: none of the measured forces depends on them "
+      "(hold = [\"ktc_MPa\", \"kte_N_per_mm\"] in [force_log] keeps the values of [material]) [not-identifiable]");
 }
 
 TEST(FitForce, KienzleMeansGiveTheirPairsBack) {
@@ -253,8 +255,8 @@ TEST(FitForce, WarnsOfSamplesWithoutIdleTime) {
   std::string job = samples_job(cuts, "");
   job.erase(job.find("idle_s"));
   EXPECT_EQ(fit(logged(cuts, 4000, 0), job).messages,
-            "log.csv: warning: no idle_s in [force_log]: the forces are taken as they are, with whatever drift they "
-            "hold; ranges in which the tool turns in air were expected [force-drift]\n");
+            "log.csv: warning: no idle_s in [force_log]: the forces are taken as they are, including any drift; ranges "
+            "in which the tool turns in air were expected [force-drift]\n");
 }
 
 TEST(FitForce, NamesWhatIsWrongInALog) {
@@ -316,9 +318,9 @@ TEST(FitForce, DoubtsNegativeCoefficients) {
       fit(slot_means({0.02, 0.05, 0.1}), replaced(means_job(), "fy = \"fy\"", "fy = { column = \"fy\", scale = -1 }"));
   EXPECT_EQ(messages, "");
   EXPECT_FALSE(r.plausible);
-  EXPECT_EQ(r.message,
-            "a tangential or radial coefficient came out negative, as no cutter has it; look at the axes and signs of "
-            "[force_log]");
+  EXPECT_EQ(
+      r.message,
+      "a tangential or radial coefficient is negative, which no cutter has; check the axes and signs of [force_log]");
 }
 
 }  // namespace

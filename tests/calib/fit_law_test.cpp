@@ -42,7 +42,7 @@ FitForceResult fit(const std::string& log, const std::string& lines) {
 
 std::string law_line(const ForceLawDescription& law) { return fmt::format("law = \"{}\"\n", law.word); }
 
-/// Of shape coefficients by themselves, of forces as a share.
+/// Of shape coefficients by themselves, of forces as a fraction.
 void expect_near(double fitted, double truth, const machine::Coefficient& c) {
   const double scale = c.role == machine::CoefficientRole::shape && c.unit == "1" ? 1 : std::abs(truth);
   EXPECT_NEAR(fitted, truth, 1e-3 * scale) << c.key;

@@ -154,7 +154,7 @@ TEST(FitStretches, LeavesWhatNoStretchTellsAsItWas) {
   EXPECT_DOUBLE_EQ(fit.machine.control.arc_normal_fraction, 0.9);
   const auto p = std::ranges::find(fit.parameters, "control.arc_normal_share", &FitParameter::name);
   EXPECT_FALSE(p->written);
-  EXPECT_EQ(p->note, "the stretches do not tell; left as it was (run what camber protocol writes)");
+  EXPECT_EQ(p->note, "not determined by the stretches; start value kept (run what camber protocol writes)");
 }
 
 /// Corners are laws of speed: times at two feeds tell those at others (the slightest corners hardly slow the slow

@@ -75,8 +75,10 @@ TEST_F(MachineLogTest, LeavesOutBrokenLinesWithAWarning) {
 
 TEST_F(MachineLogTest, SaysWhatIsWrong) {
   EXPECT_EQ(error_of("2017-02-14 14:56|Block_Number|3\n"),
-            "log.txt:1:1: error: \"2017-02-14 14:56\" is no time; one like 2017-02-14T14:56:22.905Z was expected "
-            "[log-time]\n    2017-02-14 14:56|Block_Number|3\n    ^");
+            "log.txt:1:1: error: \"2017-02-14 14:56\" is not a time; one like 2017-02-14T14:56:22.905Z was expected "
+            "[log-time]\n"
+            "    2017-02-14 14:56|Block_Number|3\n"
+            "    ^");
   EXPECT_EQ(error_of("2017-02-14T14:56:22Z|Block_Number|x\n"),
             "log.txt:1:35: error: Block_Number is \"x\"; a number that is not negative was expected [log-number]\n"
             "    2017-02-14T14:56:22Z|Block_Number|x\n                                      ^");

@@ -185,7 +185,7 @@ TEST(BadInput, MeshThatIsNoStl) {
             tests::replaced(kJob, "box_mm = [[0, 0, -2], [4, 2, 0]]", "mesh = \"blank.stl\""));
   folder.write("blank.stl", "hello\n");
   EXPECT_EQ(predict_error(folder),
-            "blank.stl: error: is no STL file: neither 84 + 50 n bytes nor the word 'facet' [stl-format]\n");
+            "blank.stl: error: is not an STL file: neither 84 + 50 n bytes nor the word 'facet' [stl-format]\n");
   folder.write("blank.stl", "");
   EXPECT_EQ(predict_error(folder), "blank.stl: error: is empty; an STL file was expected [stl-empty]\n");
 }
@@ -206,7 +206,7 @@ TEST(BadInput, OutputThatIsAnInput) {
   const auto run = run_camber(folder, "compensate job.toml -o ./p.nc");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err,
-            "./p.nc: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+            "./p.nc: error: would be overwritten, but it is an input; another name was expected [output-is-input]\n");
   EXPECT_EQ(tests::file_text(folder / "p.nc"), before);
 }
 
@@ -214,7 +214,7 @@ TEST(BadInput, TracesThatAreNone) {
   EXPECT_EQ(trace_error(""),
             "t.csv: error: the trace is empty; a header line that names the columns is expected [trace-empty]\n");
   EXPECT_EQ(trace_error("t_s,x_act_mm\n0,1\n"),
-            "t.csv: error: the trace holds 1 samples; at least two are needed [trace-empty]\n");
+            "t.csv: error: the trace has 1 samples; at least two are needed [trace-empty]\n");
 }
 
 TEST(BadInput, NotANumberInATrace) {
@@ -236,8 +236,8 @@ TEST(BadInput, GapInATraceIsAWarningAndAnErrorWhenStrict) {
       run_camber(folder, "--strict fit-feed --program p.nc --trace t.csv --machine machine.toml -o f.toml");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err,
-            "t.csv:42:1: error: 0.02 s are missing before 0.06 s (the samples are 0.001 s apart); what lies before "
-            "and after is used on its own [trace-gap]\n"
+            "t.csv:42:1: error: 0.02 s are missing before 0.06 s (the samples are 0.001 s apart); the parts before and "
+            "after are used separately [trace-gap]\n"
             "    0.060,0,0,2\n"
             "    ^\n");
   EXPECT_FALSE(std::filesystem::exists(folder / "f.toml"));

@@ -44,7 +44,7 @@ TEST(CommandLine, ExitsWithTwoWhenItIsWrong) {
       run_camber(folder, "fit-feed --program a.nc --program b.nc --trace a.csv --machine m.toml -o f.toml");
   EXPECT_EQ(run.status, 2);
   EXPECT_EQ(run.err,
-            "--trace: 2 programs and 1 traces; as many of one as of the other were expected\n"
+            "--trace: 2 programs and 1 traces; the same number of both was expected\n"
             "Run with --help for more information.\n");
 }
 
@@ -67,9 +67,9 @@ TEST(CommandLine, SaysBeforeTheWorkWhatElseStandsInTheWayOfAnOutput) {
   EXPECT_EQ(said("feed p.nc --machine m.toml -o folder"),
             "folder: error: cannot be written: it is a folder; the name of a file was expected [file-unwritable]\n");
   EXPECT_EQ(said("feed p.nc --machine m.toml -o a.csv --json ./a.csv"),
-            "./a.csv: error: is to be written twice; another name was expected [output-twice]\n");
+            "./a.csv: error: is given for two outputs; another name was expected [output-twice]\n");
   EXPECT_EQ(said("predict job.toml -o p.nc/out"),
-            "p.nc/out: error: cannot be made a folder: " + (folder / "p.nc") + " is a file [file-unwritable]\n");
+            "p.nc/out: error: cannot be created as a folder: " + (folder / "p.nc") + " is a file [file-unwritable]\n");
   std::filesystem::permissions(folder / "p.nc", std::filesystem::perms{0444});
   EXPECT_EQ(said("feed q.nc --machine m.toml -o p.nc"),
             "p.nc: error: cannot be written: the file there is write-protected [file-unwritable]\n");

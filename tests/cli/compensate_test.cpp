@@ -62,7 +62,7 @@ TEST(CompensateCommand, WritesProgramAndFiguresAndTheSameBytesAgain) {
   EXPECT_LT(json["split_after_um"]["correctable"], 0.3 * json["split_before_um"]["correctable"].get<double>());
   EXPECT_EQ(json["into_part"]["within_tolerance"], true);
   EXPECT_LE(json["into_part"]["without_bending"]["deepest_um"], 100);
-  for (const char* row : {"a shift can correct", "if the tool did not bend at all", "stopped: "})
+  for (const char* row : {"a shift can correct", "with a rigid tool", "stopped: "})
     EXPECT_NE(run.out.find(row), std::string::npos) << row;
   std::size_t from = 0;
   while (from < run.out.size()) {
@@ -142,7 +142,7 @@ TEST(CompensateCommand, RefusesBlocksUnderCutterRadiusCompensation) {
   const auto run = run_camber(folder, "compensate job.toml -o a.nc");
   EXPECT_EQ(run.status, 1);
   EXPECT_NE(run.err.find("p.nc:9:1: error: 3 moves to compensate run under cutter radius compensation (G41, G42), from "
-                         "here on: the control makes their path"),
+                         "here on: the control computes their path"),
             std::string::npos)
       << run.err;
   EXPECT_EQ(files_of(folder), kInputs);
@@ -157,7 +157,8 @@ TEST(CompensateCommand, UncertaintyGivesABandAndASafeShare) {
   const auto run =
       run_camber(folder, "compensate job.toml -o a.nc --json a.json --uncertainty 10 --uncertainty fit.json");
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.err, "camber: warning: --uncertainty: runout_um is no parameter of the job; left out [uncertainty]\n");
+  EXPECT_EQ(run.err,
+            "camber: warning: --uncertainty: runout_um is not a parameter of the job; ignored [uncertainty]\n");
   const auto band = nlohmann::json::parse(file_text(folder / "a.json"))["uncertainty"];
   ASSERT_EQ(band["groups"].size(), 3u);
   // In rigid coupling the deflection is the force times the compliance: ten per cent of either is ten of the error.
@@ -170,7 +171,7 @@ TEST(CompensateCommand, UncertaintyGivesABandAndASafeShare) {
   const auto wrong = run_camber(folder, "compensate job.toml -o b.nc --uncertainty machine.toml");
   EXPECT_EQ(wrong.status, 1);
   EXPECT_EQ(wrong.err,
-            "machine.toml: error: holds no standard error; what fit-force or fit-feed wrote (with -o or --json), or a "
+            "machine.toml: error: has no standard error; output of fit-force or fit-feed (with -o or --json), or a "
             "percentage, was expected [uncertainty]\n");
 }
 
@@ -192,8 +193,8 @@ TEST(CompensateCommand, MeasuredPointsSetTheModelRight) {
   const auto far = run_camber(folder, "compensate job.toml -o b.nc --measured far.csv");
   EXPECT_EQ(far.status, 1);
   EXPECT_EQ(far.err,
-            "far.csv: error: 0 of 2 points lie on surface that the job machines; three or more were expected "
-            "[measured-untold]\n");
+            "far.csv: error: 0 of 2 points lie on a surface that the job machines; three or more were expected "
+            "[measured-not-identifiable]\n");
   folder.write("bad.csv", "x,y,z,nx,ny,nz,error\n1,2,3,0,0,1,five\n");
   const auto bad = run_camber(folder, "compensate job.toml -o b.nc --measured bad.csv");
   EXPECT_EQ(bad.status, 1);

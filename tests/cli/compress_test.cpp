@@ -85,7 +85,7 @@ TEST(CompressCommand, TheLeastTimeWhereArcsAreFaster) {
   const auto [r, out] = figures(feeds + " --block-s 0");
   EXPECT_NEAR(r["time_at_feeds_before_s"], r["length_before_mm"].get<double>() / 4.5, 1e-6);
   EXPECT_LT(r["time_at_feeds_after_s"], 0.6 * r["time_at_feeds_before_s"].get<double>());
-  EXPECT_NE(out.find("at the feeds given"), std::string::npos) << out;
+  EXPECT_NE(out.find("at the given feeds"), std::string::npos) << out;
   for (const auto& [wrong, message] : std::vector<std::pair<std::string, std::string>>{
            {" --line-feed-mm-per-min 270", "--line-feed-mm-per-min requires --arc-feed-mm-per-min"},
            {" --block-s 1", "--block-s requires --line-feed-mm-per-min"},
@@ -129,7 +129,7 @@ TEST(CompressCommand, TellsWhatIsWrong) {
   const auto over = run_camber(folder, "compress p.nc --tolerance-mm 0.01 -o p.nc");
   EXPECT_EQ(over.status, 1);
   EXPECT_EQ(over.err,
-            "p.nc: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+            "p.nc: error: would be overwritten, but it is an input; another name was expected [output-is-input]\n");
   folder.write("bad.nc", "G21\nG1 X1. F0\nM30\n");
   EXPECT_EQ(run_camber(folder, "compress bad.nc --tolerance-mm 0.01 -o out.nc").status, 1);
   EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));

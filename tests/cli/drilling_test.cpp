@@ -188,8 +188,8 @@ TEST(DrillingCycles, BackBoringStaysInTheStockWithAWarning) {
   const auto run = run_camber(folder, "predict job.toml -o r");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err,
-            "p.nc:6:1: warning: the holes of G87 stay in the stock: a cycle that feeds straight down along Z was "
-            "expected [cycle-not-carved]\n"
+            "p.nc:6:1: warning: the holes of G87 are not carved; a cycle that feeds straight down along Z was expected "
+            "[cycle-not-carved]\n"
             "    G87 X6 Y6 Z-5 R-12 Q1\n"
             "    ^\n");
   EXPECT_NEAR(summary(folder, "r")["removed_mm3"]["stock"].get<double>() / (std::acos(-1.0) * 160), 1, 0.005);

@@ -89,10 +89,10 @@ TEST(FitForceCommand, RefusesWhatTheCutsCannotTellAndWritesNothing) {
   const auto run = run_camber(folder, "fit-force --log log.csv --job " + kSample + "job.toml -o material.toml");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err,
-            "log.csv: error: cannot tell ktc_MPa and kte_N_per_mm and krc_MPa and kre_N_per_mm and kac_MPa and "
-            "kae_N_per_mm: all cuts have one feed per tooth, 0.025 mm; cuts at different feeds were expected (hold = "
-            "[\"ktc_MPa\", \"kte_N_per_mm\", \"krc_MPa\", \"kre_N_per_mm\", \"kac_MPa\", \"kae_N_per_mm\"] in "
-            "[force_log] keeps the values of [material]) [fit-untold]\n");
+            "log.csv: error: the cuts do not determine ktc_MPa and kte_N_per_mm and krc_MPa and kre_N_per_mm and "
+            "kac_MPa and kae_N_per_mm: all cuts have one feed per tooth, 0.025 mm; cuts at different feeds were "
+            "expected (hold = [\"ktc_MPa\", \"kte_N_per_mm\", \"krc_MPa\", \"kre_N_per_mm\", \"kac_MPa\", "
+            "\"kae_N_per_mm\"] in [force_log] keeps the values of [material]) [not-identifiable]\n");
   EXPECT_FALSE(std::filesystem::exists(folder / "material.toml"));
 }
 

@@ -55,7 +55,7 @@ TEST(Init, WritesWhatProgramAndTablesTell) {
   const auto run = run_camber(folder, "init p.nc --tools tool.tbl --machine m.toml -o job.toml");
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.out,
-            "job.toml: 2 tools that cut; fill in what stands as \"# key =\", check what is marked \"typical\"\n");
+            "job.toml: 2 tools that cut; fill in the keys left as \"# key =\", check what is marked \"typical\"\n");
   const std::string job = tests::file_text(folder / "job.toml");
   EXPECT_EQ(job.substr(0, job.find("\n[material]")), kExpected);
   EXPECT_NE(job.find("# Its top: the program's Z0, below which all cutting lies.\n"
@@ -133,7 +133,7 @@ TEST(Init, WritesOverNothing) {
   folder.write("job.toml", "mine");
   const auto run = run_camber(folder, "init p.nc -o job.toml");
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.err, "job.toml: error: is there already; a new name was expected [file-exists]\n");
+  EXPECT_EQ(run.err, "job.toml: error: already exists; a new name was expected [file-exists]\n");
   EXPECT_EQ(tests::file_text(folder / "job.toml"), "mine");
 }
 

@@ -257,7 +257,7 @@ TEST(Predict, WarnsWhereTheCutTakesMoreThanTheSpindleHas) {
   ASSERT_TRUE(std::regex_match(
       run.err, found,
       std::regex(
-          R"(p\.nc:6:1: warning: T1 takes (\d+) W at 3000 rpm, where the spindle has 70 W; at most power_W of the )"
+          R"(p\.nc:6:1: warning: T1 takes (\d+) W at 3000 rpm, where the spindle provides 70 W; at most power_W of the )"
           R"(machine file was expected \[spindle-power\]\n    G1 X5\. F600\n    \^\n)")))
       << run.err;
   EXPECT_NEAR(std::stod(found[1]), 80, 2.5);  // K_tc Q; the voxels' share
@@ -267,7 +267,8 @@ TEST(Predict, WarnsWhereTheCutTakesMoreThanTheSpindleHas) {
   // Constant torque to 6000 rpm: at 3000 half of the power; both cutting lines take more.
   write_slot_job(folder, "power_W = 100\nconstant_torque_rpm = 6000\n", "X8. F450\n");
   const std::string err = run_camber(folder, "predict job.toml -o result").err;
-  EXPECT_NE(err.find("where the spindle has 50 W; 2 lines take more than it has; at most"), std::string::npos) << err;
+  EXPECT_NE(err.find("where the spindle provides 50 W; 2 lines need more than that; at most"), std::string::npos)
+      << err;
 
   write_slot_job(folder, "power_W = 90\n");
   EXPECT_EQ(run_camber(folder, "predict job.toml -o result").err, "");

@@ -109,7 +109,7 @@ TEST(ProgramPage, IsTheSameTwiceAndNotWrittenOverTheProgram) {
   const auto run = run_camber(folder, "check p.nc --report p.nc");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err,
-            "p.nc: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+            "p.nc: error: would be overwritten, but it is an input; another name was expected [output-is-input]\n");
   // An error in the program leaves no page.
   folder.write("q.nc", "G21 G90\nG1 X5.\n");
   EXPECT_EQ(run_camber(folder, "check q.nc --report q.html").status, 1);

@@ -169,7 +169,7 @@ TEST(RasterCommand, TellsWhatIsWrongWithThePart) {
             "empty.stl: error: is empty; an STL file was expected [stl-empty]\n");
   folder.write("text.stl", "solid nothing\nendsolid\n");
   EXPECT_EQ(said(folder, fmt::format("--part text.stl --job job.toml {}", kCut)),
-            "text.stl: error: is no STL file: neither 84 + 50 n bytes nor the word 'facet' [stl-format]\n");
+            "text.stl: error: is not an STL file: neither 84 + 50 n bytes nor the word 'facet' [stl-format]\n");
   folder.write("open.stl",
                "solid s\nfacet\nouter loop\nvertex 0 0 0\nvertex 8 0 0\nvertex 8 5 1\nendloop\nendfacet\nendsolid\n");
   EXPECT_EQ(said(folder, fmt::format("--part open.stl --job job.toml {}", kCut)),
@@ -199,15 +199,15 @@ TEST(RasterCommand, TellsWhatIsWrongWithTheJob) {
   EXPECT_EQ(said(folder, fmt::format("--job job.toml --clearance-mm 2 {}", kCut)),
             "job.toml: error: --clearance-mm 2 lies below the top of stock and part, Z7; a height above it was "
             "expected [clearance-low]\n");
-  EXPECT_EQ(said(folder,
-                 "--job job.toml --scallop-mm 0.005 --tolerance-mm 0.003 --feed-mm-per-min 1200 "
-                 "--spindle-rpm 50000 -o raster.nc"),
-            "machine.toml: error: the spindle turns at 20000 rpm at most; --spindle-rpm 50000 was asked for "
-            "[spindle-speed]\n");
+  EXPECT_EQ(
+      said(folder,
+           "--job job.toml --scallop-mm 0.005 --tolerance-mm 0.003 --feed-mm-per-min 1200 "
+           "--spindle-rpm 50000 -o raster.nc"),
+      "machine.toml: error: the spindle turns at 20000 rpm at most; --spindle-rpm 50000 was given [spindle-speed]\n");
   EXPECT_EQ(said(folder,
                  "--job job.toml --scallop-mm 0.005 --tolerance-mm 0.003 --feed-mm-per-min 1200 "
                  "--spindle-rpm 12000 -o part.stl"),
-            "part.stl: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+            "part.stl: error: would be overwritten, but it is an input; another name was expected [output-is-input]\n");
   copy_sample(folder,
               {{"[tool.1]", "[tool.2]\ntype = \"flat\"\ndiameter_mm = 4\nflutes = 2\noverhang_mm = 20\n[tool.1]"}});
   EXPECT_EQ(said(folder, fmt::format("--job job.toml {}", kCut)),

@@ -83,7 +83,7 @@ TEST(Region, TheWallThatAnotherOperationTakesAwayIsNotOfIt) {
   // Just that wall is gone, and nothing else has changed.
   EXPECT_GT(rows_of(alone, is_far_wall).size(), 100u);
   EXPECT_EQ(rows_of(known, any), rows_of(alone, [](double y, double ny) { return !is_far_wall(y, ny); }));
-  EXPECT_NE(known["printed"].get<std::string>().find("left out, other operations cut deeper there: "),
+  EXPECT_NE(known["printed"].get<std::string>().find("not judged, other operations cut deeper there: "),
             std::string::npos);
   EXPECT_EQ(known["stage_between"], false);
 }
@@ -142,9 +142,9 @@ TEST(Region, ThatBeginsInTheMiddleOfACutIsWarnedOf) {
     return run_camber(folder, "predict job.toml -o r").err;
   };
   const std::string in_a_cut = said_of("[[8, 8]]");
-  EXPECT_NE(in_a_cut.find("p.nc:8:1: warning: the job's operations begin here, in the middle of a cut: T1 stands in "
-                          "material, which goes without chips; a range that begins at a rapid was expected "
-                          "[starts-in-material]"),
+  EXPECT_NE(in_a_cut.find(
+                "p.nc:8:1: warning: the job's operations begin here, in the middle of a cut: T1 stands in material, "
+                "which is removed without chips; a range that begins at a rapid was expected [starts-in-material]"),
             std::string::npos)
       << in_a_cut;
   // The chips of what the cutter stood in are missing, as the error behind says.
@@ -182,12 +182,10 @@ TEST(OperationsByComment, SayWhereNothingMatches) {
   EXPECT_EQ(error_of("comments = \"third\""),
             "p.nc: error: no line, arc or hole belongs to the job's operations; a tool and a range that cut were "
             "expected [nothing-to-cut]\n");
-  EXPECT_NE(
-      error_of("comments = \"first(\"")
-          .find(
-              "job.toml:3:27: error: comments = \"first(\" is no regular expression; one as in \"finish|contour\" was "
-              "expected [regular-expression]"),
-      std::string::npos);
+  EXPECT_NE(error_of("comments = \"first(\"")
+                .find("job.toml:3:27: error: comments = \"first(\" is not a regular expression; one such as "
+                      "\"finish|contour\" was expected [regular-expression]"),
+            std::string::npos);
 }
 
 }  // namespace

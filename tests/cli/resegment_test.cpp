@@ -93,7 +93,7 @@ TEST(ResegmentCommand, SaysWhenTheAxesStrayMoreThanAllowed) {
   const auto run =
       run_camber(folder, "resegment p.nc --machine m.toml --tolerance-mm 0.01 --contour-mm 0.0001 -o out.nc");
   EXPECT_EQ(run.status, 3);
-  EXPECT_EQ(run.err, "resegment: no length keeps the axes within 0.1 um of the path; the nearest was written\n");
+  EXPECT_EQ(run.err, "resegment: no length keeps the axes within 0.1 um of the path; the closest one was written\n");
   EXPECT_TRUE(std::filesystem::exists(folder / "out.nc"));
 }
 
@@ -106,7 +106,7 @@ TEST(ResegmentCommand, TellsWhatIsWrong) {
   const auto over = run_camber(folder, "resegment p.nc --machine m.toml --tolerance-mm 0.01 -o p.nc");
   EXPECT_EQ(over.status, 1);
   EXPECT_EQ(over.err,
-            "p.nc: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+            "p.nc: error: would be overwritten, but it is an input; another name was expected [output-is-input]\n");
 }
 
 }  // namespace

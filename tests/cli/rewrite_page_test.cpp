@@ -110,12 +110,12 @@ TEST(RewritePage, IsNotWrittenOverWhatIsRead) {
   const auto run = run_camber(folder, "compress p.nc --tolerance-mm 0.01 -o out.nc --report p.nc");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err,
-            "p.nc: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+            "p.nc: error: would be overwritten, but it is an input; another name was expected [output-is-input]\n");
   copy_raster_sample(folder);
   const auto raster = run_camber(folder, std::string(kRaster) + "--report part.stl");
   EXPECT_EQ(raster.status, 1);
   EXPECT_EQ(raster.err,
-            "part.stl: error: would be written over, but it is read; another name was expected [output-is-input]\n");
+            "part.stl: error: would be overwritten, but it is an input; another name was expected [output-is-input]\n");
 }
 
 }  // namespace

@@ -94,9 +94,10 @@ TEST(SetUp, SpindleSpeedOverTheMachines) {
 
 TEST(SetUp, FeedOverAnAxis) {
   expect_refused_by_machine({.program = replaced(kSlot, "F900", "F9000")},
-                            "p.nc:6:1: error: the feed asks up to 9000 mm/min of X, but machine.toml allows 3000 "
+                            "p.nc:6:1: error: the feed requires up to 9000 mm/min of X, but machine.toml allows 3000 "
                             "(max_velocity_mm_per_min of [axis.x]); no more was expected [feed-limit]\n"
-                            "    G1 X12 F9000\n    ^\n");
+                            "    G1 X12 F9000\n"
+                            "    ^\n");
   // Along the diagonal each axis moves more slowly than the tool.
   const TempFolder folder;
   write(folder, {.program = "G21 G90\nT1 M6\nS3000 M3\nG0 X0 Y0 Z0\nG1 X10 Y10 F4200\nM30\n"});
@@ -105,9 +106,10 @@ TEST(SetUp, FeedOverAnAxis) {
   folder.write("p.nc",
                "G21 G90 G17\nT1 M6\nS3000 M3\nG0 X0 Y0 Z0\nG2 X10 Y10 I10 J0 F4200\nG2 X10 Y-10 I0 J-10\nM30\n");
   EXPECT_EQ(run_camber(folder, "check p.nc --machine machine.toml").err,
-            "p.nc:5:1: error: the feed asks up to 4200 mm/min of X in this move and 1 more, but machine.toml allows "
-            "3000 (max_velocity_mm_per_min of [axis.x]); no more was expected [feed-limit]\n"
-            "    G2 X10 Y10 I10 J0 F4200\n    ^\n");
+            "p.nc:5:1: error: the feed requires up to 4200 mm/min of X in this move and 1 more, but machine.toml "
+            "allows 3000 (max_velocity_mm_per_min of [axis.x]); no more was expected [feed-limit]\n"
+            "    G2 X10 Y10 I10 J0 F4200\n"
+            "    ^\n");
 }
 
 TEST(SetUp, MissingSpindleSpeed) {
@@ -231,10 +233,10 @@ TEST(SetUp, PartInInches) {
 }
 
 TEST(SetUp, AllowanceLargerThanTheCut) {
-  expect_refused({.job = replaced(kJob, "[simulation]", "allowance_mm = 2.5\n[simulation]")},
-                 "job.toml: error: allowance_mm = 2.5: the cut before, with the cutter smaller by this much, takes "
-                 "nothing from the stock; an allowance smaller than what the program takes was expected "
-                 "[allowance-too-large]\n");
+  expect_refused(
+      {.job = replaced(kJob, "[simulation]", "allowance_mm = 2.5\n[simulation]")},
+      "job.toml: error: allowance_mm = 2.5: the cut before, with the cutter smaller by this much, removes nothing from "
+      "the stock; an allowance smaller than the depth of cut was expected [allowance-too-large]\n");
 }
 
 TEST(SetUp, CutAboveTheFlutes) {
@@ -296,7 +298,7 @@ TEST(SetUp, DeflectionBeyondTheModelHasNoFigures) {
   const auto& beyond = json["beyond_model"];
   EXPECT_GT(beyond["deflection_um"]["max"], beyond["deflection_um"]["limit"]);
   EXPECT_EQ(run.err, "camber: error: in " + std::to_string(beyond["tooth_passings"].get<int>()) +
-                         " tooth passings the tool bends further than the model covers, by up to " +
+                         " tooth passings the tool deflects further than the model covers, by up to " +
                          std::to_string(std::lround(beyond["deflection_um"]["max"].get<double>())) + " um where " +
                          std::to_string(std::lround(beyond["deflection_um"]["limit"].get<double>())) +
                          " um are covered, in line 6: no figures; a shorter or thicker tool or a smaller cut was "
@@ -311,8 +313,8 @@ TEST(SetUp, NothingLeftToJudge) {
   const CamberRun run = run_camber(folder, "predict job.toml -o result");
   EXPECT_EQ(run.status, 3);
   const std::string ending =
-      "camber: error: the program leaves no surface in the stock, so there is no form error to judge; a stock "
-      "that stands after the cut was expected\n";
+      "camber: error: the program leaves no surface in the stock, so there is no form error to judge; a stock of which "
+      "material remains was expected\n";
   EXPECT_TRUE(run.err.ends_with(ending)) << run.err;
 }
 

@@ -109,7 +109,7 @@ TEST(Time, TellsWhatIsWrong) {
   EXPECT_EQ(run_camber(f.folder, "time p.nc").status, 2);
   auto run = run_camber(f.folder, "time p.nc --machine m.toml --sweep axis.x.wheel=1:2:3");
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.err.substr(0, 69), "m.toml: error: --sweep: axis.x.wheel is no number of a machine; a key");
+  EXPECT_EQ(run.err.substr(0, 69), "m.toml: error: --sweep: axis.x.wheel is not a machine parameter; a key");
   run = run_camber(f.folder, "time p.nc --machine m.toml --sweep axis.x.acceleration_mm_per_s2=1:2");
   EXPECT_EQ(run.status, 2);
   EXPECT_EQ(run.err,
@@ -122,7 +122,7 @@ TEST(Time, SaysThatTheReferencePointIsNotKnown) {
   f.folder.write("q.nc", "G21 G90\nG0 X0 Y0 Z50\nG91 G28 Z0\nG90 G0 Z50\nM30\n");
   const auto run = run_camber(f.folder, "time q.nc --machine m.toml");
   EXPECT_EQ(run.status, 0);
-  EXPECT_NE(run.out.find("moves to or from the reference point: its place is not known (x_mm, y_mm, z_mm of "
+  EXPECT_NE(run.out.find("moves to or from the reference point: its position is not known (x_mm, y_mm, z_mm of "
                          "[tool_change] in the machine file)"),
             std::string::npos)
       << run.out;

@@ -58,8 +58,8 @@ void expect_the_same_figures(const TempFolder& folder, const std::string& option
     EXPECT_NEAR(v["emitted"]["contour_um"][figure], c["contour_um"][figure], kRounded_um) << figure;
   }
   EXPECT_EQ(v["verdict"]["success"], json_of(folder, "c.json")["verdict"]["success"]);
-  EXPECT_NEAR(v["into_part"]["held_um"], json_of(folder, "c.json")["into_part"]["after"]["held_um"].get<double>(),
-              kRounded_um);
+  EXPECT_NEAR(v["into_part"]["gouge_depth_p999_um"],
+              json_of(folder, "c.json")["into_part"]["after"]["gouge_depth_p999_um"].get<double>(), kRounded_um);
   EXPECT_NE(verified.out.find("judged, by compensate"), std::string::npos) << verified.out;
 }
 
@@ -101,7 +101,7 @@ TEST(Verify, TakesTheProgramsNameToo) {
   auto run = run_camber(folder, "compensate --verify .");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err,
-            ".: error: holds the records of 2 programs; one of them was expected: ./a.nc, ./b.nc [record-several]\n");
+            ".: error: has the records of 2 programs; one of them was expected: ./a.nc, ./b.nc [record-several]\n");
   run = run_camber(folder, "-q compensate --verify a.nc");
   EXPECT_NE(run.status, 1) << run.err;
   EXPECT_TRUE(std::filesystem::exists(folder / "a.verify.toml"));
@@ -119,7 +119,7 @@ TEST(Verify, RefusesWhatItsRecordIsNotOf) {
             "nowhere: error: no such folder or program; the folder of a program that camber compensate wrote was "
             "expected [file-missing]\n");
   EXPECT_EQ(error_of("."),
-            ".: error: holds no record (*.record.json); the folder of a program that camber compensate wrote was "
+            ".: error: has no record (*.record.json); the folder of a program that camber compensate wrote was "
             "expected [record-missing]\n");
   EXPECT_EQ(error_of("p.nc"),
             "p.nc: error: has no record beside it; a program that camber compensate wrote was expected "
@@ -128,11 +128,11 @@ TEST(Verify, RefusesWhatItsRecordIsNotOf) {
   const std::string emitted = file_text(folder / "a.nc"), record = file_text(folder / "a.nc.record.json");
   folder.write("a.nc", emitted + "(EDITED)\n");
   EXPECT_EQ(error_of("a.nc"),
-            "a.nc: error: is not what it was when camber compensate wrote it, so the record does not say which line is "
-            "which; that program, or camber compensate once more, was expected [program-edited]\n");
+            "a.nc: error: has changed since camber compensate wrote it, so the record no longer matches its lines; the "
+            "unchanged program, or a new run of camber compensate, was expected [program-edited]\n");
   folder.write("a.nc", emitted);
   folder.write("p.nc", kPasses + "\n");
-  EXPECT_NE(error_of("a.nc").find("is not what it was when it was compensated"), std::string::npos);
+  EXPECT_NE(error_of("a.nc").find("has changed since it was compensated"), std::string::npos);
   folder.write("p.nc", kPasses);
   for (const std::string& bad : {std::string("{}"), record.substr(0, record.size() / 2), std::string()}) {
     folder.write("a.nc.record.json", bad);

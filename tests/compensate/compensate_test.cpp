@@ -193,7 +193,7 @@ TEST(Compensate, HoldsToTheLargestShift_slow) {
   EXPECT_LE(c.max_shift_mm, 0.004 + 1e-12);
   EXPECT_GT(c.rounds.back().limited_points, 0u);
   EXPECT_GT(c.split_after.limited_um, 5);
-  EXPECT_GT(c.depth_without_bending.held_um, 0.5 * c.depth_without_bending.deepest_um);
+  EXPECT_GT(c.depth_without_bending.gouge_depth_p999_um, 0.5 * c.depth_without_bending.deepest_um);
   EXPECT_LE(c.depth_without_bending.deepest_um, 4.0 + 1.0);  // and what a grid of 0.15 mm shows of cusps
 }
 
@@ -203,14 +203,14 @@ TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth_slow) {
   Diagnostics diagnostics;
   job.compensation.max_rounds = 1;
   const CompensationResult free = compensate(job, diagnostics, {});
-  ASSERT_GT(free.depth_after.held_um, 1.5);
-  EXPECT_GE(free.depth_after.deepest_um, free.depth_after.held_um);
+  ASSERT_GT(free.depth_after.gouge_depth_p999_um, 1.5);
+  EXPECT_GE(free.depth_after.deepest_um, free.depth_after.gouge_depth_p999_um);
   EXPECT_TRUE(free.within_part);  // 50 um are allowed
-  job.compensation.max_overcut_um = 0.5 * free.depth_after.held_um;
+  job.compensation.max_overcut_um = 0.5 * free.depth_after.gouge_depth_p999_um;
   const CompensationResult guarded = compensate(job, diagnostics, {});
   EXPECT_TRUE(guarded.rounds.back().guard);
-  EXPECT_LT(guarded.depth_after.held_um, 0.9 * free.depth_after.held_um);
-  EXPECT_EQ(guarded.within_part, guarded.depth_after.held_um <= job.compensation.max_overcut_um);
+  EXPECT_LT(guarded.depth_after.gouge_depth_p999_um, 0.9 * free.depth_after.gouge_depth_p999_um);
+  EXPECT_EQ(guarded.within_part, guarded.depth_after.gouge_depth_p999_um <= job.compensation.max_overcut_um);
   double deepest = 0;
   for (const auto& p : guarded.surface_after) deepest = std::max(deepest, -1000 * p.error_mm);
   EXPECT_NEAR(std::max(guarded.depth_after.deepest_um, guarded.depth_others.deepest_um), deepest, 1e-9);

@@ -130,7 +130,7 @@ Observed guarded(Wall& wall, double limit_mm, double reach_mm) {
   return now;
 }
 
-double least_mm(const Observed& observed) {
+double min_depth_mm(const Observed& observed) {
   double out = 0;
   for (const auto& o : observed.points) out = std::min(out, o.error_mm);
   return out;
@@ -139,7 +139,7 @@ double least_mm(const Observed& observed) {
 TEST(Guard, LiftsWhatLiesTooDeepAndNoFartherThanAskedFor) {
   Wall wall;
   wall.add([](double, double height) { return 0.010 * (height - 0.5); });  // -4.5 ... 4.5 um
-  const double least = least_mm(guarded(wall, 0.002, 2));
+  const double least = min_depth_mm(guarded(wall, 0.002, 2));
   EXPECT_GE(least, -0.002);
   EXPECT_LT(least, -0.0005);
 }
@@ -148,7 +148,7 @@ TEST(Guard, LiftsWithoutSpikes) {
   constexpr double kReach_mm = 5, kDeep_mm = 0.014, kLimit_mm = 0.003;
   Wall wall;  // one place bows, the rest is exact
   wall.add([](double x, double height) { return std::abs(x - 20.5) < 0.5 ? kDeep_mm * (height - 0.5) / 0.45 : 0.0; });
-  EXPECT_GE(least_mm(guarded(wall, kLimit_mm, kReach_mm)), -kLimit_mm);
+  EXPECT_GE(min_depth_mm(guarded(wall, kLimit_mm, kReach_mm)), -kLimit_mm);
   const auto& points = wall.path.points();
   // cos^2 falls by no more than pi / 2 of its height over the reach; the fit smooths it further.
   constexpr double kSteepest = kPi / 2 * kDeep_mm / kReach_mm;

@@ -77,11 +77,12 @@ TEST(Finishing, RefusesCutterRadiusCompensation) {
   Diagnostics diagnostics;
   check_compensated(moved, {false, false, true, false}, diagnostics);
   ASSERT_EQ(diagnostics.all().size(), 1u);
-  EXPECT_EQ(
-      to_string(diagnostics.all()[0]),
-      "two.nc:4:1: error: 1 move to compensate runs under cutter radius compensation (G41, G42), from here on: the "
-      "control makes their path, the text has no words for it; a program for the cutter's centre, or "
-      "[compensation] operations without these blocks, was expected [cutter-radius]\n    G1 Y10. F100\n    ^");
+  EXPECT_EQ(to_string(diagnostics.all()[0]),
+            "two.nc:4:1: error: 1 move to compensate runs under cutter radius compensation (G41, G42), from here on: "
+            "the control computes their path, and the text has no words for it; a program of the cutter centre, or "
+            "[compensation] operations without these blocks, was expected [cutter-radius]\n"
+            "    G1 Y10. F100\n"
+            "    ^");
 }
 
 TEST(Finishing, SaysWhereNoMoveHasWordsOfItsOwn) {

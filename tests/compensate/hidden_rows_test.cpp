@@ -64,7 +64,7 @@ TEST(HiddenRows, OffsetsAreWhereTheToolIsBesideTheProgrammedPath) {
     for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
       removal::Stamp stamp;
       stamp.move = m;
-      stamp.share = share;
+      stamp.fraction = share;
       const Vec3 programmed = nc::point_at(moves, moves.moves[m], share);
       stamp.pose.tip_mm = programmed + offset_at(programmed.y());
       machine.path.stamps.push_back(stamp);

@@ -39,16 +39,16 @@ TEST(MoveMap, FindsTheGivenMoveBehindSplitBlocksAndAHeader) {
   EXPECT_EQ(map.given(2, 1).move, 1u);
   EXPECT_EQ(map.given(3, 0).move, 2u);
   const double first = std::hypot(2.5, 1), second = std::hypot(7.5, 1);
-  EXPECT_NEAR(map.given(1, 1).share, first / (first + second), 1e-9);
-  EXPECT_NEAR(map.given(2, 0).share, first / (first + second), 1e-9);
-  EXPECT_NEAR(map.given(2, 1).share, 1, 1e-9);
-  EXPECT_NEAR(map.given(3, 0.25).share, 0.25, 1e-9);
+  EXPECT_NEAR(map.given(1, 1).fraction, first / (first + second), 1e-9);
+  EXPECT_NEAR(map.given(2, 0).fraction, first / (first + second), 1e-9);
+  EXPECT_NEAR(map.given(2, 1).fraction, 1, 1e-9);
+  EXPECT_NEAR(map.given(3, 0.25).fraction, 0.25, 1e-9);
 }
 
 TEST(MoveMap, WithoutAnEmissionIsTheProgramItself) {
   const MoveMap map;
   EXPECT_EQ(map.given(7, 0.3).move, 7u);
-  EXPECT_DOUBLE_EQ(map.given(7, 0.3).share, 0.3);
+  EXPECT_DOUBLE_EQ(map.given(7, 0.3).fraction, 0.3);
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ struct Lines {
   nc::Interpretation program = three_lines();
   ShiftPath path{program, {true, true, false, true}, 1.0};
 
-  std::size_t at(std::uint32_t move, double share) const {
-    const auto place = path.find(move, share);
+  std::size_t at(std::uint32_t move, double fraction) const {
+    const auto place = path.find(move, fraction);
     return place.lower + (place.upper_fraction > 0.5 ? 1 : 0);
   }
 };

@@ -75,7 +75,7 @@ TEST(ControlKinds, StopBetweenRapidAndFeedIfTheRowSaysSo) {
 }
 
 TEST(ControlKinds, AccelerateMoreOnHelicesIfTheRowSaysSo) {
-  constexpr double kRadius = 5, kRise = 12, kShare = 0.3;
+  constexpr double kRadius = 5, kRise = 12, kFraction = 0.3;
   const auto turn = [&](double rise) {
     tests::TestProgram p;
     p.line(10, 0, 0, 60000).arc_xy(10, 0, 5, 0, 2 * kPi, 60000);
@@ -87,12 +87,12 @@ TEST(ControlKinds, AccelerateMoreOnHelicesIfTheRowSaysSo) {
   for (const ControlKind& kind : machine::control_kinds()) {
     SCOPED_TRACE(kind.name);
     machine::Machine machine = machine_with(kind);
-    machine.control.arc_tangential_fraction = kShare;
-    EXPECT_NEAR(segments_of(turn(0), machine).back().acceleration_mm_per_s2, kShare * 500, 1e-9);
+    machine.control.arc_tangential_fraction = kFraction;
+    EXPECT_NEAR(segments_of(turn(0), machine).back().acceleration_mm_per_s2, kFraction * 500, 1e-9);
     const Segment helix = segments_of(turn(kRise), machine).back();
-    const double in_plane = 2 * kPi * kRadius / helix.length_mm;  // share of the path that lies in the plane
+    const double in_plane = 2 * kPi * kRadius / helix.length_mm;  // fraction of the path that lies in the plane
     EXPECT_NEAR(helix.acceleration_mm_per_s2,
-                500 / in_plane * (kind.helix_rise_frees_acceleration ? std::sqrt(1 - used * used) : kShare), 1e-9);
+                500 / in_plane * (kind.helix_rise_frees_acceleration ? std::sqrt(1 - used * used) : kFraction), 1e-9);
   }
 }
 

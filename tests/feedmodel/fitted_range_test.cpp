@@ -53,25 +53,22 @@ TEST(FittedRange, NamesBlocksAndShareOfWhatLeavesIt) {
   p.line(10, 0, 0, 1000).line(0, 0, 0, 1000).line(0, 0, 20, 3000).arc_xy(0, 0, 1, 0, 2 * kPi, 1000);
   const auto texts = warnings(p.program, fitted_on(square()));
   ASSERT_EQ(texts.size(), 4u);
-  EXPECT_EQ(
-      texts[0],
-      "p.nc:3:1: warning: 43.2 % of the cutting length (1 block: line 3) has a feed above 1000 mm/min, the highest "
-      "that the machine was fitted on; the time there is a guess: 0.4 s, from 0.4 s at the programmed feed to 0.4 s "
-      "with a stop after every block [range-feed]");
+  EXPECT_EQ(texts[0],
+            "p.nc:3:1: warning: 43.2 % of the cutting length (1 block: line 3) has a feed above 1000 mm/min, the "
+            "highest that the machine was fitted on; the time there is an extrapolation: 0.4 s, from 0.4 s at the "
+            "programmed feed to 0.4 s with a stop after every block [range-feed]");
   EXPECT_EQ(texts[1],
             "p.nc:2:1: warning: 21.6 % of the cutting length (1 block: line 2) has a corner sharper than 90.0 degrees, "
-            "the sharpest that the machine was fitted on; the time there is a guess: 0.6 s, from 0.6 s at the "
+            "the sharpest that the machine was fitted on; the time there is an extrapolation: 0.6 s, from 0.6 s at the "
             "programmed feed to 0.6 s with a stop after every block [range-corner]");
-  EXPECT_EQ(
-      texts[2],
-      "p.nc:4:1: warning: 13.6 % of the cutting length (1 block: line 4) has arcs, of which the machine was fitted "
-      "on none; the time there is a guess: 0.377 s, from 0.377 s at the programmed feed to 0.377 s with a stop after "
-      "every block [range-arc]");
-  EXPECT_EQ(
-      texts[3],
-      "p.nc:3:1: warning: 43.2 % of the cutting length (1 block: line 3) has motion of Z, which the machine was not "
-      "fitted on; the time there is a guess: 0.4 s, from 0.4 s at the programmed feed to 0.4 s with a stop after every "
-      "block [range-axis]");
+  EXPECT_EQ(texts[2],
+            "p.nc:4:1: warning: 13.6 % of the cutting length (1 block: line 4) has arcs, of which the machine was "
+            "fitted on none; the time there is an extrapolation: 0.377 s, from 0.377 s at the programmed feed to 0.377 "
+            "s with a stop after every block [range-arc]");
+  EXPECT_EQ(texts[3],
+            "p.nc:3:1: warning: 43.2 % of the cutting length (1 block: line 3) has motion of Z, which the machine was "
+            "not fitted on; the time there is an extrapolation: 0.4 s, from 0.4 s at the programmed feed to 0.4 s with "
+            "a stop after every block [range-axis]");
 }
 
 TEST(FittedRange, FineFacetsAreMoreBlocksASecond) {

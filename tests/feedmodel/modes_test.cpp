@@ -88,10 +88,9 @@ TEST(Modes, AModeThatTheFileDoesNotKnowIsAWarning) {
     return all;
   };
   EXPECT_EQ(warnings(machine_of(kThreeModes)), "");
-  EXPECT_EQ(
-      warnings({}),
-      "p.nc:3:1: warning: G05.1 Q1 (high-speed contouring) is on, and the machine file has no [control.mode.g05_1_q1] "
-      "or [control.mode.high_speed_contouring]: [control] counts [mode-unknown]\n");
+  EXPECT_EQ(warnings({}),
+            "p.nc:3:1: warning: G05.1 Q1 (high-speed contouring) is on, and the machine file has no "
+            "[control.mode.g05_1_q1] or [control.mode.high_speed_contouring]; [control] is used [mode-unknown]\n");
 }
 
 TEST(Modes, EveryModeIsNamedThatTheFileDoesNotKnow) {

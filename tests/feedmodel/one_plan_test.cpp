@@ -18,9 +18,9 @@ namespace {
 constexpr double kMicrosecond = 1e-6;
 constexpr unsigned kPrograms = 200, kMachines = 20;
 constexpr double kBend_mm = 0.05;   // a chord of half a millimetre leaves a bent way by less
-constexpr double kRounding = 1e-6;  // share of a speed: differences of places that a period apart
+constexpr double kRounding = 1e-6;  // fraction of a speed: differences of places that a period apart
 
-/// Largest commanded speed of an axis as a share of what it may do, over all samples.
+/// Largest commanded speed of an axis as a fraction of what it may do, over all samples.
 class SpeedCheck {
  public:
   explicit SpeedCheck(const machine::Machine& m) : period_s_(m.control.period_s) {

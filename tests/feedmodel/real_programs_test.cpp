@@ -75,7 +75,7 @@ class ContourError {
       trail_.push_back(s.command_mm);
       fastest_ = std::max(fastest_, s.velocity_mm_per_s.cwiseAbs().maxCoeff());
       if (++count_ % kEvery == 0) follow(s.position_mm, program_.moves[s.move].kind != nc::MoveKind::rapid);
-      if (trail_.size() < kMostKept) continue;
+      if (trail_.size() < kMaxKept) continue;
       trail_.erase(trail_.begin(), trail_.begin() + static_cast<std::ptrdiff_t>(at_));
       at_ = 0;
     }
@@ -84,7 +84,7 @@ class ContourError {
   double fastest_mm_per_s() const { return fastest_; }
 
  private:
-  static constexpr std::size_t kEvery = 4, kMostKept = 1u << 16;
+  static constexpr std::size_t kEvery = 4, kMaxKept = 1u << 16;
 
   /// The axes follow: from the nearest place of the last time on.
   void follow(const Vec3& axes, bool cutting) {

@@ -141,7 +141,7 @@ TEST(SetNumber, SetsInTheUnitOfTheFile) {
 TEST(SetNumber, TellsWhatIsWrong) {
   Machine m;
   EXPECT_EQ(set_number(m, "axis.x.accelerations_mm_per_s2", 700),
-            "axis.x.accelerations_mm_per_s2 is no number of a machine; did you mean axis.x.acceleration_mm_per_s2?");
+            "axis.x.accelerations_mm_per_s2 is not a machine parameter; did you mean axis.x.acceleration_mm_per_s2?");
   EXPECT_EQ(set_number(m, "axis.all.acceleration_mm_per_s2", -1),
             "axis.x.acceleration_mm_per_s2 is -1; a number greater than zero or inf was expected");
 }
@@ -172,16 +172,16 @@ TEST(Cases, TellsWhereACaseIsWrong) {
     return message_of(folder, [&](Diagnostics& d) { read_cases(path, nullptr, d); });
   };
   EXPECT_EQ(message("[case.1]\nmachine = \"none.toml\"\n"),
-            "cases.toml:2:11: error: machine: no such file: none.toml (paths count from the cases' folder) "
+            "cases.toml:2:11: error: machine: no such file: none.toml (paths are relative to the folder of the cases) "
             "[file-missing]\n"
             "    machine = \"none.toml\"\n"
             "              ^");
   folder.write("m.toml", "[spindle]\nmax_rpm = 8000\n");
-  EXPECT_EQ(message("[case.1]\nmachine = \"m.toml\"\nset = { \"spindle.max_rp\" = 9000 }\n"),
-            "cases.toml:3:28: error: spindle.max_rp is no number of a machine; did you mean spindle.max_rpm? "
-            "[case-set]\n"
-            "    set = { \"spindle.max_rp\" = 9000 }\n"
-            "                               ^");
+  EXPECT_EQ(
+      message("[case.1]\nmachine = \"m.toml\"\nset = { \"spindle.max_rp\" = 9000 }\n"),
+      "cases.toml:3:28: error: spindle.max_rp is not a machine parameter; did you mean spindle.max_rpm? [case-set]\n"
+      "    set = { \"spindle.max_rp\" = 9000 }\n"
+      "                               ^");
 }
 
 TEST(CycleKeys, ReadsAndWritesReferencePointsTwoToFour) {

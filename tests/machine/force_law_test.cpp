@@ -31,10 +31,10 @@ Components force_N_per_mm(const Material& m, double h) {
   return {k.tangential * h + m.kte_N_per_mm, k.radial * h + m.kre_N_per_mm, k.axial * h + m.kae_N_per_mm};
 }
 
-void expect_near(const Components& a, const Components& b, double share) {
-  EXPECT_NEAR(a.tangential, b.tangential, share * std::abs(b.tangential));
-  EXPECT_NEAR(a.radial, b.radial, share * std::abs(b.radial));
-  EXPECT_NEAR(a.axial, b.axial, share * std::abs(b.axial));
+void expect_near(const Components& a, const Components& b, double fraction) {
+  EXPECT_NEAR(a.tangential, b.tangential, fraction * std::abs(b.tangential));
+  EXPECT_NEAR(a.radial, b.radial, fraction * std::abs(b.radial));
+  EXPECT_NEAR(a.axial, b.axial, fraction * std::abs(b.axial));
 }
 
 struct Result {

@@ -242,21 +242,21 @@ TEST(JobReader, RefusesBandsThatAreNone) {
 }
 
 TEST(JobReader, NamesMissingFilesAtTheirKey) {
-  EXPECT_EQ(read(with("finish.nc", "sub/../finsh.nc")).messages,
-            "job.toml:1:11: error: program: no such file: finsh.nc (paths count from the job's folder) "
-            "[file-missing]\n"
-            "    program = \"sub/../finsh.nc\"\n"
-            "              ^");
-  EXPECT_EQ(read(with("\"machine.toml\"", "\"mill.toml\"")).messages,
-            "job.toml:2:11: error: machine: no such file: mill.toml (paths count from the job's folder) "
-            "[file-missing]\n"
-            "    machine = \"mill.toml\"\n"
-            "              ^");
-  EXPECT_EQ(read(with("box_mm = [[0, 0, -20], [50, 40, 5]]", "mesh = \"blank.stl\"")).messages,
-            "job.toml:12:8: error: mesh: no such file: blank.stl (paths count from the job's folder) "
-            "[file-missing]\n"
-            "    mesh = \"blank.stl\"\n"
-            "           ^");
+  EXPECT_EQ(
+      read(with("finish.nc", "sub/../finsh.nc")).messages,
+      "job.toml:1:11: error: program: no such file: finsh.nc (paths are relative to the job's folder) [file-missing]\n"
+      "    program = \"sub/../finsh.nc\"\n"
+      "              ^");
+  EXPECT_EQ(
+      read(with("\"machine.toml\"", "\"mill.toml\"")).messages,
+      "job.toml:2:11: error: machine: no such file: mill.toml (paths are relative to the job's folder) [file-missing]\n"
+      "    machine = \"mill.toml\"\n"
+      "              ^");
+  EXPECT_EQ(
+      read(with("box_mm = [[0, 0, -20], [50, 40, 5]]", "mesh = \"blank.stl\"")).messages,
+      "job.toml:12:8: error: mesh: no such file: blank.stl (paths are relative to the job's folder) [file-missing]\n"
+      "    mesh = \"blank.stl\"\n"
+      "           ^");
 }
 
 TEST(JobReader, ShowsTheMachinesErrorsInTheMachinesFile) {
@@ -364,7 +364,7 @@ TEST(JobReader, RefusesABoxInsideOut) {
 TEST(JobReader, RefusesOperationsOfToolsThatTheJobDoesNotHave) {
   EXPECT_EQ(
       read(with("machine = \"machine.toml\"", "machine = \"machine.toml\"\noperations = { tools = [9] }")).messages,
-      "job.toml:3:24: error: operations ask for T9, but there is no [tool.9] [tool-missing]\n"
+      "job.toml:3:24: error: operations name T9, but there is no [tool.9] [tool-missing]\n"
       "    operations = { tools = [9] }\n"
       "                           ^");
   EXPECT_EQ(read(with("machine = \"machine.toml\"", "machine = \"machine.toml\"\noperations = { blocks = [[9, 2]] }"))

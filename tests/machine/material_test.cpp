@@ -120,7 +120,7 @@ TEST(Material, TakesTheFileThatFitForceWrites) {
   EXPECT_EQ(m.ktc_MPa, 1234);
   EXPECT_EQ(
       read("file = \"nowhere.toml\"\n").messages,
-      "job.toml:11:8: error: file: no such file: nowhere.toml (paths count from the job's folder) [file-missing]\n"
+      "job.toml:11:8: error: file: no such file: nowhere.toml (paths are relative to the job's folder) [file-missing]\n"
       "    file = \"nowhere.toml\"\n"
       "           ^");
 }

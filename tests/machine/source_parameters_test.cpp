@@ -6,26 +6,26 @@
 namespace camber::machine {
 namespace {
 
-struct Told {
+struct ReadResult {
   Machine machine;
   std::string messages;
 };
 
-Told read(const std::string& text, const std::string& ini = {}) {
+ReadResult read(const std::string& text, const std::string& ini = {}) {
   const tests::TempFolder folder;
   if (!ini.empty()) folder.write("mill.ini", ini);
   Diagnostics diagnostics;
-  Told told;
+  ReadResult result;
   try {
-    told.machine = read_machine(folder.write("m.toml", text), diagnostics);
+    result.machine = read_machine(folder.write("m.toml", text), diagnostics);
   } catch (const InputError& problem) {
-    told.messages = tests::replaced(problem.what(), folder.path() + "/", "");
+    result.messages = tests::replaced(problem.what(), folder.path() + "/", "");
   }
-  return told;
+  return result;
 }
 
 TEST(SourceParameters, Fanuc) {
-  const Told t = read("[source.fanuc]\n1825 = [3000, 4000, 5000]\n1783 = 400\n1420 = 24000\n");
+  const ReadResult t = read("[source.fanuc]\n1825 = [3000, 4000, 5000]\n1783 = 400\n1420 = 24000\n");
   EXPECT_EQ(t.messages, "");
   EXPECT_DOUBLE_EQ(t.machine.axis[1].position_gain_per_s, 40);
   EXPECT_DOUBLE_EQ(t.machine.axis[2].max_velocity_mm_per_s, 400);
@@ -39,7 +39,7 @@ TEST(SourceParameters, Fanuc) {
 }
 
 TEST(SourceParameters, SinumerikAndWhatTheFileSaysBesideIt) {
-  const Told t = read(
+  const ReadResult t = read(
       "[source.sinumerik]\nMD32200 = 2\nMD32300 = [3, 3, 2]\nMD32431 = 50\n[axis.z]\nacceleration_mm_per_s2 = 1500\n");
   EXPECT_EQ(t.messages, "");
   EXPECT_NEAR(t.machine.axis[0].position_gain_per_s, 33.333, 1e-3);
@@ -49,10 +49,10 @@ TEST(SourceParameters, SinumerikAndWhatTheFileSaysBesideIt) {
 }
 
 TEST(SourceParameters, LinuxCncIni) {
-  const Told t = read("[source.linuxcnc]\nini = \"mill.ini\"\n",
-                      "[TRAJ]\nLINEAR_UNITS = inch\nARC_BLEND_OPTIMIZATION_DEPTH = 100 # blocks\n"
-                      "[EMCMOT]\nSERVO_PERIOD = 1000000\n[AXIS_X]\nMAX_VELOCITY = 4\nMAX_ACCELERATION = 20.0\n"
-                      "[JOINT_1]\nMAX_ACCELERATION = 10\n");
+  const ReadResult t = read("[source.linuxcnc]\nini = \"mill.ini\"\n",
+                            "[TRAJ]\nLINEAR_UNITS = inch\nARC_BLEND_OPTIMIZATION_DEPTH = 100 # blocks\n"
+                            "[EMCMOT]\nSERVO_PERIOD = 1000000\n[AXIS_X]\nMAX_VELOCITY = 4\nMAX_ACCELERATION = 20.0\n"
+                            "[JOINT_1]\nMAX_ACCELERATION = 10\n");
   EXPECT_EQ(t.messages, "");
   EXPECT_DOUBLE_EQ(t.machine.axis[0].max_velocity_mm_per_s, 101.6);
   EXPECT_DOUBLE_EQ(t.machine.axis[1].acceleration_mm_per_s2, 254);

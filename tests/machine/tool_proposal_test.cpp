@@ -63,7 +63,7 @@ TEST(ToolWords, AreReadAsTheirCamSystemsWriteThem) {
   EXPECT_EQ(tool_of_words(" 1/4\" X 90\xc2\xb0 SPOT DRILL", true).point_angle_deg, 90);
   EXPECT_EQ(tool_of_words(" .2505\" REAMER", true).doubt, "taps and reamers stand as drills: they make holes alone");
   EXPECT_EQ(tool_of_words("|    6. BALL END MILL", true).doubt,
-            "the size 6. stands without a unit in a program in inches; taken as mm");
+            "the size 6. has no unit in a program in inches; taken as mm");
   EXPECT_EQ(tool_of_words("|    6. BALL END MILL", false).doubt, "");
 }
 
@@ -185,10 +185,11 @@ TEST(ToolLibrary, SaysWhatIsWrongInAZipFile) {
   const tests::TempFolder folder;
   EXPECT_EQ(message_of([&] { read_tools(zipped(folder, "a.tools", "other.json", "{}"), false); }, folder),
             "a.tools: error: is a zip file without tools.json [tool-library]");
-  EXPECT_EQ(
-      message_of([&] { read_tools(zipped(folder, "b.tools", "tools.json", "[\n}"), false); }, folder),
-      "b.tools/tools.json:2:1: error: this is no JSON; a tool library of Fusion (File, Export, JSON) was expected "
-      "[tool-library]\n    }\n    ^");
+  EXPECT_EQ(message_of([&] { read_tools(zipped(folder, "b.tools", "tools.json", "[\n}"), false); }, folder),
+            "b.tools/tools.json:2:1: error: this is not JSON; a tool library of Fusion (File, Export, JSON) was "
+            "expected [tool-library]\n"
+            "    }\n"
+            "    ^");
   EXPECT_NE(message_of([&] { read_tools(folder / "none.tools", false); }, folder).find("[file-missing]"),
             std::string::npos);
 }
@@ -251,7 +252,7 @@ TEST(ToolLibrary, SaysWhatIsWrongInTheXmlOfHsmWorks) {
     return message_of([&] { read_tools(folder.write("a.hsmlib", text), false); }, folder);
   };
   EXPECT_EQ(said("<tool"),
-            "a.hsmlib: error: this is no XML (Error parsing start element tag); a tool library of HSMWorks (XML with "
+            "a.hsmlib: error: this is not XML (Error parsing start element tag); a tool library of HSMWorks (XML with "
             "tool-library) was expected [tool-library]");
   EXPECT_EQ(said("<data/>"),
             "a.hsmlib: error: its root is <data>; a tool library of HSMWorks (XML with tool-library) was expected "
@@ -268,14 +269,16 @@ TEST(ToolLibrary, SaysWhatWasExpected) {
   const tests::TempFolder folder;
   const auto broken = folder.write("a.json", "{\"data\": [\n}"), other = folder.write("b.json", "[1]"),
              zip = folder.write("c.tools", "PK");
-  EXPECT_EQ(message_of([&] { read_tools(broken, false); }, folder),
-            "a.json:2:1: error: this is no JSON; a tool library of Fusion (File, Export, JSON) was expected "
-            "[tool-library]\n    }\n    ^");
+  EXPECT_EQ(
+      message_of([&] { read_tools(broken, false); }, folder),
+      "a.json:2:1: error: this is not JSON; a tool library of Fusion (File, Export, JSON) was expected [tool-library]\n"
+      "    }\n"
+      "    ^");
   EXPECT_EQ(message_of([&] { read_tools(other, false); }, folder),
             "b.json: error: has no list \"data\"; a tool library of Fusion (File, Export, JSON) was expected "
             "[tool-library]");
   EXPECT_EQ(message_of([&] { read_tools(zip, false); }, folder),
-            "c.tools: error: is no zip file; one with tools.json in it was expected [tool-library]");
+            "c.tools: error: is not a zip file; one with tools.json in it was expected [tool-library]");
   EXPECT_NE(message_of([&] { read_tools(folder / "none.json", false); }, folder).find("[file-missing]"),
             std::string::npos);
 }

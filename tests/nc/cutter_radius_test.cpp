@@ -15,8 +15,7 @@ namespace {
 using Messages = std::vector<std::string>;
 
 const std::string kNote =
-    " is computed here, cutter radius 2.0000 mm; compensation will leave these moves as they are "
-    "[not-editable]";
+    " is computed here, cutter radius 2.0000 mm; compensation leaves these moves unchanged [not-editable]";
 
 /// "l 8 2; a 10 12; ": kind and end of each move in the plane of X and Y.
 std::string path_of(const Read& r) {
@@ -136,8 +135,8 @@ TEST(CutterRadius, RadiusComesFromWhereItIsGiven) {
 
 TEST(CutterRadius, WithoutARadiusItIsZeroAndSaysSo) {
   const Read r = read_text("G0 X0 Y0 Z0\nG41 D3 G1 X10 F100\nY10\nG40 X0\n", as("linuxcnc"));
-  EXPECT_EQ(r.messages, Messages{"p.nc:2:1: warning: no radius is given for D3; G41 takes 0, as where the program is "
-                                 "written for the cutter's centre and D holds the wear only [radius-unknown]"});
+  EXPECT_EQ(r.messages, Messages{"p.nc:2:1: warning: no radius is given for D3; G41 takes 0, as in a program of the "
+                                 "cutter centre, where D has the wear only [radius-unknown]"});
   EXPECT_EQ(path_of(r), "r 0 0 0; l 10 0 0; l 10 10 0; l 0 10 0; ");
   for (const Move& m : r.moves.moves) EXPECT_TRUE(m.editable);  // these can be edited
   EXPECT_EQ(read_clean("G0 X0 Y0 Z0\nG41 D0 G1 X10 F100\nG40 X0\n").moves.moves.size(), 3u);
@@ -200,12 +199,12 @@ TEST(CutterRadius, TellsWhatDoesNotWork) {
             "p.nc:5:1: error: the move off the contour after G40 is an arc (G2); a straight move (G0, G1) was expected "
             "[cutter-radius]");
   EXPECT_EQ(complaint("G41.1 X10\n"), "p.nc:2:1: error: G41.1 has no diameter; D was expected [cutter-radius]");
-  EXPECT_EQ(complaint("G41 D1.5 X10\n"),
-            "p.nc:2:5: error: D1.5 is no number of an offset; a whole number of zero or more was expected "
-            "[cutter-radius]");
+  EXPECT_EQ(
+      complaint("G41 D1.5 X10\n"),
+      "p.nc:2:5: error: D1.5 is not an offset number; a whole number of zero or more was expected [cutter-radius]");
   InterpreterOptions normal_direction = fanuc();
   EXPECT_EQ(complaint("G41.1 X10\n", normal_direction),
-            "p.nc:2:1: error: G41.1 (normal direction control) is not read yet [not-read]");
+            "p.nc:2:1: error: G41.1 (normal direction control) is not supported [not-read]");
 }
 
 TEST(CutterRadius, EmissionLeavesTheContourAlone) {

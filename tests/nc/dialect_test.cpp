@@ -41,9 +41,9 @@ TEST(Dialects, ReadTheProgramNumberAndEndThatTheyWrite) {
     const std::string end(dialect.program_end);
     const Read r = read_text("%\n" + number + path + "G0 X0 Y0 Z0\n" + end + "\nX7\n%\n", as(dialect.name));
     const auto line = std::to_string(4 + !number.empty() + !path.empty());
-    EXPECT_EQ(r.messages, Messages{"p.nc:" + line +
-                                   ":1: warning: the blocks behind the end of the program (M2, M30) are "
-                                   "not run [after-end]"});
+    EXPECT_EQ(r.messages,
+              Messages{"p.nc:" + line +
+                       ":1: warning: the blocks after the end of the program (M2, M30) are not run [after-end]"});
     EXPECT_EQ(r.moves.moves.size(), 1u);
   }
 }
@@ -58,9 +58,9 @@ TEST(Dialects, ReadADwellInTheirUnit) {
 TEST(Dialects, LimitNestedCalls) {
   for (const Dialect& dialect : dialects())
     EXPECT_EQ(read_text("M98 P1\nM30\nO1\nM98 P1\nM99\n", as(dialect.name)).messages,
-              Messages{fmt::format("p.nc:4:1: error: calls inside calls deeper than {} levels; a {} control reads no "
-                                   "more [call-depth]",
-                                   dialect.max_levels, dialect.name)});
+              Messages{fmt::format(
+                  "p.nc:4:1: error: calls nested deeper than {} levels; a {} control reads no more [call-depth]",
+                  dialect.max_levels, dialect.name)});
 }
 
 TEST(Dialects, AreRecognisedByTheirOwnConstructs) {

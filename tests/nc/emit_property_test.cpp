@@ -64,10 +64,10 @@ bool is_full_turn(const Read& r, const Move& m) {
   return (way - way.dot(normal) * normal).norm() < 1e-6;
 }
 
-MoveEdit shifted(const Read& r, std::uint32_t m, const Vec3& by, double share_of_centre = 0.5) {
+MoveEdit shifted(const Read& r, std::uint32_t m, const Vec3& by, double fraction_of_centre = 0.5) {
   const Move& move = r.moves.moves[m];
   MoveEdit edit{.move = m, .end_mm = move.end_mm + by};
-  if (move.arc != Move::kNoArc) edit.center_mm = r.moves.arcs[move.arc].center_mm + share_of_centre * by;
+  if (move.arc != Move::kNoArc) edit.center_mm = r.moves.arcs[move.arc].center_mm + fraction_of_centre * by;
   return edit;
 }
 
@@ -305,8 +305,8 @@ TEST_F(NcEmitProperty, OneEditOfASharedProgramChangesNoMoreThanItMust) {
       const std::uint32_t m = lines[random() % lines.size()];
       if (length_mm(r.moves, r.moves.moves[m]) < 0.5) continue;
       MoveEdit edit = shifted(r, m, {u(random), u(random), u(random)});
-      for (const double share : {0.3, 0.6})
-        edit.via.push_back({point_at(r.moves, r.moves.moves[m], share) + Vec3(u(random), u(random), u(random))});
+      for (const double fraction : {0.3, 0.6})
+        edit.via.push_back({point_at(r.moves, r.moves.moves[m], fraction) + Vec3(u(random), u(random), u(random))});
       counts_.via_points += 2;
       EXPECT_EQ(problem_of_via(r, edit), "") << file << ":" << r.moves.moves[m].block + 1;
     }

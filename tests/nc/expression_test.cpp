@@ -119,12 +119,13 @@ TEST(NcExpression, TellsWhatIsWrong) {
   EXPECT_EQ(said("#1=2+*3\n"),
             "p.nc:1:6: error: a number, a variable (#), a function or [ was expected here [expression]");
   EXPECT_EQ(said("#1=#\n"),
-            "p.nc:1:5: error: # has no number; a number, [ or <name> was expected behind it [expression]");
+            "p.nc:1:5: error: # has no number; a number, [ or <name> was expected after it [expression]");
   EXPECT_EQ(said("#1=POW[2]\n"), "p.nc:1:9: error: `,` was expected in POW[a,b] [expression]");
   EXPECT_EQ(said("#<a=1\n"), "p.nc:1:2: error: the name has no closing `>` [expression]");
   EXPECT_EQ(said("#1=" + std::string(200, '[') + "1" + std::string(200, ']')),
-            "p.nc:1:104: error: more than 100 brackets in brackets [expression]");
-  EXPECT_EQ(said("#1 5\n"), "p.nc:1:1: error: a variable stands alone; #number = value was expected [statement]");
+            "p.nc:1:104: error: more than 100 nested brackets [expression]");
+  EXPECT_EQ(said("#1 5\n"),
+            "p.nc:1:1: error: a variable without an assignment; #number = value was expected [statement]");
   EXPECT_EQ(said("#1=1e5\n"), "p.nc:1:5: error: E is not a letter of a milling program [unknown-letter]");
   EXPECT_EQ(said("#1=1000000000\nG0 X[#1*#1]\n"), "p.nc:2:4: error: X1e+18 is too large [expression]");
 }

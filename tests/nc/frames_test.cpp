@@ -79,16 +79,15 @@ TEST(Frames, WorkOffsetsGivenByTheCaller) {
 
 TEST(Frames, UnknownWorkOffsetsShareOneFrameWithAWarning) {
   expect_ends("G54 G1 X1\nG55 X2\n", {{1, 0, 0}, {2, 0, 0}}, fanuc(),
-              {"p.nc:3:1: warning: the program cuts in more than one work offset; their distance is not known, all are "
-               "taken as one frame [work-offsets]"});
+              {"p.nc:3:1: warning: the program cuts in more than one work offset; their distance is not known, and all "
+               "are treated as one frame [work-offsets]"});
   // Known ones keep their distance from each other, not from an unknown one.
   expect_ends("G54 G1 X1\nG10 L2 P2 X50\nG10 L2 P3 X60\nG55 X2\nG56 X2\n", {{1, 0, 0}, {2, 0, 0}, {12, 0, 0}}, fanuc(),
-              {"p.nc:5:1: warning: the program cuts in more than one work offset; their distance is not known, all are "
-               "taken as one frame (and 1 more like it) [work-offsets]"});
-  expect_ends(
-      "G10 L2 P1 X50\nG1 X2\n", {{2, 0, 0}}, fanuc(),
-      {"p.nc:2:1: warning: G10 L2 sets the work offset that the program has moved in; where it lay before is not "
-       "known, it is taken to lie there [work-offsets]"});
+              {"p.nc:5:1: warning: the program cuts in more than one work offset; their distance is not known, and all "
+               "are treated as one frame (and 1 more like it) [work-offsets]"});
+  expect_ends("G10 L2 P1 X50\nG1 X2\n", {{2, 0, 0}}, fanuc(),
+              {"p.nc:2:1: warning: G10 L2 sets the work offset that the program has moved in; its previous position is "
+               "not known and is assumed to be the same [work-offsets]"});
 }
 
 TEST(Frames, G10L20TouchesOffOrSetsG541) {
@@ -158,8 +157,8 @@ TEST(Frames, MirrorThenScaleThenRotate) {
 
 TEST(Frames, PolarCoordinates) {
   const Messages note{
-      "p.nc:2:1: warning: moves in polar coordinates (G16) are read, but compensation will leave them as "
-      "they are [not-editable]"};
+      "p.nc:2:1: warning: moves in polar coordinates (G16) are read, but compensation leaves them unchanged "
+      "[not-editable]"};
   expect_ends("G16\nG1 X10 Y90\nY180\nX20\nG15 X1\n", {{0, 10, 0}, {-10, 0, 0}, {-20, 0, 0}, {1, 0, 0}}, fanuc(), note);
   expect_ends("G16\nG91 G1 X10 Y90\nX10 Y-90\n", {{0, 10, 0}, {10, 10, 0}}, fanuc(), note);
   const Read r = read_text("G0 X0 Y0 Z0\nG16\nG81 X10 Y0 Z-1 R1 F100\nY120\nY240\nG80 G15\n");
@@ -190,7 +189,7 @@ TEST(Frames, ReferencePointsThatAreKnown) {
   expect_near_mm(r.moves.moves[1].end_mm, {-100, -50, 0});
   expect_near_mm(r.moves.moves[2].end_mm, {-110, -50, 0});
   EXPECT_EQ(r.messages,
-            Messages{"p.nc:5:5: error: G30 P7 is no reference point; P2, P3 or P4 was expected [reference]"});
+            Messages{"p.nc:5:5: error: G30 P7 is not a reference point; P2, P3 or P4 was expected [reference]"});
 }
 
 TEST(Frames, SayWhatIsMissing) {
@@ -208,7 +207,7 @@ TEST(Frames, SayWhatIsMissing) {
   EXPECT_EQ(read_text("G10 L2 X1").messages,
             Messages{"p.nc:1:1: error: G10 L2 needs a P with the number of the offset [work-offset]"});
   EXPECT_EQ(read_text("G10 L2 P44 X1").messages,
-            Messages{"p.nc:1:1: error: G10 L2 P44 is no work offset; P0 to P9 was expected [work-offset]"});
+            Messages{"p.nc:1:1: error: G10 L2 P44 is not a work offset; P0 to P9 was expected [work-offset]"});
   EXPECT_EQ(read_text("G10 L12 R1").messages,
             Messages{"p.nc:1:1: error: G10 of a tool offset needs P with its number and R (or Z) with its value "
                      "[tool-offset]"});

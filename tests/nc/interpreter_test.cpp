@@ -39,17 +39,15 @@ TEST(NcInterpreter, FlagsMovesWhosePlaceIsNotKnown) {
 
 TEST(NcInterpreter, StartsCuttingAtZeroWhereAnAxisWasNeverProgrammed) {
   const Read r = read_text("G0 X1 Y1\nG1 X2 F100\nY2\n");
-  EXPECT_EQ(
-      r.messages,
-      Messages{"p.nc:2:1: warning: G1 before Z was programmed; the tool is taken to stand at Z0 [start-unknown]"});
+  EXPECT_EQ(r.messages,
+            Messages{"p.nc:2:1: warning: G1 before Z was programmed; the tool is assumed to be at Z0 [start-unknown]"});
   EXPECT_FALSE(r.moves.moves[1].reference);
 }
 
 TEST(NcInterpreter, WarnsOfCuttingAtTheReferencePoint) {
-  EXPECT_EQ(
-      read_text("G0 X1 Y1 Z1\nG28 Z1\nG1 X2 F100\n").messages,
-      Messages{"p.nc:3:1: warning: G1 while Z stands at the reference point; the move counts for nothing in material "
-               "[at-reference]"});
+  EXPECT_EQ(read_text("G0 X1 Y1 Z1\nG28 Z1\nG1 X2 F100\n").messages,
+            Messages{"p.nc:3:1: warning: G1 while Z is at the reference point; the move is ignored for material "
+                     "removal [at-reference]"});
 }
 
 TEST(NcInterpreter, KnowsAbsoluteAndIncremental) {
@@ -227,26 +225,25 @@ TEST(NcInterpreter, NamesWhatItDoesNotKnow) {
             Messages{"p.nc:1:1: error: G12.3 is not a G code that Camber knows [unknown-g]"});
   EXPECT_EQ(read_text("G1.25").messages,
             Messages{"p.nc:1:1: error: G1.25 is not a G code that Camber knows [unknown-g]"});
-  EXPECT_EQ(read_text("M88\nM88").messages, Messages{"p.nc:1:1: warning: M88 is not known; it is taken to have no "
+  EXPECT_EQ(read_text("M88\nM88").messages, Messages{"p.nc:1:1: warning: M88 is not known; it is assumed to have no "
                                                      "effect on the path (and 1 more like it) [unknown-m]"});
   EXPECT_EQ(read_text("G0 X1 E5").messages,
             Messages{"p.nc:1:7: error: E is not a letter of a milling program [unknown-letter]"});
   EXPECT_EQ(read_text("G0 X1 A90.").messages,
-            Messages{"p.nc:1:7: error: rotary axis A is not read yet; X, Y and Z were expected [rotary-axis]"});
+            Messages{"p.nc:1:7: error: rotary axis A is not supported; X, Y and Z were expected [rotary-axis]"});
   EXPECT_EQ(read_text("G0 X1 A0").messages,
-            Messages{"p.nc:1:7: warning: rotary axis A is not read; it is taken to stand still at 0 [rotary-axis]"});
-  EXPECT_EQ(
-      read_text("G0 X1 A0 B0\nY1 B0\n").messages,
-      Messages{"p.nc:1:7: warning: rotary axis A is not read; it is taken to stand still at 0 (and 2 more like it) "
-               "[rotary-axis]"});
+            Messages{"p.nc:1:7: warning: rotary axis A is not supported; it is assumed to stay at 0 [rotary-axis]"});
+  EXPECT_EQ(read_text("G0 X1 A0 B0\nY1 B0\n").messages,
+            Messages{"p.nc:1:7: warning: rotary axis A is not supported; it is assumed to stay at 0 (and 2 more like "
+                     "it) [rotary-axis]"});
   EXPECT_EQ(read_text("G0 X1 U5").messages,
-            Messages{"p.nc:1:7: error: axis U is not read yet; X, Y and Z were expected [unknown-letter]"});
+            Messages{"p.nc:1:7: error: axis U is not supported; X, Y and Z were expected [unknown-letter]"});
   EXPECT_EQ(
       read_text("G0 X1 Y1 Z1 K5.5\nX2 K1").messages,
       Messages{
           "p.nc:1:13: warning: K5.5 has no meaning in this block and is ignored (and 1 more like it) [unused-word]"});
   EXPECT_EQ(read_text("G0 X1 X2").messages,
-            Messages{"p.nc:1:7: error: X stands twice in the block; one was expected [word-twice]"});
+            Messages{"p.nc:1:7: error: X appears twice in the block; one was expected [word-twice]"});
 }
 
 TEST(NcInterpreter, RepeatsOfAnErrorBeyondTheLastOneThatIsKeptAreNotCounted) {
@@ -297,10 +294,9 @@ TEST(NcInterpreter, AssumesMillimetresWithAWarning) {
 TEST(NcInterpreter, WarnsOfSeveralWorkOffsetsAndOfBlocksBehindTheEnd) {
   EXPECT_EQ(read_text("G54 G0 X0 Y0 Z0\nG1 X1 F1\nG55 X2\nX3\n").messages,
             Messages{"p.nc:3:1: warning: the program cuts in more than one work offset; their distance is not known, "
-                     "all are taken as "
-                     "one frame (and 1 more like it) [work-offsets]"});
+                     "and all are treated as one frame (and 1 more like it) [work-offsets]"});
   EXPECT_EQ(read_text("G0 X0\nM30\nG0 X1\n").messages,
-            Messages{"p.nc:3:1: warning: the blocks behind the end of the program (M2, M30) are not run [after-end]"});
+            Messages{"p.nc:3:1: warning: the blocks after the end of the program (M2, M30) are not run [after-end]"});
 }
 
 // --- drilling cycles

@@ -44,11 +44,10 @@ TEST(MacroEmit, LoopsRepeatedSubprogramsAndExpressionsStayAsTheyAre) {
   Diagnostics diagnostics;
   warn_of_uneditable(r.program, r.moves, std::vector<bool>(r.moves.moves.size(), true), diagnostics);
   ASSERT_EQ(diagnostics.all().size(), 1u);
-  EXPECT_EQ(
-      headline(diagnostics.all()[0]),
-      "p.nc:4:1: warning: 8 cutting moves from here on are made by a loop, an expression or a subprogram that is "
-      "called more than once or stands in another file; the text has no words of their own, they stay as they are "
-      "[not-editable]");
+  EXPECT_EQ(headline(diagnostics.all()[0]),
+            "p.nc:4:1: warning: 8 cutting moves from here on are made by a loop, an expression or a subprogram that is "
+            "called more than once or is in another file; the text has no words of their own, so they stay unchanged "
+            "[not-editable]");
 }
 
 TEST(MacroEmit, CyclesAreNoWarningAndWholeIncrementsAreNotEdited) {

@@ -139,9 +139,10 @@ TEST(NcMacro, PositionsAndModalCodes) {
 }
 
 TEST(NcMacro, AlarmsStopAndClocks) {
-  EXPECT_EQ(run_text("X1\nIF[#1EQ#0]THEN #3000=12(DIAMETER MISSING)\nX2"),
-            "p.nc:3:16: error: the program stops here with alarm 3012 (DIAMETER MISSING); it is not read on "
-            "[alarm]\n1 0 0");
+  EXPECT_EQ(
+      run_text("X1\nIF[#1EQ#0]THEN #3000=12(DIAMETER MISSING)\nX2"),
+      "p.nc:3:16: error: the program stops here with alarm 3012 (DIAMETER MISSING); the rest is not read [alarm]\n"
+      "1 0 0");
   const Read r = read_clean("G0 X1 Y1 Z1\n#3006=1(CHECK)\nX2\n", as("fanuc"));
   EXPECT_TRUE(r.moves.moves[0].exact_stop);
   // A line of 100 mm at F600 takes 10 s, the dwell 2 s, and three variable blocks 3 ms.
@@ -260,7 +261,7 @@ TEST(NcMacro, SubprogramsInFilesOfTheirOwn) {
 // --- what does not end ----------------------------------------------------------------------------------------------
 
 TEST(NcMacro, EndlessLoopsAreToldAtTheirLine) {
-  const std::string tail = "the loop does not end: 10000 blocks were run again; it is not read on [endless-loop]";
+  const std::string tail = "the loop does not end: 10000 blocks were run again; the rest is not read [endless-loop]";
   EXPECT_EQ(said("G0 X0 Y0 Z0\nWHILE[1EQ1]DO1\nX1\nEND1\n"), "p.nc:2:1: error: " + tail);
   EXPECT_EQ(said("N1 #1=1\nGOTO1\n"), "p.nc:2:1: error: " + tail);
   EXPECT_EQ(said("#1=0\nDO1\n#1=0\nWHILE[#1LT9]DO2\n#1=#1+1\nEND2\nEND1\n"), "p.nc:2:1: error: " + tail);
@@ -274,9 +275,9 @@ TEST(NcMacro, EndlessLoopsAreToldAtTheirLine) {
 
 TEST(NcMacro, RunawayRecursionIsToldAtTheCall) {
   EXPECT_EQ(said("M98 P1\nM30\nO1\nM98 P1\nM99\n"),
-            "p.nc:4:1: error: calls inside calls deeper than 15 levels; a fanuc control reads no more [call-depth]");
+            "p.nc:4:1: error: calls nested deeper than 15 levels; a fanuc control reads no more [call-depth]");
   EXPECT_EQ(said("o1 sub\no1 call\no1 endsub\no1 call\n", "linuxcnc"),
-            "p.nc:2:1: error: calls inside calls deeper than 10 levels; a linuxcnc control reads no more [call-depth]");
+            "p.nc:2:1: error: calls nested deeper than 10 levels; a linuxcnc control reads no more [call-depth]");
 }
 
 // --- mistakes -------------------------------------------------------------------------------------------------------
@@ -286,17 +287,18 @@ TEST(NcMacro, TellsWhatIsWrongWithStatements) {
             "p.nc:1:12: error: WHILE [condition] without DO; WHILE [condition] DO 1 was expected [statement]");
   EXPECT_EQ(said("WHILE[1EQ1]DO1\nG0 X1\n"), "p.nc:1:1: error: DO 1 is not closed; END 1 was expected [statement]");
   EXPECT_EQ(said("G0 X1\nEND1\n"), "p.nc:2:1: error: END 1 closes nothing; DO 1 was expected before it [statement]");
-  EXPECT_EQ(said("DO1\nDO2\nEND1\nEND2\n"),
-            "p.nc:2:1: error: DO 2 is not closed before the end of what it stands in; END 2 was expected [statement]");
+  EXPECT_EQ(
+      said("DO1\nDO2\nEND1\nEND2\n"),
+      "p.nc:2:1: error: DO 2 is not closed before the end of the enclosing structure; END 2 was expected [statement]");
   EXPECT_EQ(said("IF[1EQ1]\n"),
-            "p.nc:1:1: error: IF [condition] with nothing behind it; GOTO or THEN was expected [statement]");
+            "p.nc:1:1: error: IF [condition] with nothing after it; GOTO or THEN was expected [statement]");
   EXPECT_EQ(said("THEN #1=1\n"), "p.nc:1:1: error: THEN without IF; IF [condition] THEN was expected [statement]");
   EXPECT_EQ(said("DO\n"), "p.nc:1:3: error: DO has no number [statement]");
   EXPECT_EQ(said("o1 if [1]\nX1\n"), "p.nc:1:1: error: O1 IF is not closed; O1 ENDIF was expected [statement]");
   EXPECT_EQ(said("o1 if\no1 endif\n"), "p.nc:1:1: error: IF has no [value] [statement]");
   EXPECT_EQ(said("o1 endsub\n"),
             "p.nc:1:1: error: O1 ENDSUB closes nothing; O1 SUB was expected before it [statement]");
-  EXPECT_EQ(said("o1 break\n"), "p.nc:1:1: error: O1 BREAK stands in no loop of this number [statement]");
+  EXPECT_EQ(said("o1 break\n"), "p.nc:1:1: error: O1 BREAK is in no loop of this number [statement]");
   EXPECT_EQ(said("o1 else\n"), "p.nc:1:1: error: O1 ELSE without an IF of its own before it [statement]");
   EXPECT_EQ(said("o1 if [1]\no1 else\no1 else\no1 endif\n"),
             "p.nc:3:1: error: O1 ELSE behind ELSE; ENDIF was expected [statement]");
@@ -317,7 +319,7 @@ TEST(NcMacro, TellsWhatIsWrongWithCalls) {
   EXPECT_EQ(said("M98 P1\nM30\nO1\nG0 X1\n"),
             "p.nc:4:1: warning: the subprogram has no end; M99 was expected before [program-end]");
   EXPECT_EQ(said("M98 P1\nG0 X1\nO1\nX1\nM99\n"),
-            "p.nc:3:1: warning: the program runs into the next one; it is taken to end here (M30) [program-end]");
+            "p.nc:3:1: warning: the program runs into the next one; it is assumed to end here (M30) [program-end]");
   EXPECT_EQ(said("G65 P1 I1 I2 I3 I4 I5 I6 I7 I8 I9 I10 I11\nM30\nO1\nM99\n"),
             "p.nc:1:39: error: more than ten sets of I, J and K [macro-argument]");
 }

@@ -81,7 +81,7 @@ TEST(NcReader, RefusesAnEmptyFile) {
   EXPECT_EQ(complaint(""), "p.nc: error: the file is empty; an NC program was expected [empty-program]");
   EXPECT_EQ(complaint("\r\n \n"), "p.nc: error: the file is empty; an NC program was expected [empty-program]");
   EXPECT_EQ(complaint("%\n(only a comment)\n"),
-            "p.nc: error: the file holds no NC words; an NC program was expected [empty-program]");
+            "p.nc: error: the file has no NC words; an NC program was expected [empty-program]");
 }
 TEST(NcReader, RefusesWhatIsNoNumber) {
   EXPECT_EQ(complaint("G1 XNAN"),
@@ -103,22 +103,20 @@ TEST(NcReader, RefusesACommentWithoutAnEnd) {
 TEST(NcReader, SaysThatCornerWordsAreNotReadYet) {
   EXPECT_EQ(
       complaint("G1 X1 ,C2"),
-      "p.nc:1:7: error: chamfers and roundings in a block (,C) are not read yet; a word was expected [corner-word]");
+      "p.nc:1:7: error: chamfers and roundings in a block (,C) are not supported; a word was expected [corner-word]");
 }
 TEST(NcReader, NamesTheLanguageOfOtherControlsAndStops) {
   const Read siemens = read_text("N10 G17\nN20 SUPA G0 Z=_Z_HOME D0\nN30 T=\"MILL\"\n");
-  EXPECT_EQ(siemens.messages,
-            std::vector<std::string>{
-                "p.nc:2:5: error: SUPA belongs to a Siemens Sinumerik program, which is not read yet; Camber "
-                "reads programs in the style of Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]"});
   EXPECT_EQ(
-      complaint("T=\"MILL\""),
-      "p.nc:1:1: error: T= belongs to a Siemens Sinumerik program, which is not read yet; Camber reads programs in the "
-      "style of Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]");
+      siemens.messages,
+      std::vector<std::string>{"p.nc:2:5: error: SUPA belongs to a Siemens Sinumerik program, which is not supported; "
+                               "Camber reads programs for Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]"});
+  EXPECT_EQ(complaint("T=\"MILL\""),
+            "p.nc:1:1: error: T= belongs to a Siemens Sinumerik program, which is not supported; Camber reads programs "
+            "for Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]");
   EXPECT_EQ(complaint("0 BEGIN PGM PART MM").find("not expected here") != std::string::npos, true);
   EXPECT_EQ(complaint("BEGIN PGM PART MM"),
-            "p.nc:1:1: error: BEGIN belongs to a Heidenhain program, which is not read yet; Camber reads programs in "
-            "the style of "
+            "p.nc:1:1: error: BEGIN belongs to a Heidenhain program, which is not supported; Camber reads programs for "
             "Fanuc, Haas, Mazak EIA and LinuxCNC [heidenhain]");
 }
 TEST(NcReader, TakesMissingNumbersOfMinorWordsAsZeroAndWarns) {

@@ -77,7 +77,7 @@ TEST(SharedPrograms, WhatIsNotReadSaysSo) {
   CAMBER_SHARED_OR_SKIP(path, "nc/elmoe_keychain_840d.mpf");
   EXPECT_EQ(said_of(path),
             Messages{"elmoe_keychain_840d.mpf:3:5: error: DEF belongs to a Siemens Sinumerik program, which is not "
-                     "read yet; Camber reads programs in the style of Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]"});
+                     "supported; Camber reads programs for Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]"});
   EXPECT_EQ(
       said_of(shared_file("nc/gpr_mazak_sample.eia")),
       (Messages{"gpr_mazak_sample.eia:2:1: error: G53.5 is not a G code that Camber knows [unknown-g]",

@@ -99,12 +99,12 @@ TEST(BatchCut, LeavesEveryVoxelAsTheDeepestFlatOrBullNoseDoes) {
 }  // namespace
 TEST(RoundedDistance, NoPlaceOfADiscIsNearerThanTold) {
   std::mt19937 random(11);
-  std::uniform_real_distribution<float> share(-1, 1);
+  std::uniform_real_distribution<float> fraction(-1, 1);
   for (const auto& [flat, corner] : {std::pair{0.0f, 5.0f}, std::pair{3.0f, 0.5f}, std::pair{5.0f, 0.0f}}) {
     float closest = 1e9f;
     for (int round = 0; round < 2000; ++round) {
-      const float tip[3] = {6 * share(random), 6 * share(random), 6 * share(random)};
-      const Eigen::Vector3f normal = Eigen::Vector3f(share(random), share(random), share(random)).normalized();
+      const float tip[3] = {6 * fraction(random), 6 * fraction(random), 6 * fraction(random)};
+      const Eigen::Vector3f normal = Eigen::Vector3f(fraction(random), fraction(random), fraction(random)).normalized();
       const Eigen::Vector3f along = normal.unitOrthogonal(), aside = normal.cross(along);
       const Disc disc{{0, 0, 0}, {normal.x(), normal.y(), normal.z()}, 0.8f, 0.1f};
       float least = 0, at_centre = 0;
@@ -112,9 +112,9 @@ TEST(RoundedDistance, NoPlaceOfADiscIsNearerThanTold) {
       rounded_distances(&tip[0], &tip[1], &tip[2], 1, 0, 0, 0, flat, corner, &at_centre);
       ASSERT_GE(least, at_centre - std::hypot(0.8f, 0.1f) - 1e-5f);
       for (int place = 0; place < 50; ++place) {
-        const float angle = 3.2f * share(random);
+        const float angle = 3.2f * fraction(random);
         const Eigen::Vector3f p =
-            0.8f * (std::cos(angle) * along + std::sin(angle) * aside) + 0.1f * share(random) * normal;
+            0.8f * (std::cos(angle) * along + std::sin(angle) * aside) + 0.1f * fraction(random) * normal;
         float there = 0;
         rounded_distances(&tip[0], &tip[1], &tip[2], 1, p.x(), p.y(), p.z(), flat, corner, &there);
         ASSERT_GE(there, least - 1e-5f);

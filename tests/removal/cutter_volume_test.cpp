@@ -20,11 +20,11 @@ using testing::make_box;
 using testing::make_tool;
 
 constexpr double kLength = 8, kDepth = 2;
-constexpr double kFeed = 0.1, kStockShare = 0.0005;
+constexpr double kFeed = 0.1, kStockFraction = 0.0005;
 
 /// A chip's thickness is right to the order of c / R; the volume of a slot's chips falls short by about a quarter of
 /// it.
-double balance_share(const machine::Tool& tool) { return 0.008 + 0.15 * kFeed / (tool.diameter_mm / 2); }
+double balance_fraction(const machine::Tool& tool) { return 0.008 + 0.15 * kFeed / (tool.diameter_mm / 2); }
 
 struct Volumes {
   double stock_mm3, chips_mm3;
@@ -48,8 +48,8 @@ void expect_volume(const machine::Tool& tool, double area_mm2, const char* what)
   const Volumes v = slot(tool, 0);
   ::testing::Test::RecordProperty(
       what, fmt::format("{:.5f} {:.5f}", v.stock_mm3 / (area_mm2 * kLength), v.chips_mm3 / v.stock_mm3));
-  EXPECT_NEAR(v.stock_mm3 / (area_mm2 * kLength), 1, kStockShare) << what;
-  EXPECT_NEAR(v.chips_mm3 / v.stock_mm3, 1, balance_share(tool)) << what;
+  EXPECT_NEAR(v.stock_mm3 / (area_mm2 * kLength), 1, kStockFraction) << what;
+  EXPECT_NEAR(v.chips_mm3 / v.stock_mm3, 1, balance_fraction(tool)) << what;
 }
 
 double ball_area(double r, double depth) {
@@ -122,13 +122,13 @@ TEST(CutterVolume, ChipsAreTheStocksLossOnARampDownAndUp) {
   for (const auto& tool : {tapered, chamfer})
     for (const double rise : {0.04, -0.04}) {
       const Volumes v = slot(tool, rise);
-      EXPECT_NEAR(v.chips_mm3 / v.stock_mm3, 1, balance_share(tool)) << rise;
+      EXPECT_NEAR(v.chips_mm3 / v.stock_mm3, 1, balance_fraction(tool)) << rise;
     }
 }
 
 /// A flat cutter's second pass, `deeper` below one that has made a floor (or below the block's top): what a layer that
 /// is no multiple of the rings' width holds, over its exact volume.
-double layer_share(double deeper, bool below_top) {
+double layer_fraction(double deeper, bool below_top) {
   const auto tool = make_tool(ToolType::flat, 10, 2, 30);
   Stock stock = make_box({0, -9, -4}, {kLength, 9, 0}, 0.1);
   const Stock blank(stock);
@@ -148,7 +148,7 @@ double layer_share(double deeper, bool below_top) {
 TEST(CutterVolume, LevelFacesCutRingsInTwo) {
   for (const bool below_top : {true, false})
     for (const double deeper : {0.1, 0.13, 0.15, 0.17, 0.2, 0.21})
-      EXPECT_NEAR(layer_share(deeper, below_top), 1, 0.006) << deeper << (below_top ? " below the top" : "");
+      EXPECT_NEAR(layer_fraction(deeper, below_top), 1, 0.006) << deeper << (below_top ? " below the top" : "");
 }
 
 TEST(CutterVolume, PlungingDrillTakesItsPointAndItsCylinder) {
@@ -166,7 +166,7 @@ TEST(CutterVolume, PlungingDrillTakesItsPointAndItsCylinder) {
   const double stock_mm3 = e.removed_mm3;
   const double point = 3 / std::tan(rad_from_deg(59)), exact = kPi * 9 * (4 - point) + kPi * 9 * point / 3;
   EXPECT_NEAR(stock_mm3 / exact, 1, 0.004);
-  EXPECT_NEAR(chips / stock_mm3, 1, balance_share(tool));
+  EXPECT_NEAR(chips / stock_mm3, 1, balance_fraction(tool));
 }
 
 }  // namespace

@@ -106,8 +106,8 @@ TEST(Kinks, BetweenRunsAreWithinTheBoundWhereThePathIsSmooth) {
   }
 }
 
-/// Of the joints beside an arc those that kink by more than the bound, or by the share of what the program turns there
-/// that joints of arcs, and of arcs and lines, may have.
+/// Of the joints beside an arc those that kink by more than the bound, or by the fraction of what the program turns
+/// there that joints of arcs, and of arcs and lines, may have.
 int too_sharp(const std::string& before, const std::string& after, double bound_deg, int& beside_arcs) {
   const nc::Read old = nc::read_clean(before), now = nc::read_clean(after);
   const auto turns = kinks_between_moves(old.moves);
@@ -117,8 +117,8 @@ int too_sharp(const std::string& before, const std::string& after, double bound_
     while (turns.at(at).at_mm != kink.at_mm) ++at;  // throws where the end is no point of the program
     if (!kink.arc_before && !kink.arc_behind) continue;
     ++beside_arcs;
-    const double share = kink.arc_before && kink.arc_behind ? 0.125 : 0.6;
-    out += deg_from_rad(kink.rad) > std::max(bound_deg, share * deg_from_rad(turns[at].rad)) + kMeasured_deg;
+    const double fraction = kink.arc_before && kink.arc_behind ? 0.125 : 0.6;
+    out += deg_from_rad(kink.rad) > std::max(bound_deg, fraction * deg_from_rad(turns[at].rad)) + kMeasured_deg;
   }
   return out;
 }
@@ -283,8 +283,8 @@ TEST(Kinks, OfRandomPathsAreWithinTheBoundOrWhatThePathTurnsThere) {
       if (turn > 20) continue;  // a corner
       ++beside_arcs;
       const bool gentle = turn <= 5;  // no edge either
-      const double share = !gentle ? 1 : kink.arc_before && kink.arc_behind ? 0.125 : 0.6;
-      RC_ASSERT(is <= std::max(bound, share * turn) + kMeasured_deg);
+      const double fraction = !gentle ? 1 : kink.arc_before && kink.arc_behind ? 0.125 : 0.6;
+      RC_ASSERT(is <= std::max(bound, fraction * turn) + kMeasured_deg);
     }
   }));
   EXPECT_GT(beside_arcs, 200);

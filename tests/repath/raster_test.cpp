@@ -225,7 +225,7 @@ struct Case {
   CutterShape cutter;
   Height height;
   double degrees;
-  double min_share;      ///< of the scallop asked for that is used up at the worst place
+  double min_fraction;   ///< of the scallop asked for that is used up at the worst place
   double rim_mm = kRim;  ///< beside the border that is left out
 };
 
@@ -257,7 +257,7 @@ TEST(Raster, LeavesTheScallopsThatWereAskedForAndNoMore) {
     const Left left = left_standing(paths_of(part, raster, options), c.cutter, c.height, kX, kY, c.rim_mm, 0.05);
     // Above: the scallop, the tolerance, and what stamps 0.05 mm apart and the mesh's chords leave.
     EXPECT_LE(left.most, kScallop + kTolerance + 0.0005) << c.name;
-    EXPECT_GE(left.most, c.min_share * kScallop) << c.name;
+    EXPECT_GE(left.most, c.min_fraction * kScallop) << c.name;
     EXPECT_GE(left.least, -kTolerance - 0.0005) << c.name;
     RecordProperty(c.name, fmt::format("{:.4f}", left.most));
     std::cout << fmt::format("{:<36} {:3} rows, most {:.4f} mm", c.name, raster.spacing.rows_mm.size(), left.most);

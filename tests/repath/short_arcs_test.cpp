@@ -28,7 +28,7 @@ struct ArcStyle {
 std::string tangent_arcs(const ArcStyle& style, std::mt19937& random, int blocks, double length_mm) {
   const std::string axes = style.plane == 17 ? "XYZ" : style.plane == 18 ? "ZXY" : "YZX";
   const std::string centres = style.plane == 17 ? "IJ" : style.plane == 18 ? "KI" : "JK";
-  std::uniform_real_distribution<double> radius(3, 8), share(0.4, 1.6), any(0, 1);
+  std::uniform_real_distribution<double> radius(3, 8), fraction(0.4, 1.6), any(0, 1);
   std::string text = fmt::format("G21 G90 G{}\nG0 X0. Y0. Z0.\n", style.plane);
   if (style.form == 'A') text += "G90.1\n";
   if (style.incremental) text += "G91\n";
@@ -43,7 +43,7 @@ std::string tangent_arcs(const ArcStyle& style, std::mt19937& random, int blocks
     return out;
   };
   for (int k = 0; k < blocks; ++k) {
-    const double length = length_mm * share(random), to_up = style.helix ? round4(up + 0.15 * length) : 0;
+    const double length = length_mm * fraction(random), to_up = style.helix ? round4(up + 0.15 * length) : 0;
     if (k % 6 == 5) {
       const Vec2 end = at + length * Vec2(std::cos(heading), std::sin(heading));
       const Vec2 to(round4(end.x()), round4(end.y()));

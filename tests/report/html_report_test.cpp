@@ -184,10 +184,10 @@ TEST(HtmlReport, SaysWhenSomethingWasLeftOut) {
   const std::string page = html_report(example(), {.max_vertices = 300, .max_rows = 300});
   EXPECT_TRUE(holds(page,
                     "The surface is drawn in cells of 1.5 mm (176 vertices for 900 points); each shows the error of "
-                    "greatest magnitude in it."));
-  EXPECT_TRUE(holds(page,
-                    " of 5000 moments: of each run of neighbours the first and, of every quantity, the least and "
-                    "the greatest."));
+                    "largest magnitude in it."));
+  EXPECT_TRUE(holds(
+      page,
+      " of 5000 rows: of each group of neighbours the first and, for every quantity, the minimum and the maximum."));
   EXPECT_FALSE(holds(without_scripts(html_report(example())), " drawn "));
 }
 

@@ -152,7 +152,7 @@ const CHECKS = {
     expect(grey > 0.05, `the stock covers ${grey} of the picture`);
     const colours = await pixels(page);
     expect(colours.red > 0.005 * colours.all && colours.blue > 0.005 * colours.all, `the surface is not seen beside it: ${JSON.stringify(colours)}`);
-    expect(/Grey is the stock that stays, in cells of 0.5 mm/.test(await page.locator('.notes').innerText()), 'the page does not say what is grey');
+    expect(/Grey is the remaining stock, in cells of 0.5 mm/.test(await page.locator('.notes').innerText()), 'the page does not say what is grey');
     await page.getByRole('button', { name: 'Front', exact: true }).click();
     expect((await pixels(page)).red === 0, 'the surface is seen through the stock');
     const box = await page.locator('#scene canvas').boundingBox(), tip = page.locator('.tip');
@@ -301,7 +301,7 @@ const CHECKS = {
 
   async large_path(page) {
     expect((await strokes(page)).drawn > 1000, 'the picture is blank');
-    expect(/those left out lie within/.test(await page.locator('.notes').innerText()), 'the page does not say that points were left out');
+    expect(/omitted points lie within/.test(await page.locator('.notes').innerText()), 'the page does not say that points were left out');
   },
 
   async large(page) {

@@ -28,7 +28,7 @@ TEST(VerdictText, JudgesTheEmittedProgramAndNamesTheCauses) {
             "5");
   EXPECT_EQ(v.reasons,
             (std::vector<std::string>{"4.10 um rms differs along the cutter (helix bow), most in lines 12, 14; two "
-                                      "axial passes, a shorter tool or a lower feed would take it away"}));
+                                      "axial passes, a shorter tool or a lower feed would remove it"}));
 }
 
 TEST(VerdictText, IsOnTheBandOrTheDeflectionWhereTheJobAsksForIt) {
@@ -37,7 +37,7 @@ TEST(VerdictText, IsOnTheBandOrTheDeflectionWhereTheJobAsksForIt) {
   asked.profile_um = {-5, 10};
   c.plain_after.in_band_fraction = 0.9;
   EXPECT_EQ(verdict_text(c, asked).headline,
-            "over the tolerance: 90.0 % of the area is within profile_um = [-5, 10], wanted are 95 %");
+            "over the tolerance: 90.0 % of the area is within profile_um = [-5, 10]; 95 % was expected");
   asked.profile_um.reset();
   asked.reference = machine::Reference::machine;
   EXPECT_EQ(verdict_text(c, asked).headline,
@@ -50,17 +50,17 @@ TEST(VerdictText, NothingBetterTooDeepOrDoubtfulIsNoSuccess) {
   c.within_tolerance = true;
   c.within_part = false;
   c.depth_limit_um = 5;
-  c.depth_after.held_um = 7;
+  c.depth_after.gouge_depth_p999_um = 7;
   VerdictText v = verdict_text(c, asked);
   EXPECT_FALSE(v.success);
-  EXPECT_EQ(v.headline, "too deep in the part");
+  EXPECT_EQ(v.headline, "gouge too deep");
   ASSERT_EQ(v.reasons.size(), 1u);
   EXPECT_TRUE(v.reasons[0].ends_with("no more than 5 um were expected")) << v.reasons[0];
   c.better = false;
   EXPECT_EQ(verdict_text(c, asked).headline, "no better program was found");
   c.doubts = {"chips and stock differ by 4 %"};
   v = verdict_text(c, asked);
-  EXPECT_EQ(v.headline, "the figures are not to be relied on");
+  EXPECT_EQ(v.headline, "the figures are not reliable");
   EXPECT_EQ(v.reasons.front(), c.doubts[0]);
 }
 

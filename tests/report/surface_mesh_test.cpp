@@ -33,7 +33,7 @@ std::vector<SurfaceSample> sphere(double radius_mm) {
   return out;
 }
 
-double area_of(const SurfaceMesh& mesh, double* outward_share = nullptr) {
+double area_of(const SurfaceMesh& mesh, double* outward_fraction = nullptr) {
   double area = 0, outward = 0;
   for (const auto& q : mesh.quads)
     for (const auto& t : {std::array{q[0], q[1], q[2]}, std::array{q[0], q[2], q[3]}}) {
@@ -42,7 +42,7 @@ double area_of(const SurfaceMesh& mesh, double* outward_share = nullptr) {
       area += 0.5 * (b - a).cross(c - a).norm();
     }
   for (const auto& v : mesh.vertices) outward += v.normal.dot(v.place_mm.normalized()) > 0.99 ? 1 : 0;
-  if (outward_share) *outward_share = outward / static_cast<double>(mesh.vertices.size());
+  if (outward_fraction) *outward_fraction = outward / static_cast<double>(mesh.vertices.size());
   return area;
 }
 

@@ -151,7 +151,7 @@ TEST(Contour, NominalStampsCoverEveryCornerThatTheAxesCut) {
   const removal::StampPath nominal = removal::nominal_path(program.moves, program.selected, program.path);
   double corner = 1e9, end = 1e9, start = 1e9;
   for (const auto& s : nominal.stamps) {
-    const Vec3 there = nc::point_at(program.moves, program.moves.moves[s.move], s.share);
+    const Vec3 there = nc::point_at(program.moves, program.moves.moves[s.move], s.fraction);
     EXPECT_LT((s.pose.tip_mm - there).norm(), 1e-9) << "on the programmed path";
     corner = std::min(corner, (s.pose.tip_mm - Vec3(0, 0, -2)).norm());
     start = std::min(start, (s.pose.tip_mm - Vec3(-20, 0, -2)).norm());

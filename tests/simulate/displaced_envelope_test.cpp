@@ -59,11 +59,11 @@ TEST(DisplacedEnvelope, InclinedPlaneAgreesWhereverTheGridLies_slow) {
   }
   CutFigures mean;
   for (const auto& f : all) {
-    const double share = 1.0 / static_cast<double>(all.size());
-    mean.lateral_max_N += share * f.lateral_max_N;
-    mean.mean_N += share * f.mean_N;
-    mean.error_mean_um += share * f.error_mean_um;
-    mean.p95_um += share * f.p95_um;
+    const double fraction = 1.0 / static_cast<double>(all.size());
+    mean.lateral_max_N += fraction * f.lateral_max_N;
+    mean.mean_N += fraction * f.mean_N;
+    mean.error_mean_um += fraction * f.error_mean_um;
+    mean.p95_um += fraction * f.p95_um;
   }
   for (const auto& f : all) {
     EXPECT_NEAR(f.lateral_max_N, mean.lateral_max_N, kGridAgreement * mean.lateral_max_N);

@@ -59,17 +59,17 @@ Steady steady(const machine::Tool& tool, const machine::Material& material, cons
   out.load.force_mean_N.setZero();
   out.load.torque_mean_Nmm = out.load.work_Nmm = out.load.chip_mm3 = 0;
   for (std::size_t k = from; k < to; ++k) {
-    const double share = 1.0 / static_cast<double>(to - from);
-    out.load.force_mean_N += share * out.all.loads[k].force_mean_N;
-    out.load.torque_mean_Nmm += share * out.all.loads[k].torque_mean_Nmm;
-    out.load.work_Nmm += share * out.all.loads[k].work_Nmm;
-    out.load.chip_mm3 += share * out.all.loads[k].chip_mm3;
+    const double fraction = 1.0 / static_cast<double>(to - from);
+    out.load.force_mean_N += fraction * out.all.loads[k].force_mean_N;
+    out.load.torque_mean_Nmm += fraction * out.all.loads[k].torque_mean_Nmm;
+    out.load.work_Nmm += fraction * out.all.loads[k].work_Nmm;
+    out.load.chip_mm3 += fraction * out.all.loads[k].chip_mm3;
   }
   return out;
 }
 
-void expect_near(const Vec3& got, const Vec3& want, double share) {
-  EXPECT_LT((got - want).norm(), share * want.norm()) << got.transpose() << "  against  " << want.transpose();
+void expect_near(const Vec3& got, const Vec3& want, double fraction) {
+  EXPECT_LT((got - want).norm(), fraction * want.norm()) << got.transpose() << "  against  " << want.transpose();
 }
 
 TEST(ForceHistory, BallSlotMeansMatchTheClosedForm) {

@@ -31,7 +31,7 @@ std::vector<removal::Stamp> rows(double width) {
 }
 
 struct Result {
-  double lateral_max_N, error_p5_um, error_median_um, error_p95_um, removed_share;
+  double lateral_max_N, error_p5_um, error_median_um, error_p95_um, removed_fraction;
   Vec3 force_mean_N;
   Vec2 deflection_um;
 };
@@ -59,7 +59,7 @@ Result simulate(machine::Coupling coupling, double width, double y_from, double 
   EXPECT_EQ(cut_result.unsettled, 0u);
 
   Result r{};
-  r.removed_share = cut_result.chip_mm3 / cut_result.stock_mm3;
+  r.removed_fraction = cut_result.chip_mm3 / cut_result.stock_mm3;
   double n = 0;
   for (std::size_t k = 0; k + 1 < stamps.size(); ++k) {
     const Vec3& tip = stamps[k].pose.tip_mm;
@@ -77,8 +77,8 @@ Result simulate(machine::Coupling coupling, double width, double y_from, double 
     if (p.place_mm.x() > 3 && p.place_mm.x() < 5 && p.place_mm.y() > y_from && p.place_mm.y() < y_to)
       error.push_back(1000 * p.error_mm);
   std::sort(error.begin(), error.end());
-  const auto at = [&](double share) {
-    return error[static_cast<std::size_t>(share * static_cast<double>(error.size() - 1))];
+  const auto at = [&](double fraction) {
+    return error[static_cast<std::size_t>(fraction * static_cast<double>(error.size() - 1))];
   };
   r.error_p5_um = at(0.05);
   r.error_median_um = at(0.5);
@@ -98,14 +98,14 @@ TEST(InclinedPlane, RigidCouplingMatchesTheIndependentCalculations_slow) {
   EXPECT_NEAR(r.error_median_um, 16.6, kTolerance * 16.6);
   EXPECT_NEAR(r.error_p5_um, 15.1, kTolerance * 15.1);
   EXPECT_NEAR(r.error_p95_um, 17.9, kTolerance * 17.9);
-  EXPECT_NEAR(r.removed_share, 1, 0.01);
+  EXPECT_NEAR(r.removed_fraction, 1, 0.01);
 }
 
 TEST(InclinedPlane, StaticCouplingKeepsTheVolumeBalance_slow) {
   // The bent cutter's chips are as large as what the stock loses: the tilt of the bent envelope is not forgotten.
   const Result r = simulate(machine::Coupling::static_, 3, 1, 2);
   // Two percent: the entry of each row, where the deflection jumps, is not as well balanced as the steady middle.
-  EXPECT_NEAR(r.removed_share, 1, 0.02);
+  EXPECT_NEAR(r.removed_fraction, 1, 0.02);
   EXPECT_GT(r.error_median_um, 10);
   EXPECT_LT(r.error_median_um, 30);
 }

@@ -52,7 +52,7 @@ TEST(ToothFrequency, IsWarnedOfAboveAThirdOfTheFirstNaturalFrequency) {
     ASSERT_TRUE(std::regex_match(
         message, figures,
         std::regex(R"(p\.nc:5:1: warning: T1 passes (\d+) teeth a second, more than a third of its first natural )"
-                   R"(frequency of about (\d+) Hz: a static deflection no longer holds \[tooth-frequency\]\n)"
+                   R"(frequency of about (\d+) Hz: a static deflection is no longer valid \[tooth-frequency\]\n)"
                    R"(    G1 X10 F100\n    \^)")))
         << message;
     EXPECT_NEAR(std::stod(figures[1]), rpm / 60 * 2, 0.5);

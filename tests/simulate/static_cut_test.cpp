@@ -20,19 +20,19 @@ double largest_force(const std::vector<PassingFigures>& all) {
 }
 
 /// Tooth passing by tooth passing, from the first touch of the block on.
-void expect_the_drawn_cut(const DeflectedShoulder& s, double peak_share, double mean_share) {
+void expect_the_drawn_cut(const DeflectedShoulder& s, double peak_fraction, double mean_fraction) {
   const auto drawn = testing::DrawnShoulder(s).cut();
   const auto camber = testing::camber_figures(s), rigid = testing::camber_figures(s, machine::Coupling::rigid);
   ASSERT_EQ(drawn.size(), camber.size());
   const double largest = largest_force(drawn), mean = drawn.back().mean_N.norm();
   double apart = 0;
   for (std::size_t k = 0; k < drawn.size(); ++k) {
-    EXPECT_NEAR(camber[k].lateral_max_N, drawn[k].lateral_max_N, peak_share * largest) << k;
-    EXPECT_LT((camber[k].mean_N - drawn[k].mean_N).norm(), mean_share * mean) << k;
+    EXPECT_NEAR(camber[k].lateral_max_N, drawn[k].lateral_max_N, peak_fraction * largest) << k;
+    EXPECT_LT((camber[k].mean_N - drawn[k].mean_N).norm(), mean_fraction * mean) << k;
     apart = std::max(apart, (rigid[k].mean_N - drawn[k].mean_N).norm() / mean);
   }
   // Bending does matter on the way in.
-  EXPECT_GT(apart, 2 * mean_share);
+  EXPECT_GT(apart, 2 * mean_fraction);
 }
 
 /// A soft spring: bending changes the mean force by 3.5 % on the way in, the peak by 12 %.

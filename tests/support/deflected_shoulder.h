@@ -142,10 +142,10 @@ class DrawnShoulder {
       Eigen::Matrix2d slope;
       for (int a = 0; a < 2; ++a) slope.col(a) = (left(bent + kSmall * Vec2::Unit(a)) - r) / kSmall;
       const Vec2 step = -slope.inverse() * r;
-      double share = 1;
+      double fraction = 1;
       Vec2 next = left(bent + step);
-      while (next.norm() > r.norm() && share > 0.01) next = left(bent + (share /= 2) * step);
-      bent += share * step;
+      while (next.norm() > r.norm() && fraction > 0.01) next = left(bent + (fraction /= 2) * step);
+      bent += fraction * step;
       r = next;
     }
     return bent;

@@ -160,9 +160,9 @@ inline WallFigures camber_figures(const FinishedWall& w) {
   const std::size_t middle = detail::middle_stamp(w, cut);
   const std::size_t around = cut.even() ? 21 : static_cast<std::size_t>(6 * w.flutes);  // whole turns
   for (std::size_t k = middle - around / 2; k < middle - around / 2 + around; ++k) {
-    const double share = 1 / static_cast<double>(around), peak = result.loads[k].lateral_max_N;
-    f.lateral_max_N = cut.even() ? f.lateral_max_N + share * peak : std::max(f.lateral_max_N, peak);
-    f.mean_N += share * result.loads[k].force_mean_N;
+    const double fraction = 1 / static_cast<double>(around), peak = result.loads[k].lateral_max_N;
+    f.lateral_max_N = cut.even() ? f.lateral_max_N + fraction * peak : std::max(f.lateral_max_N, peak);
+    f.mean_N += fraction * result.loads[k].force_mean_N;
   }
   detail::Slices slices(w);
   for (const auto& p : map.take()) {

@@ -131,10 +131,10 @@ inline void set_error(CutFigures& f, std::vector<std::pair<double, double>> erro
     f.error_mean_um += 1000 * a * e;
   }
   f.error_mean_um /= all;
-  const auto at = [&](double share) {
+  const auto at = [&](double fraction) {
     double below = 0;
     for (const auto& [e, a] : error_area)
-      if ((below += a) >= share * all) return 1000 * e;
+      if ((below += a) >= fraction * all) return 1000 * e;
     return 1000 * error_area.back().first;
   };
   f.p5_um = at(0.05), f.median_um = at(0.5), f.p95_um = at(0.95);
@@ -161,10 +161,10 @@ inline CutFigures drawn_figures(const InclinedPlane& p) {
     if (best < cut.stamps.size()) by_way[w] = drawn_pass(cut, best);
   }
   for (const auto& [w, pass] : by_way) {
-    const double share = 1.0 / static_cast<double>(by_way.size());
-    f.lateral_max_N += share * pass.lateral_max_N;
-    f.mean_N += share * pass.mean_N;
-    f.chip_mm3 += share * pass.chip_mm3;
+    const double fraction = 1.0 / static_cast<double>(by_way.size());
+    f.lateral_max_N += fraction * pass.lateral_max_N;
+    f.mean_N += fraction * pass.mean_N;
+    f.chip_mm3 += fraction * pass.chip_mm3;
   }
   const double y = detail::kSFrom * std::cos(a), z = detail::kSFrom * std::sin(a);
   const DrawnSurface lattice(p.offset_mm + Vec3(3.2, y, z), Vec3::UnitX(), {0, std::cos(a), std::sin(a)}, 60, 120, 0.01,
@@ -208,11 +208,11 @@ inline CutFigures camber_figures(const InclinedPlane& p) {
   f.unsettled = result.unsettled;
   const auto inner = detail::middle(p, cut.stamps, 0);
   for (const std::size_t k : inner) {
-    const double share = 1.0 / static_cast<double>(inner.size());
+    const double fraction = 1.0 / static_cast<double>(inner.size());
     const double peak = result.loads[k].lateral_max_N;
-    f.lateral_max_N = cut.even() ? f.lateral_max_N + share * peak : std::max(f.lateral_max_N, peak);
-    f.mean_N += share * result.loads[k].force_mean_N;
-    f.chip_mm3 += share * result.loads[k].chip_mm3;
+    f.lateral_max_N = cut.even() ? f.lateral_max_N + fraction * peak : std::max(f.lateral_max_N, peak);
+    f.mean_N += fraction * result.loads[k].force_mean_N;
+    f.chip_mm3 += fraction * result.loads[k].chip_mm3;
   }
   const double a = rad_from_deg(p.slope_deg);
   std::vector<std::pair<double, double>> error_area;

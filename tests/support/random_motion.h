@@ -11,7 +11,7 @@ class Dice {
  public:
   explicit Dice(unsigned seed) : random_(seed) {}
   double between(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
-  bool chance(double share) { return between(0, 1) < share; }
+  bool chance(double fraction) { return between(0, 1) < fraction; }
   int pick(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
 
  private:
@@ -62,8 +62,8 @@ inline nc::Interpretation random_motion(unsigned seed) {
 inline machine::Machine random_machine(unsigned seed) {
   Dice dice(seed);
   machine::Machine m;
-  const auto maybe = [&](double share, double from, double to, double otherwise) {
-    return dice.chance(share) ? dice.between(from, to) : otherwise;
+  const auto maybe = [&](double fraction, double from, double to, double otherwise) {
+    return dice.chance(fraction) ? dice.between(from, to) : otherwise;
   };
   m.control.kind = *machine::control_kind_named(dice.chance(0.3) ? "linuxcnc" : "fanuc");
   machine::Corner& corner = m.control.corner;

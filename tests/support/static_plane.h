@@ -76,10 +76,11 @@ class PlaneJudge {
     f.chips_of_surface = chips / before.volume_above(bent);
     const bool even = p_.pitch_deg.empty();
     for (const Period& q : read) {
-      const double share = 1.0 / static_cast<double>(read.size());
-      f.lateral_max_N = even ? f.lateral_max_N + share * q.lateral_max_N : std::max(f.lateral_max_N, q.lateral_max_N);
-      f.mean_N += share * q.mean_N;
-      f.chip_mm3 += share * q.chip_mm3;
+      const double fraction = 1.0 / static_cast<double>(read.size());
+      f.lateral_max_N =
+          even ? f.lateral_max_N + fraction * q.lateral_max_N : std::max(f.lateral_max_N, q.lateral_max_N);
+      f.mean_N += fraction * q.mean_N;
+      f.chip_mm3 += fraction * q.chip_mm3;
     }
     std::vector<std::pair<double, double>> error;
     // Two rows' pitch of finished surface, behind the last row.

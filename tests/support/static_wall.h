@@ -61,9 +61,9 @@ class WallJudge {
       for (std::size_t k = 0; k < periods.size(); ++k) {
         chips += periods[k].chip_mm3, f.unsettled_steps += periods[k].unsettled;
         if (k < first || k >= first + count) continue;
-        const double share = 1.0 / static_cast<double>(count), peak = periods[k].lateral_max_N;
-        f.lateral_max_N = w_.pitch_deg.empty() ? f.lateral_max_N + share * peak : std::max(f.lateral_max_N, peak);
-        f.mean_N += share * periods[k].mean_N;
+        const double fraction = 1.0 / static_cast<double>(count), peak = periods[k].lateral_max_N;
+        f.lateral_max_N = w_.pitch_deg.empty() ? f.lateral_max_N + fraction * peak : std::max(f.lateral_max_N, peak);
+        f.mean_N += fraction * periods[k].mean_N;
       }
     }
     f.chips_of_surface = chips / before.volume_above(bent);

@@ -106,7 +106,7 @@ class TimeDomainMilling {
   struct Edge {
     double r, z, kappa, width, k1, k2;
     int level;
-    double level_share;
+    double level_fraction;
   };
   struct Point {
     Vec3 straight, place, normal;
@@ -138,14 +138,14 @@ class TimeDomainMilling {
       }
       e.k2 = std::sin(e.kappa) / e.r;
       const double at = std::min(e.z / level_height(1), tool_.levels - 1 - 1e-9);
-      e.level = static_cast<int>(at), e.level_share = at - e.level;
+      e.level = static_cast<int>(at), e.level_fraction = at - e.level;
       edge_.push_back(e);
     }
   }
 
   Vec2 bend_at(const Eigen::VectorXd& bend, const Edge& e) const {
     const Vec2 low = bend.segment<2>(2 * e.level), high = bend.segment<2>(2 * e.level + 2);
-    return low + e.level_share * (high - low);
+    return low + e.level_fraction * (high - low);
   }
 
   /// Where the edges stand, unbent.
@@ -228,7 +228,7 @@ class TimeDomainMilling {
       EdgeLaw::component(law_.ka, law_.ma, law_.kae, p.chip, law_.ramp_mm, fa, da);
       const Vec3 f = -e.width * (ft * motion + fr * p.normal + fa * meridian);
       if (sum) *sum += f;
-      const double low = 1 - e.level_share, high = e.level_share;
+      const double low = 1 - e.level_fraction, high = e.level_fraction;
       force.segment<2>(2 * e.level) += low * f.head<2>();
       force.segment<2>(2 * e.level + 2) += high * f.head<2>();
       if (!slope) continue;
@@ -263,14 +263,14 @@ class TimeDomainMilling {
         if (trial.lpNorm<Eigen::Infinity>() > kFar_mm) break;
         const Eigen::VectorXd step =
             (Eigen::MatrixXd::Identity(n, n) - flexibility_ * slope).partialPivLu().solve(left);
-        double share = 1;
+        double fraction = 1;
         const double before = left.norm();
         const Eigen::VectorXd from = trial;
-        for (int half = 0; half < 7; ++half, share /= 2) {
-          trial = from + share * step;
+        for (int half = 0; half < 7; ++half, fraction /= 2) {
+          trial = from + fraction * step;
           load(trial, force, &slope, &sum);
           left = flexibility_ * force - trial;
-          if (left.norm() < (1 - 0.1 * share) * before) break;
+          if (left.norm() < (1 - 0.1 * fraction) * before) break;
         }
       }
       trial.setZero();  // once more from the unbent tool
@@ -307,8 +307,8 @@ class TimeDomainMilling {
     const Edge& e = edge_[k % edge_.size()];
     const Vec3 area = 0.5 * (d.place - a.place).cross(b.place - c.place);
     const double mean_square = (a.chip * a.chip + b.chip * b.chip + c.chip * c.chip + d.chip * d.chip) / 4;
-    const double share = 1 - 0.5 * (e.k1 + e.k2) * mean_square / h + e.k1 * e.k2 * h * h / 3;
-    period.chip_mm3 += h * share * std::abs(area.dot(c.normal));
+    const double fraction = 1 - 0.5 * (e.k1 + e.k2) * mean_square / h + e.k1 * e.k2 * h * h / 3;
+    period.chip_mm3 += h * fraction * std::abs(area.dot(c.normal));
   }
 
   TurningTool tool_;

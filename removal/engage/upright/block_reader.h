@@ -13,7 +13,7 @@
 
 namespace camber::removal::upright {
 
-/// For one run of one tool. How depth and chip are defined: removal/engagement.h.
+/// For one run of one tool. Definitions of depth and chip thickness: removal/engagement.h.
 class BlockReader {
  public:
   /// What one thread needs; may be used for stamp after stamp.

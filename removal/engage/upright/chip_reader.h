@@ -16,7 +16,7 @@
 
 namespace camber::removal::upright {
 
-/// Reads for one stretch. How depth and chip are defined: removal/engagement.h.
+/// Reads for one stretch. Definitions of depth and chip thickness: removal/engagement.h.
 class ChipReader {
  public:
   /// A shallow point, whose chip the fields of the stamps around decide.

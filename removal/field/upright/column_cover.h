@@ -24,7 +24,7 @@ class ColumnCover {
   static constexpr int kColumns = Tile::kSide * Tile::kSide;
   static constexpr int kLine = 24;  ///< columns of one i, filled up to whole vectors
 
-  /// Tip and largest bend of a stamp that is in the tile already; false: not known.
+  /// Tip and largest deflection of a stamp that is in the tile already; false: not known.
   using TipOf = std::function<bool(std::int32_t id, Vec3& tip_mm, double& deflection_mm)>;
 
   /// Reads a loaded tile: where air begins in each column, and a stamp that it names.

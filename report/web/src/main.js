@@ -18,8 +18,8 @@ function say(sentence) {
 const capital = word => word[0].toUpperCase() + word.slice(1);
 
 const LEGENDS = {
-  deflection: 'of it, deflection of the tool, \u00b5m',
-  contour: 'of it, servo lag and corner rounding, \u00b5m',
+  deflection: 'due to tool deflection, \u00b5m',
+  contour: 'due to servo lag and corner rounding, \u00b5m',
 };
 
 class Page {

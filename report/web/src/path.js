@@ -7,8 +7,8 @@ import { choice, element, menu, niceLimit } from './text.js';
 
 const REWRITTEN = {
   [RAPID]: { name: 'rapid', colour: '#b4bcc6', width: 0.7, dash: [4, 4] },
-  [KEPT_LINE]: { name: 'line, left as it was', colour: '#8fb4d8', width: 1 },
-  [KEPT_ARC]: { name: 'arc, left as it was', colour: '#eab393', width: 1 },
+  [KEPT_LINE]: { name: 'line, unchanged', colour: '#8fb4d8', width: 1 },
+  [KEPT_ARC]: { name: 'arc, unchanged', colour: '#eab393', width: 1 },
   [LINE]: { name: 'line', colour: '#1668b8', width: 1.3 },
   [ARC]: { name: 'arc', colour: '#d9622b', width: 1.3 },
 };
