@@ -79,7 +79,7 @@ TEST(Traced, OwnMotionAsATraceGivesTheSameMap) {
     // feed.csv is rounded to 0.01 um; where tooth passings begin by a sample earlier, chips differ by a few nanometres.
     EXPECT_LT(f["trace"]["difference_um"]["p95"], 0.1);
     EXPECT_GT(f["trace"]["off_path_um"]["max"], 1.0);  // it rounds the corner
-    EXPECT_NEAR(f["machine_time_s"], model["machine_time_s"], 0.1);
+    EXPECT_NEAR(f["machine_time_s"], model["machine_time_s"], 0.15);
     EXPECT_EQ(tests::file_text(folder / "t.json"), tests::file_text(folder / "traced/summary.json"));
   }
 }
