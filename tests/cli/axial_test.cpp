@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/geometry.h"
+#include "base/units.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
