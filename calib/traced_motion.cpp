@@ -142,17 +142,27 @@ class Matcher {
       TimedSample s;
       s.t_s = trace_.t_s[i];
       s.command_mm = s.position_mm = at;
-      s.move = furthest(place, kWindow_mm + went_mm);
+      s.move = furthest(place, at, kWindow_mm + went_mm);
       place = tracker(s);
       add(i, place.move, went_mm == 0 && i > 0);
     }
   }
 
-  /// The last move that begins within a length of path from a place.
-  std::uint32_t furthest(const PathPlace& from, double length_mm) const {
+  /// The last move that begins within a length of path from a place. Of a move to or from an unknown place only the
+  /// end is known: it is over when the tool is there, and begins where the move before ends.
+  std::uint32_t furthest(const PathPlace& from, const Vec3& at, double length_mm) const {
+    constexpr double kThere_mm = 0.01;
+    const auto& moves = program_.moves;
+    const auto left_mm = [&](std::uint32_t m, double u) {
+      return moves[m].reference ? 0.0 : (1 - u) * nc::length_mm(program_, moves[m]);
+    };
     std::uint32_t move = from.move;
-    double room_mm = length_mm - (1 - from.u) * nc::length_mm(program_, program_.moves[move]);
-    while (room_mm > 0 && move + 1 < program_.moves.size()) room_mm -= nc::length_mm(program_, program_.moves[++move]);
+    if (moves[move].reference && (at - moves[move].end_mm).norm() > kWindow_mm) return move;
+    double room_mm = length_mm - left_mm(move, from.u);
+    while (room_mm > 0 && move + 1 < moves.size()) {
+      if (moves[move + 1].reference && (move != from.move || left_mm(move, from.u) > kThere_mm)) break;
+      room_mm -= left_mm(++move, 0);
+    }
     return move;
   }
 
