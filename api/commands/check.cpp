@@ -51,6 +51,13 @@ ordered_json diagnostic_json(const Diagnostic& d) {
           {"check", d.check}};
 }
 
+/// A program that calls no tool and names no spindle speed runs in air.
+bool is_to_cut(const nc::Interpretation& moves) {
+  return std::ranges::any_of(moves.states, [](const nc::ModalState& s) {
+    return s.tool > 0 || s.spindle_speed_rpm > 0 || s.spindle != nc::SpindleDirection::stopped;
+  });
+}
+
 /// What predict would say of the job before its cut, as far as it is not said yet.
 void add_what_predict_says(machine::Job job, const std::string& program, Diagnostics& found) {
   job.program = program;
@@ -91,7 +98,7 @@ CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptio
   simulate::check_feeds(text, checked.moves, found);
   if (job)
     simulate::check_job(*job, text, checked.moves, found);
-  else
+  else if (machine || is_to_cut(checked.moves))
     simulate::check_spindle(text, checked.moves, found);
   found.throw_if_errors();
   if (job) add_what_predict_says(*job, text.source.name(), found);

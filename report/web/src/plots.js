@@ -52,7 +52,7 @@ export class Plots {
     this.end = Math.max(...runs.map(r => r.t[r.t.length - 1]));
     this.plots = names.map((q, i) => this.plot(q, i + 1 === names.length));
     const busy = busyTime(runs, this.end);
-    if (busy) this.plots.forEach(p => p.setScale('x', busy));
+    if (busy && busy.max - busy.min < 0.95 * this.end) this.plots.forEach(p => p.setScale('x', busy));
     new ResizeObserver(() => this.resize(box.clientWidth)).observe(box);
   }
 
