@@ -60,7 +60,7 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   if (!options.quiet) {
     const auto cutting =
         std::count_if(summary.tools.begin(), summary.tools.end(), [](const auto& t) { return t.cutting_moves > 0; });
-    fmt::print("{}: {} tool{} that cut; fill in the keys left as \"# key =\", check what is marked \"typical\"\n",
+    fmt::print("{}: {} tool{}; fill in the keys left as \"# key =\", check what is marked \"typical\"\n",
                arguments.output, cutting, cutting == 1 ? "" : "s");
   }
   return kDone;

@@ -27,7 +27,8 @@ RoundsProgress::Whole RoundsProgress::at(std::string_view what, double share) {
   if (!is_round(what) && rounds_ > 0) expected_rounds_ = rounds_;
   const int expected = std::max(begun_, before_ + expected_rounds_ + further_);
   std::string text(what);
-  if (is_round(what)) text += fmt::format(" of about {} ({} at most)", expected_rounds_, std::max(max_rounds_, rounds_));
+  if (is_round(what))
+    text += fmt::format(" of about {} ({} at most)", expected_rounds_, std::max(max_rounds_, rounds_));
   return {std::move(text), (begun_ - 1 + std::clamp(share, 0.0, 1.0)) / expected};
 }
 

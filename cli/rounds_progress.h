@@ -23,7 +23,7 @@ class RoundsProgress {
  private:
   int max_rounds_, further_;
   int expected_rounds_;
-  int begun_ = 0;  ///< steps, the one that goes on included
+  int begun_ = 0;   ///< steps, the one that goes on included
   int before_ = 0;  ///< steps before the first round
   int rounds_ = 0;  ///< begun
   std::string step_;

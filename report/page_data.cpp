@@ -17,9 +17,9 @@ namespace {
 using nlohmann::json;
 
 /// Share of the surface whose error the colour scale is to hold.
-constexpr double kScaleShare = 0.95;
+constexpr double kScaleFraction = 0.95;
 
-/// Half of a symmetric scale that holds kScaleShare of the points, a round number of um.
+/// Half of a symmetric scale that holds kScaleFraction of the points, a round number of um.
 double scale_um(const SurfaceSamples& samples, double SurfaceSample::*error) {
   if (samples.empty()) return 1;
   std::vector<double> size;

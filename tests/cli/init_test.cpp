@@ -54,8 +54,7 @@ TEST(Init, WritesWhatProgramAndTablesTell) {
   write_program(folder);
   const auto run = run_camber(folder, "init p.nc --tools tool.tbl --machine m.toml -o job.toml");
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.out,
-            "job.toml: 2 tools that cut; fill in the keys left as \"# key =\", check what is marked \"typical\"\n");
+  EXPECT_EQ(run.out, "job.toml: 2 tools; fill in the keys left as \"# key =\", check what is marked \"typical\"\n");
   const std::string job = tests::file_text(folder / "job.toml");
   EXPECT_EQ(job.substr(0, job.find("\n[material]")), kExpected);
   EXPECT_NE(job.find("# Its top: the program's Z0, below which all cutting lies.\n"

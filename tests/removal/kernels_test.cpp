@@ -92,8 +92,13 @@ TEST(Kernels, ADeflectedCutterCutsWhereItIs) {
     Bend bend(4, 60);
     for (std::size_t i = 0; i < bend.row.size(); ++i) bend.row[i] = i % 2 == 0 ? static_cast<float>(away_mm) : 0.0f;
     std::fill(bend.outward.begin(), bend.outward.end(), static_cast<float>(std::max(0.0, away_mm)));
-    const LineDeflection lean{
-        {bend.row.data(), nullptr, 4, 60, 1.5f}, 0.02f, bend.outward.data(), StampDeflection::kSectors, 0.1f, 19.1f};
+    const LineDeflection lean{{bend.row.data(), nullptr, 4, 60, 1.5f},
+                              0.02f,
+                              0.0f,
+                              bend.outward.data(),
+                              StampDeflection::kSectors,
+                              0.1f,
+                              19.1f};
     for (const Kernels* kernel : {&kBaseKernels, &kernels()}) {
       Line line;
       LineCut c = line.cut(4.7f);
@@ -117,6 +122,7 @@ TEST(Kernels, WideAndNarrowVectorsCutTheSameBits) {
   Bend deflection(4, 60);
   const LineDeflection lean{{deflection.row.data(), nullptr, 4, 60, 1.5f},
                             0.03f,
+                            0.0f,
                             deflection.outward.data(),
                             StampDeflection::kSectors,
                             0.1f,
@@ -164,6 +170,7 @@ struct Pairs {
             nx.data(),
             ny.data(),
             nz.data(),
+            guess.data(),
             guess.data(),
             guess.data(),
             known.data(),

@@ -58,8 +58,10 @@ TEST(FormErrorVtp, LeavesTheTotalOutWhereThereIsNoMesh) {
 FormErrorPoints many_points(std::size_t count) {
   return {count, [](std::size_t i) {
             const double v = static_cast<double>(i);
-            return FormErrorPoint{
-                {v, -v, 0.5 * v}, {0, 0, 1}, 0.25 * v, 0, 1, std::nan(""), static_cast<std::uint32_t>(i), 7};
+            FormErrorPoint point{{v, -v, 0.5 * v}, {0, 0, 1}, 0.25 * v, 0, 1};
+            point.block = static_cast<std::uint32_t>(i);
+            point.tool = 7;
+            return point;
           }};
 }
 
