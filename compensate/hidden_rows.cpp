@@ -45,7 +45,13 @@ std::vector<Vec3> path_offsets(const ShiftPath& path, const nc::Interpretation& 
     means.add(path.find(place.move, place.fraction),
               stamp.pose.tip_mm - nc::point_at(given, given.moves[place.move], place.fraction));
   }
-  return means.take();
+  // Where no tooth passing fell between two points, the offset is that of the point before.
+  const std::vector<double> weight = means.weight;
+  std::vector<Vec3> out = means.take();
+  for (const Chain& chain : path.chains())
+    for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i)
+      if (weight[i] <= 0) out[i] = out[i - 1];
+  return out;
 }
 
 Rows::Rows(const ShiftPath& path) : path_(path), chain_of_(path.points().size()) {

@@ -90,7 +90,7 @@ TEST(Axial, AFloorIsOffByForceTimesCompliance) {
     const auto forces = columns_of(tests::file_text(folder / "r/forces.csv"));
     std::size_t inside = 0;
     for (std::size_t i = 0; i < forces.at("x_mm").size(); ++i) {
-      if (std::abs(forces.at("x_mm")[i] - 5) > 1) continue;
+      if (std::abs(forces.at("x_mm")[i] - 4.5) > 1) continue;  // before the edge leaves the blank
       ++inside;
       EXPECT_NEAR(forces.at("dz_um")[i], expected, 0.02 * -expected + 0.02) << c.spring << c.axis_z << c.coupling;
     }

@@ -109,7 +109,7 @@ TEST(Time, TellsWhatIsWrong) {
   EXPECT_EQ(run_camber(f.folder, "time p.nc").status, 2);
   auto run = run_camber(f.folder, "time p.nc --machine m.toml --sweep axis.x.wheel=1:2:3");
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.err.substr(0, 69), "m.toml: error: --sweep: axis.x.wheel is not a machine parameter; a key");
+  EXPECT_EQ(run.err.substr(0, 70), "m.toml: error: --sweep: axis.x.wheel is not a machine parameter; a key");
   run = run_camber(f.folder, "time p.nc --machine m.toml --sweep axis.x.acceleration_mm_per_s2=1:2");
   EXPECT_EQ(run.status, 2);
   EXPECT_EQ(run.err,

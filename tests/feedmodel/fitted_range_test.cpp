@@ -105,9 +105,9 @@ TEST(FittedRange, TellsTheSizeOfTheGuess) {
   for (const auto& [text, check] : {std::pair(texts[0], "[range-arc]"), {texts[1], "[range-arc-length]"}}) {
     EXPECT_NE(text.find(check), std::string::npos) << text;
     double predicted = 0, least = 0, most = 0;
-    const std::size_t at = text.find("a guess: ");
+    const std::size_t at = text.find("an extrapolation: ");
     ASSERT_NE(at, std::string::npos) << text;
-    ASSERT_EQ(std::sscanf(text.c_str() + at, "a guess: %lf s, from %lf s at the programmed feed to %lf s", &predicted,
+    ASSERT_EQ(std::sscanf(text.c_str() + at, "an extrapolation: %lf s, from %lf s at the programmed feed to %lf s", &predicted,
                           &least, &most),
               3)
         << text;

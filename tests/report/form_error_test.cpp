@@ -17,7 +17,7 @@ FormErrorPoints those(std::vector<FormErrorPoint> points) {
 }
 
 std::vector<FormErrorPoint> two_points() {
-  return {{{1, 2, -3.25}, {0, 0, 1}, 12.3456, 2.0456, 0.0075, 13.5, 42, 3},
+  return {{{1, 2, -3.25}, {0, 0, 1}, 12.3456, 2.0456, 0.0075, 13.5, std::nan(""), 42, 3},
           {{0, 0, 0}, {0, 0.6, 0.8}, -0.5, 0, 0.01, std::nan(""), 0}};
 }
 
