@@ -107,8 +107,8 @@ TEST(FittedRange, TellsTheSizeOfTheGuess) {
     double predicted = 0, least = 0, most = 0;
     const std::size_t at = text.find("an extrapolation: ");
     ASSERT_NE(at, std::string::npos) << text;
-    ASSERT_EQ(std::sscanf(text.c_str() + at, "an extrapolation: %lf s, from %lf s at the programmed feed to %lf s", &predicted,
-                          &least, &most),
+    ASSERT_EQ(std::sscanf(text.c_str() + at, "an extrapolation: %lf s, from %lf s at the programmed feed to %lf s",
+                          &predicted, &least, &most),
               3)
         << text;
     EXPECT_NEAR(predicted, time, 0.006);  // three digits
