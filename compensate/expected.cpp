@@ -17,7 +17,7 @@ std::vector<Vec3> nominal_bending(const machine::Job& job, const simulate::Setup
   options.progress = progress;
   std::vector<Vec3> out;
   for (const simulate::StampLoad& load : simulate::predict(rigid, given.target, nominal, options).cut.loads)
-    out.emplace_back(load.contact_deflection_mm.x(), load.contact_deflection_mm.y(), 0.0);
+    out.push_back(load.contact_deflection_mm);
   return out;
 }
 

@@ -9,7 +9,7 @@
 namespace camber::compensate {
 
 /// Bending at the contact of every stamp of the nominal path under the force of the nominal chip, mm: one rigid
-/// prediction of that path. Along the tool's axis none.
+/// prediction of that path.
 std::vector<Vec3> nominal_bending(const machine::Job& job, const simulate::Setup& given,
                                   const std::function<void(double)>& progress);
 

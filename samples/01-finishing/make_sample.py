@@ -162,6 +162,21 @@ def number(value):
     return "0." if text in ("-0.", "0.") else text
 
 
+def opening():
+    return ["T1 M6", "G0 G90 G54 X%s Y%s S%d M3" % (number(ROW_FROM_X), number(FIRST_ROW_Y), SPINDLE),
+            "G43 H1 Z%s" % number(CLEARANCE_Z), "M8"]
+
+
+def rows():
+    """Number and Y of each row."""
+    count = int(round((LAST_ROW_Y - FIRST_ROW_Y) / ROW_STEP)) + 1
+    return [(row, FIRST_ROW_Y + row * ROW_STEP) for row in range(count)]
+
+
+def closing():
+    return ["G0 Z%s" % number(CLEARANCE_Z), "M9", "M5", "G91 G28 Z0.", "G90", "M30", "%"]
+
+
 def program():
     lines = [
         "%",
@@ -172,14 +187,8 @@ def program():
         "(CHORD TOLERANCE - %s)" % number(CHORD_TOLERANCE),
         "G21",
         "G0 G17 G40 G49 G80 G90",
-        "T1 M6",
-        "G0 G90 G54 X%s Y%s S%d M3" % (number(ROW_FROM_X), number(FIRST_ROW_Y), SPINDLE),
-        "G43 H1 Z%s" % number(CLEARANCE_Z),
-        "M8",
-    ]
-    rows = int(round((LAST_ROW_Y - FIRST_ROW_Y) / ROW_STEP)) + 1
-    for row in range(rows):
-        y = FIRST_ROW_Y + row * ROW_STEP
+    ] + opening()
+    for row, y in rows():
         points = row_points(y)
         lines.append("(ROW %d)" % (row + 1))
         if row:
@@ -194,7 +203,7 @@ def program():
                 last = number(z)
             lines.append(("G1 " if i == 0 else "") + word + (" F%d" % FEED if i == 0 else ""))
         lines.append("G0 Z%s" % number(RETRACT_Z))
-    lines += ["G0 Z%s" % number(CLEARANCE_Z), "M9", "M5", "G91 G28 Z0.", "G90", "M30", "%"]
+    lines += closing()
     return "\n".join(lines) + "\n"
 
 
@@ -205,14 +214,8 @@ def raster_program():
         "O0102 (CAMBER SAMPLE 01 - FINISHING, TO AND FRO)",
         "G21",
         "G0 G17 G40 G49 G80 G90 G64 P0.01",
-        "T1 M6",
-        "G0 G90 G54 X%s Y%s S%d M3" % (number(ROW_FROM_X), number(FIRST_ROW_Y), SPINDLE),
-        "G43 H1 Z%s" % number(CLEARANCE_Z),
-        "M8",
-    ]
-    rows = int(round((LAST_ROW_Y - FIRST_ROW_Y) / ROW_STEP)) + 1
-    for row in range(rows):
-        y = FIRST_ROW_Y + row * ROW_STEP
+    ] + opening()
+    for row, y in rows():
         points = row_points(y)[::-1 if row % 2 else 1]
         start = number(points[0][1])
         if row:
@@ -222,7 +225,7 @@ def raster_program():
         for i, (x, z) in enumerate(points[1:]):
             first = row == 0 and i == 0
             lines.append("X%s Z%s%s" % (number(x), number(z), " F%d" % FEED if first else ""))
-    lines += ["G0 Z%s" % number(CLEARANCE_Z), "M9", "M5", "G91 G28 Z0.", "G90", "M30", "%"]
+    lines += closing()
     return "\n".join(lines) + "\n"
 
 

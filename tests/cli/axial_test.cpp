@@ -10,32 +10,16 @@
 
 #include "base/geometry.h"
 #include "base/units.h"
+#include "tests/support/csv_columns.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
 namespace {
 
 using nlohmann::json;
+using tests::columns_of;
 using tests::run_camber;
 using tests::TempFolder;
-
-/// The columns of a CSV by their names.
-std::map<std::string, std::vector<double>> columns_of(const std::string& csv) {
-  std::istringstream lines(csv);
-  std::string line, cell;
-  std::getline(lines, line);
-  std::vector<std::string> names;
-  for (std::istringstream head(line); std::getline(head, cell, ',');) names.push_back(cell);
-  std::map<std::string, std::vector<double>> out;
-  while (std::getline(lines, line)) {
-    std::istringstream row(line);
-    for (const auto& name : names) {
-      std::getline(row, cell, ',');
-      out[name].push_back(cell.empty() ? std::nan("") : std::stod(cell));
-    }
-  }
-  return out;
-}
 
 /// A slot of 1 mm depth in which kae alone loads the tool: 100 N pull it down while its one tooth is in the cut.
 void write_slot(const TempFolder& folder, const std::string& spring, const std::string& axis_z,

@@ -12,11 +12,13 @@
 #include <nlohmann/json.hpp>
 
 #include "base/geometry.h"
+#include "tests/support/csv_columns.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
 namespace {
 
+using tests::columns_of;
 using tests::run_camber;
 using tests::TempFolder;
 
@@ -82,24 +84,6 @@ void write_wall_job(const TempFolder& folder, const std::string& axis_y, const s
                "10.0\n[stock]\nbox_mm = [[0, -0.5, "
                "-2], [8, 2, 0]]\n[simulation]\nvoxel_mm = 0.1\ncoupling = \"rigid\"\n" +
                    more);
-}
-
-/// The columns of a CSV by their names.
-std::map<std::string, std::vector<double>> columns_of(const std::string& csv) {
-  std::istringstream lines(csv);
-  std::string line, cell;
-  std::getline(lines, line);
-  std::vector<std::string> names;
-  for (std::istringstream head(line); std::getline(head, cell, ',');) names.push_back(cell);
-  std::map<std::string, std::vector<double>> out;
-  while (std::getline(lines, line)) {
-    std::istringstream row(line);
-    for (const auto& name : names) {
-      std::getline(row, cell, ',');
-      out[name].push_back(cell.empty() ? std::nan("") : std::stod(cell));
-    }
-  }
-  return out;
 }
 
 TEST(Predict, TheAxisGivesWayByForceOverStiffness) {
