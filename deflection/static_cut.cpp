@@ -64,19 +64,37 @@ void StaticCut::start_from_before(std::size_t k, std::span<float> row) const {
   run_out_.add(from_ + k, 1, deflections_->nodes(), row);
 }
 
-StaticCut::Passing StaticCut::cut(std::size_t k) {
+/// Extrapolates the deflection where that is good enough; otherwise `row` is what a reading starts from.
+bool StaticCut::follow(std::size_t k, std::span<float> row) {
+  const std::size_t passing = from_ + k;
+  const bool may = pace_.may_follow(passing, stamps_[passing]);
+  if (!pace_.has_line(passing)) return start_from_before(k, row), false;
+  pace_.follow(passing, row);
+  if (!(deflections_->largest_mm(static_cast<std::ptrdiff_t>(k)) <= removal::DeflectedEngager::kMaxDeflection_mm))
+    return start_from_before(k, row), false;
+  return may && pace_.as_much_material(passing, engager_.glance(k));
+}
+
+StaticCut::Passing StaticCut::cut(std::size_t k, bool must_read) {
   const auto at = static_cast<std::ptrdiff_t>(k);
   const std::span<float> row(deflections_->row(at), deflections_->row_size());
-  start_from_before(k, row);
   Passing out;
+  if (follow(k, row) && !must_read) {
+    engager_.cut(k);
+    return out;
+  }
   out.settled = false;
+  ReadingPace::Reading reading;
   swing_.clear();
   double share = 1, before_um = std::numeric_limits<double>::infinity();
   while (!out.settled && out.rounds < options_.max_rounds) {
     const auto read = engager_.read(k);
     read_.assign(read.begin(), read.end());
     const auto step = equilibrium_.solve(read_, from_ + k, stamps_[from_ + k], share, run_out_.of(from_ + k), row);
-    ++out.rounds;
+    if (++out.rounds == 1) {
+      reading.error_um = step.rms_um;
+      reading.allowed_um = std::max(options_.follow_um, options_.follow_fraction * step.size_um);
+    }
     if (!(deflections_->largest_mm(at) <= removal::DeflectedEngager::kMaxDeflection_mm)) {
       out.reason = beyond_reach(row);
       start_from_before(k, row);
@@ -99,7 +117,10 @@ StaticCut::Passing StaticCut::cut(std::size_t k) {
     before_um = step.rms_um;
   }
   engager_.cut(k);
-  auto& chips = chips_[k % chips_.size()];
+  reading.settled = out.settled;
+  reading.glance = engager_.glance_of(read_);
+  pace_.was_read(from_ + k, stamps_[from_ + k], row, reading);
+  auto& chips = chips_[readings_++ % chips_.size()];
   chips.clear();
   for (const removal::DeflectedChipSample& c : read_)
     if (c.chip.thickness_mm > 0) chips.push_back(c.chip);

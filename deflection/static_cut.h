@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "deflection/reading_pace.h"
 #include "deflection/run_out_offsets.h"
 #include "deflection/static_equilibrium.h"
 #include "removal/engagement.h"
@@ -22,44 +23,51 @@ struct SettleOptions {
   int max_rounds = 40;     ///< maximum number of readings of the chips of a stamp
   double settle_um = 0.1;  ///< converged if the next reading changes the deflection by less than this, rms over the
                            ///< cut, or by less than ...
-  double settle_fraction = 0.01;  ///< ... this fraction of its rms
+  double settle_fraction = 0.01;                    ///< ... this fraction of its rms
+  double follow_um = 0.1, follow_fraction = 0.02;   ///< permitted error of an extrapolated deflection, likewise
+  std::size_t longest_gap = ReadingPace::kLongest;  ///< turns of the teeth from reading to reading, at most
 };
 
 /// The surface left by one tooth passing determines the next one. Each is brought to its equilibrium by reading its
 /// chips and solving for them (StaticEquilibrium), repeatedly, and then cut. Run-out of equally spaced teeth is an
 /// offset of the axis that turns with the tool: the rows contain deflection plus offset, and the chip of each tooth
-/// follows from the surface left by the previous ones.
+/// follows from the surface left by the previous ones. Where the cut changes slowly, only some passings are read, and
+/// the deflections of the others are extrapolated (ReadingPace).
 class StaticCut {
  public:
   StaticCut(removal::Stock& stock, const removal::Stock& blank, const removal::EnvelopeGrid& envelope,
             const ToothPassModel& model, std::span<const removal::Stamp> stamps, std::int32_t first_id,
-            const SettleOptions& options, const RunOutOffsets& run_out)
+            const SettleOptions& options, const RunOutOffsets& run_out, std::size_t different_teeth = 1)
       : stamps_(stamps),
         options_(options),
         run_out_(run_out),
         envelope_(envelope),
         engager_(stock, blank, envelope, stamps, first_id),
-        equilibrium_(envelope, model) {}
+        equilibrium_(envelope, model),
+        pace_(different_teeth, options.longest_gap) {}
 
   /// Begins with stamps[from] ... stamps[from + count - 1]; row -1 of `deflections` is that of the stamp before. The
   /// rows are filled as their stamps are cut.
   void start(std::size_t from, std::size_t count, removal::DeflectionTable& deflections);
 
   struct Passing {
-    int rounds = 0;
+    int rounds = 0;  ///< 0: not read; the deflection was extrapolated
     bool settled = true;
     NoEquilibrium reason = NoEquilibrium::swings;  ///< where it has not
-    std::span<const removal::ChipSample> chips;    ///< valid until the call after the next
+    std::span<const removal::ChipSample> chips;    ///< as read; valid until the call after the next reading
   };
   /// Cuts stamps[from + k]. If the static deflection does not converge, the closest approximation is used; if it
-  /// exceeds removal::DeflectedEngager::kMaxDeflection_mm, that of the previous stamp.
-  Passing cut(std::size_t k);
+  /// exceeds removal::DeflectedEngager::kMaxDeflection_mm, that of the previous stamp. `must_read`: whatever the pace.
+  Passing cut(std::size_t k, bool must_read);
+  /// What the extrapolated deflections missed, as the readings after them show.
+  const ReadingPace::Errors& extrapolation_errors() const { return pace_.errors(); }
   /// Writes the cut to the stock. Returns the volume removed since the last commit, mm^3.
   double commit() { return engager_.commit(); }
 
  private:
   NoEquilibrium beyond_reach(std::span<const float> row) const;
   void start_from_before(std::size_t k, std::span<float> row) const;
+  bool follow(std::size_t k, std::span<float> row);
   bool rests(std::span<const float> row, const StaticEquilibrium::Step& step) const;
 
   std::span<const removal::Stamp> stamps_;
@@ -68,11 +76,13 @@ class StaticCut {
   const removal::EnvelopeGrid& envelope_;
   removal::DeflectedEngager engager_;
   StaticEquilibrium equilibrium_;
+  ReadingPace pace_;
   std::size_t from_ = 0;
   removal::DeflectionTable* deflections_ = nullptr;
   std::vector<removal::DeflectedChipSample> read_;
-  std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this passing and of the previous one, alternating
-  std::vector<float> swing_;                               ///< the deflection a few readings ago
+  std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this reading and of the previous one, alternating
+  std::size_t readings_ = 0;
+  std::vector<float> swing_;  ///< the deflection a few readings ago
 };
 
 }  // namespace camber::deflection

@@ -183,6 +183,11 @@ class DeflectedEngager {
   /// Chips that stamps[from + k] takes after its predecessors were cut; valid until the next call. Points less than
   /// kNear_mm outside the material are among them, with a negative thickness.
   std::span<const DeflectedChipSample> read(std::size_t k);
+  /// The chips of read(), summed up over some patches of the envelope, always the same ones: how much material there
+  /// is, at an eighth of the cost.
+  double glance(std::size_t k);
+  /// The same sum of chips that were read.
+  double glance_of(std::span<const DeflectedChipSample> chips) const;
   void cut(std::size_t k);
   /// Writes all pending tiles to the stock. Returns the volume removed since the last commit, mm^3.
   double commit();

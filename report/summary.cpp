@@ -231,9 +231,12 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
   j["not_judged_mm2"] = p.not_judged_mm2;
   j["stage_between"] = p.between;
   if (!p.total_error_mm.empty()) j["total_error_um"] = figures_json(total_error(p));
-  j["static"] = {{"rounds_max", p.cut.rounds_max},
-                 {"unsettled_stretches", p.cut.unsettled},
-                 {"unsettled_lines", unsettled_lines(program, p)}};
+  j["static"] = {
+      {"rounds_max", p.cut.rounds_max},
+      {"passings_read", p.cut.read},
+      {"extrapolation_error_um", {{"rms", p.cut.extrapolation.rms_um()}, {"max", p.cut.extrapolation.max_um}}},
+      {"unsettled_stretches", p.cut.unsettled},
+      {"unsettled_lines", unsettled_lines(program, p)}};
   for (const Reason reason : {Reason::pulled_in, Reason::pushed_out, Reason::swings})
     if (const auto lines = unsettled_lines(program, p, reason); !lines.empty())
       j["static"]["unsettled_reasons"].push_back({{"reason", name(reason)}, {"lines", lines}});

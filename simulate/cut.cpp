@@ -84,6 +84,22 @@ StampLoad summarize(const ToothPass& pass) {
   return load;
 }
 
+/// The load of a tooth passing between two others.
+StampLoad between(const StampLoad& a, const StampLoad& b, double way) {
+  const auto mix = [&](const auto& of_a, const auto& of_b) { return (1 - way) * of_a + way * of_b; };
+  StampLoad load;
+  load.force_max_N = mix(a.force_max_N, b.force_max_N);
+  load.lateral_max_N = mix(a.lateral_max_N, b.lateral_max_N);
+  load.force_mean_N = mix(a.force_mean_N, b.force_mean_N);
+  load.chip_mm3 = mix(a.chip_mm3, b.chip_mm3);
+  load.torque_max_Nmm = mix(a.torque_max_Nmm, b.torque_max_Nmm);
+  load.torque_mean_Nmm = mix(a.torque_mean_Nmm, b.torque_mean_Nmm);
+  load.work_Nmm = mix(a.work_Nmm, b.work_Nmm);
+  load.chip_max_mm = mix(a.chip_max_mm, b.chip_max_mm);
+  load.chip_area_mm2 = mix(a.chip_area_mm2, b.chip_area_mm2);
+  return load;
+}
+
 /// One tool on one stock; cuts stretch after stretch.
 class Cutter {
  public:
@@ -103,6 +119,7 @@ class Cutter {
     if (!options.blank) own_blank_.emplace(stock);
     blank_ = options.blank ? options.blank : &*own_blank_;
     const Teeth teeth(tool), modelled = teeth_in_model(teeth, rigid_);
+    if (!teeth.even()) different_teeth_ = static_cast<std::size_t>(teeth.count());
     if (!modelled.even() && !options.drilling) tooth_marks_.emplace(envelope_, modelled);
     if (!rigid_ && teeth.evenly_spaced()) run_out_ = RunOutOffsets(teeth, model_.steps());
     if (!rigid_) removal::make_patches(envelope_, 0.6 * stock.band_mm());
@@ -248,16 +265,22 @@ class Cutter {
   void settle(std::span<const Stamp> all, std::size_t from, DeflectionTable& deflections, std::vector<StampLoad>& loads,
               std::int32_t first_id, CutResult& result) {
     if (!static_cut_)
-      static_cut_.emplace(stock_, *blank_, envelope_, model_, all, first_id,
-                          deflection::SettleOptions{options_.max_rounds, options_.settle_um, options_.settle_fraction},
-                          run_out_);
+      static_cut_.emplace(stock_, *blank_, envelope_, model_, all, first_id, settle_options(), run_out_,
+                          different_teeth_);
     static_cut_->start(from, loads.size(), deflections);
     ToothPass pass;
+    std::vector<char> read(loads.size(), 1);
     tbb::task_group behind;  // the load of a tooth passing is summed up while the next one cuts
     for (std::size_t k = 0; k < loads.size(); ++k) {
       cancellation_point();
       const Stamp& stamp = all[from + k];
-      const auto passing = static_cut_->cut(k);
+      // Loads between two readings lie between theirs; each stretch of passings ends with readings.
+      const auto passing = static_cut_->cut(k, in_turn(from + k) || k + different_teeth_ >= loads.size());
+      if (passing.rounds == 0) {
+        read[k] = 0;
+        continue;
+      }
+      ++result.read;
       behind.wait();
       behind.run([this, &loads, &pass, &stamp, &deflections, &result, chips = passing.chips, from, k] {
         model_.evaluate(chips, from + k, stamp.feed_per_tooth_mm, pass);
@@ -277,6 +300,32 @@ class Cutter {
       settled_ = passing.settled;
     }
     behind.wait();
+    fill_between(read, result.loads, loads);
+    result.extrapolation = static_cut_->extrapolation_errors();
+  }
+
+  /// Loads of the passings that were not read, from the nearest of the same tooth that were. `before`: of the stretches
+  /// before, which end with readings.
+  void fill_between(std::span<const char> read, std::span<const StampLoad> before, std::span<StampLoad> loads) const {
+    const auto period = static_cast<std::ptrdiff_t>(different_teeth_),
+               count = static_cast<std::ptrdiff_t>(loads.size());
+    const auto is_read = [&](std::ptrdiff_t k) { return k < 0 || read[static_cast<std::size_t>(k)] != 0; };
+    for (std::ptrdiff_t k = 0; k < count; ++k) {
+      if (is_read(k)) continue;
+      const std::ptrdiff_t a = k - period;  // filled already
+      std::ptrdiff_t b = k + period;
+      while (!is_read(b)) b += period;
+      const StampLoad& earlier =
+          a >= 0 ? loads[static_cast<std::size_t>(a)] : before[before.size() - static_cast<std::size_t>(-a)];
+      loads[static_cast<std::size_t>(k)] = between(earlier, loads[static_cast<std::size_t>(b)],
+                                                   static_cast<double>(period) / static_cast<double>(b - a));
+    }
+  }
+
+  deflection::SettleOptions settle_options() const {
+    deflection::SettleOptions out{options_.max_rounds, options_.settle_um, options_.settle_fraction};
+    out.longest_gap = options_.longest_gap;
+    return out;
   }
 
   bool in_turn(std::size_t k) const {
@@ -299,6 +348,7 @@ class Cutter {
   ToothPassModel model_;
   std::optional<ToothMarks> tooth_marks_;         ///< of teeth that are not even
   RunOutOffsets run_out_;                         ///< static: of equally spaced teeth
+  std::size_t different_teeth_ = 1;               ///< of which each takes another chip
   std::optional<removal::RigidEngager> engager_;  ///< rigid
   std::optional<StaticCut> static_cut_;
   bool settled_ = true;          ///< the last tooth passing

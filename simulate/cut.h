@@ -50,22 +50,25 @@ struct CutOptions {
   double edge_ramp_mm = 0.002;              ///< static only, see edge_force
   double settle_um = 0.1;                   ///< see SettleOptions
   double settle_fraction = 0.01;
-  Vec3 axis_compliance_mm_per_N = Vec3::Zero();  ///< of the machine's axes
-  bool drilling = false;                         ///< straight down: see simulate/holes.h; with rigid coupling
-  std::function<void(double)> progress;          ///< completed fraction, 0 to 1
-  const removal::Stock* blank = nullptr;         ///< copy of the uncut stock if available; saves a copy
-  removal::SurfaceMap* surface = nullptr;        ///< takes the marks of the deflected cutter, if given
+  std::size_t longest_gap = deflection::ReadingPace::kLongest;  ///< see SettleOptions
+  Vec3 axis_compliance_mm_per_N = Vec3::Zero();                 ///< of the machine's axes
+  bool drilling = false;                   ///< straight down: see simulate/holes.h; with rigid coupling
+  std::function<void(double)> progress;    ///< completed fraction, 0 to 1
+  const removal::Stock* blank = nullptr;   ///< copy of the uncut stock if available; saves a copy
+  removal::SurfaceMap* surface = nullptr;  ///< takes the marks of the deflected cutter, if given
   /// First stamp of a revolution whose forces are recorded tooth by tooth in CutResult::turn.
   std::optional<std::size_t> turn_from;
 };
 
 struct CutResult {
-  std::vector<StampLoad> loads;                ///< one per stamp
-  double chip_mm3 = 0;                         ///< sum over the chips
-  double stock_mm3 = 0;                        ///< change of the stock that engagement reads
-  int rounds_max = 0;                          ///< of the static solution: readings of a tooth passing's chips
-  std::size_t unsettled = 0;                   ///< stretches of tooth passings without a static equilibrium
-  std::vector<std::uint32_t> unsettled_moves;  ///< their Stamp::move, without consecutive repetitions
+  std::vector<StampLoad> loads;                   ///< one per stamp
+  double chip_mm3 = 0;                            ///< sum over the chips
+  double stock_mm3 = 0;                           ///< change of the stock that engagement reads
+  std::size_t read = 0;                           ///< static: tooth passings whose chips were read from the stock
+  deflection::ReadingPace::Errors extrapolation;  ///< static: of the deflections of the others
+  int rounds_max = 0;                             ///< of the static solution: readings of a tooth passing's chips
+  std::size_t unsettled = 0;                      ///< stretches of tooth passings without a static equilibrium
+  std::vector<std::uint32_t> unsettled_moves;     ///< their Stamp::move, without consecutive repetitions
   std::vector<deflection::NoEquilibrium> unsettled_reasons;  ///< of the first passing of each
   std::size_t beyond = 0;                   ///< tooth passings with a deflection beyond the model's range
   std::vector<std::uint32_t> beyond_moves;  ///< their Stamp::move, without consecutive repetitions

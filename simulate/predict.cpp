@@ -233,6 +233,8 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
     out.cut.chip_mm3 += cut_run.chip_mm3;
     if (run.kind != removal::RunKind::tapping) out.cut.stock_mm3 += cut_run.stock_mm3;
     out.cut.rounds_max = std::max(out.cut.rounds_max, cut_run.rounds_max);
+    out.cut.read += cut_run.read;
+    out.cut.extrapolation.add(cut_run.extrapolation);
     out.cut.unsettled += cut_run.unsettled;
     add_range(cut_run, out.cut);
     if (milling && slenderness(tool) > kMaxSlenderness && !std::ranges::count(out.slender_tools, run.tool))

@@ -23,6 +23,12 @@ using namespace upright;
 
 namespace {
 
+/// One patch in eight, scattered over the envelope.
+bool glanced_at(std::uint32_t patch) {
+  constexpr std::uint32_t kGolden = 2654435769u, kTopBits = 29;
+  return patch * kGolden >> kTopBits == 0;
+}
+
 /// A tile that is being cut.
 struct CutTile {
   ColumnCover cover;
@@ -53,12 +59,24 @@ struct DeflectedEngager::Impl {
   double max_deflection_mm = 0;         ///< of all stamps that were cut
   double max_axial_mm = 0;              ///< the same along the axis
   std::vector<std::int32_t> patches{};  ///< that may take a chip
+  std::vector<char> glanced_point{};    ///< of the envelope: its patch is glanced at
   std::vector<std::vector<DeflectedChipSample>> chips_of_group{};
   tbb::enumerable_thread_specific<ChipReader::Buffers> buffers{};
   std::vector<DeflectedChipSample> chips{};
 
+  void begin(const DeflectionTable& table);
   void cut(std::size_t tile, std::size_t k, const StampDeflection& deflection);
 };
+
+void DeflectedEngager::Impl::begin(const DeflectionTable& table) {
+  lanes.emplace(envelope, table.node_height_mm, stock.voxel_mm(), stock.band_mm());
+  glanced_point.assign(envelope.x.size(), 0);
+  for (std::uint32_t patch = 0; patch < envelope.patches.size(); ++patch) {
+    if (!glanced_at(patch)) continue;
+    const PatchLanes::Range range = lanes->range(patch);
+    for (int l = 0; l < range.count; ++l) glanced_point[lanes->point(range.from + l)] = 1;
+  }
+}
 
 void DeflectedEngager::Impl::cut(std::size_t t, std::size_t k, const StampDeflection& deflection) {
   CutTile& tile = *tiles[t];
@@ -95,7 +113,7 @@ void DeflectedEngager::start(std::size_t from, std::size_t count, const Deflecti
   m.stamps = m.all.subspan(from, count);
   m.deflections = &deflections;
   if (count == 0) return;
-  if (!m.lanes) m.lanes.emplace(m.envelope, deflections.node_height_mm, m.stock.voxel_mm(), m.stock.band_mm());
+  if (!m.lanes) m.begin(deflections);
   m.arena.load(
       m.stock, m.blank, m.envelope.shape, m.stamps,
       [&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); }, kMaxDeflection_mm);
@@ -104,6 +122,23 @@ void DeflectedEngager::start(std::size_t from, std::size_t count, const Deflecti
                     [&](std::size_t t) -> const ColumnCover& { return m.tiles[t]->cover; });
   m.memory.begin(deflections);
   m.reader.emplace(m.envelope, *m.lanes, m.all, m.stamps, m.first_id, m.stock.voxel_mm(), deflections, m.memory);
+}
+
+double DeflectedEngager::glance(std::size_t k) {
+  Impl& m = *impl_;
+  m.reader->find_patches(m.arena, k, m.patches);
+  std::erase_if(m.patches, [](std::int32_t patch) { return !glanced_at(static_cast<std::uint32_t>(patch)); });
+  m.chips.clear();
+  m.reader->read(m.arena, k, m.patches, m.buffers.local(), m.chips);
+  return glance_of(m.chips);
+}
+
+double DeflectedEngager::glance_of(std::span<const DeflectedChipSample> chips) const {
+  double sum = 0;
+  for (const DeflectedChipSample& c : chips)
+    if (c.chip.thickness_mm > 0 && impl_->glanced_point[c.chip.point] != 0)
+      sum += static_cast<double>(c.chip.thickness_mm) * c.chip.width_fraction();
+  return sum;
 }
 
 std::span<const DeflectedChipSample> DeflectedEngager::read(std::size_t k) {

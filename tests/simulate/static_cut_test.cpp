@@ -64,6 +64,45 @@ TEST(StaticCut, ARepeatedToothPassingTakesWhatARigidToolTakes) {
   }
 }
 
+/// A shoulder along +X whose width doubles at x = 8 and falls back at x = 14, by one step of the stock each.
+CutResult stepped_shoulder(std::size_t longest_gap, double runout_um) {
+  auto tool = testing::make_tool(machine::ToolType::flat, 6, 2, 30);
+  tool.overhang_mm = 32;
+  tool.runout_mm = runout_um / 1000;
+  auto stock = testing::make_box({0, -4, -2}, {20, 0, 0}, 0.2);
+  // What stands at first is 0.5 mm wide; only between the steps 1 mm.
+  std::vector<removal::Stamp> before;
+  for (const auto& [from, to] : {std::pair{-4.0, 4.6}, std::pair{17.4, 24.0}})
+    testing::add_row(before, {from, 2.5, -1.5}, {to, 2.5, -1.5}, 0.05);
+  sweep(stock, tool, before, 0, 0);
+  std::vector<removal::Stamp> stamps;
+  testing::add_row(stamps, {-3.2, 2, -1.5}, {23, 2, -1.5}, 0.05);
+  CutOptions options;
+  options.longest_gap = longest_gap;
+  return cut(stock, tool, machine::Material{2000, 700, 300, 15, 12, 3}, stamps, {}, 10000, options);
+}
+
+TEST(StaticCut, PassingsThatAreNotReadHaveTheLoadsOfThoseThatAre) {
+  for (const double runout_um : {0.0, 3.0}) {
+    const CutResult all = stepped_shoulder(1, runout_um), some = stepped_shoulder(8, runout_um);
+    EXPECT_EQ(all.read, all.loads.size());
+    EXPECT_LT(some.read, all.read * 6 / 10);
+    ASSERT_EQ(some.loads.size(), all.loads.size());
+    double peak = 0, mean = 0;
+    for (const StampLoad& load : all.loads) {
+      peak = std::max(peak, load.lateral_max_N);
+      mean = std::max(mean, load.force_mean_N.norm());
+    }
+    for (std::size_t k = 0; k < all.loads.size(); ++k) {
+      EXPECT_NEAR(some.loads[k].lateral_max_N, all.loads[k].lateral_max_N, 0.04 * peak) << k;
+      EXPECT_LT((some.loads[k].force_mean_N - all.loads[k].force_mean_N).norm(), 0.03 * mean) << k;
+    }
+    EXPECT_NEAR(some.chip_mm3, all.chip_mm3, 0.002 * all.chip_mm3);
+    EXPECT_NEAR(some.stock_mm3, all.stock_mm3, 0.001 * all.stock_mm3);
+    EXPECT_LT(some.extrapolation.rms_um(), 0.05 * 1000 * some.deflection_max_mm);
+  }
+}
+
 TEST(StaticCut, AToolThatIsPulledIntoItsCutIsTold) {
   auto tool = testing::make_tool(machine::ToolType::flat, 6, 2, 30);
   tool.overhang_mm = 32;
