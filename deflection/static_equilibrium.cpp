@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <Eigen/LU>
 
+#include "base/vector_clones.h"
 #include "deflection/tool_frame.h"
 
 namespace camber::deflection {
@@ -170,6 +171,7 @@ double StaticEquilibrium::lean_mm(const Element& e, std::size_t m) const {
 }
 
 /// C F + run-out - displacement at rotation step m, and how C F changes.
+CAMBER_VECTOR_CLONES
 void StaticEquilibrium::balance(std::size_t m) {
   const std::size_t from = 2 * m * nodes_;
   double* left = left_.data() + from;
