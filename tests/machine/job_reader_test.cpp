@@ -215,7 +215,7 @@ TEST(JobReader, ReadsLevers) {
 
 TEST(JobReader, RefusesLeversThatAreNone) {
   EXPECT_EQ(read(with_more("[compensation]\nlevers = [\"shift\", \"speed\"]\n")).messages,
-            "job.toml:14:10: error: levers names \"speed\"; a list of \"shift\" and \"feed\" was expected "
+            "job.toml:14:10: error: levers names \"speed\"; a list of \"shift\", \"feed\" and \"passes\" was expected "
             "[value-choice]\n"
             "    levers = [\"shift\", \"speed\"]\n"
             "             ^");
