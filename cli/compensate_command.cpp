@@ -39,11 +39,10 @@ void write_report(const CompensateArguments& arguments, const machine::Job& job,
   const auto after = simulate::simulate_motion(SourceText(job.program, result.text), emitted_job, {}, ignored);
   std::optional<nc::Interpretation> from;
   if (!result.repeated_text.empty()) from = machined(SourceText(job.program, result.repeated_text)).moves;
-  report::write_html_report(
-      arguments.report,
-      report::compensate_report(job, result, {before, rows(before), result.loads_before},
-                                {after, rows(after), result.loads_after}, arguments.output, diagnostics,
-                                from ? &*from : nullptr));
+  report::write_html_report(arguments.report,
+                            report::compensate_report(job, result, {before, rows(before), result.loads_before},
+                                                      {after, rows(after), result.loads_after}, arguments.output,
+                                                      diagnostics, from ? &*from : nullptr));
 }
 
 /// The program, and beside it the record by which it can be judged again; a pipe has nothing beside it.

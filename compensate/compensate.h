@@ -38,7 +38,7 @@ struct Round {
   double deepest_um = 0;  ///< into the part, where compensated moves cut, but for a thousandth of the surface
   bool guard = false;     ///< a round of the guard against gouging
   double machine_time_s = 0;
-  std::size_t slowed = 0;  ///< changes of feed: stretches of the path with a feed of their own, and their ends
+  std::size_t slowed = 0;    ///< changes of feed: stretches of the path with a feed of their own, and their ends
   std::size_t repeated = 0;  ///< runs of cuts between rapids that are cut twice
   int static_rounds = 0;
   std::size_t unsettled = 0;

@@ -30,7 +30,7 @@ inline constexpr double kRowReach_mm = 1.0;  ///< rows farther apart are not lin
 /// given program's, so that places on `path` have the same indices in every version.
 struct Version {
   std::vector<bool> compensated{};  ///< one per move
-  std::vector<bool> first_cuts;   ///< one per move: of a run that is cut again; empty: none
+  std::vector<bool> first_cuts;     ///< one per move: of a run that is cut again; empty: none
   std::optional<ShiftPath> path;
   std::optional<Sensitivity> sensitivity;
   std::vector<double> stiffness;  ///< of the path, one per point
@@ -39,10 +39,10 @@ struct Version {
   bool split_once = false;
   std::vector<double> link_stiffness;  ///< one per link of the path that the splits leave
   std::optional<FeedLever> feeds;
-  bool feeds_stuck = false;                 ///< a lower feed brought nothing
-  std::vector<std::size_t> passes;          ///< runs that are cut twice
-  std::vector<std::uint32_t> moves;         ///< this version's, one per move of the given program; empty: the same
-  std::optional<nc::RepeatedText> repeated{};  ///< of the given program
+  bool feeds_stuck = false;                     ///< a lower feed brought nothing
+  std::vector<std::size_t> passes;              ///< runs that are cut twice
+  std::vector<std::uint32_t> moves;             ///< this version's, one per move of the given program; empty: the same
+  std::optional<nc::RepeatedText> repeated{};   ///< of the given program
   std::shared_ptr<const Trial> best_shifted{};  ///< of the rounds without lower feeds
 
   // While it is the active one, the set-up and the job have these.
@@ -129,9 +129,7 @@ class Loop {
   std::vector<nc::EditNotMade> in_given(std::vector<nc::EditNotMade> not_made) const;
   void say_passes(CompensationResult& out) const;
   void recheck_on(double voxel_mm, CompensationResult& out);
-  const simulate::SimulatedProgram& given() const {
-    return active_ == 0 ? setup_.program : versions_.front()->program;
-  }
+  const simulate::SimulatedProgram& given() const { return active_ == 0 ? setup_.program : versions_.front()->program; }
 
   machine::Job job_;
   Diagnostics& diagnostics_;
@@ -139,7 +137,7 @@ class Loop {
   simulate::Setup setup_;
   TrialRunner trials_;  ///< of the active version
   std::vector<std::unique_ptr<Version>> versions_;
-  std::size_t active_ = 0;       ///< whose program the set-up has
+  std::size_t active_ = 0;  ///< whose program the set-up has
   Version* now_ = nullptr;  ///< versions_[active_]
 
   double share_ = 1;                                    ///< of a step that is taken; less after over-corrections

@@ -136,8 +136,8 @@ void Loop::recheck_on(double voxel_mm, CompensationResult& out) {
   std::optional<Recheck> of_given;
   if (version > 0) {
     activate(0);
-    of_given = recheck(job_, voxel_mm, setup_, {}, *now_->path, fit_options(), {setup_.target_program()},
-                       options_.progress);
+    of_given =
+        recheck(job_, voxel_mm, setup_, {}, *now_->path, fit_options(), {setup_.target_program()}, options_.progress);
     activate(version);
   }
   const SimulatedProgram& target = setup_.own_target() ? given() : *setup_.original;
@@ -159,8 +159,7 @@ void Loop::check(CompensationResult& out) {
     changes.push_back(
         changes_mm(job_, group, setup_, emitted, out.surface_after, out.unknown_parameters, options_.progress));
   }
-  if (!names.empty())
-    out.band = band_of(out.surface_before, out.surface_after, names, changes, depth_limit_um_ / 1000);
+  if (!names.empty()) out.band = band_of(out.surface_before, out.surface_after, names, changes, depth_limit_um_ / 1000);
   out.text = emitted ? emitted->emission.text : setup_.program.text.source.text();
   if (emitted)
     out.block_of_line = given_blocks(emitted->emission.block_of_line);

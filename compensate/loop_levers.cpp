@@ -20,8 +20,7 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 }  // namespace
 
 bool Loop::met(const CompensationResult& out) const {
-  return within_tolerance(figures_of(*best_), job_.compensation) &&
-         out.rounds[out.best].deepest_um <= depth_limit_um_;
+  return within_tolerance(figures_of(*best_), job_.compensation) && out.rounds[out.best].deepest_um <= depth_limit_um_;
 }
 
 void Loop::spend_time(CompensationResult& out) {
@@ -100,9 +99,7 @@ bool Loop::cut_twice(CompensationResult& out, double percent) {
   const double wanted_mm = budget ? 0.0 : kWanted * tolerance_mm(), budget_s = percent / 100 * given_s_;
   const std::vector<std::size_t> chosen = choose_passes(runs, budget_s, wanted_mm);
   const bool more = chosen.size() < choose_passes(runs, kNoLimit, wanted_mm).size();
-  const auto tried = [&] {
-    return std::ranges::any_of(versions_, [&](const auto& v) { return v->passes == chosen; });
-  };
+  const auto tried = [&] { return std::ranges::any_of(versions_, [&](const auto& v) { return v->passes == chosen; }); };
   // Without a budget all that need it are cut twice at once: a version takes several predictions.
   std::unique_ptr<Version> version;
   if (!tried() && (budget || !more)) version = version_with(runs, chosen, first_cuts());
@@ -127,8 +124,8 @@ bool Loop::cut_twice(CompensationResult& out, double percent) {
   return more && !budget;
 }
 
-/// The best path without lower feeds, lifted by the allowance; the given path where that needs less of it, since it cuts
-/// less deep into the part: a second cut puts nothing back.
+/// The best path without lower feeds, lifted by the allowance; the given path where that needs less of it, since it
+/// cuts less deep into the part: a second cut puts nothing back.
 nc::Emission Loop::first_cuts() {
   const auto allowance_of = [&](const Trial& trial) {
     const Depth depth = depth_of(trial.surface, trial.observed, depth_limit_um_, true);

@@ -58,8 +58,8 @@ std::unique_ptr<Version> Loop::version_with(const std::vector<PassRun>& runs, st
   while (!chosen.empty()) {
     auto out = std::make_unique<Version>();
     out->repeated = with_first_cuts(given, runs, chosen, first_cuts);
-    out->operations = moved_ranges(simulate::as_lines(job_.operations, given.text, given.moves),
-                                   out->repeated->block_of_line);
+    out->operations =
+        moved_ranges(simulate::as_lines(job_.operations, given.text, given.moves), out->repeated->block_of_line);
     machine::Job job = job_;
     job.operations = out->operations;
     Diagnostics repeated;  // the given program's

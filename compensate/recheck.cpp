@@ -33,9 +33,8 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup&
     const auto& machined = program ? program->program : given.program;
     auto prediction = simulate::predict_surface(other, target, machined, progress,
                                                 fmt::format("{}, voxels of {:g} mm", what, voxel_mm));
-    Observed observed =
-        observe(path, job, given.program, machined, program ? program->map : MoveMap(), prediction.surface, stamps, {},
-                made_by.first_cuts);
+    Observed observed = observe(path, job, given.program, machined, program ? program->map : MoveMap(),
+                                prediction.surface, stamps, {}, made_by.first_cuts);
     if (reach.empty()) reach = reach_of(path, given.program.moves, observed, prediction.surface, stamps);
     observed.reach = reach;
     const ErrorSplit split = split_error(path, observed, own);

@@ -30,8 +30,8 @@ struct RecheckTarget {
   std::vector<bool> first_cuts{};      ///< see observe()
 };
 
-/// `path`: of the program in `given`. What the guard gives up follows from the same rule as in the rounds: the additional
-/// correctable error compared with the best program without it, on this grid.
+/// `path`: of the program in `given`. What the guard gives up follows from the same rule as in the rounds: the
+/// additional correctable error compared with the best program without it, on this grid.
 Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup& given, const EmittedPair& emitted,
                 const ShiftPath& path, const FitShiftOptions& options, const RecheckTarget& made_by,
                 const simulate::Progress& progress);

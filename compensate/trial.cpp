@@ -86,7 +86,8 @@ Observed TrialRunner::observe(const ShiftPath& path, const Emitted* emitted,
   const std::span<const simulate::PathFraction> own = given_.own_stamps();
   if (!emitted)
     return compensate::observe(path, job_, given_.program, given_.program, {}, surface, own, bending, first_cuts);
-  return compensate::observe(path, job_, given_.program, emitted->program, emitted->map, surface, own, bending, first_cuts);
+  return compensate::observe(path, job_, given_.program, emitted->program, emitted->map, surface, own, bending,
+                             first_cuts);
 }
 
 }  // namespace camber::compensate

@@ -93,7 +93,9 @@ RunGap gap_of(const Program& program, const Interpretation& moves, const CutRun&
   if (has_other_codes(program, run)) return RunGap::other_codes;
   if (run.first_move == 0 || !goes_rapidly(all[run.first_move - 1]) || all[run.first_move - 1].block >= run.first_block)
     return RunGap::no_rapid_before;
-  if (run.last_move + 1 < all.size() && !goes_rapidly(all[run.last_move + 1])) return RunGap::no_rapid_behind;
+  const bool last = run.last_move + 1 == all.size();
+  if (!last && (all[run.last_move + 1].kind != MoveKind::rapid || all[run.last_move + 1].canned))
+    return RunGap::no_rapid_behind;
   return RunGap::none;
 }
 
@@ -116,7 +118,8 @@ class RapidWriter {
       at = to;
     }
     const int plane = moves_.state_of(first).plane_g;
-    if (plane != moves_.state_of(last).plane_g && !out.empty()) out.front().insert(0, "G" + std::to_string(plane) + gap());
+    if (plane != moves_.state_of(last).plane_g && !out.empty())
+      out.front().insert(0, "G" + std::to_string(plane) + gap());
     if (const double feed = feed_to_restore(); feed > 0 && !out.empty()) out.back() += feed_word(feed);
     return out;
   }

@@ -48,7 +48,7 @@ struct RepeatedText {
   std::string text;
   /// Of the given program; of a line of an earlier cut the block that it repeats; Emission::kNoBlock: rapids between.
   std::vector<std::uint32_t> block_of_line;
-  std::vector<bool> added;                   ///< one per line: not of the given program
+  std::vector<bool> added;  ///< one per line: not of the given program
 };
 
 /// What is cut before a run: lines that begin where the run begins and end where it ends.

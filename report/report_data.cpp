@@ -102,10 +102,11 @@ TextTable rounds_table(const compensate::CompensationResult& c) {
 
 /// Machine time against error, as a table.
 TextTable time_table(const compensate::CompensationResult& c) {
-  TextTable table{"Machine time against error",
-                  {"extra time allowed, %", "machine time, s", "95 %, µm", "rms, µm", "changes of feed", "runs cut twice"},
-                  {},
-                  {}};
+  TextTable table{
+      "Machine time against error",
+      {"extra time allowed, %", "machine time, s", "95 %, µm", "rms, µm", "changes of feed", "runs cut twice"},
+      {},
+      {}};
   for (const compensate::TimePoint& p : c.time_points) {
     const compensate::Round& r = c.rounds[p.round];
     table.rows.push_back({fmt::format("{:g}", p.allowed_percent), number_text(r.machine_time_s, 1),
@@ -117,8 +118,7 @@ TextTable time_table(const compensate::CompensationResult& c) {
 
 void add_times(ReportData& data, const machine::Job& job, const compensate::CompensationResult& c) {
   if (c.time_points.empty()) return;
-  data.pictures.push_back({"Machine time against error",
-                           time_error_svg(c, job.compensation.half_width_um()),
+  data.pictures.push_back({"Machine time against error", time_error_svg(c, job.compensation.half_width_um()),
                            "Blue: the best program for each time allowed, filled where runs are cut twice; red ring: "
                            "the emitted program; dashed: the tolerance; grey: all rounds."});
   data.tables.insert(data.tables.begin(), time_table(c));

@@ -49,16 +49,18 @@ void add_axes(std::string& out, const Axis& x, const Axis& y) {
     text(out, kLeft - 6, at + 4, "end", fmt::format("{:.6g}", y.least + i * y.step));
   }
   for (int i = 0; x.least + i * x.step <= x.greatest + 1e-9; ++i)
-    text(out, x.px(x.least + i * x.step), kHeight - kBottom + 17, "middle", fmt::format("{:.6g}", x.least + i * x.step));
+    text(out, x.px(x.least + i * x.step), kHeight - kBottom + 17, "middle",
+         fmt::format("{:.6g}", x.least + i * x.step));
   text(out, (kLeft + kWidth - kRight) / 2, kHeight - 8, "middle", "machine time, s");
   text(out, 4, 16, "start", "95th percentile of the error, µm");
 }
 
 void dot(std::string& out, double x, double y, double radius, const char* stroke, const char* fill,
          const std::string& title) {
-  fmt::format_to(std::back_inserter(out),
-                 "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:g}\" stroke=\"{}\" fill=\"{}\"><title>{}</title></circle>\n",
-                 x, y, radius, stroke, fill, title);
+  fmt::format_to(
+      std::back_inserter(out),
+      "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:g}\" stroke=\"{}\" fill=\"{}\"><title>{}</title></circle>\n", x, y,
+      radius, stroke, fill, title);
 }
 
 std::string title_of(const compensate::Round& r, std::size_t number) {
@@ -90,11 +92,13 @@ std::string time_error_svg(const compensate::CompensationResult& c, double toler
   const auto at_y = [&](std::size_t r) { return y.px(c.rounds[r].error_um.p95); };
 
   std::string out = fmt::format(
-      "<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Machine time against error\">\n",
+      "<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Machine time against "
+      "error\">\n",
       kWidth, kHeight);
   add_axes(out, x, y);
-  fmt::format_to(std::back_inserter(out), "<path stroke=\"{}\" stroke-dasharray=\"4 4\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n",
-                 kRed, kLeft, y.px(tolerance_um), kWidth - kRight);
+  fmt::format_to(std::back_inserter(out),
+                 "<path stroke=\"{}\" stroke-dasharray=\"4 4\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", kRed, kLeft,
+                 y.px(tolerance_um), kWidth - kRight);
   for (const std::size_t r : shown) dot(out, at_x(r), at_y(r), 2, kGrey, kGrey, title_of(c.rounds[r], r));
   std::string line;
   for (const compensate::TimePoint& p : c.time_points)

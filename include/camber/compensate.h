@@ -58,8 +58,8 @@ struct CompensateResult {
   std::size_t best_round = 0;
   std::vector<TimePoint> time_points{};  ///< with the levers feed or passes: machine time against error
   std::vector<RepeatedLines> repeated{};
-  double pass_allowance_mm = 0;          ///< what the first of two cuts leaves; 0: none is repeated
-  std::string stop{};                    ///< tolerance, stalled, rounds or depth_limit
+  double pass_allowance_mm = 0;  ///< what the first of two cuts leaves; 0: none is repeated
+  std::string stop{};            ///< tolerance, stalled, rounds or depth_limit
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double max_shift_mm = 0;
   std::vector<CompensatedPoint> surface{};

@@ -150,7 +150,8 @@ TEST(Compensate, RefusesPassesWhereNothingCanBeCutTwice) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
   std::string text = plane_program();
-  for (std::size_t at = 0; (at = text.find("X0.5\n", at)) != std::string::npos; at += 8) text.replace(at, 5, "M8\nX0.5\n");
+  for (std::size_t at = 0; (at = text.find("X0.5\n", at)) != std::string::npos; at += 8)
+    text.replace(at, 5, "M8\nX0.5\n");
   job.program = folder.write("coolant.nc", text);
   job.compensation.levers = {machine::Lever::shift, machine::Lever::passes};
   Diagnostics diagnostics;

@@ -19,8 +19,7 @@ simulate::SimulatedProgram read(const std::string& text) {
 
 std::vector<bool> cuts_of(const simulate::SimulatedProgram& p) {
   std::vector<bool> out;
-  for (const nc::Move& m : p.moves.moves)
-    out.push_back(m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc);
+  for (const nc::Move& m : p.moves.moves) out.push_back(m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc);
   return out;
 }
 
@@ -92,9 +91,9 @@ TEST(Passes, TheGivenMovesStandInTheRepeatedProgramAsTheyWere) {
 
 TEST(Passes, RunsThatLeaveAnotherModalStateBehindAreFound) {
   // The arcs' centre is absolute from the second line of the run on; cut again, the first arc would be another one.
-  const simulate::SimulatedProgram given =
-      read("G21 G90 G17 G91.1\nT1 M6\nG54 S3000 M3\nG0 X0 Y0 Z5.\nZ-1.\nG3 X10. Y0 I5. J0 F300\n"
-           "G90.1 G3 X20. Y0 I15. J0\nG0 Z5.\nM30\n");
+  const simulate::SimulatedProgram given = read(
+      "G21 G90 G17 G91.1\nT1 M6\nG54 S3000 M3\nG0 X0 Y0 Z5.\nZ-1.\nG3 X10. Y0 I5. J0 F300\n"
+      "G90.1 G3 X20. Y0 I15. J0\nG0 Z5.\nM30\n");
   const std::vector<bool> cuts = cuts_of(given);
   const auto found = pass_runs(given, cuts, ShiftPath(given.moves, cuts, 3), {}, {});
   ASSERT_EQ(found.size(), 1u);
@@ -117,9 +116,9 @@ TEST(Passes, SayWhatCannotBeCutTwice) {
   EXPECT_EQ(messages(none),
             "p.nc:7:1: error: levers names \"passes\", but none of the cuts to compensate can be made twice: those "
             "from here on are incremental (G91); levers without \"passes\" were expected [lever-unusable]\n");
-  const simulate::SimulatedProgram mixed =
-      read("G21 G90 G17\nT1 M6\nG54 S3000 M3\nG0 X0 Y0 Z5.\nZ-1.\nG1 X9. F300\nM8\nX12.\nG0 Z5.\nX0 Y2.\nZ-1.\n"
-           "G1 X9.\nG0 Z5.\nM30\n");
+  const simulate::SimulatedProgram mixed = read(
+      "G21 G90 G17\nT1 M6\nG54 S3000 M3\nG0 X0 Y0 Z5.\nZ-1.\nG1 X9. F300\nM8\nX12.\nG0 Z5.\nX0 Y2.\nZ-1.\n"
+      "G1 X9.\nG0 Z5.\nM30\n");
   check_passes(mixed, cuts_of(mixed), some);
   EXPECT_EQ(messages(some),
             "p.nc:6:1: warning: 1 of 2 runs of cuts between rapids cannot be made twice; the moves of the first, from "

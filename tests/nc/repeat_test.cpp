@@ -125,8 +125,7 @@ TEST(Repeat, PutsTheFirstCutAndRapidsBackBeforeTheRun) {
 }
 
 TEST(Repeat, WritesInchesAndShiftedFramesInTheProgramsOwnCoordinates) {
-  const Read inches =
-      read_clean("G20 G90 G17 F20.\nT1 M6\nS3000 M3\nG0 X0 Y0 Z.5\nG0 Z-.1\nG1 X1.5\nG0 Z.5\nM30\n");
+  const Read inches = read_clean("G20 G90 G17 F20.\nT1 M6\nS3000 M3\nG0 X0 Y0 Z.5\nG0 Z-.1\nG1 X1.5\nG0 Z.5\nM30\n");
   const auto runs = runs_of(inches);
   ASSERT_EQ(runs.size(), 1u);
   const std::array one{same_lines(inches, runs[0])};
@@ -145,6 +144,8 @@ TEST(Repeat, WritesInchesAndShiftedFramesInTheProgramsOwnCoordinates) {
 TEST(Repeat, RefusesRunsThatCannotStandTwice) {
   const std::string head = "G21 G90 G17 F300\nT1 M6\nS3000 M3\n";
   EXPECT_EQ(gap_of(head + "G0 X0 Y0 Z5.\nZ-1.\nG1 X5.\nG0 Z5.\nM30\n"), RunGap::none);
+  EXPECT_EQ(gap_of(head + "G0 X0 Y0 Z5.\nZ-1.\nG1 X5.\nG91 G28 Z0\nM30\n"), RunGap::none);
+  EXPECT_EQ(gap_of(head + "G0 X0 Y0 Z5.\nZ-1.\nG1 X5.\nG81 X9. Z-2. R2.\nM30\n"), RunGap::no_rapid_behind);
   EXPECT_EQ(gap_of(head + "G0 X0 Y0 Z5.\nZ-1.\nG91\nG1 X5.\nG90\nG0 Z5.\nM30\n"), RunGap::incremental);
   EXPECT_EQ(gap_of(head + "G0 X0 Y0 Z5.\nZ-1.\nG1 X5.\nM8\nX9.\nG0 Z5.\nM30\n"), RunGap::other_codes);
   EXPECT_EQ(gap_of(head + "G0 X0 Y0 Z5.\nZ-1.\nG1 X5.\nS2000 X9.\nG0 Z5.\nM30\n"), RunGap::other_codes);
