@@ -149,6 +149,7 @@ class Loop {
   std::vector<bool> reach_;
   double depth_limit_um_ = 0;
   std::size_t first_round_ = 0;                                 ///< of the active version
+  bool too_slow_ = false;                                       ///< runs were not cut twice for want of time
   double allowance_mm_ = 0;                                     ///< that first cuts leave
   double given_s_ = 0;                                          ///< machine time of the given program
   double allowed_s_ = std::numeric_limits<double>::infinity();  ///< machine time

@@ -98,14 +98,15 @@ bool Loop::cut_twice(CompensationResult& out, double percent) {
   const std::vector<PassRun> runs = pass_runs(setup_.program, now_->compensated, *now_->path, all, left);
   const double wanted_mm = budget ? 0.0 : kWanted * tolerance_mm(), budget_s = percent / 100 * given_s_;
   const std::vector<std::size_t> chosen = choose_passes(runs, budget_s, wanted_mm);
-  const bool more = chosen.size() < choose_passes(runs, kNoLimit, wanted_mm).size();
+  const bool all_fit = chosen.size() == choose_passes(runs, kNoLimit, wanted_mm).size();
   const auto tried = [&] { return std::ranges::any_of(versions_, [&](const auto& v) { return v->passes == chosen; }); };
   // Without a budget all that need it are cut twice at once: a version takes several predictions.
   std::unique_ptr<Version> version;
-  if (!tried() && (budget || !more)) version = version_with(runs, chosen, first_cuts());
+  too_slow_ = !all_fit;
+  if (!tried() && (budget || all_fit)) version = version_with(runs, chosen, first_cuts());
   if (!version) {
     activate(best_->version);
-    return more && !budget;
+    return too_slow_ && !budget;
   }
   const std::shared_ptr<const Trial> best = best_;
   const std::size_t best_round = out.best;
@@ -121,7 +122,7 @@ bool Loop::cut_twice(CompensationResult& out, double percent) {
     out.best = best_round;
   }
   activate(best_->version);
-  return more && !budget;
+  return false;
 }
 
 /// The best path without lower feeds, lifted by the allowance; the given path where that needs less of it, since it

@@ -72,6 +72,8 @@ std::unique_ptr<Version> Loop::version_with(const std::vector<PassRun>& runs, st
       continue;
     }
     if (out->program.feed.time_s > allowed_s_) {
+      too_slow_ = true;
+      if (!options_.time_budget_percent) return nullptr;  // all of them within the next step of time
       chosen = without_least(runs, chosen);
       continue;
     }

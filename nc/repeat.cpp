@@ -82,7 +82,9 @@ void find_way_back(const Interpretation& moves, CutRun& run) {
   };
   go({at.x(), at.y(), height});
   go({top->x(), top->y(), height});
-  for (auto p = top.base() - 1; p != points.end(); ++p) go(*p);
+  auto down = top.base();  // behind it; a rapid that goes on straight down may begin higher
+  if (down != points.end() && (*down - *top).head<2>().norm() > kSame_mm) go(*top);
+  for (; down != points.end(); ++down) go(*down);
 }
 
 RunGap gap_of(const Program& program, const Interpretation& moves, const CutRun& run) {

@@ -32,7 +32,7 @@ Axis axis_over(double least, double greatest, double from_px, double to_px) {
   const double span = std::max(greatest - least, 1e-3 * std::max(1.0, greatest));
   Axis out{.from_px = from_px, .to_px = to_px, .step = step_over(span)};
   out.least = std::floor(least / out.step) * out.step;
-  out.greatest = std::ceil((least + span) / out.step + 1e-9) * out.step;
+  out.greatest = std::ceil((least + span) / out.step - 1e-9) * out.step;
   return out;
 }
 

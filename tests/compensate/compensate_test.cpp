@@ -107,8 +107,8 @@ TEST(Compensate, CutsTwiceWhereNoShiftHelps_slow) {
   EXPECT_EQ(c.feed_after.time_s, c.rounds[c.best].machine_time_s);
   EXPECT_GE(c.pass_allowance_mm, 0.02);
   ASSERT_EQ(c.repeated.size(), 2u);
-  EXPECT_EQ(c.repeated[0].first_line, 9u);
-  EXPECT_EQ(c.repeated[0].last_line, 14u);
+  EXPECT_EQ(c.repeated[0].first_line, 10u);
+  EXPECT_EQ(c.repeated[0].last_line, 15u);
   EXPECT_EQ(c.before_um.p95, c.rounds[0].error_um.p95) << "the given program, cut once";
   EXPECT_EQ(c.surface_before.size(), c.surface_after.size());
   EXPECT_LE(c.depth_after.gouge_depth_p999_um, c.depth_limit_um);
@@ -131,10 +131,10 @@ TEST(Compensate, CutsTwiceWhereNoShiftHelps_slow) {
     EXPECT_EQ(bare, own) << line;
     ++times[block];
   }
-  EXPECT_EQ(back, (std::vector<std::string>{"G0 Z10.", "G0 X-2. Y-7. Z10.", "G0 Z-6.", "G0 Z10.", "G0 X-7. Y1. Z10.",
-                                            "G0 Z-6."}));
+  EXPECT_EQ(back, (std::vector<std::string>{"G0 Z10.0", "G0 X-2.0 Y-7.0 Z10.0", "G0 Z-6.0", "G0 Z10.0",
+                                            "G0 X-7.0 Y1.0 Z10.0", "G0 Z-6.0"}));
   for (std::size_t block = 0; block < times.size(); ++block) {
-    const bool cut = (block >= 8 && block < 14) || (block >= 18 && block < 23);
+    const bool cut = (block >= 9 && block < 15) || (block >= 19 && block < 24);
     EXPECT_EQ(times[block], cut ? 2u : 1u) << given.line(block + 1);
   }
 

@@ -87,10 +87,10 @@ TEST(HiddenRows, WhatARowWouldLeaveIsObservedBesideWhatTheSurfaceShows) {
   const ShiftPath path(given.moves, selected, 0.4);
   const auto move_near = [&](double x, double y) {
     std::uint32_t m = 0;
-    while (!selected[m] || (nc::point_at(given.moves, given.moves.moves[m], 0.5) - Vec3(x, y, -1.2)).norm() > 0.6) ++m;
+    while (!selected[m] || (nc::point_at(given.moves, given.moves.moves[m], 0.5) - Vec3(x, y, -1.2)).norm() > 0.1) ++m;
     return m;
   };
-  const std::uint32_t first = move_near(3, -3.5), second = move_near(3, -3.2);
+  const std::uint32_t first = move_near(2.5, -3.5), second = move_near(2.5, -3.2);
   for (const std::uint32_t m : {first, second}) {
     removal::Stamp stamp;
     stamp.move = m;
