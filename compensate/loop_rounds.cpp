@@ -118,8 +118,8 @@ void Loop::step(CompensationResult& out, double fraction, const Guard* guard, co
   fit_and_emit(observations, fraction, round, *made);
   predict_trial(*made, fmt::format("round {}", out.rounds.size()));
   last_ = made;
-  // What rows do that come out of the shadow of others says nothing of their gain.
-  if (!by_expectation) now_->sensitivity->learn(*now_->path, from->shifts, from->observed, last_->observed);
+  // What rows do that come out of the shadow of others says nothing of their gain, nor what another feed does.
+  if (!by_expectation && !prepare) now_->sensitivity->learn(*now_->path, from->shifts, from->observed, last_->observed);
   round.overcorrected_fraction = overcorrected_fraction(from->observed, last_->observed, tolerance_mm());
   record(out, round);
 }
