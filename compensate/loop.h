@@ -110,7 +110,9 @@ class Loop {
   bool met(const CompensationResult& out) const;
   void lower_feeds(CompensationResult& out, double percent);
   void step_with_feeds(CompensationResult& out, double percent);
+  std::vector<PassRun> runs_after_shifts();
   bool cut_twice(CompensationResult& out, double percent);
+  void compensate_version(std::unique_ptr<Version> version, CompensationResult& out, double percent);
   nc::Emission first_cuts();
 
   // loop_versions.cpp

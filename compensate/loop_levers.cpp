@@ -85,17 +85,22 @@ void Loop::step_with_feeds(CompensationResult& out, double percent) {
 
 // --- second cuts ----------------------------------------------------------------------------------------------------
 
+/// Of the given program, which is active.
+std::vector<PassRun> Loop::runs_after_shifts() {
+  const Trial& base = *now_->best_shifted;
+  now_->path->set_shifts(base.shifts);
+  const std::vector<Observation> all = base.observed.of_path();
+  const std::vector<double> left = left_by_shift_mm(*now_->path, all, fit_options());
+  return pass_runs(setup_.program, now_->compensated, *now_->path, all, left);
+}
+
 /// The runs whose error exceeds what is wanted are cut twice, if that fits into the time. True: more time would allow
 /// more. The best of the versions is active afterwards.
 bool Loop::cut_twice(CompensationResult& out, double percent) {
   if (!has(machine::Lever::passes)) return false;
   const bool budget = options_.time_budget_percent.has_value();
   activate(0);
-  const Trial& base = *now_->best_shifted;
-  now_->path->set_shifts(base.shifts);
-  const std::vector<Observation> all = base.observed.of_path();
-  const std::vector<double> left = left_by_shift_mm(*now_->path, all, fit_options());
-  const std::vector<PassRun> runs = pass_runs(setup_.program, now_->compensated, *now_->path, all, left);
+  const std::vector<PassRun> runs = runs_after_shifts();
   const double wanted_mm = budget ? 0.0 : kWanted * tolerance_mm(), budget_s = percent / 100 * given_s_;
   const std::vector<std::size_t> chosen = choose_passes(runs, budget_s, wanted_mm);
   const bool all_fit = chosen.size() == choose_passes(runs, kNoLimit, wanted_mm).size();
@@ -108,6 +113,12 @@ bool Loop::cut_twice(CompensationResult& out, double percent) {
     activate(best_->version);
     return too_slow_ && !budget;
   }
+  compensate_version(std::move(version), out, percent);
+  return false;
+}
+
+/// Its rounds; the better one of its best round and the best one so far stays the best one, with its version active.
+void Loop::compensate_version(std::unique_ptr<Version> version, CompensationResult& out, double percent) {
   const std::shared_ptr<const Trial> best = best_;
   const std::size_t best_round = out.best;
   versions_.push_back(std::move(version));
@@ -115,14 +126,13 @@ bool Loop::cut_twice(CompensationResult& out, double percent) {
   predict_version(out);
   share_ = 1;
   converge(out);
-  if (budget || !met(out)) lower_feeds(out, percent);
+  if (options_.time_budget_percent || !met(out)) lower_feeds(out, percent);
   const Round &found = out.rounds[out.best], &old = out.rounds[best_round];
   if (found.machine_time_s > allowed_s_ || found.error_um.p95 >= old.error_um.p95) {
     best_ = best;
     out.best = best_round;
   }
   activate(best_->version);
-  return false;
 }
 
 /// The best path without lower feeds, lifted by the allowance; the given path where that needs less of it, since it
