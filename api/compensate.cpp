@@ -46,8 +46,11 @@ CompensateResult result_of(const CompensationResult& c, const machine::Compensat
                        .max_shift_mm = c.max_shift_mm,
                        .surface = points_of(c)};
   for (const auto& round : c.rounds)
-    out.rounds.push_back({api::figures_of(round.error_um), round.largest_shift_mm, round.machine_time_s});
+    out.rounds.push_back(
+        {api::figures_of(round.error_um), round.largest_shift_mm, round.machine_time_s, round.repeated});
   for (const auto& point : c.time_points) out.time_points.push_back({point.allowed_percent, point.round});
+  for (const auto& run : c.repeated) out.repeated.push_back({run.first_line, run.last_line});
+  out.pass_allowance_mm = c.pass_allowance_mm;
   return out;
 }
 

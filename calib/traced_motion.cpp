@@ -234,6 +234,15 @@ class Matcher {
     if (last == 0) return;
     const PathPlace cut_end{last - 1, 1, 0};
     if (end.move > cut_end.move || cut_between_mm(end, cut_end) <= kLeftOver_mm) return;
+    std::uint32_t first = 0;
+    while (!cut_[first]) ++first;
+    // Matched by place alone, another program or another work offset looks like a trace that ends too early.
+    if (!out_.by_line && end.move < first)
+      fail(trace_.size() - 1,
+           fmt::format("the axes never come to line {} of {}, the first that is cut; a trace of this program, in the "
+                       "same work offset, was expected",
+                       line_of(first), name_),
+           "trace-program");
     fail(trace_.size() - 1,
          fmt::format("the trace ends in line {} of {}; it was expected to go on to line {}, the last that is cut",
                      line_of(end.move), name_, line_of(cut_end.move)),

@@ -10,6 +10,7 @@
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "cli/rounds_progress.h"
+#include "compensate/trial.h"
 #include "compensate/verify.h"
 #include "report/report_data.h"
 #include "report/summary.h"
@@ -32,11 +33,16 @@ void write_report(const CompensateArguments& arguments, const machine::Job& job,
     return collector.take();
   };
   const auto before = machined(SourceText::read(job.program));
-  const auto after = machined(SourceText(job.program, result.text));
-  report::write_html_report(
-      arguments.report,
-      report::compensate_report(job, result, {before, rows(before), result.loads_before},
-                                {after, rows(after), result.loads_after}, arguments.output, diagnostics));
+  machine::Job emitted_job = job;
+  if (job.operations.given() && !result.block_of_line.empty())
+    emitted_job.operations = compensate::moved_ranges(result.operations, result.block_of_line);
+  const auto after = simulate::simulate_motion(SourceText(job.program, result.text), emitted_job, {}, ignored);
+  std::optional<nc::Interpretation> from;
+  if (!result.repeated_text.empty()) from = machined(SourceText(job.program, result.repeated_text)).moves;
+  report::write_html_report(arguments.report,
+                            report::compensate_report(job, result, {before, rows(before), result.loads_before},
+                                                      {after, rows(after), result.loads_after}, arguments.output,
+                                                      diagnostics, from ? &*from : nullptr));
 }
 
 /// The program, and beside it the record by which it can be judged again; a pipe has nothing beside it.

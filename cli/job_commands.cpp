@@ -101,8 +101,9 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
       ->check(CLI::PositiveNumber)
       ->type_name("MM");
   command
-      ->add_option("--time-budget", arguments->time_budget_percent,
-                   "extra machine time, %, for lower feeds: the least error within it ([compensation] levers)")
+      ->add_option(
+          "--time-budget", arguments->time_budget_percent,
+          "extra machine time, %, for lower feeds and second cuts: the least error within it ([compensation] levers)")
       ->check(CLI::Range(0.0, 1000.0))
       ->type_name("PERCENT");
   command->add_flag("--keep-anyway", arguments->keep_anyway,

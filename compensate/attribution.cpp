@@ -75,8 +75,8 @@ constexpr double kHidden_mm = 0.0005;  // above the surface: the owner did not c
 class Places {
  public:
   Places(const ShiftPath& path, const simulate::SimulatedProgram& given, const simulate::SimulatedProgram& emitted,
-         const MoveMap& map, std::span<const simulate::PathFraction> own_target)
-      : path_(path), given_(given), emitted_(emitted), map_(map), own_target_(own_target) {}
+         const MoveMap& map, std::span<const simulate::PathFraction> own_target, const std::vector<bool>& first_cuts)
+      : path_(path), given_(given), emitted_(emitted), map_(map), own_target_(own_target), first_cuts_(first_cuts) {}
 
   /// Nothing where the point's stamp is of no move that may be shifted.
   std::optional<ShiftPath::PointInterval> machined(const removal::SurfacePoint& p) const {
@@ -90,7 +90,10 @@ class Places {
     return find({stamp.move, static_cast<double>(stamp.fraction)});
   }
   bool was_cut(const removal::SurfacePoint& p) const {
-    return p.machined_stamp >= 0 && static_cast<std::size_t>(p.machined_stamp) < emitted_.path.stamps.size();
+    if (p.machined_stamp < 0 || static_cast<std::size_t>(p.machined_stamp) >= emitted_.path.stamps.size()) return false;
+    if (first_cuts_.empty()) return true;
+    const auto& stamp = emitted_.path.stamps[static_cast<std::size_t>(p.machined_stamp)];
+    return !first_cuts_[map_.given(stamp.move, stamp.fraction).move];
   }
 
  private:
@@ -103,6 +106,7 @@ class Places {
   const simulate::SimulatedProgram &given_, &emitted_;
   const MoveMap& map_;
   std::span<const simulate::PathFraction> own_target_;
+  const std::vector<bool>& first_cuts_;
 };
 
 }  // namespace
@@ -110,7 +114,7 @@ class Places {
 std::optional<ShiftPath::PointInterval> owner_place(const ShiftPath& path, const simulate::Setup& given,
                                                     const removal::SurfacePoint& point) {
   const MoveMap same;
-  return Places(path, given.program, given.program, same, given.own_stamps()).owner(point);
+  return Places(path, given.program, given.program, same, given.own_stamps(), {}).owner(point);
 }
 
 void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPath::PointInterval& place,
@@ -127,8 +131,8 @@ void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPa
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const MoveMap& map,
                  std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target,
-                 std::span<const Vec3> bending) {
-  const Places places(path, given, emitted, map, own_target);
+                 std::span<const Vec3> bending, const std::vector<bool>& first_cuts) {
+  const Places places(path, given, emitted, map, own_target, first_cuts);
   const Rows rows(path);
   Observed out;
   out.points.resize(surface.size());

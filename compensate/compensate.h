@@ -38,7 +38,8 @@ struct Round {
   double deepest_um = 0;  ///< into the part, where compensated moves cut, but for a thousandth of the surface
   bool guard = false;     ///< a round of the guard against gouging
   double machine_time_s = 0;
-  std::size_t slowed = 0;  ///< changes of feed: stretches of the path with a feed of their own, and their ends
+  std::size_t slowed = 0;    ///< changes of feed: stretches of the path with a feed of their own, and their ends
+  std::size_t repeated = 0;  ///< runs of cuts between rapids that are cut twice
   int static_rounds = 0;
   std::size_t unsettled = 0;
 };
@@ -47,6 +48,11 @@ struct Round {
 struct TimePoint {
   double allowed_percent = 0;  ///< extra time; 0: only the path is shifted
   std::size_t round = 0;       ///< index into CompensationResult::rounds
+};
+
+/// Lines of the given program that are cut twice.
+struct RepeatedRun {
+  std::size_t first_line = 0, last_line = 0;
 };
 
 struct CompensationResult {
@@ -70,7 +76,10 @@ struct CompensationResult {
   ErrorSplit split_before, split_after;
   std::vector<Round> rounds;             ///< rounds[0]: the given program
   std::size_t best = 0;                  ///< index into rounds
-  std::vector<TimePoint> time_points{};  ///< with the feed lever; ascending
+  std::vector<TimePoint> time_points{};  ///< with a lever that takes time; ascending
+  std::vector<RepeatedRun> repeated{};   ///< of the emitted program
+  double pass_allowance_mm = 0;          ///< what the first of two cuts leaves; 0: none is repeated
+  std::string repeated_text{};           ///< the program whose path was shifted, where runs are cut twice; else empty
   Stop stop = Stop::rounds;
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double max_shift_mm = 0;
@@ -103,7 +112,7 @@ struct CompensateOptions {
   simulate::Progress progress;
   std::size_t max_stock_crossings = 0;  ///< of Compensation::stock; 0: none
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
-  /// Of the feed lever: the least error for so much more machine time. Not given: as much as the tolerance takes.
+  /// Of feeds and passes: the least error for so much more machine time. Not given: as much as the tolerance takes.
   std::optional<double> time_budget_percent{};
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band

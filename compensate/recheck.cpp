@@ -1,6 +1,7 @@
 #include "compensate/recheck.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -10,11 +11,14 @@
 namespace camber::compensate {
 
 Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup& given, const EmittedPair& emitted,
-                const ShiftPath& path, const FitShiftOptions& options, const simulate::Progress& progress) {
+                const ShiftPath& path, const FitShiftOptions& options, const RecheckTarget& made_by,
+                const simulate::Progress& progress) {
   machine::Job other = job;
   other.simulation.voxel_mm = voxel_mm;
   Diagnostics diagnostics;
-  const simulate::Target target = simulate::make_target(other, given.target_program(), diagnostics);
+  simulate::Target target = simulate::make_target(other, made_by.program, diagnostics);
+  for (simulate::PathFraction& stamp : target.stamps)
+    if (!made_by.moves.empty()) stamp.move = made_by.moves[stamp.move];
   FitShiftOptions own = options;
   own.smoothing_mm = std::max(options.smoothing_mm, smoothing_mm(voxel_mm));
   struct Judged {
@@ -29,8 +33,8 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup&
     const auto& machined = program ? program->program : given.program;
     auto prediction = simulate::predict_surface(other, target, machined, progress,
                                                 fmt::format("{}, voxels of {:g} mm", what, voxel_mm));
-    Observed observed =
-        observe(path, job, given.program, machined, program ? program->map : MoveMap(), prediction.surface, stamps);
+    Observed observed = observe(path, job, given.program, machined, program ? program->map : MoveMap(),
+                                prediction.surface, stamps, {}, made_by.first_cuts);
     if (reach.empty()) reach = reach_of(path, given.program.moves, observed, prediction.surface, stamps);
     observed.reach = reach;
     const ErrorSplit split = split_error(path, observed, own);
@@ -42,7 +46,9 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup&
   const Judged before = judge(nullptr, "as given");
   out.before_um = before.error_um;
   out.split_before = before.split;
-  const Judged after = judge(emitted.last, "compensated");
+  std::optional<Judged> made;
+  if (emitted.last) made.emplace(judge(emitted.last, "compensated"));
+  const Judged& after = made ? *made : before;
   out.after_um = after.error_um;
   out.split_after = after.split;
   if (emitted.free) out.split_after.give_to_guard(judge(emitted.free, "without the guard").split.correctable_um);

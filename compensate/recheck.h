@@ -23,10 +23,18 @@ struct EmittedPair {
   const Emitted* free = nullptr;  ///< the best one before the guard; null: the guard did nothing
 };
 
-/// `path`: of the given program. What the guard gives up follows from the same rule as in the rounds: the additional
-/// correctable error compared with the best program without it, on this grid.
+/// What the target is swept with, and where its moves are in the program that the path is of.
+struct RecheckTarget {
+  const simulate::SimulatedProgram& program;
+  std::vector<std::uint32_t> moves{};  ///< empty: the same
+  std::vector<bool> first_cuts{};      ///< see observe()
+};
+
+/// `path`: of the program in `given`. What the guard gives up follows from the same rule as in the rounds: the
+/// additional correctable error compared with the best program without it, on this grid.
 Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup& given, const EmittedPair& emitted,
-                const ShiftPath& path, const FitShiftOptions& options, const simulate::Progress& progress);
+                const ShiftPath& path, const FitShiftOptions& options, const RecheckTarget& made_by,
+                const simulate::Progress& progress);
 
 /// By how much each point of the emitted program's surface (`after`) moves when a group does.
 std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const simulate::Setup& given,

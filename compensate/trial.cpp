@@ -84,8 +84,10 @@ simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& prog
 Observed TrialRunner::observe(const ShiftPath& path, const Emitted* emitted,
                               const std::vector<removal::SurfacePoint>& surface) const {
   const std::span<const simulate::PathFraction> own = given_.own_stamps();
-  if (!emitted) return compensate::observe(path, job_, given_.program, given_.program, {}, surface, own, bending);
-  return compensate::observe(path, job_, given_.program, emitted->program, emitted->map, surface, own, bending);
+  if (!emitted)
+    return compensate::observe(path, job_, given_.program, given_.program, {}, surface, own, bending, first_cuts);
+  return compensate::observe(path, job_, given_.program, emitted->program, emitted->map, surface, own, bending,
+                             first_cuts);
 }
 
 }  // namespace camber::compensate

@@ -23,6 +23,7 @@ struct Emitted {
 };
 
 struct Trial {
+  std::size_t version = 0;  ///< of the program: 0 the given one, else one with second cuts
   std::vector<Vec3> shifts;
   std::vector<double> fractions;               ///< of the programmed feed, one per point of the path
   std::shared_ptr<const Emitted> emitted;      ///< none: the given program
@@ -64,8 +65,9 @@ class TrialRunner {
   Observed observe(const ShiftPath& path, const Emitted* emitted,
                    const std::vector<removal::SurfacePoint>& surface) const;
 
-  std::vector<Vec3> bending{};  ///< nominal_bending, where rows are hidden; else empty
-  std::string header{};         ///< comment lines for the emitted program
+  std::vector<Vec3> bending{};     ///< nominal_bending, where rows are hidden; else empty
+  std::vector<bool> first_cuts{};  ///< see observe(): of a program in which runs are cut twice
+  std::string header{};            ///< comment lines for the emitted program
 
  private:
   const machine::Job& job_;

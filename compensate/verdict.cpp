@@ -34,7 +34,8 @@ CauseWords words_of(Cause cause) {
     case Cause::tip:
       return {"is near the axis of a round tip", "a tilted tool or another path there"};
     case Cause::bow:
-      return {"differs along the cutter (helix bow)", "two axial passes, a shorter tool or a lower feed"};
+      return {"differs along the cutter (helix bow)",
+              "a second cut (lever \"passes\"), a shorter tool or a lower feed"};
     case Cause::not_compensated:
       break;
   }

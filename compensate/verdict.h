@@ -41,7 +41,7 @@ struct CauseFigure {
 std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<PointCause>& points,
                                    const Observed& observed, const std::vector<std::size_t>& lines);
 
-/// "4.10 um rms differs along the cutter (helix bow), most in lines 12, 14; two axial passes ... would take it away".
+/// "4.10 um rms differs along the cutter (helix bow), most in lines 12, 14; a second cut ... would remove it".
 std::string sentence(const CauseFigure& cause);
 
 }  // namespace camber::compensate

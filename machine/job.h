@@ -107,7 +107,8 @@ enum class Reference {
 /// What a compensation may change about a program.
 enum class Lever : std::uint8_t {
   shift,  ///< points of the path
-  feed    ///< F words, where the error that no shift takes away exceeds the tolerance
+  feed,   ///< F words, where the error that no shift takes away exceeds the tolerance
+  passes  ///< runs of cuts that are made twice, where it does
 };
 
 struct CompensationSettings {
@@ -127,6 +128,7 @@ struct CompensationSettings {
   std::vector<Lever> levers{Lever::shift};  ///< shift is always among them
   bool has(Lever lever) const { return std::ranges::find(levers, lever) != levers.end(); }
   double min_feed_percent = 20;                 ///< of the programmed feed; below it edges rub
+  double pass_allowance_mm = 0;                 ///< what the first of two passes leaves; 0: chosen
   double max_angle_growth_rad = 3 * kPi / 180;  ///< between blocks of the path
   Operations operations;                        ///< simulated moves to compensate; none given: the finishing moves
   std::optional<Vec3> work_offset_mm;           ///< program zero in machine coordinates, for the travel limits

@@ -11,7 +11,7 @@ inline constexpr std::array<std::string_view, 7> kToolTypeWords{"ball",         
                                                                 "tapered_ball", "chamfer", "general"};
 inline constexpr std::array<std::string_view, 2> kCouplingWords{"rigid", "static"};
 inline constexpr std::array<std::string_view, 2> kReferenceWords{"commanded", "machine"};
-inline constexpr std::array<std::string_view, 2> kLeverWords{"shift", "feed"};
+inline constexpr std::array<std::string_view, 3> kLeverWords{"shift", "feed", "passes"};
 inline constexpr std::array<std::string_view, 3> kCollisionsWords{"error", "warning", "off"};
 inline constexpr std::array<std::string_view, 2> kUnitWords{"mm", "inch"};
 
@@ -84,6 +84,7 @@ inline constexpr std::array kCompensationKeys{
     NumberKey<CompensationSettings>{"max_angle_growth_deg", &CompensationSettings::max_angle_growth_rad,
                                     kAngleGrowthDeg, kDegrees},
     NumberKey<CompensationSettings>{"min_feed_percent", &CompensationSettings::min_feed_percent, kMinFeedPercent},
+    NumberKey<CompensationSettings>{"pass_allowance_mm", &CompensationSettings::pass_allowance_mm, kNotNegative},
 };
 
 }  // namespace camber::machine

@@ -159,7 +159,7 @@ void read_profile(TomlTable& table, CompensationSettings& compensation) {
 }
 
 void read_levers(TomlTable& table, CompensationSettings& compensation) {
-  constexpr std::string_view kWanted = "a list of \"shift\" and \"feed\"";
+  constexpr std::string_view kWanted = "a list of \"shift\", \"feed\" and \"passes\"";
   const auto names = table.text_list("levers", kWanted);
   if (!names) return;
   compensation.levers.clear();

@@ -207,7 +207,15 @@ void add_predict_and_compensate(py::module_& module) {
   add_table(predict, "feed", &PredictResult::feed);
   py::class_<CompensationRound>(module, "CompensationRound")
       .def_readonly("error_um", &CompensationRound::error_um)
-      .def_readonly("largest_shift_mm", &CompensationRound::largest_shift_mm);
+      .def_readonly("largest_shift_mm", &CompensationRound::largest_shift_mm)
+      .def_readonly("machine_time_s", &CompensationRound::machine_time_s)
+      .def_readonly("repeated_runs", &CompensationRound::repeated_runs);
+  py::class_<camber::TimePoint>(module, "TimePoint")
+      .def_readonly("allowed_percent", &camber::TimePoint::allowed_percent)
+      .def_readonly("round", &camber::TimePoint::round);
+  py::class_<camber::RepeatedLines>(module, "RepeatedLines")
+      .def_readonly("first", &camber::RepeatedLines::first)
+      .def_readonly("last", &camber::RepeatedLines::last);
   auto compensate = result_class<CompensateResult>(module, "CompensateResult")
                         .def_readonly("program", &CompensateResult::program)
                         .def_readonly("better", &CompensateResult::better)
@@ -218,6 +226,9 @@ void add_predict_and_compensate(py::module_& module) {
                         .def_readonly("after_um", &CompensateResult::after_um)
                         .def_readonly("rounds", &CompensateResult::rounds)
                         .def_readonly("best_round", &CompensateResult::best_round)
+                        .def_readonly("time_points", &CompensateResult::time_points)
+                        .def_readonly("repeated", &CompensateResult::repeated)
+                        .def_readonly("pass_allowance_mm", &CompensateResult::pass_allowance_mm)
                         .def_readonly("stop", &CompensateResult::stop)
                         .def_readonly("blocks_before", &CompensateResult::blocks_before)
                         .def_readonly("blocks_after", &CompensateResult::blocks_after)

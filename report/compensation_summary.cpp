@@ -72,6 +72,7 @@ ordered_json rounds(const compensate::CompensationResult& c) {
     row["guard"] = r.guard;
     row["machine_time_s"] = r.machine_time_s;
     row["feed_changes"] = r.slowed;
+    row["repeated_runs"] = r.repeated;
     row["static_rounds"] = r.static_rounds;
     row["unsettled_stretches"] = r.unsettled;
     out.push_back(std::move(row));
@@ -88,9 +89,16 @@ ordered_json time_points(const compensate::CompensationResult& c) {
                    {"p95_um", r.error_um.p95},
                    {"rms_um", r.error_um.rms},
                    {"feed_changes", r.slowed},
+                   {"repeated_runs", r.repeated},
                    {"round", p.round}});
   }
   return out;
+}
+
+ordered_json passes_json(const compensate::CompensationResult& c) {
+  ordered_json runs = ordered_json::array();
+  for (const auto& run : c.repeated) runs.push_back({run.first_line, run.last_line});
+  return {{"runs", runs}, {"allowance_um", 1000 * c.pass_allowance_mm}};
 }
 
 ordered_json recheck(const compensate::Recheck& r) {
@@ -153,6 +161,7 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
   j["split_after_um"] = split(c.split_after);
   j["rounds"] = rounds(c);
   j["time_points"] = time_points(c);
+  j["passes"] = passes_json(c);
   j["best_round"] = c.best;
   j["stop"] = compensate::to_string(c.stop);
   j["into_part"] = {{"within_tolerance", c.within_part},
@@ -245,15 +254,29 @@ std::string rounds_text(const compensate::CompensationResult& c) {
   return out;
 }
 
-/// Machine time against error; empty without the feed lever.
+/// Lines that are cut twice; empty where none are.
+std::string passes_text(const compensate::CompensationResult& c) {
+  if (c.repeated.empty()) return {};
+  constexpr std::size_t kShown = 8;
+  std::string out = fmt::format("cut twice, the first cut leaving {:.0f} um: lines", 1000 * c.pass_allowance_mm);
+  for (std::size_t i = 0; i < std::min(kShown, c.repeated.size()); ++i)
+    fmt::format_to(std::back_inserter(out), "{} {} to {}", i > 0 ? "," : "", c.repeated[i].first_line,
+                   c.repeated[i].last_line);
+  if (c.repeated.size() > kShown)
+    fmt::format_to(std::back_inserter(out), " and {} more runs", c.repeated.size() - kShown);
+  return out + " of the given program\n";
+}
+
+/// Machine time against error; empty where no lever takes time.
 std::string time_points_text(const compensate::CompensationResult& c) {
   if (c.time_points.empty()) return {};
-  std::string out = "extra time allowed    machine time, s        p95, um   rms, um   changes of feed\n";
+  std::string out = "extra time allowed    machine time, s        p95, um   rms, um   changes of feed   cut twice\n";
   for (const auto& p : c.time_points) {
     const compensate::Round& r = c.rounds[p.round];
     const double extra = c.feed_before.time_s > 0 ? 100 * (r.machine_time_s / c.feed_before.time_s - 1) : 0;
-    fmt::format_to(std::back_inserter(out), "{:>16.4g} %  {:>10.1f} ({:+6.1f} %) {:>9.2f} {:>9.2f} {:>17}\n",
-                   p.allowed_percent, r.machine_time_s, extra, r.error_um.p95, r.error_um.rms, r.slowed);
+    fmt::format_to(std::back_inserter(out), "{:>16.4g} %  {:>10.1f} ({:+6.1f} %) {:>9.2f} {:>9.2f} {:>17} {:>11}{}\n",
+                   p.allowed_percent, r.machine_time_s, extra, r.error_um.p95, r.error_um.rms, r.slowed, r.repeated,
+                   p.round == c.best ? "  <" : "");
   }
   return out;
 }
@@ -326,7 +349,7 @@ const char* reason(compensate::Stop stop) {
 }  // namespace
 
 std::string compensate_text(const compensate::CompensationResult& c, double compute_s) {
-  std::string out = rounds_text(c) + time_points_text(c);
+  std::string out = rounds_text(c) + time_points_text(c) + passes_text(c);
   fmt::format_to(std::back_inserter(out), "stopped: {}\n", reason(c.stop));
   out += plain_figures_text(c) + split_text(c.split_before, c.split_after) + safety_text(c) + path_text(c) +
          checks_text(c);

@@ -83,6 +83,12 @@ std::string histogram_html(const ReportData& data, const PageData& page) {
          histogram_svg(data.surface, data.compared, page.scale_um, data.names) + "</div>\n";
 }
 
+std::string picture_html(const Picture& picture) {
+  std::string out = "<div class=\"card\"><h2>" + html_text(picture.title) + "</h2>\n" + picture.svg;
+  if (!picture.note.empty()) out += "<p class=\"note\">" + html_text(picture.note) + "</p>\n";
+  return out + "</div>\n";
+}
+
 std::string scripts_html(const PageData& page) {
   std::string out = "<script type=\"application/json\" id=\"index\">" + script_safe(page.index) + "</script>\n";
   out += "<script type=\"text/plain\" id=\"arrays\">" + page.arrays + "</script>\n";
@@ -102,6 +108,7 @@ std::string html_report(const ReportData& data, const ReportOptions& options) {
   if (pictures) out += kPartFrame;
   if (has_rows(data)) out += kPlotsFrame;
   out += "<div class=\"columns\">\n" + histogram_html(data, page) + figures_html(data);
+  for (const auto& picture : data.pictures) out += picture_html(picture);
   for (const auto& table : data.tables) out += table_html(table);
   std::vector<std::string> notes = data.notes;
   notes.insert(notes.end(), page.left_out.begin(), page.left_out.end());

@@ -31,6 +31,13 @@ struct TextTable {
   std::string note;  ///< below the table; empty: none
 };
 
+/// A drawing with a line about it, shown before the tables.
+struct Picture {
+  std::string title;
+  std::string svg;
+  std::string note;  ///< below it; empty: none
+};
+
 /// Whether the run reached what was asked for, and why not; at the page's head.
 struct PageVerdict {
   bool success = false;
@@ -52,6 +59,7 @@ struct ReportData {
   SurfaceSamples stock;
   double stock_cell_mm = 0;
   std::vector<PathRun> path;  ///< none, one, or before and after
+  std::vector<Picture> pictures{};
   std::vector<TextTable> tables;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;

@@ -9,6 +9,7 @@
 #include "report/model_tables.h"
 #include "report/page_tables.h"
 #include "report/summary.h"
+#include "report/time_error_svg.h"
 #include "report/verdict_text.h"
 #include "report/worst_lines.h"
 #include "simulate/verdict.h"
@@ -97,6 +98,30 @@ TextTable rounds_table(const compensate::CompensationResult& c) {
                           number_text(1000 * c.rounds[i].largest_shift_mm, 1)});
   }
   return table;
+}
+
+/// Machine time against error, as a table.
+TextTable time_table(const compensate::CompensationResult& c) {
+  TextTable table{
+      "Machine time against error",
+      {"extra time allowed, %", "machine time, s", "95 %, µm", "rms, µm", "changes of feed", "runs cut twice"},
+      {},
+      {}};
+  for (const compensate::TimePoint& p : c.time_points) {
+    const compensate::Round& r = c.rounds[p.round];
+    table.rows.push_back({fmt::format("{:g}", p.allowed_percent), number_text(r.machine_time_s, 1),
+                          number_text(r.error_um.p95, 2), number_text(r.error_um.rms, 2), std::to_string(r.slowed),
+                          std::to_string(r.repeated)});
+  }
+  return table;
+}
+
+void add_times(ReportData& data, const machine::Job& job, const compensate::CompensationResult& c) {
+  if (c.time_points.empty()) return;
+  data.pictures.push_back({"Machine time against error", time_error_svg(c, job.compensation.half_width_um()),
+                           "Blue: the best program for each time allowed, filled where runs are cut twice; red ring: "
+                           "the emitted program; dashed: the tolerance; grey: all rounds."});
+  data.tables.insert(data.tables.begin(), time_table(c));
 }
 
 TextTable limits_table(const machine::Job& job, const compensate::CompensationResult& c) {
@@ -212,7 +237,8 @@ void add_traced(ReportData& data, const SimulatedProgram& program, const simulat
 }
 
 ReportData compensate_report(const machine::Job& job, const compensate::CompensationResult& c, CompensatedRun before,
-                             CompensatedRun after, const std::string& output, const Diagnostics& diagnostics) {
+                             CompensatedRun after, const std::string& output, const Diagnostics& diagnostics,
+                             const nc::Interpretation* shifted_from) {
   ReportData data;
   data.title = "Compensation of " + file_name(job.program);
   data.subtitle = job.path;
@@ -243,7 +269,7 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
                     return sample;
                   }};
   add_stock(data, c.stock);
-  add_shifts(after.rows, after.program.moves, before.program.moves);
+  add_shifts(after.rows, after.program.moves, shifted_from ? *shifted_from : before.program.moves);
   for (CompensatedRun* run : {&before, &after}) {
     add_loads(run->rows, run->program.path, run->loads);
     add_errors(run->rows, run->program.path, run == &before ? c.surface_before : c.surface_after);
@@ -251,6 +277,7 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   }
   if (c.better || c.best > 0) data.download_name = file_name(output);  // else nothing is written
   data.tables = {rounds_table(c), limits_table(job, c)};
+  add_times(data, job, c);
   add_worst_lines(data, data.compared ? after.program : before.program, data.compared);
   for (TextTable& table : compensation_tables(c)) data.tables.push_back(std::move(table));
   add_texts(data, job, diagnostics, {});

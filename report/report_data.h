@@ -40,9 +40,10 @@ struct CompensatedRun {
 };
 
 /// `result` and both programs must outlive what comes back.
-/// `output`: where the compensated program was written; the page offers it under that name.
+/// `output`: where the compensated program was written; the page offers it under that name. `shifted_from`: the moves
+/// that the shifts count from, where these are not the given program's (runs that are cut twice).
 ReportData compensate_report(const machine::Job& job, const compensate::CompensationResult& result,
                              CompensatedRun before, CompensatedRun after, const std::string& output,
-                             const Diagnostics& diagnostics);
+                             const Diagnostics& diagnostics, const nc::Interpretation* shifted_from = nullptr);
 
 }  // namespace camber::report

@@ -15,8 +15,8 @@ struct CompensateOptions {
   std::string measured{};                  ///< points measured on a part, CSV; empty: none
   std::string measured_program{};          ///< program that the measured part was cut with; empty: the job's program
   std::vector<double> check_voxels_mm{};   ///< predict both programs again on these grids
-  /// Of the feed lever ([compensation] levers): the least error for so much more machine time, in percent; not given:
-  /// as much as the tolerance takes.
+  /// Of the levers feed and passes ([compensation] levers): the least error for so much more machine time, in percent;
+  /// not given: as much as the tolerance takes.
   std::optional<double> time_budget_percent{};
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
   bool header = false, header_hash = false;  ///< write comment lines at the head of the program
@@ -26,12 +26,18 @@ struct CompensationRound {
   ErrorFigures error_um{};
   double largest_shift_mm = 0;
   double machine_time_s = 0;
+  std::size_t repeated_runs = 0;  ///< runs of cuts between rapids that are cut twice
 };
 
 /// The best program for a machine time: a round's index, and the extra time that was allowed for it, in percent.
 struct TimePoint {
   double allowed_percent = 0;
   std::size_t round = 0;
+};
+
+/// Lines of the given program, both included, whose cuts the emitted program makes twice.
+struct RepeatedLines {
+  std::size_t first = 0, last = 0;
 };
 
 /// The same point of the surface, cut by the given and by the emitted program.
@@ -50,8 +56,10 @@ struct CompensateResult {
   ErrorFigures before_um{}, after_um{};
   std::vector<CompensationRound> rounds{};  ///< rounds[0]: the given program
   std::size_t best_round = 0;
-  std::vector<TimePoint> time_points{};  ///< with the feed lever: machine time against error
-  std::string stop{};                    ///< tolerance, stalled, rounds or depth_limit
+  std::vector<TimePoint> time_points{};  ///< with the levers feed or passes: machine time against error
+  std::vector<RepeatedLines> repeated{};
+  double pass_allowance_mm = 0;  ///< what the first of two cuts leaves; 0: none is repeated
+  std::string stop{};            ///< tolerance, stalled, rounds or depth_limit
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double max_shift_mm = 0;
   std::vector<CompensatedPoint> surface{};

@@ -124,13 +124,12 @@ TEST(TracedMotion, RefusesAnotherProgram) {
     t = trace_of_square(with_line);
     for (auto* places : {&t.command_mm, &t.actual_mm})
       for (Vec3& p : *places) p.z() += 2;
-    // By place it never comes to where the first cut begins.
     EXPECT_EQ(refusal(t),
               with_line
                   ? "trace.csv:2:1: error: the axes are 2 mm off line 3 of square.nc (at X0.000 Y0.000 Z2.000); a "
                     "trace of this program, in the same work offset, was expected [trace-program]"
-                  : "trace.csv:4101:1: error: the trace ends in line 2 of square.nc; it was expected to go on to "
-                    "line 6, the last that is cut [trace-end]");
+                  : "trace.csv:4101:1: error: the axes never come to line 3 of square.nc, the first that is cut; a "
+                    "trace of this program, in the same work offset, was expected [trace-program]");
   }
   t = trace_of_square(true);
   for (Vec3& p : t.actual_mm) p.z() += 0.6;

@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "compensate/verify.h"
+#include "nc/emit.h"
 #include "nc/interpreter.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"
@@ -87,6 +89,83 @@ TEST(Compensate, LowersTheFeedWhereNoShiftHelps_slow) {
   for (std::string line; std::getline(before, line);) given.insert(line);
   for (std::string line; std::getline(after, line);) emitted.insert(line);
   for (const std::string& line : emitted) EXPECT_TRUE(line.empty() || given.contains(line)) << line;
+}
+
+TEST(Compensate, CutsTwiceWhereNoShiftHelps_slow) {
+  Diagnostics diagnostics;
+  machine::Job job = machine::read_job(CAMBER_SOURCE_DIR "/samples/06-wall/job.toml", diagnostics);
+  job.compensation.levers = {machine::Lever::shift, machine::Lever::passes};
+  CompensateOptions options;
+  options.time_budget_percent = 150;
+  const CompensationResult c = compensate(job, diagnostics, options);
+  EXPECT_EQ(diagnostics.all().size(), 0u);
+  ASSERT_EQ(c.time_points.size(), 2u);
+  const Round &shifted = c.rounds[c.time_points[0].round], &twice = c.rounds[c.time_points[1].round];
+  EXPECT_LT(twice.error_um.p95, 0.6 * shifted.error_um.p95);
+  EXPECT_EQ(twice.repeated, 2u);
+  EXPECT_GT(twice.machine_time_s, 1.5 * shifted.machine_time_s);
+  EXPECT_EQ(c.feed_after.time_s, c.rounds[c.best].machine_time_s);
+  EXPECT_GE(c.pass_allowance_mm, 0.02);
+  ASSERT_EQ(c.repeated.size(), 2u);
+  EXPECT_EQ(c.repeated[0].first_line, 10u);
+  EXPECT_EQ(c.repeated[0].last_line, 15u);
+  EXPECT_EQ(c.before_um.p95, c.rounds[0].error_um.p95) << "the given program, cut once";
+  EXPECT_EQ(c.surface_before.size(), c.surface_after.size());
+  EXPECT_LE(c.depth_after.gouge_depth_p999_um, c.depth_limit_um);
+
+  // Beside coordinates the text differs by the first cuts and the rapids back alone. A split block's further lines have
+  // coordinates only.
+  const SourceText given("", tests::file_text(job.program)), emitted("", c.text);
+  ASSERT_EQ(c.block_of_line.size(), emitted.line_count());
+  std::vector<std::string> lines, back;
+  std::vector<std::size_t> times(given.line_count(), 0);
+  for (std::size_t i = 0; i < emitted.line_count(); ++i) {
+    const std::string line(emitted.line(i + 1));
+    const std::uint32_t block = c.block_of_line[i];
+    if (block == nc::Emission::kNoBlock) {
+      back.push_back(line);
+      continue;
+    }
+    const std::string bare = without_coordinates(line), own = without_coordinates(std::string(given.line(block + 1)));
+    if (bare.empty() && !own.empty()) continue;
+    EXPECT_EQ(bare, own) << line;
+    ++times[block];
+  }
+  EXPECT_EQ(back, (std::vector<std::string>{"G0 Z10.0", "G0 X-2.0 Y-7.0 Z10.0", "G0 Z-6.0", "G0 Z10.0",
+                                            "G0 X-7.0 Y1.0 Z10.0", "G0 Z-6.0"}));
+  for (std::size_t block = 0; block < times.size(); ++block) {
+    const bool cut = (block >= 9 && block < 15) || (block >= 19 && block < 24);
+    EXPECT_EQ(times[block], cut ? 2u : 1u) << given.line(block + 1);
+  }
+
+  const tests::TempFolder folder;
+  const Record record = make_record(job, c, folder.write("out.nc", c.text));
+  const machine::Job judging = machine::read_job(folder.write("out.verify.toml", record.job), diagnostics);
+  const Verification v = verify(judging, record, diagnostics, {});
+  EXPECT_NEAR(v.plain.error_um.p95, c.after_um.p95, 1e-6) << "from the emitted text";
+  EXPECT_NEAR(v.plain.error_um.rms, c.after_um.rms, 1e-6);
+}
+
+TEST(Compensate, RefusesPassesWhereNothingCanBeCutTwice) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  std::string text = plane_program();
+  for (std::size_t at = 0; (at = text.find("X0.5\n", at)) != std::string::npos; at += 8)
+    text.replace(at, 5, "M8\nX0.5\n");
+  job.program = folder.write("coolant.nc", text);
+  job.compensation.levers = {machine::Lever::shift, machine::Lever::passes};
+  Diagnostics diagnostics;
+  try {
+    compensate(job, diagnostics, {});
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    Diagnostic first = e.diagnostics().front();
+    EXPECT_EQ(first.check, "lever-unusable");
+    EXPECT_EQ(first.location.line, 9u);
+    EXPECT_EQ(first.message,
+              "levers names \"passes\", but none of the cuts to compensate can be made twice: those from here on have "
+              "M, S, T or H words among them; levers without \"passes\" were expected");
+  }
 }
 
 TEST(Compensate, NeedsTheFeedLeverForATimeBudget) {

@@ -78,6 +78,54 @@ TEST(HiddenRows, OffsetsAreWhereTheToolIsBesideTheProgrammedPath) {
   }
 }
 
+/// In every round: the surface shows what the second row cut, the first one's own error is added to it.
+TEST(HiddenRows, WhatARowWouldLeaveIsObservedBesideWhatTheSurfaceShows) {
+  simulate::SimulatedProgram given;
+  given.moves = moves_of(rows_program(2, 0.3, 0, 0));
+  std::vector<bool> selected;
+  for (const nc::Move& move : given.moves.moves) selected.push_back(move.kind == nc::MoveKind::linear);
+  const ShiftPath path(given.moves, selected, 0.4);
+  const auto move_near = [&](double x, double y) {
+    std::uint32_t m = 0;
+    while (!selected[m] || (nc::point_at(given.moves, given.moves.moves[m], 0.5) - Vec3(x, y, -1.2)).norm() > 0.1) ++m;
+    return m;
+  };
+  const std::uint32_t first = move_near(2.5, -3.5), second = move_near(2.5, -3.2);
+  for (const std::uint32_t m : {first, second}) {
+    removal::Stamp stamp;
+    stamp.move = m;
+    stamp.fraction = 0.5;
+    stamp.pose.tip_mm = nc::point_at(given.moves, given.moves.moves[m], 0.5);
+    given.path.stamps.push_back(stamp);
+  }
+  const std::vector<simulate::PathFraction> target{{first, 0.5f}, {second, 0.5f}};
+  removal::SurfacePoint above, below, own;
+  above.normal = below.normal = own.normal = Vec3::UnitZ();
+  above.area_mm2 = below.area_mm2 = own.area_mm2 = 0.01;
+  above.error_mm = 0.001, below.error_mm = -0.004, own.error_mm = 0.002;
+  above.target_stamp = below.target_stamp = own.target_stamp = 0;
+  above.machined_stamp = below.machined_stamp = 1;
+  own.machined_stamp = 0;
+  const std::vector<removal::SurfacePoint> surface{above, below, own};
+  const std::vector<Vec3> bending{Vec3(0, 0, 0.020), Vec3::Zero()};
+
+  const machine::Job job;
+  const Observed seen = observe(path, job, given, given, {}, surface, target, bending);
+  ASSERT_EQ(seen.hidden.size(), 2u) << "the row that cut its own point is not hidden";
+  for (const Observation& o : seen.hidden) {
+    EXPECT_DOUBLE_EQ(o.error_mm, 0.020);
+    EXPECT_EQ(o.place.lower, path.find(first, 0.5).lower);
+  }
+  EXPECT_EQ(seen.of_path().size(), 4u) << "below and own as they are, above and below again";
+  EXPECT_TRUE(observe(path, job, given, given, {}, surface, target).hidden.empty()) << "without what bends it";
+
+  // What a first cut of the second row left last counts as not cut: the first row should have.
+  std::vector<bool> first_cuts(given.moves.moves.size(), false);
+  first_cuts[second] = true;
+  const Observed repeated = observe(path, job, given, given, {}, surface, target, {}, first_cuts);
+  for (const Observation& o : repeated.points) EXPECT_EQ(o.place.lower, path.find(first, 0.5).lower);
+}
+
 /// On a plane that rises along the rows, an axis that lags more than the others makes every second row cut deeper.
 machine::Job lagging_job(const tests::TempFolder& folder) {
   machine::Job job;

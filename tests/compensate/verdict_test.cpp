@@ -93,8 +93,8 @@ TEST(Causes, NameTheWorstLinesOfTheLargestParts) {
   EXPECT_EQ(causes[0].cause, Cause::bow);
   EXPECT_EQ(causes[0].lines, (std::vector<std::size_t>{10, 20, 30})) << "the worst three, in the program's order";
   EXPECT_EQ(sentence(causes[0]),
-            "8.00 um rms differs along the cutter (helix bow), most in lines 10, 20, 30; two axial passes, a shorter "
-            "tool or a lower feed would remove it");
+            "8.00 um rms differs along the cutter (helix bow), most in lines 10, 20, 30; a second cut (lever "
+            "\"passes\"), a shorter tool or a lower feed would remove it");
 }
 
 }  // namespace

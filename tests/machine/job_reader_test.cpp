@@ -202,20 +202,25 @@ TEST(JobReader, ReadsReferenceAndBand) {
 }
 
 TEST(JobReader, ReadsLevers) {
-  const Result result = read(with_more("[compensation]\nlevers = [\"feed\", \"shift\"]\nmin_feed_percent = 30\n"));
+  const Result result =
+      read(with_more("[compensation]\nlevers = [\"feed\", \"shift\", \"passes\"]\nmin_feed_percent = 30\n"
+                     "pass_allowance_mm = 0.03\n"));
   EXPECT_EQ(result.messages, "");
   EXPECT_TRUE(result.job.compensation.has(Lever::feed));
+  EXPECT_TRUE(result.job.compensation.has(Lever::passes));
   EXPECT_EQ(result.job.compensation.min_feed_percent, 30);
+  EXPECT_EQ(result.job.compensation.pass_allowance_mm, 0.03);
   EXPECT_FALSE(read(kJob).job.compensation.has(Lever::feed));
   const Result back = read(replaced(replaced(to_toml(result.job), result.job.program, "finish.nc"),
                                     result.job.machine_path, "machine.toml"));
   EXPECT_EQ(back.messages, "");
   EXPECT_EQ(back.job.compensation.levers, result.job.compensation.levers);
+  EXPECT_EQ(back.job.compensation.pass_allowance_mm, 0.03);
 }
 
 TEST(JobReader, RefusesLeversThatAreNone) {
   EXPECT_EQ(read(with_more("[compensation]\nlevers = [\"shift\", \"speed\"]\n")).messages,
-            "job.toml:14:10: error: levers names \"speed\"; a list of \"shift\" and \"feed\" was expected "
+            "job.toml:14:10: error: levers names \"speed\"; a list of \"shift\", \"feed\" and \"passes\" was expected "
             "[value-choice]\n"
             "    levers = [\"shift\", \"speed\"]\n"
             "             ^");

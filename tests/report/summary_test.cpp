@@ -26,9 +26,9 @@ TEST(VerdictText, JudgesTheEmittedProgramAndNamesTheCauses) {
   EXPECT_EQ(v.headline,
             "over the tolerance: the form error of the emitted program is 11.30 um (95th percentile), tolerance_um = "
             "5");
-  EXPECT_EQ(v.reasons,
-            (std::vector<std::string>{"4.10 um rms differs along the cutter (helix bow), most in lines 12, 14; two "
-                                      "axial passes, a shorter tool or a lower feed would remove it"}));
+  EXPECT_EQ(v.reasons, (std::vector<std::string>{
+                           "4.10 um rms differs along the cutter (helix bow), most in lines 12, 14; a "
+                           "second cut (lever \"passes\"), a shorter tool or a lower feed would remove it"}));
 }
 
 TEST(VerdictText, IsOnTheBandOrTheDeflectionWhereTheJobAsksForIt) {

@@ -1,0 +1,165 @@
+#pragma once
+// The state of a compensation while its rounds run. compensate.cpp is the order of the steps; the steps are in
+//   loop_start.cpp   the program as given: its error, what of it is compensated
+//   loop_rounds.cpp  rounds of shifts, and what is kept of each
+//   loop_levers.cpp  lower feeds and second cuts, within a machine time
+//   loop_versions.cpp  the programs in which runs are cut twice
+//   loop_finish.cpp  the figures of the program that is written
+#include <array>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compensate/choice.h"
+#include "compensate/compensate.h"
+#include "compensate/feed_lever.h"
+#include "compensate/guard.h"
+#include "compensate/passes.h"
+#include "compensate/sensitivity.h"
+#include "compensate/splits.h"
+
+namespace camber::compensate {
+
+inline constexpr double kRowReach_mm = 1.0;  ///< rows farther apart are not linked
+
+/// A program whose path is shifted: the given one, or one in which runs are cut twice. Its moves to compensate are the
+/// given program's, so that places on `path` have the same indices in every version.
+struct Version {
+  std::vector<bool> compensated{};  ///< one per move
+  std::vector<bool> first_cuts;     ///< one per move: of a run that is cut again; empty: none
+  std::optional<ShiftPath> path;
+  std::optional<Sensitivity> sensitivity;
+  std::vector<double> stiffness;  ///< of the path, one per point
+  std::vector<RowLink> links;
+  std::optional<Splits> splits;
+  bool split_once = false;
+  std::vector<double> link_stiffness;  ///< one per link of the path that the splits leave
+  std::optional<FeedLever> feeds;
+  bool feeds_stuck = false;                     ///< a lower feed brought nothing
+  std::vector<std::size_t> passes;              ///< runs that are cut twice
+  std::vector<std::uint32_t> moves;             ///< this version's, one per move of the given program; empty: the same
+  std::optional<nc::RepeatedText> repeated{};   ///< of the given program
+  std::shared_ptr<const Trial> best_shifted{};  ///< of the rounds without lower feeds
+
+  // While it is the active one, the set-up and the job have these.
+  simulate::SimulatedProgram program;
+  std::vector<simulate::PathFraction> stamps;
+  machine::Operations operations;
+  std::vector<Vec3> bending;  ///< TrialRunner::bending
+};
+
+class Loop {
+ public:
+  Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options);
+
+  void start(CompensationResult& out);
+  /// Rounds of shifts from the last trial on.
+  void converge(CompensationResult& out);
+  /// What no shift takes away: lower feeds and second cuts, rung by rung of machine time, until the tolerance is kept;
+  /// with a budget its least error.
+  void spend_time(CompensationResult& out);
+  /// Where the best round's surface lies deeper than the limit, further rounds lift the path there.
+  void stay_out_of_part(CompensationResult& out);
+  /// What is written: the best round that keeps the limits; the given program where none is better than that.
+  void choose(CompensationResult& out);
+  void finish(CompensationResult& out);
+  /// The other grid and the uncertainty; the text last, since its header may tell of them.
+  void check(CompensationResult& out);
+
+ private:
+  using Prepare = std::function<void(std::vector<Observation>&)>;
+
+  bool has(machine::Lever lever) const { return job_.compensation.has(lever); }
+  double tolerance_mm() const { return job_.compensation.half_width_um() / 1000; }
+  /// Where the control stops at every corner, a split would be a stop: the feed falls to nothing there, and the mark
+  /// that this leaves is a new error, which the next round answers with new splits.
+  double spacing_mm() const;
+  FitShiftOptions fit_options(std::span<const double> stiffness, std::span<const RowLink> links,
+                              std::span<const double> link_stiffness) const;
+  /// Of the path with all its points, by which errors are judged.
+  FitShiftOptions fit_options() const;
+  std::function<void(double)> progress(const std::string& what) const {
+    return simulate::progress_of(options_.progress, what);
+  }
+
+  // loop_start.cpp
+  void read_given(const simulate::Prediction& prediction, CompensationResult& out);
+  void check_levers(const std::vector<bool>& selected);
+  void begin_version(Version& version);
+  void expect_hidden_rows(Trial& given);
+
+  // loop_rounds.cpp
+  /// New shifts from the last trial's error, and their prediction. `prepare` may change the feeds of the path and the
+  /// observations that the shifts are fitted to.
+  void step(CompensationResult& out, double fraction, const Guard* guard, const Prepare& prepare = {});
+  void fit_and_emit(const std::vector<Observation>& observations, double fraction, Round& round, Trial& next);
+  void predict_trial(Trial& trial, const std::string& what);
+  std::vector<Observation> wanted_of(const Observed& observed, const Guard* guard);
+  void choose_splits(const std::vector<Observation>& observations);
+  void stiffen(const std::vector<MoveMap::MovePlace>& places);
+  PlainFigures figures_of(const Trial& trial) const;
+  void record(CompensationResult& out, Round round);
+  void take(CompensationResult& out);
+  bool done(CompensationResult& out, int without_gain);
+
+  // loop_levers.cpp
+  bool met(const CompensationResult& out) const;
+  void lower_feeds(CompensationResult& out, double percent);
+  void step_with_feeds(CompensationResult& out, double percent);
+  std::vector<PassRun> runs_after_shifts();
+  bool cut_twice(CompensationResult& out, double percent);
+  void compensate_version(std::unique_ptr<Version> version, CompensationResult& out, double percent);
+  nc::Emission first_cuts();
+
+  // loop_versions.cpp
+  std::unique_ptr<Version> version_with(const std::vector<PassRun>& runs, std::vector<std::size_t> chosen,
+                                        const nc::Emission& first_cuts);
+  void warn_of_run(std::uint32_t block, const std::string& why, const char* check);
+  void fill_moves(const std::vector<std::uint32_t>& moves, Version& out) const;
+  void activate(std::size_t version);
+  void predict_version(CompensationResult& out);
+
+  // loop_finish.cpp
+  Stop verdict(const CompensationResult& out) const;
+  std::vector<std::size_t> lines_of(const Trial& trial, const simulate::SimulatedProgram& program) const;
+  std::vector<std::uint32_t> given_blocks(std::vector<std::uint32_t> block_of_line) const;
+  std::size_t count_changed(const Emitted& emitted) const;
+  std::vector<nc::EditNotMade> in_given(std::vector<nc::EditNotMade> not_made) const;
+  void say_passes(CompensationResult& out) const;
+  void recheck_on(double voxel_mm, CompensationResult& out);
+  const simulate::SimulatedProgram& given() const { return active_ == 0 ? setup_.program : versions_.front()->program; }
+
+  machine::Job job_;
+  Diagnostics& diagnostics_;
+  const CompensateOptions& options_;
+  simulate::Setup setup_;
+  TrialRunner trials_;  ///< of the active version
+  std::vector<std::unique_ptr<Version>> versions_;
+  std::size_t active_ = 0;  ///< whose program the set-up has
+  Version* now_ = nullptr;  ///< versions_[active_]
+
+  double share_ = 1;                                    ///< of a step that is taken; less after over-corrections
+  std::vector<Observation> expected_;                   ///< for the first round; empty: as observed
+  std::shared_ptr<const Trial> last_, best_, allowed_;  ///< allowed_: the best one that keeps the limits
+  std::shared_ptr<const Trial> given_trial_;
+  std::size_t allowed_index_ = 0;
+  std::vector<RoundFigures> figures_;  ///< one a round
+  std::vector<bool> reach_;
+  double depth_limit_um_ = 0;
+  std::size_t first_round_ = 0;                                 ///< of the active version
+  bool too_slow_ = false;                                       ///< runs were not cut twice for want of time
+  double allowance_mm_ = 0;                                     ///< that first cuts leave
+  double given_s_ = 0;                                          ///< machine time of the given program
+  double allowed_s_ = std::numeric_limits<double>::infinity();  ///< machine time
+  Stop ended_ = Stop::rounds;                                   ///< why the rounds ended
+  Observed first_observed_;                                     ///< of the given program
+  double free_correctable_um_ = 0;                              ///< of the best round before the guard
+  std::size_t free_round_ = 0;                                  ///< that round
+  std::shared_ptr<const Emitted> free_;                         ///< its program
+};
+
+}  // namespace camber::compensate

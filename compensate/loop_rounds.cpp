@@ -1,0 +1,228 @@
+// Rounds of shifts, and what is kept of each.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "compensate/fit_shift.h"
+#include "compensate/loop.h"
+
+namespace camber::compensate {
+namespace {
+
+constexpr double kMinGain = 0.03;  // a round that lowers the rms by less has stalled
+constexpr int kPatience = 2;       // rounds without that gain before it counts
+constexpr double kWorse = 1.02;    // a round whose rms is over the best one's by this has over-corrected
+constexpr double kShorter = 0.5;   // then the next step starts at the best one's shifts, shorter
+constexpr int kGuardRounds = 5;    // beyond max_rounds, to stay out of the part
+constexpr int kStiffenings = 12;   // of the path where its angles grow by more than the bound
+constexpr double kStiffer = 2.5;
+constexpr double kGuardReach_mm = 2.0;   // a lift fades out over this length, or ...
+constexpr double kGuardSmoothings = 8;   // ... so many smoothing lengths
+constexpr double kLeftOver = 0.25;       // of the tolerance: what a shift can still correct is not worth a round
+constexpr double kSplit_mm = 0.0005;     // a split of a line in the first round must be worth this, ...
+constexpr double kLateSplit_mm = 0.002;  // ... a later one this
+
+/// Places along the path where the feed fraction changes.
+std::size_t count_feed_changes(const ShiftPath& path) {
+  std::size_t out = 0;
+  for (const Chain& chain : path.chains()) {
+    double now = 1;
+    for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i) {
+      if (path.points()[i].feed_fraction != now) ++out;
+      now = path.points()[i].feed_fraction;
+    }
+  }
+  return out;
+}
+
+/// Share of the area whose error changed its sign and is still over the tolerance.
+double overcorrected_fraction(const Observed& before, const Observed& now, double tolerance_mm) {
+  double over = 0, area = 0;
+  for (std::size_t i = 0; i < now.points.size(); ++i) {
+    const double a = before.points[i].error_mm, b = now.points[i].error_mm;
+    area += now.points[i].area_mm2;
+    if (now.compensated[i] && a * b < 0 && std::abs(a) > tolerance_mm && std::abs(b) > tolerance_mm)
+      over += now.points[i].area_mm2;
+  }
+  return area > 0 ? over / area : 0;
+}
+
+}  // namespace
+
+FitShiftOptions Loop::fit_options(std::span<const double> stiffness, std::span<const RowLink> links,
+                                  std::span<const double> link_stiffness) const {
+  return {.smoothing_mm = smoothing_mm(job_.simulation.voxel_mm),
+          .max_shift_mm = job_.compensation.max_shift_mm,
+          .stiffness = stiffness,
+          .links = links,
+          .link_stiffness = link_stiffness};
+}
+
+FitShiftOptions Loop::fit_options() const { return fit_options(now_->stiffness, now_->links, {}); }
+
+void Loop::converge(CompensationResult& out) {
+  int without_gain = 0;
+  while (!done(out, without_gain)) {
+    step(out, share_, nullptr);
+    const double best = out.rounds[out.best].error_um.rms, now = out.rounds.back().error_um.rms;
+    without_gain = now < (1 - kMinGain) * best ? 0 : without_gain + 1;
+    if (now < best) {
+      take(out);
+    } else if (now > kWorse * best) {
+      last_ = best_;
+      share_ *= kShorter;
+    }
+  }
+  now_->best_shifted = best_;
+}
+
+void Loop::stay_out_of_part(CompensationResult& out) {
+  if (out.best == 0 || out.rounds[out.best].deepest_um <= depth_limit_um_) return;
+  const double reach = std::max(kGuardReach_mm, kGuardSmoothings * fit_options().smoothing_mm);
+  Guard guard(*now_->path, depth_limit_um_ / 1000, reach);
+  last_ = best_;
+  free_correctable_um_ = out.rounds[out.best].split.correctable_um;
+  free_ = best_->emitted;
+  free_round_ = out.best;
+  double deepest_um = out.rounds[out.best].deepest_um;
+  for (int i = 0; i < kGuardRounds && deepest_um > depth_limit_um_; ++i) {
+    guard.learn(last_->observed, deepest_um / 1000);
+    step(out, share_, &guard);
+    deepest_um = out.rounds.back().deepest_um;
+  }
+}
+
+void Loop::choose(CompensationResult& out) {
+  out.better = allowed_index_ > 0 || out.rounds.size() == 1;
+  if (!out.better && options_.keep_anyway) return;
+  out.best = allowed_index_;
+  best_ = allowed_;
+  activate(best_->version);
+}
+
+void Loop::step(CompensationResult& out, double fraction, const Guard* guard, const Prepare& prepare) {
+  const std::shared_ptr<const Trial> from = last_;
+  const bool by_expectation = !expected_.empty() && !guard;
+  std::vector<Observation> observations = by_expectation ? expected_ : wanted_of(from->observed, guard);
+  expected_.clear();
+  Round round;
+  round.gain = now_->sensitivity->mean();
+  round.step_fraction = fraction;
+  round.guard = guard != nullptr;
+  auto made = std::make_shared<Trial>();
+  now_->path->set_shifts(from->shifts);
+  FeedLever::set_fractions(*now_->path, from->fractions);
+  if (prepare) prepare(observations);
+  choose_splits(observations);
+  fit_and_emit(observations, fraction, round, *made);
+  predict_trial(*made, fmt::format("round {}", out.rounds.size()));
+  last_ = made;
+  // What rows do that come out of the shadow of others says nothing of their gain, nor what another feed does.
+  if (!by_expectation && !prepare) now_->sensitivity->learn(*now_->path, from->shifts, from->observed, last_->observed);
+  round.overcorrected_fraction = overcorrected_fraction(from->observed, last_->observed, tolerance_mm());
+  record(out, round);
+}
+
+/// From the path's shifts; again with a stiffer path where it turns by more than the bound.
+void Loop::fit_and_emit(const std::vector<Observation>& observations, double fraction, Round& round, Trial& next) {
+  ShiftPath& path = *now_->path;
+  const std::vector<Vec3> from = path.shifts();
+  ThinPath thin(path, now_->splits->kept());
+  const std::vector<Observation> asked = thin.places_of(observations);
+  const std::vector<RowLink> links = row_links(thin.path(), kRowReach_mm);
+  auto& link_stiffness = now_->link_stiffness;
+  if (link_stiffness.size() != links.size()) link_stiffness.assign(links.size(), 1.0);
+  for (int i = 0; i <= kStiffenings; ++i) {
+    path.set_shifts(from);
+    thin.take_shifts(path);
+    const std::vector<double> stiffness = thin.greatest_of(now_->stiffness);
+    round.limited_points = fit_shift(thin.path(), asked, fit_options(stiffness, links, link_stiffness));
+    thin.give_shifts(path);
+    for (std::size_t p = 0; p < from.size(); ++p) {
+      Vec3& shift = path.points()[p].shift_mm;
+      shift = from[p] + fraction * (shift - from[p]);
+    }
+    next.emitted = trials_.emit(path, now_->splits->kept(), now_->compensated);
+    thin.take_shifts(path);
+    const RowTurn turn = row_turn(thin.path(), links, job_.compensation.max_angle_growth_rad);
+    if (next.emitted->quality.over.empty() && turn.over.empty()) break;
+    stiffen(next.emitted->quality.over);
+    for (const std::size_t link : turn.over) link_stiffness[link] *= kStiffer;
+  }
+  round.largest_shift_mm = path.largest_shift_mm();
+}
+
+/// With the path's shifts and feeds.
+void Loop::predict_trial(Trial& trial, const std::string& what) {
+  trial.version = active_;
+  trial.shifts = now_->path->shifts();
+  trial.fractions = FeedLever::fractions(*now_->path);
+  trial.keep(trials_.predict(trial.emitted ? trial.emitted->program : setup_.program, progress(what)));
+  trial.observed = trials_.observe(*now_->path, trial.emitted.get(), trial.surface);
+  trial.observed.reach = reach_;
+}
+
+/// The errors that the next shifts are to take away.
+std::vector<Observation> Loop::wanted_of(const Observed& observed, const Guard* guard) {
+  std::vector<Observation> out = without_row_form(*now_->path, observed.of_path(), fit_options());
+  if (guard) guard->apply_to(out);
+  now_->sensitivity->apply_to(out);
+  return out;
+}
+
+/// Where the shifts that the path could take with all its points ask for it; a late one must be worth more.
+void Loop::choose_splits(const std::vector<Observation>& observations) {
+  ShiftPath free = *now_->path;
+  fit_shift(free, observations, fit_options());
+  if (now_->splits->add_strays(free, now_->split_once ? kLateSplit_mm : kSplit_mm) > 0) now_->link_stiffness.clear();
+  now_->split_once = true;
+}
+
+void Loop::stiffen(const std::vector<MoveMap::MovePlace>& places) {
+  auto& stiffness = now_->stiffness;
+  for (const auto& place : places) {
+    if (!now_->path->contains(place.move)) continue;
+    const std::size_t at = now_->path->find(place.move, place.fraction).lower;
+    for (std::size_t i = at > 0 ? at - 1 : 0; i < std::min(at + 3, stiffness.size()); ++i) stiffness[i] *= kStiffer;
+  }
+}
+
+PlainFigures Loop::figures_of(const Trial& trial) const {
+  return plain_figures(trial.surface, trial.total_mm, trial.observed, job_.compensation);
+}
+
+void Loop::record(CompensationResult& out, Round round) {
+  round.error_um = judged_of(figures_of(*last_), job_.compensation.reference);
+  round.split = split_error(*now_->path, last_->observed, fit_options());
+  if (round.guard) round.split.give_to_guard(free_correctable_um_);
+  round.deepest_um = depth_of(last_->surface, last_->observed, depth_limit_um_, true).gouge_depth_p999_um;
+  round.static_rounds = last_->static_rounds;
+  round.unsettled = last_->unsettled;
+  round.machine_time_s = (last_->emitted ? last_->emitted->program : setup_.program).feed.time_s;
+  round.slowed = count_feed_changes(*now_->path);
+  round.repeated = now_->passes.size();
+  out.rounds.push_back(round);
+  figures_.push_back({round.error_um.rms, round.error_um.p95, round.deepest_um, round.machine_time_s > allowed_s_});
+  const bool by_p95 = has(machine::Lever::feed) || has(machine::Lever::passes);
+  const std::size_t allowed = choose_round(figures_, depth_limit_um_, by_p95);
+  if (allowed != allowed_index_) allowed_ = last_;  // only the newest round can take the place of another
+  allowed_index_ = allowed;
+}
+
+void Loop::take(CompensationResult& out) {
+  out.best = out.rounds.size() - 1;
+  best_ = last_;
+}
+
+bool Loop::done(CompensationResult& out, int without_gain) {
+  const auto& c = job_.compensation;
+  const double left_um = out.rounds[out.best].split.correctable_p95_um;
+  const bool ready = out.best > 0 || within_tolerance(out.plain_before, c);
+  ended_ = ready && left_um <= kLeftOver * c.half_width_um() ? Stop::stalled
+           : without_gain >= kPatience                       ? Stop::stalled
+                                                             : Stop::rounds;
+  return ended_ == Stop::stalled || static_cast<int>(out.rounds.size() - first_round_) > c.max_rounds;
+}
+
+}  // namespace camber::compensate

@@ -1,0 +1,122 @@
+// The program as given: its error, what of it is compensated, and the points of the path.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "compensate/expected.h"
+#include "compensate/loop.h"
+#include "nc/emit.h"
+#include "simulate/operations.h"
+#include "simulate/verdict.h"
+
+namespace camber::compensate {
+
+using simulate::SimulatedProgram;
+
+namespace {
+
+constexpr double kSpacing_mm = 0.4;  // between points of a long line
+constexpr double kForeign = 0.2;     // of the area, cut by another row than it should be: expected_errors are used
+
+/// What is known to be refused is refused before the long work.
+void check_given(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics) {
+  const Finishing early = find_finishing(job, program, {});
+  if (early.operations.size() == 1 || job.compensation.operations.given())
+    check_compensated(program, early.moves, diagnostics);
+  check_travel(job, program.text, program.moves, diagnostics);
+  simulate::check_program(job, program, diagnostics);
+}
+
+}  // namespace
+
+Loop::Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options)
+    : job_(job),
+      diagnostics_(diagnostics),
+      options_(options),
+      setup_(simulate::set_up(
+          job, {.check = [&](const SimulatedProgram& program) { check_given(job, program, diagnostics); }},
+          {.program = diagnostics, .original = diagnostics, .target = diagnostics})),
+      trials_(job_, setup_) {
+  simulate::check_clearance(job_, setup_, diagnostics_);
+  diagnostics_.throw_if_errors();
+  versions_.push_back(std::make_unique<Version>());
+  now_ = versions_.front().get();
+}
+
+double Loop::spacing_mm() const {
+  const bool stops = job_.machine.control.corner.law == machine::CornerLaw::exact_stop;
+  return stops ? std::numeric_limits<double>::infinity() : kSpacing_mm;
+}
+
+void Loop::start(CompensationResult& out) {
+  auto given = std::make_shared<Trial>();
+  simulate::Prediction prediction = trials_.predict(setup_.program, progress("as given"));
+  read_given(prediction, out);
+  given->keep(std::move(prediction));
+  out.finishing = find_finishing(job_, setup_.program, given->surface);
+  out.lines = line_roles(setup_.program, out.finishing.moves);
+  out.operations = simulate::as_lines(job_.operations, setup_.program.text, setup_.program.moves);
+  check_levers(out.finishing.moves);
+  nc::warn_of_uneditable(setup_.program.text, setup_.program.moves, out.finishing.moves, diagnostics_);
+  now_->compensated = out.finishing.moves;
+  begin_version(*now_);
+  given->shifts = now_->path->shifts();
+  given->fractions = FeedLever::fractions(*now_->path);
+  given->observed = trials_.observe(*now_->path, nullptr, given->surface);
+  reach_ = reach_of(*now_->path, setup_.program.moves, given->observed, given->surface, setup_.own_stamps());
+  given->observed.reach = reach_;
+  if (foreign_fraction(given->observed) > kForeign) expect_hidden_rows(*given);
+  last_ = best_ = allowed_ = given_trial_ = given;
+  first_observed_ = given->observed;
+  out.reference = job_.compensation.reference;
+  out.own_depth_limit = job_.compensation.depth_limit_um().has_value();
+  depth_limit_um_ = job_.compensation.depth_limit_um().value_or(0);
+  if (!out.own_depth_limit)
+    depth_limit_um_ = default_depth_limit_um(*now_->path, given->observed, fit_options(), 1000 * tolerance_mm());
+  out.depth_limit_um = depth_limit_um_;
+  out.plain_before = figures_of(*given);
+  out.feed_before = setup_.program.feed;
+  given_s_ = out.feed_before.time_s;
+  out.surface_before = last_->surface;
+  out.loads_before = last_->loads;
+  record(out, {});
+  out.depth_before = depth_of(last_->surface, last_->observed, depth_limit_um_, true);
+}
+
+void Loop::read_given(const simulate::Prediction& prediction, CompensationResult& out) {
+  out.doubts = simulate::doubts(job_, setup_.program, prediction);
+  if (simulate::beyond_model(prediction)) throw BeyondModel(fmt::format("{}", fmt::join(out.doubts, "; ")));
+  out.own_target = setup_.own_target();
+  out.unseen_mm2 = prediction.unseen_mm2;
+  out.border_mm2 = prediction.border_mm2;
+  out.not_judged_mm2 = prediction.not_judged_mm2;
+  out.between = prediction.between;
+}
+
+void Loop::check_levers(const std::vector<bool>& selected) {
+  check_compensated(setup_.program, selected, diagnostics_);
+  diagnostics_.throw_if_errors();
+  if (has(machine::Lever::feed)) check_feeds(setup_.program, selected, diagnostics_);
+  if (has(machine::Lever::passes)) check_passes(setup_.program, selected, diagnostics_);
+  diagnostics_.throw_if_errors();
+}
+
+/// `version` is the active one.
+void Loop::begin_version(Version& version) {
+  version.path.emplace(setup_.program.moves, version.compensated, spacing_mm(), job_.machine.control.block_time_s);
+  version.sensitivity.emplace(*version.path);
+  version.stiffness.assign(version.path->points().size(), 1.0);
+  version.links = row_links(*version.path, kRowReach_mm);
+  version.splits.emplace(*version.path);
+}
+
+void Loop::expect_hidden_rows(Trial& given) {
+  trials_.bending = nominal_bending(job_, setup_, progress("nominal chips"));
+  scale_bending(*now_->path, job_, setup_, given.observed, given.surface, trials_.bending);
+  given.observed = trials_.observe(*now_->path, nullptr, given.surface);
+  given.observed.reach = reach_;
+  expected_ = expected_errors(*now_->path, job_, setup_, given.observed, given.surface, trials_.bending);
+}
+
+}  // namespace camber::compensate

@@ -1,0 +1,51 @@
+#pragma once
+// Cutting a run of moves twice as a third lever: the first cut leaves an allowance, the second one takes a thin chip.
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compensate/fit_shift.h"
+#include "compensate/shift_path.h"
+#include "nc/repeat.h"
+#include "simulate/predict.h"
+
+namespace camber::compensate {
+
+/// A run, what a second cut of it takes, and how much it could bring.
+struct PassRun {
+  nc::CutRun run;
+  double time_s = 0;   ///< of the run and the way back
+  double left_mm = 0;  ///< 95th percentile of what the best shift leaves of the error on the surface that it makes
+};
+
+/// Errors: [lever-unusable] where no run of the moves to compensate can be cut twice. Warning [not-repeatable] where
+/// some cannot. `selected`: one per move.
+void check_passes(const simulate::SimulatedProgram& program, const std::vector<bool>& selected,
+                  Diagnostics& diagnostics);
+
+/// The runs that can be cut twice. `left_mm`: what the best shift would leave of each observation.
+std::vector<PassRun> pass_runs(const simulate::SimulatedProgram& given, const std::vector<bool>& selected,
+                               const ShiftPath& path, std::span<const Observation> observations,
+                               std::span<const double> left_mm);
+
+/// Indices of the runs to cut twice, ascending: those with the greatest error first, each while it fits into
+/// `budget_s` and leaves more than `wanted_mm`.
+std::vector<std::size_t> choose_passes(std::span<const PassRun> runs, double budget_s, double wanted_mm);
+
+/// What the first of two cuts leaves, mm, where the job gives nothing: the depth by which the best single cut
+/// undercuts the surface and half of its tolerance on top, so that the second one cuts everywhere; at least 20 um, a
+/// chip that an edge cuts rather than rubs.
+double pass_allowance_mm(double gouge_depth_mm, double tolerance_mm);
+
+/// The given program with the chosen runs' lines of `first_cuts` (an emission of the given program) before them.
+nc::RepeatedText with_first_cuts(const simulate::SimulatedProgram& given, std::span<const PassRun> runs,
+                                 std::span<const std::size_t> chosen, const nc::Emission& first_cuts);
+
+/// For each move of the given program the one of the repeated one that its line makes. Nothing where some of them is
+/// another move there (start, end, feed, modal state), `wrong` then the first one.
+std::optional<std::vector<std::uint32_t>> moves_in_repeated(const nc::Interpretation& given,
+                                                            const nc::Interpretation& repeated,
+                                                            const nc::RepeatedText& text, std::uint32_t& wrong);
+
+}  // namespace camber::compensate
