@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "api/commands/check.h"
+#include "api/commands/explain_kinematics.h"
 #include "base/numbers.h"
 #include "base/output_file.h"
 #include "cli/check_page.h"
@@ -23,8 +24,9 @@ struct Checked {
 
 /// As the control of the machine plans it, where a machine is known.
 report::PathPicture picture_of(const nc::Interpretation& moves, const machine::Machine* machine) {
-  return machine ? report::planned_picture(moves, *machine, report::kMaxPicturePoints)
-                 : report::program_picture(moves, report::kMaxPicturePoints);
+  // The planner knows no rotary axes.
+  return machine && moves.rotary.empty() ? report::planned_picture(moves, *machine, report::kMaxPicturePoints)
+                                         : report::program_picture(moves, report::kMaxPicturePoints);
 }
 
 Checked read_and_summarize(const CheckCommand& command, Diagnostics& found) {
@@ -103,6 +105,13 @@ int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostrea
     write_file(command.report, check_page(command, checked.summary, ordered, checked.picture));
   out << check_report(command.program, checked.summary, ordered);
   diagnostics.append(ordered);
+  return 0;
+}
+
+int run_explain_kinematics(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out) {
+  const api::ExplainedKinematics explained = api::explain_kinematics(command.explain_kinematics, diagnostics);
+  if (!command.json.empty()) write_file(command.json, api::explained_kinematics_json(explained));
+  out << kinematics::to_text(explained.explanation, explained.machine);
   return 0;
 }
 

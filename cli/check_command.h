@@ -11,10 +11,11 @@ namespace camber::cli {
 
 struct CheckCommand {
   std::string program;
-  std::string json;     ///< file for the figures; empty: none
-  std::string report;   ///< page with the path's picture; empty: none
-  std::string machine;  ///< machine.toml; empty: none
-  std::string job;      ///< job.toml, whose machine counts; empty: none
+  std::string json;                ///< file for the figures; empty: none
+  std::string report;              ///< page with the path's picture; empty: none
+  std::string machine;             ///< machine.toml; empty: none
+  std::string job;                 ///< job.toml, whose machine counts; empty: none
+  std::string explain_kinematics;  ///< machine.toml or job.toml to explain instead of a program; empty: none
   nc::InterpreterOptions interpreter;
 };
 
@@ -22,6 +23,9 @@ struct CheckCommand {
 /// go to `diagnostics` in the order of the file. Throws InputError, likewise in order, when the program cannot be read;
 /// then no file is written. Returns 0.
 int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out);
+
+/// Prints the kinematic chain of a machine, and writes it as JSON where asked for. Throws InputError. Returns 0.
+int run_explain_kinematics(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out);
 
 /// The report as it is printed.
 std::string check_report(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics);

@@ -69,7 +69,11 @@ std::string check_page(const CheckCommand& command, const nc::Summary& s, const 
   page.picture = picture;
   page.tables = {tools_of(s.tools), extents_of(s)};
   for (const Diagnostic& d : found.all()) page.warnings.push_back(to_string(d));
-  if (picture.speed_mm_per_min.empty())
+  if (picture.speed_mm_per_min.empty() && !(command.machine.empty() && command.job.empty()))
+    page.notes.push_back(
+        "The program has rotary axes: the picture shows X, Y and Z as programmed, with programmed feeds, and rapids "
+        "as straight lines.");
+  else if (picture.speed_mm_per_min.empty())
     page.notes.push_back("Without a machine file the picture holds programmed feeds alone and draws rapids straight.");
   else
     page.notes.push_back(

@@ -1,8 +1,10 @@
 // check, feed, time, compress, resegment and fit-feed on the command line.
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -44,6 +46,34 @@ void add_interpreter_options(CLI::App& command, nc::InterpreterOptions& interpre
       ->expected(1)
       ->take_all()
       ->type_name("N");
+}
+
+/// --tool-length 1=80: the length of offset H1.
+void add_tool_lengths(CLI::App& command, nc::InterpreterOptions& interpreter) {
+  const auto parsed = [](const std::string& text) -> std::optional<std::pair<int, double>> {
+    const std::size_t at = text.find('=');
+    if (at == std::string::npos) return std::nullopt;
+    const auto number = parse_number(text.substr(0, at)), length = parse_number(text.substr(at + 1));
+    if (!number || !length || *number < 0 || *number > 9999 || *number != std::floor(*number)) return std::nullopt;
+    return std::pair(static_cast<int>(*number), *length);
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--tool-length",
+          [&interpreter, parsed](const std::vector<std::string>& given) {
+            for (const std::string& text : given)
+              if (const auto offset = parsed(text)) interpreter.tool_offsets[offset->first].length_mm = offset->second;
+          },
+          "length of tool offset H, gauge line to tip, mm; to check the travel of the axes")
+      ->check(CLI::Validator(
+          [parsed](std::string& text) {
+            return parsed(text) ? std::string()
+                                : text + ": a number of H and a length in mm were expected, such as 1=80";
+          },
+          ""))
+      ->expected(1)
+      ->take_all()
+      ->type_name("H=MM");
 }
 
 /// Index of a control in the table: what --dialect maps a name to.
@@ -89,7 +119,9 @@ int print_effective_machine(const std::string& path, const GlobalOptions& option
 int check(const CheckCommand& command, const GlobalOptions& options) {
   Diagnostics diagnostics;
   std::ostream silent(nullptr);
-  const int status = run_check(command, diagnostics, options.quiet ? silent : std::cout);
+  std::ostream& out = options.quiet ? silent : std::cout;
+  const int status = command.explain_kinematics.empty() ? run_check(command, diagnostics, out)
+                                                        : run_explain_kinematics(command, diagnostics, out);
   std::cout.flush();
   settle(diagnostics, options);
   return status;
@@ -98,7 +130,7 @@ int check(const CheckCommand& command, const GlobalOptions& options) {
 void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("check", "read and interpret a program and report problems; change nothing");
   auto arguments = std::make_shared<CheckCommand>();
-  command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
+  auto* program = command->add_option("program", arguments->program, "NC program")->type_name("P.nc");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
   auto* machine =
       command->add_option("--machine", arguments->machine, "machine.toml: also check axes, feeds and spindle speeds");
@@ -106,12 +138,25 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("--job", arguments->job, "job.toml: also check its machine, tools, stock and part")
       ->type_name("J.toml")
       ->excludes(machine);
-  command->add_option("--report", arguments->report, "report page with a picture of the path")->type_name("R.html");
+  add_tool_lengths(*command, arguments->interpreter);
+  auto* page = command->add_option("--report", arguments->report, "report page with a picture of the path");
+  page->type_name("R.html");
+  command
+      ->add_option("--explain-kinematics", arguments->explain_kinematics,
+                   "instead of a program: the axes of a machine from the part to the spindle, and what a positive word "
+                   "of each turns which way")
+      ->type_name("M.toml|J.toml")
+      ->excludes(program)
+      ->excludes(page)
+      ->excludes("--machine")
+      ->excludes("--job");
   add_interpreter_options(*command, arguments->interpreter);
   add_language_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
+    if (arguments->program.empty() && arguments->explain_kinematics.empty()) throw CLI::RequiredError("program");
     chosen = [arguments, &options] {
-      check_outputs({arguments->json, arguments->report}, {arguments->program, arguments->machine, arguments->job});
+      check_outputs({arguments->json, arguments->report},
+                    {arguments->program, arguments->machine, arguments->job, arguments->explain_kinematics});
       return check(*arguments, options);
     };
   });

@@ -10,6 +10,7 @@
 #include "base/diagnostics.h"
 #include "machine/control_kind.h"
 #include "machine/cycle.h"
+#include "machine/kinematics.h"
 
 namespace camber::machine {
 
@@ -111,7 +112,9 @@ struct Machine {
   Control control;
   /// Parameter sets that codes of the program select ([control.mode.NAME]): `control` with other values, by name.
   std::vector<std::pair<std::string, Control>> modes;
-  std::array<Axis, 3> axis;  ///< x, y, z
+  std::array<Axis, 3> axis;          ///< x, y, z
+  std::array<RotaryAxis, 3> rotary;  ///< a, b, c
+  Kinematics kinematics;
   Spindle spindle;
   Cycle cycle;
   ToolChange tool_change;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "machine/kinematics_reader.h"
 #include "machine/machine_keys.h"
 #include "machine/source_parameters.h"
 
@@ -81,9 +82,10 @@ void read_axis(TomlTable table, Axis& axis) {
   table.finish();
 }
 
-void read_axes(TomlTable table, std::array<Axis, 3>& axes) {
-  for (std::size_t i = 0; i < axes.size(); ++i)
-    if (auto axis = table.table(kAxisNames[i])) read_axis(*axis, axes[i]);
+void read_axes(TomlTable table, Machine& machine) {
+  for (std::size_t i = 0; i < machine.axis.size(); ++i)
+    if (auto axis = table.table(kAxisNames[i])) read_axis(*axis, machine.axis[i]);
+  read_rotary_axes(table, machine);
   table.finish();
 }
 
@@ -165,7 +167,8 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
     if (auto modes = control->table("mode")) read_modes(*modes, machine);
   }
   if (!width_given && machine.control.kind.waits_in_position) machine.control.in_position_mm = kInPositionMm;
-  if (auto axes = top.table("axis")) read_axes(*axes, machine.axis);
+  if (auto axes = top.table("axis")) read_axes(*axes, machine);
+  if (auto kinematics = top.table("kinematics")) read_kinematics(*kinematics, machine);
   if (auto spindle = top.table("spindle")) read_spindle(*spindle, machine.spindle);
   machine.cycle.rapid_path = machine.control.kind.rapid_path;
   if (auto cycle = top.table("cycle")) read_cycle(*cycle, machine.cycle);
@@ -179,6 +182,7 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
     read_numbers<IndexTable>(*index, kIndexKeys, machine.index);
     index->finish();
   }
+  check_kinematics(top, machine);
   if (auto range = top.table("fitted_range")) read_fitted_range(*range, machine.fitted_range);
   top.finish();
   diagnostics.throw_if_errors();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "machine/kinematics_keys.h"
+#include "machine/kinematics_reader.h"
 #include "machine/machine_keys.h"
 
 namespace camber::machine {
@@ -71,6 +73,9 @@ std::string to_toml(const Machine& machine) {
   out += corner_text(machine.control.corner);
   for (const auto& [name, mode] : machine.modes) out += mode_text(name, mode);
   for (std::size_t i = 0; i < machine.axis.size(); ++i) out += axis_text(kAxisNames[i], machine.axis[i]);
+  for (std::size_t i = 0; i < machine.rotary.size(); ++i)
+    out += rotary_axis_text(kRotaryAxisNames[i], machine.rotary[i]);
+  out += kinematics_text(machine.kinematics);
   out += "\n[spindle]\n" + toml_lines<Spindle>(kSpindleKeys, machine.spindle);
   out += cycle_text(machine.cycle);
   out += "\n[tool_change]\n" + toml_lines<ToolChange>(kToolChangeKeys, machine.tool_change);

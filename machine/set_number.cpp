@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "machine/kinematics_keys.h"
 #include "machine/machine_keys.h"
 
 namespace camber::machine {
@@ -14,6 +15,8 @@ void for_each_table(Machine& machine, const Visit& visit) {
   visit(std::string("control.corner"), std::span(kCornerKeys), machine.control.corner);
   for (std::size_t i = 0; i < machine.axis.size(); ++i)
     visit(fmt::format("axis.{}", kAxisNames[i]), std::span(kAxisKeys), machine.axis[i]);
+  for (std::size_t i = 0; i < machine.rotary.size(); ++i)
+    visit(fmt::format("axis.{}", kRotaryAxisNames[i]), std::span(kRotaryAxisKeys), machine.rotary[i]);
   visit(std::string("spindle"), std::span(kSpindleKeys), machine.spindle);
   visit(std::string("cycle"), std::span(kCycleKeys), machine.cycle);
   visit(std::string("tool_change"), std::span(kToolChangeKeys), machine.tool_change);

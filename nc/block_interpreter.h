@@ -136,6 +136,21 @@ class BlockInterpreter {
   void end_radius();
   void leave_contour(Move& move);
 
+  // rotary_codes.cpp: A B C, tool-centre-point control, clamps
+  const RotaryOption* rotary_axis(char letter) const;
+  bool read_clamp(const Code& code);
+  bool read_tip_control_m(const Code& code);
+  void set_tip_control(TipControl control, const Code& code);
+  void set_tip_control_g(const Code& code);
+  void read_tool_length(const Code& code);
+  std::string refuses_rotary() const;
+  void read_rotary_words();
+  void read_rotary_word(const RotaryOption& axis, RotaryTarget& target);
+  void read_tool_direction();
+  void settle_tip();
+  void add_rotary_target(std::size_t move);
+  void check_rotary_letter(char letter);
+
   // motion.cpp: words that make moves
   void dwell();
   std::optional<double> dwell_seconds(char letter);
@@ -218,8 +233,15 @@ class BlockInterpreter {
   bool leaving_ = false;    ///< G40 was read; the cutter is still beside the contour
   Vec3 beside_mm_ = Vec3::Zero();
 
+  Vec3 rotary_rad_ = Vec3::Zero();             ///< A, B, C
+  std::optional<RotaryTarget> rotary_target_;  ///< of the block, until it has a move
+
   Vec3 position_mm_ = Vec3::Zero();
   std::array<AxisPlace, 3> place_{AxisPlace::never, AxisPlace::never, AxisPlace::never};
+  bool angles_unknown_ = false;      ///< directions (G43.5) have moved the rotary axes
+  bool tool_length_active_ = false;  ///< G43
+  std::uint8_t clamped_ = 0;         ///< bit i: A, B, C
+  std::uint8_t unsettled_ = 0;       ///< bit i: X, Y, Z; see settle_tip
 };
 
 }  // namespace camber::nc

@@ -69,6 +69,9 @@ struct Dialect {
   double spiral_radius_fraction = 0;
   double spiral_max_mm = 0;
 
+  // Five axes
+  int tip_control_on_m = 0, tip_control_off_m = 0;  ///< M codes of tool-centre-point control; 0: G codes only
+
   // Subprograms
   bool m98_count_in_p = false;  ///< M98 P31234: O1234, three times
   int max_levels = 15;          ///< of calls inside calls

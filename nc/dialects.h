@@ -51,6 +51,8 @@ inline constexpr Dialect kLinuxCnc{.name = "linuxcnc",
                                    .radius_look_ahead = 1'000'000,
                                    .spiral_radius_fraction = 0.001,  // SPIRAL_RELATIVE_TOLERANCE in interp_internal.hh
                                    .spiral_max_mm = 2.828,           // 100 times CENTER_ARC_RADIUS_TOLERANCE_MM
+                                   .tip_control_on_m = 428,  // of its switchable kinematics, as its samples map them
+                                   .tip_control_off_m = 429,
                                    .max_levels = 10};
 
 /// The first row is default_dialect().

@@ -41,6 +41,7 @@ bool BlockInterpreter::run(const RunBlock& block) {
   read_tool();
   if (!words_.m().empty() && !read_m_codes_before()) return false;
   check_letters();
+  read_rotary_words();
   if (radius_.active) check_radius_block();
   if (request_.skip_motion) {
     words_.use("XYZIJKPQR");

@@ -12,6 +12,7 @@
 #include "nc/move.h"
 #include "nc/offsets.h"
 #include "nc/program.h"
+#include "nc/rotary.h"
 
 namespace camber::nc {
 
@@ -22,9 +23,10 @@ struct InterpreterOptions {
   /// G4 P and the P of drilling cycles without a decimal point: milliseconds (Fanuc, Haas, Mazak), or seconds
   /// (LinuxCNC). With a point they are seconds for all.
   bool dwell_p_is_ms = false;
-  bool absolute_arc_centre = false;  ///< the control starts in G90.1 rather than G91.1
-  bool index_table = false;          ///< B turns an index table: an event, no error
-  double peck_clearance_mm = 0.254;  ///< G83 stops its rapid so far above the last depth; G73 retracts by it
+  bool absolute_arc_centre = false;         ///< the control starts in G90.1 rather than G91.1
+  bool index_table = false;                 ///< B turns an index table: an event, no error
+  std::vector<RotaryOption> rotary_axes{};  ///< of the machine; none: words of rotary axes are refused
+  double peck_clearance_mm = 0.254;         ///< G83 stops its rapid so far above the last depth; G73 retracts by it
   /// Dialect of the program: a row of the table, or a copy with some facts changed for a control whose parameters
   /// differ. Not given: the dialect that the text shows (O-words, M97), else default_dialect(), except that
   /// `dwell_p_is_ms` then decides the unit of a dwell.

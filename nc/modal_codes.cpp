@@ -53,8 +53,8 @@ constexpr std::array kCodes = {
     Entry{421, {GGroup::cutter_radius}},
     Entry{430, {GGroup::tool_length}},
     Entry{431, {GGroup::tool_length}},
-    Entry{434, not_read("tool centre point control of five axes", false)},
-    Entry{435, not_read("tool centre point control of five axes", false)},
+    Entry{434, {GGroup::tool_length}},
+    Entry{435, {GGroup::tool_length}},
     Entry{440, {GGroup::tool_length}},
     Entry{490, {GGroup::tool_length}},
     Entry{500, {GGroup::frame}},
@@ -63,6 +63,7 @@ constexpr std::array kCodes = {
     Entry{511, {GGroup::frame}},
     Entry{520, {GGroup::frame}},
     Entry{530, {GGroup::one_shot}},
+    Entry{531, not_read("turns the tool square to a tilted working plane")},
     Entry{540, {GGroup::work_offset}},
     Entry{541, {GGroup::work_offset}},
     Entry{550, {GGroup::work_offset}},
@@ -121,6 +122,9 @@ constexpr std::array kCodes = {
     Entry{1221, {GGroup::turning, "radius or diameter of X on a mill-turn machine"}},
     Entry{1231, {GGroup::turning, "radius or diameter of X on a mill-turn machine"}},
     Entry{1870, {GGroup::no_effect}},
+    Entry{2340, {GGroup::tool_length}},
+    Entry{2540, not_read("work offset that turns with the rotary table")},
+    Entry{2550, not_read("end of the work offset that turns with the rotary table", false)},
 };
 
 static_assert(std::is_sorted(kCodes.begin(), kCodes.end(),

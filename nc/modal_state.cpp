@@ -246,6 +246,7 @@ void BlockInterpreter::set_path_control(int tenths) {
 void BlockInterpreter::set_tool_length(const Code& code) {
   words_.use("H");
   if (code.tenths == 431) words_.use("IJK");
+  set_tip_control_g(code);
 }
 
 void BlockInterpreter::set_feed_mode(FeedMode mode) {
@@ -324,6 +325,7 @@ void BlockInterpreter::read_tool() {
 bool BlockInterpreter::read_m_codes_before() {
   const Word* spindle = nullptr;
   for (const Code& code : words_.m()) {
+    if (read_clamp(code) || read_tip_control_m(code)) continue;
     if (!acts_at_end(code)) add_m_event(code);
     switch (m_code(code.tenths)) {
       case MGroup::spindle:
@@ -406,13 +408,8 @@ void BlockInterpreter::check_letters() {
     if (!words_.has(letter)) continue;
     if (letter == 'B' && options_.index_table)
       add_event(EventKind::index, words_.value(letter));
-    else if (words_.value(letter) != 0)
-      error(words_.offset_of(letter), "rotary-axis",
-            fmt::format("rotary axis {} is not supported; X, Y and Z were expected", letter), std::string(1, letter));
-    else
-      report_.warning(words_.offset_of(letter), "rotary-axis",
-                      fmt::format("rotary axis {} is not supported; it is assumed to stay at 0", letter),
-                      "rotary-zero");
+    else if (!rotary_axis(letter))
+      check_rotary_letter(letter);
   }
   for (const char letter : {'V', 'W', 'U'}) {
     if (!words_.has(letter) || (letter == 'U' && request_.dwell)) continue;

@@ -44,6 +44,7 @@ Move& BlockInterpreter::add_move(MoveKind kind, const Vec3& end_mm) {
   if (leaving_) leave_contour(move);
   position_mm_ = end_mm;
   out_.moves.push_back(move);
+  if (!options_.rotary_axes.empty() && kind != MoveKind::dwell) add_rotary_target(out_.moves.size() - 1);
   return out_.moves.back();
 }
 
@@ -181,7 +182,7 @@ void BlockInterpreter::position_in_one_direction() {
 }
 
 void BlockInterpreter::go_in_machine_frame() {
-  if (!words_.has_any("XYZ")) return;
+  if (!words_.has_any("XYZ") && !rotary_target_) return;
   check_unit();
   if (motion_ == Motion::clockwise || motion_ == Motion::counter_clockwise || cycle_.g != 0) {
     error(words_.offset(), "machine-frame", "G53 goes with G0 or G1; another motion is active");
@@ -199,7 +200,7 @@ void BlockInterpreter::go_in_machine_frame() {
 }
 
 void BlockInterpreter::move() {
-  const bool axes = words_.has_any("XYZ");
+  const bool axes = words_.has_any("XYZ") || rotary_target_;
   if (request_.single_direction && axes && cycle_.g == 0) {
     position_in_one_direction();
     return;
@@ -212,7 +213,8 @@ void BlockInterpreter::move() {
   if (arc && (axes || words_.has_any("IJKR"))) {
     move_on_arc();
   } else if (axes && motion_ == Motion::none) {
-    const char letter = words_.has('X') ? 'X' : words_.has('Y') ? 'Y' : 'Z';
+    const std::string_view letters = "XYZABCIJK";
+    const char letter = *std::ranges::find_if(letters, [&](char c) { return words_.has(c); });
     error(words_.offset_of(letter), "motion-missing",
           fmt::format("{} without a kind of motion; G0, G1, G2 or G3 was expected before", letter), "motion");
   } else if (axes) {
@@ -222,6 +224,7 @@ void BlockInterpreter::move() {
 
 void BlockInterpreter::move_on_line() {
   check_unit();
+  settle_tip();
   const Vec3 end = target();
   if (motion_ == Motion::rapid) {
     add_move(MoveKind::rapid, end);

@@ -3,12 +3,14 @@
 // work offset that was active at the first move (docs/nc-language.md, Frames).
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "base/geometry.h"
 #include "base/tool_pose.h"
 #include "nc/event.h"
 #include "nc/frame.h"
+#include "nc/rotary.h"
 
 namespace camber::nc {
 
@@ -40,6 +42,10 @@ struct ModalState {
   std::uint8_t plane_g = 17;   ///< 17, 18 or 19
   bool cutter_radius = false;  ///< G41, G42 with a radius other than zero: the path was computed
   std::uint32_t frame = 0;     ///< index into Interpretation::frames
+  TipControl tip_control = TipControl::off;
+  /// Gauge line to tip, where G43 with a known length is active; 0 without G43. Not given: not known. Only for
+  /// machines with rotary axes; else 0.
+  std::optional<double> tool_length_mm = 0;
   bool operator==(const ModalState&) const = default;
 };
 
@@ -86,6 +92,9 @@ struct Interpretation {
   std::vector<ModalState> states;
   std::vector<Event> events;           ///< beside the moves, in order
   std::vector<Frame> frames{Frame{}};  ///< frames of the text's coordinates; the first is the identity
+  std::vector<RotaryTarget> rotary;    ///< of the moves that turn rotary axes, in order; all axes start at 0
+  /// Origin of the machine's coordinates in the frame of the moves, where the work offset is known.
+  std::optional<Vec3> machine_origin_mm{};
 
   const ModalState& state_of(const Move& m) const { return states[m.state]; }
   const Frame& frame_of(const Move& m) const { return frames[states[m.state].frame]; }
@@ -95,7 +104,8 @@ struct Interpretation {
 double length_mm(const Interpretation& program, const Move& move);
 /// Point at the fraction u in [0, 1] of the move's length.
 Vec3 point_at(const Interpretation& program, const Move& move, double u);
-/// The tool there. Rotary axes are not supported, so every pose is upright.
+/// The tool there. Upright: rotary axes are not looked at (kinematics/program_joints.h has the joints of such
+/// programs).
 ToolPose pose_at(const Interpretation& program, const Move& move, double u);
 /// Unit direction of motion at the fraction u; zero for a move without length.
 Vec3 direction_at(const Interpretation& program, const Move& move, double u);

@@ -6,6 +6,8 @@
 
 #include "api/commands/predict.h"
 #include "feedmodel/control_options.h"
+#include "kinematics/rotary_options.h"
+#include "kinematics/travel_check.h"
 #include "simulate/machine_checks.h"
 #include "simulate/setup_checks.h"
 
@@ -17,7 +19,9 @@ using nlohmann::ordered_json;
 nc::InterpreterOptions options_of(nc::InterpreterOptions options, const machine::Machine* machine,
                                   const machine::Job* job) {
   if (job && !options.inch) options.inch = job->inch;
-  return machine ? feedmodel::interpreter_options(*machine, options) : options;
+  if (!machine) return options;
+  options.rotary_axes = kinematics::rotary_options(*machine);
+  return feedmodel::interpreter_options(*machine, options);
 }
 
 ordered_json extents_json(const nc::Extents& e) {
@@ -95,6 +99,7 @@ CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptio
   CheckedProgram checked{nc::interpret(text, options_of(options, machine, job), found), {}};
   found.throw_if_errors();
   if (machine) simulate::check_machine(*machine, text, checked.moves, found);
+  if (machine && machine->kinematics.given()) kinematics::check_travel(*machine, text, checked.moves, found);
   simulate::check_feeds(text, checked.moves, found);
   if (job)
     simulate::check_job(*job, text, checked.moves, found);

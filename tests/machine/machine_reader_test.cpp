@@ -157,9 +157,9 @@ TEST(MachineReader, SuggestsTheKeyThatWasMeant) {
             "m.toml:2:1: error: unknown key wobble in [axis.x] [key-unknown]\n"
             "    wobble = 1\n"
             "    ^");
-  EXPECT_EQ(messages("[axis.a]\nfilter_ms = 1\n"),
-            "m.toml:1:7: error: unknown key a in [axis]; did you mean x? [key-unknown]\n"
-            "    [axis.a]\n"
+  EXPECT_EQ(messages("[axis.u]\nfilter_ms = 1\n"),
+            "m.toml:1:7: error: unknown key u in [axis]; did you mean a? [key-unknown]\n"
+            "    [axis.u]\n"
             "          ^");
 }
 

@@ -1,0 +1,45 @@
+#include "api/commands/explain_kinematics.h"
+
+#include <nlohmann/json.hpp>
+
+#include "machine/job.h"
+#include "machine/toml_table.h"
+
+namespace camber::api {
+namespace {
+
+using nlohmann::ordered_json;
+
+machine::Machine machine_of(const std::string& path, Diagnostics& found) {
+  const auto file = machine::read_toml(path, "a machine description or a job", found);
+  found.throw_if_errors();
+  const machine::TomlTable top = machine::TomlTable::top(*file, found);
+  const bool job = top.has("machine") || top.has("program");
+  return job ? machine::read_job(path, found).machine : machine::read_machine(path, found);
+}
+
+}  // namespace
+
+ExplainedKinematics explain_kinematics(const std::string& path, Diagnostics& found) {
+  const machine::Machine machine = machine_of(path, found);
+  if (!machine.kinematics.given())
+    fail_on_file(machine.path, "[kinematics] is missing; a chain from the part to the spindle was expected",
+                 "kinematics-missing");
+  return {machine.path, kinematics::explain(machine)};
+}
+
+std::string explained_kinematics_json(const ExplainedKinematics& explained) {
+  const kinematics::Explanation& e = explained.explanation;
+  ordered_json axes = ordered_json::array();
+  for (const kinematics::AxisExplanation& axis : e.axes)
+    axes.push_back({{"axis", std::string(1, axis.letter)},
+                    {"axis_type", axis.rotary ? "rotary" : "linear"},
+                    {"carried_by", axis.table ? "table" : "head"},
+                    {"positive", axis.motion},
+                    {"limits", axis.limits}});
+  const ordered_json report = {
+      {"machine", explained.machine}, {"machine_type", e.type}, {"axes", axes}, {"reach", e.reach}};
+  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace camber::api

@@ -1,0 +1,21 @@
+#pragma once
+// [kinematics] and the tables of the rotary axes. Internal to machine/.
+#include <string>
+
+#include "machine/machine.h"
+#include "machine/toml_table.h"
+
+namespace camber::machine {
+
+/// [axis.a], [axis.b], [axis.c]; `axes` is [axis].
+void read_rotary_axes(TomlTable& axes, Machine& machine);
+/// [kinematics]; after the axes.
+void read_kinematics(TomlTable table, Machine& machine);
+/// Errors at the tables of rotary axes that are not in the chain, and at [index] where the chain has B.
+void check_kinematics(TomlTable& top, const Machine& machine);
+
+/// Both as machine.toml text, each beginning with an empty line; empty where there is nothing to write.
+std::string kinematics_text(const Kinematics& kinematics);
+std::string rotary_axis_text(std::string_view name, const RotaryAxis& axis);
+
+}  // namespace camber::machine

@@ -1,0 +1,250 @@
+// Words and codes of rotary axes: A B C, tool-centre-point control, clamps.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "nc/block_interpreter.h"
+
+namespace camber::nc {
+namespace {
+
+constexpr char kLetters[] = "ABC";
+constexpr char kAxisLetters[] = "XYZ";
+
+std::uint8_t bit_of(char letter) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(letter - 'A')); }
+
+/// `angle` plus whole turns, at most half a turn from `from`; half a turn is positive, whatever the rounding.
+double shortest_way(double angle, double from) {
+  return angle + 2 * kPi * std::floor((from - angle) / (2 * kPi) + 0.5 + 1e-9);
+}
+
+}  // namespace
+
+const RotaryOption* BlockInterpreter::rotary_axis(char letter) const {
+  const auto at = std::ranges::find(options_.rotary_axes, letter, &RotaryOption::letter);
+  return at == options_.rotary_axes.end() ? nullptr : &*at;
+}
+
+// --- clamps
+
+/// True for an M code that clamps or releases an axis of the machine.
+bool BlockInterpreter::read_clamp(const Code& code) {
+  for (const RotaryOption& axis : options_.rotary_axes) {
+    if (axis.clamp_m == 0 || (code.tenths != 10 * axis.clamp_m && code.tenths != 10 * axis.unclamp_m)) continue;
+    if (code.tenths == 10 * axis.clamp_m)
+      clamped_ = static_cast<std::uint8_t>(clamped_ | bit_of(axis.letter));
+    else
+      clamped_ = static_cast<std::uint8_t>(clamped_ & ~bit_of(axis.letter));
+    add_event(EventKind::m_code, code.word->value);
+    return true;
+  }
+  return false;
+}
+
+// --- tool-centre-point control
+
+/// M428, M429; false for every other code.
+bool BlockInterpreter::read_tip_control_m(const Code& code) {
+  const Dialect dialect = options_.dialect_or_default();
+  if (options_.rotary_axes.empty() || dialect.tip_control_on_m == 0) return false;
+  if (code.tenths == 10 * dialect.tip_control_on_m)
+    set_tip_control(TipControl::angles, code);
+  else if (code.tenths == 10 * dialect.tip_control_off_m)
+    set_tip_control(TipControl::off, code);
+  else
+    return false;
+  add_event(EventKind::m_code, code.word->value);
+  return true;
+}
+
+void BlockInterpreter::set_tip_control(TipControl control, const Code& code) {
+  if (control != TipControl::off) {
+    if (!tool_length_active_)
+      error(code.word->offset, "tool-length",
+            fmt::format("{} switches tool-centre-point control on without a tool length; {} was expected",
+                        code_text(code), code.word->letter == 'M' ? "G43 before it" : "H with its number"));
+    if (radius_.active)
+      error(code.word->offset, "cutter-radius",
+            fmt::format("{} under G{}; G40 was expected before", code_text(code), radius_.g_tenths / 10));
+  }
+  const bool switched = (control == TipControl::off) != (state_.tip_control == TipControl::off);
+  // X Y Z of where the tool is change their meaning.
+  if (switched && !out_.moves.empty() && (angles_unknown_ || rotary_rad_ != Vec3::Zero())) unsettled_ = 7;
+  state_.tip_control = control;
+  state_changed_ = true;
+}
+
+/// G43.4, G43.5, G234, and what G43, G44, G49 are to them.
+void BlockInterpreter::set_tip_control_g(const Code& code) {
+  if (options_.rotary_axes.empty()) {
+    const bool g = code.tenths == 434 || code.tenths == 435 || code.tenths == 2340;
+    if (g)
+      error(code.word->offset, "not-read",
+            fmt::format("{} (tool centre point control of five axes) is not supported", code_text(code)),
+            code_text(code));
+    return;
+  }
+  if (code.tenths == 490) {
+    tool_length_active_ = false;
+    state_.tool_length_mm = 0;
+    set_tip_control(TipControl::off, code);
+    return;
+  }
+  if (words_.has('H') || options_.dialect_or_default().tip_control_on_m != 0) read_tool_length(code);
+  if (code.tenths == 434 || code.tenths == 2340)
+    set_tip_control(TipControl::angles, code);
+  else if (code.tenths == 435)
+    set_tip_control(TipControl::directions, code);
+  else if (options_.dialect_or_default().tip_control_on_m == 0)  // there, G43 leaves the kinematics as it is
+    set_tip_control(TipControl::off, code);
+}
+
+/// The length of H, or of the tool in the spindle.
+void BlockInterpreter::read_tool_length(const Code& code) {
+  const double number = words_.has('H') ? words_.value('H') : state_.tool;
+  tool_length_active_ = true;
+  state_.tool_length_mm.reset();
+  const auto found = tool_offsets_.find(static_cast<int>(number));
+  if (found == tool_offsets_.end() || !found->second.length_mm) return;
+  const double length = *found->second.length_mm + found->second.length_wear_mm.value_or(0);
+  state_.tool_length_mm = code.tenths == 440 ? -length : length;
+}
+
+// --- words
+
+/// What keeps rotary words from being read in this block; empty: nothing.
+std::string BlockInterpreter::refuses_rotary() const {
+  if (request_.dwell) return "G4";
+  if (request_.frame_code.word) return code_text(request_.frame_code);
+  if (request_.return_from_reference) return "G29";
+  if (request_.reference) return fmt::format("G{}", request_.reference_word->value);
+  if (request_.single_direction) return "G60";
+  if (radius_.active) return fmt::format("G{} active", radius_.g_tenths / 10);  // its path gets other moves
+  if (cycle_.g != 0) return fmt::format("the drilling cycle G{}", cycle_.g);
+  if (motion_ == Motion::clockwise || motion_ == Motion::counter_clockwise) return "an arc";
+  return {};
+}
+
+void BlockInterpreter::read_rotary_words() {
+  rotary_target_.reset();
+  if (options_.rotary_axes.empty() || request_.skip_motion) return;
+  RotaryTarget target;
+  target.end = rotary_rad_;
+  for (const RotaryOption& axis : options_.rotary_axes)
+    if (words_.has(axis.letter)) read_rotary_word(axis, target);
+  if (target.given != 0) rotary_target_ = target;
+  const bool line = motion_ == Motion::rapid || motion_ == Motion::linear;
+  if (state_.tip_control == TipControl::directions && line && words_.has_any("IJK")) read_tool_direction();
+}
+
+void BlockInterpreter::read_rotary_word(const RotaryOption& axis, RotaryTarget& target) {
+  const char letter = axis.letter;
+  const double value_rad = rad_from_deg(words_.value(letter));
+  const std::size_t offset = words_.offset_of(letter);
+  const std::string with = refuses_rotary();
+  if (!with.empty()) {
+    // G10 L2 ... A0: an offset of zero
+    if (value_rad != 0 || !request_.frame_code.word)
+      error(offset, "rotary-axis",
+            fmt::format("{} in a block with {} is not supported; rotary words were expected with G0, G1 or G53", letter,
+                        with),
+            with);
+    return;
+  }
+  if (state_.tip_control == TipControl::directions) {
+    error(offset, "rotary-axis",
+          fmt::format("{} under G43.5; I, J and K of the tool's direction were expected", letter), "G43.5");
+    return;
+  }
+  double& end = target.end[letter - 'A'];
+  if (state_.incremental && angles_unknown_)
+    error(offset, "rotary-axis",
+          fmt::format("{} in G91 after G43.5, which leaves its position open; G90 was expected", letter), "G91");
+  if (state_.incremental)
+    end += value_rad;
+  else
+    end = axis.shortest_way ? shortest_way(value_rad, end) : value_rad;
+  target.given = static_cast<std::uint8_t>(target.given | bit_of(letter));
+  if ((clamped_ & bit_of(letter)) != 0 && end != rotary_rad_[letter - 'A'])
+    error(
+        offset, "clamped",
+        fmt::format("{} turns while M{} has it clamped; M{} was expected before", letter, axis.clamp_m, axis.unclamp_m),
+        "clamped");
+}
+
+/// I J K under G43.5.
+void BlockInterpreter::read_tool_direction() {
+  RotaryTarget target;
+  target.is_direction = true;
+  for (int i = 0; i < 3; ++i) {
+    const char letter = "IJK"[i];
+    if (words_.has(letter)) target.end[i] = words_.value(letter);
+  }
+  const double length = target.end.norm();
+  if (length < 1e-6) {
+    error(words_.offset_of(words_.has('I')   ? 'I'
+                           : words_.has('J') ? 'J'
+                                             : 'K'),
+          "tool-direction", "I J K of the tool's direction are all zero; a direction was expected");
+    return;
+  }
+  target.end /= length;
+  rotary_target_ = target;
+}
+
+/// After tool-centre-point control was switched with turned axes, X Y Z of the text no longer say where the tool is.
+void BlockInterpreter::settle_tip() {
+  if (unsettled_ == 0) return;
+  for (unsigned axis = 0; axis < 3; ++axis)
+    if (words_.has(kAxisLetters[axis]) && !state_.incremental)
+      unsettled_ = static_cast<std::uint8_t>(unsettled_ & ~(1U << axis));
+  if (unsettled_ == 0) return;
+  error(words_.offset(), "tip-control",
+        fmt::format(
+            "the first move after tool-centre-point control was switched {} with turned axes leaves {} open; X, Y "
+            "and Z in G90 were expected",
+            state_.tip_control == TipControl::off ? "off" : "on",
+            (unsettled_ & 1U) != 0   ? 'X'
+            : (unsettled_ & 2U) != 0 ? 'Y'
+                                     : 'Z'));
+  unsettled_ = 0;
+}
+
+/// The rotary words of the block belong to its last move.
+void BlockInterpreter::add_rotary_target(std::size_t move) {
+  if (!out_.machine_origin_mm) out_.machine_origin_mm = frames_.offsets.machine_origin_mm(state_.work_offset);
+  if (!rotary_target_) return;
+  rotary_target_->move = static_cast<std::uint32_t>(move);
+  if (state_.feed_mode == FeedMode::inverse_time && feed_ && *feed_ > 0 && out_.moves[move].kind == MoveKind::linear)
+    rotary_target_->time_s = 1 / *feed_;
+  out_.rotary.push_back(*rotary_target_);
+  if (rotary_target_->is_direction)
+    angles_unknown_ = true;
+  else
+    rotary_rad_ = rotary_target_->end;
+  rotary_target_.reset();
+}
+
+void BlockInterpreter::check_rotary_letter(char letter) {
+  if (options_.rotary_axes.empty()) {
+    if (words_.value(letter) != 0)
+      error(words_.offset_of(letter), "rotary-axis",
+            fmt::format("rotary axis {} is not supported; X, Y and Z were expected", letter), std::string(1, letter));
+    else
+      report_.warning(words_.offset_of(letter), "rotary-axis",
+                      fmt::format("rotary axis {} is not supported; it is assumed to stay at 0", letter),
+                      "rotary-zero");
+    return;
+  }
+  std::string axes;
+  for (const char known : std::string_view(kLetters))
+    if (rotary_axis(known)) axes += fmt::format("{}{}", axes.empty() ? "" : " and ", known);
+  words_.value(letter);
+  error(words_.offset_of(letter), "rotary-axis",
+        fmt::format("{} is not an axis of the machine's chain; {} were expected", letter, axes),
+        std::string(1, letter));
+}
+
+}  // namespace camber::nc
