@@ -9,6 +9,7 @@
 
 #include "api/commands/time.h"
 #include "base/numbers.h"
+#include "base/stage.h"
 #include "cli/check_command.h"
 #include "cli/command_line.h"
 #include "cli/compress_command.h"
@@ -16,6 +17,7 @@
 #include "cli/feed_command.h"
 #include "cli/fit_feed_command.h"
 #include "cli/outputs.h"
+#include "cli/progress.h"
 #include "cli/protocol_command.h"
 #include "cli/raster_options.h"
 #include "cli/resegment_command.h"
@@ -89,7 +91,9 @@ int print_effective_machine(const std::string& path, const GlobalOptions& option
 int check(const CheckCommand& command, const GlobalOptions& options) {
   Diagnostics diagnostics;
   std::ostream silent(nullptr);
-  const int status = run_check(command, diagnostics, options.quiet ? silent : std::cout);
+  ProgressLine progress(options, "reading");
+  const StageScope stages([&](const std::string& what, double share) { progress.show(what, share); });
+  const int status = run_check(command, diagnostics, options.quiet ? silent : std::cout, [&] { progress.clear(); });
   std::cout.flush();
   settle(diagnostics, options);
   return status;
