@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "base/free_memory.h"
+#include "deflection/tooth_pass.h"
 #include "removal/cutter.h"
+#include "removal/field/tile.h"
 #include "removal/form_error.h"
 #include "simulate/cut.h"
 
@@ -83,6 +85,7 @@ double cell_of(const Job& job, const removal::StampPath& path, const StockSize& 
 }
 
 constexpr double kLeaf = 8;
+constexpr double kBytesPerVoxel = 1.3 * sizeof(float);  // with masks, inner nodes and what malloc adds
 
 /// Voxels across the band, in whole leaves.
 double thickness(double band_voxels) { return 2 * band_voxels - 1 + kLeaf - 1; }
@@ -107,41 +110,80 @@ double cut_area_mm2(const Job& job, const removal::StampPath& path, const StockS
 
 double field_bytes(const Vec3& size, double voxel, double band_voxels) {
   const double area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  return sizeof(float) * area / (voxel * voxel) * thickness(band_voxels);
+  return kBytesPerVoxel * area / (voxel * voxel) * thickness(band_voxels);
 }
+
+namespace {
+
+/// The tiles that stamps swept together change are in memory until all of them are cut.
+double swept_at_once_mm2(const Job& job, const removal::StampPath& path, double cut_mm2) {
+  constexpr double kAtOnce = 10000;
+  double most = 0;
+  for (const auto& run : path.runs) {
+    double way = 0;
+    for (std::size_t k = run.from + 1; k < run.from + run.count; ++k)
+      way += (path.stamps[k].pose.tip_mm - path.stamps[k - 1].pose.tip_mm).norm();
+    const double length = way * std::min(1.0, kAtOnce / static_cast<double>(run.count));
+    most = std::max(most, length * job.tools.at(run.tool).diameter_mm);
+  }
+  return std::min(cut_mm2, most);
+}
+
+double table_bytes(const Job& job, const removal::StampPath& path, const StockSize& stock) {
+  const bool rigid = job.simulation.coupling == machine::Coupling::rigid;
+  const CutOptions options;
+  const std::size_t stretch = rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
+  double most = 0;
+  for (const auto& run : path.runs) {
+    const machine::Tool& tool = job.tools.at(run.tool);
+    double lowest = stock.max_mm.z();
+    for (std::size_t k = run.from; k < run.from + run.count; ++k)
+      lowest = std::min(lowest, path.stamps[k].pose.tip_mm.z());
+    const double flutes = std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm));
+    const double top = std::clamp(stock.max_mm.z() - lowest, 0.0, flutes);
+    const auto nodes = static_cast<double>(deflection::node_heights(top, flutes).size());
+    const double steps = 2 * kPi / job.simulation.rotation_step_rad / tool.flutes * (rigid ? deflection::kFine : 1);
+    most = std::max(most, static_cast<double>(std::min(stretch, run.count)) * steps * nodes * 2 * sizeof(float));
+  }
+  return most;
+}
+
+}  // namespace
 
 MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::Interpretation& moves,
                              const removal::StampPath& path, const StockSize& stock) {
+  const double cut = cut_area_mm2(job, path, stock);
   return {.text_bytes = text.source.text().size(),
           .blocks = text.blocks.size(),
           .moves = moves.moves.size(),
           .stamps = path.stamps.size(),
           .size_mm = stock.max_mm - stock.min_mm,
           .band_mm = stock.band_voxels * job.simulation.voxel_mm,
-          .cut_mm2 = cut_area_mm2(job, path, stock),
+          .cut_mm2 = cut,
+          .at_once_mm2 = swept_at_once_mm2(job, path, cut),
+          .table_bytes = table_bytes(job, path, stock),
           .allowance = job.stock.allowance_mm > 0};
 }
 
 MemoryEstimate estimate_memory(const MemoryFactors& f, double voxel_mm) {
-  constexpr double kAlways = 60e6, kBytesPerBlock = 112, kBytesPerMove = 80 + 96;  // with the plan
-  constexpr double kPointsPerVoxel = 1.15, kGroups = 12, kMinBand = 4;
+  constexpr double kAlways = 80e6, kBytesPerBlock = 112, kBytesPerMove = 80 + 96;  // with the plan
+  constexpr double kPointsPerVoxel = 1.2, kGroups = 12, kMinBand = 4, kTilesDeep = 2;
   const auto stamps = static_cast<double>(f.stamps);
   const double given = kAlways + static_cast<double>(f.text_bytes) + kBytesPerBlock * static_cast<double>(f.blocks) +
                        kBytesPerMove * static_cast<double>(f.moves) + sizeof(removal::Stamp) * stamps;
-  const double band = std::max(kMinBand, f.band_mm / voxel_mm), cut_voxels = f.cut_mm2 / (voxel_mm * voxel_mm);
-  const double distance = sizeof(float) * cut_voxels * thickness(band);
-  const double points = kPointsPerVoxel * cut_voxels * (sizeof(removal::SurfacePoint) + kGroups);
-  MemoryEstimate target, cut;
-  target.blank = cut.blank = field_bytes(f.size_mm, voxel_mm, band);
-  // Distances and stamps of the target or the machined stock, and the blank with its allowance.
-  target.cut = cut.cut = (f.allowance ? 3 : 2) * distance;
-  // Either while the points of the map are put together ...
-  target.program = given + sizeof(ToolPose) * stamps;
-  target.surface = 1.2 * points;
-  // ... or during the cut, with its loads.
-  cut.program = given + (sizeof(StampLoad) + sizeof(Contact)) * stamps;
-  cut.surface = points;
-  return target.total() > cut.total() ? target : cut;
+  const double band = std::max(kMinBand, f.band_mm / voxel_mm), voxel_mm2 = voxel_mm * voxel_mm;
+  const double distance = kBytesPerVoxel * f.cut_mm2 / voxel_mm2 * thickness(band);
+  const double tiles =
+      kTilesDeep * sizeof(removal::Tile) * f.at_once_mm2 / voxel_mm2 / (removal::Tile::kCore * removal::Tile::kCore);
+  const double points = kPointsPerVoxel * f.cut_mm2 / voxel_mm2;
+  const double blank = field_bytes(f.size_mm, voxel_mm, band), allowance = f.allowance ? distance : 0;
+  // The target is cut; the points of the map are put together; the program is cut, with its loads.
+  const MemoryEstimate target{given + sizeof(removal::Stamp) * stamps, blank, allowance + 2 * distance + tiles, 0};
+  const MemoryEstimate map{given + sizeof(ToolPose) * stamps, blank, allowance + 2 * distance,
+                           1.125 * sizeof(removal::SurfacePoint) * points};
+  const MemoryEstimate cut{given + f.table_bytes + (sizeof(StampLoad) + sizeof(Contact)) * stamps, blank, 2 * distance,
+                           (sizeof(removal::SurfacePoint) + kGroups) * points};
+  return std::max({target, map, cut}, [](const auto& a, const auto& b) { return a.total() < b.total(); });
 }
 
 double memory_limit_bytes(const Job& job) {

@@ -30,7 +30,9 @@ struct MemoryFactors {
   std::size_t text_bytes = 0, blocks = 0, moves = 0, stamps = 0;  ///< of the program
   Vec3 size_mm = Vec3::Zero();                                    ///< of the stock
   double band_mm = 0;
-  double cut_mm2 = 0;  ///< surface that the tools make
+  double cut_mm2 = 0;      ///< surface that the tools make
+  double at_once_mm2 = 0;  ///< of it, by the stamps that are swept together
+  double table_bytes = 0;  ///< deflections of the stamps that are cut together
   bool allowance = false;
 };
 

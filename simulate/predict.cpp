@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/freed_memory.h"
 #include "base/stage.h"
 #include "feedmodel/control_options.h"
 #include "nc/interpreter.h"
@@ -184,6 +185,7 @@ double sweep_path(removal::Stock& stock, const Job& job, const removal::StampPat
         removal::sweep(stock, removal::shape_of(tool), stamps,
                        {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(run.from), .stage = &stage});
   });
+  return_freed_memory();  // of tiles
   return removed_mm3;
 }
 
@@ -223,6 +225,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
   for (const auto& s : nominal.stamps) out.stamps.push_back({s.move, static_cast<float>(s.fraction)});
   nominal = {};
   out.map.emplace(out.surface, places, out.blank, &out.solid());
+  places = {};
   mark_contour(job, target.path, out);
   mark_region(job, target, out.map->points(), out);
   out.memory = memory;

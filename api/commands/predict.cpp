@@ -167,6 +167,10 @@ simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prep
   prepared.options.progress = [&](double share) { show(request, "cutting", share); };
   prepared.options.surface_read = [&] {
     setup.target.surface.clear();
+    // One field again of the blank before and after the allowance, which the machined stock shares.
+    setup.target.whole.reset();
+    setup.target.blank.unshare();
+    setup.target.blank.share();
     return_freed_memory();
   };
   if (!prepared.traced) prepared.options.take_map = [&] { return *std::exchange(setup.target.map, std::nullopt); };
@@ -175,7 +179,6 @@ simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prep
                         : simulate::predict(job, setup.target, setup.program, prepared.options);
   // Nothing reads them any more, and the files need room.
   setup.target.blank.clear();
-  setup.target.whole.reset();
   setup.target.map.reset();
   prediction.machined->unshare();
   simulate::check_spindle_power(job.machine, setup.program, prediction.cut.loads, of_cut);

@@ -31,6 +31,7 @@ class StagedRun:
             os.nice(nice)
             os.environ["TERM"] = "dumb"
             os.execvp(command[0], command)
+        self.started(pid)
         done = False
         while not done:
             ready, _, _ = select.select([terminal], [], [], period_s)
@@ -42,11 +43,15 @@ class StagedRun:
             now = self.stages[-1]
             now["peak_MB"] = max(now["peak_MB"], resident_MB(pid))
         _, status, usage = os.wait4(pid, 0)
+        self.ended = time.monotonic()
         os.close(terminal)
         self.status = os.waitstatus_to_exitcode(status)
-        self.clock_s = time.monotonic() - begin
+        self.clock_s = self.ended - begin
         self.processor_s = usage.ru_utime + usage.ru_stime
         self.peak_MB = usage.ru_maxrss / 1024
+
+    def started(self, pid):
+        """For those who want to do something to it."""
 
     def take(self, text, now_s):
         self.text += text
