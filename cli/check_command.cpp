@@ -84,7 +84,7 @@ std::string check_report(const std::string& program, const nc::Summary& s, const
   out += fmt::format("rapid     {:.1f} mm\n        {}\n", s.rapid_length_mm, extents_text(s.rapid));
   if (s.dwells > 0) out += fmt::format("dwell     {} s\n", format_trimmed(s.dwell_s, 3));
   out += tool_table(s.tools);
-  if (memory_bytes) out += fmt::format("memory    about {:.1f} GB for predict\n", *memory_bytes / 1e9);
+  if (memory_bytes) out += fmt::format("memory    about {:.2g} GB for predict\n", *memory_bytes / 1e9);
   const std::size_t warnings = diagnostics.warnings();
   out += fmt::format("\n{}\n",
                      warnings == 0 ? "no warnings" : fmt::format("{} warning{}", warnings, warnings == 1 ? "" : "s"));

@@ -181,6 +181,7 @@ simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prep
   setup.target.blank.clear();
   setup.target.map.reset();
   prediction.machined->unshare();
+  prediction.machined->clear_stamps();
   simulate::check_spindle_power(job.machine, setup.program, prediction.cut.loads, of_cut);
   return prediction;
 }

@@ -391,7 +391,7 @@ SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const St
     if (part.empty()) continue;
     impl_->tiles.emplace_back().all = {.first = points.size(), .count = part.size()};
     points.insert(points.end(), part.begin(), part.end());
-    part = {};
+    std::vector<SurfacePoint>().swap(part);  // part = {} would keep its memory
     // Now and then, so that the points are not in memory twice.
     if (points.size() - returned < count / kReturns) continue;
     return_freed_memory();
