@@ -19,7 +19,8 @@ namespace {
 
 struct Checked {
   nc::Summary summary;
-  report::PathPicture picture;  ///< where a page is asked for
+  report::PathPicture picture;           ///< where a page is asked for
+  std::optional<double> memory_bytes{};  ///< where a job is given
 };
 
 /// As the control of the machine plans it, where a machine is known.
@@ -41,7 +42,7 @@ Checked read_and_summarize(const CheckCommand& command, Diagnostics& found) {
   const nc::Program text = nc::read_program(SourceText::read(command.program), found);
   const api::CheckedProgram program =
       api::check_program(text, command.interpreter, machine ? &*machine : nullptr, job ? &*job : nullptr, found);
-  Checked checked{program.summary, {}};
+  Checked checked{program.summary, {}, program.memory_bytes};
   if (!command.report.empty()) checked.picture = picture_of(program.moves, machine ? &*machine : nullptr);
   return checked;
 }
@@ -69,7 +70,8 @@ std::string tool_table(const std::vector<nc::ToolUse>& tools) {
 
 }  // namespace
 
-std::string check_report(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics) {
+std::string check_report(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics,
+                         std::optional<double> memory_bytes) {
   std::string out = fmt::format("{}: {} blocks, {} of them with words, {}\n", program, s.blocks, s.blocks_with_words,
                                 api::unit_text(s));
   out += fmt::format("moves     {} rapid, {} linear, {} arc, {} dwell", s.rapids, s.lines, s.arcs, s.dwells);
@@ -84,13 +86,15 @@ std::string check_report(const std::string& program, const nc::Summary& s, const
   out += fmt::format("rapid     {:.1f} mm\n        {}\n", s.rapid_length_mm, extents_text(s.rapid));
   if (s.dwells > 0) out += fmt::format("dwell     {} s\n", format_trimmed(s.dwell_s, 3));
   out += tool_table(s.tools);
+  if (memory_bytes) out += fmt::format("memory    about {:.2g} GB for predict\n", *memory_bytes / 1e9);
   const std::size_t warnings = diagnostics.warnings();
   out += fmt::format("\n{}\n",
                      warnings == 0 ? "no warnings" : fmt::format("{} warning{}", warnings, warnings == 1 ? "" : "s"));
   return out;
 }
 
-int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out) {
+int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out,
+              const std::function<void()>& before_output) {
   Diagnostics found;
   Checked checked;
   try {
@@ -100,10 +104,12 @@ int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostrea
   }
   Diagnostics ordered;
   for (auto& d : api::in_order(found.all())) ordered.add(std::move(d));
-  if (!command.json.empty()) write_file(command.json, api::check_json(command.program, checked.summary, ordered));
+  if (!command.json.empty())
+    write_file(command.json, api::check_json(command.program, checked.summary, ordered, checked.memory_bytes));
   if (!command.report.empty())
     write_file(command.report, check_page(command, checked.summary, ordered, checked.picture));
-  out << check_report(command.program, checked.summary, ordered);
+  if (before_output) before_output();
+  out << check_report(command.program, checked.summary, ordered, checked.memory_bytes);
   diagnostics.append(ordered);
   return 0;
 }

@@ -1,6 +1,8 @@
 #pragma once
 // camber check: read and interpret a program, report, change nothing; with a machine or a job also whether they fit.
+#include <functional>
 #include <iosfwd>
+#include <optional>
 #include <string>
 
 #include "base/diagnostics.h"
@@ -21,13 +23,15 @@ struct CheckCommand {
 
 /// Writes a short report to `out` and, where asked for, the same figures as JSON and as a page with a picture. Warnings
 /// go to `diagnostics` in the order of the file. Throws InputError, likewise in order, when the program cannot be read;
-/// then no file is written. Returns 0.
-int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out);
+/// then no file is written. Returns 0. `before_output`: called before anything is written to `out`.
+int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out,
+              const std::function<void()>& before_output = {});
 
 /// Prints the kinematic chain of a machine, and writes it as JSON where asked for. Throws InputError. Returns 0.
 int run_explain_kinematics(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out);
 
 /// The report as it is printed.
-std::string check_report(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics);
+std::string check_report(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics,
+                         std::optional<double> memory_bytes = {});
 
 }  // namespace camber::cli

@@ -7,6 +7,7 @@
 
 #include "api/commands/compensate.h"
 #include "base/output_file.h"
+#include "base/stage.h"
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "cli/rounds_progress.h"
@@ -60,6 +61,10 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
   const machine::Job given = machine::read_job(arguments.job, diagnostics);
+  bool in_rounds = false;  // their share is that of the whole run
+  const StageScope stages([&](const std::string& what, double share) {
+    if (!in_rounds) progress.show(what, share);
+  });
   RoundsProgress rounds(given.compensation.max_rounds,
                         static_cast<int>(2 * arguments.check_voxels_mm.size() + arguments.uncertainty.size()));
   const api::CompensateRequest request{.uncertainty = arguments.uncertainty,
@@ -72,6 +77,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
                                        .header_hash = arguments.header_hash,
                                        .max_stock_crossings = arguments.report.empty() ? 0 : report::kMaxStockCrossings,
                                        .progress = [&](const std::string& what, double share) {
+                                         in_rounds = true;
                                          const RoundsProgress::Whole whole = rounds.at(what, share);
                                          progress.show_whole(whole.what, whole.share);
                                        }};
@@ -101,6 +107,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   if (!arguments.json.empty())
     try_to_write([&] { write_file(arguments.json, report::compensate_json(result, job.compensation, compute_s)); },
                  failed);
+  in_rounds = false;
   progress.show("writing the report");
   if (!arguments.report.empty()) try_to_write([&] { write_report(arguments, job, result, diagnostics); }, failed);
   progress.clear();

@@ -46,8 +46,6 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   auto prediction = api::predict_prepared(job, prepared, request, of_cut);
   diagnostics.append(of_cut);
   const double compute_s = seconds_since(begin);
-  progress.show("writing");
-
   Diagnostics failed;
   const std::string json = report::predict_json(program, prediction, compute_s, prepared.traced_run());
   api::write_prediction(job, prepared, prediction, request, json, diagnostics, failed);

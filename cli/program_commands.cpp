@@ -11,6 +11,7 @@
 
 #include "api/commands/time.h"
 #include "base/numbers.h"
+#include "base/stage.h"
 #include "cli/check_command.h"
 #include "cli/command_line.h"
 #include "cli/compress_command.h"
@@ -18,6 +19,7 @@
 #include "cli/feed_command.h"
 #include "cli/fit_feed_command.h"
 #include "cli/outputs.h"
+#include "cli/progress.h"
 #include "cli/protocol_command.h"
 #include "cli/raster_options.h"
 #include "cli/resegment_command.h"
@@ -120,7 +122,10 @@ int check(const CheckCommand& command, const GlobalOptions& options) {
   Diagnostics diagnostics;
   std::ostream silent(nullptr);
   std::ostream& out = options.quiet ? silent : std::cout;
-  const int status = command.explain_kinematics.empty() ? run_check(command, diagnostics, out)
+  ProgressLine progress(options, "reading");
+  const StageScope stages([&](const std::string& what, double share) { progress.show(what, share); });
+  const auto clear = [&] { progress.clear(); };
+  const int status = command.explain_kinematics.empty() ? run_check(command, diagnostics, out, clear)
                                                         : run_explain_kinematics(command, diagnostics, out);
   std::cout.flush();
   settle(diagnostics, options);

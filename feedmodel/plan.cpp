@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/stage.h"
 #include "feedmodel/in_position.h"
 #include "feedmodel/modes.h"
 #include "feedmodel/path_builder.h"
@@ -52,7 +53,12 @@ class Planner {
   }
 
   MotionPlan run() {
-    build_segments(program_, machine_, [&](const Segment& s) { add(s); });
+    constexpr std::size_t kTogether = 1024;
+    Stage stage("planning the motion", program_.moves.size());
+    build_segments(program_, machine_, [&](const Segment& s) {
+      add(s);
+      if (plan_.rows.size() % kTogether == 0) stage.advance(kTogether);
+    });
     plan_all_speeds();
     time_all();
     return std::move(plan_);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/cancel.h"
+#include "base/stage.h"
 #include "feedmodel/axes.h"
 #include "feedmodel/path_builder.h"
 #include "feedmodel/plan.h"
@@ -119,13 +120,14 @@ FeedSummary predict_feed(const nc::Interpretation& program, const machine::Machi
     end_s = time.end_s();
   }
   Sampler sampler(machine, sink);
+  Stage stage("following the axes", plan.times.size());
   std::size_t i = 0;
   build_segments(program, machine, [&](const Segment& segment) {
     const double next_start_s = i + 1 < plan.times.size() ? plan.times[i + 1].start_s : summary.time_s;
     // The pause for a whole period belongs to the segment that waits for it.
     const SegmentTime& time = plan.times[i];
     sampler.pass(segment, motion_of(plan, i, segment, machine), time, std::min(next_start_s, time.end_s()));
-    ++i;
+    if (++i % kRun == 0) stage.advance(kRun);
   });
   sampler.settle();
   return summary;

@@ -96,6 +96,7 @@ struct Simulation {
   std::optional<Collisions> collisions;  ///< not given: error; a warning where moves of the program are left out
   double rotation_step_rad = kPi / 180.0;
   double envelope_step_mm = 0;  ///< sample spacing along the profile; 0: chosen for the tool (simulate/predict.h)
+  std::optional<double> max_memory_GB;  ///< not given: what the machine has (simulate/memory.h)
 };
 
 /// The error that compensation corrects and judges.
@@ -146,6 +147,8 @@ struct Job {
   StockDescription stock;
   Part part;
   Simulation simulation;
+  /// An error without a message where voxel_mm stands, or else [stock]: what is said of memory points there.
+  Diagnostic voxel_place;
   CompensationSettings compensation;
 };
 

@@ -137,6 +137,7 @@ void read_simulation(TomlTable table, Simulation& simulation) {
     const std::size_t word = table.choice("collisions", kCollisionsWords, kCollisionsWords.size());
     if (word < kCollisionsWords.size()) simulation.collisions = static_cast<Collisions>(word);
   }
+  simulation.max_memory_GB = table.optional_number("max_memory_GB", kPositive);
   table.finish();
 }
 
@@ -207,11 +208,14 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
   else if (!top.has("material"))
     top.missing("[material]", "a table with the specific cutting forces ktc_MPa, krc_MPa ...");
   if (auto stock = top.table("stock"))
-    read_stock(*stock, folder, job.stock);
+    read_stock(*stock, folder, job.stock), job.voxel_place = stock->place_of("");
   else if (!top.has("stock"))
     top.missing("[stock]", "a table with box_mm, cylinder, mesh or vdb");
   if (auto part = top.table("part")) read_part(*part, folder, job.tools, job.part);
-  if (auto simulation = top.table("simulation")) read_simulation(*simulation, job.simulation);
+  if (auto simulation = top.table("simulation")) {
+    read_simulation(*simulation, job.simulation);
+    if (simulation->has("voxel_mm")) job.voxel_place = simulation->place_of("voxel_mm");
+  }
   if (auto compensation = top.table("compensation")) read_compensation(*compensation, job.tools, job.compensation);
 }
 

@@ -99,6 +99,7 @@ std::string to_toml(const Job& job) {
   out += toml_line("coupling", kCouplingWords[job.simulation.coupling == Coupling::rigid ? 0 : 1]);
   if (job.simulation.collisions)
     out += toml_line("collisions", kCollisionsWords[static_cast<std::size_t>(*job.simulation.collisions)]);
+  if (job.simulation.max_memory_GB) out += toml_line("max_memory_GB", *job.simulation.max_memory_GB, kAsIs);
   return out + compensation_text(job.compensation);
 }
 

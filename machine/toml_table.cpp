@@ -122,6 +122,11 @@ void TomlTable::report(Severity severity, std::size_t offset, std::string messag
   diagnostics_->add(file_->source.diagnostic(severity, offset, std::move(message), std::move(check)));
 }
 
+Diagnostic TomlTable::place_of(std::string_view key) const {
+  const auto* entry = find(key);
+  return file_->source.diagnostic(Severity::error, entry ? entry->value.offset : node_->offset, {}, {});
+}
+
 void TomlTable::error_at(std::string_view key, std::string message, std::string check) {
   const auto* entry = find(key);
   report(Severity::error, entry ? entry->value.offset : node_->offset, std::move(message), std::move(check));

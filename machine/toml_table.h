@@ -84,6 +84,8 @@ class TomlTable {
   /// Keys of this table; reading them marks them as known.
   std::vector<std::string> keys() const;
 
+  /// An error without a message at the value of `key`, or at the table where there is no such key.
+  Diagnostic place_of(std::string_view key) const;
   /// An error at the value of `key`, or at the table where there is no such key.
   void error_at(std::string_view key, std::string message, std::string check);
   void warning_at(std::string_view key, std::string message, std::string check);

@@ -13,6 +13,10 @@
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 
+namespace camber {
+class Stage;
+}
+
 namespace camber::removal {
 
 namespace upright {
@@ -200,6 +204,7 @@ class DeflectedEngager {
 struct SweepOptions {
   double shrink_mm = 0;       ///< cutter reduced by this along its normal (allowance of the blank)
   std::int32_t first_id = 0;  ///< id of stamps[0], written to the voxels that it sets last
+  Stage* stage = nullptr;     ///< advanced by the stamps
 };
 
 /// Carves the undeflected cutter through the stock, without engagement. Returns the volume removed, mm^3. Requires

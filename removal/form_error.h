@@ -104,6 +104,10 @@ class SurfaceMap {
   /// `places`: the cutters of the target's sweep, by the ids that its voxels name. `blank`: the surface wherever no
   /// mark is deeper. `solid`: see surface_points. All have the same voxels. They are not needed afterwards.
   SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank, const Stock* solid = nullptr);
+  /// With the marks that it has; a map without marks serves several cuts against one target.
+  SurfaceMap(const SurfaceMap& other);
+  SurfaceMap(SurfaceMap&&) noexcept;
+  SurfaceMap& operator=(const SurfaceMap&) = delete;
   ~SurfaceMap();
 
   /// Takes the marks of `stamps`, deflected by the rows of `deflections`; ids are first_id + index.
@@ -115,6 +119,10 @@ class SurfaceMap {
 
   /// Returns the points with the errors from the marks and, where uncut, from the blank. Ends the map.
   std::vector<SurfacePoint> take();
+  /// The errors that take() would return, and the map is without marks again.
+  std::vector<float> take_errors_mm();
+  /// Their errors mean nothing before take().
+  std::span<const SurfacePoint> points() const;
 
  private:
   struct Impl;

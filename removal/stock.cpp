@@ -2,37 +2,90 @@
 #include "removal/field/tile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tree/LeafManager.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "base/diagnostics.h"
 #include "base/output_file.h"
+#include "base/stage.h"
 
 namespace camber::removal {
 
 using openvdb::Coord;
 using openvdb::CoordBBox;
 
+namespace {
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+/// Of the uppermost layer where a layer below it has the value.
+constexpr float kBelow = std::numeric_limits<float>::max();
+constexpr std::size_t kMaxBelow = 2;
+
+}  // namespace
+
+/// Layers: `distance` is this stock's alone and hides those below, which copies share (Stock::share).
 struct Stock::Impl {
   openvdb::FloatGrid::Ptr distance;
   openvdb::Int32Grid::Ptr stamp;
+  std::vector<openvdb::FloatGrid::Ptr> below{};  ///< uppermost first; not changed while they are shared
 };
 
-// Readers use accessors that the tree does not know of ("unsafe"): making one known takes a lock, and no reader lives
-// while the tree changes.
 namespace {
 
+/// Reads through the layers. Its accessors are such that the tree does not know of ("unsafe"): making one known takes a
+/// lock, and no reader lives while the tree changes.
+class LayerReader {
+ public:
+  explicit LayerReader(const openvdb::FloatGrid& own, std::span<const openvdb::FloatGrid::Ptr> below)
+      : own_(own.getConstUnsafeAccessor()), count_(below.size()) {
+    for (std::size_t i = 0; i < count_; ++i) below_[i].emplace(std::as_const(*below[i]).getConstUnsafeAccessor());
+  }
+
+  struct Found {
+    const Leaf* leaf;  ///< null: `constant` throughout
+    float constant;
+    bool own;  ///< of the uppermost layer
+  };
+  Found leaf(const Coord& origin) const {
+    if (const Leaf* node = own_.probeConstLeaf(origin)) return {node, 0, true};
+    float value = own_.getValue(origin);
+    for (std::size_t i = 0; i < count_ && value == kBelow; ++i) {
+      if (const Leaf* node = below_[i]->probeConstLeaf(origin)) return {node, 0, false};
+      value = below_[i]->getValue(origin);
+    }
+    return {nullptr, value, false};
+  }
+  float getValue(const Coord& at) const {
+    float value = own_.getValue(at);
+    for (std::size_t i = 0; i < count_ && value == kBelow; ++i) value = below_[i]->getValue(at);
+    return value;
+  }
+
+ private:
+  using Accessor = openvdb::FloatGrid::ConstUnsafeAccessor;
+  Accessor own_;
+  std::array<std::optional<Accessor>, kMaxBelow> below_;
+  std::size_t count_;
+};
+
 constexpr int kLeafBits = 3, kLeaf = 1 << kLeafBits;
+constexpr double kRounding = 1e-3;  // voxels
 
 Coord coord(const Index3& i) { return {i[0], i[1], i[2]}; }
 
@@ -51,6 +104,16 @@ void sample_leaf(openvdb::FloatTree::LeafNodeType& leaf, double voxel, double ba
     const double d = std::clamp(distance(Vec3(c.x() * voxel, c.y() * voxel, c.z() * voxel)), -band, band);
     leaf.setValueOnly(n, static_cast<float>(d));
     leaf.setActiveState(n, std::abs(d) < band);
+  }
+}
+
+/// Leaves of one value become tiles at once: a whole box has half as many leaves again as its surface.
+template <class Accessor>
+void drop_constant(const std::vector<Leaf*>& leaves, Accessor& access) {
+  for (Leaf* leaf : leaves) {
+    float value = 0;
+    bool active = false;
+    if (leaf->isConstant(value, active) && !active) access.addTile(1, leaf->origin(), value, false);
   }
 }
 
@@ -77,13 +140,14 @@ Stock::Stock(const std::function<double(const Vec3&)>& distance, const Vec3& min
     hi[a] = floor_div(static_cast<int>(std::ceil((max_mm[a] + band_mm_) / voxel_mm)), kLeaf);
   }
   auto access = impl_->distance->getAccessor();
-  const double reach = band_mm_ + 0.5 * std::sqrt(3.0) * kLeaf * voxel_mm;
-  std::vector<openvdb::FloatTree::LeafNodeType*> leaves;
-  for (int i = lo.x(); i <= hi.x(); ++i)
+  const double half = 0.5 * (kLeaf - 1), reach = band_mm_ + std::sqrt(3.0) * (half + kRounding) * voxel_mm;
+  Stage stage("making the blank", static_cast<std::size_t>(hi.x() - lo.x() + 1));
+  std::vector<Leaf*> leaves;
+  for (int i = lo.x(); i <= hi.x(); ++i) {
+    leaves.clear();
     for (int j = lo.y(); j <= hi.y(); ++j)
       for (int k = lo.z(); k <= hi.z(); ++k) {
         const Coord origin(i * kLeaf, j * kLeaf, k * kLeaf);
-        const double half = 0.5 * (kLeaf - 1);
         const Vec3 centre = voxel_mm * Vec3(origin.x() + half, origin.y() + half, origin.z() + half);
         const double d = distance(centre);
         if (d > reach) continue;
@@ -92,8 +156,11 @@ Stock::Stock(const std::function<double(const Vec3&)>& distance, const Vec3& min
         else
           leaves.push_back(access.touchLeaf(origin));
       }
-  tbb::parallel_for(std::size_t{0}, leaves.size(),
-                    [&](std::size_t i) { sample_leaf(*leaves[i], voxel_mm, band_mm_, distance); });
+    tbb::parallel_for(std::size_t{0}, leaves.size(),
+                      [&](std::size_t n) { sample_leaf(*leaves[n], voxel_mm, band_mm_, distance); });
+    drop_constant(leaves, access);
+    stage.advance();
+  }
   impl_->distance->pruneGrid(0.0f);
 }
 
@@ -102,7 +169,7 @@ Stock::Stock(const Stock& o)
       band_mm_(o.band_mm_),
       min_mm_(o.min_mm_),
       max_mm_(o.max_mm_),
-      impl_(std::make_unique<Impl>(Impl{o.impl_->distance->deepCopy(), o.impl_->stamp->deepCopy()})) {}
+      impl_(std::make_unique<Impl>(Impl{o.impl_->distance->deepCopy(), o.impl_->stamp->deepCopy(), o.impl_->below})) {}
 Stock::Stock(Stock&&) noexcept = default;
 Stock::~Stock() = default;
 
@@ -130,29 +197,29 @@ double trilinear(Accessor&& access, const Vec3& g) {
 }  // namespace
 
 double Stock::distance_mm(const Vec3& p) const {
-  return trilinear(impl_->distance->getConstUnsafeAccessor(), p / voxel_mm_);
+  return trilinear(LayerReader(*impl_->distance, impl_->below), p / voxel_mm_);
 }
 
 /// Remembers the leaves that were met lately, by their place among their neighbours.
 struct Stock::Probe::Access {
-  struct Leaf {
+  struct Known {
     Coord origin = Coord::max();
     const float* values = nullptr;  ///< null: `constant` throughout
     float constant = 0;
   };
   static constexpr int kSideBits = 2, kSides = 1 << kSideBits;
 
-  openvdb::FloatGrid::ConstUnsafeAccessor accessor;
-  std::array<Leaf, kSides * kSides * kSides> leaves{};
+  LayerReader reader;
+  std::array<Known, kSides * kSides * kSides> leaves{};
 
   float getValue(const Coord& at) {
     const Coord origin = at & ~(kLeaf - 1);
     const auto place = [](int v) { return v >> kLeafBits & (kSides - 1); };
-    Leaf& leaf =
+    Known& leaf =
         leaves[static_cast<std::size_t>((place(at.x()) << kSideBits | place(at.y())) << kSideBits | place(at.z()))];
     if (leaf.origin != origin) {
-      const auto* node = accessor.probeConstLeaf(origin);
-      leaf = {origin, node ? node->buffer().data() : nullptr, node ? 0.0f : accessor.getValue(origin)};
+      const LayerReader::Found found = reader.leaf(origin);
+      leaf = {origin, found.leaf ? found.leaf->buffer().data() : nullptr, found.constant};
     }
     if (!leaf.values) return leaf.constant;
     constexpr int kIn = kLeaf - 1;
@@ -160,7 +227,7 @@ struct Stock::Probe::Access {
   }
 };
 Stock::Probe::Probe(const Stock& stock)
-    : access_(std::make_unique<Access>(Access{stock.impl_->distance->getConstUnsafeAccessor()})),
+    : access_(std::make_unique<Access>(Access{LayerReader(*stock.impl_->distance, stock.impl_->below)})),
       voxel_mm_(stock.voxel_mm()),
       per_mm_(1 / stock.voxel_mm()) {}
 Stock::Probe::Probe(Probe&&) noexcept = default;
@@ -173,18 +240,15 @@ float Stock::Probe::nearest(const Vec3& p) const {
 
 double Stock::Probe::distance_mm(const Vec3& p) const { return trilinear(*access_, p / voxel_mm_); }
 
-float Stock::voxel(const Index3& i) const { return impl_->distance->tree().getValue(coord(i)); }
+float Stock::voxel(const Index3& i) const { return LayerReader(*impl_->distance, impl_->below).getValue(coord(i)); }
 std::int32_t Stock::stamp(const Index3& i) const { return impl_->stamp->tree().getValue(coord(i)); }
 
 namespace {
 
-/// Copies the part of a cube of `side` voxels from `base` on that lies in one leaf; a leaf that is not there has one
-/// value throughout.
-template <class Accessor, class Value>
-void copy_from(const Accessor& access, const Coord& leaf_origin, const Coord& base, int side, Value* out) {
-  const auto* leaf = access.probeConstLeaf(leaf_origin);
-  const Value constant = leaf ? Value{} : access.getValue(leaf_origin);
-  const Value* values = leaf ? leaf->buffer().data() : nullptr;
+/// Copies the part of a cube of `side` voxels from `base` on that lies in one leaf. `values` null: the leaf has one
+/// value throughout, `constant`.
+template <class Value>
+void copy_from(const Value* values, Value constant, const Coord& leaf_origin, const Coord& base, int side, Value* out) {
   std::array<int, 3> from{}, to{};  // in the leaf
   for (int a = 0; a < 3; ++a) {
     from[a] = std::max(0, base[a] - leaf_origin[a]);
@@ -218,9 +282,8 @@ void Stock::load(const Index3& tile, Tile& out) const {
 
 void Stock::read(const Index3& first, int side, float* distance, std::int32_t* stamp) const {
   const Coord base = coord(first);
-  const openvdb::FloatGrid& distance_grid = *impl_->distance;
   const openvdb::Int32Grid& stamp_grid = *impl_->stamp;
-  const auto distances = distance_grid.getConstUnsafeAccessor();
+  const LayerReader distances(*impl_->distance, impl_->below);
   const auto stamps = stamp_grid.getConstUnsafeAccessor();
   Coord lo, hi;
   for (int a = 0; a < 3; ++a) {
@@ -230,8 +293,13 @@ void Stock::read(const Index3& first, int side, float* distance, std::int32_t* s
   for (int i = lo.x(); i < hi.x(); i += kLeaf)
     for (int j = lo.y(); j < hi.y(); j += kLeaf)
       for (int k = lo.z(); k < hi.z(); k += kLeaf) {
-        copy_from(distances, {i, j, k}, base, side, distance);
-        if (stamp) copy_from(stamps, {i, j, k}, base, side, stamp);
+        const Coord at(i, j, k);
+        const LayerReader::Found found = distances.leaf(at);
+        copy_from(found.leaf ? found.leaf->buffer().data() : nullptr, found.constant, at, base, side, distance);
+        if (!stamp) continue;
+        const auto* marks = stamps.probeConstLeaf(at);
+        copy_from(marks ? marks->buffer().data() : nullptr, marks ? kUncut : stamps.getValue(at), at, base, side,
+                  stamp);
       }
 }
 
@@ -248,21 +316,25 @@ bool Stock::is_cut(const Index3& tile) const {
 
 bool Stock::is_air(const Index3& tile) const {
   const Coord base(tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore);
-  const openvdb::FloatGrid& distance = *impl_->distance;
-  const auto access = distance.getConstUnsafeAccessor();
+  const LayerReader reader(*impl_->distance, impl_->below);
   bool air = true;
-  for_each_leaf_of_tile(
-      base, [&](const Coord& leaf) { air = air && !access.probeConstLeaf(leaf) && access.getValue(leaf) > 0; });
+  for_each_leaf_of_tile(base, [&](const Coord& leaf) {
+    if (!air) return;
+    const LayerReader::Found found = reader.leaf(leaf);
+    air = !found.leaf && found.constant > 0;
+  });
   return air;
 }
 
 bool Stock::is_solid(const Index3& tile) const {
   const Coord base(tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore);
-  const openvdb::FloatGrid& distance = *impl_->distance;
-  const auto access = distance.getConstUnsafeAccessor();
+  const LayerReader reader(*impl_->distance, impl_->below);
   bool solid = true;
-  for_each_leaf_of_tile(
-      base, [&](const Coord& leaf) { solid = solid && !access.probeConstLeaf(leaf) && access.getValue(leaf) < 0; });
+  for_each_leaf_of_tile(base, [&](const Coord& leaf) {
+    if (!solid) return;
+    const LayerReader::Found found = reader.leaf(leaf);
+    solid = !found.leaf && found.constant < 0;
+  });
   return solid;
 }
 
@@ -287,7 +359,8 @@ struct StoredLeaf {
   const float* distance;  ///< of its first voxel in the tile
   const std::int32_t* stamp;
   RowFacts facts{};
-  openvdb::FloatTree::LeafNodeType* leaf = nullptr;  ///< null: the same throughout
+  bool same_below = false;  ///< as a shared leaf has it: nothing is stored
+  Leaf* leaf = nullptr;     ///< null: the same throughout
   openvdb::Int32Tree::LeafNodeType* marks = nullptr;
 
   template <class Function>
@@ -302,18 +375,31 @@ struct StoredLeaf {
       facts.cut |= row.cut;
     });
   }
+  openvdb::util::NodeMask<kLeafBits> active(float band) const {
+    openvdb::util::NodeMask<kLeafBits> out;
+    for_each_row([&](int n, int at) {
+      for (int k = 0; k < kLeaf; ++k)
+        if (std::abs(distance[at + k]) < band) out.setOn(static_cast<openvdb::Index32>(kLeaf * n + k));
+    });
+    return out;
+  }
+  void compare(const LayerReader::Found& found, float band) {
+    if (facts.cut || facts.air || facts.solid || found.own || !found.leaf) return;
+    const float* d = found.leaf->buffer().data();
+    same_below = found.leaf->getValueMask() == active(band);
+    for_each_row([&](int n, int at) {
+      same_below = same_below && std::equal(distance + at, distance + at + kLeaf, d + kLeaf * n);
+    });
+  }
   void fill(float band) const {
     if (!leaf) return;
     float* d = leaf->buffer().data();
     std::int32_t* s = marks ? marks->buffer().data() : nullptr;
-    openvdb::util::NodeMask<kLeafBits> active;
     for_each_row([&](int n, int at) {
       std::copy_n(distance + at, kLeaf, d + kLeaf * n);
       if (s) std::copy_n(stamp + at, kLeaf, s + kLeaf * n);
-      for (int k = 0; k < kLeaf; ++k)
-        if (std::abs(distance[at + k]) < band) active.setOn(static_cast<openvdb::Index32>(kLeaf * n + k));
     });
-    leaf->setValueMask(active);
+    leaf->setValueMask(active(band));
   }
 };
 
@@ -330,14 +416,20 @@ void Stock::store(std::span<const StoredTile> tiles) {
           parts.push_back(
               {Coord(t.index[0] * Tile::kCore + i, t.index[1] * Tile::kCore + j, t.index[2] * Tile::kCore + k),
                t.tile->distance.data() + Tile::offset(i, j, k), t.tile->stamp.data() + Tile::offset(i, j, k)});
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) { parts[p].find_facts(band); });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, parts.size()), [&](const auto& range) {
+    const LayerReader before(*impl_->distance, impl_->below);
+    for (std::size_t p = range.begin(); p < range.end(); ++p) {
+      parts[p].find_facts(band);
+      if (!impl_->below.empty()) parts[p].compare(before.leaf(parts[p].origin), band);
+    }
+  });
   auto distances = impl_->distance->getAccessor();
   auto stamps = impl_->stamp->getAccessor();
   for (StoredLeaf& p : parts) {
     if (p.facts.air || p.facts.solid) {
       distances.addTile(1, p.origin, p.facts.air ? band : -band, false);
       stamps.addTile(1, p.origin, kUncut, false);
-    } else {
+    } else if (!p.same_below) {
       p.leaf = distances.touchLeaf(p.origin);
       p.marks = p.facts.cut ? stamps.touchLeaf(p.origin) : stamps.probeLeaf(p.origin);
     }
@@ -347,14 +439,68 @@ void Stock::store(std::span<const StoredTile> tiles) {
 
 void Stock::clear_stamps() { impl_->stamp = openvdb::Int32Grid::create(kUncut); }
 
+namespace {
+
+openvdb::FloatGrid::Ptr layer_like(const openvdb::FloatGrid& grid, float background) {
+  auto out = openvdb::FloatGrid::create(background);
+  out->setTransform(grid.transform().copy());
+  out->setGridClass(grid.getGridClass());
+  out->setName(grid.getName());
+  return out;
+}
+
+/// Values of `upper` into `lower`; `upper` is empty afterwards.
+void put_over(openvdb::FloatTree& upper, openvdb::FloatTree& lower) {
+  auto tile = upper.cbeginValueAll();
+  tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (tile.getValue() != kBelow) lower.addTile(tile.getLevel(), tile.getCoord(), tile.getValue(), false);
+  std::vector<Leaf*> leaves;
+  upper.stealNodes(leaves);
+  for (Leaf* leaf : leaves) lower.addLeaf(leaf);
+}
+
+/// One field of all layers. Layers that nobody else has are used up.
+openvdb::FloatGrid::Ptr merged(openvdb::FloatGrid::Ptr own, std::vector<openvdb::FloatGrid::Ptr> below) {
+  while (!below.empty()) {
+    auto lower = std::move(below.back());
+    below.pop_back();
+    if (lower.use_count() > 1) lower = lower->deepCopy();
+    openvdb::FloatGrid::Ptr& upper = below.empty() ? own : below.back();
+    if (upper.use_count() > 1) upper = upper->deepCopy();
+    put_over(upper->tree(), lower->tree());
+    upper = std::move(lower);
+  }
+  return own;
+}
+
+}  // namespace
+
+void Stock::share() {
+  if (impl_->below.size() >= kMaxBelow || impl_->distance->tree().empty()) return;
+  auto own = layer_like(*impl_->distance, kBelow);
+  impl_->below.insert(impl_->below.begin(), std::exchange(impl_->distance, std::move(own)));
+}
+
+void Stock::unshare() {
+  auto own = std::exchange(impl_->distance, nullptr);
+  impl_->distance = merged(std::move(own), std::exchange(impl_->below, {}));
+}
+
 void Stock::clear() {
-  impl_->distance->clear();
+  impl_->below.clear();
+  impl_->distance = layer_like(*impl_->distance, static_cast<float>(band_mm_));
   clear_stamps();
 }
 
 double material_fraction(double d, double voxel) { return std::clamp(0.5 - 0.5 * d / voxel, 0.0, 1.0); }
 
 double Stock::volume_mm3() const {
+  if (!impl_->below.empty()) {
+    Stock whole(*this);
+    whole.unshare();
+    return whole.volume_mm3();
+  }
   double fraction = 0;
   for (auto it = impl_->distance->tree().cbeginLeaf(); it; ++it)
     for (openvdb::Index n = 0; n < 512; ++n) fraction += material_fraction(it->getValue(n), voxel_mm_);
@@ -366,16 +512,26 @@ double Stock::volume_mm3() const {
 
 std::vector<Index3> Stock::surface_tiles() const {
   std::vector<Index3> tiles;
-  for (auto it = impl_->distance->tree().cbeginLeaf(); it; ++it) {
-    const Coord& o = it->origin();
-    tiles.push_back({floor_div(o.x(), Tile::kCore), floor_div(o.y(), Tile::kCore), floor_div(o.z(), Tile::kCore)});
-  }
+  const LayerReader reader(*impl_->distance, impl_->below);
+  const auto add = [&](const openvdb::FloatGrid& layer) {
+    for (auto it = layer.tree().cbeginLeaf(); it; ++it) {
+      const Coord& o = it->origin();
+      if (reader.leaf(o).leaf != &*it) continue;
+      tiles.push_back({floor_div(o.x(), Tile::kCore), floor_div(o.y(), Tile::kCore), floor_div(o.z(), Tile::kCore)});
+    }
+  };
+  add(*impl_->distance);
+  for (const auto& layer : impl_->below) add(*layer);
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
   return tiles;
 }
 
-std::size_t Stock::memory_bytes() const { return impl_->distance->memUsage() + impl_->stamp->memUsage(); }
+std::size_t Stock::memory_bytes() const {
+  std::size_t bytes = impl_->distance->memUsage() + impl_->stamp->memUsage();
+  for (const auto& layer : impl_->below) bytes += layer->memUsage();
+  return bytes;
+}
 
 namespace {
 
@@ -396,6 +552,11 @@ struct VdbArchive : openvdb::io::Archive {
 }  // namespace
 
 void Stock::save(const std::string& path) const {
+  if (!impl_->below.empty()) {
+    Stock whole(*this);
+    whole.unshare();
+    return whole.save(path);
+  }
   // Written at once: the library seeks after every leaf, which empties a file stream's buffer.
   // Room for all of it, uncompressed: only what is written takes memory, and nothing is copied as it grows.
   constexpr std::size_t kLeafBytes = 2300, kRest = 1 << 20;

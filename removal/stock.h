@@ -81,6 +81,11 @@ class Stock {
   void clear_stamps();
   /// Sets everything to air and frees the memory.
   void clear();
+  /// From now on copies share what the stock is at this moment, and each has only what it changes for itself: a copy
+  /// takes hardly any memory or time. Not thread safe; copies may then be made and cut by different threads.
+  void share();
+  /// Ends the sharing: the stock takes over what no other copy has, and copies the rest. Not thread safe.
+  void unshare();
 
   /// Volume of material in the box, mm^3 (first-order smeared step over one voxel each way).
   double volume_mm3() const;

@@ -7,10 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "base/stage.h"
 #include "feedmodel/rapid.h"
 #include "nc/known_places.h"
+#include "removal/engagement.h"
 #include "removal/tool_path.h"
-#include "simulate/cut.h"
 #include "simulate/operations.h"
 #include "simulate/tool_outline.h"
 
@@ -140,15 +141,17 @@ class Search {
 
   std::vector<Collision> run() {
     auto rapid = rapids_.begin();
+    Stage stage("checking for collisions", 2 * last_needed_);
     for (const auto& run : program_.path.runs) {
       const std::size_t end = run.from + run.count;
       for (std::size_t at = run.from; at < end && (at < last_needed_ || rapid != rapids_.end());) {
         for (; rapid != rapids_.end() && rapid->before_stamp <= at; ++rapid) feel_rapid(*rapid);
         std::size_t to = level_stretch_end(job_.tools.at(run.tool), program_.path, run, at);
         if (rapid != rapids_.end()) to = std::min(to, std::max(at + 1, rapid->before_stamp));
-        feel_stretch(run.tool, at, to);
-        sweep(stock_, job_.tools.at(run.tool), std::span(program_.path.stamps).subspan(at, to - at),
-              static_cast<std::int32_t>(at), 0);
+        feel_stretch(run.tool, at, to, stage);
+        removal::sweep(stock_, removal::shape_of(job_.tools.at(run.tool)),
+                       std::span(program_.path.stamps).subspan(at, to - at),
+                       {.first_id = static_cast<std::int32_t>(at), .stage = &stage});
         at = to;
       }
     }
@@ -190,12 +193,13 @@ class Search {
     });
   }
 
-  void feel_stretch(int tool, std::size_t from, std::size_t to) {
+  void feel_stretch(int tool, std::size_t from, std::size_t to, Stage& stage) {
     const Feeler& feeler = feelers_.at(tool);
     const removal::Stock::Probe probe(stock_);
     Vec3 last = Vec3::Constant(1e9);
     for (std::size_t k = from; k < to; ++k) {
       const removal::Stamp& s = program_.path.stamps[k];
+      stage.advance();
       if ((s.pose.tip_mm - last).norm() < kStep_mm || !feeler.near(s.pose.tip_mm, false)) continue;
       last = s.pose.tip_mm;
       if (const auto touch = feeler.touch(probe, s.pose.tip_mm, false))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/stage.h"
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
 
@@ -21,28 +22,25 @@ removal::EnvelopeGrid outline_of(const machine::Tool& tool) {
 }
 
 void mark_straight(removal::SurfaceMap& map, const removal::EnvelopeGrid& outline,
-                   std::span<const removal::Stamp> stamps, std::int32_t first_id) {
+                   std::span<const removal::Stamp> stamps, std::int32_t first_id, Stage& stage) {
   for (std::size_t from = 0; from < stamps.size(); from += kStretch) {
     const std::size_t count = std::min(kStretch, stamps.size() - from);
     map.mark(outline, stamps.subspan(from, count), removal::DeflectionTable(count, 1, {0.0}),
              first_id + static_cast<std::int32_t>(from));
+    stage.advance(count);
   }
 }
 
 }  // namespace
 
-std::vector<removal::SurfacePoint> mark_contour(const machine::Job& job, const removal::StampPath& path,
-                                                Target& target) {
-  removal::SurfaceMap map(target.surface, target.places, target.blank, &target.solid());
+void mark_contour(const machine::Job& job, const removal::StampPath& path, Target& target) {
+  removal::SurfaceMap& map = *target.map;
+  Stage stage("marking the path of the machine", path.stamps.size());
   for (const auto& run : path.runs)
     mark_straight(map, outline_of(job.tools.at(run.tool)), std::span(path.stamps).subspan(run.from, run.count),
-                  static_cast<std::int32_t>(run.from));
+                  static_cast<std::int32_t>(run.from), stage);
   target.unseen_mm2 = map.unseen_mm2();
-  std::vector<removal::SurfacePoint> points = map.take();
-  target.contour_mm.clear();
-  target.contour_mm.reserve(points.size());
-  for (const auto& p : points) target.contour_mm.push_back(static_cast<float>(p.error_mm));
-  return points;
+  target.contour_mm = map.take_errors_mm();
 }
 
 }  // namespace camber::simulate

@@ -1,15 +1,11 @@
 #pragma once
 // Contour error: the effect of servo lag and corner rounding on the surface, without deflection.
-#include <vector>
-
 #include "simulate/predict.h"
 
 namespace camber::simulate {
 
 /// Sets contour_mm and unseen_mm2 of a target: the undeflected sweep of its program as the machine runs it (`path`),
-/// minus the nominal surface, along the nominal surface's normal at the same points as every prediction's. Returns
-/// these points.
-std::vector<removal::SurfacePoint> mark_contour(const machine::Job& job, const removal::StampPath& path,
-                                                Target& target);
+/// minus the nominal surface, along the nominal surface's normal at the points of Target::map.
+void mark_contour(const machine::Job& job, const removal::StampPath& path, Target& target);
 
 }  // namespace camber::simulate

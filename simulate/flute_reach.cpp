@@ -7,8 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "base/stage.h"
 #include "removal/cutter.h"
-#include "simulate/cut.h"
+#include "removal/engagement.h"
 #include "simulate/tool_outline.h"
 
 namespace camber::simulate {
@@ -60,13 +61,15 @@ class Search {
       : job_(job), program_(program), stock_(blank), diagnostics_(diagnostics) {}
 
   void run(std::size_t last_needed) {
+    Stage stage("checking the flutes' reach", last_needed);
     for (const auto& run : program_.path.runs) {
       const std::size_t end = std::min(run.from + run.count, last_needed);
       for (std::size_t at = run.from; at < end && said_.size() < kMaxLines;) {
         const std::size_t to = level_stretch_end(job_.tools.at(run.tool), program_.path, run, at);
         if (run.kind == removal::RunKind::milling) look_at(run.tool, at, to);
-        sweep(stock_, job_.tools.at(run.tool), std::span(program_.path.stamps).subspan(at, to - at),
-              static_cast<std::int32_t>(at), 0);
+        removal::sweep(stock_, removal::shape_of(job_.tools.at(run.tool)),
+                       std::span(program_.path.stamps).subspan(at, to - at),
+                       {.first_id = static_cast<std::int32_t>(at), .stage = &stage});
         at = to;
       }
     }

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "base/free_memory.h"
 #include "deflection/beam.h"
 
 namespace camber::simulate {
@@ -106,31 +105,6 @@ void check_cutting(const machine::Job& job, const nc::Program& program, const nc
       warn_of_vibration(tool->second, rpm, program, offset, diagnostics);
   }
   warn_of_not_carved(program, moves, holes, diagnostics);
-}
-
-double field_bytes(const Vec3& size, double voxel, double band_voxels) {
-  constexpr double kCopies = 4;         // blank, target, machined, blank of a later tool
-  constexpr double kBytesPerVoxel = 8;  // distance and stamp
-  constexpr double kLeaf = 8;
-  const double area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  return kCopies * kBytesPerVoxel * area / (voxel * voxel) * (2 * band_voxels + kLeaf);
-}
-
-void check_memory(const machine::Job& job, const Vec3& lo, const Vec3& hi, double band_voxels,
-                  Diagnostics& diagnostics) {
-  const double voxel = job.simulation.voxel_mm;
-  const double needed = field_bytes(hi - lo, voxel, band_voxels), free = free_memory_bytes();
-  if (needed <= free) return;
-  double enough = voxel;
-  while (field_bytes(hi - lo, enough, band_voxels) > free / 2) enough *= 1.25;
-  diagnostics.add(
-      {Severity::error,
-       {job.path, 0, 0},
-       fmt::format("voxel_mm = {:g} needs about {:.1f} GB for a stock of {:.0f} x {:.0f} x {:.0f} mm, but {:.1f} GB "
-                   "are free; voxel_mm = {:.2g} or a smaller stock was expected",
-                   voxel, needed / 1e9, hi.x() - lo.x(), hi.y() - lo.y(), hi.z() - lo.z(), free / 1e9, enough),
-       "voxel-memory",
-       {}});
 }
 
 }  // namespace camber::simulate

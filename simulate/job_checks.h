@@ -18,11 +18,4 @@ void check_cutting(const machine::Job& job, const nc::Program& program, const nc
                    const std::vector<bool>& selected, const std::vector<removal::HoleMove>& holes,
                    Diagnostics& diagnostics);
 
-/// Error [voxel-memory] when the fields of the job would need more memory than is free; says how much.
-void check_memory(const machine::Job& job, const Vec3& min_mm, const Vec3& max_mm, double band_voxels,
-                  Diagnostics& diagnostics);
-
-/// Bytes that the distance fields of a box of stock take, all copies together.
-double field_bytes(const Vec3& size_mm, double voxel_mm, double band_voxels);
-
 }  // namespace camber::simulate

@@ -5,10 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "base/freed_memory.h"
+#include "base/stage.h"
 #include "feedmodel/control_options.h"
 #include "nc/interpreter.h"
+#include "removal/engagement.h"
 #include "simulate/contour.h"
 #include "simulate/job_checks.h"
+#include "simulate/memory.h"
 #include "simulate/operations.h"
 #include "simulate/region.h"
 #include "simulate/setup_checks.h"
@@ -29,34 +33,39 @@ double band_voxels(const Job& job, const removal::StampPath& path) {
   return std::clamp(std::ceil((thickest + kBending_mm) / job.simulation.voxel_mm) + 1, kMin, kMax);
 }
 
-removal::Stock raw_stock(const Job& job, double band, Diagnostics& diagnostics) {
-  const double voxel = job.simulation.voxel_mm;
+removal::Stock raw_stock(const Job& job, const SimulatedProgram& program, MemoryEstimate& memory,
+                         Diagnostics& diagnostics) {
+  const double voxel = job.simulation.voxel_mm, band = band_voxels(job, program.path);
+  const auto require_memory = [&](const Vec3& lo, const Vec3& hi) {
+    memory =
+        check_memory(job, memory_factors(job, program.text, program.moves, program.path, {lo, hi, band}), diagnostics);
+    diagnostics.throw_if_errors();
+  };
   if (job.stock.box) {
     const Vec3 lo = job.stock.box->min_mm, hi = job.stock.box->max_mm;
-    check_memory(job, lo, hi, band, diagnostics);
-    diagnostics.throw_if_errors();
+    require_memory(lo, hi);
     return {[=](const Vec3& p) { return removal::box_distance_mm(p, lo, hi); }, lo, hi, voxel, band};
   }
   if (job.stock.cylinder) {
     const machine::Cylinder c = *job.stock.cylinder;
     const double r = c.diameter_mm / 2;
     const Vec3 lo = c.base_mm - Vec3(r, r, 0), hi = c.base_mm + Vec3(r, r, c.height_mm);
-    check_memory(job, lo, hi, band, diagnostics);
-    diagnostics.throw_if_errors();
+    require_memory(lo, hi);
     return {[=](const Vec3& p) { return removal::cylinder_distance_mm(p, c.base_mm, r, c.height_mm); }, lo, hi, voxel,
             band};
   }
-  if (!job.stock.vdb.empty()) return removal::Stock::load(job.stock.vdb, voxel, band);
+  if (!job.stock.vdb.empty()) {
+    removal::Stock stock = removal::Stock::load(job.stock.vdb, voxel, band);
+    require_memory(stock.min_mm(), stock.max_mm());
+    return stock;
+  }
   if (job.stock.mesh.empty())
     fail_on_file(job.path, "has no stock; [stock] with box_mm, cylinder, mesh or vdb was expected", "stock-missing");
   // What the stock alone needs is asked before the mesh takes its part.
   const machine::Box box = stl_box(job.stock.mesh);
-  check_memory(job, box.min_mm, box.max_mm, band, diagnostics);
-  diagnostics.throw_if_errors();
+  require_memory(box.min_mm, box.max_mm);
   // A leaf of voxels is skipped by the distance at its centre, so the mesh's band must hold a leaf's half diagonal.
   const removal::MeshDistance mesh(job.stock.mesh, voxel, (band + 8) * voxel);
-  check_memory(job, mesh.min_mm(), mesh.max_mm(), band, diagnostics);
-  diagnostics.throw_if_errors();
   return {[&](const Vec3& p) { return mesh.distance_mm(p); }, mesh.min_mm(), mesh.max_mm(), voxel, band};
 }
 
@@ -76,6 +85,28 @@ void add_range(const CutResult& run, CutResult& out) {
   out.beyond += run.beyond;
   out.deflection_max_mm = std::max(out.deflection_max_mm, run.deflection_max_mm);
   out.beyond_moves.insert(out.beyond_moves.end(), run.beyond_moves.begin(), run.beyond_moves.end());
+}
+
+std::vector<Contact> contacts_of(const removal::Stock& target, const machine::Tool& tool,
+                                 std::span<const removal::Stamp> stamps, Stage& stage) {
+  constexpr std::size_t kTogether = 10000;
+  std::vector<Contact> out;
+  out.reserve(stamps.size());
+  for (std::size_t from = 0; from < stamps.size(); from += kTogether) {
+    const auto some = stamps.subspan(from, std::min(kTogether, stamps.size() - from));
+    const std::vector<Contact> found = find_contacts(target, tool, some);
+    out.insert(out.end(), found.begin(), found.end());
+    stage.advance(some.size());
+  }
+  return out;
+}
+
+/// The loads of a single run are not copied.
+void append(std::vector<StampLoad> run, std::vector<StampLoad>& all) {
+  if (all.empty())
+    all = std::move(run);
+  else
+    all.insert(all.end(), run.begin(), run.end());
 }
 
 void add_holes(removal::RunKind kind, const CutResult& run, HoleFigures& holes) {
@@ -144,31 +175,39 @@ double nothing_mm3(const Job& job) { return std::pow(job.simulation.voxel_mm, 3)
 
 }  // namespace
 
-double sweep_path(removal::Stock& stock, const Job& job, const removal::StampPath& path, double shrink_mm) {
+double sweep_path(removal::Stock& stock, const Job& job, const removal::StampPath& path, double shrink_mm,
+                  const std::string& what) {
+  Stage stage(what, path.stamps.size());
   double removed_mm3 = 0;
   for_each_run(job, path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     if (shrink_mm > 0 && run.kind != removal::RunKind::milling) return;
-    removed_mm3 += sweep(stock, tool, stamps, static_cast<std::int32_t>(run.from), shrink_mm);
+    removed_mm3 +=
+        removal::sweep(stock, removal::shape_of(tool), stamps,
+                       {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(run.from), .stage = &stage});
   });
+  return_freed_memory();  // of tiles
   return removed_mm3;
 }
 
 Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics) {
-  removal::Stock blank = raw_stock(job, band_voxels(job, target.path), diagnostics);
+  MemoryEstimate memory;
+  removal::Stock blank = raw_stock(job, target, memory, diagnostics);
+  blank.share();
   const Places where = places_of(job, target, blank);
   check_places(target.text.source.name(), where, diagnostics);
   diagnostics.throw_if_errors();
   std::optional<removal::Stock> whole;
   if (job.stock.allowance_mm > 0) {
     whole.emplace(blank);
-    if (sweep_path(blank, job, target.path, job.stock.allowance_mm) < nothing_mm3(job))
+    if (sweep_path(blank, job, target.path, job.stock.allowance_mm, "cutting up to the allowance") < nothing_mm3(job))
       report_allowance(job, diagnostics);
     diagnostics.throw_if_errors();
     blank.clear_stamps();
+    blank.share();
   }
-  const removal::StampPath nominal = removal::nominal_path(target.moves, target.selected, target.path);
+  removal::StampPath nominal = removal::nominal_path(target.moves, target.selected, target.path);
   removal::Stock surface(blank);
-  if (sweep_path(surface, job, nominal, 0) < nothing_mm3(job))
+  if (sweep_path(surface, job, nominal, 0, "cutting as the target") < nothing_mm3(job))
     report_nothing_removed(target.text.source.name(), where, diagnostics);
   diagnostics.throw_if_errors();
   removal::CutterPlaces places;
@@ -181,26 +220,32 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
     check_part_size(job.part.mesh, {part->min_mm(), part->max_mm()}, where.stock, diagnostics);
     diagnostics.throw_if_errors();
   }
-  Target out{std::move(blank), std::move(surface),  std::move(places),
-             std::move(part),  HoleStamps(nominal), std::move(whole)};
+  Target out{std::move(blank), std::move(surface), std::move(part), HoleStamps(nominal), std::move(whole)};
   out.stamps.reserve(nominal.stamps.size());
   for (const auto& s : nominal.stamps) out.stamps.push_back({s.move, static_cast<float>(s.fraction)});
-  mark_region(job, target, mark_contour(job, target.path, out), out);
+  nominal = {};
+  out.map.emplace(out.surface, places, out.blank, &out.solid());
+  places = {};
+  mark_contour(job, target.path, out);
+  mark_region(job, target, out.map->points(), out);
+  out.memory = memory;
   return out;
 }
 
 Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options) {
   Prediction out;
-  removal::SurfaceMap map(target.surface, target.places, target.blank, &target.solid());
   const auto all = static_cast<double>(program.path.stamps.size());
   std::vector<std::vector<Contact>> contacts_of_runs;
+  std::optional<Stage> stage(std::in_place, "finding the contacts", program.path.stamps.size());
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     auto& contacts = contacts_of_runs.emplace_back();
     if (options.contacts && run.kind == removal::RunKind::milling)
-      contacts = find_contacts(target.surface, tool, stamps);
+      contacts = contacts_of(target.surface, tool, stamps, *stage);
   });
+  stage.reset();
   if (options.surface_read) options.surface_read();
+  removal::SurfaceMap map = options.take_map ? options.take_map() : *target.map;
   out.machined = std::make_unique<removal::Stock>(target.blank);
   auto next_contacts = contacts_of_runs.begin();
   out.holes.count = removal::count_holes(program.moves, program.holes);
@@ -229,7 +274,7 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
                             ? drill(*out.machined, tool, job.material, stamps, first_id, cut_options)
                             : tap(*out.machined, tool, stamps, first_id, cut_options);
     if (!milling) add_holes(run.kind, cut_run, out.holes);
-    out.cut.loads.insert(out.cut.loads.end(), cut_run.loads.begin(), cut_run.loads.end());
+    append(std::move(cut_run.loads), out.cut.loads);
     out.cut.chip_mm3 += cut_run.chip_mm3;
     if (run.kind != removal::RunKind::tapping) out.cut.stock_mm3 += cut_run.stock_mm3;
     out.cut.rounds_max = std::max(out.cut.rounds_max, cut_run.rounds_max);
@@ -255,6 +300,7 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
   out.unseen_mm2 = target.unseen_mm2;
   out.holes.surface_mm2 = target.holes.drop_from(out.surface);
   std::vector<double> error_um, deflection_um, contour_um, area;
+  for (auto* values : {&error_um, &deflection_um, &contour_um, &area}) values->reserve(out.surface.size());
   for (const auto& p : out.surface) {
     error_um.push_back(1000 * p.error_mm);
     deflection_um.push_back(1000 * (p.error_mm - p.contour_mm));

@@ -16,6 +16,7 @@
 #include "removal/tool_path.h"
 #include "simulate/cut.h"
 #include "simulate/holes.h"
+#include "simulate/memory.h"
 
 namespace camber::simulate {
 
@@ -64,16 +65,17 @@ struct SurfaceRegion {
 /// The nominal surface against which the part is judged: the undeflected sweep of the target program's own moves
 /// through the blank, without servo lag and corner rounding (removal::nominal_path).
 struct Target {
-  removal::Stock blank;          ///< before this job's first cut
-  removal::Stock surface;        ///< the nominal one
-  removal::CutterPlaces places;  ///< the nominal path's stamps, by the ids in `surface`
+  removal::Stock blank;    ///< before this job's first cut
+  removal::Stock surface;  ///< the nominal one
   std::optional<removal::MeshDistance> part;
-  HoleStamps holes;                       ///< of the nominal path
-  std::optional<removal::Stock> whole{};  ///< the stock before the allowance was removed; empty: `blank`
-  std::vector<PathFraction> stamps{};     ///< the nominal path's, on the target program's moves
-  std::vector<float> contour_mm{};        ///< one per point of a SurfaceMap of this target; see Prediction::surface
-  double unseen_mm2 = 0;                  ///< area of the nominal surface without a point
-  SurfaceRegion region{};                 ///< what of the nominal surface is judged
+  HoleStamps holes;                          ///< of the nominal path
+  std::optional<removal::Stock> whole{};     ///< the stock before the allowance was removed; empty: `blank`
+  std::vector<PathFraction> stamps{};        ///< the nominal path's, on the target program's moves
+  std::vector<float> contour_mm{};           ///< one per point of a SurfaceMap of this target; see Prediction::surface
+  double unseen_mm2 = 0;                     ///< area of the nominal surface without a point
+  MemoryEstimate memory{};                   ///< of a prediction
+  SurfaceRegion region{};                    ///< what of the nominal surface is judged
+  std::optional<removal::SurfaceMap> map{};  ///< points of the nominal surface, without marks
   const removal::Stock& solid() const { return whole ? *whole : blank; }
 };
 
@@ -84,8 +86,9 @@ Target make_target(const machine::Job& job, const SimulatedProgram& target, Diag
 
 /// Sweeps the undeflected cutters of a path through the stock, each made smaller by shrink_mm along its normal; returns
 /// the volume removed, mm^3. With shrink_mm > 0 holes are left out: an allowance lies on milled surface, they are made
-/// from solid.
-double sweep_path(removal::Stock& stock, const machine::Job& job, const removal::StampPath& path, double shrink_mm);
+/// from solid. `what`: the name of this stage (base/stage.h).
+double sweep_path(removal::Stock& stock, const machine::Job& job, const removal::StampPath& path, double shrink_mm,
+                  const std::string& what = "sweeping the path");
 
 struct Prediction {
   CutResult cut;  ///< loads: one per stamp of the program; the volumes are without tapping, which has no chips
@@ -112,6 +115,9 @@ struct PredictOptions {
   std::optional<std::size_t> turn_from;  ///< first stamp of a turn to keep in Prediction::cut.turn
   std::function<void(double)> progress;
   std::function<void()> surface_read;  ///< called when Target::surface is no longer needed
+  /// Returns Target::map of the target, to be used up; empty: it is copied, for further predictions. Called after
+  /// `surface_read`.
+  std::function<removal::SurfaceMap()> take_map{};
 };
 
 Prediction predict(const machine::Job& job, const Target& target, const SimulatedProgram& program,

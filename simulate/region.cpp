@@ -7,10 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "base/stage.h"
 #include "nc/move.h"
 #include "removal/cutter.h"
+#include "removal/engagement.h"
 #include "removal/tool_path.h"
-#include "simulate/cut.h"
 #include "simulate/operations.h"
 #include "simulate/tool_outline.h"
 
@@ -54,9 +55,12 @@ class OtherMoves {
   removal::CutterPlaces sweep_through(removal::Stock& stock) const {
     removal::CutterPlaces places;
     std::int32_t first_id = 0;
+    std::size_t stamps = 0;
+    for (const Run& run : runs_) stamps += run.stamps.size();
+    Stage stage("cutting the other moves", stamps);
     for (const Run& run : runs_) {
       const machine::Tool& tool = job_.tools.at(run.tool);
-      sweep(stock, tool, run.stamps, first_id, 0);
+      removal::sweep(stock, removal::shape_of(tool), run.stamps, {.first_id = first_id, .stage = &stage});
       places.add(first_id, removal::shape_of(tool), run.stamps);
       first_id += static_cast<std::int32_t>(run.stamps.size());
     }
@@ -130,8 +134,10 @@ void mark_border(const machine::Job& job, const SimulatedProgram& program,
   swept.clear_stamps();
   const removal::CutterPlaces places = others.sweep_through(swept);
   std::vector<bool> border(points.size(), false);
+  Stage stage("comparing with the other moves", points.size());
   double area = 0, whole = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    stage.advance();
     whole += points[i].area_mm2;
     if (depth_mm(swept, places, points[i].place_mm) <= kBorder_mm) continue;
     border[i] = true;

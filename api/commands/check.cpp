@@ -62,13 +62,14 @@ bool is_to_cut(const nc::Interpretation& moves) {
   });
 }
 
-/// What predict would say of the job before its cut, as far as it is not said yet.
-void add_what_predict_says(machine::Job job, const std::string& program, Diagnostics& found) {
+/// What predict would say of the job before its cut, as far as it is not said yet. Returns the memory that it needs.
+std::optional<double> add_what_predict_says(machine::Job job, const std::string& program, Diagnostics& found) {
   job.program = program;
   Diagnostics of_predict;
   std::vector<Diagnostic> said;
+  std::optional<double> memory_bytes;
   try {
-    prepare(job, {}, of_predict);
+    memory_bytes = prepare(job, {}, of_predict).setup.target.memory.total();
     said = of_predict.all();
   } catch (const InputError& refused) {
     said = refused.diagnostics();
@@ -78,6 +79,7 @@ void add_what_predict_says(machine::Job job, const std::string& program, Diagnos
           return f.check == d.check && f.message == d.message && f.location.line == d.location.line;
         }))
       found.add(d);
+  return memory_bytes;
 }
 
 }  // namespace
@@ -106,37 +108,39 @@ CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptio
   else if (machine || is_to_cut(checked.moves))
     simulate::check_spindle(text, checked.moves, found);
   found.throw_if_errors();
-  if (job) add_what_predict_says(*job, text.source.name(), found);
+  if (job) checked.memory_bytes = add_what_predict_says(*job, text.source.name(), found);
   found.throw_if_errors();
   checked.summary = nc::summarize(text, checked.moves);
   return checked;
 }
 
-std::string check_json(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics) {
+std::string check_json(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics,
+                       std::optional<double> memory_bytes) {
   ordered_json tools = ordered_json::array(), found = ordered_json::array();
   for (const auto& t : s.tools) tools.push_back(tool_json(t));
   for (const auto& d : diagnostics.all()) found.push_back(diagnostic_json(d));
-  const ordered_json report = {{"program", program},
-                               {"blocks", s.blocks},
-                               {"blocks_with_words", s.blocks_with_words},
-                               {"unit", unit_text(s)},
-                               {"moves",
-                                {{"rapid", s.rapids},
-                                 {"linear", s.lines},
-                                 {"arc", s.arcs},
-                                 {"dwell", s.dwells},
-                                 {"canned", s.canned},
-                                 {"cutter_radius", s.cutter_radius},
-                                 {"high_speed_contouring", s.high_speed_contouring},
-                                 {"reference", s.reference}}},
-                               {"cutting_length_mm", s.cutting_length_mm},
-                               {"rapid_length_mm", s.rapid_length_mm},
-                               {"dwell_s", s.dwell_s},
-                               {"cutting_extents_mm", extents_json(s.cutting)},
-                               {"rapid_extents_mm", extents_json(s.rapid)},
-                               {"tools", tools},
-                               {"warnings", diagnostics.warnings()},
-                               {"diagnostics", found}};
+  ordered_json report = {{"program", program},
+                         {"blocks", s.blocks},
+                         {"blocks_with_words", s.blocks_with_words},
+                         {"unit", unit_text(s)},
+                         {"moves",
+                          {{"rapid", s.rapids},
+                           {"linear", s.lines},
+                           {"arc", s.arcs},
+                           {"dwell", s.dwells},
+                           {"canned", s.canned},
+                           {"cutter_radius", s.cutter_radius},
+                           {"high_speed_contouring", s.high_speed_contouring},
+                           {"reference", s.reference}}},
+                         {"cutting_length_mm", s.cutting_length_mm},
+                         {"rapid_length_mm", s.rapid_length_mm},
+                         {"dwell_s", s.dwell_s},
+                         {"cutting_extents_mm", extents_json(s.cutting)},
+                         {"rapid_extents_mm", extents_json(s.rapid)},
+                         {"tools", tools},
+                         {"warnings", diagnostics.warnings()},
+                         {"diagnostics", found}};
+  if (memory_bytes) report["memory_GB"] = *memory_bytes / 1e9;
   return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // The work of camber check: a program interpreted, checked and summarized.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace camber::api {
 struct CheckedProgram {
   nc::Interpretation moves;
   nc::Summary summary;
+  std::optional<double> memory_bytes{};  ///< that predict needs, about; of a job alone
 };
 
 /// As the control of `machine` reads it, where one is given; `job` (with its machine as `machine`) also has its tools,
@@ -28,6 +30,7 @@ std::vector<Diagnostic> in_order(std::vector<Diagnostic> list);
 std::string unit_text(const nc::Summary& summary);
 
 /// The figures of a report as JSON text, with a line end.
-std::string check_json(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics);
+std::string check_json(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics,
+                       std::optional<double> memory_bytes = {});
 
 }  // namespace camber::api

@@ -1,12 +1,14 @@
 #include "api/commands/predict.h"
 
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/task_group.h>
 
 #include "base/freed_memory.h"
 #include "base/output_file.h"
+#include "base/stage.h"
 #include "calib/column_map.h"
 #include "calib/trace.h"
 #include "calib/traced_motion.h"
@@ -27,10 +29,11 @@ namespace fs = std::filesystem;
 
 /// Times the program once more to write feed.csv, a sample a period; of a trace its own samples.
 std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& program, const simulate::TracedRun* traced,
-                                        const machine::Job& job, const std::string& path) {
+                                        const machine::Job& job, const std::string& path, Stage& stage) {
   feedmodel::FeedCsv csv(program.moves, path);
   report::PathCollector collector(program.moves);
   const auto take = [&](std::span<const feedmodel::TimedSample> samples) {
+    stage.advance(samples.size());
     csv.write(samples);
     collector.add(samples);
   };
@@ -80,13 +83,31 @@ simulate::TracedRun exchange_motion(const machine::Job& job, simulate::Simulated
   return out;
 }
 
+/// Every thousandth point that is asked for advances the stage.
+report::FormErrorPoints counted(report::FormErrorPoints points, Stage& stage) {
+  constexpr std::size_t kEvery = 1000;
+  return {points.count, [at = std::move(points.at), &stage](std::size_t i) {
+            if (i % kEvery == 0) stage.advance(kEvery);
+            return at(i);
+          }};
+}
+
+/// Points of the form error that are asked for, and samples of the feed.
+std::size_t work_of_writing(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
+                            const machine::Job& job) {
+  constexpr std::size_t kTimesAsked = 10;
+  return kTimesAsked * prediction.surface.size() +
+         static_cast<std::size_t>(program.feed.time_s / job.machine.control.period_s);
+}
+
 /// What the folder holds but summary.json, side by side. The machined stock is given up once it is saved.
 void write_files(const machine::Job& job, const PreparedJob& prepared, simulate::Prediction& prediction,
                  std::size_t forces_at, const fs::path& folder, const Diagnostics& diagnostics) {
   const simulate::SimulatedProgram& program = prepared.setup.program;
   const simulate::TracedRun* traced = prepared.traced_run();
   const removal::StockShape stock = removal::stock_shape(*prediction.machined, report::kMaxStockCrossings);
-  const report::FormErrorPoints points = report::form_error_points(program, prediction, traced);
+  Stage stage("writing", work_of_writing(program, prediction, job));
+  const report::FormErrorPoints points = counted(report::form_error_points(program, prediction, traced), stage);
   tbb::task_group others;
   others.run([&] {
     prediction.machined->save(folder / "stock.vdb");
@@ -101,7 +122,7 @@ void write_files(const machine::Job& job, const PreparedJob& prepared, simulate:
   });
   others.run([&] { report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95); });
   others.run_and_wait([&] {
-    auto feed = write_feed(program, traced, job, folder / "feed.csv");
+    auto feed = write_feed(program, traced, job, folder / "feed.csv", stage);
     report::ReportData page = report::predict_report(job, program, prediction, stock, std::move(feed), diagnostics);
     if (traced) report::add_traced(page, program, prediction, *traced, model_rows(program, job));
     report::write_html_report(folder / "report.html", page);
@@ -115,6 +136,7 @@ void show(const PredictRequest& request, const std::string& what, std::optional<
 }  // namespace
 
 PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diagnostics& diagnostics) {
+  const StageScope stages(request.progress);
   std::optional<calib::TracedMotion> measured;
   const auto check = [&](const simulate::SimulatedProgram& given) {
     simulate::check_program(job, given, diagnostics);
@@ -122,16 +144,15 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
       feedmodel::check_feed_csv_size(given.moves, job.machine, request.folder + "/feed.csv", diagnostics);
     diagnostics.throw_if_errors();
     if (!request.trace.empty()) measured = read_motion(given, request, diagnostics);
-    show(request, "cutting as the target");
   };
   Diagnostics of_original;  // a program like the job's: what is to be said of it, the job's own says too
   PreparedJob out{
       simulate::set_up(job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics}),
       {}};
   out.setup.original.reset();
+  out.setup.target.surface.clear_stamps();  // its points are in the map
   const simulate::SimulatedProgram& program = out.setup.program;
   feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
-  show(request, "checking for collisions");
   simulate::check_clearance(job, out.setup, diagnostics);
   if (measured) out.traced = exchange_motion(job, out.setup.program, request.trace, *std::move(measured));
   if (request.forces_at > 0)
@@ -141,17 +162,26 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
 
 simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prepared, const PredictRequest& request,
                                       Diagnostics& of_cut) {
+  const StageScope stages(request.progress);
   simulate::Setup& setup = prepared.setup;
-  show(request, "cutting", 0);
   prepared.options.progress = [&](double share) { show(request, "cutting", share); };
   prepared.options.surface_read = [&] {
     setup.target.surface.clear();
+    // One field again of the blank before and after the allowance, which the machined stock shares.
+    setup.target.whole.reset();
+    setup.target.blank.unshare();
+    setup.target.blank.share();
     return_freed_memory();
   };
+  if (!prepared.traced) prepared.options.take_map = [&] { return *std::exchange(setup.target.map, std::nullopt); };
   auto prediction = prepared.traced
                         ? simulate::predict_traced(job, setup.target, setup.program, *prepared.traced, prepared.options)
                         : simulate::predict(job, setup.target, setup.program, prepared.options);
-  setup.target.blank.clear();  // nothing reads it any more, and the files need room
+  // Nothing reads them any more, and the files need room.
+  setup.target.blank.clear();
+  setup.target.map.reset();
+  prediction.machined->unshare();
+  prediction.machined->clear_stamps();
   simulate::check_spindle_power(job.machine, setup.program, prediction.cut.loads, of_cut);
   return prediction;
 }
@@ -159,6 +189,7 @@ simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prep
 void write_prediction(const machine::Job& job, const PreparedJob& prepared, simulate::Prediction& prediction,
                       const PredictRequest& request, const std::string& summary, const Diagnostics& diagnostics,
                       Diagnostics& failed) {
+  const StageScope stages(request.progress);
   const fs::path folder = request.folder;
   try_to_write([&] { write_files(job, prepared, prediction, request.forces_at, folder, diagnostics); }, failed);
   // The last: where it is new, so is all beside it.

@@ -1,4 +1,6 @@
 #include "base/cancel.h"
+#include "base/freed_memory.h"
+#include "base/stage.h"
 #include "removal/form_error.h"
 
 #include <algorithm>
@@ -350,6 +352,27 @@ struct SurfaceMap::Impl {
   std::vector<SurfacePoint> points;  ///< tile by tile
   std::vector<float> left_mm;        ///< of the blank above each
   std::vector<TilePoints> tiles;
+  double band_mm = 0;
+
+  /// Where the deflected cutters do not reach, the blank itself is the surface.
+  void add_blank() {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      SurfacePoint& p = points[i];
+      if (p.error_mm <= 0 || static_cast<double>(left_mm[i]) >= p.error_mm) continue;
+      p.error_mm = static_cast<double>(left_mm[i]);
+      p.machined_stamp = Stock::kUncut;
+    }
+  }
+  void clear_marks() {
+    for (SurfacePoint& p : points) {
+      p.error_mm = band_mm;
+      p.machined_stamp = Stock::kUncut;
+    }
+    for (TilePoints& tile : tiles) {
+      tile.all.highest = band_mm;
+      for (Group& block : tile.blocks) block.highest = band_mm;
+    }
+  }
 };
 
 SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const Stock& blank, const Stock* solid)
@@ -361,16 +384,24 @@ SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const St
   auto parts = surface_points(target, places, solid, &unseen_mm2_);
   std::size_t count = 0;
   for (const auto& part : parts) count += part.size();
+  constexpr std::size_t kReturns = 8;
+  std::size_t returned = 0;
   points.reserve(count);
   for (auto& part : parts) {
     if (part.empty()) continue;
     impl_->tiles.emplace_back().all = {.first = points.size(), .count = part.size()};
     points.insert(points.end(), part.begin(), part.end());
-    part = {};
+    std::vector<SurfacePoint>().swap(part);  // part = {} would keep its memory
+    // Now and then, so that the points are not in memory twice.
+    if (points.size() - returned < count / kReturns) continue;
+    return_freed_memory();
+    returned = points.size();
   }
+  impl_->band_mm = band;
   impl_->left_mm.resize(count);
+  Stage stage("sorting the surface's points", impl_->tiles.size());
   tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
-    cancellation_point();
+    stage.advance();
     TilePoints& tile = impl_->tiles[t];
     const std::size_t first = tile.all.first, end = first + tile.all.count;
     const std::span<SurfacePoint> own(points.data() + first, tile.all.count);
@@ -387,6 +418,8 @@ SurfaceMap::SurfaceMap(const Stock& target, const CutterPlaces& places, const St
   });
 }
 
+SurfaceMap::SurfaceMap(const SurfaceMap& o) : impl_(std::make_unique<Impl>(*o.impl_)), unseen_mm2_(o.unseen_mm2_) {}
+SurfaceMap::SurfaceMap(SurfaceMap&&) noexcept = default;
 SurfaceMap::~SurfaceMap() = default;
 
 void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamps, const DeflectionTable& deflections,
@@ -438,16 +471,21 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
 }
 
 std::vector<SurfacePoint> SurfaceMap::take() {
-  for (std::size_t i = 0; i < impl_->points.size(); ++i) {
-    SurfacePoint& p = impl_->points[i];
-    // Where the deflected cutters do not reach, the blank itself is the surface.
-    if (p.error_mm <= 0 || static_cast<double>(impl_->left_mm[i]) >= p.error_mm) continue;
-    p.error_mm = static_cast<double>(impl_->left_mm[i]);
-    p.machined_stamp = Stock::kUncut;
-  }
+  impl_->add_blank();
   std::vector<SurfacePoint> out = std::move(impl_->points);
   *impl_ = {};
   return out;
 }
+
+std::vector<float> SurfaceMap::take_errors_mm() {
+  impl_->add_blank();
+  std::vector<float> out;
+  out.reserve(impl_->points.size());
+  for (const SurfacePoint& p : impl_->points) out.push_back(static_cast<float>(p.error_mm));
+  impl_->clear_marks();
+  return out;
+}
+
+std::span<const SurfacePoint> SurfaceMap::points() const { return impl_->points; }
 
 }  // namespace camber::removal

@@ -1,4 +1,4 @@
-#include "base/cancel.h"
+#include "base/stage.h"
 #include "removal/field/tile.h"
 #include "removal/form_error.h"
 
@@ -389,9 +389,11 @@ std::vector<std::vector<SurfacePoint>> by_tile(const Stock* machined, const Stoc
   const std::vector<Index3> tiles = target.surface_tiles();
   std::vector<std::vector<SurfacePoint>> parts(tiles.size());
   std::vector<double> cut_mm2(tiles.size(), 0.0);
+  Stage stage("placing points on the surface", tiles.size());
   tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
-    cancellation_point();
+    stage.advance();
     collect(machined, target, places, solid, tiles[i], parts[i], cut_mm2[i]);
+    parts[i].shrink_to_fit();
   });
   if (!unseen_mm2) return parts;
   double unseen = std::accumulate(cut_mm2.begin(), cut_mm2.end(), 0.0);

@@ -172,11 +172,20 @@ TEST(BadInput, VoxelsThatNeedMoreMemoryThanThereIs) {
   write_job(folder, "T1 M6\nS3000 M3\n", job);
   const std::string message = predict_error(folder);
   // How much is free differs from computer to computer.
-  const std::string begin =
-      "job.toml: error: voxel_mm = 0.0001 needs about 40960000.0 GB for a stock of 400 x 200 x 200 mm, but ";
+  const std::string begin = "job.toml:14:12: error: voxel_mm = 0.0001 needs about ";
   EXPECT_EQ(message.substr(0, begin.size()), begin);
-  EXPECT_NE(message.find(" GB are free; voxel_mm = "), std::string::npos);
-  EXPECT_NE(message.find(" or a smaller stock was expected [voxel-memory]\n"), std::string::npos);
+  EXPECT_NE(message.find(" GB for a stock of 400 x 200 x 200 mm and "), std::string::npos) << message;
+  EXPECT_NE(message.find(" GB are available; voxel_mm = "), std::string::npos) << message;
+  EXPECT_NE(message.find(" or a smaller stock was expected [voxel-memory]\n"), std::string::npos) << message;
+}
+
+TEST(BadInput, MoreMemoryThanTheJobAllows) {
+  const TempFolder folder;
+  write_job(folder, "T1 M6\nS3000 M3\n",
+            tests::replaced(kJob, "voxel_mm = 0.2\n", "voxel_mm = 0.2\nmax_memory_GB = 0.01\n"));
+  const std::string message = predict_error(folder);
+  EXPECT_NE(message.find("job.toml:14:12: error: voxel_mm = 0.2 needs about "), std::string::npos) << message;
+  EXPECT_NE(message.find(", but 0.01 GB are allowed (max_memory_GB); "), std::string::npos) << message;
 }
 
 TEST(BadInput, MeshThatIsNoStl) {

@@ -203,6 +203,75 @@ TEST(ErrorSpread, GivesPercentilesAndAHistogramByArea) {
   EXPECT_TRUE(error_spread({}, {}).bin_area_mm2.empty());
 }
 
+/// Two stocks made from one blank: shared layers in one case, copies in the other.
+struct Family {
+  Stock blank, first, second;
+};
+Family family(bool shared) {
+  Stock blank = make_box({0, -5, -3}, {10, 5, 0}, 0.1);
+  if (shared) blank.share();
+  std::vector<Stamp> allowance, row, other;
+  add_row(allowance, {-4, 0, -1}, {14, 0, -1}, 0.15);
+  add_row(row, {-4, 0.5, -1.4}, {14, 0.5, -1.4}, 0.15);
+  add_row(other, {5, -9, -2}, {5, 9, -2}, 0.15);
+  carve_row(blank, ball_envelope(), allowance);
+  blank.clear_stamps();
+  if (shared) blank.share();
+  Stock first(blank), second(blank);
+  carve_row(first, ball_envelope(), row);
+  carve_row(second, ball_envelope(), other);
+  return {std::move(blank), std::move(first), std::move(second)};
+}
+
+void expect_same(const Stock& a, const Stock& b, const tests::TempFolder& folder) {
+  EXPECT_EQ(a.surface_tiles(), b.surface_tiles());
+  EXPECT_EQ(a.volume_mm3(), b.volume_mm3());
+  constexpr int kSide = 48;
+  std::vector<float> distance_a(kSide * kSide * kSide), distance_b(distance_a);
+  std::vector<std::int32_t> stamp_a(distance_a.size()), stamp_b(distance_a.size());
+  for (const Index3& first : {Index3{-9, -60, -40}, {31, -20, -39}, {70, 10, -41}}) {
+    a.read(first, kSide, distance_a.data(), stamp_a.data());
+    b.read(first, kSide, distance_b.data(), stamp_b.data());
+    EXPECT_EQ(distance_a, distance_b);
+    EXPECT_EQ(stamp_a, stamp_b);
+  }
+  for (int tile = -3; tile < 7; ++tile) {
+    EXPECT_EQ(a.is_air({tile, 0, -1}), b.is_air({tile, 0, -1}));
+    EXPECT_EQ(a.is_solid({tile, 1, -2}), b.is_solid({tile, 1, -2}));
+    EXPECT_EQ(a.distance_mm({1.6 * tile, 0.31, -1.2}), b.distance_mm({1.6 * tile, 0.31, -1.2}));
+  }
+  a.save(folder / "a.vdb");
+  b.save(folder / "b.vdb");
+  EXPECT_EQ(tests::file_text(folder / "a.vdb"), tests::file_text(folder / "b.vdb"));
+}
+
+TEST(Stock, CopiesOfASharedOneAreCutAsOthersAre) {
+  const tests::TempFolder folder;
+  Family shared = family(true);
+  const Family copied = family(false);
+  expect_same(shared.blank, copied.blank, folder);
+  expect_same(shared.first, copied.first, folder);
+  expect_same(shared.second, copied.second, folder);
+  // The layers are taken over where nobody else has them, and copied where the blank still does.
+  shared.second.unshare();
+  expect_same(shared.second, copied.second, folder);
+  expect_same(shared.first, copied.first, folder);
+  shared.second.clear();
+  shared.blank.clear();
+  EXPECT_TRUE(shared.blank.is_air({0, 0, -1}));
+  expect_same(shared.first, copied.first, folder);
+  shared.first.unshare();
+  expect_same(shared.first, copied.first, folder);
+}
+
+TEST(Stock, ACopyOfASharedOneHasOnlyWhatItChanges) {
+  Stock blank = make_box({0, -5, -3}, {10, 5, 0}, 0.1);
+  const std::size_t whole = blank.memory_bytes();
+  blank.share();
+  const Stock copy(blank);
+  EXPECT_LT(copy.memory_bytes(), whole + whole / 100);
+}
+
 TEST(Stock, ComesBackFromItsFile) {
   const tests::TempFolder folder;
   Stock stock = make_box({0, -5, -3}, {10, 5, 0}, 0.1);

@@ -44,7 +44,7 @@ std::vector<removal::SurfacePoint> walls(const machine::Job& job, const std::str
   Diagnostics diagnostics;
   const SimulatedProgram program = motion(job, text);
   const Target target = make_target(job, program, diagnostics);
-  removal::SurfaceMap map(target.surface, target.places, target.blank, &target.solid());
+  removal::SurfaceMap map = *target.map;
   auto points = map.take();
   EXPECT_EQ(points.size(), target.contour_mm.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i].error_mm = static_cast<double>(target.contour_mm[i]);

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/cancel.h"
+#include "base/stage.h"
 #include "removal/engagement.h"
 #include "removal/field/slot_map.h"
 #include "removal/field/tile.h"
@@ -150,8 +151,11 @@ double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stam
   assert(all_upright(stamps));
   constexpr std::size_t kAtOnce = 10000;  // bounds the memory
   double removed = 0;
-  for (std::size_t from = 0; from < stamps.size(); from += kAtOnce)
-    removed += Sweep(stock, shape, stamps, from, std::min(kAtOnce, stamps.size() - from), options).cut();
+  for (std::size_t from = 0; from < stamps.size(); from += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, stamps.size() - from);
+    removed += Sweep(stock, shape, stamps, from, count, options).cut();
+    if (options.stage) options.stage->advance(count);
+  }
   return removed;
 }
 

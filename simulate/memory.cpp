@@ -1,0 +1,217 @@
+#include "simulate/memory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/free_memory.h"
+#include "deflection/tooth_pass.h"
+#include "removal/cutter.h"
+#include "removal/field/tile.h"
+#include "removal/form_error.h"
+#include "simulate/cut.h"
+
+namespace camber::simulate {
+namespace {
+
+using machine::Job;
+
+/// The lowest height that the path leaves, in square cells over the stock.
+class HeightMap {
+ public:
+  HeightMap(const StockSize& stock, double cell_mm)
+      : lo_(stock.min_mm), hi_(stock.max_mm), cell_mm_(cell_mm), columns_(cells(0)), rows_(cells(1)) {
+    height_.assign(columns_ * rows_, hi_.z());
+  }
+
+  void cut(const removal::CutterShape& shape, const Vec3& tip) {
+    const double r = shape.radius_mm;
+    const std::size_t x1 = index(tip.x() + r, 0, columns_), y1 = index(tip.y() + r, 1, rows_);
+    for (std::size_t i = index(tip.x() - r, 0, columns_); i <= x1; ++i)
+      for (std::size_t j = index(tip.y() - r, 1, rows_); j <= y1; ++j) {
+        const double rho = (centre(i, j) - tip.head<2>()).norm();
+        double& h = height_[i * rows_ + j];
+        if (rho <= r) h = std::min(h, std::max(lo_.z(), tip.z() + bottom_mm(shape, rho)));
+      }
+  }
+
+  /// Of the surface where it is lower than the stock's top.
+  double cut_area_mm2() const {
+    double area = 0;
+    for (std::size_t i = 0; i < columns_; ++i)
+      for (std::size_t j = 0; j < rows_; ++j) {
+        const double h = at(i, j), dx = at(std::min(i + 1, columns_ - 1), j) - h,
+                     dy = at(i, std::min(j + 1, rows_ - 1)) - h;
+        if (h >= hi_.z() && dx == 0 && dy == 0) continue;
+        const double flat = h < hi_.z() ? cell_mm_ : 0;
+        area += cell_mm_ * std::sqrt(flat * flat + dx * dx + dy * dy);
+      }
+    return area;
+  }
+
+ private:
+  std::size_t cells(int axis) const {
+    return static_cast<std::size_t>(std::max(1.0, std::ceil((hi_[axis] - lo_[axis]) / cell_mm_)));
+  }
+  std::size_t index(double place, int axis, std::size_t count) const {
+    return static_cast<std::size_t>(
+        std::clamp(std::floor((place - lo_[axis]) / cell_mm_), 0.0, static_cast<double>(count - 1)));
+  }
+  Vec2 centre(std::size_t i, std::size_t j) const {
+    return {lo_.x() + (static_cast<double>(i) + 0.5) * cell_mm_, lo_.y() + (static_cast<double>(j) + 0.5) * cell_mm_};
+  }
+  double at(std::size_t i, std::size_t j) const { return height_[i * rows_ + j]; }
+  static double bottom_mm(const removal::CutterShape& shape, double rho_mm) {
+    if (shape.general) return 0;
+    const double c = shape.corner_radius_mm, around = std::max(0.0, rho_mm - shape.bottom_length_mm());
+    return c - std::sqrt(std::max(0.0, c * c - around * around));
+  }
+
+  Vec3 lo_, hi_;
+  double cell_mm_;
+  std::size_t columns_, rows_;
+  std::vector<double> height_;
+};
+
+double cell_of(const Job& job, const removal::StampPath& path, const StockSize& stock) {
+  constexpr double kVoxels = 16, kOfRadius = 0.25, kOfStock = 1e-3;
+  const Vec3 size = stock.max_mm - stock.min_mm;
+  double cell = std::max(kVoxels * job.simulation.voxel_mm, kOfStock * std::max(size.x(), size.y()));
+  for (const auto& run : path.runs) cell = std::max(cell, kOfRadius * job.tools.at(run.tool).diameter_mm / 2);
+  return cell;
+}
+
+constexpr double kLeaf = 8;
+constexpr double kBytesPerVoxel = 1.3 * sizeof(float);  // with masks, inner nodes and what malloc adds
+
+/// Voxels across the band, in whole leaves.
+double thickness(double band_voxels) { return 2 * band_voxels - 1 + kLeaf - 1; }
+
+}  // namespace
+
+double cut_area_mm2(const Job& job, const removal::StampPath& path, const StockSize& stock) {
+  const double cell = cell_of(job, path, stock);
+  HeightMap map(stock, cell);
+  for (const auto& run : path.runs) {
+    const removal::CutterShape shape = removal::shape_of(job.tools.at(run.tool));
+    std::optional<Vec3> last;
+    for (std::size_t k = run.from; k < run.from + run.count; ++k) {
+      const Vec3& tip = path.stamps[k].pose.tip_mm;
+      if (last && k + 1 < run.from + run.count && (tip - *last).norm() < cell / 2) continue;
+      map.cut(shape, tip);
+      last = tip;
+    }
+  }
+  return map.cut_area_mm2();
+}
+
+double field_bytes(const Vec3& size, double voxel, double band_voxels) {
+  const double area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+  return kBytesPerVoxel * area / (voxel * voxel) * thickness(band_voxels);
+}
+
+namespace {
+
+/// The tiles that stamps swept together change are in memory until all of them are cut.
+double swept_at_once_mm2(const Job& job, const removal::StampPath& path, double cut_mm2) {
+  constexpr double kAtOnce = 10000;
+  double most = 0;
+  for (const auto& run : path.runs) {
+    double way = 0;
+    for (std::size_t k = run.from + 1; k < run.from + run.count; ++k)
+      way += (path.stamps[k].pose.tip_mm - path.stamps[k - 1].pose.tip_mm).norm();
+    const double length = way * std::min(1.0, kAtOnce / static_cast<double>(run.count));
+    most = std::max(most, length * job.tools.at(run.tool).diameter_mm);
+  }
+  return std::min(cut_mm2, most);
+}
+
+double table_bytes(const Job& job, const removal::StampPath& path, const StockSize& stock) {
+  const bool rigid = job.simulation.coupling == machine::Coupling::rigid;
+  const CutOptions options;
+  const std::size_t stretch = rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
+  double most = 0;
+  for (const auto& run : path.runs) {
+    const machine::Tool& tool = job.tools.at(run.tool);
+    double lowest = stock.max_mm.z();
+    for (std::size_t k = run.from; k < run.from + run.count; ++k)
+      lowest = std::min(lowest, path.stamps[k].pose.tip_mm.z());
+    const double flutes = std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm));
+    const double top = std::clamp(stock.max_mm.z() - lowest, 0.0, flutes);
+    const auto nodes = static_cast<double>(deflection::node_heights(top, flutes).size());
+    const double steps = 2 * kPi / job.simulation.rotation_step_rad / tool.flutes * (rigid ? deflection::kFine : 1);
+    most = std::max(most, static_cast<double>(std::min(stretch, run.count)) * steps * nodes * 2 * sizeof(float));
+  }
+  return most;
+}
+
+}  // namespace
+
+MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::Interpretation& moves,
+                             const removal::StampPath& path, const StockSize& stock) {
+  const double cut = cut_area_mm2(job, path, stock);
+  return {.text_bytes = text.source.text().size(),
+          .blocks = text.blocks.size(),
+          .moves = moves.moves.size(),
+          .stamps = path.stamps.size(),
+          .size_mm = stock.max_mm - stock.min_mm,
+          .band_mm = stock.band_voxels * job.simulation.voxel_mm,
+          .cut_mm2 = cut,
+          .at_once_mm2 = swept_at_once_mm2(job, path, cut),
+          .table_bytes = table_bytes(job, path, stock),
+          .allowance = job.stock.allowance_mm > 0};
+}
+
+MemoryEstimate estimate_memory(const MemoryFactors& f, double voxel_mm) {
+  constexpr double kAlways = 80e6, kBytesPerBlock = 112, kBytesPerMove = 80 + 96;  // with the plan
+  constexpr double kPointsPerVoxel = 1.2, kGroups = 12, kMinBand = 4, kTilesDeep = 2;
+  const auto stamps = static_cast<double>(f.stamps);
+  const double given = kAlways + static_cast<double>(f.text_bytes) + kBytesPerBlock * static_cast<double>(f.blocks) +
+                       kBytesPerMove * static_cast<double>(f.moves) + sizeof(removal::Stamp) * stamps;
+  const double band = std::max(kMinBand, f.band_mm / voxel_mm), voxel_mm2 = voxel_mm * voxel_mm;
+  const double distance = kBytesPerVoxel * f.cut_mm2 / voxel_mm2 * thickness(band);
+  const double tiles =
+      kTilesDeep * sizeof(removal::Tile) * f.at_once_mm2 / voxel_mm2 / (removal::Tile::kCore * removal::Tile::kCore);
+  const double points = kPointsPerVoxel * f.cut_mm2 / voxel_mm2;
+  const double blank = field_bytes(f.size_mm, voxel_mm, band), allowance = f.allowance ? distance : 0;
+  // The target is cut; the points of the map are put together; the program is cut, with its loads.
+  const MemoryEstimate target{given + sizeof(removal::Stamp) * stamps, blank, allowance + 2 * distance + tiles, 0};
+  const MemoryEstimate map{given + sizeof(ToolPose) * stamps, blank, allowance + 2 * distance,
+                           1.125 * sizeof(removal::SurfacePoint) * points};
+  const MemoryEstimate cut{given + f.table_bytes + (sizeof(StampLoad) + sizeof(Contact)) * stamps, blank, 2 * distance,
+                           (sizeof(removal::SurfacePoint) + kGroups) * points};
+  return std::max({target, map, cut}, [](const auto& a, const auto& b) { return a.total() < b.total(); });
+}
+
+double memory_limit_bytes(const Job& job) {
+  if (job.simulation.max_memory_GB) return 1e9 * *job.simulation.max_memory_GB;
+  return free_memory_bytes() + used_memory_bytes();
+}
+
+MemoryEstimate check_memory(const Job& job, const MemoryFactors& factors, Diagnostics& diagnostics) {
+  const double voxel = job.simulation.voxel_mm, limit = memory_limit_bytes(job);
+  const MemoryEstimate out = estimate_memory(factors, voxel);
+  if (out.total() <= limit) return out;
+  constexpr double kStep = 1.25, kRoom = 0.9;
+  const Vec3& size = factors.size_mm;
+  double enough = voxel;
+  while (enough < size.minCoeff() && estimate_memory(factors, enough).total() > kRoom * limit) enough *= kStep;
+  const std::string other = enough < size.minCoeff() ? fmt::format("voxel_mm = {:.2g} or a smaller stock", enough)
+                                                     : "a shorter program or more memory";
+  Diagnostic said = job.voxel_place;
+  said.severity = Severity::error;
+  if (said.location.file.empty()) said.location.file = job.path;
+  said.message = fmt::format(
+      "voxel_mm = {:g} needs about {:.3g} GB for a stock of {:.0f} x {:.0f} x {:.0f} mm and {} tooth passings, but "
+      "{:.3g} GB are {}; {} was expected",
+      voxel, out.total() / 1e9, size.x(), size.y(), size.z(), factors.stamps, limit / 1e9,
+      job.simulation.max_memory_GB ? "allowed (max_memory_GB)" : "available", other);
+  said.check = "voxel-memory";
+  diagnostics.add(std::move(said));
+  return out;
+}
+
+}  // namespace camber::simulate
