@@ -51,7 +51,8 @@ double as_ever(std::size_t) { return 1; }
 removal::Stamp even(std::size_t k) { return stamp_with(0.1, k == 0); }
 
 TEST(ReadingPace, AConstantDeflectionIsReadEveryEighthPassing) {
-  const Walk w = walk(800, 1, [](std::size_t) { return 0.01; }, as_ever, even);
+  const Walk w = walk(
+      800, 1, [](std::size_t) { return 0.01; }, as_ever, even);
   EXPECT_NEAR(static_cast<double>(w.read.size()), 100, 6);
   EXPECT_LT(w.worst_mm, 1e-8);
 }
