@@ -10,7 +10,6 @@
 #include "base/free_memory.h"
 #include "deflection/tooth_pass.h"
 #include "removal/cutter.h"
-#include "removal/field/tile.h"
 #include "removal/form_error.h"
 #include "simulate/cut.h"
 
@@ -168,13 +167,13 @@ MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::
 MemoryEstimate estimate_memory(const MemoryFactors& f, double voxel_mm) {
   constexpr double kAlways = 80e6, kBytesPerBlock = 112, kBytesPerMove = 80 + 96;  // with the plan
   constexpr double kPointsPerVoxel = 1.2, kGroups = 12, kMinBand = 4, kTilesDeep = 2;
+  constexpr double kTileSide = 16, kTileBytes = 17 * 17 * 17 * 8;  // voxels; with one more layer, distance and stamp
   const auto stamps = static_cast<double>(f.stamps);
   const double given = kAlways + static_cast<double>(f.text_bytes) + kBytesPerBlock * static_cast<double>(f.blocks) +
                        kBytesPerMove * static_cast<double>(f.moves) + sizeof(removal::Stamp) * stamps;
   const double band = std::max(kMinBand, f.band_mm / voxel_mm), voxel_mm2 = voxel_mm * voxel_mm;
   const double distance = kBytesPerVoxel * f.cut_mm2 / voxel_mm2 * thickness(band);
-  const double tiles =
-      kTilesDeep * sizeof(removal::Tile) * f.at_once_mm2 / voxel_mm2 / (removal::Tile::kCore * removal::Tile::kCore);
+  const double tiles = kTilesDeep * kTileBytes * f.at_once_mm2 / voxel_mm2 / (kTileSide * kTileSide);
   const double points = kPointsPerVoxel * f.cut_mm2 / voxel_mm2;
   const double blank = field_bytes(f.size_mm, voxel_mm, band), allowance = f.allowance ? distance : 0;
   // The target is cut; the points of the map are put together; the program is cut, with its loads.
