@@ -82,7 +82,7 @@ TEST(Rotary, RefusesWordsItCannotRead) {
   EXPECT_EQ(said("G92 C5.\n").at(1),
             "p.nc:1:5: error: C in a block with G92 is not supported; rotary words were "
             "expected with G0, G1 or G53 [rotary-axis]");
-  EXPECT_EQ(said("G0 X0 Y0 Z0\nG41 D1 G1 X5 F100\nX9 A5.\nG40 X0\n").at(0),
+  EXPECT_EQ(said("G0 X0 Y0 Z0\nG41 D1 G1 X5 F100\nX9 A5.\nG40 X0\n").at(1),
             "p.nc:3:4: error: A in a block with G41 active is not supported; rotary words were expected with G0, G1 or "
             "G53 [rotary-axis]");
   EXPECT_EQ(said("A5.\n"), Messages{"p.nc:1:1: error: A without a kind of motion; G0, G1, G2 or G3 was expected before "
