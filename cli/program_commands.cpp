@@ -168,7 +168,7 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
 }
 
 void add_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand("feed", "predict the predict the actual feed along a program, and its time");
+  auto* command = app.add_subcommand("feed", "predict the actual feed along a program, and its time");
   auto arguments = std::make_shared<FeedArguments>();
   command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
   command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
