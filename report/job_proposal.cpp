@@ -9,7 +9,7 @@
 #include "base/numbers.h"
 #include "machine/material_presets.h"
 #include "report/stock_proposal.h"
-#include "simulate/job_checks.h"
+#include "simulate/memory.h"
 
 namespace camber::report {
 namespace {
