@@ -17,7 +17,8 @@ ToolUse tool_of(const nc::ToolUse& t) {
   return {t.tool, t.line, t.calls, t.cutting_moves, t.cutting_length_mm, t.rapid_length_mm, box_of(t.cutting)};
 }
 
-CheckResult result_of(const std::string& path, const nc::Summary& s, const Diagnostics& found) {
+CheckResult result_of(const std::string& path, const api::CheckedProgram& checked, const Diagnostics& found) {
+  const nc::Summary& s = checked.summary;
   CheckResult out{.blocks = s.blocks,
                   .blocks_with_words = s.blocks_with_words,
                   .rapids = s.rapids,
@@ -31,7 +32,8 @@ CheckResult result_of(const std::string& path, const nc::Summary& s, const Diagn
                   .rapid = box_of(s.rapid)};
   for (const nc::ToolUse& t : s.tools) out.tools.push_back(tool_of(t));
   out.diagnostics = found.all();
-  out.json = api::check_json(path, s, found);
+  if (checked.memory_bytes) out.memory_GB = *checked.memory_bytes / 1e9;
+  out.json = api::check_json(path, s, found, checked.memory_bytes);
   return out;
 }
 
@@ -47,7 +49,7 @@ CheckResult checked(const Program& program, const Diagnostics& before, const mac
       Diagnostics ordered;
       for (auto& d : api::in_order(found.all())) ordered.add(std::move(d));
       run.settle(ordered);
-      result = result_of(program.path(), done.summary, ordered);
+      result = result_of(program.path(), done, ordered);
     } catch (const InputError& e) {
       throw InputError(api::in_order(e.diagnostics()));
     }

@@ -119,7 +119,8 @@ void add_check(py::module_& module) {
       .def_readonly("dwell_s", &CheckResult::dwell_s)
       .def_readonly("cutting", &CheckResult::cutting)
       .def_readonly("rapid", &CheckResult::rapid)
-      .def_readonly("tools", &CheckResult::tools);
+      .def_readonly("tools", &CheckResult::tools)
+      .def_readonly("memory_GB", &CheckResult::memory_GB);
 }
 
 void add_feed_and_time(py::module_& module) {

@@ -31,6 +31,7 @@ struct CheckResult {
   double cutting_length_mm = 0, rapid_length_mm = 0, dwell_s = 0;
   std::optional<Box> cutting{}, rapid{};
   std::vector<ToolUse> tools{};           ///< in the order of their first use
+  std::optional<double> memory_GB{};      ///< that predict() of the job needs, about; of a job alone
   std::vector<Diagnostic> diagnostics{};  ///< warnings, in the order of the file
   std::string json{};                     ///< all figures, as `camber check --json` writes them
 };

@@ -60,7 +60,9 @@ class Figures(unittest.TestCase):
             if not program.exists() or "guide" in str(job):
                 continue
             with self.subTest(job=job):
-                self.equal(camber.check(program, job=job), command_line("check", program, "--job", job))
+                result, expected = camber.check(program, job=job), command_line("check", program, "--job", job)
+                self.equal(result, expected)
+                self.assertEqual(result.memory_GB, expected["memory_GB"])
 
     def test_feed_of_every_program_on_two_machines(self):
         for program in PROGRAMS:
