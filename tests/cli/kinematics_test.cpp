@@ -134,7 +134,8 @@ TEST(CheckFiveAxes, OtherCommandsRefuseTheProgramByName) {
         run.err.find("p.nc:4:1: error: G234 (tool centre point control of five axes) is not supported [not-read]"),
         std::string::npos)
         << run.err;
-    EXPECT_NE(run.err.find("p.nc:5:9: error: rotary axis B is not supported; X, Y and Z were expected [rotary-axis]"),
+    EXPECT_NE(run.err.find("p.nc:5:9: error: rotary axis B is read by camber check --machine alone, on a machine with "
+                           "[kinematics]; X, Y and Z were expected [rotary-axis]"),
               std::string::npos)
         << run.err;
   }

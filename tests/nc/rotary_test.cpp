@@ -170,7 +170,8 @@ TEST(Rotary, WithoutRotaryAxesCodesAreRefusedByName) {
   EXPECT_EQ(read_text("G234 H1\n").messages,
             Messages{"p.nc:1:1: error: G234 (tool centre point control of five axes) is not supported [not-read]"});
   EXPECT_EQ(read_text("G43 H1\nG0 X1 A5.\n").messages,
-            Messages{"p.nc:2:7: error: rotary axis A is not supported; X, Y and Z were expected [rotary-axis]"});
+            Messages{"p.nc:2:7: error: rotary axis A is read by camber check --machine alone, on a machine with "
+                     "[kinematics]; X, Y and Z were expected [rotary-axis]"});
 }
 
 }  // namespace
