@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/ball_job.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -14,24 +15,9 @@ using tests::TempFolder;
 
 constexpr const char* kHeader = "G21 G90 G17 G40 G49 G80 G54\n";
 constexpr const char* kCut = "G0 X5. Y1. Z5.\nG1 Z-0.2 F300\nX-1. F900\nG0 Z5.\nM30\n";
-constexpr const char* kJob = R"(program = "p.nc"
-machine = "machine.toml"
-[tool.1]
-type = "ball"
-diameter_mm = 6.0
-flutes = 2
-overhang_mm = 40.0
-[material]
-ktc_MPa = 2000.0
-krc_MPa = 700.0
-[stock]
-box_mm = [[0, 0, -2], [4, 2, 0]]
-[simulation]
-voxel_mm = 0.2
-)";
 
 /// A small job with the given lines between the header and the cut.
-void write_job(const TempFolder& folder, const std::string& start, const std::string& job = kJob) {
+void write_job(const TempFolder& folder, const std::string& start, const std::string& job = tests::ball_job()) {
   folder.write("p.nc", kHeader + start + kCut);
   folder.write("machine.toml", "[axis.x]\n[axis.y]\n[axis.z]\n[spindle]\nmax_rpm = 12000\n");
   folder.write("job.toml", job);
@@ -158,7 +144,7 @@ TEST(BadInput, SpindleTheWrongWay) {
 
 TEST(BadInput, NotANumberInAJob) {
   const TempFolder folder;
-  write_job(folder, "T1 M6\nS3000 M3\n", tests::replaced(kJob, "voxel_mm = 0.2", "voxel_mm = nan"));
+  write_job(folder, "T1 M6\nS3000 M3\n", tests::replaced(tests::ball_job(), "voxel_mm = 0.2", "voxel_mm = nan"));
   EXPECT_EQ(predict_error(folder),
             "job.toml:14:12: error: voxel_mm is nan; a number greater than zero was expected [value-range]\n"
             "    voxel_mm = nan\n"
@@ -167,7 +153,7 @@ TEST(BadInput, NotANumberInAJob) {
 
 TEST(BadInput, VoxelsThatNeedMoreMemoryThanThereIs) {
   const TempFolder folder;
-  std::string job = tests::replaced(kJob, "[[0, 0, -2], [4, 2, 0]]", "[[0, 0, -200], [400, 200, 0]]");
+  std::string job = tests::replaced(tests::ball_job(), "[[0, 0, -2], [4, 2, 0]]", "[[0, 0, -200], [400, 200, 0]]");
   job = tests::replaced(std::move(job), "voxel_mm = 0.2", "voxel_mm = 0.0001");
   write_job(folder, "T1 M6\nS3000 M3\n", job);
   const std::string message = predict_error(folder);
@@ -182,7 +168,7 @@ TEST(BadInput, VoxelsThatNeedMoreMemoryThanThereIs) {
 TEST(BadInput, MoreMemoryThanTheJobAllows) {
   const TempFolder folder;
   write_job(folder, "T1 M6\nS3000 M3\n",
-            tests::replaced(kJob, "voxel_mm = 0.2\n", "voxel_mm = 0.2\nmax_memory_GB = 0.01\n"));
+            tests::replaced(tests::ball_job(), "voxel_mm = 0.2\n", "voxel_mm = 0.2\nmax_memory_GB = 0.01\n"));
   const std::string message = predict_error(folder);
   EXPECT_NE(message.find("job.toml:14:12: error: voxel_mm = 0.2 needs about "), std::string::npos) << message;
   EXPECT_NE(message.find(", but 0.01 GB are allowed (max_memory_GB); "), std::string::npos) << message;
@@ -191,7 +177,7 @@ TEST(BadInput, MoreMemoryThanTheJobAllows) {
 TEST(BadInput, MeshThatIsNoStl) {
   const TempFolder folder;
   write_job(folder, "T1 M6\nS3000 M3\n",
-            tests::replaced(kJob, "box_mm = [[0, 0, -2], [4, 2, 0]]", "mesh = \"blank.stl\""));
+            tests::replaced(tests::ball_job(), "box_mm = [[0, 0, -2], [4, 2, 0]]", "mesh = \"blank.stl\""));
   folder.write("blank.stl", "hello\n");
   EXPECT_EQ(predict_error(folder),
             "blank.stl: error: is not an STL file: neither 84 + 50 n bytes nor the word 'facet' [stl-format]\n");

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "tests/support/ball_job.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -27,21 +28,8 @@ void write_long_job(const TempFolder& folder) {
       program += fmt::format("X{} Y{:.1f} Z{:.3f}\n", row % 2 != 0 ? 80 - i : i, 0.5 * row, 0.02 * (i % 10));
   folder.write("p.nc", program + "G0 Z5.\nM30\n");
   folder.write("machine.toml", "[axis.x]\n[axis.y]\n[axis.z]\n[spindle]\nmax_rpm = 12000\n");
-  folder.write("job.toml", R"(program = "p.nc"
-machine = "machine.toml"
-[tool.1]
-type = "ball"
-diameter_mm = 10.0
-flutes = 2
-overhang_mm = 40.0
-[material]
-ktc_MPa = 2000.0
-krc_MPa = 700.0
-[stock]
-box_mm = [[0, 0, -20], [80, 80, 1]]
-[simulation]
-voxel_mm = 0.1
-)");
+  folder.write("job.toml",
+               tests::ball_job({.diameter_mm = 10, .box_mm = "[[0, 0, -20], [80, 80, 1]]", .voxel_mm = 0.1}));
 }
 
 pid_t start(const TempFolder& folder, const char* command) {

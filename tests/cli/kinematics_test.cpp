@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/ball_job.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -49,21 +50,7 @@ TEST(ExplainKinematics, TakesTheMachineOfAJob) {
   const TempFolder folder;
   copy_machine(folder, "head_head");
   folder.write("p.nc", "G21\nM30\n");
-  folder.write("job.toml", R"(program = "p.nc"
-machine = "m.toml"
-[tool.1]
-type = "ball"
-diameter_mm = 6.0
-flutes = 2
-overhang_mm = 40.0
-[material]
-ktc_MPa = 2000.0
-krc_MPa = 700.0
-[stock]
-box_mm = [[0, 0, -2], [4, 2, 0]]
-[simulation]
-voxel_mm = 0.2
-)");
+  folder.write("job.toml", tests::ball_job({.machine = "m.toml"}));
   const auto run = run_camber(folder, "check --explain-kinematics job.toml");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.out.find("m.toml: head-head\n"), 0U) << run.out;
