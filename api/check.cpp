@@ -25,6 +25,7 @@ CheckResult result_of(const std::string& path, const api::CheckedProgram& checke
                   .lines = s.lines,
                   .arcs = s.arcs,
                   .dwells = s.dwells,
+                  .rotary_moves = s.rotary,
                   .cutting_length_mm = s.cutting_length_mm,
                   .rapid_length_mm = s.rapid_length_mm,
                   .dwell_s = s.dwell_s,

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/units.h"
 #include "feedmodel/control_options.h"
 #include "machine/control_kind.h"
+#include "nc/offsets.h"
 
 namespace camber {
 namespace {
@@ -30,6 +32,17 @@ nc::InterpreterOptions interpreter_options(const ReadOptions& options, const std
   }
   if (!options.dialect.empty()) out.dialect = dialect_of_control(options.dialect, path);
   out.whole_numbers_are_increments = options.least_increments;
+  for (const auto& [number, length_mm] : options.tool_lengths_mm) out.tool_offsets[number].length_mm = length_mm;
+  for (const auto& [name, values] : options.work_offsets) {
+    const auto number = nc::work_offset_number(name);
+    if (!number || (values.size() != 3 && values.size() != 6))
+      fail_on_file(
+          path,
+          fmt::format("work offset {}: a name such as G54 and three or six machine coordinates were expected", name),
+          "work-offset");
+    out.work_offsets_mm[*number] = {values[0], values[1], values[2]};
+    if (values.size() == 6) out.rotary_offsets_rad[*number] = rad_from_deg(1) * Vec3(values[3], values[4], values[5]);
+  }
   return out;
 }
 

@@ -9,7 +9,9 @@
 #include "api/commands/explain_kinematics.h"
 #include "base/numbers.h"
 #include "base/output_file.h"
+#include "base/stl.h"
 #include "cli/check_page.h"
+#include "kinematics/pose_track.h"
 #include "machine/job.h"
 #include "nc/program.h"
 #include "report/planned_picture.h"
@@ -19,15 +21,23 @@ namespace {
 
 struct Checked {
   nc::Summary summary;
-  report::PathPicture picture;           ///< where a page is asked for
+  CheckPicture picture;                  ///< where a page is asked for
   std::optional<double> memory_bytes{};  ///< where a job is given
 };
 
-/// As the control of the machine plans it, where a machine is known.
-report::PathPicture picture_of(const nc::Interpretation& moves, const machine::Machine* machine) {
-  // The planner knows no rotary axes.
-  return machine && moves.rotary.empty() ? report::planned_picture(moves, *machine, report::kMaxPicturePoints)
-                                         : report::program_picture(moves, report::kMaxPicturePoints);
+/// As the control of the machine plans it, where a machine is known; the machine itself where rotary axes turn.
+CheckPicture picture_of(const nc::Interpretation& moves, const machine::Machine* machine, const machine::Job* job) {
+  CheckPicture picture;
+  const bool turns = !moves.rotary.empty();
+  picture.path = machine && !turns ? report::planned_picture(moves, *machine, report::kMaxPicturePoints)
+                                   : report::program_picture(moves, report::kMaxPicturePoints);
+  if (!machine || !turns || !machine->kinematics.given()) return picture;
+  picture.machine = *machine;
+  picture.track = kinematics::programmed_track(*machine, moves);
+  if (moves.machine_origin_mm) picture.work_origin_mm = -*moves.machine_origin_mm;
+  if (job && !job->part.mesh.empty()) picture.part = read_stl(job->part.mesh);
+  if (job && job->tools.size() == 1) picture.tool_diameter_mm = job->tools.begin()->second.diameter_mm;
+  return picture;
 }
 
 Checked read_and_summarize(const CheckCommand& command, Diagnostics& found) {
@@ -40,10 +50,26 @@ Checked read_and_summarize(const CheckCommand& command, Diagnostics& found) {
     machine = machine::read_machine(command.machine, found);
   }
   const nc::Program text = nc::read_program(SourceText::read(command.program), found);
-  const api::CheckedProgram program =
-      api::check_program(text, command.interpreter, machine ? &*machine : nullptr, job ? &*job : nullptr, found);
-  Checked checked{program.summary, {}, program.memory_bytes};
-  if (!command.report.empty()) checked.picture = picture_of(program.moves, machine ? &*machine : nullptr);
+  Checked checked;
+  bool shows_machine = false;
+  const auto read = [&](const nc::Interpretation& moves) {
+    if (command.report.empty()) return;
+    checked.picture = picture_of(moves, machine ? &*machine : nullptr, job ? &*job : nullptr);
+    checked.summary = nc::summarize(text, moves);
+    shows_machine = checked.picture.machine.has_value();
+  };
+  try {
+    const api::CheckedProgram program = api::check_program(text, command.interpreter, machine ? &*machine : nullptr,
+                                                           job ? &*job : nullptr, found, read);
+    checked.summary = program.summary;
+    checked.memory_bytes = program.memory_bytes;
+  } catch (const InputError& e) {
+    // The page shows which axis leaves its travel, and where.
+    Diagnostics ordered;
+    for (auto& d : api::in_order(e.diagnostics())) ordered.add(std::move(d));
+    if (shows_machine) write_file(command.report, check_page(command, checked.summary, ordered, checked.picture));
+    throw;
+  }
   return checked;
 }
 
@@ -81,6 +107,10 @@ std::string check_report(const std::string& program, const nc::Summary& s, const
   of_them(s.canned, "by drilling cycles");
   of_them(s.cutter_radius, "under cutter radius compensation");
   of_them(s.high_speed_contouring, "in high speed contouring");
+  of_them(s.rotary, "turning rotary axes");
+  of_them(s.tip_control, "under tool-centre-point control");
+  of_them(s.tilted_frame, "in a tilted frame (G68.2)");
+  of_them(s.dynamic_offset, "under the dynamic work offset (G254)");
   of_them(s.reference, "to or from the reference point");
   out += fmt::format("\ncutting   {:.1f} mm\n        {}\n", s.cutting_length_mm, extents_text(s.cutting));
   out += fmt::format("rapid     {:.1f} mm\n        {}\n", s.rapid_length_mm, extents_text(s.rapid));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/numbers.h"
+#include "report/machine_page.h"
 #include "report/program_page.h"
 
 namespace camber::cli {
@@ -48,8 +49,46 @@ std::string cut_depths_text(const nc::ToolUse& tool) {
   return fmt::format("{:.2f} to {:.2f}", tool.cutting.min_mm.z(), tool.cutting.max_mm.z());
 }
 
+namespace {
+
+std::vector<report::Figure> figures_of(const nc::Summary& s, const Diagnostics& found) {
+  std::vector<report::Figure> figures = {count("blocks", s.blocks, "blocks"),
+                                         {"cutting", s.cutting_length_mm, std::nullopt, "mm", 1, "cutting_length_mm"},
+                                         {"rapid", s.rapid_length_mm, std::nullopt, "mm", 1, "rapid_length_mm"},
+                                         count("warnings", found.warnings(), "warnings"),
+                                         count("rapid moves", s.rapids, "moves.rapid"),
+                                         count("lines", s.lines, "moves.linear"),
+                                         count("arcs", s.arcs, "moves.arc"),
+                                         count("dwells", s.dwells, "moves.dwell"),
+                                         {"dwell", s.dwell_s, std::nullopt, "s", 1, "dwell_s"}};
+  if (s.rotary > 0) figures.push_back(count("moves of rotary axes", s.rotary, "moves.rotary"));
+  return figures;
+}
+
+/// The machine along the program.
+std::string machine_check_page(const report::ProgramPage& program, const CheckPicture& picture) {
+  report::MachinePage page;
+  page.title = program.title;
+  page.subtitle = program.subtitle;
+  page.figures = program.figures;
+  page.tables = program.tables;
+  page.warnings = program.warnings;
+  page.part = picture.part;
+  page.work_origin_mm = picture.work_origin_mm;
+  page.tool_diameter_mm = picture.tool_diameter_mm;
+  page.notes = {
+      "Positions are those of the program; times follow from its feeds and from rapids at the speed of the slowest "
+      "axis, without acceleration."};
+  if (picture.track.unknown_moves > 0 && !picture.track.samples.empty())
+    page.notes.push_back(fmt::format("{} moves are not shown, as the position of X, Y or Z at their end is not known.",
+                                     picture.track.unknown_moves));
+  return report::machine_page(*picture.machine, picture.track.samples, page);
+}
+
+}  // namespace
+
 std::string check_page(const CheckCommand& command, const nc::Summary& s, const Diagnostics& found,
-                       const report::PathPicture& picture) {
+                       const CheckPicture& picture) {
   report::ProgramPage page;
   page.title = "Program " + command.program;
   page.subtitle = fmt::format("{}camber {}",
@@ -57,23 +96,12 @@ std::string check_page(const CheckCommand& command, const nc::Summary& s, const 
                               : !command.machine.empty() ? "on the machine " + command.machine + ", "
                                                          : "",
                               CAMBER_VERSION);
-  page.figures = {count("blocks", s.blocks, "blocks"),
-                  {"cutting", s.cutting_length_mm, std::nullopt, "mm", 1, "cutting_length_mm"},
-                  {"rapid", s.rapid_length_mm, std::nullopt, "mm", 1, "rapid_length_mm"},
-                  count("warnings", found.warnings(), "warnings"),
-                  count("rapid moves", s.rapids, "moves.rapid"),
-                  count("lines", s.lines, "moves.linear"),
-                  count("arcs", s.arcs, "moves.arc"),
-                  count("dwells", s.dwells, "moves.dwell"),
-                  {"dwell", s.dwell_s, std::nullopt, "s", 1, "dwell_s"}};
-  page.picture = picture;
+  page.figures = figures_of(s, found);
   page.tables = {tools_of(s.tools), extents_of(s)};
   for (const Diagnostic& d : found.all()) page.warnings.push_back(to_string(d));
-  if (picture.speed_mm_per_min.empty() && !(command.machine.empty() && command.job.empty()))
-    page.notes.push_back(
-        "The program has rotary axes: the picture shows X, Y and Z as programmed, with programmed feeds, and rapids "
-        "as straight lines.");
-  else if (picture.speed_mm_per_min.empty())
+  if (picture.machine) return machine_check_page(page, picture);
+  page.picture = picture.path;
+  if (picture.path.speed_mm_per_min.empty())
     page.notes.push_back("Without a machine file the picture holds programmed feeds alone and draws rapids straight.");
   else
     page.notes.push_back(

@@ -25,6 +25,7 @@
 #include "cli/resegment_command.h"
 #include "cli/time_command.h"
 #include "cli/validators.h"
+#include "cli/work_offset_option.h"
 #include "feedmodel/control_options.h"
 #include "machine/machine.h"
 
@@ -144,6 +145,7 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->type_name("J.toml")
       ->excludes(machine);
   add_tool_lengths(*command, arguments->interpreter);
+  add_work_offsets(*command, arguments->interpreter);
   auto* page = command->add_option("--report", arguments->report, "report page with a picture of the path");
   page->type_name("R.html");
   command

@@ -54,6 +54,7 @@ Chain::Chain(const machine::Machine& machine) {
   rotary_ = k.rotary_axes();
   for (const char letter : k.chain) {
     Link link;
+    link.table = links_.size() < k.table_axes;
     link.rotary = letter < 'x';
     link.index = letter - (link.rotary ? 'a' : 'x');
     if (link.rotary) {
@@ -132,16 +133,33 @@ Branches Chain::branches(const ToolPose& pose, double tool_length_mm, const Join
   return out;
 }
 
-bool Chain::wind_into_travel(Joints& joints, const Joints& near) const {
+bool Chain::wind_into_travel(Joints& joints, const Joints& near, bool rotary_alone) const {
+  bool inside = true;
   for (const char letter : rotary_) {
     const Eigen::Index index = letter - 'a';
-    wind(joints.rotary_rad[index], near.rotary_rad[index], travel_[static_cast<std::size_t>(3 + index)]);
+    const auto& travel = travel_[static_cast<std::size_t>(3 + index)];
+    inside = wind(joints.rotary_rad[index], near.rotary_rad[index], travel) && inside;
   }
-  return outside_travel(joints) == 0;
+  return rotary_alone ? inside : outside_travel(joints) == 0;
 }
 
 Solution Chain::solve(const ToolPose& pose, double tool_length_mm, const Joints& near) const {
-  const Branches branches = this->branches(pose, tool_length_mm, near);
+  return best_of(branches(pose, tool_length_mm, near), near, false);
+}
+
+Solution Chain::solve_tool_axis(const Vec3& axis, const Joints& near) const {
+  return best_of(branches({Vec3::Zero(), axis}, 0, near), near, true);
+}
+
+Eigen::Matrix3d Chain::table_rotation(const Vec3& rotary_rad) const {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  for (const Link& link : links_)
+    if (link.table && link.rotary)
+      turn = turn * Eigen::AngleAxisd(rotary_rad[link.index], link.direction).toRotationMatrix();
+  return turn;
+}
+
+Solution Chain::best_of(const Branches& branches, const Joints& near, bool rotary_alone) const {
   Solution best;
   best.reach = branches.reach;
   best.at_pole = branches.at_pole;
@@ -149,7 +167,7 @@ Solution Chain::solve(const ToolPose& pose, double tool_length_mm, const Joints&
   double least = 0;
   for (std::size_t i = 0; i < branches.count; ++i) {
     Joints joints = branches.joints[i];
-    const bool inside = wind_into_travel(joints, near);
+    const bool inside = wind_into_travel(joints, near, rotary_alone);
     const double sum = turn_sum(joints, near);
     const bool better = i == 0 || (inside == (best.reach == Reach::reached) ? sum < least : inside);
     if (!better) continue;

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "base/tool_pose.h"
 #include "kinematics/joints.h"
 #include "machine/machine.h"
@@ -60,6 +62,11 @@ class Chain {
   /// within travel: the nearest, with the axis that leaves its travel.
   Solution solve(const ToolPose& pose, double tool_length_mm, const Joints& near) const;
 
+  /// The same for a direction alone: the travel of x, y, z does not count.
+  Solution solve_tool_axis(const Vec3& axis, const Joints& near) const;
+  /// Rotation by the table: part_from_machine for directions, at these angles.
+  Eigen::Matrix3d table_rotation(const Vec3& rotary_rad) const;
+
   /// The first axis, in the order x y z a b c, outside its travel by more than 1e-9 mm or rad; 0: none.
   char outside_travel(const Joints& joints) const;
   /// Letters of the rotary axes from the part to the spindle.
@@ -71,13 +78,14 @@ class Chain {
   struct Link {
     Vec3 direction = Vec3::Zero();  ///< unit; sense of the tool against the part for growing words
     Vec3 point_mm = Vec3::Zero();   ///< rotary
-    bool rotary = false;
+    bool rotary = false, table = false;
     Eigen::Index index = 0;  ///< in Joints::linear_mm or rotary_rad
   };
 
   std::optional<Joints> with_angles(const ToolPose& pose, double tool_length_mm, const std::array<double, 3>& angles,
                                     const Joints& near) const;
-  bool wind_into_travel(Joints& joints, const Joints& near) const;
+  bool wind_into_travel(Joints& joints, const Joints& near, bool rotary_alone) const;
+  Solution best_of(const Branches& branches, const Joints& near, bool rotary_alone) const;
 
   std::vector<Link> links_;  ///< from the part to the spindle
   std::vector<Vec3> axes_;   ///< directions of the rotary links

@@ -1,54 +1,143 @@
 #include "kinematics/program_joints.h"
 
 #include <cassert>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
 
 namespace camber::kinematics {
+namespace {
+
+const Vec3 kUnknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+
+}  // namespace
 
 ProgramJoints::ProgramJoints(const machine::Machine& machine, const nc::Interpretation& moves)
     : moves_(moves),
       chain_(machine),
       tool_axis_(machine.kinematics.tool_axis.normalized()),
-      gauge_mm_(machine.kinematics.gauge_point_mm) {}
+      gauge_mm_(machine.kinematics.gauge_point_mm),
+      last_linear_mm_(kUnknown) {}
 
-bool ProgramJoints::linear_known(const nc::Move& move) const {
-  return moves_.machine_origin_mm && moves_.state_of(move).tool_length_mm && !move.reference;
+/// The path of the tip is programmed; else that of the joints is, and lines are straight in the joints.
+bool ProgramJoints::follows_tip(const nc::Move& move) const {
+  return moves_.state_of(move).tip_control != nc::TipControl::off || move.arc != nc::Move::kNoArc;
 }
 
-Vec3 ProgramJoints::tip_in_machine_mm(const nc::Move& move, double u) const {
-  return nc::point_at(moves_, move, u) - *moves_.machine_origin_mm;
+/// Positions of the linear axes for the programmed point; nothing where offsets are not known or axes are parallel.
+std::optional<Vec3> ProgramJoints::linear_of(const nc::Move& move, const Vec3& tip_mm, const Vec3& rotary_rad) const {
+  const nc::ModalState& state = moves_.state_of(move);
+  if (!moves_.machine_origin_mm || !state.tool_length_mm) return std::nullopt;
+  const Vec3 tip_in_machine_mm = tip_mm - *moves_.machine_origin_mm;
+  if (state.tip_control != nc::TipControl::off || state.work_frame == nc::WorkFrame::tilted)
+    return chain_.linear_mm(tip_in_machine_mm, rotary_rad, *state.tool_length_mm);
+  if (state.work_frame == nc::WorkFrame::machine)
+    return Vec3(tip_in_machine_mm + *state.tool_length_mm * tool_axis_ - gauge_mm_);
+  const Vec3 origin_mm = moves_.frame_of(move).origin_mm - *moves_.machine_origin_mm;
+  const Vec3 in_part_mm = origin_mm + chain_.table_rotation(rotary_rad) * (tip_in_machine_mm - origin_mm);
+  return chain_.linear_mm(in_part_mm, rotary_rad, *state.tool_length_mm);
+}
+
+/// The reverse. Requires what linear_of() needs.
+Vec3 ProgramJoints::tip_of(const nc::Move& move, const Joints& joints) const {
+  const nc::ModalState& state = moves_.state_of(move);
+  const Vec3 zero_mm = *moves_.machine_origin_mm;
+  const double length_mm = *state.tool_length_mm;
+  if (state.tip_control == nc::TipControl::off && state.work_frame == nc::WorkFrame::machine)
+    return joints.linear_mm - length_mm * tool_axis_ + gauge_mm_ + zero_mm;
+  const Vec3 tip_mm = chain_.pose(joints, length_mm).tip_mm + zero_mm;
+  if (state.work_frame != nc::WorkFrame::dynamic) return tip_mm;
+  const Vec3 origin_mm = moves_.frame_of(move).origin_mm;
+  return origin_mm + chain_.table_rotation(joints.rotary_rad).transpose() * (tip_mm - origin_mm);
+}
+
+/// The point with its open programmed coordinates as the joints of the last move have them; NaN: not known.
+Vec3 ProgramJoints::closed(const nc::Move& move, const Vec3& given_mm, std::uint8_t open,
+                           const Vec3& rotary_rad) const {
+  if (open == 0) return given_mm;
+  if (!last_linear_mm_.allFinite() || !moves_.machine_origin_mm || !moves_.state_of(move).tool_length_mm)
+    return kUnknown;
+  const nc::Frame& frame = moves_.frame_of(move);
+  const Vec3 here = frame.to_program(tip_of(move, {last_linear_mm_, rotary_rad}));
+  Vec3 programmed = frame.to_program(given_mm);
+  for (int axis = 0; axis < 3; ++axis)
+    if ((open & (1U << static_cast<unsigned>(axis))) != 0) programmed[axis] = here[axis];
+  return frame.from_program(programmed);
 }
 
 void ProgramJoints::take_target(const nc::RotaryTarget& target, const nc::Move& move) {
   now_.g93_time_s = target.time_s;
   if (!target.is_direction) {
-    for (int i = 0; i < 3; ++i)
-      if ((target.given & (1U << static_cast<unsigned>(i))) != 0) now_.end_rad[i] = target.end[i];
+    for (int i = 0; i < 3; ++i) {
+      const auto bit = 1U << static_cast<unsigned>(i);
+      if ((target.given & bit) == 0) continue;
+      now_.end_rad[i] = (target.shortest & bit) != 0 ? nearest_turn(target.end[i], now_.start_rad[i]) : target.end[i];
+    }
     return;
   }
-  const double length_mm = moves_.state_of(move).tool_length_mm.value_or(0);
-  const ToolPose pose{now_.linear_known ? tip_in_machine_mm(move, 1) : Vec3::Zero(), target.end};
   Joints near;
   near.rotary_rad = now_.start_rad;
-  const Solution solution = chain_.solve(pose, length_mm, near);
+  const bool located = move.open_axes == 0 && moves_.machine_origin_mm && moves_.state_of(move).tool_length_mm;
+  const Solution solution = located ? chain_.solve({move.end_mm - *moves_.machine_origin_mm, target.end},
+                                                   *moves_.state_of(move).tool_length_mm, near)
+                                    : chain_.solve_tool_axis(target.end, near);
   now_.reach = solution.reach;
   if (solution.reach == Reach::reached || solution.reach == Reach::travel) now_.end_rad = solution.joints.rotary_rad;
+}
+
+/// G53, G28, G30: the axes given go to machine coordinates, the others stay.
+void ProgramJoints::take_machine_target(const nc::MachineTarget& target) {
+  start_linear_mm_ = end_linear_mm_ = last_linear_mm_;
+  for (int axis = 0; axis < 3; ++axis)
+    if ((target.given & (1U << static_cast<unsigned>(axis))) != 0) end_linear_mm_[axis] = target.end_mm[axis];
+}
+
+void ProgramJoints::settle_start(const nc::Move& move) {
+  start_tip_mm_ = closed(move, move.start_mm, move.start_open ? 7 : 0, now_.start_rad);
+  start_linear_mm_ = linear_of(move, start_tip_mm_, now_.start_rad).value_or(kUnknown);
+}
+
+void ProgramJoints::take_line(const nc::Move& move) {
+  if (move.open_axes == 7) {  // the linear axes stay
+    start_linear_mm_ = end_linear_mm_ = last_linear_mm_;
+    return;
+  }
+  end_tip_mm_ = closed(move, move.end_mm, move.open_axes, now_.end_rad);
+  follows_path_ = follows_tip(move);
+  in_frame_ = true;
+  const auto end = linear_of(move, end_tip_mm_, now_.end_rad);
+  end_linear_mm_ = end.value_or(kUnknown);
+  if (!end && moves_.machine_origin_mm && moves_.state_of(move).tool_length_mm) now_.reach = Reach::linear;
+  settle_start(move);
 }
 
 const MoveJoints& ProgramJoints::next() {
   assert(!done());
   const std::size_t index = next_++;
   const nc::Move& move = moves_.moves[index];
-  const MoveJoints last = now_;
+  const Vec3 last_rad = now_.end_rad;
   now_ = {};
-  now_.start_rad = now_.end_rad = last.end_rad;
-  now_.linear_known = linear_known(move);
-  const bool tip_control = moves_.state_of(move).tip_control != nc::TipControl::off;
-  now_.start_known = tip_control == tip_control_ || last.end_rad == Vec3::Zero();
-  tip_control_ = tip_control;
+  now_.start_rad = now_.end_rad = last_rad;
+  follows_path_ = in_frame_ = false;
+  start_linear_mm_ = end_linear_mm_ = last_linear_mm_;
   if (next_target_ < moves_.rotary.size() && moves_.rotary[next_target_].move == index)
     take_target(moves_.rotary[next_target_++], move);
-  if (tip_control && now_.linear_known && !chain_.linear_mm(Vec3::Zero(), now_.end_rad, 0)) now_.reach = Reach::linear;
+  const auto& targets = moves_.machine_targets;
+  if (next_machine_target_ < targets.size() && targets[next_machine_target_].move == index)
+    take_machine_target(targets[next_machine_target_++]);
+  else if (move.kind != nc::MoveKind::dwell)
+    take_line(move);
+  now_.linear_known = end_linear_mm_.allFinite();
+  now_.start_known = start_linear_mm_.allFinite();
+  last_linear_mm_ = end_linear_mm_;
   return now_;
+}
+
+/// The programmed point: on the arc, or between the ends of the line as the machine has them.
+Vec3 ProgramJoints::tip_at(const nc::Move& move, double u) const {
+  if (move.arc != nc::Move::kNoArc) return nc::point_at(moves_, move, u);
+  return start_tip_mm_ + u * (end_tip_mm_ - start_tip_mm_);
 }
 
 Joints ProgramJoints::at(double u) const {
@@ -56,13 +145,27 @@ Joints ProgramJoints::at(double u) const {
   Joints out;
   out.rotary_rad = now_.start_rad + u * (now_.end_rad - now_.start_rad);
   if (!now_.linear_known) return out;
-  const nc::ModalState& state = moves_.state_of(move);
-  const Vec3 tip_mm = tip_in_machine_mm(move, u);
-  if (state.tip_control == nc::TipControl::off)
-    out.linear_mm = tip_mm + *state.tool_length_mm * tool_axis_ - gauge_mm_;
+  if (u >= 1)
+    out.linear_mm = end_linear_mm_;
+  else if (!follows_path_)
+    out.linear_mm = start_linear_mm_ + u * (end_linear_mm_ - start_linear_mm_);
   else
-    out.linear_mm = chain_.linear_mm(tip_mm, out.rotary_rad, *state.tool_length_mm).value_or(Vec3::Zero());
+    out.linear_mm = linear_of(move, tip_at(move, u), out.rotary_rad).value_or(Vec3::Zero());
   return out;
+}
+
+std::optional<ToolPose> ProgramJoints::pose_at(double u) const {
+  const auto& length_mm = moves_.state_of(moves_.moves[index()]).tool_length_mm;
+  if (!now_.linear_known || !length_mm) return std::nullopt;
+  return chain_.pose(at(u), *length_mm);
+}
+
+double ProgramJoints::tilt_error_rad() const {
+  const nc::Move& move = moves_.moves[index()];
+  if (!in_frame_ || moves_.state_of(move).work_frame != nc::WorkFrame::tilted) return 0;
+  const Vec3 normal = moves_.frame_of(move).linear.col(2).normalized();
+  const Vec3 axis = chain_.pose({Vec3::Zero(), now_.end_rad}, 0).axis;
+  return std::atan2(normal.cross(axis).norm(), normal.dot(axis));
 }
 
 }  // namespace camber::kinematics

@@ -1,13 +1,19 @@
 #pragma once
 // The joints of a machine along an interpreted program.
 //
-// Without tool-centre-point control X Y Z are positions of the linear axes, with the tool's length along its axis:
-//     joints_xyz = p - machine origin + length * tool axis - gauge point.
-// With it, p is the tip in the part's frame, and the linear axes follow from inverse kinematics (kinematics/chain.h).
-// Rotary axes move at a constant rate from the start to the end of a move. Under G43.5 the end is the solution of the
-// direction that is nearest to the start, within travel.
+// Where X Y Z of the program put the tip p depends on the frame of the move:
+//     machine   joints_xyz = p - machine origin + length * tool axis - gauge point;
+//     part      tool-centre-point control, tilted frame (G68.2): p is the tip in the part's frame, and the linear axes
+//               follow from inverse kinematics (kinematics/chain.h);
+//     dynamic   G254: the tip in the part's frame is O + T (p - O), with O the origin of the work offset and T the
+//               rotation of the table at the angles of the move.
+// Under tool-centre-point control the tip follows its path. In every other mode the joints do: rotary axes move at a
+// constant rate from the start to the end of a move, and so do the linear axes of a line. The machine goes on from
+// where it is: where the program leaves coordinates open after rotary axes have turned (Move::open_axes), they are
+// those of the joints. Under G43.5 and G53.1 the end is the solution of the direction that is nearest to the start,
+// within travel.
 #include <cstddef>
-#include <string>
+#include <optional>
 
 #include "kinematics/chain.h"
 #include "kinematics/joints.h"
@@ -19,11 +25,10 @@ namespace camber::kinematics {
 struct MoveJoints {
   Vec3 start_rad = Vec3::Zero(), end_rad = Vec3::Zero();  ///< a, b, c
   double g93_time_s = 0;  ///< duration that G93 asks for; 0: not G93, or no rotary words
-  /// x, y, z can be had (at()): work offset and tool length are known, and the move is not one to a reference point.
+  /// x, y, z can be had (at()): work offset, tool length and reference points are known as far as they matter.
   bool linear_known = false;
   Reach reach = Reach::reached;  ///< of the end; direction: the axes stay where they were
-  /// False for the first move after tool-centre-point control was switched with turned axes: its start is then where
-  /// the joints of the last move ended, and at(u) holds for u = 1 alone.
+  /// False where the start is not known, as at the first move of a program: at(u) holds for u = 1 alone.
   bool start_known = true;
   bool turns() const { return start_rad != end_rad; }
 };
@@ -41,19 +46,34 @@ class ProgramJoints {
   /// Joints at the fraction u of that move. x, y, z are 0 where they are not known, or where two linear axes are
   /// parallel.
   Joints at(double u) const;
+  /// The tool there, in the part's frame with the origin of the machine frame; nothing where x, y, z or the tool length
+  /// are not known.
+  std::optional<ToolPose> pose_at(double u) const;
+  /// At a move of X, Y or Z in a tilted frame: angle between the tool and Z of the frame at its end, rad; else 0.
+  double tilt_error_rad() const;
   const Chain& chain() const { return chain_; }
 
  private:
-  bool linear_known(const nc::Move& move) const;
-  Vec3 tip_in_machine_mm(const nc::Move& move, double u) const;
+  bool follows_tip(const nc::Move& move) const;
+  std::optional<Vec3> linear_of(const nc::Move& move, const Vec3& tip_mm, const Vec3& rotary_rad) const;
+  Vec3 tip_of(const nc::Move& move, const Joints& joints) const;
+  Vec3 closed(const nc::Move& move, const Vec3& given_mm, std::uint8_t open, const Vec3& rotary_rad) const;
   void take_target(const nc::RotaryTarget& target, const nc::Move& move);
+  void take_machine_target(const nc::MachineTarget& target);
+  void take_line(const nc::Move& move);
+  Vec3 tip_at(const nc::Move& move, double u) const;
+  void settle_start(const nc::Move& move);
 
   const nc::Interpretation& moves_;
   Chain chain_;
   Vec3 tool_axis_, gauge_mm_;
-  std::size_t next_ = 0, next_target_ = 0;
-  bool tip_control_ = false;  ///< of the last move
+  std::size_t next_ = 0, next_target_ = 0, next_machine_target_ = 0;
   MoveJoints now_;
+  bool follows_path_ = false;                                           ///< of the tip; else the joints go straight
+  bool in_frame_ = false;                                               ///< the end of the move is a programmed point
+  Vec3 start_tip_mm_ = Vec3::Zero(), end_tip_mm_ = Vec3::Zero();        ///< of the move, in its frame
+  Vec3 start_linear_mm_ = Vec3::Zero(), end_linear_mm_ = Vec3::Zero();  ///< NaN: not known
+  Vec3 last_linear_mm_;                                                 ///< where the last move left the axes
 };
 
 }  // namespace camber::kinematics

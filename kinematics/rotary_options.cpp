@@ -9,7 +9,11 @@ std::vector<nc::RotaryOption> rotary_options(const machine::Machine& machine) {
   for (const char letter : {'a', 'b', 'c'}) {
     if (machine.kinematics.chain.find(letter) == std::string::npos) continue;
     const machine::RotaryAxis& axis = machine.rotary[static_cast<std::size_t>(letter - 'a')];
-    out.push_back({static_cast<char>(std::toupper(letter)), axis.shortest_way, axis.clamp_m, axis.unclamp_m});
+    out.push_back({.letter = static_cast<char>(std::toupper(letter)),
+                   .on_table = machine.kinematics.chain.find(letter) < machine.kinematics.table_axes,
+                   .shortest_way = axis.shortest_way,
+                   .clamp_m = axis.clamp_m,
+                   .unclamp_m = axis.unclamp_m});
   }
   return out;
 }

@@ -18,6 +18,8 @@ constexpr double kStepRad = kPi / 360;
 constexpr int kArcSteps = 64, kMaxSteps = 3600;
 constexpr double kTravelTolerance = 1e-6;  ///< mm, rad: what the rounding of a program's numbers leaves
 constexpr double kSpeedRounding = 1e-3;
+/// Angles of posts have three decimals; 0.01 degrees over a face of 100 mm are 0.017 mm.
+constexpr double kSquareRad = 0.01 * kPi / 180;
 constexpr std::array<char, 6> kLetters{'X', 'Y', 'Z', 'A', 'B', 'C'};
 
 class TravelCheck {
@@ -37,6 +39,7 @@ class TravelCheck {
       const nc::Move& move = moves_.moves[joints_.index()];
       if (move.kind == nc::MoveKind::dwell) continue;
       look_at_reach(now, move);
+      look_at_tilt(move);
       look_at_known(now, move);
       look_at_travel(now, move);
       look_at_speed(now, move);
@@ -67,12 +70,23 @@ class TravelCheck {
     diagnostics_.add(program_.source.diagnostic(severity, program_.blocks[m.block].offset, std::move(message), check));
   }
 
+  void look_at_tilt(const nc::Move& m) {
+    if (said_tilt_ || joints_.tilt_error_rad() < kSquareRad) return;
+    said_tilt_ = true;
+    say(Severity::error, m, "tilted-frame",
+        fmt::format("the tool is {} degrees off Z of the tilted frame (G68.2) in this move; G53.1 was expected before",
+                    format_trimmed(deg_from_rad(joints_.tilt_error_rad()), 3)));
+  }
+
   void look_at_reach(const MoveJoints& now, const nc::Move& m) {
     if (said_direction_ || now.reach == Reach::reached || now.reach == Reach::travel) return;
     said_direction_ = true;
     say(Severity::error, m, "tool-direction",
         now.reach == Reach::direction
-            ? "the rotary axes cannot give the tool this direction (I J K); one within their reach was expected"
+            ? moves_.state_of(m).work_frame == nc::WorkFrame::tilted
+                  ? "the rotary axes cannot put the tool along Z of the tilted frame; a plane within their reach was "
+                    "expected"
+                  : "the rotary axes cannot give the tool this direction (I J K); one within their reach was expected"
             : "two linear axes are parallel at the end of this move; other angles of the rotary axes were expected");
   }
 
@@ -81,8 +95,10 @@ class TravelCheck {
     const bool limited = std::any_of(travel_.begin(), travel_.begin() + 3,
                                      [](const auto& t) { return !std::isinf(t[0]) || !std::isinf(t[1]); });
     if (!limited) return;
+    if (moves_.machine_origin_mm && moves_.state_of(m).tool_length_mm) return;  // after a reference point
     said_unchecked_ = true;
-    const std::string what = moves_.machine_origin_mm ? "the tool length (--tool-length)" : "the work offset (G10 L2)";
+    const std::string what =
+        moves_.machine_origin_mm ? "the tool length (--tool-length)" : "the work offset (--work-offset, or G10 L2)";
     say(Severity::warning, m, "travel-unchecked",
         fmt::format("the travel of X, Y and Z is not checked, as {} is not known", what));
   }
@@ -169,7 +185,7 @@ class TravelCheck {
   ProgramJoints joints_;
   std::array<std::array<double, 2>, 6> travel_{};
   std::array<Worst, 6> over_, fast_;
-  bool said_direction_ = false, said_unchecked_ = false;
+  bool said_direction_ = false, said_tilt_ = false, said_unchecked_ = false;
 };
 
 }  // namespace

@@ -148,13 +148,30 @@ class BlockInterpreter {
   void read_rotary_word(const RotaryOption& axis, RotaryTarget& target);
   void read_tool_direction();
   void settle_tip();
+  std::string needs_kinematics(const Code& code, const char* name) const;
+  bool sets_rotary_offset() const;
   void add_rotary_target(std::size_t move);
   void check_rotary_letter(char letter);
+
+  // tilted_codes.cpp: G68.2, G53.1, G69, G254, G255
+  bool rotary_axes_turned() const;
+  void open_axes(std::string cause);
+  void settle_axes_for(const char* what, bool line);
+  bool may_set_frame(const Code& code);
+  void set_tilted_frame();
+  void align_tool();
+  void cancel_tilted_frame();
+  void set_dynamic_offset(const Code& code);
+  void switch_work_frame(WorkFrame frame, const char* code);
+  void check_rotary_offset();
+  void add_machine_target(const Vec3& end_mm, std::uint8_t given);
+  std::uint8_t open_axes_of_move() const;
 
   // motion.cpp: words that make moves
   void dwell();
   std::optional<double> dwell_seconds(char letter);
   void go_to_reference();
+  void turn_home(bool all, std::uint8_t letters);
   void go_in_machine_frame();
   void move();
   void move_on_line();
@@ -164,6 +181,8 @@ class BlockInterpreter {
   bool read_cycle_words();
   bool set_shift(CycleHole& hole);
   void drill(const Vec3& place);
+  Move& add_cycle_move(const CycleStep& step);
+  void turn_before(const CycleStep& step);
   bool arc_error(const ArcResult& arc, const ArcWords& words);
   bool other_centre_fits(const ArcWords& words) const;
   Vec3 target();
@@ -238,10 +257,15 @@ class BlockInterpreter {
 
   Vec3 position_mm_ = Vec3::Zero();
   std::array<AxisPlace, 3> place_{AxisPlace::never, AxisPlace::never, AxisPlace::never};
-  bool angles_unknown_ = false;      ///< directions (G43.5) have moved the rotary axes
+  std::uint8_t angles_unknown_ = 0;  ///< bit i: a direction (G43.5, G53.1) has moved A, B, C
+  const char* direction_code_ = "";  ///< which of them
   bool tool_length_active_ = false;  ///< G43
   std::uint8_t clamped_ = 0;         ///< bit i: A, B, C
   std::uint8_t unsettled_ = 0;       ///< bit i: X, Y, Z; see settle_tip
+  std::uint8_t open_axes_ = 0;       ///< bit i: X, Y, Z; Move::open_axes, because of rotary axes
+  bool aligned_ = false;             ///< G53.1 has put the tool along Z of the tilted frame
+  bool start_open_ = false;          ///< of the next move
+  std::string open_cause_{};         ///< the code that opened them, for messages
 };
 
 }  // namespace camber::nc

@@ -1,6 +1,7 @@
 // Blocks of drilling, tapping and boring cycles.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -55,7 +56,7 @@ bool BlockInterpreter::read_cycle_words() {
   if (cycle_.g == 88)
     report_.warning(words_.offset(), "cycle", "G88 is retracted by hand; a rapid is taken in its place", "G88");
   const std::string name = fmt::format("G{}", cycle_.g);
-  if (!words_.has_any("XYZ")) return false;
+  if (!words_.has_any("XYZ") && !rotary_target_) return false;
   if (!cycle_.r_mm) error(words_.offset(), "cycle", name + " has no retract level; R was expected", "cycle R");
   if (!cycle_.z_mm)
     error(words_.offset(), "cycle", fmt::format("{} has no depth; {} was expected", name, normal), "cycle Z");
@@ -69,8 +70,14 @@ bool BlockInterpreter::read_cycle_words() {
 void BlockInterpreter::run_cycle() {
   check_unit();
   if (!read_cycle_words()) return;
-  prepare_cutting("a drilling cycle");
   const PlaneAxes axes = axes_of(plane_);
+  // The first rapid goes over the hole.
+  if (!state_.incremental && programmed()[axes.normal] >= *cycle_.r_mm)
+    for (const int axis : {axes.first, axes.second})
+      if (words_.has(kAxisLetters[axis]))
+        open_axes_ = static_cast<std::uint8_t>(open_axes_ & ~(1U << static_cast<unsigned>(axis)));
+  settle_axes_for("a drilling cycle", false);
+  prepare_cutting("a drilling cycle");
   const double repeats = words_.has('L') ? words_.value('L') : words_.has('K') ? words_.value('K') : 1;
   if (repeats < 0 || repeats > 1e5 || repeats != std::floor(repeats)) {
     error(words_.offset(), "cycle",
@@ -85,6 +92,7 @@ void BlockInterpreter::run_cycle() {
                         kMaxCycleMoves));
       return;
     }
+    if (i > 0 && state_.incremental) read_rotary_words();
     Vec3 place = programmed_target();
     place[axes.normal] = programmed()[axes.normal];
     drill(place);
@@ -121,20 +129,41 @@ void BlockInterpreter::drill(const Vec3& place) {
   const auto feed = cutting_feed(std::abs(depth), name.c_str());
   if (!feed) return;
   for (const CycleStep& step : hole_steps(hole, axes_of(plane_))) {
-    const bool rapid = step.kind == CycleStep::Kind::rapid;
-    Move& move = add_move(rapid                                 ? MoveKind::rapid
-                          : step.kind == CycleStep::Kind::dwell ? MoveKind::dwell
-                                                                : MoveKind::linear,
-                          frame_.from_program(step.end_mm));
-    ++cycle_moves_;
-    move.canned = true;
-    move.cycle = static_cast<std::uint8_t>(cycle_.g);
-    move.dwell_s = step.dwell_s;
+    if (rotary_target_) turn_before(step);
+    Move& move = add_cycle_move(step);
     if (move.kind == MoveKind::linear) move.feed_mm_per_s = *feed;
     for (int axis = 0; axis < 3; ++axis)
       if (move.end_mm[axis] != move.start_mm[axis] && !state_.incremental)
         place_[static_cast<std::size_t>(axis)] = AxisPlace::known;
   }
+}
+
+Move& BlockInterpreter::add_cycle_move(const CycleStep& step) {
+  const MoveKind kind = step.kind == CycleStep::Kind::rapid   ? MoveKind::rapid
+                        : step.kind == CycleStep::Kind::dwell ? MoveKind::dwell
+                                                              : MoveKind::linear;
+  Move& move = add_move(kind, frame_.from_program(step.end_mm));
+  ++cycle_moves_;
+  move.canned = true;
+  move.cycle = static_cast<std::uint8_t>(cycle_.g);
+  move.dwell_s = step.dwell_s;
+  return move;
+}
+
+/// Rotary words of a cycle turn with the rapid over the hole, or before the tool goes down where there is none; where
+/// the tool first rises to R, after that.
+void BlockInterpreter::turn_before(const CycleStep& step) {
+  const PlaneAxes axes = axes_of(plane_);
+  const Vec3 way = step.end_mm - programmed();
+  constexpr double kRoundingMm = 1e-9;
+  if (std::abs(way[axes.first]) > kRoundingMm || std::abs(way[axes.second]) > kRoundingMm) return;
+  if (way[axes.normal] <= kRoundingMm) {
+    add_cycle_move({CycleStep::Kind::rapid, programmed(), 0});
+    return;
+  }
+  const auto target = std::exchange(rotary_target_, std::nullopt);
+  add_cycle_move(step);
+  rotary_target_ = target;
 }
 
 }  // namespace camber::nc

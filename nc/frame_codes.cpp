@@ -1,10 +1,12 @@
-// Codes that say where programmed coordinates lie: G10, G15 G16, G29, G50 G51, G50.1 G51.1, G52, G68 G69, G92.
+// Codes that say where programmed coordinates lie: G10, G15 G16, G29, G50 G51, G50.1 G51.1, G52, G68, G92. Frames that
+// follow the part: tilted_codes.cpp.
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include <Eigen/LU>
 
+#include "base/units.h"
 #include "nc/block_interpreter.h"
 
 namespace camber::nc {
@@ -51,8 +53,9 @@ void BlockInterpreter::read_frame_code(const Code& code) {
       not_editable_told_ = true;
     }
   } else if (t == 690) {
-    frames_.rotated = false;
-    frames_.rotation_rad = 0;
+    cancel_tilted_frame();
+  } else if (t == 2540 || t == 2550) {
+    set_dynamic_offset(code);
   } else if (t == 500) {
     frames_.scale = Vec3::Ones();
   } else if (t == 921 || t == 922 || t == 923) {
@@ -71,7 +74,20 @@ void BlockInterpreter::read_frame_code(const Code& code) {
 
 void BlockInterpreter::run_frame_code() {
   frames_used_ = true;
-  switch (request_.frame_code.tenths) {
+  const int t = request_.frame_code.tenths;
+  const bool moves_origin = t == 100 || t == 520 || t == 920;
+  if (state_.work_frame != WorkFrame::machine && moves_origin) {
+    error(request_.frame_code.word->offset, "tilted-frame",
+          fmt::format("{} while {} is active; {} was expected before", code_text(request_.frame_code),
+                      state_.work_frame == WorkFrame::tilted ? "a tilted frame" : "the dynamic work offset (G254)",
+                      state_.work_frame == WorkFrame::tilted ? "G69" : "G255"));
+    words_.use("XYZIJKLPQRABC");
+    return;
+  }
+  // These take the place of the tool.
+  if (t == 920 || ((t == 680 || t == 510) && !words_.has_any("XYZ")))
+    settle_axes_for(t == 920 ? "G92" : t == 680 ? "G68" : "G51", false);
+  switch (t) {
     case 100:
       set_data();
       break;
@@ -85,8 +101,14 @@ void BlockInterpreter::run_frame_code() {
     case 520:
       set_local_shift();
       break;
+    case 531:
+      align_tool();
+      break;
     case 680:
       set_rotation();
+      break;
+    case 682:
+      set_tilted_frame();
       break;
     default:
       set_position();
@@ -312,6 +334,12 @@ void BlockInterpreter::set_work_offset_data(bool touch_off) {
     const double given = words_.value(kAxisLetters[axis]) * unit_mm();
     value[axis] = adds ? value[axis] + given : given;
   }
+  for (const RotaryOption& axis : options_.rotary_axes) {
+    if (external || !words_.has(axis.letter)) continue;
+    double& angle = offset.rotary_rad[axis.letter - 'A'];
+    const double given = rad_from_deg(words_.value(axis.letter));
+    angle = adds ? angle + given : given;
+  }
   if (words_.has('R')) offset.rotation_rad = words_.value('R') * kPi / 180;
   if (!external && !adds) offset.known = true;
 }
@@ -369,6 +397,7 @@ void BlockInterpreter::return_from_reference() {
     words_.use("XYZ");
     return;
   }
+  settle_axes_for("G29", false);
   Vec3 via = position_mm_;
   for (int axis = 0; axis < 3; ++axis)
     if (words_.has(kAxisLetters[axis])) via[axis] = (*reference_via_mm_)[axis];

@@ -47,6 +47,11 @@ Eigen::Matrix3d rotation_in(Plane plane, double angle_rad) {
   return m;
 }
 
+Eigen::Matrix3d euler_zxz(const Vec3& angles_rad) {
+  return rotation_in(Plane::xy, angles_rad.x()) * rotation_in(Plane::yz, angles_rad.y()) *
+         rotation_in(Plane::xy, angles_rad.z());
+}
+
 Vec3 Frames::in_work_mm(const Vec3& programmed_mm) const {
   Vec3 p = programmed_mm;
   for (int axis = 0; axis < 3; ++axis)
@@ -68,9 +73,15 @@ Frame Frames::frame(int work_offset, bool first) {
   in_work = scale.asDiagonal() * in_work;
   if (rotated) in_work = rotation_in(rotation_plane, rotation_rad) * in_work;
   const Eigen::Matrix3d turn = offset_rotation(work_offset);
+  Vec3 zero_mm = in_work_mm(Vec3::Zero());
+  if (tilt) {
+    in_work = tilt->rotation * in_work;
+    zero_mm = tilt->rotation * zero_mm + tilt->origin_mm;
+  }
   Frame frame;
   frame.linear = turn * in_work;
-  frame.shift_mm = offsets.origin_mm(work_offset, first) + turn * (in_work_mm(Vec3::Zero()) + g52_mm + g92_mm);
+  frame.origin_mm = offsets.origin_mm(work_offset, first);
+  frame.shift_mm = frame.origin_mm + turn * (zero_mm + g52_mm + g92_mm);
   frame.polar = polar;
   frame.shift_only = frame.linear == Eigen::Matrix3d::Identity();
   frame.plain = frame.shift_only && frame.shift_mm == Vec3::Zero();

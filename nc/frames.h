@@ -10,9 +10,15 @@
 
 namespace camber::nc {
 
-/// What G52, G92, G68, G51, G51.1 and the work offsets say together. A programmed point is mirrored, then scaled, then
-/// rotated (each about its own centre, in coordinates of the work offset), then shifted by G52 and G92, turned by the
-/// work offset's own rotation (G10 L2 R) and shifted by the work offset.
+/// A tilted frame (G68.2) in the coordinates that were active before it.
+struct Tilt {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< columns: its X, Y, Z
+  Vec3 origin_mm = Vec3::Zero();
+};
+
+/// What G52, G92, G68, G68.2, G51, G51.1 and the work offsets say together. A programmed point is mirrored, then
+/// scaled, then rotated (each about its own centre), then taken from the tilted frame to the work offset, shifted by
+/// G52 and G92, turned by the work offset's own rotation (G10 L2 R) and shifted by the work offset.
 struct Frames {
   explicit Frames(const std::map<int, Vec3>& work_offsets_mm) : offsets(work_offsets_mm) {}
 
@@ -26,6 +32,7 @@ struct Frames {
   bool rotated = false;
   Plane rotation_plane = Plane::xy;
   bool polar = false;
+  std::optional<Tilt> tilt{};  ///< G68.2
 
   /// The map for the work offset; `first`: see WorkOffsets::origin_mm.
   Frame frame(int work_offset, bool first);
@@ -35,6 +42,10 @@ struct Frames {
   /// The turn of the work offset itself (G10 L2 R).
   Eigen::Matrix3d offset_rotation(int work_offset) const;
 };
+
+/// The rotation of G68.2: about Z by the first Euler angle, about the new X by the second, about the new Z by the
+/// third.
+Eigen::Matrix3d euler_zxz(const Vec3& angles_rad);
 
 /// Rotation in a plane, counter-clockwise seen against its normal.
 Eigen::Matrix3d rotation_in(Plane plane, double angle_rad);

@@ -21,6 +21,8 @@ BlockInterpreter::BlockInterpreter(const Program& program, const InterpreterOpti
       frames_(options.work_offsets_mm),
       frames_used_(!options.work_offsets_mm.empty()),
       tool_offsets_(options.tool_offsets) {
+  for (const auto& [number, angles] : options.rotary_offsets_rad) frames_.offsets.at(number).rotary_rad = angles;
+  start_open_ = !options.rotary_axes.empty();  // nobody knows where the machine stands
   state_.inch = options.inch.value_or(false);
   state_.absolute_arc_centre = options.absolute_arc_centre;
   unit_given_ = options.inch.has_value();

@@ -38,6 +38,7 @@ struct InterpreterOptions {
 
   // What the operator has set at the control; what is not given here and not set by the program is not known.
   std::map<int, Vec3> work_offsets_mm{};     ///< machine coordinates, by the number of ModalState::work_offset
+  std::map<int, Vec3> rotary_offsets_rad{};  ///< of A, B, C, likewise; of offsets that work_offsets_mm has
   std::map<int, ToolOffset> tool_offsets{};  ///< by H and D number
   /// Machine coordinates of the reference points: G28, G30 P2, P3, P4.
   std::array<std::optional<Vec3>, 4> reference_points_mm{};

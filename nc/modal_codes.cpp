@@ -63,7 +63,7 @@ constexpr std::array kCodes = {
     Entry{511, {GGroup::frame}},
     Entry{520, {GGroup::frame}},
     Entry{530, {GGroup::one_shot}},
-    Entry{531, not_read("turns the tool square to a tilted working plane")},
+    Entry{531, {GGroup::frame}},
     Entry{540, {GGroup::work_offset}},
     Entry{541, {GGroup::work_offset}},
     Entry{550, {GGroup::work_offset}},
@@ -84,7 +84,7 @@ constexpr std::array kCodes = {
     Entry{660, {GGroup::macro}},
     Entry{670, {GGroup::macro}},
     Entry{680, {GGroup::frame}},
-    Entry{682, not_read("tilted working plane")},
+    Entry{682, {GGroup::frame}},
     Entry{690, {GGroup::frame}},
     Entry{730, {GGroup::cycle}},
     Entry{740, {GGroup::cycle}},
@@ -123,8 +123,8 @@ constexpr std::array kCodes = {
     Entry{1231, {GGroup::turning, "radius or diameter of X on a mill-turn machine"}},
     Entry{1870, {GGroup::no_effect}},
     Entry{2340, {GGroup::tool_length}},
-    Entry{2540, not_read("work offset that turns with the rotary table")},
-    Entry{2550, not_read("end of the work offset that turns with the rotary table", false)},
+    Entry{2540, {GGroup::frame}},
+    Entry{2550, {GGroup::frame}},
 };
 
 static_assert(std::is_sorted(kCodes.begin(), kCodes.end(),

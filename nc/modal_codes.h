@@ -23,7 +23,7 @@ enum class GGroup {
   path_control,   ///< G61 G61.1 G62 G63 G64
   return_level,   ///< G98 G99
   one_shot,       ///< G4 G9 G28 G29 G30 G53
-  frame,          ///< G10 G15 G16 G50 G51 G50.1 G51.1 G52 G68 G69 G92: where coordinates lie
+  frame,          ///< G10 G15 G16 G50 G51 G50.1 G51.1 G52 G53.1 G68 G68.2 G69 G92 G254 G255: where coordinates lie
   contouring,     ///< G05 G05.1 G08, and CYCLE832 (kCycle832): modes for fine paths
   macro,          ///< G65 G66 G67: the sequencer's
   no_effect,      ///< read, without effect on the path

@@ -223,6 +223,11 @@ void BlockInterpreter::set_work_offset(const Code& code) {
       state_.work_offset = 540000 + static_cast<int>(words_.value('P'));
   }
   if (state_.work_offset == before) return;
+  if (state_.work_frame != WorkFrame::machine)
+    error(code.word->offset, "tilted-frame",
+          fmt::format("{} changes the work offset while {} is active; {} was expected before", code_text(code),
+                      state_.work_frame == WorkFrame::tilted ? "a tilted frame" : "the dynamic work offset (G254)",
+                      state_.work_frame == WorkFrame::tilted ? "G69" : "G255"));
   if (radius_.active && radius_.radius_mm != 0)
     error(code.word->offset, "cutter-radius",
           fmt::format("{} changes the work offset under G{}; G40 was expected before", code_text(code),

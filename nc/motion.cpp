@@ -1,6 +1,7 @@
 // Words that make moves: dwells, lines, arcs, the way to the reference point. Cycles: cycle_codes.cpp.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -42,6 +43,12 @@ Move& BlockInterpreter::add_move(MoveKind kind, const Vec3& end_mm) {
   feed_given_ = false;
   move.reference = kind != MoveKind::dwell && place_unknown();
   if (leaving_) leave_contour(move);
+  if (!options_.rotary_axes.empty() && kind != MoveKind::dwell) {
+    check_rotary_offset();
+    move.open_axes = static_cast<std::uint8_t>(open_axes_of_move() & 7U);
+    move.start_open = start_open_;
+    start_open_ = move.open_axes != 0;
+  }
   position_mm_ = end_mm;
   out_.moves.push_back(move);
   if (!options_.rotary_axes.empty() && kind != MoveKind::dwell) add_rotary_target(out_.moves.size() - 1);
@@ -123,7 +130,8 @@ void BlockInterpreter::go_to_reference() {
   words_.use("P");
   std::array<bool, 3> goes{};
   for (std::size_t axis = 0; axis < 3; ++axis) goes[axis] = words_.has(kAxisLetters[axis]);
-  const bool none = !goes[0] && !goes[1] && !goes[2];
+  const bool none = !goes[0] && !goes[1] && !goes[2] && !rotary_target_;
+  const std::uint8_t turns = rotary_target_ ? rotary_target_->given : 0;
   const Vec3 via = target();
   const Vec3 old_via = reference_via_mm_.value_or(position_mm_);
   reference_via_mm_ = via;
@@ -141,18 +149,24 @@ void BlockInterpreter::go_to_reference() {
   } else if (request_.reference_word->value == 30) {
     point = 1;
   }
-  if (via != position_mm_) {
+  if (via != position_mm_ || (rotary_target_ && rotary_target_->end != rotary_rad_)) {
     add_move(MoveKind::rapid, via);
     settle_axes();
   }
-  Vec3 home = position_mm_;
+  turn_home(none, turns);
+  Vec3 home = position_mm_, machine_mm = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  std::uint8_t given = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!none && !goes[axis]) continue;
     home[static_cast<Eigen::Index>(axis)] = 0;
     place_[axis] = AxisPlace::reference;
-    if (const auto& at = options_.reference_points_mm[point])
+    given = static_cast<std::uint8_t>(given | 1U << axis);
+    if (const auto& at = options_.reference_points_mm[point]) {
+      machine_mm[static_cast<Eigen::Index>(axis)] = (*at)[static_cast<Eigen::Index>(axis)];
       settle_machine_axis(axis, (*at)[static_cast<Eigen::Index>(axis)], home);
+    }
   }
+  add_machine_target(machine_mm, given);
   Move& move = add_move(MoveKind::rapid, home);
   move.reference_point = static_cast<std::uint8_t>(point & 3U);
   for (unsigned axis = 0; axis < 3; ++axis)
@@ -166,6 +180,7 @@ void BlockInterpreter::position_in_one_direction() {
     error(words_.offset(), "single-direction", "G60 goes with G0 or G1; an arc or a cycle is active");
     return;
   }
+  settle_axes_for("G60", false);
   const Vec3 end = target();
   Vec3 before = end;
   for (int axis = 0; axis < 3; ++axis)
@@ -188,11 +203,15 @@ void BlockInterpreter::go_in_machine_frame() {
     error(words_.offset(), "machine-frame", "G53 goes with G0 or G1; another motion is active");
     return;
   }
-  Vec3 end = position_mm_;
+  Vec3 end = position_mm_, machine_mm = Vec3::Zero();
+  std::uint8_t given = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!words_.has(kAxisLetters[axis])) continue;
-    settle_machine_axis(axis, words_.value(kAxisLetters[axis]) * unit_mm(), end);
+    machine_mm[static_cast<Eigen::Index>(axis)] = words_.value(kAxisLetters[axis]) * unit_mm();
+    given = static_cast<std::uint8_t>(given | 1U << axis);
+    settle_machine_axis(axis, machine_mm[static_cast<Eigen::Index>(axis)], end);
   }
+  add_machine_target(machine_mm, given);
   std::optional<double> feed;
   if (motion_ == Motion::linear) feed = cutting_feed((end - position_mm_).norm(), "G1");
   Move& move = add_move(motion_ == Motion::linear ? MoveKind::linear : MoveKind::rapid, end);
@@ -225,6 +244,7 @@ void BlockInterpreter::move() {
 void BlockInterpreter::move_on_line() {
   check_unit();
   settle_tip();
+  settle_axes_for("cutter radius compensation", !radius_.active);
   const Vec3 end = target();
   if (motion_ == Motion::rapid) {
     add_move(MoveKind::rapid, end);
@@ -337,6 +357,7 @@ void BlockInterpreter::move_on_arc() {
   arc.clockwise = motion_ == Motion::clockwise;
   arc.absolute_centre = state_.absolute_arc_centre;
   const char* g = spiral_ ? (arc.clockwise ? "G2.1" : "G3.1") : arc.clockwise ? "G2" : "G3";
+  settle_axes_for("an arc", false);
   prepare_cutting(g);
   if (leaving_) {
     error(words_.offset(), "cutter-radius",

@@ -43,6 +43,7 @@ struct ModalState {
   bool cutter_radius = false;  ///< G41, G42 with a radius other than zero: the path was computed
   std::uint32_t frame = 0;     ///< index into Interpretation::frames
   TipControl tip_control = TipControl::off;
+  WorkFrame work_frame = WorkFrame::machine;
   /// Gauge line to tip, where G43 with a known length is active; 0 without G43. Not given: not known. Only for
   /// machines with rotary axes; else 0.
   std::optional<double> tool_length_mm = 0;
@@ -82,6 +83,11 @@ struct Move {
   bool editable : 1 = true;
   bool feed_given : 1 = false;        ///< an F word or a feed mode was read since the previous move, up to this block
   bool feed_by_variable : 1 = false;  ///< the modal feed was set by an expression (F#1)
+  /// Only on machines with rotary axes. Bit i: the programmed coordinate X, Y, Z of the end does not follow from the
+  /// program, as rotary axes have turned or the axis was taken to a machine coordinate since it was last programmed;
+  /// end_mm has its last value. All three: the linear axes stay. ProgramJoints (kinematics/) follows the machine there.
+  std::uint8_t open_axes : 3 = 0;
+  bool start_open : 1 = false;  ///< the same for the start
 
   static constexpr std::uint32_t kNoArc = std::numeric_limits<std::uint32_t>::max();
 };
@@ -90,9 +96,10 @@ struct Interpretation {
   std::vector<Move> moves;  ///< in order; each starts at the end of the previous one
   std::vector<Arc> arcs;
   std::vector<ModalState> states;
-  std::vector<Event> events;           ///< beside the moves, in order
-  std::vector<Frame> frames{Frame{}};  ///< frames of the text's coordinates; the first is the identity
-  std::vector<RotaryTarget> rotary;    ///< of the moves that turn rotary axes, in order; all axes start at 0
+  std::vector<Event> events;                   ///< beside the moves, in order
+  std::vector<Frame> frames{Frame{}};          ///< frames of the text's coordinates; the first is the identity
+  std::vector<MachineTarget> machine_targets;  ///< of the moves to machine coordinates, in order
+  std::vector<RotaryTarget> rotary;            ///< of the moves that turn rotary axes, in order; all axes start at 0
   /// Origin of the machine's coordinates in the frame of the moves, where the work offset is known.
   std::optional<Vec3> machine_origin_mm{};
 

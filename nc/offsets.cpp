@@ -1,9 +1,35 @@
 #include "nc/offsets.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/numbers.h"
+
 namespace camber::nc {
 
+std::optional<int> work_offset_number(std::string_view name) {
+  if (name.starts_with("G54.1P")) {
+    const auto p = parse_number(name.substr(6));
+    return p && *p >= 1 && *p <= 999 && *p == std::floor(*p) ? std::optional(540000 + static_cast<int>(*p))
+                                                             : std::nullopt;
+  }
+  constexpr std::array<std::pair<std::string_view, int>, 9> kNames{{{"G54", 54},
+                                                                    {"G55", 55},
+                                                                    {"G56", 56},
+                                                                    {"G57", 57},
+                                                                    {"G58", 58},
+                                                                    {"G59", 59},
+                                                                    {"G59.1", 591},
+                                                                    {"G59.2", 592},
+                                                                    {"G59.3", 593}}};
+  const auto at = std::ranges::find(kNames, name, &std::pair<std::string_view, int>::first);
+  return at == kNames.end() ? std::nullopt : std::optional(at->second);
+}
+
 WorkOffsets::WorkOffsets(const std::map<int, Vec3>& given_mm) {
-  for (const auto& [number, value_mm] : given_mm) offsets_[number] = {value_mm, 0, true};
+  for (const auto& [number, value_mm] : given_mm) offsets_[number] = {.value_mm = value_mm, .known = true};
 }
 
 bool WorkOffsets::known(int number) const {
@@ -14,6 +40,11 @@ bool WorkOffsets::known(int number) const {
 double WorkOffsets::rotation_rad(int number) const {
   const auto it = offsets_.find(number);
   return it == offsets_.end() ? 0 : it->second.rotation_rad;
+}
+
+Vec3 WorkOffsets::rotary_rad(int number) const {
+  const auto it = offsets_.find(number);
+  return it == offsets_.end() ? Vec3(Vec3::Zero()) : it->second.rotary_rad;
 }
 
 Vec3 WorkOffsets::origin_mm(int number, bool first) {

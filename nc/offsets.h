@@ -2,16 +2,21 @@
 // Work offsets and tool offsets from the program (G10) or the caller.
 #include <map>
 #include <optional>
+#include <string_view>
 
 #include "base/geometry.h"
 
 namespace camber::nc {
 
+/// G54, G59.1, G54.1P7 as ModalState::work_offset has them; nothing for other names.
+std::optional<int> work_offset_number(std::string_view name);
+
 /// One of G54 .. G59.3, G54.1 Pn. Numbers as in ModalState::work_offset.
 struct WorkOffset {
-  Vec3 value_mm = Vec3::Zero();  ///< machine coordinates of its origin
-  double rotation_rad = 0;       ///< about Z (G10 L2 R of LinuxCNC)
-  bool known = false;            ///< false: where it lies is not known; value_mm is relative to that unknown place
+  Vec3 value_mm = Vec3::Zero();    ///< machine coordinates of its origin
+  double rotation_rad = 0;         ///< about Z (G10 L2 R of LinuxCNC)
+  Vec3 rotary_rad = Vec3::Zero();  ///< machine coordinates of A, B, C at words of 0
+  bool known = false;              ///< false: where it lies is not known; value_mm is relative to that unknown place
 };
 
 /// One line of the tool offset memory, by its H or D number.
@@ -37,6 +42,7 @@ class WorkOffsets {
   WorkOffset& at(int number) { return offsets_[number]; }
   bool known(int number) const;
   double rotation_rad(int number) const;
+  Vec3 rotary_rad(int number) const;
 
   /// Origin of the offset in the frame of the moves, mm. `first`: no move was made yet, so this one is the frame.
   Vec3 origin_mm(int number, bool first);

@@ -100,7 +100,7 @@ void BlockInterpreter::end_radius() {
   const double facing = a[axes.first] * b[axes.second] - a[axes.second] * b[axes.first];
   if (std::abs(a[axes.normal]) > 1e-12 || std::abs(b[axes.normal]) > 1e-12) {
     report_.error(radius.offset, "cutter-radius",
-                  fmt::format("G{} in a plane that G68 has rotated out of the machine axes is not supported",
+                  fmt::format("G{} in a plane that G68 or G68.2 has rotated out of the machine axes is not supported",
                               radius.g_tenths / 10));
     return;
   }

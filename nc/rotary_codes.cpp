@@ -61,6 +61,11 @@ bool BlockInterpreter::read_tip_control_m(const Code& code) {
 
 void BlockInterpreter::set_tip_control(TipControl control, const Code& code) {
   if (control != TipControl::off) {
+    if (state_.work_frame != WorkFrame::machine)
+      error(code.word->offset, "tilted-frame",
+            fmt::format("{} while {} is active; {} was expected before", code_text(code),
+                        state_.work_frame == WorkFrame::tilted ? "a tilted frame" : "the dynamic work offset (G254)",
+                        state_.work_frame == WorkFrame::tilted ? "G69" : "G255"));
     if (!tool_length_active_)
       error(code.word->offset, "tool-length",
             fmt::format("{} switches tool-centre-point control on without a tool length; {} was expected",
@@ -71,7 +76,10 @@ void BlockInterpreter::set_tip_control(TipControl control, const Code& code) {
   }
   const bool switched = (control == TipControl::off) != (state_.tip_control == TipControl::off);
   // X Y Z of where the tool is change their meaning.
-  if (switched && !out_.moves.empty() && (angles_unknown_ || rotary_rad_ != Vec3::Zero())) unsettled_ = 7;
+  if (switched && !out_.moves.empty() && rotary_axes_turned()) {
+    unsettled_ = 7;
+    start_open_ = true;
+  }
   state_.tip_control = control;
   state_changed_ = true;
 }
@@ -80,10 +88,7 @@ void BlockInterpreter::set_tip_control(TipControl control, const Code& code) {
 void BlockInterpreter::set_tip_control_g(const Code& code) {
   if (options_.rotary_axes.empty()) {
     const bool g = code.tenths == 434 || code.tenths == 435 || code.tenths == 2340;
-    if (g)
-      error(code.word->offset, "not-read",
-            fmt::format("{} (tool centre point control of five axes) is not supported", code_text(code)),
-            code_text(code));
+    if (g) error(code.word->offset, "not-read", needs_kinematics(code, "tool-centre-point control"), code_text(code));
     return;
   }
   if (code.tenths == 490) {
@@ -119,11 +124,14 @@ std::string BlockInterpreter::refuses_rotary() const {
   if (request_.dwell) return "G4";
   if (request_.frame_code.word) return code_text(request_.frame_code);
   if (request_.return_from_reference) return "G29";
-  if (request_.reference) return fmt::format("G{}", request_.reference_word->value);
+  if (request_.reference || request_.machine_frame) return {};
   if (request_.single_direction) return "G60";
   if (radius_.active) return fmt::format("G{} active", radius_.g_tenths / 10);  // its path gets other moves
-  if (cycle_.g != 0) return fmt::format("the drilling cycle G{}", cycle_.g);
-  if (motion_ == Motion::clockwise || motion_ == Motion::counter_clockwise) return "an arc";
+  if (state_.work_frame == WorkFrame::tilted && aligned_) return "a tilted frame (G68.2) after G53.1";
+  if (state_.work_frame == WorkFrame::tilted && words_.has_any("XYZ")) return "X, Y or Z in a tilted frame (G68.2)";
+  if (state_.work_frame == WorkFrame::dynamic && words_.has_any("XYZ")) return "X, Y or Z under G254";
+  if (cycle_.g != 0 && state_.tip_control != TipControl::off)
+    return fmt::format("the drilling cycle G{} under tool-centre-point control", cycle_.g);
   return {};
 }
 
@@ -145,11 +153,11 @@ void BlockInterpreter::read_rotary_word(const RotaryOption& axis, RotaryTarget& 
   const std::size_t offset = words_.offset_of(letter);
   const std::string with = refuses_rotary();
   if (!with.empty()) {
-    // G10 L2 ... A0: an offset of zero
-    if (value_rad != 0 || !request_.frame_code.word)
+    if (!sets_rotary_offset())
       error(offset, "rotary-axis",
-            fmt::format("{} in a block with {} is not supported; rotary words were expected with G0, G1 or G53", letter,
-                        with),
+            fmt::format("{} in a block with {} is not supported; rotary words were expected with G0 to G3, G28, G30, "
+                        "G53 or a drilling cycle",
+                        letter, with),
             with);
     return;
   }
@@ -159,13 +167,18 @@ void BlockInterpreter::read_rotary_word(const RotaryOption& axis, RotaryTarget& 
     return;
   }
   double& end = target.end[letter - 'A'];
-  if (state_.incremental && angles_unknown_)
+  const double shift_rad = request_.machine_frame ? 0 : frames_.offsets.rotary_rad(state_.work_offset)[letter - 'A'];
+  const bool unknown = (angles_unknown_ & bit_of(letter)) != 0;
+  if (state_.incremental && unknown && !(request_.reference && value_rad == 0))
     error(offset, "rotary-axis",
-          fmt::format("{} in G91 after G43.5, which leaves its position open; G90 was expected", letter), "G91");
+          fmt::format("{} in G91 after {}, which leaves its position open; G90 was expected", letter, direction_code_),
+          "G91");
   if (state_.incremental)
     end += value_rad;
   else
-    end = axis.shortest_way ? shortest_way(value_rad, end) : value_rad;
+    end = axis.shortest_way && !unknown ? shortest_way(value_rad + shift_rad, end) : value_rad + shift_rad;
+  if (axis.shortest_way && unknown && !state_.incremental)
+    target.shortest = static_cast<std::uint8_t>(target.shortest | bit_of(letter));
   target.given = static_cast<std::uint8_t>(target.given | bit_of(letter));
   if ((clamped_ & bit_of(letter)) != 0 && end != rotary_rad_[letter - 'A'])
     error(
@@ -191,6 +204,7 @@ void BlockInterpreter::read_tool_direction() {
     return;
   }
   target.end /= length;
+  direction_code_ = "G43.5";
   rotary_target_ = target;
 }
 
@@ -212,27 +226,60 @@ void BlockInterpreter::settle_tip() {
   unsettled_ = 0;
 }
 
+/// What a message says of a code that turns rotary axes, on a machine without them.
+std::string BlockInterpreter::needs_kinematics(const Code& code, const char* name) const {
+  return fmt::format("{} ({}) needs a machine with [kinematics] (camber check --machine M.toml)", code_text(code),
+                     name);
+}
+
+/// G10 L2 A B C.
+bool BlockInterpreter::sets_rotary_offset() const {
+  return request_.frame_code.word && request_.frame_code.tenths == 100 && words_.has('L') &&
+         words_.word('L').value == 2;
+}
+
+/// G28, G30: the rotary axes of the block, or all, go to 0 of the machine.
+void BlockInterpreter::turn_home(bool all, std::uint8_t letters) {
+  RotaryTarget target;
+  target.end = rotary_rad_;
+  for (const RotaryOption& axis : options_.rotary_axes)
+    if (all || (letters & bit_of(axis.letter)) != 0) {
+      target.end[axis.letter - 'A'] = 0;
+      target.given = static_cast<std::uint8_t>(target.given | bit_of(axis.letter));
+    }
+  if (target.given != 0 && ((angles_unknown_ & target.given) != 0 || target.end != rotary_rad_))
+    rotary_target_ = target;
+}
+
 /// The rotary words of the block belong to its last move.
 void BlockInterpreter::add_rotary_target(std::size_t move) {
   if (!out_.machine_origin_mm) out_.machine_origin_mm = frames_.offsets.machine_origin_mm(state_.work_offset);
   if (!rotary_target_) return;
+  const bool turns = rotary_target_->is_direction || (angles_unknown_ & rotary_target_->given) != 0 ||
+                     rotary_target_->end != rotary_rad_;
   rotary_target_->move = static_cast<std::uint32_t>(move);
   if (state_.feed_mode == FeedMode::inverse_time && feed_ && *feed_ > 0 && out_.moves[move].kind == MoveKind::linear)
     rotary_target_->time_s = 1 / *feed_;
   out_.rotary.push_back(*rotary_target_);
-  if (rotary_target_->is_direction)
-    angles_unknown_ = true;
-  else
+  if (rotary_target_->is_direction) {
+    angles_unknown_ = 7;
+  } else {
     rotary_rad_ = rotary_target_->end;
+    angles_unknown_ = static_cast<std::uint8_t>(angles_unknown_ & ~rotary_target_->given);
+  }
   rotary_target_.reset();
+  if (!turns || state_.work_frame == WorkFrame::machine || request_.frame_code.word) return;
+  // The linear axes stay while the frame turns under the tool.
+  open_axes("rotary axes that turn in this frame");
+  out_.moves[move].open_axes = 7;
 }
 
 void BlockInterpreter::check_rotary_letter(char letter) {
   if (options_.rotary_axes.empty()) {
     if (words_.value(letter) != 0)
       error(words_.offset_of(letter), "rotary-axis",
-            fmt::format("rotary axis {} is read by camber check --machine alone, on a machine with [kinematics]; X, Y "
-                        "and Z were expected",
+            fmt::format("rotary axis {} needs a machine with [kinematics] (camber check --machine M.toml); X, Y and Z "
+                        "were expected",
                         letter),
             std::string(1, letter));
     else

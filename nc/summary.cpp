@@ -45,11 +45,12 @@ class Summarizer {
   }
 
   Summary run() {
+    count_rotary();
     for (const Move& move : program_.moves) {
       count(move);
       if (move.kind == MoveKind::dwell) {
         s_.dwell_s += move.dwell_s;
-      } else if (!move.reference) {
+      } else if (!move.reference && move.open_axes == 0 && !move.start_open) {
         measure(move, tool_of(move));
       }
     }
@@ -57,6 +58,14 @@ class Summarizer {
   }
 
  private:
+  void count_rotary() {
+    Vec3 angles = Vec3::Zero();
+    for (const RotaryTarget& target : program_.rotary) {
+      s_.rotary += target.is_direction || target.end != angles;
+      if (!target.is_direction) angles = target.end;
+    }
+  }
+
   void count(const Move& move) {
     s_.rapids += move.kind == MoveKind::rapid;
     s_.lines += move.kind == MoveKind::linear;
@@ -68,6 +77,9 @@ class Summarizer {
     s_.high_speed_contouring +=
         state.high_speed_contouring && (move.kind == MoveKind::linear || move.kind == MoveKind::arc);
     s_.cutter_radius += state.cutter_radius;
+    s_.tip_control += state.tip_control != TipControl::off;
+    s_.tilted_frame += state.work_frame == WorkFrame::tilted;
+    s_.dynamic_offset += state.work_frame == WorkFrame::dynamic;
     (state.inch ? s_.has_inch : s_.has_mm) = true;
   }
 

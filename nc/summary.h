@@ -44,6 +44,10 @@ struct Summary {
   std::size_t canned = 0;                 ///< of these, moves of drilling cycles
   std::size_t high_speed_contouring = 0;  ///< of these, cutting moves under G08 P1, G05 P10000 or G05.1 Q1
   std::size_t cutter_radius = 0;          ///< of these, moves computed under G41, G42
+  std::size_t rotary = 0;                 ///< of these, moves that turn rotary axes
+  std::size_t tip_control = 0;            ///< of these, moves under tool-centre-point control
+  std::size_t tilted_frame = 0;           ///< of these, moves in a tilted frame (G68.2)
+  std::size_t dynamic_offset = 0;         ///< of these, moves under the dynamic work offset (G254)
   std::size_t reference = 0;  ///< of these, moves to or from the reference point; in no length and no extents
   bool has_mm = false, has_inch = false;
   std::vector<ToolUse> tools;  ///< in the order of their first use

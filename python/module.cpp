@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -40,13 +41,16 @@ camber::Job job_of(const py::handle& object) {
 
 camber::ReadOptions read_options(const std::optional<std::string>& units, bool block_skip,
                                  const std::vector<int>& skip_switches, const std::string& dialect,
-                                 bool least_increments) {
+                                 bool least_increments, const std::map<int, double>& tool_lengths,
+                                 const std::map<std::string, std::vector<double>>& work_offsets) {
   if (units && *units != "mm" && *units != "inch") throw py::value_error("units: mm or inch was expected");
   return {.inch = units ? std::optional(*units == "inch") : std::nullopt,
           .skip_slash_blocks = block_skip,
           .skip_switches = skip_switches,
           .dialect = dialect,
-          .least_increments = least_increments};
+          .least_increments = least_increments,
+          .tool_lengths_mm = tool_lengths,
+          .work_offsets = work_offsets};
 }
 
 camber::CheckResult check(const py::object& program, const py::object& machine, const py::object& job,
@@ -141,21 +145,26 @@ void add_readers(py::module_& module) {
   module.def(
       "read_program",
       [](const Path& path, const std::optional<std::string>& units, bool block_skip,
-         const std::vector<int>& skip_switches, const std::string& dialect, bool least_increments) {
-        return camber::read_program(path.string(),
-                                    read_options(units, block_skip, skip_switches, dialect, least_increments));
+         const std::vector<int>& skip_switches, const std::string& dialect, bool least_increments,
+         const std::map<int, double>& tool_lengths, const std::map<std::string, std::vector<double>>& work_offsets) {
+        return camber::read_program(path.string(), read_options(units, block_skip, skip_switches, dialect,
+                                                                least_increments, tool_lengths, work_offsets));
       },
       "path"_a, py::kw_only(), "units"_a = py::none(), "block_skip"_a = false, "skip_switches"_a = std::vector<int>(),
-      "dialect"_a = "", "least_increments"_a = false);
+      "dialect"_a = "", "least_increments"_a = false, "tool_lengths"_a = std::map<int, double>(),
+      "work_offsets"_a = std::map<std::string, std::vector<double>>());
   module.def(
       "program_from_text",
       [](const std::string& name, const std::string& text, const std::optional<std::string>& units, bool block_skip,
-         const std::vector<int>& skip_switches, const std::string& dialect, bool least_increments) {
-        return camber::program_from_text(name, text,
-                                         read_options(units, block_skip, skip_switches, dialect, least_increments));
+         const std::vector<int>& skip_switches, const std::string& dialect, bool least_increments,
+         const std::map<int, double>& tool_lengths, const std::map<std::string, std::vector<double>>& work_offsets) {
+        return camber::program_from_text(
+            name, text,
+            read_options(units, block_skip, skip_switches, dialect, least_increments, tool_lengths, work_offsets));
       },
       "name"_a, "text"_a, py::kw_only(), "units"_a = py::none(), "block_skip"_a = false,
-      "skip_switches"_a = std::vector<int>(), "dialect"_a = "", "least_increments"_a = false);
+      "skip_switches"_a = std::vector<int>(), "dialect"_a = "", "least_increments"_a = false,
+      "tool_lengths"_a = std::map<int, double>(), "work_offsets"_a = std::map<std::string, std::vector<double>>());
   module.def(
       "read_machine", [](const Path& path) { return camber::read_machine(path.string()); }, "path"_a);
   module.def(
@@ -169,6 +178,14 @@ void add_functions(py::module_& module) {
   module.def("check", check, "program"_a, py::kw_only(), "machine"_a = py::none(), "job"_a = py::none(),
              "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Statistics of a program, and whether a machine or a job can run it.");
+  module.def(
+      "explain_kinematics",
+      [](const py::object& machine) {
+        return py::isinstance<camber::Job>(machine) ? camber::explain_kinematics(machine.cast<camber::Job>())
+                                                    : camber::explain_kinematics(machine_of(machine));
+      },
+      "machine"_a,
+      "The axes of a machine from the part to the spindle, and what a positive word of each turns which way.");
   module.def("feed", feed, "program"_a, "machine"_a, py::kw_only(), "points"_a = true, "progress"_a = py::none(),
              "strict"_a = false, "threads"_a = 0, "Actual axis positions and feed at every interpolation period.");
   module.def("time", time, "program"_a, "machine"_a, py::kw_only(), "trace"_a = py::none(),

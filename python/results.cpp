@@ -114,6 +114,7 @@ void add_check(py::module_& module) {
       .def_readonly("lines", &CheckResult::lines)
       .def_readonly("arcs", &CheckResult::arcs)
       .def_readonly("dwells", &CheckResult::dwells)
+      .def_readonly("rotary_moves", &CheckResult::rotary_moves)
       .def_readonly("cutting_length_mm", &CheckResult::cutting_length_mm)
       .def_readonly("rapid_length_mm", &CheckResult::rapid_length_mm)
       .def_readonly("dwell_s", &CheckResult::dwell_s)
@@ -121,6 +122,22 @@ void add_check(py::module_& module) {
       .def_readonly("rapid", &CheckResult::rapid)
       .def_readonly("tools", &CheckResult::tools)
       .def_readonly("memory_GB", &CheckResult::memory_GB);
+}
+
+void add_explain_kinematics(py::module_& module) {
+  using camber::ChainAxis, camber::KinematicsExplanation;
+  py::class_<ChainAxis>(module, "ChainAxis")
+      .def_readonly("letter", &ChainAxis::letter)
+      .def_readonly("rotary", &ChainAxis::rotary)
+      .def_readonly("table", &ChainAxis::table)
+      .def_readonly("positive", &ChainAxis::positive)
+      .def_readonly("limits", &ChainAxis::limits);
+  result_class<KinematicsExplanation>(module, "KinematicsExplanation")
+      .def_readonly("machine_type", &KinematicsExplanation::machine_type)
+      .def_readonly("drawing", &KinematicsExplanation::drawing)
+      .def_readonly("axes", &KinematicsExplanation::axes)
+      .def_readonly("reach", &KinematicsExplanation::reach)
+      .def_readonly("text", &KinematicsExplanation::text);
 }
 
 void add_feed_and_time(py::module_& module) {
@@ -243,6 +260,7 @@ void add_predict_and_compensate(py::module_& module) {
 void add_results(py::module_& module) {
   add_tables(module);
   add_check(module);
+  add_explain_kinematics(module);
   add_feed_and_time(module);
   add_fit(module);
   add_predict_and_compensate(module);

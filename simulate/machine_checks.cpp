@@ -39,8 +39,9 @@ class MachineCheck {
     for (const nc::Move& m : moves_.moves) {
       if (m.kind == nc::MoveKind::dwell || m.reference) continue;
       if (cuts(m)) look_at_spindle(m);
-      // Under tool-centre-point control X Y Z are not the axes (kinematics/travel_check.h).
-      if (moves_.state_of(m).tip_control == nc::TipControl::off) look_at_axes(m);
+      // Under tool-centre-point control and in tilted frames X Y Z are not the axes (kinematics/travel_check.h).
+      const nc::ModalState& state = moves_.state_of(m);
+      if (state.tip_control == nc::TipControl::off && state.work_frame == nc::WorkFrame::machine) look_at_axes(m);
     }
     for (std::size_t a = 0; a < 3; ++a)
       if (worst_[a].move) report_feed(a);

@@ -97,9 +97,11 @@ std::string unit_text(const nc::Summary& s) {
 }
 
 CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptions& options,
-                             const machine::Machine* machine, const machine::Job* job, Diagnostics& found) {
+                             const machine::Machine* machine, const machine::Job* job, Diagnostics& found,
+                             const ProgramRead& read) {
   CheckedProgram checked{nc::interpret(text, options_of(options, machine, job), found), {}};
   found.throw_if_errors();
+  if (read) read(checked.moves);
   if (machine) simulate::check_machine(*machine, text, checked.moves, found);
   if (machine && machine->kinematics.given()) kinematics::check_travel(*machine, text, checked.moves, found);
   simulate::check_feeds(text, checked.moves, found);
@@ -131,6 +133,10 @@ std::string check_json(const std::string& program, const nc::Summary& s, const D
                            {"canned", s.canned},
                            {"cutter_radius", s.cutter_radius},
                            {"high_speed_contouring", s.high_speed_contouring},
+                           {"rotary", s.rotary},
+                           {"tip_control", s.tip_control},
+                           {"tilted_frame", s.tilted_frame},
+                           {"dynamic_offset", s.dynamic_offset},
                            {"reference", s.reference}}},
                          {"cutting_length_mm", s.cutting_length_mm},
                          {"rapid_length_mm", s.rapid_length_mm},

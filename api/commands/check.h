@@ -1,5 +1,6 @@
 #pragma once
 // The work of camber check: a program interpreted, checked and summarized.
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,11 +18,15 @@ struct CheckedProgram {
   std::optional<double> memory_bytes{};  ///< that predict needs, about; of a job alone
 };
 
+/// Called with a program that could be read, before it is checked against machine and job.
+using ProgramRead = std::function<void(const nc::Interpretation&)>;
+
 /// As the control of `machine` reads it, where one is given; `job` (with its machine as `machine`) also has its tools,
 /// stock and part checked, and then everything that predict looks at before its cut (predict.h, prepare). `options`:
 /// what the user asks for. Throws InputError.
 CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptions& options,
-                             const machine::Machine* machine, const machine::Job* job, Diagnostics& found);
+                             const machine::Machine* machine, const machine::Job* job, Diagnostics& found,
+                             const ProgramRead& read = {});
 
 /// By line and column.
 std::vector<Diagnostic> in_order(std::vector<Diagnostic> list);

@@ -20,12 +20,15 @@ machine::Machine machine_of(const std::string& path, Diagnostics& found) {
 
 }  // namespace
 
-ExplainedKinematics explain_kinematics(const std::string& path, Diagnostics& found) {
-  const machine::Machine machine = machine_of(path, found);
+ExplainedKinematics explain_kinematics(const machine::Machine& machine) {
   if (!machine.kinematics.given())
     fail_on_file(machine.path, "[kinematics] is missing; a chain from the part to the spindle was expected",
                  "kinematics-missing");
   return {machine.path, kinematics::explain(machine)};
+}
+
+ExplainedKinematics explain_kinematics(const std::string& path, Diagnostics& found) {
+  return explain_kinematics(machine_of(path, found));
 }
 
 std::string explained_kinematics_json(const ExplainedKinematics& explained) {

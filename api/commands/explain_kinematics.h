@@ -12,6 +12,9 @@ struct ExplainedKinematics {
   kinematics::Explanation explanation;
 };
 
+/// Throws InputError where there is no [kinematics].
+ExplainedKinematics explain_kinematics(const machine::Machine& machine);
+
 /// `path`: machine.toml, or a job.toml, whose machine counts. Throws InputError, also where there is no [kinematics].
 ExplainedKinematics explain_kinematics(const std::string& path, Diagnostics& found);
 

@@ -3,6 +3,7 @@
 #include "camber/check.h"
 #include "camber/compensate.h"
 #include "camber/diagnostics.h"
+#include "camber/explain_kinematics.h"
 #include "camber/feed.h"
 #include "camber/fit_feed.h"
 #include "camber/job.h"

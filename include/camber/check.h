@@ -28,6 +28,7 @@ struct ToolUse {
 struct CheckResult {
   std::size_t blocks = 0, blocks_with_words = 0;
   std::size_t rapids = 0, lines = 0, arcs = 0, dwells = 0;
+  std::size_t rotary_moves = 0;  ///< of these, moves that turn rotary axes
   double cutting_length_mm = 0, rapid_length_mm = 0, dwell_s = 0;
   std::optional<Box> cutting{}, rapid{};
   std::vector<ToolUse> tools{};           ///< in the order of their first use

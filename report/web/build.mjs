@@ -1,4 +1,4 @@
-// build.mjs SOURCES PACKAGES OUT.cpp: bundles main.js and path.js and writes scripts and style as C++ text.
+// build.mjs SOURCES PACKAGES OUT.cpp: bundles main.js, path.js and machine.js and writes scripts and style as C++ text.
 import { createRequire } from 'node:module';
 import { renameSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
@@ -6,7 +6,7 @@ import { join, resolve } from 'node:path';
 const [sources, packages, out] = process.argv.slice(2).map(path => resolve(path));
 const esbuild = createRequire(join(packages, 'package.json'))('esbuild');
 const result = await esbuild.build({
-  entryPoints: [join(sources, 'main.js'), join(sources, 'path.js')],
+  entryPoints: [join(sources, 'main.js'), join(sources, 'path.js'), join(sources, 'machine.js')],
   bundle: true,
   minify: true,
   format: 'iife',
@@ -33,11 +33,12 @@ function literal(text) {
   return pieces.join('\n');
 }
 
-const file = ending => result.outputFiles.find(f => f.path.endsWith(ending)).text;
+const file = name => result.outputFiles.find(f => f.path.endsWith(`/${name}`)).text;
 const script = file('main.js');
 const path = file('path.js');
-const style = file('.css');
-for (const text of [script, path, style])  // esbuild writes <\/script where a text holds one
+const machine = file('machine.js');
+const style = file('main.css');
+for (const text of [script, path, machine, style])  // esbuild writes <\/script where a text holds one
   if (/<\/(script|style)/i.test(text)) throw new Error('the bundle holds an end tag');
 writeFileSync(`${out}.part`, `// Made by report/web/build.mjs.
 #include "report/page_parts.h"
@@ -50,7 +51,9 @@ const std::string_view kReportStyle = ${literal(style)};
 
 const std::string_view kPathScript = ${literal(path)};
 
+const std::string_view kMachineScript = ${literal(machine)};
+
 }  // namespace camber::report
 `);
 renameSync(`${out}.part`, out);
-console.log(`report page: script ${Math.round(script.length / 1024)} kB, of paths ${Math.round(path.length / 1024)} kB, style ${Math.round(style.length / 1024)} kB`);
+console.log(`report page: script ${Math.round(script.length / 1024)} kB, of paths ${Math.round(path.length / 1024)} kB, of machines ${Math.round(machine.length / 1024)} kB, style ${Math.round(style.length / 1024)} kB`);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/ball_job.h"
+#include "tests/support/open_page.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -117,15 +118,80 @@ TEST(CheckFiveAxes, OtherCommandsRefuseTheProgramByName) {
   for (const char* command : {"feed p.nc --machine m.toml", "time p.nc --machine m.toml", "check p.nc"}) {
     const auto run = run_camber(folder, command);
     EXPECT_EQ(run.status, 1) << command;
-    EXPECT_NE(
-        run.err.find("p.nc:4:1: error: G234 (tool centre point control of five axes) is not supported [not-read]"),
-        std::string::npos)
+    EXPECT_NE(run.err.find(
+                  "p.nc:4:1: error: G234 (tool-centre-point control) needs a machine with [kinematics] (camber check "
+                  "--machine M.toml) [not-read]"),
+              std::string::npos)
         << run.err;
-    EXPECT_NE(run.err.find("p.nc:5:9: error: rotary axis B is read by camber check --machine alone, on a machine with "
-                           "[kinematics]; X, Y and Z were expected [rotary-axis]"),
+    EXPECT_NE(run.err.find(
+                  "p.nc:5:9: error: rotary axis B needs a machine with [kinematics] (camber check --machine M.toml); "
+                  "X, Y and Z were expected [rotary-axis]"),
               std::string::npos)
         << run.err;
   }
+}
+
+const std::string kFiveAxis = CAMBER_SOURCE_DIR "/samples/11-five-axis/";
+
+TEST(CheckFiveAxes, CountsRotaryMovesOfTheSample) {
+  const TempFolder folder;
+  for (const char* name : {"dome", "faces"}) {
+    const auto run = run_camber(
+        folder, "check '" + kFiveAxis + name + ".nc' --machine '" + kFiveAxis + "machine.toml' --json r.json");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+    const auto moves = nlohmann::json::parse(tests::file_text(folder / "r.json"))["moves"];
+    const bool dome = name == std::string("dome");
+    EXPECT_GT(moves["rotary"], dome ? 300 : 2);
+    EXPECT_EQ(moves["tip_control"] > 0, dome);
+    EXPECT_EQ(moves["tilted_frame"] > 0, !dome);
+    EXPECT_NE(run.out.find(" of them turning rotary axes\n"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find(dome ? "under tool-centre-point control" : "in a tilted frame (G68.2)"), std::string::npos);
+  }
+}
+
+TEST(CheckFiveAxes, TakesTheWorkOffsetFromTheCommandLine) {
+  const TempFolder folder;
+  copy_machine(folder, "table_bc");
+  std::string text = kProgram;
+  text.erase(text.find("G10"), text.find("G54") - text.find("G10"));
+  folder.write("p.nc", text);
+  const std::string command = "check p.nc --machine m.toml --tool-length 1=100 --work-offset ";
+  const auto run = run_camber(folder, command + "G54=10,5,-300");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("p.nc:5:1: error: Y goes to -445 mm in machine coordinates"), std::string::npos) << run.err;
+  EXPECT_EQ(run_camber(folder, command + "G54=10,55,-300").status, 0);
+  const auto tip = run_camber(folder, command + "G54=10,55,-300,0,0,5");
+  EXPECT_NE(tip.err.find("tool-centre-point control with a work offset of a rotary axis is not supported; offsets A0 "
+                         "B0 C0 were expected [rotary-offset]"),
+            std::string::npos)
+      << tip.err;
+  for (const char* bad : {"G54=1,2", "G60=1,2,3", "54=1,2,3", "G54=1,2,x", "G54.1P0=1,2,3"})
+    EXPECT_NE(run_camber(folder, command + bad).err.find("a work offset and its machine coordinates were expected"),
+              std::string::npos)
+        << bad;
+}
+
+TEST(CheckFiveAxes, ShowsTheMachineAlongTheProgram) {
+  CAMBER_NEEDS_BROWSER();
+  const TempFolder folder;
+  for (const char* name : {"dome", "faces"}) {
+    const auto run = run_camber(folder, "check '" + kFiveAxis + name + ".nc' --machine '" + kFiveAxis +
+                                            "machine.toml' --report r.html --json r.json");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(tests::open_page("machine", folder / "r.html", folder / "r.json"), "") << name;
+  }
+}
+
+TEST(CheckFiveAxes, ThePageShowsWhatLeavesItsTravel) {
+  const TempFolder folder;
+  copy_machine(folder, "table_bc");
+  folder.write("p.nc", kProgram);
+  const auto run = run_camber(folder, "check p.nc --machine m.toml --tool-length 1=100 --report r.html");
+  EXPECT_EQ(run.status, 1);
+  const std::string page = tests::file_text(folder / "r.html");
+  EXPECT_NE(page.find("Y goes to -445 mm in machine coordinates"), std::string::npos);
+  EXPECT_NE(page.find("<td>6</td>"), std::string::npos);  // the first line beyond the travel of Y
 }
 
 }  // namespace

@@ -125,10 +125,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.skip_switches = static_cast<std::uint16_t>((choice[5] & 4) != 0 ? 0x3fe : 0);
   options.max_repeated_blocks = kMaxRepeatedBlocks;
   options.tool_offsets[1].radius_mm = 1.5;
+  const bool rotary = (choice[5] & 8) != 0;
+  if (rotary) {
+    options.rotary_axes = {{.letter = 'B', .on_table = (choice[5] & 16) == 0, .clamp_m = 10, .unclamp_m = 11},
+                           {.letter = 'C', .shortest_way = true}};
+    options.tool_offsets[1].length_mm = 80;
+    options.work_offsets_mm[54] = Vec3(1, 2, 3);
+  }
   const Read r = read(bytes.ConsumeRemainingBytesAsString(), options);
   if (!r.clean) return 0;
   nc::summarize(r.program, r.moves);
   if (r.moves.moves.size() > kMaxMoves) return 0;
+  if (rotary) {  // programs with rotary axes are not edited
+    if (nc::emit(r.program, r.moves, {}, {}) != r.program.source.text())
+      fail("an untouched program does not come out byte for byte", r.program.source.text(), {});
+    return 0;
+  }
   FuzzedDataProvider edit_bytes(choice.data(), choice.size());
   emit_and_read(r, options, edit_bytes);
   return 0;

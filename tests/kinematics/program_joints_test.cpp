@@ -96,7 +96,10 @@ TEST(ProgramJoints, FollowTheTipUnderTipControl) {
                                  "G49\nG0 X0 Y0 Z100\n"),
                       machine, "fanuc", 100);
   ProgramJoints joints(machine, r.moves);
-  EXPECT_FALSE(joints.next().linear_known);  // nothing is known of where it starts
+  const MoveJoints& first = joints.next();
+  EXPECT_FALSE(first.start_known);  // nothing is known of where it starts
+  EXPECT_TRUE(first.linear_known);
+  EXPECT_EQ(joints.at(1).linear_mm, Vec3(10, 20, -240));
   EXPECT_TRUE(joints.next().linear_known);
   EXPECT_EQ(joints.at(1).linear_mm, Vec3(10, 20, -250));  // no length is active
   const MoveJoints& tilted = joints.next();
@@ -106,7 +109,9 @@ TEST(ProgramJoints, FollowTheTipUnderTipControl) {
     const ToolPose pose = chain.pose(joints.at(u), 100);
     EXPECT_LE((pose.tip_mm - Vec3(10 + 30 * u, 20, -250)).norm(), 1e-9);
   }
-  EXPECT_FALSE(joints.next().start_known);
+  const Vec3 end_mm = joints.at(1).linear_mm;
+  EXPECT_TRUE(joints.next().start_known);  // where the tilted move ended
+  EXPECT_LE((joints.at(0).linear_mm - end_mm).norm(), 1e-12);
   EXPECT_EQ(joints.at(1).linear_mm, Vec3(10, 20, -200));
   EXPECT_TRUE(joints.done());
 }
@@ -147,7 +152,8 @@ TEST(TravelCheck, LooksBetweenTheEndsOfAMove) {
 
 TEST(TravelCheck, ChecksRotaryAxesWithoutAnyOffset) {
   EXPECT_EQ(said("G0 X0 Y0 Z0 B101.\nC-663.\nC459.\nC-721.\n", sample("head_table")),
-            "p.nc:2:1: warning: the travel of X, Y and Z is not checked, as the work offset (G10 L2) is not known "
+            "p.nc:2:1: warning: the travel of X, Y and Z is not checked, as the work offset (--work-offset, or G10 "
+            "L2) is not known "
             "[travel-unchecked]\n"
             "p.nc:1:1: error: B goes to 101 degrees in machine coordinates in this move and 3 more; -100 to 100 was "
             "expected (travel_deg of [axis.b]) [travel]\n"

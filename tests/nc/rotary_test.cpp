@@ -73,26 +73,17 @@ TEST(Rotary, RefusesWordsItCannotRead) {
   const auto said = [](const std::string& text) { return read_text(text, five_axes("fanuc")).messages; };
   EXPECT_EQ(said("G0 X1 B5.\n"), Messages{"p.nc:1:7: error: B is not an axis of the machine's chain; A and C were "
                                           "expected [rotary-axis]"});
-  EXPECT_EQ(said("G0 X1 Y0 Z0\nG2 X2 I0.5 A5. F10\n"),
-            Messages{"p.nc:2:12: error: A in a block with an arc is not supported; rotary words were expected with G0, "
-                     "G1 or G53 [rotary-axis]"});
-  EXPECT_EQ(said("G28 A0\n").at(0),
-            "p.nc:1:5: error: A in a block with G28 is not supported; rotary words were expected "
-            "with G0, G1 or G53 [rotary-axis]");
   EXPECT_EQ(said("G92 C5.\n").at(1),
-            "p.nc:1:5: error: C in a block with G92 is not supported; rotary words were "
-            "expected with G0, G1 or G53 [rotary-axis]");
+            "p.nc:1:5: error: C in a block with G92 is not supported; rotary words were expected with G0 to G3, G28, "
+            "G30, G53 or a drilling cycle [rotary-axis]");
   EXPECT_EQ(said("G0 X0 Y0 Z0\nG41 D1 G1 X5 F100\nX9 A5.\nG40 X0\n").at(1),
-            "p.nc:3:4: error: A in a block with G41 active is not supported; rotary words were expected with G0, G1 or "
-            "G53 [rotary-axis]");
+            "p.nc:3:4: error: A in a block with G41 active is not supported; rotary words were expected with G0 to G3, "
+            "G28, G30, G53 or a drilling cycle [rotary-axis]");
+  EXPECT_EQ(said("G0 X0 Y0 Z0\nG43.4 H1\nG81 Z-1 R1 F100 A5.\n").at(0),
+            "p.nc:3:17: error: A in a block with the drilling cycle G81 under tool-centre-point control is not "
+            "supported; rotary words were expected with G0 to G3, G28, G30, G53 or a drilling cycle [rotary-axis]");
   EXPECT_EQ(said("A5.\n"), Messages{"p.nc:1:1: error: A without a kind of motion; G0, G1, G2 or G3 was expected before "
                                     "[motion-missing]"});
-  EXPECT_EQ(said("G254\n"), Messages{"p.nc:1:1: error: G254 (work offset that turns with the rotary table) is not "
-                                     "supported [not-read]"});
-  EXPECT_EQ(said("G68.2 X0 Y0 Z0 I0 J45. K0\n"),
-            Messages{"p.nc:1:1: error: G68.2 (tilted working plane) is not supported [not-read]"});
-  EXPECT_EQ(said("G53.1\n"), Messages{"p.nc:1:1: error: G53.1 (turns the tool square to a tilted working plane) is not "
-                                      "supported [not-read]"});
 }
 
 TEST(Rotary, ZeroOffsetsOfG10AreRead) {
@@ -165,13 +156,17 @@ TEST(Rotary, ClampsOfTheMachine) {
 
 /// Programs in which nothing turns read as they always did.
 TEST(Rotary, WithoutRotaryAxesCodesAreRefusedByName) {
-  EXPECT_EQ(read_text("G43.4 H1\n").messages,
-            Messages{"p.nc:1:1: error: G43.4 (tool centre point control of five axes) is not supported [not-read]"});
-  EXPECT_EQ(read_text("G234 H1\n").messages,
-            Messages{"p.nc:1:1: error: G234 (tool centre point control of five axes) is not supported [not-read]"});
+  EXPECT_EQ(
+      read_text("G43.4 H1\n").messages,
+      Messages{"p.nc:1:1: error: G43.4 (tool-centre-point control) needs a machine with [kinematics] (camber check "
+               "--machine M.toml) [not-read]"});
+  EXPECT_EQ(
+      read_text("G234 H1\n").messages,
+      Messages{"p.nc:1:1: error: G234 (tool-centre-point control) needs a machine with [kinematics] (camber check "
+               "--machine M.toml) [not-read]"});
   EXPECT_EQ(read_text("G43 H1\nG0 X1 A5.\n").messages,
-            Messages{"p.nc:2:7: error: rotary axis A is read by camber check --machine alone, on a machine with "
-                     "[kinematics]; X, Y and Z were expected [rotary-axis]"});
+            Messages{"p.nc:2:7: error: rotary axis A needs a machine with [kinematics] (camber check --machine "
+                     "M.toml); X, Y and Z were expected [rotary-axis]"});
 }
 
 }  // namespace

@@ -291,6 +291,45 @@ const CHECKS = {
     expect(after.drawn !== before.drawn, 'two fingers do not zoom');
   },
 
+  // A machine with rotary axes: two pictures that follow the slider, the plots and the play button.
+  async machine(page) {
+    if (json) await expectNumbersOfJson(page);
+    const whole = async () => {
+      const out = [];
+      for (const id of ['scene', 'part-scene'])
+        out.push(await page.evaluate(name => {
+          const canvas = document.querySelector(`#${name} canvas`), gl = canvas.getContext('webgl2');
+          const { drawingBufferWidth: w, drawingBufferHeight: h } = gl, px = new Uint8Array(4 * w * h);
+          gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, px);
+          let drawn = 0, sum = 0;
+          for (let i = 0; i < px.length; i += 4) if (px[i] !== px[0] || px[i + 1] !== px[1]) { drawn++; sum = (sum * 31 + px[i] + i) >>> 0; }
+          return { share: drawn / (w * h), sum };
+        }, id));
+      return out;
+    };
+    const start = await whole(), box = page.locator('#selected'), facts = await box.innerText();
+    for (const picture of start) expect(picture.share > 0.03, `a picture is blank: ${JSON.stringify(start)}`);
+    const axes = await page.locator('#plots [data-axis]').count();
+    expect(axes >= 4, `${axes} plots`);
+    for (const name of ['tip on the part', 'tool axis', 'tilt']) expect(facts.includes(name), `"${name}" is missing: ${facts}`);
+    const line = await box.getAttribute('data-line');
+    await page.getByLabel('Time').evaluate(slider => { slider.value = 0.6; slider.dispatchEvent(new Event('input')); });
+    await painted(page);
+    const later = await whole();
+    expect(await box.getAttribute('data-line') !== line, 'the slider does not change the line');
+    start.forEach((picture, i) => expect(picture.sum !== later[i].sum, `picture ${i} does not follow the slider`));
+    const plot = page.locator('#plots .u-over').first(), { width, height } = await plot.boundingBox();
+    await plot.click({ position: { x: width / 4, y: height / 2 } });
+    const at = Number((await page.locator('#time span').innerText()).split(' ')[0]);
+    const end = Number((await page.locator('#time span').innerText()).split(' ')[2]);
+    expect(Math.abs(at / end - 0.25) < 0.02, `a click at a quarter shows ${at} of ${end} s`);
+    await page.getByRole('button', { name: 'Play' }).click();
+    await page.waitForFunction(t => Number(document.querySelector('#time span').textContent.split(' ')[0]) > t, at);
+    await page.getByRole('button', { name: 'Pause' }).click();
+    await page.getByRole('button', { name: 'Top', exact: true }).click();
+    expect((await whole())[0].share > 0.02, 'the view from the top is blank');
+  },
+
   async large_program(page) {
     expect(opened_ms < 5000, `the page took ${opened_ms} ms`);
     expect((await strokes(page)).drawn > 1000, 'the picture is blank');
