@@ -33,8 +33,17 @@ CheckPicture picture_of(const nc::Interpretation& moves, const machine::Machine*
                                    : report::program_picture(moves, report::kMaxPicturePoints);
   if (!machine || !turns || !machine->kinematics.given()) return picture;
   picture.machine = *machine;
-  picture.track = kinematics::programmed_track(*machine, moves);
-  if (moves.machine_origin_mm) picture.work_origin_mm = -*moves.machine_origin_mm;
+  if (moves.machine_origin_mm) {
+    picture.track = kinematics::programmed_track(*machine, moves);
+    picture.work_origin_mm = -*moves.machine_origin_mm;
+  } else {
+    // The offset moves the pictures alone, but nobody knows how far X, Y and Z are from the ends of their travel.
+    nc::Interpretation placed = moves;
+    placed.machine_origin_mm = Vec3::Zero();
+    picture.track = kinematics::programmed_track(*machine, placed);
+    for (machine::Axis& axis : picture.machine->axis) axis.travel_mm = machine::Axis{}.travel_mm;
+    picture.offset_assumed = true;
+  }
   if (job && !job->part.mesh.empty()) picture.part = read_stl(job->part.mesh);
   if (job && job->tools.size() == 1) picture.tool_diameter_mm = job->tools.begin()->second.diameter_mm;
   return picture;

@@ -79,6 +79,11 @@ std::string machine_check_page(const report::ProgramPage& program, const CheckPi
   page.notes = {
       "Positions are those of the program; times follow from its feeds and from rapids at the speed of the slowest "
       "axis, without acceleration."};
+  if (picture.offset_assumed)
+    page.notes.push_back(
+        "The work offset is not known (--work-offset G54=X,Y,Z, or G10 L2) and is taken as zero; the travel of X, Y "
+        "and Z "
+        "is left out.");
   if (picture.track.unknown_moves > 0 && !picture.track.samples.empty())
     page.notes.push_back(fmt::format("{} moves are not shown, as the position of X, Y or Z at their end is not known.",
                                      picture.track.unknown_moves));

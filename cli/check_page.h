@@ -19,6 +19,7 @@ struct CheckPicture {
   std::optional<machine::Machine> machine{};
   kinematics::PoseTrack track{};
   Vec3 work_origin_mm = Vec3::Zero();  ///< in the machine frame
+  bool offset_assumed = false;         ///< the work offset is not known and was taken as zero
   std::optional<TriangleMesh> part{};
   double tool_diameter_mm = 0;  ///< 0: not known
 };

@@ -44,9 +44,18 @@ class Tracker {
 
   void sample(double u, const nc::Move& move) {
     const Joints joints = joints_.at(u);
-    const double length_mm = moves_.state_of(move).tool_length_mm.value_or(0);
     track_.samples.push_back(
-        {time_s_, static_cast<int>(move.block) + 1, joints_.chain().pose(joints, length_mm), joints});
+        {time_s_, static_cast<int>(move.block) + 1, joints_.chain().pose(joints, length_mm(move)), joints});
+  }
+
+  /// The tool is as long as it is, whether G43 is active or not.
+  double length_mm(const nc::Move& move) const {
+    const nc::ModalState& state = moves_.state_of(move);
+    if (state.tool_length_mm.value_or(0) != 0) return *state.tool_length_mm;
+    const auto same = std::ranges::find_if(moves_.states, [&](const nc::ModalState& s) {
+      return s.tool == state.tool && s.tool_length_mm.value_or(0) != 0;
+    });
+    return same == moves_.states.end() ? 0 : *same->tool_length_mm;
   }
 
   std::size_t steps_of(const MoveJoints& now, const nc::Move& move) const {

@@ -13,7 +13,9 @@ namespace camber::kinematics {
 struct PoseSample {
   double time_s = 0;  ///< ascending
   int line = 0;       ///< 1-based line of the program; 0: none
-  ToolPose pose;      ///< in the part's frame: the machine frame with every axis at 0, carried along by the table
+  /// In the part's frame: the machine frame with every axis at 0, carried along by the table. With the length that the
+  /// program gives the tool anywhere, where G43 is not active too.
+  ToolPose pose;
   Joints joints;
 };
 

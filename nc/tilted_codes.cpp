@@ -182,7 +182,7 @@ void BlockInterpreter::add_machine_target(const Vec3& end_mm, std::uint8_t given
 
 /// Move::open_axes of the block's move.
 std::uint8_t BlockInterpreter::open_axes_of_move() const {
-  std::uint8_t open = open_axes_;
+  auto open = static_cast<std::uint8_t>(open_axes_ | unsettled_);
   for (unsigned axis = 0; axis < 3; ++axis) {
     const bool given =
         words_.has(kAxisLetters[axis]) && !state_.incremental && cycle_.g == 0 && !request_.frame_code.word;

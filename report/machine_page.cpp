@@ -151,15 +151,18 @@ json index_json(PackedArrays& arrays, const machine::Machine& machine, const std
   std::vector<std::uint32_t> lines;
   for (const PoseSample& s : samples) lines.push_back(static_cast<std::uint32_t>(std::max(s.line, 0)));
   out["line"] = arrays.add_whole(lines);
-  for (const Axis& axis : axes_of(machine))
-    out["axes"].push_back(
-        {{"axis", std::string(1, axis.name())},
-         {"rotary", axis.rotary},
-         {"travel", {limit_json(axis.travel[0]), limit_json(axis.travel[1])}},
-         {"values", arrays.add_quantised(column(samples, [&](const auto& s) { return axis.at(s); }))}});
+  for (const Axis& axis : axes_of(machine)) {
+    const std::vector<double> values = column(samples, [&](const PoseSample& s) { return axis.at(s); });
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    out["axes"].push_back({{"axis", std::string(1, axis.name())},
+                           {"rotary", axis.rotary},
+                           {"travel", {limit_json(axis.travel[0]), limit_json(axis.travel[1])}},
+                           {"range", {*low, *high}},
+                           {"values", arrays.add_floats(values)}});
+  }
   for (Eigen::Index i = 0; i < 3; ++i) {
-    out["tip"].push_back(arrays.add_quantised(column(samples, [&](const auto& s) { return s.pose.tip_mm[i]; })));
-    out["axis"].push_back(arrays.add_quantised(column(samples, [&](const auto& s) { return s.pose.axis[i]; })));
+    out["tip"].push_back(arrays.add_floats(column(samples, [&](const PoseSample& s) { return s.pose.tip_mm[i]; })));
+    out["axis"].push_back(arrays.add_floats(column(samples, [&](const PoseSample& s) { return s.pose.axis[i]; })));
   }
   if (page.part && page.part->triangles.size() <= page.max_triangles) out["part"] = part_json(arrays, *page.part);
   return out;

@@ -11,7 +11,7 @@ import os
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DOME, BALL, LEAD = 25.0, 3.0, math.radians(10)
-TOP, BOTTOM, TURNS, BLOCK = math.radians(6), math.radians(48), 6, 1.2
+TOP, BOTTOM, TURNS, BLOCK = math.radians(15), math.radians(48), 5, 1.2
 START = ["G21 G17 G40 G49 G80 G90 G94", "G10 L2 P1 X0. Y0. Z-320.", "G10 L10 P1 R120.", "T1 M6"]
 
 

@@ -160,8 +160,8 @@ TEST(CheckFiveAxes, TakesTheWorkOffsetFromTheCommandLine) {
   const auto run = run_camber(folder, command + "G54=10,5,-300");
   EXPECT_EQ(run.status, 1);
   EXPECT_NE(run.err.find("p.nc:5:1: error: Y goes to -445 mm in machine coordinates"), std::string::npos) << run.err;
-  EXPECT_EQ(run_camber(folder, command + "G54=10,55,-300").status, 0);
-  const auto tip = run_camber(folder, command + "G54=10,55,-300,0,0,5");
+  EXPECT_EQ(run_camber(folder, command + "G54=-40,5,-300").status, 0);
+  const auto tip = run_camber(folder, command + "G54=-40,5,-300,0,0,5");
   EXPECT_NE(tip.err.find("tool-centre-point control with a work offset of a rotary axis is not supported; offsets A0 "
                          "B0 C0 were expected [rotary-offset]"),
             std::string::npos)

@@ -16,7 +16,8 @@ import camber
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 CAMBER = os.environ["CAMBER"]
-PROGRAMS = sorted(SAMPLES.glob("*/*.nc"))
+FIVE_AXIS = SAMPLES / "11-five-axis"
+PROGRAMS = sorted(p for p in SAMPLES.glob("*/*.nc") if p.parent != FIVE_AXIS)
 MACHINES = [SAMPLES / "01-finishing/machine.toml", SAMPLES / "machines/yan_shirase.toml"]
 
 
@@ -53,6 +54,48 @@ class Figures(unittest.TestCase):
                 self.assertEqual(result.cutting_length_mm, expected["cutting_length_mm"])
                 self.assertEqual(result.cutting.min_mm, expected["cutting_extents_mm"]["min"])
                 self.assertEqual([t.tool for t in result.tools], [t["tool"] for t in expected["tools"]])
+
+    def test_check_of_five_axes(self):
+        machine = FIVE_AXIS / "machine.toml"
+        for program in sorted(FIVE_AXIS.glob("*.nc")):
+            with self.subTest(program=program):
+                result = camber.check(program, machine=machine)
+                expected = command_line("check", program, "--machine", machine)
+                self.equal(result, expected)
+                self.assertEqual(result.rotary_moves, expected["moves"]["rotary"])
+                self.assertGreater(result.rotary_moves, 1)
+
+    def test_explain_kinematics_of_every_machine(self):
+        for path in sorted((SAMPLES / "kinematics").glob("*.toml")):
+            with self.subTest(machine=path):
+                result = camber.explain_kinematics(path)
+                expected = command_line("check", "--explain-kinematics", path)
+                self.equal(result, expected)
+                self.assertEqual(result.machine_type, expected["machine_type"])
+                self.assertEqual([(a.letter, a.rotary, "table" if a.table else "head", a.positive, a.limits)
+                                  for a in result.axes],
+                                 [(a["axis"], a["axis_type"] == "rotary", a["carried_by"], a["positive"], a["limits"])
+                                  for a in expected["axes"]])
+                self.assertIn(result.axes[0].positive, result.text)
+                self.assertEqual(camber.explain_kinematics(camber.read_machine(path)).json, result.json)
+        with self.assertRaises(camber.InputError) as raised:
+            camber.explain_kinematics(MACHINES[0])
+        self.assertEqual(raised.exception.id, "kinematics-missing")
+
+    def test_what_the_operator_has_set_at_the_control(self):
+        text = "G21 G54 G0 X0 Y0 Z50 C0\nG234 H1\nG1 X450. C90. F500\nG49\nM30\n"
+        machine = SAMPLES / "kinematics/table_bc.toml"
+        offsets = {"G54": [-40, 5, -300]}
+        checked = camber.check(camber.program_from_text("p.nc", text, tool_lengths={1: 100}, work_offsets=offsets),
+                               machine=machine)
+        self.assertEqual([d.id for d in checked.diagnostics if d.id.startswith("travel")], [])
+        with self.assertRaises(camber.InputError) as raised:
+            camber.check(camber.program_from_text("p.nc", text, tool_lengths={1: 100}, work_offsets={"G54": [10, 5, -300]}),
+                         machine=machine)
+        self.assertEqual(raised.exception.id, "travel")
+        with self.assertRaises(camber.InputError) as raised:
+            camber.program_from_text("p.nc", text, work_offsets={"G54": [1, 2]})
+        self.assertEqual(raised.exception.id, "work-offset")
 
     def test_check_of_every_job(self):
         for job in sorted(SAMPLES.glob("*/job.toml")):

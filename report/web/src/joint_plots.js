@@ -6,9 +6,8 @@ const HEIGHT = 104, AXIS_HEIGHT = 46, MARK = '#1d2733', RED = '#c0392b';
 // A limit is shown where the axis comes within this share of its way of it.
 const NEAR = 0.35;
 
-function rangeOf({ values, travel }) {
-  let low = Infinity, high = -Infinity;
-  for (const v of values) { low = Math.min(low, v); high = Math.max(high, v); }
+function rangeOf({ range, travel }) {
+  let [low, high] = range;
   const way = Math.max(high - low, 1);
   if (travel[0] !== null && travel[0] > low - NEAR * way) low = Math.min(low, travel[0]);
   if (travel[1] !== null && travel[1] < high + NEAR * way) high = Math.max(high, travel[1]);

@@ -6,8 +6,8 @@ import { MachineScene } from './machine_scene.js';
 import { choice, element, fixed, menu } from './text.js';
 
 const byId = id => document.getElementById(id);
-const BEYOND = 2e-3;  // positions are stored in 65534 steps of their range
-const MOMENTS = 24, PLAY_S = 20;
+const BEYOND = 1e-4;  // what rounding to a float leaves
+const MOMENTS = 400, PLAY_S = 20;
 
 function triples(bytes, arrays) {
   const parts = arrays.map(a => read(bytes, a)), out = new Float32Array(3 * parts[0].length);
@@ -38,8 +38,7 @@ async function readMachine() {
 class MachinePage {
   constructor(page) {
     Object.assign(this, { page, t: 0, playing: false, end: page.time[page.time.length - 1] });
-    const n = page.time.length, moments = Math.min(n, MOMENTS);
-    page.moments = Array.from({ length: moments }, (_, k) => this.stateAt(page.time[Math.round(k * (n - 1) / Math.max(1, moments - 1))]));
+    page.moments = Array.from({ length: MOMENTS + 1 }, (_, k) => this.stateAt(k / MOMENTS * this.end));  // at equal times
     this.plots = new JointPlots(byId('plots'), page, t => this.go(t));
     this.startScenes();
     this.controls();

@@ -24,7 +24,7 @@ void main() {
 }`;
 
 const VIEWS = { oblique: [-0.75, -1, 0.75], top: [0, -1e-4, 1], front: [0, -1, 0], right: [1, 0, 0] };
-const RED = '#c0392b';
+const RED = '#c0392b', ASIDE = 0.05, FITTED = 25;
 const shown = colour => new Color(colour).convertLinearToSRGB();
 
 function material(colour, alpha = 1) {
@@ -36,7 +36,7 @@ function material(colour, alpha = 1) {
 
 // A cylinder from one point to another.
 function cylinder(from, to, radius, colour, alpha, top = radius) {
-  const along = to.clone().sub(from), mesh = new Mesh(new CylinderGeometry(top, radius, along.length(), 40), material(colour, alpha));
+  const along = to.clone().sub(from), mesh = new Mesh(new CylinderGeometry(top, radius, along.length(), 72), material(colour, alpha));
   mesh.position.copy(from).addScaledVector(along, 0.5);
   mesh.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), along.normalize()));
   return mesh;
@@ -87,6 +87,7 @@ export class MachineScene {
     this.bodies = chain.links.map(() => this.scene.add(new Group()).children.at(-1));
     this.partBody = this.scene.add(new Group()).children.at(-1);
     this.toolBody = this.scene.add(new Group()).children.at(-1);
+    this.marks = [];  // points of bodies that the picture must hold
     this.measure();
     if (page.part) this.addPart(page.part);
     this.addPath();
@@ -99,12 +100,16 @@ export class MachineScene {
   measure() {
     const { tip, part, work } = this.page, low = new Vector3(Infinity, Infinity, Infinity), high = low.clone().negate();
     const add = (x, y, z) => { const p = new Vector3(x, y, z); low.min(p); high.max(p); };
-    for (let i = 0; i < tip.length; i += 3) add(tip[i], tip[i + 1], tip[i + 2]);
+    // Approaches and retracts are short and far: they do not count.
+    const ends = [0, 1, 2].map(k => {
+      const sorted = Float64Array.from(this.page.moments, m => tip[3 * m.index + k]).sort();
+      return [sorted[Math.floor(ASIDE * (sorted.length - 1))], sorted[Math.ceil((1 - ASIDE) * (sorted.length - 1))]];
+    });
+    for (const k of [0, 1]) add(ends[0][k], ends[1][k], ends[2][k]);
     if (part) for (let i = 0; i < part.place.length; i += 3) add(part.place[i] + work[0], part.place[i + 1] + work[1], part.place[i + 2] + work[2]);
     this.middle = low.clone().add(high).multiplyScalar(0.5);
     this.radius = Math.max(low.distanceTo(high) / 2, 5);
-    this.floor = low;
-    this.toolRadius = page_diameter(this.page) / 2 || 0.05 * this.radius + 1;
+    this.toolRadius = this.page.diameter / 2 || 0.05 * this.radius + 1;
   }
 
   addPart(part) {
@@ -149,10 +154,18 @@ export class MachineScene {
     }
   }
 
+  // The rim of a round end is to be seen.
+  mark(body, centre, way, radius) {
+    const side = Math.abs(way.z) < 0.9 ? new Vector3(0, 0, 1) : new Vector3(1, 0, 0), across = side.clone().cross(way).normalize().multiplyScalar(radius);
+    side.copy(way).cross(across);
+    for (const rim of [across, side]) for (const s of [1, -1]) this.marks.push([this.bodies.indexOf(body), centre.clone().addScaledVector(rim, s)]);
+  }
+
   // Bearings on the axis and a beam under the disc that they carry.
   addCradle(way, centre, out, body) {
-    const size = Math.max(this.disc ? this.disc.radius : out, 0.6 * out), far = 1.25 * size, wide = 0.16 * size;
+    const size = this.disc ? this.disc.radius : out, far = 1.25 * size, wide = 0.16 * size;
     const ends = [1, -1].map(s => centre.clone().addScaledVector(way, s * far));
+    for (const end of ends) this.mark(body, end.clone().addScaledVector(way, 0.3 * size * Math.sign(end.clone().sub(centre).dot(way))), way, 0.3 * size);
     ends.forEach((end, k) => body.add(cylinder(end, end.clone().addScaledVector(way, (k ? -1 : 1) * 0.3 * size), 0.3 * size, '#a98f6b')));
     if (!this.disc) return body.add(bar(...ends, 0.5 * wide, '#c3ad8c', 0.6));
     const { top, up } = this.disc, below = top.clone().addScaledVector(up, -0.25 * size), rise = up.clone().multiplyScalar(below.clone().sub(centre).dot(up));
@@ -164,8 +177,8 @@ export class MachineScene {
   // How low part and path reach along `up`.
   lowest(up) {
     const { tip, part, work } = this.page, p = new Vector3();
-    let low = Infinity;
-    for (let i = 0; i < tip.length; i += 3) low = Math.min(low, p.set(tip[i], tip[i + 1], tip[i + 2]).dot(up));
+    const heights = Float64Array.from(this.page.moments, ({ index: i }) => p.set(tip[3 * i], tip[3 * i + 1], tip[3 * i + 2]).dot(up)).sort();
+    let low = heights[Math.floor(0.01 * (heights.length - 1))];
     if (part) for (let i = 0; i < part.place.length; i += 3) low = Math.min(low, p.set(part.place[i] + work[0], part.place[i + 1] + work[1], part.place[i + 2] + work[2]).dot(up));
     return low;
   }
@@ -177,6 +190,7 @@ export class MachineScene {
     const parallel = Math.abs(way.dot(tool)) > 0.99;
     const from = parallel ? gauge.clone().addScaledVector(tool, 3.2 * size) : centre;
     const half = way.clone().multiplyScalar(parallel ? 0.5 * size : 1.5 * size);
+    for (const end of [from.clone().sub(half), from.clone().add(half)]) this.mark(this.bodies[i], end, way, size);
     this.bodies[i].add(cylinder(from.clone().sub(half), from.clone().add(half), parallel ? 1.5 * size : 0.9 * size, '#a98f6b', 0.75));
     const top = gauge.clone().addScaledVector(tool, 2.4 * size);
     if (!parallel && centre.distanceTo(top) > 0.5 * size) this.bodies[i].add(bar(top, centre, 0.5 * size, '#c3ad8c', 0.9));
@@ -185,7 +199,7 @@ export class MachineScene {
   spindleSize() { return Math.max(2.2 * this.toolRadius, 0.16 * this.radius); }
 
   addTool() {
-    const { gauge, tool, } = this.page.chain, size = this.spindleSize();
+    const { gauge, tool } = this.page.chain, size = this.spindleSize();
     this.toolBody.add(cylinder(gauge, gauge.clone().addScaledVector(tool, 2.4 * size), size, '#76818f', 1));
     this.stick = this.toolBody.add(new Group()).children.at(-1);
     this.length = null;
@@ -225,7 +239,7 @@ export class MachineScene {
 
   // Points that the picture must hold, at some moments of the program.
   outline() {
-    const out = [], { states, middle, radius, page } = this;
+    const out = [], { middle, radius, page } = this;
     const corners = [];
     for (const x of [-1, 1]) for (const y of [-1, 1]) for (const z of [-1, 1]) corners.push(middle.clone().add(new Vector3(x, y, z).multiplyScalar(0.6 * radius)));
     if (this.disc) for (let k = 0; k < 8; k++) {
@@ -233,8 +247,10 @@ export class MachineScene {
       corners.push(this.disc.top.clone().addScaledVector(side, this.disc.radius));
     }
     const top = page.chain.gauge.clone().addScaledVector(page.chain.tool, 2.4 * this.spindleSize());
-    for (const state of page.moments) {
-      const { part, spindle } = page.chain.bodies(state.values), from = this.inPart ? part.clone().invert() : new Matrix4();
+    for (let m = 0; m < page.moments.length; m += Math.ceil(page.moments.length / FITTED)) {
+      const state = page.moments[m];
+      const { links, part, spindle } = page.chain.bodies(state.values), from = this.inPart ? part.clone().invert() : new Matrix4();
+      if (!this.inPart) for (const [body, point] of this.marks) out.push(point.clone().applyMatrix4(links[body]));
       const ofPart = from.clone().multiply(part), ofTool = from.clone().multiply(spindle);
       for (const c of corners) out.push(c.clone().applyMatrix4(ofPart));
       out.push(top.clone().applyMatrix4(ofTool), page.chain.gauge.clone().applyMatrix4(ofTool),
@@ -290,5 +306,3 @@ export class MachineScene {
       }).join('') + '</svg>';
   }
 }
-
-function page_diameter(page) { return page.diameter > 0 ? page.diameter : 0; }
