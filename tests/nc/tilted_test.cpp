@@ -132,6 +132,15 @@ TEST(TiltedFrame, BadInputByWholeMessage) {
                      "M.toml) [not-read]"});
 }
 
+TEST(TiltedFrame, OtherCodesForPlanesAreRefusedByName) {
+  EXPECT_EQ(
+      said("G0 X0 Y0 Z0\nG68.3 X0\nG53.6\nG268 X0\n"),
+      (Messages{"p.nc:2:1: error: G68.3 (tilted frame from the direction of the tool) is not supported [not-read]",
+                "p.nc:3:1: error: G53.6 (turns the tool along Z of a tilted frame about its tip) is not supported "
+                "[not-read]",
+                "p.nc:4:1: error: G268 (tilted frame of Haas) is not supported [not-read]"}));
+}
+
 TEST(DynamicOffset, IsAStateOfTheMoves) {
   const Read r = read_clean(
       "G54 G0 X0 Y0 Z0\nG0 B30. C90.\nG254\nX1. Y2.\nZ3.\nG1 Z2. F100\nG0 C180.\nX1. Y2. Z3.\nG255\nX1. Y1. Z1.\n",
