@@ -143,7 +143,7 @@ Vec3 ProgramJoints::tip_at(const nc::Move& move, double u) const {
 Joints ProgramJoints::at(double u) const {
   const nc::Move& move = moves_.moves[index()];
   Joints out;
-  out.rotary_rad = now_.start_rad + u * (now_.end_rad - now_.start_rad);
+  out.rotary_rad = u >= 1 ? now_.end_rad : Vec3(now_.start_rad + u * (now_.end_rad - now_.start_rad));
   if (!now_.linear_known) return out;
   if (u >= 1)
     out.linear_mm = end_linear_mm_;

@@ -47,7 +47,8 @@ Move& BlockInterpreter::add_move(MoveKind kind, const Vec3& end_mm) {
     check_rotary_offset();
     move.open_axes = static_cast<std::uint8_t>(open_axes_of_move() & 7U);
     move.start_open = start_open_;
-    start_open_ = move.open_axes != 0;
+    const auto& targets = out_.machine_targets;
+    start_open_ = move.open_axes != 0 || (!targets.empty() && targets.back().move == out_.moves.size());
   }
   position_mm_ = end_mm;
   out_.moves.push_back(move);

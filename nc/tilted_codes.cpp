@@ -183,9 +183,11 @@ void BlockInterpreter::add_machine_target(const Vec3& end_mm, std::uint8_t given
 /// Move::open_axes of the block's move.
 std::uint8_t BlockInterpreter::open_axes_of_move() const {
   auto open = static_cast<std::uint8_t>(open_axes_ | unsettled_);
+  // Words that say where the move ends in the frame of the program.
+  const bool words_count = !state_.incremental && cycle_.g == 0 && !request_.frame_code.word &&
+                           !request_.machine_frame && !request_.reference;
   for (unsigned axis = 0; axis < 3; ++axis) {
-    const bool given =
-        words_.has(kAxisLetters[axis]) && !state_.incremental && cycle_.g == 0 && !request_.frame_code.word;
+    const bool given = words_count && words_.has(kAxisLetters[axis]);
     if (place_[axis] != AxisPlace::known && !given) open = static_cast<std::uint8_t>(open | (1U << axis));
   }
   return open;
