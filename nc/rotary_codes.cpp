@@ -231,9 +231,10 @@ void BlockInterpreter::check_rotary_letter(char letter) {
   if (options_.rotary_axes.empty()) {
     if (words_.value(letter) != 0)
       error(words_.offset_of(letter), "rotary-axis",
-            fmt::format("rotary axis {} is read by camber check --machine alone, on a machine with [kinematics]; X, Y "
-                        "and Z were expected",
-                        letter),
+            fmt::format(
+                "rotary axis {} is read by camber check, feed, time and fit-feed, on a machine with [kinematics]; X, Y "
+                "and Z were expected",
+                letter),
             std::string(1, letter));
     else
       report_.warning(words_.offset_of(letter), "rotary-axis",

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "feedmodel/feed_meaning.h"
 #include "machine/job.h"
 #include "nc/interpreter.h"
 #include "nc/summary.h"
@@ -14,7 +15,8 @@ namespace camber::api {
 struct CheckedProgram {
   nc::Interpretation moves;
   nc::Summary summary;
-  std::optional<double> memory_bytes{};  ///< that predict needs, about; of a job alone
+  std::vector<feedmodel::FeedMeaningUse> feed_meanings{};  ///< of a program that turns rotary axes of the machine
+  std::optional<double> memory_bytes{};                    ///< that predict needs, about; of a job alone
 };
 
 /// As the control of `machine` reads it, where one is given; `job` (with its machine as `machine`) also has its tools,
@@ -31,6 +33,7 @@ std::string unit_text(const nc::Summary& summary);
 
 /// The figures of a report as JSON text, with a line end.
 std::string check_json(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics,
-                       std::optional<double> memory_bytes = {});
+                       std::optional<double> memory_bytes = {},
+                       const std::vector<feedmodel::FeedMeaningUse>& feed_meanings = {});
 
 }  // namespace camber::api

@@ -169,9 +169,10 @@ TEST(Rotary, WithoutRotaryAxesCodesAreRefusedByName) {
             Messages{"p.nc:1:1: error: G43.4 (tool centre point control of five axes) is not supported [not-read]"});
   EXPECT_EQ(read_text("G234 H1\n").messages,
             Messages{"p.nc:1:1: error: G234 (tool centre point control of five axes) is not supported [not-read]"});
-  EXPECT_EQ(read_text("G43 H1\nG0 X1 A5.\n").messages,
-            Messages{"p.nc:2:7: error: rotary axis A is read by camber check --machine alone, on a machine with "
-                     "[kinematics]; X, Y and Z were expected [rotary-axis]"});
+  EXPECT_EQ(
+      read_text("G43 H1\nG0 X1 A5.\n").messages,
+      Messages{"p.nc:2:7: error: rotary axis A is read by camber check, feed, time and fit-feed, on a machine with "
+               "[kinematics]; X, Y and Z were expected [rotary-axis]"});
 }
 
 }  // namespace
