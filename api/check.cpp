@@ -34,7 +34,7 @@ CheckResult result_of(const std::string& path, const api::CheckedProgram& checke
   for (const nc::ToolUse& t : s.tools) out.tools.push_back(tool_of(t));
   out.diagnostics = found.all();
   if (checked.memory_bytes) out.memory_GB = *checked.memory_bytes / 1e9;
-  out.json = api::check_json(path, s, found, checked.memory_bytes);
+  out.json = api::check_json(path, s, found, checked.memory_bytes, checked.feed_meanings);
   return out;
 }
 

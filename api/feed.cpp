@@ -8,6 +8,20 @@
 #include "base/units.h"
 
 namespace camber {
+namespace {
+
+/// feed_mm_per_min of the points just added becomes what F counts.
+void add_poses(std::span<const feedmodel::JointSample> joints, FeedResult& result) {
+  std::size_t point = result.points.size() - joints.size();
+  for (const feedmodel::JointSample& j : joints) {
+    result.points[point++].feed_mm_per_min = mm_per_min_from_mm_per_s(j.feed_mm_per_s);
+    const Vec3 &tip = j.tool.tip_mm, &axis = j.tool.axis;
+    result.poses.push_back({deg_from_rad(j.position_rad.x()), deg_from_rad(j.position_rad.y()),
+                            deg_from_rad(j.position_rad.z()), tip.x(), tip.y(), tip.z(), axis.x(), axis.y(), axis.z()});
+  }
+}
+
+}  // namespace
 
 feedmodel::SampleSink api::points_sink(const nc::Interpretation& moves, std::vector<FeedPoint>& points) {
   return [&moves, &points](std::span<const feedmodel::TimedSample> samples) {
@@ -33,9 +47,13 @@ FeedResult v0::feed(const Program& program, const Machine& machine, const FeedOp
     run.settle(found);
     const auto keep = api::points_sink(moves, result.points);
     const auto count = static_cast<double>(moves.moves.size());
-    const auto summary =
-        feedmodel::predict_feed(moves, machine.impl().machine, [&](std::span<const feedmodel::TimedSample> samples) {
-          if (options.points) keep(samples);
+    const auto summary = api::predict_feed(
+        moves, machine.impl().machine,
+        [&](std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints) {
+          if (options.points) {
+            keep(samples);
+            add_poses(joints, result);
+          }
           if (!samples.empty()) run.show("timing", static_cast<double>(samples.back().move) / count);
         });
     result.time_s = summary.time_s;

@@ -31,18 +31,23 @@ constexpr std::array kLengthUnits{UnitFactor{"mm", 1}, UnitFactor{"um", 1e-3}, U
                                   UnitFactor{"m", 1e3}, UnitFactor{"inch", kInchMm}};
 constexpr std::array kFeedUnits{UnitFactor{"mm/min", 1.0 / 60}, UnitFactor{"mm/s", 1}, UnitFactor{"m/min", 1000.0 / 60},
                                 UnitFactor{"m/s", 1000}, UnitFactor{"inch/min", kInchMm / 60}};
+constexpr std::array kAngleUnits{UnitFactor{"deg", 1}, UnitFactor{"mdeg", 1e-3}, UnitFactor{"rad", 180 / kPi}};
 constexpr std::array kCountUnits{UnitFactor{"1", 1}};
 constexpr std::array<std::string_view, 4> kSeparatorWords{",", ";", "tab", "blank"};
 constexpr std::array kSeparators{',', ';', '\t', ' '};
 
+bool is_angle(std::size_t q) { return q >= static_cast<std::size_t>(Quantity::a_cmd); }
+
 bool is_position(std::size_t q) {
-  return q >= static_cast<std::size_t>(Quantity::x_cmd) && q <= static_cast<std::size_t>(Quantity::z_act);
+  return is_angle(q) ||
+         (q >= static_cast<std::size_t>(Quantity::x_cmd) && q <= static_cast<std::size_t>(Quantity::z_act));
 }
 
 std::span<const UnitFactor> units_of(std::size_t q) {
   if (q == static_cast<std::size_t>(Quantity::time)) return kTimeUnits;
   if (q == static_cast<std::size_t>(Quantity::feed)) return kFeedUnits;
   if (q == static_cast<std::size_t>(Quantity::line)) return kCountUnits;
+  if (is_angle(q)) return kAngleUnits;
   return kLengthUnits;
 }
 
@@ -178,7 +183,11 @@ ServoTrace trace_of(const std::string& path, const std::vector<Channel>& channel
   for (int i = 0; i < 3; ++i) {
     trace.has_command[i] = map.column[1 + i].has_value();
     trace.has_actual[i] = map.column[4 + i].has_value();
+    trace.has_rotary_command[i] = map.column[9 + i].has_value();
+    trace.has_rotary_actual[i] = map.column[12 + i].has_value();
   }
+  const bool rotary =
+      std::any_of(map.column.begin() + 9, map.column.end(), [](const auto& c) { return c.has_value(); });
   for (const double t : base->t_s) {
     std::array<double, kQuantities> v{};
     bool whole = true;
@@ -192,6 +201,10 @@ ServoTrace trace_of(const std::string& path, const std::vector<Channel>& channel
     trace.t_s.push_back(t);
     trace.command_mm.emplace_back(v[1], v[2], v[3]);
     trace.actual_mm.emplace_back(v[4], v[5], v[6]);
+    if (rotary) {
+      trace.rotary_command_deg.emplace_back(v[9], v[10], v[11]);
+      trace.rotary_actual_deg.emplace_back(v[12], v[13], v[14]);
+    }
     if (readers[7]) trace.feed_mm_per_s.push_back(v[7]);
     if (readers[8]) trace.line.push_back(static_cast<std::uint32_t>(std::max(0L, std::lround(v[8]))));
   }

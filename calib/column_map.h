@@ -12,16 +12,33 @@
 namespace camber::calib {
 
 /// The quantities of a servo trace, in the order of ColumnMap.
-enum class Quantity { time, x_cmd, y_cmd, z_cmd, x_act, y_act, z_act, feed, line };
-inline constexpr std::size_t kQuantities = 9;
+enum class Quantity {
+  time,
+  x_cmd,
+  y_cmd,
+  z_cmd,
+  x_act,
+  y_act,
+  z_act,
+  feed,
+  line,
+  a_cmd,
+  b_cmd,
+  c_cmd,
+  a_act,
+  b_act,
+  c_act
+};
+inline constexpr std::size_t kQuantities = 15;
 inline constexpr std::array<std::string_view, kQuantities> kQuantityKeys{"t",     "x_cmd", "y_cmd", "z_cmd", "x_act",
-                                                                         "y_act", "z_act", "feed",  "line"};
+                                                                         "y_act", "z_act", "feed",  "line",  "a_cmd",
+                                                                         "b_cmd", "c_cmd", "a_act", "b_act", "c_act"};
 
 /// One column: value = (number in the file * scale + offset) in `unit`.
 struct MappedColumn {
   std::string name;          ///< as the file's header or signal list has it; empty: by index
   std::size_t index = 0;     ///< 1-based, where there is no name
-  double inside_factor = 1;  ///< of the unit: to s, mm, mm/s
+  double inside_factor = 1;  ///< of the unit: to s, mm, mm/s, degrees
   double scale = 1, offset = 0;
 };
 
@@ -41,7 +58,7 @@ struct ColumnMap {
 ///   skip_lines = 3
 ///   header = false             columns by index alone
 ///   period_ms = 2              instead of [t]
-///   [x_cmd]                    likewise t, y_cmd, z_cmd, x_act, y_act, z_act, feed, line
+///   [x_cmd]                    likewise t, y_cmd, z_cmd, x_act, y_act, z_act, feed, line, a_cmd .. c_act
 ///   name = "X set"             or index = 2
 ///   unit = "um"                time: s (default), ms, us, 100ns; positions: mm (default), um, nm, m, inch;
 ///                              feed: mm/min (default), mm/s, m/min, m/s, inch/min

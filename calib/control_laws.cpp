@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
+#include <string_view>
 
 #include "base/units.h"
 #include "feedmodel/plan.h"
@@ -55,6 +57,13 @@ std::set<double> corner_angles(const std::vector<TimedLines>& data) {
   return angles;
 }
 
+/// Index into Accelerations.
+std::optional<std::size_t> axis_of_acceleration(const LimitParameter& p) {
+  constexpr std::string_view kLetters = "xyzabc", kAxis = "axis.";
+  if (!p.name.starts_with(kAxis) || p.name.find(".acceleration_") == p.name.npos) return std::nullopt;
+  return kLetters.find(p.name[kAxis.size()]);
+}
+
 bool is_number_of_law(const LimitParameter& p) {
   return p.name.starts_with("control.corner.") && p.name != "control.corner.step_share";
 }
@@ -66,8 +75,8 @@ void start_together(const std::vector<TimedLines>& data, const Machine& base, st
   double least = INFINITY;
   for (const double factor : {1.0, 2.0, 4.0, 8.0}) {
     std::vector<LimitParameter> here = parameters;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      here[axis].start = std::clamp(factor * here[axis].start, here[axis].least * 1.001, here[axis].most * 0.999);
+    for (LimitParameter& p : here)
+      if (axis_of_acceleration(p)) p.start = std::clamp(factor * p.start, p.least * 1.001, p.most * 0.999);
     double cost = scan_start(data, base, here, here.size() - 1, kCoarseSteps);
     for (std::size_t i = 0; i < here.size(); ++i)
       if (is_number_of_law(here[i])) cost = scan_start(data, base, here, i, kCoarseSteps);
@@ -104,11 +113,11 @@ std::vector<std::pair<std::string, Machine>> machines_of_each_law(const Machine&
   return machines;
 }
 
-LimitFit fit_law(const std::vector<TimedLines>& data, const Machine& base,
-                 const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations) {
+LimitFit fit_law(const std::vector<TimedLines>& data, const Machine& base, const Accelerations& acceleration,
+                 int max_iterations) {
   std::vector<LimitParameter> parameters = limit_parameters(base, any_logged(data));
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (acceleration_mm_per_s2[axis] > parameters[axis].least) parameters[axis].start = acceleration_mm_per_s2[axis];
+  for (LimitParameter& p : parameters)
+    if (const auto axis = axis_of_acceleration(p); axis && acceleration[*axis] > p.least) p.start = acceleration[*axis];
   start_together(data, base, parameters);
   return fit_limits(data, base, std::move(parameters), max_iterations, true);
 }
@@ -128,12 +137,11 @@ double held_out_percent(const std::vector<TimedLines>& data, const Machine& mach
 }
 
 std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const Machine& start,
-                               const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations,
-                               std::size_t& best) {
+                               const Accelerations& acceleration, int max_iterations, std::size_t& best) {
   std::vector<TriedLaw> tried;
   best = 0;
   for (const auto& [name, machine] : machines_of_each_law(start)) {
-    LimitFit fit = fit_law(data, machine, acceleration_mm_per_s2, max_iterations);
+    LimitFit fit = fit_law(data, machine, acceleration, max_iterations);
     const double percent = held_out_percent(data, fit.whole);
     tried.push_back({name, std::move(fit), percent});
     const double margin = best == 0 ? 1 - kBetterBy : 1.0;

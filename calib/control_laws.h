@@ -1,5 +1,6 @@
 #pragma once
 // Which laws a control may follow at corners: fit-feed tries each and keeps the one that predicts best.
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,17 @@ struct TriedLaw {
   double held_out_percent = 0;  ///< mean error of the times of the parts held out
 };
 
+/// Of x, y, z in mm/s^2, and of a, b, c in degrees/s^2; 0: the axis rests.
+using Accelerations = std::array<double, 6>;
+
 /// The machine with each corner law, that of `start` first: rounding within a tolerance (G64 P), speed difference by
 /// axis, speed change by angle, radius of three points, exact stop. `start` gives everything else.
 std::vector<std::pair<std::string, machine::Machine>> machines_of_each_law(const machine::Machine& start);
 
 /// Fits `base` (its law stands) from values that the data give: accelerations as commanded at most
-/// (acceleration_mm_per_s2; 0: the axis rests), the law's own number and the block time by a scan of their ranges.
-LimitFit fit_law(const std::vector<TimedLines>& data, const machine::Machine& base,
-                 const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations);
+/// (`acceleration`), the law's own number and the block time by a scan of their ranges.
+LimitFit fit_law(const std::vector<TimedLines>& data, const machine::Machine& base, const Accelerations& acceleration,
+                 int max_iterations);
 
 /// Mean absolute error of the times of the parts that were held out, %.
 double held_out_percent(const std::vector<TimedLines>& data, const machine::Machine& machine);
@@ -31,8 +35,7 @@ double held_out_percent(const std::vector<TimedLines>& data, const machine::Mach
 /// `start` unless another is better by a thousandth, and the exact stop, which has no number, unless another is better
 /// by 5 %.
 std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const machine::Machine& start,
-                               const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations,
-                               std::size_t& best);
+                               const Accelerations& acceleration, int max_iterations, std::size_t& best);
 
 /// Tries, under the law of `standing`, a stop at corners sharper than each wide gap between the corners of the
 /// programs, and corners under 5 degrees passed as none. Keeps what lowers the held-out cost by 5 %.

@@ -6,6 +6,8 @@
 
 #include "base/numbers.h"
 #include "base/units.h"
+#include "calib/rotary_lines.h"
+#include "feedmodel/joint_map.h"
 #include "feedmodel/timed_path.h"
 
 namespace camber::calib {
@@ -18,9 +20,53 @@ struct Record {
   double period_s = 0;
   std::vector<Vec3> command_mm, actual_mm;
   std::vector<std::uint32_t> line;
+  std::vector<Vec3> rotary_actual_deg{};  ///< of programs with rotary motion
 };
 
+/// Replaces the actual positions by what F counts, sample by sample: X Y Z, the tip in the part's frame, or degrees.
+void set_feed_points(Record& r, const nc::Interpretation& program, const machine::Machine& machine) {
+  if (!feedmodel::has_rotary_motion(program, machine) || r.rotary_actual_deg.empty()) return;
+  const std::vector<LineFeed> lines = feeds_of_lines(program, machine);
+  const feedmodel::JointMap map(machine, program);
+  const LineFeed* line = nullptr;
+  for (std::size_t k = 0; k < r.line.size(); ++k) {
+    if (r.line[k] < lines.size() && lines[r.line[k]].turn) line = &lines[r.line[k]];
+    if (!line) continue;
+    if (line->rotary_alone)
+      r.actual_mm[k] = r.rotary_actual_deg[k];
+    else if (line->turn->tip_control)
+      r.actual_mm[k] = map.tool({r.actual_mm[k], r.rotary_actual_deg[k] * (kPi / 180)}, *line->turn).tip_mm;
+  }
+}
+
+Record record_of_joints(const nc::Interpretation& program, const machine::Machine& machine) {
+  Record r;
+  r.period_s = machine.control.period_s;
+  const auto add = [&](std::span<const feedmodel::TimedSample> samples,
+                       std::span<const feedmodel::JointSample> joints) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      r.command_mm.push_back(samples[i].command_mm + joints[i].command_rad);  // only looked at for changes
+      r.actual_mm.push_back(samples[i].position_mm);
+      r.rotary_actual_deg.push_back(joints[i].position_rad * (180 / kPi));
+      const bool rests = samples[i].feed_command_mm_per_s == 0;
+      r.line.push_back(rests ? 0 : program.moves[samples[i].move].block + 1);
+    }
+  };
+  feedmodel::predict_joints(program, machine, add);
+  set_feed_points(r, program, machine);
+  return r;
+}
+
+Record record_of(const ServoTrace& trace, const nc::Interpretation& program, const machine::Machine& machine) {
+  Record r{trace.period_s, trace.command_mm, trace.actual_mm, trace.line, trace.rotary_actual_deg};
+  if (!feedmodel::has_rotary_motion(program, machine)) return r;
+  for (std::size_t k = 0; k < trace.rotary_command_deg.size(); ++k) r.command_mm[k] += trace.rotary_command_deg[k];
+  set_feed_points(r, program, machine);
+  return r;
+}
+
 Record record_of(const nc::Interpretation& program, const machine::Machine& machine) {
+  if (feedmodel::has_rotary_motion(program, machine)) return record_of_joints(program, machine);
   Record r;
   r.period_s = machine.control.period_s;
   feedmodel::predict_feed(program, machine, [&](std::span<const feedmodel::TimedSample> run) {
@@ -128,6 +174,30 @@ std::vector<Part> parts_of(const nc::Interpretation& program) {
   return parts;
 }
 
+std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Machine& machine) {
+  if (!feedmodel::has_rotary_motion(program, machine)) return parts_of(program);
+  const std::vector<LineFeed> lines = feeds_of_lines(program, machine);
+  std::vector<Part> parts;
+  const LineFeed* last = nullptr;  // of the open part
+  double last_f = 0;
+  for (const nc::Move& move : program.moves) {
+    const LineFeed& line = lines[std::min<std::size_t>(move.block + 1, lines.size() - 1)];
+    if (move.kind == nc::MoveKind::dwell || !line.cutting) {
+      last = nullptr;
+      continue;
+    }
+    const auto meaning = line.turn->feed;
+    const bool inverse = meaning == feedmodel::FeedMeaning::inverse;
+    if (last && meaning == last->turn->feed && (inverse || move.feed_mm_per_s == last_f))
+      parts.back().line_last = move.block + 1;
+    else
+      parts.push_back({move.block + 1, move.block + 1, line.feed_per_s});
+    last = &line;
+    last_f = move.feed_mm_per_s;
+  }
+  return parts;
+}
+
 std::vector<Part> read_parts(const std::string& path) {
   const SourceText source = SourceText::read(path);
   std::istringstream text(source.text());
@@ -211,7 +281,7 @@ FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpret
 
 FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program, const machine::Machine& machine,
                            const std::vector<Part>& parts, const FeedAccuracyOptions& options) {
-  const Record traced{trace.period_s, trace.command_mm, trace.actual_mm, trace.line};
+  const Record traced = record_of(trace, program, machine);
   const Record model = record_of(program, machine);
   FeedAccuracy result;
   result.time_trace_s = motion_time(traced);

@@ -22,6 +22,9 @@ std::vector<Part> read_parts(const std::string& path);
 
 /// Parts of a program without such a list: runs of feed moves of one feed between rapids, dwells and rests.
 std::vector<Part> parts_of(const nc::Interpretation& program);
+/// The same for any machine: in programs with rotary motion the feed of a part is along its path (degrees/s where only
+/// rotary axes move), and moves in inverse time (G93) follow each other in one part.
+std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Machine& machine);
 
 struct PartAccuracy {
   Part part;

@@ -6,11 +6,14 @@
 #include <cmath>
 #include <functional>
 
+#include "base/units.h"
 #include "calib/fit_limits.h"
 #include "calib/fit_ramp.h"
 #include "calib/fit_smoothing.h"
 #include "calib/logged_lines.h"
+#include "calib/rotary_lines.h"
 #include "feedmodel/fitted_range.h"
+#include "feedmodel/joint_map.h"
 
 namespace camber::calib {
 namespace {
@@ -67,9 +70,10 @@ std::vector<double> traced_times_s(const ServoTrace& trace, const std::vector<Pa
 /// Parts are timed as a whole and, where they have few blocks, block by block as well: a line and the arc after it
 /// tell more apart than together. Blocks that were merged into a later one do not appear in the trace and are left
 /// out there and in the plan.
-void add_timed_lines(const FeedRun& run, int keep_back_every, std::size_t& count, std::vector<TimedLines>& data) {
+void add_timed_lines(const FeedRun& run, const Machine& machine, int keep_back_every, std::size_t& count,
+                     std::vector<TimedLines>& data) {
   TimedLines parts, blocks;
-  for (const Part& part : parts_of(run.program)) {
+  for (const Part& part : parts_of(run.program, machine)) {
     const bool kept_back = ++count % static_cast<std::size_t>(keep_back_every) == 0;
     const bool by_block = part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
     for (std::uint32_t line = part.line_first; by_block && line <= part.line_last; ++line) {
@@ -88,10 +92,11 @@ void add_timed_lines(const FeedRun& run, int keep_back_every, std::size_t& count
   }
 }
 
-std::vector<TimedLines> timed_lines(const std::vector<FeedRun>& runs, int keep_back_every, std::size_t& count) {
+std::vector<TimedLines> timed_lines(const std::vector<FeedRun>& runs, const Machine& machine, int keep_back_every,
+                                    std::size_t& count) {
   std::vector<TimedLines> data;
   for (const FeedRun& run : runs)
-    if (!run.trace.line.empty()) add_timed_lines(run, keep_back_every, count, data);
+    if (!run.trace.line.empty()) add_timed_lines(run, machine, keep_back_every, count, data);
   return data;
 }
 
@@ -101,6 +106,8 @@ struct Plateau {
   double speed_mm_per_s = 0;
   bool held = false;
 };
+
+constexpr char kTipControl = 2;
 
 Plateau rapid_plateau(const std::vector<FeedRun>& runs, int axis) {
   Plateau plateau;
@@ -112,11 +119,13 @@ Plateau rapid_plateau(const std::vector<FeedRun>& runs, int axis) {
       for (const nc::Move& move : run.program.moves) {
         if (rapid.size() <= move.block + 1) rapid.resize(move.block + 2, 0);
         rapid[move.block + 1] = move.kind == nc::MoveKind::rapid;
+        if (run.program.state_of(move).tip_control != nc::TipControl::off) rapid[move.block + 1] = kTipControl;
       }
       for (std::size_t k = 1; k < run.trace.line.size(); ++k) {
         if (run.trace.line[k] >= rapid.size() || run.trace.line[k] != run.trace.line[k - 1]) continue;
         const double speed =
             std::abs(run.trace.command_mm[k][axis] - run.trace.command_mm[k - 1][axis]) / run.trace.period_s;
+        if (rapid[run.trace.line[k]] == kTipControl) continue;  // the axes are not those of the program
         if (!rapid[run.trace.line[k]]) {
           if (run.trace.line[k] > 0) in_feed = std::max(in_feed, speed);
           continue;
@@ -132,13 +141,13 @@ Plateau rapid_plateau(const std::vector<FeedRun>& runs, int axis) {
 
 /// Acceleration that an axis was commanded at most, over windows of ten periods (a trace is rounded); the few
 /// highest are left out. 0: the axis rests.
-double traced_acceleration(const std::vector<FeedRun>& runs, int axis) {
+double traced_acceleration(const std::vector<const ServoTrace*>& traces, int axis) {
   constexpr std::size_t kWindow = 10, kLeftOut = 20;
   std::vector<double> highest;  // a heap, least in front
-  for (const FeedRun& run : runs) {
-    const auto& c = run.trace.command_mm;
-    const double t = static_cast<double>(kWindow) * run.trace.period_s;
-    for (const Stretch& s : run.trace.stretches)
+  for (const ServoTrace* trace : traces) {
+    const auto& c = trace->command_mm;
+    const double t = static_cast<double>(kWindow) * trace->period_s;
+    for (const Stretch& s : trace->stretches)
       for (std::size_t k = s.first; k + 2 * kWindow < s.end; ++k) {
         const double a = std::abs(c[k + 2 * kWindow][axis] - 2 * c[k + kWindow][axis] + c[k][axis]) / (t * t);
         if (highest.size() > kLeftOut && a <= highest.front()) continue;
@@ -152,8 +161,59 @@ double traced_acceleration(const std::vector<FeedRun>& runs, int axis) {
   return highest.empty() ? 0 : highest.front();
 }
 
-std::array<double, 3> traced_accelerations(const std::vector<FeedRun>& runs) {
-  return {traced_acceleration(runs, 0), traced_acceleration(runs, 1), traced_acceleration(runs, 2)};
+Accelerations traced_accelerations(const std::vector<const ServoTrace*>& traces,
+                                   const std::vector<const ServoTrace*>& rotary) {
+  Accelerations out{};
+  for (int axis = 0; axis < 3; ++axis) {
+    out[static_cast<std::size_t>(axis)] = traced_acceleration(traces, axis);
+    if (!rotary.empty()) out[static_cast<std::size_t>(3 + axis)] = traced_acceleration(rotary, axis);
+  }
+  return out;
+}
+
+/// Top speed of a rotary axis: the highest in moves that ask for more, if it is held.
+Plateau rotary_plateau(const std::vector<FeedRun>& runs, const Machine& machine, int axis) {
+  constexpr double kWindowS = 0.02, kAskedMore = 1.01;
+  Plateau plateau;
+  for (int pass = 0; pass < 2; ++pass) {
+    double at_top_s = 0;
+    for (const FeedRun& run : runs) {
+      if (run.trace.rotary_command_deg.empty() || !feedmodel::has_rotary_motion(run.program, machine)) continue;
+      const std::vector<LineFeed> lines = feeds_of_lines(run.program, machine);
+      const auto window = static_cast<std::size_t>(std::max(1L, std::lround(kWindowS / run.trace.period_s)));
+      for (std::size_t k = window; k < run.trace.line.size(); ++k) {
+        const std::uint32_t line = run.trace.line[k];
+        if (line != run.trace.line[k - window] || line >= lines.size() || !lines[line].turn) continue;
+        const double speed =
+            std::abs(run.trace.rotary_command_deg[k][axis] - run.trace.rotary_command_deg[k - window][axis]) /
+            (static_cast<double>(window) * run.trace.period_s);
+        if (lines[line].asked_deg_per_s[axis] < kAskedMore * speed) continue;
+        if (pass == 0) plateau.speed_mm_per_s = std::max(plateau.speed_mm_per_s, speed);
+        if (pass == 1 && speed > kPlateauFraction * plateau.speed_mm_per_s) at_top_s += run.trace.period_s;
+      }
+    }
+    plateau.held = at_top_s > kPlateauS;
+  }
+  return plateau;
+}
+
+void add_rotary_velocity(FitFeedResult& result, const std::vector<FeedRun>& runs, char letter) {
+  const int axis = letter - 'a';
+  const Plateau plateau = rotary_plateau(runs, result.machine, axis);
+  const std::string name = fmt::format("axis.{}.max_velocity_deg_per_min", letter);
+  double& limit = result.machine.rotary[static_cast<std::size_t>(axis)].max_velocity_rad_per_s;
+  if (plateau.held) {
+    limit = rad_from_deg(plateau.speed_mm_per_s);
+    const double error = kPlateauFraction < 1 ? (1 - kPlateauFraction) * plateau.speed_mm_per_s : 0.0;
+    result.parameters.push_back(
+        {name, 60 * plateau.speed_mm_per_s, "deg/min", 60 * error, "plateau of the axis", true});
+    return;
+  }
+  result.parameters.push_back({name, 60 * deg_from_rad(limit), "deg/min", std::nullopt,
+                               fmt::format("no move that asks for more holds a top speed (highest {:.0f} degrees/min); "
+                                           "start value kept",
+                                           60 * plateau.speed_mm_per_s),
+                               false});
 }
 
 /// The corner law stands; its number is the one that the machine had, or no limit.
@@ -169,10 +229,10 @@ Machine base_with_law(const Machine& start, const machine::Corner& corner) {
 }
 
 /// Every law, and angles under the best one. LinuxCNC's rounding knows neither a stop angle nor a threshold.
-LimitFit choose_law(FitFeedResult& result, const std::vector<TimedLines>& data,
-                    const std::array<double, 3>& acceleration_mm_per_s2, int max_iterations) {
+LimitFit choose_law(FitFeedResult& result, const std::vector<TimedLines>& data, const Accelerations& acceleration,
+                    int max_iterations) {
   std::size_t best = 0;
-  std::vector<TriedLaw> tried = try_laws(data, result.machine, acceleration_mm_per_s2, max_iterations, best);
+  std::vector<TriedLaw> tried = try_laws(data, result.machine, acceleration, max_iterations, best);
   LimitFit chosen = tried[best].fit;
   result.law = tried[best].name;
   if (chosen.machine.control.corner.law != machine::CornerLaw::blend) {
@@ -249,6 +309,7 @@ void refine_block_time(LimitFit& fit, const std::vector<TimedLines>& data, const
 /// Which program of camber protocol has what a parameter shows in.
 std::string_view what_tells(std::string_view name) {
   if (name.ends_with("block_time_ms")) return "run the saturation program of camber protocol";
+  if (name.ends_with("deg_per_s2")) return "run the rotary program of camber protocol";
   if (name.find("arc_") != name.npos) return "run the circles of camber protocol";
   if (name.find("stop_acceleration") != name.npos) return "run a polygon program of camber protocol under G64";
   if (name.find("step_share") != name.npos) return "run a polygon program of camber protocol under G61";
@@ -355,7 +416,7 @@ void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_bac
   double square[2] = {0, 0}, p95[2] = {0, 0};
   std::size_t count = 0;
   for (const FeedRun& run : runs) {
-    const std::vector<Part> parts = parts_of(run.program);
+    const std::vector<Part> parts = parts_of(run.program, result.machine);
     RunAccuracy accuracy{run.program_name, feed_accuracy(run.trace, run.program, result.machine, parts, {})};
     if (!run.trace.line.empty()) {
       std::size_t seen = 0;
@@ -411,9 +472,11 @@ void judge_logged(FitFeedResult& result, const std::vector<LoggedLines>& logged,
 
 }  // namespace
 
-void add_drive(Machine& machine, std::vector<FitParameter>& parameters, int axis, const DriveFit& drive) {
-  const std::string name = std::string("axis.") + kAxes[axis] + ".";
-  machine::Axis& a = machine.axis[axis];
+namespace {
+
+/// Axis: machine::Axis or machine::RotaryAxis.
+template <class Axis>
+void set_drive(Axis& a, std::vector<FitParameter>& parameters, const std::string& name, const DriveFit& drive) {
   if (!drive.moved) {
     parameters.push_back({name + "position_gain_per_s", a.position_gain_per_s, "1/s", std::nullopt,
                           "the axis does not move in the traces", false});
@@ -436,6 +499,12 @@ void add_drive(Machine& machine, std::vector<FitParameter>& parameters, int axis
         {name + "filter_ms", 1000 * drive.filter_s.value, "ms", std::nullopt, "chosen from a list", true});
 }
 
+}  // namespace
+
+void add_drive(Machine& machine, std::vector<FitParameter>& parameters, int axis, const DriveFit& drive) {
+  set_drive(machine.axis[axis], parameters, std::string("axis.") + kAxes[axis] + ".", drive);
+}
+
 FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, const FitFeedOptions& options) {
   return fit_feed(runs, {}, start, options);
 }
@@ -446,19 +515,25 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
   result.machine = start;
   std::vector<const ServoTrace*> traces;
   for (const FeedRun& run : runs) traces.push_back(&run.trace);
+  std::vector<ServoTrace> rotary_traces;
+  for (const FeedRun& run : runs)
+    if (!run.trace.rotary_command_deg.empty()) rotary_traces.push_back(rotary_trace(run.trace));
+  std::vector<const ServoTrace*> rotary;
+  for (const ServoTrace& trace : rotary_traces) rotary.push_back(&trace);
   bool drives_converged = true;
   if (!traces.empty()) result.machine.control.period_s = traces.front()->period_s;
   set_control_defaults(result.machine.control);
 
   std::size_t parts = 0;
-  std::vector<TimedLines> data = timed_lines(runs, options.keep_back_every, parts);
+  std::vector<TimedLines> data = timed_lines(runs, result.machine, options.keep_back_every, parts);
   const std::vector<LoggedLines> logged = logged_lines(logs, options.keep_back_every, parts);
   for (const LoggedLines& l : logged) data.push_back(l.lines);
   for (int axis = 0; axis < 3; ++axis) add_velocity(result, runs, axis);
+  for (const char letter : start.kinematics.rotary_axes()) add_rotary_velocity(result, runs, letter);
   const double width_mm = result.machine.control.in_position_mm;
   result.machine.control.in_position_mm = machine::kNoLimit;  // waits are between the parts
   const Machine base_of_all = result.machine;
-  LimitFit limits = choose_law(result, data, traced_accelerations(runs), options.max_iterations / 4);
+  LimitFit limits = choose_law(result, data, traced_accelerations(traces, rotary), options.max_iterations / 4);
   result.machine = base_with_law(base_of_all, limits.whole.control.corner);
   refine_block_time(limits, data, result.machine, options.max_iterations / 3);
   const double period = result.machine.control.period_s;
@@ -486,6 +561,13 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
     result.drives[axis] = fit_drive(traces, axis, {});
     add_drive(result.machine, result.parameters, axis, result.drives[axis]);
     drives_converged = drives_converged && (!result.drives[axis].moved || result.drives[axis].converged);
+  }
+  for (const char letter : start.kinematics.rotary_axes()) {
+    const int axis = letter - 'a';
+    DriveFit& drive = result.rotary_drives[static_cast<std::size_t>(axis)] = fit_drive(rotary, axis, {});
+    set_drive(result.machine.rotary[static_cast<std::size_t>(axis)], result.parameters, fmt::format("axis.{}.", letter),
+              drive);
+    drives_converged = drives_converged && (!drive.moved || drive.converged);
   }
   add_smoothing(result, runs, traces);
   std::vector<const nc::Interpretation*> programs;

@@ -75,6 +75,7 @@ struct FitFeedResult {
   std::string law;                    ///< the one that was taken
   std::vector<FitParameter> parameters;
   std::array<DriveFit, 3> drives;
+  std::array<DriveFit, 3> rotary_drives{};  ///< a, b, c; their residuals are in degrees
   FitError fitted, held_out;
   std::vector<LoggedTime> logged;  ///< one for each geometry; with the fitted machine
   LoggedError logged_fitted, logged_held_out;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/units.h"
 #include "feedmodel/plan.h"
 
 namespace camber::calib {
@@ -35,6 +36,26 @@ LimitParameter acceleration(const char* name) {
           .most = 50000,
           .start = 500,
           .fitted = {}};
+}
+
+template <int axis>
+LimitParameter rotary_acceleration(const char* name) {
+  return {.name = name,
+          .unit = "deg/s2",
+          .get = [](const Machine& m) { return deg_from_rad(m.rotary[axis].acceleration_rad_per_s2); },
+          .set = [](Machine& m, double v) { m.rotary[axis].acceleration_rad_per_s2 = rad_from_deg(v); },
+          .least = 1,
+          .most = 100000,
+          .start = 300,
+          .fitted = {}};
+}
+
+/// Of the axes of the chain.
+void add_rotary_accelerations(const Machine& machine, std::vector<LimitParameter>& p) {
+  const std::string axes = machine.kinematics.rotary_axes();
+  if (axes.find('a') != axes.npos) p.push_back(rotary_acceleration<0>("axis.a.acceleration_deg_per_s2"));
+  if (axes.find('b') != axes.npos) p.push_back(rotary_acceleration<1>("axis.b.acceleration_deg_per_s2"));
+  if (axes.find('c') != axes.npos) p.push_back(rotary_acceleration<2>("axis.c.acceleration_deg_per_s2"));
 }
 
 LimitParameter a_number(const char* name, const char* unit, double (*get)(const Machine&),
@@ -224,6 +245,7 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
   p.push_back(acceleration<0>("axis.x.acceleration_mm_per_s2"));
   p.push_back(acceleration<1>("axis.y.acceleration_mm_per_s2"));
   p.push_back(acceleration<2>("axis.z.acceleration_mm_per_s2"));
+  add_rotary_accelerations(machine, p);
   p.push_back(fraction(
       "control.arc_normal_share", [](const Machine& m) { return m.control.arc_normal_fraction; },
       [](Machine& m, double v) { m.control.arc_normal_fraction = v; }, 0.9));
@@ -260,6 +282,15 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
   return p;
 }
 
+namespace {
+
+/// Where the control counts on: the start of a segment, or the middle of its overlap with the one before it.
+double boundary_s(double before_end_s, const feedmodel::SegmentTime& segment) {
+  return segment.overlapped && segment.start_s < before_end_s ? (before_end_s + segment.start_s) / 2 : segment.start_s;
+}
+
+}  // namespace
+
 std::vector<double> planned_times_s(const TimedLines& data, const Machine& machine,
                                     const std::vector<feedmodel::SegmentTime>& segments) {
   assert(data.program != nullptr);
@@ -269,12 +300,14 @@ std::vector<double> planned_times_s(const TimedLines& data, const Machine& machi
     const auto line = [&](std::size_t k) { return data.program->moves[segments[k].move].block + 1; };
     while (i < segments.size() && (segments[i].rest || line(i) < data.parts[p].line_first)) ++i;
     double first = -1, end = 0;
+    const double before_end = i > 0 ? segments[i - 1].start_s + segments[i - 1].duration_s : 0.0;
     for (; i < segments.size() && (segments[i].rest || line(i) <= data.parts[p].line_last); ++i) {
       if (segments[i].rest) continue;
-      if (first < 0) first = segments[i].start_s;
+      if (first < 0) first = boundary_s(before_end, segments[i]);
       end = segments[i].start_s + segments[i].duration_s;
     }
     if (first < 0) continue;
+    if (i < segments.size()) end = std::min(end, boundary_s(end, segments[i]));
     // At a stop the line changes with the next period: half a period on average, which a fit can follow better than
     // whole ones.
     const bool stops = i >= segments.size() || segments[i].rest || segments[i].start_s > end + kNoTime;

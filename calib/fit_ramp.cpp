@@ -62,7 +62,7 @@ std::vector<std::size_t> starts_of(const std::vector<std::uint32_t>& line, const
 void add_starts(const FeedRun& run, const machine::Machine& machine, int axis, std::vector<Start>& out) {
   if (run.trace.line.empty() || !run.trace.has_command[static_cast<std::size_t>(axis)]) return;
   const Samples planned = planned_samples(run.program, machine, axis);
-  const std::vector<Part> parts = parts_of(run.program);
+  const std::vector<Part> parts = parts_of(run.program, machine);
   const auto in_plan = starts_of(planned.line, parts), in_trace = starts_of(run.trace.line, parts);
   const auto look = static_cast<std::size_t>(kLookS / run.trace.period_s);
   for (std::size_t p = 0; p < parts.size() && out.size() < kMaxStarts; ++p) {

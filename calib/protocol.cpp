@@ -20,6 +20,8 @@ constexpr std::array kZigzagFeeds = {1000.0, 3000.0};
 constexpr std::array kRadii = {0.5, 1.0, 2.0, 5.0, 10.0, 20.0};
 constexpr std::array kCircleFeeds = {500.0, 1500.0, 4000.0};
 constexpr std::array kChords = {0.5, 0.3, 0.2, 0.1, 0.06, 0.04, 0.02, 0.01};
+constexpr std::array kTurns = {1.0, 5.0, 20.0, 90.0};                // degrees
+constexpr std::array kTurnFeeds = {300.0, 1000.0, 3000.0, 30000.0};  // degrees/min
 constexpr std::array kRapids = {1.0, 3.0, 10.0, 30.0, 100.0};
 constexpr std::array<std::array<int, 2>, 3> kPlaneAxes = {{{0, 1}, {1, 2}, {2, 0}}};
 constexpr std::array<const char*, 3> kPlanes = {"xy", "yz", "zx"};
@@ -92,6 +94,23 @@ class Writer {
     part.line_last = lines_;
     rest();
     line("G17");
+    program_.parts.push_back(part);
+  }
+
+  /// Out and back twice, from 0.
+  void turn(char letter, double to_deg, double feed_deg_per_min) {
+    ProtocolPart part;
+    part.feed_mm_per_min = feed_deg_per_min;
+    part.plane = letter;
+    part.size_mm = std::abs(to_deg);
+    part.line_first = lines_ + 1;
+    const char word = static_cast<char>(letter - 'a' + 'A');
+    for (int i = 0; i < 2; ++i) {
+      line(fmt::format("G1 {}{:g} F{:g}", word, to_deg, feed_deg_per_min));
+      line(fmt::format("G1 {}0", word));
+    }
+    part.line_last = lines_;
+    rest();
     program_.parts.push_back(part);
   }
 
@@ -200,6 +219,19 @@ ProtocolProgram rapids(const machine::Machine& machine) {
   return w.finish();
 }
 
+ProtocolProgram rotary(const machine::Machine& machine) {
+  Writer w(machine, "rotary", "top speed, acceleration and lag of each rotary axis");
+  for (const char letter : machine.kinematics.rotary_axes()) {
+    const auto& travel_rad = machine.rotary[static_cast<std::size_t>(letter - 'a')].travel_rad;
+    for (const double angle : kTurns) {
+      const bool up = rad_from_deg(angle) <= travel_rad[1], down = rad_from_deg(-angle) >= travel_rad[0];
+      for (const double feed : kTurnFeeds)
+        if (up || down) w.turn(letter, up ? angle : -angle, feed);
+    }
+  }
+  return w.finish();
+}
+
 }  // namespace
 
 std::vector<ProtocolProgram> protocol_programs(const machine::Machine& machine) {
@@ -209,6 +241,7 @@ std::vector<ProtocolProgram> protocol_programs(const machine::Machine& machine) 
   programs.push_back(circles(machine));
   programs.push_back(saturation(machine));
   programs.push_back(rapids(machine));
+  if (machine.kinematics.given()) programs.push_back(rotary(machine));
   return programs;
 }
 

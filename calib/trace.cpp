@@ -16,10 +16,30 @@ namespace {
 constexpr double kGapPeriods = 1.5;  // more than this between two samples is a hole
 constexpr std::size_t kGapsShown = 5;
 
-enum class Column { time, x_cmd, y_cmd, z_cmd, x_act, y_act, z_act, feed, line, unknown };
+enum class Column {
+  time,
+  x_cmd,
+  y_cmd,
+  z_cmd,
+  x_act,
+  y_act,
+  z_act,
+  feed,
+  line,
+  a_cmd,
+  b_cmd,
+  c_cmd,
+  a_act,
+  b_act,
+  c_act,
+  unknown
+};
 
-constexpr std::array<std::string_view, 9> kColumnNames = {
-    "t_s", "x_cmd_mm", "y_cmd_mm", "z_cmd_mm", "x_act_mm", "y_act_mm", "z_act_mm", "feed_mm_per_min", "line"};
+constexpr std::array<std::string_view, 15> kColumnNames = {
+    "t_s",  "x_cmd_mm",  "y_cmd_mm",  "z_cmd_mm",  "x_act_mm",  "y_act_mm",  "z_act_mm", "feed_mm_per_min",
+    "line", "a_cmd_deg", "b_cmd_deg", "c_cmd_deg", "a_act_deg", "b_act_deg", "c_act_deg"};
+
+using Values = std::array<double, kColumnNames.size()>;
 
 struct Field {
   std::string_view text;
@@ -83,7 +103,7 @@ class Reader {
 
   void read_header(std::string_view line) {
     split(line, source_.text().data(), fields_);
-    std::array<bool, 9> seen{};
+    std::array<bool, kColumnNames.size()> seen{};
     for (const Field& field : fields_) {
       const auto* at = std::find(kColumnNames.begin(), kColumnNames.end(), field.text);
       const auto index = static_cast<std::size_t>(at - kColumnNames.begin());
@@ -102,10 +122,13 @@ class Reader {
     for (int i = 0; i < 3; ++i) {
       trace_.has_command[i] = seen[1 + i];
       trace_.has_actual[i] = seen[4 + i];
+      trace_.has_rotary_command[i] = seen[9 + i];
+      trace_.has_rotary_actual[i] = seen[12 + i];
     }
+    has_rotary_ = std::any_of(seen.begin() + 9, seen.end(), [](bool b) { return b; });
     has_feed_ = seen[7];
     has_line_ = seen[8];
-    if (std::none_of(seen.begin() + 1, seen.begin() + 7, [](bool b) { return b; }))
+    if (!has_rotary_ && std::none_of(seen.begin() + 1, seen.begin() + 7, [](bool b) { return b; }))
       report(Severity::error, fields_[0],
              "the header has no position; at least one of x_cmd_mm y_cmd_mm z_cmd_mm x_act_mm y_act_mm z_act_mm is "
              "expected",
@@ -119,7 +142,7 @@ class Reader {
              fmt::format("{} fields; the header names {} columns", fields_.size(), columns_.size()), "trace-fields");
       return;
     }
-    std::array<double, 9> values{};
+    Values values{};
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       if (columns_[i] == Column::unknown) continue;
       const std::optional<double> value = parse_number(fields_[i].text);
@@ -143,10 +166,14 @@ class Reader {
     rows_.push_back(row_);
   }
 
-  void store(const std::array<double, 9>& v) {
+  void store(const Values& v) {
     trace_.t_s.push_back(v[0]);
     trace_.command_mm.emplace_back(v[1], v[2], v[3]);
     trace_.actual_mm.emplace_back(v[4], v[5], v[6]);
+    if (has_rotary_) {
+      trace_.rotary_command_deg.emplace_back(v[9], v[10], v[11]);
+      trace_.rotary_actual_deg.emplace_back(v[12], v[13], v[14]);
+    }
     if (has_feed_) trace_.feed_mm_per_s.push_back(mm_per_s_from_mm_per_min(v[7]));
     if (has_line_) trace_.line.push_back(static_cast<std::uint32_t>(v[8]));
   }
@@ -178,7 +205,7 @@ class Reader {
   std::vector<Field> fields_;
   std::vector<std::size_t> row_offsets_, rows_;
   std::size_t row_ = 1;
-  bool has_feed_ = false, has_line_ = false;
+  bool has_feed_ = false, has_line_ = false, has_rotary_ = false;
 };
 
 }  // namespace
@@ -200,6 +227,18 @@ std::vector<std::size_t> set_stretches(ServoTrace& trace) {
   }
   trace.stretches.push_back({first, trace.size()});
   return gaps;
+}
+
+ServoTrace rotary_trace(const ServoTrace& trace) {
+  ServoTrace out = trace;
+  out.command_mm = trace.rotary_command_deg;
+  out.actual_mm = trace.rotary_actual_deg;
+  out.has_command = trace.has_rotary_command;
+  out.has_actual = trace.has_rotary_actual;
+  if (!trace.rotary_command_deg.empty()) return out;
+  out.command_mm.assign(trace.size(), Vec3::Zero());
+  out.actual_mm.assign(trace.size(), Vec3::Zero());
+  return out;
 }
 
 ServoTrace read_trace(const std::string& path, Diagnostics& diagnostics) {

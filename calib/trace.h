@@ -25,6 +25,8 @@ struct ServoTrace {
   std::vector<std::uint32_t> line;  ///< 1-based line of the program being commanded, 0: none; empty without the column
   std::vector<std::size_t> row;     ///< 1-based line of the file of each sample; empty where samples are put together
   std::array<bool, 3> has_command{}, has_actual{};
+  std::vector<Vec3> rotary_command_deg, rotary_actual_deg;  ///< a, b, c; empty without any such column
+  std::array<bool, 3> has_rotary_command{}, has_rotary_actual{};
   std::vector<Stretch> stretches;  ///< in order; one when there is no gap
 
   std::size_t size() const { return t_s.size(); }
@@ -33,8 +35,13 @@ struct ServoTrace {
 /// Sets period (median distance of the samples) and stretches from the times; returns the samples after a gap.
 std::vector<std::size_t> set_stretches(ServoTrace& trace);
 
+/// The rotary axes of a trace in place of x, y and z, in degrees instead of mm: drives and accelerations of both kinds
+/// are fitted alike.
+ServoTrace rotary_trace(const ServoTrace& trace);
+
 /// Reads a CSV whose header names columns: `t_s` and any of x_cmd_mm y_cmd_mm z_cmd_mm x_act_mm y_act_mm
-/// z_act_mm feed_mm_per_min line, in any order; CRLF and blanks around fields are allowed.
+/// z_act_mm feed_mm_per_min line, of rotary axes a_cmd_deg a_act_deg (b, c alike), in any order; CRLF and blanks around
+/// fields are allowed.
 ///
 /// Errors (InputError): [file-missing], [trace-empty], [trace-column] (no t_s, no position, a column twice),
 /// [trace-fields] (number of fields), [trace-number] (not a finite number), [trace-time] (time does not rise).

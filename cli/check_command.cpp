@@ -21,7 +21,8 @@ namespace {
 
 struct Checked {
   nc::Summary summary;
-  CheckPicture picture;                  ///< where a page is asked for
+  CheckPicture picture;  ///< where a page is asked for
+  std::vector<feedmodel::FeedMeaningUse> feed_meanings{};
   std::optional<double> memory_bytes{};  ///< where a job is given
 };
 
@@ -71,6 +72,7 @@ Checked read_and_summarize(const CheckCommand& command, Diagnostics& found) {
     const api::CheckedProgram program = api::check_program(text, command.interpreter, machine ? &*machine : nullptr,
                                                            job ? &*job : nullptr, found, read);
     checked.summary = program.summary;
+    checked.feed_meanings = program.feed_meanings;
     checked.memory_bytes = program.memory_bytes;
   } catch (const InputError& e) {
     // The page shows which axis leaves its travel, and where.
@@ -106,7 +108,8 @@ std::string tool_table(const std::vector<nc::ToolUse>& tools) {
 }  // namespace
 
 std::string check_report(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics,
-                         std::optional<double> memory_bytes) {
+                         std::optional<double> memory_bytes,
+                         const std::vector<feedmodel::FeedMeaningUse>& feed_meanings) {
   std::string out = fmt::format("{}: {} blocks, {} of them with words, {}\n", program, s.blocks, s.blocks_with_words,
                                 api::unit_text(s));
   out += fmt::format("moves     {} rapid, {} linear, {} arc, {} dwell", s.rapids, s.lines, s.arcs, s.dwells);
@@ -124,6 +127,10 @@ std::string check_report(const std::string& program, const nc::Summary& s, const
   out += fmt::format("\ncutting   {:.1f} mm\n        {}\n", s.cutting_length_mm, extents_text(s.cutting));
   out += fmt::format("rapid     {:.1f} mm\n        {}\n", s.rapid_length_mm, extents_text(s.rapid));
   if (s.dwells > 0) out += fmt::format("dwell     {} s\n", format_trimmed(s.dwell_s, 3));
+  for (const feedmodel::FeedMeaningUse& use : feed_meanings)
+    out += fmt::format("F         {}: {} block{}, first in line {}\n",
+                       feedmodel::kFeedMeaningTexts[static_cast<std::size_t>(use.meaning)].text, use.moves,
+                       use.moves == 1 ? "" : "s", use.first_line);
   out += tool_table(s.tools);
   if (memory_bytes) out += fmt::format("memory    about {:.2g} GB for predict\n", *memory_bytes / 1e9);
   const std::size_t warnings = diagnostics.warnings();
@@ -144,11 +151,12 @@ int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostrea
   Diagnostics ordered;
   for (auto& d : api::in_order(found.all())) ordered.add(std::move(d));
   if (!command.json.empty())
-    write_file(command.json, api::check_json(command.program, checked.summary, ordered, checked.memory_bytes));
+    write_file(command.json,
+               api::check_json(command.program, checked.summary, ordered, checked.memory_bytes, checked.feed_meanings));
   if (!command.report.empty())
     write_file(command.report, check_page(command, checked.summary, ordered, checked.picture));
   if (before_output) before_output();
-  out << check_report(command.program, checked.summary, ordered, checked.memory_bytes);
+  out << check_report(command.program, checked.summary, ordered, checked.memory_bytes, checked.feed_meanings);
   diagnostics.append(ordered);
   return 0;
 }

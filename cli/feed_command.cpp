@@ -27,10 +27,13 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   print_translation(machine.translation, options);
 
   std::unique_ptr<feedmodel::FeedCsv> csv;
-  if (!arguments.output.empty()) csv = std::make_unique<feedmodel::FeedCsv>(moves, arguments.output);
-  const feedmodel::FeedSummary summary =
-      feedmodel::predict_feed(moves, machine, [&](std::span<const feedmodel::TimedSample> samples) {
-        if (csv) csv->write(samples);
+  if (!arguments.output.empty())
+    csv = std::make_unique<feedmodel::FeedCsv>(moves, arguments.output, api::rotary_columns(moves, machine));
+  const feedmodel::FeedSummary summary = api::predict_feed(
+      moves, machine,
+      [&](std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints) {
+        if (csv && joints.empty()) csv->write(samples);
+        if (csv && !joints.empty()) csv->write(samples, joints);
         if (!samples.empty())
           progress.show("timing", static_cast<double>(samples.back().move) / static_cast<double>(moves.moves.size()));
       });
@@ -40,6 +43,7 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   if (!options.quiet)
     fmt::print("time          {:.3f} s\ncutting time  {:.3f} s\nblocks        {}\n", summary.time_s,
                summary.cutting_time_s, summary.blocks);
+  if (!options.quiet && summary.contour) fmt::print("{}", api::contour_text(*summary.contour));
   if (!arguments.json.empty()) write_file(arguments.json, api::feed_json(summary));
   return kDone;
 }

@@ -66,6 +66,12 @@ void print(const FitFeedResult& result) {
     fmt::print("axis {}: {}; position rms {:.3f} um fitted, {:.3f} um held out\n", kAxes[i], drive.model,
                1000 * drive.fitted_rms_mm, 1000 * drive.held_out_rms_mm);
   }
+  for (const char letter : result.machine.kinematics.rotary_axes()) {
+    const calib::DriveFit& drive = result.rotary_drives[static_cast<std::size_t>(letter - 'a')];
+    if (!drive.moved) continue;
+    fmt::print("axis {}: {}; position rms {:.6f} degrees fitted, {:.6f} degrees held out\n", letter, drive.model,
+               drive.fitted_rms_mm, drive.held_out_rms_mm);
+  }
   const auto line = [&](const char* name, const calib::FitError& e) {
     fmt::print("{:<9} {:>4} parts: time {:.2f} % mean, path speed rms {:.2f} %, p95 {:.2f} % of the feed\n", name,
                e.parts, e.part_time_percent, e.speed_rms_percent, e.speed_p95_percent);

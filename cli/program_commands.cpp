@@ -67,7 +67,7 @@ void add_tool_lengths(CLI::App& command, nc::InterpreterOptions& interpreter) {
             for (const std::string& text : given)
               if (const auto offset = parsed(text)) interpreter.tool_offsets[offset->first].length_mm = offset->second;
           },
-          "length of tool offset H, gauge line to tip, mm; to check the travel of the axes")
+          "length of tool offset H, gauge line to tip, mm; for programs with rotary axes")
       ->check(CLI::Validator(
           [parsed](std::string& text) {
             return parsed(text) ? std::string()
@@ -176,6 +176,7 @@ void add_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
   command->add_option("-o,--output", arguments->output, "axis positions at every period")->type_name("feed.csv");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  add_tool_lengths(*command, arguments->interpreter);
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
@@ -209,6 +210,7 @@ void add_time(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* cases = command->add_option("--case", arguments->cases, "machines to compare");
   cases->type_name("cases.toml")->excludes(trace)->excludes(sweep);
   command->add_option("--report", arguments->report, "report page")->type_name("R.html");
+  add_tool_lengths(*command, arguments->interpreter);
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     if (arguments->machine.empty() && arguments->cases.empty())
@@ -246,6 +248,7 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->type_name("P.svg");
   command->add_flag("--leave-one-out", arguments->leave_one_out,
                     "also predict each servo trace by a fit on the others (one fit per trace)");
+  add_tool_lengths(*command, arguments->interpreter);
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     if (arguments->programs.size() != arguments->traces.size())

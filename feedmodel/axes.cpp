@@ -9,6 +9,29 @@ namespace {
 /// e-foldings after which a following error counts as gone: 100 mm/s at Kp 30 leave under 0.1 um.
 constexpr double kSettlingFoldings = 12.0;
 
+/// Without its filter.
+template <class Axis>
+double settling_s(const Axis& axis) {
+  const double lag = std::isinf(axis.position_gain_per_s) ? 0.0 : 1.0 / axis.position_gain_per_s + axis.velocity_lag_s;
+  return kSettlingFoldings * (lag + axis.exponential_1_s + axis.exponential_2_s);
+}
+
+/// Of x, y, z, a, b, c, as filter_times_s.
+std::array<double, 6> joint_filter_times_s(const machine::Machine& machine) {
+  double jerk_window = 0;
+  const auto take = [&](double acceleration, double jerk) {
+    if (std::isfinite(jerk) && std::isfinite(acceleration)) jerk_window = std::max(jerk_window, acceleration / jerk);
+  };
+  for (const machine::Axis& axis : machine.axis) take(axis.acceleration_mm_per_s2, axis.jerk_mm_per_s3);
+  for (const machine::RotaryAxis& axis : machine.rotary) take(axis.acceleration_rad_per_s2, axis.jerk_rad_per_s3);
+  std::array<double, 6> times{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    times[i] = std::max(machine.axis[i].filter_s, jerk_window);
+    times[3 + i] = std::max(machine.rotary[i].filter_s, jerk_window);
+  }
+  return times;
+}
+
 }  // namespace
 
 Vec3 filter_times_s(const machine::Machine& machine) {
@@ -26,44 +49,63 @@ double settling_time_s(const machine::Machine& machine) {
   const Vec3 filters = filter_times_s(machine);
   double max_s = 0;
   for (int i = 0; i < 3; ++i) {
-    const machine::Axis& axis = machine.axis[i];
-    const double lag =
-        std::isinf(axis.position_gain_per_s) ? 0.0 : 1.0 / axis.position_gain_per_s + axis.velocity_lag_s;
-    max_s = std::max(max_s, filters[i] + kSettlingFoldings * (lag + axis.exponential_1_s + axis.exponential_2_s));
+    max_s = std::max(max_s, filters[i] + settling_s(machine.axis[i]));
   }
   return max_s;
 }
 
 Axes::Axes(const machine::Machine& machine, const Vec3& start_mm) {
-  const double period = machine.control.period_s;
   const Vec3 filters = filter_times_s(machine);
-  for (int i = 0; i < 3; ++i) {
-    const machine::Axis& axis = machine.axis[i];
-    const auto window = static_cast<std::size_t>(std::lround(filters[i] / period));
-    const PositionLoopOptions loop{.gain_per_s = axis.position_gain_per_s,
-                                   .velocity_lag_s = axis.velocity_lag_s,
-                                   .feed_forward_percent = axis.feed_forward_percent,
-                                   .period_s = period};
-    const auto lag_of = [&](double time_s) {
-      return PositionLoop({.gain_per_s = time_s > 0 ? 1.0 / time_s : machine::kNoLimit, .period_s = period},
-                          start_mm[i]);
-    };
-    axes_[i].emplace(Axis{AxisFilter(window, start_mm[i]), lag_of(axis.exponential_1_s), lag_of(axis.exponential_2_s),
-                          PositionLoop(loop, start_mm[i])});
-  }
+  for (int i = 0; i < 3; ++i)
+    axes_[i].emplace(drive_options(machine.axis[i], filters[i], machine.control.period_s), start_mm[i]);
 }
 
 Vec3 Axes::operator()(const Vec3& command_mm) {
   Vec3 position;
-  for (int i = 0; i < 3; ++i)
-    position[i] = axes_[i]->loop(axes_[i]->exponential_2(axes_[i]->exponential_1(axes_[i]->filter(command_mm[i]))));
+  for (int i = 0; i < 3; ++i) position[i] = (*axes_[i])(command_mm[i]);
   return position;
 }
 
 Vec3 Axes::velocity_mm_per_s() const {
   Vec3 velocity;
-  for (int i = 0; i < 3; ++i) velocity[i] = axes_[i]->loop.velocity_mm_per_s();
+  for (int i = 0; i < 3; ++i) velocity[i] = axes_[i]->velocity_per_s();
   return velocity;
+}
+
+JointAxes::JointAxes(const machine::Machine& machine, const kinematics::Joints& start) {
+  const double period_s = machine.control.period_s;
+  const std::array<double, 6> filters = joint_filter_times_s(machine);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto index = static_cast<Eigen::Index>(i);
+    drives_[i].emplace(drive_options(machine.axis[i], filters[i], period_s), start.linear_mm[index]);
+    drives_[3 + i].emplace(drive_options(machine.rotary[i], filters[3 + i], period_s), start.rotary_rad[index]);
+  }
+}
+
+kinematics::Joints JointAxes::operator()(const kinematics::Joints& command) {
+  kinematics::Joints position;
+  for (int i = 0; i < 3; ++i) {
+    position.linear_mm[i] = (*drives_[i])(command.linear_mm[i]);
+    position.rotary_rad[i] = (*drives_[3 + i])(command.rotary_rad[i]);
+  }
+  return position;
+}
+
+kinematics::Joints JointAxes::velocity_per_s() const {
+  kinematics::Joints velocity;
+  for (int i = 0; i < 3; ++i) {
+    velocity.linear_mm[i] = drives_[i]->velocity_per_s();
+    velocity.rotary_rad[i] = drives_[3 + i]->velocity_per_s();
+  }
+  return velocity;
+}
+
+double joint_settling_time_s(const machine::Machine& machine) {
+  const std::array<double, 6> filters = joint_filter_times_s(machine);
+  double max_s = settling_time_s(machine);
+  for (std::size_t i = 0; i < 3; ++i)
+    max_s = std::max({max_s, filters[i] + settling_s(machine.axis[i]), filters[3 + i] + settling_s(machine.rotary[i])});
+  return max_s;
 }
 
 }  // namespace camber::feedmodel

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "base/geometry.h"
-#include "feedmodel/axis_filter.h"
-#include "feedmodel/position_loop.h"
+#include "feedmodel/drive.h"
+#include "kinematics/joints.h"
 #include "machine/machine.h"
 
 namespace camber::feedmodel {
@@ -27,12 +27,23 @@ class Axes {
   Vec3 velocity_mm_per_s() const;
 
  private:
-  struct Axis {
-    AxisFilter filter;
-    PositionLoop exponential_1, exponential_2;  ///< first-order lags: loops with a gain of 1 / T
-    PositionLoop loop;
-  };
-  std::array<std::optional<Axis>, 3> axes_;
+  std::array<std::optional<Drive>, 3> axes_;
 };
+
+/// All axes of a machine with rotary ones. A jerk limit of any of them is a window for all.
+class JointAxes {
+ public:
+  JointAxes(const machine::Machine& machine, const kinematics::Joints& start);
+
+  kinematics::Joints operator()(const kinematics::Joints& command);
+  /// mm/s and rad/s.
+  kinematics::Joints velocity_per_s() const;
+
+ private:
+  std::array<std::optional<Drive>, 6> drives_;
+};
+
+/// As settling_time_s, with the rotary axes.
+double joint_settling_time_s(const machine::Machine& machine);
 
 }  // namespace camber::feedmodel

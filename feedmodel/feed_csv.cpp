@@ -1,5 +1,6 @@
 #include "feedmodel/feed_csv.h"
 
+#include <cassert>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -26,22 +27,49 @@ double free_bytes_at(const std::string& path) {
 
 }  // namespace
 
-FeedCsv::FeedCsv(const nc::Interpretation& program, const std::string& path) : program_(program), file_(path) {
+FeedCsv::FeedCsv(const nc::Interpretation& program, const std::string& path, const std::string& rotary_axes)
+    : program_(program), rotary_axes_(rotary_axes), file_(path) {
   file_.stream() << "t_s,block,x_mm,y_mm,z_mm,vx_mm_per_min,vy_mm_per_min,vz_mm_per_min,feed_cmd_mm_per_min,"
-                    "feed_mm_per_min\n";
+                    "feed_mm_per_min";
+  for (const char axis : rotary_axes_) file_.stream() << ',' << axis << "_deg";
+  if (!rotary_axes_.empty()) file_.stream() << ",tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z";
+  file_.stream() << '\n';
+}
+
+void FeedCsv::append(const TimedSample& s, double feed_mm_per_s) {
+  const auto position = [&](int i) { return clean(s.position_mm[i], 0.5e-5); };
+  const auto speed = [&](int i) { return clean(mm_per_min_from_mm_per_s(s.velocity_mm_per_s[i]), 0.5e-3); };
+  append_cells(text_, 6, {s.t_s});
+  append_cells(text_, 0, {static_cast<double>(program_.moves[s.move].block + 1)});
+  append_cells(text_, 5, {position(0), position(1), position(2)});
+  append_cells(text_, 3,
+               {speed(0), speed(1), speed(2), mm_per_min_from_mm_per_s(s.feed_command_mm_per_s),
+                mm_per_min_from_mm_per_s(feed_mm_per_s)});
+}
+
+void FeedCsv::append(const JointSample& joints) {
+  for (const char axis : rotary_axes_)
+    append_cells(text_, 5, {clean(deg_from_rad(joints.position_rad[axis - 'a']), 0.5e-5)});
+  const Vec3 &tip = joints.tool.tip_mm, &axis = joints.tool.axis;
+  append_cells(text_, 5, {clean(tip.x(), 0.5e-5), clean(tip.y(), 0.5e-5), clean(tip.z(), 0.5e-5)});
+  append_cells(text_, 9, {clean(axis.x(), 0.5e-9), clean(axis.y(), 0.5e-9), clean(axis.z(), 0.5e-9)});
 }
 
 void FeedCsv::write(std::span<const TimedSample> samples) {
   text_.clear();
   for (const TimedSample& s : samples) {
-    const auto position = [&](int i) { return clean(s.position_mm[i], 0.5e-5); };
-    const auto speed = [&](int i) { return clean(mm_per_min_from_mm_per_s(s.velocity_mm_per_s[i]), 0.5e-3); };
-    append_cells(text_, 6, {s.t_s});
-    append_cells(text_, 0, {static_cast<double>(program_.moves[s.move].block + 1)});
-    append_cells(text_, 5, {position(0), position(1), position(2)});
-    append_cells(text_, 3,
-                 {speed(0), speed(1), speed(2), mm_per_min_from_mm_per_s(s.feed_command_mm_per_s),
-                  mm_per_min_from_mm_per_s(s.velocity_mm_per_s.norm())});
+    append(s, s.velocity_mm_per_s.norm());
+    text_.back() = '\n';
+  }
+  file_.stream() << text_;
+}
+
+void FeedCsv::write(std::span<const TimedSample> samples, std::span<const JointSample> joints) {
+  assert(samples.size() == joints.size());
+  text_.clear();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    append(samples[i], joints[i].feed_mm_per_s);
+    append(joints[i]);
     text_.back() = '\n';
   }
   file_.stream() << text_;

@@ -14,15 +14,25 @@ namespace camber::feedmodel {
 /// Streams samples to a file that is renamed when complete. Columns: t_s,block,x_mm,y_mm,z_mm,
 /// vx_mm_per_min,vy_mm_per_min,vz_mm_per_min,feed_cmd_mm_per_min,feed_mm_per_min; positions (to 0.01 um) and
 /// speeds are the predicted actual axes, block the 1-based line being commanded.
+///
+/// With rotary motion, X, Y and Z are those of the machine, feed_mm_per_min is what F counts in the block
+/// (JointSample), and the columns go on with the rotary axes of the machine's chain, of a_deg,b_deg,c_deg (to 1e-5
+/// degrees), and the actual pose in the program's frame, tip_x_mm,tip_y_mm,tip_z_mm (to 0.01 um),axis_x,axis_y,axis_z.
 class FeedCsv {
  public:
-  /// Throws InputError [file-unwritable].
-  FeedCsv(const nc::Interpretation& program, const std::string& path);
+  /// rotary_axes: letters of those that get columns, in the order a, b, c; empty without rotary motion. Throws
+  /// InputError [file-unwritable].
+  FeedCsv(const nc::Interpretation& program, const std::string& path, const std::string& rotary_axes = {});
   void write(std::span<const TimedSample> samples);
+  void write(std::span<const TimedSample> samples, std::span<const JointSample> joints);
   void commit() { file_.commit(); }
 
  private:
+  void append(const TimedSample& sample, double feed_mm_per_s);
+  void append(const JointSample& joints);
+
   const nc::Interpretation& program_;
+  std::string rotary_axes_;
   OutputFile file_;
   std::string text_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 // In-position wait of a control at a stop.
+#include "feedmodel/joint_map.h"
 #include "feedmodel/segment_motion.h"
 #include "machine/machine.h"
 
@@ -7,7 +8,9 @@ namespace camber::feedmodel {
 
 /// Time from the end of a segment's command until every axis is within control.in_position_mm of it, a multiple of the
 /// control's period: the axes are driven along the end of the segment, from at most twelve of their time constants
-/// before it. 0 where the control does not wait or the axes have no lag.
-double in_position_wait_s(const machine::Machine& machine, const Segment& segment, const SegmentMotion& motion);
+/// before it. With `map`, of a program with rotary motion, the joints, of which rotary ones have the same number of
+/// degrees. 0 where the control does not wait or the axes have no lag.
+double in_position_wait_s(const machine::Machine& machine, const Segment& segment, const SegmentMotion& motion,
+                          const JointMap* map = nullptr);
 
 }  // namespace camber::feedmodel

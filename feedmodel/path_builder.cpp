@@ -6,14 +6,18 @@
 #include <optional>
 
 #include "base/cancel.h"
+#include "base/units.h"
 #include "feedmodel/axis_places.h"
 #include "feedmodel/corner.h"
 #include "feedmodel/limits.h"
 #include "feedmodel/merge.h"
 #include "feedmodel/modes.h"
+#include "feedmodel/move_turns.h"
+#include "feedmodel/overlap.h"
 #include "feedmodel/rapid.h"
 #include "feedmodel/rests.h"
 #include "feedmodel/spindle_start.h"
+#include "feedmodel/turning_corner.h"
 #include "feedmodel/yan_shirase.h"
 
 namespace camber::feedmodel {
@@ -43,6 +47,11 @@ struct Element {
   double from_s = 0;            ///< where the rounding at its start ends
   double less_fraction = 0;     ///< of its acceleration, kept free for the corners' speed steps
   double planned_fraction = 1;  ///< of its acceleration, that the lookahead counts on
+  /// The limits count for its joints, which are not its X Y Z: under tool-centre-point control, unless the control does
+  /// not look at them.
+  bool joint_limits = false;
+
+  bool turns() const { return segment.turn && segment.turn->turns(); }
 };
 
 /// How one element passes into the next.
@@ -51,6 +60,9 @@ struct Junction {
   double less_fraction = 0;
   double wait_s = 0;  ///< at a stop
   std::optional<Blend> blend;
+  double trim = 0;        ///< of a rounding that turns; 0: none
+  bool overlaps = false;  ///< the next element begins while this one brakes, from this speed at most
+  double overlap_speed_mm_per_s = kNoLimit;
 };
 
 double axis_speed_limit(const Segment& s, const Vec3& velocity) {
@@ -108,6 +120,16 @@ Vec3 speed_differences_mm_per_s(const machine::Machine& machine, const machine::
   return out;
 }
 
+/// Of rotary axes: each one's own, or the number of the corner law in degrees.
+Vec3 rotary_differences_rad_per_s(const machine::Machine& machine, const machine::Corner& corner) {
+  Vec3 out;
+  for (int i = 0; i < 3; ++i) {
+    const double own = machine.rotary[static_cast<std::size_t>(i)].speed_difference_rad_per_s;
+    out[i] = std::isinf(own) ? rad_from_deg(corner.speed_difference_mm_per_s) : own;
+  }
+  return out;
+}
+
 class Builder {
  public:
   Builder(const nc::Interpretation& program, const machine::Machine& machine, const SegmentSink& sink)
@@ -121,7 +143,9 @@ class Builder {
         rapid_velocity_(rapid_speeds_mm_per_s(machine)),
         rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)),
         feed_factor_(machine.cycle.feed_override_percent / 100.0),
-        places_(machine) {}
+        places_(machine) {
+    if (has_rotary_motion(program, machine)) turns_.emplace(program, machine);
+  }
 
   void run() {
     const auto& moves = program_.moves;
@@ -131,28 +155,42 @@ class Builder {
       cancellation_point();
       const nc::Move& move = moves[i];
       const nc::ModalState& state = program_.state_of(move);
+      turning_ = turns_ && turns_->at(i).turns();
       const bool asked = next_rest < rests_.size() && rests_[next_rest] <= i;
       while (next_rest < rests_.size() && rests_[next_rest] <= i) ++next_rest;
+      if (turns_ && !turns_->at(i).start_known) rest(0, i, move.start_mm);
       if (state.tool != tool || asked) rest(0, i, move.start_mm);
       tool = state.tool;
       std::size_t end = i + 1;
       const AxisPlaces::Way way = places_.pass(move);
       if (move.kind == nc::MoveKind::dwell) {
         rest(move.dwell_s, i, move.start_mm);
-      } else if (move.reference || (dog_leg_ && move.kind == nc::MoveKind::rapid)) {
+      } else if (move.reference || (dog_leg_ && move.kind == nc::MoveKind::rapid && !moves_together(state))) {
         position(i, way);
       } else {
-        end = merged_run_end(moves, i, merge_tolerance_mm(state, settings_of(machine_, state)));
+        end = run_end(i, state);
         if (next_rest < rests_.size()) end = std::min<std::size_t>(end, rests_[next_rest]);
         for (std::size_t k = i + 1; k < end; ++k) places_.pass(moves[k]);
         add(i, end);
       }
       i = end;
     }
-    if (!moves.empty()) rest(0, moves.size() - 1, moves.back().end_mm);
+    if (!moves.empty()) rest(0, moves.size() - 1, moves.back().end_mm, false, true);
   }
 
  private:
+  /// A positioning of which the axes end together: one that turns, or under tool-centre-point control.
+  bool moves_together(const nc::ModalState& state) const {
+    return turns_ && (turning_ || state.tip_control != nc::TipControl::off);
+  }
+
+  /// Index after the last move that is driven as one with move i. What turns is not merged.
+  std::size_t run_end(std::size_t i, const nc::ModalState& state) const {
+    const std::size_t end = merged_run_end(program_.moves, i, merge_tolerance_mm(state, settings_of(machine_, state)));
+    if (!turns_) return end;
+    return turning_ ? i + 1 : turns_->next_turning(i + 1, end);
+  }
+
   void add(std::size_t first, std::size_t end) {
     Element element = element_of(first, end);
     if (element.segment.length_mm < kNoLength) return;
@@ -167,8 +205,9 @@ class Builder {
   void position(std::size_t move, const AxisPlaces::Way& way) {
     const bool rapid = program_.moves[move].kind == nc::MoveKind::rapid;
     Segment s = line_segment(way.from_mm, way.to_mm);
+    if (turns_) s.turn = turns_->rest(true);
     if (!rapid || s.length_mm < kNoLength) {
-      if (program_.moves[move].reference) rest(0, move, way.to_mm, true);
+      if (program_.moves[move].reference) rest(0, move, way.to_mm, true, true);
       return;
     }
     if (previous_) {
@@ -203,6 +242,7 @@ class Builder {
       e.segment = arc_segment(move.start_mm, arc.center_mm, arc.normal, arc.sweep_rad,
                               arc.normal.dot(move.end_mm - move.start_mm));
     }
+    if (turns_) set_turn(e, move);
     e.segment.mode = static_cast<std::uint8_t>(mode_of(machine_, state));
     e.settings = &settings_of(machine_, std::size_t{e.segment.mode});
     e.control = path_control_of(machine_, state);
@@ -215,7 +255,50 @@ class Builder {
     return e;
   }
 
+  /// The rotary axes along the element; where only they move, its length is in degrees.
+  void set_turn(Element& e, const nc::Move& move) const {
+    Segment& s = e.segment;
+    if (s.length_mm < kNoLength && turning_) {
+      const kinematics::MoveJoints& now = turns_->now();
+      s.along = Vec3::Zero();
+      s.length_mm = deg_from_rad((now.end_rad - now.start_rad).norm());
+    }
+    s.turn = turns_->turn_along(s.length_mm);
+    e.joint_limits = s.turn->tip_control && control_.joint_limits && s.length_mm >= kNoLength;
+    s.start_mm = move.start_mm;
+  }
+
   void set_limits(Element& e, const nc::Move& move) const {
+    if (e.joint_limits) {
+      set_open_limits(e, move);
+    } else {
+      set_axis_limits(e, move);
+      if (e.turns()) limit_rotary_axes(e);
+    }
+    set_feed(e, move);
+  }
+
+  /// Limits of the joints follow when the element is handed out (hand_out_within_limits).
+  void set_open_limits(Element& e, const nc::Move& move) const {
+    Segment& s = e.segment;
+    s.cutting = move.kind != nc::MoveKind::rapid;
+    s.speed_limit_mm_per_s = s.axis_limit_mm_per_s = kNoLimit;
+    s.acceleration_mm_per_s2 = e.settings->path_acceleration_mm_per_s2;
+    if (s.cutting)
+      s.acceleration_mm_per_s2 = std::min(s.acceleration_mm_per_s2, machine_.cycle.linear_acceleration_mm_per_s2);
+    if (s.radius_mm > 0) set_control_arc_limits(s, machine_);
+  }
+
+  void limit_rotary_axes(Element& e) const {
+    Segment& s = e.segment;
+    const JointLimits& limits = s.cutting ? feed_limits_ : rapid_limits_;
+    const AxisValues rate{Vec3::Zero(), s.turn->rate};
+    s.axis_limit_mm_per_s = std::min(s.axis_limit_mm_per_s, limit_along_joints(rate, limits.speed));
+    s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, s.axis_limit_mm_per_s);
+    s.acceleration_mm_per_s2 = std::min(s.acceleration_mm_per_s2, limit_along_joints(rate, limits.acceleration));
+  }
+
+  void set_axis_limits(Element& e, const nc::Move& move) const {
     Segment& s = e.segment;
     s.cutting = move.kind != nc::MoveKind::rapid;
     s.speed_limit_mm_per_s = s.axis_limit_mm_per_s = axis_speed_limit(s, s.cutting ? velocity_ : rapid_velocity_);
@@ -228,7 +311,17 @@ class Builder {
       set_arc_limits(s, acceleration_, *e.settings);
       set_control_arc_limits(s, machine_);
     }
-    const double feed = move.feed_mm_per_s * feed_factor_;
+  }
+
+  double feed_of(const nc::Move& move) const {
+    if (!turns_) return move.feed_mm_per_s;
+    const kinematics::MoveJoints& now = turns_->now();
+    return feed_along_path(program_, move, now.end_rad - now.start_rad, now.g93_time_s, control_);
+  }
+
+  void set_feed(Element& e, const nc::Move& move) const {
+    Segment& s = e.segment;
+    const double feed = feed_of(move) * feed_factor_;
     s.feed_command_mm_per_s = s.cutting ? feed : s.speed_limit_mm_per_s;
     s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, block_time_speed(s.length_mm, e.settings->block_time_s));
     if (s.cutting) s.speed_limit_mm_per_s = std::min(s.speed_limit_mm_per_s, feed);
@@ -299,6 +392,7 @@ class Builder {
     if (settings.rapid_change_s > 0 && changes) return stop(settings.rapid_change_s);
     if (changes && (control_.kind.stops_between_rapid_and_feed || std::isfinite(control_.in_position_mm))) return {};
     if (a.stops || a.taps || b.taps || a.control == nc::PathControl::exact_stop) return {};
+    if (a.turns() || b.turns() || a.joint_limits || b.joint_limits) return turning_junction(a, b);
     if (corner.threshold_rad > 0 && from.dot(to) > std::cos(std::min(corner.threshold_rad, kPi))) return pass();
     const bool turns_round = from.dot(to) < -1.0 + kReversal;
     if (turns_round && corner.law != CornerLaw::speed_difference && corner.law != CornerLaw::angle)
@@ -329,11 +423,82 @@ class Builder {
     return blend.speed_mm_per_s > step.speed_mm_per_s ? blend : step;
   }
 
+  // --- corners with rotary axes
+
+  /// On the exact path (G61) blocks that turn stop.
+  Junction turning_junction(const Element& a, const Element& b) const {
+    const machine::Corner& corner = a.settings->corner;
+    const bool blends = corner.law == CornerLaw::blend;
+    if (a.control == nc::PathControl::exact_path || corner.law == CornerLaw::exact_stop) return {};
+    if (control_.kind.turning_blocks_overlap && !control_.joint_limits)
+      return blends ? overlap_junction(a, b) : Junction{};
+    const Vec3 from = a.segment.direction_at(a.segment.length_mm), to = b.segment.direction_at(0);
+    const bool turns_round = from.dot(to) < -1.0 + kReversal;
+    if (turns_round || from.dot(to) < std::cos(std::min(corner.stop_angle_rad, kPi))) return stop(corner.stop_time_s);
+    Junction j;
+    if (!blends) {
+      j.speed_mm_per_s = step_speed(a, b);
+      return j;
+    }
+    if (!a.line || !b.line) return j;
+    const double shorter = std::min(a.segment.length_mm, b.segment.length_mm);
+    const CornerRoom room{std::min(a.tolerance_mm, b.tolerance_mm),
+                          std::min(kBlendRoomFraction * shorter, a.segment.length_mm - a.from_s)};
+    j.trim = corner_trim(a.segment, b.segment, room);
+    j.speed_mm_per_s = j.trim > kNoLength ? kNoLimit : 0;
+    return j;
+  }
+
+  Junction overlap_junction(const Element& a, const Element& b) const {
+    const auto direction = [](const Segment& s) { return s.along.isZero(0) ? Vec3(Vec3::UnitX()) : s.along; };
+    const double cosine = std::clamp(direction(a.segment).dot(direction(b.segment)), -1.0, 1.0);
+    Junction j;
+    j.overlaps = true;
+    j.overlap_speed_mm_per_s = overlap_corner_speed(
+        std::acos(cosine), a.segment.acceleration_mm_per_s2 * a.settings->stop_acceleration_fraction, a.tolerance_mm);
+    return j;
+  }
+
+  /// Speed at which no joint steps by more than the corner law permits.
+  double step_speed(const Element& a, const Element& b) const {
+    const machine::Corner& corner = a.settings->corner;
+    const AxisValues from = joint_rates(a.segment, a.segment.length_mm, turns_->map()),
+                     to = joint_rates(b.segment, 0, turns_->map());
+    if (corner.law == CornerLaw::speed_difference)
+      return joint_step_speed(
+          from, to, {speed_differences_mm_per_s(machine_, corner), rotary_differences_rad_per_s(machine_, corner)});
+    const AxisValues& acceleration = feed_limits_.acceleration;
+    if (corner.law == CornerLaw::radius)  // q'' = dq' / ((L1 + L2) / 2), v^2 |q''| <= A
+      return std::sqrt((a.segment.length_mm + b.segment.length_mm) / 2 * joint_step_speed(from, to, acceleration));
+    if (corner.time_s <= 0) return 0;
+    return joint_step_speed(from, to, {acceleration.linear * corner.time_s, acceleration.rotary * corner.time_s});
+  }
+
+  void hand_out(const Segment& s, bool joint_limits) const {
+    if (!joint_limits) return sink_(s);
+    hand_out_within_limits(s, turns_->map(), s.cutting ? feed_limits_ : rapid_limits_, sink_);
+  }
+
+  void emit_with_turning_corner(const Element& a, Element& b, double trim) {
+    const double end_s = a.segment.length_mm - trim;
+    emit(a, end_s, a.segment.acceleration_mm_per_s2);
+    hand_out(rounded_corner(a.segment, end_s, b.segment, trim), true);
+    b.from_s = trim;
+  }
+
+  void emit_overlapping(Element& a, const Junction& j) {
+    a.segment.overlaps = true;
+    a.segment.overlap_speed_mm_per_s = j.overlap_speed_mm_per_s;
+    emit(a, a.segment.length_mm, a.segment.acceleration_mm_per_s2 * a.settings->stop_acceleration_fraction);
+  }
+
   void join(Element& a, Element& b) {
     const Junction j = junction(a, b);
     b.segment.entry_limit_mm_per_s = j.speed_mm_per_s;
     a.less_fraction = std::max(a.less_fraction, j.less_fraction);
     b.less_fraction = j.less_fraction;
+    if (j.overlaps) return emit_overlapping(a, j);
+    if (j.trim > kNoLength) return emit_with_turning_corner(a, b, j.trim);
     if (j.blend && a.line && b.line && j.blend->trim_mm > kNoLength) {
       emit_with_blend(a, b, *j.blend);
     } else {
@@ -350,6 +515,7 @@ class Builder {
     s.move = after.move;
     s.mode = after.mode;
     s.cutting = after.cutting;
+    if (turns_) s.turn = turns_->rest(false);
     sink_(s);
   }
 
@@ -366,6 +532,7 @@ class Builder {
     arc.feed_command_mm_per_s = std::max(a.segment.feed_command_mm_per_s, b.segment.feed_command_mm_per_s);
     arc.move = b.segment.move;
     arc.mode = a.segment.mode;
+    if (turns_) arc.turn = part_of(a.segment, a.segment.length_mm, a.segment.length_mm).turn;
     arc.cutting = a.segment.cutting || b.segment.cutting;
     const double left = std::max(0.0, end_s - a.from_s);
     const bool absorbed = left < a.settings->corner.short_line_time_s * blend.speed_mm_per_s;
@@ -389,10 +556,10 @@ class Builder {
                     : element.segment;
     s.acceleration_mm_per_s2 = acceleration;
     s.planned_fraction = element.planned_fraction;
-    sink_(s);
+    hand_out(s, element.joint_limits);
   }
 
-  void rest(double dwell_s, std::size_t move, const Vec3& where_mm, bool gap = false) {
+  void rest(double dwell_s, std::size_t move, const Vec3& where_mm, bool gap = false, bool at_end = false) {
     if (previous_) {
       const bool blended =
           previous_->control == nc::PathControl::blend && previous_->settings->corner.law == CornerLaw::blend;
@@ -408,6 +575,7 @@ class Builder {
     s.start_mm = where_mm;
     s.dwell_s = dwell_s > 0 ? dwell_s + control_.rest_latency_s : 0.0;
     s.move = static_cast<std::uint32_t>(move);
+    if (turns_) s.turn = turns_->rest(at_end);
     sink_(s);
   }
 
@@ -420,6 +588,9 @@ class Builder {
   const double feed_factor_;
   const bool dog_leg_ = machine_.cycle.rapid_path == machine::RapidPath::dogleg;
   AxisPlaces places_;
+  std::optional<MoveTurns> turns_;  ///< of a program with rotary motion
+  bool turning_ = false;            ///< the move under way
+  const JointLimits feed_limits_ = feed_limits(machine_), rapid_limits_ = rapid_limits(machine_);
   std::optional<Element> previous_;
   std::optional<Segment> positioned_;  ///< the positioning just before
 };

@@ -6,7 +6,9 @@
 
 #include "base/stage.h"
 #include "feedmodel/in_position.h"
+#include "feedmodel/joint_map.h"
 #include "feedmodel/modes.h"
+#include "feedmodel/overlap.h"
 #include "feedmodel/path_builder.h"
 #include "feedmodel/rapid.h"
 
@@ -46,6 +48,7 @@ double overlap_time_s(const Segment& s, double overlap_percent) {
 class Planner {
  public:
   Planner(const nc::Interpretation& program, const machine::Machine& machine) : program_(program), machine_(machine) {
+    if (has_rotary_motion(program, machine)) map_.emplace(machine, program);
     for (std::size_t mode = 0; mode <= machine.modes.size(); ++mode) {
       laws_.push_back(acceleration_law_of(machine, mode));
       delay_s_.push_back(delay_s(machine, mode));
@@ -78,6 +81,7 @@ class Planner {
     if (exponential(s.mode)) plan_.rows.back().entry_speed_mm_per_s = s.axis_limit_mm_per_s;
     plan_.times.push_back(
         {.move = s.move, .mode = s.mode, .rest = s.length_mm == 0, .cutting = s.cutting, .duration_s = s.dwell_s});
+    if (s.overlaps) overlaps_.push_back({plan_.rows.size() - 1, s.overlap_speed_mm_per_s});
     if (s.axes_apart) positionings_.push_back({plan_.rows.size() - 1, s, 0});
     if (std::isfinite(machine_.control.in_position_mm)) note_stop(s);
   }
@@ -122,7 +126,8 @@ class Planner {
   double finish(std::size_t i) {
     if (next_check_ < checks_.size() && checks_[next_check_].index == i) {
       const Kept& stop = checks_[next_check_++];
-      const double wait_s = in_position_wait_s(machine_, stop.segment, motion_of(plan_, i, stop.segment, machine_));
+      const double wait_s = in_position_wait_s(machine_, stop.segment, motion_of(plan_, i, stop.segment, machine_),
+                                               map_ ? &*map_ : nullptr);
       plan_.times[i].wait_s = std::max(0.0, wait_s - stop.rest_s);
     }
     return plan_.times[i].end_s();
@@ -156,10 +161,50 @@ class Planner {
       } else {
         overlap_s = 0;
         speed = 0;
-        time_along(i, now_s, ramp);
+        if (overlaps(i) || begins_s_)
+          time_overlapping(i, now_s);
+        else
+          time_along(i, now_s, ramp);
       }
       now_s = finish(i);
     }
+  }
+
+  bool overlaps(std::size_t i) const { return next_overlap_ < overlaps_.size() && overlaps_[next_overlap_].index == i; }
+
+  bool rests_at(std::size_t i) const { return i >= plan_.times.size() || plan_.times[i].rest; }
+
+  /// A block that begins while the one before it brakes, or of which the next one does.
+  void time_overlapping(std::size_t i, double now_s) {
+    SegmentTime& time = plan_.times[i];
+    const PlanRow& row = plan_.rows[i];
+    const Trapezoid profile = profile_of(plan_.rows, i);
+    const bool next = overlaps(i);
+    OverlapOptions options{.start_s = begins_s_ ? *begins_s_ : start_of(profile, now_s),
+                           .alone_from_s = now_s,
+                           .period_s = machine_.control.period_s};
+    if (next)
+      options.speed =
+          std::min(overlaps_[next_overlap_++].speed, overlap_speed(row, plan_.rows[i + 1], rests_at(i + 2)));
+    const OverlapTimes found = profile.entry == 0 && profile.exit == 0 && std::isfinite(row.acceleration_mm_per_s2)
+                                   ? overlap_times(row, options)
+                                   : trapezoid_times(profile, options);
+    time.overlapped = true;
+    time.start_s = options.start_s;
+    time.duration_s = std::max(now_s, found.end_s) - options.start_s;
+    plan_.speed_changes += 2;
+    begins_s_.reset();
+    if (next) begins_s_ = std::min(found.next_start_s, time.end_s());
+  }
+
+  /// The same for a block that is entered, or left, at speed (lines rounded with their neighbours at the other end).
+  static OverlapTimes trapezoid_times(const Trapezoid& profile, const OverlapOptions& options) {
+    const double end_s = options.start_s + profile.duration_s();
+    const double brake_s =
+        std::isinf(profile.acceleration)
+            ? 0.0
+            : std::min({options.speed / profile.acceleration, profile.brake_s, end_s - options.alone_from_s});
+    return {.end_s = end_s, .next_start_s = end_s - std::max(0.0, brake_s)};
   }
 
   void time_along(std::size_t i, double now_s, int& ramp) {
@@ -221,9 +266,16 @@ class Planner {
   std::vector<machine::AccelerationTimes> laws_;  ///< by mode
   std::vector<double> delay_s_;                   ///< by mode
   MotionPlan plan_;
+  std::optional<JointMap> map_;              // of a program with rotary motion
   std::vector<Kept> positionings_, checks_;  // in order
-  std::size_t next_positioning_ = 0, next_check_ = 0;
-  std::optional<Kept> last_;  // the motion just before
+  std::size_t next_positioning_ = 0, next_check_ = 0, next_overlap_ = 0;
+  struct Overlap {
+    std::size_t index = 0;
+    double speed = 0;  // Segment::overlap_speed_mm_per_s
+  };
+  std::vector<Overlap> overlaps_;   // in order
+  std::optional<double> begins_s_;  // the next segment, while the one before it brakes
+  std::optional<Kept> last_;        // the motion just before
 };
 
 }  // namespace
@@ -255,6 +307,11 @@ SegmentMotion motion_of(const MotionPlan& plan, std::size_t i, const Segment& se
   }
   motion.kind = SegmentMotion::Kind::along_path;
   motion.along = profile_of(plan.rows, i);
+  if (time.overlapped) {
+    motion.kind = SegmentMotion::Kind::overlapping;
+    motion.time_scale = time.duration_s > 0 ? motion.along.duration_s() / time.duration_s : 1.0;
+    return motion;
+  }
   motion.accelerate_extra_s = time.accelerates ? delay_s(machine, time.mode) : 0.0;
   motion.brake_extra_s = time.brakes ? delay_s(machine, time.mode) : 0.0;
   return motion;

@@ -17,6 +17,7 @@ struct SegmentTime {
   std::uint8_t mode = 0;                     ///< parameter set of the control: see mode_of
   bool rest = false;                         ///< a dwell or a stop; duration_s may be 0
   bool cutting = false;                      ///< of a feed move
+  bool overlapped = false;                   ///< from rest to rest, in time with its neighbours (overlap.h)
   bool accelerates = false, brakes = false;  ///< a change of speed begins in it: what a jerk filter delays
   double start_s = 0, duration_s = 0;
   double wait_s = 0;  ///< after it, until the axes are in position

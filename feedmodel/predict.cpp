@@ -6,8 +6,10 @@
 #include "base/cancel.h"
 #include "base/stage.h"
 #include "feedmodel/axes.h"
+#include "feedmodel/joint_map.h"
 #include "feedmodel/path_builder.h"
 #include "feedmodel/plan.h"
+#include "feedmodel/summary.h"
 #include "feedmodel/timed_path.h"
 
 namespace camber::feedmodel {
@@ -96,29 +98,14 @@ class Sampler {
   std::uint32_t move_ = 0;
 };
 
-std::size_t count_blocks(const nc::Interpretation& program) {
-  std::size_t blocks = 0;
-  std::uint32_t last = nc::Move::kNoArc;
-  for (const nc::Move& move : program.moves) {
-    if (move.kind == nc::MoveKind::dwell || move.block == last || length_mm(program, move) == 0) continue;
-    ++blocks;
-    last = move.block;
-  }
-  return blocks;
-}
-
 }  // namespace
 
 FeedSummary predict_feed(const nc::Interpretation& program, const machine::Machine& machine, const SampleSink& sink) {
+  if (has_rotary_motion(program, machine))
+    return predict_joints(program, machine,
+                          [&](std::span<const TimedSample> samples, std::span<const JointSample>) { sink(samples); });
   const MotionPlan plan = plan_motion(program, machine);
-  FeedSummary summary;
-  summary.blocks = count_blocks(program);
-  summary.time_s = plan.time_s();
-  double end_s = 0;
-  for (const SegmentTime& time : plan.times) {
-    if (time.cutting) summary.cutting_time_s += time.end_s() - end_s;
-    end_s = time.end_s();
-  }
+  const FeedSummary summary = summary_of(program, plan);
   Sampler sampler(machine, sink);
   Stage stage("following the axes", plan.times.size());
   std::size_t i = 0;

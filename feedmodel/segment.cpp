@@ -49,6 +49,14 @@ Segment part_of(const Segment& segment, double from_s_mm, double to_s_mm) {
     part.along = std::cos(phi) * segment.along + std::sin(phi) * segment.across;
     part.across = std::cos(phi) * segment.across - std::sin(phi) * segment.along;
   }
+  if (segment.turn) {
+    Turn turn = *segment.turn;
+    part.start_mm = pose_at(segment, from_s_mm).xyz_mm;
+    turn.start_rad = pose_at(segment, from_s_mm).rotary_rad;
+    turn.rate += 2 * from_s_mm * turn.bend;
+    if (segment.radius_mm == 0) part.along += 2 * from_s_mm * turn.bend_mm;
+    part.turn = std::make_shared<const Turn>(turn);
+  }
   return part;
 }
 

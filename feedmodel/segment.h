@@ -2,8 +2,10 @@
 // One piece of the path that the control commands: a straight line, a circular arc (helix) or a positioning whose axes
 // move each on its own, with its limits; or a rest.
 #include <cstdint>
+#include <memory>
 
 #include "base/geometry.h"
+#include "feedmodel/turn.h"
 #include "machine/machine.h"
 
 namespace camber::feedmodel {
@@ -34,6 +36,10 @@ struct Segment {
   bool joined = false;  ///< planned as one with the rounding that follows
   bool exact = false;   ///< the program asks for an exact stop at its end (G9, G61.1)
   bool gap = false;     ///< a rest after which the axis positions are unknown
+  /// The next segment begins while this one brakes (ControlKind::turning_blocks_overlap), from this speed at most.
+  bool overlaps = false;
+  double overlap_speed_mm_per_s = machine::kNoLimit;
+  std::shared_ptr<const Turn> turn{};  ///< of every segment of a program with rotary motion; null: without
 
   Vec3 point_at(double s_mm) const;
   Vec3 direction_at(double s_mm) const;  ///< unit

@@ -41,12 +41,27 @@ double planned_time(double t_s, double plain_s, double extra_s) {
   return whole_s * (x - fraction * x * x * (3 - 2 * x));
 }
 
+double SegmentMotion::distance_at(const Segment& segment, double t_s) const {
+  switch (kind) {
+    case Kind::along_path:
+      return t_s >= duration_s ? segment.length_mm : distance_along(*this, std::max(0.0, t_s));
+    case Kind::overlapping:
+      return t_s >= duration_s ? segment.length_mm : along.distance_at(std::max(0.0, t_s) * time_scale);
+    case Kind::exponential:
+      return distance_exponential(*this, std::max(0.0, t_s), segment.length_mm);
+    case Kind::axes_apart:
+    case Kind::rest:
+      break;
+  }
+  return 0;
+}
+
 Vec3 SegmentMotion::point_at(const Segment& segment, double t_s) const {
   switch (kind) {
     case Kind::along_path:
-      return segment.point_at(t_s >= duration_s ? segment.length_mm : distance_along(*this, std::max(0.0, t_s)));
+    case Kind::overlapping:
     case Kind::exponential:
-      return segment.point_at(distance_exponential(*this, std::max(0.0, t_s), segment.length_mm));
+      return segment.point_at(distance_at(segment, t_s));
     case Kind::axes_apart: {
       const double t = planned_time(t_s, axes_s, duration_s - axes_s);
       Vec3 point = segment.start_mm;
@@ -57,6 +72,11 @@ Vec3 SegmentMotion::point_at(const Segment& segment, double t_s) const {
       break;
   }
   return segment.start_mm;
+}
+
+ProgramPose SegmentMotion::pose_at(const Segment& segment, double t_s) const {
+  if (kind == Kind::axes_apart) return {point_at(segment, t_s), segment.turn->start_rad};
+  return feedmodel::pose_at(segment, distance_at(segment, t_s));
 }
 
 SegmentMotion positioning_motion(const Segment& segment, double extra_s) {

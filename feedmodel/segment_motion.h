@@ -13,13 +13,14 @@ namespace camber::feedmodel {
 double planned_time(double t_s, double plain_s, double extra_s);
 
 struct SegmentMotion {
-  enum class Kind { rest, along_path, exponential, axes_apart };
+  enum class Kind { rest, along_path, overlapping, exponential, axes_apart };
   Kind kind = Kind::rest;
   double duration_s = 0;
 
   // along_path: changes of speed may take longer than constant acceleration has it (jerk filter, bell).
   Trapezoid along;
   double accelerate_extra_s = 0, brake_extra_s = 0;
+  double time_scale = 1;  ///< overlapping: of `along`; whole periods of the control make the block longer
 
   // exponential: the ramp reaches the segment's end after ramp_s; a stop there takes duration_s - ramp_s more.
   ExponentialRamp ramp;
@@ -29,8 +30,12 @@ struct SegmentMotion {
   std::array<Trapezoid, 3> axes;
   double axes_s = 0;  ///< of the slowest axis; duration_s holds the delay of a jerk filter as well
 
-  /// Place on the segment at the time t_s since its start, clamped to its ends.
+  /// Length along the segment at the time t_s since its start, clamped to its ends; 0 for a rest, and for axes_apart.
+  double distance_at(const Segment& segment, double t_s) const;
+  /// Place on the segment at the time t_s since its start, clamped to its ends. Without Turn::bend_mm.
   Vec3 point_at(const Segment& segment, double t_s) const;
+  /// The same with the rotary axes. Requires segment.turn.
+  ProgramPose pose_at(const Segment& segment, double t_s) const;
 };
 
 SegmentMotion positioning_motion(const Segment& segment, double extra_s);

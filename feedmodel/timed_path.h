@@ -2,9 +2,12 @@
 // The path in time: where the axes really are at every period of the control.
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "base/geometry.h"
+#include "base/tool_pose.h"
+#include "feedmodel/pose_contour.h"
 #include "machine/machine.h"
 #include "nc/move.h"
 
@@ -19,16 +22,33 @@ struct TimedSample {
   std::uint32_t move = 0;                 ///< index of the move being commanded
 };
 
+/// Beside a TimedSample, in programs with rotary motion: there X, Y and Z of the sample are those of the machine.
+struct JointSample {
+  Vec3 command_rad = Vec3::Zero();                                      ///< a, b, c
+  Vec3 position_rad = Vec3::Zero(), velocity_rad_per_s = Vec3::Zero();  ///< predicted actual axes
+  ToolPose command_tool, tool;  ///< in the frame of the program's X Y Z: as commanded, and of the actual axes
+  double feed_mm_per_s = 0;     ///< actual, of what F counts in the commanded move (FeedMeaning); degrees/s
+};
+
 struct FeedSummary {
   double time_s = 0;
   double cutting_time_s = 0;  ///< commanded time in G1, G2, G3
   std::size_t blocks = 0;     ///< blocks with motion
+  /// In feed moves of a program with rotary motion: tip and axis against the poses that the control commands.
+  std::optional<PoseContourFigures> contour{};
 };
 
 /// Called with runs of samples in time order; memory does not grow with the path's duration.
 using SampleSink = std::function<void(std::span<const TimedSample>)>;
 
+/// The same with the rotary axes: as many of the one as of the other.
+using JointSampleSink = std::function<void(std::span<const TimedSample>, std::span<const JointSample>)>;
+
 /// Look-ahead plan along the whole path, then the axes. Deterministic. Does not throw on valid input.
 FeedSummary predict_feed(const nc::Interpretation& program, const machine::Machine& machine, const SampleSink& sink);
+
+/// The same for a program with rotary motion. Requires has_rotary_motion (joint_map.h).
+FeedSummary predict_joints(const nc::Interpretation& program, const machine::Machine& machine,
+                           const JointSampleSink& sink);
 
 }  // namespace camber::feedmodel

@@ -9,6 +9,12 @@
 
 namespace camber::machine {
 
+/// What F is per minute of in a block that moves linear and rotary axes without tool-centre-point control.
+enum class RotaryFeed {
+  linear,  ///< of the length in X Y Z, whatever the rotary axes do
+  joints   ///< of sqrt(dx^2 + dy^2 + dz^2 + da^2 + db^2 + dc^2), mm and degrees
+};
+
 /// What machine.toml does not say about a control. The defaults are for a control about which nothing is known.
 struct ControlKind {
   std::string_view name;        ///< the word of [control] dialect and --dialect
@@ -29,6 +35,14 @@ struct ControlKind {
   bool g61_1_stops = true;
   /// No segment passes in less than this many periods.
   double min_segment_periods = 1;
+  // With rotary axes
+  RotaryFeed rotary_feed = RotaryFeed::joints;  ///< where [control] rotary_feed is not given
+  /// The planner looks at the limits of the joints; where [control] joint_limits is not given.
+  bool joint_limits = true;
+  /// Blocks that turn rotary axes run from rest to rest under G64, each beginning while the one before it brakes, at
+  /// Control::stop_acceleration_fraction of the acceleration; under G61 they stop.
+  bool turning_blocks_overlap = false;
+
   /// On helices, the acceleration along the path grows with the rise of the whole arc.
   bool helix_rise_frees_acceleration = false;
 

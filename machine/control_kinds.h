@@ -22,6 +22,9 @@ inline constexpr std::array kControlKinds{
                 .waits_in_position = false,
                 .g61_stops = false,
                 .min_segment_periods = 1.02,  // TP_MIN_SEGMENT_CYCLES of its trajectory planner
+                .rotary_feed = RotaryFeed::linear,
+                .joint_limits = false,
+                .turning_blocks_overlap = true,
                 .helix_rise_frees_acceleration = true,
                 .default_step_fraction = 0.1,
                 .usual_lookahead_blocks = 50,

@@ -32,6 +32,8 @@ struct RotaryAxis {
   double position_gain_per_s = std::numeric_limits<double>::infinity();  ///< Kp of the position loop
   double velocity_lag_s = 0;                                             ///< of the velocity loop
   double feed_forward_percent = 0;                                       ///< of the position loop
+  /// Corner law speed_difference: value for this axis; infinite: the number of the corner law, in degrees.
+  double speed_difference_rad_per_s = std::numeric_limits<double>::infinity();
   double clamp_s = 0;              ///< time to unclamp and clamp the axis, for each rotation
   int clamp_m = 0, unclamp_m = 0;  ///< M codes that clamp and release the axis; 0: none
 };

@@ -27,6 +27,8 @@ inline constexpr std::array kRotaryAxisKeys{
     NumberKey<RotaryAxis>{"position_gain_per_s", &RotaryAxis::position_gain_per_s, kPositiveOrInf},
     NumberKey<RotaryAxis>{"velocity_lag_ms", &RotaryAxis::velocity_lag_s, kNotNegative, kMilliseconds},
     NumberKey<RotaryAxis>{"feed_forward_percent", &RotaryAxis::feed_forward_percent, kFeedForwardPercent},
+    NumberKey<RotaryAxis>{"speed_difference_deg_per_min", &RotaryAxis::speed_difference_rad_per_s, kPositiveOrInf,
+                          kDegreesPerMinute},
     NumberKey<RotaryAxis>{"clamp_s", &RotaryAxis::clamp_s, kNotNegative},
 };
 

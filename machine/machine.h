@@ -65,6 +65,10 @@ struct Control {
   /// In-position width: between rapid and feed moves, and at exact stops (G9, G61.1), the control waits until every
   /// axis is within it. Infinite: no wait. Read from a file without the key: kInPositionMm, LinuxCNC infinite.
   double in_position_mm = kNoLimit;
+  RotaryFeed rotary_feed = RotaryFeed::joints;
+  /// Limits of the axes count for the joints, under tool-centre-point control too. False: there for X, Y, Z of the
+  /// program, A, B and C instead.
+  bool joint_limits = true;
   std::optional<AccelerationTimes> acceleration_law{};  ///< of a parameter set ([control.mode]); not given: [cycle]'s
 };
 

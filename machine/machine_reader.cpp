@@ -63,6 +63,9 @@ void read_control(TomlTable table, Control& control) {
   read_numbers<Control>(table, kControlKeys, control);
   control.least_increment_mm = table.optional_number("least_increment_mm", kMinIncrementMm);
   control.lookahead_blocks = static_cast<int>(table.number("lookahead_blocks", kBlockCount, control.lookahead_blocks));
+  control.rotary_feed = static_cast<RotaryFeed>(
+      table.choice("rotary_feed", kRotaryFeedWords, static_cast<std::size_t>(control.kind.rotary_feed)));
+  control.joint_limits = table.boolean("joint_limits", control.kind.joint_limits);
   if (auto corner = table.table("corner")) read_corner(*corner, control.corner);
   table.ignore("mode");
   table.finish();

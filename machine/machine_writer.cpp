@@ -70,6 +70,9 @@ std::string to_toml(const Machine& machine) {
   out += toml_line("lookahead_blocks", machine.control.lookahead_blocks, kAsIs);
   if (machine.control.least_increment_mm)
     out += toml_line("least_increment_mm", *machine.control.least_increment_mm, kAsIs);
+  if (machine.kinematics.given())
+    out += toml_line("rotary_feed", kRotaryFeedWords[static_cast<std::size_t>(machine.control.rotary_feed)]) +
+           fmt::format("joint_limits = {}\n", machine.control.joint_limits);
   out += corner_text(machine.control.corner);
   for (const auto& [name, mode] : machine.modes) out += mode_text(name, mode);
   for (std::size_t i = 0; i < machine.axis.size(); ++i) out += axis_text(kAxisNames[i], machine.axis[i]);

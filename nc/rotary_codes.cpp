@@ -228,8 +228,8 @@ void BlockInterpreter::settle_tip() {
 
 /// What a message says of a code that turns rotary axes, on a machine without them.
 std::string BlockInterpreter::needs_kinematics(const Code& code, const char* name) const {
-  return fmt::format("{} ({}) needs a machine with [kinematics] (camber check --machine M.toml)", code_text(code),
-                     name);
+  return fmt::format("{} ({}) is read by camber check, feed, time and fit-feed, on a machine with [kinematics]",
+                     code_text(code), name);
 }
 
 /// G10 L2 A B C.
@@ -278,8 +278,8 @@ void BlockInterpreter::check_rotary_letter(char letter) {
   if (options_.rotary_axes.empty()) {
     if (words_.value(letter) != 0)
       error(words_.offset_of(letter), "rotary-axis",
-            fmt::format("rotary axis {} needs a machine with [kinematics] (camber check --machine M.toml); X, Y and Z "
-                        "were expected",
+            fmt::format("rotary axis {} is read by camber check, feed, time and fit-feed, on a machine with "
+                        "[kinematics]; X, Y and Z were expected",
                         letter),
             std::string(1, letter));
     else

@@ -43,6 +43,16 @@ void add_tables(py::module_& module) {
       .add("vz_mm_per_min", &FeedPoint::vz_mm_per_min)
       .add("feed_cmd_mm_per_min", &FeedPoint::feed_cmd_mm_per_min)
       .add("feed_mm_per_min", &FeedPoint::feed_mm_per_min);
+  TableClass<camber::PosePoint>(module, "PosePoints")
+      .add("a_deg", &camber::PosePoint::a_deg)
+      .add("b_deg", &camber::PosePoint::b_deg)
+      .add("c_deg", &camber::PosePoint::c_deg)
+      .add("tip_x_mm", &camber::PosePoint::tip_x_mm)
+      .add("tip_y_mm", &camber::PosePoint::tip_y_mm)
+      .add("tip_z_mm", &camber::PosePoint::tip_z_mm)
+      .add("axis_x", &camber::PosePoint::axis_x)
+      .add("axis_y", &camber::PosePoint::axis_y)
+      .add("axis_z", &camber::PosePoint::axis_z);
   TableClass<ForceRow>(module, "ForceRows")
       .add("t_s", &ForceRow::t_s)
       .add("block", &ForceRow::block)
@@ -147,6 +157,7 @@ void add_feed_and_time(py::module_& module) {
                   .def_readonly("cutting_time_s", &FeedResult::cutting_time_s)
                   .def_readonly("blocks", &FeedResult::blocks);
   add_table(feed, "points", &FeedResult::points);
+  add_table(feed, "poses", &FeedResult::poses);
   py::class_<TimeUse>(module, "TimeUse")
       .def_readonly("tool", &TimeUse::tool)
       .def_readonly("tool_changes", &TimeUse::tool_changes)

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "api/commands/rotary_program.h"
 #include "calib/column_map.h"
 #include "calib/fit_drive.h"
 #include "calib/machine_log.h"
@@ -46,9 +47,13 @@ void add_times(calib::StretchRun& run, const std::string& path, TraceKind kind, 
 }
 
 nc::Interpretation moves_of(const TracedProgram& traced, const machine::Machine& start, Diagnostics& diagnostics) {
-  const auto options = feedmodel::interpreter_options(start, traced.interpreter);
-  if (traced.text) return nc::interpret(*traced.text, options, diagnostics);
-  return nc::interpret(nc::read_program(SourceText::read(traced.program), diagnostics), options, diagnostics);
+  const auto options = rotary_interpreter_options(start, traced.interpreter);
+  const auto read = [&](const nc::Program& text) {
+    nc::Interpretation moves = nc::interpret(text, options, diagnostics);
+    if (diagnostics.errors() == 0) check_tip_control(start, text, moves, diagnostics);
+    return moves;
+  };
+  return read(traced.text ? *traced.text : nc::read_program(SourceText::read(traced.program), diagnostics));
 }
 
 /// JSON has no infinity.
@@ -120,6 +125,14 @@ ordered_json report_of(const FitFeedResult& result) {
                                 {"model", result.drives[i].model},
                                 {"fitted_rms_mm", result.drives[i].fitted_rms_mm},
                                 {"held_out_rms_mm", result.drives[i].held_out_rms_mm}});
+  for (const char letter : result.machine.kinematics.rotary_axes()) {
+    const calib::DriveFit& drive = result.rotary_drives[static_cast<std::size_t>(letter - 'a')];
+    report["drives"].push_back({{"axis", std::string(1, letter)},
+                                {"moved", drive.moved},
+                                {"model", drive.model},
+                                {"fitted_rms_deg", drive.fitted_rms_mm},
+                                {"held_out_rms_deg", drive.held_out_rms_mm}});
+  }
   for (const calib::RunAccuracy& run : result.runs)
     report["runs"].push_back({{"program", run.program_name},
                               {"time_trace_s", run.accuracy.time_trace_s},

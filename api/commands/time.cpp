@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "api/commands/rotary_program.h"
 #include "base/numbers.h"
 #include "calib/cycle_accuracy.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/fitted_range.h"
 #include "machine/cases.h"
 #include "machine/set_number.h"
@@ -22,9 +22,10 @@ constexpr std::size_t kMaxPoints = 10000;
 
 nc::Interpretation moves_of(const nc::Program& program, const machine::Machine& machine, const TimeRequest& request,
                             Diagnostics& diagnostics) {
-  nc::InterpreterOptions options = feedmodel::interpreter_options(machine, request.interpreter);
+  nc::InterpreterOptions options = rotary_interpreter_options(machine, request.interpreter);
   options.index_table = machine.index.present;
   nc::Interpretation moves = nc::interpret(program, options, diagnostics);
+  if (diagnostics.errors() == 0) check_rotary_motion(machine, program, moves, false, diagnostics);
   feedmodel::check_range(moves, program.source.name(), machine, diagnostics);
   return moves;
 }

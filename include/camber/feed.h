@@ -22,6 +22,14 @@ struct FeedPoint {
   std::int64_t block = 0;  ///< 1-based line being commanded
 };
 
+/// Rotary axes and pose of the tool of a row of feed.csv, in programs that turn rotary axes. There x_mm, y_mm and z_mm
+/// of FeedPoint are those of the machine, and feed_mm_per_min is what F counts in the block.
+struct PosePoint {
+  double a_deg = 0, b_deg = 0, c_deg = 0;           ///< 0 for axes that the machine does not have
+  double tip_x_mm = 0, tip_y_mm = 0, tip_z_mm = 0;  ///< in the program's frame
+  double axis_x = 0, axis_y = 0, axis_z = 0;        ///< unit; from the tip towards the spindle
+};
+
 struct FeedOptions {
   bool points = true;  ///< keep the points; 80 bytes each
 };
@@ -31,6 +39,7 @@ struct FeedResult {
   double cutting_time_s = 0;              ///< commanded time in G1, G2, G3
   std::size_t blocks = 0;                 ///< blocks with motion
   std::vector<FeedPoint> points{};        ///< one per interpolation period
+  std::vector<PosePoint> poses{};         ///< of each point, in programs that turn rotary axes; else empty
   std::vector<Diagnostic> diagnostics{};  ///< warnings
   std::string json{};                     ///< all figures, as `camber feed --json` writes them
 };

@@ -1,10 +1,12 @@
 // camber check on machines with rotary axes.
+#include <cmath>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/ball_job.h"
+#include "tests/support/csv_columns.h"
 #include "tests/support/open_page.h"
 #include "tests/support/run_camber.h"
 
@@ -111,21 +113,107 @@ TEST(CheckFiveAxes, SaysWhatItCannotCheck) {
       << run.err;
 }
 
+// --- check, time and feed
+
+/// A fan on the machine of samples/machines/linuxcnc_five_axis.toml.
+const char* const kFan =
+    "G21 G90 G94\nG64 P0.01\nG10 L2 P1 X25 Y-15 Z5\nG54 T1 M6\nG43 H1\nM428\n"
+    "G0 X-20 Y5 Z10 A0 C15\nG1 X20 A-45 F600\nG1 A-40 F600\nG93 G1 X10 F30\nM429\nM2\n";
+
+void write_fan(const TempFolder& folder) {
+  folder.write("m.toml", tests::file_text(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml"));
+  folder.write("p.nc", kFan);
+}
+
+TEST(CheckFiveAxes, SaysWhatFCounts) {
+  const TempFolder folder;
+  write_fan(folder);
+  const auto run = run_camber(folder, "check p.nc --machine m.toml --tool-length 1=80 --json r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("F         mm/min of the tip in the part's frame: 1 block, first in line 8\n"
+                         "F         degrees/min of the rotary axes: 1 block, first in line 9\n"
+                         "F         1/min of the block (G93): 1 block, first in line 10\n"),
+            std::string::npos)
+      << run.out;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "r.json"));
+  ASSERT_EQ(json["feed_meanings"].size(), 3U);
+  EXPECT_EQ(json["feed_meanings"][1]["meaning"], "degrees");
+  EXPECT_EQ(json["feed_meanings"][1]["moves"], 1);
+  EXPECT_EQ(json["feed_meanings"][1]["first_line"], 9);
+}
+
+TEST(FeedFiveAxes, WritesJointsAndPoses) {
+  const TempFolder folder;
+  write_fan(folder);
+  const auto run = run_camber(folder, "feed p.nc --machine m.toml --tool-length 1=80 -o feed.csv --json r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string csv = tests::file_text(folder / "feed.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "t_s,block,x_mm,y_mm,z_mm,vx_mm_per_min,vy_mm_per_min,vz_mm_per_min,feed_cmd_mm_per_min,feed_mm_per_min,"
+            "a_deg,c_deg,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z");
+  const auto columns = camber::tests::columns_of(csv);
+  const std::size_t last = columns.at("t_s").size() - 1;
+  EXPECT_NEAR(columns.at("a_deg")[last], -40, 1e-4);
+  EXPECT_NEAR(columns.at("tip_x_mm")[last], 10, 1e-4);
+  EXPECT_NEAR(columns.at("tip_z_mm")[last], 10, 1e-4);
+  EXPECT_NEAR(columns.at("axis_z")[last], std::cos(40 * std::acos(-1.0) / 180), 1e-7);
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "r.json"));
+  EXPECT_GE(json["contour"]["tip_max_um"], 0);
+  // time agrees to the microsecond
+  const auto time = run_camber(folder, "time p.nc --machine m.toml --tool-length 1=80 --json t.json");
+  ASSERT_EQ(time.status, 0) << time.err;
+  const auto timed = nlohmann::json::parse(tests::file_text(folder / "t.json"));
+  const double positioning = timed["positioning_s"], cutting = timed["cutting_s"];
+  EXPECT_NEAR(positioning + cutting, json["time_s"], 1e-6);
+}
+
+TEST(FeedFiveAxes, BadInputByWholeMessage) {
+  const TempFolder folder;
+  write_fan(folder);
+  const auto error_of = [&](const std::string& command) { return run_camber(folder, command).err; };
+  EXPECT_EQ(error_of("feed p.nc --machine m.toml"),
+            "p.nc:7:1: error: the joints of this move under tool-centre-point control depend on the length of tool T1, "
+            "which is not known; --tool-length H=MM, or its value (G10 L1) in the program, was expected [tool-length]\n"
+            "    G0 X-20 Y5 Z10 A0 C15\n    ^\n");
+  folder.write("p.nc", "G21 G90 G94\nG43 H1\nM428\nG0 X0 Y0 Z0 A-5\nM2\n");
+  EXPECT_EQ(error_of("time p.nc --machine m.toml --tool-length 1=80"), "");
+  EXPECT_EQ(error_of("feed p.nc --machine m.toml --tool-length 1=80"),
+            "p.nc:4:1: error: the joints of this move under tool-centre-point control depend on the work offset, which "
+            "is not known; its value (G10 L2) was expected in the program [work-offset]\n    G0 X0 Y0 Z0 A-5\n    ^\n");
+  folder.write("p.nc", "G21 G90 G93\nG0 X0 Y0 Z0\nG1 X1 A1 F10\nG1 X2 A2\nM2\n");
+  EXPECT_EQ(error_of("time p.nc --machine m.toml"),
+            "p.nc:4:1: error: G1 in inverse time (G93) without F; every cutting block needs its own F [feed-missing]\n"
+            "    G1 X2 A2\n    ^\n");
+  folder.write("p.nc", "G21 G90 G94\nM428\nG0 X0 Y0 Z0 A-5\nM2\n");
+  EXPECT_NE(error_of("time p.nc --machine m.toml")
+                .find("switches tool-centre-point control on without a tool length; "
+                      "G43 before it was expected [tool-length]"),
+            std::string::npos);
+  folder.write("p.nc", "G21 G90 G94\nG10 L2 P1 X0 Y0 Z0\nG54\nG43 H1\nM428\nG0 X0 Y0 Z0 A-1\nG1 X1 C180 F3000\nM2\n");
+  EXPECT_EQ(error_of("time p.nc --machine m.toml --tool-length 1=80"),
+            "p.nc:7:1: warning: the feed asks up to 540000 degrees/min of C, but m.toml allows 6000 "
+            "(max_velocity_deg_per_min of [axis.c]); the control slows down here [rotary-speed]\n    G1 X1 C180 F3000\n"
+            "    ^\n");
+  folder.write("m.toml", tests::file_text(kSamples + "table_ac_linuxcnc.toml"));
+  EXPECT_NE(error_of("time p.nc --machine m.toml --tool-length 1=80")
+                .find("p.nc:7:1: warning: C turns here, but [axis.c] of m.toml has no max_velocity_deg_per_min and no "
+                      "acceleration_deg_per_s2; the axis is taken to turn without that limit [rotary-limits]\n"),
+            std::string::npos);
+}
+
 TEST(CheckFiveAxes, OtherCommandsRefuseTheProgramByName) {
   const TempFolder folder;
   copy_machine(folder, "table_bc");
   folder.write("p.nc", kProgram);
-  for (const char* command : {"feed p.nc --machine m.toml", "time p.nc --machine m.toml", "check p.nc"}) {
+  for (const char* command : {"resegment p.nc --machine m.toml --tolerance-mm 0.01 -o out.nc", "check p.nc"}) {
     const auto run = run_camber(folder, command);
     EXPECT_EQ(run.status, 1) << command;
-    EXPECT_NE(run.err.find(
-                  "p.nc:4:1: error: G234 (tool-centre-point control) needs a machine with [kinematics] (camber check "
-                  "--machine M.toml) [not-read]"),
+    EXPECT_NE(run.err.find("p.nc:4:1: error: G234 (tool-centre-point control) is read by camber check, feed, time and "
+                           "fit-feed, on a machine with [kinematics] [not-read]"),
               std::string::npos)
         << run.err;
-    EXPECT_NE(run.err.find(
-                  "p.nc:5:9: error: rotary axis B needs a machine with [kinematics] (camber check --machine M.toml); "
-                  "X, Y and Z were expected [rotary-axis]"),
+    EXPECT_NE(run.err.find("p.nc:5:9: error: rotary axis B is read by camber check, feed, time and fit-feed, on a "
+                           "machine with [kinematics]; X, Y and Z were expected [rotary-axis]"),
               std::string::npos)
         << run.err;
   }

@@ -1,0 +1,26 @@
+#pragma once
+// Programs with rotary axes for camber time and camber feed.
+#include "base/diagnostics.h"
+#include "machine/machine.h"
+#include "nc/interpreter.h"
+#include "nc/program.h"
+
+namespace camber::api {
+
+/// As the control of the machine reads the program, with the rotary axes of its chain.
+nc::InterpreterOptions rotary_interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given);
+
+/// Nothing without rotary motion. Otherwise what kinematics::check_travel says, and
+///  [tool-length], [work-offset]  error: tool-centre-point control, where its joints count (always with `poses`), needs
+///                                a length or an offset that is not known;
+///  [pose-unknown]                warning, with `poses`: tip and axis are reckoned with unknown values taken as 0;
+///  [rotary-limits]               warning: an axis that turns has no speed or acceleration limit in the machine file.
+/// poses: joints and poses of the tool are asked for, not only times.
+void check_rotary_motion(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
+                         bool poses, Diagnostics& diagnostics);
+
+/// Of these checks [tool-length] and [work-offset]: for traces, of which the tip's motion is looked at.
+void check_tip_control(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
+                       Diagnostics& diagnostics);
+
+}  // namespace camber::api
