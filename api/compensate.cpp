@@ -4,6 +4,7 @@
 #include "camber/compensate.h"
 
 #include <chrono>
+#include <filesystem>
 
 #include "api/error_figures.h"
 #include "api/job.h"
@@ -54,6 +55,15 @@ CompensateResult result_of(const CompensationResult& c, const machine::Compensat
   return out;
 }
 
+/// An input is not written over.
+void check_output(const std::string& output, const machine::Job& job) {
+  std::error_code ec;
+  for (const std::string& input : {job.program, job.path, job.machine_path})
+    if (!output.empty() && std::filesystem::equivalent(output, input, ec))
+      fail_on_file(output, "is an input of the job; another file was expected for the emitted program",
+                   "output-is-input");
+}
+
 }  // namespace
 
 CompensateResult v0::compensate(const Job& job, const CompensateOptions& options, const RunOptions& run_options) {
@@ -62,6 +72,7 @@ CompensateResult v0::compensate(const Job& job, const CompensateOptions& options
   api::Run run(run_options);
   run.execute([&] {
     Diagnostics found = job.impl().found;
+    check_output(options.output, job.impl().job);
     const api::CompensateRequest request{.uncertainty = options.uncertainty,
                                          .measured = options.measured,
                                          .measured_program = options.measured_program,
@@ -79,6 +90,8 @@ CompensateResult v0::compensate(const Job& job, const CompensateOptions& options
                  "uncertainty",
                  {}});
     run.settle(found);
+    if (!options.output.empty() && (done.result.better || options.keep_anyway))
+      api::write_compensated(options.output, done.job, done.result);
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result = result_of(done.result, done.job.compensation);
     result.diagnostics = found.all();

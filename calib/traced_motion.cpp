@@ -243,6 +243,12 @@ class Matcher {
                        "same work offset, was expected",
                        line_of(first), name_),
            "trace-program");
+    if (end.move == cut_end.move)
+      fail(trace_.size() - 1,
+           fmt::format("the trace ends in the middle of line {} of {}, the last that is cut; a trace of all of it was "
+                       "expected",
+                       line_of(end.move), name_),
+           "trace-end");
     fail(trace_.size() - 1,
          fmt::format("the trace ends in line {} of {}; it was expected to go on to line {}, the last that is cut",
                      line_of(end.move), name_, line_of(cut_end.move)),

@@ -1,7 +1,6 @@
 #include "cli/compensate_command.h"
 
 #include <chrono>
-#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -12,7 +11,6 @@
 #include "cli/progress.h"
 #include "cli/rounds_progress.h"
 #include "compensate/trial.h"
-#include "compensate/verify.h"
 #include "report/report_data.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
@@ -44,14 +42,6 @@ void write_report(const CompensateArguments& arguments, const machine::Job& job,
                             report::compensate_report(job, result, {before, rows(before), result.loads_before},
                                                       {after, rows(after), result.loads_after}, arguments.output,
                                                       diagnostics, from ? &*from : nullptr));
-}
-
-/// The program, and beside it the record by which it can be judged again; a pipe has nothing beside it.
-void write_program(const std::string& path, const machine::Job& job, const compensate::CompensationResult& result) {
-  write_file(path, result.text);
-  std::error_code ec;
-  if (!std::filesystem::is_regular_file(path, ec)) return;
-  write_file(compensate::record_path(path), compensate::record_json(compensate::make_record(job, result, path)));
 }
 
 }  // namespace
@@ -103,7 +93,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
                  name);
   Diagnostics failed;
   const bool written = !arguments.dry_run && (result.better || arguments.keep_anyway);
-  if (written) try_to_write([&] { write_program(arguments.output, job, result); }, failed);
+  if (written) try_to_write([&] { api::write_compensated(arguments.output, job, result); }, failed);
   if (!arguments.json.empty())
     try_to_write([&] { write_file(arguments.json, report::compensate_json(result, job.compensation, compute_s)); },
                  failed);

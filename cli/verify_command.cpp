@@ -1,46 +1,37 @@
 #include "cli/verify_command.h"
 
 #include <chrono>
-#include <filesystem>
 
 #include <fmt/format.h>
 
+#include "api/commands/verify.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "compensate/verify.h"
-#include "machine/job.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
 
 namespace camber::cli {
 
-namespace fs = std::filesystem;
-
 int run_verify(const VerifyArguments& arguments, const GlobalOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  const std::string record_file = compensate::find_record(arguments.place);
-  const compensate::Record record = compensate::read_record(record_file);
-  compensate::check_record(record, record_file);
-  const fs::path program = fs::path(record_file).parent_path() / record.program;
-  const std::string job_file = fs::path(program).replace_extension(".verify.toml").string();
-  check_outputs({job_file, arguments.json}, {program.string(), record_file});
-  write_file(job_file, record.job);
+  const api::EmittedProgram emitted = api::find_emitted(arguments.place);
+  check_outputs({emitted.job_file, arguments.json}, {emitted.program, emitted.record_file});
 
   Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
-  const machine::Job job = machine::read_job(job_file, diagnostics);
-  compensate::Verification result;
+  api::VerifiedProgram verified;
   try {
-    result = compensate::verify(job, record, diagnostics,
-                                [&](const std::string& what, double fraction) { progress.show(what, fraction); });
+    verified = api::verify_emitted(emitted, diagnostics,
+                                   [&](const std::string& what, double fraction) { progress.show(what, fraction); });
   } catch (const compensate::BeyondModel& beyond) {
     progress.clear();
     settle(diagnostics, options);
     print_error(beyond.what());
     return kNumbersDidNotWorkOut;
   }
+  const auto& [job, result] = verified;
   progress.clear();
   settle(diagnostics, options);
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -49,9 +40,9 @@ int run_verify(const VerifyArguments& arguments, const GlobalOptions& options) {
     try_to_write([&] { write_file(arguments.json, report::verify_json(result, job.compensation, compute_s)); }, failed);
   const report::VerdictText verdict = report::verdict_text(result, job.compensation);
   if (!options.quiet) {
-    fmt::print("{}\n{}", program.string(), report::verify_text(result, compute_s));
+    fmt::print("{}\n{}", emitted.program, report::verify_text(result, compute_s));
     if (verdict.success) fmt::print("{}\n", verdict.headline);
-    fmt::print("the same, with forces and pictures: camber predict {} -o DIR\n", job_file);
+    fmt::print("the same, with forces and pictures: camber predict {} -o DIR\n", emitted.job_file);
   }
   failed.throw_if_errors();
   if (verdict.success) return kDone;

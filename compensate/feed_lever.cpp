@@ -44,8 +44,9 @@ void check_feeds(const simulate::SimulatedProgram& program, const std::vector<bo
                    {}});
 }
 
-FeedLever::FeedLever(const ShiftPath& path, const simulate::SimulatedProgram& given, bool splittable, double least)
-    : unit_of_(path.points().size(), kNoUnit), least_(least) {
+FeedLever::FeedLever(const ShiftPath& path, const simulate::SimulatedProgram& given, bool splittable,
+                     std::span<const double> least)
+    : unit_of_(path.points().size(), kNoUnit) {
   const auto& points = path.points();
   const std::vector<double> times = times_of(path, given);
   for (std::size_t c = 0; c < path.chains().size(); ++c) {
@@ -57,6 +58,7 @@ FeedLever::FeedLever(const ShiftPath& path, const simulate::SimulatedProgram& gi
       if (!whole || !same_move) units_.push_back({.chain = c, .feed_mm_per_s = move.feed_mm_per_s});
       units_.back().length_mm += points[i].along_mm - points[i - 1].along_mm;
       units_.back().time_s += times[i];
+      units_.back().least = std::min(units_.back().least, least[i]);
       unit_of_[i] = units_.size() - 1;
     }
   }
@@ -72,7 +74,7 @@ FeedChoice FeedLever::choose(ShiftPath& path, std::span<const Observation> obser
   std::vector<FeedPoint> points;
   for (std::size_t i = 0; i < observations.size(); ++i)
     points.push_back({unit_of_[observations[i].place.lower + 1], std::abs(left_mm[i]), observations[i].area_mm2});
-  FeedChoice out = choose_feeds(units_, points, now, model_, least_, budget_s, wanted_mm);
+  FeedChoice out = choose_feeds(units_, points, now, model_, budget_s, wanted_mm);
   for (std::size_t i = 0; i < unit_of_.size(); ++i)
     if (unit_of_[i] != kNoUnit) path.points()[i].feed_fraction = out.fraction[unit_of_[i]];
   return out;

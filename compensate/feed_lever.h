@@ -18,8 +18,9 @@ void check_feeds(const simulate::SimulatedProgram& program, const std::vector<bo
 class FeedLever {
  public:
   /// `given`: the program whose path this is, as the machine runs it. `splittable`: lines may be split where the feed
-  /// changes. `least`: fraction of the programmed feed.
-  FeedLever(const ShiftPath& path, const simulate::SimulatedProgram& given, bool splittable, double least);
+  /// changes. `least`: lowest fraction of the programmed feed, for the piece that ends at each point.
+  FeedLever(const ShiftPath& path, const simulate::SimulatedProgram& given, bool splittable,
+            std::span<const double> least);
 
   /// Sets the feeds of `path` for the observations of its last prediction and `left_mm`, what the best shift would
   /// leave of each. `budget_s`: of extra time.
@@ -39,7 +40,6 @@ class FeedLever {
   std::vector<FeedUnit> units_;
   std::vector<std::size_t> unit_of_;  ///< of the piece that ends at each point
   FeedModel model_;
-  double least_;
 };
 
 }  // namespace camber::compensate

@@ -23,15 +23,16 @@ struct Sample {
 class Chooser {
  public:
   Chooser(std::span<const FeedUnit> units, std::span<const FeedPoint> points, std::span<const double> now,
-          const FeedModel& model, double least)
-      : units_(units), model_(model), levels_(feed_levels(least)), of_unit_(units.size()) {
+          const FeedModel& model)
+      : units_(units), model_(model), levels_(feed_levels(lowest(units))), of_unit_(units.size()) {
     for (const FeedPoint& p : points) {
       of_unit_[p.unit].push_back({p.error_mm / std::pow(now[p.unit], model.exponent), p.area_mm2});
       area_ += p.area_mm2;
     }
     for (auto& samples : of_unit_)
       std::sort(samples.begin(), samples.end(), [](const auto& a, const auto& b) { return a.error_mm > b.error_mm; });
-    for (const double level : levels_) shrink_.push_back(std::pow(level, model.exponent));
+    for (std::size_t u = 0; u < units.size(); ++u)
+      for (std::size_t k = 0; k < levels_.size(); ++k) shrink_.push_back(std::pow(fraction(u, k), model.exponent));
   }
 
   struct Solution {
@@ -72,18 +73,24 @@ class Chooser {
       if (!samples.empty()) largest = std::max(largest, samples.front().error_mm);
     return largest;
   }
-  double level(std::size_t k) const { return levels_[k]; }
+  double fraction(std::size_t unit, std::size_t level) const { return std::max(levels_[level], units_[unit].least); }
 
  private:
+  static double lowest(std::span<const FeedUnit> units) {
+    double out = 1;
+    for (const FeedUnit& u : units) out = std::min(out, u.least);
+    return out;
+  }
+
   /// Area over tau, by unit and level.
   std::vector<double> over_areas(double tau_mm) const {
     std::vector<double> out(units_.size() * levels_.size(), 0.0);
     for (std::size_t u = 0; u < units_.size(); ++u)
       for (std::size_t k = 0; k < levels_.size(); ++k) {
-        double& over = out[u * levels_.size() + k];
+        const std::size_t at = u * levels_.size() + k;
         for (const Sample& s : of_unit_[u]) {
-          if (s.error_mm * shrink_[k] <= tau_mm) break;
-          over += s.area_mm2;
+          if (s.error_mm * shrink_[at] <= tau_mm) break;
+          out[at] += s.area_mm2;
         }
       }
     return out;
@@ -114,7 +121,7 @@ class Chooser {
         const bool stays = u == from || cost[k] <= cost[cheapest] + change;
         came[(u - from) * count + k] = stays ? k : cheapest;
         next[k] = (stays ? cost[k] : cost[cheapest] + change) + over[u * count + k] +
-                  std::max(lambda, 1e-9) * model_.time_scale * extra_s(units_[u], levels_[k]);
+                  std::max(lambda, 1e-9) * model_.time_scale * extra_s(units_[u], fraction(u, k));
       }
       cost = std::move(next);
     }
@@ -122,14 +129,15 @@ class Chooser {
     for (std::size_t u = end; u-- > from;) {
       out.level[u] = k;
       out.over += over[u * count + k];
-      out.extra_s += model_.time_scale * extra_s(units_[u], levels_[k]);
+      out.extra_s += model_.time_scale * extra_s(units_[u], fraction(u, k));
       k = came[(u - from) * count + k];
     }
   }
 
   std::span<const FeedUnit> units_;
   FeedModel model_;
-  std::vector<double> levels_, shrink_;
+  std::vector<double> levels_;
+  std::vector<double> shrink_;                ///< of the error, by unit and level
   std::vector<std::vector<Sample>> of_unit_;  ///< the largest error first
   double area_ = 0;
 };
@@ -144,8 +152,8 @@ std::vector<double> feed_levels(double least) {
 }
 
 FeedChoice choose_feeds(std::span<const FeedUnit> units, std::span<const FeedPoint> points, std::span<const double> now,
-                        const FeedModel& model, double least, double budget_s, double wanted_mm) {
-  const Chooser chooser(units, points, now, model, least);
+                        const FeedModel& model, double budget_s, double wanted_mm) {
+  const Chooser chooser(units, points, now, model);
   double high = chooser.largest_mm(), low = wanted_mm;  // of tau
   bool reached = false;
   Chooser::Solution best = chooser.cheapest(high, reached);
@@ -169,7 +177,7 @@ FeedChoice choose_feeds(std::span<const FeedUnit> units, std::span<const FeedPoi
     }
   }
   FeedChoice out{{}, best.extra_s, error};
-  for (const std::size_t k : best.level) out.fraction.push_back(chooser.level(k));
+  for (std::size_t u = 0; u < units.size(); ++u) out.fraction.push_back(chooser.fraction(u, best.level[u]));
   return out;
 }
 

@@ -12,6 +12,7 @@ struct FeedUnit {
   double length_mm = 0;
   double time_s = 0;         ///< at the programmed feed; more than length / feed where the control is slower
   double feed_mm_per_s = 0;  ///< programmed
+  double least = 1;          ///< lowest fraction of it
 };
 
 /// A piece of surface that a unit makes.
@@ -33,7 +34,7 @@ struct FeedChoice {
   double error_mm = 0;           ///< 95th percentile by the model
 };
 
-/// Fractions that are chosen from: 1, 0.85, 0.85^2 ... `least`.
+/// Fractions that are chosen from: 1, 0.85, 0.85^2 ... `least`. A unit takes none below its own least one.
 std::vector<double> feed_levels(double least);
 
 /// Least 95th percentile of the error for no more than `budget_s` of extra time, or the least time for a 95th
@@ -44,6 +45,6 @@ std::vector<double> feed_levels(double least);
 /// unit by unit along each chain (Viterbi), with lambda such that 5 % of the area stay over tau, and tau the least that
 /// the budget allows. `now`: the present fraction of each unit. time(u) = max(time_s, length / (u feed)).
 FeedChoice choose_feeds(std::span<const FeedUnit> units, std::span<const FeedPoint> points, std::span<const double> now,
-                        const FeedModel& model, double least, double budget_s, double wanted_mm);
+                        const FeedModel& model, double budget_s, double wanted_mm);
 
 }  // namespace camber::compensate

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "compensate/least_feed.h"
 #include "compensate/loop.h"
 
 namespace camber::compensate {
@@ -47,7 +48,9 @@ void Loop::lower_feeds(CompensationResult& out, double percent) {
   if (!has(machine::Lever::feed) || now_->feeds_stuck || left_s < kMinExtra * given_s_) return;
   if (!now_->feeds) {
     const bool splittable = !std::isinf(spacing_mm());
-    now_->feeds.emplace(*now_->path, setup_.program, splittable, job_.compensation.min_feed_percent / 100);
+    const std::vector<double> least =
+        least_feeds(*now_->path, setup_.program.moves, job_.machine, job_.compensation.min_feed_percent / 100);
+    now_->feeds.emplace(*now_->path, setup_.program, splittable, least);
   }
   const bool budget = options_.time_budget_percent.has_value();
   last_ = best_;

@@ -19,11 +19,26 @@ namespace {
 constexpr double kSpacing_mm = 0.4;  // between points of a long line
 constexpr double kForeign = 0.2;     // of the area, cut by another row than it should be: expected_errors are used
 
+/// Where the blank has an allowance, the first of two cuts must find some of it.
+void check_allowance(const machine::Job& job, Diagnostics& diagnostics) {
+  const double asked_mm = job.compensation.pass_allowance_mm, blank_mm = job.stock.allowance_mm;
+  if (blank_mm <= 0 || asked_mm < blank_mm) return;
+  diagnostics.add(
+      {Severity::error,
+       {job.path, 0, 0},
+       fmt::format("pass_allowance_mm is {:g}, but the stock has an allowance of {:g} mm, so that the first "
+                   "of two cuts would cut nothing; less than that was expected",
+                   asked_mm, blank_mm),
+       "lever-unusable",
+       {}});
+}
+
 /// What is known to be refused is refused before the long work.
 void check_given(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics) {
   const Finishing early = find_finishing(job, program, {});
   if (early.operations.size() == 1 || job.compensation.operations.given())
     check_compensated(program, early.moves, diagnostics);
+  if (job.compensation.has(machine::Lever::passes)) check_allowance(job, diagnostics);
   check_travel(job, program.text, program.moves, diagnostics);
   simulate::check_program(job, program, diagnostics);
 }

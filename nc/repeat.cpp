@@ -55,6 +55,9 @@ double highest_of(const Interpretation& moves, const CutRun& run) {
 /// none of them lies above the run.
 void find_way_back(const Interpretation& moves, CutRun& run) {
   const auto& all = moves.moves;
+  const bool per_minute = moves.state_of(all[run.last_move]).feed_mode == FeedMode::per_minute;
+  run.closed = per_minute && (all[run.last_move].end_mm - all[run.first_move].start_mm).norm() < kSame_mm;
+  if (run.closed) return;
   std::uint32_t from = run.first_move;
   while (from > 0 && goes_rapidly(all[from - 1]) && all[from - 1].state == all[run.first_move - 1].state) --from;
   std::vector<Vec3> points;
@@ -101,15 +104,16 @@ RunGap gap_of(const Program& program, const Interpretation& moves, const CutRun&
   return RunGap::none;
 }
 
-/// A line of rapids in the program's own coordinates and style.
-class RapidWriter {
+/// The lines from the end of a run to its start, in the program's own coordinates and style.
+class WayBackWriter {
  public:
-  RapidWriter(const Program& program, const Interpretation& moves, const CutRun& run)
+  WayBackWriter(const Program& program, const Interpretation& moves, const CutRun& run)
       : program_(program), moves_(moves), run_(run), style_(style_of(program)) {}
 
   std::vector<std::string> lines() const {
     const Move &first = moves_.moves[run_.first_move], &last = moves_.moves[run_.last_move];
     std::vector<std::string> out;
+    if (run_.closed) out.push_back(to_start());
     Vec3 at = in_program(last.end_mm);  // the earlier cut ends a little beside: the second line names all axes
     for (const Vec3& point : run_.way_back) {
       const Vec3 to = in_program(point);
@@ -127,6 +131,11 @@ class RapidWriter {
   }
 
  private:
+  /// The earlier cut ends a little beside.
+  std::string to_start() const {
+    const Vec3 to = in_program(moves_.moves[run_.first_move].start_mm);
+    return "G1" + word('X', to.x()) + word('Y', to.y()) + word('Z', to.z());
+  }
   Vec3 in_program(const Vec3& p) const { return moves_.frame_of(moves_.moves[run_.first_move]).to_program(p); }
   bool inch() const { return moves_.state_of(moves_.moves[run_.first_move]).inch; }
   std::string gap() const { return style_.blanks ? " " : ""; }
@@ -246,7 +255,7 @@ RepeatedText repeat_runs(const Program& program, const Interpretation& moves, st
       out.added.push_back(true);
     };
     for (std::size_t i = 0; i < cut.lines.size(); ++i) add(without_number(cut.lines[i]), cut.block_of_lines[i]);
-    for (std::string& line : RapidWriter(program, moves, cut.run).lines()) add(std::move(line), Emission::kNoBlock);
+    for (std::string& line : WayBackWriter(program, moves, cut.run).lines()) add(std::move(line), Emission::kNoBlock);
   }
   copy_to(static_cast<std::uint32_t>(program.blocks.size()));
   for (BlockReplacement& r : replacements) {

@@ -36,6 +36,7 @@ struct CutRun {
   /// the run, across to the place from which the program itself goes down, and down by its own rapids.
   std::vector<Vec3> way_back{};
   double way_back_mm = 0;  ///< its length
+  bool closed = false;     ///< ends where it begins: is cut again without a way back
   RunGap why_not = RunGap::none;
 };
 
@@ -46,20 +47,21 @@ std::vector<CutRun> cut_runs(const Program& program, const Interpretation& moves
 /// A program in which some runs are cut more than once.
 struct RepeatedText {
   std::string text;
-  /// Of the given program; of a line of an earlier cut the block that it repeats; Emission::kNoBlock: rapids between.
+  /// Of the given program; of a line of an earlier cut the block that it repeats; Emission::kNoBlock: the way between.
   std::vector<std::uint32_t> block_of_line;
   std::vector<bool> added;  ///< one per line: not of the given program
 };
 
-/// What is cut before a run: lines that begin where the run begins and end where it ends.
+/// What is cut before a run: lines that begin and end where the run does, but for an allowance.
 struct EarlierCut {
   CutRun run;
   std::vector<std::string> lines{};             ///< without line ends; block numbers (N words) are left out
   std::vector<std::uint32_t> block_of_lines{};  ///< one per line
 };
 
-/// Puts the lines of each cut, and the rapids back to the start, before the first block of its run; the given lines
-/// stay byte for byte. `cuts`: in the order of the program's blocks; several of one run follow each other.
+/// Puts the lines of each cut, and the rapids back to the start (of a closed run: a feed move onto it), before the
+/// first block of its run; the given lines stay byte for byte. `cuts`: in the order of the program's blocks; several of
+/// one run follow each other.
 RepeatedText repeat_runs(const Program& program, const Interpretation& moves, std::span<const EarlierCut> cuts);
 
 }  // namespace camber::nc

@@ -124,7 +124,8 @@ camber::CompensateResult compensate(const py::object& job, const std::vector<std
                                     const std::optional<Path>& measured, const std::optional<Path>& measured_program,
                                     const std::vector<double>& check_voxels_mm,
                                     const std::optional<double>& time_budget_percent, bool keep_anyway, bool header,
-                                    bool header_hash, const py::object& progress, bool strict, int threads) {
+                                    bool header_hash, const std::optional<Path>& output, const py::object& progress,
+                                    bool strict, int threads) {
   const camber::Job given = job_of(job);
   const camber::CompensateOptions options{
       .uncertainty = uncertainty,
@@ -134,10 +135,18 @@ camber::CompensateResult compensate(const py::object& job, const std::vector<std
       .time_budget_percent = time_budget_percent,
       .keep_anyway = keep_anyway,
       .header = header,
-      .header_hash = header_hash};
+      .header_hash = header_hash,
+      .output = output ? output->string() : std::string()};
   camber::CompensateResult result;
   call({progress, strict, threads},
        [&](const camber::RunOptions& run) { result = camber::compensate(given, options, run); });
+  return result;
+}
+
+camber::VerifyResult verify(const Path& place, const py::object& progress, bool strict, int threads) {
+  camber::VerifyResult result;
+  call({progress, strict, threads},
+       [&](const camber::RunOptions& run) { result = camber::verify(place.string(), run); });
   return result;
 }
 
@@ -200,8 +209,10 @@ void add_functions(py::module_& module) {
   module.def("compensate", compensate, "job"_a, py::kw_only(), "uncertainty"_a = std::vector<std::string>(),
              "measured"_a = py::none(), "measured_program"_a = py::none(), "check_voxels_mm"_a = std::vector<double>(),
              "time_budget_percent"_a = py::none(), "keep_anyway"_a = false, "header"_a = false, "header_hash"_a = false,
-             "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "output"_a = py::none(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Compensates the program of a job: shifts its path against the form error.");
+  module.def("verify", verify, "place"_a, py::kw_only(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "Judges a program that compensate has written again, from its text.");
 }
 
 }  // namespace camber_python

@@ -264,6 +264,19 @@ void add_predict_and_compensate(py::module_& module) {
                         .def_readonly("blocks_changed", &CompensateResult::blocks_changed)
                         .def_readonly("max_shift_mm", &CompensateResult::max_shift_mm);
   add_table(compensate, "surface", &CompensateResult::surface);
+  using camber::VerifyResult;
+  result_class<VerifyResult>(module, "VerifyResult")
+      .def_readonly("program", &VerifyResult::program)
+      .def_readonly("job", &VerifyResult::job)
+      .def_readonly("success", &VerifyResult::success)
+      .def_readonly("headline", &VerifyResult::headline)
+      .def_readonly("reasons", &VerifyResult::reasons)
+      .def_readonly("error_um", &VerifyResult::error_um)
+      .def_readonly("deflection_um", &VerifyResult::deflection_um)
+      .def_readonly("contour_um", &VerifyResult::contour_um)
+      .def_readonly("gouge_depth_p999_um", &VerifyResult::gouge_depth_p999_um)
+      .def_readonly("depth_limit_um", &VerifyResult::depth_limit_um)
+      .def_readonly("machine_time_s", &VerifyResult::machine_time_s);
 }
 
 }  // namespace

@@ -185,15 +185,17 @@ void check_region_start(const machine::Job& job, const SimulatedProgram& program
   const auto first = static_cast<std::size_t>(std::ranges::find(program.selected, true) - program.selected.begin());
   if (first == 0 || first >= moves.size()) return;
   const nc::Move &m = moves[first], &before = moves[first - 1];
-  const bool goes_on = (before.kind == nc::MoveKind::linear || before.kind == nc::MoveKind::arc) && !before.reference &&
-                       program.moves.state_of(before).tool == program.moves.state_of(m).tool;
+  const bool cut = before.kind == nc::MoveKind::linear || before.kind == nc::MoveKind::arc;
+  const bool known = (cut || before.kind == nc::MoveKind::rapid) && !before.reference &&
+                     program.moves.state_of(before).tool == program.moves.state_of(m).tool;
   const auto tool = job.tools.find(program.moves.state_of(m).tool);
-  if (!goes_on || tool == job.tools.end() || !stands_in(blank, tool->second, m.start_mm)) return;
+  if (!known || tool == job.tools.end() || !stands_in(blank, tool->second, m.start_mm)) return;
   diagnostics.add(program.text.source.diagnostic(
       Severity::warning, program.text.blocks[m.block].offset,
-      fmt::format("the job's operations begin here, in the middle of a cut: T{} stands in material, which is removed "
-                  "without chips; a range that begins at a rapid was expected",
-                  tool->first),
+      fmt::format("the job's operations begin here, {}: T{} stands in material, which is removed without chips; {} was "
+                  "expected",
+                  cut ? "in the middle of a cut" : "behind a rapid that ends in the stock", tool->first,
+                  cut ? "a range that begins at a rapid" : "a stock that leaves the start free"),
       "starts-in-material"));
 }
 

@@ -1,10 +1,13 @@
 #include "api/commands/compensate.h"
 
+#include <filesystem>
 #include <optional>
 
+#include "base/output_file.h"
 #include "compensate/header.h"
 #include "compensate/measured.h"
 #include "compensate/recheck.h"
+#include "compensate/verify.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/fitted_range.h"
 #include "nc/interpreter.h"
@@ -57,6 +60,13 @@ CompensatedJob compensate_job(const machine::Job& given, const CompensateRequest
   out.result.measured = fit;
   feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
   return out;
+}
+
+void write_compensated(const std::string& path, const machine::Job& job, const compensate::CompensationResult& result) {
+  write_file(path, result.text);
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(path, ec)) return;
+  write_file(compensate::record_path(path), compensate::record_json(compensate::make_record(job, result, path)));
 }
 
 }  // namespace camber::api

@@ -29,4 +29,7 @@ struct CompensatedJob {
 /// Throws InputError and BeyondModel. Writes nothing.
 CompensatedJob compensate_job(const machine::Job& given, const CompensateRequest& request, Diagnostics& diagnostics);
 
+/// The emitted program, and beside it the record by which it can be judged again; a pipe has nothing beside it.
+void write_compensated(const std::string& path, const machine::Job& job, const compensate::CompensationResult& result);
+
 }  // namespace camber::api

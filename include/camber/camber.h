@@ -12,3 +12,4 @@
 #include "camber/program.h"
 #include "camber/run.h"
 #include "camber/time.h"
+#include "camber/verify.h"

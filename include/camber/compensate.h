@@ -20,6 +20,9 @@ struct CompensateOptions {
   std::optional<double> time_budget_percent{};
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
   bool header = false, header_hash = false;  ///< write comment lines at the head of the program
+  /// File for the emitted program; the record by which verify() judges it is written beside it. As on the command line,
+  /// nothing is written where no round is better than the given program, unless keep_anyway is set. Empty: no files.
+  std::string output{};
 };
 
 struct CompensationRound {
@@ -67,7 +70,7 @@ struct CompensateResult {
   std::string json{};                     ///< all figures, as `camber compensate --json` writes them
 };
 
-/// Writes no file. Throws InputError, BeyondModel, Cancelled.
+/// Throws InputError, BeyondModel, Cancelled.
 CAMBER_API CompensateResult compensate(const Job& job, const CompensateOptions& options = {},
                                        const RunOptions& run = {});
 

@@ -161,6 +161,10 @@ TEST(TracedMotion, RefusesATraceThatEndsOrBeginsInTheCut) {
   EXPECT_EQ(refusal(trace_of_square(true, 0.3, 25)),
             "trace.csv:2501:1: error: the trace ends in line 5 of square.nc; it was expected to go on to line 6, the "
             "last that is cut [trace-end]");
+  EXPECT_EQ(
+      refusal(trace_of_square(true, 0.3, 35)),
+      "trace.csv:3501:1: error: the trace ends in the middle of line 6 of square.nc, the last that is cut; a trace "
+      "of all of it was expected [trace-end]");
   EXPECT_EQ(refusal(without(trace_of_square(true), 0, 1800)),
             "trace.csv:1802:1: error: the axes go from line 2 to line 4 of square.nc without 17.7 mm of the cut "
             "between them; a trace of the whole cut was expected [trace-program]");

@@ -153,6 +153,25 @@ TEST(Region, ThatBeginsInTheMiddleOfACutIsWarnedOf) {
   EXPECT_EQ(said_of("[[5, 8]]"), "");
 }
 
+TEST(Region, ThatBeginsBehindARapidIntoTheStockIsWarnedOf) {
+  const TempFolder folder;
+  folder.write("p.nc",
+               "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\nG0 X4 Y0 Z-1\nG4 P0.2\nG0 X4\nG1 X12 F900\nG0 Z5\nM30\n");
+  folder.write("machine.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
+  const auto said_of = [&](const std::string& box) {
+    folder.write("job.toml", "program = \"p.nc\"\nmachine = \"machine.toml\"\noperations = { blocks = [[7, 7]] }\n" +
+                                 tool(1) + "[material]\nktc_MPa = 20.0\nkrc_MPa = 7.0\n[stock]\nbox_mm = " + box +
+                                 "\n[simulation]\nvoxel_mm = 0.2\ncoupling = \"rigid\"\ncollisions = \"off\"\n");
+    return run_camber(folder, "predict job.toml -o r").err;
+  };
+  EXPECT_NE(said_of("[[0, -8, -5], [8, 8, 0]]")
+                .find("p.nc:7:1: warning: the job's operations begin here, behind a rapid that ends in the stock: T1 "
+                      "stands in material, which is removed without chips; a stock that leaves the start free was "
+                      "expected [starts-in-material]"),
+            std::string::npos);
+  EXPECT_EQ(said_of("[[7, -8, -5], [15, 8, 0]]"), "");
+}
+
 TEST(OperationsByComment, AreTheLinesUnderTheComment) {
   for (const auto& [comments, blocks] :
        {std::pair("first", "[[2, 9]]"), std::pair("SECOND slot", "[[9, 16]]"), std::pair("slot", "[[1, 16]]")}) {

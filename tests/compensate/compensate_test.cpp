@@ -168,6 +168,24 @@ TEST(Compensate, RefusesPassesWhereNothingCanBeCutTwice) {
   }
 }
 
+TEST(Compensate, RefusesAFirstCutThatWouldCutNothing) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  job.compensation.levers = {machine::Lever::shift, machine::Lever::passes};
+  job.compensation.pass_allowance_mm = 0.25;
+  Diagnostics diagnostics;
+  try {
+    compensate(job, diagnostics, {});
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.diagnostics().front().check, "lever-unusable");
+    EXPECT_EQ(
+        e.diagnostics().front().message,
+        "pass_allowance_mm is 0.25, but the stock has an allowance of 0.2 mm, so that the first of two cuts would "
+        "cut nothing; less than that was expected");
+  }
+}
+
 TEST(Compensate, NeedsTheFeedLeverForATimeBudget) {
   const tests::TempFolder folder;
   Diagnostics diagnostics;

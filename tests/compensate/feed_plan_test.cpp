@@ -25,7 +25,7 @@ Case random_case(std::size_t count, unsigned seed) {
   Case out;
   for (std::size_t u = 0; u < count; ++u) {
     const double mm = length(random), mean = error(random);
-    out.units.push_back({.chain = u, .length_mm = mm, .time_s = mm / 15, .feed_mm_per_s = 15});
+    out.units.push_back({.chain = u, .length_mm = mm, .time_s = mm / 15, .feed_mm_per_s = 15, .least = kLeast});
     for (int i = 0; i < 40; ++i) out.points.push_back({u, mean * scatter(random), mm / 40});
   }
   return out;
@@ -75,7 +75,7 @@ TEST(FeedPlan, IsWithinATenthOfEveryCombinationTried) {
     for (const FeedUnit& u : c.units) time += u.time_s;
     for (const double share : {0.05, 0.15, 0.5}) {
       const double budget = share * time;
-      const FeedChoice chosen = choose_feeds(c.units, c.points, now, kModel, kLeast, budget, 0);
+      const FeedChoice chosen = choose_feeds(c.units, c.points, now, kModel, budget, 0);
       EXPECT_LE(extra_s(c, chosen.fraction), budget * 1.0001);
       EXPECT_LE(p95(c, chosen.fraction), 1.1 * best_of_all(c, budget)) << "seed " << seed << ", budget " << share;
     }
@@ -86,9 +86,9 @@ TEST(FeedPlan, SpendsNoMoreThanTheToleranceTakes) {
   const Case c = random_case(5, 7);
   const std::vector<double> now(c.units.size(), 1.0);
   const double wanted = 0.8 * p95(c, now);
-  const FeedChoice chosen = choose_feeds(c.units, c.points, now, kModel, kLeast, 1e9, wanted);
+  const FeedChoice chosen = choose_feeds(c.units, c.points, now, kModel, 1e9, wanted);
   EXPECT_LE(p95(c, chosen.fraction), wanted);
-  EXPECT_LT(chosen.extra_s, choose_feeds(c.units, c.points, now, kModel, kLeast, 1e9, 0.9 * wanted).extra_s);
+  EXPECT_LT(chosen.extra_s, choose_feeds(c.units, c.points, now, kModel, 1e9, 0.9 * wanted).extra_s);
 }
 
 TEST(FeedPlan, KeepsFeedsTogetherAlongAChain) {
@@ -96,11 +96,11 @@ TEST(FeedPlan, KeepsFeedsTogetherAlongAChain) {
   std::vector<FeedUnit> units;
   std::vector<FeedPoint> points;
   for (std::size_t u = 0; u < 40; ++u) {
-    units.push_back({.chain = 0, .length_mm = 0.1, .time_s = 0.1 / 15, .feed_mm_per_s = 15});
+    units.push_back({.chain = 0, .length_mm = 0.1, .time_s = 0.1 / 15, .feed_mm_per_s = 15, .least = 0.2});
     points.push_back({u, u % 2 == 0 ? 0.01 : 0.001, 1.0});
   }
   const std::vector<double> now(units.size(), 1.0);
-  const FeedChoice chosen = choose_feeds(units, points, now, kModel, 0.2, 1e9, 0.006);
+  const FeedChoice chosen = choose_feeds(units, points, now, kModel, 1e9, 0.006);
   int changes = 0;
   for (std::size_t u = 1; u < units.size(); ++u) changes += chosen.fraction[u] != chosen.fraction[u - 1] ? 1 : 0;
   EXPECT_LE(changes, 4);
@@ -109,10 +109,25 @@ TEST(FeedPlan, KeepsFeedsTogetherAlongAChain) {
 
 TEST(FeedPlan, TakesNoTimeWhereTheControlIsSlowerThanTheFeed) {
   // The axes reach a fifth of the feed here: half the feed costs nothing.
-  const std::vector<FeedUnit> units{{.chain = 0, .length_mm = 1, .time_s = 1 / 3.0, .feed_mm_per_s = 15}};
+  const std::vector<FeedUnit> units{{.chain = 0, .length_mm = 1, .time_s = 1 / 3.0, .feed_mm_per_s = 15, .least = 0.5}};
   const std::vector<FeedPoint> points{{0, 0.01, 1.0}};
   const std::vector<double> now{1.0};
-  EXPECT_EQ(choose_feeds(units, points, now, kModel, 0.5, 0, 0).extra_s, 0);
+  EXPECT_EQ(choose_feeds(units, points, now, kModel, 0, 0).extra_s, 0);
+}
+
+TEST(FeedPlan, NoUnitIsSlowerThanItsLeast) {
+  std::vector<FeedUnit> units;
+  std::vector<FeedPoint> points;
+  for (std::size_t u = 0; u < 3; ++u) {
+    units.push_back(
+        {.chain = u, .length_mm = 1, .time_s = 1 / 15.0, .feed_mm_per_s = 15, .least = u == 1 ? 0.13 : 0.2});
+    points.push_back({u, u == 1 ? 0.04 : 0.02, 1.0});
+  }
+  const std::vector<double> now(units.size(), 1.0);
+  const FeedChoice chosen = choose_feeds(units, points, now, kModel, 1e9, 0);
+  EXPECT_EQ(chosen.fraction[1], 0.13) << "the worst of them";
+  EXPECT_GE(chosen.fraction[0], 0.2);
+  EXPECT_LT(chosen.fraction[0], 1);
 }
 
 TEST(FeedPlan, LevelsEndAtTheLeast) {

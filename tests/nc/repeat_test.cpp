@@ -124,6 +124,26 @@ TEST(Repeat, PutsTheFirstCutAndRapidsBackBeforeTheRun) {
   EXPECT_NEAR(cut_mm, 2 * given_mm, 0.1) << "the first cut lies 0.05 mm beside";
 }
 
+TEST(Repeat, ClosedRunsAreCutAgainWithoutARetract) {
+  const Read r = read_clean(
+      "G21 G90 G17\nT1 M6\nG54 S3000 M3\nG0 X-5. Y0 Z10.\nZ-2.\nG1 X0 F300\nG2 I10. F640\nG1 X-5.\nG0 Z10.\nM30\n");
+  const auto runs = runs_of(r);
+  ASSERT_EQ(runs.size(), 1u);
+  EXPECT_EQ(runs[0].why_not, RunGap::none);
+  EXPECT_TRUE(runs[0].closed);
+  EXPECT_TRUE(runs[0].way_back.empty());
+  EarlierCut first = same_lines(r, runs[0]);
+  first.lines = {"G1 X0.05 Z-1.98 F300", "G2 X0.05 I9.95 F640", "G1 X-4.95"};
+  const std::array cuts{first};
+  const RepeatedText out = repeat_runs(r.program, r.moves, cuts);
+  EXPECT_EQ(out.text,
+            "G21 G90 G17\nT1 M6\nG54 S3000 M3\nG0 X-5. Y0 Z10.\nZ-2.\n"
+            "G1 X0.05 Z-1.98 F300\nG2 X0.05 I9.95 F640\nG1 X-4.95\nG1 X-5. Y0. Z-2.\n"
+            "G1 X0 F300\nG2 I10. F640\nG1 X-5.\nG0 Z10.\nM30\n");
+  EXPECT_EQ(out.block_of_line[8], Emission::kNoBlock);
+  EXPECT_TRUE(out.added[8]);
+}
+
 TEST(Repeat, WritesInchesAndShiftedFramesInTheProgramsOwnCoordinates) {
   const Read inches = read_clean("G20 G90 G17 F20.\nT1 M6\nS3000 M3\nG0 X0 Y0 Z.5\nG0 Z-.1\nG1 X1.5\nG0 Z.5\nM30\n");
   const auto runs = runs_of(inches);

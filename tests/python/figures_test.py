@@ -221,11 +221,20 @@ class Figures(unittest.TestCase):
                 with self.subTest(job=job):
                     emitted = out / "emitted.nc"
                     expected = command_line("compensate", job, "-o", emitted, "--keep-anyway", expected=(0, 3))
-                    result = camber.compensate(job, keep_anyway=True)
+                    written = out / "library" / "emitted.nc"
+                    written.parent.mkdir(exist_ok=True)
+                    result = camber.compensate(job, keep_anyway=True, output=written)
                     self.equal(result, expected)
+                    self.assertEqual(written.read_bytes(), emitted.read_bytes())
                     self.assertEqual(result.program.encode(), emitted.read_bytes())
                     self.assertEqual(result.after_um.p95, expected["after_um"]["p95"])
                     self.assertEqual(result.success, expected["verdict"]["success"])
+                    judged = command_line("compensate", "--verify", emitted, expected=(0, 3))
+                    verified = camber.verify(written)
+                    self.equal(verified, judged)
+                    self.assertEqual(verified.error_um.p95, judged["emitted"]["error_um"]["p95"])
+                    self.assertEqual(verified.gouge_depth_p999_um, judged["into_part"]["gouge_depth_p999_um"])
+                    self.assertEqual((verified.success, verified.program), (result.success, str(written)))
 
 
 if __name__ == "__main__":

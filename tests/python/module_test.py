@@ -96,6 +96,15 @@ class Inputs(unittest.TestCase):
             camber.check("nowhere.nc")
         self.assertEqual((raised.exception.file, raised.exception.id), ("nowhere.nc", "file-missing"))
 
+    def test_programs_without_a_record_and_outputs_over_inputs_raise(self):
+        with tempfile.TemporaryDirectory() as folder, self.assertRaises(camber.InputError) as raised:
+            camber.verify(folder)
+        self.assertEqual(raised.exception.id, "record-missing")
+        job = camber.read_job(SAMPLE / "job.toml")
+        with self.assertRaises(camber.InputError) as raised:
+            camber.compensate(job, output=job.program_path)
+        self.assertEqual(raised.exception.id, "output-is-input")
+
     def test_strict_raises_on_warnings(self):
         program = camber.program_from_text("no_unit.nc", "G90 G94\nS1000 M3\nG1 X10 F100\nM30\n")
         self.assertEqual([d.severity for d in camber.check(program).diagnostics][:1], ["warning"])

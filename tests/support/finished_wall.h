@@ -30,7 +30,7 @@ struct FinishedWall {
   double slice_mm = 0.5;          ///< of the height, over which the error is averaged
   int drawn_steps = 1440;         ///< a turn
   double rotation_step_deg = 1;   ///< Camber's
-  double young_MPa = 600000;
+  double young_MPa = 600000, overhang_mm = 40;
   machine::Material material{2000, 700, 300, 15, 12, 3};
   machine::Coupling coupling = machine::Coupling::rigid;  ///< Camber's
 
@@ -61,7 +61,7 @@ inline DrawnCut drawn(const FinishedWall& w) {
   c.run_out_mm = w.run_out_mm, c.run_out_rad = rad_from_deg(w.run_out_deg);
   c.top = w.height_mm + kBelow;
   c.k = {2000, 700, 300, 15, 12, 3};
-  c.overhang = 40;
+  c.overhang = w.overhang_mm;
   c.bending_stiffness_N_mm2 = w.young_MPa * kPi / 64 * std::pow(0.8 * w.diameter_mm, 4);
   c.lo = w.offset_mm + Vec3(0, -w.radial_mm, 0);
   c.hi = w.offset_mm + Vec3(length, 2, w.height_mm);

@@ -22,6 +22,12 @@ struct WallJudgeSteps {
   int give_up_after = 1 << 30;  ///< steps without a balance
 };
 
+/// One cut along the wall.
+struct WallPass {
+  double offset_mm = 0;  ///< of the path towards the wall
+  double feed_mm = 0;    ///< per tooth
+};
+
 namespace detail {
 
 /// The map stands around a fixed axis through the middle of the path: what the tool clears is seen whole from there.
@@ -42,7 +48,10 @@ class WallJudge {
     chart_.middle_rad = (angles().first + angles().second) / 2;
   }
 
-  JudgedWall figures() {
+  JudgedWall figures() { return figures({{0, w_.feed_mm}}); }
+
+  /// What `passes` leave, one after the other, less what one cut with a stiff tool would.
+  JudgedWall figures(const std::vector<WallPass>& passes) {
     HeightMap bent = blank(), rigid = blank(), before = bent;
     JudgedWall f;
     double chips = 0;
@@ -54,8 +63,16 @@ class WallJudge {
       milling.rigid = !bends;
       milling.give_up_after = s_.give_up_after;
       const Vec3 from(-s_.run_mm * way(), -job_.radius, -kBelow), to(s_.run_mm * way(), -job_.radius, -kBelow);
-      const auto periods = milling.run(from, to, w_.feed_mm);
-      if (!bends) continue;
+      if (!bends) {
+        milling.run(from, to, w_.feed_mm);
+        continue;
+      }
+      std::vector<Period> periods;
+      for (const WallPass& pass : passes) {
+        for (const Period& p : periods) chips += p.chip_mm3, f.unsettled_steps += p.unsettled;
+        const Vec3 beside(0, pass.offset_mm, 0);
+        periods = milling.run(from + beside, to + beside, pass.feed_mm);
+      }
       // Whole turns about the middle, where the wall is read.
       const std::size_t count = static_cast<std::size_t>(3 * w_.flutes), first = periods.size() / 2;
       for (std::size_t k = 0; k < periods.size(); ++k) {
@@ -124,6 +141,12 @@ class WallJudge {
 
 inline JudgedWall judged_figures(const FinishedWall& w, const WallJudgeSteps& s = {}) {
   return detail::WallJudge(w, s).figures();
+}
+
+/// Of a wall that several cuts finish. Loads are the last one's.
+inline JudgedWall judged_figures(const FinishedWall& w, const std::vector<WallPass>& passes,
+                                 const WallJudgeSteps& s = {}) {
+  return detail::WallJudge(w, s).figures(passes);
 }
 
 }  // namespace camber::testing
