@@ -19,7 +19,7 @@ using Action = std::function<int()>;
 void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< check, feed, fit-feed
 void add_force_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
-void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< predict, compensate
+void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< predict, compensate, adapt
 /// completion, and an example for each of the subcommands that are there; to be called last.
 void add_help(CLI::App& app, Action& chosen);
 

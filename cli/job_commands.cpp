@@ -1,10 +1,11 @@
-// predict and compensate on the command line.
+// predict, compensate and adapt on the command line.
 #include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "cli/adapt_command.h"
 #include "cli/command_line.h"
 #include "cli/compensate_command.h"
 #include "cli/console.h"
@@ -137,11 +138,36 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
   });
 }
 
+void add_adapt(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("adapt", "change the feeds of a job's program by the loads of its cut");
+  auto arguments = std::make_shared<AdaptArguments>();
+  command->add_option("job", arguments->job, "job.toml with [adapt]")->required()->type_name("J.toml");
+  command->add_option("-o,--output", arguments->output, "the new program")->required()->type_name("OUT.nc");
+  command
+      ->add_option("--time-limit", arguments->time_limit_s,
+                   "scale all limits by the least factor with which the program takes no longer than this, s")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
+  command->add_flag("--sweep", arguments->sweep, "also the time for limits from half to twice the given ones");
+  command->add_flag("--keep-anyway", arguments->keep_anyway, "write the program even if a limit is not kept");
+  command->add_option("--report", arguments->report, "report page with loads and feeds along the path")
+      ->type_name("R.html");
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      if (options.effective_config) return print_effective_job(arguments->job, options);
+      check_outputs({arguments->output, arguments->report, arguments->json}, files_read(arguments->job));
+      return run_adapt(*arguments, options);
+    };
+  });
+}
+
 }  // namespace
 
 void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   add_predict(app, options, chosen);
   add_compensate(app, options, chosen);
+  add_adapt(app, options, chosen);
 }
 
 }  // namespace camber::cli

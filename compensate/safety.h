@@ -8,6 +8,7 @@
 #include "compensate/attribution.h"
 #include "machine/job.h"
 #include "simulate/predict.h"
+#include "simulate/travel.h"
 
 namespace camber::compensate {
 
@@ -32,11 +33,6 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, machine::Refer
 Depth depth_without_bending(const machine::Job& job, const simulate::Target& target,
                             const simulate::SimulatedProgram& emitted, double tolerance_um);
 
-/// Where the moves of a program take the axes, machine coordinates, against Axis::travel_mm. Needs
-/// [compensation] work_offset_mm; without it only the extent is checked against the length of the travel.
-/// Errors [travel], at the first move of each axis that leaves; nothing is said of axes without travel_mm. Rapids
-/// count.
-void check_travel(const machine::Job& job, const nc::Program& program, const nc::Interpretation& moves,
-                  Diagnostics& diagnostics);
+using simulate::check_travel;
 
 }  // namespace camber::compensate

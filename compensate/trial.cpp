@@ -1,42 +1,6 @@
 #include "compensate/trial.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "nc/emit/number_style.h"
-
 namespace camber::compensate {
-machine::Operations moved_ranges(const machine::Operations& operations,
-                                 const std::vector<std::uint32_t>& block_of_line) {
-  machine::Operations out = operations;
-  for (auto& [first, last] : out.blocks) {
-    const auto from = static_cast<std::uint32_t>(first - 1), to = static_cast<std::uint32_t>(last - 1);
-    int new_first = 0, new_last = 0;
-    for (std::size_t line = 0; line < block_of_line.size(); ++line) {
-      if (block_of_line[line] == nc::Emission::kNoBlock) continue;
-      if (block_of_line[line] < from || block_of_line[line] > to) continue;
-      if (new_first == 0) new_first = static_cast<int>(line) + 1;
-      new_last = static_cast<int>(line) + 1;
-    }
-    first = new_first;
-    last = new_last;
-  }
-  return out;
-}
-
-nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program& program) {
-  constexpr int kFewest = 3, kMax = 4;  // millimetres
-  nc::EmitOptions out;
-  if (control.least_increment_mm) {
-    out.decimals_mm = std::max(0, static_cast<int>(std::ceil(-std::log10(*control.least_increment_mm) - 1e-9)));
-    out.decimals_inch = out.decimals_mm + 1;
-  } else {
-    const int own = nc::coordinate_decimals_of(program);
-    out.decimals_mm = std::clamp(own, kFewest, kMax);
-    out.decimals_inch = std::clamp(own, kFewest + 1, kMax + 1);
-  }
-  return out;
-}
 
 void Trial::keep(simulate::Prediction prediction) {
   surface = std::move(prediction.surface);

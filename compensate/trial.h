@@ -7,7 +7,9 @@
 
 #include "compensate/attribution.h"
 #include "compensate/path_quality.h"
+#include "feedmodel/control_options.h"
 #include "nc/emit.h"
+#include "simulate/operations.h"
 #include "simulate/setup.h"
 
 namespace camber::compensate {
@@ -38,13 +40,8 @@ struct Trial {
   void keep(simulate::Prediction prediction);
 };
 
-/// Ranges of the given program's lines where the emitted program has them. `block_of_line`: of the emission.
-machine::Operations moved_ranges(const machine::Operations& operations,
-                                 const std::vector<std::uint32_t>& block_of_line);
-
-/// Decimals of the words that an edit adds or changes: those of the control's least increment, else as many as the
-/// program's coordinates have, three or four in millimetres, one more in inches.
-nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program& program);
+using feedmodel::decimals_for;
+using simulate::moved_ranges;
 
 /// Runs trials. Everything passed must outlive the object.
 class TrialRunner {

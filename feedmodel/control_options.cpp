@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "machine/control_kinds.h"
 #include "nc/dialects.h"
+#include "nc/emit/number_style.h"
 
 namespace camber::feedmodel {
 namespace {
@@ -44,6 +46,20 @@ nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::
   given.dwell_p_is_ms = given.dialect->dwell_p_is_ms;
   for (int i = 0; i < 3; ++i) given.single_direction_mm[i] = machine.axis[i].g60_mm;
   return given;
+}
+
+nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program& program) {
+  constexpr int kFewest = 3, kMax = 4;  // millimetres
+  nc::EmitOptions out;
+  if (control.least_increment_mm) {
+    out.decimals_mm = std::max(0, static_cast<int>(std::ceil(-std::log10(*control.least_increment_mm) - 1e-9)));
+    out.decimals_inch = out.decimals_mm + 1;
+  } else {
+    const int own = nc::coordinate_decimals_of(program);
+    out.decimals_mm = std::clamp(own, kFewest, kMax);
+    out.decimals_inch = std::clamp(own, kFewest + 1, kMax + 1);
+  }
+  return out;
 }
 
 }  // namespace camber::feedmodel

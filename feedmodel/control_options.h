@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "machine/machine.h"
+#include "nc/emit.h"
 #include "nc/interpreter.h"
 
 namespace camber::feedmodel {
@@ -16,5 +17,9 @@ nc::InterpreterOptions interpreter_options(const machine::Machine& machine, std:
 
 /// With the other options as given.
 nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given);
+
+/// Decimals of the words that an edit adds or changes: those of the control's least increment, else as many as the
+/// program's coordinates have, three or four in millimetres, one more in inches.
+nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program& program);
 
 }  // namespace camber::feedmodel

@@ -25,6 +25,7 @@ inline constexpr NumberRange kMinFeedPercent{.min = 1, .max = 100};
 inline constexpr NumberRange kAngleGrowthDeg{.min = 0, .max = 90, .above_min = true};
 inline constexpr NumberRange kRotationStepDeg{.min = 0, .max = 10, .above_min = true};
 
+inline constexpr NumberRange kStepPercent{.min = 0.1, .max = 50};
 inline constexpr NumberRange kTaperDeg{.min = 0, .max = 80};
 inline constexpr NumberRange kPointAngleDeg{.min = 10, .max = 170};
 inline constexpr NumberRange kRunoutAngleDeg{.min = -360, .max = 360};
@@ -85,6 +86,25 @@ inline constexpr std::array kCompensationKeys{
                                     kAngleGrowthDeg, kDegrees},
     NumberKey<CompensationSettings>{"min_feed_percent", &CompensationSettings::min_feed_percent, kMinFeedPercent},
     NumberKey<CompensationSettings>{"pass_allowance_mm", &CompensationSettings::pass_allowance_mm, kNotNegative},
+};
+
+/// Of [adapt] limits.
+struct LimitKey {
+  std::string_view key;
+  std::optional<double> AdaptLimits::*field;
+  FileUnit unit = kAsIs;
+};
+inline constexpr std::array kLimitKeys{
+    LimitKey{"force_N", &AdaptLimits::force_N},
+    LimitKey{"torque_Nm", &AdaptLimits::torque_Nmm, kNewtonMetres},
+    LimitKey{"deflection_um", &AdaptLimits::deflection_mm, kMicrometres},
+    LimitKey{"form_error_um", &AdaptLimits::form_error_mm, kMicrometres},
+    LimitKey{"chip_mm", &AdaptLimits::chip_mm},
+    LimitKey{"power_W", &AdaptLimits::power_W},
+    LimitKey{"chip_min_mm", &AdaptLimits::chip_min_mm},
+};
+inline constexpr std::array kAdaptKeys{
+    NumberKey<AdaptSettings>{"step_percent", &AdaptSettings::step_fraction, kStepPercent, kAsPercent},
 };
 
 }  // namespace camber::machine

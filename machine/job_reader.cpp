@@ -191,6 +191,54 @@ void read_compensation(TomlTable table, const std::map<int, Tool>& tools, Compen
   table.finish();
 }
 
+void read_limits(TomlTable table, AdaptLimits& limits) {
+  bool bounded = false;
+  for (const LimitKey& k : kLimitKeys) {
+    const auto value = table.optional_number(k.key, kPositive);
+    if (!value) continue;
+    limits.*k.field = k.unit.inside_from_file(*value);
+    bounded = bounded || k.key != "chip_min_mm";
+  }
+  if (!bounded)
+    table.error_at(
+        "",
+        "limits has no load that bounds the feed from above; at least one of force_N, torque_Nm, deflection_um, "
+        "form_error_um, chip_mm and power_W was expected",
+        "limits-missing");
+  if (limits.chip_min_mm && limits.chip_mm && *limits.chip_min_mm >= *limits.chip_mm)
+    table.error_at("chip_min_mm",
+                   fmt::format("chip_min_mm = {:g} is not below chip_mm = {:g}; a thinner chip was expected",
+                               *limits.chip_min_mm, *limits.chip_mm),
+                   "value-range");
+  table.finish();
+}
+
+AdaptSettings read_adapt(TomlTable table) {
+  AdaptSettings out;
+  read_numbers<AdaptSettings>(table, kAdaptKeys, out);
+  if (table.has("limits")) {
+    out.limits_place = table.place_of("limits");
+    if (auto limits = table.table("limits")) read_limits(*limits, out.limits);
+  } else {
+    table.missing("limits", "a table such as { force_N = 150.0 }");
+  }
+  constexpr std::string_view kWanted = "[lowest, highest], the feeds that may be used,";
+  if (!table.has("feed_mm_per_min")) {
+    table.missing("feed_mm_per_min", "[lowest, highest], such as [300, 3000]");
+  } else if (const auto feeds = table.numbers("feed_mm_per_min", 2, kPositive, kWanted)) {
+    out.lowest_feed_mm_per_s = mm_per_s_from_mm_per_min((*feeds)[0]);
+    out.highest_feed_mm_per_s = mm_per_s_from_mm_per_min((*feeds)[1]);
+    if ((*feeds)[0] >= (*feeds)[1])
+      table.error_at("feed_mm_per_min",
+                     fmt::format("feed_mm_per_min = [{:g}, {:g}]: the lowest feed is not below the highest; [lowest, "
+                                 "highest] was expected",
+                                 (*feeds)[0], (*feeds)[1]),
+                     "value-range");
+  }
+  table.finish();
+  return out;
+}
+
 void read_part(TomlTable table, const fs::path& folder, const std::map<int, Tool>& tools, Part& part) {
   part.mesh = file_at(table, "mesh", folder);
   part.program = file_at(table, "program", folder);
@@ -217,6 +265,7 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
     if (simulation->has("voxel_mm")) job.voxel_place = simulation->place_of("voxel_mm");
   }
   if (auto compensation = top.table("compensation")) read_compensation(*compensation, job.tools, job.compensation);
+  if (auto adapt = top.table("adapt")) job.adapt = read_adapt(*adapt);
 }
 
 }  // namespace

@@ -86,6 +86,17 @@ std::string compensation_text(const CompensationSettings& c) {
   return c.operations.given() ? out + operations_text("compensation.operations", c.operations) : out;
 }
 
+std::string adapt_text(const AdaptSettings& a) {
+  std::string limits;
+  for (const LimitKey& k : kLimitKeys)
+    if (const auto& value = a.limits.*k.field)
+      limits += fmt::format("{}{} = {}", limits.empty() ? "" : ", ", k.key, toml_number(*value, k.unit));
+  return fmt::format("\n[adapt]\nlimits = {{ {} }}\nfeed_mm_per_min = [{}, {}]\n", limits,
+                     toml_number(a.lowest_feed_mm_per_s, kPerMinute),
+                     toml_number(a.highest_feed_mm_per_s, kPerMinute)) +
+         toml_lines<AdaptSettings>(kAdaptKeys, a);
+}
+
 }  // namespace
 
 std::string to_toml(const Job& job) {
@@ -100,7 +111,8 @@ std::string to_toml(const Job& job) {
   if (job.simulation.collisions)
     out += toml_line("collisions", kCollisionsWords[static_cast<std::size_t>(*job.simulation.collisions)]);
   if (job.simulation.max_memory_GB) out += toml_line("max_memory_GB", *job.simulation.max_memory_GB, kAsIs);
-  return out + compensation_text(job.compensation);
+  out += compensation_text(job.compensation);
+  return job.adapt ? out + adapt_text(*job.adapt) : out;
 }
 
 }  // namespace camber::machine

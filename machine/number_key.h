@@ -22,6 +22,8 @@ inline constexpr FileUnit kMilliseconds{[](double v) { return v / 1000.0; }, [](
 inline constexpr FileUnit kDegrees{[](double v) { return rad_from_deg(v); }, [](double v) { return deg_from_rad(v); }};
 inline constexpr FileUnit kGigapascals{[](double v) { return MPa_from_GPa(v); }, [](double v) { return v / 1000.0; }};
 inline constexpr FileUnit kMicrometres{[](double v) { return mm_from_um(v); }, [](double v) { return um_from_mm(v); }};
+inline constexpr FileUnit kNewtonMetres{[](double v) { return v * 1000.0; }, [](double v) { return v / 1000.0; }};
+inline constexpr FileUnit kAsPercent{[](double v) { return v / 100.0; }, [](double v) { return v * 100.0; }};
 inline constexpr FileUnit kNewtonsPerMicrometre{[](double v) { return N_per_mm_from_N_per_um(v); },
                                                 [](double v) { return v / 1000.0; }};
 

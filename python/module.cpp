@@ -150,6 +150,16 @@ camber::VerifyResult verify(const Path& place, const py::object& progress, bool 
   return result;
 }
 
+camber::AdaptResult adapt(const py::object& job, const std::optional<double>& time_limit_s, bool sweep,
+                          const py::object& progress, bool strict, int threads) {
+  const camber::Job given = job_of(job);
+  camber::AdaptResult result;
+  call({progress, strict, threads}, [&](const camber::RunOptions& run) {
+    result = camber::adapt(given, {.time_limit_s = time_limit_s, .sweep = sweep}, run);
+  });
+  return result;
+}
+
 void add_readers(py::module_& module) {
   module.def(
       "read_program",
@@ -213,6 +223,9 @@ void add_functions(py::module_& module) {
              "Compensates the program of a job: shifts its path against the form error.");
   module.def("verify", verify, "place"_a, py::kw_only(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Judges a program that compensate has written again, from its text.");
+  module.def("adapt", adapt, "job"_a, py::kw_only(), "time_limit_s"_a = py::none(), "sweep"_a = false,
+             "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "Changes the feeds of a job's program so that the loads of its cut keep the limits of [adapt].");
 }
 
 }  // namespace camber_python

@@ -279,6 +279,43 @@ void add_predict_and_compensate(py::module_& module) {
       .def_readonly("machine_time_s", &VerifyResult::machine_time_s);
 }
 
+void add_adapt(py::module_& module) {
+  using camber::AdaptedLoad, camber::AdaptResult, camber::LimitSweepRow, camber::OverLimitBlock;
+  py::class_<AdaptedLoad>(module, "AdaptedLoad")
+      .def_readonly("name", &AdaptedLoad::name)
+      .def_readonly("limit", &AdaptedLoad::limit)
+      .def_readonly("max_before", &AdaptedLoad::max_before)
+      .def_readonly("max_after", &AdaptedLoad::max_after)
+      .def_readonly("max_elsewhere", &AdaptedLoad::max_elsewhere);
+  py::class_<OverLimitBlock>(module, "OverLimitBlock")
+      .def_readonly("line", &OverLimitBlock::line)
+      .def_readonly("new_line", &OverLimitBlock::new_line)
+      .def_readonly("name", &OverLimitBlock::name)
+      .def_readonly("value", &OverLimitBlock::value)
+      .def_readonly("feed_mm_per_min", &OverLimitBlock::feed_mm_per_min)
+      .def_readonly("reason", &OverLimitBlock::reason);
+  py::class_<LimitSweepRow>(module, "LimitSweepRow")
+      .def_readonly("factor", &LimitSweepRow::factor)
+      .def_readonly("time_s", &LimitSweepRow::time_s)
+      .def_readonly("constant_feed_mm_per_min", &LimitSweepRow::constant_feed_mm_per_min)
+      .def_readonly("constant_time_s", &LimitSweepRow::constant_time_s);
+  result_class<AdaptResult>(module, "AdaptResult")
+      .def_readonly("program", &AdaptResult::program)
+      .def_readonly("success", &AdaptResult::success)
+      .def_readonly("reasons", &AdaptResult::reasons)
+      .def_readonly("time_before_s", &AdaptResult::time_before_s)
+      .def_readonly("time_after_s", &AdaptResult::time_after_s)
+      .def_readonly("constant_feed_mm_per_min", &AdaptResult::constant_feed_mm_per_min)
+      .def_readonly("constant_time_s", &AdaptResult::constant_time_s)
+      .def_readonly("blocks_before", &AdaptResult::blocks_before)
+      .def_readonly("blocks_after", &AdaptResult::blocks_after)
+      .def_readonly("blocks_changed", &AdaptResult::blocks_changed)
+      .def_readonly("loads", &AdaptResult::loads)
+      .def_readonly("over_limit", &AdaptResult::over_limit)
+      .def_readonly("sweep", &AdaptResult::sweep)
+      .def_readonly("limit_factor", &AdaptResult::limit_factor);
+}
+
 }  // namespace
 
 void add_results(py::module_& module) {
@@ -288,6 +325,7 @@ void add_results(py::module_& module) {
   add_feed_and_time(module);
   add_fit(module);
   add_predict_and_compensate(module);
+  add_adapt(module);
 }
 
 }  // namespace camber_python

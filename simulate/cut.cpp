@@ -140,7 +140,7 @@ class Cutter {
       engage(all, from, deflections, loads, first_id, result);
     else
       settle(all, from, deflections, loads, first_id, result);
-    if (!options_.drilling) watch_range(stamps, deflections, result);
+    if (!options_.drilling) watch_range(stamps, deflections, loads, result);
     if (tooth_marks_) {
       leave_uneven(stamps, from, deflections, contacts, first_id + static_cast<std::int32_t>(from), loads);
     } else {
@@ -180,6 +180,8 @@ class Cutter {
     std::map<std::size_t, std::vector<removal::ChipSample>> turn;  // what the turn needs
     std::mutex turn_lock;
     tbb::enumerable_thread_specific<ToothPass> passes;
+    const std::size_t before = result.loads_at_ratio.size();
+    if (options_.chip_ratio > 0) result.loads_at_ratio.resize(before + loads.size());
     engager_->engage(from, loads.size(), [&](std::size_t k, std::span<const removal::ChipBlock> chips) {
       cancellation_point();
       ToothPass& pass = passes.local();
@@ -188,11 +190,26 @@ class Cutter {
       model_.evaluate(blocks, chips, from + k, all[from + k].feed_per_tooth_mm, pass, row);
       loads[k] = summarize(pass);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
+      if (options_.chip_ratio > 0)
+        result.loads_at_ratio[before + k] = at_ratio(blocks, chips, from + k, all[from + k].feed_per_tooth_mm, pass);
       if (!in_turn(from + k)) return;
       const std::scoped_lock lock(turn_lock);
       turn[k] = removal::chips_of(blocks, chips);
     });
     for (const auto& [k, chips] : turn) keep_turn(chips, all[from + k], from + k, result);
+  }
+
+  /// The loads for chips of options_.chip_ratio to their thickness.
+  StampLoad at_ratio(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips,
+                     std::size_t passing, const Vec3& feed_per_tooth_mm, ToothPass& pass) const {
+    thread_local std::vector<removal::ChipBlock> scaled;
+    scaled.assign(chips.begin(), chips.end());
+    const auto ratio = static_cast<float>(options_.chip_ratio);
+    for (removal::ChipBlock& block : scaled)
+      for (float& h : block.thickness_mm)
+        if (h > 0) h *= ratio;
+    model_.evaluate(blocks, scaled, passing, options_.chip_ratio * feed_per_tooth_mm, pass, {});
+    return summarize(pass);
   }
 
   /// The largest deflection that the fields and the beam describe at a stamp: the narrow band holds it with the chip,
@@ -207,7 +224,8 @@ class Cutter {
   }
 
   /// Of a bending beam the tip moves most.
-  void watch_range(std::span<const Stamp> stamps, const DeflectionTable& deflections, CutResult& result) const {
+  void watch_range(std::span<const Stamp> stamps, const DeflectionTable& deflections, std::span<StampLoad> loads,
+                   CutResult& result) const {
     for (std::size_t k = 0; k < stamps.size(); ++k) {
       const float* tip = deflections.row(static_cast<std::ptrdiff_t>(k));
       float largest = 0;
@@ -216,6 +234,7 @@ class Cutter {
         largest = std::max(largest, x * x + y * y + z * z);
       }
       const double deflection = std::sqrt(static_cast<double>(largest)), limit = deflection_limit_mm(stamps[k]);
+      loads[k].deflection_max_mm = deflection;
       result.deflection_max_mm = std::max(result.deflection_max_mm, deflection);
       if (deflection <= limit) continue;
       result.deflection_limit_mm = result.beyond == 0 ? limit : std::min(result.deflection_limit_mm, limit);

@@ -27,6 +27,7 @@ struct StampLoad {
   double work_Nmm = 0;                             ///< work work of the spindle over the tooth passing
   double chip_max_mm = 0;                          ///< thickest chip
   double chip_area_mm2 = 0;                        ///< chip_mm3 over it is the mean thickness
+  double deflection_max_mm = 0;                    ///< of the tip, at any rotation step
 };
 
 /// P = M 2 pi n / 60.
@@ -58,10 +59,14 @@ struct CutOptions {
   removal::SurfaceMap* surface = nullptr;  ///< takes the marks of the deflected cutter, if given
   /// First stamp of a revolution whose forces are recorded tooth by tooth in CutResult::turn.
   std::optional<std::size_t> turn_from;
+  /// Rigid only, not 0: the loads for chips of this ratio to their thickness are recorded as well, as another feed of
+  /// the same path would take them.
+  double chip_ratio = 0;
 };
 
 struct CutResult {
   std::vector<StampLoad> loads;                   ///< one per stamp
+  std::vector<StampLoad> loads_at_ratio;          ///< one per stamp; empty without CutOptions::chip_ratio
   double chip_mm3 = 0;                            ///< sum over the chips
   double stock_mm3 = 0;                           ///< change of the stock that engagement reads
   std::size_t read = 0;                           ///< static: tooth passings whose chips were read from the stock

@@ -1,5 +1,8 @@
 #pragma once
 // Operations that a job names, in terms of a program's lines.
+#include <cstdint>
+#include <vector>
+
 #include "machine/job.h"
 #include "nc/move.h"
 #include "nc/program.h"
@@ -10,5 +13,9 @@ namespace camber::simulate {
 /// line is left, the range [0, 0], which no move stands in.
 machine::Operations as_lines(const machine::Operations& operations, const nc::Program& program,
                              const nc::Interpretation& moves);
+
+/// Ranges of the given program's lines where the emitted program has them. `block_of_line`: of the emission.
+machine::Operations moved_ranges(const machine::Operations& operations,
+                                 const std::vector<std::uint32_t>& block_of_line);
 
 }  // namespace camber::simulate

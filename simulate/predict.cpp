@@ -24,8 +24,7 @@ using machine::Job;
 namespace {
 
 /// Half width of the narrow band: three voxels for the field's sake, and the thickest chip with room for bending.
-double band_voxels(const Job& job, const removal::StampPath& path) {
-  double thickest = 0;
+double band_voxels(const Job& job, const removal::StampPath& path, double thickest) {
   for (const auto& run : path.runs)
     for (std::size_t k = run.from; k < run.from + run.count && run.kind != removal::RunKind::tapping; ++k)
       thickest = std::max(thickest, path.stamps[k].feed_per_tooth_mm.norm());
@@ -33,9 +32,9 @@ double band_voxels(const Job& job, const removal::StampPath& path) {
   return std::clamp(std::ceil((thickest + kBending_mm) / job.simulation.voxel_mm) + 1, kMin, kMax);
 }
 
-removal::Stock raw_stock(const Job& job, const SimulatedProgram& program, MemoryEstimate& memory,
+removal::Stock raw_stock(const Job& job, const SimulatedProgram& program, double min_chip_mm, MemoryEstimate& memory,
                          Diagnostics& diagnostics) {
-  const double voxel = job.simulation.voxel_mm, band = band_voxels(job, program.path);
+  const double voxel = job.simulation.voxel_mm, band = band_voxels(job, program.path, min_chip_mm);
   const auto require_memory = [&](const Vec3& lo, const Vec3& hi) {
     memory =
         check_memory(job, memory_factors(job, program.text, program.moves, program.path, {lo, hi, band}), diagnostics);
@@ -189,12 +188,11 @@ double sweep_path(removal::Stock& stock, const Job& job, const removal::StampPat
   return removed_mm3;
 }
 
-Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics) {
+Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, double min_chip_mm) {
   MemoryEstimate memory;
-  removal::Stock blank = raw_stock(job, target, memory, diagnostics);
+  removal::Stock blank = raw_stock(job, target, min_chip_mm, memory, diagnostics);
   blank.share();
-  const Places where = places_of(job, target, blank);
-  check_places(target.text.source.name(), where, diagnostics);
+  check_places(target.text.source.name(), places_of(job, target, blank), diagnostics);
   diagnostics.throw_if_errors();
   std::optional<removal::Stock> whole;
   if (job.stock.allowance_mm > 0) {
@@ -205,6 +203,12 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
     blank.clear_stamps();
     blank.share();
   }
+  return {std::move(blank), std::move(whole), memory};
+}
+
+Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics) {
+  auto [blank, whole, memory] = make_blank(job, target, diagnostics);
+  const Places where = places_of(job, target, blank);
   removal::StampPath nominal = removal::nominal_path(target.moves, target.selected, target.path);
   removal::Stock surface(blank);
   if (sweep_path(surface, job, nominal, 0, "cutting as the target") < nothing_mm3(job))
@@ -232,10 +236,94 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
   return out;
 }
 
+namespace {
+
+/// How the runs of a path are cut.
+struct PathCut {
+  machine::Coupling coupling = machine::Coupling::static_;
+  double chip_ratio = 0;
+  std::optional<std::size_t> turn_from{};
+  const std::function<void(double)>& progress;
+  removal::SurfaceMap* surface = nullptr;
+  std::vector<std::vector<Contact>> contacts{};  ///< one per run, or empty
+};
+
+CutOptions cut_options_of(const Job& job, const PathCut& how, const machine::Tool& tool) {
+  CutOptions out;
+  out.surface = how.surface;
+  out.coupling = how.coupling;
+  out.chip_ratio = how.chip_ratio;
+  out.axis_compliance_mm_per_N = {1 / job.machine.axis[0].stiffness_N_per_mm,
+                                  1 / job.machine.axis[1].stiffness_N_per_mm,
+                                  1 / job.machine.axis[2].stiffness_N_per_mm};
+  out.envelope_step_mm = envelope_step_mm(job, tool);
+  out.rotation_step_rad = job.simulation.rotation_step_rad;
+  return out;
+}
+
+/// Adds the figures of a run, but for its loads and its turn.
+void add_figures(const CutResult& run, removal::RunKind kind, CutResult& out) {
+  out.chip_mm3 += run.chip_mm3;
+  if (kind != removal::RunKind::tapping) out.stock_mm3 += run.stock_mm3;
+  out.rounds_max = std::max(out.rounds_max, run.rounds_max);
+  out.read += run.read;
+  out.extrapolation.add(run.extrapolation);
+  out.unsettled += run.unsettled;
+  add_range(run, out);
+  out.unsettled_moves.insert(out.unsettled_moves.end(), run.unsettled_moves.begin(), run.unsettled_moves.end());
+  out.unsettled_reasons.insert(out.unsettled_reasons.end(), run.unsettled_reasons.begin(), run.unsettled_reasons.end());
+}
+
+/// Cuts every run of the path out of `stock`, which is `blank` before the first one.
+PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job& job, const SimulatedProgram& program,
+                   PathCut how) {
+  PathLoads out;
+  const auto all = static_cast<double>(program.path.stamps.size());
+  auto next_contacts = how.contacts.begin();
+  out.holes.count = removal::count_holes(program.moves, program.holes);
+  for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    const std::size_t from = run.from;
+    const bool milling = run.kind == removal::RunKind::milling;
+    const std::vector<Contact> contacts = how.contacts.empty() ? std::vector<Contact>() : std::move(*next_contacts++);
+    CutOptions options = cut_options_of(job, how, tool);
+    if (from == program.path.runs.front().from) options.blank = &blank;
+    if (how.progress)
+      options.progress = [&](double fraction) {
+        how.progress((static_cast<double>(from) + fraction * static_cast<double>(stamps.size())) / all);
+      };
+    if (how.turn_from && *how.turn_from >= from && *how.turn_from < from + stamps.size())
+      options.turn_from = *how.turn_from - from;
+    const auto first_id = static_cast<std::int32_t>(from);
+    CutResult cut_run = milling ? cut(stock, tool, job.material, stamps, contacts, first_id, options)
+                        : run.kind == removal::RunKind::drilling
+                            ? drill(stock, tool, job.material, stamps, first_id, options)
+                            : tap(stock, tool, stamps, first_id, options);
+    if (!milling) add_holes(run.kind, cut_run, out.holes);
+    add_figures(cut_run, run.kind, out.cut);
+    append(std::move(cut_run.loads), out.cut.loads);
+    if (how.chip_ratio > 0) {
+      cut_run.loads_at_ratio.resize(stamps.size());
+      append(std::move(cut_run.loads_at_ratio), out.cut.loads_at_ratio);
+    }
+    if (milling && slenderness(tool) > kMaxSlenderness && !std::ranges::count(out.slender_tools, run.tool))
+      out.slender_tools.push_back(run.tool);
+    if (options.turn_from) out.cut.turn = std::move(cut_run.turn);
+  });
+  return out;
+}
+
+}  // namespace
+
+PathLoads predict_loads(const Job& job, const removal::Stock& blank, const SimulatedProgram& program,
+                        const LoadOptions& options) {
+  removal::Stock stock(blank);
+  return cut_path(stock, blank, job, program,
+                  {.coupling = options.coupling, .chip_ratio = options.chip_ratio, .progress = options.progress});
+}
+
 Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options) {
   Prediction out;
-  const auto all = static_cast<double>(program.path.stamps.size());
   std::vector<std::vector<Contact>> contacts_of_runs;
   std::optional<Stage> stage(std::in_place, "finding the contacts", program.path.stamps.size());
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
@@ -247,49 +335,16 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
   if (options.surface_read) options.surface_read();
   removal::SurfaceMap map = options.take_map ? options.take_map() : *target.map;
   out.machined = std::make_unique<removal::Stock>(target.blank);
-  auto next_contacts = contacts_of_runs.begin();
-  out.holes.count = removal::count_holes(program.moves, program.holes);
-  for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
-    const std::size_t from = run.from;
-    const bool milling = run.kind == removal::RunKind::milling;
-    const std::vector<Contact> contacts = std::move(*next_contacts++);
-    CutOptions cut_options;
-    cut_options.surface = &map;
-    cut_options.coupling = job.simulation.coupling;
-    cut_options.axis_compliance_mm_per_N = {1 / job.machine.axis[0].stiffness_N_per_mm,
-                                            1 / job.machine.axis[1].stiffness_N_per_mm,
-                                            1 / job.machine.axis[2].stiffness_N_per_mm};
-    if (from == program.path.runs.front().from) cut_options.blank = &target.blank;
-    cut_options.envelope_step_mm = envelope_step_mm(job, tool);
-    cut_options.rotation_step_rad = job.simulation.rotation_step_rad;
-    if (options.progress)
-      cut_options.progress = [&](double fraction) {
-        options.progress((static_cast<double>(from) + fraction * static_cast<double>(stamps.size())) / all);
-      };
-    if (options.turn_from && *options.turn_from >= from && *options.turn_from < from + stamps.size())
-      cut_options.turn_from = *options.turn_from - from;
-    const auto first_id = static_cast<std::int32_t>(from);
-    CutResult cut_run = milling ? cut(*out.machined, tool, job.material, stamps, contacts, first_id, cut_options)
-                        : run.kind == removal::RunKind::drilling
-                            ? drill(*out.machined, tool, job.material, stamps, first_id, cut_options)
-                            : tap(*out.machined, tool, stamps, first_id, cut_options);
-    if (!milling) add_holes(run.kind, cut_run, out.holes);
-    append(std::move(cut_run.loads), out.cut.loads);
-    out.cut.chip_mm3 += cut_run.chip_mm3;
-    if (run.kind != removal::RunKind::tapping) out.cut.stock_mm3 += cut_run.stock_mm3;
-    out.cut.rounds_max = std::max(out.cut.rounds_max, cut_run.rounds_max);
-    out.cut.read += cut_run.read;
-    out.cut.extrapolation.add(cut_run.extrapolation);
-    out.cut.unsettled += cut_run.unsettled;
-    add_range(cut_run, out.cut);
-    if (milling && slenderness(tool) > kMaxSlenderness && !std::ranges::count(out.slender_tools, run.tool))
-      out.slender_tools.push_back(run.tool);
-    out.cut.unsettled_moves.insert(out.cut.unsettled_moves.end(), cut_run.unsettled_moves.begin(),
-                                   cut_run.unsettled_moves.end());
-    out.cut.unsettled_reasons.insert(out.cut.unsettled_reasons.end(), cut_run.unsettled_reasons.begin(),
-                                     cut_run.unsettled_reasons.end());
-    if (cut_options.turn_from) out.cut.turn = std::move(cut_run.turn);
-  });
+  PathLoads loads = cut_path(*out.machined, target.blank, job, program,
+                             {.coupling = job.simulation.coupling,
+                              .chip_ratio = options.chip_ratio,
+                              .turn_from = options.turn_from,
+                              .progress = options.progress,
+                              .surface = &map,
+                              .contacts = std::move(contacts_of_runs)});
+  out.cut = std::move(loads.cut);
+  out.holes = loads.holes;
+  out.slender_tools = std::move(loads.slender_tools);
   out.surface = map.take();
   for (std::size_t i = 0; i < out.surface.size(); ++i)
     out.surface[i].contour_mm = static_cast<double>(target.contour_mm[i]);

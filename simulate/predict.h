@@ -79,6 +79,18 @@ struct Target {
   const removal::Stock& solid() const { return whole ? *whole : blank; }
 };
 
+/// The stock before a job's first cut: box or mesh, less what `target`, as the machine runs it, leaves with the cutter
+/// shrunk by the allowance.
+struct Blank {
+  removal::Stock stock;
+  std::optional<removal::Stock> whole{};  ///< before the allowance was removed; empty: `stock`
+  MemoryEstimate memory{};                ///< of a prediction
+};
+/// min_chip_mm: chips of at least this thickness must be readable, beside those of the target's own path. Throws
+/// InputError.
+Blank make_blank(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics,
+                 double min_chip_mm = 0);
+
 /// Builds the blank (box or mesh, less what the target program, as the machine runs it, leaves with the cutter shrunk
 /// by the allowance), sweeps the nominal path through it and marks it with the undeflected sweep as the machine runs
 /// it. Throws InputError (stock missing, memory, nothing removed, sizes that differ by the factor of the inch).
@@ -113,6 +125,7 @@ struct Prediction {
 struct PredictOptions {
   bool contacts = true;
   std::optional<std::size_t> turn_from;  ///< first stamp of a turn to keep in Prediction::cut.turn
+  double chip_ratio = 0;                 ///< see CutOptions
   std::function<void(double)> progress;
   std::function<void()> surface_read;  ///< called when Target::surface is no longer needed
   /// Returns Target::map of the target, to be used up; empty: it is copied, for further predictions. Called after
@@ -122,6 +135,22 @@ struct PredictOptions {
 
 Prediction predict(const machine::Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options);
+
+/// What a program does to the tool, without the surface that it leaves.
+struct LoadOptions {
+  machine::Coupling coupling = machine::Coupling::static_;
+  double chip_ratio = 0;  ///< see CutOptions
+  std::function<void(double)> progress;
+};
+
+/// As Prediction::cut: loads of every stamp, volumes, what is beyond the model.
+struct PathLoads {
+  CutResult cut;
+  HoleFigures holes;
+  std::vector<int> slender_tools{};  ///< see Prediction
+};
+PathLoads predict_loads(const machine::Job& job, const removal::Stock& blank, const SimulatedProgram& program,
+                        const LoadOptions& options);
 
 /// Sample spacing along the profile for chips and forces: a hundredth of the diameter, 0.02 to 0.1 mm, with a lag of
 /// the edge of at most a degree; or the job's value.

@@ -1,5 +1,6 @@
 #pragma once
 // The whole public interface of the Camber library.
+#include "camber/adapt.h"
 #include "camber/check.h"
 #include "camber/compensate.h"
 #include "camber/diagnostics.h"

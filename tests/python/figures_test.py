@@ -147,6 +147,19 @@ class Figures(unittest.TestCase):
                     self.assertEqual(result.all.e, expected["e"])
                     self.assertEqual(result.all.k if math.isfinite(result.all.k) else None, expected["k"])
 
+    def test_adapt(self):
+        job = SAMPLES / "11-feed-by-load/job.toml"
+        with tempfile.TemporaryDirectory() as out:
+            program = os.path.join(out, "adapted.nc")
+            expected = command_line("adapt", job, "-o", program)
+            text = pathlib.Path(program).read_bytes()
+        result = camber.adapt(job)
+        self.equal(result, expected)
+        self.assertEqual(result.program.encode(), text)
+        self.assertEqual(result.time_after_s, expected["time_after_s"])
+        self.assertEqual([load.max_after for load in result.loads], [load["max_after"] for load in expected["loads"]])
+        self.assertTrue(result.success)
+
     def test_time_with_a_sweep(self):
         program, machine = SAMPLES / "02-cycle-time/highspeed.nc", MACHINES[0]
         sweep = "axis.x.acceleration_mm_per_s2=500:2000:4"

@@ -1,4 +1,4 @@
-#include "compensate/move_map.h"
+#include "nc/move_map.h"
 
 #include <cmath>
 
@@ -7,29 +7,29 @@
 #include "nc/emit.h"
 #include "nc/interpreter.h"
 
-namespace camber::compensate {
+namespace camber::nc {
 namespace {
 
 struct Read {
-  nc::Program text;
-  nc::Interpretation moves;
+  Program text;
+  Interpretation moves;
   explicit Read(const std::string& program) {
     Diagnostics diagnostics;
-    text = nc::read_program(SourceText("p.nc", program), diagnostics);
-    moves = nc::interpret(text, {}, diagnostics);
+    text = read_program(SourceText("p.nc", program), diagnostics);
+    moves = interpret(text, {}, diagnostics);
     EXPECT_FALSE(diagnostics.has_errors());
   }
 };
 
 TEST(MoveMap, FindsTheGivenMoveBehindSplitBlocksAndAHeader) {
   const Read given("%\nO0001\nG21 G90\nG1 X10. F100\nX20.\nX30.\n%\n");
-  nc::EmitOptions options;
+  EmitOptions options;
   options.header_comment = "ONE\nTWO";
-  std::vector<nc::MoveEdit> edits(1);
+  std::vector<MoveEdit> edits(1);
   edits[0].move = 1;
   edits[0].via = {{Vec3(12.5, 0, 1)}};
   edits[0].end_mm = Vec3(20, 0, 0);
-  const nc::Emission emission = nc::emit_edits(given.text, given.moves, edits, options);
+  const Emission emission = emit_edits(given.text, given.moves, edits, options);
   EXPECT_EQ(emission.text, "%\nO0001\n(ONE)\n(TWO)\nG21 G90\nG1 X10. F100\nX12.5 Z1.\nX20. Z0.\nX30.\n%\n");
   const Read emitted(emission.text);
   ASSERT_EQ(emitted.moves.moves.size(), 4u);
@@ -52,4 +52,4 @@ TEST(MoveMap, WithoutAnEmissionIsTheProgramItself) {
 }
 
 }  // namespace
-}  // namespace camber::compensate
+}  // namespace camber::nc

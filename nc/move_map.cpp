@@ -1,12 +1,12 @@
-#include "compensate/move_map.h"
+#include "nc/move_map.h"
 
 #include <algorithm>
 
-namespace camber::compensate {
+namespace camber::nc {
 namespace {
 
 /// Consecutive moves of one block.
-std::size_t end_of_block(const std::vector<nc::Move>& moves, std::size_t first, auto block_of) {
+std::size_t end_of_block(const std::vector<Move>& moves, std::size_t first, auto block_of) {
   std::size_t end = first + 1;
   while (end < moves.size() && block_of(moves[end]) == block_of(moves[first])) ++end;
   return end;
@@ -14,12 +14,10 @@ std::size_t end_of_block(const std::vector<nc::Move>& moves, std::size_t first, 
 
 }  // namespace
 
-MoveMap::MoveMap(const nc::Interpretation& given, const nc::Interpretation& emitted,
+MoveMap::MoveMap(const Interpretation& given, const Interpretation& emitted,
                  std::span<const std::uint32_t> block_of_line) {
-  const auto own_block = [](const nc::Move& m) { return m.block; };
-  const auto given_block = [&](const nc::Move& m) {
-    return m.block < block_of_line.size() ? block_of_line[m.block] : 0;
-  };
+  const auto own_block = [](const Move& m) { return m.block; };
+  const auto given_block = [&](const Move& m) { return m.block < block_of_line.size() ? block_of_line[m.block] : 0; };
   parts_.resize(emitted.moves.size());
   std::size_t g = 0;
   for (std::size_t e = 0; e < emitted.moves.size();) {
@@ -31,10 +29,10 @@ MoveMap::MoveMap(const nc::Interpretation& given, const nc::Interpretation& emit
     const std::size_t g_end = at < given.moves.size() ? end_of_block(given.moves, at, own_block) : at;
     if (g_end - at == 1) {
       double whole = 0;
-      for (std::size_t i = e; i < e_end; ++i) whole += nc::length_mm(emitted, emitted.moves[i]);
+      for (std::size_t i = e; i < e_end; ++i) whole += length_mm(emitted, emitted.moves[i]);
       double before = 0;
       for (std::size_t i = e; i < e_end; ++i) {
-        const double length = nc::length_mm(emitted, emitted.moves[i]);
+        const double length = length_mm(emitted, emitted.moves[i]);
         parts_[i] = {static_cast<std::uint32_t>(at), whole > 0 ? before / whole : 0,
                      whole > 0 ? (before + length) / whole : 1};
         before += length;
@@ -54,4 +52,4 @@ MoveMap::MovePlace MoveMap::given(std::uint32_t emitted_move, double fraction) c
   return {p.move, std::clamp(p.from + fraction * (p.to - p.from), 0.0, 1.0)};
 }
 
-}  // namespace camber::compensate
+}  // namespace camber::nc

@@ -1,0 +1,64 @@
+// The namespace adapt comes before the function of that name: clang takes it in no other order.
+#include "api/commands/adapt.h"
+
+#include "camber/adapt.h"
+
+#include <chrono>
+
+#include "api/job.h"
+#include "api/run.h"
+#include "base/units.h"
+#include "report/adapt_summary.h"
+
+namespace camber {
+namespace {
+
+AdaptResult result_of(const adapt::AdaptResult& r) {
+  AdaptResult out{.program = r.text,
+                  .reasons = report::adapt_failures(r),
+                  .time_before_s = r.time_before_s,
+                  .time_after_s = r.time_after_s,
+                  .constant_feed_mm_per_min = mm_per_min_from_mm_per_s(r.constant_feed_mm_per_s),
+                  .constant_time_s = r.constant_time_s,
+                  .blocks_before = r.blocks_before,
+                  .blocks_after = r.blocks_after,
+                  .blocks_changed = r.blocks_changed,
+                  .limit_factor = r.limit_factor};
+  out.success = out.reasons.empty();
+  for (const adapt::LoadFigure& f : r.loads) {
+    const adapt::LoadText& text = adapt::text_of(f.limit.load);
+    out.loads.push_back({std::string(text.key), text.scale * f.limit.value, text.scale * f.max_before,
+                         text.scale * f.max_after, text.scale * f.max_elsewhere});
+  }
+  for (const adapt::OverLimit& o : r.over) {
+    const adapt::LoadText& text = adapt::text_of(o.limit.load);
+    out.over_limit.push_back({o.line, o.new_line, std::string(text.key), text.scale * o.value,
+                              mm_per_min_from_mm_per_s(o.feed_mm_per_s), std::string(adapt::to_string(o.reason))});
+  }
+  for (const adapt::SweepRow& row : r.sweep)
+    out.sweep.push_back(
+        {row.factor, row.time_s, mm_per_min_from_mm_per_s(row.constant_feed_mm_per_s), row.constant_time_s});
+  return out;
+}
+
+}  // namespace
+
+AdaptResult v0::adapt(const Job& job, const AdaptOptions& options, const RunOptions& run_options) {
+  const auto begin = std::chrono::steady_clock::now();
+  AdaptResult result;
+  api::Run run(run_options);
+  run.execute([&] {
+    Diagnostics found = job.impl().found;
+    const machine::Job& of = job.impl().job;
+    const adapt::AdaptResult done = api::adapt_job(
+        of, {.time_limit_s = options.time_limit_s, .sweep = options.sweep, .progress = run.progress()}, found);
+    run.settle(found);
+    const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result = result_of(done);
+    result.diagnostics = found.all();
+    result.json = report::adapt_json(done, *of.adapt, compute_s);
+  });
+  return result;
+}
+
+}  // namespace camber

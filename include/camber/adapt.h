@@ -1,0 +1,61 @@
+#pragma once
+// Feeds by load: the program of a job with F words that keep the loads of the cut within limits.
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camber/job.h"
+#include "camber/run.h"
+
+namespace camber {
+inline namespace v0 {
+
+struct AdaptOptions {
+  std::optional<double> time_limit_s{};  ///< scales the limits until the program takes no longer
+  bool sweep = false;                    ///< also AdaptResult::sweep
+};
+
+/// A load that [adapt] limits names, in the unit of its key.
+struct AdaptedLoad {
+  std::string name{};  ///< the key: "force_N"
+  double limit = 0, max_before = 0, max_after = 0;
+  double max_elsewhere = 0;  ///< after, outside the blocks of AdaptResult::over_limit
+};
+
+/// A block that remains beyond a limit.
+struct OverLimitBlock {
+  std::size_t line = 0, new_line = 0;  ///< of the given and of the new program
+  std::string name{};                  ///< of the load
+  double value = 0;
+  double feed_mm_per_min = 0;  ///< actual
+  std::string reason{};
+};
+
+/// The time for all limits times a factor, by the loads of the last prediction.
+struct LimitSweepRow {
+  double factor = 1, time_s = 0;
+  double constant_feed_mm_per_min = 0;  ///< the greatest single feed within the limits; 0: none
+  double constant_time_s = 0;
+};
+
+struct AdaptResult {
+  std::string program{};               ///< text of the new program
+  bool success = false;                ///< within the limits but for over_limit, within the time, with reliable figures
+  std::vector<std::string> reasons{};  ///< why not
+  double time_before_s = 0, time_after_s = 0;
+  double constant_feed_mm_per_min = 0, constant_time_s = 0;  ///< see LimitSweepRow
+  std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
+  std::vector<AdaptedLoad> loads{};
+  std::vector<OverLimitBlock> over_limit{};
+  std::vector<LimitSweepRow> sweep{};
+  double limit_factor = 1;                ///< by which time_limit_s scaled the limits
+  std::vector<Diagnostic> diagnostics{};  ///< warnings
+  std::string json{};                     ///< all figures, as `camber adapt --json` writes them
+};
+
+/// Writes no file. Throws InputError, Cancelled.
+CAMBER_API AdaptResult adapt(const Job& job, const AdaptOptions& options = {}, const RunOptions& run = {});
+
+}  // namespace v0
+}  // namespace camber

@@ -1,0 +1,26 @@
+#pragma once
+// The figures of camber adapt: JSON, text for a terminal, and the page.
+#include <string>
+
+#include "adapt/adapt.h"
+#include "machine/job.h"
+
+namespace camber::report {
+
+std::string adapt_json(const adapt::AdaptResult& result, const machine::AdaptSettings& asked, double compute_s);
+
+/// The same for a terminal, within 100 columns.
+std::string adapt_text(const adapt::AdaptResult& result, double compute_s);
+
+/// Why the program is not within its limits or its time; empty: it is.
+std::vector<std::string> adapt_failures(const adapt::AdaptResult& result);
+
+/// What the page is about.
+struct AdaptFiles {
+  std::string job, program, output;
+};
+/// The page's text, UTF-8, self-contained. The same data give the same bytes. Does not throw.
+std::string adapt_page(const adapt::AdaptResult& result, const machine::AdaptSettings& asked, const AdaptFiles& files,
+                       const std::vector<std::string>& warnings);
+
+}  // namespace camber::report

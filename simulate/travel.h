@@ -1,0 +1,17 @@
+#pragma once
+// Travel of the axes in an upright program.
+#include "base/diagnostics.h"
+#include "machine/job.h"
+#include "nc/move.h"
+#include "nc/program.h"
+
+namespace camber::simulate {
+
+/// Where the moves of a program take the axes, machine coordinates, against Axis::travel_mm. Needs
+/// [compensation] work_offset_mm; without it only the extent is checked against the length of the travel.
+/// Errors [travel], at the first move of each axis that leaves; nothing is said of axes without travel_mm. Rapids
+/// count.
+void check_travel(const machine::Job& job, const nc::Program& program, const nc::Interpretation& moves,
+                  Diagnostics& diagnostics);
+
+}  // namespace camber::simulate
