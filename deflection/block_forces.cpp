@@ -217,7 +217,8 @@ removal::ChipBlock ToothPassModel::tooth_block(int j, const EnvelopeBlocks& bloc
 }
 
 void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips,
-                              std::size_t passing, const removal::ToothMotion& motion, ToothPass& out, std::span<float> fine) const {
+                              std::size_t passing, const removal::ToothMotion& motion, ToothPass& out,
+                              std::span<float> fine) const {
   const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
   const auto steps = static_cast<std::size_t>(pitch);
   const std::size_t nodes = node_height_mm_.size();

@@ -101,7 +101,7 @@ void StaticEquilibrium::place_elements(std::span<const removal::DeflectedChipSam
   place_.resize(found_.size());
   for (std::size_t i = 0; i < found_.size(); ++i) place_[i] = at[static_cast<std::size_t>(found_[i].step)]++;
   for_all(found_.size(), found_.size(), [&](std::size_t from, std::size_t end) {
-    for (std::size_t i = from; i < end; ++i) 
+    for (std::size_t i = from; i < end; ++i)
       elements_[place_[i]] = element(found_[i], chips[found_[i].chip], motion.of_tool);
   });
 }
@@ -421,8 +421,8 @@ void StaticEquilibrium::creep(Step& out) {
 }
 
 StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing,
-                                                 const Motion& motion, double share,
-                                                 std::span<const Vec2> run_out, std::span<float> row) {
+                                                 const Motion& motion, double share, std::span<const Vec2> run_out,
+                                                 std::span<float> row) {
   run_out_ = run_out;
   for (std::size_t m = 0; m < steps_; ++m)
     for (std::size_t i = 0; i < nodes_; ++i)

@@ -35,8 +35,8 @@ class StaticEquilibrium {
   /// chips: as read with the displacements in `row` (of a DeflectionTable): deflections, and `run_out` where there is
   /// any: the axis' offset at each rotation step, mm, or empty. Goes `share` of the way from `row` to the equilibrium
   /// row = run_out + C F; the chips' thickness follows.
-  Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const Motion& motion,
-             double share, std::span<const Vec2> run_out, std::span<float> row);
+  Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const Motion& motion, double share,
+             std::span<const Vec2> run_out, std::span<float> row);
 
  private:
   struct Ring {
@@ -56,8 +56,7 @@ class StaticEquilibrium {
     double solved_mm;  ///< thickness with the deflection as it is
     std::uint32_t ring, chip;
   };
-  void place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
-                      const Motion& motion);
+  void place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const Motion& motion);
   Element element(const EdgeElement& found, const removal::DeflectedChipSample& chip,
                   const removal::ToothMotion& motion) const;
   void place_deflections();

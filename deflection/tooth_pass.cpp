@@ -109,7 +109,8 @@ const removal::ChipSample& chip_of(const removal::DeflectedChipSample& bent) { r
 }  // namespace
 
 template <class Chips, class Function>
-void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, const removal::ToothMotion& motion, Function f) const {
+void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, const removal::ToothMotion& motion,
+                                      Function f) const {
   const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
   const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth_.count())) * pitch;
   for (std::size_t i = 0; i < chips.size(); ++i) {
@@ -137,8 +138,8 @@ void ToothPassModel::edge_elements(std::span<const removal::DeflectedChipSample>
   });
 }
 
-void ToothPassModel::evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const removal::ToothMotion& motion,
-                              ToothPass& out) const {
+void ToothPassModel::evaluate(std::span<const removal::ChipSample> chips, std::size_t passing,
+                              const removal::ToothMotion& motion, ToothPass& out) const {
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
   const std::size_t nodes = node_height_mm_.size();
   out.force_N.assign(steps, Vec3::Zero());

@@ -69,8 +69,8 @@ class ToothPassModel {
   void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
                 const removal::ToothMotion& motion, ToothPass& out, std::span<float> fine_mm) const;
   /// The edge elements of the chips, including those with negative thickness.
-  void edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const removal::ToothMotion& motion,
-                     std::vector<EdgeElement>& out) const;
+  void edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
+                     const removal::ToothMotion& motion, std::vector<EdgeElement>& out) const;
   EdgeDirections direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
   /// Of a point of the envelope, from the tip.
   Vec3 place_mm(std::uint32_t point) const;

@@ -39,8 +39,8 @@ double engaged_top_mm(const Stock& stock, const machine::Tool& tool, std::span<c
   for (const auto& s : stamps) {
     // The corner of the stock's box that lies farthest up the tool.
     const Vec3 corner = (s.pose.axis.array() > 0).select(stock.max_mm(), stock.min_mm());
-    top = std::max(top, s.pose.upright() ? stock.max_mm().z() - s.pose.tip_mm.z()
-                                         : (corner - s.pose.tip_mm).dot(s.pose.axis));
+    top = std::max(
+        top, s.pose.upright() ? stock.max_mm().z() - s.pose.tip_mm.z() : (corner - s.pose.tip_mm).dot(s.pose.axis));
   }
   const double cutting = tool.flute_length_mm.value_or(tool.overhang_mm);
   return std::clamp(top + stock.voxel_mm(), stock.voxel_mm(), cutting);
@@ -339,8 +339,7 @@ class Cutter {
   }
   void keep_turn(std::span<const removal::ChipSample> chips, std::span<const Stamp> all, std::size_t k,
                  CutResult& result) const {
-    if (in_turn(k))
-      model_.add_to_turn(chips, k - *options_.turn_from, k, removal::motion_in_tool(all, k), result.turn);
+    if (in_turn(k)) model_.add_to_turn(chips, k - *options_.turn_from, k, removal::motion_in_tool(all, k), result.turn);
   }
 
   Stock& stock_;
@@ -434,7 +433,9 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
     const auto nearest = [&](const Candidate& c) {
       return -static_cast<double>(probe.nearest(stamps[k].pose.tip_mm + frame * c.place));
     };
-    const auto trilinear = [&](const Candidate& c) { return -probe.distance_mm(stamps[k].pose.tip_mm + frame * c.place); };
+    const auto trilinear = [&](const Candidate& c) {
+      return -probe.distance_mm(stamps[k].pose.tip_mm + frame * c.place);
+    };
     // A trilinear value differs from the nearest voxel's by no more than the mean distance of its corners from it, and
     // voxels from each other by no more than they are apart.
     const double blur = std::sqrt(1.5) * target.voxel_mm(), apart = std::sqrt(3.0) * target.voxel_mm();

@@ -44,7 +44,8 @@ void TiltedStamps::keep_near(const Vec3& place_mm, double reach_mm, std::vector<
   });
 }
 
-TiltedMarks::TiltedMarks(const TiltedStamps& stamps) : stamps_(stamps), queue_(stamps.envelope(), stamps.deflections()) {}
+TiltedMarks::TiltedMarks(const TiltedStamps& stamps)
+    : stamps_(stamps), queue_(stamps.envelope(), stamps.deflections()) {}
 
 /// The stamp that goes deepest where it is straight comes first: most others are then too high to look at.
 void TiltedMarks::mark(std::span<SurfacePoint> points, std::span<const std::size_t> near) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/vector_clones.h"
 #include "removal/engage/upright/level_faces.h"
 #include "removal/field/upright/carve_general.h"
 
@@ -20,7 +21,34 @@ constexpr std::size_t kFrames = 64;
 /// Faces whose normal leans from the axis by less count as square to it; as removal/engage/upright/level_faces.cpp.
 constexpr double kSquare = 0.1, kWithin = 1 - 1e-6;
 
+constexpr float kNoChip = -1e30f;
+
 float as_float(double v) { return static_cast<float>(v); }
+
+struct StraightMotion {
+  Eigen::Vector3f tip, turn;
+};
+struct StraightPoints {
+  float *x, *y, *z, *cap;
+};
+
+/// `least_per_mm2`: caps of no more than this times the square of the motion make no chip.
+CAMBER_VECTOR_CLONES
+void fill_straight(const upright::PointLanes& p, int from, int count, const StraightMotion& m, float least_per_mm2,
+                   const StraightPoints& out) {
+  for (int l = 0; l < count; ++l) {
+    const int k = from + l;
+    const float x = p.x[k], y = p.y[k], z = p.z[k];
+    const float mx = m.tip.x() + m.turn.y() * z - m.turn.z() * y, my = m.tip.y() + m.turn.z() * x - m.turn.x() * z,
+                mz = m.tip.z() + m.turn.x() * y - m.turn.y() * x;
+    const float along = mx * p.nx[k] + my * p.ny[k] + mz * p.nz[k], all2 = mx * mx + my * my + mz * mz;
+    const float around = p.cos_phi[k] * my - p.sin_phi[k] * mx, around2 = around * around;
+    const float tangential2 = std::max(0.0f, all2 - along * along);
+    const float cap = along + 0.5f * (p.k1[k] * std::max(0.0f, tangential2 - around2) + p.k2[k] * around2);
+    out.x[l] = x, out.y[l] = y, out.z[l] = z;
+    out.cap[l] = cap > least_per_mm2 * all2 ? cap : kNoChip;
+  }
+}
 
 }  // namespace
 
@@ -67,16 +95,11 @@ ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, st
 }
 
 ChipReader::Reading ChipReader::reading_of(std::size_t k) const {
-  return {k, Frame(stamps_[k].pose), motion_in_tool(all_, static_cast<std::size_t>(stamps_.data() - all_.data()) + k)};
-}
-
-/// As upright::ChipReader.
-float ChipReader::reach_mm(std::size_t k) const {
-  return stamps_[k].first ? 0.0f : as_float(deflections_.largest_lateral_mm(static_cast<std::ptrdiff_t>(k) - 1));
-}
-
-float ChipReader::axial_reach_mm(std::size_t k) const {
-  return stamps_[k].first ? 0.0f : as_float(deflections_.largest_axial_mm(static_cast<std::ptrdiff_t>(k) - 1));
+  const auto from = static_cast<std::size_t>(stamps_.data() - all_.data());
+  const std::ptrdiff_t before = static_cast<std::ptrdiff_t>(k) - 1;
+  const bool first = stamps_[k].first;
+  return {k, Frame(stamps_[k].pose), motion_in_tool(all_, from + k),
+          first ? 0 : deflections_.largest_lateral_mm(before), first ? 0 : deflections_.largest_axial_mm(before)};
 }
 
 /// As BlockKernels::find_blocks, with the motion of the patch's centre.
@@ -107,18 +130,25 @@ void ChipReader::find_patches(const TileArena& arena, const Reading& stamp, std:
   }
 }
 
+/// As Kernels::read_points, without a deflection.
+void ChipReader::straight_points(int from, int count, const Reading& stamp, Points& out) const {
+  const auto f = [](const Vec3& v) { return Eigen::Vector3f(v.cast<float>()); };
+  fill_straight(view_, from, count, {f(stamp.motion.tip_mm), f(stamp.motion.turn_rad)},
+                as_float((1 - rule_.pitches) * max_curved_per_mm_ / 2),
+                {out.x.data(), out.y.data(), out.z.data(), out.cap_mm.data()});
+}
+
 /// As Kernels::read_points.
-ChipReader::Point ChipReader::point_of(int lane, const Reading& stamp) const {
-  const auto at = [&](const float* values) { return static_cast<double>(values[lane]); };
-  const Vec3 n(at(view_.nx), at(view_.ny), at(view_.nz));
-  Point out{{at(view_.x), at(view_.y), at(view_.z)}, 0, false};
-  Vec3 motion = stamp.motion.at(out.place);
-  const double cosine_phi = at(view_.cos_phi), sine_phi = at(view_.sin_phi), sine = at(view_.sine);
-  double tilt = 0;
-  if (!rule_.rigid) {
-    const auto k = static_cast<std::ptrdiff_t>(stamp.k);
-    const float *now = deflections_.row(k), *before = stamps_[stamp.k].first ? now : deflections_.row(k - 1);
-    const int steps = deflections_.steps, nodes = static_cast<int>(deflections_.nodes());
+void ChipReader::deflected_points(int from, int count, const Reading& stamp, Points& out) const {
+  const auto k = static_cast<std::ptrdiff_t>(stamp.k);
+  const float *now = deflections_.row(k), *before = stamps_[stamp.k].first ? now : deflections_.row(k - 1);
+  const int steps = deflections_.steps, nodes = static_cast<int>(deflections_.nodes());
+  for (int l = 0; l < count; ++l) {
+    const int lane = from + l;
+    const auto at = [&](const float* values) { return static_cast<double>(values[lane]); };
+    const Vec3 n(at(view_.nx), at(view_.ny), at(view_.nz));
+    Vec3 place(at(view_.x), at(view_.y), at(view_.z)), motion = stamp.motion.at(place);
+    const double cosine_phi = at(view_.cos_phi), sine_phi = at(view_.sin_phi), sine = at(view_.sine);
     const int lower = view_.lower[lane], upper = std::min(lower + 1, nodes - 1), step = view_.step[lane];
     const double share = at(view_.upper_fraction);
     const auto node = [&](const float* row, int of_node, int of_step) {
@@ -143,45 +173,37 @@ ChipReader::Point ChipReader::point_of(int lane, const Reading& stamp) const {
     const double by_height =
         (node(now, upper, step) - node(now, lower, step)).dot(n.head<2>()) / static_cast<double>(node_step_mm_);
     const double around = cosine_phi * motion.y() - sine_phi * motion.x();
-    const double up =
-        at(view_.cosine) * (cosine_phi * motion.x() + sine_phi * motion.y()) + sine * motion.z();
+    const double up = at(view_.cosine) * (cosine_phi * motion.x() + sine_phi * motion.y()) + sine * motion.z();
+    double tilt = 0;
     if (sine >= static_cast<double>(BlockBounds::kLevel)) {
       const double most = kMaxTilt * motion.norm();
       tilt = around * by_angle * at(view_.per_radius) + up * sine * (by_height - envelope_.lag_per_mm * by_angle);
       tilt = std::clamp(tilt, -most, most);
     }
-    out.place += displaced;
+    place += displaced;
     motion += moved;
+    const double along = motion.dot(n) - tilt;
+    const double tangential2 = std::max(0.0, motion.squaredNorm() - along * along);
+    const double sideways = cosine_phi * motion.y() - sine_phi * motion.x(), sideways2 = sideways * sideways;
+    const double cap = along + 0.5 * (at(view_.k1) * std::max(0.0, tangential2 - sideways2) + at(view_.k2) * sideways2);
+    const auto i = static_cast<std::size_t>(l);
+    out.x[i] = as_float(place.x()), out.y[i] = as_float(place.y()), out.z[i] = as_float(place.z());
+    out.cap_mm[i] =
+        cap > -stamp.reach_mm * n.head<2>().norm() - stamp.axial_reach_mm * std::abs(n.z()) ? as_float(cap) : kNoChip;
   }
-  const double along = motion.dot(n) - tilt;
-  const double tangential2 = std::max(0.0, motion.squaredNorm() - along * along);
-  const double around = cosine_phi * motion.y() - sine_phi * motion.x(), around2 = around * around;
-  const double cap =
-      along + 0.5 * (at(view_.k1) * std::max(0.0, tangential2 - around2) + at(view_.k2) * around2);
-  out.cap_mm = as_float(cap);
-  const double least = rule_.rigid ? (1 - rule_.pitches) * motion.squaredNorm() * max_curved_per_mm_ / 2
-                                   : -static_cast<double>(reach_mm(stamp.k)) * n.head<2>().norm() -
-                                         static_cast<double>(axial_reach_mm(stamp.k)) * std::abs(n.z());
-  out.forward = cap > least;
-  return out;
 }
 
 /// Deep points make their chips at once; air makes none. As upright::ChipReader.
-void ChipReader::sort_point(const TileArena& arena, const Reading& stamp, int lane, Buffers& b,
-                            std::vector<DeflectedChipSample>& out) const {
-  const Point point = point_of(lane, stamp);
-  if (!point.forward) return;
-  const Vec3 place = stamp.frame.in_part(point.place);
+void ChipReader::sort_point(const TileArena& arena, const Reading& stamp, int lane, const Vec3& place, float cap,
+                            Buffers& b, std::vector<DeflectedChipSample>& out) const {
   const Cell cell(arena, place, voxel_mm_);
-  const float* values = arena.view().distance + cell.cell;
-  const float field = trilinear(values, cell.share), cap = point.cap_mm;
+  const float field = trilinear(arena.view().distance + cell.cell, cell.share);
   const std::uint32_t p = lanes_.point(lane), ring = p / static_cast<std::uint32_t>(envelope_.steps);
   const float half = wall_half_mm_[ring], air = 0.5f * as_float(voxel_mm_);
   if (field > std::max(air, half)) return;
-  const float limit = rule_.rigid ? cap
-                                  : std::max(kBeyondCap * cap,
-                                             cap + reach_mm(stamp.k) * envelope_.rings[ring].sine +
-                                                 axial_reach_mm(stamp.k) * std::abs(envelope_.rings[ring].cosine));
+  const double more = stamp.reach_mm * static_cast<double>(envelope_.rings[ring].sine) +
+                      stamp.axial_reach_mm * std::abs(static_cast<double>(envelope_.rings[ring].cosine));
+  const float limit = rule_.rigid ? cap : std::max(kBeyondCap * cap, cap + as_float(more));
   const std::array<float, 3> along{envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]};
   if (-field > std::max(limit, half)) {
     out.push_back({{p, cap, true}, -field, cap, along});
@@ -202,8 +224,8 @@ void ChipReader::sort_point(const TileArena& arena, const Reading& stamp, int la
     const float* lowest = blank + cell.cell % (2 * Tile::kVolume);
     shallow.below_blank_mm = -trilinear(lowest, cell.share);
     if (shallow.up_mm != 0)
-      shallow.below_blank_mm -= as_float(
-          shallow.up_mm * trilinear_gradient(lowest, cell.share, voxel_mm_).dot(stamp.frame.axis()));
+      shallow.below_blank_mm -=
+          as_float(shallow.up_mm * trilinear_gradient(lowest, cell.share, voxel_mm_).dot(stamp.frame.axis()));
     if (shallow.below_blank_mm <= -kNear_mm) return;
   }
   b.shallow.push_back(shallow);
@@ -212,9 +234,22 @@ void ChipReader::sort_point(const TileArena& arena, const Reading& stamp, int la
 void ChipReader::read(const TileArena& arena, const Reading& stamp, std::span<const std::int32_t> patches, Buffers& b,
                       std::vector<DeflectedChipSample>& out) const {
   b.shallow.clear();
+  Points points;
   for (const std::int32_t patch : patches) {
     const PatchLanes::Range range = lanes_.range(static_cast<std::uint32_t>(patch));
-    for (int lane = range.from; lane < range.from + range.count; ++lane) sort_point(arena, stamp, lane, b, out);
+    for (int from = 0; from < range.count; from += Points::kMost) {
+      const int count = std::min(range.count - from, Points::kMost), first = range.from + from;
+      if (rule_.rigid)
+        straight_points(first, count, stamp, points);
+      else
+        deflected_points(first, count, stamp, points);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+        if (points.cap_mm[i] == kNoChip) continue;
+        const Eigen::Vector3f in_tool(points.x[i], points.y[i], points.z[i]);
+        sort_point(arena, stamp, first + static_cast<int>(i), stamp.frame.in_part(in_tool.cast<double>()),
+                   points.cap_mm[i], b, out);
+      }
+    }
   }
   make_room(b);
   for (Shallow& point : b.shallow) add_pairs(arena, stamp, point, b);
@@ -224,8 +259,7 @@ void ChipReader::read(const TileArena& arena, const Reading& stamp, std::span<co
     thin_pairs(b);
   for (std::size_t i = 0; i < b.shallow.size(); ++i) {
     const Shallow& p = b.shallow[i];
-    const Depth below =
-        depth(arena, stamp, p, i + 1 < b.shallow.size() ? b.shallow[i + 1].first_pair : b.pairs, b);
+    const Depth below = depth(arena, stamp, p, i + 1 < b.shallow.size() ? b.shallow[i + 1].first_pair : b.pairs, b);
     if (below.mm <= -kNear_mm) continue;
     const float most = below.mm > p.limit_mm ? p.cap_mm : p.limit_mm;
     out.push_back({{p.point, std::min(below.mm, most), below.mm > kNearCap * p.cap_mm, below.own_surface, p.cut_255},
@@ -341,8 +375,7 @@ float ChipReader::farther_mm(const TileArena& arena, const Shallow& p, std::int3
   for (int c = 0; c < 8; ++c) {
     if (named[cell_corner(c)] - first_id_ != id) continue;
     const Vec3 corner = voxel_mm_ * (lowest + Vec3(c & 1, c >> 1 & 1, c >> 2 & 1));
-    const float difference =
-        distance[cell_corner(c)] + as_float(envelope_.shape.distance_mm(frame.in_tool(corner)));
+    const float difference = distance[cell_corner(c)] + as_float(envelope_.shape.distance_mm(frame.in_tool(corner)));
     const float w = corner_weight(c, p.share) + 1e-6f;
     weight += w;
     sum += w * difference;

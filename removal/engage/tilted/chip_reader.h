@@ -59,6 +59,9 @@ class ChipReader {
     std::size_t k;  ///< of the stretch
     Frame frame;
     ToothMotion motion;
+    /// How much more than its motion allows a point may take, since the stamp before was deflected otherwise when it
+    /// left the surface there.
+    double reach_mm, axial_reach_mm;
   };
   Reading reading_of(std::size_t k) const;
 
@@ -75,18 +78,17 @@ class ChipReader {
     std::array<float, 3> deeper;  ///< by a deflection in x, y and z of the tool
     bool own_surface;
   };
-  /// An envelope point as the stamp's deflection displaces it.
-  struct Point {
-    Vec3 place;  ///< in the tool's frame
-    float cap_mm;
-    bool forward;
+  /// Envelope points as the stamp's deflection displaces them.
+  struct Points {
+    static constexpr int kMost = 64;
+    alignas(64) std::array<float, kMost> x, y, z;  ///< in the tool's frame
+    alignas(64) std::array<float, kMost> cap_mm;   ///< none where the motion leads off the material
   };
   struct Cell;
-  float reach_mm(std::size_t k) const;
-  float axial_reach_mm(std::size_t k) const;
-  Point point_of(int lane, const Reading& stamp) const;
-  void sort_point(const upright::TileArena& arena, const Reading& stamp, int lane, Buffers& buffers,
-                  std::vector<DeflectedChipSample>& out) const;
+  void straight_points(int from, int count, const Reading& stamp, Points& out) const;
+  void deflected_points(int from, int count, const Reading& stamp, Points& out) const;
+  void sort_point(const upright::TileArena& arena, const Reading& stamp, int lane, const Vec3& place_mm, float cap_mm,
+                  Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
   bool place_in_ring(const upright::TileArena& arena, const Reading& stamp, float half_mm, float axial_mm, Shallow& p,
                      Buffers& buffers) const;
   static void make_room(Buffers& buffers);

@@ -53,6 +53,7 @@ struct Engager::Impl {
   Stock& stock;
   const Stock& blank;
   EnvelopeGrid envelope;
+  ProfileRows profile;
   std::span<const Stamp> all;
   std::int32_t first_id;
   ReadingRule rule;
@@ -73,6 +74,15 @@ struct Engager::Impl {
   tbb::enumerable_thread_specific<ChipReader::Buffers> buffers{};
   std::optional<tbb::enumerable_thread_specific<DeflectedCarver>> carvers{};
 
+  Impl(Stock& stock_, const Stock& blank_, EnvelopeGrid envelope_, std::span<const Stamp> stamps_,
+       std::int32_t first_id_, const ReadingRule& rule_)
+      : stock(stock_),
+        blank(blank_),
+        envelope(std::move(envelope_)),
+        profile(envelope.shape.profile),
+        all(stamps_),
+        first_id(first_id_),
+        rule(rule_) {}
   void begin(const DeflectionTable& table) {
     lanes.emplace(envelope, table.node_height_mm, stock.voxel_mm(), stock.band_mm());
     glanced_point.assign(envelope.size(), 0);
@@ -81,14 +91,12 @@ struct Engager::Impl {
       for (int l = 0; glanced_at(patch) && l < range.count; ++l) glanced_point[lanes->point(range.from + l)] = 1;
     }
   }
-  void leave(std::span<const std::size_t> numbers) {
-    removed_mm3 += upright::store_cut(stock, arena, numbers, tiles);
-  }
+  void leave(std::span<const std::size_t> numbers) { removed_mm3 += upright::store_cut(stock, arena, numbers, tiles); }
 };
 
 Engager::Engager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
                  std::int32_t first_id, const ReadingRule& rule)
-    : impl_(new Impl{stock, blank, with_patches(envelope, stock.band_mm()), stamps, first_id, rule}) {}
+    : impl_(std::make_unique<Impl>(stock, blank, with_patches(envelope, stock.band_mm()), stamps, first_id, rule)) {}
 Engager::~Engager() = default;
 
 void Engager::start(std::size_t from, std::size_t count, const DeflectionTable& deflections) {
@@ -149,6 +157,7 @@ void Engager::cut(std::size_t k) {
   m.memory.add(m.deflections->row(row));
   const Frame frame(m.stamps[k].pose);
   const Carving stamp{m.envelope.shape,
+                      m.profile,
                       frame,
                       m.stock.voxel_mm(),
                       m.stock.band_mm(),
@@ -170,6 +179,7 @@ double Engager::commit() {
 
 double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const SweepOptions& options) {
   constexpr std::size_t kAtOnce = 400;  // bounds the memory
+  const ProfileRows profile(shape.profile);
   TileArena arena;
   std::vector<std::optional<CutTile>> tiles;
   double removed = 0;
@@ -188,13 +198,10 @@ double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stam
       cancellation_point();
       for (const std::size_t k : by_tile[t]) {
         const Frame frame(part[k].pose);
-        const Carving stamp{shape,
-                            frame,
-                            stock.voxel_mm(),
-                            stock.band_mm(),
-                            options.first_id + static_cast<std::int32_t>(from + k),
-                            way[k],
-                            options.shrink_mm};
+        const Carving stamp{shape,           profile,
+                            frame,           stock.voxel_mm(),
+                            stock.band_mm(), options.first_id + static_cast<std::int32_t>(from + k),
+                            way[k],          options.shrink_mm};
         tiles[t]->changed |= carve(arena[t], tiles[t]->rows, arena.index(t), stamp);
       }
     });

@@ -12,7 +12,7 @@
 namespace camber::removal::tilted {
 namespace {
 
-constexpr int kPadded = 24;           ///< voxels of a row, filled up to whole vectors
+constexpr int kPadded = 24;            ///< voxels of a row, filled up to whole vectors
 constexpr double kRounding_mm = 1e-4;  ///< of distances in single precision
 
 /// The voxels of a row in the tool's frame: the first, and from each to the next.
@@ -20,11 +20,23 @@ struct Row {
   Eigen::Vector3f start, step;
 };
 
-Row row_of(const Index3& tile, int i, int j, const Carving& stamp) {
-  const Vec3 first = stamp.voxel_mm * Vec3(tile[0] * Tile::kCore + i, tile[1] * Tile::kCore + j, tile[2] * Tile::kCore);
-  const Vec3 up = stamp.voxel_mm * stamp.frame.to_part.row(2).transpose();
-  return {stamp.frame.in_tool(first).cast<float>(), up.cast<float>()};
-}
+/// The voxels of a tile in the tool's frame.
+struct Grid {
+  Eigen::Vector3f origin, by_i, by_j, by_k;
+
+  Grid(const Index3& tile, const Carving& stamp) {
+    const Vec3 first = Tile::kCore * stamp.voxel_mm * Vec3(tile[0], tile[1], tile[2]);
+    const Mat3 steps = stamp.voxel_mm * stamp.frame.to_part.transpose();
+    origin = stamp.frame.in_tool(first).cast<float>();
+    by_i = steps.col(0).cast<float>(), by_j = steps.col(1).cast<float>(), by_k = steps.col(2).cast<float>();
+  }
+  /// Along z.
+  Row row(int i, int j) const { return {origin + static_cast<float>(i) * by_i + static_cast<float>(j) * by_j, by_k}; }
+  /// The middles of the rows of one i.
+  Row middles(int i) const {
+    return {origin + static_cast<float>(i) * by_i + 0.5f * static_cast<float>(Tile::kCore) * by_k, by_j};
+  }
+};
 
 CAMBER_VECTOR_CLONES
 void rounded_distances(const Row& row, float flat, float corner, float shrink, float* __restrict out) {
@@ -36,12 +48,26 @@ void rounded_distances(const Row& row, float flat, float corner, float shrink, f
   }
 }
 
-void distances(const CutterShape& shape, const Row& row, float shrink, float* out) {
-  if (!shape.general)
-    return rounded_distances(row, static_cast<float>(shape.bottom_length_mm()),
-                             static_cast<float>(shape.corner_radius_mm), shrink, out);
-  for (int k = 0; k < Tile::kSide; ++k)
-    out[k] = static_cast<float>(shape.distance_mm((row.start + static_cast<float>(k) * row.step).cast<double>())) + shrink;
+CAMBER_VECTOR_CLONES
+void meridian_places(const Row& row, float* __restrict radius, float* __restrict height) {
+  for (int k = 0; k < kPadded; ++k) {
+    const auto n = static_cast<float>(k);
+    const float x = row.start.x() + n * row.step.x(), y = row.start.y() + n * row.step.y();
+    radius[k] = std::sqrt(x * x + y * y);
+    height[k] = row.start.z() + n * row.step.z();
+  }
+}
+
+void distances(const Carving& stamp, const Row& row, float* out) {
+  static_assert(kPadded <= ProfileRows::kMost);
+  const auto shrink = static_cast<float>(stamp.shrink_mm);
+  if (!stamp.shape.general)
+    return rounded_distances(row, static_cast<float>(stamp.shape.bottom_length_mm()),
+                             static_cast<float>(stamp.shape.corner_radius_mm), shrink, out);
+  alignas(64) std::array<float, kPadded> radius, height;
+  meridian_places(row, radius.data(), height.data());
+  stamp.profile.distances(radius.data(), height.data(), kPadded, out);
+  for (int k = 0; k < kPadded; ++k) out[k] += shrink;
 }
 
 /// How far the voxels of a row that are not air lie above what the cutter would leave: the nearest; infinity if all are
@@ -57,31 +83,41 @@ float above_mm(const float* __restrict value, const float* __restrict distance, 
   return least;
 }
 
-/// Calls cut(value, row, distance, above) for the rows that the stamp may change when displaced by `deflection_mm`.
+/// Calls cut(first voxel, row, distance) for the rows that the stamp may change when displaced by `deflection_mm`.
 template <class Cut>
 void for_rows(Tile& tile, RowsDue& rows, const Index3& index, const Carving& stamp, double deflection_mm, Cut cut) {
-  const auto band = static_cast<float>(stamp.band_mm), shrink = static_cast<float>(stamp.shrink_mm);
-  const double half_mm = 0.5 * Tile::kCore * stamp.voxel_mm;
-  const auto now = static_cast<float>(stamp.way_mm);
-  const float until = now + static_cast<float>(deflection_mm + kRounding_mm);
-  alignas(64) std::array<float, kPadded> distance;
-  for (int i = 0; i < Tile::kSide; ++i)
-    for (int j = 0; j < Tile::kSide; ++j) {
-      float& due = rows.due[static_cast<std::size_t>(i * Tile::kSide + j)];
-      if (until <= due) continue;
-      const Row row = row_of(index, i, j, stamp);
-      const Vec3 middle = (row.start + (0.5f * Tile::kCore) * row.step).cast<double>();
-      const double nearest = stamp.shape.distance_mm(middle) - half_mm + stamp.shrink_mm - stamp.band_mm;
-      if (nearest >= deflection_mm + kRounding_mm) {
-        due = now + static_cast<float>(nearest);
-        continue;
-      }
-      float* value = tile.distance.data() + Tile::offset(i, j, 0);
-      distances(stamp.shape, row, shrink, distance.data());
-      const float above = above_mm(value, distance.data(), band);
-      due = now + above;
-      if (above < static_cast<float>(deflection_mm + kRounding_mm)) cut(Tile::offset(i, j, 0), row, distance.data());
+  const auto band = static_cast<float>(stamp.band_mm), now = static_cast<float>(stamp.way_mm),
+             reach = static_cast<float>(deflection_mm + kRounding_mm);
+  const float half_and_band = 0.5f * Tile::kCore * static_cast<float>(stamp.voxel_mm) + band;
+  if (now + reach <= rows.first) return;
+  const Grid grid(index, stamp);
+  alignas(64) std::array<float, kPadded> middle, distance;
+  float first_due = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < Tile::kSide; ++i) {
+    float* due = rows.due.data() + static_cast<std::ptrdiff_t>(i) * Tile::kSide;
+    const float earliest = *std::min_element(due, due + Tile::kSide);
+    if (now + reach <= earliest) {
+      first_due = std::min(first_due, earliest);
+      continue;
     }
+    distances(stamp, grid.middles(i), middle.data());
+    for (int j = 0; j < Tile::kSide; ++j) {
+      if (now + reach > due[j]) {
+        const float nearest = middle[static_cast<std::size_t>(j)] - half_and_band;
+        if (nearest >= reach) {
+          due[j] = now + nearest;
+        } else {
+          const Row row = grid.row(i, j);
+          distances(stamp, row, distance.data());
+          const float above = above_mm(tile.distance.data() + Tile::offset(i, j, 0), distance.data(), band);
+          due[j] = now + above;
+          if (above < reach) cut(Tile::offset(i, j, 0), row, distance.data());
+        }
+      }
+      first_due = std::min(first_due, due[j]);
+    }
+  }
+  rows.first = first_due;
 }
 
 }  // namespace
@@ -149,8 +185,7 @@ void DeflectedCarver::settle(const StampDeflection& deflection) {
   if (envelope_.shape.general) {
     for (std::size_t i = 0; i < voxel_.size(); ++i) {
       const Vec3 at(static_cast<double>(x_[i]), static_cast<double>(y_[i]), static_cast<double>(z_[i]));
-      const Vec3 settled =
-          at - upright::settled_deflection(envelope_, deflections_, deflection.row, at, Vec3::Zero());
+      const Vec3 settled = at - upright::settled_deflection(envelope_, deflections_, deflection.row, at, Vec3::Zero());
       x_[i] = static_cast<float>(settled.x()), y_[i] = static_cast<float>(settled.y());
       z_[i] = static_cast<float>(settled.z());
     }

@@ -8,6 +8,7 @@
 #include "base/tool_pose.h"
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
+#include "removal/field/profile_rows.h"
 #include "removal/field/stamp_deflection.h"
 #include "removal/field/tile.h"
 #include "removal/stock.h"
@@ -26,8 +27,8 @@ struct Frame {
   Vec3 axis() const { return to_part.col(2); }
 };
 
-/// How far any point of the stock has moved against the cutter since the first stamp, at most, mm, for every stamp: what
-/// a stamp changes at a place within the stock differs from what another changes by no more than the difference.
+/// How far any point of the stock has moved against the cutter since the first stamp, at most, mm, for every stamp:
+/// what a stamp changes at a place within the stock differs from what another changes by no more than the difference.
 std::vector<double> way_mm(std::span<const Stamp> stamps, const Vec3& stock_min_mm, const Vec3& stock_max_mm);
 
 /// What is known of the rows (along z) of a tile's voxels.
@@ -38,14 +39,20 @@ std::vector<double> way_mm(std::span<const Stamp> stamps, const Vec3& stock_min_
 struct RowsDue {
   static constexpr int kRows = Tile::kSide * Tile::kSide;
   std::array<float, kRows> due{};
+  float first = 0;  ///< no row is due before
 
   RowsDue() { forget(); }
-  void forget() { due.fill(-1); }  ///< all, for ways that count anew
+  /// All, for ways that count anew.
+  void forget() {
+    due.fill(-1);
+    first = -1;
+  }
 };
 
 /// One stamp in a tile.
 struct Carving {
   const CutterShape& shape;
+  const ProfileRows& profile;  ///< of the shape
   const Frame& frame;
   double voxel_mm, band_mm;
   std::int32_t id;
