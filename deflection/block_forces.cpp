@@ -195,14 +195,14 @@ class PassSums {
 }  // namespace
 
 removal::ChipBlock ToothPassModel::tooth_block(int j, const EnvelopeBlocks& blocks, const removal::ChipBlock& even,
-                                               const Vec3& feed) const {
+                                               const removal::ToothMotion& of_tool) const {
   removal::ChipBlock own = even;
   for (int lane = 0; lane < EnvelopeBlocks::kLanes; ++lane) {
     const auto l = static_cast<std::size_t>(lane);
     const std::uint32_t p = blocks.point(even.block, lane);
     if (even.thickness_mm[l] == 0 || p == EnvelopeBlocks::kNoPoint) continue;
     const auto& ring = envelope_.rings[p / static_cast<std::uint32_t>(envelope_.steps)];
-    const MotionChip motion = motion_chip(direction(p, ring), ring, feed);
+    const MotionChip motion = motion_chip(direction(p, ring), ring, of_tool.at(place_mm(p)));
     const double thickness = even.thickness_mm[l];
     // Where even teeth would not cut, only what the teeth before have left is as near as the motion tells.
     constexpr double kSame_mm = 1e-4;
@@ -217,7 +217,8 @@ removal::ChipBlock ToothPassModel::tooth_block(int j, const EnvelopeBlocks& bloc
 }
 
 void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips,
-                              std::size_t passing, const Vec3& feed, ToothPass& out, std::span<float> fine) const {
+                              std::size_t passing, const removal::ToothMotion& motion, ToothPass& out,
+                              std::span<float> fine) const {
   const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
   const auto steps = static_cast<std::size_t>(pitch);
   const std::size_t nodes = node_height_mm_.size();
@@ -280,7 +281,7 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
         int step = step_at(blocks.point(chip.block, 0));
         if (step >= pitch + kSteps) step -= turn;
         if (step < -2 * kSteps) continue;
-        own.push_back(tooth_block(j, blocks, chip, feed));
+        own.push_back(tooth_block(j, blocks, chip, motion));
         removal::ChipBlock in_pitch = own.back();
         for (int lane = 0; lane < EnvelopeBlocks::kLanes; ++lane)
           if (const int m = step + lane % kSteps; m < 0 || m >= pitch)

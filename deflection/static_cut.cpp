@@ -86,11 +86,12 @@ StaticCut::Passing StaticCut::cut(std::size_t k, bool must_read) {
   out.settled = false;
   ReadingPace::Reading reading;
   swing_.clear();
+  const StaticEquilibrium::Motion motion{removal::motion_in_tool(stamps_, from_ + k), stamps_[from_ + k].first};
   double share = 1, before_um = std::numeric_limits<double>::infinity();
   while (!out.settled && out.rounds < options_.max_rounds) {
     const auto read = engager_.read(k);
     read_.assign(read.begin(), read.end());
-    const auto step = equilibrium_.solve(read_, from_ + k, stamps_[from_ + k], share, run_out_.of(from_ + k), row);
+    const auto step = equilibrium_.solve(read_, from_ + k, motion, share, run_out_.of(from_ + k), row);
     if (++out.rounds == 1) {
       reading.error_um = step.rms_um;
       reading.allowed_um = std::max(options_.follow_um, options_.follow_fraction * step.size_um);

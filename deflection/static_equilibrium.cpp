@@ -89,25 +89,26 @@ StaticEquilibrium::StaticEquilibrium(const removal::EnvelopeGrid& envelope, cons
 }
 
 void StaticEquilibrium::place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
-                                       const removal::Stamp& stamp) {
-  const Vec3& feed = stamp.feed_per_tooth_mm;
-  model_.edge_elements(chips, passing, feed, found_);
+                                       const Motion& motion) {
+  model_.edge_elements(chips, passing, motion.of_tool, found_);
   first_.assign(steps_ + 1, 0);
   for (const EdgeElement& e : found_) ++first_[static_cast<std::size_t>(e.step) + 1];
   for (std::size_t m = 0; m < steps_; ++m) first_[m + 1] += first_[m];
   elements_.resize(found_.size());
-  max_lean_mm_ = removal::kMaxTilt * feed.norm();
-  first_stamp_ = stamp.first;
+  max_lean_mm_ = removal::kMaxTilt * motion.of_tool.tip_mm.norm();
+  first_stamp_ = motion.first;
   std::vector<std::size_t> at(first_.begin(), first_.end() - 1);
   place_.resize(found_.size());
   for (std::size_t i = 0; i < found_.size(); ++i) place_[i] = at[static_cast<std::size_t>(found_[i].step)]++;
   for_all(found_.size(), found_.size(), [&](std::size_t from, std::size_t end) {
-    for (std::size_t i = from; i < end; ++i) elements_[place_[i]] = element(found_[i], chips[found_[i].chip], feed);
+    for (std::size_t i = from; i < end; ++i)
+      elements_[place_[i]] = element(found_[i], chips[found_[i].chip], motion.of_tool);
   });
 }
 
 StaticEquilibrium::Element StaticEquilibrium::element(const EdgeElement& f, const removal::DeflectedChipSample& bent,
-                                                      const Vec3& feed) const {
+                                                      const removal::ToothMotion& motion) const {
+  const Vec3 feed = motion.at(model_.place_mm(bent.chip.point));
   const double node_step = model_.node_height_mm()[1], per_rad = envelope_.steps / (4 * kPi);
   const std::uint32_t r = bent.chip.point / static_cast<std::uint32_t>(envelope_.steps);
   const Ring& ring = rings_[r];
@@ -420,8 +421,8 @@ void StaticEquilibrium::creep(Step& out) {
 }
 
 StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing,
-                                                 const removal::Stamp& stamp, double share,
-                                                 std::span<const Vec2> run_out, std::span<float> row) {
+                                                 const Motion& motion, double share, std::span<const Vec2> run_out,
+                                                 std::span<float> row) {
   run_out_ = run_out;
   for (std::size_t m = 0; m < steps_; ++m)
     for (std::size_t i = 0; i < nodes_; ++i)
@@ -433,7 +434,7 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
   axial_deflection_ = axial_read_;
   place_deflections();
   std::fill(stale_.begin(), stale_.end(), 1);
-  place_elements(chips, passing, stamp);
+  place_elements(chips, passing, motion);
   Step out;
   out.solved = false;
   double left2 = balance_all();

@@ -28,11 +28,15 @@ class StaticEquilibrium {
     bool solved = true;
     int steps = 0;  ///< of Newton's method
   };
+  struct Motion {
+    removal::ToothMotion of_tool;
+    bool first = false;  ///< Stamp::first
+  };
   /// chips: as read with the displacements in `row` (of a DeflectionTable): deflections, and `run_out` where there is
   /// any: the axis' offset at each rotation step, mm, or empty. Goes `share` of the way from `row` to the equilibrium
   /// row = run_out + C F; the chips' thickness follows.
-  Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const removal::Stamp& stamp,
-             double share, std::span<const Vec2> run_out, std::span<float> row);
+  Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const Motion& motion, double share,
+             std::span<const Vec2> run_out, std::span<float> row);
 
  private:
   struct Ring {
@@ -52,9 +56,9 @@ class StaticEquilibrium {
     double solved_mm;  ///< thickness with the deflection as it is
     std::uint32_t ring, chip;
   };
-  void place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
-                      const removal::Stamp& stamp);
-  Element element(const EdgeElement& found, const removal::DeflectedChipSample& chip, const Vec3& feed) const;
+  void place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const Motion& motion);
+  Element element(const EdgeElement& found, const removal::DeflectedChipSample& chip,
+                  const removal::ToothMotion& motion) const;
   void place_deflections();
   void place_axial();
   Vec2 at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const;

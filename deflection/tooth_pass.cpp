@@ -56,12 +56,17 @@ double chip_area_mm2(const removal::EnvelopeGrid::Ring& ring, int steps) {
 }
 }  // namespace
 
+Vec3 ToothPassModel::place_mm(std::uint32_t point) const {
+  return {static_cast<double>(envelope_.x[point]), static_cast<double>(envelope_.y[point]),
+          static_cast<double>(envelope_.z[point])};
+}
+
 ToothPassModel::MotionChip ToothPassModel::motion_chip(const EdgeDirections& d, const removal::EnvelopeGrid::Ring& ring,
-                                                       const Vec3& feed) const {
-  const double around = feed.dot(d.tangential), up = feed.dot(d.meridian);
+                                                       const Vec3& motion) const {
+  const double around = motion.dot(d.tangential), up = motion.dot(d.meridian);
   const double bulge = 0.5 * (ring.profile.meridian_curvature_per_mm * up * up +
                               ring.profile.parallel_curvature_per_mm * around * around);
-  return {feed.dot(d.normal) + bulge, bulge};
+  return {motion.dot(d.normal) + bulge, bulge};
 }
 
 double ToothPassModel::deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const {
@@ -70,8 +75,9 @@ double ToothPassModel::deeper_mm(int j, bool own_surface, const removal::Envelop
 }
 
 double ToothPassModel::tooth_chip_mm(int j, const removal::ChipSample& chip, const EdgeDirections& d,
-                                     const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const {
-  const MotionChip motion = motion_chip(d, ring, feed);
+                                     const removal::EnvelopeGrid::Ring& ring,
+                                     const removal::ToothMotion& of_tool) const {
+  const MotionChip motion = motion_chip(d, ring, of_tool.at(place_mm(chip.point)));
   const double even = chip.after_tooth ? static_cast<double>(chip.thickness_mm) : motion.even_mm;
   const double h = teeth_.chip_mm(j, even, ring.sine, ring.lag_rad, motion.bulge_mm);
   return chip.after_tooth ? h : std::max(0.0, std::min(h, chip.thickness_mm + deeper_mm(j, chip.own_surface, ring)));
@@ -103,7 +109,8 @@ const removal::ChipSample& chip_of(const removal::DeflectedChipSample& bent) { r
 }  // namespace
 
 template <class Chips, class Function>
-void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, const Vec3& feed, Function f) const {
+void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, const removal::ToothMotion& motion,
+                                      Function f) const {
   const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
   const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth_.count())) * pitch;
   for (std::size_t i = 0; i < chips.size(); ++i) {
@@ -118,21 +125,21 @@ void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, c
     // Every tooth that passes the point during this tooth passing.
     for (int j = 0; j < teeth_.count(); ++j) {
       const int m = ((at - tooth_step_[static_cast<std::size_t>(j)] + gone) % turn + turn) % turn;
-      if (m < pitch) f(i, m, tooth_chip_mm(j, chip, d, ring, feed));
+      if (m < pitch) f(i, m, tooth_chip_mm(j, chip, d, ring, motion));
     }
   }
 }
 
 void ToothPassModel::edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
-                                   const Vec3& feed, std::vector<EdgeElement>& out) const {
+                                   const removal::ToothMotion& motion, std::vector<EdgeElement>& out) const {
   out.clear();
-  for_each_element(chips, passing, feed, [&](std::size_t i, int m, double h) {
+  for_each_element(chips, passing, motion, [&](std::size_t i, int m, double h) {
     out.push_back({static_cast<std::uint32_t>(i), m, h});
   });
 }
 
-void ToothPassModel::evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const Vec3& feed,
-                              ToothPass& out) const {
+void ToothPassModel::evaluate(std::span<const removal::ChipSample> chips, std::size_t passing,
+                              const removal::ToothMotion& motion, ToothPass& out) const {
   const auto steps = static_cast<std::size_t>(envelope_.steps_per_pitch);
   const std::size_t nodes = node_height_mm_.size();
   out.force_N.assign(steps, Vec3::Zero());
@@ -140,7 +147,7 @@ void ToothPassModel::evaluate(std::span<const removal::ChipSample> chips, std::s
   out.work_Nmm = out.chip_max_mm = out.chip_area_mm2 = 0;
   out.deflection_mm.assign(nodes * steps * 2, 0.0f);
   std::vector<double> deflection(nodes * steps * 2, 0.0);
-  for_each_element(chips, passing, feed, [&](std::size_t i, int m, double h) {
+  for_each_element(chips, passing, motion, [&](std::size_t i, int m, double h) {
     if (h <= 0) return;
     const std::uint32_t r = chips[i].point / static_cast<std::uint32_t>(envelope_.steps);
     add(chips[i], h, direction(chips[i].point, envelope_.rings[r]), r, static_cast<std::size_t>(m), deflection, out);
@@ -154,7 +161,7 @@ void ToothPassModel::evaluate(std::span<const removal::ChipSample> chips, std::s
 }
 
 void ToothPassModel::add_to_turn(std::span<const removal::ChipSample> chips, std::size_t pass, std::size_t passing,
-                                 const Vec3& feed, TurnForces& turn) const {
+                                 const removal::ToothMotion& motion, TurnForces& turn) const {
   const int steps = envelope_.steps, pitch = envelope_.steps_per_pitch, teeth = teeth_.count();
   const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth)) * pitch;
   if (turn.teeth.empty())
@@ -174,7 +181,7 @@ void ToothPassModel::add_to_turn(std::span<const removal::ChipSample> chips, std
         const int m = ((column - tooth_step_[static_cast<std::size_t>(j)] + gone) % steps + steps) % steps;
         if (m >= pitch) continue;
         at = static_cast<int>(pass) * pitch + pitch - 1 - m;
-        h = tooth_chip_mm(j, chip, d, ring, feed);
+        h = tooth_chip_mm(j, chip, d, ring, motion);
       }
       TurnForces::Tooth& tooth = turn.teeth[static_cast<std::size_t>(j)][static_cast<std::size_t>(at)];
       const EdgeForce e = edge_force(material_, h, chip.width_fraction() * ring.width_mm, edge_ramp_mm_);

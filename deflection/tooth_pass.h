@@ -61,17 +61,19 @@ class ToothPassModel {
   int steps() const { return envelope_.steps_per_pitch; }
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
   /// `passing` counts tooth passings since the start of the tool and identifies the tooth; it only matters for
-  /// non-uniform teeth. feed_mm: motion in one mean pitch.
-  void evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const Vec3& feed_mm,
+  /// non-uniform teeth. `motion`: in one mean pitch.
+  void evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const removal::ToothMotion& motion,
                 ToothPass& out) const;
   /// The same for chips in blocks, with the instants at which each edge element enters and leaves the material; without
   /// feedback. fine_mm: takes the deflection of steps * kFine rotation steps, a row of removal::DeflectionTable.
   void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
-                const Vec3& feed_mm, ToothPass& out, std::span<float> fine_mm) const;
+                const removal::ToothMotion& motion, ToothPass& out, std::span<float> fine_mm) const;
   /// The edge elements of the chips, including those with negative thickness.
-  void edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const Vec3& feed_mm,
-                     std::vector<EdgeElement>& out) const;
+  void edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
+                     const removal::ToothMotion& motion, std::vector<EdgeElement>& out) const;
   EdgeDirections direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
+  /// Of a point of the envelope, from the tip.
+  Vec3 place_mm(std::uint32_t point) const;
   const machine::Material& material() const { return material_; }
   double edge_ramp_mm() const { return edge_ramp_mm_; }
   /// Of the node's x and y to a force at a ring, mm/N.
@@ -80,26 +82,26 @@ class ToothPassModel {
   }
   /// Adds the chips of one tooth passing, the turn's `pass`-th (0 ... flutes - 1), to the turn.
   void add_to_turn(std::span<const removal::ChipSample> chips, std::size_t pass, std::size_t passing,
-                   const Vec3& feed_mm, TurnForces& turn) const;
+                   const removal::ToothMotion& motion, TurnForces& turn) const;
 
  private:
   /// Calls f(chip number, rotation step, thickness) for the elements of chips.
   template <class Chips, class Function>
-  void for_each_element(const Chips& chips, std::size_t passing, const Vec3& feed, Function f) const;
+  void for_each_element(const Chips& chips, std::size_t passing, const removal::ToothMotion& motion, Function f) const;
   /// Additional depth of tooth j in an older surface compared with uniform teeth, along the normal. A surface cut by
   /// the same tool is as deep as its longest tooth left it.
   double deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const;
   /// Chip of tooth j where uniform teeth would take `chip`.
   double tooth_chip_mm(int j, const removal::ChipSample& chip, const EdgeDirections& d,
-                       const removal::EnvelopeGrid::Ring& ring, const Vec3& feed) const;
+                       const removal::EnvelopeGrid::Ring& ring, const removal::ToothMotion& motion) const;
   /// The same for a block of points, without clipping at zero: negative values are distances to the material.
   removal::ChipBlock tooth_block(int j, const removal::EnvelopeBlocks& blocks, const removal::ChipBlock& even,
-                                 const Vec3& feed) const;
+                                 const removal::ToothMotion& motion) const;
   /// Motion bound of one mean pitch at a point, along the normal (removal/engagement.h).
   struct MotionChip {
     double even_mm, bulge_mm;  ///< bulge_mm: the part due to curvature
   };
-  MotionChip motion_chip(const EdgeDirections& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& feed_mm) const;
+  MotionChip motion_chip(const EdgeDirections& d, const removal::EnvelopeGrid::Ring& ring, const Vec3& motion_mm) const;
   /// Adds the force and deflection of one edge element at rotation step m.
   void add(const removal::ChipSample& chip, double thickness_mm, const EdgeDirections& d, std::uint32_t ring,
            std::size_t m, std::vector<double>& deflection, ToothPass& out) const;

@@ -44,6 +44,9 @@ struct BlockBounds;
 // divides a whole ring of a cutter's wall at once. The chip then has the fraction of the ring width that is in
 // material, and the thickness in the middle of that part.
 //
+// Poses. An upright path (ToolPose::upright()) is engaged and cut column by column, any other in the tool's frame of each
+// stamp; chips and deflections are in that frame.
+//
 // Threads. Space is divided into tiles; each tile processes the stamps in order, and tiles are processed in parallel.
 // Results do not depend on the number of threads.
 
@@ -134,7 +137,7 @@ class RigidEngager {
   /// `blank`: the stock before stamps[0]. Ids in the stock are first_id + index; smaller ids count as blank.
   /// `pitches`: largest number of tooth passings between a tooth and the one that left the surface of its chip; 1 for
   /// uniform teeth. With more, points whose chip would need the motion in up to `pitches` passings are reported too,
-  /// with a negative thickness. Requires upright stamps; everything passed must outlive the object.
+  /// with a negative thickness. Everything passed must outlive the object.
   RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
                std::int32_t first_id, int pitches = 1);
   ~RigidEngager();
@@ -176,7 +179,7 @@ class DeflectedEngager {
   static constexpr double kMaxDeflection_mm = 0.5;
 
   /// `blank`: the stock before stamps[0]. Ids in the stock are first_id + index; smaller ids count as blank. Requires
-  /// upright stamps and an envelope with patches; everything passed must outlive the object.
+  /// an envelope with patches; everything passed must outlive the object.
   DeflectedEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
                    std::int32_t first_id);
   ~DeflectedEngager();
@@ -207,8 +210,7 @@ struct SweepOptions {
   Stage* stage = nullptr;     ///< advanced by the stamps
 };
 
-/// Carves the undeflected cutter through the stock, without engagement. Returns the volume removed, mm^3. Requires
-/// upright stamps.
+/// Carves the undeflected cutter through the stock, without engagement. Returns the volume removed, mm^3.
 double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const SweepOptions& options);
 
 }  // namespace camber::removal

@@ -91,6 +91,8 @@ struct ErrorSpread {
 /// Forty bins or fewer of a round width (1, 2 or 5 times a power of ten) from the minimum to the maximum error.
 ErrorSpread error_spread(const std::vector<double>& error, const std::vector<double>& area_mm2);
 
+class TiltedStamps;  // removal/form_error/tilted_stamps.h
+
 /// Points of the target's surface (as compare_surfaces has them, moved along their grid line onto the cutters that made
 /// the surface there), each with the height of the machined surface along its normal.
 ///
@@ -126,6 +128,8 @@ class SurfaceMap {
 
  private:
   struct Impl;
+  void mark_tilted(const TiltedStamps& stamps);
+
   std::unique_ptr<Impl> impl_;
   double unseen_mm2_ = 0;
 };

@@ -4,12 +4,26 @@
 #include <cassert>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace camber::removal {
 
 using feedmodel::TimedSample;
 
 namespace {
 constexpr double kStill_mm = 1e-6;
+}
+
+ToothMotion motion_in_tool(std::span<const Stamp> stamps, std::size_t k) {
+  const Stamp& stamp = stamps[k];
+  ToothMotion out{direction_in_tool(stamp.pose, stamp.feed_per_tooth_mm)};
+  const std::size_t to = stamp.first ? k + 1 : k;
+  if (to == 0 || to >= stamps.size() || stamps[to].first) return out;
+  const ToolPose &a = stamps[to - 1].pose, &b = stamps[to].pose;
+  if (a.axis == b.axis && a.spin_rad == b.spin_rad) return out;
+  const Eigen::AngleAxisd turn(Mat3(tool_frame(a).transpose() * tool_frame(b)));
+  out.turn_rad = turn.angle() * turn.axis();
+  return out;
 }
 
 bool in_operations(const nc::Interpretation& program, const nc::Move& m, const machine::Operations& operations) {

@@ -25,6 +25,25 @@ struct Stamp {
   std::uint32_t move = 0;  ///< index into Interpretation::moves, where the tip is (not what is commanded)
 };
 
+/// How the tool moved since the stamp before, in the tool's frame.
+///
+/// Feed per tooth is a field where the tool turns against the part: f(p) = f_tip + omega x (p - tip), omega the turn
+/// from tooth passing to tooth passing.
+struct ToothMotion {
+  Vec3 tip_mm = Vec3::Zero();
+  Vec3 turn_rad = Vec3::Zero();  ///< rotation vector
+
+  ToothMotion() = default;
+  ToothMotion(const Vec3& tip, const Vec3& turn = Vec3::Zero()) : tip_mm(tip), turn_rad(turn) {}
+  /// Of a point of the tool, from the tip.
+  Vec3 at(const Vec3& p) const {
+    const Vec3& w = turn_rad;
+    return tip_mm + Vec3(w.y() * p.z() - w.z() * p.y(), w.z() * p.x() - w.x() * p.z(), w.x() * p.y() - w.y() * p.x());
+  }
+};
+/// Of stamps[k]; that of a first stamp turns as the next one does.
+ToothMotion motion_in_tool(std::span<const Stamp> stamps, std::size_t k);
+
 /// Precondition of code with "upright" in its name or namespace.
 inline bool all_upright(std::span<const Stamp> stamps) {
   return std::ranges::all_of(stamps, [](const Stamp& s) { return s.pose.upright(); });

@@ -35,10 +35,15 @@ namespace {
 
 /// Height above the tip up to which the cutter can meet material anywhere on its path.
 double engaged_top_mm(const Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps) {
-  double lowest = stock.max_mm().z();
-  for (const auto& s : stamps) lowest = std::min(lowest, s.pose.tip_mm.z());
+  double top = 0;
+  for (const auto& s : stamps) {
+    // The corner of the stock's box that lies farthest up the tool.
+    const Vec3 corner = (s.pose.axis.array() > 0).select(stock.max_mm(), stock.min_mm());
+    top = std::max(
+        top, s.pose.upright() ? stock.max_mm().z() - s.pose.tip_mm.z() : (corner - s.pose.tip_mm).dot(s.pose.axis));
+  }
   const double cutting = tool.flute_length_mm.value_or(tool.overhang_mm);
-  return std::clamp(stock.max_mm().z() - lowest + stock.voxel_mm(), stock.voxel_mm(), cutting);
+  return std::clamp(top + stock.voxel_mm(), stock.voxel_mm(), cutting);
 }
 
 /// Height above the tip at which the profile turns upright: above it nothing cuts straight down.
@@ -187,7 +192,7 @@ class Cutter {
       ToothPass& pass = passes.local();
       std::span<float> row(deflections.row(static_cast<std::ptrdiff_t>(k)),
                            options_.drilling ? 0 : deflections.row_size());
-      model_.evaluate(blocks, chips, from + k, all[from + k].feed_per_tooth_mm, pass, row);
+      model_.evaluate(blocks, chips, from + k, removal::motion_in_tool(all, from + k), pass, row);
       loads[k] = summarize(pass);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
       if (options_.chip_ratio > 0)
@@ -196,7 +201,7 @@ class Cutter {
       const std::scoped_lock lock(turn_lock);
       turn[k] = removal::chips_of(blocks, chips);
     });
-    for (const auto& [k, chips] : turn) keep_turn(chips, all[from + k], from + k, result);
+    for (const auto& [k, chips] : turn) keep_turn(chips, all, from + k, result);
   }
 
   /// The loads for chips of options_.chip_ratio to their thickness.
@@ -301,12 +306,12 @@ class Cutter {
       }
       ++result.read;
       behind.wait();
-      behind.run([this, &loads, &pass, &stamp, &deflections, &result, chips = passing.chips, from, k] {
-        model_.evaluate(chips, from + k, stamp.feed_per_tooth_mm, pass);
+      behind.run([this, &loads, &pass, &deflections, &result, all, chips = passing.chips, from, k] {
+        model_.evaluate(chips, from + k, removal::motion_in_tool(all, from + k), pass);
         loads[k] = summarize(pass);
         loads[k].chip_mm3 = removal::swept_chip_volume_mm3(envelope_, chips, deflections,
                                                            deflections.row(static_cast<std::ptrdiff_t>(k)));
-        keep_turn(chips, stamp, from + k, result);
+        keep_turn(chips, all, from + k, result);
       });
       result.rounds_max = std::max(result.rounds_max, passing.rounds);
       if (!passing.settled) {
@@ -351,9 +356,9 @@ class Cutter {
     return options_.turn_from && k >= *options_.turn_from &&
            k < *options_.turn_from + static_cast<std::size_t>(envelope_.flutes);
   }
-  void keep_turn(std::span<const removal::ChipSample> chips, const Stamp& stamp, std::size_t k,
+  void keep_turn(std::span<const removal::ChipSample> chips, std::span<const Stamp> all, std::size_t k,
                  CutResult& result) const {
-    if (in_turn(k)) model_.add_to_turn(chips, k - *options_.turn_from, k, stamp.feed_per_tooth_mm, result.turn);
+    if (in_turn(k)) model_.add_to_turn(chips, k - *options_.turn_from, k, removal::motion_in_tool(all, k), result.turn);
   }
 
   Stock& stock_;
@@ -427,12 +432,14 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
   tbb::enumerable_thread_specific<Buffers> buffers([&] { return Buffers{Stock::Probe(target), {}}; });
   tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
     cancellation_point();
-    const Vec3& f = stamps[k].feed_per_tooth_mm;
-    const double horizontal = f.head<2>().norm();
-    const Vec2 along = horizontal > 0 ? Vec2(f.head<2>() / horizontal) : Vec2::UnitX(), aside(-along.y(), along.x());
+    const removal::ToothMotion motion = removal::motion_in_tool(stamps, k);
+    const Mat3 frame = tool_frame(stamps[k].pose);
     auto& [probe, candidates] = buffers.local();  // depth: of the nearest voxel
     candidates.clear();
     for (const Ring& ring : rings) {
+      const Vec3 f = motion.at({0, 0, ring.height});
+      const double horizontal = f.head<2>().norm();
+      const Vec2 along = horizontal > 0 ? Vec2(f.head<2>() / horizontal) : Vec2::UnitX(), aside(-along.y(), along.x());
       // The cosine of the angle from the motion at which the normal stands across it.
       const double cosine = ring.slope == 0 ? 0.0 : horizontal > 0 ? f.z() / (horizontal * ring.slope) : 2.0;
       if (std::abs(cosine) > 1) continue;
@@ -443,9 +450,11 @@ std::vector<Contact> find_contacts(const Stock& target, const machine::Tool& too
       }
     }
     const auto nearest = [&](const Candidate& c) {
-      return -static_cast<double>(probe.nearest(stamps[k].pose.tip_mm + c.place));
+      return -static_cast<double>(probe.nearest(stamps[k].pose.tip_mm + frame * c.place));
     };
-    const auto trilinear = [&](const Candidate& c) { return -probe.distance_mm(stamps[k].pose.tip_mm + c.place); };
+    const auto trilinear = [&](const Candidate& c) {
+      return -probe.distance_mm(stamps[k].pose.tip_mm + frame * c.place);
+    };
     // A trilinear value differs from the nearest voxel's by no more than the mean distance of its corners from it, and
     // voxels from each other by no more than they are apart.
     const double blur = std::sqrt(1.5) * target.voxel_mm(), apart = std::sqrt(3.0) * target.voxel_mm();

@@ -10,6 +10,8 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "removal/engage/glance.h"
+#include "removal/engage/tilted/engager.h"
 #include "removal/engage/upright/bend_memory.h"
 #include "removal/engage/upright/chip_reader.h"
 #include "removal/engage/upright/patch_lanes.h"
@@ -22,12 +24,6 @@ namespace camber::removal {
 using namespace upright;
 
 namespace {
-
-/// One patch in eight, scattered over the envelope.
-bool glanced_at(std::uint32_t patch) {
-  constexpr std::uint32_t kGolden = 2654435769u, kTopBits = 29;
-  return patch * kGolden >> kTopBits == 0;
-}
 
 /// A tile that is being cut.
 struct CutTile {
@@ -63,6 +59,7 @@ struct DeflectedEngager::Impl {
   std::vector<std::vector<DeflectedChipSample>> chips_of_group{};
   tbb::enumerable_thread_specific<ChipReader::Buffers> buffers{};
   std::vector<DeflectedChipSample> chips{};
+  std::optional<tilted::Engager> tilted{};  ///< does everything for a path that is not upright
 
   void begin(const DeflectionTable& table);
   void cut(std::size_t tile, std::size_t k, const StampDeflection& deflection);
@@ -101,13 +98,14 @@ void DeflectedEngager::Impl::cut(std::size_t t, std::size_t k, const StampDeflec
 DeflectedEngager::DeflectedEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope,
                                    std::span<const Stamp> stamps, std::int32_t first_id)
     : impl_(new Impl{stock, blank, envelope, stamps, first_id}) {
-  assert(all_upright(stamps));
   assert(!envelope.patches.empty());
+  if (!all_upright(stamps)) impl_->tilted.emplace(stock, blank, envelope, stamps, first_id, tilted::ReadingRule{});
 }
 DeflectedEngager::~DeflectedEngager() = default;
 
 void DeflectedEngager::start(std::size_t from, std::size_t count, const DeflectionTable& deflections) {
   Impl& m = *impl_;
+  if (m.tilted) return m.tilted->start(from, count, deflections);
   assert(from >= m.from + m.stamps.size());
   m.from = from;
   m.stamps = m.all.subspan(from, count);
@@ -126,6 +124,7 @@ void DeflectedEngager::start(std::size_t from, std::size_t count, const Deflecti
 
 double DeflectedEngager::glance(std::size_t k) {
   Impl& m = *impl_;
+  if (m.tilted) return m.tilted->glance(k);
   m.reader->find_patches(m.arena, k, m.patches);
   std::erase_if(m.patches, [](std::int32_t patch) { return !glanced_at(static_cast<std::uint32_t>(patch)); });
   m.chips.clear();
@@ -134,16 +133,14 @@ double DeflectedEngager::glance(std::size_t k) {
 }
 
 double DeflectedEngager::glance_of(std::span<const DeflectedChipSample> chips) const {
-  double sum = 0;
-  for (const DeflectedChipSample& c : chips)
-    if (c.chip.thickness_mm > 0 && impl_->glanced_point[c.chip.point] != 0)
-      sum += static_cast<double>(c.chip.thickness_mm) * c.chip.width_fraction();
-  return sum;
+  if (impl_->tilted) return impl_->tilted->glance_of(chips);
+  return sum_of_glanced(chips, impl_->glanced_point);
 }
 
 std::span<const DeflectedChipSample> DeflectedEngager::read(std::size_t k) {
   constexpr std::size_t kGroup = 32;  // patches that a thread reads at once
   Impl& m = *impl_;
+  if (m.tilted) return m.tilted->read(k);
   m.reader->find_patches(m.arena, k, m.patches);
   const std::size_t groups = (m.patches.size() + kGroup - 1) / kGroup;
   if (m.chips_of_group.size() < groups) m.chips_of_group.resize(groups);
@@ -160,6 +157,7 @@ std::span<const DeflectedChipSample> DeflectedEngager::read(std::size_t k) {
 
 void DeflectedEngager::cut(std::size_t k) {
   Impl& m = *impl_;
+  if (m.tilted) return m.tilted->cut(k);
   const StampDeflection deflection = StampDeflections(m.envelope, *m.deflections).of(static_cast<std::ptrdiff_t>(k));
   m.memory.add(m.deflections->row(static_cast<std::ptrdiff_t>(k)));
   m.max_deflection_mm = std::max(m.max_deflection_mm, deflection.largest_mm);
@@ -171,6 +169,7 @@ void DeflectedEngager::cut(std::size_t k) {
 
 double DeflectedEngager::commit() {
   Impl& m = *impl_;
+  if (m.tilted) return m.tilted->commit();
   m.arena.clear([&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); });
   return std::exchange(m.removed_mm3, 0.0);
 }

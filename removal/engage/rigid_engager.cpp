@@ -10,6 +10,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "removal/engage/tilted/engager.h"
 #include "removal/engage/upright/block_reader.h"
 #include "removal/field/upright/batch_cut.h"
 #include "removal/field/upright/carve.h"
@@ -32,6 +33,61 @@ struct CutTile {
   std::vector<std::int32_t> batch{};
 };
 
+/// A path that is not upright: stamp by stamp, with chips sorted into blocks.
+class TiltedPath {
+ public:
+  TiltedPath(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
+             std::int32_t first_id, int pitches, const EnvelopeBlocks& blocks)
+      : engager_(stock, blank, envelope, stamps, first_id, {true, pitches}),
+        blocks_(blocks),
+        steps_(envelope.steps_per_pitch),
+        place_(envelope.size()) {
+    constexpr auto lanes = static_cast<std::uint32_t>(EnvelopeBlocks::kLanes);
+    for (std::uint32_t i = 0; i < blocks.size() * lanes; ++i)
+      if (const std::uint32_t p = blocks.point(i / lanes, static_cast<int>(i % lanes)); p != EnvelopeBlocks::kNoPoint)
+        place_[p] = i;
+  }
+
+  void engage(std::size_t from, std::size_t count, const ChipSink& sink) {
+    if (straight_.stamps != count) straight_ = DeflectionTable(count, steps_, {0.0});
+    engager_.start(from, count, straight_);
+    for (std::size_t k = 0; k < count; ++k) {
+      sink(k, in_blocks(engager_.read(k)));
+      engager_.cut(k);
+    }
+  }
+  double commit() { return engager_.commit(); }
+
+ private:
+  std::span<const ChipBlock> in_blocks(std::span<const DeflectedChipSample> chips) {
+    sorted_.clear();
+    for (const DeflectedChipSample& c : chips) sorted_.emplace_back(place_[c.chip.point], &c.chip);
+    std::ranges::sort(sorted_, {}, [](const auto& c) { return c.first; });
+    blocks_of_stamp_.clear();
+    for (const auto& [place, chip] : sorted_) {
+      const std::uint32_t block = place / EnvelopeBlocks::kLanes, lane = place % EnvelopeBlocks::kLanes;
+      if (blocks_of_stamp_.empty() || blocks_of_stamp_.back().block != block) {
+        blocks_of_stamp_.push_back({block, 0, 0, {}, {}});
+        blocks_of_stamp_.back().cut_255.fill(255);
+      }
+      ChipBlock& b = blocks_of_stamp_.back();
+      b.after_tooth |= static_cast<std::uint16_t>(chip->after_tooth << lane);
+      b.own_surface |= static_cast<std::uint16_t>(chip->own_surface << lane);
+      b.thickness_mm[lane] = chip->thickness_mm;
+      b.cut_255[lane] = chip->cut_255;
+    }
+    return blocks_of_stamp_;
+  }
+
+  tilted::Engager engager_;
+  const EnvelopeBlocks& blocks_;
+  int steps_;
+  std::vector<std::uint32_t> place_;  ///< of each point of the envelope in the blocks, lane by lane
+  DeflectionTable straight_;
+  std::vector<std::pair<std::uint32_t, const ChipSample*>> sorted_;
+  std::vector<ChipBlock> blocks_of_stamp_;
+};
+
 }  // namespace
 
 struct RigidEngager::Impl {
@@ -49,6 +105,7 @@ struct RigidEngager::Impl {
   TileArena arena{};
   std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
   tbb::enumerable_thread_specific<BlockReader::Buffers> buffers{};
+  std::optional<TiltedPath> tilted{};  ///< does everything for a path that is not upright
 
   Impl(Stock& stock_, const Stock& blank_, const EnvelopeGrid& envelope_, std::span<const Stamp> stamps_,
        std::int32_t first_id_, int pitches)
@@ -133,7 +190,7 @@ void RigidEngager::Impl::cut_general(std::size_t t) {
 RigidEngager::RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope,
                            std::span<const Stamp> stamps, std::int32_t first_id, int pitches)
     : impl_(std::make_unique<Impl>(stock, blank, envelope, stamps, first_id, pitches)) {
-  assert(all_upright(stamps));
+  if (!all_upright(stamps)) impl_->tilted.emplace(stock, blank, envelope, stamps, first_id, pitches, impl_->blocks);
 }
 RigidEngager::~RigidEngager() = default;
 
@@ -141,6 +198,7 @@ const EnvelopeBlocks& RigidEngager::blocks() const { return impl_->blocks; }
 
 void RigidEngager::engage(std::size_t from, std::size_t count, const ChipSink& sink) {
   Impl& m = *impl_;
+  if (m.tilted) return m.tilted->engage(from, count, sink);
   assert(from >= m.from + m.stamps.size());
   m.from = from;
   m.stamps = m.all.subspan(from, count);
@@ -159,6 +217,7 @@ void RigidEngager::engage(std::size_t from, std::size_t count, const ChipSink& s
 
 double RigidEngager::commit() {
   Impl& m = *impl_;
+  if (m.tilted) return m.tilted->commit();
   m.arena.clear([&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); });
   return std::exchange(m.removed_mm3, 0.0);
 }

@@ -14,6 +14,8 @@
 
 #include "removal/field/upright/carve.h"
 #include "removal/form_error/deflected_envelope.h"
+#include "removal/form_error/mark_queue.h"
+#include "removal/form_error/tilted_stamps.h"
 #include "removal/simd/upright_distances.h"
 #include "removal/simd/upright_mark_kernels.h"
 
@@ -166,69 +168,6 @@ class UprightStampGroups {
   std::vector<float> deflection_mm_;
 };
 
-/// Pairs of a point and an upright stamp that may lower it, side by side.
-class UprightMarkQueue {
- public:
-  struct Pair {
-    std::size_t point, stamp;
-  };
-
-  UprightMarkQueue(const EnvelopeGrid& envelope, const DeflectionTable& deflections)
-      : first_row_(deflections.values.data()),
-        tool_{{first_row_, nullptr, static_cast<int>(deflections.nodes()), deflections.steps,
-               deflections.nodes() > 1 ? static_cast<float>(deflections.node_height_mm[1]) : 1.0f, deflections.axial},
-              static_cast<float>(envelope.shape.bottom_length_mm()),
-              static_cast<float>(envelope.shape.corner_radius_mm),
-              static_cast<float>(envelope.lag_per_mm),
-              static_cast<float>(deflections.steps * envelope.flutes / (2 * kPi))} {}
-
-  void add(const Pair& pair, const SurfacePoint& p, const DeflectedEnvelope& stamp) {
-    pairs_.push_back(pair);
-    const Eigen::Vector3f place = (p.place_mm - stamp.pose().tip_mm).cast<float>(), normal = p.normal.cast<float>();
-    const std::array<float, kValues> values{place.x(),
-                                            place.y(),
-                                            place.z(),
-                                            normal.x(),
-                                            normal.y(),
-                                            normal.z(),
-                                            static_cast<float>(p.error_mm),
-                                            static_cast<float>(stamp.deflection().largest_mm)};
-    for (std::size_t v = 0; v < kValues; ++v) lanes_[v].push_back(values[v]);
-    deflection_index_.push_back(static_cast<std::int32_t>((stamp.deflection().row - first_row_) / 2));
-  }
-
-  /// Calls lowered(pair, height) for all that are lowered, in the order of add, and forgets them.
-  template <class Function>
-  void settle(Function lowered) {
-    const std::size_t count = pairs_.size();
-    if (count == 0) return;
-    while (deflection_index_.size() % upright::MarkLanes::kLanes != 0) {
-      for (auto& values : lanes_) values.push_back(values.back());
-      deflection_index_.push_back(deflection_index_.back());
-    }
-    height_.resize(deflection_index_.size());
-    const auto& l = lanes_;
-    upright::mark_kernels().heights(
-        {static_cast<int>(deflection_index_.size()), l[0].data(), l[1].data(), l[2].data(), l[3].data(), l[4].data(),
-         l[5].data(), l[6].data(), l[7].data(), deflection_index_.data(), height_.data()},
-        tool_);
-    for (std::size_t i = 0; i < count; ++i)
-      if (height_[i] < lanes_[kHighest][i]) lowered(pairs_[i], static_cast<double>(height_[i]));
-    pairs_.clear();
-    for (auto& values : lanes_) values.clear();
-    deflection_index_.clear();
-  }
-
- private:
-  static constexpr std::size_t kValues = 8, kHighest = 6;  ///< as upright::MarkLanes has them
-  const float* first_row_;
-  upright::MarkTool tool_;
-  std::vector<Pair> pairs_;
-  std::array<std::vector<float>, kValues> lanes_;
-  std::vector<std::int32_t> deflection_index_;
-  std::vector<float> height_;
-};
-
 /// Deflected upright stamps that may lower points of one block.
 class UprightCloseStamps {
  public:
@@ -281,7 +220,7 @@ class UprightCloseStamps {
 
   void mark_rounded(std::span<SurfacePoint> points) {
     const auto settle = [&] {
-      queue_.settle([&](const UprightMarkQueue::Pair& pair, double height_mm) {
+      queue_.settle([&](const MarkQueue::Pair& pair, double height_mm) {
         SurfacePoint& p = points[pair.point];
         if (height_mm >= p.error_mm) return;
         p.error_mm = height_mm;
@@ -327,12 +266,15 @@ class UprightCloseStamps {
   }
   void add_to_queue(std::span<const SurfacePoint> points, std::size_t point, int stamp) {
     const auto k = static_cast<std::size_t>(stamp);
-    queue_.add({point, k}, points[point], stamps_[k].envelope);
+    const SurfacePoint& p = points[point];
+    const DeflectedEnvelope& deflected = stamps_[k].envelope;
+    queue_.add({point, k}, (p.place_mm - deflected.pose().tip_mm).cast<float>(), p.normal.cast<float>(), p.error_mm,
+               deflected.deflection());
   }
 
   const EnvelopeGrid& e_;
   const DeflectionTable& deflections_;
-  UprightMarkQueue queue_;
+  MarkQueue queue_;
   UprightTips tips_;
   std::vector<DeflectedStamp> stamps_;
   std::vector<float> reach_mm_, distance_;
@@ -433,6 +375,7 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
     bounds[k] =
         envelope.shape.general ? all.of(row) : StampDeflection{deflections.row(row), deflections.largest_mm(row), {}};
   });
+  if (!all_upright(stamps)) return mark_tilted({envelope, stamps, deflections, bounds, first_id});
   const UprightStampGroups groups(stamps, bounds);
   struct Room {
     UprightCloseStamps close;
@@ -463,6 +406,34 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
         block.highest = -std::numeric_limits<double>::infinity();
         const std::span<SurfacePoint> own(impl_->points.data() + block.first, block.count);
         close.mark(own);
+        for (const SurfacePoint& p : own) block.highest = std::max(block.highest, p.error_mm);
+      }
+      tile.all.highest = std::max(tile.all.highest, block.highest);
+    }
+  });
+}
+
+/// The same for stamps of any pose.
+void SurfaceMap::mark_tilted(const TiltedStamps& stamps) {
+  struct Room {
+    TiltedMarks marks;
+    std::vector<std::size_t> near_tile{}, near_block{};
+  };
+  tbb::enumerable_thread_specific<Room> rooms([&] { return Room{TiltedMarks(stamps)}; });
+  tbb::parallel_for(std::size_t{0}, impl_->tiles.size(), [&](std::size_t t) {
+    cancellation_point();
+    TilePoints& tile = impl_->tiles[t];
+    auto& [marks, near_tile, near_block] = rooms.local();
+    stamps.find_near(tile.all.centre, tile.all.radius + tile.all.reach_mm(), near_tile);
+    if (near_tile.empty()) return;
+    tile.all.highest = -std::numeric_limits<double>::infinity();
+    for (Group& block : tile.blocks) {
+      near_block = near_tile;
+      stamps.keep_near(block.centre, block.radius + block.reach_mm(), near_block);
+      if (!near_block.empty()) {
+        const std::span<SurfacePoint> own(impl_->points.data() + block.first, block.count);
+        marks.mark(own, near_block);
+        block.highest = -std::numeric_limits<double>::infinity();
         for (const SurfacePoint& p : own) block.highest = std::max(block.highest, p.error_mm);
       }
       tile.all.highest = std::max(tile.all.highest, block.highest);

@@ -9,6 +9,10 @@ namespace {
 /// Rings whose normal leans by less count as upright, faces whose normal does as level.
 constexpr double kUpright = 0.1;
 
+/// A face this near to the edge of a ring's width, as a share of half the width, is the edge: what an earlier pass at
+/// the same height left below the lowest ring does not divide it.
+constexpr double kWithin = 1 - 1e-6;
+
 }  // namespace
 
 std::vector<float> wall_half_widths_mm(const EnvelopeGrid& envelope) {
@@ -28,7 +32,7 @@ RingPart part_in_material(const RingPlace& ring, std::span<const Stamp> stamps, 
   RingPart part{-ring.half_width_mm, ring.half_width_mm};
   if (ring.blank) {
     const auto above = static_cast<double>(trilinear(ring.blank, ring.share));  // the blank's face
-    if (std::abs(above) < ring.half_width_mm) {
+    if (std::abs(above) < kWithin * ring.half_width_mm) {
       const Vec3 up = trilinear_gradient(ring.blank, ring.share, voxel_mm);
       if (std::abs(up.dot(ring.normal)) < kUpright * std::abs(up.z())) {
         const double face = -above / up.z();
@@ -44,7 +48,7 @@ RingPart part_in_material(const RingPlace& ring, std::span<const Stamp> stamps, 
     if (id < 0) continue;
     Vec3 from_tip = ring.point_mm - stamps[static_cast<std::size_t>(id)].pose.tip_mm;
     from_tip.z() -= ring.axial_mm;
-    if (std::abs(from_tip.z()) >= ring.half_width_mm || shape.gradient(from_tip).z() > -1 + kUpright) continue;
+    if (std::abs(from_tip.z()) >= kWithin * ring.half_width_mm || shape.gradient(from_tip).z() > -1 + kUpright) continue;
     part.to_mm = std::min(part.to_mm, -from_tip.z());
   }
   return part;

@@ -1,6 +1,5 @@
 // Carving with the undeflected cutter, without engagement.
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "removal/engagement.h"
 #include "removal/field/slot_map.h"
 #include "removal/field/tile.h"
+#include "removal/engage/tilted/engager.h"
 #include "removal/field/upright/batch_cut.h"
 #include "removal/field/upright/carve.h"
 #include "removal/field/upright/stamp_order.h"
@@ -148,7 +148,7 @@ double Sweep::cut() {
 }  // namespace
 
 double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const SweepOptions& options) {
-  assert(all_upright(stamps));
+  if (!all_upright(stamps)) return tilted::sweep(stock, shape, stamps, options);
   constexpr std::size_t kAtOnce = 10000;  // bounds the memory
   double removed = 0;
   for (std::size_t from = 0; from < stamps.size(); from += kAtOnce) {

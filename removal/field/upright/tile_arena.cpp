@@ -6,6 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "removal/field/tilted/tiles_reached.h"
 #include "removal/field/upright/tiles_reached.h"
 
 namespace camber::removal::upright {
@@ -60,25 +61,39 @@ std::size_t TileArena::take_number(const Index3& index) {
   return t;
 }
 
+/// A box around all tiles that the stamps reach, within the stock.
+void TileArena::reset_slots(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps,
+                            double reach_mm) {
+  const double tile_mm = Tile::kCore * voxel_, around = shape.radius_mm + reach_mm;
+  const Vec3 bands = Vec3::Constant(reach_mm);
+  const tilted::Bounds within{stock.min_mm() - bands, stock.max_mm() + bands};
+  const auto bounds_of = [&](const ToolPose& pose) {
+    if (!pose.upright()) return tilted::bounds_in(shape, pose, reach_mm, within);
+    const Vec3& tip = pose.tip_mm;
+    return tilted::Bounds{tip - Vec3(around, around, reach_mm), {tip.x() + around, tip.y() + around, within.hi.z()}};
+  };
+  auto [lo, hi] = bounds_of(stamps.front().pose);
+  for (const auto& s : stamps) {
+    const tilted::Bounds own = bounds_of(s.pose);
+    lo = lo.cwiseMin(own.lo), hi = hi.cwiseMax(own.hi);
+  }
+  slots_.reset(tile_of(lo.cwiseMax(within.lo), tile_mm), tile_of(hi.cwiseMin(within.hi), tile_mm));
+}
+
 void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps,
                            const Leave& leave, double deflection_mm) {
   reached_.resize(stamps.size());
   for (auto& tiles : reached_) tiles.clear();
-  const double tile_mm = Tile::kCore * voxel_, band = stock.band_mm() + deflection_mm, reach = shape.radius_mm + band;
-  Vec3 lo = stamps.front().pose.tip_mm, hi = lo;
-  for (const auto& s : stamps) {
-    lo = lo.cwiseMin(s.pose.tip_mm);
-    hi = hi.cwiseMax(s.pose.tip_mm);
-  }
-  lo -= Vec3(reach, reach, band);
-  hi = Vec3(hi.x() + reach, hi.y() + reach, stock.max_mm().z() + band);
-  const Vec3 bands = Vec3::Constant(band);
+  const double band = stock.band_mm() + deflection_mm;
   std::swap(before_, slots_);
-  slots_.reset(tile_of(lo.cwiseMax(stock.min_mm() - bands), tile_mm),
-               tile_of(hi.cwiseMin(stock.max_mm() + bands), tile_mm));
+  reset_slots(stock, shape, stamps, band);
   tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
-    for_each_tile_reached(slots_, voxel_, shape, stamps[k].pose.tip_mm, band,
-                          [&](std::size_t place) { reached_[k].push_back(static_cast<std::int32_t>(place)); });
+    const auto reach = [&](std::size_t place) { reached_[k].push_back(static_cast<std::int32_t>(place)); };
+    const ToolPose& pose = stamps[k].pose;
+    if (pose.upright())
+      for_each_tile_reached(slots_, voxel_, shape, pose.tip_mm, band, reach);
+    else
+      tilted::for_each_tile_reached(slots_, voxel_, shape, pose, band, reach);
   });
   constexpr std::int32_t kWanted = 0;
   auto& slot = slots_.all();

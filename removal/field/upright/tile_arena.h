@@ -54,6 +54,7 @@ class TileArena {
  private:
   void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const Leave& leave,
                   double deflection_mm);
+  void reset_slots(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, double reach_mm);
   std::size_t take_number(const Index3& index);
   void make_room();
   void load_fresh(const Stock& stock, const Stock& blank);
