@@ -76,16 +76,18 @@ Chain::Chain(const machine::Machine& machine) {
 
 ToolPose Chain::pose(const Joints& joints, double tool_length_mm) const {
   ToolPose pose{gauge_mm_ - tool_length_mm * tool_axis_, tool_axis_};
+  Vec3 spindle_x = tool_frame(pose).col(0);
   for (auto link = links_.rbegin(); link != links_.rend(); ++link) {
     if (link->rotary) {
       const double angle = joints.rotary_rad[link->index];
       pose.tip_mm = link->point_mm + turned(pose.tip_mm - link->point_mm, link->direction, angle);
       pose.axis = turned(pose.axis, link->direction, angle);
+      spindle_x = turned(spindle_x, link->direction, angle);
     } else {
       pose.tip_mm += joints.linear_mm[link->index] * link->direction;
     }
   }
-  return pose;
+  return pose_of_frame(pose.tip_mm, pose.axis, spindle_x);
 }
 
 std::optional<Vec3> Chain::linear_mm(const Vec3& tip_mm, const Vec3& rotary_rad, double tool_length_mm) const {

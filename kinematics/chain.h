@@ -51,7 +51,7 @@ class Chain {
   /// Requires machine.kinematics.given().
   explicit Chain(const machine::Machine& machine);
 
-  /// Tip and axis of a tool of this length (gauge line to tip) in the part's frame.
+  /// Tip and axis of a tool of this length (gauge line to tip) in the part's frame, with the spindle's X carried along.
   ToolPose pose(const Joints& joints, double tool_length_mm) const;
   /// Positions of x, y, z that put the tip there at these angles; nothing where two linear axes are parallel.
   std::optional<Vec3> linear_mm(const Vec3& tip_mm, const Vec3& rotary_rad, double tool_length_mm) const;

@@ -44,8 +44,8 @@ struct BlockBounds;
 // divides a whole ring of a cutter's wall at once. The chip then has the fraction of the ring width that is in
 // material, and the thickness in the middle of that part.
 //
-// Poses. An upright path (ToolPose::upright()) is engaged and cut column by column, any other in the tool's frame of each
-// stamp; chips and deflections are in that frame.
+// Poses. An upright path (ToolPose::upright()) is engaged and cut column by column, any other in the tool's frame of
+// each stamp; chips and deflections are in that frame.
 //
 // Threads. Space is divided into tiles; each tile processes the stamps in order, and tiles are processed in parallel.
 // Results do not depend on the number of threads.

@@ -322,6 +322,34 @@ TEST(Chain, NamesTheAxisThatLeavesItsTravel) {
   EXPECT_EQ(chain.outside_travel(q), 'b');
 }
 
+/// The work turns by A from y to z and by C from x to y under LinuxCNC's signs, and the spindle stands: seen from the
+/// part its directions turn back.
+TEST(Chain, TheSpindlesXIsCarriedIntoThePart) {
+  const Chain chain(sample("table_ac_linuxcnc"));
+  std::mt19937_64 random(31);
+  for (int i = 0; i < 1000; ++i) {
+    const Joints q = random_joints(random, "ac");
+    const Mat3 part =
+        (Eigen::AngleAxisd(q.rotary_rad.x(), Vec3::UnitX()) * Eigen::AngleAxisd(q.rotary_rad.z(), Vec3::UnitZ()))
+            .toRotationMatrix();
+    const Mat3 frame = tool_frame(chain.pose(q, kLengthMm));
+    ASSERT_LE((frame - part.transpose()).norm(), 1e-12) << i;
+  }
+}
+
+TEST(Chain, TheSpindlesXDoesNotJumpAtThePole) {
+  const Chain chain(sample("table_ac_linuxcnc"));
+  Joints q;
+  q.rotary_rad.z() = 1;
+  Mat3 before = tool_frame(chain.pose(q, kLengthMm));
+  for (int i = -10; i <= 10; ++i) {
+    q.rotary_rad.x() = 1e-4 * i;
+    const Mat3 frame = tool_frame(chain.pose(q, kLengthMm));
+    if (i > -10) EXPECT_LE((frame - before).norm(), 2e-4) << i;
+    before = frame;
+  }
+}
+
 TEST(Chain, NearestTurnIsWithinHalfATurn) {
   EXPECT_DOUBLE_EQ(nearest_turn(0.5, 100 * kPi), 0.5 + 100 * kPi);
   EXPECT_DOUBLE_EQ(nearest_turn(-kPi, 0), kPi);

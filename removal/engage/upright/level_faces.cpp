@@ -48,7 +48,8 @@ RingPart part_in_material(const RingPlace& ring, std::span<const Stamp> stamps, 
     if (id < 0) continue;
     Vec3 from_tip = ring.point_mm - stamps[static_cast<std::size_t>(id)].pose.tip_mm;
     from_tip.z() -= ring.axial_mm;
-    if (std::abs(from_tip.z()) >= kWithin * ring.half_width_mm || shape.gradient(from_tip).z() > -1 + kUpright) continue;
+    if (std::abs(from_tip.z()) >= kWithin * ring.half_width_mm || shape.gradient(from_tip).z() > -1 + kUpright)
+      continue;
     part.to_mm = std::min(part.to_mm, -from_tip.z());
   }
   return part;

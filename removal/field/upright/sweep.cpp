@@ -8,10 +8,10 @@
 
 #include "base/cancel.h"
 #include "base/stage.h"
+#include "removal/engage/tilted/engager.h"
 #include "removal/engagement.h"
 #include "removal/field/slot_map.h"
 #include "removal/field/tile.h"
-#include "removal/engage/tilted/engager.h"
 #include "removal/field/upright/batch_cut.h"
 #include "removal/field/upright/carve.h"
 #include "removal/field/upright/stamp_order.h"
