@@ -196,7 +196,8 @@ class Cutter {
       loads[k] = summarize(pass);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
       if (options_.chip_ratio > 0)
-        result.loads_at_ratio[before + k] = at_ratio(blocks, chips, from + k, all[from + k].feed_per_tooth_mm, pass);
+        result.loads_at_ratio[before + k] =
+            at_ratio(blocks, chips, from + k, removal::motion_in_tool(all, from + k), pass);
       if (!in_turn(from + k)) return;
       const std::scoped_lock lock(turn_lock);
       turn[k] = removal::chips_of(blocks, chips);
@@ -206,14 +207,15 @@ class Cutter {
 
   /// The loads for chips of options_.chip_ratio to their thickness.
   StampLoad at_ratio(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips,
-                     std::size_t passing, const Vec3& feed_per_tooth_mm, ToothPass& pass) const {
+                     std::size_t passing, const removal::ToothMotion& motion, ToothPass& pass) const {
     thread_local std::vector<removal::ChipBlock> scaled;
     scaled.assign(chips.begin(), chips.end());
     const auto ratio = static_cast<float>(options_.chip_ratio);
     for (removal::ChipBlock& block : scaled)
       for (float& h : block.thickness_mm)
         if (h > 0) h *= ratio;
-    model_.evaluate(blocks, scaled, passing, options_.chip_ratio * feed_per_tooth_mm, pass, {});
+    const double share = options_.chip_ratio;
+    model_.evaluate(blocks, scaled, passing, {share * motion.tip_mm, share * motion.turn_rad}, pass, {});
     return summarize(pass);
   }
 
