@@ -345,7 +345,9 @@ TEST(Chain, TheSpindlesXDoesNotJumpAtThePole) {
   for (int i = -10; i <= 10; ++i) {
     q.rotary_rad.x() = 1e-4 * i;
     const Mat3 frame = tool_frame(chain.pose(q, kLengthMm));
-    if (i > -10) EXPECT_LE((frame - before).norm(), 2e-4) << i;
+    if (i > -10) {
+      EXPECT_LE((frame - before).norm(), 2e-4) << i;
+    }
     before = frame;
   }
 }
