@@ -73,9 +73,13 @@ std::vector<double> traced_times_s(const ServoTrace& trace, const std::vector<Pa
 void add_timed_lines(const FeedRun& run, const Machine& machine, int keep_back_every, std::size_t& count,
                      std::vector<TimedLines>& data) {
   TimedLines parts, blocks;
+  // Blocks that overlap have no times of their own.
+  const bool overlap =
+      machine.control.kind.turning_blocks_overlap && feedmodel::has_rotary_motion(run.program, machine);
   for (const Part& part : parts_of(run.program, machine)) {
     const bool kept_back = ++count % static_cast<std::size_t>(keep_back_every) == 0;
-    const bool by_block = part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
+    const bool by_block =
+        !overlap && part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
     for (std::uint32_t line = part.line_first; by_block && line <= part.line_last; ++line) {
       blocks.parts.push_back({line, line, part.feed_mm_per_s});
       blocks.kept_back.push_back(kept_back);

@@ -117,7 +117,7 @@ TEST(CheckFiveAxes, SaysWhatItCannotCheck) {
 
 /// A fan on the machine of samples/machines/linuxcnc_five_axis.toml.
 const char* const kFan =
-    "G21 G90 G94\nG64 P0.01\nG10 L2 P1 X25 Y-15 Z5\nG54 T1 M6\nG43 H1\nM428\n"
+    "G21 G90 G94\nG64 P0.01\nG10 L2 P1 X25 Y-15 Z5\nG54 T1 M6 S1000 M3\nG43 H1\nM428\n"
     "G0 X-20 Y5 Z10 A0 C15\nG1 X20 A-45 F600\nG1 A-40 F600\nG93 G1 X10 F30\nM429\nM2\n";
 
 void write_fan(const TempFolder& folder) {
@@ -172,14 +172,14 @@ TEST(FeedFiveAxes, BadInputByWholeMessage) {
   write_fan(folder);
   const auto error_of = [&](const std::string& command) { return run_camber(folder, command).err; };
   EXPECT_EQ(error_of("feed p.nc --machine m.toml"),
-            "p.nc:7:1: error: the joints of this move under tool-centre-point control depend on the length of tool T1, "
+            "p.nc:8:1: error: the joints of this move under tool-centre-point control depend on the length of tool T1, "
             "which is not known; --tool-length H=MM, or its value (G10 L1) in the program, was expected [tool-length]\n"
-            "    G0 X-20 Y5 Z10 A0 C15\n    ^\n");
-  folder.write("p.nc", "G21 G90 G94\nG43 H1\nM428\nG0 X0 Y0 Z0 A-5\nM2\n");
+            "    G1 X20 A-45 F600\n    ^\n");
+  folder.write("p.nc", "G21 G90 G94\nS1000 M3\nG43 H1\nM428\nG0 X0 Y0 Z0\nG1 X1 A-5 F100\nM2\n");
   EXPECT_EQ(error_of("time p.nc --machine m.toml --tool-length 1=80"), "");
   EXPECT_EQ(error_of("feed p.nc --machine m.toml --tool-length 1=80"),
-            "p.nc:4:1: error: the joints of this move under tool-centre-point control depend on the work offset, which "
-            "is not known; its value (G10 L2) was expected in the program [work-offset]\n    G0 X0 Y0 Z0 A-5\n    ^\n");
+            "p.nc:6:1: error: the joints of this move under tool-centre-point control depend on the work offset, which "
+            "is not known; its value (G10 L2) was expected in the program [work-offset]\n    G1 X1 A-5 F100\n    ^\n");
   folder.write("p.nc", "G21 G90 G93\nG0 X0 Y0 Z0\nG1 X1 A1 F10\nG1 X2 A2\nM2\n");
   EXPECT_EQ(error_of("time p.nc --machine m.toml"),
             "p.nc:4:1: error: G1 in inverse time (G93) without F; every cutting block needs its own F [feed-missing]\n"

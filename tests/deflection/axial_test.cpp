@@ -56,7 +56,7 @@ TEST(AxialDeflection, IsForceTimesComplianceAtEveryRotationStep) {
     chips.push_back({static_cast<std::uint32_t>(wall * static_cast<std::size_t>(envelope.steps)) + step,
                      0.01f * static_cast<float>(step + 1)});
   ToothPass pass;
-  model.evaluate(chips, 0, {0.05, 0, 0}, pass);
+  model.evaluate(chips, 0, Vec3(0.05, 0, 0), pass);
   const double compliance = beam_of(tool).axial_compliance_mm_per_N(0) + axis;
   EXPECT_DOUBLE_EQ(model.axial_compliance_mm_per_N(), compliance);
   const removal::DeflectionTable table(0, model.steps(), model.node_height_mm(), true);
