@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -62,7 +63,7 @@ class Summarizer {
     Vec3 angles = Vec3::Zero();
     for (const RotaryTarget& target : program_.rotary) {
       s_.rotary += target.is_direction || target.end != angles;
-      if (!target.is_direction) angles = target.end;
+      angles = target.is_direction ? Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN())) : target.end;
     }
   }
 
