@@ -121,7 +121,8 @@ void Adapter::correct(AdaptResult& out) {
     const bool low = excess == 1 && verdict.peak < kUnderLimit && can_be_raised(*candidate, now);
     const bool settled = excess == 1 && !low;
     if (!low) lower_feeds(verdict, now, feeds);
-    if (excess < best_excess || settled) {
+    const bool faster = !best_ || candidate->program.feed.time_s < best_->program.feed.time_s;
+    if (excess < best_excess || (excess == best_excess && (settled || faster))) {
       best_excess = excess;
       best_ = candidate;
       best_loads_ = loads;
