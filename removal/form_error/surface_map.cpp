@@ -306,16 +306,17 @@ class UprightCloseStamps {
     }
     settle();
     // A place farther down is farther from every cutter that cuts towards it: the nearest ones first, then the rest.
-    constexpr int kNearest = 2;
-    for (int round = 0; round <= kNearest; ++round) {
+    // Many flat bottoms pass over a place, each a little lower or as low.
+    const int nearest = lanes.flat > 0 ? 2 : 0;
+    for (int round = 0; round <= nearest; ++round) {
       for (std::size_t i = 0; i < points.size(); ++i) {
         if (near_[i].count == 0) continue;
         const Eigen::Vector3f p = place_of(points[i]);
         upright::NearCutters near{-1, near_[i].count, within_.data() + near_[i].from};
         upright::mark_kernels().keep_near(lanes, p.x(), p.y(), p.z(), near);
         near_[i].count = near.count;
-        if (round < kNearest && near.count > 0) take(points, i, near.nearest);
-        for (int n = 0; round == kNearest && n < near.count; ++n) add_to_queue(points, i, near.within[n]);
+        if (round < nearest && near.count > 0) take(points, i, near.nearest);
+        for (int n = 0; round == nearest && n < near.count; ++n) add_to_queue(points, i, near.within[n]);
       }
       settle();
     }
