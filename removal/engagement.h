@@ -130,6 +130,16 @@ double swept_chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const ChipS
 /// span is valid during the call only.
 using ChipSink = std::function<void(std::size_t k, std::span<const ChipBlock>)>;
 
+/// What becomes of the stamps when not all of them are read. Functions are called by several threads at once.
+struct SparseChipSink {
+  ChipSink read;                                 ///< the chips of some stamps, at most once each
+  std::function<bool(std::size_t k)> must_read;  ///< whatever its neighbours are like
+  /// True where what was read at k lies on the line between a and b, a < k < b, all of them read.
+  std::function<bool(std::size_t a, std::size_t k, std::size_t b)> on_line;
+  /// k is not read: its loads lie on the line between a and b, a < k < b, which are read.
+  std::function<void(std::size_t a, std::size_t k, std::size_t b)> between;
+};
+
 /// Engagement of the undeflected cutter, batch by batch: the chips of the stamps of a batch are read from the unchanged
 /// tiles, then the batch is cut. For one run of one tool.
 class RigidEngager {
@@ -146,6 +156,10 @@ class RigidEngager {
   /// Cuts stamps[from] ... stamps[from + count - 1], which must come after all that were cut before. The stock is
   /// written lazily: tiles that these stamps reach are written by a later call, or by commit().
   void engage(std::size_t from, std::size_t count, const ChipSink& sink);
+  /// Reads some stamps only: the middle one between two others shows whether those between may be left out. A glance at
+  /// an eighth of the envelope must find the material there that the line between their neighbours has. What is carved
+  /// does not depend on it.
+  void engage(std::size_t from, std::size_t count, const SparseChipSink& sink);
   /// Writes all pending tiles to the stock. Returns the volume removed since the last commit, mm^3.
   double commit();
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -177,6 +178,54 @@ class Cutter {
     return out;
   }
 
+  /// True where the motion is another one from k - 1 to k, or from k to k + 1.
+  static bool motion_changes(std::span<const Stamp> stamps, std::size_t k) {
+    constexpr double kMotionChange = 0.1;  ///< of the feed per tooth
+    const auto changes = [&](std::size_t i) {
+      const Vec3& now = stamps[i].feed_per_tooth_mm;
+      return stamps[i].first || (now - stamps[i - 1].feed_per_tooth_mm).norm() > kMotionChange * now.norm();
+    };
+    return k == 0 || k + 1 == stamps.size() || changes(k) || changes(k + 1);
+  }
+
+  /// The deflections of stamp k as those of a and b, a < k < b, predict them.
+  static void mix_rows(DeflectionTable& deflections, std::size_t a, std::size_t k, std::size_t b) {
+    const auto way = static_cast<float>(k - a) / static_cast<float>(b - a);
+    const float *from = deflections.row(static_cast<std::ptrdiff_t>(a)),
+                *to = deflections.row(static_cast<std::ptrdiff_t>(b));
+    float* row = deflections.row(static_cast<std::ptrdiff_t>(k));
+    for (std::size_t i = 0; i < deflections.row_size(); ++i) row[i] = from[i] + way * (to[i] - from[i]);
+  }
+
+  /// True where deflections and chip of stamp k differ from the line between a and b by no more than what static
+  /// coupling allows of an extrapolated deflection, over the rotation steps that cut.
+  bool on_line(const DeflectionTable& deflections, std::span<const StampLoad> loads, std::size_t a, std::size_t k,
+               std::size_t b) const {
+    const deflection::SettleOptions allowed;
+    const double way = static_cast<double>(k - a) / static_cast<double>(b - a);
+    const StampLoad line = simulate::between(loads[a], loads[b], way);
+    const auto near = [&](double is, double on_line) {
+      return std::abs(is - on_line) <= allowed.follow_fraction * std::abs(is);
+    };
+    if (!(loads[a].chip_mm3 > 0 && loads[b].chip_mm3 > 0) || !near(loads[k].chip_mm3, line.chip_mm3) ||
+        !near(loads[k].torque_mean_Nmm, line.torque_mean_Nmm))
+      return false;
+    const float *from = deflections.row(static_cast<std::ptrdiff_t>(a)),
+                *to = deflections.row(static_cast<std::ptrdiff_t>(b)),
+                *at = deflections.row(static_cast<std::ptrdiff_t>(k));
+    float error2 = 0, size2 = 0;
+    std::size_t cutting = 0;
+    for (std::size_t i = 0; i < deflections.row_size(); ++i) {
+      const float on = from[i] + static_cast<float>(way) * (to[i] - from[i]);
+      error2 += (at[i] - on) * (at[i] - on);
+      size2 += at[i] * at[i];
+      cutting += at[i] != 0;
+    }
+    const double um = 1000 / std::sqrt(std::max(1.0, static_cast<double>(cutting)));
+    return std::sqrt(static_cast<double>(error2)) * um <=
+           std::max(allowed.follow_um, allowed.follow_fraction * std::sqrt(static_cast<double>(size2)) * um);
+  }
+
   /// Deflection straight from the chips.
   void engage(std::span<const Stamp> all, std::size_t from, DeflectionTable& deflections, std::vector<StampLoad>& loads,
               std::int32_t first_id, CutResult& result) {
@@ -185,9 +234,11 @@ class Cutter {
     std::map<std::size_t, std::vector<removal::ChipSample>> turn;  // what the turn needs
     std::mutex turn_lock;
     tbb::enumerable_thread_specific<ToothPass> passes;
+    std::atomic<std::size_t> read{0};
     const std::size_t before = result.loads_at_ratio.size();
     if (options_.chip_ratio > 0) result.loads_at_ratio.resize(before + loads.size());
-    engager_->engage(from, loads.size(), [&](std::size_t k, std::span<const removal::ChipBlock> chips) {
+    const std::span<StampLoad> at_other_chip = std::span(result.loads_at_ratio).subspan(before);
+    const removal::ChipSink load_of = [&](std::size_t k, std::span<const removal::ChipBlock> chips) {
       cancellation_point();
       ToothPass& pass = passes.local();
       std::span<float> row(deflections.row(static_cast<std::ptrdiff_t>(k)),
@@ -195,13 +246,32 @@ class Cutter {
       model_.evaluate(blocks, chips, from + k, removal::motion_in_tool(all, from + k), pass, row);
       loads[k] = summarize(pass);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
-      if (options_.chip_ratio > 0)
-        result.loads_at_ratio[before + k] =
-            at_ratio(blocks, chips, from + k, removal::motion_in_tool(all, from + k), pass);
+      if (!at_other_chip.empty())
+        at_other_chip[k] = at_ratio(blocks, chips, from + k, removal::motion_in_tool(all, from + k), pass);
+      ++read;
       if (!in_turn(from + k)) return;
       const std::scoped_lock lock(turn_lock);
       turn[k] = removal::chips_of(blocks, chips);
-    });
+    };
+    if (options_.drilling || tooth_marks_ || options_.longest_gap <= 1) {
+      engager_->engage(from, loads.size(), load_of);
+    } else {
+      const std::span<const Stamp> stamps = all.subspan(from, loads.size());
+      engager_->engage(
+          from, loads.size(),
+          {.read = load_of,
+           .must_read = [&](std::size_t k) { return in_turn(from + k) || motion_changes(stamps, k); },
+           .on_line = [&](std::size_t a, std::size_t k, std::size_t b) { return on_line(deflections, loads, a, k, b); },
+           .between =
+               [&](std::size_t a, std::size_t k, std::size_t b) {
+                 const double way = static_cast<double>(k - a) / static_cast<double>(b - a);
+                 loads[k] = simulate::between(loads[a], loads[b], way);
+                 if (!at_other_chip.empty())
+                   at_other_chip[k] = simulate::between(at_other_chip[a], at_other_chip[b], way);
+                 mix_rows(deflections, a, k, b);
+               }});
+    }
+    result.read += read;
     for (const auto& [k, chips] : turn) keep_turn(chips, all, from + k, result);
   }
 

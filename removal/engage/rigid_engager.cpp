@@ -105,6 +105,7 @@ struct RigidEngager::Impl {
   TileArena arena{};
   std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
   tbb::enumerable_thread_specific<BlockReader::Buffers> buffers{};
+  std::vector<double> glances{};       ///< of the stretch's stamps, where some are left out
   std::optional<TiltedPath> tilted{};  ///< does everything for a path that is not upright
 
   Impl(Stock& stock_, const Stock& blank_, const EnvelopeGrid& envelope_, std::span<const Stamp> stamps_,
@@ -119,7 +120,13 @@ struct RigidEngager::Impl {
                pitches) {}
 
   void start_tiles();
+  std::span<const ChipBlock> read(std::size_t k);
+  std::vector<std::int32_t> earlier(std::size_t k) const;
   void read_batch(std::size_t begin, std::size_t end, const ChipSink& sink);
+  void read_some(std::size_t begin, std::size_t end, const SparseChipSink& sink);
+  bool as_glanced(std::size_t a, std::size_t k, std::size_t b) const;
+  template <class ReadBatch>
+  void engage(std::size_t first, std::size_t count, ReadBatch read_batch);
   void cut_batch(std::size_t begin, std::size_t end);
   void cut(std::size_t tile, BatchCut& batch_cut);
   void cut_general(std::size_t tile);
@@ -133,12 +140,72 @@ void RigidEngager::Impl::start_tiles() {
                   [&](std::size_t t) -> const ColumnCover& { return tiles[t]->cover; });
 }
 
+std::vector<std::int32_t> RigidEngager::Impl::earlier(std::size_t k) const {
+  std::vector<std::int32_t> out;
+  for (const std::int32_t j : order.earlier(static_cast<std::int32_t>(k)))
+    out.push_back(j + static_cast<std::int32_t>(from));
+  return out;
+}
+
+std::span<const ChipBlock> RigidEngager::Impl::read(std::size_t k) {
+  return reader.read(arena, from + k, earlier(k), buffers.local());
+}
+
 void RigidEngager::Impl::read_batch(std::size_t begin, std::size_t end, const ChipSink& sink) {
-  tbb::parallel_for(begin, end, [&](std::size_t k) {
-    std::vector<std::int32_t> earlier;
-    for (const std::int32_t j : order.earlier(static_cast<std::int32_t>(k)))
-      earlier.push_back(j + static_cast<std::int32_t>(from));
-    sink(k, reader.read(arena, from + k, earlier, buffers.local()));
+  tbb::parallel_for(begin, end, [&](std::size_t k) { sink(k, read(k)); });
+}
+
+/// True where the glance at k lies on the line between those at a and b.
+bool RigidEngager::Impl::as_glanced(std::size_t a, std::size_t k, std::size_t b) const {
+  constexpr double kMaterialChange = 0.06;
+  const double way = static_cast<double>(k - a) / static_cast<double>(b - a);
+  const double expected = (1 - way) * glances[a] + way * glances[b];
+  return expected > 0 && std::abs(glances[k] - expected) <= kMaterialChange * expected;
+}
+
+void RigidEngager::Impl::read_some(std::size_t begin, std::size_t end, const SparseChipSink& sink) {
+  using Gap = std::pair<std::size_t, std::size_t>;
+  const auto read_all = [&](const std::vector<std::size_t>& which) {
+    tbb::parallel_for(std::size_t{0}, which.size(), [&](std::size_t i) {
+      const std::span<const ChipBlock> chips = read(which[i]);
+      glances[which[i]] = reader.glance_of(chips);
+      sink.read(which[i], chips);
+    });
+  };
+  constexpr std::size_t kWidestGap = 16;
+  std::vector<std::size_t> which;
+  std::vector<Gap> gaps, left_out;
+  for (std::size_t k = begin; k < end; ++k) {
+    if (k != begin && k + 1 != end && k < which.back() + kWidestGap && !sink.must_read(k)) continue;
+    if (k != begin) gaps.emplace_back(which.back(), k);
+    which.push_back(k);
+  }
+  for (read_all(which); !gaps.empty();) {
+    std::erase_if(gaps, [](const Gap& gap) { return gap.second - gap.first < 2; });
+    which.clear();
+    for (const auto& [a, b] : gaps) which.push_back(a + (b - a) / 2);
+    read_all(which);
+    std::vector<Gap> halves;
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+      const auto [a, b] = gaps[i];
+      auto& into = as_glanced(a, which[i], b) && sink.on_line(a, which[i], b) ? left_out : halves;
+      into.emplace_back(a, which[i]);
+      into.emplace_back(which[i], b);
+    }
+    gaps = std::move(halves);
+  }
+  std::vector<Gap> gap_of;
+  which.clear();
+  for (const Gap& gap : left_out)
+    for (std::size_t k = gap.first + 1; k < gap.second; ++k) which.push_back(k), gap_of.push_back(gap);
+  tbb::parallel_for(std::size_t{0}, which.size(), [&](std::size_t i) {
+    const std::size_t k = which[i];
+    const auto [a, b] = gap_of[i];
+    glances[k] = reader.glance(arena, from + k, earlier(k), buffers.local());
+    if (as_glanced(a, k, b))
+      sink.between(a, k, b);
+    else
+      sink.read(k, read(k));
   });
 }
 
@@ -196,23 +263,33 @@ RigidEngager::~RigidEngager() = default;
 
 const EnvelopeBlocks& RigidEngager::blocks() const { return impl_->blocks; }
 
-void RigidEngager::engage(std::size_t from, std::size_t count, const ChipSink& sink) {
-  Impl& m = *impl_;
-  if (m.tilted) return m.tilted->engage(from, count, sink);
-  assert(from >= m.from + m.stamps.size());
-  m.from = from;
-  m.stamps = m.all.subspan(from, count);
+template <class ReadBatch>
+void RigidEngager::Impl::engage(std::size_t first, std::size_t count, ReadBatch read_batch) {
+  assert(first >= from + stamps.size());
+  from = first;
+  stamps = all.subspan(from, count);
   if (count == 0) return;
-  m.order = StampOrder::of_path(m.stamps, m.envelope.shape);
-  m.arena.load(m.stock, m.blank, m.envelope.shape, m.stamps,
-               [&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); });
-  m.start_tiles();
+  order = StampOrder::of_path(stamps, envelope.shape);
+  arena.load(stock, blank, envelope.shape, stamps,
+             [&](auto left) { removed_mm3 += store_cut(stock, arena, left, tiles); });
+  start_tiles();
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
-    const std::int32_t batch = m.order.batch(static_cast<std::int32_t>(begin));
-    while (end < count && m.order.batch(static_cast<std::int32_t>(end)) == batch) ++end;
-    m.read_batch(begin, end, sink);
-    m.cut_batch(begin, end);
+    const std::int32_t batch = order.batch(static_cast<std::int32_t>(begin));
+    while (end < count && order.batch(static_cast<std::int32_t>(end)) == batch) ++end;
+    read_batch(begin, end);
+    cut_batch(begin, end);
   }
+}
+
+void RigidEngager::engage(std::size_t from, std::size_t count, const ChipSink& sink) {
+  if (impl_->tilted) return impl_->tilted->engage(from, count, sink);
+  impl_->engage(from, count, [&](std::size_t begin, std::size_t end) { impl_->read_batch(begin, end, sink); });
+}
+
+void RigidEngager::engage(std::size_t from, std::size_t count, const SparseChipSink& sink) {
+  if (impl_->tilted) return impl_->tilted->engage(from, count, sink.read);
+  impl_->glances.assign(count, 0.0);
+  impl_->engage(from, count, [&](std::size_t begin, std::size_t end) { impl_->read_some(begin, end, sink); });
 }
 
 double RigidEngager::commit() {

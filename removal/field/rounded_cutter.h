@@ -67,5 +67,13 @@ struct RoundedCutter {
   }
 };
 
+/// Rank of cutters at a place, less is better: the one that goes deepest; of those that go deeper than `band` the lower
+/// one, and then the one whose axis is nearer.
+template <class Number>
+Number covering_rank(const Number& distance, const Number& tip_z, const Number& from_axis, const Number& band) {
+  using std::max;
+  return max(distance, -band) + Number(1e-2f) * tip_z + Number(1e-6f) * from_axis;
+}
+
 }  // namespace
 }  // namespace camber::removal

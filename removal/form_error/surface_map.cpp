@@ -86,14 +86,15 @@ class UprightTips {
       out[k] = static_cast<float>(shape.distance_mm((p - Eigen::Vector3f(x_[k], y_[k], z_[k])).cast<double>()));
   }
   /// Of rounded cutters: see MarkKernels. `reach_mm`: of each, and whole vectors of them.
-  upright::CutterLanes lanes(const CutterShape& shape, const std::vector<float>& reach_mm) const {
+  upright::CutterLanes lanes(const CutterShape& shape, const std::vector<float>& reach_mm, bool lateral) const {
     return {static_cast<int>(x_.size()),
             x_.data(),
             y_.data(),
             z_.data(),
             reach_mm.data(),
             static_cast<float>(shape.bottom_length_mm()),
-            static_cast<float>(shape.corner_radius_mm)};
+            static_cast<float>(shape.corner_radius_mm),
+            lateral};
   }
   Eigen::Vector3f from_origin(const Vec3& place) const { return (place - origin_).cast<float>(); }
   std::size_t size() const { return x_.size(); }
@@ -228,7 +229,7 @@ class UprightCloseStamps {
       });
     };
     fill_lanes();
-    const upright::CutterLanes lanes = tips_.lanes(e_.shape, reach_mm_);
+    const upright::CutterLanes lanes = tips_.lanes(e_.shape, reach_mm_, !deflections_.axial);
     near_.clear();
     within_.clear();
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -239,20 +240,32 @@ class UprightCloseStamps {
       upright::mark_kernels().find_near(lanes, p.x(), p.y(), p.z(), near);
       within_.resize(static_cast<std::size_t>(found + (near.count + upright::MarkLanes::kLanes - 1) /
                                                           upright::MarkLanes::kLanes * upright::MarkLanes::kLanes));
-      near_.push_back({near.nearest, near.count, found});
-      if (near.nearest >= 0) add_to_queue(points, i, near.nearest);
+      near_.push_back({near.count, found});
+      if (near.nearest >= 0) take(points, i, near.nearest);
     }
     settle();
-    // A place farther down is farther from every cutter that cuts towards it.
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Near& near = near_[i];
-      if (near.count == 0 || (near.count == 1 && near.within(within_)[0] == near.first)) continue;
-      const Eigen::Vector3f p = place_of(points[i]);
-      const int count = upright::mark_kernels().keep_near(lanes, p.x(), p.y(), p.z(), near.within(within_), near.count);
-      for (int n = 0; n < count; ++n)
-        if (near.within(within_)[n] != near.first) add_to_queue(points, i, near.within(within_)[n]);
+    // A place farther down is farther from every cutter that cuts towards it: the nearest ones first, then the rest.
+    // Many flat bottoms pass over a place, each a little lower or as low.
+    const int nearest = lanes.flat > 0 ? 2 : 0;
+    for (int round = 0; round <= nearest; ++round) {
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (near_[i].count == 0) continue;
+        const Eigen::Vector3f p = place_of(points[i]);
+        upright::NearCutters near{-1, near_[i].count, within_.data() + near_[i].from};
+        upright::mark_kernels().keep_near(lanes, p.x(), p.y(), p.z(), near);
+        near_[i].count = near.count;
+        if (round < nearest && near.count > 0) take(points, i, near.nearest);
+        for (int n = 0; round == nearest && n < near.count; ++n) add_to_queue(points, i, near.within[n]);
+      }
+      settle();
     }
-    settle();
+  }
+  /// One of the stamps that are near a point.
+  void take(std::span<const SurfacePoint> points, std::size_t point, int stamp) {
+    add_to_queue(points, point, stamp);
+    Near& near = near_[point];
+    std::int32_t* const first = within_.data() + near.from;
+    near.count = static_cast<int>(std::remove(first, first + near.count, stamp) - first);
   }
   void fill_lanes() {
     constexpr float kNever = -1;
@@ -278,11 +291,10 @@ class UprightCloseStamps {
   UprightTips tips_;
   std::vector<DeflectedStamp> stamps_;
   std::vector<float> reach_mm_, distance_;
-  /// Of a point: the nearest stamp, and which are within their reach.
+  /// Stamps within reach of a point that are yet to be looked at: how many, and where in within_.
   struct Near {
-    int first, count;
+    int count;
     std::ptrdiff_t from;
-    std::int32_t* within(std::vector<std::int32_t>& all) const { return all.data() + from; }
   };
   std::vector<Near> near_;
   std::vector<std::int32_t> within_;

@@ -87,6 +87,7 @@ struct LineSearch {
   float x, voxel;  ///< mm, of the line; between columns
   const float* z;  ///< [LineCut::kLine], mm
   float flat, corner;
+  float band;                    ///< stamps that are farther in than this leave the same air
   float *tip_x, *tip_y, *tip_z;  ///< [LineCut::kLine], out
   std::int32_t* winner;          ///< [LineCut::kLine], out: index of a tip
 };

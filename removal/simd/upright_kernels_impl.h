@@ -255,7 +255,9 @@ struct Vectors {
         const F rho2 = dx * dx + dy * dy;
         // Of balls the nearest centre.
         const F below = xsimd::min(up - F(s.corner), zero);
-        const F rank = ball ? rho2 + below * below : distance(xsimd::sqrt(rho2), up, s.flat, s.corner);
+        const F rho = xsimd::sqrt(rho2);
+        const F rank =
+            ball ? rho2 + below * below : covering_rank(distance(rho, up, s.flat, s.corner), tz, rho, F(s.band));
         const auto nearer = rank < best;
         best = xsimd::select(nearer, rank, best);
         best_x = xsimd::select(nearer, tx, best_x);

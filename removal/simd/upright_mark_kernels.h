@@ -33,6 +33,7 @@ struct CutterLanes {
   const float *x, *y, *z;  ///< of the tips, from some origin, mm
   const float* reach;      ///< how near a place must be to count, mm
   float flat, corner;
+  bool lateral;  ///< reach is due to deflections across the axis, and to rounding
 };
 
 /// Cutters near a place.
@@ -45,9 +46,10 @@ struct NearCutters {
 struct MarkKernels {
   /// Which cutters a place is within the reach of, and the nearest of all.
   void (*find_near)(const CutterLanes& cutters, float x, float y, float z, NearCutters& out);
-  /// Keeps those of a list that another place is within the reach of; returns how many. The list has room up to a
+  /// Keeps those of near.within that another place is within the reach of, and finds the nearest of them. Under a flat
+  /// bottom a lateral deflection changes nothing: there a place must lie inside the cutter. The list has room up to a
   /// multiple of MarkLanes::kLanes.
-  int (*keep_near)(const CutterLanes& cutters, float x, float y, float z, std::int32_t* list, int count);
+  void (*keep_near)(const CutterLanes& cutters, float x, float y, float z, NearCutters& near);
   /// DeflectedEnvelope::height_mm of each.
   void (*heights)(const MarkLanes& marks, const MarkTool& tool);
 };

@@ -117,19 +117,37 @@ struct MarkVectors {
     out.nearest = static_cast<int>(lane[best]);
   }
 
-  static int keep_near(const CutterLanes& c, float x, float y, float z, std::int32_t* list, int count) {
-    const F px(x), py(y), pz(z);
-    for (int i = count; i % n != 0; ++i) list[i] = 0;
+  static void keep_near(const CutterLanes& c, float x, float y, float z, NearCutters& near) {
+    constexpr float kInside_mm = 1e-5f;
+    const F px(x), py(y), pz(z), zero(0.0f);
+    const RoundedCutter<F> cutter{F(c.flat), F(c.corner)};
+    std::int32_t* list = near.within;
+    for (int i = near.count; i % n != 0; ++i) list[i] = 0;
+    alignas(64) float distances[n];
+    float nearest = 1e30f;
     int kept = 0;
-    for (int i = 0; i < count; i += n) {
+    near.nearest = -1;
+    for (int i = 0; i < near.count; i += n) {
       const I k = I::load_unaligned(list + i);
-      const F d = distance(c.flat, c.corner, px - Table<A>::gather(c.x, k), py - Table<A>::gather(c.y, k),
-                           pz - Table<A>::gather(c.z, k));
-      std::uint32_t bits = Table<A>::bits(d <= Table<A>::gather(c.reach, k));
-      for (int l = 0; bits != 0 && i + l < count; bits >>= 1, ++l)
-        if (bits & 1u) list[kept++] = list[i + l];
+      const F dx = px - Table<A>::gather(c.x, k), dy = py - Table<A>::gather(c.y, k);
+      const auto p = cutter.place(xsimd::sqrt(dx * dx + dy * dy), pz - Table<A>::gather(c.z, k));
+      const F reach = Table<A>::gather(c.reach, k);
+      auto counts = p.distance <= reach;
+      if (c.lateral)
+        counts = counts & !((p.outside + reach <= xsimd::min(zero, p.below)) & (p.distance > F(-kInside_mm)));
+      std::uint32_t bits = Table<A>::bits(counts);
+      if (bits == 0) continue;
+      p.distance.store_aligned(distances);
+      for (int l = 0; bits != 0 && i + l < near.count; bits >>= 1, ++l) {
+        if (!(bits & 1u)) continue;
+        const std::int32_t stamp = list[i + l];
+        list[kept++] = stamp;
+        if (distances[l] >= nearest) continue;
+        nearest = distances[l];
+        near.nearest = stamp;
+      }
     }
-    return kept;
+    near.count = kept;
   }
 
   static constexpr MarkKernels table() { return {&find_near, &keep_near, &heights}; }

@@ -41,26 +41,28 @@ Drawn rows(std::mt19937& random, double radius_mm) {
   return d;
 }
 
-double left_by(const CutterShape& shape, const Stamp& stamp, const Vec3& voxel) {
-  return std::min(-shape.distance_mm(voxel - stamp.pose.tip_mm), kBand);
+double left_by(const CutterShape& shape, const Stamp& stamp, double shrink_mm, const Vec3& voxel) {
+  return std::min(-shape.distance_mm(voxel - stamp.pose.tip_mm) - shrink_mm, kBand);
 }
 
-void expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType type, double corner_mm) {
+void expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType type, double corner_mm, double diameter_mm = 4,
+                                                 double shrink_mm = 0) {
   machine::Tool tool;
   tool.type = type;
-  tool.diameter_mm = 4;
+  tool.diameter_mm = diameter_mm;
   tool.corner_radius_mm = corner_mm;
   tool.flutes = 2;
   tool.overhang_mm = 20;
   const CutterShape shape = shape_of(tool);
   std::mt19937 random(7);
   for (int round = 0; round < 8; ++round) {
-    const Drawn d = rows(random, 2);
+    const Drawn d = rows(random, diameter_mm / 2);
     auto tile = std::make_unique<Tile>();
     tile->distance.fill(static_cast<float>(-kBand));
     tile->stamp.fill(Stock::kUncut);
-    ColumnCover cover(*tile, kTile, kVoxel, kBand, shape, [](std::int32_t, Vec3&, double&) { return false; });
-    BatchCut batch_cut(shape, kVoxel, kBand, 0);
+    ColumnCover cover(
+        *tile, kTile, kVoxel, kBand, shape, [](std::int32_t, Vec3&, double&) { return false; }, shrink_mm);
+    BatchCut batch_cut(shape, kVoxel, kBand, shrink_mm);
     // In two batches: the second meets columns that remember the first.
     const std::size_t half = d.batch.size() / 2;
     const std::span<const std::int32_t> all(d.batch);
@@ -73,7 +75,7 @@ void expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType type, double 
           const Vec3 voxel =
               kVoxel * Vec3(kTile[0] * Tile::kCore + i, kTile[1] * Tile::kCore + j, kTile[2] * Tile::kCore + k);
           double wanted = -kBand;
-          for (const Stamp& s : d.stamps) wanted = std::max(wanted, left_by(shape, s, voxel));
+          for (const Stamp& s : d.stamps) wanted = std::max(wanted, left_by(shape, s, shrink_mm, voxel));
           const auto at = static_cast<std::size_t>(Tile::offset(i, j, k));
           ASSERT_NEAR(static_cast<double>(tile->distance[at]), wanted, 2e-6) << round << ' ' << voxel.transpose();
           if (tile->stamp[at] == Stock::kUncut) {
@@ -81,7 +83,8 @@ void expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType type, double 
             continue;
           }
           ++cut;
-          EXPECT_NEAR(left_by(shape, d.stamps[static_cast<std::size_t>(tile->stamp[at] - 100)], voxel), wanted, 2e-6);
+          EXPECT_NEAR(left_by(shape, d.stamps[static_cast<std::size_t>(tile->stamp[at] - 100)], shrink_mm, voxel),
+                      wanted, 2e-6);
         }
     EXPECT_GT(cut, 500u);
   }
@@ -94,6 +97,13 @@ TEST(BatchCut, LeavesEveryVoxelAsTheDeepestBallDoes) {
 TEST(BatchCut, LeavesEveryVoxelAsTheDeepestFlatOrBullNoseDoes) {
   expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType::flat, 0);
   expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType::bull, 0.8);
+}
+
+TEST(BatchCut, LeavesEveryVoxelAsTheDeepestDoesUnderAWideBottom) {
+  expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType::flat, 0, 9);
+  expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType::flat, 0, 9, 0.3);
+  expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType::bull, 1.2, 9);
+  expect_every_voxel_as_the_deepest_leaves_it(machine::ToolType::bull, 0.2, 9, 0.3);
 }
 
 }  // namespace

@@ -178,7 +178,8 @@ TEST(MarkKernels, FindTheNearestCutterAndAllWithinTheirReach) {
                           z.data(),
                           reach.data(),
                           static_cast<float>(shape.bottom_length_mm()),
-                          static_cast<float>(shape.corner_radius_mm)};
+                          static_cast<float>(shape.corner_radius_mm),
+                          false};
   std::vector<std::int32_t> within(kCount);
   int some = 0, ties = 0;
   for (int n = 0; n < 300; ++n) {
@@ -206,10 +207,11 @@ TEST(MarkKernels, FindTheNearestCutterAndAllWithinTheirReach) {
                                        z[static_cast<std::size_t>(k)])) <= 0.3)
           of_list.push_back(k);
       }
-      const int count = static_cast<int>(list.size());
+      NearCutters kept{-1, static_cast<int>(list.size()), nullptr};
       list.resize(16);
-      list.resize(static_cast<std::size_t>(kernels->keep_near(
-          lanes, static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), list.data(), count)));
+      kept.within = list.data();
+      kernels->keep_near(lanes, static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), kept);
+      list.resize(static_cast<std::size_t>(kept.count));
       EXPECT_EQ(list, of_list);
     }
     some += !expected.empty();

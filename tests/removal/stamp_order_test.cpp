@@ -81,6 +81,9 @@ TEST(StampOrder, NamesEveryStampThatCountsOfABall) {
 TEST(StampOrder, NamesEveryStampThatCountsOfAFlatCutter) {
   expect_that_nobody_else_counts(cutter(machine::ToolType::flat, 10), 0.2, true);
 }
+TEST(StampOrder, NamesEveryStampThatCountsOfAFlatCutterThatClimbsAndDescends) {
+  expect_that_nobody_else_counts(cutter(machine::ToolType::flat, 10), 0.2, false);
+}
 TEST(StampOrder, NamesEveryStampThatCountsOfABullNose) {
   expect_that_nobody_else_counts(cutter(machine::ToolType::bull, 12, 2), 0.1, false);
 }
@@ -94,6 +97,17 @@ TEST(StampOrder, StraightPathsHaveLongBatchesInWhichNobodyElseCounts) {
   const StampOrder order = StampOrder::of_path(stamps, cutter(machine::ToolType::bull, 10, 1));
   for (std::int32_t k = 0; k < 200; ++k) EXPECT_TRUE(order.earlier(k).empty());
   EXPECT_LE(order.batch(199), 3);
+}
+
+TEST(StampOrder, AHelixOfAFlatCutterHasLongBatches) {
+  std::vector<Stamp> stamps(300);
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    const double angle = 0.02 * static_cast<double>(i);
+    stamps[i].pose.tip_mm = {10 * std::cos(angle), 10 * std::sin(angle), -0.005 * static_cast<double>(i)};
+    stamps[i].first = i == 0;
+  }
+  const StampOrder order = StampOrder::of_path(stamps, cutter(machine::ToolType::flat, 12));
+  EXPECT_LE(order.batch(299), 5);
 }
 
 TEST(CoarseToFine, VisitsEachOnceBetweenNeighboursThatWereVisited) {

@@ -13,7 +13,42 @@ namespace {
 constexpr float kSolid = std::numeric_limits<float>::infinity();
 constexpr int kLanes = EnvelopeBlocks::kLanes;
 
+/// One block in eight, scattered over the envelope.
+bool is_glanced(std::uint32_t block) {
+  constexpr std::uint32_t kGolden = 2654435769u, kTopBits = 29;
+  return block * kGolden >> kTopBits == 0;
+}
+
 }  // namespace
+
+BlockReader::GlancedBlocks BlockReader::glanced_blocks(const BlockBounds& all) {
+  GlancedBlocks out;
+  const auto add = [&](int b) {
+    out.block.push_back(b);
+    out.x.push_back(all.x[b]), out.y.push_back(all.y[b]), out.z.push_back(all.z[b]);
+    out.bottom.push_back(all.bottom[b]), out.reach.push_back(all.reach[b]);
+    out.nx.push_back(all.nx[b]), out.ny.push_back(all.ny[b]), out.nz.push_back(all.nz[b]);
+    out.spread.push_back(all.spread[b]);
+  };
+  for (int b = 0; b < all.count; ++b)
+    if (is_glanced(static_cast<std::uint32_t>(b))) add(b);
+  constexpr float kNowhere = -1e9f;  // a block that fills the last vector moves into nothing
+  while (!out.block.empty() && out.block.size() % kLanes != 0) add(out.block.back()), out.spread.back() = kNowhere;
+  return out;
+}
+
+BlockBounds BlockReader::GlancedBlocks::bounds() const {
+  return {static_cast<int>(block.size()),
+          x.data(),
+          y.data(),
+          z.data(),
+          bottom.data(),
+          reach.data(),
+          nx.data(),
+          ny.data(),
+          nz.data(),
+          spread.data()};
+}
 
 BlockReader::BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const Stamp> stamps,
                          std::int32_t first_id, double voxel_mm, double top_mm, int pitches)
@@ -40,6 +75,7 @@ BlockReader::BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blo
       tip_[a].push_back(static_cast<std::int32_t>(std::lround(
           (s.pose.tip_mm[static_cast<int>(a)] - lo[static_cast<int>(a)]) / static_cast<double>(tip_step_mm_))));
   }
+  glanced_ = glanced_blocks(blocks.bounds());
 }
 
 void BlockReader::make_room(Buffers& b) const {
@@ -57,20 +93,53 @@ BlockReader::Point BlockReader::point(const Stamp& stamp, int lane) const {
           Vec3(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p])};
 }
 
-std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t k,
-                                             std::span<const std::int32_t> earlier, Buffers& b) const {
-  make_room(b);
-  const Stamp& stamp = stamps_[k];
-  const CutterShape& shape = envelope_.shape;
+StampPlace BlockReader::place_of(const TileArena& arena, const Stamp& stamp) const {
   // What curvature adds to a chip at most.
-  const double bulge = stamp.feed_per_tooth_mm.squaredNorm() / (2 * std::max(shape.corner_radius_mm, 0.1));
+  const double bulge = stamp.feed_per_tooth_mm.squaredNorm() / (2 * std::max(envelope_.shape.corner_radius_mm, 0.1));
   StampPlace place = arena.place_of(stamp, -pitches_ * bulge - 1e-6);
   place.min_cap_mm =
       static_cast<float>((1 - pitches_) * stamp.feed_per_tooth_mm.squaredNorm() * max_curved_per_mm_ / 2);
-  const BlockKernels& kernels = block_kernels();
+  return place;
+}
+
+std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t k,
+                                             std::span<const std::int32_t> earlier, Buffers& b) const {
+  make_room(b);
+  const StampPlace place = place_of(arena, stamps_[k]);
   BlockBounds bounds = blocks_.bounds();
-  bounds.count = std::min(bounds.count, blocks_.up_to(top_mm_ - stamp.pose.tip_mm.z()));
-  const int found = kernels.find_blocks(bounds, place, arena.view(), b.blocks.data());
+  bounds.count = std::min(bounds.count, blocks_.up_to(top_mm_ - stamps_[k].pose.tip_mm.z()));
+  const int found = block_kernels().find_blocks(bounds, place, arena.view(), b.blocks.data());
+  return read_found(arena, k, place, found, earlier, b);
+}
+
+double BlockReader::glance(const TileArena& arena, std::size_t k, std::span<const std::int32_t> earlier,
+                           Buffers& b) const {
+  make_room(b);
+  const StampPlace place = place_of(arena, stamps_[k]);
+  const int found = block_kernels().find_blocks(glanced_.bounds(), place, arena.view(), b.blocks.data());
+  for (int i = 0; i < found; ++i) {
+    std::int32_t& block = b.blocks[static_cast<std::size_t>(i)];
+    block = glanced_.block[static_cast<std::size_t>(block)];
+  }
+  return glance_of(read_found(arena, k, place, found, earlier, b));
+}
+
+double BlockReader::glance_of(std::span<const ChipBlock> chips) const {
+  double sum = 0;
+  for (const ChipBlock& chip : chips) {
+    if (!is_glanced(chip.block)) continue;
+    for (std::size_t l = 0; l < kLanes; ++l)
+      sum += static_cast<double>(std::max(0.0f, chip.thickness_mm[l])) * chip.cut_255[l];
+  }
+  return sum / 255;
+}
+
+/// The chips of b.blocks, the first `found` of them.
+std::span<const ChipBlock> BlockReader::read_found(const TileArena& arena, std::size_t k, const StampPlace& place,
+                                                   int found, std::span<const std::int32_t> earlier, Buffers& b) const {
+  const Stamp& stamp = stamps_[k];
+  const CutterShape& shape = envelope_.shape;
+  const BlockKernels& kernels = block_kernels();
   BlockHits hits{0, b.hit_block.data(), b.hit_deep.data(), b.hit_thickness.data()};
   ShallowPoints shallow{0,
                         b.lane.data(),

@@ -38,8 +38,23 @@ class BlockReader {
   /// Chips of stamps[k]. `earlier`: stamps that the arena does not hold yet and that may have cut what this one meets.
   std::span<const ChipBlock> read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> earlier,
                                   Buffers& buffers) const;
+  /// The thicknesses of these chips in some blocks of the envelope, always the same ones, summed up: how much material
+  /// there is, at a small part of the cost.
+  double glance(const TileArena& arena, std::size_t k, std::span<const std::int32_t> earlier, Buffers& buffers) const;
+  /// The same sum of chips that were read.
+  double glance_of(std::span<const ChipBlock> chips) const;
 
  private:
+  /// Blocks that glance() reads, with bounds of their own.
+  struct GlancedBlocks {
+    std::vector<std::int32_t> block;
+    std::vector<float> x, y, z, bottom, reach, nx, ny, nz, spread;
+    BlockBounds bounds() const;
+  };
+  static GlancedBlocks glanced_blocks(const BlockBounds& all);
+  StampPlace place_of(const TileArena& arena, const Stamp& stamp) const;
+  std::span<const ChipBlock> read_found(const TileArena& arena, std::size_t k, const StampPlace& place, int found,
+                                        std::span<const std::int32_t> earlier, Buffers& buffers) const;
   /// A shallow point, or a deep one that stamps not in the arena may have cut.
   struct Point {
     Vec3 place_mm, normal;
@@ -63,6 +78,7 @@ class BlockReader {
   double max_curved_per_mm_ = 0;                  ///< of the envelope
   std::array<std::vector<std::int32_t>, 3> tip_;  ///< of all stamps, in steps that are a billionth of their range
   float tip_step_mm_;
+  GlancedBlocks glanced_;
 };
 
 }  // namespace camber::removal::upright

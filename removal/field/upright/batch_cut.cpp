@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/vector_clones.h"
+#include "removal/field/rounded_cutter.h"
 #include "removal/simd/upright_distances.h"
 
 namespace camber::removal::upright {
@@ -31,10 +32,29 @@ void test_reach(const float* x, const float* y, const float* z, std::size_t coun
   }
 }
 
-/// out > 0: a stamp may change a voxel of the box after the one at (rx, ry, rz) has. As ColumnCover tests columns.
+/// True where all columns of a box are within `radius` of an axis.
+bool within(const Box& box, float x, float y, float radius) {
+  const float dx = std::max(x - box.x0, box.x1 - x), dy = std::max(y - box.y0, box.y1 - y);
+  return radius > 0 && dx * dx + dy * dy <= radius * radius;
+}
+
+/// Prefers the lower of stamps that leave a place equally deep in air, and then the one whose axis is nearer: others
+/// are passed over after it. `rank`: distances of the place, of cutters with a flat bottom.
+CAMBER_VECTOR_CLONES
+void prefer_covering(const float* x, const float* y, const float* z, std::size_t count, float px, float py, float band,
+                     float* __restrict rank) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const float dx = px - x[k], dy = py - y[k];
+    rank[k] = covering_rank(rank[k], z[k], std::sqrt(dx * dx + dy * dy), band);
+  }
+}
+
+/// out > 0: a stamp may change a voxel of the box after the one at (rx, ry, rz) has. As ColumnCover tests columns;
+/// `covered`: the first stamp covers the box.
 template <bool ball>
 inline void test_after(const float* x, const float* y, const float* z, const float* low, std::size_t count, Box box,
-                       float rx, float ry, float rz, float radius, float threshold, float* __restrict out) {
+                       float rx, float ry, float rz, float radius, float threshold, bool covered,
+                       float* __restrict out) {
   for (std::size_t k = 0; k < count; ++k) {
     const float dx = x[k] - rx, dy = y[k] - ry, dz = z[k] - rz;
     const float mx = 0.5f * (x[k] + rx), my = 0.5f * (y[k] + ry);
@@ -45,18 +65,18 @@ inline void test_after(const float* x, const float* y, const float* z, const flo
       const float before = std::min(level - rz, 0.0f), now = std::min(level - z[k], 0.0f);
       out[k] = flat + 0.5f * (before * before - now * now) - threshold;
     } else {
-      out[k] = std::max(flat - threshold, -dz);
+      out[k] = std::max(covered ? -1.0f : flat - threshold, -dz);
     }
   }
 }
 
 CAMBER_VECTOR_CLONES
 void test_stamps(const float* x, const float* y, const float* z, const float* low, std::size_t count, Box box, float rx,
-                 float ry, float rz, float radius, float threshold, bool ball, float* __restrict out) {
+                 float ry, float rz, float radius, float threshold, bool ball, bool covered, float* __restrict out) {
   if (ball)
-    test_after<true>(x, y, z, low, count, box, rx, ry, rz, radius, threshold, out);
+    test_after<true>(x, y, z, low, count, box, rx, ry, rz, radius, threshold, covered, out);
   else
-    test_after<false>(x, y, z, low, count, box, rx, ry, rz, radius, threshold, out);
+    test_after<false>(x, y, z, low, count, box, rx, ry, rz, radius, threshold, covered, out);
 }
 
 }  // namespace
@@ -112,22 +132,28 @@ void BatchCut::find_candidates(const ColumnCover& cover, const Block& b, float z
   test_reach(cx_.data(), cy_.data(), cz_.data(), cx_.size(), box, flat, corner, band_ - shrink_, low_.data(),
              margin_.data());
   keep_positive();
-  const auto after = [&](float x, float y, float z, float threshold) {
-    test_stamps(cx_.data(), cy_.data(), cz_.data(), low_.data(), cx_.size(), box, x, y, z, radius, threshold,
-                shape_.ball(), margin_.data());
+  const auto covered_radius = static_cast<float>(
+      ColumnCover::covered_radius_mm(shape_, static_cast<double>(band_), static_cast<double>(shrink_)));
+  const auto after = [&](const Eigen::Vector3f& tip, float deflection_mm) {
+    test_stamps(cx_.data(), cy_.data(), cz_.data(), low_.data(), cx_.size(), box, tip.x(), tip.y(), tip.z(), radius,
+                -deflection_mm * (radius + band_ + deflection_mm), shape_.ball(),
+                within(box, tip.x(), tip.y(), covered_radius - deflection_mm), margin_.data());
   };
   const int i = b.i_from + kHalf / 2, j = b.j_from + kHalf / 2;
   if (const ColumnCover::Remembered r = cover.remembered(i, j); r.known && !candidates_.empty()) {
-    after(r.tip.x(), r.tip.y(), r.tip.z(), -r.deflection_mm * (radius + band_ + r.deflection_mm));
+    after(r.tip, r.deflection_mm);
     keep_positive();
   }
   if (candidates_.size() < 3) return;
   rounded_distances(cx_.data(), cy_.data(), cz_.data(), cx_.size(), static_cast<float>(i) * voxel_,
                     static_cast<float>(j) * voxel_, z_mm, flat, corner, margin_.data());
+  if (flat > 0)
+    prefer_covering(cx_.data(), cy_.data(), cz_.data(), cx_.size(), static_cast<float>(i) * voxel_,
+                    static_cast<float>(j) * voxel_, band_ + shrink_, margin_.data());
   const auto deepest = static_cast<std::size_t>(
       std::min_element(margin_.begin(), margin_.begin() + static_cast<std::ptrdiff_t>(candidates_.size())) -
       margin_.begin());
-  after(cx_[deepest], cy_[deepest], cz_[deepest], 0);
+  after({cx_[deepest], cy_[deepest], cz_[deepest]}, 0);
   margin_[deepest] = 1;
   keep_positive();
 }
@@ -151,6 +177,7 @@ bool BatchCut::cut_block(Tile& tile, ColumnCover& cover, const Block& b, std::in
                     search_z.data(),
                     line.flat,
                     line.corner,
+                    band_ + shrink_,
                     tip_x.data(),
                     tip_y.data(),
                     tip_z.data(),

@@ -9,10 +9,10 @@ namespace camber::removal::upright {
 namespace {
 
 /// Places of stamps, one for all columns or one for each. `reach`: no voxel farther from a ball's centre, or from a
-/// cutter's axis, is changed; nor one by more than `under` below the tip.
+/// cutter's axis, is changed; nor one by more than `under` below the tip. `covered`: ColumnCover::covered_radius_mm.
 struct NewTips {
   const float *x, *y, *z;
-  float deflection, reach, under, axial;
+  float deflection, reach, under, axial, covered;
 };
 
 /// A line of columns: out > 0 where the stamp may change one. Written without branches, for vectors.
@@ -31,10 +31,15 @@ inline bool test_line(const float* cx, const float* cy, const float* cz, const f
     const float threshold = -slack * (tips.reach + slack);
     const float highest = top_mm[j] - voxel;
     float lowest = tz - tips.under;
-    float margin = std::max(flat - threshold, tips.axial - dz);
-    if constexpr (ball) {
+    const float left = reach2 - (px - tx) * (px - tx) - (py - ty) * (py - ty);
+    float margin;
+    if constexpr (!ball) {
+      const float of_axis = tips.covered - slack, rx = px - cx[j], ry = py - cy[j];
+      const bool covered = of_axis > 0 && rx * rx + ry * ry <= of_axis * of_axis;
+      margin = std::max(covered ? -1.0f : flat - threshold, tips.axial - dz);
+      margin = left >= 0 ? margin : -1.0f;
+    } else {
       // The sphere of all that a stamp may change.
-      const float left = reach2 - (px - tx) * (px - tx) - (py - ty) * (py - ty);
       lowest = tz + radius - std::sqrt(std::max(left, 0.0f));
       // Of two balls on their shanks: half the difference of the squared distances from where the axes begin.
       const float level = (dz > 0 ? highest : lowest) - radius;
@@ -91,11 +96,19 @@ std::size_t line_at(int column) {
 
 }  // namespace
 
+/// Under the flat bottom a stamp leaves its height or, near its wall, the distance to that.
+double ColumnCover::covered_radius_mm(const CutterShape& shape, double band_mm, double shrink_mm) {
+  constexpr double kRounding_mm = 1e-4;
+  if (shape.general || shape.ball()) return -1;
+  return std::min(shape.bottom_length_mm(), shape.radius_mm - band_mm - shrink_mm) - kRounding_mm;
+}
+
 ColumnCover::ColumnCover(const Tile& tile, const Index3& index, double voxel_mm, double band_mm,
-                         const CutterShape& shape, const TipOf& tip_of)
+                         const CutterShape& shape, const TipOf& tip_of, double shrink_mm)
     : voxel_(static_cast<float>(voxel_mm)),
       band_(static_cast<float>(band_mm)),
       radius_(static_cast<float>(shape.radius_mm)),
+      covered_radius_(static_cast<float>(covered_radius_mm(shape, band_mm, shrink_mm))),
       ball_(shape.ball()) {
   for (int a = 0; a < 3; ++a) origin_mm_[a] = index[a] * Tile::kCore * voxel_mm;
   x_.fill(kNone), y_.fill(kNone), z_.fill(0), deflection_.fill(0), top_mm_.fill(-kNone), top_.fill(Tile::kSide);
@@ -133,18 +146,18 @@ void ColumnCover::lower_top(const Tile& tile, int column) {
 bool ColumnCover::changeable(int i, int first, int end, const Eigen::Vector3f& tip, float deflection,
                              std::array<float, kLine>& out) const {
   const auto at = static_cast<std::size_t>(i * kLine);
-  return test_columns(
-      x_.data() + at, y_.data() + at, z_.data() + at, deflection_.data() + at, top_mm_.data() + at, first, end,
-      static_cast<float>(i) * voxel_, voxel_,
-      {&tip.x(), &tip.y(), &tip.z(), deflection, radius_ + band_ + deflection, band_ + deflection, axial_slack_},
-      radius_, ball_, out.data());
+  return test_columns(x_.data() + at, y_.data() + at, z_.data() + at, deflection_.data() + at, top_mm_.data() + at,
+                      first, end, static_cast<float>(i) * voxel_, voxel_,
+                      {&tip.x(), &tip.y(), &tip.z(), deflection, radius_ + band_ + deflection, band_ + deflection,
+                       axial_slack_, covered_radius_},
+                      radius_, ball_, out.data());
 }
 
 std::uint32_t ColumnCover::changeable_lines(int i_from, int i_to, int first, int end, const Eigen::Vector3f& tip,
                                             float* out) const {
   return test_lines(x_.data(), y_.data(), z_.data(), deflection_.data(), top_mm_.data(), i_from, i_to, first, end,
-                    voxel_, {&tip.x(), &tip.y(), &tip.z(), 0, radius_ + band_, band_, axial_slack_}, radius_, ball_,
-                    out);
+                    voxel_, {&tip.x(), &tip.y(), &tip.z(), 0, radius_ + band_, band_, axial_slack_, covered_radius_},
+                    radius_, ball_, out);
 }
 
 bool ColumnCover::changeable_each(int i, int first, int end, const float* x, const float* y, const float* z,
@@ -152,7 +165,8 @@ bool ColumnCover::changeable_each(int i, int first, int end, const float* x, con
   const auto at = static_cast<std::size_t>(i * kLine);
   return test_columns_each(x_.data() + at, y_.data() + at, z_.data() + at, deflection_.data() + at, top_mm_.data() + at,
                            first, end, static_cast<float>(i) * voxel_, voxel_,
-                           {x, y, z, 0.0f, radius_ + band_, band_, axial_slack_}, radius_, ball_, out.data());
+                           {x, y, z, 0.0f, radius_ + band_, band_, axial_slack_, covered_radius_}, radius_, ball_,
+                           out.data());
 }
 
 bool ColumnCover::changeable_after(const Vec3& before_mm, double before_deflection_mm, const Vec3& tip_mm,
@@ -168,13 +182,24 @@ bool ColumnCover::changeable_after(const Vec3& before_mm, double before_deflecti
     const double before = std::min(level - before_mm.z(), 0.0), now = std::min(level - tip_mm.z(), 0.0);
     return flat + 0.5 * (before * before - now * now) > threshold;
   }
-  return flat > threshold || step.z() < static_cast<double>(axial_slack_);
+  if (step.z() < static_cast<double>(axial_slack_)) return true;
+  const Vec3 corner = before_mm - origin_mm_;  // how far the axis is from the tile's farthest
+  const double farthest = std::hypot(std::max(corner.x(), side - corner.x()), std::max(corner.y(), side - corner.y()));
+  return flat > threshold && farthest + slack > static_cast<double>(covered_radius_);
+}
+
+/// True where a stamp that has changed nothing passes over more others than the one that column (i, j) remembers.
+bool ColumnCover::covers_more(int i, int j, const Eigen::Vector3f& tip, float deflection_mm) const {
+  const std::size_t at = static_cast<std::size_t>(i * kLine + j);
+  if (ball_ || tip.z() > z_[at] || deflection_mm > deflection_[at]) return false;
+  const Eigen::Vector2f column(static_cast<float>(i) * voxel_, static_cast<float>(j) * voxel_);
+  return (column - tip.head<2>()).squaredNorm() < (column - Eigen::Vector2f(x_[at], y_[at])).squaredNorm();
 }
 
 void ColumnCover::cut(const Tile& tile, int i, int j, const Eigen::Vector3f& tip, float deflection_mm, bool changed) {
   const int column = i * Tile::kSide + j;
   const std::size_t at = line_at(column);
-  if (!changed && x_[at] < kNone) return;
+  if (!changed && x_[at] < kNone && !covers_more(i, j, tip, deflection_mm)) return;
   x_[at] = tip.x(), y_[at] = tip.y(), z_[at] = tip.z();
   deflection_[at] = deflection_mm;
   lower_top(tile, column);

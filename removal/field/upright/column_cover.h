@@ -18,7 +18,8 @@ namespace camber::removal::upright {
 ///
 /// Each column remembers one stamp that has cut it. Another stamp of the same cutter changes no voxel that is not
 /// nearer to it than to the first: for a ball on its shank nearer to the axis from the centre on upwards; for every
-/// other cutter a tip that is neither lower nor nearer in the plane changes nothing.
+/// other cutter a tip that is neither lower nor nearer in the plane changes nothing. Nor does one that is not lower
+/// where the first has its flat bottom and its wall is farther than the band.
 class ColumnCover {
  public:
   static constexpr int kColumns = Tile::kSide * Tile::kSide;
@@ -27,9 +28,13 @@ class ColumnCover {
   /// Tip and largest deflection of a stamp that is in the tile already; false: not known.
   using TipOf = std::function<bool(std::int32_t id, Vec3& tip_mm, double& deflection_mm)>;
 
-  /// Reads a loaded tile: where air begins in each column, and a stamp that it names.
+  /// Reads a loaded tile: where air begins in each column, and a stamp that it names. `shrink_mm`: of the stamps, as
+  /// SweepOptions has it.
   ColumnCover(const Tile& tile, const Index3& index, double voxel_mm, double band_mm, const CutterShape& shape,
-              const TipOf& tip_of);
+              const TipOf& tip_of, double shrink_mm = 0);
+
+  /// Radius around its axis in which a stamp leaves nothing to others that are not lower; negative: nowhere.
+  static double covered_radius_mm(const CutterShape& shape, double band_mm, double shrink_mm);
 
   /// First voxel of the column from which on all are air.
   int top(int column) const { return top_[static_cast<std::size_t>(column)]; }
@@ -87,8 +92,9 @@ class ColumnCover {
   static constexpr float kNone = 1e9f;
 
   void lower_top(const Tile& tile, int column);
+  bool covers_more(int i, int j, const Eigen::Vector3f& tip, float deflection_mm) const;
 
-  float voxel_, band_, radius_, axial_slack_ = 0;
+  float voxel_, band_, radius_, covered_radius_, axial_slack_ = 0;
   bool ball_;
   Vec3 origin_mm_;
   int air_columns_ = 0;

@@ -24,7 +24,12 @@ bool covers(const Vec3& tip, const Vec3& before, const Vec3& earlier, const Cutt
   constexpr double kStraight = 1e-6;
   if (u.dot(f) < 0 && (u - u.dot(f) / f.squaredNorm() * f).norm() <= kStraight) return true;
   const bool level = std::abs(f.z()) < kStraight && std::abs(u.z()) < kStraight;
-  // Between bottom and wall of a cutter with a flat there is more than spheres and circles.
+  // The distance to a flat end mill grows with the distance from its axis and with the height of its tip, and its
+  // bottom cuts where it descends: under the disc of the one right before, or in front of it, like the wall.
+  const bool sharp = !shape.general && shape.corner_radius_mm == 0;
+  if (sharp && (before.z() <= earlier.z() || f.z() >= 0))
+    return spheres_covered({f.x(), f.y(), 0}, {u.x(), u.y(), 0}, shape.radius_mm);
+  // Between bottom and wall of other cutters with a flat there is more than spheres and circles.
   if (!level && (shape.bottom_length_mm() > 0 || !spheres_covered(f, u, shape.radius_mm))) return false;
   return spheres_covered({f.x(), f.y(), 0}, {u.x(), u.y(), 0}, shape.radius_mm);
 }

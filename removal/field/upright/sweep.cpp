@@ -104,7 +104,8 @@ void Sweep::work(WorkTile& w) const {
   Tile& tile = *tile_copy;
   stock_.load(w.index, tile);
   const double material = material_voxels(tile, stock_.voxel_mm());
-  ColumnCover cover(tile, w.index, stock_.voxel_mm(), stock_.band_mm(), shape_, tips_by_id(all_, options_.first_id, 0));
+  ColumnCover cover(tile, w.index, stock_.voxel_mm(), stock_.band_mm(), shape_, tips_by_id(all_, options_.first_id, 0),
+                    options_.shrink_mm);
   if (cover.all_air()) return;
   const bool changed = shape_.general ? cut_general(tile, cover, w)
                                       : BatchCut(shape_, stock_.voxel_mm(), stock_.band_mm(), options_.shrink_mm)
