@@ -209,7 +209,7 @@ TEST(Adapt, UnknownLoadKeepsTheProgrammedFeed) {
   const TempFolder folder;
   SmallJob job{.program = kStep};
   job.simulation += "\n[operations]\nblocks = [[10, 12]]";
-  write_job(folder, job);
+  tests::write_job(folder, job);
   Diagnostics diagnostics;
   const machine::Job read = machine::read_job(folder / "job.toml", diagnostics);
   const AdaptResult r = adapt(read, diagnostics, {});
@@ -221,7 +221,7 @@ TEST(Adapt, UnknownLoadKeepsTheProgrammedFeed) {
 
 TEST(AdaptSettings, AreWrittenAsTheyAreRead) {
   const TempFolder folder;
-  write_job(folder, {.program = kStep, .limits = "torque_Nm = 1.2, deflection_um = 30.0, chip_min_mm = 0.01"});
+  tests::write_job(folder, {.program = kStep, .limits = "torque_Nm = 1.2, deflection_um = 30.0, chip_min_mm = 0.01"});
   Diagnostics diagnostics;
   const machine::Job job = machine::read_job(folder / "job.toml", diagnostics);
   ASSERT_TRUE(job.adapt);
