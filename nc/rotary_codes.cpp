@@ -228,8 +228,9 @@ void BlockInterpreter::settle_tip() {
 
 /// What a message says of a code that turns rotary axes, on a machine without them.
 std::string BlockInterpreter::needs_kinematics(const Code& code, const char* name) const {
-  return fmt::format("{} ({}) is read by camber check, feed, time and fit-feed, on a machine with [kinematics]",
-                     code_text(code), name);
+  const bool frame = std::string_view(name) == "tilted frame" || std::string_view(name) == "dynamic work offset";
+  return fmt::format("{} ({}) is read by camber check{}, on a machine with [kinematics]", code_text(code), name,
+                     frame ? "" : ", feed, time and fit-feed");
 }
 
 /// G10 L2 A B C.

@@ -20,6 +20,19 @@ class RotaryCheck {
               Diagnostics& diagnostics)
       : machine_(machine), program_(program), moves_(moves), diagnostics_(diagnostics) {}
 
+  /// Frames that turn with the tool are read by check alone.
+  void refuse_frames() {
+    for (const nc::Move& move : moves_.moves) {
+      const nc::WorkFrame frame = moves_.state_of(move).work_frame;
+      if (move.kind == nc::MoveKind::dwell || frame == nc::WorkFrame::machine) continue;
+      say(Severity::error, move, "not-read",
+          fmt::format("moves {} are read by camber check alone; tool-centre-point control or positions of the axes "
+                      "were expected",
+                      frame == nc::WorkFrame::tilted ? "in a tilted frame (G68.2)" : "under G254"));
+      return;
+    }
+  }
+
   /// joints_count: those under tool-centre-point control; poses: poses of the tool as well.
   void check_known(bool joints_count, bool poses) {
     const nc::Move* unknown = nullptr;
@@ -102,6 +115,7 @@ void check_rotary_motion(const machine::Machine& machine, const nc::Program& pro
                          bool poses, Diagnostics& diagnostics) {
   if (!feedmodel::has_rotary_motion(moves, machine)) return;
   RotaryCheck check(machine, program, moves, diagnostics);
+  check.refuse_frames();
   check.check_known(poses || machine.control.joint_limits, poses);
   check.check_limits();
   kinematics::check_travel(machine, program, moves, diagnostics);
@@ -109,8 +123,10 @@ void check_rotary_motion(const machine::Machine& machine, const nc::Program& pro
 
 void check_tip_control(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                        Diagnostics& diagnostics) {
-  if (feedmodel::has_rotary_motion(moves, machine))
-    RotaryCheck(machine, program, moves, diagnostics).check_known(true, false);
+  if (!feedmodel::has_rotary_motion(moves, machine)) return;
+  RotaryCheck check(machine, program, moves, diagnostics);
+  check.refuse_frames();
+  check.check_known(true, false);
 }
 
 }  // namespace camber::api

@@ -180,6 +180,12 @@ TEST(FeedFiveAxes, BadInputByWholeMessage) {
   EXPECT_EQ(error_of("feed p.nc --machine m.toml --tool-length 1=80"),
             "p.nc:6:1: error: the joints of this move under tool-centre-point control depend on the work offset, which "
             "is not known; its value (G10 L2) was expected in the program [work-offset]\n    G1 X1 A-5 F100\n    ^\n");
+  folder.write("p.nc", "G21 G90 G94\nG10 L2 P1 X0 Y0 Z0\nG54\nG43 H1\nG68.2 J30.\nG53.1\nG0 X0 Y0 Z0\nM2\n");
+  EXPECT_NE(
+      error_of("time p.nc --machine m.toml --tool-length 1=80")
+          .find("error: moves in a tilted frame (G68.2) are read by camber check alone; tool-centre-point control "
+                "or positions of the axes were expected [not-read]"),
+      std::string::npos);
   folder.write("p.nc", "G21 G90 G93\nG0 X0 Y0 Z0\nG1 X1 A1 F10\nG1 X2 A2\nM2\n");
   EXPECT_EQ(error_of("time p.nc --machine m.toml"),
             "p.nc:4:1: error: G1 in inverse time (G93) without F; every cutting block needs its own F [feed-missing]\n"
@@ -219,7 +225,7 @@ TEST(CheckFiveAxes, OtherCommandsRefuseTheProgramByName) {
   }
 }
 
-const std::string kFiveAxis = CAMBER_SOURCE_DIR "/samples/11-five-axis/";
+const std::string kFiveAxis = CAMBER_SOURCE_DIR "/samples/12-five-axis/";
 
 TEST(CheckFiveAxes, CountsRotaryMovesOfTheSample) {
   const TempFolder folder;

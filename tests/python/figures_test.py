@@ -16,7 +16,7 @@ import camber
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 CAMBER = os.environ["CAMBER"]
-FIVE_AXIS = SAMPLES / "11-five-axis"
+FIVE_AXIS = SAMPLES / "12-five-axis"
 PROGRAMS = sorted(p for p in SAMPLES.glob("*/*.nc") if p.parent != FIVE_AXIS)
 MACHINES = [SAMPLES / "01-finishing/machine.toml", SAMPLES / "machines/yan_shirase.toml"]
 
