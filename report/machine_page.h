@@ -14,10 +14,10 @@
 namespace camber::report {
 
 struct MachinePage {
-  std::string title, subtitle;
-  std::vector<Figure> figures;  ///< the first four are shown large
-  std::vector<TextTable> tables;
-  std::vector<std::string> warnings, notes;
+  std::string title{}, subtitle{};
+  std::vector<Figure> figures{};  ///< the first four are shown large
+  std::vector<TextTable> tables{};
+  std::vector<std::string> warnings{}, notes{};
   std::string time_label = "time at programmed feeds, s";  ///< below the plots
   std::optional<TriangleMesh> part{};                      ///< in the frame of the work offset; none: the path alone
   Vec3 work_origin_mm = Vec3::Zero();                      ///< of the work offset, in the machine frame
