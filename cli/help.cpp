@@ -28,8 +28,8 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
      "camber compensate job.toml -o finish_compensated.nc --report report.html --json figures.json\n"
      "  camber compensate --verify finish_compensated.nc"},
     {"adapt",
-     "camber adapt job.toml -o finish_adapted.nc --report report.html --json figures.json\n"
-     "  camber adapt job.toml -o finish_adapted.nc --time-limit 120 --sweep"},
+     "camber adapt job.toml -o rough_adapted.nc --report report.html --json figures.json\n"
+     "  camber adapt job.toml -o rough_adapted.nc --time-limit 22 --sweep"},
     {"compress", "camber compress finish.nc --tolerance-mm 0.002 -o finish_arcs.nc"},
     {"resegment",
      "camber resegment finish.nc --machine machine.toml --tolerance-mm 0.002 -o finish_even.nc\n"

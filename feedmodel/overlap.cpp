@@ -10,8 +10,8 @@ namespace camber::feedmodel {
 namespace {
 
 constexpr double kLeastSine = 1e-3;
-constexpr double kNoSpeed = 1e-8;     // mm/s
-constexpr double kNoLength = 1e-9;    // mm
+constexpr double kNoSpeed = 1e-8;  // mm/s
+constexpr double kAtEnd_mm = 1e-9;
 constexpr double kMaxCycles = 3.6e7;  // a block of ten hours at 1 ms
 
 double reachable(const PlanRow& row, double length_mm) {
@@ -36,7 +36,7 @@ class Block {
     braking_ = change < 0 && std::abs(can_stop - speed_) < kNoSpeed;
   }
 
-  bool over() const { return way_ >= length_ - kNoLength; }
+  bool over() const { return way_ >= length_ - kAtEnd_mm; }
   bool braking() const { return braking_; }
   double speed() const { return speed_; }
 

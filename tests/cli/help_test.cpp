@@ -43,7 +43,7 @@ std::vector<std::string> examples_in(const std::string& help) {
 TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
   const TempFolder folder;
   const std::string samples = CAMBER_SOURCE_DIR "/samples/";
-  for (const char* sample : {"01-finishing", "03-force-fit", "10-raster"})
+  for (const char* sample : {"01-finishing", "03-force-fit", "10-raster", "11-feed-by-load"})
     std::filesystem::copy(samples + sample, folder / sample);
   const auto names = subcommands(folder);
   EXPECT_GE(names.size(), 11u);
@@ -55,7 +55,10 @@ TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
     for (const std::string& example : examples) {
       EXPECT_EQ(example.rfind(name + " ", 0), 0u) << example;
       const bool part = example.find("--part") != std::string::npos;
-      const std::string from = folder / (name == "fit-force" ? "03-force-fit" : part ? "10-raster" : "01-finishing");
+      const std::string from = folder / (name == "fit-force" ? "03-force-fit"
+                                         : name == "adapt"   ? "11-feed-by-load"
+                                         : part              ? "10-raster"
+                                                             : "01-finishing");
       const std::string command = "export HOME='" + folder.path() +
                                   "'; mkdir -p ~/.local/share/bash-completion/completions; cd '" + from + "' && '" +
                                   CAMBER_EXECUTABLE "' " + example + " > '" + (folder / "said") + "' 2>&1";
