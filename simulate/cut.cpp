@@ -197,8 +197,8 @@ class Cutter {
     for (std::size_t i = 0; i < deflections.row_size(); ++i) row[i] = from[i] + way * (to[i] - from[i]);
   }
 
-  /// True where deflections and chip of stamp k differ from the line between a and b by no more than what static
-  /// coupling allows of an extrapolated deflection, over the rotation steps that cut.
+  /// True where deflections, chip and mean force of stamp k differ little from the line between a and b: deflections by
+  /// no more than what static coupling allows of an extrapolated one, over the rotation steps that cut.
   bool on_line(const DeflectionTable& deflections, std::span<const StampLoad> loads, std::size_t a, std::size_t k,
                std::size_t b) const {
     const deflection::SettleOptions allowed;
@@ -207,8 +207,10 @@ class Cutter {
     const auto near = [&](double is, double on_line) {
       return std::abs(is - on_line) <= allowed.follow_fraction * std::abs(is);
     };
+    constexpr double kForceFraction = 0.005;  // of the mean force: a tool that hardly bends shows little of it
     if (!(loads[a].chip_mm3 > 0 && loads[b].chip_mm3 > 0) || !near(loads[k].chip_mm3, line.chip_mm3) ||
-        !near(loads[k].torque_mean_Nmm, line.torque_mean_Nmm))
+        !near(loads[k].torque_mean_Nmm, line.torque_mean_Nmm) ||
+        (loads[k].force_mean_N - line.force_mean_N).norm() > kForceFraction * loads[k].force_mean_N.norm())
       return false;
     const float *from = deflections.row(static_cast<std::ptrdiff_t>(a)),
                 *to = deflections.row(static_cast<std::ptrdiff_t>(b)),

@@ -189,6 +189,9 @@ void check_region_start(const machine::Job& job, const SimulatedProgram& program
   const bool known = (cut || before.kind == nc::MoveKind::rapid) && !before.reference &&
                      program.moves.state_of(before).tool == program.moves.state_of(m).tool;
   const auto tool = job.tools.find(program.moves.state_of(m).tool);
+  // What holes took out before is not known of the blank.
+  const auto holes_end = program.holes.begin() + static_cast<std::ptrdiff_t>(std::min(first, program.holes.size()));
+  if (!cut && std::any_of(program.holes.begin(), holes_end, removal::makes_hole)) return;
   if (!known || tool == job.tools.end() || !stands_in(blank, tool->second, m.start_mm)) return;
   diagnostics.add(program.text.source.diagnostic(
       Severity::warning, program.text.blocks[m.block].offset,
