@@ -151,6 +151,7 @@ class Builder {
     const auto& moves = program_.moves;
     int tool = moves.empty() ? 0 : program_.state_of(moves.front()).tool;
     std::size_t next_rest = 0;
+    bool tip_control = false;
     for (std::size_t i = 0; i < moves.size();) {
       cancellation_point();
       const nc::Move& move = moves[i];
@@ -158,7 +159,10 @@ class Builder {
       turning_ = turns_ && turns_->at(i).turns();
       const bool asked = next_rest < rests_.size() && rests_[next_rest] <= i;
       while (next_rest < rests_.size() && rests_[next_rest] <= i) ++next_rest;
-      if (turns_ && !turns_->at(i).start_known) rest(0, i, move.start_mm);
+      // X, Y and Z get another meaning: the control stops where axes are turned.
+      const bool switched = (state.tip_control != nc::TipControl::off) != tip_control;
+      tip_control ^= switched;
+      if (turns_ && switched && turns_->at(i).start_rad != Vec3::Zero()) rest(0, i, move.start_mm);
       if (state.tool != tool || asked) rest(0, i, move.start_mm);
       tool = state.tool;
       std::size_t end = i + 1;
