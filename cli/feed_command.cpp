@@ -7,8 +7,10 @@
 #include "api/commands/feed.h"
 #include "base/output_file.h"
 #include "cli/console.h"
+#include "cli/feed_page.h"
 #include "cli/progress.h"
 #include "feedmodel/feed_csv.h"
+#include "feedmodel/joint_map.h"
 #include "feedmodel/timed_path.h"
 #include "machine/machine.h"
 #include "nc/program.h"
@@ -23,17 +25,24 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   const nc::Interpretation moves =
       api::moves_of_feed(program, machine, arguments.interpreter, arguments.output, diagnostics);
   progress.clear();
+  if (!arguments.report.empty() && !feedmodel::has_rotary_motion(moves, machine))
+    fail_on_file(arguments.program,
+                 "turns no rotary axis of the machine, and the page of feed shows those; camber check --report shows "
+                 "programs of three axes",
+                 "no-rotary-motion");
   settle(diagnostics, options);
   print_translation(machine.translation, options);
 
   std::unique_ptr<feedmodel::FeedCsv> csv;
   if (!arguments.output.empty())
     csv = std::make_unique<feedmodel::FeedCsv>(moves, arguments.output, api::rotary_columns(moves, machine));
+  TimedTrack track(moves);
   const feedmodel::FeedSummary summary = api::predict_feed(
       moves, machine,
       [&](std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints) {
         if (csv && joints.empty()) csv->write(samples);
         if (csv && !joints.empty()) csv->write(samples, joints);
+        if (!arguments.report.empty()) track.add(samples, joints);
         if (!samples.empty())
           progress.show("timing", static_cast<double>(samples.back().move) / static_cast<double>(moves.moves.size()));
       });
@@ -45,6 +54,9 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
                summary.cutting_time_s, summary.blocks);
   if (!options.quiet && summary.contour) fmt::print("{}", api::contour_text(*summary.contour));
   if (!arguments.json.empty()) write_file(arguments.json, api::feed_json(summary));
+  if (!arguments.report.empty())
+    write_file(arguments.report,
+               feed_page({arguments.program, arguments.machine, summary, track.take()}, moves, machine, diagnostics));
   return kDone;
 }
 

@@ -12,10 +12,11 @@ struct FeedArguments {
   std::string machine;
   std::string output;  ///< feed.csv; empty: none
   std::string json;    ///< empty: none
+  std::string report;  ///< page of a machine with rotary axes; empty: none
   nc::InterpreterOptions interpreter;
 };
 
-/// camber feed P.nc --machine M.toml [-o feed.csv] [--json R.json]. Throws InputError. Returns kDone.
+/// camber feed P.nc --machine M.toml [-o feed.csv] [--report R.html] [--json R.json]. Throws InputError. Returns kDone.
 int run_feed(const FeedArguments& arguments, const GlobalOptions& options);
 
 }  // namespace camber::cli

@@ -176,12 +176,14 @@ void add_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
   command->add_option("-o,--output", arguments->output, "axis positions at every period")->type_name("feed.csv");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  command->add_option("--report", arguments->report, "page of a machine with rotary axes as it runs the program")
+      ->type_name("R.html");
   add_tool_lengths(*command, arguments->interpreter);
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);
-      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->machine});
+      check_outputs({arguments->output, arguments->json, arguments->report}, {arguments->program, arguments->machine});
       return run_feed(*arguments, options);
     };
   });

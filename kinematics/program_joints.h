@@ -49,6 +49,11 @@ class ProgramJoints {
   /// The tool there, in the part's frame with the origin of the machine frame; nothing where x, y, z or the tool length
   /// are not known.
   std::optional<ToolPose> pose_at(double u) const;
+  /// Start and end of that move in the coordinates of nc::Move, as the machine has them: after tool-centre-point
+  /// control was switched with turned axes, they are not those that the program named last. Nothing where they are not
+  /// known.
+  std::optional<Vec3> start_mm() const { return programmed_mm(start_linear_mm_, now_.start_rad); }
+  std::optional<Vec3> end_mm() const { return programmed_mm(end_linear_mm_, now_.end_rad); }
   /// At a move of X, Y or Z in a tilted frame: angle between the tool and Z of the frame at its end, rad; else 0.
   double tilt_error_rad() const;
   const Chain& chain() const { return chain_; }
@@ -57,6 +62,7 @@ class ProgramJoints {
   bool follows_tip(const nc::Move& move) const;
   std::optional<Vec3> linear_of(const nc::Move& move, const Vec3& tip_mm, const Vec3& rotary_rad) const;
   Vec3 tip_of(const nc::Move& move, const Joints& joints) const;
+  std::optional<Vec3> programmed_mm(const Vec3& linear_mm, const Vec3& rotary_rad) const;
   Vec3 closed(const nc::Move& move, const Vec3& given_mm, std::uint8_t open, const Vec3& rotary_rad) const;
   void take_target(const nc::RotaryTarget& target, const nc::Move& move);
   void take_machine_target(const nc::MachineTarget& target);
@@ -75,5 +81,9 @@ class ProgramJoints {
   Vec3 start_linear_mm_ = Vec3::Zero(), end_linear_mm_ = Vec3::Zero();  ///< NaN: not known
   Vec3 last_linear_mm_;                                                 ///< where the last move left the axes
 };
+
+/// Gives the lines of a program the starts and ends that the machine gives them, where it is known that they differ
+/// from those programmed (ProgramJoints::start_mm). Requires machine.kinematics.given().
+void place_lines(nc::Interpretation& program, const machine::Machine& machine);
 
 }  // namespace camber::kinematics

@@ -50,7 +50,10 @@ nc::Interpretation moves_of(const TracedProgram& traced, const machine::Machine&
   const auto options = rotary_interpreter_options(start, traced.interpreter);
   const auto read = [&](const nc::Program& text) {
     nc::Interpretation moves = nc::interpret(text, options, diagnostics);
-    if (diagnostics.errors() == 0) check_tip_control(start, text, moves, diagnostics);
+    if (diagnostics.errors() == 0) {
+      check_tip_control(start, text, moves, diagnostics);
+      place_rotary_lines(start, moves);
+    }
     return moves;
   };
   return read(traced.text ? *traced.text : nc::read_program(SourceText::read(traced.program), diagnostics));

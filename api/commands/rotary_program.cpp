@@ -121,6 +121,10 @@ void check_rotary_motion(const machine::Machine& machine, const nc::Program& pro
   kinematics::check_travel(machine, program, moves, diagnostics);
 }
 
+void place_rotary_lines(const machine::Machine& machine, nc::Interpretation& moves) {
+  if (feedmodel::has_rotary_motion(moves, machine)) kinematics::place_lines(moves, machine);
+}
+
 void check_tip_control(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                        Diagnostics& diagnostics) {
   if (!feedmodel::has_rotary_motion(moves, machine)) return;

@@ -19,6 +19,9 @@ nc::InterpreterOptions rotary_interpreter_options(const machine::Machine& machin
 void check_rotary_motion(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                          bool poses, Diagnostics& diagnostics);
 
+/// Lines as the machine runs them (kinematics::place_lines). Nothing without rotary motion.
+void place_rotary_lines(const machine::Machine& machine, nc::Interpretation& moves);
+
 /// Of these checks [tool-length] and [work-offset]: for traces, of which the tip's motion is looked at.
 void check_tip_control(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                        Diagnostics& diagnostics);

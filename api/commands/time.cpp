@@ -25,7 +25,10 @@ nc::Interpretation moves_of(const nc::Program& program, const machine::Machine& 
   nc::InterpreterOptions options = rotary_interpreter_options(machine, request.interpreter);
   options.index_table = machine.index.present;
   nc::Interpretation moves = nc::interpret(program, options, diagnostics);
-  if (diagnostics.errors() == 0) check_rotary_motion(machine, program, moves, false, diagnostics);
+  if (diagnostics.errors() == 0) {
+    check_rotary_motion(machine, program, moves, false, diagnostics);
+    place_rotary_lines(machine, moves);
+  }
   feedmodel::check_range(moves, program.source.name(), machine, diagnostics);
   return moves;
 }

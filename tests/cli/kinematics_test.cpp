@@ -167,6 +167,37 @@ TEST(FeedFiveAxes, WritesJointsAndPoses) {
   EXPECT_NEAR(positioning + cutting, json["time_s"], 1e-6);
 }
 
+/// Tool-centre-point control is switched with turned axes: the tip goes on from where the axes are.
+TEST(FeedFiveAxes, AxesDoNotJump) {
+  const TempFolder folder;
+  std::filesystem::copy(CAMBER_SOURCE_DIR "/samples/12-five-axis", folder / "s");
+  const auto run = run_camber(folder, "feed s/dome.nc --machine s/machine.toml -o feed.csv --report r.html");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto columns = camber::tests::columns_of(tests::file_text(folder / "feed.csv"));
+  const auto& block = columns.at("block");
+  for (const char* axis : {"x_mm", "y_mm", "z_mm", "a_deg", "c_deg"}) {
+    const auto& q = columns.at(axis);
+    for (std::size_t i = 1; i < q.size() && block[i] <= 390; ++i)  // then it goes to reference points
+      ASSERT_LT(std::abs(q[i] - q[i - 1]), 0.5) << axis << " in line " << block[i];
+  }
+  const std::string page = tests::file_text(folder / "r.html");
+  EXPECT_NE(page.find("Feed of s/dome.nc"), std::string::npos);
+  EXPECT_NE(page.find("time, s"), std::string::npos);
+  EXPECT_EQ(page.find("The positions of the axes are not known"), std::string::npos);
+}
+
+TEST(FeedFiveAxes, ThePageNeedsRotaryMotion) {
+  const TempFolder folder;
+  write_fan(folder);
+  folder.write("p.nc", "G21 G90 G94\nG0 X0 Y0 Z0\nG1 X1 F100\nM2\n");
+  const auto run = run_camber(folder, "feed p.nc --machine m.toml --report r.html");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("p.nc: error: turns no rotary axis of the machine, and the page of feed shows those; camber "
+                         "check --report shows programs of three axes [no-rotary-motion]"),
+            std::string::npos)
+      << run.err;
+}
+
 TEST(FeedFiveAxes, BadInputByWholeMessage) {
   const TempFolder folder;
   write_fan(folder);
