@@ -36,7 +36,7 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   std::unique_ptr<feedmodel::FeedCsv> csv;
   if (!arguments.output.empty())
     csv = std::make_unique<feedmodel::FeedCsv>(moves, arguments.output, api::rotary_columns(moves, machine));
-  TimedTrack track(moves);
+  TimedTrack track(machine, moves);
   const feedmodel::FeedSummary summary = api::predict_feed(
       moves, machine,
       [&](std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints) {

@@ -7,10 +7,18 @@
 
 namespace camber::cli {
 
+TimedTrack::TimedTrack(const machine::Machine& machine, const nc::Interpretation& moves) : moves_(moves) {
+  if (machine.kinematics.given()) chain_.emplace(machine);
+  for (const nc::Move& move : moves.moves) {
+    const nc::ModalState& state = moves.state_of(move);
+    if (state.tool_length_mm.value_or(0) != 0) tool_length_mm_[state.tool] = *state.tool_length_mm;
+  }
+}
+
 void TimedTrack::add(std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints) {
   for (std::size_t i = 0; i < samples.size() && i < joints.size(); ++i, ++seen_) {
     // Where reference points are is not known.
-    if (samples[i].move < moves_.moves.size() && moves_.moves[samples[i].move].reference) continue;
+    if (moves_.moves[samples[i].move].reference) continue;
     last_ = pose_of(samples[i], joints[i]);
     if (seen_ % every_ != 0) continue;
     kept_.push_back(last_);
@@ -30,10 +38,11 @@ kinematics::PoseSample TimedTrack::pose_of(const feedmodel::TimedSample& sample,
                                            const feedmodel::JointSample& joint) const {
   kinematics::PoseSample out;
   out.time_s = sample.t_s;
-  if (sample.move < moves_.moves.size()) out.line = static_cast<int>(moves_.moves[sample.move].block) + 1;
-  out.pose = joint.tool;
-  out.pose.tip_mm -= moves_.machine_origin_mm.value_or(Vec3::Zero());
   out.joints = {sample.position_mm, joint.position_rad};
+  const nc::Move& move = moves_.moves[sample.move];
+  out.line = static_cast<int>(move.block) + 1;
+  const auto length = tool_length_mm_.find(moves_.state_of(move).tool);
+  if (chain_) out.pose = chain_->pose(out.joints, length == tool_length_mm_.end() ? 0 : length->second);
   return out;
 }
 

@@ -1,12 +1,15 @@
 #pragma once
 // The page of camber feed: a machine with rotary axes as it runs a program.
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/diagnostics.h"
 #include "feedmodel/timed_path.h"
+#include "kinematics/chain.h"
 #include "kinematics/pose_track.h"
 #include "machine/machine.h"
 #include "nc/move.h"
@@ -19,7 +22,7 @@ class TimedTrack {
   static constexpr std::size_t kMax = 40000;
 
   /// `moves` must outlive this.
-  explicit TimedTrack(const nc::Interpretation& moves) : moves_(moves) {}
+  TimedTrack(const machine::Machine& machine, const nc::Interpretation& moves);
   /// As many of the one as of the other.
   void add(std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints);
   std::vector<kinematics::PoseSample> take();
@@ -28,6 +31,8 @@ class TimedTrack {
   kinematics::PoseSample pose_of(const feedmodel::TimedSample& sample, const feedmodel::JointSample& joint) const;
 
   const nc::Interpretation& moves_;
+  std::optional<kinematics::Chain> chain_;  ///< where the machine has one
+  std::map<int, double> tool_length_mm_;    ///< that the program gives a tool anywhere
   std::vector<kinematics::PoseSample> kept_;
   kinematics::PoseSample last_;
   std::size_t every_ = 1, seen_ = 0;
