@@ -11,25 +11,7 @@
 
 namespace camber::calib {
 
-/// The quantities of a servo trace, in the order of ColumnMap.
-enum class Quantity {
-  time,
-  x_cmd,
-  y_cmd,
-  z_cmd,
-  x_act,
-  y_act,
-  z_act,
-  feed,
-  line,
-  a_cmd,
-  b_cmd,
-  c_cmd,
-  a_act,
-  b_act,
-  c_act
-};
-inline constexpr std::size_t kQuantities = 15;
+/// Their tables in a map.
 inline constexpr std::array<std::string_view, kQuantities> kQuantityKeys{"t",     "x_cmd", "y_cmd", "z_cmd", "x_act",
                                                                          "y_act", "z_act", "feed",  "line",  "a_cmd",
                                                                          "b_cmd", "c_cmd", "a_act", "b_act", "c_act"};

@@ -16,26 +16,8 @@ namespace {
 constexpr double kGapPeriods = 1.5;  // more than this between two samples is a hole
 constexpr std::size_t kGapsShown = 5;
 
-enum class Column {
-  time,
-  x_cmd,
-  y_cmd,
-  z_cmd,
-  x_act,
-  y_act,
-  z_act,
-  feed,
-  line,
-  a_cmd,
-  b_cmd,
-  c_cmd,
-  a_act,
-  b_act,
-  c_act,
-  unknown
-};
-
-constexpr std::array<std::string_view, 15> kColumnNames = {
+/// By Quantity.
+constexpr std::array<std::string_view, kQuantities> kColumnNames = {
     "t_s",  "x_cmd_mm",  "y_cmd_mm",  "z_cmd_mm",  "x_act_mm",  "y_act_mm",  "z_act_mm", "feed_mm_per_min",
     "line", "a_cmd_deg", "b_cmd_deg", "c_cmd_deg", "a_act_deg", "b_act_deg", "c_act_deg"};
 
@@ -107,7 +89,7 @@ class Reader {
     for (const Field& field : fields_) {
       const auto* at = std::find(kColumnNames.begin(), kColumnNames.end(), field.text);
       const auto index = static_cast<std::size_t>(at - kColumnNames.begin());
-      columns_.push_back(static_cast<Column>(index));
+      columns_.push_back(at == kColumnNames.end() ? std::nullopt : std::optional(static_cast<Quantity>(index)));
       if (at == kColumnNames.end()) {
         report(Severity::warning, field, fmt::format("column \"{}\" is not known and is left out", field.text),
                "trace-column");
@@ -144,17 +126,17 @@ class Reader {
     }
     Values values{};
     for (std::size_t i = 0; i < fields_.size(); ++i) {
-      if (columns_[i] == Column::unknown) continue;
+      if (!columns_[i]) continue;
       const std::optional<double> value = parse_number(fields_[i].text);
-      const auto column = static_cast<std::size_t>(columns_[i]);
-      if (!value || !std::isfinite(*value) || (columns_[i] == Column::line && *value < 0)) {
+      const auto column = static_cast<std::size_t>(*columns_[i]);
+      if (!value || !std::isfinite(*value) || (columns_[i] == Quantity::line && *value < 0)) {
         report(Severity::error, fields_[i],
                fmt::format("{} is \"{}\"; a number is expected", kColumnNames[column], fields_[i].text),
                "trace-number");
         return;
       }
       values[column] = *value;
-      if (columns_[i] == Column::time && trace_.size() > 0 && *value <= trace_.t_s.back()) {
+      if (columns_[i] == Quantity::time && trace_.size() > 0 && *value <= trace_.t_s.back()) {
         report(Severity::error, fields_[i],
                fmt::format("time {} s is not after the sample before it, {} s", fields_[i].text, trace_.t_s.back()),
                "trace-time");
@@ -201,7 +183,7 @@ class Reader {
   const SourceText& source_;
   Diagnostics& diagnostics_;
   ServoTrace trace_;
-  std::vector<Column> columns_;
+  std::vector<std::optional<Quantity>> columns_;  ///< none: not known
   std::vector<Field> fields_;
   std::vector<std::size_t> row_offsets_, rows_;
   std::size_t row_ = 1;

@@ -10,6 +10,26 @@
 
 namespace camber::calib {
 
+/// The quantities of a servo trace.
+enum class Quantity {
+  time,
+  x_cmd,
+  y_cmd,
+  z_cmd,
+  x_act,
+  y_act,
+  z_act,
+  feed,
+  line,
+  a_cmd,
+  b_cmd,
+  c_cmd,
+  a_act,
+  b_act,
+  c_act
+};
+inline constexpr std::size_t kQuantities = 15;
+
 /// A trace without holes: samples `first` .. `end` - 1 follow each other at the period.
 struct Stretch {
   std::size_t first = 0, end = 0;

@@ -4,11 +4,9 @@
 #include <vector>
 
 #include "base/cancel.h"
-#include "base/stage.h"
 #include "feedmodel/axes.h"
+#include "feedmodel/follow_plan.h"
 #include "feedmodel/joint_map.h"
-#include "feedmodel/path_builder.h"
-#include "feedmodel/plan.h"
 #include "feedmodel/summary.h"
 #include "feedmodel/timed_path.h"
 
@@ -107,15 +105,10 @@ FeedSummary predict_feed(const nc::Interpretation& program, const machine::Machi
   const MotionPlan plan = plan_motion(program, machine);
   const FeedSummary summary = summary_of(program, plan);
   Sampler sampler(machine, sink);
-  Stage stage("following the axes", plan.times.size());
-  std::size_t i = 0;
-  build_segments(program, machine, [&](const Segment& segment) {
-    const double next_start_s = i + 1 < plan.times.size() ? plan.times[i + 1].start_s : summary.time_s;
-    // The pause for a whole period belongs to the segment that waits for it.
-    const SegmentTime& time = plan.times[i];
-    sampler.pass(segment, motion_of(plan, i, segment, machine), time, std::min(next_start_s, time.end_s()));
-    if (++i % kRun == 0) stage.advance(kRun);
-  });
+  follow_plan(program, machine, plan, summary.time_s,
+              [&](const Segment& segment, const SegmentMotion& motion, const SegmentTime& time, double next_start_s) {
+                sampler.pass(segment, motion, time, next_start_s);
+              });
   sampler.settle();
   return summary;
 }

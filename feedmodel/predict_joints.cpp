@@ -4,12 +4,10 @@
 #include <vector>
 
 #include "base/cancel.h"
-#include "base/stage.h"
 #include "base/units.h"
 #include "feedmodel/axes.h"
+#include "feedmodel/follow_plan.h"
 #include "feedmodel/joint_map.h"
-#include "feedmodel/path_builder.h"
-#include "feedmodel/plan.h"
 #include "feedmodel/summary.h"
 #include "feedmodel/timed_path.h"
 
@@ -157,14 +155,10 @@ FeedSummary predict_joints(const nc::Interpretation& program, const machine::Mac
   const MotionPlan plan = plan_motion(program, machine);
   FeedSummary summary = summary_of(program, plan);
   JointSampler sampler(machine, program, sink);
-  Stage stage("following the axes", plan.times.size());
-  std::size_t i = 0;
-  build_segments(program, machine, [&](const Segment& segment) {
-    const double next_start_s = i + 1 < plan.times.size() ? plan.times[i + 1].start_s : summary.time_s;
-    const SegmentTime& time = plan.times[i];
-    sampler.pass(segment, motion_of(plan, i, segment, machine), time, std::min(next_start_s, time.end_s()));
-    if (++i % kSamplesTogether == 0) stage.advance(kSamplesTogether);
-  });
+  follow_plan(program, machine, plan, summary.time_s,
+              [&](const Segment& segment, const SegmentMotion& motion, const SegmentTime& time, double next_start_s) {
+                sampler.pass(segment, motion, time, next_start_s);
+              });
   sampler.settle();
   summary.contour = sampler.contour();
   return summary;
