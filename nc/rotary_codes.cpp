@@ -111,6 +111,11 @@ void BlockInterpreter::read_tool_length(const Code& code) {
   const double number = words_.has('H') ? words_.value('H') : state_.tool;
   tool_length_active_ = true;
   state_.tool_length_mm.reset();
+  if (number != std::floor(number) || number < 0 || number > 1e6) {
+    error(words_.offset_of('H'), "tool-length",
+          fmt::format("H{} is not an offset number; a whole number of zero or more was expected", number));
+    return;
+  }
   const auto found = tool_offsets_.find(static_cast<int>(number));
   if (found == tool_offsets_.end() || !found->second.length_mm) return;
   const double length = *found->second.length_mm + found->second.length_wear_mm.value_or(0);

@@ -122,6 +122,13 @@ TEST(Rotary, TipControlNeedsAToolLength) {
                      "was expected [tool-length]"});
 }
 
+TEST(Rotary, NumbersOfToolLengthsAreWhole) {
+  const std::string expected = " is not an offset number; a whole number of zero or more was expected [tool-length]";
+  for (const char* number : {"1.5", "-1", "5555555555555"})
+    EXPECT_EQ(read_text(std::string("G0 X0 Y0 Z0\nG43 H") + number + "\n", five_axes("fanuc")).messages,
+              Messages{std::string("p.nc:2:5: error: H") + number + expected});
+}
+
 TEST(Rotary, ToolDirectionsOfG435) {
   const Read r = read_clean("G0 X0 Y0 Z0\nG43.5 H1\nG1 X1 I0.6 K0.8 F100\nX2\nX3 I3. J0. K4.\n", five_axes("fanuc"));
   ASSERT_EQ(r.moves.rotary.size(), 2U);
