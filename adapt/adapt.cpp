@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "adapt/adapter.h"
+#include "adapt/feed_brackets.h"
 #include "simulate/verdict.h"
 
 namespace camber::adapt {
@@ -109,6 +110,7 @@ ObservedLoads Adapter::predict(const Candidate& candidate, std::vector<std::stri
 /// Emits, predicts and corrects until no load exceeds its limit and the greatest is near it.
 void Adapter::correct(AdaptResult& out) {
   std::vector<double> feeds = allowed(1);
+  FeedBrackets brackets(*cells_);
   double best_excess = kInf;
   while (predictions_ < kMaxPredictions) {
     progress("choosing feeds", 0);
@@ -116,7 +118,10 @@ void Adapter::correct(AdaptResult& out) {
     std::vector<std::string> doubts;
     ObservedLoads loads = predict(*candidate, doubts);
     Verdict verdict = judge(*candidate, loads, *cells_, given(), limits_, chooser_->bounds());
-    const std::vector<double> now = allowed_feeds(*cells_, loads, scaled(limits_, kAim), flutes_);
+    brackets.add(candidate->speed_mm_per_s, verdict.of_cell);
+    std::vector<double> now = allowed_feeds(*cells_, loads, scaled(limits_, kAim), flutes_);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (now[i] >= 0) now[i] = brackets.speed_mm_per_s(i, now[i], kAim);
     const double excess = std::max(1.0, verdict.excess);
     const bool low = excess == 1 && verdict.peak < kUnderLimit && can_be_raised(*candidate, now);
     const bool settled = excess == 1 && !low;

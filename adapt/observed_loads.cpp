@@ -69,8 +69,9 @@ ObservedLoads observe_with(const ObservedRun& run, const FeedCells& cells, EdgeS
     if (!errors.empty()) {
       const auto share = static_cast<float>(edge_share(k, p, index_of(Load::force), values[index_of(Load::force)]));
       const StampError& e = errors[k];
-      p.load.curve[index_of(Load::form_error)] = {e.contour_mm + share * e.deflection_mm,
-                                                  (1 - share) * e.deflection_mm};
+      // The axes' lag at a bend of the path, and with it the contour error, is proportional to the speed.
+      p.load.curve[index_of(Load::form_error)] = {share * e.deflection_mm,
+                                                  e.contour_mm + (1 - share) * e.deflection_mm};
     }
     out.points.push_back(p);
   }
