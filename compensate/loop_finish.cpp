@@ -113,6 +113,7 @@ void Loop::finish(CompensationResult& out) {
     std::vector<PointCause> points;
     split_error(path, best_->observed, fit_options(), &points);
     out.causes = causes_of(best.split, points, best_->observed, lines_of(*best_, program));
+    for (CauseFigure& cause : out.causes) cause.cut_twice = best.repeated > 0;
   }
   if (options_.max_stock_crossings > 0)
     out.stock = removal::stock_shape(setup_.target.surface, options_.max_stock_crossings);

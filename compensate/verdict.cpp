@@ -19,8 +19,8 @@ struct CauseWords {
   const char* remedy;
 };
 
-CauseWords words_of(Cause cause) {
-  switch (cause) {
+CauseWords words_of(const CauseFigure& figure) {
+  switch (figure.cause) {
     case Cause::correctable:
       return {"could still be corrected by a shift", "more rounds (max_rounds) or a finer voxel_mm"};
     case Cause::guard:
@@ -35,7 +35,8 @@ CauseWords words_of(Cause cause) {
       return {"is near the axis of a round tip", "a tilted tool or another path there"};
     case Cause::bow:
       return {"differs along the cutter (helix bow)",
-              "a second cut (lever \"passes\"), a shorter tool or a lower feed"};
+              figure.cut_twice ? "a shorter tool or a lower feed"
+                               : "a second cut (lever \"passes\"), a shorter tool or a lower feed"};
     case Cause::not_compensated:
       break;
   }
@@ -128,7 +129,7 @@ std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<Po
 }
 
 std::string sentence(const CauseFigure& c) {
-  const CauseWords words = words_of(c.cause);
+  const CauseWords words = words_of(c);
   const std::string where =
       c.lines.empty() ? ""
                       : fmt::format(", most in line{} {}", c.lines.size() > 1 ? "s" : "", fmt::join(c.lines, ", "));

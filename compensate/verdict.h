@@ -34,6 +34,7 @@ struct CauseFigure {
   Cause cause = Cause::correctable;
   double rms_um = 0;
   std::vector<std::size_t> lines;  ///< 1-based, the worst ones, ascending
+  bool cut_twice = false;          ///< the program has second cuts already
 };
 
 /// Those that make a tenth of the mean square or more, the largest first. `lines`: of the judged program, one per point

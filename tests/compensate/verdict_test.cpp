@@ -95,6 +95,12 @@ TEST(Causes, NameTheWorstLinesOfTheLargestParts) {
   EXPECT_EQ(sentence(causes[0]),
             "8.00 um rms differs along the cutter (helix bow), most in lines 10, 20, 30; a second cut (lever "
             "\"passes\"), a shorter tool or a lower feed would remove it");
+  CauseFigure twice = causes[0];
+  twice.cut_twice = true;
+  EXPECT_EQ(
+      sentence(twice),
+      "8.00 um rms differs along the cutter (helix bow), most in lines 10, 20, 30; a shorter tool or a lower feed "
+      "would remove it");
 }
 
 }  // namespace
