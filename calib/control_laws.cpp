@@ -68,18 +68,22 @@ bool is_number_of_law(const LimitParameter& p) {
   return p.name.starts_with("control.corner.") && p.name != "control.corner.step_share";
 }
 
+bool is_stop_share(const LimitParameter& p) { return p.name == "control.stop_acceleration_share"; }
+
 /// Start values of the law's number and of the accelerations, which make up for each other: the commands of a trace may
 /// have been smoothed, so that the accelerations seen in them are too low by a factor that all axes share.
 void start_together(const std::vector<TimedLines>& data, const Machine& base, std::vector<LimitParameter>& parameters) {
   std::vector<LimitParameter> best = parameters;
   double least = INFINITY;
+  const bool overlap = blocks_overlap(data, base);
   for (const double factor : {1.0, 2.0, 4.0, 8.0}) {
     std::vector<LimitParameter> here = parameters;
     for (LimitParameter& p : here)
       if (axis_of_acceleration(p)) p.start = std::clamp(factor * p.start, p.least * 1.001, p.most * 0.999);
     double cost = scan_start(data, base, here, here.size() - 1, kCoarseSteps);
     for (std::size_t i = 0; i < here.size(); ++i)
-      if (is_number_of_law(here[i])) cost = scan_start(data, base, here, i, kCoarseSteps);
+      if (is_number_of_law(here[i]) || (overlap && is_stop_share(here[i])))
+        cost = scan_start(data, base, here, i, kCoarseSteps);
     if (cost >= least) continue;
     least = cost;
     best = here;

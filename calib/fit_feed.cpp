@@ -96,11 +96,44 @@ void add_timed_lines(const FeedRun& run, const Machine& machine, int keep_back_e
   }
 }
 
+bool moves_in_trace(const nc::Interpretation& program, const nc::Move& move, const LineFeed& line) {
+  return line.turn && (length_mm(program, move) > kNoLengthMm || line.turns);
+}
+
+/// Positionings of programs with rotary motion, those that follow each other as one: blocks that turn are often limited
+/// by rotary axes, so that the accelerations of X, Y and Z show here alone. Without the first one, which begins at a
+/// place that the program does not give.
+void add_positionings(const FeedRun& run, const Machine& machine, int keep_back_every, std::size_t& count,
+                      std::vector<TimedLines>& data) {
+  if (!feedmodel::has_rotary_motion(run.program, machine)) return;
+  const std::vector<LineFeed> lines = feeds_of_lines(run.program, machine);
+  TimedLines out;
+  bool open = false, first = true;
+  for (const nc::Move& move : run.program.moves) {
+    const std::uint32_t line = move.block + 1;
+    const bool rapid = move.kind == nc::MoveKind::rapid && !move.reference;
+    if (rapid && !moves_in_trace(run.program, move, lines[line])) continue;
+    if (rapid && open) out.parts.back().line_last = line;
+    if (rapid && !open && !first) out.parts.push_back({line, line, 0});
+    open = rapid && !first;
+    first = first && !rapid;
+  }
+  for (std::size_t i = 0; i < out.parts.size(); ++i) {
+    out.kept_back.push_back(++count % static_cast<std::size_t>(keep_back_every) == 0);
+    out.group.push_back(static_cast<int>(count));
+  }
+  out.program = &run.program;
+  out.time_s = traced_times_s(run.trace, out.parts);
+  data.push_back(std::move(out));
+}
+
 std::vector<TimedLines> timed_lines(const std::vector<FeedRun>& runs, const Machine& machine, int keep_back_every,
                                     std::size_t& count) {
   std::vector<TimedLines> data;
   for (const FeedRun& run : runs)
     if (!run.trace.line.empty()) add_timed_lines(run, machine, keep_back_every, count, data);
+  for (const FeedRun& run : runs)
+    if (!run.trace.line.empty()) add_positionings(run, machine, keep_back_every, count, data);
   return data;
 }
 

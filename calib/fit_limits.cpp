@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "base/units.h"
+#include "feedmodel/joint_map.h"
 #include "feedmodel/plan.h"
 
 namespace camber::calib {
@@ -25,6 +26,10 @@ constexpr double kNoTime = 1e-9;         // s
 constexpr double kShiftPeriods = 0.5;
 constexpr double kWideLossScale = 300.0;
 constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
+constexpr double kStep = 1e-3;      // of a logarithm; the plan has small kinks (whole periods): a wide step ignores them
+constexpr double kWideStep = 1e-2;  // blocks that overlap last whole periods: their times are steps
+constexpr double kFirstSearchStep = 0.04, kLastSearchStep = 2e-4;  // of a logarithm
+constexpr int kMaxSearches = 200;
 
 template <int axis>
 LimitParameter acceleration(const char* name) {
@@ -156,12 +161,38 @@ std::unique_ptr<ceres::CostFunction> make_cost(const std::vector<TimedLines>& da
                                                const std::vector<LimitParameter>& parameters, std::size_t residuals,
                                                double loss_scale) {
   ceres::NumericDiffOptions step;
-  step.relative_step_size = 1e-3;  // the plan has small kinks (whole periods); a wide step looks over them
+  step.relative_step_size = blocks_overlap(data, base) ? kWideStep : kStep;
   auto cost = std::make_unique<ceres::DynamicNumericDiffCostFunction<TimeResiduals, ceres::FORWARD>>(
       new TimeResiduals(data, base, parameters, loss_scale), ceres::TAKE_OWNERSHIP, step);
   cost->AddParameterBlock(static_cast<int>(parameters.size()));
   cost->SetNumResiduals(static_cast<int>(residuals));
   return cost;
+}
+
+/// Compass search: the times of blocks that overlap are steps of a period, on which a derivative cannot settle.
+void search(const std::vector<TimedLines>& data, const Machine& base, const std::vector<LimitParameter>& parameters,
+            std::vector<double>& logs) {
+  std::vector<double> residuals;
+  const auto cost = [&](const std::vector<double>& at) {
+    residuals_of(data, machine_at(base, parameters, at.data()), false, residuals);
+    return robust_cost(residuals);
+  };
+  double least = cost(logs);
+  const auto improve = [&](std::size_t i, double step) {
+    std::vector<double> there = logs;
+    there[i] = std::clamp(logs[i] + step, std::log(parameters[i].least), std::log(parameters[i].most));
+    const double here = cost(there);
+    if (here >= least) return false;
+    least = here;
+    logs = there;
+    return true;
+  };
+  int searches = 0;
+  for (double step = kFirstSearchStep; step > kLastSearchStep && searches < kMaxSearches; ++searches) {
+    bool improved = false;
+    for (std::size_t i = 0; i < logs.size(); ++i) improved |= improve(i, step) || improve(i, -step);
+    if (!improved) step /= 2;
+  }
 }
 
 /// What each residual of the fitted parts is of, in their order.
@@ -230,6 +261,12 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
 }
 
 }  // namespace
+
+bool blocks_overlap(const std::vector<TimedLines>& data, const Machine& machine) {
+  if (!machine.control.kind.turning_blocks_overlap || machine.control.joint_limits) return false;
+  return std::ranges::any_of(
+      data, [&](const TimedLines& lines) { return feedmodel::has_rotary_motion(*lines.program, machine); });
+}
 
 bool any_logged(const std::vector<TimedLines>& data) {
   return std::any_of(data.begin(), data.end(), [](const TimedLines& lines) { return lines.logged(); });
@@ -366,6 +403,7 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
     ceres::Solve(options, &problem, &summary);
     fit.converged = summary.termination_type == ceres::CONVERGENCE;
   }
+  if (blocks_overlap(data, start)) search(data, start, fit.parameters, logs);
   set_errors(fit, data, start, logs, residuals.size());
 
   const Machine fitted = fit.whole = machine_at(start, fit.parameters, logs.data());

@@ -26,6 +26,9 @@ struct TimedLines {
 
 bool any_logged(const std::vector<TimedLines>& data);
 
+/// Whether the plan of some program has blocks that last whole periods (feedmodel/overlap.h).
+bool blocks_overlap(const std::vector<TimedLines>& data, const machine::Machine& machine);
+
 /// A number of the machine that the fit may change.
 struct LimitParameter {
   std::string name, unit;
@@ -56,7 +59,7 @@ struct LimitFit {
 /// units of what it is known to, whether a servo trace or a log has it. Standard errors: the sandwich (J'J)^-1 sum(s
 /// s') (J'J)^-1 over groups, s = J'r of a group, and beside it what a common shift of all traced times by half a period
 /// does, since a trace tells times to a period. far_away: the start values may be wrong by much; a wide loss leads
-/// first.
+/// first. Where blocks overlap, a compass search follows.
 LimitFit fit_limits(const std::vector<TimedLines>& data, const machine::Machine& start,
                     std::vector<LimitParameter> parameters, int max_iterations, bool far_away);
 

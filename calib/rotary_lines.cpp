@@ -16,6 +16,7 @@ LineFeed line_feed(const nc::Interpretation& program, const machine::Machine& ma
   LineFeed line;
   line.turn = turns.rest(false);
   line.rotary_alone = linear_mm < kNoLengthMm && turn_deg > 0;
+  line.turns = turn_deg > 0;
   line.cutting = move.kind != nc::MoveKind::rapid;
   if (line.cutting)
     line.feed_per_s = feedmodel::feed_along_path(program, move, turn_rad, turns.now().g93_time_s, machine.control);

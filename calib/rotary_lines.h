@@ -12,6 +12,7 @@ namespace camber::calib {
 struct LineFeed {
   std::shared_ptr<const feedmodel::Turn> turn;  ///< null: a line without motion
   bool rotary_alone = false;                    ///< X, Y and Z rest
+  bool turns = false;                           ///< a rotary axis moves
   bool cutting = false;
   /// Along the path, /s: mm, or degrees where only rotary axes move. 0 for rapids.
   double feed_per_s = 0;
