@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace camber::deflection {
 
@@ -19,8 +20,11 @@ constexpr double kMinShare = 0.3;    ///< of the way to the equilibrium
 
 }  // namespace
 
-void StaticCut::start(std::size_t from, std::size_t count, removal::DeflectionTable& deflections) {
-  from_ = from;
+void StaticCut::start(std::size_t from, std::size_t count, removal::DeflectionTable& deflections,
+                      std::function<bool(std::size_t)> must_read) {
+  from_ = from, count_ = count;
+  must_read_ = std::move(must_read);
+  carved_ = 0, reglanced_ = count;
   deflections_ = &deflections;
   engager_.start(from, count, deflections);
 }
@@ -64,25 +68,48 @@ void StaticCut::start_from_before(std::size_t k, std::span<float> row) const {
   run_out_.add(from_ + k, 1, deflections_->nodes(), row);
 }
 
-/// Extrapolates the deflection where that is good enough; otherwise `row` is what a reading starts from.
-bool StaticCut::follow(std::size_t k, std::span<float> row) {
+/// Extrapolates the deflection where that is good enough; otherwise its row is what a reading starts from.
+bool StaticCut::follow(std::size_t k) {
+  const std::span<float> row(deflections_->row(static_cast<std::ptrdiff_t>(k)), deflections_->row_size());
   const std::size_t passing = from_ + k;
   const bool may = pace_.may_follow(passing, stamps_[passing]);
   if (!pace_.has_line(passing)) return start_from_before(k, row), false;
   pace_.follow(passing, row);
   if (!(deflections_->largest_mm(static_cast<std::ptrdiff_t>(k)) <= removal::DeflectedEngager::kMaxDeflection_mm))
     return start_from_before(k, row), false;
-  return may && pace_.as_much_material(passing, engager_.glance(k));
+  return may && !must_read_(k);
 }
 
-StaticCut::Passing StaticCut::cut(std::size_t k, bool must_read) {
+/// Number of passings from k on that are not read. A glance that finds other material than foreseen is repeated once
+/// the stamps before it are carved.
+std::size_t StaticCut::followers(std::size_t k) {
+  std::size_t count = 0;
+  while (k + count < count_ && follow(k + count) && (k != reglanced_ || count == 0)) ++count;
+  if (count == 0) return 0;
+  const auto glances = engager_.glance(k, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (pace_.as_much_material(from_ + k + i, glances[i])) continue;
+    reglanced_ = k + i;
+    return i;
+  }
+  return count;
+}
+
+void StaticCut::carve_to(std::size_t end) {
+  if (end > carved_) engager_.cut(carved_, end - carved_);
+  carved_ = std::max(carved_, end);
+}
+
+StaticCut::Passing StaticCut::cut(std::size_t k) {
   const auto at = static_cast<std::ptrdiff_t>(k);
   const std::span<float> row(deflections_->row(at), deflections_->row_size());
   Passing out;
-  if (follow(k, row) && !must_read) {
-    engager_.cut(k);
-    return out;
+  if (k >= carved_) {
+    const bool pending = carved_ < k;
+    carve_to(k + followers(k));
+    if (pending && k == carved_ && k == reglanced_) carve_to(k + followers(k));
   }
+  if (k < carved_) return out;
   out.settled = false;
   ReadingPace::Reading reading;
   swing_.clear();
@@ -117,7 +144,7 @@ StaticCut::Passing StaticCut::cut(std::size_t k, bool must_read) {
     }
     before_um = step.rms_um;
   }
-  engager_.cut(k);
+  if (k + 1 == count_) carve_to(count_);
   reading.settled = out.settled;
   reading.glance = engager_.glance_of(read_);
   pace_.was_read(from_ + k, stamps_[from_ + k], row, reading);

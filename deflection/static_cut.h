@@ -1,6 +1,7 @@
 #pragma once
 // Cutting with the deflected cutter: each tooth passing is brought to its static equilibrium before the next one.
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct SettleOptions {
 /// chips and solving for them (StaticEquilibrium), repeatedly, and then cut. Run-out of equally spaced teeth is an
 /// offset of the axis that turns with the tool: the rows contain deflection plus offset, and the chip of each tooth
 /// follows from the surface left by the previous ones. Where the cut changes slowly, only some passings are read, and
-/// the deflections of the others are extrapolated (ReadingPace).
+/// the deflections of the others are extrapolated (ReadingPace). These are glanced at together, before the passing that
+/// was read is carved, and carved together with it.
 class StaticCut {
  public:
   StaticCut(removal::Stock& stock, const removal::Stock& blank, const removal::EnvelopeGrid& envelope,
@@ -47,8 +49,9 @@ class StaticCut {
         pace_(different_teeth, options.longest_gap) {}
 
   /// Begins with stamps[from] ... stamps[from + count - 1]; row -1 of `deflections` is that of the stamp before. The
-  /// rows are filled as their stamps are cut.
-  void start(std::size_t from, std::size_t count, removal::DeflectionTable& deflections);
+  /// rows are filled as their stamps are cut. `must_read`: passings that are read whatever the pace.
+  void start(std::size_t from, std::size_t count, removal::DeflectionTable& deflections,
+             std::function<bool(std::size_t k)> must_read);
 
   struct Passing {
     int rounds = 0;  ///< 0: not read; the deflection was extrapolated
@@ -56,9 +59,9 @@ class StaticCut {
     NoEquilibrium reason = NoEquilibrium::swings;  ///< where it has not
     std::span<const removal::ChipSample> chips;    ///< as read; valid until the call after the next reading
   };
-  /// Cuts stamps[from + k]. If the static deflection does not converge, the closest approximation is used; if it
-  /// exceeds removal::DeflectedEngager::kMaxDeflection_mm, that of the previous stamp. `must_read`: whatever the pace.
-  Passing cut(std::size_t k, bool must_read);
+  /// Cuts stamps[from + k], for k = 0, 1 ... in order. If the static deflection does not converge, the closest
+  /// approximation is used; if it exceeds removal::DeflectedEngager::kMaxDeflection_mm, that of the previous stamp.
+  Passing cut(std::size_t k);
   /// What the extrapolated deflections missed, as the readings after them show.
   const ReadingPace::Errors& extrapolation_errors() const { return pace_.errors(); }
   /// Writes the cut to the stock. Returns the volume removed since the last commit, mm^3.
@@ -67,7 +70,9 @@ class StaticCut {
  private:
   NoEquilibrium beyond_reach(std::span<const float> row) const;
   void start_from_before(std::size_t k, std::span<float> row) const;
-  bool follow(std::size_t k, std::span<float> row);
+  bool follow(std::size_t k);
+  std::size_t followers(std::size_t k);
+  void carve_to(std::size_t end);
   bool rests(std::span<const float> row, const StaticEquilibrium::Step& step) const;
 
   std::span<const removal::Stamp> stamps_;
@@ -77,7 +82,10 @@ class StaticCut {
   removal::DeflectedEngager engager_;
   StaticEquilibrium equilibrium_;
   ReadingPace pace_;
-  std::size_t from_ = 0;
+  std::size_t from_ = 0, count_ = 0;
+  std::function<bool(std::size_t)> must_read_;
+  std::size_t carved_ = 0;    ///< stamps of the stretch
+  std::size_t reglanced_ = 0; ///< where the last glance found other material than foreseen
   removal::DeflectionTable* deflections_ = nullptr;
   std::vector<removal::DeflectedChipSample> read_;
   std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this reading and of the previous one, alternating

@@ -186,8 +186,9 @@ struct DeflectedChipSample {
   std::array<float, 3> deeper{};  ///< d(depth)/d(deflection), by x, y and z
 };
 
-/// Engagement of the deflected cutter, stamp by stamp: read() returns the chips of a stamp with its current deflection
-/// and is called again when that changes; then cut() carves the stamp. For one run of one tool.
+/// Engagement of the deflected cutter: read() returns the chips of a stamp with its current deflection and is called
+/// again when that changes; then cut() carves the stamp, alone or together with stamps after it. For one run of one
+/// tool.
 class DeflectedEngager {
  public:
   static constexpr double kMaxDeflection_mm = 0.5;
@@ -204,12 +205,15 @@ class DeflectedEngager {
   /// Chips that stamps[from + k] takes after its predecessors were cut; valid until the next call. Points less than
   /// kNear_mm outside the material are among them, with a negative thickness.
   std::span<const DeflectedChipSample> read(std::size_t k);
-  /// The chips of read(), summed up over some patches of the envelope, always the same ones: how much material there
-  /// is, at an eighth of the cost.
-  double glance(std::size_t k);
+  /// For `count` stamps from stamps[from + k] on: the chips of read(), summed up over some patches of the envelope,
+  /// always the same ones: how much material there is, at an eighth of the cost. All of them find the stock as it is.
+  /// What earlier stamps that are not cut yet would take is then deeper than the motion lets a chip be, which changes
+  /// the sum little. Valid until the next call.
+  std::span<const double> glance(std::size_t k, std::size_t count);
   /// The same sum of chips that were read.
   double glance_of(std::span<const DeflectedChipSample> chips) const;
-  void cut(std::size_t k);
+  /// Cuts `count` stamps from stamps[from + k] on, tile by tile.
+  void cut(std::size_t k, std::size_t count = 1);
   /// Writes all pending tiles to the stock. Returns the volume removed since the last commit, mm^3.
   double commit();
 

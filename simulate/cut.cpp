@@ -365,15 +365,17 @@ class Cutter {
     if (!static_cut_)
       static_cut_.emplace(stock_, *blank_, envelope_, model_, all, first_id, settle_options(), run_out_,
                           different_teeth_);
-    static_cut_->start(from, loads.size(), deflections);
+    // Loads between two readings lie between theirs; each stretch of passings ends with readings.
+    static_cut_->start(from, loads.size(), deflections, [this, from, count = loads.size()](std::size_t k) {
+      return in_turn(from + k) || k + different_teeth_ >= count;
+    });
     ToothPass pass;
     std::vector<char> read(loads.size(), 1);
     tbb::task_group behind;  // the load of a tooth passing is summed up while the next one cuts
     for (std::size_t k = 0; k < loads.size(); ++k) {
       cancellation_point();
       const Stamp& stamp = all[from + k];
-      // Loads between two readings lie between theirs; each stretch of passings ends with readings.
-      const auto passing = static_cut_->cut(k, in_turn(from + k) || k + different_teeth_ >= loads.size());
+      const auto passing = static_cut_->cut(k);
       if (passing.rounds == 0) {
         read[k] = 0;
         continue;

@@ -30,7 +30,8 @@ struct CutTile {
   ColumnCover cover;
   double material;  ///< as it was loaded, voxels
   bool changed = false;
-  bool cut = false;  ///< by a stamp with this tip and bend last
+  std::vector<std::int32_t> group{};  ///< of the stamps that are cut together, those that reach it
+  bool cut = false;                   ///< by a stamp with this tip and bend last
   Vec3 last_tip_mm = Vec3::Zero();
   double last_deflection_mm = 0;
 };
@@ -59,9 +60,20 @@ struct DeflectedEngager::Impl {
   std::vector<std::vector<DeflectedChipSample>> chips_of_group{};
   tbb::enumerable_thread_specific<ChipReader::Buffers> buffers{};
   std::vector<DeflectedChipSample> chips{};
+  struct GlanceBuffers {
+    std::vector<std::int32_t> patches;
+    std::vector<DeflectedChipSample> chips;
+  };
+  tbb::enumerable_thread_specific<GlanceBuffers> glance_buffers{};
+  std::vector<double> glances{};
+  std::optional<StampDeflections> bends{};
+  std::vector<StampDeflection> group{};     ///< of the stamps that are cut together
+  std::vector<std::size_t> reached{};       ///< tiles
   std::optional<tilted::Engager> tilted{};  ///< does everything for a path that is not upright
 
   void begin(const DeflectionTable& table);
+  double glance(std::size_t k);
+  void list_group(std::size_t k, std::size_t count);
   void cut(std::size_t tile, std::size_t k, const StampDeflection& deflection);
 };
 
@@ -119,17 +131,28 @@ void DeflectedEngager::start(std::size_t from, std::size_t count, const Deflecti
   m.arena.read_tops(static_cast<int>(std::ceil((m.lanes->widest_mm() + kMaxDeflection_mm) / m.stock.voxel_mm())),
                     [&](std::size_t t) -> const ColumnCover& { return m.tiles[t]->cover; });
   m.memory.begin(deflections);
+  m.bends.emplace(m.envelope, deflections);
   m.reader.emplace(m.envelope, *m.lanes, m.all, m.stamps, m.first_id, m.stock.voxel_mm(), deflections, m.memory);
 }
 
-double DeflectedEngager::glance(std::size_t k) {
+double DeflectedEngager::Impl::glance(std::size_t k) {
+  GlanceBuffers& b = glance_buffers.local();
+  reader->find_patches(arena, k, b.patches);
+  std::erase_if(b.patches, [](std::int32_t patch) { return !glanced_at(static_cast<std::uint32_t>(patch)); });
+  b.chips.clear();
+  reader->read(arena, k, b.patches, buffers.local(), b.chips);
+  return sum_of_glanced(b.chips, glanced_point);
+}
+
+std::span<const double> DeflectedEngager::glance(std::size_t k, std::size_t count) {
   Impl& m = *impl_;
-  if (m.tilted) return m.tilted->glance(k);
-  m.reader->find_patches(m.arena, k, m.patches);
-  std::erase_if(m.patches, [](std::int32_t patch) { return !glanced_at(static_cast<std::uint32_t>(patch)); });
-  m.chips.clear();
-  m.reader->read(m.arena, k, m.patches, m.buffers.local(), m.chips);
-  return glance_of(m.chips);
+  m.glances.resize(count);
+  if (m.tilted) {
+    for (std::size_t i = 0; i < count; ++i) m.glances[i] = m.tilted->glance(k + i);
+    return m.glances;
+  }
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { m.glances[i] = m.glance(k + i); });
+  return m.glances;
 }
 
 double DeflectedEngager::glance_of(std::span<const DeflectedChipSample> chips) const {
@@ -155,16 +178,39 @@ std::span<const DeflectedChipSample> DeflectedEngager::read(std::size_t k) {
   return m.chips;
 }
 
-void DeflectedEngager::cut(std::size_t k) {
+void DeflectedEngager::Impl::list_group(std::size_t k, std::size_t count) {
+  group.clear();
+  reached.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto row = static_cast<std::ptrdiff_t>(k + i);
+    group.push_back(bends->of(row));
+    memory.add(deflections->row(row));
+    max_deflection_mm = std::max(max_deflection_mm, group.back().largest_mm);
+    max_axial_mm = std::max(max_axial_mm, group.back().axial_mm);
+    for (const std::int32_t t : arena.reached_by(k + i)) {
+      CutTile& tile = *tiles[static_cast<std::size_t>(t)];
+      if (tile.cover.all_air()) continue;
+      if (tile.group.empty()) reached.push_back(static_cast<std::size_t>(t));
+      tile.group.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+}
+
+/// The last stamp of a tile first: where the tool moves ahead, it leaves nothing to those before it.
+void DeflectedEngager::cut(std::size_t k, std::size_t count) {
   Impl& m = *impl_;
-  if (m.tilted) return m.tilted->cut(k);
-  const StampDeflection deflection = StampDeflections(m.envelope, *m.deflections).of(static_cast<std::ptrdiff_t>(k));
-  m.memory.add(m.deflections->row(static_cast<std::ptrdiff_t>(k)));
-  m.max_deflection_mm = std::max(m.max_deflection_mm, deflection.largest_mm);
-  m.max_axial_mm = std::max(m.max_axial_mm, deflection.axial_mm);
-  const auto reached = m.arena.reached_by(k);
-  tbb::parallel_for(std::size_t{0}, reached.size(),
-                    [&](std::size_t i) { m.cut(static_cast<std::size_t>(reached[i]), k, deflection); });
+  if (m.tilted) {
+    for (std::size_t i = 0; i < count; ++i) m.tilted->cut(k + i);
+    return;
+  }
+  m.list_group(k, count);
+  tbb::parallel_for(std::size_t{0}, m.reached.size(), [&](std::size_t i) {
+    auto& group = m.tiles[m.reached[i]]->group;
+    for (; !group.empty(); group.pop_back()) {
+      const auto of_group = static_cast<std::size_t>(group.back());
+      m.cut(m.reached[i], k + of_group, m.group[of_group]);
+    }
+  });
 }
 
 double DeflectedEngager::commit() {

@@ -83,12 +83,17 @@ struct DeflectionLanes {
     return pair.x + fraction * (pair.y - pair.x);
   }
 
+  using Mask = xsimd::batch_bool<float, A>;
+
   /// The deflection s of the envelope's point that is displaced to a place: s = deflection_at(place - s), from a first
-  /// guess.
+  /// guess, until the next step would change it by no more than Settling::kFieldClose_mm. Of lanes that are not
+  /// `exact` one step is enough.
   static Deflection settled_at(const EdgeLanes& e, const DeflectionRow& rows, const I& offset, const F& x, const F& y,
-                               const F& z, Deflection s) {
+                               const F& z, Deflection s, const Mask& exact = F(1.0f) > F(0.0f)) {
     const F zero(0.0f), close2(Settling::kFieldClose_mm * Settling::kFieldClose_mm);
-    auto live = close2 > zero;
+    const F least_fall2(Settling::kTrustedFall * Settling::kTrustedFall);
+    Mask live = close2 > zero;
+    F before2 = zero;
     for (int step = 0; step < Settling::kFieldSteps; ++step) {
       const Deflection next = deflection_at(e, rows, offset, x - s.x, y - s.y, z - s.z);
       const F turned_x = next.x - s.x, turned_y = next.y - s.y, turned_z = next.z - s.z;
@@ -96,7 +101,12 @@ struct DeflectionLanes {
       s.x += xsimd::select(live, share * turned_x, zero);
       s.y += xsimd::select(live, share * turned_y, zero);
       s.z += xsimd::select(live, share * turned_z, zero);
-      live = live & (turned_x * turned_x + turned_y * turned_y + turned_z * turned_z > close2);
+      const F turned2 = turned_x * turned_x + turned_y * turned_y + turned_z * turned_z;
+      F next2 = turned2;
+      if (step > 0 && step < Settling::kPlainSteps)
+        next2 *= xsimd::max(turned2 / xsimd::max(before2, close2), least_fall2);
+      live = live & exact & (next2 > close2);
+      before2 = turned2;
       if (!xsimd::any(live)) break;
     }
     return s;

@@ -19,9 +19,10 @@ template <class A>
 struct Vectors {
   using F = xsimd::batch<float, A>;
   using I = xsimd::batch<std::int32_t, A>;
+  using Mask = xsimd::batch_bool<float, A>;
   static constexpr int n = static_cast<int>(F::size);
   static constexpr int kSide = 17;     ///< Tile::kSide
-  static constexpr float kFarAir = 2;  ///< voxels: no cell with a surface in it reaches so far
+  static constexpr float kFar = 2;  ///< voxels: no cell with a surface in it reaches so far
 
   static F load(const float* p) { return F::load_unaligned(p); }
   static I load(const std::int32_t* p) { return I::load_unaligned(p); }
@@ -139,9 +140,9 @@ struct Vectors {
 
   /// Deflection of the envelope's point that is displaced to a place.
   static Deflection settled_at(const LineCut& c, const LineDeflection& b, const F& x, const F& y, const F& z,
-                               const Deflection& guess) {
+                               const Deflection& guess, const Mask& exact) {
     return DeflectionLanes<A>::settled_at({c.flat, c.corner, b.lag_per_mm, b.steps_per_rad}, b.deflection, I(0), x, y,
-                                          z, guess);
+                                          z, guess, exact);
   }
 
   /// Calls f(first voxel of a vector) for all of a column from `low` up to `top`; the lowest vectors may overlap.
@@ -288,6 +289,25 @@ struct Vectors {
     return {-place.distance, outwards * radial - place.distance + axial, radial};
   }
 
+  /// The deflections at the feet of the columns of a line: good guesses for all of a column, however wide the vectors
+  /// are.
+  struct Feet {
+    alignas(64) float y[LineCut::kLine], z[LineCut::kLine];
+    alignas(64) float guess_x[LineCut::kLine], guess_y[LineCut::kLine], guess_z[LineCut::kLine];
+    bool known[LineCut::kLine / n + 1] = {};
+
+    Deflection of(int j, const LineCut& c, const LineDeflection& deflection) {
+      if (const int first = j / n * n; !known[j / n]) {
+        const F zero(0.0f);
+        const Deflection s = settled_at(c, deflection, F(c.dx), load(y + first), load(z + first), {zero, zero},
+                                        F(1.0f) > zero);
+        s.x.store_aligned(guess_x + first), s.y.store_aligned(guess_y + first), s.z.store_aligned(guess_z + first);
+        known[j / n] = true;
+      }
+      return {F(guess_x[j]), F(guess_y[j]), F(guess_z[j])};
+    }
+  };
+
   static LineResult cut_line_deflected(const LineCut& c, const LineDeflection& deflection) {
     LineResult result;
     const float per_voxel = 1 / c.voxel, dx2 = c.dx * c.dx;
@@ -295,7 +315,7 @@ struct Vectors {
     // How far a deflection moves the envelope outwards in each column; near the axis a deflection turns a place into
     // another direction.
     alignas(64) float slack[LineCut::kLine];
-    const F far_air(kFarAir * c.voxel + deflection.largest_mm);
+    const F far_out(kFar * c.voxel + deflection.largest_mm);
     const F largest(deflection.largest_mm), axial(deflection.axial_mm),
         axis_zone2(25 * deflection.largest_mm * deflection.largest_mm);
     for (int j = 0; j < LineCut::kLine; j += n) {
@@ -306,20 +326,26 @@ struct Vectors {
       const F outward = xsimd::min(Table<A>::gather(deflection.outward_mm, sector), largest);
       xsimd::select(F(dx2) + dy * dy > axis_zone2, outward, largest).store_aligned(slack + j);
     }
-    for (int j = 0; j < LineCut::kColumns; ++j) {
-      if (!(c.changeable[j] > 0)) continue;
-      const float y = c.dy + static_cast<float>(j) * c.voxel, reach = c.corner + c.band + slack[j];
-      const float rho = std::sqrt(dx2 + y * y), qx = rho - c.flat;
+    alignas(64) float rho[LineCut::kLine];
+    int low[LineCut::kLine];
+    Feet feet;
+    for (int j = 0; j < LineCut::kLine; ++j) {
+      feet.y[j] = c.dy + static_cast<float>(j) * c.voxel, feet.z[j] = c.z;
+      low[j] = LineCut::kColumns;
+      if (j >= LineCut::kColumns || !(c.changeable[j] > 0)) continue;
+      const float y = feet.y[j], reach = c.corner + c.band + slack[j];
+      rho[j] = std::sqrt(dx2 + y * y);
+      const float qx = rho[j] - c.flat;
       if (qx > reach) continue;
       const int up = static_cast<int>((lowest_reached(qx, c.corner, reach) - c.z) * per_voxel);
-      const int low = up > c.lowest ? up : c.lowest, top = c.top[j];
-      if (low >= top) continue;
-      const F dy(y), rhos(rho), outwards(slack[j]);
+      low[j] = up > c.lowest ? up : c.lowest;
+      feet.z[j] = c.z + static_cast<float>(low[j]) * c.voxel;
+    }
+    for (int j = 0; j < LineCut::kColumns; ++j) {
+      if (low[j] >= c.top[j]) continue;
+      const F dy(feet.y[j]), rhos(rho[j]), outwards(slack[j]);
       bool changed = false;
-      // The deflection at the column's foot is a good guess for all of it, however wide the vectors are.
-      Deflection guess{F(0.0f), F(0.0f)};
-      bool guessed = false;
-      for_vectors(low, top, [&](int k) {
+      for_vectors(low[j], c.top[j], [&](int k) {
         float* stock = c.distance + j * LineCut::kColumns + k;
         const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
         const Inside inside = inside_of(c, rhos, z, outwards, largest, axial);
@@ -329,13 +355,14 @@ struct Vectors {
         if (!xsimd::any(may)) return;
         result.tried |= 1u << j;
         // Air that no surface is near only has to be known for air; where no deflection counts none is looked for.
-        const auto far = inside.straight > far_air;
+        const auto far = inside.straight > far_out;
         const F known = xsimd::min(xsimd::select(far, inside.straight - largest, inside.straight), band);
         F v = known;
-        if (xsimd::any(may & !(far | ((inside.radial <= F(0.0f)) & (axial <= F(0.0f)))))) {
-          if (!guessed) guess = settled_at(c, deflection, dx, dy, F(c.z + static_cast<float>(low) * c.voxel), guess);
-          guessed = true;
-          const Deflection s = settled_at(c, deflection, dx, dy, z, guess);
+        const auto sought = may & !(far | ((inside.radial <= F(0.0f)) & (axial <= F(0.0f))));
+        if (xsimd::any(sought)) {
+          // So deep in the material a micrometre does not count before another stamp comes nearer.
+          const auto exact = sought & (inside.straight > -far_out);
+          const Deflection s = settled_at(c, deflection, dx, dy, z, feet.of(j, c, deflection), exact);
           const F x = dx - s.x, yy = dy - s.y;
           v = xsimd::min(-distance(xsimd::sqrt(x * x + yy * yy), z - s.z, c.flat, c.corner), band);
           v = xsimd::select(far, known, v);
