@@ -157,8 +157,8 @@ class TiltedSearch {
       : program_(program), blank_(blank), report_(job, program, diagnostics), last_needed_(0) {
     for (const auto& [number, tool] : job.tools) cylinders_.try_emplace(number, upper_cylinder(tool, blank));
     for (const auto& run : program.path.runs)
-      for (std::size_t k = run.from; k < run.from + run.count && run.kind == removal::RunKind::milling; ++k)
-        if (near(run.tool, k)) last_needed_ = k + 1;
+      if (run.kind == removal::RunKind::milling)
+        last_needed_ = last_near(cylinders_.at(run.tool), program.path, run, blank, last_needed_);
     if (last_needed_ == 0) return;
     Stage stage("checking the flutes' reach", last_needed_);
     SweptStock stock(job, program, blank, stage);
@@ -167,11 +167,6 @@ class TiltedSearch {
   }
 
  private:
-  bool near(int tool, std::size_t k) const {
-    const ToolPose& pose = program_.path.stamps[k].pose;
-    return cylinders_.at(tool).may_touch(pose, false, blank_.min_mm(), blank_.max_mm());
-  }
-
   void look_along(const removal::ToolRun& run, SweptStock& stock) {
     PlacesAlong places(cylinders_.at(run.tool), program_.path, run);
     SurfaceFeeler feeler(cylinders_.at(run.tool), stock.stock(), stock.material());
@@ -180,14 +175,14 @@ class TiltedSearch {
     for (std::size_t k = run.from; k < end && !report_.full(); ++k) {
       stock.limit_waiting(k);
       for (const ToolPose& pose : places.at(k))
-        if (run.kind == removal::RunKind::milling && near(run.tool, k)) look_at(run.tool, k, pose, feeler, stock);
+        if (run.kind == removal::RunKind::milling) look_at(run.tool, k, pose, feeler, stock);
     }
     stock.sweep_to(end);
   }
 
   void look_at(int tool, std::size_t k, const ToolPose& pose, SurfaceFeeler& feeler, SweptStock& stock) {
     const std::uint32_t block = program_.moves.moves[program_.path.stamps[k].move].block;
-    if (report_.has(block)) return;
+    if (report_.has(block) || !cylinders_.at(tool).may_touch(pose, false, blank_.min_mm(), blank_.max_mm())) return;
     bool some_cleared = false;
     const auto touch = feeler.touch(stock.probe(), pose, false, [&](const Vec3& point) {
       const bool cleared = stock.cleared(point, k);

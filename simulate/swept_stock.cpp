@@ -1,5 +1,6 @@
 #include "simulate/swept_stock.h"
 
+#include <algorithm>
 #include <span>
 
 #include "removal/engagement.h"
@@ -36,6 +37,18 @@ bool SweptStock::cleared(const Vec3& point, std::size_t end) const {
     if (p.z() <= flutes_mm_ + voxel && shape_.distance_mm(p) <= voxel) return true;
   }
   return false;
+}
+
+std::size_t last_near(const ToolSurface& tool, const removal::StampPath& path, const removal::ToolRun& run,
+                      const removal::Stock& stock, std::size_t from) {
+  std::size_t last = from;
+  for (std::size_t k = std::max(run.from, from); k < run.from + run.count; ++k) {
+    const removal::Stamp& stamp = path.stamps[k];
+    const bool alone = k == run.from || stamp.first;
+    const double way_mm = alone ? 0 : tool.displacement_mm(path.stamps[k - 1].pose, stamp.pose);
+    if (tool.may_touch(stamp.pose, false, stock.min_mm(), stock.max_mm(), way_mm)) last = k + 1;
+  }
+  return last;
 }
 
 const std::vector<ToolPose>& PlacesAlong::at(std::size_t k) {

@@ -50,6 +50,11 @@ class SweptStock {
   std::size_t swept_ = 0;  ///< stamps
 };
 
+/// One past the last stamp of the run at which the tool's shank or holder, here or on the way from the stamp before,
+/// may touch a stock; at least `from`.
+std::size_t last_near(const ToolSurface& tool, const removal::StampPath& path, const removal::ToolRun& run,
+                      const removal::Stock& stock, std::size_t from);
+
 /// Places along a run's stamps between which no point of the tool moves by more than kCollisionStep_mm.
 class PlacesAlong {
  public:

@@ -132,9 +132,7 @@ class Search {
   std::size_t last_needed(const removal::Stock& blank) const {
     std::size_t last = rapids_.empty() ? 0 : rapids_.back().check.before_stamp;
     for (const auto& run : program_.path.runs)
-      for (std::size_t k = std::max(run.from, last); k < run.from + run.count; ++k)
-        if (surfaces_.at(run.tool).may_touch(program_.path.stamps[k].pose, false, blank.min_mm(), blank.max_mm()))
-          last = k + 1;
+      last = last_near(surfaces_.at(run.tool), program_.path, run, blank, last);
     return last;
   }
 

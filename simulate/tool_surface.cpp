@@ -66,14 +66,15 @@ double ToolSurface::displacement_mm(const ToolPose& from, const ToolPose& to) co
   return std::sqrt(most);
 }
 
-bool ToolSurface::may_touch(const ToolPose& pose, bool with_cutter, const Vec3& min_mm, const Vec3& max_mm) const {
+bool ToolSurface::may_touch(const ToolPose& pose, bool with_cutter, const Vec3& min_mm, const Vec3& max_mm,
+                            double margin_mm) const {
   const double from = with_cutter ? bottom_mm_ : shank_from_mm_;
   if (from > top_mm_) return false;
   const int n = std::max(1, static_cast<int>(std::ceil((top_mm_ - from) / std::max(radius_mm_, 1.0))));
   const double half = (top_mm_ - from) / n / 2;
   for (int i = 0; i < n; ++i) {
     const Vec3 p = pose.tip_mm + (from + (2 * i + 1) * half) * pose.axis;
-    if ((p - p.cwiseMax(min_mm).cwiseMin(max_mm)).norm() < radius_mm_ + half) return true;
+    if ((p - p.cwiseMax(min_mm).cwiseMin(max_mm)).norm() < radius_mm_ + half + margin_mm) return true;
   }
   return false;
 }

@@ -36,8 +36,9 @@ class ToolSurface {
   bool widens_upwards() const { return widens_upwards_; }
   /// No point of the tool is farther than this from where it was. The spindle's turn does not count.
   double displacement_mm(const ToolPose& from, const ToolPose& to) const;
-  /// False only if the tool, or its shank and holder alone, is outside the box.
-  bool may_touch(const ToolPose& pose, bool with_cutter, const Vec3& min_mm, const Vec3& max_mm) const;
+  /// False only if the tool, or its shank and holder alone, is farther than the margin from the box.
+  bool may_touch(const ToolPose& pose, bool with_cutter, const Vec3& min_mm, const Vec3& max_mm,
+                 double margin_mm = 0) const;
 
  private:
   void add_band(std::span<const OutlineRing> band, double step_mm);
