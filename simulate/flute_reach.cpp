@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -10,6 +11,7 @@
 #include "base/stage.h"
 #include "removal/cutter.h"
 #include "removal/engagement.h"
+#include "simulate/swept_stock.h"
 #include "simulate/tool_outline.h"
 
 namespace camber::simulate {
@@ -54,45 +56,17 @@ class UpperCylinder {
   double end_mm_, radius_mm_;
 };
 
-class Search {
+constexpr std::size_t kMaxLines = 10;
+
+/// Blocks that cut above the flutes, each named once.
+class Report {
  public:
-  Search(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
-         Diagnostics& diagnostics)
-      : job_(job), program_(program), stock_(blank), diagnostics_(diagnostics) {}
+  Report(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics)
+      : job_(job), program_(program), diagnostics_(diagnostics) {}
 
-  void run(std::size_t last_needed) {
-    Stage stage("checking the flutes' reach", last_needed);
-    for (const auto& run : program_.path.runs) {
-      const std::size_t end = std::min(run.from + run.count, last_needed);
-      for (std::size_t at = run.from; at < end && said_.size() < kMaxLines;) {
-        const std::size_t to = level_stretch_end(job_.tools.at(run.tool), program_.path, run, at);
-        if (run.kind == removal::RunKind::milling) look_at(run.tool, at, to);
-        removal::sweep(stock_, removal::shape_of(job_.tools.at(run.tool)),
-                       std::span(program_.path.stamps).subspan(at, to - at),
-                       {.first_id = static_cast<std::int32_t>(at), .stage = &stage});
-        at = to;
-      }
-    }
-  }
-
- private:
-  static constexpr std::size_t kMaxLines = 10;
-
-  void look_at(int tool, std::size_t from, std::size_t to) {
-    const UpperCylinder cylinder(job_.tools.at(tool), stock_);
-    const removal::Stock::Probe probe(stock_);
-    Vec3 last = Vec3::Constant(1e9);
-    for (std::size_t k = from; k < to && said_.size() < kMaxLines; ++k) {
-      const removal::Stamp& s = program_.path.stamps[k];
-      if ((s.pose.tip_mm - last).norm() < kStep_mm || !cylinder.near(s.pose.tip_mm)) continue;
-      last = s.pose.tip_mm;
-      const std::uint32_t block = program_.moves.moves[s.move].block;
-      if (said_.contains(block)) continue;
-      if (const auto height = cylinder.meets(probe, s.pose.tip_mm)) report(tool, block, *height);
-    }
-  }
-
-  void report(int number, std::uint32_t block, double height_mm) {
+  bool full() const { return said_.size() >= kMaxLines; }
+  bool has(std::uint32_t block) const { return said_.contains(block); }
+  void add(int number, std::uint32_t block, double height_mm) {
     said_.insert(block);
     const machine::Tool& tool = job_.tools.at(number);
     const bool flutes = tool.flute_length_mm && *tool.flute_length_mm < tool.overhang_mm;
@@ -104,11 +78,53 @@ class Search {
         flutes ? "cut-above-flutes" : "cut-above-overhang"));
   }
 
+ private:
+  const machine::Job& job_;
+  const SimulatedProgram& program_;
+  Diagnostics& diagnostics_;
+  std::set<std::uint32_t> said_;
+};
+
+class UprightSearch {
+ public:
+  UprightSearch(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+                Diagnostics& diagnostics)
+      : job_(job), program_(program), stock_(blank), report_(job, program, diagnostics) {}
+
+  void run(std::size_t last_needed) {
+    Stage stage("checking the flutes' reach", last_needed);
+    for (const auto& run : program_.path.runs) {
+      const std::size_t end = std::min(run.from + run.count, last_needed);
+      for (std::size_t at = run.from; at < end && !report_.full();) {
+        const std::size_t to = level_stretch_end(job_.tools.at(run.tool), program_.path, run, at);
+        if (run.kind == removal::RunKind::milling) look_at(run.tool, at, to);
+        removal::sweep(stock_, removal::shape_of(job_.tools.at(run.tool)),
+                       std::span(program_.path.stamps).subspan(at, to - at),
+                       {.first_id = static_cast<std::int32_t>(at), .stage = &stage});
+        at = to;
+      }
+    }
+  }
+
+ private:
+  void look_at(int tool, std::size_t from, std::size_t to) {
+    const UpperCylinder cylinder(job_.tools.at(tool), stock_);
+    const removal::Stock::Probe probe(stock_);
+    Vec3 last = Vec3::Constant(1e9);
+    for (std::size_t k = from; k < to && !report_.full(); ++k) {
+      const removal::Stamp& s = program_.path.stamps[k];
+      if ((s.pose.tip_mm - last).norm() < kStep_mm || !cylinder.near(s.pose.tip_mm)) continue;
+      last = s.pose.tip_mm;
+      const std::uint32_t block = program_.moves.moves[s.move].block;
+      if (report_.has(block)) continue;
+      if (const auto height = cylinder.meets(probe, s.pose.tip_mm)) report_.add(tool, block, *height);
+    }
+  }
+
   const machine::Job& job_;
   const SimulatedProgram& program_;
   removal::Stock stock_;
-  Diagnostics& diagnostics_;
-  std::set<std::uint32_t> said_;
+  Report report_;
 };
 
 /// One past the last stamp at which flutes end below the stock's top; 0: none.
@@ -123,12 +139,77 @@ std::size_t last_needed(const machine::Job& job, const SimulatedProgram& program
   return last;
 }
 
+/// The cylinder above the flutes, through the whole stock.
+ToolSurface upper_cylinder(const machine::Tool& tool, const removal::Stock& stock) {
+  const double end_mm = cutter_end_mm(tool), radius_mm = radius_at(tool, end_mm), voxel_mm = stock.voxel_mm();
+  const double length_mm = (stock.max_mm() - stock.min_mm()).norm();
+  std::vector<OutlineRing> rings;
+  for (double height = end_mm + voxel_mm; height < end_mm + length_mm; height += kStep_mm)
+    rings.push_back({OutlineRing::Part::shank, radius_mm, height});
+  return {rings, kStep_mm};
+}
+
+/// Tools of any direction.
+class TiltedSearch {
+ public:
+  TiltedSearch(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+               Diagnostics& diagnostics)
+      : program_(program), blank_(blank), report_(job, program, diagnostics), last_needed_(0) {
+    for (const auto& [number, tool] : job.tools) cylinders_.try_emplace(number, upper_cylinder(tool, blank));
+    for (const auto& run : program.path.runs)
+      if (run.kind == removal::RunKind::milling)
+        last_needed_ = last_near(cylinders_.at(run.tool), program.path, run, blank, last_needed_);
+    if (last_needed_ == 0) return;
+    Stage stage("checking the flutes' reach", last_needed_);
+    SweptStock stock(job, program, blank, stage);
+    for (const auto& run : program.path.runs)
+      if (run.from < last_needed_ && !report_.full()) look_along(run, stock);
+  }
+
+ private:
+  void look_along(const removal::ToolRun& run, SweptStock& stock) {
+    PlacesAlong places(cylinders_.at(run.tool), program_.path, run);
+    SurfaceFeeler feeler(cylinders_.at(run.tool), stock.stock(), stock.material());
+    stock.begin(run);
+    const std::size_t end = std::min(run.from + run.count, last_needed_);
+    for (std::size_t k = run.from; k < end && !report_.full(); ++k) {
+      stock.limit_waiting(k);
+      for (const ToolPose& pose : places.at(k))
+        if (run.kind == removal::RunKind::milling) look_at(run.tool, k, pose, feeler, stock);
+    }
+    stock.sweep_to(end);
+  }
+
+  void look_at(int tool, std::size_t k, const ToolPose& pose, SurfaceFeeler& feeler, SweptStock& stock) {
+    const std::uint32_t block = program_.moves.moves[program_.path.stamps[k].move].block;
+    if (report_.has(block) || !cylinders_.at(tool).may_touch(pose, false, blank_.min_mm(), blank_.max_mm())) return;
+    bool some_cleared = false;
+    const auto touch = feeler.touch(stock.probe(), pose, false, [&](const Vec3& point) {
+      const bool cleared = stock.cleared(point, k);
+      some_cleared = some_cleared || cleared;
+      return !cleared;
+    });
+    if (touch)
+      report_.add(tool, block, (touch->place_mm - pose.tip_mm).dot(pose.axis));
+    else if (some_cleared)
+      stock.sweep_to(k);
+  }
+
+  const SimulatedProgram& program_;
+  const removal::Stock& blank_;
+  Report report_;
+  std::map<int, ToolSurface> cylinders_;
+  std::size_t last_needed_;
+};
+
 }  // namespace
 
 void check_flute_reach(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                        Diagnostics& diagnostics) {
-  if (const std::size_t last = last_needed(job, program, blank); last > 0)
-    Search(job, program, blank, diagnostics).run(last);
+  if (!removal::all_upright(program.path.stamps))
+    TiltedSearch(job, program, blank, diagnostics);
+  else if (const std::size_t last = last_needed(job, program, blank); last > 0)
+    UprightSearch(job, program, blank, diagnostics).run(last);
 }
 
 }  // namespace camber::simulate
