@@ -26,7 +26,7 @@ constexpr double kNoTime = 1e-9;         // s
 constexpr double kShiftPeriods = 0.5;
 constexpr double kWideLossScale = 300.0;
 constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
-constexpr double kStep = 1e-3;      // of a logarithm; the plan has small kinks (whole periods): a wide step ignores them
+constexpr double kStep = 1e-3;  // of a logarithm; the plan has small kinks (whole periods): a wide step ignores them
 constexpr double kWideStep = 1e-2;  // blocks that overlap last whole periods: their times are steps
 constexpr double kFirstSearchStep = 0.04, kLastSearchStep = 2e-4;  // of a logarithm
 constexpr int kMaxSearches = 200;

@@ -84,8 +84,8 @@ class StaticCut {
   ReadingPace pace_;
   std::size_t from_ = 0, count_ = 0;
   std::function<bool(std::size_t)> must_read_;
-  std::size_t carved_ = 0;    ///< stamps of the stretch
-  std::size_t reglanced_ = 0; ///< where the last glance found other material than foreseen
+  std::size_t carved_ = 0;     ///< stamps of the stretch
+  std::size_t reglanced_ = 0;  ///< where the last glance found other material than foreseen
   removal::DeflectionTable* deflections_ = nullptr;
   std::vector<removal::DeflectedChipSample> read_;
   std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this reading and of the previous one, alternating

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "removal/field/tile.h"
+#include "removal/tile_size.h"
 
 namespace camber::simulate {
 namespace {
@@ -14,7 +14,7 @@ constexpr std::size_t kReadingsPerTile = 8;  ///< of points, that cost as much a
 }  // namespace
 
 MaterialDistance::MaterialDistance(const removal::Stock& stock)
-    : stock_(stock), tile_mm_(removal::Tile::kCore * stock.voxel_mm()) {
+    : stock_(stock), tile_mm_(removal::kTileVoxels * stock.voxel_mm()) {
   std::size_t count = 1;
   for (Eigen::Index a = 0; a < 3; ++a) {
     const auto axis = static_cast<std::size_t>(a);

@@ -3,12 +3,14 @@
 #include <array>
 #include <cstdint>
 
+#include "removal/tile_size.h"
+
 namespace camber::removal {
 
 /// A dense working copy of a cube of voxels: `kCore` a side that the tile owns and one layer above (towards
 /// +x, +y, +z) of its neighbours', so that every trilinear cell of the core is whole.
 struct Tile {
-  static constexpr int kCore = 16;
+  static constexpr int kCore = kTileVoxels;
   static constexpr int kSide = kCore + 1;
   static constexpr int kVolume = kSide * kSide * kSide;
   std::array<float, kVolume> distance;

@@ -21,7 +21,7 @@ struct Vectors {
   using I = xsimd::batch<std::int32_t, A>;
   using Mask = xsimd::batch_bool<float, A>;
   static constexpr int n = static_cast<int>(F::size);
-  static constexpr int kSide = 17;     ///< Tile::kSide
+  static constexpr int kSide = 17;  ///< Tile::kSide
   static constexpr float kFar = 2;  ///< voxels: no cell with a surface in it reaches so far
 
   static F load(const float* p) { return F::load_unaligned(p); }
@@ -299,8 +299,8 @@ struct Vectors {
     Deflection of(int j, const LineCut& c, const LineDeflection& deflection) {
       if (const int first = j / n * n; !known[j / n]) {
         const F zero(0.0f);
-        const Deflection s = settled_at(c, deflection, F(c.dx), load(y + first), load(z + first), {zero, zero},
-                                        F(1.0f) > zero);
+        const Deflection s =
+            settled_at(c, deflection, F(c.dx), load(y + first), load(z + first), {zero, zero}, F(1.0f) > zero);
         s.x.store_aligned(guess_x + first), s.y.store_aligned(guess_y + first), s.z.store_aligned(guess_z + first);
         known[j / n] = true;
       }
