@@ -144,8 +144,10 @@ ToolSurface upper_cylinder(const machine::Tool& tool, const removal::Stock& stoc
   const double end_mm = cutter_end_mm(tool), radius_mm = radius_at(tool, end_mm), voxel_mm = stock.voxel_mm();
   const double length_mm = (stock.max_mm() - stock.min_mm()).norm();
   std::vector<OutlineRing> rings;
-  for (double height = end_mm + voxel_mm; height < end_mm + length_mm; height += kStep_mm)
-    rings.push_back({OutlineRing::Part::shank, radius_mm, height});
+  const int count = std::max(1, static_cast<int>(std::ceil((length_mm - voxel_mm) / kStep_mm)));
+  rings.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i)
+    rings.push_back({OutlineRing::Part::shank, radius_mm, end_mm + voxel_mm + i * kStep_mm});
   return {rings, kStep_mm};
 }
 
