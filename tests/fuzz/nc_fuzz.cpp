@@ -5,7 +5,6 @@
 // it should. The last bytes of the input say which move is edited and how; the others are the program.
 #include <fuzzer/FuzzedDataProvider.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <vector>
@@ -65,10 +64,19 @@ bool edits_stay_where_they_are(const Read& r) {
   return r.moves.frames.size() == 1;
 }
 
-/// Without the steps of drilling cycles: those that go nowhere are left out, and which they are depends on where the
-/// tool stands before.
+/// The way to the intermediate point of G28 or G30, of which the next move goes on to the reference point.
+bool goes_to_intermediate_point(const std::vector<nc::Move>& moves, std::size_t i) {
+  return moves[i].reference_axes == 0 && i + 1 < moves.size() && moves[i + 1].reference_axes != 0 &&
+         moves[i + 1].block == moves[i].block;
+}
+
+/// Without the steps of drilling cycles and the ways to the intermediate points of G28 and G30: those that go nowhere
+/// are left out, and which they are depends on where the tool stands before.
 std::size_t own_moves(const Read& r) {
-  return static_cast<std::size_t>(std::ranges::count_if(r.moves.moves, [](const nc::Move& m) { return !m.canned; }));
+  const std::vector<nc::Move>& moves = r.moves.moves;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < moves.size(); ++i) count += !moves[i].canned && !goes_to_intermediate_point(moves, i);
+  return count;
 }
 
 /// One line or arc of the program with a new end.
