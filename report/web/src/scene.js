@@ -184,7 +184,7 @@ export class PartScene {
         const p = this.projected(places, i);
         most = Math.max(most, Math.abs(p.x), Math.abs(p.y));
       }
-    this.camera.zoom = 0.88 / (most || 1);
+    this.fitted = this.camera.zoom = 0.88 / (most || 1);
     this.camera.updateProjectionMatrix();
     this.render();
   }
@@ -211,7 +211,8 @@ export class PartScene {
     const [x, y, z] = this.middle;
     this.part.matrix.makeTranslation(x, y, z).multiply(rotation).multiply(new Matrix4().makeTranslation(-x, -y, -z));
     this.part.matrixWorldNeedsUpdate = true;
-    this.render();
+    // Who has zoomed keeps that.
+    this.camera.zoom === this.fitted ? this.fit() : this.render();
   }
 
   // The tool in the part's frame; null: none.
