@@ -35,10 +35,12 @@ class Ball : public ConvexSolid {
 };
 
 Points box(const Vec3& half, const Eigen::Isometry3d& motion) {
-  std::vector<Vec3> out;
-  for (int c = 0; c < 8; ++c)
-    out.push_back(motion *
-                  Vec3(c & 1 ? half.x() : -half.x(), c & 2 ? half.y() : -half.y(), c & 4 ? half.z() : -half.z()));
+  std::vector<Vec3> out(8, half);
+  for (unsigned c = 0; c < 8; ++c) {
+    for (unsigned axis = 0; axis < 3; ++axis)
+      if ((c >> axis & 1U) == 0) out[c][axis] *= -1;
+    out[c] = motion * out[c];
+  }
   return Points(out);
 }
 
