@@ -90,6 +90,27 @@ ToolPose Chain::pose(const Joints& joints, double tool_length_mm) const {
   return pose_of_frame(pose.tip_mm, pose.axis, spindle_x);
 }
 
+std::vector<Eigen::Isometry3d> Chain::placements(const Joints& joints) const {
+  std::vector<Eigen::Isometry3d> out{Eigen::Isometry3d::Identity()};
+  for (const Link& link : links_) {
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    if (link.rotary)
+      motion = Eigen::Translation3d(link.point_mm) * Eigen::AngleAxisd(joints.rotary_rad[link.index], link.direction) *
+               Eigen::Translation3d(-link.point_mm);
+    else
+      motion.translation() = joints.linear_mm[link.index] * link.direction;
+    out.push_back(out.back() * motion);
+  }
+  return out;
+}
+
+Eigen::Isometry3d Chain::tool_at_zero(double tool_length_mm) const {
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  out.linear() = tool_frame({Vec3::Zero(), tool_axis_, 0});
+  out.translation() = gauge_mm_ - tool_length_mm * tool_axis_;
+  return out;
+}
+
 std::optional<Vec3> Chain::linear_mm(const Vec3& tip_mm, const Vec3& rotary_rad, double tool_length_mm) const {
   // tip = start + columns * (x, y, z): both are carried through the rotary axes on the way to the part.
   Vec3 start = gauge_mm_ - tool_length_mm * tool_axis_;

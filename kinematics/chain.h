@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "base/tool_pose.h"
 #include "kinematics/joints.h"
@@ -53,6 +54,12 @@ class Chain {
 
   /// Tip and axis of a tool of this length (gauge line to tip) in the part's frame, with the spindle's X carried along.
   ToolPose pose(const Joints& joints, double tool_length_mm) const;
+  /// Where bodies stand in the part's frame: out[k] = E_1 ... E_k takes what is carried with k axes between the part
+  /// and it (machine::Body::axes) from where it is with all axes at 0. One more than the chain has axes; out.back():
+  /// the spindle.
+  std::vector<Eigen::Isometry3d> placements(const Joints& joints) const;
+  /// The tool's frame, origin at the tip and z along its axis, with all axes at 0.
+  Eigen::Isometry3d tool_at_zero(double tool_length_mm) const;
   /// Positions of x, y, z that put the tip there at these angles; nothing where two linear axes are parallel.
   std::optional<Vec3> linear_mm(const Vec3& tip_mm, const Vec3& rotary_rad, double tool_length_mm) const;
   /// Inverse kinematics. pose.axis: unit. `near`: decides windings, and angles that are free.

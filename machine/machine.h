@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "machine/body.h"
 #include "machine/control_kind.h"
 #include "machine/cycle.h"
 #include "machine/kinematics.h"
@@ -119,6 +120,7 @@ struct Machine {
   std::array<Axis, 3> axis;          ///< x, y, z
   std::array<RotaryAxis, 3> rotary;  ///< a, b, c
   Kinematics kinematics;
+  std::vector<Body> bodies;
   Spindle spindle;
   Cycle cycle;
   ToolChange tool_change;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "machine/body_reader.h"
 #include "machine/kinematics_reader.h"
 #include "machine/machine_keys.h"
 #include "machine/source_parameters.h"
@@ -172,6 +173,7 @@ Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
   if (!width_given && machine.control.kind.waits_in_position) machine.control.in_position_mm = kInPositionMm;
   if (auto axes = top.table("axis")) read_axes(*axes, machine);
   if (auto kinematics = top.table("kinematics")) read_kinematics(*kinematics, machine);
+  read_bodies(top, machine);
   if (auto spindle = top.table("spindle")) read_spindle(*spindle, machine.spindle);
   machine.cycle.rapid_path = machine.control.kind.rapid_path;
   if (auto cycle = top.table("cycle")) read_cycle(*cycle, machine.cycle);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "machine/body_reader.h"
 #include "machine/kinematics_keys.h"
 #include "machine/kinematics_reader.h"
 #include "machine/machine_keys.h"
@@ -87,6 +88,7 @@ std::string to_toml(const Machine& machine) {
       out += fmt::format("\n[reference_point.{}]\n", kReferencePointNames[i]) +
              toml_lines<ReferencePoint>(kReferencePointKeys, point);
   if (machine.index.present) out += "\n[index]\n" + toml_lines<IndexTable>(kIndexKeys, machine.index);
+  for (const Body& body : machine.bodies) out += body_text(body);
   out += fitted_range_text(machine.fitted_range);
   return out;
 }

@@ -307,6 +307,20 @@ std::optional<TomlTable> TomlTable::table(std::string_view key) {
   return TomlTable(*file_, *value, name, *diagnostics_);
 }
 
+std::vector<TomlTable> TomlTable::tables(std::string_view key) {
+  std::vector<TomlTable> out;
+  const auto* value = use(key);
+  if (!value) return out;
+  const std::string name = fmt::format("[{}]", key);
+  const auto is_table = [](const TomlNode& item) { return item.kind == TomlNode::Kind::table; };
+  if (value->kind != TomlNode::Kind::array || !std::ranges::all_of(value->items, is_table)) {
+    wrong_type(key, *value, fmt::format("a list of tables [{}]", name));
+    return out;
+  }
+  for (const TomlNode& item : value->items) out.emplace_back(TomlTable(*file_, item, name, *diagnostics_));
+  return out;
+}
+
 std::vector<std::string> TomlTable::keys() const {
   std::vector<std::string> out;
   for (const auto& entry : node_->entries) out.push_back(entry.key);

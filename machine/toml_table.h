@@ -77,6 +77,8 @@ class TomlTable {
   /// Array of any number of texts.
   std::optional<std::vector<std::string>> text_list(std::string_view key, std::string_view wanted);
   std::optional<TomlTable> table(std::string_view key);
+  /// List of tables, [[key]]; empty where it is missing or wrong.
+  std::vector<TomlTable> tables(std::string_view key);
   /// What stands at `key`; nothing where it is missing.
   std::optional<TomlNode::Kind> kind_of(std::string_view key) const;
   /// Marks `key` as known without reading it.

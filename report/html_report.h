@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "report/machine_view.h"
 #include "report/path_rows.h"
 #include "report/surface_samples.h"
 
@@ -59,6 +60,8 @@ struct ReportData {
   SurfaceSamples stock;
   double stock_cell_mm = 0;
   std::vector<PathRun> path;  ///< none, one, or before and after
+  /// Of a program with rotary motion: the page draws the tool and turns the part.
+  std::optional<MachineView> machine{};
   std::vector<Picture> pictures{};
   std::vector<TextTable> tables;
   std::vector<std::string> warnings;

@@ -11,6 +11,7 @@
 #include "base/output_file.h"
 #include "base/units.h"
 #include "kinematics/chain.h"
+#include "report/machine_view.h"
 #include "report/packed_arrays.h"
 #include "report/page_parts.h"
 #include "report/page_tables.h"
@@ -90,28 +91,6 @@ std::vector<PoseSample> thinned(std::span<const PoseSample> samples, const std::
 json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 json limit_json(double value) { return std::isinf(value) ? json(nullptr) : json(value); }
-
-json chain_json(const machine::Machine& machine) {
-  const machine::Kinematics& k = machine.kinematics;
-  json links = json::array();
-  for (std::size_t i = 0; i < k.chain.size(); ++i) {
-    const char letter = k.chain[i];
-    const bool rotary = letter < 'x';
-    json link = {{"axis", std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(letter))))},
-                 {"rotary", rotary},
-                 {"table", i < k.table_axes}};
-    if (rotary) {
-      const machine::RotaryAxis& axis = machine.rotary[static_cast<std::size_t>(letter - 'a')];
-      const double sense = axis.positive == machine::PositiveTurn::tool ? 1 : -1;
-      link["direction"] = vector_json(sense * axis.direction.normalized());
-      link["point"] = vector_json(axis.point_mm);
-    } else {
-      link["direction"] = vector_json(Vec3::Unit(letter - 'x'));
-    }
-    links.push_back(std::move(link));
-  }
-  return {{"links", links}, {"gauge", vector_json(k.gauge_point_mm)}, {"tool", vector_json(k.tool_axis.normalized())}};
-}
 
 template <class Value>
 std::vector<double> column(const std::vector<PoseSample>& samples, Value value) {

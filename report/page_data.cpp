@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/units.h"
 #include "report/base64.h"
 #include "report/decimate.h"
 #include "report/packed_arrays.h"
@@ -114,7 +115,16 @@ json surface_json(const ReportData& data, const ReportOptions& options, PackedAr
   return out;
 }
 
-json run_json(const PathRun& run, const ReportOptions& options, PackedArrays& arrays, PageData& page) {
+/// Tool and rotary axes along the path.
+void add_poses(json& out, const std::vector<PathRow>& rows, PackedArrays& arrays) {
+  out["axis"] = triple(arrays, rows, [](const PathRow& r) -> const Vec3& { return r.axis; });
+  for (int i = 0; i < 3; ++i)
+    out[std::string(1, "abc"[i])] =
+        arrays.add_quantised(column(rows, [&](const PathRow& r) { return deg_from_rad(r.rotary_rad[i]); }));
+  out["tool"] = whole(arrays, rows, &PathRow::tool);
+}
+
+json run_json(const PathRun& run, const ReportOptions& options, bool poses, PackedArrays& arrays, PageData& page) {
   const auto kept = rows_to_draw(run.rows, options.max_rows);
   if (kept.size() < run.rows.size())
     page.left_out.push_back(
@@ -141,6 +151,7 @@ json run_json(const PathRun& run, const ReportOptions& options, PackedArrays& ar
     if (std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
       out[name] = arrays.add_quantised(values);
   }
+  if (poses) add_poses(out, rows, arrays);
   return out;
 }
 
@@ -177,7 +188,9 @@ PageData page_data(const ReportData& data, const ReportOptions& options) {
   if (!data.stock.empty()) index["stock"] = stock_json(data, arrays, page);
   if (data.compared && data.names[0] != "before") index["names"] = data.names;
   index["runs"] = json::array();
-  for (const auto& run : data.path) index["runs"].push_back(run_json(run, options, arrays, page));
+  for (const auto& run : data.path)
+    index["runs"].push_back(run_json(run, options, data.machine.has_value(), arrays, page));
+  if (data.machine) index["machine"] = machine_json(*data.machine);
   add_programs(data, options, page);
   if (!data.download_name.empty()) index["download"] = data.download_name;
   page.index = index.dump(-1, ' ', false, json::error_handler_t::replace);

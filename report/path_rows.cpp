@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -70,17 +71,30 @@ void PathCollector::close_period() {
   open_ = false;
 }
 
+void PathCollector::add(const PathRow& row) {
+  if (open_ && (row.t_s >= ends_s_ || row.cutting != first_.cutting)) close_period();
+  if (!open_) {
+    first_ = slowest_ = fastest_ = row;
+    ends_s_ = row.t_s + period_s_ * 0.999;
+    open_ = true;
+  }
+  if (row.feed_mm_per_min < slowest_.feed_mm_per_min) slowest_ = row;
+  if (row.feed_mm_per_min > fastest_.feed_mm_per_min) fastest_ = row;
+}
+
 void PathCollector::add(std::span<const feedmodel::TimedSample> samples) {
-  for (const auto& sample : samples) {
-    const PathRow row = row_of(sample);
-    if (open_ && (row.t_s >= ends_s_ || row.cutting != first_.cutting)) close_period();
-    if (!open_) {
-      first_ = slowest_ = fastest_ = row;
-      ends_s_ = row.t_s + period_s_ * 0.999;
-      open_ = true;
-    }
-    if (row.feed_mm_per_min < slowest_.feed_mm_per_min) slowest_ = row;
-    if (row.feed_mm_per_min > fastest_.feed_mm_per_min) fastest_ = row;
+  for (const auto& sample : samples) add(row_of(sample));
+}
+
+void PathCollector::add(std::span<const feedmodel::TimedSample> samples,
+                        std::span<const feedmodel::JointSample> joints) {
+  assert(joints.size() == samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    PathRow row = row_of(samples[i]);
+    row.axis = joints[i].tool.axis;
+    row.rotary_rad = joints[i].position_rad;
+    row.tool = static_cast<std::uint32_t>(std::max(0, program_.state_of(program_.moves[samples[i].move]).tool));
+    add(row);
   }
 }
 

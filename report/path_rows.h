@@ -27,6 +27,10 @@ struct PathRow {
   double chip_um = kNothingHere;        ///< thickest chip
   double error_um = kNothingHere;       ///< of greatest magnitude of the surface made here
   double shift_um = kNothingHere;       ///< distance from the path of the given program
+  // Of programs with rotary motion.
+  Vec3 axis = Vec3::UnitZ();       ///< of the tool, in the part's frame
+  Vec3 rotary_rad = Vec3::Zero();  ///< a, b, c, actual
+  std::uint32_t tool = 0;          ///< number
 };
 
 /// One run of the program: as given, or compensated.
@@ -42,10 +46,13 @@ class PathCollector {
   explicit PathCollector(const nc::Interpretation& program, double period_s = 0.01)
       : program_(program), period_s_(period_s) {}
   void add(std::span<const feedmodel::TimedSample> samples);
+  /// Samples in the part's frame, and the joints at them.
+  void add(std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints);
   std::vector<PathRow> take();
 
  private:
   PathRow row_of(const feedmodel::TimedSample& sample) const;
+  void add(const PathRow& row);
   void close_period();
 
   const nc::Interpretation& program_;

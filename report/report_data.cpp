@@ -202,6 +202,7 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
   add_stock(data, stock);
   add_loads(rows, program.path, p.cut.loads);
   add_errors(rows, program.path, p.surface);
+  if (turns(rows)) data.machine = machine_view(job, rows);
   data.path.push_back({"", program.text.source.text(), std::move(rows)});
   if (!simulate::beyond_model(p)) add_worst_lines(data, program, false);
   add_texts(data, job, diagnostics, unsettled_sentence(program, p));
@@ -273,6 +274,7 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   for (CompensatedRun* run : {&before, &after}) {
     add_loads(run->rows, run->program.path, run->loads);
     add_errors(run->rows, run->program.path, run == &before ? c.surface_before : c.surface_after);
+    if (!data.machine && turns(run->rows)) data.machine = machine_view(job, run->rows);
     data.path.push_back({run == &before ? "before" : "after", run->program.text.source.text(), std::move(run->rows)});
   }
   if (c.better || c.best > 0) data.download_name = file_name(output);  // else nothing is written

@@ -5,6 +5,7 @@
 #include "simulate/collisions.h"
 #include "simulate/flute_reach.h"
 #include "simulate/machine_checks.h"
+#include "simulate/machine_collisions.h"
 #include "simulate/region.h"
 #include "simulate/setup_checks.h"
 
@@ -33,6 +34,7 @@ void check_program(const machine::Job& job, const SimulatedProgram& program, Dia
 
 void check_clearance(const machine::Job& job, const Setup& setup, Diagnostics& diagnostics) {
   check_collisions(job, setup.program, setup.target.blank, diagnostics);
+  check_machine_collisions(job, setup.program.text, setup.program.moves, diagnostics);
   check_region_start(job, setup.program, setup.target.blank, diagnostics);
   check_flute_reach(job, setup.program, setup.target.blank, diagnostics);
 }

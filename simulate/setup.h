@@ -46,7 +46,8 @@ Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFi
 /// Whether the machine can run the program (machine_checks.h), and [tool-slender].
 void check_program(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics);
 
-/// Collisions (collisions.h), a region that begins in material (region.h), material above the flutes (flute_reach.h).
+/// Collisions (collisions.h, machine_collisions.h), a region that begins in material (region.h), material above the
+/// flutes (flute_reach.h).
 void check_clearance(const machine::Job& job, const Setup& setup, Diagnostics& diagnostics);
 
 /// Progress of several predictions: which one, and the fraction of it that is done.

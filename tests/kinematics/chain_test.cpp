@@ -70,6 +70,22 @@ TEST_P(EachMachine, OneBranchIsTheJointsThatThePoseCameFrom) {
 }
 
 /// Directions at distances from the pole down to less than a double can tell.
+TEST_P(EachMachine, PlacesTheToolWhereItsPoseIs) {
+  const machine::Machine machine = sample(GetParam());
+  const Chain chain(machine);
+  std::mt19937_64 random(26);
+  for (int i = 0; i < 1000; ++i) {
+    const Joints q = random_joints(random, chain.rotary_axes());
+    const auto placements = chain.placements(q);
+    ASSERT_EQ(placements.size(), machine.kinematics.chain.size() + 1);
+    EXPECT_TRUE(placements.front().isApprox(Eigen::Isometry3d::Identity()));
+    const Eigen::Isometry3d tool = placements.back() * chain.tool_at_zero(kLengthMm);
+    const ToolPose pose = chain.pose(q, kLengthMm);
+    expect_same_pose({tool.translation(), tool.linear().col(2)}, pose);
+    EXPECT_LE((tool.linear() - tool_frame(pose)).norm(), kAxis);
+  }
+}
+
 TEST_P(EachMachine, KeepsItsAccuracyNearThePole) {
   const Chain chain(sample(GetParam()));
   std::mt19937_64 random(26);

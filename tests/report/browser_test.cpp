@@ -5,7 +5,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/units.h"
+#include "kinematics/chain.h"
 #include "report/html_report.h"
+#include "tests/support/cutting.h"
 #include "tests/support/open_page.h"
 #include "tests/support/temp_folder.h"
 
@@ -101,7 +104,38 @@ ReportData behind_a_wall() {
   return data;
 }
 
-class ReportPage : public testing::Test {
+/// Table-table: C on A on Y.
+machine::Job five_axes() {
+  machine::Job job;
+  machine::Kinematics& k = job.machine.kinematics;
+  k.chain = "cayxz";
+  k.table_axes = 3;
+  job.machine.rotary[0].direction = Vec3::UnitX();
+  job.machine.rotary[0].point_mm = Vec3(0, 0, -70);
+  job.machine.rotary[0].positive = job.machine.rotary[2].positive = machine::PositiveTurn::table;
+  job.tools[1] = testing::make_tool(machine::ToolType::ball, 4, 2, 30);
+  job.tools[1].holder = {{20, 24, 30}};
+  return job;
+}
+
+/// The slope again: A turns by a degree a second, C stands at 20 degrees.
+ReportData with_a_tilted_tool() {
+  const machine::Job job = five_axes();
+  const kinematics::Chain chain(job.machine);
+  ReportData data = example();
+  data.compared = false;
+  data.path = {run_of("", 0)};
+  for (PathRow& row : data.path[0].rows) {
+    row.rotary_rad = Vec3(rad_from_deg(row.t_s), 0, rad_from_deg(20));
+    row.axis = chain.pose({Vec3::Zero(), row.rotary_rad}, 0).axis;
+    row.tool = 1;
+  }
+  EXPECT_TRUE(turns(data.path[0].rows));
+  data.machine = machine_view(job, data.path[0].rows);
+  return data;
+}
+
+class ReportPage : public ::testing::Test {
  protected:
   void SetUp() override { CAMBER_NEEDS_BROWSER(); }
   std::string checked(const std::string& check, const ReportData& data) {
@@ -112,6 +146,17 @@ class ReportPage : public testing::Test {
 };
 
 TEST_F(ReportPage, ShowsPartAndPathAndLeadsFromOneToTheOther) { EXPECT_EQ(checked("compared", example()), ""); }
+
+TEST_F(ReportPage, DrawsTheToolAtTheSelectedPlaceAndTurnsThePart) {
+  EXPECT_EQ(checked("tilted", with_a_tilted_tool()), "");
+}
+
+TEST(ReportData, OfAThreeAxisProgramHasNoMachine) {
+  EXPECT_FALSE(turns(run_of("", 0).rows));
+  const std::string page = html_report(example());
+  EXPECT_EQ(page.find("\"machine\":{"), std::string::npos);
+  EXPECT_NE(html_report(with_a_tilted_tool()).find("\"machine\":{\"chain\":{"), std::string::npos);
+}
 
 TEST_F(ReportPage, IsWholeWhateverTheFilesAreCalled) {
   ReportData data = example();

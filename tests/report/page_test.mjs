@@ -146,6 +146,43 @@ const CHECKS = {
     expect(text.startsWith('%\r\nO1\r\n') && text.endsWith('N32 G1 X29.001\r\nM30\r\n%\r\n'), `the download holds ${JSON.stringify(text.slice(0, 40))} ...`);
   },
 
+  // A program with rotary motion: A turns by a degree a second, C is at 20 degrees, on a table-table machine.
+  async tilted(page) {
+    await page.click('button[data-value=plain]');
+    const amber = async () => (await pixels(page)).red, without = await amber();
+    expect(without === 0, `the tool is seen before a place is selected: ${without} pixels`);
+    const plot = page.locator('[data-quantity=feed] .u-over'), scene = page.locator('#scene');
+    const { width, height } = await plot.boundingBox();
+    const numbers = async name => (await scene.getAttribute(`data-${name}`)).split(' ').map(Number);
+    const near = (a, b, by) => a.every((v, k) => Math.abs(v - b[k]) < by);
+    for (const at of [5.5, 25.5]) {
+      await plot.click({ position: { x: width * at / 30, y: height / 2 } });
+      await painted(page);
+      const { facts } = await selected(page), a = Number(/A([\d.]+) C20.000/.exec(facts)?.[1]);
+      expect(Math.abs(a - at) < 0.3, `at ${at} s the facts are "${facts}"`);
+      // A table that turns by A about X, and carries C: the tool leans in the part's frame as the table does not.
+      const [s, c] = [Math.sin(a * Math.PI / 180), Math.cos(a * Math.PI / 180)], turn = 20 * Math.PI / 180;
+      const axis = await numbers('axis'), shown = await numbers('shown');
+      expect(near(axis, [s * Math.sin(turn), s * Math.cos(turn), c], 1e-3), `at ${at} s the axis is ${axis}`);
+      expect(near(shown, [0, 0, 1], 1e-3), `on the table the tool is shown along ${shown}`);
+      expect(near(await numbers('tip'), [at, 5, 0.513], 0.2), `the tip is at ${await numbers('tip')}`);
+      expect(await amber() > 200, `the tool has ${await amber()} pixels`);
+      const turned = await page.locator('#scene canvas').screenshot();
+      await page.click('button[data-value=still]');
+      await painted(page);
+      expect(near(await numbers('shown'), axis, 1e-3), 'at rest the tool is not shown along its axis in the part');
+      expect(!turned.equals(await page.locator('#scene canvas').screenshot()), 'the part does not turn');
+      await page.click('button[data-value=turned]');
+    }
+    // A click on the turned part finds the line made there.
+    await page.getByRole('button', { name: 'Top', exact: true }).click();
+    const box = await page.locator('#scene canvas').boundingBox();
+    await page.locator('#scene canvas').click({ position: { x: box.width / 2 + 3, y: box.height / 2 } });
+    await painted(page);
+    const { line } = await selected(page);
+    expect(['16', '17', '18', '19'].includes(line), `a click on the part's middle selects line ${line}`);
+  },
+
   // A wall of the stock in front of the surface.
   async stock(page) {
     const grey = await page.evaluate(GREY);

@@ -60,14 +60,15 @@ function surfaceOf(bytes, s) {
 function runOf(bytes, run) {
   const out = { name: run.name, place: triples(bytes, run.place) };
   for (const [name, value] of Object.entries(run)) if (value.kind) out[name] = read(bytes, value);
+  if (run.axis) out.axis = triples(bytes, run.axis);
   return out;
 }
 
-// {scales, view, download, surface, stock, runs}; runs without rows are left out.
+// {scales, view, download, machine, surface, stock, runs}; runs without rows are left out.
 export async function readPage() {
   const index = JSON.parse(document.getElementById('index').textContent), bytes = await inflate(bytesOf('arrays'));
   return {
-    scales: index.scales, view: index.view, download: index.download,
+    scales: index.scales, view: index.view, download: index.download, machine: index.machine,
     surface: index.surface && surfaceOf(bytes, index.surface),
     stock: index.stock && meshOf(bytes, index.stock),
     runs: index.runs.filter(r => r.t.n > 0).map(r => runOf(bytes, r)),

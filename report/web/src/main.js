@@ -1,6 +1,8 @@
 // The report page: pictures, and what ties them together.
 import 'uplot/dist/uPlot.min.css';
 import './report.css';
+import { Matrix4, Vector3 } from 'three';
+import { Chain } from './chain.js';
 import { DIVERGING, SEQUENTIAL, gradient } from './colours.js';
 import { programBytes, readPage } from './data.js';
 import { Plots } from './plots.js';
@@ -77,6 +79,36 @@ class Page {
       views.append(button);
     }
     box.append(views);
+    if (this.page.machine) this.machineControls(box);
+  }
+
+  // Of a program with rotary motion: how the table turns the part.
+  machineControls(box) {
+    this.chain = new Chain(this.page.machine.chain);
+    this.letters = this.page.machine.chain.links.filter(l => l.rotary).map(l => l.axis).sort();
+    this.turning = true;
+    box.append(choice('Part', [['turned', 'As on the table'], ['still', 'At rest']], how => {
+      this.turning = how === 'turned';
+      this.pose();
+    }).box);
+  }
+
+  rotary(row) {
+    const r = this.page.runs[row.run];
+    return Object.fromEntries(this.letters.map(l => [l, r[l.toLowerCase()][row.row]]));
+  }
+
+  // Part and tool as they are at the selected place.
+  pose() {
+    const { selected, scene } = this;
+    if (!this.chain || !scene || !selected) return;
+    const r = this.page.runs[selected.run], i = selected.row, of = a => Array.from(a.slice(3 * i, 3 * i + 3));
+    const rotation = new Matrix4(), pose = { tool: r.tool[i], tip: of(r.place), axis: of(r.axis) };
+    if (this.turning) rotation.extractRotation(this.chain.bodies({ X: 0, Y: 0, Z: 0, ...this.rotary(selected) }).part);
+    scene.turn(rotation);
+    scene.showTool(pose);
+    const shown = new Vector3(...pose.axis).transformDirection(rotation);
+    Object.assign(byId('scene').dataset, { tip: pose.tip.map(v => fixed(v, 3)).join(' '), tool: pose.tool, axis: pose.axis.map(v => v.toFixed(4)).join(' '), shown: shown.toArray().map(v => v.toFixed(4)).join(' ') });
   }
 
   // Ranges of the path's colours: the greatest of all runs, so that before and after compare.
@@ -172,7 +204,9 @@ class Page {
     const r = this.page.runs[run];
     this.plots.select(r.t[row]);
     this.scene?.mark(r.place.slice(3 * row, 3 * row + 3));
-    this.show({ run, row });
+    this.selected = { run, row };
+    this.pose();
+    this.show(this.selected);
   }
 
   async show(selected) {
@@ -182,6 +216,7 @@ class Page {
     const facts = [['time', `${fixed(r.t[i], 3)} s`], ['at', ['X', 'Y', 'Z'].map((n, k) => n + fixed(r.place[3 * i + k], 3)).join(' ')],
       ['feed', `${fixed(r.feed[i], 0)} of ${fixed(r.command[i], 0)} mm/min`]];
     for (const q of present([r])) if (q !== 'feed' && Number.isFinite(r[q][i])) facts.push([QUANTITIES[q].name, `${q === 'error' ? signed(r[q][i], 2) : fixed(r[q][i], QUANTITIES[q].decimals)} ${QUANTITIES[q].unit}`]);
+    if (this.chain) facts.splice(2, 0, ['axes', Object.entries(this.rotary(selected)).map(([l, v]) => l + fixed(v, 3)).join(' ')]);
     const text = await this.line(selected.run, line);
     box.replaceChildren(
       element('div', { className: 'nc' }, element('b', { textContent: `line ${line}${r.name ? ' ' + r.name : ''}` }), ' ' + text),

@@ -1,8 +1,7 @@
 // The part and the path in 3-D.
 import {
-  BufferAttribute, BufferGeometry, Color, DoubleSide, LineBasicMaterial, LineSegments, Mesh, OrthographicCamera, Raycaster,
-  Scene,
-  ShaderMaterial, Vector2, Vector3, WebGLRenderer,
+  BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh, OrthographicCamera,
+  Raycaster, Scene, ShaderMaterial, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
@@ -10,6 +9,7 @@ import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
 import { DIVERGING, DIVERGING_GLSL, SEQUENTIAL, colourAt } from './colours.js';
 import { element } from './text.js';
+import { ToolBody } from './tool_body.js';
 
 export const MODES = ['before', 'after', 'change', 'plain', 'deflection', 'contour'];
 
@@ -88,12 +88,17 @@ export class PartScene {
     this.run = 0;
     this.camera = new OrthographicCamera();
     this.camera.up.set(0, 0, 1);
+    // What is fixed to the part, and turns with it.
+    this.part = new Group();
+    this.part.matrixAutoUpdate = false;
+    this.scene.add(this.part);
     const { surface, stock, runs } = page;
     const cutting = runs.map(r => r.place.filter((_, i) => r.cutting[Math.floor(i / 3)] > 0.5));
     this.shown = surface ? [surface.place] : cutting.some(c => c.length) ? cutting : runs.map(r => r.place);
     Object.assign(this, bounds(this.shown), { deep: bounds(this.shown).radius });
-    if (surface) this.scene.add(this.surface = this.meshOf(surface));
+    if (surface) this.part.add(this.surface = this.meshOf(surface));
     if (stock) this.addStock(stock);
+    if (page.machine) this.part.add((this.tool = new ToolBody(page.machine.tools)).body);
     this.renderer.domElement.tabIndex = 0;
     this.renderer.domElement.setAttribute('aria-label', 'The part in three dimensions');
     box.append(this.renderer.domElement);
@@ -131,7 +136,7 @@ export class PartScene {
     this.stock = new Mesh(geometry, new ShaderMaterial({
       vertexShader: STOCK_VERTEX, fragmentShader: STOCK_FRAGMENT, side: DoubleSide, uniforms: { back: { value: stock.cell } },
     }));
-    this.scene.add(this.stock);
+    this.part.add(this.stock);
     this.deep = Math.hypot(...whole.middle.map((v, k) => v - this.middle[k])) + whole.radius;
     if (whole.radius > WHOLE_STOCK * this.radius) return;
     this.shown = [...this.shown, stock.place];
@@ -179,7 +184,7 @@ export class PartScene {
         const p = this.projected(places, i);
         most = Math.max(most, Math.abs(p.x), Math.abs(p.y));
       }
-    this.camera.zoom = 0.88 / (most || 1);
+    this.fitted = this.camera.zoom = 0.88 / (most || 1);
     this.camera.updateProjectionMatrix();
     this.render();
   }
@@ -198,7 +203,22 @@ export class PartScene {
   mmPerPixel() { return 2 * this.radius / this.camera.zoom / this.box.clientHeight; }
 
   projected(places, i) {
-    return new Vector3(places[i], places[i + 1], places[i + 2]).project(this.camera);
+    return new Vector3(places[i], places[i + 1], places[i + 2]).applyMatrix4(this.part.matrix).project(this.camera);
+  }
+
+  // Turns the part about the middle of the picture.
+  turn(rotation) {
+    const [x, y, z] = this.middle;
+    this.part.matrix.makeTranslation(x, y, z).multiply(rotation).multiply(new Matrix4().makeTranslation(-x, -y, -z));
+    this.part.matrixWorldNeedsUpdate = true;
+    // Who has zoomed keeps that.
+    this.camera.zoom === this.fitted ? this.fit() : this.render();
+  }
+
+  // The tool in the part's frame; null: none.
+  showTool(pose) {
+    this.tool.show(pose);
+    this.render();
   }
 
   setSurface(mode, limit) {
@@ -211,7 +231,7 @@ export class PartScene {
 
   // quantity: null hides the path; range: [low, high] of the colours.
   setPath(run, quantity, range, diverging) {
-    for (const old of [this.path, this.rapids]) if (old) { this.scene.remove(old); old.geometry.dispose(); }
+    for (const old of [this.path, this.rapids]) if (old) { this.part.remove(old); old.geometry.dispose(); }
     this.path = this.rapids = null;
     this.run = run;
     if (!quantity) return this.render();
@@ -230,7 +250,7 @@ export class PartScene {
     const thin = new BufferGeometry();
     thin.setAttribute('position', new BufferAttribute(new Float32Array(rapids), 3));
     this.rapids = new LineSegments(thin, new LineBasicMaterial({ color: new Color('#aab4c0').convertLinearToSRGB(), transparent: true, opacity: 0.5 }));
-    this.scene.add(this.path, this.rapids);
+    this.part.add(this.path, this.rapids);
     this.render();
   }
 
@@ -263,14 +283,16 @@ export class PartScene {
     if (!this.stock?.visible) return Infinity;
     const ray = new Raycaster();
     ray.setFromCamera(new Vector2(x, y), this.camera);
+    this.part.updateMatrixWorld();
     const hit = ray.intersectObject(this.stock)[0];
     return hit ? hit.distance : Infinity;
   }
 
   // The vertex nearest to the eye of those within a cell or a few pixels of the ray; none behind the stock.
   nearestVertex(x, y) {
-    const { place, cell } = this.page.surface, from = new Vector3(x, y, -1).unproject(this.camera);
-    const along = this.camera.getWorldDirection(new Vector3()), reach = Math.max(cell, 3 * this.mmPerPixel()) ** 2;
+    const { place, cell } = this.page.surface, back = this.part.matrix.clone().invert();
+    const from = new Vector3(x, y, -1).unproject(this.camera).applyMatrix4(back);
+    const along = this.camera.getWorldDirection(new Vector3()).transformDirection(back), reach = Math.max(cell, 3 * this.mmPerPixel()) ** 2;
     let best = -1, least = Infinity;
     for (let i = 0; i < place.length; i += 3) {
       const dx = place[i] - from.x, dy = place[i + 1] - from.y, dz = place[i + 2] - from.z;
@@ -303,7 +325,7 @@ export class PartScene {
   }
 
   drawTriad() {
-    const turn = this.camera.matrixWorldInverse, size = 26;
+    const turn = this.camera.matrixWorldInverse.clone().multiply(this.part.matrix), size = 26;
     this.triad.innerHTML = '<svg width="84" height="84" viewBox="-42 -42 84 84">' +
       [['X', '#b3382c', 0], ['Y', '#2d7d3a', 4], ['Z', '#2456a6', 8]].map(([name, colour, at]) => {
         const x = turn.elements[at] * size, y = -turn.elements[at + 1] * size, far = Math.hypot(x, y) > 5;

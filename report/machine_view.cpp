@@ -1,0 +1,69 @@
+#include "report/machine_view.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace camber::report {
+namespace {
+
+using nlohmann::json;
+
+json numbers_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+}  // namespace
+
+bool turns(const std::vector<PathRow>& rows) {
+  return std::ranges::any_of(rows,
+                             [](const PathRow& r) { return r.axis != Vec3::UnitZ() || r.rotary_rad != Vec3::Zero(); });
+}
+
+MachineView machine_view(const machine::Job& job, const std::vector<PathRow>& rows) {
+  constexpr double kStep_mm = 0.5;
+  MachineView out{job.machine, {}};
+  for (const PathRow& row : rows) {
+    const auto tool = job.tools.find(static_cast<int>(row.tool));
+    if (tool == job.tools.end() || out.tools.contains(row.tool)) continue;
+    out.tools[row.tool] = simulate::tool_outline(tool->second, kStep_mm, 1e6);
+  }
+  return out;
+}
+
+json chain_json(const machine::Machine& machine) {
+  const machine::Kinematics& k = machine.kinematics;
+  json links = json::array();
+  for (std::size_t i = 0; i < k.chain.size(); ++i) {
+    const char letter = k.chain[i];
+    const bool rotary = letter < 'x';
+    json link = {{"axis", std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(letter))))},
+                 {"rotary", rotary},
+                 {"table", i < k.table_axes}};
+    if (rotary) {
+      const machine::RotaryAxis& axis = machine.rotary[static_cast<std::size_t>(letter - 'a')];
+      const double sense = axis.positive == machine::PositiveTurn::tool ? 1 : -1;
+      link["direction"] = numbers_of(sense * axis.direction.normalized());
+      link["point"] = numbers_of(axis.point_mm);
+    } else {
+      link["direction"] = numbers_of(Vec3::Unit(letter - 'x'));
+    }
+    links.push_back(std::move(link));
+  }
+  return {{"links", links}, {"gauge", numbers_of(k.gauge_point_mm)}, {"tool", numbers_of(k.tool_axis.normalized())}};
+}
+
+json machine_json(const MachineView& view) {
+  const auto rounded = [](double v) { return std::round(1e4 * v) / 1e4; };
+  json tools = json::object();
+  for (const auto& [number, rings] : view.tools) {
+    json outline = json::array();
+    for (const simulate::OutlineRing& ring : rings)
+      outline.push_back({static_cast<int>(ring.part), rounded(ring.radius_mm), rounded(ring.height_mm)});
+    tools[std::to_string(number)] = outline;
+  }
+  return {{"chain", chain_json(view.machine)}, {"tools", tools}};
+}
+
+}  // namespace camber::report

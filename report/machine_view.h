@@ -1,0 +1,29 @@
+#pragma once
+// What pages of programs with rotary motion draw of the machine: its chain and the tools.
+#include <map>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "machine/job.h"
+#include "report/path_rows.h"
+#include "simulate/tool_outline.h"
+
+namespace camber::report {
+
+struct MachineView {
+  machine::Machine machine;  ///< with [kinematics]
+  std::map<std::uint32_t, std::vector<simulate::OutlineRing>> tools;
+};
+
+/// True if the tool leaves +Z or a rotary axis turns.
+bool turns(const std::vector<PathRow>& rows);
+/// Of the tools that the rows use.
+MachineView machine_view(const machine::Job& job, const std::vector<PathRow>& rows);
+
+/// As report/web/src/chain.js reads it.
+nlohmann::json chain_json(const machine::Machine& machine);
+/// {chain, tools: {number: [[part, radius, height], ...]}}, parts as of OutlineRing::Part.
+nlohmann::json machine_json(const MachineView& view);
+
+}  // namespace camber::report
