@@ -20,7 +20,8 @@ namespace {
 /// What is known to be refused is refused before the long work.
 void check_given(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics) {
   simulate::check_program(job, program, diagnostics);
-  simulate::check_travel(job, program.text, program.moves, diagnostics);
+  simulate::refuse_rotary_motion(program.rotary.get(), program.text, "adapt chooses feeds of X, Y and Z", diagnostics);
+  simulate::check_travel(job, program, diagnostics);
 }
 
 /// Length of the cells of each move: a fiftieth of the tool's diameter; the whole move where the control stops at the

@@ -111,7 +111,7 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
     if (options.feed && prepared.traced)
       api::points_sink(program.moves, result.feed)(prepared.traced->samples);
     else if (options.feed)
-      feedmodel::predict_feed(program.moves, job.machine, api::points_sink(program.moves, result.feed));
+      feedmodel::predict_feed(program.text_moves(), job.machine, api::points_sink(program.moves, result.feed));
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.json = report::predict_json(program, prediction, compute_s, prepared.traced_run());
     result.diagnostics = found.all();

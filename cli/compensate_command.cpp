@@ -26,10 +26,7 @@ void write_report(const CompensateArguments& arguments, const machine::Job& job,
     return simulate::simulate_motion(std::move(source), job, {}, ignored);
   };
   const auto rows = [&](const simulate::SimulatedProgram& program) {
-    report::PathCollector collector(program.moves);
-    feedmodel::predict_feed(program.moves, job.machine,
-                            [&](std::span<const feedmodel::TimedSample> s) { collector.add(s); });
-    return collector.take();
+    return report::rows_of_program(program, job.machine);
   };
   const auto before = machined(SourceText::read(job.program));
   machine::Job emitted_job = job;

@@ -118,14 +118,17 @@ std::optional<ShiftPath::PointInterval> owner_place(const ShiftPath& path, const
 }
 
 void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPath::PointInterval& place,
-               const ShiftPath& path, const machine::Job& job, const nc::Interpretation& given) {
+               const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given) {
   o.place = place;
   const ControlPoint &from = path.points()[place.lower], &to = path.points()[place.lower + 1];
-  const auto tool = job.tools.find(given.state_of(given.moves[to.move]).tool);
+  const auto tool = job.tools.find(given.moves.state_of(given.moves.moves[to.move]).tool);
   const Vec3 tip = from.place_mm + place.upper_fraction * (to.place_mm - from.place_mm);
   const double corner_mm = tool != job.tools.end() ? removal::shape_of(tool->second).corner_radius_mm : 0;
-  o.from_centre_mm = point.place_mm - tip - corner_mm * Vec3::UnitZ();
-  o.at_tip = tool != job.tools.end() && round_tip(tool->second) && o.normal.z() > kTipNormal;
+  const double from_fraction = from.move == to.move ? from.fraction : 0;
+  const Vec3 axis =
+      given.pose_at(to.move, from_fraction + place.upper_fraction * (to.fraction - from_fraction)).axis;
+  o.from_centre_mm = point.place_mm - tip - corner_mm * axis;
+  o.at_tip = tool != job.tools.end() && round_tip(tool->second) && o.normal.dot(axis) > kTipNormal;
 }
 
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
@@ -138,7 +141,7 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const simulate:
   out.points.resize(surface.size());
   out.compensated.assign(surface.size(), false);
   const std::vector<Vec3> offsets =
-      bending.empty() ? std::vector<Vec3>() : path_offsets(path, given.moves, emitted, map);
+      bending.empty() ? std::vector<Vec3>() : path_offsets(path, given, emitted, map);
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const auto& p = surface[i];
     Observation& o = out.points[i];
@@ -151,14 +154,14 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const simulate:
     if (!owned && !machined) continue;
     out.compensated[i] = true;
     o.own = !owned || !o.foreign;
-    set_place(o, p, owned ? *owner : *machined, path, job, given.moves);
+    set_place(o, p, owned ? *owner : *machined, path, job, given);
     if (!o.foreign || bending.empty()) continue;
     Observation above = o;
     above.own = false;
     above.error_mm = expected_error_mm(job, p, *owner, offsets, bending);
     if (above.error_mm <= o.error_mm + kHidden_mm) continue;
     o.above = !o.own;
-    set_place(above, p, *owner, path, job, given.moves);
+    set_place(above, p, *owner, path, job, given);
     out.hidden.push_back(above);
   }
   mark_opposed(out);

@@ -37,7 +37,7 @@ std::optional<ShiftPath::PointInterval> owner_place(const ShiftPath& path, const
                                                     const removal::SurfacePoint& point);
 /// Puts an observation of `point` to a place of the path.
 void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPath::PointInterval& place,
-               const ShiftPath& path, const machine::Job& job, const nc::Interpretation& given);
+               const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given);
 
 /// Observed::reach, from the first observation of the given program; `own_target`: see observe.
 std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& given, const Observed& first,

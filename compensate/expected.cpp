@@ -12,7 +12,7 @@ std::vector<Vec3> nominal_bending(const machine::Job& job, const simulate::Setup
   machine::Job rigid = job;
   rigid.simulation.coupling = machine::Coupling::rigid;
   simulate::SimulatedProgram nominal = given.program;
-  nominal.path = removal::nominal_path(nominal.moves, nominal.selected, nominal.path);
+  nominal.path = removal::nominal_path(nominal.moves, nominal.selected, nominal.path, nominal.part_path());
   simulate::PredictOptions options;
   options.progress = progress;
   std::vector<Vec3> out;
@@ -33,7 +33,7 @@ double expected_error_mm(const machine::Job& job, const removal::SurfacePoint& p
 void scale_bending(const ShiftPath& path, const machine::Job& job, const simulate::Setup& given,
                    const Observed& observed, const std::vector<removal::SurfacePoint>& surface,
                    std::vector<Vec3>& bending) {
-  const std::vector<Vec3> offsets = path_offsets(path, given.program.moves, given.program, {});
+  const std::vector<Vec3> offsets = path_offsets(path, given.program, given.program, {});
   const std::vector<Vec3> none(bending.size(), Vec3::Zero());
   double products = 0, squares = 0;
   for (std::size_t i = 0; i < surface.size(); ++i) {
@@ -51,13 +51,13 @@ void scale_bending(const ShiftPath& path, const machine::Job& job, const simulat
 std::vector<Observation> expected_errors(const ShiftPath& path, const machine::Job& job, const simulate::Setup& given,
                                          const Observed& observed, const std::vector<removal::SurfacePoint>& surface,
                                          std::span<const Vec3> bending) {
-  const std::vector<Vec3> offsets = path_offsets(path, given.program.moves, given.program, {});
+  const std::vector<Vec3> offsets = path_offsets(path, given.program, given.program, {});
   std::vector<Observation> out;
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const auto owner = owner_place(path, given, surface[i]);
     if (!owner) continue;
     Observation o = observed.points[i];
-    set_place(o, surface[i], *owner, path, job, given.program.moves);
+    set_place(o, surface[i], *owner, path, job, given.program);
     o.error_mm = expected_error_mm(job, surface[i], *owner, offsets, bending);
     o.own = true;
     o.above = false;

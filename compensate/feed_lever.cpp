@@ -32,7 +32,7 @@ void check_feeds(const simulate::SimulatedProgram& program, const std::vector<bo
   for (std::uint32_t m = 0; m < selected.size(); ++m)
     if (selected[m] && program.moves.moves[m].editable)
       edits.push_back({.move = m, .feed_mm_per_s = kOther * program.moves.moves[m].feed_mm_per_s});
-  const nc::Emission emission = nc::emit_edits(program.text, program.moves, edits, {});
+  const nc::Emission emission = nc::emit_edits(program.text, program.text_moves(), edits, {});
   if (edits.empty() || emission.not_made.size() < edits.size()) return;
   const nc::EditNotMade& first = emission.not_made.front();
   diagnostics.add({Severity::error,

@@ -36,14 +36,14 @@ struct Means {
 
 }  // namespace
 
-std::vector<Vec3> path_offsets(const ShiftPath& path, const nc::Interpretation& given,
+std::vector<Vec3> path_offsets(const ShiftPath& path, const simulate::SimulatedProgram& given,
                                const simulate::SimulatedProgram& emitted, const MoveMap& map) {
   Means means(path.points().size());
   for (const removal::Stamp& stamp : emitted.path.stamps) {
     const MoveMap::MovePlace place = map.given(stamp.move, stamp.fraction);
     if (!path.contains(place.move)) continue;
     means.add(path.find(place.move, place.fraction),
-              stamp.pose.tip_mm - nc::point_at(given, given.moves[place.move], place.fraction));
+              stamp.pose.tip_mm - given.pose_at(place.move, place.fraction).tip_mm);
   }
   // Where no tooth passing fell between two points, the offset is that of the point before.
   const std::vector<double> weight = means.weight;

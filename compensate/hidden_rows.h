@@ -10,7 +10,7 @@ namespace camber::compensate {
 
 /// By how much the tool is off the programmed path (servo lag, corner rounding, the shift itself), one per point of
 /// `path`, mm: the mean over the stamps near it. `map`: from the moves of `emitted` to those of `given`.
-std::vector<Vec3> path_offsets(const ShiftPath& path, const nc::Interpretation& given,
+std::vector<Vec3> path_offsets(const ShiftPath& path, const simulate::SimulatedProgram& given,
                                const simulate::SimulatedProgram& emitted, const MoveMap& map);
 
 /// Whether two places of a path lie in different rows: of different chains, or much farther apart along the path than

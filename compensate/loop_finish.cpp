@@ -117,7 +117,10 @@ void Loop::finish(CompensationResult& out) {
   }
   if (options_.max_stock_crossings > 0)
     out.stock = removal::stock_shape(setup_.target.surface, options_.max_stock_crossings);
-  check_travel(job_, program.text, program.moves, diagnostics_);
+  Diagnostics travel;  // the given program's warnings are said
+  simulate::check_travel(job_, program, travel);
+  for (const Diagnostic& d : travel.all())
+    if (d.severity == Severity::error) diagnostics_.add(d);
   diagnostics_.throw_if_errors();
   out.blocks_before = given().text.source.line_count();
   out.blocks_after = program.text.source.line_count();

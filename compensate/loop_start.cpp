@@ -39,7 +39,7 @@ void check_given(const machine::Job& job, const SimulatedProgram& program, Diagn
   if (early.operations.size() == 1 || job.compensation.operations.given())
     check_compensated(program, early.moves, diagnostics);
   if (job.compensation.has(machine::Lever::passes)) check_allowance(job, diagnostics);
-  check_travel(job, program.text, program.moves, diagnostics);
+  simulate::check_travel(job, program, diagnostics);
   simulate::check_program(job, program, diagnostics);
 }
 
@@ -113,13 +113,18 @@ void Loop::check_levers(const std::vector<bool>& selected) {
   check_compensated(setup_.program, selected, diagnostics_);
   diagnostics_.throw_if_errors();
   if (has(machine::Lever::feed)) check_feeds(setup_.program, selected, diagnostics_);
-  if (has(machine::Lever::passes)) check_passes(setup_.program, selected, diagnostics_);
+  if (has(machine::Lever::passes)) {
+    simulate::refuse_rotary_motion(setup_.program.rotary.get(), setup_.program.text,
+                                   "levers names \"passes\", which cuts a run twice", diagnostics_);
+    check_passes(setup_.program, selected, diagnostics_);
+  }
   diagnostics_.throw_if_errors();
 }
 
 /// `version` is the active one.
 void Loop::begin_version(Version& version) {
-  version.path.emplace(setup_.program.moves, version.compensated, spacing_mm(), job_.machine.control.block_time_s);
+  version.path.emplace(setup_.program.moves, version.compensated, spacing_mm(), job_.machine.control.block_time_s,
+                       turning_moves(setup_.program));
   version.sensitivity.emplace(*version.path);
   version.stiffness.assign(version.path->points().size(), 1.0);
   version.links = row_links(*version.path, kRowReach_mm);

@@ -40,7 +40,7 @@ bool is_plunge(const nc::Interpretation& program, const nc::Move& move) {
 }  // namespace
 
 ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm,
-                     double block_time_s)
+                     double block_time_s, const std::vector<bool>& whole)
     : program_(&program), first_of_move_(program.moves.size(), kNone) {
   bool open = false;
   for (std::uint32_t m = 0; m < program.moves.size(); ++m) {
@@ -60,9 +60,10 @@ ShiftPath::ShiftPath(const nc::Interpretation& program, const std::vector<bool>&
     if (!move.editable) points_.back().fixed = true;
     const double along = points_.back().along_mm;
     const bool several_turns = move.kind == nc::MoveKind::arc && std::abs(program.arcs[move.arc].sweep_rad) > 6.4;
-    const int pieces = several_turns            ? 1
-                       : std::isinf(spacing_mm) ? pieces_of_whole(program, move)
-                                                : pieces_of(length, spacing_mm, move.feed_mm_per_s * block_time_s);
+    const bool is_whole = std::isinf(spacing_mm) || (!whole.empty() && whole[m]);
+    const int pieces = several_turns ? 1
+                       : is_whole    ? pieces_of_whole(program, move)
+                                     : pieces_of(length, spacing_mm, move.feed_mm_per_s * block_time_s);
     const bool plunge = is_plunge(program, move);
     for (int i = 1; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;

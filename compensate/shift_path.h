@@ -33,9 +33,9 @@ class ShiftPath {
  public:
   /// Lines and arcs longer than spacing_mm get points between their ends, but none closer than the control can process
   /// blocks at the move's feed, F T_b. Infinite: no move is split, and arcs have a point in the middle (full turns two)
-  /// that determine their radius.
+  /// that determine their radius. `whole` (one per move, or empty): moves that are never split.
   ShiftPath(const nc::Interpretation& program, const std::vector<bool>& selected, double spacing_mm,
-            double block_time_s = 0);
+            double block_time_s = 0, const std::vector<bool>& whole = {});
 
   std::vector<ControlPoint>& points() { return points_; }
   const std::vector<ControlPoint>& points() const { return points_; }

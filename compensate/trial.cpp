@@ -1,5 +1,9 @@
 #include "compensate/trial.h"
 
+#include <cassert>
+#include <optional>
+#include <utility>
+
 namespace camber::compensate {
 
 void Trial::keep(simulate::Prediction prediction) {
@@ -12,6 +16,31 @@ void Trial::keep(simulate::Prediction prediction) {
   stock_mm3 = prediction.cut.stock_mm3;
 }
 
+std::vector<bool> turning_moves(const simulate::SimulatedProgram& program) {
+  std::vector<bool> out;
+  if (const kinematics::PartPath* path = program.part_path())
+    for (std::uint32_t m = 0; m < program.moves.moves.size(); ++m) out.push_back(path->turn_rad(m) > 0);
+  return out;
+}
+
+std::vector<nc::MoveEdit> edits_of_text(const simulate::SimulatedProgram& program, std::vector<nc::MoveEdit> edits) {
+  const kinematics::PartPath* path = program.part_path();
+  if (!path) return edits;
+  for (nc::MoveEdit& edit : edits) {
+    const auto turn_back = [&](std::optional<Vec3>& place) {
+      if (place) place = path->text_mm(edit.move, *place);
+    };
+    assert(edit.via.empty() || path->turn_rad(edit.move) == 0);
+    for (nc::ViaPoint& via : edit.via) {
+      via.point_mm = path->text_mm(edit.move, via.point_mm).value_or(via.point_mm);
+      turn_back(via.center_mm);
+    }
+    turn_back(edit.end_mm);
+    turn_back(edit.center_mm);
+  }
+  return edits;
+}
+
 TrialRunner::TrialRunner(const machine::Job& job, const simulate::Setup& given)
     : job_(job), given_(given), decimals_(decimals_for(job.machine.control, given.program.text)) {}
 
@@ -19,8 +48,8 @@ std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const st
                                                  const std::vector<bool>& compensated) const {
   auto out = std::make_shared<Emitted>();
   out->splits = splits;
-  out->emission =
-      nc::emit_edits(given_.program.text, given_.program.moves, path.edits(splits, kViaTolerance_mm), decimals_);
+  out->emission = nc::emit_edits(given_.program.text, given_.program.text_moves(),
+                                 edits_of_text(given_.program, path.edits(splits, kViaTolerance_mm)), decimals_);
   Diagnostics repeated;  // the emitted program's warnings are the given one's
   machine::Job job = job_;
   out->operations = moved_ranges(job_.operations, out->emission.block_of_line);
@@ -35,7 +64,8 @@ std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const st
 nc::Emission TrialRunner::text_of(const ShiftPath& path, const std::vector<bool>& splits) const {
   nc::EmitOptions options = decimals_;
   options.header_comment = header;
-  return nc::emit_edits(given_.program.text, given_.program.moves, path.edits(splits, kViaTolerance_mm), options);
+  return nc::emit_edits(given_.program.text, given_.program.text_moves(),
+                        edits_of_text(given_.program, path.edits(splits, kViaTolerance_mm)), options);
 }
 
 simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& program,

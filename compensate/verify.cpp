@@ -182,7 +182,7 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
                     const simulate::Progress& progress) {
   Diagnostics of_given;  // it was warned of when it was compensated
   const auto check = [&](const simulate::SimulatedProgram& emitted) {
-    check_travel(job, emitted.text, emitted.moves, diagnostics);
+    simulate::check_travel(job, emitted, diagnostics);
     simulate::check_program(job, emitted, diagnostics);
   };
   const simulate::Setup setup =

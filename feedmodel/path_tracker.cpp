@@ -48,8 +48,7 @@ PathPlace closest_on_move(const nc::Interpretation& program, std::uint32_t index
 PathPlace PathTracker::search_all(const TimedSample& sample, PathPlace best) const {
   for (std::uint32_t move = place_.move; move <= sample.move; ++move) {
     if (program_.moves[move].reference) continue;
-    const PathPlace here =
-        closest_on_move(program_, move, sample.position_mm, move == place_.move ? place_.u : 0.0, 1.0);
+    const PathPlace here = closest(move, sample, move == place_.move ? place_.u : 0.0);
     if (here.distance_mm < best.distance_mm - kNearerMm) best = here;
   }
   return best;
@@ -70,13 +69,13 @@ PathPlace PathTracker::operator()(const TimedSample& sample) {
   const double went_mm = (sample.position_mm - last_position_mm_).norm();
   double room_mm = options_.search_mm + went_mm + 2.0 * (sample.command_mm - sample.position_mm).norm();
   last_position_mm_ = sample.position_mm;
-  PathPlace best = closest_on_move(program_, place_.move, sample.position_mm, place_.u, 1.0);
-  if (place_.move < sample.move) room_mm -= (1.0 - place_.u) * nc::length_mm(program_, program_.moves[place_.move]);
+  PathPlace best = closest(place_.move, sample, place_.u);
+  if (place_.move < sample.move) room_mm -= (1.0 - place_.u) * length_of(place_.move);
   for (std::uint32_t move = place_.move + 1; move <= sample.move && room_mm > 0; ++move) {
     if (program_.moves[move].reference) continue;
-    const PathPlace here = closest_on_move(program_, move, sample.position_mm, 0.0, 1.0);
+    const PathPlace here = closest(move, sample, 0.0);
     if (here.distance_mm < best.distance_mm - kNearerMm) best = here;
-    room_mm -= nc::length_mm(program_, program_.moves[move]);
+    room_mm -= length_of(move);
   }
   if (best.distance_mm > kLostMm) best = search_all(sample, best);
   place_ = best;

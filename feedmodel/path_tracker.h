@@ -1,6 +1,7 @@
 #pragma once
 // Where on the programmed path the axes really are: behind the command, often by several short blocks.
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "feedmodel/timed_path.h"
@@ -21,6 +22,18 @@ struct PathTrackerOptions {
   double search_mm = 0.5;
 };
 
+/// Share u in [from_u, to_u] of a move's length that lies closest to a point, and its distance. For a full or
+/// repeated turn the closest one after from_u counts.
+PathPlace closest_on_move(const nc::Interpretation& program, std::uint32_t move, const Vec3& point_mm, double from_u,
+                          double to_u);
+
+/// How a path is measured that nc::Move does not tell (part_tracking.h).
+struct PathMeasure {
+  /// As closest_on_move, for the tool of the sample.
+  std::function<PathPlace(std::uint32_t move, double from_u, double to_u)> closest{};
+  std::function<double(std::uint32_t move)> length_mm{};
+};
+
 /// Follows the samples of predict_feed in order. The place of a sample is the closest point of the programmed path
 /// between the last place and the commanded move, searched a little further than the axes went: it never goes
 /// back, never passes the command, and does not jump to a neighbouring row or to the start of a closed figure. Only a
@@ -32,22 +45,29 @@ class PathTracker {
   explicit PathTracker(const nc::Interpretation& program, const PathTrackerOptions& options = {})
       : program_(program), options_(options) {}
 
+  /// Of a path that is measured otherwise; `closest` is asked for the sample that is passed.
+  PathTracker(const nc::Interpretation& program, PathMeasure measure)
+      : program_(program), measure_(std::move(measure)) {}
+
   PathPlace operator()(const TimedSample& sample);
 
  private:
+  PathPlace closest(std::uint32_t move, const TimedSample& sample, double from_u) const {
+    return measure_.closest ? measure_.closest(move, from_u, 1.0)
+                            : closest_on_move(program_, move, sample.position_mm, from_u, 1.0);
+  }
+  double length_of(std::uint32_t move) const {
+    return measure_.length_mm ? measure_.length_mm(move) : nc::length_mm(program_, program_.moves[move]);
+  }
   /// The closest place between the last one and the commanded move.
   PathPlace search_all(const TimedSample& sample, PathPlace best) const;
 
   const nc::Interpretation& program_;
-  PathTrackerOptions options_;
+  PathTrackerOptions options_{};
+  PathMeasure measure_{};
   PathPlace place_;
   Vec3 last_position_mm_ = Vec3::Zero();
   bool started_ = false;
 };
-
-/// Share u in [from_u, to_u] of a move's length that lies closest to a point, and its distance. For a full or
-/// repeated turn the closest one after from_u counts.
-PathPlace closest_on_move(const nc::Interpretation& program, std::uint32_t move, const Vec3& point_mm, double from_u,
-                          double to_u);
 
 }  // namespace camber::feedmodel

@@ -11,11 +11,19 @@ namespace {
 constexpr double kStraight_mm = 5e-5;  // a vertex nearer than this to the chord past it needs no stamp
 constexpr double kFarther = 1.5;       // a step longer than this many feeds per tooth is divided
 constexpr double kStill_mm = 1e-6;
+constexpr double kStill = 1e-9;          // axis and spin
+constexpr double kTurn_rad = kPi / 720;  // between stamps of a tip that stands still, where no motion is known
+
+double turn_between(const ToolPose& a, const ToolPose& b) {
+  if (a.axis == b.axis && a.spin_rad == b.spin_rad) return 0;
+  return Eigen::AngleAxisd(Mat3(tool_frame(a).transpose() * tool_frame(b))).angle();
+}
 
 class NominalBuilder {
  public:
-  NominalBuilder(const nc::Interpretation& program, const std::vector<bool>& selected)
-      : program_(program), selected_(selected) {}
+  NominalBuilder(const nc::Interpretation& program, const std::vector<bool>& selected,
+                 const kinematics::PartPath* rotary)
+      : program_(program), selected_(selected), rotary_(rotary) {}
 
   void begin_run(const ToolRun& run) { out_.runs.push_back({run.tool, out_.stamps.size(), 0, run.kind}); }
   void end_run() { out_.runs.back().count = out_.stamps.size() - out_.runs.back().from; }
@@ -31,9 +39,9 @@ class NominalBuilder {
       open_ = true;
       put(stamp, at_, true);
     }
-    const Vec3 goal = place_of({stamp.move, stamp.fraction});
+    const Vec3 goal = pose_of({stamp.move, stamp.fraction}).tip_mm;
     for (std::uint32_t m = at_.move; m < stamp.move; ++m)
-      if (!straight_past(m, goal)) reach(stamp, {m, 1});
+      if (turns(m) || turns(m + 1) || !straight_past(m, goal)) reach(stamp, {m, 1});
     reach(stamp, {stamp.move, stamp.fraction});
     next_ = stamp.move;
     last_ = stamp;
@@ -65,7 +73,16 @@ class NominalBuilder {
     return true;
   }
 
-  Vec3 place_of(const Place& p) const { return nc::point_at(program_, program_.moves[p.move], p.fraction); }
+  ToolPose pose_of(const Place& p) const {
+    return rotary_ ? rotary_->pose_at(p.move, p.fraction)
+                   : nc::pose_at(program_, program_.moves[p.move], p.fraction);
+  }
+  bool turns(std::uint32_t move) const { return rotary_ && rotary_->turn_rad(move) > 0; }
+  double length_mm(std::uint32_t move) const {
+    return rotary_ ? rotary_->length_mm(move) : nc::length_mm(program_, program_.moves[move]);
+  }
+  /// A turn of the tool counts as the way of a point beside the tip.
+  static double with_turn(double way_mm, double turn_rad) { return way_mm + kinematics::PartPath::kLever_mm * turn_rad; }
 
   bool straight_past(std::uint32_t move, const Vec3& goal) const {
     const Vec3 from = out_.stamps.back().pose.tip_mm, chord = goal - from, vertex = program_.moves[move].end_mm - from;
@@ -78,12 +95,21 @@ class NominalBuilder {
   /// Stamps up to a place, no farther apart than the axes' own.
   void reach(const Stamp& stamp, const Place& to) {
     const double from_fraction = at_.move == to.move ? at_.fraction : 0.0;
-    const double way = (to.fraction - from_fraction) * nc::length_mm(program_, program_.moves[to.move]);
-    const double step = stamp.feed_per_tooth_mm.norm();
-    const int pieces = step > kStill_mm && way > kFarther * step ? static_cast<int>(std::ceil(way / step - 1e-9)) : 1;
+    const int pieces = pieces_of(stamp, to.move, to.fraction - from_fraction);
     for (int i = 1; i <= pieces; ++i)
       put(stamp, {to.move, from_fraction + (to.fraction - from_fraction) * i / pieces}, false);
     at_ = to;
+  }
+
+  int pieces_of(const Stamp& stamp, std::uint32_t move, double fraction) const {
+    double way = fraction * length_mm(move), step = stamp.feed_per_tooth_mm.norm();
+    if (turns(move)) {
+      const double turn_rad = fraction * rotary_->turn_rad(move);
+      way = with_turn(way, turn_rad);
+      step = with_turn(step, stamp.first ? 0 : turn_between(last_.pose, stamp.pose));
+      if (step <= kStill_mm) step = with_turn(0, kTurn_rad);
+    }
+    return step > kStill_mm && way > kFarther * step ? static_cast<int>(std::ceil(way / step - 1e-9)) : 1;
   }
 
   void put(const Stamp& like, const Place& at, bool first) {
@@ -91,14 +117,21 @@ class NominalBuilder {
     stamp.move = at.move;
     stamp.fraction = at.fraction;
     stamp.first = first;
-    stamp.pose = nc::pose_at(program_, program_.moves[at.move], at.fraction);
+    stamp.pose = pose_of(at);
     if (!first) stamp.feed_per_tooth_mm = stamp.pose.tip_mm - out_.stamps.back().pose.tip_mm;
-    if (!first && stamp.feed_per_tooth_mm.norm() < kStill_mm) return;
+    if (!first && still(stamp.pose)) return;
     out_.stamps.push_back(stamp);
+  }
+
+  bool still(const ToolPose& pose) const {
+    const ToolPose& last = out_.stamps.back().pose;
+    return (pose.tip_mm - last.tip_mm).norm() < kStill_mm && (pose.axis - last.axis).norm() < kStill &&
+           std::abs(pose.spin_rad - last.spin_rad) < kStill;
   }
 
   const nc::Interpretation& program_;
   const std::vector<bool>& selected_;
+  const kinematics::PartPath* rotary_;
   StampPath out_;
   bool open_ = false;
   Place at_;                ///< of the last stamp, or a vertex that needed none
@@ -108,8 +141,9 @@ class NominalBuilder {
 
 }  // namespace
 
-StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected, const StampPath& path) {
-  NominalBuilder builder(program, selected);
+StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected, const StampPath& path,
+                       const kinematics::PartPath* rotary) {
+  NominalBuilder builder(program, selected, rotary);
   for (const ToolRun& run : path.runs) {
     builder.begin_run(run);
     for (std::size_t k = run.from; k < run.from + run.count; ++k) {

@@ -11,8 +11,25 @@ namespace camber::removal {
 using feedmodel::TimedSample;
 
 namespace {
+
 constexpr double kStill_mm = 1e-6;
+constexpr double kStill = 1e-9;  // axis and spin
+
+bool still(const Stamp& stamp, const Stamp& before) {
+  return stamp.feed_per_tooth_mm.norm() < kStill_mm && (stamp.pose.axis - before.pose.axis).norm() < kStill &&
+         std::abs(stamp.pose.spin_rad - before.pose.spin_rad) < kStill;
 }
+
+/// Tips go straight, the frame turns about one axis.
+ToolPose between(const ToolPose& a, const ToolPose& b, double u) {
+  const Vec3 tip = (1 - u) * a.tip_mm + u * b.tip_mm;
+  if (a.axis == b.axis && a.spin_rad == b.spin_rad) return {tip, a.axis, a.spin_rad};
+  const Eigen::Quaterniond from(tool_frame(a)), to(tool_frame(b));
+  const Mat3 frame = from.slerp(u, to).toRotationMatrix();
+  return pose_of_frame(tip, frame.col(2), frame.col(0));
+}
+
+}  // namespace
 
 ToothMotion motion_in_tool(std::span<const Stamp> stamps, std::size_t k) {
   const Stamp& stamp = stamps[k];
@@ -46,8 +63,13 @@ std::vector<bool> selected_moves(const nc::Interpretation& program, const machin
 }
 
 StampBuilder::StampBuilder(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools,
-                           std::vector<bool> selected, std::vector<HoleMove> holes)
-    : program_(program), tools_(tools), selected_(std::move(selected)), holes_(std::move(holes)), tracker_(program) {
+                           std::vector<bool> selected, std::vector<HoleMove> holes, const kinematics::PartPath* rotary)
+    : program_(program),
+      tools_(tools),
+      selected_(std::move(selected)),
+      holes_(std::move(holes)),
+      rotary_(rotary),
+      tracker_(program, measure_of(rotary)) {
   assert(selected_.size() == program.moves.size());
   assert(holes_.empty() || holes_.size() == program.moves.size());
   assert(std::ranges::all_of(program.moves, [&, i = std::size_t{0}](const nc::Move& move) mutable {
@@ -58,8 +80,27 @@ StampBuilder::StampBuilder(const nc::Interpretation& program, const std::map<int
   }));
 }
 
+feedmodel::PathMeasure StampBuilder::measure_of(const kinematics::PartPath* rotary) const {
+  if (!rotary) return {};
+  return {.closest =
+              [this, rotary](std::uint32_t move, double from_u, double to_u) {
+                return feedmodel::closest_on_part(*rotary, program_, move, tool_, from_u, to_u);
+              },
+          .length_mm = [rotary](std::uint32_t move) { return rotary->length_mm(move); }};
+}
+
 void StampBuilder::add(std::span<const TimedSample> samples) {
+  assert(!rotary_);
   for (const TimedSample& s : samples) add(s);
+}
+
+void StampBuilder::add(const feedmodel::PartSamples& samples) {
+  assert(rotary_);
+  for (std::size_t i = 0; i < samples.samples().size(); ++i) {
+    last_tool_ = have_last_ ? tool_ : samples.tools()[i];
+    tool_ = samples.tools()[i];
+    add(samples.samples()[i]);
+  }
 }
 
 void StampBuilder::add(const TimedSample& sample) {
@@ -86,6 +127,24 @@ void StampBuilder::add(const TimedSample& sample) {
   have_last_ = true;
 }
 
+feedmodel::ToolPlace StampBuilder::tool_between(double u) const {
+  const kinematics::Joints &a = last_tool_.joints, &b = tool_.joints;
+  return {between(last_tool_.tool, tool_.tool, u),
+          {(1 - u) * a.linear_mm + u * b.linear_mm, (1 - u) * a.rotary_rad + u * b.rotary_rad}};
+}
+
+ToolPose StampBuilder::pose_at(const TimedSample& sample, const feedmodel::PathPlace& place, double u) const {
+  if (rotary_) return tool_between(u).tool;
+  ToolPose pose = nc::pose_at(program_, program_.moves[place.move], place.u);
+  pose.tip_mm = have_last_ ? Vec3((1 - u) * last_.position_mm + u * sample.position_mm) : sample.position_mm;
+  return pose;
+}
+
+double StampBuilder::fraction_of(const ToolPose& pose, double u, std::uint32_t move, double from, double to) const {
+  return rotary_ ? feedmodel::closest_on_part(*rotary_, program_, move, tool_between(u), from, to).u
+                 : feedmodel::closest_on_move(program_, move, pose.tip_mm, from, to).u;
+}
+
 void StampBuilder::stamp_at(double t_s, const TimedSample& sample, const feedmodel::PathPlace& place, int tool) {
   Stamp stamp;
   stamp.t_s = t_s;
@@ -93,15 +152,13 @@ void StampBuilder::stamp_at(double t_s, const TimedSample& sample, const feedmod
   stamp.first = !cutting_;
   const double span = have_last_ ? sample.t_s - last_.t_s : 0;
   const double u = span > 0 ? std::clamp((t_s - last_.t_s) / span, 0.0, 1.0) : 1.0;
-  stamp.pose = nc::pose_at(program_, program_.moves[place.move], place.u);
-  stamp.pose.tip_mm = have_last_ ? Vec3((1 - u) * last_.position_mm + u * sample.position_mm) : sample.position_mm;
+  stamp.pose = pose_at(sample, place, u);
   // `place` is that of the sample, up to a period later.
   const double from = cutting_ && path_.stamps.back().move == place.move ? path_.stamps.back().fraction : 0.0;
-  stamp.fraction =
-      feedmodel::closest_on_move(program_, place.move, stamp.pose.tip_mm, std::min(from, place.u), place.u).u;
+  stamp.fraction = fraction_of(stamp.pose, u, place.move, std::min(from, place.u), place.u);
   if (cutting_) {
     stamp.feed_per_tooth_mm = stamp.pose.tip_mm - path_.stamps.back().pose.tip_mm;
-    if (stamp.feed_per_tooth_mm.norm() < kStill_mm) return;
+    if (still(stamp, path_.stamps.back())) return;
   } else {
     stamp.feed_per_tooth_mm = sample.velocity_mm_per_s * passing_s(place.move);
   }

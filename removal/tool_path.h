@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/tool_pose.h"
+#include "feedmodel/part_tracking.h"
 #include "feedmodel/path_tracker.h"
 #include "feedmodel/timed_path.h"
 #include "machine/job.h"
@@ -94,7 +95,9 @@ struct StampPath {
 /// milling stands where the programmed path is nearest to the axes, so that feed marks and cusps stay in step. Where
 /// the axes cut a corner, and at the ends of a cut, stamps no farther apart are added: the whole of every `selected`
 /// move is covered. Stamps of holes stay as they are. `path`: of the same program; its `rapids` are left out.
-StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected, const StampPath& path);
+/// `rotary`: of a program with rotary motion, of which `program` then is the moves_in_part().
+StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected, const StampPath& path,
+                       const kinematics::PartPath* rotary = nullptr);
 
 /// True for a move of the job's operations.
 bool in_operations(const nc::Interpretation& program, const nc::Move& move, const machine::Operations& operations);
@@ -109,15 +112,26 @@ std::vector<bool> selected_moves(const nc::Interpretation& program, const machin
 ///
 /// Moves that make holes get stamps as well, in runs of their own: on the commanded axis, and one at the commanded
 /// bottom, where a cycle waits for the axis.
+///
+/// `rotary`: of a program with rotary motion, of which `program` then is the moves_in_part(), and samples are those of
+/// feedmodel::PartSamples; a stamp has the pose of the actual axes, and is placed where the tool turns as well.
 class StampBuilder {
  public:
   StampBuilder(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools, std::vector<bool> selected,
-               std::vector<HoleMove> holes = {});
+               std::vector<HoleMove> holes = {}, const kinematics::PartPath* rotary = nullptr);
+  StampBuilder(const StampBuilder&) = delete;
+  StampBuilder& operator=(const StampBuilder&) = delete;
   void add(std::span<const feedmodel::TimedSample> samples);
+  void add(const feedmodel::PartSamples& samples);
   StampPath take();
 
  private:
   void add(const feedmodel::TimedSample& sample);
+  feedmodel::PathMeasure measure_of(const kinematics::PartPath* rotary) const;
+  /// Between the last sample and this one.
+  feedmodel::ToolPlace tool_between(double u) const;
+  ToolPose pose_at(const feedmodel::TimedSample& sample, const feedmodel::PathPlace& place, double u) const;
+  double fraction_of(const ToolPose& pose, double u, std::uint32_t move, double from, double to) const;
   void stamp_at(double t_s, const feedmodel::TimedSample& sample, const feedmodel::PathPlace& place, int tool);
   void drill(const feedmodel::TimedSample& sample, const feedmodel::PathPlace& place);
   void finish_hole(std::uint32_t move, double t_s);
@@ -130,6 +144,8 @@ class StampBuilder {
   const std::map<int, machine::Tool>& tools_;
   std::vector<bool> selected_;
   std::vector<HoleMove> holes_;
+  const kinematics::PartPath* rotary_;
+  feedmodel::ToolPlace tool_, last_tool_;  ///< of `rotary`: of this sample and of the last one
   feedmodel::PathTracker tracker_;
   StampPath path_;
   feedmodel::TimedSample last_;

@@ -22,6 +22,7 @@ struct Turn {
     for (int a = 0; a < 3; ++a)
       if (std::abs(l.force_max_N[a]) > std::abs(load.force_max_N[a])) load.force_max_N[a] = l.force_max_N[a];
     load.lateral_max_N = std::max(load.lateral_max_N, l.lateral_max_N);
+    if (std::abs(l.axial_max_N) > std::abs(load.axial_max_N)) load.axial_max_N = l.axial_max_N;
     load.force_mean_N += l.force_mean_N;
     load.contact_deflection_mm += l.contact_deflection_mm;
     load.chip_mm3 += l.chip_mm3;
@@ -43,6 +44,7 @@ ForceRow row_of(const Stamp& first, std::size_t line, const Turn& turn, double r
           .tip_mm = first.pose.tip_mm,
           .force_max_N = l.force_max_N,
           .lateral_max_N = l.lateral_max_N,
+          .axial_max_N = l.axial_max_N,
           .force_mean_N = l.force_mean_N / n,
           .deflection_um = 1000 * l.contact_deflection_mm / n,
           .mrr_mm3_per_s = l.chip_mm3 / (n * passing_s),
@@ -55,7 +57,7 @@ ForceRow row_of(const Stamp& first, std::size_t line, const Turn& turn, double r
           .specific_energy_MPa = l.chip_mm3 > 0 ? l.work_Nmm / l.chip_mm3 : 0.0};
 }
 
-void append_row(std::string& out, const ForceRow& r) {
+void append_row(std::string& out, const ForceRow& r, bool axial) {
   append_cells(out, 4, {r.t_s});
   append_cells(out, 0, {static_cast<double>(r.line)});
   append_cells(out, 4, {r.tip_mm.x(), r.tip_mm.y(), r.tip_mm.z()});
@@ -69,6 +71,7 @@ void append_row(std::string& out, const ForceRow& r) {
   append_cells(out, 4, {r.power_W});
   append_cells(out, 6, {r.chip_max_mm, r.chip_mean_mm});
   append_cells(out, 2, {r.specific_energy_MPa});
+  if (axial) append_cells(out, 3, {r.axial_max_N});
   out.back() = '\n';
 }
 
@@ -97,14 +100,16 @@ void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgra
 
 void write_forces_csv(const std::string& path, const machine::Job& job, const simulate::SimulatedProgram& program,
                       const simulate::Prediction& prediction) {
+  const bool axial = !removal::all_upright(program.path.stamps);
   OutputFile file(path);
   file.stream()
       << "t_s,block,x_mm,y_mm,z_mm,fx_max_N,fy_max_N,fz_max_N,f_max_N,fx_mean_N,fy_mean_N,fz_mean_N,"
          "dx_um,dy_um,dz_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,"
-         "specific_energy_MPa\n";
+         "specific_energy_MPa"
+      << (axial ? ",f_axial_max_N\n" : "\n");
   std::string text;
   for_each_force_row(job, program, prediction, [&](const ForceRow& row) {
-    append_row(text, row);
+    append_row(text, row, axial);
     if (text.size() < kFlushBytes) return;
     file.stream() << text;
     text.clear();

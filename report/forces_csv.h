@@ -17,7 +17,7 @@ struct ForceRow {
   std::size_t line = 0;
   Vec3 tip_mm = Vec3::Zero();
   Vec3 force_max_N = Vec3::Zero();
-  double lateral_max_N = 0;
+  double lateral_max_N = 0, axial_max_N = 0;
   Vec3 force_mean_N = Vec3::Zero();
   Vec3 deflection_um = Vec3::Zero();
   double mrr_mm3_per_s = 0, removed_mm3 = 0;
@@ -34,9 +34,11 @@ void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgra
 /// dz_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,specific_energy_MPa. Torque
 /// and power are the spindle's for cutting; h is the uncut chip thickness, its mean weighted by area; the specific
 /// energy is the spindle's work over the chips' volume (MPa = J/cm3), 0 where nothing is removed. Forces act on the
-/// tool, in machine axes; fx_max is the signed value of largest magnitude, f_max the greatest lateral force; dx, dy, dz
-/// the deflection at the height of the contact, at the instant at which an edge passes it, mean over the row's teeth;
-/// t, x, y, z belong to the row's first tooth. Throws InputError [file-unwritable].
+/// tool, in the part's axes, those of the machine in programs of X, Y and Z; fx_max is the signed value of largest
+/// magnitude, f_max the greatest force across the tool's axis; dx, dy, dz the deflection at the height of the contact, at
+/// the instant at which an edge passes it, mean over the row's teeth; t, x, y, z belong to the row's first tooth. Where
+/// a tool is tilted, a last column f_axial_max_N holds the force along its axis, of largest magnitude, positive towards
+/// the spindle. Throws InputError [file-unwritable].
 void write_forces_csv(const std::string& path, const machine::Job& job, const simulate::SimulatedProgram& program,
                       const simulate::Prediction& prediction);
 

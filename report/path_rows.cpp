@@ -103,6 +103,22 @@ std::vector<PathRow> PathCollector::take() {
   return std::move(rows_);
 }
 
+std::vector<PathRow> rows_of_program(const simulate::SimulatedProgram& program, const machine::Machine& machine,
+                                     const feedmodel::JointSampleSink& also) {
+  PathCollector collector(program.moves);
+  if (program.rotary)
+    simulate::predict_on_part(*program.rotary, machine, [&](const feedmodel::PartSamples& part) {
+      if (also) also(part.axes(), part.joints());
+      collector.add(part.samples(), part.joints());
+    });
+  else
+    feedmodel::predict_feed(program.moves, machine, [&](std::span<const feedmodel::TimedSample> samples) {
+      if (also) also(samples, {});
+      collector.add(samples);
+    });
+  return collector.take();
+}
+
 void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path, std::span<const StampLoad> loads) {
   if (loads.size() != path.stamps.size()) return;
   for_each_row_stamps(rows, path.stamps, [&](PathRow& row, std::size_t from, std::size_t to) {

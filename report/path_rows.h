@@ -62,6 +62,10 @@ class PathCollector {
   std::vector<PathRow> rows_;
 };
 
+/// The program as the job's machine runs it, timed once more. `also` (may be empty) gets the same samples.
+std::vector<PathRow> rows_of_program(const simulate::SimulatedProgram& program, const machine::Machine& machine,
+                                     const feedmodel::JointSampleSink& also = {});
+
 /// Gives each row the loads of the stamps from it to the next row (or, where there is none, of the last one, if the
 /// next is the following tooth passing). `loads`: one per stamp, or none.
 void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path, std::span<const simulate::StampLoad> loads);

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "feedmodel/joint_map.h"
 #include "nc/known_places.h"
 #include "removal/tool_path.h"
 #include "simulate/collision_search.h"
@@ -129,8 +128,7 @@ void add_collision(const SimulatedProgram& program, const Collision& c, std::vec
 
 std::vector<Collision> find_collisions(const machine::Job& job, const SimulatedProgram& program,
                                        const removal::Stock& blank) {
-  const bool upright =
-      removal::all_upright(program.path.stamps) && !feedmodel::has_rotary_motion(program.moves, job.machine);
+  const bool upright = removal::all_upright(program.path.stamps) && !program.rotary;
   return upright ? find_upright_collisions(job, program, blank) : find_tilted_collisions(job, program, blank);
 }
 

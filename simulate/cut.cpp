@@ -71,15 +71,21 @@ Vec3 deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflecti
   return deflections.at(row, c.height_mm, step);
 }
 
-StampLoad summarize(const ToothPass& pass) {
+void raise_magnitude(double& value, double to) {
+  if (std::abs(to) > std::abs(value)) value = to;
+}
+
+/// `pass`: in the tool's frame.
+StampLoad summarize(const ToothPass& pass, const ToolPose& pose) {
   StampLoad load;
   for (const Vec3& f : pass.force_N) {
-    for (int a = 0; a < 3; ++a)
-      if (std::abs(f[a]) > std::abs(load.force_max_N[a])) load.force_max_N[a] = f[a];
+    const Vec3 in_part = direction_in_part(pose, f);
+    for (int a = 0; a < 3; ++a) raise_magnitude(load.force_max_N[a], in_part[a]);
     load.lateral_max_N = std::max(load.lateral_max_N, f.head<2>().norm());
+    raise_magnitude(load.axial_max_N, f.z());
     load.force_mean_N += f;
   }
-  load.force_mean_N /= static_cast<double>(pass.force_N.size());
+  load.force_mean_N = direction_in_part(pose, load.force_mean_N / static_cast<double>(pass.force_N.size()));
   for (const double t : pass.torque_Nmm) {
     load.torque_max_Nmm = std::max(load.torque_max_Nmm, t);
     load.torque_mean_Nmm += t / static_cast<double>(pass.torque_Nmm.size());
@@ -96,6 +102,7 @@ StampLoad between(const StampLoad& a, const StampLoad& b, double way) {
   StampLoad load;
   load.force_max_N = mix(a.force_max_N, b.force_max_N);
   load.lateral_max_N = mix(a.lateral_max_N, b.lateral_max_N);
+  load.axial_max_N = mix(a.axial_max_N, b.axial_max_N);
   load.force_mean_N = mix(a.force_mean_N, b.force_mean_N);
   load.chip_mm3 = mix(a.chip_mm3, b.chip_mm3);
   load.torque_max_Nmm = mix(a.torque_max_Nmm, b.torque_max_Nmm);
@@ -151,7 +158,7 @@ class Cutter {
       leave_uneven(stamps, from, deflections, contacts, first_id + static_cast<std::int32_t>(from), loads);
     } else {
       if (options_.surface) mark(stamps, deflections, first_id + static_cast<std::int32_t>(from));
-      tell_contacts(envelope_, run_out_.none() ? deflections : without_run_out(deflections, from), contacts, loads);
+      tell_contacts(envelope_, stamps, run_out_.none() ? deflections : without_run_out(deflections, from), contacts, loads);
     }
     for (const StampLoad& load : loads) result.chip_mm3 += load.chip_mm3;
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
@@ -246,10 +253,10 @@ class Cutter {
       std::span<float> row(deflections.row(static_cast<std::ptrdiff_t>(k)),
                            options_.drilling ? 0 : deflections.row_size());
       model_.evaluate(blocks, chips, from + k, removal::motion_in_tool(all, from + k), pass, row);
-      loads[k] = summarize(pass);
+      loads[k] = summarize(pass, all[from + k].pose);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
       if (!at_other_chip.empty())
-        at_other_chip[k] = at_ratio(blocks, chips, from + k, removal::motion_in_tool(all, from + k), pass);
+        at_other_chip[k] = at_ratio(blocks, chips, all, from + k, pass);
       ++read;
       if (!in_turn(from + k)) return;
       const std::scoped_lock lock(turn_lock);
@@ -279,7 +286,8 @@ class Cutter {
 
   /// The loads for chips of options_.chip_ratio to their thickness.
   StampLoad at_ratio(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips,
-                     std::size_t passing, const removal::ToothMotion& motion, ToothPass& pass) const {
+                     std::span<const Stamp> all, std::size_t passing, ToothPass& pass) const {
+    const removal::ToothMotion motion = removal::motion_in_tool(all, passing);
     thread_local std::vector<removal::ChipBlock> scaled;
     scaled.assign(chips.begin(), chips.end());
     const auto ratio = static_cast<float>(options_.chip_ratio);
@@ -288,7 +296,7 @@ class Cutter {
         if (h > 0) h *= ratio;
     const double share = options_.chip_ratio;
     model_.evaluate(blocks, scaled, passing, {share * motion.tip_mm, share * motion.turn_rad}, pass, {});
-    return summarize(pass);
+    return summarize(pass, all[passing].pose);
   }
 
   /// The largest deflection that the fields and the beam describe at a stamp: the narrow band holds it with the chip,
@@ -323,11 +331,13 @@ class Cutter {
     }
   }
 
-  static void tell_contacts(const EnvelopeGrid& envelope, const DeflectionTable& deflections,
-                            std::span<const Contact> contacts, std::span<StampLoad> loads) {
+  static void tell_contacts(const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
+                            const DeflectionTable& deflections, std::span<const Contact> contacts,
+                            std::span<StampLoad> loads) {
     for (std::size_t k = 0; k < contacts.size(); ++k)
-      loads[k].contact_deflection_mm =
-          deflection_at(envelope, deflections, deflections.row(static_cast<std::ptrdiff_t>(k)), contacts[k]);
+      loads[k].contact_deflection_mm = direction_in_part(
+          stamps[k].pose,
+          deflection_at(envelope, deflections, deflections.row(static_cast<std::ptrdiff_t>(k)), contacts[k]));
   }
 
   /// Marks and contacts of teeth that are not even, after `passings` tooth passings. Rows are as many times as long as
@@ -339,7 +349,8 @@ class Cutter {
       const std::size_t count = std::min(part, stamps.size() - from);
       DeflectionTable own = tooth_marks_->bending(deflections, from, count, passings + from);
       if (!contacts.empty())
-        tell_contacts(tooth_marks_->envelope(), own, contacts.subspan(from, count), loads.subspan(from, count));
+        tell_contacts(tooth_marks_->envelope(), stamps.subspan(from, count), own, contacts.subspan(from, count),
+                      loads.subspan(from, count));
       if (!options_.surface) continue;
       tooth_marks_->add_run_out(own, passings + from);
       options_.surface->mark(tooth_marks_->envelope(), stamps.subspan(from, count), own,
@@ -384,7 +395,7 @@ class Cutter {
       behind.wait();
       behind.run([this, &loads, &pass, &deflections, &result, all, chips = passing.chips, from, k] {
         model_.evaluate(chips, from + k, removal::motion_in_tool(all, from + k), pass);
-        loads[k] = summarize(pass);
+        loads[k] = summarize(pass, all[from + k].pose);
         loads[k].chip_mm3 = removal::swept_chip_volume_mm3(envelope_, chips, deflections,
                                                            deflections.row(static_cast<std::ptrdiff_t>(k)));
         keep_turn(chips, all, from + k, result);

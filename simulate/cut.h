@@ -15,10 +15,12 @@
 
 namespace camber::simulate {
 
-/// The loads of one tooth passing. Forces act on the tool, in machine axes.
+/// The loads of one tooth passing. Forces act on the tool, in the part's axes, which are the machine's where the tool is
+/// upright.
 struct StampLoad {
   Vec3 force_max_N = Vec3::Zero();   ///< per component the signed value of maximum magnitude
-  double lateral_max_N = 0;          ///< largest sqrt(Fx^2 + Fy^2)
+  double lateral_max_N = 0;          ///< largest force across the tool's axis
+  double axial_max_N = 0;            ///< along the tool's axis, towards the spindle; signed, of maximum magnitude
   Vec3 force_mean_N = Vec3::Zero();  ///< over the tooth passing
   Vec3 contact_deflection_mm =
       Vec3::Zero();     ///< at the height of the contact, at the instant at which an edge passes it

@@ -131,8 +131,10 @@ SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmo
                                  Diagnostics& diagnostics) {
   SimulatedProgram out;
   out.text = nc::read_program(std::move(source), diagnostics);
-  out.moves = nc::interpret(out.text, feedmodel::interpreter_options(job.machine, job.inch), diagnostics);
+  out.moves = nc::interpret(out.text, interpreter_options(job, names_rotary_axes(job.machine, out.text)), diagnostics);
   diagnostics.throw_if_errors();
+  out.rotary = read_rotary_motion(job.machine, out.text, out.moves, diagnostics);
+  if (out.rotary) out.moves = out.rotary->path().moves_in_part();
   const machine::Operations operations = as_lines(job.operations, out.text, out.moves);
   out.selected = removal::selected_moves(out.moves, operations);
   out.holes = removal::hole_moves(out.moves, operations, job.tools);
@@ -140,11 +142,15 @@ SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmo
     if (out.holes[i] != removal::HoleMove::none) out.selected[i] = false;
   check_cutting(job, out.text, out.moves, out.selected, out.holes, diagnostics);
   diagnostics.throw_if_errors();
-  removal::StampBuilder builder(out.moves, job.tools, out.selected, out.holes);
-  out.feed = feedmodel::predict_feed(out.moves, job.machine, [&](std::span<const feedmodel::TimedSample> run) {
+  removal::StampBuilder builder(out.moves, job.tools, out.selected, out.holes, out.part_path());
+  const auto take = [&](const auto& run, std::span<const feedmodel::TimedSample> timed) {
     builder.add(run);
-    if (samples) samples(run);
-  });
+    if (samples) samples(timed);
+  };
+  out.feed = out.rotary ? predict_on_part(*out.rotary, job.machine,
+                                          [&](const feedmodel::PartSamples& run) { take(run, run.samples()); })
+                        : feedmodel::predict_feed(out.moves, job.machine,
+                                                  [&](std::span<const feedmodel::TimedSample> run) { take(run, run); });
   out.path = builder.take();
   return out;
 }
@@ -162,10 +168,19 @@ void exchange(SimulatedProgram& program, Motion& motion) {
 
 namespace {
 
+/// Curves between the ends of moves, and tools that lie on their side.
+void add_turned(const Job& job, const SimulatedProgram& program, Places& places) {
+  for (const removal::Stamp& stamp : program.path.stamps) places.tip.add(stamp.pose.tip_mm);
+  if (removal::all_upright(program.path.stamps)) return;
+  for (const int tool : cutting_tools(program.moves, program.selected, program.holes))
+    places.radius_mm = std::max(places.radius_mm, job.tools.at(tool).overhang_mm);
+}
+
 Places places_of(const Job& job, const SimulatedProgram& program, const removal::Stock& blank) {
   Places out{tip_extents(program.moves, program.selected, program.holes), 0, {blank.min_mm(), blank.max_mm()}};
   for (const int tool : cutting_tools(program.moves, program.selected, program.holes))
     out.radius_mm = std::max(out.radius_mm, job.tools.at(tool).diameter_mm / 2);
+  if (program.rotary) add_turned(job, program, out);
   return out;
 }
 
@@ -209,7 +224,7 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
 Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics) {
   auto [blank, whole, memory] = make_blank(job, target, diagnostics);
   const Places where = places_of(job, target, blank);
-  removal::StampPath nominal = removal::nominal_path(target.moves, target.selected, target.path);
+  removal::StampPath nominal = removal::nominal_path(target.moves, target.selected, target.path, target.part_path());
   removal::Stock surface(blank);
   if (sweep_path(surface, job, nominal, 0, "cutting as the target") < nothing_mm3(job))
     report_nothing_removed(target.text.source.name(), where, diagnostics);

@@ -46,7 +46,7 @@ class OtherMoves {
     for (std::size_t i = 0; i < moves.size(); ++i)
       if (program.selected[i]) offsets_.insert(program.moves.state_of(moves[i]).work_offset);
     for (std::size_t i = 0; i < moves.size(); ++i)
-      if (left_out(i)) add(moves[i]);
+      if (left_out(i)) add(static_cast<std::uint32_t>(i));
   }
 
   bool empty() const { return runs_.empty(); }
@@ -81,21 +81,30 @@ class OtherMoves {
     return job_.tools.contains(state.tool) && offsets_.contains(state.work_offset);
   }
 
-  bool near(const Vec3& tip, double radius_mm) const {
-    const Vec3 &lo = surface_.min_mm, &hi = surface_.max_mm;
+  bool near(const ToolPose& pose, const machine::Tool& tool_of_pose) const {
+    const Vec3 &lo = surface_.min_mm, &hi = surface_.max_mm, &tip = pose.tip_mm;
+    const double radius_mm = tool_of_pose.diameter_mm / 2;
+    if (!pose.upright()) {
+      const double reach_mm = tool_of_pose.overhang_mm + radius_mm;
+      return (tip.cwiseMax(lo).cwiseMin(hi) - tip).norm() < reach_mm;
+    }
     return tip.z() < hi.z() && tip.x() + radius_mm > lo.x() && tip.x() - radius_mm < hi.x() &&
            tip.y() + radius_mm > lo.y() && tip.y() - radius_mm < hi.y();
   }
 
-  void add(const nc::Move& m) {
+  void add(std::uint32_t move) {
+    const nc::Move& m = program_.moves.moves[move];
     const int number = program_.moves.state_of(m).tool;
     const machine::Tool& tool = job_.tools.at(number);
-    const double length = nc::length_mm(program_.moves, m);
+    const kinematics::PartPath* part = program_.part_path();
+    // A turn moves the cutter's upper end most.
+    const double length =
+        part ? part->length_mm(move) + tool.overhang_mm * part->turn_rad(move) : nc::length_mm(program_.moves, m);
     const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(length / sample_spacing_mm(tool))));
     for (std::size_t k = 0; k <= steps; ++k) {
       Stamp stamp;
-      stamp.pose = nc::pose_at(program_.moves, m, static_cast<double>(k) / static_cast<double>(steps));
-      if (!near(stamp.pose.tip_mm, tool.diameter_mm / 2)) continue;
+      stamp.pose = program_.pose_at(move, static_cast<double>(k) / static_cast<double>(steps));
+      if (!near(stamp.pose, tool)) continue;
       if (runs_.empty() || runs_.back().tool != number) runs_.push_back({number, {}});
       runs_.back().stamps.push_back(stamp);
     }
@@ -163,14 +172,16 @@ void mark_not_judged(const machine::Operations& judged, const SimulatedProgram& 
   }
 }
 
-bool stands_in(const removal::Stock& stock, const machine::Tool& tool, const Vec3& tip) {
+bool stands_in(const removal::Stock& stock, const machine::Tool& tool, const ToolPose& pose) {
   constexpr double kStep_mm = 0.5;
-  for (const OutlineRing& ring : tool_outline(tool, kStep_mm, stock.max_mm().z() - tip.z())) {
+  const double height = pose.upright() ? stock.max_mm().z() - pose.tip_mm.z() : tool.overhang_mm;
+  for (const OutlineRing& ring : tool_outline(tool, kStep_mm, height)) {
     if (ring.part != OutlineRing::Part::cutter) continue;
     const int n = std::max(1, static_cast<int>(std::ceil(2 * kPi * ring.radius_mm / kStep_mm)));
     for (int i = 0; i < n; ++i) {
       const double phi = 2 * kPi * i / n;
-      const Vec3 p = tip + Vec3(ring.radius_mm * std::cos(phi), ring.radius_mm * std::sin(phi), ring.height_mm);
+      const Vec3 p = point_in_part(
+          pose, {ring.radius_mm * std::cos(phi), ring.radius_mm * std::sin(phi), ring.height_mm});
       if (stock.distance_mm(p) < -stock.voxel_mm()) return true;
     }
   }
@@ -192,7 +203,7 @@ void check_region_start(const machine::Job& job, const SimulatedProgram& program
   // What holes took out before is not known of the blank.
   const auto holes_end = program.holes.begin() + static_cast<std::ptrdiff_t>(std::min(first, program.holes.size()));
   if (!cut && std::any_of(program.holes.begin(), holes_end, removal::makes_hole)) return;
-  if (!known || tool == job.tools.end() || !stands_in(blank, tool->second, m.start_mm)) return;
+  if (!known || tool == job.tools.end() || !stands_in(blank, tool->second, program.pose_at(static_cast<std::uint32_t>(first), 0))) return;
   diagnostics.add(program.text.source.diagnostic(
       Severity::warning, program.text.blocks[m.block].offset,
       fmt::format("the job's operations begin here, {}: T{} stands in material, which is removed without chips; {} was "

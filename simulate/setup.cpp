@@ -28,13 +28,13 @@ Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFi
 }
 
 void check_program(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics) {
-  check_machine(job.machine, program.text, program.moves, diagnostics);
+  check_machine(job.machine, program.text, program.text_moves(), diagnostics);
   check_tool_lengths(job, cutting_tools(program.moves, program.selected, program.holes), diagnostics);
 }
 
 void check_clearance(const machine::Job& job, const Setup& setup, Diagnostics& diagnostics) {
   check_collisions(job, setup.program, setup.target.blank, diagnostics);
-  check_machine_collisions(job, setup.program.text, setup.program.moves, diagnostics);
+  check_machine_collisions(job, setup.program.text, setup.program.text_moves(), diagnostics);
   check_region_start(job, setup.program, setup.target.blank, diagnostics);
   check_flute_reach(job, setup.program, setup.target.blank, diagnostics);
 }

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "base/stage.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/rapid.h"
 #include "feedmodel/timed_path.h"
 #include "simulate/collision_search.h"
@@ -50,7 +49,7 @@ void pose_by_joints(const machine::Job& job, const SimulatedProgram& program, co
     if (poses.size() > 1 && tool.displacement_mm(poses[poses.size() - 2], pose) < kClose_mm) poses.pop_back();
     append(poses, pose, tool);
   };
-  feedmodel::predict_joints(program.moves, job.machine, [&](auto samples, auto joints) {
+  feedmodel::predict_joints(program.text_moves(), job.machine, [&](auto samples, auto joints) {
     for (std::size_t i = 0; i < samples.size(); ++i) take(samples[i], joints[i].command_tool);
   });
 }
@@ -92,7 +91,7 @@ std::vector<PosedRapid> posed_rapids(const machine::Job& job, const SimulatedPro
     const int tool = program.moves.state_of(program.moves.moves[r.move]).tool;
     if (tools.contains(tool)) rapids.push_back({r, tool});
   }
-  if (feedmodel::has_rotary_motion(program.moves, job.machine))
+  if (program.rotary)
     pose_by_joints(job, program, tools, rapids);
   else
     pose_by_path(job, program, tools, rapids);

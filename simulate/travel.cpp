@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "kinematics/travel_check.h"
+
 namespace camber::simulate {
 namespace {
 
@@ -52,6 +54,13 @@ void check_travel(const machine::Job& job, const nc::Program& program, const nc:
       break;
     }
   }
+}
+
+void check_travel(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics) {
+  if (program.rotary)
+    kinematics::check_travel(job.machine, program.text, program.text_moves(), diagnostics);
+  else
+    check_travel(job, program.text, program.moves, diagnostics);
 }
 
 }  // namespace camber::simulate

@@ -8,9 +8,9 @@
 #include "compensate/measured.h"
 #include "compensate/recheck.h"
 #include "compensate/verify.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/fitted_range.h"
 #include "nc/interpreter.h"
+#include "simulate/rotary_motion.h"
 
 namespace camber::api {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
   Diagnostics ignored;  // said already
   const auto text = nc::read_program(std::move(source), ignored);
-  return nc::interpret(text, feedmodel::interpreter_options(job.machine, job.inch), ignored);
+  return nc::interpret(text, simulate::interpreter_options(job, simulate::names_rotary_axes(job.machine, text)), ignored);
 }
 
 /// The job as it was measured; the fit goes to `fit`.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <tbb/task_group.h>
 
+#include "api/commands/feed.h"
 #include "base/freed_memory.h"
 #include "base/output_file.h"
 #include "base/stage.h"
@@ -30,23 +31,23 @@ namespace fs = std::filesystem;
 /// Times the program once more to write feed.csv, a sample a period; of a trace its own samples.
 std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& program, const simulate::TracedRun* traced,
                                         const machine::Job& job, const std::string& path, Stage& stage) {
-  feedmodel::FeedCsv csv(program.moves, path);
-  report::PathCollector collector(program.moves);
-  const auto take = [&](std::span<const feedmodel::TimedSample> samples) {
+  feedmodel::FeedCsv csv(program.text_moves(), path, rotary_columns(program.text_moves(), job.machine));
+  const auto write = [&](std::span<const feedmodel::TimedSample> samples,
+                         std::span<const feedmodel::JointSample> joints) {
     stage.advance(samples.size());
-    csv.write(samples);
-    collector.add(samples);
+    joints.empty() ? csv.write(samples) : csv.write(samples, joints);
   };
-  traced ? take(traced->samples) : static_cast<void>(feedmodel::predict_feed(program.moves, job.machine, take));
+  std::vector<report::PathRow> rows;
+  if (traced) {
+    report::PathCollector collector(program.moves);
+    write(traced->samples, {});
+    collector.add(traced->samples);
+    rows = collector.take();
+  } else {
+    rows = report::rows_of_program(program, job.machine, write);
+  }
   csv.commit();
-  return collector.take();
-}
-
-std::vector<report::PathRow> model_rows(const simulate::SimulatedProgram& program, const machine::Job& job) {
-  report::PathCollector collector(program.moves);
-  feedmodel::predict_feed(program.moves, job.machine,
-                          [&](std::span<const feedmodel::TimedSample> samples) { collector.add(samples); });
-  return collector.take();
+  return rows;
 }
 
 /// The trace on the program's moves. Its gaps matter in the cut alone, and are errors there.
@@ -124,7 +125,7 @@ void write_files(const machine::Job& job, const PreparedJob& prepared, simulate:
   others.run_and_wait([&] {
     auto feed = write_feed(program, traced, job, folder / "feed.csv", stage);
     report::ReportData page = report::predict_report(job, program, prediction, stock, std::move(feed), diagnostics);
-    if (traced) report::add_traced(page, program, prediction, *traced, model_rows(program, job));
+    if (traced) report::add_traced(page, program, prediction, *traced, report::rows_of_program(program, job.machine));
     report::write_html_report(folder / "report.html", page);
   });
 }
@@ -140,8 +141,10 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   std::optional<calib::TracedMotion> measured;
   const auto check = [&](const simulate::SimulatedProgram& given) {
     simulate::check_program(job, given, diagnostics);
+    if (!request.trace.empty())
+      simulate::refuse_rotary_motion(given.rotary.get(), given.text, "traces are of X, Y and Z", diagnostics);
     if (!request.folder.empty())
-      feedmodel::check_feed_csv_size(given.moves, job.machine, request.folder + "/feed.csv", diagnostics);
+      feedmodel::check_feed_csv_size(given.text_moves(), job.machine, request.folder + "/feed.csv", diagnostics);
     diagnostics.throw_if_errors();
     if (!request.trace.empty()) measured = read_motion(given, request, diagnostics);
   };
@@ -152,7 +155,7 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   out.setup.original.reset();
   out.setup.target.surface.clear_stamps();  // its points are in the map
   const simulate::SimulatedProgram& program = out.setup.program;
-  feedmodel::check_range(program.moves, job.program, job.machine, diagnostics);
+  feedmodel::check_range(program.text_moves(), job.program, job.machine, diagnostics);
   simulate::check_clearance(job, out.setup, diagnostics);
   if (measured) out.traced = exchange_motion(job, out.setup.program, request.trace, *std::move(measured));
   if (request.forces_at > 0)

@@ -1,0 +1,171 @@
+// predict, compensate and adapt on programs with rotary motion, as a user runs them.
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "base/geometry.h"
+#include "base/units.h"
+#include "tests/support/csv_columns.h"
+#include "tests/support/run_camber.h"
+
+namespace camber {
+namespace {
+
+using tests::columns_of;
+using tests::run_camber;
+using tests::TempFolder;
+
+const std::string kStart = "G21 G90 G94\nG10 L2 P1 X0 Y0 Z-300\nG10 L1 P1 R120\nT1 M6\nS6000 M3\nG54\n";
+
+/// The machine of sample 13, with the program's tool on a plate; `bodies`: of the machine file.
+void write_job(const TempFolder& folder, const std::string& program, const std::string& bodies = {}) {
+  std::string machine = tests::file_text(CAMBER_SOURCE_DIR "/samples/13-dome/machine.toml");
+  machine.erase(machine.find("[[body]]"));
+  folder.write("machine.toml", machine + bodies);
+  folder.write("p.nc", program);
+  folder.write("job.toml", R"(program = "p.nc"
+machine = "machine.toml"
+[tool.1]
+type = "ball"
+diameter_mm = 6.0
+flutes = 2
+overhang_mm = 30.0
+holder_mm = [[32, 32, 60]]
+[material]
+ktc_MPa = 2000.0
+krc_MPa = 700.0
+[stock]
+box_mm = [[0, 0, -1], [3, 2, 0]]
+[simulation]
+voxel_mm = 0.2
+coupling = "rigid"
+)");
+}
+
+/// Three rows along X by a ball that leans 20 degrees ahead (C90 puts the tilt of A into X), its lowest point at `z`.
+std::string rows(double z = -0.2) {
+  const double lead = rad_from_deg(20);
+  const Vec3 axis(std::sin(lead), 0, std::cos(lead)), tip = Vec3(0, 0, 3 + z) - 3 * axis;
+  std::string text = kStart + "G0 X0 Y0 Z100\nA20 C90\n";
+  bool first = true;
+  for (const double y : {0.5, 1.0, 1.5}) {
+    text += fmt::format("G0 {}X{:.4f} Y{:.4f} Z{:.4f}\n", first ? "G43.4 H1 " : "", tip.x() - 5, y, tip.z() + 5);
+    text += fmt::format("G1 Z{:.4f} F300\nX{:.4f} A20 C90 F1200\nG0 Z{:.4f}\n", tip.z(), tip.x() + 7, tip.z() + 5);
+    first = false;
+  }
+  return text + "G0 Z100\nM30\n";
+}
+
+TEST(PredictFiveAxes, WritesJointsPosesAndAxialForces) {
+  const TempFolder folder;
+  write_job(folder, rows());
+  const auto run = run_camber(folder, "predict job.toml -o result");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  const std::string forces = tests::file_text(folder / "result/forces.csv");
+  EXPECT_NE(forces.find(",specific_energy_MPa,f_axial_max_N\n"), std::string::npos);
+  const auto feed = columns_of(tests::file_text(folder / "result/feed.csv"));
+  const auto &a = feed.at("a_deg"), &c = feed.at("c_deg"), &x = feed.at("axis_x"), &tip = feed.at("tip_z_mm");
+  EXPECT_NEAR(a.back(), 20, 1e-3);
+  EXPECT_NEAR(c.back(), 90, 1e-3);
+  EXPECT_NEAR(x.back(), std::sin(rad_from_deg(20)), 1e-4);
+  EXPECT_NEAR(*std::ranges::min_element(tip), 3 - 0.2 - 3 * std::cos(rad_from_deg(20)), 1e-3);
+  // Forces in the part's axes: the tool leans back along X, so that its axial force shows there.
+  const auto loads = columns_of(forces);
+  double axial = 0;
+  for (const double n : loads.at("f_axial_max_N")) axial = std::max(axial, std::abs(n));
+  EXPECT_GT(axial, 1);
+  const std::string page = tests::file_text(folder / "result/report.html");
+  EXPECT_NE(page.find("\"chain\""), std::string::npos);
+}
+
+TEST(PredictFiveAxes, SaysWhatIsMissing) {
+  const TempFolder folder;
+  const auto error_of = [&](const std::string& program, const std::string& command = "predict job.toml -o result") {
+    write_job(folder, program);
+    const auto run = run_camber(folder, command);
+    EXPECT_EQ(run.status, 1) << run.err;
+    return run.err;
+  };
+  std::string text = rows();
+  text.erase(text.find("G10 L2"), text.find("G10 L1") - text.find("G10 L2"));
+  EXPECT_EQ(error_of(text),
+            "p.nc:6:1: error: where the tool is on the part depends on the work offset, which is not known; G10 L2 in "
+            "the program or [compensation] work_offset_mm (of G54) in the job was expected [work-offset]\n"
+            "    G0 X0 Y0 Z100\n    ^\n");
+  text = rows();
+  text.erase(text.find("G10 L1"), text.find("T1 M6") - text.find("G10 L1"));
+  EXPECT_EQ(error_of(text),
+            "p.nc:8:1: error: where the tool is on the part depends on the length of tool T1, which is not known; its "
+            "value (G10 L1) in the program was expected [tool-length]\n"
+            "    G0 G43.4 H1 X-6.0261 Y0.5000 Z4.9809\n    ^\n");
+  EXPECT_EQ(error_of(kStart + "G0 X0 Y0 Z100\nA20 C90\nG43 H1\nG0 X0 Y0 Z50\nG2 X4 Y4 I4 J0 C100 F100\nM30\n"),
+            "p.nc:11:1: error: this arc is none on the part, as rotary axes turn it; lines, or tool-centre-point "
+            "control, were expected [not-read]\n    G2 X4 Y4 I4 J0 C100 F100\n    ^\n");
+  write_job(folder, rows());
+  folder.write("adapt.toml", tests::file_text(folder / "job.toml") + "[adapt]\n[adapt.limits]\nforce_N = 50.0\n");
+  EXPECT_NE(error_of(rows(), "adapt adapt.toml -o out.nc")
+                .find("p.nc:8:1: error: adapt chooses feeds of X, Y and Z, but rotary axes turn here; a program of X, "
+                      "Y and Z alone was expected [rotary-motion]\n    A20 C90\n    ^\n"),
+            std::string::npos);
+}
+
+/// The work offset of the job is that of G54.
+TEST(PredictFiveAxes, TakesTheWorkOffsetOfTheJob) {
+  const TempFolder folder;
+  write_job(folder, rows());
+  ASSERT_EQ(run_camber(folder, "predict job.toml -o one").status, 0);
+  std::string text = rows();
+  text.replace(text.find("G10 L2 P1 X0 Y0 Z-300"), 21, "(IN THE JOB)");
+  write_job(folder, text);
+  folder.write("job.toml", tests::file_text(folder / "job.toml") + "[compensation]\nwork_offset_mm = [0, 0, -300]\n");
+  const auto run = run_camber(folder, "predict job.toml -o two");
+  ASSERT_EQ(run.status, 0) << run.err;
+  for (const char* name : {"forces.csv", "feed.csv", "form_error.csv"})
+    EXPECT_EQ(tests::file_text(folder / ("one/" + std::string(name))),
+              tests::file_text(folder / ("two/" + std::string(name))));
+}
+
+/// The holder's rim, 30 mm up the tool and 16 mm wide, comes down to z = tip + 30 cos A - 16 sin A.
+std::string over_the_stock(double clearance) {
+  const double tilt = rad_from_deg(70), rim = 30 * std::cos(tilt) - 16 * std::sin(tilt);
+  // The rim's lowest point is 30 sin A + 16 cos A towards the spindle; C90 leans the tool along X.
+  const double x = 1.5 - 30 * std::sin(tilt) - 16 * std::cos(tilt), z = clearance - rim;
+  return fmt::format("G0 Z100\nG0 A70 C90\nG0 X{0:.4f} Y-20 Z{1:.4f}\nG1 Y20 F3000\nG0 Z100\nM30\n", x, z);
+}
+
+TEST(PredictFiveAxes, NamesTheLineOfACollision) {
+  const TempFolder folder;
+  const std::string program = rows().substr(0, rows().find("G0 Z100\nM30"));
+  const auto line = 1 + std::ranges::count(program, '\n') + 3;
+  write_job(folder, program + over_the_stock(0.1));
+  const auto misses = run_camber(folder, "predict job.toml -o result");
+  EXPECT_EQ(misses.status, 0) << misses.err;
+  EXPECT_EQ(misses.err, "");
+  write_job(folder, program + over_the_stock(-0.5));
+  const auto hits = run_camber(folder, "predict job.toml -o result");
+  EXPECT_EQ(hits.status, 1);
+  EXPECT_EQ(hits.err.find(fmt::format("p.nc:{}:1: error: the holder of T1 in stock at X", line)), 0u) << hits.err;
+  EXPECT_NE(hits.err.find("a longer overhang or less depth was expected [collision-holder]"), std::string::npos);
+}
+
+/// A clamp on the table whose top is the stock's: exact to a tenth of the clearance.
+TEST(PredictFiveAxes, NamesTheLineThatMeetsABodyOfTheMachine) {
+  const TempFolder folder;
+  const std::string program = rows().substr(0, rows().find("G0 Z100\nM30")),
+                    clamp = "[[body]]\nname = \"clamp\"\non = \"c\"\nbox_mm = [[0, 5, -310], [3, 9, -300]]\n";
+  const auto line = 1 + std::ranges::count(program, '\n') + 3;
+  write_job(folder, program + over_the_stock(0.1), clamp);
+  EXPECT_EQ(run_camber(folder, "predict job.toml -o result").err, "");
+  write_job(folder, program + over_the_stock(-0.05), clamp);
+  const auto hits = run_camber(folder, "predict job.toml -o result");
+  EXPECT_EQ(hits.status, 1);
+  EXPECT_EQ(hits.err.find(fmt::format("p.nc:{}:1: error: the holder of T1 meets the body \"clamp\"", line)), 0u)
+      << hits.err;
+}
+
+}  // namespace
+}  // namespace camber
