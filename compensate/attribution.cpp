@@ -125,8 +125,7 @@ void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPa
   const Vec3 tip = from.place_mm + place.upper_fraction * (to.place_mm - from.place_mm);
   const double corner_mm = tool != job.tools.end() ? removal::shape_of(tool->second).corner_radius_mm : 0;
   const double from_fraction = from.move == to.move ? from.fraction : 0;
-  const Vec3 axis =
-      given.pose_at(to.move, from_fraction + place.upper_fraction * (to.fraction - from_fraction)).axis;
+  const Vec3 axis = given.pose_at(to.move, from_fraction + place.upper_fraction * (to.fraction - from_fraction)).axis;
   o.from_centre_mm = point.place_mm - tip - corner_mm * axis;
   o.at_tip = tool != job.tools.end() && round_tip(tool->second) && o.normal.dot(axis) > kTipNormal;
 }
@@ -140,8 +139,7 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const simulate:
   Observed out;
   out.points.resize(surface.size());
   out.compensated.assign(surface.size(), false);
-  const std::vector<Vec3> offsets =
-      bending.empty() ? std::vector<Vec3>() : path_offsets(path, given, emitted, map);
+  const std::vector<Vec3> offsets = bending.empty() ? std::vector<Vec3>() : path_offsets(path, given, emitted, map);
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const auto& p = surface[i];
     Observation& o = out.points[i];

@@ -66,8 +66,8 @@ ToolPose PartPath::pose_at(std::uint32_t move, double u) const {
     return pose;
   }
   if (!at.start_known) u = 1;
-  const Vec3 angles = u >= 1 ? at.end.rotary_rad
-                             : Vec3(at.start.rotary_rad + u * (at.end.rotary_rad - at.start.rotary_rad));
+  const Vec3 angles =
+      u >= 1 ? at.end.rotary_rad : Vec3(at.start.rotary_rad + u * (at.end.rotary_rad - at.start.rotary_rad));
   ToolPose pose = chain_.pose({Vec3::Zero(), angles}, at.tool_length_mm);
   pose.tip_mm = nc::point_at(text_, text_.moves[move], u);
   return pose;
@@ -98,8 +98,8 @@ double PartPath::nearest_fraction(std::uint32_t move, const Joints& joints) cons
     // Straight in X Y Z of the text.
     const Vec3 from = at.follows_tip ? m.start_mm : at.start.linear_mm,
                to = at.follows_tip ? m.end_mm : at.end.linear_mm,
-               is = at.follows_tip ? Vec3(chain_.pose(joints, at.tool_length_mm).tip_mm + origin_mm_)
-                                   : joints.linear_mm;
+               is =
+                   at.follows_tip ? Vec3(chain_.pose(joints, at.tool_length_mm).tip_mm + origin_mm_) : joints.linear_mm;
     along += (is - from).dot(to - from);
     square += (to - from).squaredNorm();
   }

@@ -74,15 +74,16 @@ class NominalBuilder {
   }
 
   ToolPose pose_of(const Place& p) const {
-    return rotary_ ? rotary_->pose_at(p.move, p.fraction)
-                   : nc::pose_at(program_, program_.moves[p.move], p.fraction);
+    return rotary_ ? rotary_->pose_at(p.move, p.fraction) : nc::pose_at(program_, program_.moves[p.move], p.fraction);
   }
   bool turns(std::uint32_t move) const { return rotary_ && rotary_->turn_rad(move) > 0; }
   double length_mm(std::uint32_t move) const {
     return rotary_ ? rotary_->length_mm(move) : nc::length_mm(program_, program_.moves[move]);
   }
   /// A turn of the tool counts as the way of a point beside the tip.
-  static double with_turn(double way_mm, double turn_rad) { return way_mm + kinematics::PartPath::kLever_mm * turn_rad; }
+  static double with_turn(double way_mm, double turn_rad) {
+    return way_mm + kinematics::PartPath::kLever_mm * turn_rad;
+  }
 
   bool straight_past(std::uint32_t move, const Vec3& goal) const {
     const Vec3 from = out_.stamps.back().pose.tip_mm, chord = goal - from, vertex = program_.moves[move].end_mm - from;

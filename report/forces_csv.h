@@ -35,10 +35,10 @@ void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgra
 /// and power are the spindle's for cutting; h is the uncut chip thickness, its mean weighted by area; the specific
 /// energy is the spindle's work over the chips' volume (MPa = J/cm3), 0 where nothing is removed. Forces act on the
 /// tool, in the part's axes, those of the machine in programs of X, Y and Z; fx_max is the signed value of largest
-/// magnitude, f_max the greatest force across the tool's axis; dx, dy, dz the deflection at the height of the contact, at
-/// the instant at which an edge passes it, mean over the row's teeth; t, x, y, z belong to the row's first tooth. Where
-/// a tool is tilted, a last column f_axial_max_N holds the force along its axis, of largest magnitude, positive towards
-/// the spindle. Throws InputError [file-unwritable].
+/// magnitude, f_max the greatest force across the tool's axis; dx, dy, dz the deflection at the height of the contact,
+/// at the instant at which an edge passes it, mean over the row's teeth; t, x, y, z belong to the row's first tooth.
+/// Where a tool is tilted, a last column f_axial_max_N holds the force along its axis, of largest magnitude, positive
+/// towards the spindle. Throws InputError [file-unwritable].
 void write_forces_csv(const std::string& path, const machine::Job& job, const simulate::SimulatedProgram& program,
                       const simulate::Prediction& prediction);
 

@@ -158,7 +158,8 @@ class Cutter {
       leave_uneven(stamps, from, deflections, contacts, first_id + static_cast<std::int32_t>(from), loads);
     } else {
       if (options_.surface) mark(stamps, deflections, first_id + static_cast<std::int32_t>(from));
-      tell_contacts(envelope_, stamps, run_out_.none() ? deflections : without_run_out(deflections, from), contacts, loads);
+      tell_contacts(envelope_, stamps, run_out_.none() ? deflections : without_run_out(deflections, from), contacts,
+                    loads);
     }
     for (const StampLoad& load : loads) result.chip_mm3 += load.chip_mm3;
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
@@ -255,8 +256,7 @@ class Cutter {
       model_.evaluate(blocks, chips, from + k, removal::motion_in_tool(all, from + k), pass, row);
       loads[k] = summarize(pass, all[from + k].pose);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
-      if (!at_other_chip.empty())
-        at_other_chip[k] = at_ratio(blocks, chips, all, from + k, pass);
+      if (!at_other_chip.empty()) at_other_chip[k] = at_ratio(blocks, chips, all, from + k, pass);
       ++read;
       if (!in_turn(from + k)) return;
       const std::scoped_lock lock(turn_lock);

@@ -15,8 +15,8 @@
 
 namespace camber::simulate {
 
-/// The loads of one tooth passing. Forces act on the tool, in the part's axes, which are the machine's where the tool is
-/// upright.
+/// The loads of one tooth passing. Forces act on the tool, in the part's axes, which are the machine's where the tool
+/// is upright.
 struct StampLoad {
   Vec3 force_max_N = Vec3::Zero();   ///< per component the signed value of maximum magnitude
   double lateral_max_N = 0;          ///< largest force across the tool's axis

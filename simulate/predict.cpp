@@ -23,11 +23,23 @@ using machine::Job;
 
 namespace {
 
+/// Longest way of a point of the tool in a tooth passing, which no chip is thicker than.
+double longest_feed_mm(const machine::Tool& tool, std::span<const removal::Stamp> stamps) {
+  double longest = 0;
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    const double tip = stamps[k].feed_per_tooth_mm.norm();
+    const double turn = stamps[k].pose.upright() ? 0 : removal::motion_in_tool(stamps, k).turn_rad.norm();
+    longest = std::max(longest, tip + turn * tool.flute_length_mm.value_or(tool.overhang_mm));
+  }
+  return longest;
+}
+
 /// Half width of the narrow band: three voxels for the field's sake, and the thickest chip with room for bending.
 double band_voxels(const Job& job, const removal::StampPath& path, double thickest) {
   for (const auto& run : path.runs)
-    for (std::size_t k = run.from; k < run.from + run.count && run.kind != removal::RunKind::tapping; ++k)
-      thickest = std::max(thickest, path.stamps[k].feed_per_tooth_mm.norm());
+    if (run.kind != removal::RunKind::tapping)
+      thickest = std::max(thickest,
+                          longest_feed_mm(job.tools.at(run.tool), std::span(path.stamps).subspan(run.from, run.count)));
   constexpr double kMin = 4, kMax = 12, kBending_mm = 0.1;
   return std::clamp(std::ceil((thickest + kBending_mm) / job.simulation.voxel_mm) + 1, kMin, kMax);
 }

@@ -24,7 +24,7 @@ namespace camber::simulate {
 /// A program as it runs on the job's machine.
 struct SimulatedProgram {
   nc::Program text;
-  nc::Interpretation moves;  ///< of a program with rotary motion: on the part (PartPath::moves_in_part)
+  nc::Interpretation moves;              ///< of a program with rotary motion: on the part (PartPath::moves_in_part)
   std::vector<bool> selected;            ///< per move: milled by the job's operations
   std::vector<removal::HoleMove> holes;  ///< per move
   removal::StampPath path;

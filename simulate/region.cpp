@@ -180,8 +180,8 @@ bool stands_in(const removal::Stock& stock, const machine::Tool& tool, const Too
     const int n = std::max(1, static_cast<int>(std::ceil(2 * kPi * ring.radius_mm / kStep_mm)));
     for (int i = 0; i < n; ++i) {
       const double phi = 2 * kPi * i / n;
-      const Vec3 p = point_in_part(
-          pose, {ring.radius_mm * std::cos(phi), ring.radius_mm * std::sin(phi), ring.height_mm});
+      const Vec3 p =
+          point_in_part(pose, {ring.radius_mm * std::cos(phi), ring.radius_mm * std::sin(phi), ring.height_mm});
       if (stock.distance_mm(p) < -stock.voxel_mm()) return true;
     }
   }
@@ -203,7 +203,9 @@ void check_region_start(const machine::Job& job, const SimulatedProgram& program
   // What holes took out before is not known of the blank.
   const auto holes_end = program.holes.begin() + static_cast<std::ptrdiff_t>(std::min(first, program.holes.size()));
   if (!cut && std::any_of(program.holes.begin(), holes_end, removal::makes_hole)) return;
-  if (!known || tool == job.tools.end() || !stands_in(blank, tool->second, program.pose_at(static_cast<std::uint32_t>(first), 0))) return;
+  if (!known || tool == job.tools.end() ||
+      !stands_in(blank, tool->second, program.pose_at(static_cast<std::uint32_t>(first), 0)))
+    return;
   diagnostics.add(program.text.source.diagnostic(
       Severity::warning, program.text.blocks[m.block].offset,
       fmt::format("the job's operations begin here, {}: T{} stands in material, which is removed without chips; {} was "

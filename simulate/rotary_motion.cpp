@@ -87,7 +87,8 @@ bool names_rotary_axes(const machine::Machine& machine, const nc::Program& text)
   const int tip_control_m = feedmodel::dialect_of(machine.control.kind).tip_control_on_m;
   return std::ranges::any_of(text.words, [&](const nc::Word& word) {
     // NaN, an expression, is not 0.
-    return (word.letter >= 'A' && word.letter <= 'C' && word.value != 0) || (word.letter == 'G' && turns_frame(word.value)) ||
+    return (word.letter >= 'A' && word.letter <= 'C' && word.value != 0) ||
+           (word.letter == 'G' && turns_frame(word.value)) ||
            (word.letter == 'M' && tip_control_m != 0 && word.value == tip_control_m);
   });
 }
@@ -119,12 +120,12 @@ void refuse_rotary_motion(const RotaryMotion* rotary, const nc::Program& text, c
 feedmodel::FeedSummary predict_on_part(const RotaryMotion& rotary, const machine::Machine& machine,
                                        const PartSink& sink) {
   feedmodel::PartSamples on_part;
-  return feedmodel::predict_joints(rotary.text(), machine,
-                                   [&](std::span<const feedmodel::TimedSample> samples,
-                                       std::span<const feedmodel::JointSample> joints) {
-                                     on_part.take(samples, joints);
-                                     sink(on_part);
-                                   });
+  return feedmodel::predict_joints(
+      rotary.text(), machine,
+      [&](std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints) {
+        on_part.take(samples, joints);
+        sink(on_part);
+      });
 }
 
 }  // namespace camber::simulate

@@ -19,7 +19,8 @@ namespace camber::simulate {
 /// The moves in the coordinates of the program's text, with lines as the machine runs them, and the tool along them.
 class RotaryMotion {
  public:
-  RotaryMotion(const machine::Machine& machine, nc::Interpretation text) : text_(std::move(text)), path_(machine, text_) {}
+  RotaryMotion(const machine::Machine& machine, nc::Interpretation text)
+      : text_(std::move(text)), path_(machine, text_) {}
   RotaryMotion(const RotaryMotion&) = delete;
   RotaryMotion& operator=(const RotaryMotion&) = delete;
 

@@ -18,7 +18,8 @@ namespace {
 nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
   Diagnostics ignored;  // said already
   const auto text = nc::read_program(std::move(source), ignored);
-  return nc::interpret(text, simulate::interpreter_options(job, simulate::names_rotary_axes(job.machine, text)), ignored);
+  return nc::interpret(text, simulate::interpreter_options(job, simulate::names_rotary_axes(job.machine, text)),
+                       ignored);
 }
 
 /// The job as it was measured; the fit goes to `fit`.

@@ -70,7 +70,7 @@ TEST(HiddenRows, OffsetsAreWhereTheToolIsBesideTheProgrammedPath) {
       machine.path.stamps.push_back(stamp);
     }
   }
-  const std::vector<Vec3> offsets = path_offsets(path, moves, machine, {});
+  const std::vector<Vec3> offsets = path_offsets(path, machine, machine, {});
   for (std::size_t i = 0; i < offsets.size(); ++i) {
     const ControlPoint& p = path.points()[i];
     if (p.place_mm.z() > -1.19 || std::abs(p.place_mm.x()) > 8) continue;  // the way down; the ends, where rows meet

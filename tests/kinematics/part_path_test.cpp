@@ -24,9 +24,8 @@ nc::Interpretation moves_of(const machine::Machine& machine, const std::string& 
   Diagnostics found;
   nc::InterpreterOptions options;
   options.rotary_axes = rotary_options(machine);
-  const auto text =
-      nc::read_program(SourceText("p.nc", "G21 G90 G94\nG10 L2 P1 X10 Y-20 Z-50\nG10 L1 P1 R90\nT1 M6\nG54\n" + blocks),
-                       found);
+  const auto text = nc::read_program(
+      SourceText("p.nc", "G21 G90 G94\nG10 L2 P1 X10 Y-20 Z-50\nG10 L1 P1 R90\nT1 M6\nG54\n" + blocks), found);
   nc::Interpretation out = nc::interpret(text, feedmodel::interpreter_options(machine, options), found);
   for (const auto& d : found.all()) EXPECT_NE(d.severity, Severity::error) << d.message;
   place_lines(out, machine);
@@ -65,8 +64,9 @@ TEST(PartPath, JointsBendTheWayOfTheTip) {
   // A whole turn and a bit: the fraction follows the angle, not the place, which is passed several times.
   const std::uint32_t spiral = turn + 1;
   for (const double u : {0.0, 0.3, 0.77, 1.0}) {
-    Joints joints = chain.solve({path.pose_at(spiral, u).tip_mm - origin, Vec3::UnitZ()}, 90,
-                                {Vec3::Zero(), Vec3(0, 0, rad_from_deg(90 + 360 * u))})
+    Joints joints = chain
+                        .solve({path.pose_at(spiral, u).tip_mm - origin, Vec3::UnitZ()}, 90,
+                               {Vec3::Zero(), Vec3(0, 0, rad_from_deg(90 + 360 * u))})
                         .joints;
     joints.rotary_rad = Vec3(0, 0, rad_from_deg(90 + 360 * u));
     joints.linear_mm = *chain.linear_mm(path.pose_at(spiral, u).tip_mm - origin, joints.rotary_rad, 90);
@@ -98,7 +98,8 @@ TEST(PartPath, ShiftedTipsGoBackToWords) {
 
 TEST(PartPath, ArcsOfTheAxesTurnWithTheTable) {
   const machine::Machine machine = tests::sample("table_bc");
-  const auto text = moves_of(machine, "G0 X0 Y0 Z100 B0 C0\nG43 H1\nG0 X0 Y0 Z0\nB25 C70\nG1 X1 F100\nG2 X5 Y4 I4 J0\n");
+  const auto text =
+      moves_of(machine, "G0 X0 Y0 Z100 B0 C0\nG43 H1\nG0 X0 Y0 Z0\nB25 C70\nG1 X1 F100\nG2 X5 Y4 I4 J0\n");
   const PartPath path(machine, text);
   EXPECT_TRUE(path.bent_arcs().empty());
   const nc::Interpretation part = path.moves_in_part();

@@ -52,7 +52,8 @@ std::vector<Point> rows(double lead_from_deg, double lead_to_deg, double tilt_de
   std::vector<Point> out;
   for (const double y : {0.4, 0.9, 1.4}) {
     for (int i = 0; i <= kPieces; ++i) {
-      const double u = static_cast<double>(i) / kPieces, lead = rad_from_deg(lead_from_deg + u * (lead_to_deg - lead_from_deg)),
+      const double u = static_cast<double>(i) / kPieces,
+                   lead = rad_from_deg(lead_from_deg + u * (lead_to_deg - lead_from_deg)),
                    tilt = rad_from_deg(tilt_deg);
       const Vec3 axis = Vec3(-std::sin(lead), std::sin(tilt) * std::cos(lead), std::cos(tilt) * std::cos(lead));
       const Vec3 tip = Vec3(9 - 13 * u, y, 3 - 0.2) - 3 * axis;

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""What leaning a ball does: bench/tilted/lead_and_tilt.py [CAMBER] [--leads=-30,...] [--tilts=0,...]
+
+A level plane is finished by a long ball of 6 mm on the machine of samples/13-dome, under tool-centre-point control.
+Lead leans the tool in the direction of the feed (its tip trails the contact), tilt across it. Prints for every pair the
+cutting speed at the contact (a ball that stands upright cuts with its tip, which has none), the thickest and the mean
+chip, force across and along the tool, and the form error before and after camber compensate (95th percentile of its
+magnitude).
+"""
+import argparse
+import csv
+import json
+import math
+import os
+import subprocess
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+MACHINE = os.path.join(HERE, "../../samples/13-dome/machine.toml")
+RADIUS, RPM, FEED, LENGTH, WIDTH, ROW, DEPTH = 3.0, 9000, 1800, 4.0, 2.0, 0.4, 0.2
+JOB = """program = "p.nc"
+machine = "%s"
+[tool.1]
+type = "ball"
+diameter_mm = 6.0
+flutes = 2
+helix_deg = 30.0
+overhang_mm = 40.0
+effective_diameter_ratio = 0.8
+youngs_modulus_GPa = 600.0
+[material]
+ktc_MPa = 1860.0
+krc_MPa = 700.0
+kac_MPa = 0.0
+kte_N_per_mm = 15.0
+kre_N_per_mm = 15.0
+kae_N_per_mm = 0.0
+[stock]
+box_mm = [[0, 0, -1.5], [%g, %g, %g]]
+allowance_mm = %g
+[simulation]
+voxel_mm = 0.1
+[compensation]
+tolerance_um = 2.0
+max_shift_mm = 0.1
+"""
+
+
+def program(lead, tilt):
+    """Rows along X on the plane Z = 0; the tool's axis is (sin A sin C, -sin A cos C, cos A)."""
+    axis = [math.tan(math.radians(lead)), math.tan(math.radians(tilt)), 1.0]
+    size = math.hypot(*axis)
+    axis = [a / size for a in axis]
+    a = math.degrees(math.acos(axis[2]))
+    c = math.degrees(math.atan2(axis[0], -axis[1])) if a > 1e-9 else 0.0
+    lines = ["G21 G90 G94", "G10 L2 P1 X0 Y0 Z-300", "G10 L1 P1 R120", "T1 M6", "S%d M3" % RPM, "G54",
+             "G0 X0 Y0 Z100", "A%.4f C%.4f" % (a, c)]
+    y, first = 0.1, True
+    while y < WIDTH:
+        tip = [0, y, RADIUS]
+        tip = [t - RADIUS * k for t, k in zip(tip, axis)]
+        ends = tip[0] - 4, tip[0] + LENGTH + 4
+        lines += ["%sG0 X%.4f Y%.4f Z%.4f" % ("G43.4 H1 " if first else "", ends[0], tip[1], tip[2] + 6),
+                  "G1 Z%.4f F500" % tip[2], "X%.4f F%d" % (ends[1], FEED), "G0 Z%.4f" % (tip[2] + 6)]
+        y, first = y + ROW, False
+    return "\n".join(lines + ["G49", "M5", "M30"]) + "\n", axis
+
+
+def run(camber, lead, tilt):
+    text, axis = program(lead, tilt)
+    with tempfile.TemporaryDirectory() as folder:
+        def path(name):
+            return os.path.join(folder, name)
+        with open(path("p.nc"), "w") as f:
+            f.write(text)
+        with open(path("job.toml"), "w") as f:
+            f.write(JOB % (os.path.relpath(MACHINE, folder), LENGTH, WIDTH, DEPTH, DEPTH))
+        for command in (["predict", "job.toml", "-o", "out", "--json", "p.json"],
+                        ["compensate", "job.toml", "-o", "c.nc", "--json", "c.json"]):
+            result = subprocess.run([camber] + command + ["-q"], cwd=folder, capture_output=True, text=True)
+            if result.returncode not in (0, 3):
+                raise SystemExit("lead %g tilt %g: %s" % (lead, tilt, result.stderr))
+        rows = list(csv.DictReader(open(path("out/forces.csv"))))
+        cut = [r for r in rows if float(r["removed_mm3"]) > 0]
+        plain = json.load(open(path("c.json")))
+
+    def largest(key):
+        return max((abs(float(r[key])) for r in cut if key in r), default=math.nan)
+    mean = sum(float(r["h_mean_mm"]) for r in cut) / len(cut)
+    speed = math.pi * 2 * RADIUS * math.sqrt(max(0, 1 - axis[2] ** 2)) * RPM / 1000
+    before, after = plain["before_um"]["p95"], plain["after_um"]["p95"]
+    axial = largest("f_axial_max_N") if "f_axial_max_N" in rows[0] else largest("fz_max_N")
+    print("| %4g | %4g | %6.0f | %7.1f | %7.1f | %6.0f | %6.0f | %7.2f | %7.2f | %3.0f %% |" %
+          (lead, tilt, speed, 1000 * largest("h_max_mm"), 1000 * mean, largest("f_max_N"), axial, before, after,
+           100 * after / before), flush=True)
+
+
+def main():
+    def numbers(text):
+        return [float(n) for n in text.split(",")]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("camber", nargs="?", default=os.path.join(HERE, "../../build/dev/camber"))
+    parser.add_argument("--leads", type=numbers, default=[-30, -10, 0, 10, 30])
+    parser.add_argument("--tilts", type=numbers, default=[0, 15, 30])
+    arguments = parser.parse_args()
+    print("| lead | tilt | v_c at the contact, m/min | h max, um | h mean, um | F across, N | F along, N "
+          "| p95 before, um | after, um | remains |\n|---|---|---|---|---|---|---|---|---|---|")
+    for lead in arguments.leads:
+        for tilt in arguments.tilts:
+            run(os.path.abspath(arguments.camber), lead, tilt)
+
+
+main()
