@@ -40,7 +40,8 @@ ForceRow row_of(const report::ForceRow& r) {
           .h_max_mm = r.chip_max_mm,
           .h_mean_mm = r.chip_mean_mm,
           .specific_energy_MPa = r.specific_energy_MPa,
-          .block = static_cast<std::int64_t>(r.line)};
+          .block = static_cast<std::int64_t>(r.line),
+          .f_axial_max_N = r.axial_max_N};
 }
 
 std::vector<ErrorPoint> points_of(const report::FormErrorPoints& points) {

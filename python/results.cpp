@@ -76,7 +76,8 @@ void add_tables(py::module_& module) {
       .add("power_W", &ForceRow::power_W)
       .add("h_max_mm", &ForceRow::h_max_mm)
       .add("h_mean_mm", &ForceRow::h_mean_mm)
-      .add("specific_energy_MPa", &ForceRow::specific_energy_MPa);
+      .add("specific_energy_MPa", &ForceRow::specific_energy_MPa)
+      .add("f_axial_max_N", &ForceRow::f_axial_max_N);
   TableClass<ErrorPoint>(module, "ErrorPoints")
       .add("x_mm", &ErrorPoint::x_mm)
       .add("y_mm", &ErrorPoint::y_mm)

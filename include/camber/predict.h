@@ -20,13 +20,13 @@ struct ErrorFigures {
   double area_mm2 = 0;
 };
 
-/// A row of forces.csv: one spindle revolution or one block, whichever is shorter. Forces act on the tool, in machine
-/// axes.
+/// A row of forces.csv: one spindle revolution or one block, whichever is shorter. Forces act on the tool, in the axes of
+/// the part, which are the machine's where nothing turns it.
 struct ForceRow {
   double t_s = 0;
   double x_mm = 0, y_mm = 0, z_mm = 0;              ///< tool tip at the first tooth passing of the row
   double fx_max_N = 0, fy_max_N = 0, fz_max_N = 0;  ///< signed values of maximum magnitude
-  double f_max_N = 0;                               ///< largest lateral force
+  double f_max_N = 0;                               ///< largest force across the tool
   double fx_mean_N = 0, fy_mean_N = 0, fz_mean_N = 0;
   double dx_um = 0, dy_um = 0,
          dz_um = 0;  ///< deflection at the height of the contact, at the instant at which an edge passes it
@@ -34,7 +34,8 @@ struct ForceRow {
   double torque_max_Nm = 0, torque_mean_Nm = 0, power_W = 0;
   double h_max_mm = 0, h_mean_mm = 0;  ///< uncut chip thickness
   double specific_energy_MPa = 0;
-  std::int64_t block = 0;  ///< 1-based line
+  std::int64_t block = 0;    ///< 1-based line
+  double f_axial_max_N = 0;  ///< along the tool, towards the spindle; signed, of maximum magnitude
 };
 
 /// A row of form_error.csv: a point of the nominal surface.
