@@ -34,7 +34,7 @@ PartPath::PartPath(const machine::Machine& machine, const nc::Interpretation& te
     at.turn_rad = (now.end_rad - now.start_rad).lpNorm<1>();
     const bool to_machine_place = target != text.machine_targets.end() && target->move == program.index();
     if (to_machine_place) ++target;
-    at.follows_tip = !to_machine_place && move.open_axes != 7 &&
+    at.follows_tip = !to_machine_place && move.open_axes != 7 && move.kind != nc::MoveKind::dwell &&
                      (state.tip_control != nc::TipControl::off || state.work_frame == nc::WorkFrame::tilted);
   }
   for (std::uint32_t i = 0; i < at_.size(); ++i) at_[i].length_mm = measured_length_mm(i);

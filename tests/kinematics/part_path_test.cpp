@@ -109,7 +109,7 @@ TEST(PartPath, ArcsOfTheAxesTurnWithTheTable) {
   EXPECT_GT(part.arcs[part.moves[last].arc].normal.head<2>().norm(), 0.1);
   EXPECT_NEAR(path.length_mm(last), nc::length_mm(text, text.moves[last]), 1e-3);
   // Rotary axes that turn in an arc bend it.
-  const auto bent = moves_of(machine, "G0 X0 Y0 Z100 B0 C0\nG43 H1\nG0 X0 Y0 Z0\nG2 X5 Y4 I4 J0 C20 F100\n");
+  const auto bent = moves_of(machine, "G0 X0 Y0 Z100 B0 C0\nG43 H1\nG0 X0 Y0 Z0\nG2 X4 Y4 I4 J0 C20 F100\n");
   EXPECT_EQ(PartPath(machine, bent).bent_arcs().size(), 1u);
 }
 
@@ -117,7 +117,7 @@ TEST(PartPath, EveryMoveStartsWhereTheLastOneEnded) {
   const machine::Machine machine = tests::sample("table_bc");
   const auto text = moves_of(machine,
                              "G0 X0 Y0 Z100 B0 C0\nG43.4 H1 X1 Y2 Z30\nG1 X5 Y6 Z7 B30 C40 F100\nX6\nG49\n"
-                             "G43 H1\nG0 X20 Y30\nZ40\nG1 X21 B0\n");
+                             "G43 H1\nG0 X20 Y30 Z40\nG1 X21 B0\n");
   const PartPath path(machine, text);
   const nc::Interpretation part = path.moves_in_part();
   for (std::uint32_t m = 1; m < part.moves.size(); ++m) {

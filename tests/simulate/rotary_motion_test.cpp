@@ -48,7 +48,7 @@ struct Point {
 };
 
 std::vector<Point> rows(double lead_from_deg, double lead_to_deg, double tilt_deg) {
-  constexpr int kPieces = 24;
+  constexpr int kPieces = 72;
   std::vector<Point> out;
   for (const double y : {0.4, 0.9, 1.4}) {
     for (int i = 0; i <= kPieces; ++i) {
