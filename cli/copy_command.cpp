@@ -57,7 +57,8 @@ int run_copy(const CopyArguments& arguments, const GlobalOptions& options) {
   try_to_write([&] { write_file(arguments.output, result.text); }, failed);
   if (stream) try_to_write([&] { stream->commit(); }, failed);
   if (!arguments.stock.empty()) try_to_write([&] { result.stock->save(arguments.stock); }, failed);
-  if (!arguments.json.empty()) try_to_write([&] { write_file(arguments.json, report::copy_json(result, compute_s)); }, failed);
+  if (!arguments.json.empty())
+    try_to_write([&] { write_file(arguments.json, report::copy_json(result, compute_s)); }, failed);
   if (!options.quiet) fmt::print("{}", report::copy_text(result, compute_s));
   failed.throw_if_errors();
   return kDone;

@@ -1,8 +1,8 @@
 // copy on the command line.
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "api/commands/copy.h"
 #include "cli/command_line.h"

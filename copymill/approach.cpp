@@ -59,13 +59,15 @@ bool Approach::free_way(const Vec3& from, const Vec3& to) const {
 bool Approach::in_air(const Vec3& from, const Vec3& to) const {
   const int n = std::max(1, static_cast<int>(std::ceil((to - from).norm() / kStep_mm)));
   for (int k = 0; k <= n; ++k)
-    if (standing_.meets(cut_.shape, from + static_cast<double>(k) / n * (to - from), options_.more_than_mm)) return false;
+    if (standing_.meets(cut_.shape, from + static_cast<double>(k) / n * (to - from), options_.more_than_mm))
+      return false;
   return true;
 }
 
 /// The least height above a place at which the tool meets nothing.
 double Approach::lift_into_air(const Vec3& tip) const {
-  const double step = 0.25, most = std::max(0.0, standing_.highest_under_mm(tip.head<2>(), cut_.shape.radius_mm) - tip.z());
+  const double step = 0.25,
+               most = std::max(0.0, standing_.highest_under_mm(tip.head<2>(), cut_.shape.radius_mm) - tip.z());
   for (double lift = 0; lift < most; lift += step)
     if (!standing_.meets(cut_.shape, tip + Vec3(0, 0, lift), options_.more_than_mm)) return lift;
   return most;

@@ -35,11 +35,13 @@ void check_part_inside(const machine::Job& job, const TriangleMesh& part, const 
   Vec3 lo = part.points.front().cast<double>(), hi = lo;
   for (const auto& p : part.points) lo = lo.cwiseMin(p.cast<double>()), hi = hi.cwiseMax(p.cast<double>());
   const double slack = stock.voxel_mm();
-  if ((lo.array() >= stock.min_mm().array() - slack).all() && (hi.array() <= stock.max_mm().array() + slack).all()) return;
-  fail_on_file(job.part.mesh,
-               fmt::format("the part, {} to {}, is not inside the stock, {} to {}; a part that the stock holds was expected",
-                           place_text(lo), place_text(hi), place_text(stock.min_mm()), place_text(stock.max_mm())),
-               "part-outside-stock");
+  if ((lo.array() >= stock.min_mm().array() - slack).all() && (hi.array() <= stock.max_mm().array() + slack).all())
+    return;
+  fail_on_file(
+      job.part.mesh,
+      fmt::format("the part, {} to {}, is not inside the stock, {} to {}; a part that the stock holds was expected",
+                  place_text(lo), place_text(hi), place_text(stock.min_mm()), place_text(stock.max_mm())),
+      "part-outside-stock");
 }
 
 double standing_cell_mm(const removal::Stock& stock, const machine::Tool& tool) {
@@ -70,9 +72,10 @@ struct Tooling {
 
 [[noreturn]] void fail_on_no_place(const Cut& cut) {
   Diagnostic none = cut.operation.place;
-  none.message = fmt::format("T{} with a diameter of {:g} mm and an allowance of {:g} mm has no place in the region; a "
-                             "tool that fits between the part's walls was expected",
-                             cut.operation.tool, cut.tool.diameter_mm, cut.operation.allowance_mm);
+  none.message = fmt::format(
+      "T{} with a diameter of {:g} mm and an allowance of {:g} mm has no place in the region; a "
+      "tool that fits between the part's walls was expected",
+      cut.operation.tool, cut.tool.diameter_mm, cut.operation.allowance_mm);
   none.check = "tool-too-large";
   throw InputError({none});
 }

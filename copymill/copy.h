@@ -45,16 +45,16 @@ struct OperationSummary {
 };
 
 struct CopyResult {
-  std::string text;                        ///< the NC program
-  std::unique_ptr<removal::Stock> stock;   ///< what is left
+  std::string text;                       ///< the NC program
+  std::unique_ptr<removal::Stock> stock;  ///< what is left
   std::vector<OperationSummary> operations;
   double time_s = 0;
   std::size_t ticks = 0, blocks = 0;
   double tick_mean_ms = 0, tick_max_ms = 0;  ///< computing time
   double removed_mm3 = 0;
-  bool stopped = false;  ///< by CopyOptions::stop_after_s
-  LeftMaterial left;      ///< on the part where the operations' tools could touch it
-  double path_depth_um = 0;  ///< greatest, of the milling path in the part, by the exact offset surface
+  bool stopped = false;            ///< by CopyOptions::stop_after_s
+  LeftMaterial left;               ///< on the part where the operations' tools could touch it
+  double path_depth_um = 0;        ///< greatest, of the milling path in the part, by the exact offset surface
   Vec3 deepest_mm = Vec3::Zero();  ///< the tip's place there
 };
 

@@ -125,7 +125,8 @@ class LevelCutter {
       // Up milling goes along, as what is still to be cut is on the left.
       std::vector<Pass> passes;
       for (FlatPass& s : row)
-        passes.push_back(at_height(o.sense == machine::MillingSense::climb ? reversed(std::move(s)) : std::move(s), region.z_mm()));
+        passes.push_back(
+            at_height(o.sense == machine::MillingSense::climb ? reversed(std::move(s)) : std::move(s), region.z_mm()));
       if (cut_nearest_first(std::move(passes), o.sense == machine::MillingSense::both) == Runner::Ended::stopped)
         return Runner::Ended::stopped;
     }
@@ -154,7 +155,8 @@ bool cut_levels(const Workplace& place) {
     placed = placed || !region.empty();
     ++place.runner.summary().levels;
     if (cutter.cut(region) == Runner::Ended::stopped) return true;
-    stage.advance(static_cast<std::size_t>(1000 * (above - level) / std::max(1e-9, levels.top_mm() - place.stock_bottom_mm)));
+    stage.advance(
+        static_cast<std::size_t>(1000 * (above - level) / std::max(1e-9, levels.top_mm() - place.stock_bottom_mm)));
   }
   return placed || !any_level;
 }

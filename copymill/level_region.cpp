@@ -28,9 +28,9 @@ SampledTips::SampledTips(const TipField& f, const AxisRegion& r, double step_mm)
 }
 
 LevelRegion::LevelRegion(const SampledTips& tips, double z_mm)
-    : tips_(tips), z_(z_mm), inside_([&tips, z_mm](const Vec2& p) {
-        return tips.region.contains(p) && tips.field.free(p, z_mm);
-      }) {
+    : tips_(tips),
+      z_(z_mm),
+      inside_([&tips, z_mm](const Vec2& p) { return tips.region.contains(p) && tips.field.free(p, z_mm); }) {
   const Grid& grid = tips.grid;
   state_.resize(grid.size());
   mask_.resize(grid.size());
@@ -180,7 +180,8 @@ std::vector<FlatPass> LevelRegion::stretches(const Vec2& from, const Vec2& to) c
     const Vec2 p = from + static_cast<double>(k) / n * (to - from);
     const bool in = inside_(p);
     if (in && !in_before)
-      out.push_back({{k == 0 ? p : last_inside(inside_, p, before, kBisection_mm)}, false}), out.back().points.push_back(p);
+      out.push_back({{k == 0 ? p : last_inside(inside_, p, before, kBisection_mm)}, false}),
+          out.back().points.push_back(p);
     else if (in)
       out.back().points.back() = p;
     else if (in_before)

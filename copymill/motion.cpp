@@ -7,7 +7,7 @@ namespace camber::copymill {
 namespace {
 
 constexpr double kAlongShare = 0.5, kArcShare = 0.7, kCornerShare = 0.45;  // of the acceleration
-constexpr double kFastest = 2000, kQuickest = 20000;                      // mm/s, mm/s^2, of machines without limits
+constexpr double kFastest = 2000, kQuickest = 20000;                       // mm/s, mm/s^2, of machines without limits
 constexpr double kUnlimited = 1e9;
 constexpr double kStuck_mm = 1e-7;
 constexpr std::size_t kLongestWindow = 50;
@@ -27,8 +27,7 @@ Motion::Motion(const machine::Machine& machine) : period_s_(machine.control.peri
     const machine::Axis& axis = machine.axis[static_cast<std::size_t>(a)];
     velocity_limit_[a] = std::min({axis.max_velocity_mm_per_s, axis.max_feed_mm_per_s, kFastest});
     rapid_limit_[a] = std::min({axis.max_velocity_mm_per_s, axis.rapid_mm_per_s, kFastest});
-    acceleration_limit_[a] =
-        std::min({axis.acceleration_mm_per_s2, axis.rapid_acceleration_mm_per_s2, kQuickest});
+    acceleration_limit_[a] = std::min({axis.acceleration_mm_per_s2, axis.rapid_acceleration_mm_per_s2, kQuickest});
   }
   // A change of velocity dv over the time T takes the tip dv T / 8 off the corner.
   const double time = std::sqrt(8 * kSmoothing_mm / (kCornerShare * acceleration_limit_.maxCoeff()));

@@ -55,7 +55,7 @@ class Motion {
   std::vector<Vec3> window_;  ///< of the moving average, a ring
   std::size_t window_at_ = 0, settled_ = 0;
   std::vector<PathPiece> path_;
-  std::vector<double> from_mm_;        ///< along the path to the beginning of each piece, and its length
+  std::vector<double> from_mm_;         ///< along the path to the beginning of each piece, and its length
   std::vector<double> entry_, within_;  ///< speed limits at the beginning of each piece and in it
   double acceleration_ = 0;
   bool rapid_ = false;

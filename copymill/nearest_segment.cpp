@@ -62,7 +62,8 @@ class Sweeper {
 
 double distance_mm(const Segment& segment, const Vec2& p) {
   const Vec2 along = segment[1] - segment[0];
-  const double t = along.squaredNorm() > 0 ? std::clamp((p - segment[0]).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+  const double t =
+      along.squaredNorm() > 0 ? std::clamp((p - segment[0]).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
   return (p - segment[0] - t * along).norm();
 }
 

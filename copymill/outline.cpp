@@ -21,20 +21,20 @@ struct Step {
 };
 constexpr std::array<std::array<Step, 2>, 16> kSteps{{
     {},
-    {{{0, 3}}},           // lower left
-    {{{1, 0}}},           // lower right
-    {{{1, 3}}},           // lower
-    {{{2, 1}}},           // upper right
-    {{{0, 3}, {2, 1}}},   // lower left, upper right
-    {{{2, 0}}},           // right
-    {{{2, 3}}},           // all but upper left
-    {{{3, 2}}},           // upper left
-    {{{0, 2}}},           // left
-    {{{1, 0}, {3, 2}}},   // lower right, upper left
-    {{{1, 2}}},           // all but upper right
-    {{{3, 1}}},           // upper
-    {{{0, 1}}},           // all but lower right
-    {{{3, 0}}},           // all but lower left
+    {{{0, 3}}},          // lower left
+    {{{1, 0}}},          // lower right
+    {{{1, 3}}},          // lower
+    {{{2, 1}}},          // upper right
+    {{{0, 3}, {2, 1}}},  // lower left, upper right
+    {{{2, 0}}},          // right
+    {{{2, 3}}},          // all but upper left
+    {{{3, 2}}},          // upper left
+    {{{0, 2}}},          // left
+    {{{1, 0}, {3, 2}}},  // lower right, upper left
+    {{{1, 2}}},          // all but upper right
+    {{{3, 1}}},          // upper
+    {{{0, 1}}},          // all but lower right
+    {{{3, 0}}},          // all but lower left
     {},
 }};
 
@@ -54,7 +54,8 @@ Edge edge_of(int i, int j, int side) {
 /// Follows the steps from cell to cell.
 class Tracer {
  public:
-  Tracer(const Grid& grid, const std::vector<char>& inside, const std::function<Vec2(const Vec2&, const Vec2&)>& crossing)
+  Tracer(const Grid& grid, const std::vector<char>& inside,
+         const std::function<Vec2(const Vec2&, const Vec2&)>& crossing)
       : grid_(grid), inside_(inside), crossing_(crossing), next_(2 * grid.size(), kNone) {}
 
   std::vector<Outline> run() {

@@ -11,9 +11,9 @@ namespace {
 
 constexpr int kAround = 16;
 constexpr std::array<double, 8> kShifts_mm{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
-constexpr double kContact_mm = 0.003;    ///< a tool that is free but for this touches
-constexpr double kUnreached_um = 20;     ///< less material counts as none where no tool could touch
-constexpr double kOverhang = -0.01;      ///< faces that look down further are not looked at
+constexpr double kContact_mm = 0.003;  ///< a tool that is free but for this touches
+constexpr double kUnreached_um = 20;   ///< less material counts as none where no tool could touch
+constexpr double kOverhang = -0.01;    ///< faces that look down further are not looked at
 
 struct Point {
   Vec3 place, normal;
@@ -28,7 +28,8 @@ std::vector<Point> points_on(const TriangleMesh& part, double step) {
     const Vec3 across(u.y() * v.z() - u.z() * v.y(), u.z() * v.x() - u.x() * v.z(), u.x() * v.y() - u.y() * v.x());
     const double area = 0.5 * across.norm();
     if (area <= 0 || across.z() < kOverhang * across.norm()) continue;
-    const int n = std::clamp(static_cast<int>(std::ceil(std::max({u.norm(), v.norm(), (u - v).norm()}) / step)), 1, 400);
+    const int n =
+        std::clamp(static_cast<int>(std::ceil(std::max({u.norm(), v.norm(), (u - v).norm()}) / step)), 1, 400);
     for (int i = 0; i < n; ++i)
       for (int j = 0; i + j < n; ++j) {
         out.push_back({a + (i + 1.0 / 3) / n * u + (j + 1.0 / 3) / n * v, across / across.norm(), area / (n * n)});

@@ -23,8 +23,8 @@ Pass reversed(Pass pass) {
 
 void start_near(Pass& pass, const Vec3& place) {
   if (!pass.closed) return;
-  const auto nearest = std::ranges::min_element(
-      pass.points, {}, [&](const Vec3& p) { return (p - place).head<2>().squaredNorm(); });
+  const auto nearest =
+      std::ranges::min_element(pass.points, {}, [&](const Vec3& p) { return (p - place).head<2>().squaredNorm(); });
   std::ranges::rotate(pass.points, nearest);
 }
 

@@ -72,7 +72,8 @@ PathPiece part_of(const PathPiece& piece, double from_mm, double to_mm, double i
   constexpr double kShortArc_mm = 0.05;  // rounded ends would bend it
   if (!piece.arc || std::abs(sweep) * piece.radius_mm() < kShortArc_mm) return out;
   out.arc = true;
-  out.centre = from.head<2>() + rounded({piece.centre.x() - from.x(), piece.centre.y() - from.y(), 0}, increment).head<2>();
+  out.centre =
+      from.head<2>() + rounded({piece.centre.x() - from.x(), piece.centre.y() - from.y(), 0}, increment).head<2>();
   out.sweep_rad = sweep;
   out.length_mm = std::abs(sweep) * out.radius_mm();
   return out;

@@ -67,9 +67,8 @@ Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_s
   last_lowered_ = *at_;
   const double begin_s = t_s_;
   while (!motion_.finished() && !(stopped_ && !rapid && motion_.at_rest())) tick(rapid, feed_share);
-  const Vec3 end = motion_.piece() < motion_.path().size()
-                       ? rounded(motion_.tip(), piece_options_.increment_mm)
-                       : motion_.path().back().to;
+  const Vec3 end = motion_.piece() < motion_.path().size() ? rounded(motion_.tip(), piece_options_.increment_mm)
+                                                           : motion_.path().back().to;
   if (!rapid) {
     write_to(motion_.piece(), motion_.along_piece_mm(), feed_share * cut_->operation.feed_mm_per_s);
     standing_->cut(cut_->shape, last_lowered_, end);
@@ -95,8 +94,7 @@ void Runner::tick(bool rapid, double feed_share) {
     lower_standing(motion_.tip());
   }
   ++ticks_;
-  if (options_.stream)
-    options_.stream({t_s_, motion_.tip(), (motion_.tip() - before).norm() / motion_.period_s(), 0});
+  if (options_.stream) options_.stream({t_s_, motion_.tip(), (motion_.tip() - before).norm() / motion_.period_s(), 0});
   const auto took = std::chrono::steady_clock::now() - begin;
   tick_time_ += took;
   longest_tick_ = std::max<std::chrono::nanoseconds>(longest_tick_, took);
@@ -135,7 +133,8 @@ void Runner::lower_standing(const Vec3& tip) {
 void Runner::write_to(std::size_t piece, double along, double feed) {
   const std::vector<PathPiece>& path = motion_.path();
   for (; written_piece_ < piece; ++written_piece_, written_mm_ = 0)
-    writer_.cut(part_of(path[written_piece_], written_mm_, path[written_piece_].length_mm, piece_options_.increment_mm), feed);
+    writer_.cut(part_of(path[written_piece_], written_mm_, path[written_piece_].length_mm, piece_options_.increment_mm),
+                feed);
   if (piece < path.size() && along > written_mm_) {
     writer_.cut(part_of(path[piece], written_mm_, along, piece_options_.increment_mm), feed);
     written_mm_ = along;

@@ -13,7 +13,9 @@ double underside_mm(const removal::CutterShape& shape, double r) {
   if (r >= shape.radius_mm) return 1e30;
   if (shape.general) return shape.profile.height_at_radius_mm(r);
   const double out = r - (shape.radius_mm - shape.corner_radius_mm);
-  return out <= 0 ? 0 : shape.corner_radius_mm - std::sqrt(std::max(0.0, shape.corner_radius_mm * shape.corner_radius_mm - out * out));
+  return out <= 0 ? 0
+                  : shape.corner_radius_mm -
+                        std::sqrt(std::max(0.0, shape.corner_radius_mm * shape.corner_radius_mm - out * out));
 }
 
 /// Highest place of a column that is not above `top` and is material; `floor` where there is none.
@@ -32,14 +34,16 @@ double top_of_column(const removal::Stock::Probe& probe, const Vec2& p, double t
 
 Standing::Standing(const removal::Stock& stock, double cell_mm, double floor_mm) {
   const Vec3 &lo = stock.min_mm(), &hi = stock.max_mm();
-  grid_ = Grid::over(lo.head<2>() + Vec2::Constant(0.5 * cell_mm), hi.head<2>() - Vec2::Constant(0.5 * cell_mm), 0, cell_mm);
+  grid_ = Grid::over(lo.head<2>() + Vec2::Constant(0.5 * cell_mm), hi.head<2>() - Vec2::Constant(0.5 * cell_mm), 0,
+                     cell_mm);
   top_of_cell_.resize(grid_.size());
   const double voxel = stock.voxel_mm();
   tbb::parallel_for(0, grid_.ny, [&](int j) {
     const removal::Stock::Probe probe(stock);
     for (int i = 0; i < grid_.nx; ++i) {
       const double z = top_of_column(probe, grid_.at(i, j), hi.z() + voxel, floor_mm, voxel);
-      top_of_cell_[grid_.index(i, j)] = static_cast<float>(z > floor_mm || probe.distance_mm({grid_.at(i, j).x(), grid_.at(i, j).y(), floor_mm}) < 0 ? z : kAir);
+      top_of_cell_[grid_.index(i, j)] = static_cast<float>(
+          z > floor_mm || probe.distance_mm({grid_.at(i, j).x(), grid_.at(i, j).y(), floor_mm}) < 0 ? z : kAir);
     }
   });
   for (const float z : top_of_cell_) top_ = std::max(top_, static_cast<double>(z));
@@ -48,12 +52,14 @@ Standing::Standing(const removal::Stock& stock, double cell_mm, double floor_mm)
 template <class Visit>
 void Standing::visit(const Vec2& axis, double radius, Visit visit) const {
   const Vec2 lo = grid_.cells(axis - Vec2::Constant(radius)), hi = grid_.cells(axis + Vec2::Constant(radius));
-  const int j0 = std::max(0, static_cast<int>(std::ceil(lo.y()))), j1 = std::min(grid_.ny - 1, static_cast<int>(std::floor(hi.y())));
+  const int j0 = std::max(0, static_cast<int>(std::ceil(lo.y()))),
+            j1 = std::min(grid_.ny - 1, static_cast<int>(std::floor(hi.y())));
   for (int j = j0; j <= j1; ++j) {
     const double dy = grid_.at(0, j).y() - axis.y(), half = radius * radius - dy * dy;
     if (half <= 0) continue;
     const double w = std::sqrt(half) / grid_.step_mm, c = (axis.x() - grid_.origin.x()) / grid_.step_mm;
-    const int i0 = std::max(0, static_cast<int>(std::ceil(c - w))), i1 = std::min(grid_.nx - 1, static_cast<int>(std::floor(c + w)));
+    const int i0 = std::max(0, static_cast<int>(std::ceil(c - w))),
+              i1 = std::min(grid_.nx - 1, static_cast<int>(std::floor(c + w)));
     for (int i = i0; i <= i1; ++i) {
       const double dx = grid_.origin.x() + i * grid_.step_mm - axis.x();
       if (!visit(grid_.index(i, j), dx * dx + dy * dy)) return;
@@ -92,7 +98,8 @@ double Standing::highest_mm(const Vec2& min, const Vec2& max) const {
   const Vec2 lo = grid_.cells(min), hi = grid_.cells(max);
   double out = kAir;
   for (int j = std::max(0, static_cast<int>(std::floor(lo.y()))); j <= std::min(grid_.ny - 1.0, std::ceil(hi.y())); ++j)
-    for (int i = std::max(0, static_cast<int>(std::floor(lo.x()))); i <= std::min(grid_.nx - 1.0, std::ceil(hi.x())); ++i)
+    for (int i = std::max(0, static_cast<int>(std::floor(lo.x()))); i <= std::min(grid_.nx - 1.0, std::ceil(hi.x()));
+         ++i)
       out = std::max(out, static_cast<double>(top_of_cell_[grid_.index(i, j)]));
   return out;
 }
@@ -140,7 +147,8 @@ std::vector<Pass> stretches_in_material(const Standing& standing, const removal:
   const auto last = static_cast<std::ptrdiff_t>(n) - 1;
   for (const Range& r : ranges) {
     Pass piece;
-    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, r.from - leads); i <= std::min(last + (pass.closed ? 1 : 0), r.to + leads); ++i)
+    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, r.from - leads);
+         i <= std::min(last + (pass.closed ? 1 : 0), r.to + leads); ++i)
       piece.points.push_back(points[(first + static_cast<std::size_t>(i)) % n]);
     if (piece.points.size() >= 2) out.push_back(std::move(piece));
   }

@@ -41,7 +41,8 @@ CopyRegion read_region(TomlTable table) {
   if (const auto z = table.numbers("z_mm", 2, kAnyNumber, "[lowest, highest], levels of the tip,")) {
     out.z_mm = {(*z)[0], (*z)[1]};
     if ((*z)[0] >= (*z)[1])
-      table.error_at("z_mm", fmt::format("z_mm goes from {:g} to {:g}; [lowest, highest] was expected", (*z)[0], (*z)[1]),
+      table.error_at("z_mm",
+                     fmt::format("z_mm goes from {:g} to {:g}; [lowest, highest] was expected", (*z)[0], (*z)[1]),
                      "region-empty");
   }
   table.finish();
@@ -51,9 +52,10 @@ CopyRegion read_region(TomlTable table) {
 void require_depths(TomlTable& table, const CopyOperation& operation) {
   const bool drilling = operation.mode == CopyMode::drilling, finishing = operation.scallop_mm > 0;
   if (finishing && operation.mode != CopyMode::scanning_line)
-    table.error_at("scallop_mm", fmt::format("scallop_mm in mode {}; finishing by scallop is for scanning-line",
-                                             word_of(operation.mode)),
-                   "copy-mode");
+    table.error_at(
+        "scallop_mm",
+        fmt::format("scallop_mm in mode {}; finishing by scallop is for scanning-line", word_of(operation.mode)),
+        "copy-mode");
   if (!drilling && !finishing && !table.has("radial_depth_mm"))
     table.missing("radial_depth_mm", "the distance between loops or rows, or scallop_mm,");
   if (!finishing && !(drilling && operation.cycle != HoleCycle::peck) && !table.has("axial_depth_mm"))
@@ -93,7 +95,8 @@ void check_holes(TomlTable& table, const CopyOperation& operation) {
   if (operation.holes_mm.empty() && !operation.region.box_mm)
     table.missing("holes_mm", "the places of the holes, or a region with box_mm,");
   if (!operation.region.z_mm)
-    table.error_at("region", "drilling needs region = { z_mm = [bottom, top] }: the tip's depth, and where the hole begins",
+    table.error_at("region",
+                   "drilling needs region = { z_mm = [bottom, top] }: the tip's depth, and where the hole begins",
                    "region");
 }
 
@@ -106,10 +109,11 @@ CopyOperation read_operation(TomlTable table, const Job& job) {
   for (const std::string_view key : {"spindle_rpm", "feed_mm_per_min"})
     if (!table.has(key)) table.missing(key, "a number greater than zero");
   read_numbers<CopyOperation>(table, kCopyKeys, out);
-  out.sense = static_cast<MillingSense>(
-      table.choice("sense", kSenseWords, out.mode == CopyMode::scanning_line ? 2 : 0));
+  out.sense =
+      static_cast<MillingSense>(table.choice("sense", kSenseWords, out.mode == CopyMode::scanning_line ? 2 : 0));
   if (out.sense == MillingSense::both && out.mode == CopyMode::contour_line)
-    table.error_at("sense", "sense = \"both\" is for rows; contour-line needs \"climb\" or \"conventional\"", "copy-mode");
+    table.error_at("sense", "sense = \"both\" is for rows; contour-line needs \"climb\" or \"conventional\"",
+                   "copy-mode");
   out.plunge = table.boolean("plunge", false);
   out.force_N = table.optional_number("force_N", kPositive);
   out.cycle = static_cast<HoleCycle>(table.choice("cycle", kCycleWords, 1));
@@ -146,7 +150,9 @@ std::string to_toml(const CopyOperation& o) {
   if (o.plunge) out += "plunge = true\n";
   if (o.force_N) out += toml_line("force_N", *o.force_N, kAsIs);
   if (o.mode == CopyMode::drilling) out += toml_line("cycle", kCycleWords[static_cast<std::size_t>(o.cycle)]);
-  const auto point = [](const Vec2& p) { return fmt::format("[{}, {}]", toml_number(p.x(), kAsIs), toml_number(p.y(), kAsIs)); };
+  const auto point = [](const Vec2& p) {
+    return fmt::format("[{}, {}]", toml_number(p.x(), kAsIs), toml_number(p.y(), kAsIs));
+  };
   const auto points = [&](const auto& list) {
     std::string text;
     for (const Vec2& p : list) text += (text.empty() ? "" : ", ") + point(p);
@@ -158,7 +164,8 @@ std::string to_toml(const CopyOperation& o) {
   if (o.region.box_mm) add("box_mm = " + points(*o.region.box_mm));
   if (!o.region.polygon_mm.empty()) add("polygon_mm = " + points(o.region.polygon_mm));
   if (o.region.z_mm)
-    add(fmt::format("z_mm = [{}, {}]", toml_number((*o.region.z_mm)[0], kAsIs), toml_number((*o.region.z_mm)[1], kAsIs)));
+    add(fmt::format("z_mm = [{}, {}]", toml_number((*o.region.z_mm)[0], kAsIs),
+                    toml_number((*o.region.z_mm)[1], kAsIs)));
   if (!region.empty()) out += "region = { " + region + " }\n";
   return out;
 }

@@ -30,9 +30,9 @@ enum class HoleCycle {
 
 /// Where the tool's axis may be while it cuts. Not given: over the stock.
 struct CopyRegion {
-  std::optional<std::array<Vec2, 2>> box_mm{};        ///< lower and upper corner
-  std::vector<Vec2> polygon_mm{};                     ///< empty: not given
-  std::optional<std::array<double, 2>> z_mm{};        ///< lowest and highest level of the tip
+  std::optional<std::array<Vec2, 2>> box_mm{};  ///< lower and upper corner
+  std::vector<Vec2> polygon_mm{};               ///< empty: not given
+  std::optional<std::array<double, 2>> z_mm{};  ///< lowest and highest level of the tip
 };
 
 struct CopyOperation {

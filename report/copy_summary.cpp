@@ -61,8 +61,8 @@ std::string copy_text(const CopyResult& r, double compute_s) {
   }
   out += fmt::format("time {:.1f} s, {} blocks, {:.1f} mm3 removed{}\n", r.time_s, r.blocks, r.removed_mm3,
                      r.stopped ? "; stopped before the end" : "");
-  out += fmt::format("left on the part: {:.0f} um at most, {:.0f} um p95; path into the part: {:.1f} um; ", r.left.max_um,
-                     r.left.p95_um, r.path_depth_um);
+  out += fmt::format("left on the part: {:.0f} um at most, {:.0f} um p95; path into the part: {:.1f} um; ",
+                     r.left.max_um, r.left.p95_um, r.path_depth_um);
   out += fmt::format("{:.1f} mm2 that no tool reaches\n", r.left.unreached_mm2);
   return out + fmt::format("{} ticks, {:.4f} ms each, at most {:.3f} ms; computed in {:.1f} s\n", r.ticks,
                            r.tick_mean_ms, r.tick_max_ms, compute_s);

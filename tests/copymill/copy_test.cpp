@@ -80,7 +80,8 @@ TEST(Copy, FinishesWallsAndFloorToThePart) {
 /// Stock cut along the program's own moves, without servo lag.
 removal::Stock cut_by_program(const machine::Job& job, const std::string& text) {
   Diagnostics diagnostics;
-  const simulate::SimulatedProgram program = simulate::simulate_motion(SourceText("out.nc", text), job, {}, diagnostics);
+  const simulate::SimulatedProgram program =
+      simulate::simulate_motion(SourceText("out.nc", text), job, {}, diagnostics);
   removal::Stock stock = simulate::job_stock(job, 4, [](const Vec3&, const Vec3&) {});
   simulate::sweep_path(stock, job, removal::nominal_path(program.moves, program.selected, program.path), 0);
   return stock;
@@ -167,9 +168,10 @@ std::string message_of(const SmallCopy& c) {
 }
 
 TEST(Copy, SaysWhatIsWrongLikeACompiler) {
-  EXPECT_EQ(message_of({.stock = "box_mm = [[0, 0, -10], [50, 45, 0]]", .operations = kRough}),
-            "island.stl: error: the part, X0 Y0 Z-15 to X60 Y45 Z0, is not inside the stock, X0 Y0 Z-10 to X50 Y45 Z0; a "
-            "part that the stock holds was expected [part-outside-stock]\n");
+  EXPECT_EQ(
+      message_of({.stock = "box_mm = [[0, 0, -10], [50, 45, 0]]", .operations = kRough}),
+      "island.stl: error: the part, X0 Y0 Z-15 to X60 Y45 Z0, is not inside the stock, X0 Y0 Z-10 to X50 Y45 Z0; a "
+      "part that the stock holds was expected [part-outside-stock]\n");
 }
 
 }  // namespace

@@ -81,8 +81,7 @@ TEST(Motion, KeepsAFurtherLimitAhead) {
   Motion motion(machine_with(600));
   motion.place({0, 0, 0});
   motion.start({line_piece({0, 0, 0}, {50, 0, 0})}, false);
-  while (motion.along_piece_mm() < 25 && motion.piece() == 0)
-    motion.tick(40, {25 - motion.along_piece_mm(), 5});
+  while (motion.along_piece_mm() < 25 && motion.piece() == 0) motion.tick(40, {25 - motion.along_piece_mm(), 5});
   EXPECT_LT(motion.speed_mm_per_s(), 5.5);
 }
 

@@ -15,9 +15,8 @@ std::vector<Outline> outlines_of(const Inside& inside, double half_mm) {
   for (int j = 0; j < grid.ny; ++j)
     for (int i = 0; i < grid.nx; ++i) mask[grid.index(i, j)] = inside(grid.at(i, j)) ? 1 : 0;
   std::vector<Outline> out;
-  for (const Outline& loop : outlines(grid, mask, [&](const Vec2& in, const Vec2& outside) {
-         return last_inside(inside, in, outside, 1e-5);
-       }))
+  for (const Outline& loop :
+       outlines(grid, mask, [&](const Vec2&in, const Vec2&outside) { return last_inside(inside, in, outside, 1e-5); }))
     out.push_back(refined(loop, inside, 0.001, kStep));
   return out;
 }

@@ -24,13 +24,13 @@ inline std::string write_copy_job(const TempFolder& folder, const SmallCopy& c) 
                "[axis.z]\nmax_velocity_mm_per_min = 9000\nacceleration_mm_per_s2 = 1000\n"
                "[spindle]\nmax_rpm = 12000\n");
   const std::string part = CAMBER_SOURCE_DIR "/samples/13-copy-milling/" + c.part + ".stl";
-  return folder.write(
-      "job.toml", "machine = \"machine.toml\"\n[part]\nmesh = \"" + part + "\"\n[stock]\n" + c.stock +
-                      "\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 8\nflutes = 3\nhelix_deg = 30\noverhang_mm = 30\n"
-                      "[tool.2]\ntype = \"ball\"\ndiameter_mm = 6\nflutes = 2\nhelix_deg = 30\noverhang_mm = 30\n"
-                      "[tool.3]\ntype = \"drill\"\ndiameter_mm = 5\nflutes = 2\nhelix_deg = 30\noverhang_mm = 40\n"
-                      "[material]\npreset = \"Al6082-T6\"\n[simulation]\nvoxel_mm = " +
-                      std::to_string(c.voxel_mm) + "\n" + c.operations);
+  return folder.write("job.toml",
+                      "machine = \"machine.toml\"\n[part]\nmesh = \"" + part + "\"\n[stock]\n" + c.stock +
+                          "\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 8\nflutes = 3\nhelix_deg = 30\noverhang_mm = 30\n"
+                          "[tool.2]\ntype = \"ball\"\ndiameter_mm = 6\nflutes = 2\nhelix_deg = 30\noverhang_mm = 30\n"
+                          "[tool.3]\ntype = \"drill\"\ndiameter_mm = 5\nflutes = 2\nhelix_deg = 30\noverhang_mm = 40\n"
+                          "[material]\npreset = \"Al6082-T6\"\n[simulation]\nvoxel_mm = " +
+                          std::to_string(c.voxel_mm) + "\n" + c.operations);
 }
 
 struct ReadCopy {
