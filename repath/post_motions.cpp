@@ -1,5 +1,7 @@
 #include "repath/post_motions.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/units.h"
@@ -35,7 +37,8 @@ class Collector {
       const kinematics::MoveJoints now = joints.next();
       const std::size_t i = joints.index();
       const nc::Move& move = moves_.moves[i];
-      if (move.reference && !now.linear_known) wanted_[i] = false;  // to a place that nobody knows
+      if (move.reference && !now.linear_known && moves_.state_of(move).tool_length_mm)
+        wanted_[i] = false;  // to a place that nobody knows
       if (wanted_[i]) {
         if (!may_be_rewritten(i)) continue;
         const auto motion = motion_of(joints, now, i);
@@ -62,6 +65,14 @@ class Collector {
         program_.source.diagnostic(Severity::error, program_.blocks[m.block].offset, std::move(message), check));
   }
 
+  /// G28, G29, G30, G53.
+  bool names_reference(std::uint32_t block) const {
+    const auto words = program_.words_of(block);
+    return std::any_of(words.begin(), words.end(), [](const nc::Word& w) {
+      return w.letter == 'G' && (w.value == 28 || w.value == 29 || w.value == 30 || w.value == 53);
+    });
+  }
+
   /// Moves to rewrite, and those whose rotary axes words turn.
   void choose() {
     const std::size_t n = moves_.moves.size();
@@ -74,7 +85,7 @@ class Collector {
       const nc::Move& m = moves_.moves[i];
       const nc::ModalState& state = moves_.state_of(m);
       const bool tip_control = state.tip_control != nc::TipControl::off;
-      const bool plain = moves_linear_axes(m) && !to_machine[i] && m.reference_axes == 0;
+      const bool plain = moves_linear_axes(m) && !to_machine[i] && !names_reference(m.block);
       if (target_ == PostTarget::joints)
         wanted_[i] = plain && tip_control;
       else

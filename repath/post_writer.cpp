@@ -261,6 +261,7 @@ void PostWriter::write_motion(const TipMotion& motion, const DividedMotion& divi
   if (first_of_run) {
     open_run(move, front);
     all_words_ = true;
+    motion_code_ = motion.rapid ? 0 : motion.arc ? 2 : 1;  // modal in the text, where the block does not say it
   } else {
     keep_tip_control(next_block_, move.block + 1);
   }
@@ -354,8 +355,6 @@ void PostWriter::close_run(std::size_t last, std::size_t next) {
 void PostWriter::keep(const nc::Move& move) {
   if (move.kind == nc::MoveKind::dwell) return;
   look_at_codes_until(move.block + 1);
-  const BlockEdit block(program_, move.block);
-  if (const nc::Word* w = block.find_code('G', kMotions)) motion_code_ = static_cast<int>(w->value);
   all_words_ = true;
   feed_ = -1;
 }

@@ -73,7 +73,7 @@ class PostWriter {
   bool all_words_ = true;                        ///< the next block names every axis
   double feed_ = -1;                             ///< modal F; -1: not known
   nc::FeedMode feed_mode_ = nc::FeedMode::per_minute;
-  int motion_code_ = -1;
+  int motion_code_ = 0;
   bool feed_is_ours_ = false;  ///< modal F or feed mode are not those of the given text
   bool length_active_ = false;
   std::string length_number_ = "0";  ///< of H
