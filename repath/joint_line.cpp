@@ -74,8 +74,8 @@ double JointLine::deviation_bound_mm(const TipPiece& tip, const Vec3 (&rotary_ra
   };
   Jet spindle{.p = gauge_mm_ - tool_length_mm * tool_axis_};
   if (contiguous_) {
-    Jet part{tip.middle_mm, tip.middle_rate_mm, tip.middle_acceleration_mm, tip.speed_mm,
-             tip.acceleration_mm(), tip.jerk_mm()};
+    Jet part{tip.middle_mm, tip.middle_rate_mm,    tip.middle_acceleration_mm,
+             tip.speed_mm,  tip.acceleration_mm(), tip.jerk_mm()};
     for (std::size_t i = 0; i < first_linear_; ++i) part = turn(part, links_[i], -1);
     for (std::size_t i = links_.size(); i-- > behind_linear_;) spindle = turn(spindle, links_[i], 1);
     const double exact = (part.d2 - spindle.d2).norm() + (part.j + spindle.j) / 2;

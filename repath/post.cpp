@@ -59,7 +59,8 @@ class Post {
     if (options_.target == PostTarget::joints)
       plan = plan_choices(motions.motions, motions.before, frame, machine_);
     else
-      for (std::size_t i = 0; i < motions.motions.size(); ++i) plan.push_back({.motion = i, .choice = {}, .before = {}});
+      for (std::size_t i = 0; i < motions.motions.size(); ++i)
+        plan.push_back({.motion = i, .choice = {}, .before = {}});
     const auto divided = divide(motions, frame, plan, out);
     if (diagnostics_.has_errors()) return out;
     PostWriter(program_, moves_, machine_, feedmodel::dialect_of(machine_.control.kind), options_, rounding_)

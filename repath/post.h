@@ -22,12 +22,12 @@ enum class PostTarget : std::uint8_t { joints, tcp };
 
 struct PostOptions {
   PostTarget target = PostTarget::joints;
-  double tolerance_mm = 0.005;       ///< of the tip, rounding included
-  double rapid_tolerance_mm = 0.1;   ///< the same in rapids
-  bool inverse_time = false;         ///< G93 in the rewritten feed moves, else as the program has it
-  bool one_degree = false;           ///< divide where a rotary axis turns by a degree or more, whatever the tip does
-  double retract_mm = 50;            ///< along the tool, where axes turn back
-  std::optional<int> decimals{};     ///< of lengths and angles; default: the program's, at least 4
+  double tolerance_mm = 0.005;      ///< of the tip, rounding included
+  double rapid_tolerance_mm = 0.1;  ///< the same in rapids
+  bool inverse_time = false;        ///< G93 in the rewritten feed moves, else as the program has it
+  bool one_degree = false;          ///< divide where a rotary axis turns by a degree or more, whatever the tip does
+  double retract_mm = 50;           ///< along the tool, where axes turn back
+  std::optional<int> decimals{};    ///< of lengths and angles; default: the program's, at least 4
 };
 
 /// Axes that turn back: to another solution, or by whole turns.
@@ -49,13 +49,13 @@ struct Posted {
   std::string text;
   std::vector<std::uint32_t> block_of_line;  ///< nc::Emission
   std::vector<PostedPiece> pieces;
-  std::size_t moves = 0;              ///< rewritten
-  std::size_t feed_blocks = 0;        ///< that the feed moves among them became
+  std::size_t moves = 0;        ///< rewritten
+  std::size_t feed_blocks = 0;  ///< that the feed moves among them became
   std::size_t feed_moves = 0;
   std::size_t one_degree_blocks = 0;  ///< that the one-degree rule gives for the same feed moves
   double tip_bound_mm = 0, rapid_bound_mm = 0;
-  double one_degree_bound_mm = 0;     ///< of that rule, feed moves
-  double axis_bound_rad = 0;          ///< rounding of the angles
+  double one_degree_bound_mm = 0;  ///< of that rule, feed moves
+  double axis_bound_rad = 0;       ///< rounding of the angles
   std::vector<TurnBack> turns_back;
 };
 

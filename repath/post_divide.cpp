@@ -113,8 +113,7 @@ void Divider::go(const TipMotion& motion, const RotaryChoice& choice, double fro
       at = next;
     }
   }
-  const std::vector<double> cuts =
-      options_.one_degree ? by_degree : even_cuts(motion, choice, from, to, tolerance_mm);
+  const std::vector<double> cuts = options_.one_degree ? by_degree : even_cuts(motion, choice, from, to, tolerance_mm);
   at = from;
   for (const double next : cuts) {
     out.points.push_back(point(motion, choice, at, next));

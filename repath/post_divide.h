@@ -50,7 +50,8 @@ class Divider {
                                   double tolerance_mm) const;
   std::vector<double> even_cuts(const TipMotion& motion, const RotaryChoice& choice, double from, double to,
                                 double tolerance_mm) const;
-  double farthest(const TipMotion& motion, const RotaryChoice& choice, double from, double to, double tolerance_mm) const;
+  double farthest(const TipMotion& motion, const RotaryChoice& choice, double from, double to,
+                  double tolerance_mm) const;
   std::vector<double> one_degree_cuts(const TipMotion& motion, double from, double to) const;
   double bound(const TipMotion& motion, const RotaryChoice& choice, double from, double to) const;
   PostPoint point(const TipMotion& motion, const RotaryChoice& choice, double from, double to) const;

@@ -178,9 +178,9 @@ class Collector {
   }
 
   double time_of(const nc::Move& m, const kinematics::MoveJoints& now) const {
-    constexpr double kNoLengthMm = 1e-9;  // as feedmodel/feed_meaning.cpp
+    constexpr double kShortMm = 1e-9;  // as feedmodel/feed_meaning.cpp
     const Vec3 turn = now.end_rad - now.start_rad;
-    const double linear = nc::length_mm(moves_, m), length = linear < kNoLengthMm ? deg_from_rad(turn.norm()) : linear;
+    const double linear = nc::length_mm(moves_, m), length = linear < kShortMm ? deg_from_rad(turn.norm()) : linear;
     const double speed = feedmodel::feed_along_path(moves_, m, turn, now.g93_time_s, machine_.control);
     return speed > 0 ? length / speed : 0;
   }

@@ -9,8 +9,8 @@
 namespace camber::repath {
 
 struct PostMotions {
-  std::vector<TipMotion> motions;  ///< of the moves that are rewritten, in order
-  std::vector<Barrier> before;     ///< plan_choices; one more than motions
+  std::vector<TipMotion> motions;    ///< of the moves that are rewritten, in order
+  std::vector<Barrier> before;       ///< plan_choices; one more than motions
   std::vector<std::size_t> of_move;  ///< index into motions; kKept: the move stays as it is
   std::vector<bool> first_of_run;    ///< motion: the move before it is not rewritten, dwells aside
 

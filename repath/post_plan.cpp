@@ -14,9 +14,9 @@ namespace camber::repath {
 namespace {
 
 constexpr double kTurn = 2 * kPi;
-constexpr double kSlack = 1e-9;     ///< rad, mm: as kinematics::Chain::outside_travel
-constexpr double kMaxTurns = 8;     ///< either way, that are looked at
-constexpr double kSquare = 1e-12;   ///< cosine of axes that count as square
+constexpr double kSlack = 1e-9;    ///< rad, mm: as kinematics::Chain::outside_travel
+constexpr double kMaxTurns = 8;    ///< either way, that are looked at
+constexpr double kSquare = 1e-12;  ///< cosine of axes that count as square
 // Costs, in degrees of rotary motion: the order of what is worse is all that matters.
 constexpr double kInAir = 100, kBesideRapid = 200, kInCut = 1e6, kBarrier = 1e5, kWrongPose = 1e9, kOutside = 1e10;
 

@@ -31,16 +31,16 @@ struct PlannedStretch {
   std::size_t motion = 0;
   double from = 0, to = 1;
   RotaryChoice choice;
-  RotaryChoice before;    ///< of the stretch before; another one: the axes turn back before this stretch
+  RotaryChoice before;  ///< of the stretch before; another one: the axes turn back before this stretch
   bool turns_back = false;
-  bool in_air = true;     ///< where the axes turn back: next to a rapid
+  bool in_air = true;  ///< where the axes turn back: next to a rapid
 };
 
 /// What a move that is not rewritten asks of the choice about it.
 enum class Barrier : std::uint8_t {
   none,
-  pose,        ///< linear axes move as programmed: whole turns alone may differ
-  programmed   ///< rotary axes are programmed: the choice should be that of the program
+  pose,       ///< linear axes move as programmed: whole turns alone may differ
+  programmed  ///< rotary axes are programmed: the choice should be that of the program
 };
 
 /// `before[i]`: what stands between motion i - 1 and motion i; one more than motions.

@@ -13,7 +13,7 @@
 namespace camber::repath {
 namespace {
 
-constexpr double kNoMotionS = 1e-3;  ///< of a block in inverse time that moves nothing
+constexpr double kNoMotionS = 1e-3;   ///< of a block in inverse time that moves nothing
 constexpr double kNoLengthMm = 1e-9;  // as feedmodel/feed_meaning.cpp
 constexpr std::initializer_list<double> kTipControl{43.4, 43.5, 234};
 constexpr std::initializer_list<double> kFeedModes{93, 94, 95};
@@ -35,9 +35,7 @@ int code_of(nc::FeedMode mode) {
 }
 
 nc::FeedMode mode_of_code(double code) {
-  return code == 93 ? nc::FeedMode::inverse_time
-         : code == 94 ? nc::FeedMode::per_minute
-                      : nc::FeedMode::per_revolution;
+  return code == 93 ? nc::FeedMode::inverse_time : code == 94 ? nc::FeedMode::per_minute : nc::FeedMode::per_revolution;
 }
 
 bool acts_at_end(const nc::Word& w) {
@@ -123,7 +121,7 @@ Vec3 PostWriter::wanted_point(const nc::Move& move, const PostPoint& point) cons
 std::string PostWriter::place_word(const nc::Move& move, int axis, double wanted, double now,
                                    const nc::Word* like) const {
   const nc::ModalState& state = moves_.state_of(move);
-  const int decimals = axis >= 3      ? rounding_.decimals_deg
+  const int decimals = axis >= 3    ? rounding_.decimals_deg
                        : state.inch ? rounding_.decimals_inch
                                     : rounding_.decimals_mm;
   const double value = state.incremental ? wanted - now : wanted;
@@ -209,7 +207,8 @@ void PostWriter::open_run(const nc::Move& move, std::vector<std::string>& lines)
   look_at_codes_until(move.block);
   const std::string number = length_active_ && !length_number_.empty() ? length_number_ : "0";
   if (dialect_.tip_control_on_m == 0) {
-    if (!BlockEdit(program_, move.block).find_code('G', {43})) lines.push_back(tip_control_word(dialect_) + " H" + number);
+    if (!BlockEdit(program_, move.block).find_code('G', {43}))
+      lines.push_back(tip_control_word(dialect_) + " H" + number);
     keep_tip_control(move.block, move.block + 1);
     return;
   }
@@ -398,7 +397,8 @@ void PostWriter::put_together(Posted& out) {
   out.text = text.text({});
   out.block_of_line = text.block_of_lines();
   std::map<std::uint32_t, std::uint32_t> first_line;
-  for (std::uint32_t line = 0; line < out.block_of_line.size(); ++line) first_line.try_emplace(out.block_of_line[line], line);
+  for (std::uint32_t line = 0; line < out.block_of_line.size(); ++line)
+    first_line.try_emplace(out.block_of_line[line], line);
   for (const auto& [block, pieces] : lines_)
     for (PostedPiece piece : pieces) {
       piece.line += first_line[block] + static_cast<std::uint32_t>(lines_in_front[block]);

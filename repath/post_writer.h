@@ -63,9 +63,9 @@ class PostWriter {
   std::string axes_;  ///< letters of the rotary axes
   Vec3 tool_axis_, gauge_mm_;
 
-  std::map<std::uint32_t, BlockEdit> edits_;                      ///< blocks with changed words
+  std::map<std::uint32_t, BlockEdit> edits_;                                      ///< blocks with changed words
   std::map<std::uint32_t, std::vector<std::string>> in_front_, behind_, pieces_;  ///< lines about them
-  std::map<std::uint32_t, std::vector<PostedPiece>> lines_;       ///< of `pieces_`, with the block's own as the first
+  std::map<std::uint32_t, std::vector<PostedPiece>> lines_;  ///< of `pieces_`, with the block's own as the first
 
   // The state of the text as far as it is written.
   Vec3 at_ = Vec3::Zero(), deg_ = Vec3::Zero();  ///< X Y Z, A B C as written, in the text's unit

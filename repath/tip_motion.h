@@ -16,9 +16,9 @@ namespace camber::repath {
 
 /// A move with known place. Points are in the machine frame, carried along by the part where they are of the tip.
 struct TipMotion {
-  std::uint32_t move = 0;                                           ///< index into Interpretation::moves
-  bool follows_tip = true;                                          ///< tool-centre-point control; else the joints go straight
-  Vec3 start_rad = Vec3::Zero(), end_rad = Vec3::Zero();            ///< as programmed, travel not looked at
+  std::uint32_t move = 0;                                 ///< index into Interpretation::moves
+  bool follows_tip = true;                                ///< tool-centre-point control; else the joints go straight
+  Vec3 start_rad = Vec3::Zero(), end_rad = Vec3::Zero();  ///< as programmed, travel not looked at
   Vec3 start_tip_mm = Vec3::Zero(), end_tip_mm = Vec3::Zero();
   Vec3 start_linear_mm = Vec3::Zero(), end_linear_mm = Vec3::Zero();  ///< X Y Z of the joints
   double tool_length_mm = 0;

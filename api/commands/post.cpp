@@ -30,7 +30,7 @@ void require_kinematics(const machine::Machine& machine) {
 }
 
 /// What the checks say of the new program; an error in its text is ours.
-void check(const PostRequest& request, const PostedProgram& program, const nc::Interpretation& after,
+void check_new_program(const PostRequest& request, const PostedProgram& program, const nc::Interpretation& after,
            Diagnostics& diagnostics) {
   const nc::Interpretation moves = at_given_blocks(after, program.posted.block_of_line);
   kinematics::check_travel(*request.machine, *request.text, moves, diagnostics);
@@ -67,7 +67,7 @@ PostedProgram post_program(const PostRequest& request, Diagnostics& diagnostics)
   const nc::Program text = nc::read_program(SourceText(request.output, out.posted.text), again);
   const nc::Interpretation after = nc::interpret(text, interpreter, again);
   again.throw_if_errors();
-  check(request, out, after, diagnostics);
+  check_new_program(request, out, after, diagnostics);
   out.deviation = repath::post_deviation(moves, after, machine, out.posted, kSamples);
   const auto with_words = [](const nc::Program& p) {
     return static_cast<std::size_t>(
@@ -89,8 +89,8 @@ std::string post_text(const PostedProgram& program) {
                      d.samples, d.tip_mm);
   if (p.rapid_bound_mm > 0)
     out += fmt::format("           in rapids by at most {:.4f} mm ({:.4f})\n", p.rapid_bound_mm, d.rapid_tip_mm);
-  out += fmt::format("axis       off its direction by at most {:.5f} degrees ({:.5f})\n", deg_from_rad(p.axis_bound_rad),
-                     deg_from_rad(d.axis_rad));
+  out += fmt::format("axis       off its direction by at most {:.5f} degrees ({:.5f})\n",
+                     deg_from_rad(p.axis_bound_rad), deg_from_rad(d.axis_rad));
   for (const repath::TurnBack& back : p.turns_back)
     out += fmt::format("turns back {}: {}, {} mm off along the tool\n",
                        back.in_air ? "in air" : "in a cut, which leaves a mark", turns_text(back),
@@ -110,33 +110,31 @@ std::string post_json(const PostedProgram& program, const PostRequest& request) 
         from[axis] = deg_from_rad(t.from_rad[i]);
         to[axis] = deg_from_rad(t.to_rad[i]);
       }
-    back.push_back(
-        {{"in_air", t.in_air}, {"from_deg", from}, {"to_deg", to}, {"retract_mm", t.retract_mm}});
+    back.push_back({{"in_air", t.in_air}, {"from_deg", from}, {"to_deg", to}, {"retract_mm", t.retract_mm}});
   }
-  const ordered_json report = {
-      {"target", request.options.target == repath::PostTarget::tcp ? "tcp" : "joints"},
-      {"tolerance_mm", request.options.tolerance_mm},
-      {"rapid_tolerance_mm", request.options.rapid_tolerance_mm},
-      {"inverse_time", request.options.inverse_time},
-      {"rule", request.options.one_degree ? "one-degree" : "tolerance"},
-      {"blocks_before", program.blocks_before},
-      {"blocks_after", program.blocks_after},
-      {"moves", p.moves},
-      {"feed_moves", p.feed_moves},
-      {"feed_blocks", p.feed_blocks},
-      {"one_degree_blocks", p.one_degree_blocks},
-      {"tip_bound_mm", p.tip_bound_mm},
-      {"rapid_tip_bound_mm", p.rapid_bound_mm},
-      {"one_degree_tip_bound_mm", p.one_degree_bound_mm},
-      {"axis_bound_deg", deg_from_rad(p.axis_bound_rad)},
-      {"sampled",
-       {{"samples", d.samples},
-        {"tip_mm", d.tip_mm},
-        {"rapid_tip_mm", d.rapid_tip_mm},
-        {"axis_deg", deg_from_rad(d.axis_rad)},
-        {"end_tip_mm", d.end_tip_mm},
-        {"end_axis_deg", deg_from_rad(d.end_axis_rad)}}},
-      {"turns_back", back}};
+  const ordered_json report = {{"target", request.options.target == repath::PostTarget::tcp ? "tcp" : "joints"},
+                               {"tolerance_mm", request.options.tolerance_mm},
+                               {"rapid_tolerance_mm", request.options.rapid_tolerance_mm},
+                               {"inverse_time", request.options.inverse_time},
+                               {"rule", request.options.one_degree ? "one-degree" : "tolerance"},
+                               {"blocks_before", program.blocks_before},
+                               {"blocks_after", program.blocks_after},
+                               {"moves", p.moves},
+                               {"feed_moves", p.feed_moves},
+                               {"feed_blocks", p.feed_blocks},
+                               {"one_degree_blocks", p.one_degree_blocks},
+                               {"tip_bound_mm", p.tip_bound_mm},
+                               {"rapid_tip_bound_mm", p.rapid_bound_mm},
+                               {"one_degree_tip_bound_mm", p.one_degree_bound_mm},
+                               {"axis_bound_deg", deg_from_rad(p.axis_bound_rad)},
+                               {"sampled",
+                                {{"samples", d.samples},
+                                 {"tip_mm", d.tip_mm},
+                                 {"rapid_tip_mm", d.rapid_tip_mm},
+                                 {"axis_deg", deg_from_rad(d.axis_rad)},
+                                 {"end_tip_mm", d.end_tip_mm},
+                                 {"end_axis_deg", deg_from_rad(d.end_axis_rad)}}},
+                               {"turns_back", back}};
   return report.dump(2) + "\n";
 }
 

@@ -126,8 +126,8 @@ TEST(Post, ChangesNothingButTheWordsOfPlacesAndCodes) {
 
 TEST(Post, MovesWordsThatActAtTheEndToTheLastBlock) {
   const machine::Machine machine = fanuc_table();
-  const std::string text = text_of(
-      std::string(kHead) + "G43.4 H1 X0. Y0. Z50.\nG1 X10. B4. F600 M9 (cut)\nG49\nM30\n", machine);
+  const std::string text =
+      text_of(std::string(kHead) + "G43.4 H1 X0. Y0. Z50.\nG1 X10. B4. F600 M9 (cut)\nG49\nM30\n", machine);
   EXPECT_EQ(text.find("M9 (cut)"), std::string::npos);
   EXPECT_NE(text.find(" (cut)\n"), std::string::npos);
   EXPECT_NE(text.find(" M9\nG49\n"), std::string::npos);
@@ -135,8 +135,8 @@ TEST(Post, MovesWordsThatActAtTheEndToTheLastBlock) {
 
 TEST(Post, GivesTheFeedBackToBlocksThatRelyOnIt) {
   const machine::Machine machine = fanuc_table();
-  const std::string text = text_of(
-      std::string(kHead) + "G43.4 H1 X0. Y0. Z50.\nG1 X10. F600\nB4.\nG49\nG1 X20. Y0. Z60.\nM30\n", machine);
+  const std::string text =
+      text_of(std::string(kHead) + "G43.4 H1 X0. Y0. Z50.\nG1 X10. F600\nB4.\nG49\nG1 X20. Y0. Z60.\nM30\n", machine);
   EXPECT_NE(text.find("\nF600\nG49\nG1 X20."), std::string::npos) << text;
 }
 
@@ -153,9 +153,9 @@ TEST(Post, WritesInverseTimeAndGoesBackToTheModeOfTheProgram) {
 
 TEST(Post, BackToTheTipSwitchesControlOnAndOff) {
   const machine::Machine machine = fanuc_table();
-  const std::string text = text_of(std::string(kHead) +
-                                       "G43 H1\nG0 X0. Y0. Z50. B0. C0.\nG0 B0.5\nG1 X1. F600\nG0 B0.\nG0 Z60.\nM30\n",
-                                   machine, {.target = PostTarget::tcp});
+  const std::string text =
+      text_of(std::string(kHead) + "G43 H1\nG0 X0. Y0. Z50. B0. C0.\nG0 B0.5\nG1 X1. F600\nG0 B0.\nG0 Z60.\nM30\n",
+              machine, {.target = PostTarget::tcp});
   EXPECT_NE(text.find("Z50. B0. C0.\nG43.4 H1\nG0 B0.5 X"), std::string::npos) << text;
   EXPECT_NE(text.find("\nG43 H1\nG0 Z60.\nM30\n"), std::string::npos) << text;
 }
@@ -196,16 +196,17 @@ TEST(Post, ThereAndBackGivesTheSamePosesOnRealPrograms) {
   if (programs.empty()) GTEST_SKIP() << "programs of linuxcnc5 are not there";
   programs.emplace_back(CAMBER_SOURCE_DIR "/samples/12-five-axis/dome.nc");
   Diagnostics diagnostics;
-  const machine::Machine dome = machine::read_machine(CAMBER_SOURCE_DIR "/samples/12-five-axis/machine.toml",
-                                                      diagnostics);
+  const machine::Machine dome =
+      machine::read_machine(CAMBER_SOURCE_DIR "/samples/12-five-axis/machine.toml", diagnostics);
   const machine::Machine linuxcnc = sample("table_ac_linuxcnc");
   for (const std::string& path : programs) {
     SCOPED_TRACE(path);
     const machine::Machine& machine = path.ends_with("dome.nc") ? dome : linuxcnc;
     const Read given = read(tests::file_text(path), machine);
     const bool to_joints = std::any_of(given.moves.states.begin(), given.moves.states.end(),
-                                 [](const auto& s) { return s.tip_control != nc::TipControl::off; });
-    const PostTarget there = to_joints ? PostTarget::joints : PostTarget::tcp, back = to_joints ? PostTarget::tcp : PostTarget::joints;
+                                       [](const auto& s) { return s.tip_control != nc::TipControl::off; });
+    const PostTarget there = to_joints ? PostTarget::joints : PostTarget::tcp,
+                     back = to_joints ? PostTarget::tcp : PostTarget::joints;
     const Posted out = posted(given, machine, {.target = there});
     const Read middle = read(out.text, machine);
     const Posted home = posted(middle, machine, {.target = back, .decimals = 3});
@@ -344,9 +345,11 @@ TEST(Post, TurnsBackInAirBeforeTravelEnds) {
 
 TEST(Post, RunsTheWholeProgramOnTheOtherBranchWhereTheFirstIsOutOfTravel) {
   const machine::Machine machine = trunnion(-110, 0, 360);
-  const Read given = read(std::string(kHead) + "G10 L2 P1 X0. Y0. Z-320.\nG43.4 H1 X20. Y0. Z30. A20. C0.\nG1 Z0. F500\nX10. A15. C10.\nG49\n"
-                                               "G53 Z0\nM30\n",
-                          machine);
+  const Read given =
+      read(std::string(kHead) +
+               "G10 L2 P1 X0. Y0. Z-320.\nG43.4 H1 X20. Y0. Z30. A20. C0.\nG1 Z0. F500\nX10. A15. C10.\nG49\n"
+               "G53 Z0\nM30\n",
+           machine);
   const Posted out = posted(given, machine);
   const Read made = read(out.text, machine);
   expect_within_travel(made, machine);
@@ -363,19 +366,23 @@ TEST(Post, SaysWhatItCannotRewrite) {
   EXPECT_EQ(said(std::string(kHead) + "G0 X1.\nM30\n", machine),
             "p.nc:1:1: error: no move is under tool-centre-point control; G43.4, G43.5, G234 or M428 was expected "
             "[nothing-to-post]\n");
-  EXPECT_EQ(said(std::string(kHead) + "G0 X1.\nM30\n", machine, {.target = PostTarget::tcp}),
-            "p.nc:1:1: error: no move runs with turned rotary axes outside tool-centre-point control and tilted frames; "
-            "A, B or C was expected [nothing-to-post]\n");
-  EXPECT_EQ(said(on + "G1 X[5.+5.] B10. F600\nG49\nM30\n", machine),
-            "p.nc:6:1: error: this move is made by a loop, a subprogram that is called more than once, an expression or "
-            "a cycle, so that its coordinates cannot be rewritten; a block with numbers of its own was expected "
-            "[not-editable]\n");
-  EXPECT_EQ(said(on + "G1 X5. B10. F600\nG49\nM30\n", machine, {.decimals = 1}),
-            "p.nc:5:1: error: rounding of the words to 1 decimals moves the tip by up to 0.15 mm, of a tolerance of 0.1 "
-            "mm; more decimals or a larger tolerance were expected [tolerance]\n");
-  EXPECT_EQ(said("G21 G17 G90 G94 G0\nG55\nT1 M6\nG43.4 H1 X0. Y0. Z50.\nM30\n", machine),
-            "p.nc:4:1: error: the work offset is not known, so that joints are not; --work-offset or G10 L2 was expected "
-            "[work-offset]\n");
+  EXPECT_EQ(
+      said(std::string(kHead) + "G0 X1.\nM30\n", machine, {.target = PostTarget::tcp}),
+      "p.nc:1:1: error: no move runs with turned rotary axes outside tool-centre-point control and tilted frames; "
+      "A, B or C was expected [nothing-to-post]\n");
+  EXPECT_EQ(
+      said(on + "G1 X[5.+5.] B10. F600\nG49\nM30\n", machine),
+      "p.nc:6:1: error: this move is made by a loop, a subprogram that is called more than once, an expression or "
+      "a cycle, so that its coordinates cannot be rewritten; a block with numbers of its own was expected "
+      "[not-editable]\n");
+  EXPECT_EQ(
+      said(on + "G1 X5. B10. F600\nG49\nM30\n", machine, {.decimals = 1}),
+      "p.nc:5:1: error: rounding of the words to 1 decimals moves the tip by up to 0.15 mm, of a tolerance of 0.1 "
+      "mm; more decimals or a larger tolerance were expected [tolerance]\n");
+  EXPECT_EQ(
+      said("G21 G17 G90 G94 G0\nG55\nT1 M6\nG43.4 H1 X0. Y0. Z50.\nM30\n", machine),
+      "p.nc:4:1: error: the work offset is not known, so that joints are not; --work-offset or G10 L2 was expected "
+      "[work-offset]\n");
   EXPECT_EQ(said(std::string(kHead) + "G43.4 H7 X0. Y0. Z50.\nM30\n", machine),
             "p.nc:5:1: error: the tool length of this move is not known; --tool-length or G10 L1 was expected "
             "[tool-length]\n");
