@@ -12,8 +12,8 @@
 
 #include "base/diagnostics.h"
 #include "simulate/cut.h"
-#include "support/cutting.h"
-#include "support/temp_folder.h"
+#include "tests/support/cutting.h"
+#include "tests/support/temp_folder.h"
 
 namespace camber::simulate {
 
