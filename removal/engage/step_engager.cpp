@@ -51,6 +51,7 @@ struct StepEngager::Impl {
   BatchCut batch_cut;
   std::deque<std::optional<StepTile>> tiles{};  ///< by number; do not move
   BlockReader::Buffers buffers{};
+  int widest_voxels;  ///< of a block of the envelope
   double removed_voxels = 0;
 
   Impl(Stock& stock_, const Stock& blank_, const EnvelopeGrid& envelope_, const TipBox& box_, std::int32_t first_id_,
@@ -64,18 +65,20 @@ struct StepEngager::Impl {
         reader(envelope_, blocks, StampTips(box_.min_mm, box_.max_mm, kExpectedStamps), first_id_, stock_.voxel_mm(),
                stock_.max_mm().z() + stock_.band_mm(), pitches),
         arena(stock_, envelope_.shape, box_.min_mm, box_.max_mm),
-        batch_cut(envelope.shape, stock_.voxel_mm(), stock_.band_mm(), 0) {}
+        batch_cut(envelope.shape, stock_.voxel_mm(), stock_.band_mm(), 0),
+        widest_voxels(static_cast<int>(std::ceil(blocks.widest_mm() / stock_.voxel_mm()))) {}
 
   std::span<const std::int32_t> reach(const Vec3& tip_mm);
+  void approach(const Stamp& stamp);
+  void begin_fresh();
   bool cut(std::size_t tile, const Stamp& stamp, std::int32_t id);
   void write(std::span<const std::size_t> numbers);
   void give_up_some();
   float voxel(const Index3& index) const;
 };
 
-/// The tiles around a tip, read where they are not there.
-std::span<const std::int32_t> StepEngager::Impl::reach(const Vec3& tip_mm) {
-  const auto near = arena.reach(stock, blank, envelope.shape, tip_mm);
+/// Begins with the tiles that the arena has loaded last.
+void StepEngager::Impl::begin_fresh() {
   const auto tip_of = [&](std::int32_t id, Vec3& tip, double& deflection) {
     if (id < first_id) return false;
     tip = reader.tips().view()[id - first_id];
@@ -87,8 +90,25 @@ std::span<const std::int32_t> StepEngager::Impl::reach(const Vec3& tip_mm) {
     tiles[t].emplace(
         StepTile{ColumnCover(arena[t], arena.index(t), stock.voxel_mm(), stock.band_mm(), envelope.shape, tip_of),
                  material_voxels(arena[t], stock.voxel_mm())});
+    arena.lowered(t);
   }
+}
+
+/// The tiles around a tip, read where they are not there.
+std::span<const std::int32_t> StepEngager::Impl::reach(const Vec3& tip_mm) {
+  const auto near = arena.reach(stock, blank, envelope.shape, tip_mm);
+  begin_fresh();
   return near;
+}
+
+/// Reads some of the tiles that the cutter will meet if it goes on as it does.
+void StepEngager::Impl::approach(const Stamp& stamp) {
+  constexpr int kAtOnce = 2;
+  const double feed = stamp.feed_per_tooth_mm.norm();
+  if (!(feed > 0)) return;
+  const Vec3 ahead = stamp.pose.tip_mm + Tile::kCore * stock.voxel_mm() / feed * stamp.feed_per_tooth_mm;
+  arena.approach(stock, blank, envelope.shape, ahead.cwiseMax(box.min_mm).cwiseMin(box.max_mm), kAtOnce);
+  begin_fresh();
 }
 
 bool StepEngager::Impl::cut(std::size_t t, const Stamp& stamp, std::int32_t id) {
@@ -157,8 +177,16 @@ void StepEngager::cut(const Stamp& stamp) {
   assert(stamp.pose.upright() && m.box.contains(stamp.pose.tip_mm));
   const std::int32_t id = m.first_id + static_cast<std::int32_t>(count());
   m.reader.append(stamp.pose.tip_mm);
-  for (const std::int32_t t : m.reach(stamp.pose.tip_mm))
-    m.tiles[static_cast<std::size_t>(t)]->changed |= m.cut(static_cast<std::size_t>(t), stamp, id);
+  for (const std::int32_t near : m.reach(stamp.pose.tip_mm)) {
+    const auto t = static_cast<std::size_t>(near);
+    if (!m.cut(t, stamp, id)) continue;
+    m.tiles[t]->changed = true;
+    m.arena.lowered(t);
+  }
+  constexpr std::int32_t kStampsATop = 4;
+  if (id % kStampsATop == 0)
+    m.arena.read_a_top(m.widest_voxels, [&](std::size_t t) -> const ColumnCover& { return m.tiles[t]->cover; });
+  m.approach(stamp);
   m.give_up_some();
 }
 

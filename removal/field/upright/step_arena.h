@@ -1,6 +1,8 @@
 #pragma once
 // Working copies of the tiles around a cutter that goes on stamp by stamp, where the stamps to come are not known.
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,13 +30,26 @@ class StepArena : public TileArena {
   std::optional<std::size_t> to_give_up(std::size_t given) const;
   /// `is_air`: nothing will ever be there again.
   void give_up(std::size_t tile, bool is_air);
+  /// Loads tiles around a place where the cutter may soon be, `most` of them. Those of fresh() were loaded.
+  void approach(const Stock& stock, const Stock& blank, const CutterShape& shape, const Vec3& tip_mm, int most);
+  /// Reads how high the stock is in one column of tiles, the one that was cut and not read for longest. `reach_voxels`:
+  /// see TopMap; `cover_of`: of a tile that is there.
+  void read_a_top(int reach_voxels, const std::function<const ColumnCover&(std::size_t tile)>& cover_of);
+  /// A tile was cut: its column is to be read.
+  void lowered(std::size_t tile);
   /// Tiles that are there; numbers are below size().
   bool has(std::size_t tile) const { return tile > 0 && used_[tile] != 0; }
 
  private:
+  void load(std::size_t place, const Stock& stock, const Stock& blank);
+  std::size_t column_of(std::size_t place) const { return place / static_cast<std::size_t>(slots_.extent()[2]); }
+
   std::vector<char> air_;  ///< by place
   std::vector<std::int32_t> tiles_of_stamp_;
   std::vector<std::uint64_t> last_near_;  ///< number of the stamp, by tile
+  std::deque<std::size_t> lowered_;       ///< columns of places, to be read
+  std::vector<char> is_lowered_;          ///< by column
+  std::vector<const ColumnCover*> covers_;
   std::uint64_t stamps_ = 0;
   std::size_t there_ = 0, most_near_ = 0, near_bound_ = 0;  ///< tiles; near one stamp, until now and at most
 };
