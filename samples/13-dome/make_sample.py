@@ -15,7 +15,7 @@ import os
 HERE = os.path.dirname(os.path.abspath(__file__))
 DOME, BALL, LEAD = 8.0, 3.0, math.radians(10)
 TOP, BOTTOM, ROW, BLOCK = math.radians(14), math.radians(56), 0.35, 0.5
-FEED = 1500.0
+FEED = 1200.0
 ZERO = (0.0, 0.0, -300.0)  # G54
 PIVOT = (0.0, -360.0)      # Y, Z of the axis of A
 START = ["G21 G17 G40 G49 G80 G90 G94", "G10 L2 P1 X0. Y0. Z-300.", "G10 L10 P1 R120.", "T1 M6"]

@@ -93,9 +93,9 @@ TEST(PredictFiveAxes, SaysWhatIsMissing) {
   std::string text = rows();
   text.erase(text.find("G10 L2"), text.find("G10 L1") - text.find("G10 L2"));
   EXPECT_EQ(error_of(text),
-            "p.nc:6:1: error: where the tool is on the part depends on the work offset, which is not known; G10 L2 in "
+            "p.nc:7:1: error: where the tool is on the part depends on the work offset, which is not known; G10 L2 in "
             "the program or [compensation] work_offset_mm (of G54) in the job was expected [work-offset]\n"
-            "    G0 X0 Y0 Z250\n    ^\n");
+            "    A20 C90\n    ^\n");
   text = rows();
   text.erase(text.find("G10 L1"), text.find("T1 M6") - text.find("G10 L1"));
   EXPECT_EQ(error_of(text),
@@ -106,7 +106,7 @@ TEST(PredictFiveAxes, SaysWhatIsMissing) {
             "p.nc:11:1: error: this arc is none on the part, as rotary axes turn it; lines, or tool-centre-point "
             "control, were expected [not-read]\n    G2 X4 Y4 I4 J0 C100 F100\n    ^\n");
   write_job(folder, rows());
-  folder.write("adapt.toml", tests::file_text(folder / "job.toml") + "[adapt]\n[adapt.limits]\nforce_N = 50.0\n");
+  folder.write("adapt.toml", tests::file_text(folder / "job.toml") + "[adapt]\nfeed_mm_per_min = [300, 3000]\nlimits = { force_N = 50.0 }\n");
   EXPECT_NE(error_of(rows(), "adapt adapt.toml -o out.nc")
                 .find("p.nc:8:1: error: adapt chooses feeds of X, Y and Z, but rotary axes turn here; a program of X, "
                       "Y and Z alone was expected [rotary-motion]\n    A20 C90\n    ^\n"),
