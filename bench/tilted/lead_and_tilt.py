@@ -54,7 +54,7 @@ def program(lead, tilt):
     a = math.degrees(math.acos(axis[2]))
     c = math.degrees(math.atan2(axis[0], -axis[1])) if a > 1e-9 else 0.0
     lines = ["G21 G90 G94", "G10 L2 P1 X0 Y0 Z-300", "G10 L1 P1 R120", "T1 M6", "S%d M3" % RPM, "G54",
-             "G0 X0 Y0 Z250", "A%.4f C%.4f" % (a, c)]
+             "G0 X0 Y0 Z150", "A%.4f C%.4f" % (a, c)]
     y, first = 0.1, True
     while y < WIDTH:
         tip = [0, y, RADIUS]

@@ -74,7 +74,7 @@ def away(point, height):
 
 def dome(points):
     lines = ["%", "O1301 (CAMBER SAMPLE 13 - DOME, TOOL CENTRE POINT CONTROL)"] + START
-    lines += ["G54 G0 X0. Y0. Z250. S9000 M3", "A%.3f C%.3f" % points[0][2:],
+    lines += ["G54 G0 X0. Y0. Z150. S9000 M3", "A%.3f C%.3f" % points[0][2:],
               "G43.4 H1 X%.4f Y%.4f Z%.4f" % tuple(away(points[0], 10))]
     for i, (tip, axis, a, c) in enumerate(points):
         code, feed = ("G1 ", " F500") if i == 0 else ("", " F%g" % FEED if i == 1 else "")
@@ -86,7 +86,7 @@ def dome(points):
 def dome_axes(points):
     lines = ["%", "O1302 (CAMBER SAMPLE 13 - DOME, POSITIONS OF THE AXES)"] + START
     a, c = points[0][2:]
-    lines += ["G54 G0 X0. Y0. Z250. S9000 M3", "A%.3f C%.3f" % (a, c),
+    lines += ["G54 G0 X0. Y0. Z150. S9000 M3", "A%.3f C%.3f" % (a, c),
               "G43 H1 X%.4f Y%.4f Z%.4f" % linear_axes(away(points[0], 10), a, c), "G93"]
     last = away(points[0], 10)
     for i, (tip, axis, a, c) in enumerate(points):

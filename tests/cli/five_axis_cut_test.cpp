@@ -49,7 +49,7 @@ coupling = "rigid"
 std::string rows(double z = -0.2) {
   const double lead = rad_from_deg(20);
   const Vec3 axis(std::sin(lead), 0, std::cos(lead)), tip = Vec3(0, 0, 3 + z) - 3 * axis;
-  std::string text = kStart + "G0 X0 Y0 Z250\nA20 C90\n";
+  std::string text = kStart + "G0 X0 Y0 Z150\nA20 C90\n";
   bool first = true;
   for (const double y : {0.5, 1.0, 1.5}) {
     text += fmt::format("G0 {}X{:.4f} Y{:.4f} Z{:.4f}\n", first ? "G43.4 H1 " : "", tip.x() - 5, y, tip.z() + 5);
@@ -102,11 +102,12 @@ TEST(PredictFiveAxes, SaysWhatIsMissing) {
             "p.nc:8:1: error: where the tool is on the part depends on the length of tool T1, which is not known; its "
             "value (G10 L1) in the program was expected [tool-length]\n"
             "    G0 G43.4 H1 X-6.0261 Y0.5000 Z4.9809\n    ^\n");
-  EXPECT_EQ(error_of(kStart + "G0 X0 Y0 Z250\nA20 C90\nG43 H1\nG0 X0 Y0 Z50\nG2 X4 Y4 I4 J0 C100 F100\nM30\n"),
+  EXPECT_EQ(error_of(kStart + "G0 X0 Y0 Z150\nA20 C90\nG43 H1\nG0 X0 Y0 Z50\nG2 X4 Y4 I4 J0 C100 F100\nM30\n"),
             "p.nc:11:1: error: this arc is none on the part, as rotary axes turn it; lines, or tool-centre-point "
             "control, were expected [not-read]\n    G2 X4 Y4 I4 J0 C100 F100\n    ^\n");
   write_job(folder, rows());
-  folder.write("adapt.toml", tests::file_text(folder / "job.toml") + "[adapt]\nfeed_mm_per_min = [300, 3000]\nlimits = { force_N = 50.0 }\n");
+  folder.write("adapt.toml", tests::file_text(folder / "job.toml") +
+                                 "[adapt]\nfeed_mm_per_min = [300, 3000]\nlimits = { force_N = 50.0 }\n");
   EXPECT_NE(error_of(rows(), "adapt adapt.toml -o out.nc")
                 .find("p.nc:8:1: error: adapt chooses feeds of X, Y and Z, but rotary axes turn here; a program of X, "
                       "Y and Z alone was expected [rotary-motion]\n    A20 C90\n    ^\n"),
