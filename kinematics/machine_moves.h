@@ -7,7 +7,8 @@ namespace camber::kinematics {
 
 /// Rewrites the moves for a planner that knows two kinds of coordinates: those of the linear axes and, under
 /// tool-centre-point control, those of the tip in the part's frame.
-///   - Moves in a tilted frame (G68.2), under G254 and to machine coordinates (G53, G28, G30) become moves of the linear
+///   - Moves in a tilted frame (G68.2), under G254 and to machine coordinates (G53, G28, G30) become moves of the
+///   linear
 ///     axes. G53.1 gets the angles that were found, as words. Arcs turn with the frame; where the linear axes are not
 ///     square to each other in the part's frame, so that an arc would become an ellipse, it keeps that frame.
 ///   - Lines start and end where the machine does, where that is known to differ from what the program names

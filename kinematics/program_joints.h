@@ -56,8 +56,8 @@ class ProgramJoints {
   std::optional<Vec3> end_mm() const { return programmed_mm(end_linear_mm_, now_.end_rad); }
   /// Where that move begins; NaN: not known.
   const Vec3& start_linear_mm() const { return start_linear_mm_; }
-  /// X, Y, Z of the machine for a point in the coordinates of that move, at the angles of its end; nothing where offsets
-  /// are not known or axes are parallel.
+  /// X, Y, Z of the machine for a point in the coordinates of that move, at the angles of its end; nothing where
+  /// offsets are not known or axes are parallel.
   std::optional<Vec3> linear_mm(const Vec3& point_mm) const {
     return linear_of(moves_.moves[index()], point_mm, now_.end_rad);
   }

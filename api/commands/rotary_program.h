@@ -11,7 +11,8 @@ namespace camber::api {
 nc::InterpreterOptions rotary_interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given);
 
 /// Nothing without rotary motion. Otherwise what kinematics::check_travel says, and
-///  [tool-length], [work-offset]  error: a tilted frame, G254 or tool-centre-point control where its joints count (always
+///  [tool-length], [work-offset]  error: a tilted frame, G254 or tool-centre-point control where its joints count
+///  (always
 ///                                with `poses`) needs a length or an offset that is not known;
 ///  [pose-unknown]                warning, with `poses`: tip and axis are reckoned with unknown values taken as 0;
 ///  [rotary-limits]               warning: an axis that turns has no speed or acceleration limit in the machine file.

@@ -234,8 +234,8 @@ TEST(TimeFiveAxes, ThePageSaysWhyItHasNoMachine) {
 TEST(TimeFiveAxes, ShowsTheMachineAlongTheProgram) {
   CAMBER_NEEDS_BROWSER();
   const TempFolder folder;
-  const auto run = run_camber(
-      folder, "time '" + kFiveAxis + "dome.nc' --machine '" + kFiveAxis + "machine.toml' --report r.html --json r.json");
+  const auto run = run_camber(folder, "time '" + kFiveAxis + "dome.nc' --machine '" + kFiveAxis +
+                                          "machine.toml' --report r.html --json r.json");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(tests::open_page("machine", folder / "r.html"), "");
 }
@@ -262,9 +262,10 @@ TEST(FeedFiveAxes, BadInputByWholeMessage) {
             "    G1 X20 A-45 F600\n    ^\n");
   folder.write("p.nc", "G21 G90 G94\nS1000 M3\nG43 H1\nM428\nG0 X0 Y0 Z0\nG1 X1 A-5 F100\nM2\n");
   EXPECT_EQ(error_of("time p.nc --machine m.toml --tool-length 1=80"), "");
-  EXPECT_EQ(error_of("feed p.nc --machine m.toml --tool-length 1=80"),
-            "p.nc:6:1: error: the joints of this move under tool-centre-point control depend on the work offset, which "
-            "is not known; its value (G10 L2, or --work-offset) was expected [work-offset]\n    G1 X1 A-5 F100\n    ^\n");
+  EXPECT_EQ(
+      error_of("feed p.nc --machine m.toml --tool-length 1=80"),
+      "p.nc:6:1: error: the joints of this move under tool-centre-point control depend on the work offset, which "
+      "is not known; its value (G10 L2, or --work-offset) was expected [work-offset]\n    G1 X1 A-5 F100\n    ^\n");
   const std::string tilted = "G68.2 J30.\nG53.1\nG43 H1\nG0 X0 Y0 Z0\nG1 X9 F100\nM2\n";
   folder.write("p.nc", "G21 G90 G94\nG10 L2 P1 X0 Y0 Z0\nG54 G0 X0 Y0 Z50\n" + tilted);
   EXPECT_EQ(error_of("time p.nc --machine m.toml"),
@@ -272,9 +273,10 @@ TEST(FeedFiveAxes, BadInputByWholeMessage) {
             "is not known; --tool-length H=MM, or its value (G10 L1) in the program, was expected [tool-length]\n"
             "    G0 X0 Y0 Z0\n    ^\n");
   folder.write("p.nc", "G21 G90 G94\nG0 X0 Y0 Z50\n" + tilted);
-  EXPECT_EQ(error_of("feed p.nc --machine m.toml --tool-length 1=80"),
-            "p.nc:4:1: error: the joints of this move in a tilted frame (G68.2) depend on the work offset, which is not "
-            "known; its value (G10 L2, or --work-offset) was expected [work-offset]\n    G53.1\n    ^\n");
+  EXPECT_EQ(
+      error_of("feed p.nc --machine m.toml --tool-length 1=80"),
+      "p.nc:4:1: error: the joints of this move in a tilted frame (G68.2) depend on the work offset, which is not "
+      "known; its value (G10 L2, or --work-offset) was expected [work-offset]\n    G53.1\n    ^\n");
   folder.write("p.nc", "G21 G90 G93\nG0 X0 Y0 Z0\nG1 X1 A1 F10\nG1 X2 A2\nM2\n");
   EXPECT_EQ(error_of("time p.nc --machine m.toml"),
             "p.nc:4:1: error: G1 in inverse time (G93) without F; every cutting block needs its own F [feed-missing]\n"

@@ -101,8 +101,8 @@ TEST_P(FourMachines, TheSamePathTakesTheTimeOfTheSlowestJoint) {
 /// The tool's direction at a tilt from Z, towards an azimuth from X, as words of G43.5.
 std::string direction(double tilt_deg, double azimuth_deg) {
   const double tilt = rad_from_deg(tilt_deg), azimuth = rad_from_deg(azimuth_deg);
-  return fmt::format(" I{:.9f} J{:.9f} K{:.9f}", std::sin(tilt) * std::cos(azimuth),
-                     std::sin(tilt) * std::sin(azimuth), std::cos(tilt));
+  return fmt::format(" I{:.9f} J{:.9f} K{:.9f}", std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
+                     std::cos(tilt));
 }
 
 /// One path of the part from a tilt of 10 degrees to one of 50, on each machine: two axes tilt by the angle itself, the
@@ -124,16 +124,16 @@ TEST_P(FourMachines, ATiltTakesTheTimeOfTheAxisThatTilts) {
 /// A degree off the pole a quarter of a turn around it is one of C, however short the way.
 TEST_P(FourMachines, AroundThePoleTakesTheTimeOfC) {
   const machine::Machine m = fast_machine(GetParam(), 20);
-  const auto around = moves_of(
-      kProlog + "G43.5 H1\nG0 X0 Y0 Z0" + direction(1, 90) + "\nG1 X1" + direction(1, 0) + " F6000\n", m);
+  const auto around =
+      moves_of(kProlog + "G43.5 H1\nG0 X0 Y0 Z0" + direction(1, 90) + "\nG1 X1" + direction(1, 0) + " F6000\n", m);
   EXPECT_NEAR(cutting_time_s(around, m), 90.0 / 20, 1e-6);
 }
 
 /// A table that tilts about X and Y has its pole elsewhere: both turn by about a degree.
 TEST(FiveAxis, AnUprightToolIsNoPoleOfATableThatTiltsTwice) {
   const machine::Machine m = fast_machine("table_ab", 20);
-  const auto around = moves_of(
-      kProlog + "G43.5 H1\nG0 X0 Y0 Z0" + direction(1, 90) + "\nG1 X0.1" + direction(1, 0) + " F6000\n", m);
+  const auto around =
+      moves_of(kProlog + "G43.5 H1\nG0 X0 Y0 Z0" + direction(1, 90) + "\nG1 X0.1" + direction(1, 0) + " F6000\n", m);
   EXPECT_NEAR(cutting_time_s(around, m), 1.0 / 20, 1e-4);
 }
 

@@ -75,8 +75,7 @@ TEST(TiltedFrameTime, CountsTheTurnOfG531) {
 TEST(DynamicOffsetTime, IsThatOfTheAxes) {
   machine::Machine m = fast_machine("table_ac_linuxcnc", 20);
   m.axis[1].max_velocity_mm_per_s = 8;
-  const auto program =
-      moves_of(kProlog + "G43 H1\nG254\nG0 X0 Y0 Z20\nG0 A-30\nG0 X0 Y0 Z5\nG1 Y-40 F6000\nG255\n", m);
+  const auto program = moves_of(kProlog + "G43 H1\nG254\nG0 X0 Y0 Z20\nG0 A-30\nG0 X0 Y0 Z5\nG1 Y-40 F6000\nG255\n", m);
   EXPECT_NEAR(cutting_time_s(program, m), 40.0 / 8, kSameS);
 }
 
@@ -86,8 +85,8 @@ TEST(MachineTargetTime, OfAKnownPlaceIsThatOfTheAxis) {
   m.axis[2].acceleration_mm_per_s2 = 500;
   // Z 10 above an offset of -300 with a tool of 80: the axis is at -210. Then back.
   const auto program = moves_of("G21 G90 G94 G10 L2 P1 X0 Y0 Z-300\nG54 G43 H1\nG0 X0 Y0 Z10\nG53 Z0\nG0 Z10\n", m);
-  const auto rotary = moves_of(
-      "G21 G90 G94 G10 L2 P1 X0 Y0 Z-300\nG54 G43 H1\nG0 X0 Y0 Z10\nG53 Z0\nG0 Z10\nG0 A-10\n", m);
+  const auto rotary =
+      moves_of("G21 G90 G94 G10 L2 P1 X0 Y0 Z-300\nG54 G43 H1\nG0 X0 Y0 Z10\nG53 Z0\nG0 Z10\nG0 A-10\n", m);
   EXPECT_EQ(motion_time_s(program, m), 0);  // without rotary words the reference point is not known (cycle-time.md)
   EXPECT_NEAR(motion_time_s(rotary, m), 2 * (210.0 / 50 + 50.0 / 500) + 10.0 / 20, 3 * kPeriodS);
 }
@@ -115,8 +114,7 @@ TEST(ClampTime, OfAxesWithCodesIsBookedWhereTheyAreReleased) {
 /// The tip runs along the plane while the joints are those of the machine.
 TEST(TiltedFramePrediction, KeepsTheTipInThePlane) {
   const machine::Machine m = even_machine("head_head");
-  const auto program =
-      moves_of(kProlog + "G0 X0 Y0 Z90\nG68.2 X3 Y4 Z5 I30 J20 K15\nG53.1\nG43 H1\n" + kPocket, m);
+  const auto program = moves_of(kProlog + "G0 X0 Y0 Z90\nG68.2 X3 Y4 Z5 I30 J20 K15\nG53.1\nG43 H1\n" + kPocket, m);
   const Eigen::Matrix3d plane = nc::euler_zxz({rad_from_deg(30), rad_from_deg(20), rad_from_deg(15)});
   double lowest = 1e9, highest = -1e9, off = 0;
   predict_joints(program, m, [&](std::span<const TimedSample> samples, std::span<const JointSample> joints) {

@@ -23,7 +23,9 @@ inline machine::Machine read_machine(const std::string& file) {
   return machine::read_machine(file, diagnostics);
 }
 
-inline machine::Machine traced_machine() { return read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml"); }
+inline machine::Machine traced_machine() {
+  return read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml");
+}
 
 inline nc::Interpretation moves_of(const SourceText& source, const machine::Machine& machine) {
   Diagnostics diagnostics;

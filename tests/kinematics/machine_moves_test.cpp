@@ -24,9 +24,10 @@ const std::string kTilted =
     "G68.2 X4 Y-7 Z15 I40 J25 K10\nG53.1\nG43 H1\nG0 X-18 Y-18\nZ20\nG1 Z0 F400\nX18\nG3 X20 Y-16 R2\n"
     "G4 P0.5\nG2 X10 Y-16 Z-1 I-5 J0\nG18 G2 X0 Z-1 R6\nG19 G3 Y-10 Z-1 J3 K0\nG17 G0 Z20\n"
     "G98 G81 X-10 Y-10 Z-8 R2 F200\nX10\nG80\nG69\nG49\nG53 Z0\nG0 X0 Y0\n";
-const std::string kDynamic = kStart +
-                             "G43 H1\nG254\nG0 A-20 C35\nG0 X5 Y5\nZ20\nG1 Z0 F300\nX15\nG2 X15 Y5 I-5 J0\nG0 Z50\nA-10\n"
-                             "X0 Y0 Z40\nG255\nG53 Z-1\n";
+const std::string kDynamic =
+    kStart +
+    "G43 H1\nG254\nG0 A-20 C35\nG0 X5 Y5\nZ20\nG1 Z0 F300\nX15\nG2 X15 Y5 I-5 J0\nG0 Z50\nA-10\n"
+    "X0 Y0 Z40\nG255\nG53 Z-1\n";
 
 nc::Interpretation read(const std::string& text, const machine::Machine& machine) {
   nc::InterpreterOptions options;
@@ -42,7 +43,8 @@ nc::Interpretation read(const std::string& text, const machine::Machine& machine
 }
 
 /// A move as both programs have it.
-void expect_same_joints(const ProgramJoints& a, const MoveJoints& of_a, const ProgramJoints& b, const MoveJoints& of_b) {
+void expect_same_joints(const ProgramJoints& a, const MoveJoints& of_a, const ProgramJoints& b,
+                        const MoveJoints& of_b) {
   if (!of_a.linear_known) return;
   EXPECT_TRUE(of_b.linear_known);
   for (const double u : {0.0, 0.3, 0.7, 1.0}) {
@@ -70,9 +72,8 @@ nc::Interpretation expect_same_motion(const std::string& text, const machine::Ma
 }
 
 bool any_tip_control(const nc::Interpretation& moves) {
-  return std::ranges::any_of(moves.moves, [&](const nc::Move& m) {
-    return moves.state_of(m).tip_control != nc::TipControl::off;
-  });
+  return std::ranges::any_of(moves.moves,
+                             [&](const nc::Move& m) { return moves.state_of(m).tip_control != nc::TipControl::off; });
 }
 
 TEST(MachineMoves, OfATiltedFrameTakeTheSameJoints) {
@@ -99,9 +100,8 @@ TEST(MachineMoves, KeepArcsInThePartWhereTheAxesAreNotSquare) {
 
 TEST(MachineMoves, AcrossTipControlStartWhereTheMachineIs) {
   const machine::Machine machine = sample("table_ac_linuxcnc");
-  nc::Interpretation placed =
-      expect_same_motion(kStart + "G43.4 H1\nG0 X0 Y0 Z20 A-20\nG1 X9 A-30 F500\nG53 Z0\nG0 X1 Y2 Z30\nG49\nG0 X3 Y0 Z30\n",
-                         machine);
+  nc::Interpretation placed = expect_same_motion(
+      kStart + "G43.4 H1\nG0 X0 Y0 Z20 A-20\nG1 X9 A-30 F500\nG53 Z0\nG0 X1 Y2 Z30\nG49\nG0 X3 Y0 Z30\n", machine);
   // G53 takes Z alone, along the machine's Z: under tip control the tip would go straight.
   const auto g53 = std::ranges::find(placed.moves, 6U, &nc::Move::block);
   EXPECT_EQ(placed.state_of(*g53).tip_control, nc::TipControl::off);
@@ -111,8 +111,8 @@ TEST(MachineMoves, AcrossTipControlStartWhereTheMachineIs) {
 
 TEST(MachineMoves, LeaveAnUnknownReferencePointUnknown) {
   const machine::Machine machine = sample("table_ac_linuxcnc");
-  nc::Interpretation placed =
-      expect_same_motion(kStart + "G43 H1\nG0 Z30\nG68.2 J30\nG53.1\nG28 G91 Z0\nG90 G0 X1 Y1\nZ5\nG1 X9 F100\n", machine);
+  nc::Interpretation placed = expect_same_motion(
+      kStart + "G43 H1\nG0 Z30\nG68.2 J30\nG53.1\nG28 G91 Z0\nG90 G0 X1 Y1\nZ5\nG1 X9 F100\n", machine);
   const auto home = std::ranges::find_if(placed.moves, [](const nc::Move& m) { return m.reference_axes != 0; });
   ASSERT_NE(home, placed.moves.end());
   EXPECT_TRUE(home->reference);
