@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -164,6 +165,24 @@ std::optional<Vec3> ProgramJoints::programmed_mm(const Vec3& linear_mm, const Ve
   const nc::Move& move = moves_.moves[index()];
   if (!linear_mm.allFinite() || !moves_.machine_origin_mm || !moves_.state_of(move).tool_length_mm) return std::nullopt;
   return tip_of(move, {linear_mm, rotary_rad});
+}
+
+void place_lines(nc::Interpretation& program, const machine::Machine& machine) {
+  constexpr double kSame_mm = 1e-6;
+  struct Placed {
+    std::size_t move;
+    Vec3 start_mm, end_mm;
+  };
+  std::vector<Placed> placed;
+  for (ProgramJoints joints(machine, program); !joints.done();) {
+    joints.next();
+    const nc::Move& move = program.moves[joints.index()];
+    if (move.kind == nc::MoveKind::dwell || move.arc != nc::Move::kNoArc || move.reference) continue;
+    const Vec3 start = joints.start_mm().value_or(move.start_mm), end = joints.end_mm().value_or(move.end_mm);
+    if ((start - move.start_mm).norm() > kSame_mm || (end - move.end_mm).norm() > kSame_mm)
+      placed.push_back({joints.index(), start, end});
+  }
+  for (const Placed& p : placed) program.moves[p.move].start_mm = p.start_mm, program.moves[p.move].end_mm = p.end_mm;
 }
 
 double ProgramJoints::tilt_error_rad() const {

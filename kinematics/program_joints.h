@@ -89,4 +89,9 @@ class ProgramJoints {
   Vec3 last_linear_mm_;                                                 ///< where the last move left the axes
 };
 
+/// Gives the lines of a program the starts and ends that the machine gives them, where it is known that they differ
+/// from those programmed (ProgramJoints::start_mm). Frames stay as they are (machine_moves.h: place_moves). Requires
+/// machine.kinematics.given().
+void place_lines(nc::Interpretation& program, const machine::Machine& machine);
+
 }  // namespace camber::kinematics

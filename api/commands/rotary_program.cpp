@@ -116,6 +116,10 @@ void check_rotary_motion(const machine::Machine& machine, const nc::Program& pro
   kinematics::check_travel(machine, program, moves, diagnostics);
 }
 
+void place_rotary_lines(const machine::Machine& machine, nc::Interpretation& moves) {
+  if (feedmodel::has_rotary_motion(moves, machine)) kinematics::place_lines(moves, machine);
+}
+
 void place_rotary_moves(const machine::Machine& machine, nc::Interpretation& moves) {
   if (feedmodel::has_rotary_motion(moves, machine)) kinematics::place_moves(moves, machine);
 }

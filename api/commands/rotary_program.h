@@ -20,6 +20,10 @@ nc::InterpreterOptions rotary_interpreter_options(const machine::Machine& machin
 void check_rotary_motion(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                          bool poses, Diagnostics& diagnostics);
 
+/// Lines as the machine runs them, in the frames of the program (kinematics::place_lines). Nothing without rotary
+/// motion.
+void place_rotary_lines(const machine::Machine& machine, nc::Interpretation& moves);
+
 /// Moves as the machine runs them (kinematics::place_moves). Nothing without rotary motion.
 void place_rotary_moves(const machine::Machine& machine, nc::Interpretation& moves);
 
