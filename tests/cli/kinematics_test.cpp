@@ -209,7 +209,7 @@ TEST(FeedFiveAxes, ReadsTiltedFrames) {
   EXPECT_NEAR(positioning + cutting, feed["time_s"], 1e-6);
   EXPECT_NEAR(timed["index_s"], 3 * 2 * 0.4, 1e-9);  // M11 and M13, three times
   EXPECT_EQ(timed["notes"].size(), 0U);
-  EXPECT_GT(feed["contour"]["axis_max_deg"], 0);
+  EXPECT_GT(feed["contour"]["tip_max_um"], 0);
   const std::string page = tests::file_text(folder / "t.html");
   EXPECT_NE(page.find("id=\"machine\""), std::string::npos);
   EXPECT_NE(page.find("<h2>Where the time goes</h2>"), std::string::npos);

@@ -23,7 +23,7 @@ using tests::moves_of;
 
 constexpr double kSameS = 1e-6;
 const std::string kPocket =
-    "G0 X-20 Y-10 Z5\nG1 Z0 F600\nX15 F2000\nG3 X20 Y-5 R5\nG1 Y10\nX-15\nG2 X-20 Y5 Z-1 I0 J-5\nG1 Y-10\n"
+    "G0 X-20 Y-10 Z5\nG4 P0.1\nG1 Z0 F600\nX15 F2000\nG3 X20 Y-5 R5\nG1 Y10\nX-15\nG2 X-20 Y5 Z-1 I0 J-5\nG1 Y-10\n"
     "G18 G2 X-10 Z-1 R6\nG17 G1 X0\nG0 Z20\n";
 
 /// A limit along the path alone, so that turned motion takes the time of upright motion.
