@@ -274,7 +274,7 @@ TEST(FeedFiveAxes, BadInputByWholeMessage) {
             "    G0 X0 Y0 Z0\n    ^\n");
   folder.write("p.nc", "G21 G90 G94\nG0 X0 Y0 Z50\n" + tilted);
   EXPECT_EQ(
-      error_of("feed p.nc --machine m.toml --tool-length 1=80"),
+      error_of("time p.nc --machine m.toml --tool-length 1=80"),
       "p.nc:4:1: error: the joints of this move in a tilted frame (G68.2) depend on the work offset, which is not "
       "known; its value (G10 L2, or --work-offset) was expected [work-offset]\n    G53.1\n    ^\n");
   folder.write("p.nc", "G21 G90 G93\nG0 X0 Y0 Z0\nG1 X1 A1 F10\nG1 X2 A2\nM2\n");
