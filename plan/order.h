@@ -62,12 +62,21 @@ class Workpiece {
   std::string blocked(std::size_t primitive) const;
   void remove(std::size_t primitive);
   bool is_removed(std::size_t primitive) const { return removed_[primitive]; }
+  /// Top of what stands within a distance of the primitive's outline, or inside it; its own bottom where nothing does.
+  double highest_near_mm(std::size_t primitive, double distance_mm) const;
+  /// True where a tool of this radius gets to all of the primitive but inner corners: its middle may go anywhere inside
+  /// and beyond open sides, as far as part and fixtures above the primitive's bottom leave it room. By points on a grid.
+  bool has_room(std::size_t primitive, const OpenFaces& open, double radius_mm) const;
+  /// Of the primitive's faces, what the part has there.
+  double wall_mm2(std::size_t primitive) const;
+  double floor_mm2(std::size_t primitive) const;
 
  private:
   enum Owner : int { kAir = -1, kPart = -2, kFixture = -3, kMachined = -4 };  ///< or the number of a primitive
   int owner(const CellIndex& c) const { return owners_[removal_.grid.place(c)]; }
   bool is_air(const CellIndex& c) const;
   double open_share(const Primitive& p, int axis, int step) const;
+  double part_area_mm2(const Primitive& p, int axis, int step) const;
   std::vector<std::array<int, 2>> columns_of(const Hole& hole) const;
   OpenFaces open_faces_of_hole(const Hole& hole, std::size_t primitive) const;
   std::string blocked_hole(const Hole& hole, std::size_t primitive) const;

@@ -37,6 +37,7 @@ CellGrid make_grid(const RemovalInput& input, const Faces& part, const Bounds& s
   for (std::size_t a = 0; a < 3; ++a) {
     std::vector<AxisPlane> all = part.planes[a];
     all.insert(all.end(), of_blank[a].begin(), of_blank[a].end());
+    all.insert(all.end(), input.machined_planes[a].begin(), input.machined_planes[a].end());
     for (const Solid& f : input.fixtures) {
       const auto of_fixture = find_planes(f, input.faces)[a];
       all.insert(all.end(), of_fixture.begin(), of_fixture.end());
@@ -45,6 +46,16 @@ CellGrid make_grid(const RemovalInput& input, const Faces& part, const Bounds& s
                               input.faces.plane_tolerance_mm);
   }
   return CellGrid(std::move(planes));
+}
+
+void take_machined(const RemovalInput& input, CellGrid& g) {
+  if (!input.machined) return;
+  for (int x = 0; x < g.count(0); ++x)
+    for (int y = 0; y < g.count(1); ++y)
+      for (int z = 0; z < g.count(2); ++z) {
+        const CellIndex c{x, y, z};
+        if (input.machined(0.5 * (g.low_mm(c) + g.high_mm(c)))) g.at(c).blank_mm3 = std::min(g.at(c).blank_mm3, g.at(c).part_mm3);
+      }
 }
 
 void sum_up(RemovalVolume& out, double tolerance_mm) {
@@ -84,6 +95,7 @@ RemovalVolume removal_volume(const RemovalInput& input) {
   out.grid.add(input.blank, &Cell::blank_mm3, false);
   out.grid.add(part.plugged, &Cell::part_mm3, true);
   for (const Solid& f : input.fixtures) out.grid.add(f, &Cell::fixture_mm3, false);
+  take_machined(input, out.grid);
   const double tolerance = std::max(input.tolerance_mm, input.faces.plane_tolerance_mm);
   out.grid.classify(tolerance);
   constexpr double kThere = 0.01;
@@ -92,7 +104,8 @@ RemovalVolume removal_volume(const RemovalInput& input) {
     const double share = std::min(material_in(hole, input.blank), 1.0);
     done_mm3 += (1 - share) * hole.volume_mm3;
     hole.volume_mm3 *= share;
-    if (share > kThere) out.holes.push_back(hole);
+    const Vec3 middle(hole.centre_mm.x(), hole.centre_mm.y(), 0.5 * (hole.top_mm + hole.bottom_mm));
+    if (share > kThere && !(input.machined && input.machined(middle))) out.holes.push_back(hole);
   }
   sum_up(out, tolerance);
   out.outside_mm3 = std::max(0.0, out.outside_mm3 - 1.01 * done_mm3);

@@ -1,5 +1,6 @@
 #pragma once
 // What has to be removed: blank minus part, as cells and holes.
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct RemovalInput {
   std::array<std::vector<AxisPlane>, 3> blank_planes{};
   /// Of the cells: what is thinner does not count. At least the tolerance of the planes.
   double tolerance_mm = 0.01;
+  /// Of earlier set-ups: whether a place is machined, and the planes of what is.
+  std::function<bool(const Vec3&)> machined{};
+  std::array<std::vector<AxisPlane>, 3> machined_planes{};
 };
 
 struct RemovalVolume {

@@ -10,8 +10,8 @@
 namespace camber::plan {
 namespace {
 
-using test::BlockHole;
-using test::BlockPart;
+using tests::BlockHole;
+using tests::BlockPart;
 
 machine::Box box(double x0, double y0, double z0, double x1, double y1, double z1) { return {{x0, y0, z0}, {x1, y1, z1}}; }
 
@@ -44,7 +44,7 @@ TEST(Holes, HaveCentreDiameterAndDepth) {
   EXPECT_NEAR(faces.holes[0].top_mm, 15, 1e-5);
   EXPECT_NEAR(faces.holes[0].bottom_mm, 4, 1e-5);
   EXPECT_NEAR(faces.holes[1].diameter_mm, 10, 1e-4);
-  EXPECT_NEAR(faces.holes[1].volume_mm3, test::block_part::polygon_mm2({0, 0, 10, 0}) * 15, 0.01);
+  EXPECT_NEAR(faces.holes[1].volume_mm3, tests::block_part::polygon_mm2({0, 0, 10, 0}) * 15, 0.01);
   BlockPart filled = part;
   filled.holes.clear();
   EXPECT_NEAR(volume_mm3(faces.plugged), filled.volume_mm3(), 0.05);

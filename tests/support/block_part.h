@@ -13,7 +13,7 @@
 #include "base/stl.h"
 #include "machine/job.h"
 
-namespace camber::test {
+namespace camber::tests {
 
 struct BlockHole {
   double x_mm = 0, y_mm = 0, diameter_mm = 0, bottom_mm = 0;
@@ -232,4 +232,4 @@ inline void write_stl(const TriangleMesh& mesh, const std::string& path) {
   }
 }
 
-}  // namespace camber::test
+}  // namespace camber::tests
