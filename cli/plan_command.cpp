@@ -70,7 +70,8 @@ void add_plan_command(CLI::App& app, const GlobalOptions& options, Action& chose
   command->add_option("plan", arguments->plan, "plan.toml: blank, part, machine, tools, case base")
       ->required()
       ->type_name("PLAN.toml");
-  auto* output = command->add_option("-o,--output", arguments->output_folder, "folder for the results")->type_name("DIR");
+  auto* output =
+      command->add_option("-o,--output", arguments->output_folder, "folder for the results")->type_name("DIR");
   command
       ->add_option("--operations", arguments->operations,
                    "go on from this table of operations (DIR/operations.toml of an earlier run, edited)")
@@ -78,7 +79,8 @@ void add_plan_command(CLI::App& app, const GlobalOptions& options, Action& chose
   command->add_option("--json", arguments->json, "also write the figures to this file")->type_name("R.json");
   auto* cases = command->add_flag("--cases-error", arguments->cases_error,
                                   "print how well the cases predict each other, and plan nothing");
-  command->add_flag("--learn", arguments->learn, "add the conditions of the operations to the case base")->excludes(cases);
+  command->add_flag("--learn", arguments->learn, "add the conditions of the operations to the case base")
+      ->excludes(cases);
   command->callback([arguments, output, &options, &chosen] {
     if (output->empty() && !arguments->cases_error) throw CLI::RequiredError("-o DIR or --cases-error");
     chosen = [arguments, &options] {

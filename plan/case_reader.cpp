@@ -42,14 +42,16 @@ void read_similarity(TomlTable& top, CaseBase& base) {
   base.finish_weight = table->number("finish", kShare, base.finish_weight);
   base.least_similarity = table->number("least", kShare, base.least_similarity);
   base.most_cases = static_cast<std::size_t>(table->number("cases", kCount, static_cast<double>(base.most_cases)));
-  if (base.material_weight + base.tool_weight + base.tool_material_weight + base.coating_weight + base.finish_weight <= 0)
+  if (base.material_weight + base.tool_weight + base.tool_material_weight + base.coating_weight + base.finish_weight <=
+      0)
     table->error_at("", "the weights add up to zero; at least one greater than zero was expected", "value-range");
   table->finish();
 }
 
 void read_modification(TomlTable& top, CaseBase& base) {
   if (auto table = top.table("feed_exponent"))
-    for (const std::string& tool : table->keys()) base.feed_exponent[tool] = table->number(tool, machine::kAnyNumber, 0);
+    for (const std::string& tool : table->keys())
+      base.feed_exponent[tool] = table->number(tool, machine::kAnyNumber, 0);
   auto table = top.table("depth_share");
   if (!table) return;
   for (const std::string& tool : table->keys())

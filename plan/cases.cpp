@@ -62,7 +62,9 @@ std::vector<Neighbour> all_neighbours(const CaseBase& base, const CaseContent& q
   std::vector<Neighbour> out;
   for (const Case& c : base.cases)
     if (&c != without && similarity(base, query, c.content) > 0) out.push_back(neighbour_of(base, query, c));
-  const auto apart = [&](const Neighbour& n) { return std::abs(std::log(n.of->content.diameter_mm / query.diameter_mm)); };
+  const auto apart = [&](const Neighbour& n) {
+    return std::abs(std::log(n.of->content.diameter_mm / query.diameter_mm));
+  };
   constexpr double kEqual = 1e-9;
   std::ranges::stable_sort(out, [&](const Neighbour& a, const Neighbour& b) {
     if (std::abs(a.similarity - b.similarity) > kEqual) return a.similarity > b.similarity;
@@ -107,7 +109,8 @@ std::optional<CaseAnswer> conditions_by_cases(const CaseBase& base, const CaseCo
   // Depths of roughing say nothing of finishing, and the other way round.
   const auto alike = [&](const Neighbour& n) { return n.of->content.fine == query.fine; };
   const auto axial = mean([&](const Neighbour& n) { return alike(n) ? share(n.of->axial_depth_mm, n) : std::nullopt; });
-  const auto radial = mean([&](const Neighbour& n) { return alike(n) ? share(n.of->radial_depth_mm, n) : std::nullopt; });
+  const auto radial =
+      mean([&](const Neighbour& n) { return alike(n) ? share(n.of->radial_depth_mm, n) : std::nullopt; });
   out.axial_depth_mm = query.diameter_mm * axial.value_or(fallback[0]);
   out.radial_depth_mm = query.diameter_mm * radial.value_or(fallback[1]);
   return out;

@@ -42,7 +42,8 @@ struct CaseBase {
   std::string path;
   std::vector<Case> cases;
   std::vector<MaterialGroup> groups;
-  double material_weight = 0.4, tool_weight = 0.3, tool_material_weight = 0.1, coating_weight = 0.1, finish_weight = 0.1;
+  double material_weight = 0.4, tool_weight = 0.3, tool_material_weight = 0.1, coating_weight = 0.1,
+         finish_weight = 0.1;
   double least_similarity = 0.7;
   std::size_t most_cases = 5;
   std::map<std::string, double, std::less<>> feed_exponent;
@@ -85,8 +86,8 @@ std::optional<CaseAnswer> conditions_by_cases(const CaseBase& base, const CaseCo
 /// Every case asked of the others.
 struct LeftOut {
   const Case* of = nullptr;
-  double speed_ratio = 0;                ///< predicted / true
-  std::optional<double> feed_ratio{};    ///< of the feed per turn
+  double speed_ratio = 0;              ///< predicted / true
+  std::optional<double> feed_ratio{};  ///< of the feed per turn
   bool similar = true;
 };
 std::vector<LeftOut> leave_one_out(const CaseBase& base);

@@ -41,8 +41,8 @@ double area_of(const Polygon& p, double& mean_z) {
 
 /// First cell along an axis that reaches beyond `at`.
 int first_cell(const std::vector<AxisPlane>& planes, double at) {
-  const auto above = std::upper_bound(planes.begin(), planes.end(), at,
-                                      [](double v, const AxisPlane& p) { return v < p.at_mm; });
+  const auto above =
+      std::upper_bound(planes.begin(), planes.end(), at, [](double v, const AxisPlane& p) { return v < p.at_mm; });
   return std::max(0, static_cast<int>(above - planes.begin()) - 1);
 }
 
@@ -104,7 +104,8 @@ void CellGrid::add(const Solid& solid, double Cell::*field, bool faces) {
             continue;
           }
           double above_z = 0;
-          const Polygon over = clipped(column, 2, from, 1), in = clipped(over, 2, to, -1), above = clipped(over, 2, to, 1);
+          const Polygon over = clipped(column, 2, from, 1), in = clipped(over, 2, to, -1),
+                        above = clipped(over, 2, to, 1);
           const double in_area = in.count < 3 ? 0 : area_of(in, mean_z);
           if (in.count >= 3) cell.*field += in_area * (mean_z - from);
           if (above.count >= 3) cell.*field += area_of(above, above_z) * (to - from);

@@ -131,8 +131,9 @@ Conditions bounded(Conditions c, const PlanInput& plan, const PlanTool& tool) {
 
 std::optional<Conditions> conditions_for(const PlanInput& plan, const PlanTool& tool, const Cut& cut,
                                          std::string& note) {
-  const CaseContent query{plan.work_material, std::string(to_string(tool.use)), tool.material, tool.coated, cut.fine,
-                          plan.fast,          tool.tool.diameter_mm};
+  const CaseContent query{
+      plan.work_material,   std::string(to_string(tool.use)), tool.material, tool.coated, cut.fine, plan.fast,
+      tool.tool.diameter_mm};
   const auto answer = conditions_by_cases(plan.cases, query);
   if (!answer) {
     note = fmt::format("{} has no case of {} machining with a {}", plan.cases.path, plan.fast ? "fast" : "usual",

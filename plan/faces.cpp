@@ -27,8 +27,8 @@ struct Patch {
   std::vector<std::uint32_t> triangles;
   double area_mm2 = 0;
   Bounds bounds;
-  double at_mm = 0;                   ///< planes: mean coordinate
-  bool smooth_all_round = true;       ///< no edge of it is sharp
+  double at_mm = 0;                  ///< planes: mean coordinate
+  bool smooth_all_round = true;      ///< no edge of it is sharp
   double largest_neighbour_mm2 = 0;  ///< of the triangles round it
 };
 

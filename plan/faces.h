@@ -22,9 +22,9 @@ struct AxisPlane {
 struct Hole {
   Vec2 centre_mm = Vec2::Zero();
   double diameter_mm = 0;
-  double top_mm = 0;     ///< where it opens
-  double bottom_mm = 0;  ///< lower end of the cylinder
-  double tip_mm = 0;     ///< lowest point of the bottom: below bottom_mm where a drill's cone is left
+  double top_mm = 0;      ///< where it opens
+  double bottom_mm = 0;   ///< lower end of the cylinder
+  double tip_mm = 0;      ///< lowest point of the bottom: below bottom_mm where a drill's cone is left
   double volume_mm3 = 0;  ///< of the facets, with the bottom's cone
 };
 
@@ -46,7 +46,8 @@ struct Faces {
 /// A plane is a connected patch of triangles whose normals are within 0.1 degrees of an axis; patches within the
 /// tolerance are one plane, at their mean weighted by area. A small patch in the middle of a curved surface (smooth to
 /// its neighbours, and not larger than three of them) is none. Triangles that are neither upright nor along an axis are
-/// free-form. The bounds of their patches, and in x and y those of other upright walls, come as planes that are no faces.
+/// free-form. The bounds of their patches, and in x and y those of other upright walls, come as planes that are no
+/// faces.
 ///
 /// A hole is a closed ring of upright facets, ten or more, with the material outside, whose corners lie on one circle.
 /// Its diameter is that of the corners. The radius of an inner corner follows from the turn between neighbouring

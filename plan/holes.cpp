@@ -9,8 +9,8 @@
 namespace camber::plan {
 namespace {
 
-constexpr double kUpright = 0.01;         // largest z of a unit normal
-constexpr double kSmooth = 0.766;         // cosine of 40 degrees, between facets of a round wall
+constexpr double kUpright = 0.01;          // largest z of a unit normal
+constexpr double kSmooth = 0.766;          // cosine of 40 degrees, between facets of a round wall
 constexpr std::size_t kFewestFacets = 10;  // an octagon is no circle
 
 struct Circle {
@@ -131,7 +131,8 @@ class HoleFinder {
   std::optional<Circle> circle_of(const std::vector<std::uint32_t>& wall) const {
     if (wall.size() < 2 * kFewestFacets || directions_around(wall, normals_) < kFewestFacets) return std::nullopt;
     std::vector<std::uint32_t> corners;
-    for (const std::uint32_t t : wall) corners.insert(corners.end(), solid_.triangles[t].begin(), solid_.triangles[t].end());
+    for (const std::uint32_t t : wall)
+      corners.insert(corners.end(), solid_.triangles[t].begin(), solid_.triangles[t].end());
     std::ranges::sort(corners);
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     std::vector<Vec2> points;
@@ -142,8 +143,10 @@ class HoleFinder {
       if (std::abs((p - circle->centre).norm() - circle->radius) > tolerance(*circle)) return std::nullopt;
     for (const std::uint32_t t : wall) {  // the material is outside
       const Vec3 middle = (solid_.corner(solid_.triangles[t], 0) + solid_.corner(solid_.triangles[t], 1) +
-                           solid_.corner(solid_.triangles[t], 2)) / 3;
-      if (normals_[t].x() * (circle->centre.x() - middle.x()) + normals_[t].y() * (circle->centre.y() - middle.y()) <= 0)
+                           solid_.corner(solid_.triangles[t], 2)) /
+                          3;
+      if (normals_[t].x() * (circle->centre.x() - middle.x()) + normals_[t].y() * (circle->centre.y() - middle.y()) <=
+          0)
         return std::nullopt;
     }
     return circle;
@@ -203,8 +206,12 @@ class HoleFinder {
     if (rims[0].high + rims[0].low > rims[1].high + rims[1].low) std::swap(rims[0], rims[1]);
     const Rim &lower = rims[0], &upper = rims[1];
     if (lower.high >= upper.low) return;
-    Hole hole{.centre_mm = circle->centre, .diameter_mm = 2 * circle->radius, .top_mm = upper.high,
-              .bottom_mm = lower.low, .tip_mm = lower.low, .volume_mm3 = 0};
+    Hole hole{.centre_mm = circle->centre,
+              .diameter_mm = 2 * circle->radius,
+              .top_mm = upper.high,
+              .bottom_mm = lower.low,
+              .tip_mm = lower.low,
+              .volume_mm3 = 0};
     std::vector<Triangle> caps = cap(upper, *circle);
     const std::vector<std::uint32_t> bottom = bottom_below(lower, *circle);
     if (bottom.empty()) {

@@ -9,8 +9,8 @@ namespace camber::plan {
 
 struct FoundHoles {
   std::vector<Hole> holes;
-  std::vector<bool> of_hole;    ///< of each triangle: belongs to a hole
-  std::vector<Triangle> caps;   ///< what closes the solid where the holes' triangles are taken away
+  std::vector<bool> of_hole;     ///< of each triangle: belongs to a hole
+  std::vector<Triangle> caps;    ///< what closes the solid where the holes' triangles are taken away
   std::vector<Vec3> new_points;  ///< middles of the caps, numbered after those of the solid
 };
 

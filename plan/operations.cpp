@@ -47,7 +47,8 @@ class Planner {
         plan_hole(step);
       else
         plan_box(step);
-      if (out_.operations.size() == before && (out_.unmachined.empty() || out_.unmachined.back().primitive != step.primitive))
+      if (out_.operations.size() == before &&
+          (out_.unmachined.empty() || out_.unmachined.back().primitive != step.primitive))
         leave(step, "no operation");
       work_.remove(step.primitive);
     }
@@ -108,7 +109,11 @@ class Planner {
       leave(step, said);
       return nullptr;
     }
-    Operation op{.primitive = number_, .feature = step.feature, .kind = kind, .tool = number, .pattern = pattern,
+    Operation op{.primitive = number_,
+                 .feature = step.feature,
+                 .kind = kind,
+                 .tool = number,
+                 .pattern = pattern,
                  .conditions = *conditions};
     op.box_mm = region_of(p, step.open, tool(number).tool.diameter_mm / 2);
     op.from_mm = p.min_mm.z(), op.to_mm = p.max_mm.z();
@@ -137,7 +142,8 @@ class Planner {
     const double depth = p.max_mm.z() - p.min_mm.z();
     const double surface = work_.wall_mm2(step.primitive) + work_.floor_mm2(step.primitive);
     const Pattern pattern = pattern_of(step.feature, p.contoured);
-    Operation* rough = add(step, OperationKind::rough, pick->tool, pattern, {false, depth, machine::kNoLimit}, pick->note);
+    Operation* rough =
+        add(step, OperationKind::rough, pick->tool, pattern, {false, depth, machine::kNoLimit}, pick->note);
     if (rough == nullptr) return;
     rough->allowance_mm = input_.fine && surface > 0 ? input_.allowance_mm : 0;
     const double left = rough->allowance_mm * surface;
@@ -165,10 +171,11 @@ class Planner {
           fmt::format("inner corners of {:.3g} mm keep more material; they need {}", inner_mm, wanted));
       return std::nullopt;
     }
-    Operation* rest = add(step, OperationKind::rest, pick->tool, Pattern::contour_line,
-                          {false, out_.primitives[step.primitive].max_mm.z() - out_.primitives[step.primitive].min_mm.z(),
-                           machine::kNoLimit},
-                          {});
+    Operation* rest =
+        add(step, OperationKind::rest, pick->tool, Pattern::contour_line,
+            {false, out_.primitives[step.primitive].max_mm.z() - out_.primitives[step.primitive].min_mm.z(),
+             machine::kNoLimit},
+            {});
     if (rest == nullptr) return std::nullopt;
     rest->allowance_mm = rough_of(step).allowance_mm;
     // Four corners, each with what the larger tool leaves.
@@ -225,7 +232,8 @@ class Planner {
     if (rough == nullptr) return p.volume_mm3;
     rough->allowance_mm = input_.allowance_mm;
     // Steps as high as a level, and the allowance.
-    const double left = std::min(p.volume_mm3, free_form_mm2(p) * (rough->allowance_mm + rough->conditions.axial_mm / 2));
+    const double left =
+        std::min(p.volume_mm3, free_form_mm2(p) * (rough->allowance_mm + rough->conditions.axial_mm / 2));
     set_volume(*rough, p.volume_mm3 - left);
     return left;
   }
@@ -249,14 +257,16 @@ class Planner {
       if (op != nullptr) set_volume(*op, volume);
       return;
     }
-    const std::array<std::pair<std::optional<int>, OperationKind>, 3> all{
-        {{tools->center_drill, OperationKind::centre}, {tools->drill, OperationKind::drill}, {tools->reamer, OperationKind::ream}}};
+    const std::array<std::pair<std::optional<int>, OperationKind>, 3> all{{{tools->center_drill, OperationKind::centre},
+                                                                           {tools->drill, OperationKind::drill},
+                                                                           {tools->reamer, OperationKind::ream}}};
     for (const auto& [number, kind] : all)
       if (number) add_drilling(step, hole, *number, kind, kind == OperationKind::drill ? volume : 0);
   }
 
   void add_drilling(const Step& step, const Hole& hole, int number, OperationKind kind, double volume_mm3) {
-    Operation* op = add(step, kind, number, Pattern::drilling, {kind == OperationKind::ream, step.width_mm, step.width_mm}, {});
+    Operation* op =
+        add(step, kind, number, Pattern::drilling, {kind == OperationKind::ream, step.width_mm, step.width_mm}, {});
     if (op == nullptr) return;
     op->box_mm = {hole.centre_mm, hole.centre_mm};
     const machine::Tool& t = tool(number).tool;

@@ -24,12 +24,12 @@ struct Operation {
   Pattern pattern = Pattern::scanning_line;
   Conditions conditions;
   double allowance_mm = 0;
-  double scallop_mm = 0;                     ///< > 0: rows on a free-form face
-  std::array<Vec2, 2> box_mm{};              ///< where the tool's axis may be: lower and upper corner
-  double from_mm = 0, to_mm = 0;             ///< heights of the tip: lowest and highest
-  double volume_mm3 = 0;                     ///< that it removes
-  double nominal_time_s = 0;                 ///< volume / removal rate
-  double surface_mm2 = 0;                    ///< of the part that it finishes
+  double scallop_mm = 0;          ///< > 0: rows on a free-form face
+  std::array<Vec2, 2> box_mm{};   ///< where the tool's axis may be: lower and upper corner
+  double from_mm = 0, to_mm = 0;  ///< heights of the tip: lowest and highest
+  double volume_mm3 = 0;          ///< that it removes
+  double nominal_time_s = 0;      ///< volume / removal rate
+  double surface_mm2 = 0;         ///< of the part that it finishes
   std::vector<std::string> notes{};
 };
 
@@ -47,7 +47,7 @@ struct PlannedDivision {
   std::vector<Operation> operations;
   std::vector<Unmachined> unmachined;
   int tool_changes = 0;
-  double nominal_time_s = 0;  ///< equation (3)
+  double nominal_time_s = 0;     ///< equation (3)
   double form_error_p95_mm = 0;  ///< of the last operations at each surface, weighted by area
   bool complete() const { return unmachined.empty(); }
 };

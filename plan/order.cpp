@@ -99,8 +99,10 @@ std::vector<std::array<int, 2>> Workpiece::columns_of(const Hole& hole) const {
   std::vector<std::array<int, 2>> out;
   for (int x = 0; x < g.count(0); ++x)
     for (int y = 0; y < g.count(1); ++y) {
-      const double dx = std::max({g.plane_mm(0, x) - hole.centre_mm.x(), hole.centre_mm.x() - g.plane_mm(0, x + 1), 0.0});
-      const double dy = std::max({g.plane_mm(1, y) - hole.centre_mm.y(), hole.centre_mm.y() - g.plane_mm(1, y + 1), 0.0});
+      const double dx =
+          std::max({g.plane_mm(0, x) - hole.centre_mm.x(), hole.centre_mm.x() - g.plane_mm(0, x + 1), 0.0});
+      const double dy =
+          std::max({g.plane_mm(1, y) - hole.centre_mm.y(), hole.centre_mm.y() - g.plane_mm(1, y + 1), 0.0});
       if (std::hypot(dx, dy) < hole.diameter_mm / 2 - kTouch_mm) out.push_back({x, y});
     }
   return out;

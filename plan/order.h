@@ -65,7 +65,8 @@ class Workpiece {
   /// Top of what stands within a distance of the primitive's outline, or inside it; its own bottom where nothing does.
   double highest_near_mm(std::size_t primitive, double distance_mm) const;
   /// True where a tool of this radius gets to all of the primitive but inner corners: its middle may go anywhere inside
-  /// and beyond open sides, as far as part and fixtures above the primitive's bottom leave it room. By points on a grid.
+  /// and beyond open sides, as far as part and fixtures above the primitive's bottom leave it room. By points on a
+  /// grid.
   bool has_room(std::size_t primitive, const OpenFaces& open, double radius_mm) const;
   /// Of the primitive's faces, what the part has there.
   double wall_mm2(std::size_t primitive) const;
@@ -92,8 +93,9 @@ class Workpiece {
 /// is taken, its open faces are noted, and those of the others are looked at again.
 Order put_in_order(const RemovalVolume& removal, const std::vector<Primitive>& primitives);
 
-/// From the open faces. Box: by the sides that are open besides the top: none, closed pocket; one, closed slot; two that
-/// meet, open pocket; two opposite ones, open slot; three, step; four, face. An open bottom (a window) does not count.
+/// From the open faces. Box: by the sides that are open besides the top: none, closed pocket; one, closed slot; two
+/// that meet, open pocket; two opposite ones, open slot; three, step; four, face. An open bottom (a window) does not
+/// count.
 Feature feature_of(const Primitive& primitive, const OpenFaces& open);
 
 /// How primitives compare, without their open faces' search: for the order and its tests.

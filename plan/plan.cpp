@@ -82,7 +82,8 @@ class Machined {
       for (int b = 0; b < 3; ++b)
         if (std::abs(turn_(b, a)) > 0.5)
           for (int i = 0; i <= g.count(a); ++i)
-            planes[static_cast<std::size_t>(b)].push_back({turn_(b, a) * g.plane_mm(a, i), g.plane(a, i).area_mm2, false});
+            planes[static_cast<std::size_t>(b)].push_back(
+                {turn_(b, a) * g.plane_mm(a, i), g.plane(a, i).area_mm2, false});
   }
 
  private:
@@ -132,8 +133,9 @@ RemovalVolume removal_of(const PlanInput& input, const Blank& blank, const Solid
 SetupPlan plan_setup(const PlanInput& input, const Blank& blank, const Solid& part, const std::vector<Solid>& fixtures,
                      const Setup& setup, const std::vector<Machined>& machined) {
   const Solid lying = turned(part, setup.turn);
-  SetupPlan out{setup, turned(blank.solid, setup.turn), lying,
-                removal_of(input, blank, lying, fixtures, setup.turn, machined), {}, 0};
+  SetupPlan out{setup, turned(blank.solid, setup.turn),
+                lying, removal_of(input, blank, lying, fixtures, setup.turn, machined),
+                {},    0};
   std::vector<PlanFigures> figures;
   Stage stage("planning", kDivisionPlans.size());
   for (const DivisionPlan division : kDivisionPlans) {
@@ -167,7 +169,8 @@ PlanResult make_plan(const PlanInput& input, Diagnostics& diagnostics) {
                                  setup.name),
                      "setup-turn");
     if (!blank.planes[2].empty() && !setup.turn.isIdentity())
-      fail_on_file(input.path, "a blank from a stock.vdb is not turned; a set-up without turn was expected", "setup-turn");
+      fail_on_file(input.path, "a blank from a stock.vdb is not turned; a set-up without turn was expected",
+                   "setup-turn");
     out.setups.push_back(plan_setup(input, blank, part, fixtures, setup, machined));
     if (out.setups.size() == 1) check_shapes(out.setups.front().removal, input, diagnostics);
   }

@@ -105,8 +105,8 @@ void read_work(TomlTable table, PlanInput& plan) {
   plan.scallop_mm = table.number("scallop_mm", kPositive, plan.scallop_mm);
   plan.compensate = table.boolean("compensate", false);
   if (plan.compensate && !plan.fine)
-    table.error_at("compensate",
-                   "compensate is true, but nothing is finished; finish = \"fine\" was expected with it", "key-unused");
+    table.error_at("compensate", "compensate is true, but nothing is finished; finish = \"fine\" was expected with it",
+                   "key-unused");
   table.finish();
 }
 
@@ -119,7 +119,8 @@ Setup read_setup(TomlTable table, std::size_t number) {
   for (const auto& row : rows.value_or(std::vector<std::vector<double>>{})) {
     const Vec3 axis(row[0], row[1], row[2]);
     if (!(axis.norm() > 0)) {
-      table.error_at("turn", "turn has an axis of no length; " + std::string(kWanted) + " were expected", "value-range");
+      table.error_at("turn", "turn has an axis of no length; " + std::string(kWanted) + " were expected",
+                     "value-range");
       continue;
     }
     out.turn = Eigen::AngleAxisd(rad_from_deg(row[3]), axis.normalized()).toRotationMatrix() * out.turn;
@@ -181,7 +182,8 @@ void read_tables(TomlTable& top, const fs::path& folder, PlanInput& plan, Diagno
 double tool_change_s(TomlTable& top, const machine::Machine& machine) {
   if (const auto given = top.optional_number("tool_change_s", kNotNegative)) return *given;
   const machine::ToolChange& change = machine.tool_change;
-  const double told = change.chip_to_chip_s > 0 ? change.chip_to_chip_s : change.tool_to_tool_s + machine.spindle.orient_s;
+  const double told =
+      change.chip_to_chip_s > 0 ? change.chip_to_chip_s : change.tool_to_tool_s + machine.spindle.orient_s;
   constexpr double kUsual_s = 10;
   return told > 0 ? told : kUsual_s;
 }

@@ -25,7 +25,8 @@ std::string row_toml(const Operation& o, std::size_t index, const PlanTool& tool
   std::string out = fmt::format("\n[[operation]]  # {}: {}, {} of {} mm\n", index + 1, to_string(o.feature),
                                 to_string(tool.use), number(tool.tool.diameter_mm));
   out += fmt::format("primitive = {}\nkind = \"{}\"\ntool = {}\nmode = \"{}\"\n", o.primitive,
-                     kOperationKinds[static_cast<std::size_t>(o.kind)], o.tool, kPatterns[static_cast<std::size_t>(o.pattern)]);
+                     kOperationKinds[static_cast<std::size_t>(o.kind)], o.tool,
+                     kPatterns[static_cast<std::size_t>(o.pattern)]);
   out += fmt::format("spindle_rpm = {}\nfeed_mm_per_min = {}\n", number(c.spindle_rpm), number(c.feed_mm_per_min));
   if (o.pattern != Pattern::drilling) out += fmt::format("radial_depth_mm = {}\n", number(c.radial_mm));
   out += fmt::format("axial_depth_mm = {}\n", number(c.axial_mm));
@@ -83,15 +84,17 @@ void read_conditions(TomlTable& row, const PlanInput& input, const PlanTool& too
   c.limit = "given";
   if (least.limit != "given" && least.limit != "cases" &&
       (least.feed_mm_per_min < c.feed_mm_per_min * 0.999 || least.axial_mm < c.axial_mm * 0.999))
-    row.warning_at("feed_mm_per_min",
-                   fmt::format("the conditions are beyond the limit \"{}\", which asks for {:.0f} mm/min and {:.3g} mm deep",
-                               least.limit, least.feed_mm_per_min, least.axial_mm),
-                   "plan-limit");
+    row.warning_at(
+        "feed_mm_per_min",
+        fmt::format("the conditions are beyond the limit \"{}\", which asks for {:.0f} mm/min and {:.3g} mm deep",
+                    least.limit, least.feed_mm_per_min, least.axial_mm),
+        "plan-limit");
 }
 
 std::optional<Operation> read_row(TomlTable& row, const PlanInput& input, const PlannedDivision& plan) {
   const double last = static_cast<double>(plan.order.steps.size());
-  const auto primitive = static_cast<std::size_t>(row.required_number("primitive", {.min = 1, .max = last, .whole = true}));
+  const auto primitive =
+      static_cast<std::size_t>(row.required_number("primitive", {.min = 1, .max = last, .whole = true}));
   const auto kind = row.required_choice("kind", kOperationKinds);
   if (primitive < 1 || !kind) return std::nullopt;
   const Operation* base = planned(plan, primitive, static_cast<OperationKind>(*kind));
@@ -105,7 +108,8 @@ std::optional<Operation> read_row(TomlTable& row, const PlanInput& input, const 
   const auto tool = row.optional_number("tool", {.min = 1, .max = 99999999, .whole = true});
   if (tool) op.tool = static_cast<int>(*tool);
   if (!input.tools.contains(op.tool)) {
-    row.error_at("tool", fmt::format("tool = {0}, but there is no [tool.{0}] in {1}", op.tool, input.path), "tool-missing");
+    row.error_at("tool", fmt::format("tool = {0}, but there is no [tool.{0}] in {1}", op.tool, input.path),
+                 "tool-missing");
     return std::nullopt;
   }
   op.pattern = static_cast<Pattern>(row.choice("mode", kPatterns, static_cast<std::size_t>(op.pattern)));

@@ -72,7 +72,8 @@ std::vector<Region> regions_of(const CellGrid& grid) {
   return out;
 }
 
-/// A region on the grid of its own outline's planes: cell (i, j) of it spans columns x[i] to x[i + 1], y[j] to y[j + 1].
+/// A region on the grid of its own outline's planes: cell (i, j) of it spans columns x[i] to x[i + 1], y[j] to y[j +
+/// 1].
 struct Outline {
   std::vector<int> x, y;
   std::vector<std::vector<bool>> filled;  ///< [i][j]

@@ -14,7 +14,8 @@ double material_in(const Hole& hole, const Solid& blank) {
     for (int i = 0; i < kAround; ++i) {
       // Rings of equal area; no point on a line of symmetry.
       const double r = 0.5 * hole.diameter_mm * std::sqrt((ring + 0.5) / kRings), a = 2 * kPi * (i + 0.37) / kAround;
-      const auto z = material_along_z(blank, hole.centre_mm.x() + r * std::cos(a), hole.centre_mm.y() + r * std::sin(a));
+      const auto z =
+          material_along_z(blank, hole.centre_mm.x() + r * std::cos(a), hole.centre_mm.y() + r * std::sin(a));
       height += hole.top_mm - hole.bottom_mm;
       for (std::size_t k = 0; k + 1 < z.size(); k += 2)
         filled += std::max(0.0, std::min(z[k + 1], hole.top_mm) - std::max(z[k], hole.bottom_mm));
@@ -54,7 +55,8 @@ void take_machined(const RemovalInput& input, CellGrid& g) {
     for (int y = 0; y < g.count(1); ++y)
       for (int z = 0; z < g.count(2); ++z) {
         const CellIndex c{x, y, z};
-        if (input.machined(0.5 * (g.low_mm(c) + g.high_mm(c)))) g.at(c).blank_mm3 = std::min(g.at(c).blank_mm3, g.at(c).part_mm3);
+        if (input.machined(0.5 * (g.low_mm(c) + g.high_mm(c))))
+          g.at(c).blank_mm3 = std::min(g.at(c).blank_mm3, g.at(c).part_mm3);
       }
 }
 
@@ -76,9 +78,7 @@ void sum_up(RemovalVolume& out, double tolerance_mm) {
 
 }  // namespace
 
-double RemovalVolume::balance() const {
-  return removal_mm3() > 0 ? (cells_mm3 + holes_mm3) / removal_mm3() - 1 : 0;
-}
+double RemovalVolume::balance() const { return removal_mm3() > 0 ? (cells_mm3 + holes_mm3) / removal_mm3() - 1 : 0; }
 
 RemovalVolume removal_volume(const RemovalInput& input) {
   const Faces part = find_faces(input.part, input.faces);

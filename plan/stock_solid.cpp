@@ -59,7 +59,9 @@ StockBlank blank_of(const removal::Stock& stock, const FaceOptions& options) {
     const double x0 = low.x() + size.x() * i / nx, x1 = low.x() + size.x() * (i + 1) / nx;
     const auto y_of = [&](int j) { return low.y() + size.y() * j / ny; };
     for (int j = 0; j < ny;) {
-      const auto column = [&](int k) { return column_of(probe, stock, 0.5 * (x0 + x1), 0.5 * (y_of(k) + y_of(k + 1))); };
+      const auto column = [&](int k) {
+        return column_of(probe, stock, 0.5 * (x0 + x1), 0.5 * (y_of(k) + y_of(k + 1)));
+      };
       const std::vector<double> heights = column(j);
       int end = j + 1;
       while (end < ny && alike(column(end), heights)) ++end;
@@ -78,7 +80,8 @@ StockBlank blank_of(const removal::Stock& stock, const FaceOptions& options) {
   std::array<std::vector<AxisPlane>, 2> walls;
   for (const removal::StockCrossing& c : shape.crossings)
     for (int a = 0; a < 2; ++a)
-      if (std::abs(c.outward[a]) > 0.5) walls[static_cast<std::size_t>(a)].push_back({c.place_mm[a], shape.cell_mm * shape.cell_mm, true});
+      if (std::abs(c.outward[a]) > 0.5)
+        walls[static_cast<std::size_t>(a)].push_back({c.place_mm[a], shape.cell_mm * shape.cell_mm, true});
   for (std::size_t a = 0; a < 2; ++a)
     out.planes[a] = gathered(std::move(walls[a]), std::max(options.plane_tolerance_mm, 0.05 * step),
                              std::max(options.min_face_mm2, kShare * size.z() * size[static_cast<int>(1 - a)]));

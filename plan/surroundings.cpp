@@ -70,7 +70,8 @@ bool Workpiece::has_room(std::size_t primitive, const OpenFaces& open, double ra
   for (int i = 0; i <= kCentres; ++i)
     for (int j = 0; j <= kCentres; ++j) {
       const Vec2 c(room.x0 + i * dx, room.y0 + j * dy);
-      if (std::ranges::all_of(obstacles, [&](const Rect& o) { return o.distance(c.x(), c.y()) > radius_mm - half_step; }))
+      if (std::ranges::all_of(obstacles,
+                              [&](const Rect& o) { return o.distance(c.x(), c.y()) > radius_mm - half_step; }))
         centres.push_back(c);
     }
   const double reach = (radius_mm + half_step) * (radius_mm + half_step);

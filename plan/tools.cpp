@@ -74,7 +74,8 @@ std::string wanted_tool(const ToolNeed& need, ToolUse use, double largest_mm) {
 std::string reach_fault(const machine::Tool& tool, const ToolNeed& need) {
   const double cutter = tool.diameter_mm / 2, flutes = tool.flute_length_mm.value_or(tool.overhang_mm);
   if (tool.overhang_mm < need.depth_mm + kClearance_mm)
-    return fmt::format("its overhang of {:.4g} mm is too short for a depth of {:.4g} mm", tool.overhang_mm, need.depth_mm);
+    return fmt::format("its overhang of {:.4g} mm is too short for a depth of {:.4g} mm", tool.overhang_mm,
+                       need.depth_mm);
   if (tool.shank_diameter_mm / 2 > cutter && flutes < tool.overhang_mm) {
     const double wall = wall_of(need, tool.shank_diameter_mm / 2);
     if (wall > flutes + tool.neck_length_mm)

@@ -13,11 +13,11 @@ namespace camber::plan {
 /// What a primitive asks of its tool.
 struct ToolNeed {
   Feature feature = Feature::face;
-  double width_mm = 0;                                  ///< see Step
-  double depth_mm = 0;                                  ///< from its top to its bottom
-  double inner_radius_mm = machine::kNoLimit;           ///< smallest of its upright inner corners
-  std::function<double(double)> wall_mm{};              ///< height over the bottom of what stands within a distance
-  std::function<bool(double)> has_room{};               ///< for a radius; empty: always
+  double width_mm = 0;                         ///< see Step
+  double depth_mm = 0;                         ///< from its top to its bottom
+  double inner_radius_mm = machine::kNoLimit;  ///< smallest of its upright inner corners
+  std::function<double(double)> wall_mm{};     ///< height over the bottom of what stands within a distance
+  std::function<bool(double)> has_room{};      ///< for a radius; empty: always
 };
 
 struct ToolPick {

@@ -69,10 +69,12 @@ std::string view_data(const SetupPlan& s) {
 
 std::string view_card(const SetupPlan& s) {
   std::string choices;
-  for (const PlannedDivision& p : s.plans) choices += fmt::format("<option>plan {}</option>", plan::to_string(p.division));
+  for (const PlannedDivision& p : s.plans)
+    choices += fmt::format("<option>plan {}</option>", plan::to_string(p.division));
   std::string out = fmt::format(
       "<div class=\"card\"><h2>Removal volume</h2>\n<p><select id=\"plans\" aria-label=\"plan\">{}</select> "
-      "<select id=\"shown\" aria-label=\"what is drawn\"><option value=\"left\">part and what is left to remove</option>"
+      "<select id=\"shown\" aria-label=\"what is drawn\"><option value=\"left\">part and what is left to "
+      "remove</option>"
       "<option value=\"removal\">what is removed</option><option value=\"blank\">part in the blank</option>"
       "<option value=\"part\">part</option></select> "
       "<input id=\"step\" type=\"range\" min=\"0\" max=\"1\" value=\"0\" aria-label=\"primitives machined\"> "
@@ -87,11 +89,12 @@ std::string view_card(const SetupPlan& s) {
 }
 
 TextTable plans_table(const SetupPlan& s) {
-  TextTable table{"Plans",
-                  {"plan", "primitives", "operations", "tools", "time by (3), s", "tool changes", "form error p95, um", ""},
-                  {},
-                  "Time: the sum of volume over removal rate, and the tool changes. Form error: deflection across the "
-                  "wall in a steady cut, weighted by surface."};
+  TextTable table{
+      "Plans",
+      {"plan", "primitives", "operations", "tools", "time by (3), s", "tool changes", "form error p95, um", ""},
+      {},
+      "Time: the sum of volume over removal rate, and the tool changes. Form error: deflection across the "
+      "wall in a steady cut, weighted by surface."};
   for (std::size_t i = 0; i < s.plans.size(); ++i) {
     const PlannedDivision& p = s.plans[i];
     std::vector<int> tools;
@@ -101,19 +104,21 @@ TextTable plans_table(const SetupPlan& s) {
                           fmt::format("{}", p.operations.size()), fmt::format("{}", tools.size()),
                           fmt::format("{:.1f}", p.nominal_time_s), fmt::format("{}", p.tool_changes),
                           fmt::format("{:.1f}", 1000 * p.form_error_p95_mm),
-                          i == s.best ? "taken" : p.complete() ? "" : "incomplete"});
+                          i == s.best    ? "taken"
+                          : p.complete() ? ""
+                                         : "incomplete"});
   }
   return table;
 }
 
 TextTable operations_table(const plan::PlanInput& input, const SetupPlan& s) {
-  TextTable table{"Operations of the plan that is taken",
-                  {"", "feature", "kind", "tool", "pattern", "S", "F", "RD", "AD", "time, s", "limit", "N", "um", "W",
-                   "notes"},
-                  {},
-                  "S rpm, F mm/min, radial and axial depth mm. N, um, W: lateral force, deflection across the wall and "
-                  "power of a straight cut at these conditions. Limit: what the conditions were reduced for; cases: "
-                  "nothing."};
+  TextTable table{
+      "Operations of the plan that is taken",
+      {"", "feature", "kind", "tool", "pattern", "S", "F", "RD", "AD", "time, s", "limit", "N", "um", "W", "notes"},
+      {},
+      "S rpm, F mm/min, radial and axial depth mm. N, um, W: lateral force, deflection across the wall and "
+      "power of a straight cut at these conditions. Limit: what the conditions were reduced for; cases: "
+      "nothing."};
   const PlannedDivision& p = s.plans[s.best];
   for (std::size_t i = 0; i < p.operations.size(); ++i) {
     const plan::Operation& o = p.operations[i];
@@ -121,15 +126,14 @@ TextTable operations_table(const plan::PlanInput& input, const SetupPlan& s) {
     const plan::Conditions& c = o.conditions;
     std::string notes;
     for (const std::string& n : o.notes) notes += (notes.empty() ? "" : "; ") + n;
-    table.rows.push_back({fmt::format("{}", i + 1), std::string(to_string(o.feature)),
-                          std::string(plan::kOperationKinds[static_cast<std::size_t>(o.kind)]),
-                          fmt::format("T{} {} {}", o.tool, to_string(t.use), format_trimmed(t.tool.diameter_mm, 3)),
-                          std::string(plan::kPatterns[static_cast<std::size_t>(o.pattern)]),
-                          fmt::format("{:.0f}", c.spindle_rpm), fmt::format("{:.0f}", c.feed_mm_per_min),
-                          format_trimmed(c.radial_mm, 2), format_trimmed(c.axial_mm, 2),
-                          fmt::format("{:.1f}", o.nominal_time_s), c.limit, fmt::format("{:.0f}", c.loads.force_N),
-                          fmt::format("{:.1f}", 1000 * c.loads.form_error_mm), fmt::format("{:.0f}", c.loads.power_W),
-                          notes});
+    table.rows.push_back(
+        {fmt::format("{}", i + 1), std::string(to_string(o.feature)),
+         std::string(plan::kOperationKinds[static_cast<std::size_t>(o.kind)]),
+         fmt::format("T{} {} {}", o.tool, to_string(t.use), format_trimmed(t.tool.diameter_mm, 3)),
+         std::string(plan::kPatterns[static_cast<std::size_t>(o.pattern)]), fmt::format("{:.0f}", c.spindle_rpm),
+         fmt::format("{:.0f}", c.feed_mm_per_min), format_trimmed(c.radial_mm, 2), format_trimmed(c.axial_mm, 2),
+         fmt::format("{:.1f}", o.nominal_time_s), c.limit, fmt::format("{:.0f}", c.loads.force_N),
+         fmt::format("{:.1f}", 1000 * c.loads.form_error_mm), fmt::format("{:.0f}", c.loads.power_W), notes});
   }
   return table;
 }
@@ -154,8 +158,8 @@ std::string plan_page(const plan::PlanInput& input, const plan::PlanResult& resu
                       const std::vector<std::string>& warnings) {
   ReportData data;
   data.figures = plan_figures(result);
-  std::string out = page_head("Plan of " + input.part_path, fmt::format("{}, {}, machine {}", input.path,
-                                                                        input.work_material, input.machine_path));
+  std::string out = page_head("Plan of " + input.part_path,
+                              fmt::format("{}, {}, machine {}", input.path, input.work_material, input.machine_path));
   out += tiles_html(data) + list_html("Not machined", "warnings", plan_failures(result)) +
          list_html("Warnings", "warnings", warnings) + view_card(result.setups.front());
   for (const SetupPlan& s : result.setups) {

@@ -50,22 +50,16 @@ ordered_json operation_json(const Operation& o) {
 ordered_json primitive_json(const PlannedDivision& p, std::size_t number) {
   const plan::Step& step = p.order.steps[number];
   const plan::Primitive& of = p.primitives[step.primitive];
-  return {{"primitive", number + 1},
-          {"feature", plan::to_string(step.feature)},
-          {"from_mm", corner(of.min_mm)},
-          {"to_mm", corner(of.max_mm)},
-          {"volume_mm3", of.volume_mm3},
-          {"open_faces", step.open.count()},
+  return {{"primitive", number + 1},      {"feature", plan::to_string(step.feature)},
+          {"from_mm", corner(of.min_mm)}, {"to_mm", corner(of.max_mm)},
+          {"volume_mm3", of.volume_mm3},  {"open_faces", step.open.count()},
           {"width_mm", step.width_mm}};
 }
 
 ordered_json plan_row(const PlannedDivision& p) {
-  ordered_json j{{"division", plan::to_string(p.division)},
-                 {"nominal_time_s", p.nominal_time_s},
-                 {"tool_changes", p.tool_changes},
-                 {"form_error_p95_um", 1000 * p.form_error_p95_mm},
-                 {"primitives", p.primitives.size()},
-                 {"complete", p.complete()}};
+  ordered_json j{{"division", plan::to_string(p.division)}, {"nominal_time_s", p.nominal_time_s},
+                 {"tool_changes", p.tool_changes},          {"form_error_p95_um", 1000 * p.form_error_p95_mm},
+                 {"primitives", p.primitives.size()},       {"complete", p.complete()}};
   j["unmachined"] = ordered_json::array();
   for (const plan::Unmachined& u : p.unmachined) j["unmachined"].push_back({{"what", u.what}, {"reason", u.reason}});
   return j;
@@ -98,10 +92,11 @@ std::string operations_text(const plan::PlanInput& input, const PlannedDivision&
   for (std::size_t i = 0; i < p.operations.size(); ++i) {
     const Operation& o = p.operations[i];
     const plan::PlanTool& t = input.tools.at(o.tool);
-    out += fmt::format("{:>2} {:<14}{:<8}{:<18}{:>7.0f}{:>7.0f}{:>6}{:>6}{:>8.1f}  {}\n", i + 1, to_string(o.feature),
-                       word(o.kind), fmt::format("{} {}", to_string(t.use), format_trimmed(t.tool.diameter_mm, 2)),
-                       o.conditions.spindle_rpm, o.conditions.feed_mm_per_min, format_trimmed(o.conditions.radial_mm, 2),
-                       format_trimmed(o.conditions.axial_mm, 2), o.nominal_time_s, o.conditions.limit);
+    out +=
+        fmt::format("{:>2} {:<14}{:<8}{:<18}{:>7.0f}{:>7.0f}{:>6}{:>6}{:>8.1f}  {}\n", i + 1, to_string(o.feature),
+                    word(o.kind), fmt::format("{} {}", to_string(t.use), format_trimmed(t.tool.diameter_mm, 2)),
+                    o.conditions.spindle_rpm, o.conditions.feed_mm_per_min, format_trimmed(o.conditions.radial_mm, 2),
+                    format_trimmed(o.conditions.axial_mm, 2), o.nominal_time_s, o.conditions.limit);
   }
   return out;
 }
@@ -111,9 +106,12 @@ std::string plans_text(const SetupPlan& s) {
                                 "tool changes", "form error p95, um");
   for (std::size_t i = 0; i < s.plans.size(); ++i) {
     const PlannedDivision& p = s.plans[i];
-    out += fmt::format("{:<10}{:>12}{:>12}{:>10.1f}{:>14}{:>20.1f}{}\n", plan::to_string(p.division), p.primitives.size(),
-                       p.operations.size(), p.nominal_time_s, p.tool_changes, 1000 * p.form_error_p95_mm,
-                       i == s.best ? "  taken" : p.complete() ? "" : "  incomplete");
+    out +=
+        fmt::format("{:<10}{:>12}{:>12}{:>10.1f}{:>14}{:>20.1f}{}\n", plan::to_string(p.division), p.primitives.size(),
+                    p.operations.size(), p.nominal_time_s, p.tool_changes, 1000 * p.form_error_p95_mm,
+                    i == s.best    ? "  taken"
+                    : p.complete() ? ""
+                                   : "  incomplete");
   }
   return out;
 }
@@ -146,7 +144,8 @@ std::string plan_text(const plan::PlanInput& input, const plan::PlanResult& resu
     out += plans_text(s) + operations_text(input, s.plans[s.best]);
     for (std::size_t i = 0; i < s.plans[s.best].operations.size(); ++i)
       for (const std::string& note : s.plans[s.best].operations[i].notes)
-        out += fmt::format("operation {}, {}: {}\n", i + 1, size_text(s.plans[s.best].operations[i], s.plans[s.best]), note);
+        out += fmt::format("operation {}, {}: {}\n", i + 1, size_text(s.plans[s.best].operations[i], s.plans[s.best]),
+                           note);
   }
   return out + fmt::format("computed in {:.1f} s\n", compute_s);
 }
@@ -165,7 +164,9 @@ namespace {
 std::string factors(std::vector<double> ratios) {
   for (double& r : ratios) r = std::max(r, 1 / r);
   std::ranges::sort(ratios);
-  const auto at = [&](double share) { return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1))]; };
+  const auto at = [&](double share) {
+    return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1))];
+  };
   return ratios.empty() ? std::string("      -       -") : fmt::format("{:>7.2f} {:>7.2f}", at(0.5), at(0.9));
 }
 
@@ -182,12 +183,13 @@ std::string cases_error_text(const plan::CaseBase& base) {
       if (row.feed_ratio) by_tool[name][1].push_back(*row.feed_ratio);
     }
   }
-  std::string out = fmt::format("{} cases, each asked of the others: factor between predicted and true\n", base.cases.size());
+  std::string out =
+      fmt::format("{} cases, each asked of the others: factor between predicted and true\n", base.cases.size());
   out += fmt::format("{:<16}{:>6}{:>20}{:>22}\n", "tool", "cases", "speed: median, p90", "feed: median, p90");
   for (const auto& [name, ratios] : by_tool)
     out += fmt::format("{:<16}{:>6}     {}       {}\n", name, ratios[0].size(), factors(ratios[0]), factors(ratios[1]));
-  return out + fmt::format("{} of {} had no similar case; {} have no other case of their tool\n", dissimilar, rows.size(),
-                           base.cases.size() - rows.size());
+  return out + fmt::format("{} of {} had no similar case; {} have no other case of their tool\n", dissimilar,
+                           rows.size(), base.cases.size() - rows.size());
 }
 
 }  // namespace camber::report

@@ -15,7 +15,8 @@ std::string suffix(const plan::PlanResult& result, std::size_t setup) {
   return result.setups.size() > 1 ? fmt::format("-{}", setup + 1) : std::string();
 }
 
-std::vector<std::pair<std::string, std::string>> files_of(const plan::PlanInput& input, const plan::PlanResult& result) {
+std::vector<std::pair<std::string, std::string>> files_of(const plan::PlanInput& input,
+                                                          const plan::PlanResult& result) {
   std::vector<std::pair<std::string, std::string>> out;
   for (std::size_t i = 0; i < result.setups.size(); ++i) {
     const plan::SetupPlan& s = result.setups[i];

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "test_paths.h"
 #include "support/temp_folder.h"
+#include "test_paths.h"
 
 namespace camber::plan {
 namespace {
@@ -65,8 +65,11 @@ TEST(ConditionsByCases, TurnSpeedByTheGroupsAndFeedByTheDiameter) {
   base.groups = {{"iron", {"FC250"}, 200, 870}, {"steel", {"S45C"}, 150, 400}};
   base.feed_exponent["end mill"] = 0.5;
   base.least_similarity = 0.5;
-  base.cases.push_back({.content = {"S45C", "end mill", "carbide", true, false, false, 10}, .speed_m_per_min = 90,
-                        .feed_mm_per_min = 300, .axial_depth_mm = 4, .radial_depth_mm = 2});
+  base.cases.push_back({.content = {"S45C", "end mill", "carbide", true, false, false, 10},
+                        .speed_m_per_min = 90,
+                        .feed_mm_per_min = 300,
+                        .axial_depth_mm = 4,
+                        .radial_depth_mm = 2});
   const double per_turn = *base.cases[0].feed_per_turn_mm();
   const auto answer = conditions_by_cases(base, fc250("end mill", 40));
   ASSERT_TRUE(answer.has_value());
@@ -105,8 +108,10 @@ TEST(LeaveOneOut, AsksEachCaseOfTheOthers) {
 
 TEST(CaseReader, ReadsBackWhatItWrites) {
   const tests::TempFolder folder;
-  const Case c{.content = {"FC250", "end mill", "carbide", true, true, false, 12.5}, .speed_m_per_min = 80,
-               .feed_mm_per_min = 321.5, .axial_depth_mm = 3};
+  const Case c{.content = {"FC250", "end mill", "carbide", true, true, false, 12.5},
+               .speed_m_per_min = 80,
+               .feed_mm_per_min = 321.5,
+               .axial_depth_mm = 3};
   folder.write("cases.toml", to_toml(c));
   Diagnostics diagnostics;
   const CaseBase base = read_case_base(folder / "cases.toml", diagnostics);
@@ -116,8 +121,9 @@ TEST(CaseReader, ReadsBackWhatItWrites) {
 
 TEST(CaseReader, TellsWhatIsWrong) {
   const tests::TempFolder folder;
-  folder.write("cases.toml", "[[case]]\nmaterial = \"FC250\"\ntool = \"end mill\"\ntool_material = \"carbide\"\n"
-                             "diameter_mm = 10\nspeed_m_per_min = 0\nfinish = \"smooth\"\n");
+  folder.write("cases.toml",
+               "[[case]]\nmaterial = \"FC250\"\ntool = \"end mill\"\ntool_material = \"carbide\"\n"
+               "diameter_mm = 10\nspeed_m_per_min = 0\nfinish = \"smooth\"\n");
   Diagnostics diagnostics;
   read_case_base(folder / "cases.toml", diagnostics);
   ASSERT_EQ(diagnostics.all().size(), 2U);

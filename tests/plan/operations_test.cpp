@@ -60,7 +60,8 @@ TEST(Tools, HaveTheDiametersOfTheRules) {
 
 TEST(Tools, BreakARuleWithANote) {
   std::string wanted;
-  const auto pick = pick_mill({.feature = Feature::closed_slot, .width_mm = 12, .depth_mm = 10}, experiment_tools(), wanted);
+  const auto pick =
+      pick_mill({.feature = Feature::closed_slot, .width_mm = 12, .depth_mm = 10}, experiment_tools(), wanted);
   ASSERT_TRUE(pick.has_value());
   EXPECT_EQ(pick->tool, 2);
   EXPECT_EQ(pick->note, "the rule asks for 4 mm or less");
@@ -74,8 +75,8 @@ TEST(Tools, AreWantedWhereNoneWillDo) {
 
 TEST(Tools, ReachWithFlutesShankAndHolder) {
   machine::Tool t = tool_of(1, machine::ToolType::flat, 6);
-  const ToolNeed need{.feature = Feature::closed_pocket, .width_mm = 40, .depth_mm = 25,
-                      .wall_mm = [](double) { return 25.0; }};
+  const ToolNeed need{
+      .feature = Feature::closed_pocket, .width_mm = 40, .depth_mm = 25, .wall_mm = [](double) { return 25.0; }};
   EXPECT_EQ(reach_fault(t, need), "");
   t.overhang_mm = 25.5;
   EXPECT_EQ(reach_fault(t, need), "its overhang of 25.5 mm is too short for a depth of 25 mm");
@@ -87,22 +88,27 @@ TEST(Tools, ReachWithFlutesShankAndHolder) {
   EXPECT_EQ(reach_fault(t, need), "");
   t.overhang_mm = 40;
   t.holder = {{20, 30, 30}};
-  const ToolNeed below_a_wall{.feature = Feature::closed_pocket, .width_mm = 40, .depth_mm = 25,
-                              .wall_mm = [](double radius) { return radius > 12 ? 45.0 : 25.0; }};
+  const ToolNeed below_a_wall{
+      .feature = Feature::closed_pocket, .width_mm = 40, .depth_mm = 25, .wall_mm = [](double radius) {
+        return radius > 12 ? 45.0 : 25.0;
+      }};
   EXPECT_EQ(reach_fault(t, below_a_wall), "its holder of 30 mm meets a wall 45 mm high");
 }
 
 TEST(Tools, OfHolesAreCentreDrillAndDrill) {
   std::string wanted;
-  const auto tools = pick_hole_tools({.feature = Feature::through_hole, .width_mm = 10, .depth_mm = 40}, experiment_tools(), wanted);
+  const auto tools =
+      pick_hole_tools({.feature = Feature::through_hole, .width_mm = 10, .depth_mm = 40}, experiment_tools(), wanted);
   ASSERT_TRUE(tools.has_value());
   EXPECT_EQ(tools->center_drill, 7);
   EXPECT_EQ(tools->drill, 8);
   EXPECT_FALSE(tools->reamer.has_value());
-  const auto milled = pick_hole_tools({.feature = Feature::blind_hole, .width_mm = 24, .depth_mm = 20}, experiment_tools(), wanted);
+  const auto milled =
+      pick_hole_tools({.feature = Feature::blind_hole, .width_mm = 24, .depth_mm = 20}, experiment_tools(), wanted);
   ASSERT_TRUE(milled.has_value());
   EXPECT_EQ(milled->end_mill, 3);
-  EXPECT_FALSE(pick_hole_tools({.feature = Feature::blind_hole, .width_mm = 5, .depth_mm = 20}, experiment_tools(), wanted));
+  EXPECT_FALSE(
+      pick_hole_tools({.feature = Feature::blind_hole, .width_mm = 5, .depth_mm = 20}, experiment_tools(), wanted));
   EXPECT_EQ(wanted, "a drill of 5 mm that reaches 20 mm deep");
 }
 
@@ -215,10 +221,11 @@ TEST_F(SamplePlan, ReadsItsTableBackUnchanged) {
 TEST_F(SamplePlan, DecidesAnewWhatATableLeavesOut) {
   const tests::TempFolder folder;
   SetupPlan setup = result->setups[0];
-  const std::string path = folder.write(
-      "operations.toml",
-      "division = \"largest\"\n[[operation]]\nprimitive = 1\nkind = \"rough\"\n[[operation]]\nprimitive = 2\nkind = \"rough\"\n"
-      "tool = 1\n[[operation]]\nprimitive = 2\nkind = \"rough\"\nfeed_mm_per_min = 100\n");
+  const std::string path =
+      folder.write("operations.toml",
+                   "division = \"largest\"\n[[operation]]\nprimitive = 1\nkind = \"rough\"\n[[operation]]\nprimitive = "
+                   "2\nkind = \"rough\"\n"
+                   "tool = 1\n[[operation]]\nprimitive = 2\nkind = \"rough\"\nfeed_mm_per_min = 100\n");
   Diagnostics diagnostics;
   read_operations(path, *input, setup, diagnostics);
   const auto& rows = setup.plans.at(0).operations;
@@ -233,16 +240,16 @@ TEST_F(SamplePlan, DecidesAnewWhatATableLeavesOut) {
 TEST_F(SamplePlan, TellsWhatIsWrongInATable) {
   const tests::TempFolder folder;
   SetupPlan setup = result->setups[0];
-  const std::string path = folder.write("operations.toml",
-                                        "division = \"largest\"\n[[operation]]\nprimitive = 1\nkind = \"rough\"\ntool = 99\n");
+  const std::string path = folder.write(
+      "operations.toml", "division = \"largest\"\n[[operation]]\nprimitive = 1\nkind = \"rough\"\ntool = 99\n");
   Diagnostics diagnostics;
   try {
     read_operations(path, *input, setup, diagnostics);
     FAIL();
   } catch (const InputError& error) {
     const std::string text = to_string(error.diagnostics().at(0));
-    EXPECT_EQ(text.substr(0, text.find('\n')), path + ":5:8: error: tool = 99, but there is no [tool.99] in " + input->path +
-                                                   " [tool-missing]");
+    EXPECT_EQ(text.substr(0, text.find('\n')),
+              path + ":5:8: error: tool = 99, but there is no [tool.99] in " + input->path + " [tool-missing]");
   }
 }
 

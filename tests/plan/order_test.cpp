@@ -9,7 +9,9 @@ namespace {
 
 using tests::BlockPart;
 
-machine::Box box(double x0, double y0, double z0, double x1, double y1, double z1) { return {{x0, y0, z0}, {x1, y1, z1}}; }
+machine::Box box(double x0, double y0, double z0, double x1, double y1, double z1) {
+  return {{x0, y0, z0}, {x1, y1, z1}};
+}
 
 struct Ordered {
   RemovalVolume removal;
@@ -44,7 +46,8 @@ TEST(ComesBefore, HolesLastWhateverTheOthersSay) {
 
 TEST(Order, OpensFacesAsItGoes) {
   // A deep pocket under a shallow one: the deep one's top is not open before the shallow one is gone.
-  const BlockPart part{box(0, 0, 0, 60, 60, 30), {box(10, 10, 20, 50, 50, 30), box(20, 20, 5, 40, 40, 20)}, {{5, 5, 4, 0}}};
+  const BlockPart part{
+      box(0, 0, 0, 60, 60, 30), {box(10, 10, 20, 50, 50, 30), box(20, 20, 5, 40, 40, 20)}, {{5, 5, 4, 0}}};
   const Ordered o(part, box(0, 0, 0, 60, 60, 32));
   ASSERT_EQ(o.order.steps.size(), 4U);
   EXPECT_TRUE(o.order.unreachable.empty());

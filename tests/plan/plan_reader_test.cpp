@@ -8,12 +8,15 @@
 namespace camber::plan {
 namespace {
 
-constexpr const char* kMachine = "[control]\ndialect = \"fanuc\"\n[axis.x]\nmax_velocity_mm_per_min = 9000\n"
-                                 "[axis.y]\nmax_velocity_mm_per_min = 9000\n[axis.z]\nmax_velocity_mm_per_min = 9000\n";
-constexpr const char* kCases = "[[case]]\nmaterial = \"FC250\"\ntool = \"end mill\"\ntool_material = \"carbide\"\n"
-                               "diameter_mm = 10\nspeed_m_per_min = 80\nfeed_mm_per_min = 350\n";
-constexpr const char* kRest = "[material]\npreset = \"FC250\"\n[work]\nmaterial = \"FC250\"\n"
-                              "[tool.1]\ntype = \"flat\"\ndiameter_mm = 10\nflutes = 4\noverhang_mm = 40\n";
+constexpr const char* kMachine =
+    "[control]\ndialect = \"fanuc\"\n[axis.x]\nmax_velocity_mm_per_min = 9000\n"
+    "[axis.y]\nmax_velocity_mm_per_min = 9000\n[axis.z]\nmax_velocity_mm_per_min = 9000\n";
+constexpr const char* kCases =
+    "[[case]]\nmaterial = \"FC250\"\ntool = \"end mill\"\ntool_material = \"carbide\"\n"
+    "diameter_mm = 10\nspeed_m_per_min = 80\nfeed_mm_per_min = 350\n";
+constexpr const char* kRest =
+    "[material]\npreset = \"FC250\"\n[work]\nmaterial = \"FC250\"\n"
+    "[tool.1]\ntype = \"flat\"\ndiameter_mm = 10\nflutes = 4\noverhang_mm = 40\n";
 
 class PlanFile : public ::testing::Test {
  protected:
@@ -55,9 +58,10 @@ class PlanFile : public ::testing::Test {
 TEST_F(PlanFile, IsGoodAsTheTestsHaveIt) { EXPECT_EQ(messages(head()), ""); }
 
 TEST_F(PlanFile, NamesFilesThatAreMissing) {
-  EXPECT_EQ(messages("part = \"no.stl\"\nmachine = \"machine.toml\"\n[blank]\nbox_mm = [[0, 0, 0], [1, 1, 1]]\n"),
-            "plan.toml:1:8: error: part: no such file: no.stl (paths are relative to the plan's folder) [file-missing]\n"
-            "plan.toml: error: case_base is missing; a text in quotes was expected [key-missing]\n");
+  EXPECT_EQ(
+      messages("part = \"no.stl\"\nmachine = \"machine.toml\"\n[blank]\nbox_mm = [[0, 0, 0], [1, 1, 1]]\n"),
+      "plan.toml:1:8: error: part: no such file: no.stl (paths are relative to the plan's folder) [file-missing]\n"
+      "plan.toml: error: case_base is missing; a text in quotes was expected [key-missing]\n");
 }
 
 TEST_F(PlanFile, NamesToolsThatDoNotFitTheirUse) {
@@ -69,10 +73,12 @@ TEST_F(PlanFile, NamesToolsThatDoNotFitTheirUse) {
 }
 
 TEST_F(PlanFile, RefusesCompensationWithoutFinishing) {
-  EXPECT_EQ(messages(head(), "[material]\npreset = \"FC250\"\n[work]\nmaterial = \"FC250\"\ncompensate = true\n"
-                             "[tool.1]\ntype = \"flat\"\ndiameter_mm = 10\nflutes = 4\noverhang_mm = 40\n"),
-            "plan.toml:10:14: error: compensate is true, but nothing is finished; finish = \"fine\" was expected with it "
-            "[key-unused]\n");
+  EXPECT_EQ(
+      messages(head(),
+               "[material]\npreset = \"FC250\"\n[work]\nmaterial = \"FC250\"\ncompensate = true\n"
+               "[tool.1]\ntype = \"flat\"\ndiameter_mm = 10\nflutes = 4\noverhang_mm = 40\n"),
+      "plan.toml:10:14: error: compensate is true, but nothing is finished; finish = \"fine\" was expected with it "
+      "[key-unused]\n");
 }
 
 TEST_F(PlanFile, RefusesAPartOutsideTheBlank) {
@@ -91,8 +97,9 @@ TEST_F(PlanFile, RefusesAnOpenMesh) {
   TriangleMesh mesh = part.mesh();
   mesh.triangles.pop_back();
   tests::write_stl(mesh, folder / "part.stl");
-  EXPECT_EQ(messages(head()),
-            "part.stl: error: the mesh has 3 edges without exactly two triangles; a closed solid was expected [stl-open]\n");
+  EXPECT_EQ(
+      messages(head()),
+      "part.stl: error: the mesh has 3 edges without exactly two triangles; a closed solid was expected [stl-open]\n");
 }
 
 TEST_F(PlanFile, TakesInches) {
@@ -104,10 +111,12 @@ TEST_F(PlanFile, TakesInches) {
 
 TEST_F(PlanFile, GoesOnInAnotherSetup) {
   // A pocket from above and one from below.
-  const tests::BlockPart part{{{0, 0, 0}, {60, 40, 20}}, {{{10, 10, 12}, {40, 30, 21}}, {{10, 10, -1}, {50, 30, 5}}}, {}};
+  const tests::BlockPart part{
+      {{0, 0, 0}, {60, 40, 20}}, {{{10, 10, 12}, {40, 30, 21}}, {{10, 10, -1}, {50, 30, 5}}}, {}};
   tests::write_stl(part.mesh(), folder / "part.stl");
-  const std::string path =
-      folder.write("plan.toml", head() + kRest + "[[setup]]\nname = \"top\"\n[[setup]]\nname = \"bottom\"\nturn = [[1, 0, 0, 180]]\n");
+  const std::string path = folder.write(
+      "plan.toml",
+      head() + kRest + "[[setup]]\nname = \"top\"\n[[setup]]\nname = \"bottom\"\nturn = [[1, 0, 0, 180]]\n");
   Diagnostics diagnostics;
   const PlanInput input = read_plan_input(path, diagnostics);
   const PlanResult result = make_plan(input, diagnostics);

@@ -13,7 +13,9 @@ namespace {
 using tests::BlockHole;
 using tests::BlockPart;
 
-machine::Box box(double x0, double y0, double z0, double x1, double y1, double z1) { return {{x0, y0, z0}, {x1, y1, z1}}; }
+machine::Box box(double x0, double y0, double z0, double x1, double y1, double z1) {
+  return {{x0, y0, z0}, {x1, y1, z1}};
+}
 
 RemovalVolume removal_of(const BlockPart& part, const machine::Box& blank) {
   return removal_volume({.blank = solid_of(blank), .part = solid_of(part.mesh()), .fixtures = {}, .faces = {}});
@@ -51,7 +53,8 @@ TEST(Holes, HaveCentreDiameterAndDepth) {
 }
 
 TEST(RemovalVolume, IsBlankMinusPart) {
-  const BlockPart part{box(0, 0, 0, 60, 40, 20), {box(10, 10, 12, 30, 30, 20), box(40, 0, 8, 60, 15, 20)}, {{45, 27, 10, 0}}};
+  const BlockPart part{
+      box(0, 0, 0, 60, 40, 20), {box(10, 10, 12, 30, 30, 20), box(40, 0, 8, 60, 15, 20)}, {{45, 27, 10, 0}}};
   const auto blank = box(-2, -2, 0, 62, 42, 23);
   const RemovalVolume removal = removal_of(part, blank);
   const double wanted = (blank.max_mm - blank.min_mm).prod() - part.volume_mm3();
@@ -70,8 +73,8 @@ TEST(RemovalVolume, KnowsAPartThatSticksOut) {
 TEST(RemovalVolume, LeavesOutHolesThatTheBlankHas) {
   const BlockPart cored{box(0, 0, 0, 60, 40, 20), {}, {{45, 20, 10, 0}}};
   const BlockPart part{box(0, 0, 0, 60, 40, 20), {box(10, 10, 12, 30, 30, 20)}, {{45, 20, 10, 0}}};
-  const RemovalVolume removal = removal_volume(
-      {.blank = solid_of(cored.mesh()), .part = solid_of(part.mesh()), .fixtures = {}, .faces = {}});
+  const RemovalVolume removal =
+      removal_volume({.blank = solid_of(cored.mesh()), .part = solid_of(part.mesh()), .fixtures = {}, .faces = {}});
   EXPECT_TRUE(removal.holes.empty());
   EXPECT_NEAR(removal.cells_mm3, 20 * 20 * 8, 1);
   EXPECT_NEAR(removal.outside_mm3, 0, 1e-6);

@@ -59,7 +59,8 @@ class Cells {
 
   bool solid(int x, int y, int z) const {
     if (x < 0 || y < 0 || z < 0 || x >= count(0) || y >= count(1) || z >= count(2)) return false;
-    const Vec3 middle(0.5 * (at(0, x) + at(0, x + 1)), 0.5 * (at(1, y) + at(1, y + 1)), 0.5 * (at(2, z) + at(2, z + 1)));
+    const Vec3 middle(0.5 * (at(0, x) + at(0, x + 1)), 0.5 * (at(1, y) + at(1, y + 1)),
+                      0.5 * (at(2, z) + at(2, z + 1)));
     return std::ranges::none_of(part_.pockets, [&](const machine::Box& p) {
       return (middle.array() > p.min_mm.array()).all() && (middle.array() < p.max_mm.array()).all();
     });
@@ -181,7 +182,9 @@ class Mesher {
     flat(a, c, d, reverse);
   }
 
-  void triangle(const Vec3& a, const Vec3& b, const Vec3& c) { out_.triangles.push_back({point(a), point(b), point(c)}); }
+  void triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+    out_.triangles.push_back({point(a), point(b), point(c)});
+  }
 
   std::uint32_t point(const Vec3& at) {
     const Vec3 p(std::cos(turn_rad_) * at.x() - std::sin(turn_rad_) * at.y(),
