@@ -103,10 +103,6 @@ void read_work(TomlTable table, PlanInput& plan) {
   plan.fast = table.choice("machining", kMachiningWords, 0) == 1;
   plan.allowance_mm = table.number("allowance_mm", kPositive, plan.allowance_mm);
   plan.scallop_mm = table.number("scallop_mm", kPositive, plan.scallop_mm);
-  plan.compensate = table.boolean("compensate", false);
-  if (plan.compensate && !plan.fine)
-    table.error_at("compensate", "compensate is true, but nothing is finished; finish = \"fine\" was expected with it",
-                   "key-unused");
   table.finish();
 }
 

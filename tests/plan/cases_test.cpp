@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "support/temp_folder.h"
 #include "test_paths.h"
+#include "tests/support/temp_folder.h"
 
 namespace camber::plan {
 namespace {

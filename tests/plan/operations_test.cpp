@@ -4,8 +4,8 @@
 
 #include "plan/plan.h"
 #include "plan/plan_table.h"
-#include "support/temp_folder.h"
 #include "test_paths.h"
+#include "tests/support/temp_folder.h"
 
 namespace camber::plan {
 namespace {

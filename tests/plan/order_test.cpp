@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/block_part.h"
+#include "tests/support/block_part.h"
 
 namespace camber::plan {
 namespace {

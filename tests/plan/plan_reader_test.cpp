@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "plan/plan.h"
-#include "support/block_part.h"
-#include "support/temp_folder.h"
 #include "test_paths.h"
+#include "tests/support/block_part.h"
+#include "tests/support/temp_folder.h"
 
 namespace camber::plan {
 namespace {
@@ -70,15 +70,6 @@ TEST_F(PlanFile, NamesToolsThatDoNotFitTheirUse) {
   EXPECT_EQ(messages(head(), std::string(kRest) + "use = \"ball end mill\"\n"),
             "plan.toml:15:7: error: a tool of this type is no ball end mill; \"flat\" for end mills and face mills, "
             "\"ball\" for ball end mills, \"drill\" for drills was expected [tool-use]\n");
-}
-
-TEST_F(PlanFile, RefusesCompensationWithoutFinishing) {
-  EXPECT_EQ(
-      messages(head(),
-               "[material]\npreset = \"FC250\"\n[work]\nmaterial = \"FC250\"\ncompensate = true\n"
-               "[tool.1]\ntype = \"flat\"\ndiameter_mm = 10\nflutes = 4\noverhang_mm = 40\n"),
-      "plan.toml:10:14: error: compensate is true, but nothing is finished; finish = \"fine\" was expected with it "
-      "[key-unused]\n");
 }
 
 TEST_F(PlanFile, RefusesAPartOutsideTheBlank) {

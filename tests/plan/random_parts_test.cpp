@@ -1,15 +1,21 @@
+#include <cstdlib>
 #include <map>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "plan/order.h"
-#include "support/random_part.h"
+#include "tests/support/random_part.h"
 
 namespace camber::plan {
 namespace {
 
-constexpr unsigned kParts = 20;
+/// CAMBER_RANDOM_PARTS, else twenty (bench/plan/random-parts runs two hundred).
+unsigned part_count() {
+  constexpr unsigned kParts = 20;
+  const char* given = std::getenv("CAMBER_RANDOM_PARTS");
+  return given ? static_cast<unsigned>(std::atoi(given)) : kParts;
+}
 
 bool holds(const RemovalVolume& removal, const Primitive& p, const Vec3& at) {
   if (!((at.array() > p.min_mm.array()).all() && (at.array() < p.max_mm.array()).all())) return false;
@@ -103,7 +109,7 @@ TEST_P(RandomParts, AreOrderedSoThatEveryStepIsOpenFromAbove) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RandomParts, ::testing::Range(1U, kParts + 1));
+INSTANTIATE_TEST_SUITE_P(All, RandomParts, ::testing::Range(1U, part_count() + 1));
 
 }  // namespace
 }  // namespace camber::plan

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "plan/primitives.h"
-#include "support/block_part.h"
+#include "tests/support/block_part.h"
 
 namespace camber::plan {
 namespace {

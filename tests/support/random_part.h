@@ -3,7 +3,7 @@
 #include <optional>
 #include <random>
 
-#include "support/block_part.h"
+#include "tests/support/block_part.h"
 
 namespace camber::tests {
 
