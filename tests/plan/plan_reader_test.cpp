@@ -15,7 +15,7 @@ constexpr const char* kCases =
     "[[case]]\nmaterial = \"FC250\"\ntool = \"end mill\"\ntool_material = \"carbide\"\n"
     "diameter_mm = 10\nspeed_m_per_min = 80\nfeed_mm_per_min = 350\n";
 constexpr const char* kRest =
-    "[material]\npreset = \"FC250\"\n[work]\nmaterial = \"FC250\"\n"
+    "[material]\npreset = \"FC250\"\nkrc_ratio = 0.4\n[work]\nmaterial = \"FC250\"\n"
     "[tool.1]\ntype = \"flat\"\ndiameter_mm = 10\nflutes = 4\noverhang_mm = 40\n";
 
 class PlanFile : public ::testing::Test {
