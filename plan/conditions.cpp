@@ -150,6 +150,10 @@ std::optional<Conditions> conditions_for(const PlanInput& plan, const PlanTool& 
   c.radial_mm = std::min(answer->radial_depth_mm, cut.width_mm);
   c = bounded(c, plan, tool);
   c.feed_mm_per_min = std::max(1.0, std::floor(c.feed_mm_per_min));
+  // What a table shows is what is planned with.
+  constexpr double kPerMm = 1000;
+  c.axial_mm = std::round(kPerMm * c.axial_mm) / kPerMm;
+  c.radial_mm = std::round(kPerMm * c.radial_mm) / kPerMm;
   return c;
 }
 

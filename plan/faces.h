@@ -10,7 +10,7 @@ namespace camber::plan {
 struct FaceOptions {
   double plane_tolerance_mm = 0.01;   ///< planes nearer to each other are one
   double circle_tolerance_mm = 0.02;  ///< of the corners of a hole's facets
-  double min_face_mm2 = 1.0;          ///< smaller planes are not looked at
+  double min_face_mm2 = 0.2;          ///< smaller planes are not looked at
 };
 
 struct AxisPlane {

@@ -214,7 +214,7 @@ class Planner {
     if (op == nullptr) return;
     op->scallop_mm = input_.fine ? input_.scallop_mm : 0;
     if (op->scallop_mm > 0)  // rows whose ridges are this high
-      op->conditions.radial_mm = 2 * std::sqrt(op->scallop_mm * (2 * radius - op->scallop_mm));
+      op->conditions.radial_mm = std::floor(2000 * std::sqrt(op->scallop_mm * (2 * radius - op->scallop_mm))) / 1000;
     set_volume(*op, left);
     op->surface_mm2 = free_form_mm2(p);
   }

@@ -1,5 +1,7 @@
 #include "plan/operations.h"
 
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "plan/plan.h"
@@ -127,7 +129,9 @@ TEST(Tools, ReamWhereReamerAndItsDrillAreThere) {
 TEST(RemovalRate, OfThePublishedOperations) {
   const PlanTools tools = experiment_tools();
   const auto rate = [&](int tool, double f, double rd, double ad) {
-    return removal_rate_mm3_per_s(tools.at(tool), {.feed_mm_per_min = f, .radial_mm = rd, .axial_mm = ad});
+    Conditions c;
+    c.feed_mm_per_min = f, c.radial_mm = rd, c.axial_mm = ad;
+    return removal_rate_mm3_per_s(tools.at(tool), c);
   };
   EXPECT_NEAR(rate(6, 230, 8.0, 5.0), 153.3, 0.05);
   EXPECT_NEAR(rate(2, 346, 1.6, 3.8), 35.06, 0.005);
@@ -189,10 +193,11 @@ TEST_F(SamplePlan, HasTheFeaturesAndToolsOfItsPart) {
     EXPECT_EQ(p.order.steps.front().feature, Feature::face);
     EXPECT_EQ(p.order.steps.back().feature, Feature::through_hole);
     for (const Operation& o : p.operations) {
-      if (o.feature == Feature::face) EXPECT_EQ(o.tool, 6);
-      if (o.feature == Feature::closed_pocket) EXPECT_EQ(o.tool, 2);
-      if (o.feature == Feature::open_pocket) EXPECT_EQ(o.tool, 3);
-      if (o.feature == Feature::free_form) EXPECT_EQ(o.tool, 5);
+      const std::map<Feature, int> tools{
+          {Feature::face, 6}, {Feature::closed_pocket, 2}, {Feature::open_pocket, 3}, {Feature::free_form, 5}};
+      if (const auto rule = tools.find(o.feature); rule != tools.end()) {
+        EXPECT_EQ(o.tool, rule->second);
+      }
     }
     EXPECT_EQ(p.operations.back().tool, 8);
   }

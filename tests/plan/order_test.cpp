@@ -8,10 +8,7 @@ namespace camber::plan {
 namespace {
 
 using tests::BlockPart;
-
-machine::Box box(double x0, double y0, double z0, double x1, double y1, double z1) {
-  return {{x0, y0, z0}, {x1, y1, z1}};
-}
+using tests::box;
 
 struct Ordered {
   RemovalVolume removal;

@@ -66,9 +66,9 @@ TEST_F(PlanFile, NamesFilesThatAreMissing) {
 
 TEST_F(PlanFile, NamesToolsThatDoNotFitTheirUse) {
   EXPECT_EQ(messages(head(), std::string(kRest) + "use = \"drill\"\ncoating = true\n"),
-            "plan.toml:15:1: error: unknown key coating in [tool.1]; did you mean coated? [key-unknown]\n");
+            "plan.toml:17:1: error: unknown key coating in [tool.1] [key-unknown]\n");
   EXPECT_EQ(messages(head(), std::string(kRest) + "use = \"ball end mill\"\n"),
-            "plan.toml:15:7: error: a tool of this type is no ball end mill; \"flat\" for end mills and face mills, "
+            "plan.toml:16:7: error: a tool of this type is no ball end mill; \"flat\" for end mills and face mills, "
             "\"ball\" for ball end mills, \"drill\" for drills was expected [tool-use]\n");
 }
 

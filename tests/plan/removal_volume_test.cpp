@@ -12,10 +12,7 @@ namespace {
 
 using tests::BlockHole;
 using tests::BlockPart;
-
-machine::Box box(double x0, double y0, double z0, double x1, double y1, double z1) {
-  return {{x0, y0, z0}, {x1, y1, z1}};
-}
+using tests::box;
 
 RemovalVolume removal_of(const BlockPart& part, const machine::Box& blank) {
   return removal_volume({.blank = solid_of(blank), .part = solid_of(part.mesh()), .fixtures = {}, .faces = {}});

@@ -15,6 +15,10 @@
 
 namespace camber::tests {
 
+inline machine::Box box(double x0, double y0, double z0, double x1, double y1, double z1) {
+  return {{x0, y0, z0}, {x1, y1, z1}};
+}
+
 struct BlockHole {
   double x_mm = 0, y_mm = 0, diameter_mm = 0, bottom_mm = 0;
   int facets = 48;
