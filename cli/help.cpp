@@ -38,6 +38,9 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
      "camber resegment finish.nc --machine machine.toml --tolerance-mm 0.002 -o finish_even.nc\n"
      "  camber resegment --part part.stl --job job.toml --scallop-mm 0.005 --tolerance-mm 0.005 --feed-mm-per-min 8000 "
      "--spindle-rpm 12000 -o raster.nc"},
+    {"post",
+     "camber post dome.nc --machine machine.toml -o dome_joints.nc\n"
+     "  camber post dome_joints.nc --machine machine.toml --to tcp -o dome_tip.nc"},
     {"completion", "camber completion bash > ~/.local/share/bash-completion/completions/camber"}};
 
 }  // namespace

@@ -1,4 +1,4 @@
-// check, feed, time, compress, resegment and fit-feed on the command line.
+// check, feed, time, compress, resegment, post and fit-feed on the command line.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -19,6 +19,7 @@
 #include "cli/feed_command.h"
 #include "cli/fit_feed_command.h"
 #include "cli/outputs.h"
+#include "cli/post_command.h"
 #include "cli/progress.h"
 #include "cli/protocol_command.h"
 #include "cli/raster_options.h"
@@ -381,6 +382,69 @@ void add_resegment(CLI::App& app, const GlobalOptions& options, Action& chosen) 
   });
 }
 
+void add_post_rules(CLI::App& command, repath::PostOptions& options) {
+  command.add_option("--to", options.target, "joints: X Y Z of the linear axes (default); tcp: the tip")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, repath::PostTarget>{
+                                              {"joints", repath::PostTarget::joints}, {"tcp", repath::PostTarget::tcp}})
+                      .description(""))
+      ->type_name("joints|tcp");
+  command
+      .add_option("--tolerance-mm", options.tolerance_mm,
+                  "maximum deviation of the tip in feed moves, rounding included; default 0.005")
+      ->check(number_from_to(1e-5, 10))
+      ->type_name("X");
+  command
+      .add_option("--rapid-tolerance-mm", options.rapid_tolerance_mm,
+                  "the same in rapids and where axes turn back; default 0.1")
+      ->check(number_from_to(1e-5, 1000))
+      ->type_name("X");
+  command
+      .add_option_function<std::string>(
+          "--rule", [&options](const std::string& rule) { options.one_degree = rule == "one-degree"; },
+          "divide blocks by the tolerance (default), or so that no axis turns by a degree or more")
+      ->check(CLI::IsMember({"tolerance", "one-degree"}).description(""))
+      ->type_name("tolerance|one-degree");
+  command.add_flag("--inverse-time", options.inverse_time, "G93: F of each rewritten feed block is 1/min");
+  command
+      .add_option("--retract-mm", options.retract_mm,
+                  "how far the tool goes off along its axis where axes turn back; default 50")
+      ->check(number_from_to(0, 1000))
+      ->type_name("L");
+  command
+      .add_option_function<int>(
+          "--decimals", [&options](const int& n) { options.decimals = n; },
+          "of lengths and angles in rewritten blocks; default: as the program's coordinates, at least 4")
+      ->check(CLI::Range(1, 8).description(""))
+      ->type_name("N");
+}
+
+void add_post(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command =
+      app.add_subcommand("post", "rewrite a program with rotary axes in joint coordinates, or back to the tool's tip");
+  auto arguments = std::make_shared<PostArguments>();
+  command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
+  command->add_option("-o,--output", arguments->output, "the new program")->required()->type_name("OUT.nc");
+  auto* machine = command->add_option("--machine", arguments->machine, "machine.toml with [kinematics]");
+  machine->type_name("M.toml");
+  command->add_option("--job", arguments->job, "job.toml: its machine, and collisions of its tools with [[body]]")
+      ->type_name("J.toml")
+      ->excludes(machine);
+  add_post_rules(*command, arguments->options);
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  add_tool_lengths(*command, arguments->interpreter);
+  add_work_offsets(*command, arguments->interpreter);
+  add_interpreter_options(*command, arguments->interpreter);
+  command->callback([arguments, &options, &chosen] {
+    if (arguments->machine.empty() && arguments->job.empty()) throw CLI::RequiredError("--machine or --job");
+    chosen = [arguments, &options] {
+      if (options.effective_config && !arguments->machine.empty())
+        return print_effective_machine(arguments->machine, options);
+      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->machine, arguments->job});
+      return run_post(*arguments, options);
+    };
+  });
+}
+
 void add_protocol(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("protocol", "write programs that provide fit-feed with the data it needs");
   auto arguments = std::make_shared<ProtocolArguments>();
@@ -405,6 +469,7 @@ void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& c
   add_protocol(app, options, chosen);
   add_compress(app, options, chosen);
   add_resegment(app, options, chosen);
+  add_post(app, options, chosen);
 }
 
 }  // namespace camber::cli

@@ -117,6 +117,10 @@ void BlockInterpreter::read_tool_length(const Code& code) {
     return;
   }
   const auto found = tool_offsets_.find(static_cast<int>(number));
+  if (number == 0 && found == tool_offsets_.end()) {  // no offset, on every control
+    state_.tool_length_mm = 0;
+    return;
+  }
   if (found == tool_offsets_.end() || !found->second.length_mm) return;
   const double length = *found->second.length_mm + found->second.length_wear_mm.value_or(0);
   state_.tool_length_mm = code.tenths == 440 ? -length : length;
