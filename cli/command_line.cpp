@@ -115,6 +115,7 @@ int run(int argc, const char* const* argv) {
   add_program_commands(app, options, chosen);
   add_init_command(app, options, chosen);
   add_job_commands(app, options, chosen);
+  add_copy_command(app, options, chosen);
   add_plan_command(app, options, chosen);
   add_force_commands(app, options, chosen);
   add_help(app, chosen);

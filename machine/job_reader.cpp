@@ -306,6 +306,7 @@ Job read(const std::string& path, Diagnostics& diagnostics, bool programmed) {
   if (top.has("units")) job.inch = top.choice("units", kUnitWords, 0) == 1;
   read_tables(top, folder, job, diagnostics);
   top.ignore("force_log");  // fit-force's own
+  top.ignore("copy");       // machine/copy_operations.h
   top.finish();
   std::error_code ec;
   if (fs::is_regular_file(job.machine_path, ec)) job.machine = read_machine(job.machine_path, diagnostics);
