@@ -33,6 +33,9 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"copy",
      "camber copy job.toml -o part.nc --stock left.vdb --json figures.json\n"
      "  camber copy job.toml -o part.nc --stream ticks.csv --stop-after 60"},
+    {"plan",
+     "camber plan plan.toml -o planned\n"
+     "  camber plan plan.toml --operations planned/operations.toml -o planned_again"},
     {"compress", "camber compress finish.nc --tolerance-mm 0.002 -o finish_arcs.nc"},
     {"resegment",
      "camber resegment finish.nc --machine machine.toml --tolerance-mm 0.002 -o finish_even.nc\n"
