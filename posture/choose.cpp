@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <tbb/parallel_for.h>
+#include <Eigen/Geometry>
 
 #include "base/stage.h"
 #include "base/units.h"
@@ -15,11 +15,11 @@ namespace camber::posture {
 namespace {
 
 constexpr double kCap_mm = 2, kAirCap_mm = 10;  ///< room beyond this is not measured
-constexpr double kKnot_mm = 3;                  ///< between the points at which the path through directions is looked for
-constexpr double kFarthest = 55 * kPi / 180;    ///< of tool and normal that is looked at
+constexpr double kKnot_mm = 3;                ///< between the points at which the path through directions is looked for
+constexpr double kFarthest = 55 * kPi / 180;  ///< of tool and normal that is looked at
 constexpr double kRapidMmPerS = 200;
-constexpr double kSpeedCost = 0.5;       ///< of a tip that cuts, a mm of path
-constexpr double kTimeShare = 0.1;       ///< a second longer, as so much of the feed's way
+constexpr double kSpeedCost = 0.5;  ///< of a tip that cuts, a mm of path
+constexpr double kTimeShare = 0.1;  ///< a second longer, as so much of the feed's way
 constexpr int kRounds = 12, kSmoothings = 15;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
@@ -42,8 +42,8 @@ std::vector<std::size_t> knots_of(std::span<const PathPoint> points) {
   double way = 0;
   for (std::size_t i = 1; i < points.size(); ++i) {
     way += points[i].way_mm;
-    const bool ends = i + 1 == points.size() || points[i + 1].contact != points[i].contact ||
-                      points[i + 1].rapid != points[i].rapid;
+    const bool ends =
+        i + 1 == points.size() || points[i + 1].contact != points[i].contact || points[i + 1].rapid != points[i].rapid;
     if (!ends && way < kKnot_mm) continue;
     out.push_back(i);
     way = 0;
@@ -213,8 +213,8 @@ class Chooser {
   void smooth(std::vector<Vec3>& axes) const {
     const auto holds = [&](std::size_t i, const Vec3& axis) {
       const PathPoint& p = all_[i];
-      if (p.contact && angle_between(axis, p.normal) <
-                           std::min(options_.least_angle_rad, angle_between(axes[i], p.normal)) - 1e-6)
+      if (p.contact &&
+          angle_between(axis, p.normal) < std::min(options_.least_angle_rad, angle_between(axes[i], p.normal)) - 1e-6)
         return false;
       return clear(surroundings_, tool_, p, axis) &&
              clear_between(surroundings_, tool_, all_[i - 1], axes[i - 1], p, axis) &&

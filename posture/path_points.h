@@ -1,5 +1,6 @@
 #pragma once
-// Points along a finishing program: where the cutter touches the part, and where the tip goes for a direction of the tool.
+// Points along a finishing program: where the cutter touches the part, and where the tip goes for a direction of the
+// tool.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,15 +12,15 @@
 namespace camber::posture {
 
 struct PathPoint {
-  std::uint32_t move = 0;  ///< index into Interpretation::moves
-  double to = 1;           ///< share of the move at its end
-  Vec3 centre_mm = Vec3::Zero();     ///< of the rounding where it touches: the ball, or the section of the torus
-  Vec3 normal = Vec3::UnitZ();       ///< of the part there; unit
+  std::uint32_t move = 0;             ///< index into Interpretation::moves
+  double to = 1;                      ///< share of the move at its end
+  Vec3 centre_mm = Vec3::Zero();      ///< of the rounding where it touches: the ball, or the section of the torus
+  Vec3 normal = Vec3::UnitZ();        ///< of the part there; unit
   double corner_mm = 0, flat_mm = 0;  ///< rounding, and distance of its centre from the axis
   bool contact = false;
   bool rapid = false;
-  double way_mm = 0;   ///< from the point before
-  double time_s = 0;   ///< at the programmed feed; 0: a rapid
+  double way_mm = 0;  ///< from the point before
+  double time_s = 0;  ///< at the programmed feed; 0: a rapid
 
   /// The tip for a direction of the tool that keeps the contact.
   Vec3 tip_mm(const Vec3& axis) const;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "base/stl.h"
 #include "deflection/beam.h"
@@ -39,7 +39,11 @@ Surroundings surroundings_of(const machine::Job& job, const TriangleMesh& part, 
 class Maker {
  public:
   Maker(const PostureRequest& request, Diagnostics& diagnostics)
-      : request_(request), job_(*request.job), program_(*request.program), moves_(*request.moves), diagnostics_(diagnostics) {}
+      : request_(request),
+        job_(*request.job),
+        program_(*request.program),
+        moves_(*request.moves),
+        diagnostics_(diagnostics) {}
 
   /// False: refused.
   bool ready() {
@@ -83,13 +87,14 @@ class Maker {
     if (job_.part.mesh.empty()) return refuse("[part] has no mesh; the STL file of the part was expected", "no-part");
     const auto found = job_.tools.find(request_.tool);
     if (found == job_.tools.end())
-      return refuse(fmt::format("the job has no [tool.{}]; the tool of the finishing moves was expected", request_.tool),
-                    "no-tool");
+      return refuse(
+          fmt::format("the job has no [tool.{}]; the tool of the finishing moves was expected", request_.tool),
+          "no-tool");
     using machine::ToolType;
     if (found->second.type != ToolType::ball && found->second.type != ToolType::bull)
-      return refuse(fmt::format("[tool.{}] is neither a ball nor a bull-nose cutter; one of these was expected",
-                                request_.tool),
-                    "not-ball");
+      return refuse(
+          fmt::format("[tool.{}] is neither a ball nor a bull-nose cutter; one of these was expected", request_.tool),
+          "not-ball");
     return true;
   }
 
@@ -102,8 +107,8 @@ class Maker {
       end_ = i + 1;
     }
     if (first_ == moves_.moves.size()) {
-      say(0, "no-moves", fmt::format("tool T{} has no moves in this program; finishing moves were expected",
-                                     request_.tool));
+      say(0, "no-moves",
+          fmt::format("tool T{} has no moves in this program; finishing moves were expected", request_.tool));
       return false;
     }
     for (std::size_t i = first_; i < end_; ++i)
@@ -203,7 +208,8 @@ void Maker::write(Postured& out) const {
   divided.back().points.push_back(upright);
   const repath::PostOptions options{.target = repath::PostTarget::tcp};
   repath::Posted posted;
-  repath::PostWriter(program_, moves_, job_.machine, feedmodel::dialect_of(job_.machine.control.kind), options, rounding)
+  repath::PostWriter(program_, moves_, job_.machine, feedmodel::dialect_of(job_.machine.control.kind), options,
+                     rounding)
       .write(motions, divided, posted);
   out.text = std::move(posted.text);
   out.block_of_line = std::move(posted.block_of_line);

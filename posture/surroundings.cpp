@@ -189,8 +189,8 @@ double Surroundings::room_mm(const ToolShape& tool, const Vec3& tip_mm, const Ve
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
       const auto corners = in_tool(triangles_[i], frame, tip_mm);
       const Vec3 centre = (corners[0] + corners[1] + corners[2]) / 3;
-      const double radius = std::max({(corners[0] - centre).norm(), (corners[1] - centre).norm(),
-                                      (corners[2] - centre).norm()});
+      const double radius =
+          std::max({(corners[0] - centre).norm(), (corners[1] - centre).norm(), (corners[2] - centre).norm()});
       const double out = from_axis_mm(centre);
       for (const ToolShape::Piece& piece : tool.pieces) {
         const double bound = bound_mm(piece, out, centre.z()) - radius - piece.need_mm;

@@ -16,7 +16,7 @@ namespace camber::posture {
 struct ToolShape {
   struct Piece {
     simulate::TurnedSolid solid;
-    double need_mm = 0;                                ///< least distance to the surroundings
+    double need_mm = 0;                               ///< least distance to the surroundings
     double radius_mm = 0, bottom_mm = 0, top_mm = 0;  ///< of a cylinder about it
   };
   std::vector<Piece> pieces;
@@ -25,8 +25,8 @@ struct ToolShape {
   void add(simulate::TurnedSolid solid, double need_mm);
 };
 
-/// Neck, shank, holder and the bodies on the spindle (their cylinder about the axis) with `clearance_mm`, and the flutes
-/// above the cutter's rounded end, which only must not cut: they may touch to within kCutterSlack_mm.
+/// Neck, shank, holder and the bodies on the spindle (their cylinder about the axis) with `clearance_mm`, and the
+/// flutes above the cutter's rounded end, which only must not cut: they may touch to within kCutterSlack_mm.
 inline constexpr double kCutterSlack_mm = 0.02;
 ToolShape tool_shape(const machine::Tool& tool, const machine::Machine& machine, double clearance_mm);
 

@@ -21,8 +21,8 @@ constexpr std::array<std::string_view, 4> kModes{"chosen", "normal", "lead-tilt"
 int tool_of(const PostureCommand& command) {
   if (command.tool) return *command.tool;
   if (command.job->tools.size() == 1) return command.job->tools.begin()->first;
-  fail_on_file(command.job->path, "the job has several tools; --tool with the number of the finishing tool was expected",
-               "no-tool");
+  fail_on_file(command.job->path,
+               "the job has several tools; --tool with the number of the finishing tool was expected", "no-tool");
 }
 
 /// Time on the machine, and what the checks of travel say, at the blocks of the given program.
@@ -96,15 +96,15 @@ std::string posture_text(const PosturedProgram& program, const PostureCommand& c
                                 f.unclear, command.options.clearance_mm);
   out += fmt::format("tool      {:.1f} degrees from the normal, at most {:.1f}; rotary axes turn {:.0f} degrees\n",
                      deg_from_rad(f.mean_angle_rad), deg_from_rad(f.max_angle_rad), f.rotary_motion_deg);
-  out += fmt::format("overhang  {:g} mm: {:.3f} um normal to the part for each N\n", f.overhang_mm,
-                     f.compliance_um_per_N);
+  out +=
+      fmt::format("overhang  {:g} mm: {:.3f} um normal to the part for each N\n", f.overhang_mm, f.compliance_um_per_N);
   out += fmt::format("time      {:.1f} s\n", program.time_s);
   return out;
 }
 
 std::string overhang_text(const std::vector<PosturedProgram>& rows) {
-  std::string out = fmt::format("{:>12} {:>10} {:>10} {:>12} {:>8}\n", "overhang mm", "um/N", "angle deg", "rotary deg",
-                                "time s");
+  std::string out =
+      fmt::format("{:>12} {:>10} {:>10} {:>12} {:>8}\n", "overhang mm", "um/N", "angle deg", "rotary deg", "time s");
   for (const PosturedProgram& row : rows) {
     const posture::PostureFigures& f = row.postured.figures;
     out += fmt::format("{:>12.1f} {:>10.3f} {:>10.1f} {:>12.0f} {:>8.1f}\n", f.overhang_mm, f.compliance_um_per_N,

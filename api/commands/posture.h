@@ -23,8 +23,8 @@ struct PostureCommand {
 };
 
 struct PosturedProgram {
-  posture::Postured postured;  ///< without a text where no direction is clear
-  double time_s = 0;           ///< of the whole program on the machine
+  posture::Postured postured;    ///< without a text where no direction is clear
+  double time_s = 0;             ///< of the whole program on the machine
   std::size_t blocked_line = 0;  ///< 1-based; 0: none
 };
 

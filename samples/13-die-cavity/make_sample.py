@@ -2,7 +2,7 @@
 """Makes part.stl and finish.nc: a die cavity 40 mm deep with walls at 30 degrees to the vertical and a character line
 across its floor, and rows of a ball of 6 mm to and fro along X.
 
-    python3 make_sample.py [pitch in mm, default 2]
+    python3 make_sample.py [pitch in mm, default 4]
 """
 import math
 import os
@@ -35,7 +35,7 @@ def height(x, y):
 
 
 def main():
-    pitch = float(sys.argv[1]) if len(sys.argv) > 1 else 2.0
+    pitch = float(sys.argv[1]) if len(sys.argv) > 1 else 4.0
     nx, ny = int(2 * HALF[0] / GRID) + 1, int(2 * HALF[1] / GRID) + 1
     z = [[height(-HALF[0] + i * GRID, -HALF[1] + j * GRID) for j in range(ny)] for i in range(nx)]
 
