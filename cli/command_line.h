@@ -20,6 +20,7 @@ void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& c
 void add_force_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< predict, compensate, adapt
+void add_copy_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 /// completion, and an example for each of the subcommands that are there; to be called last.
 void add_help(CLI::App& app, Action& chosen);
 

@@ -30,6 +30,12 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"adapt",
      "camber adapt job.toml -o rough_adapted.nc --report report.html --json figures.json\n"
      "  camber adapt job.toml -o rough_adapted.nc --time-limit 22 --sweep"},
+    {"copy",
+     "camber copy job.toml -o part.nc --stock left.vdb --json figures.json\n"
+     "  camber copy job.toml -o part.nc --stream ticks.csv --stop-after 60"},
+    {"plan",
+     "camber plan plan.toml -o planned\n"
+     "  camber plan plan.toml --operations planned/operations.toml -o planned_again"},
     {"compress", "camber compress finish.nc --tolerance-mm 0.002 -o finish_arcs.nc"},
     {"resegment",
      "camber resegment finish.nc --machine machine.toml --tolerance-mm 0.002 -o finish_even.nc\n"

@@ -180,6 +180,7 @@ void add_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("--report", arguments->report, "page of a machine with rotary axes as it runs the program")
       ->type_name("R.html");
   add_tool_lengths(*command, arguments->interpreter);
+  add_work_offsets(*command, arguments->interpreter);
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
@@ -214,6 +215,7 @@ void add_time(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   cases->type_name("cases.toml")->excludes(trace)->excludes(sweep);
   command->add_option("--report", arguments->report, "report page")->type_name("R.html");
   add_tool_lengths(*command, arguments->interpreter);
+  add_work_offsets(*command, arguments->interpreter);
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     if (arguments->machine.empty() && arguments->cases.empty())
@@ -252,6 +254,7 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_flag("--leave-one-out", arguments->leave_one_out,
                     "also predict each servo trace by a fit on the others (one fit per trace)");
   add_tool_lengths(*command, arguments->interpreter);
+  add_work_offsets(*command, arguments->interpreter);
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     if (arguments->programs.size() != arguments->traces.size())
