@@ -23,8 +23,6 @@ constexpr double kTimeShare = 0.1;  ///< a second longer, as so much of the feed
 constexpr int kRounds = 12, kSmoothings = 15;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
 bool clear(const Surroundings& surroundings, const ToolShape& tool, const PathPoint& p, const Vec3& axis) {
   return surroundings.room_mm(tool, p.tip_mm(axis), axis, 0) >= 0;
 }
@@ -342,6 +340,8 @@ class BySurface {
 };
 
 }  // namespace
+
+double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 double error_share(double angle_rad) {
   const double s = std::sin(angle_rad);

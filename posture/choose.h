@@ -31,6 +31,8 @@ struct PostureOptions {
                                                    ///< error of a tool at a right angle to the normal
 };
 
+double angle_between(const Vec3& a, const Vec3& b);
+
 /// Part of the lateral deflection that is normal to the part, of a tool at this angle to the normal: a force along the
 /// normal bends it by sin^2, one along the part by sin cos of the angle; kAlong is the share of the latter.
 inline constexpr double kAlong = 0.3;

@@ -18,8 +18,6 @@ namespace {
 
 constexpr int kLeastDecimals = 4;
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
 /// The fixtures that stand still in the part's frame, and the part.
 Surroundings surroundings_of(const machine::Job& job, const TriangleMesh& part, const Vec3& origin_mm) {
   Surroundings out;

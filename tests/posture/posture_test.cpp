@@ -5,8 +5,8 @@
 #include <fstream>
 #include <random>
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "base/units.h"
 #include "feedmodel/control_options.h"
@@ -131,7 +131,8 @@ TEST(PathPoint, KeepsTheContactOfBallAndBullNose) {
 class PostureInATrough : public ::testing::Test {
  protected:
   static std::string rows(const TriangleMesh& mesh) {
-    std::string text = "G21 G17 G90 G94\nG10 L2 P1 X25. Y-15. Z5.\nG10 L1 P1 Z120.\nT1 M6\nG54\nS9000 M3\nG43 H1\nG0 X0. Y0. Z60.\n";
+    std::string text =
+        "G21 G17 G90 G94\nG10 L2 P1 X25. Y-15. Z5.\nG10 L1 P1 Z120.\nT1 M6\nG54\nS9000 M3\nG43 H1\nG0 X0. Y0. Z60.\n";
     for (const int y : {-8, 0, 8}) {
       text += "G0 X-14. Y" + std::to_string(y) + ".\nG0 Z8.\nG1 Z4. F600\n";
       for (int x = -13; x <= 14; ++x) text += "X" + std::to_string(x) + ". Z" + std::to_string(tip(mesh, x, y)) + "\n";
@@ -231,16 +232,16 @@ TEST_F(PostureInATrough, SaysWhatItCannotTilt) {
   EXPECT_EQ(said(job), "job.toml: error: [part] has no mesh; the STL file of the part was expected [no-part]\n");
   job = job_;
   job.tools[1].type = machine::ToolType::flat;
-  EXPECT_EQ(said(job),
-            "job.toml: error: [tool.1] is neither a ball nor a bull-nose cutter; one of these was expected [not-ball]\n");
+  EXPECT_EQ(
+      said(job),
+      "job.toml: error: [tool.1] is neither a ball nor a bull-nose cutter; one of these was expected [not-ball]\n");
   job = job_;
   job.tools.clear();
   EXPECT_EQ(said(job),
             "job.toml: error: the job has no [tool.1]; the tool of the finishing moves was expected [no-tool]\n");
   job = job_;
   job.machine.kinematics = {};
-  EXPECT_EQ(said(job),
-            "job.toml: error: the machine has no [kinematics]; rotary axes were expected [kinematics]\n");
+  EXPECT_EQ(said(job), "job.toml: error: the machine has no [kinematics]; rotary axes were expected [kinematics]\n");
   read("G21 G17 G90 G94\nT1 M6\nG0 X0. Y0. Z60.\nG1 Z10. A5. F600\nM2\n");
   EXPECT_EQ(said(job_),
             "p.nc:4:1: error: this move has directions of its own; moves of three axes were expected [rotary-axis]\n");
