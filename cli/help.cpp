@@ -30,6 +30,9 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"adapt",
      "camber adapt job.toml -o rough_adapted.nc --report report.html --json figures.json\n"
      "  camber adapt job.toml -o rough_adapted.nc --time-limit 22 --sweep"},
+    {"study",
+     "camber study study.toml -o study\n"
+     "  camber study study.toml -o study --list > commands.txt"},
     {"compress", "camber compress finish.nc --tolerance-mm 0.002 -o finish_arcs.nc"},
     {"resegment",
      "camber resegment finish.nc --machine machine.toml --tolerance-mm 0.002 -o finish_even.nc\n"

@@ -1,4 +1,4 @@
-// predict, compensate and adapt on the command line.
+// predict, compensate, adapt and study on the command line.
 #include <filesystem>
 #include <memory>
 
@@ -11,6 +11,7 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/predict_command.h"
+#include "cli/study_command.h"
 #include "cli/verify_command.h"
 #include "compensate/verify.h"
 #include "machine/job.h"
@@ -162,12 +163,32 @@ void add_adapt(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   });
 }
 
+void add_study(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("study", "a job varied over a grid of its keys: one table, one page");
+  auto arguments = std::make_shared<StudyArguments>();
+  command->add_option("study", arguments->study, "study.toml: job, command, [grid]")->required()->type_name("S.toml");
+  command->add_option("-o,--output", arguments->output_folder, "folder for cases, table and page")
+      ->required()
+      ->type_name("DIR");
+  command->add_flag("--list", arguments->list,
+                    "print the commands of the cases that are not done, one a line, and run none");
+  command->add_option("--json", arguments->json, "also write the table to this file")->type_name("R.json");
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      check_output_folder(arguments->output_folder);
+      check_outputs({arguments->json}, {arguments->study});
+      return run_study(*arguments, options);
+    };
+  });
+}
+
 }  // namespace
 
 void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   add_predict(app, options, chosen);
   add_compensate(app, options, chosen);
   add_adapt(app, options, chosen);
+  add_study(app, options, chosen);
 }
 
 }  // namespace camber::cli
