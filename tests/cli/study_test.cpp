@@ -1,5 +1,7 @@
 // camber study from the command line: what it refuses, word for word, and what it writes and does not write again.
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -25,8 +27,7 @@ const std::string kJob =
     "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\n"
     "overhang_mm = 15.0\n[material]\nktc_MPa = 800.0\nkrc_MPa = 250.0\nkte_N_per_mm = 5.0\nkre_N_per_mm = 5.0\n"
     "[stock]\nbox_mm = [[0, -3, -3], [4, 3, 0]]\n[simulation]\nvoxel_mm = 0.4\ncoupling = \"rigid\"\n";
-const std::string kStudy =
-    "job = \"../job.toml\"\n[grid]\ntool.1.overhang_mm = [15, 30]\nfeed_percent = [100, 200]\n";
+const std::string kStudy = "job = \"../job.toml\"\n[grid]\ntool.1.overhang_mm = [15, 25]\nfeed_percent = [100, 200]\n";
 
 void write_all(const TempFolder& folder, const std::string& study = kStudy) {
   folder.write("p.nc", kSlot);
@@ -66,10 +67,10 @@ TEST(StudyCommand, ComputesEveryCaseOnce) {
   };
   EXPECT_EQ(table.at("cases").at(1).at("values"),
             nlohmann::json({{"tool.1.overhang_mm", 15.0}, {"feed_percent", 200.0}}));
-  // Force does not know the overhang in rigid coupling; a beam twice as long deflects eight times as far, and feed goes
-  // into force and time.
+  // Force does not know the overhang in rigid coupling, a cantilever from the holder to the load, about 2 mm above the
+  // tip, does, and feed goes into force and time.
   EXPECT_DOUBLE_EQ(figure(0, "force_N.max"), figure(2, "force_N.max"));
-  EXPECT_NEAR(figure(2, "deflection_um.p95") / figure(0, "deflection_um.p95"), 8, 1.2);
+  EXPECT_NEAR(figure(2, "deflection_um.p95") / figure(0, "deflection_um.p95"), std::pow(23.0 / 13.0, 3), 0.5);
   EXPECT_GT(figure(1, "force_N.max"), 1.2 * figure(0, "force_N.max"));
   EXPECT_LT(figure(1, "machine_time_s"), figure(0, "machine_time_s"));
   const std::string csv = tests::file_text(folder / "out/study.csv");
@@ -79,8 +80,8 @@ TEST(StudyCommand, ComputesEveryCaseOnce) {
   const std::string page = tests::file_text(folder / "out/study.html");
   for (const auto& one : table.at("cases"))
     EXPECT_NE(page.find("href=\"" + one.at("folder").get<std::string>() + "/report.html\""), std::string::npos);
-  const std::string scaled = tests::file_text(
-      folder / ("out/" + table.at("cases").at(1).at("folder").get<std::string>() + "/program.nc"));
+  const std::string scaled =
+      tests::file_text(folder / ("out/" + table.at("cases").at(1).at("folder").get<std::string>() + "/program.nc"));
   EXPECT_EQ(scaled, replaced(kSlot, "F300", "F600"));
 
   // Again: nothing is computed, and one more value computes its own cases alone.
@@ -93,7 +94,7 @@ TEST(StudyCommand, ComputesEveryCaseOnce) {
   const auto before = written();
   ASSERT_EQ(run_camber(folder, "study s/study.toml -o out").status, 0);
   EXPECT_EQ(written(), before);
-  folder.write("s/study.toml", replaced(kStudy, "[15, 30]", "[15, 20, 30]"));
+  folder.write("s/study.toml", replaced(kStudy, "[15, 25]", "[15, 20, 25]"));
   const CamberRun list = run_camber(folder, "study s/study.toml -o out --list");
   EXPECT_EQ(std::ranges::count(list.out, '\n'), 2) << list.out;
   // The commands do the same as the study.
@@ -108,9 +109,10 @@ TEST(StudyCommand, ComputesEveryCaseOnce) {
 
 TEST(StudyCommand, SetsSeveralKeysTogether) {
   const TempFolder folder;
-  write_all(folder,
-            "job = \"../job.toml\"\ncommand = \"adapt\"\n[grid]\n\"tool.1\" = [{ diameter_mm = 4.0, flutes = 2 }, { "
-            "diameter_mm = 3.0, flutes = 3 }]\nadapt = [{ limits = { force_N = 60.0 }, feed_mm_per_min = [50, 2000] }]\n");
+  write_all(
+      folder,
+      "job = \"../job.toml\"\ncommand = \"adapt\"\n[grid]\n\"tool.1\" = [{ diameter_mm = 4.0, flutes = 2 }, { "
+      "diameter_mm = 3.0, flutes = 3 }]\nadapt = [{ limits = { force_N = 60.0 }, feed_mm_per_min = [50, 2000] }]\n");
   const CamberRun run = run_camber(folder, "study s/study.toml -o out --list");
   ASSERT_EQ(run.status, 0) << run.err;
   const auto table = table_in(folder);
@@ -137,7 +139,8 @@ TEST(StudyCommand, HashesFollowContentsNotPlaces) {
   ASSERT_EQ(run_camber(folder, "study s/study.toml -o out --list").status, 0);
   const auto first = table_in(folder).at("cases").at(0).at("hash");
   ASSERT_EQ(run_camber(folder, "study s/study.toml -o a/b/other --list").status, 0);
-  EXPECT_EQ(nlohmann::json::parse(tests::file_text(folder / "a/b/other/study.json")).at("cases").at(0).at("hash"), first);
+  EXPECT_EQ(nlohmann::json::parse(tests::file_text(folder / "a/b/other/study.json")).at("cases").at(0).at("hash"),
+            first);
   folder.write("p.nc", replaced(kSlot, "(slot)", "(SLOT)"));
   ASSERT_EQ(run_camber(folder, "study s/study.toml -o out --list").status, 0);
   EXPECT_NE(table_in(folder).at("cases").at(0).at("hash"), first);
@@ -175,9 +178,10 @@ TEST(StudyCommand, RefusesAJobThatIsNotThere) {
 }
 
 TEST(StudyCommand, RefusesACommandThatIsNone) {
-  expect_refused("job = \"../job.toml\"\ncommand = \"predikt\"\n[grid]\ntool.1.overhang_mm = [15]\n",
-                 "s/study.toml:2:11: error: command = \"predikt\": \"predict\", \"compensate\" or \"adapt\" was expected "
-                 "[value-choice]\n    command = \"predikt\"\n              ^\n");
+  expect_refused(
+      "job = \"../job.toml\"\ncommand = \"predikt\"\n[grid]\ntool.1.overhang_mm = [15]\n",
+      "s/study.toml:2:11: error: command is \"predikt\"; \"predict\", \"compensate\" or \"adapt\" was expected "
+      "[value-choice]\n    command = \"predikt\"\n              ^\n");
 }
 
 TEST(StudyCommand, RefusesFeedsThatAreNone) {
@@ -192,9 +196,10 @@ TEST(StudyCommand, RefusesEqualCases) {
 }
 
 TEST(StudyCommand, RefusesAKeyBelowOneThatIsNoTable) {
-  expect_refused("job = \"../job.toml\"\n[grid]\nprogram.name = [\"a\"]\n",
-                 "s/study.toml:3:16: error: program.name: the job has no table for this key; a dotted key of job.toml was "
-                 "expected [study-key]\n    program.name = [\"a\"]\n                   ^\n");
+  expect_refused(
+      "job = \"../job.toml\"\n[grid]\nprogram.name = [\"a\"]\n",
+      "s/study.toml:3:16: error: program.name: the job has no table for this key; a dotted key of job.toml was "
+      "expected [study-key]\n    program.name = [\"a\"]\n                   ^\n");
 }
 
 TEST(StudyCommand, FindsAWrongValueBeforeTheFirstCase) {
@@ -202,7 +207,7 @@ TEST(StudyCommand, FindsAWrongValueBeforeTheFirstCase) {
   write_all(folder, "job = \"../job.toml\"\n[grid]\ntool.1.flutes = [2, 2.5]\n");
   const CamberRun run = run_camber(folder, "study s/study.toml -o out");
   EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.err.find("/job.toml:9:10: error: flutes = 2.5: a whole number from 1 to 100 was expected"),
+  EXPECT_NE(run.err.find("/job.toml:9:10: error: flutes is 2.5; a whole number from 1 to 100 was expected"),
             std::string::npos)
       << run.err;
   EXPECT_FALSE(fs::exists(folder / "out/study.json"));
