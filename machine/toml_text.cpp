@@ -9,7 +9,7 @@
 namespace camber::machine {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string quoted_toml(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\')
@@ -30,9 +30,9 @@ bool is_bare(std::string_view key) {
   });
 }
 
-std::string key_text(std::string_view key) { return is_bare(key) ? std::string(key) : quoted(key); }
+std::string key_text(std::string_view key) { return is_bare(key) ? std::string(key) : quoted_toml(key); }
 
-std::string number(double value) {
+std::string number_toml(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   return fmt::format("{}", value);
@@ -62,9 +62,9 @@ std::string toml_value(const TomlNode& value) {
   std::string out;
   switch (value.kind) {
     case TomlNode::Kind::text:
-      return quoted(value.text);
+      return quoted_toml(value.text);
     case TomlNode::Kind::number:
-      return number(value.number);
+      return number_toml(value.number);
     case TomlNode::Kind::boolean:
       return value.boolean ? "true" : "false";
     case TomlNode::Kind::array:

@@ -37,7 +37,7 @@ std::optional<std::size_t> plotted_key(const StudyTable& table) {
   return std::nullopt;
 }
 
-std::vector<StudyLine> lines_of(const StudyTable& table, std::size_t key, std::size_t figure) {
+std::vector<StudyLine> study_lines(const StudyTable& table, std::size_t key, std::size_t figure) {
   std::vector<StudyLine> out;
   for (const StudyRow& row : table.rows) {
     const auto value = parse_number(row.figures.empty() ? "" : row.figures[figure]);
@@ -111,7 +111,7 @@ std::string plots_html(const StudyTable& table) {
   if (!key) return {};
   std::string out = "<div class=\"two\">\n";
   for (std::size_t f = 0; f < table.figures.size(); ++f) {
-    const auto lines = lines_of(table, *key, f);
+    const auto lines = study_lines(table, *key, f);
     if (lines.empty()) continue;
     out += fmt::format("<div class=\"card\"><h2>{}</h2>\n{}{}</div>\n", html_text(table.figures[f]),
                        study_svg(table.keys[*key], table.figures[f], lines), legend_html(table, *key, lines));
