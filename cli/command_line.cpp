@@ -12,6 +12,7 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/mpi_run.h"
+#include "cli/plan_command.h"
 #include "machine/toml_table.h"
 
 namespace camber::cli {
@@ -115,6 +116,8 @@ int run(int argc, const char* const* argv) {
   add_program_commands(app, options, chosen);
   add_init_command(app, options, chosen);
   add_job_commands(app, options, chosen);
+  add_copy_command(app, options, chosen);
+  add_plan_command(app, options, chosen);
   add_force_commands(app, options, chosen);
   add_help(app, chosen);
   try {

@@ -37,11 +37,23 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"study",
      "camber study study.toml -o study\n"
      "  camber study study.toml -o study --list > commands.txt"},
+    {"copy",
+     "camber copy job.toml -o part.nc --stock left.vdb --json figures.json\n"
+     "  camber copy job.toml -o part.nc --stream ticks.csv --stop-after 60"},
+    {"plan",
+     "camber plan plan.toml -o planned\n"
+     "  camber plan plan.toml --operations planned/operations.toml -o planned_again"},
     {"compress", "camber compress finish.nc --tolerance-mm 0.002 -o finish_arcs.nc"},
     {"resegment",
      "camber resegment finish.nc --machine machine.toml --tolerance-mm 0.002 -o finish_even.nc\n"
      "  camber resegment --part part.stl --job job.toml --scallop-mm 0.005 --tolerance-mm 0.005 --feed-mm-per-min 8000 "
      "--spindle-rpm 12000 -o raster.nc"},
+    {"post",
+     "camber post dome.nc --machine machine.toml -o dome_joints.nc\n"
+     "  camber post dome_joints.nc --machine machine.toml --to tcp -o dome_tip.nc"},
+    {"posture",
+     "camber posture finish.nc --job job.toml -o finish_5x.nc\n"
+     "  camber posture finish.nc --job job.toml -o finish_5x.nc --overhang 2.5 --json figures.json"},
     {"completion", "camber completion bash > ~/.local/share/bash-completion/completions/camber"}};
 
 }  // namespace

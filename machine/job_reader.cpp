@@ -65,6 +65,8 @@ std::optional<Cylinder> read_cylinder(TomlTable& stock) {
   return cylinder;
 }
 
+}  // namespace
+
 void read_stock(TomlTable table, const fs::path& folder, StockDescription& stock) {
   stock.box = read_box(table);
   stock.cylinder = read_cylinder(table);
@@ -83,6 +85,8 @@ void read_stock(TomlTable table, const fs::path& folder, StockDescription& stock
   if (first.empty()) table.missing("box_mm", "box_mm = [[x, y, z], [x, y, z]], cylinder, mesh or vdb");
   table.finish();
 }
+
+namespace {
 
 constexpr std::size_t kLongestPattern = 400;  // std::regex needs stack for each character
 
@@ -302,6 +306,7 @@ Job read(const std::string& path, Diagnostics& diagnostics, bool programmed) {
   if (top.has("units")) job.inch = top.choice("units", kUnitWords, 0) == 1;
   read_tables(top, folder, job, diagnostics);
   top.ignore("force_log");  // fit-force's own
+  top.ignore("copy");       // machine/copy_operations.h
   top.finish();
   std::error_code ec;
   if (fs::is_regular_file(job.machine_path, ec)) job.machine = read_machine(job.machine_path, diagnostics);

@@ -240,4 +240,5 @@ PYBIND11_MODULE(_camber, module) {
   camber_python::add_inputs(module);
   camber_python::add_results(module);
   camber_python::add_functions(module);
+  camber_python::add_plan(module);
 }

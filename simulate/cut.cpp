@@ -18,6 +18,7 @@
 #include "deflection/tooth_marks.h"
 #include "removal/engagement.h"
 #include "simulate/pieces.h"
+#include "simulate/tooth_loads.h"
 
 namespace camber::simulate {
 
@@ -35,60 +36,22 @@ using removal::Stock;
 
 namespace {
 
-/// Height above the tip up to which the cutter can meet material anywhere on its path.
+/// As engaged_top_mm of the stamp below which the stock rises most.
 double engaged_top_mm(const Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps) {
-  double top = 0;
+  double rise = 0;
   for (const auto& s : stamps) {
     // The corner of the stock's box that lies farthest up the tool.
     const Vec3 corner = (s.pose.axis.array() > 0).select(stock.max_mm(), stock.min_mm());
-    top = std::max(
-        top, s.pose.upright() ? stock.max_mm().z() - s.pose.tip_mm.z() : (corner - s.pose.tip_mm).dot(s.pose.axis));
+    rise = std::max(
+        rise, s.pose.upright() ? stock.max_mm().z() - s.pose.tip_mm.z() : (corner - s.pose.tip_mm).dot(s.pose.axis));
   }
-  const double cutting = tool.flute_length_mm.value_or(tool.overhang_mm);
-  return std::clamp(top + stock.voxel_mm(), stock.voxel_mm(), cutting);
-}
-
-/// Height above the tip at which the profile turns upright: above it nothing cuts straight down.
-double wall_height_mm(const machine::Tool& tool) {
-  constexpr double kUpright = 1e-9;
-  const removal::Profile& profile = removal::shape_of(tool).profile;
-  for (const auto& piece : profile.pieces())
-    if (!piece.arc && piece.normal.x() > 1 - kUpright) return piece.start.y();
-  return std::numeric_limits<double>::infinity();
-}
-
-/// The envelope at which chips are sampled.
-EnvelopeGrid sampled_envelope(const Stock& stock, const machine::Tool& tool, double top_mm, const CutOptions& options) {
-  if (options.drilling)
-    return removal::make_envelope(tool, std::min(top_mm, wall_height_mm(tool)), options.envelope_step_mm,
-                                  options.rotation_step_rad);
-  return removal::make_envelope(tool, std::max(0.0, top_mm - stock.voxel_mm()), options.envelope_step_mm,
-                                options.rotation_step_rad, stock.voxel_mm());
+  return simulate::engaged_top_mm(stock, tool, rise);
 }
 
 Vec3 deflection_at(const EnvelopeGrid& envelope, const DeflectionTable& deflections, const float* row,
                    const Contact& c) {
   const double step = deflections.step_at(c.angle_rad, c.height_mm, envelope.lag_per_mm, envelope.flutes);
   return deflections.at(row, c.height_mm, step);
-}
-
-StampLoad summarize(const ToothPass& pass) {
-  StampLoad load;
-  for (const Vec3& f : pass.force_N) {
-    for (int a = 0; a < 3; ++a)
-      if (std::abs(f[a]) > std::abs(load.force_max_N[a])) load.force_max_N[a] = f[a];
-    load.lateral_max_N = std::max(load.lateral_max_N, f.head<2>().norm());
-    load.force_mean_N += f;
-  }
-  load.force_mean_N /= static_cast<double>(pass.force_N.size());
-  for (const double t : pass.torque_Nmm) {
-    load.torque_max_Nmm = std::max(load.torque_max_Nmm, t);
-    load.torque_mean_Nmm += t / static_cast<double>(pass.torque_Nmm.size());
-  }
-  load.work_Nmm = pass.work_Nmm;
-  load.chip_max_mm = pass.chip_max_mm;
-  load.chip_area_mm2 = pass.chip_area_mm2;
-  return load;
 }
 
 /// The load of a tooth passing between two others.
@@ -303,17 +266,11 @@ class Cutter {
     return std::min({band, deflected, kOfDiameter * diameter_mm_});
   }
 
-  /// Of a bending beam the tip moves most.
   void watch_range(std::span<const Stamp> stamps, const DeflectionTable& deflections, std::span<StampLoad> loads,
                    CutResult& result) const {
     for (std::size_t k = 0; k < stamps.size(); ++k) {
-      const float* tip = deflections.row(static_cast<std::ptrdiff_t>(k));
-      float largest = 0;
-      for (int m = 0; m < deflections.steps; ++m) {
-        const float x = tip[2 * m], y = tip[2 * m + 1], z = deflections.axial_mm(tip, m);
-        largest = std::max(largest, x * x + y * y + z * z);
-      }
-      const double deflection = std::sqrt(static_cast<double>(largest)), limit = deflection_limit_mm(stamps[k]);
+      const double deflection = tip_deflection_mm(deflections, deflections.row(static_cast<std::ptrdiff_t>(k))),
+                   limit = deflection_limit_mm(stamps[k]);
       loads[k].deflection_max_mm = deflection;
       result.deflection_max_mm = std::max(result.deflection_max_mm, deflection);
       if (deflection <= limit) continue;

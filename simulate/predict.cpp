@@ -13,6 +13,7 @@
 #include "removal/engagement.h"
 #include "simulate/contour.h"
 #include "simulate/job_checks.h"
+#include "simulate/job_stock.h"
 #include "simulate/memory.h"
 #include "simulate/operations.h"
 #include "simulate/pieces.h"
@@ -36,38 +37,13 @@ double band_voxels(const Job& job, const removal::StampPath& path, double thicke
 
 removal::Stock raw_stock(const Job& job, const SimulatedProgram& program, double min_chip_mm, MemoryEstimate& memory,
                          Diagnostics& diagnostics) {
-  const double voxel = job.simulation.voxel_mm, band = band_voxels(job, program.path, min_chip_mm);
+  const double band = band_voxels(job, program.path, min_chip_mm);
   const auto require_memory = [&](const Vec3& lo, const Vec3& hi) {
     memory =
         check_memory(job, memory_factors(job, program.text, program.moves, program.path, {lo, hi, band}), diagnostics);
     diagnostics.throw_if_errors();
   };
-  if (job.stock.box) {
-    const Vec3 lo = job.stock.box->min_mm, hi = job.stock.box->max_mm;
-    require_memory(lo, hi);
-    return {[=](const Vec3& p) { return removal::box_distance_mm(p, lo, hi); }, lo, hi, voxel, band};
-  }
-  if (job.stock.cylinder) {
-    const machine::Cylinder c = *job.stock.cylinder;
-    const double r = c.diameter_mm / 2;
-    const Vec3 lo = c.base_mm - Vec3(r, r, 0), hi = c.base_mm + Vec3(r, r, c.height_mm);
-    require_memory(lo, hi);
-    return {[=](const Vec3& p) { return removal::cylinder_distance_mm(p, c.base_mm, r, c.height_mm); }, lo, hi, voxel,
-            band};
-  }
-  if (!job.stock.vdb.empty()) {
-    removal::Stock stock = removal::Stock::load(job.stock.vdb, voxel, band);
-    require_memory(stock.min_mm(), stock.max_mm());
-    return stock;
-  }
-  if (job.stock.mesh.empty())
-    fail_on_file(job.path, "has no stock; [stock] with box_mm, cylinder, mesh or vdb was expected", "stock-missing");
-  // What the stock alone needs is asked before the mesh takes its part.
-  const machine::Box box = stl_box(job.stock.mesh);
-  require_memory(box.min_mm, box.max_mm);
-  // A leaf of voxels is skipped by the distance at its centre, so the mesh's band must hold a leaf's half diagonal.
-  const removal::MeshDistance mesh(job.stock.mesh, voxel, (band + 8) * voxel);
-  return {[&](const Vec3& p) { return mesh.distance_mm(p); }, mesh.min_mm(), mesh.max_mm(), voxel, band};
+  return job_stock(job, band, require_memory);
 }
 
 template <class Function>

@@ -139,14 +139,19 @@ MergedJob merge_parts(const machine::Job& job, const PartKey& key, int round, Pa
   setup.target.surface.clear();
   setup.target.whole.reset();
   finish_prediction(job, out.prepared, out.prediction, of_cut);
-  if (job.simulation.coupling == machine::Coupling::static_ && figures.pieces > 1 &&
-      (round == 1 || figures.solved_again.back() > 0))
+  if (job.simulation.coupling == machine::Coupling::static_ && figures.pieces > 1) {
     out.doubt =
-        round == 1 ? "static coupling of the sections has had one round and is not settled; a second round was expected"
-                   : fmt::format(
-                         "static coupling of the sections is not settled: round {} has solved {} of {} pieces again "
-                         "for changes of up to {:.2f} um; another round was expected",
-                         round, figures.solved_again.back(), figures.pieces, figures.largest_change_um.back());
+        "static coupling in sections: each piece of the path begins without the deflection of the tooth passing before "
+        "it, so that form errors differ from those without sections by micrometres; coupling = \"rigid\", or no "
+        "sections, was expected";
+    if (round == 1)
+      out.doubt += "; the first round has not been followed by a second one";
+    else if (figures.solved_again.back() > 0)
+      out.doubt += fmt::format(
+          "; round {} has solved {} of {} pieces again for changes of up to {:.2f} um and was not "
+          "followed by another one",
+          round, figures.solved_again.back(), figures.pieces, figures.largest_change_um.back());
+  }
   return out;
 }
 

@@ -112,7 +112,7 @@ struct MergedJob {
   PreparedJob prepared;
   simulate::Prediction prediction;
   SectionFigures figures;
-  std::string doubt;  ///< why static coupling is not settled; empty: it is
+  std::string doubt;  ///< about static coupling; empty: none
 };
 /// Joins all parts of the sweep and of a round. `request`: as for a prediction; its `work` is not looked at. `found`:
 /// what should be shown before. Throws InputError where a part is missing or not like the others: nothing is merged

@@ -9,6 +9,7 @@
 #include "camber/fit_feed.h"
 #include "camber/job.h"
 #include "camber/machine.h"
+#include "camber/plan.h"
 #include "camber/predict.h"
 #include "camber/program.h"
 #include "camber/run.h"

@@ -116,8 +116,8 @@ struct RigidEngager::Impl {
         all(stamps_),
         first_id(first_id_),
         blocks(envelope_, stock_.voxel_mm(), stock_.band_mm()),
-        reader(envelope_, blocks, stamps_, first_id_, stock_.voxel_mm(), stock_.max_mm().z() + stock_.band_mm(),
-               pitches) {}
+        reader(envelope_, blocks, StampTips(stamps_), first_id_, stock_.voxel_mm(),
+               stock_.max_mm().z() + stock_.band_mm(), pitches) {}
 
   void start_tiles();
   std::span<const ChipBlock> read(std::size_t k);
@@ -148,7 +148,7 @@ std::vector<std::int32_t> RigidEngager::Impl::earlier(std::size_t k) const {
 }
 
 std::span<const ChipBlock> RigidEngager::Impl::read(std::size_t k) {
-  return reader.read(arena, from + k, earlier(k), buffers.local());
+  return reader.read(arena, all[from + k], earlier(k), buffers.local());
 }
 
 void RigidEngager::Impl::read_batch(std::size_t begin, std::size_t end, const ChipSink& sink) {
@@ -201,7 +201,7 @@ void RigidEngager::Impl::read_some(std::size_t begin, std::size_t end, const Spa
   tbb::parallel_for(std::size_t{0}, which.size(), [&](std::size_t i) {
     const std::size_t k = which[i];
     const auto [a, b] = gap_of[i];
-    glances[k] = reader.glance(arena, from + k, earlier(k), buffers.local());
+    glances[k] = reader.glance(arena, all[from + k], earlier(k), buffers.local());
     if (as_glanced(a, k, b))
       sink.between(a, k, b);
     else

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "removal/field/cell.h"
 
@@ -50,11 +51,11 @@ BlockBounds BlockReader::GlancedBlocks::bounds() const {
           spread.data()};
 }
 
-BlockReader::BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const Stamp> stamps,
+BlockReader::BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, StampTips tips,
                          std::int32_t first_id, double voxel_mm, double top_mm, int pitches)
     : envelope_(envelope),
       blocks_(blocks),
-      stamps_(stamps),
+      tips_(std::move(tips)),
       first_id_(first_id),
       voxel_mm_(voxel_mm),
       top_mm_(top_mm),
@@ -62,19 +63,6 @@ BlockReader::BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blo
   for (const auto& ring : envelope.rings)
     max_curved_per_mm_ =
         std::max({max_curved_per_mm_, ring.profile.meridian_curvature_per_mm, ring.profile.parallel_curvature_per_mm});
-  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
-  for (const auto& s : stamps) {
-    lo = lo.cwiseMin(s.pose.tip_mm);
-    hi = hi.cwiseMax(s.pose.tip_mm);
-  }
-  constexpr double kSteps = 1 << 30;
-  tip_step_mm_ = static_cast<float>(stamps.empty() ? 1.0 : std::max(1.0, (hi - lo).maxCoeff()) / kSteps);
-  for (std::size_t a = 0; a < 3; ++a) {
-    tip_[a].reserve(stamps.size());
-    for (const auto& s : stamps)
-      tip_[a].push_back(static_cast<std::int32_t>(std::lround(
-          (s.pose.tip_mm[static_cast<int>(a)] - lo[static_cast<int>(a)]) / static_cast<double>(tip_step_mm_))));
-  }
   glanced_ = glanced_blocks(blocks.bounds());
 }
 
@@ -102,26 +90,26 @@ StampPlace BlockReader::place_of(const TileArena& arena, const Stamp& stamp) con
   return place;
 }
 
-std::span<const ChipBlock> BlockReader::read(const TileArena& arena, std::size_t k,
+std::span<const ChipBlock> BlockReader::read(const TileArena& arena, const Stamp& stamp,
                                              std::span<const std::int32_t> earlier, Buffers& b) const {
   make_room(b);
-  const StampPlace place = place_of(arena, stamps_[k]);
+  const StampPlace place = place_of(arena, stamp);
   BlockBounds bounds = blocks_.bounds();
-  bounds.count = std::min(bounds.count, blocks_.up_to(top_mm_ - stamps_[k].pose.tip_mm.z()));
+  bounds.count = std::min(bounds.count, blocks_.up_to(top_mm_ - stamp.pose.tip_mm.z()));
   const int found = block_kernels().find_blocks(bounds, place, arena.view(), b.blocks.data());
-  return read_found(arena, k, place, found, earlier, b);
+  return read_found(arena, stamp, place, found, earlier, b);
 }
 
-double BlockReader::glance(const TileArena& arena, std::size_t k, std::span<const std::int32_t> earlier,
+double BlockReader::glance(const TileArena& arena, const Stamp& stamp, std::span<const std::int32_t> earlier,
                            Buffers& b) const {
   make_room(b);
-  const StampPlace place = place_of(arena, stamps_[k]);
+  const StampPlace place = place_of(arena, stamp);
   const int found = block_kernels().find_blocks(glanced_.bounds(), place, arena.view(), b.blocks.data());
   for (int i = 0; i < found; ++i) {
     std::int32_t& block = b.blocks[static_cast<std::size_t>(i)];
     block = glanced_.block[static_cast<std::size_t>(block)];
   }
-  return glance_of(read_found(arena, k, place, found, earlier, b));
+  return glance_of(read_found(arena, stamp, place, found, earlier, b));
 }
 
 double BlockReader::glance_of(std::span<const ChipBlock> chips) const {
@@ -135,9 +123,8 @@ double BlockReader::glance_of(std::span<const ChipBlock> chips) const {
 }
 
 /// The chips of b.blocks, the first `found` of them.
-std::span<const ChipBlock> BlockReader::read_found(const TileArena& arena, std::size_t k, const StampPlace& place,
+std::span<const ChipBlock> BlockReader::read_found(const TileArena& arena, const Stamp& stamp, const StampPlace& place,
                                                    int found, std::span<const std::int32_t> earlier, Buffers& b) const {
-  const Stamp& stamp = stamps_[k];
   const CutterShape& shape = envelope_.shape;
   const BlockKernels& kernels = block_kernels();
   BlockHits hits{0, b.hit_block.data(), b.hit_deep.data(), b.hit_thickness.data()};
@@ -154,10 +141,9 @@ std::span<const ChipBlock> BlockReader::read_found(const TileArena& arena, std::
   if (shape.general) {
     thin_general(arena, stamp, shallow, thickness);
   } else {
-    const FixedTips tips{tip_[0].data(), tip_[1].data(), tip_[2].data(), {tip_[0][k], tip_[1][k], tip_[2][k]},
-                         tip_step_mm_,   first_id_};
-    kernels.thin_points(blocks_.points(), shallow, arena.view(), tips, static_cast<float>(shape.bottom_length_mm()),
-                        static_cast<float>(shape.corner_radius_mm), kMinSlope, thickness);
+    kernels.thin_points(blocks_.points(), shallow, arena.view(), tips_.fixed(stamp.pose.tip_mm, first_id_),
+                        static_cast<float>(shape.bottom_length_mm()), static_cast<float>(shape.corner_radius_mm),
+                        kMinSlope, thickness);
   }
   thin_by_blank(arena, shallow, b);
   const auto after_tooth = [&](int hit, bool after) {
@@ -228,7 +214,7 @@ RingPart BlockReader::part_of_ring(const TileArena& arena, const Stamp& stamp, c
                            p.place_mm,
                            p.normal,
                            static_cast<double>(blocks_.wall_half_mm(points.lane[i]))},
-                          stamps_, first_id_, envelope_.shape, voxel_mm_);
+                          tips_.view(), first_id_, envelope_.shape, voxel_mm_);
 }
 
 /// From thickness to depth: the blank's surface counts as one field more, read trilinearly.
@@ -289,13 +275,14 @@ void BlockReader::thin_general(const TileArena& arena, const Stamp& stamp, const
 
 float BlockReader::thin(const TileArena& arena, int cell, const Point& p) const {
   const std::int32_t* ids = arena.view().stamp + cell;
+  const TipView tips = tips_.view();
   float thinnest = kSolid;
   std::int32_t last = -1;
   for (int c = 0; c < 8; ++c) {
     const std::int32_t id = ids[cell_corner(c)] - first_id_;
     if (id < 0 || id == last) continue;
     last = id;
-    const Vec3 from_tip = p.place_mm - stamps_[static_cast<std::size_t>(id)].pose.tip_mm;
+    const Vec3 from_tip = p.place_mm - tips[id];
     const auto depth = static_cast<float>(envelope_.shape.distance_mm(from_tip));
     if (depth < thinnest)
       thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(from_tip).dot(p.normal)));
@@ -305,9 +292,10 @@ float BlockReader::thin(const TileArena& arena, int cell, const Point& p) const 
 
 /// Thickness of what stamps that are not in the arena yet leave at a point.
 float BlockReader::thickness_over(std::span<const std::int32_t> earlier, const Point& point) const {
+  const TipView tips = tips_.view();
   float thinnest = kSolid;
   for (const std::int32_t j : earlier) {
-    const Vec3 from_tip = point.place_mm - stamps_[static_cast<std::size_t>(j)].pose.tip_mm;
+    const Vec3 from_tip = point.place_mm - tips[j];
     const auto depth = static_cast<float>(envelope_.shape.distance_mm(from_tip));
     if (depth < thinnest)
       thinnest = std::min(thinnest, depth / slope(envelope_.shape.gradient(from_tip).dot(point.normal)));

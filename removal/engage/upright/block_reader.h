@@ -7,6 +7,7 @@
 
 #include "removal/cutter.h"
 #include "removal/engage/upright/level_faces.h"
+#include "removal/engage/upright/stamp_tips.h"
 #include "removal/engagement.h"
 #include "removal/field/upright/tile_arena.h"
 #include "removal/tool_path.h"
@@ -30,17 +31,22 @@ class BlockReader {
     std::vector<ChipBlock> chips;
   };
 
-  /// Ids in the stock are first_id + index into `stamps`; smaller ids count as blank. Above `top_mm` there is air.
+  /// Ids in the stock are first_id + number in `tips`; smaller ids count as blank. Above `top_mm` there is air.
   /// `pitches`: motion in so many may make a chip, see RigidEngager.
-  BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const Stamp> stamps,
-              std::int32_t first_id, double voxel_mm, double top_mm, int pitches);
+  BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, StampTips tips, std::int32_t first_id,
+              double voxel_mm, double top_mm, int pitches);
 
-  /// Chips of stamps[k]. `earlier`: stamps that the arena does not hold yet and that may have cut what this one meets.
-  std::span<const ChipBlock> read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> earlier,
+  /// One stamp more may be named by the stock.
+  void append(const Vec3& tip_mm) { tips_.append(tip_mm); }
+  const StampTips& tips() const { return tips_; }
+
+  /// Chips of a stamp. `earlier`: stamps that the arena does not hold yet and that may have cut what this one meets.
+  std::span<const ChipBlock> read(const TileArena& arena, const Stamp& stamp, std::span<const std::int32_t> earlier,
                                   Buffers& buffers) const;
   /// The thicknesses of these chips in some blocks of the envelope, always the same ones, summed up: how much material
   /// there is, at a small part of the cost.
-  double glance(const TileArena& arena, std::size_t k, std::span<const std::int32_t> earlier, Buffers& buffers) const;
+  double glance(const TileArena& arena, const Stamp& stamp, std::span<const std::int32_t> earlier,
+                Buffers& buffers) const;
   /// The same sum of chips that were read.
   double glance_of(std::span<const ChipBlock> chips) const;
 
@@ -53,7 +59,7 @@ class BlockReader {
   };
   static GlancedBlocks glanced_blocks(const BlockBounds& all);
   StampPlace place_of(const TileArena& arena, const Stamp& stamp) const;
-  std::span<const ChipBlock> read_found(const TileArena& arena, std::size_t k, const StampPlace& place, int found,
+  std::span<const ChipBlock> read_found(const TileArena& arena, const Stamp& stamp, const StampPlace& place, int found,
                                         std::span<const std::int32_t> earlier, Buffers& buffers) const;
   /// A shallow point, or a deep one that stamps not in the arena may have cut.
   struct Point {
@@ -71,13 +77,11 @@ class BlockReader {
 
   const EnvelopeGrid& envelope_;
   const EnvelopeBlocks& blocks_;
-  std::span<const Stamp> stamps_;
+  StampTips tips_;
   std::int32_t first_id_;
   double voxel_mm_, top_mm_;
   int pitches_;
-  double max_curved_per_mm_ = 0;                  ///< of the envelope
-  std::array<std::vector<std::int32_t>, 3> tip_;  ///< of all stamps, in steps that are a billionth of their range
-  float tip_step_mm_;
+  double max_curved_per_mm_ = 0;  ///< of the envelope
   GlancedBlocks glanced_;
 };
 

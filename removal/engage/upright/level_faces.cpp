@@ -27,8 +27,8 @@ std::uint8_t RingPart::cut_255(double half_width_mm) const {
   return static_cast<std::uint8_t>(std::lround(255 * std::max(0.0, to_mm - from_mm) / (2 * half_width_mm)));
 }
 
-RingPart part_in_material(const RingPlace& ring, std::span<const Stamp> stamps, std::int32_t first_id,
-                          const CutterShape& shape, double voxel_mm) {
+RingPart part_in_material(const RingPlace& ring, const TipView& tips, std::int32_t first_id, const CutterShape& shape,
+                          double voxel_mm) {
   RingPart part{-ring.half_width_mm, ring.half_width_mm};
   if (ring.blank) {
     const auto above = static_cast<double>(trilinear(ring.blank, ring.share));  // the blank's face
@@ -46,7 +46,7 @@ RingPart part_in_material(const RingPlace& ring, std::span<const Stamp> stamps, 
   for (int c = 0; c < 8; ++c) {
     const std::int32_t id = ring.ids[cell_corner(c)] - first_id;
     if (id < 0) continue;
-    Vec3 from_tip = ring.point_mm - stamps[static_cast<std::size_t>(id)].pose.tip_mm;
+    Vec3 from_tip = ring.point_mm - tips[id];
     from_tip.z() -= ring.axial_mm;
     if (std::abs(from_tip.z()) >= kWithin * ring.half_width_mm || shape.gradient(from_tip).z() > -1 + kUpright)
       continue;

@@ -7,6 +7,7 @@
 
 #include "base/geometry.h"
 #include "removal/cutter.h"
+#include "removal/engage/upright/stamp_tips.h"
 #include "removal/field/cell.h"
 #include "removal/tool_path.h"
 
@@ -33,8 +34,8 @@ struct RingPart {
   double middle_mm() const { return (from_mm + to_mm) / 2; }
 };
 
-/// Level faces are the blank's, and the floors cut by the stamps that the cell names: id - first_id of `stamps`.
-RingPart part_in_material(const RingPlace& ring, std::span<const Stamp> stamps, std::int32_t first_id,
-                          const CutterShape& shape, double voxel_mm);
+/// Level faces are the blank's, and the floors cut by the stamps that the cell names: id - first_id of `tips`.
+RingPart part_in_material(const RingPlace& ring, const TipView& tips, std::int32_t first_id, const CutterShape& shape,
+                          double voxel_mm);
 
 }  // namespace camber::removal::upright

@@ -14,9 +14,11 @@ namespace {
 
 Index3 first_voxel(const Index3& tile) { return {tile[0] * Tile::kCore, tile[1] * Tile::kCore, tile[2] * Tile::kCore}; }
 
+}  // namespace
+
 /// The part of a tile's upper layer that is the core of a neighbour, `up` tiles on. What the stock has there is old
 /// where the neighbour stayed.
-void copy_shared(const Tile& from, const std::array<int, 3>& up, Tile& to) {
+void TileArena::copy_shared(const Tile& from, const std::array<int, 3>& up, Tile& to) {
   const auto range = [](int up) { return up != 0 ? 1 : Tile::kCore; };
   for (int i = 0; i < range(up[0]); ++i)
     for (int j = 0; j < range(up[1]); ++j) {
@@ -27,14 +29,12 @@ void copy_shared(const Tile& from, const std::array<int, 3>& up, Tile& to) {
     }
 }
 
-}  // namespace
-
 void TileArena::load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps,
                      const Leave& leave, double deflection_mm) {
   voxel_ = stock.voxel_mm();
   list_tiles(stock, shape, stamps, leave, deflection_mm);
   tops_.reset(slots_);
-  make_room();
+  make_room(used_.size());
   load_fresh(stock, blank);
 }
 
@@ -137,10 +137,10 @@ void TileArena::list_tiles(const Stock& stock, const CutterShape& shape, std::sp
   });
 }
 
-void TileArena::make_room() {
-  if (used_.size() <= room_) return;
+void TileArena::make_room(std::size_t tiles_wanted) {
+  if (tiles_wanted <= room_) return;
   const std::size_t before = room_;
-  room_ = used_.size() + used_.size() / 8;
+  room_ = tiles_wanted + tiles_wanted / 8;
   std::unique_ptr<Tile[]> tiles(new Tile[room_]);
   std::unique_ptr<float[]> blanks(new float[room_ * Tile::kVolume]);
   std::copy_n(tiles_.get(), before, tiles.get());
@@ -150,25 +150,20 @@ void TileArena::make_room() {
   blanks_ = std::move(blanks);
 }
 
+void TileArena::read_tile(std::size_t t, const Stock& stock, const Stock& blank) {
+  stock.load(index_[t], tiles_[t]);
+  in_solid_[t] = static_cast<char>(blank.is_solid(index_[t]));
+  if (in_solid_[t] == 0) blank.read(first_voxel(index_[t]), Tile::kSide, blanks_.get() + t * Tile::kVolume, nullptr);
+}
+
 void TileArena::load_fresh(const Stock& stock, const Stock& blank) {
   tiles_[0].distance.fill(static_cast<float>(stock.band_mm()));
   tiles_[0].stamp.fill(Stock::kUncut);
-  tbb::parallel_for(std::size_t{0}, fresh_.size(), [&](std::size_t i) {
-    const std::size_t t = fresh_[i];
-    stock.load(index_[t], tiles_[t]);
-    in_solid_[t] = static_cast<char>(blank.is_solid(index_[t]));
-    if (in_solid_[t] == 0) blank.read(first_voxel(index_[t]), Tile::kSide, blanks_.get() + t * Tile::kVolume, nullptr);
-  });
+  tbb::parallel_for(std::size_t{0}, fresh_.size(), [&](std::size_t i) { read_tile(fresh_[i], stock, blank); });
   std::vector<char> is_fresh(used_.size(), 0);
   for (const std::size_t t : fresh_) is_fresh[t] = 1;
   tbb::parallel_for(std::size_t{0}, fresh_.size(), [&](std::size_t i) {
-    const Index3& at = index_[fresh_[i]];
-    for (int c = 1; c < 8; ++c) {
-      const std::array<int, 3> up{c & 1, c >> 1 & 1, c >> 2};
-      const std::int32_t other = slots_.find(at[0] + up[0], at[1] + up[1], at[2] + up[2]);
-      if (other > 0 && is_fresh[static_cast<std::size_t>(other)] == 0)
-        copy_shared(tiles_[static_cast<std::size_t>(other)], up, tiles_[fresh_[i]]);
-    }
+    share_upper_layer(fresh_[i], [&](std::size_t other) { return is_fresh[other] != 0; });
   });
 }
 

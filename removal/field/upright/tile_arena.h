@@ -1,6 +1,7 @@
 #pragma once
 // Working copies of all tiles that a stretch of stamps reaches. Rows overlap, so most tiles of a stretch
 // are those of the one before: they stay.
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -51,13 +52,14 @@ class TileArena {
   /// Of a stamp that moves at most by its feed; see StampPlace::min_forward_mm.
   StampPlace place_of(const Stamp& stamp, double min_forward_mm) const;
 
- private:
-  void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const Leave& leave,
-                  double deflection_mm);
-  void reset_slots(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, double reach_mm);
+ protected:
   std::size_t take_number(const Index3& index);
-  void make_room();
-  void load_fresh(const Stock& stock, const Stock& blank);
+  void make_room(std::size_t tiles);
+  /// The tile and its blank, as the stocks have them.
+  void read_tile(std::size_t tile, const Stock& stock, const Stock& blank);
+  /// Its upper layer from the neighbours that are there, but for those that `is_read` says are as the stock has them.
+  template <class IsRead>
+  void share_upper_layer(std::size_t tile, IsRead is_read);
 
   double voxel_ = 0;
   SlotMap slots_, before_;  ///< of this stretch and of the last one
@@ -70,6 +72,24 @@ class TileArena {
   std::unique_ptr<Tile[]> tiles_;    ///< not cleared
   std::unique_ptr<float[]> blanks_;  ///< not cleared
   std::vector<std::size_t> fresh_, free_;
+
+ private:
+  void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const Leave& leave,
+                  double deflection_mm);
+  void reset_slots(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, double reach_mm);
+  void load_fresh(const Stock& stock, const Stock& blank);
+  static void copy_shared(const Tile& from, const std::array<int, 3>& up, Tile& to);
 };
+
+template <class IsRead>
+void TileArena::share_upper_layer(std::size_t tile, IsRead is_read) {
+  const Index3& at = index_[tile];
+  for (int c = 1; c < 8; ++c) {
+    const std::array<int, 3> up{c & 1, c >> 1 & 1, c >> 2};
+    const std::int32_t other = slots_.find(at[0] + up[0], at[1] + up[1], at[2] + up[2]);
+    if (other > 0 && !is_read(static_cast<std::size_t>(other)))
+      copy_shared(tiles_[static_cast<std::size_t>(other)], up, tiles_[tile]);
+  }
+}
 
 }  // namespace camber::removal::upright

@@ -2,6 +2,7 @@
 // Above which height there is nothing but air, in squares of a few voxels.
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "removal/field/slot_map.h"
@@ -22,6 +23,10 @@ class TopMap {
   /// around it as well.
   void read(const SlotMap& slots, int reach_voxels,
             const std::function<const ColumnCover*(std::size_t place)>& cover_of);
+
+  /// Reads the tiles of one column, i and j counted from the map's first. `covers`: of those from the top down, null
+  /// for air; those below the last one are not known, and count as material.
+  void read_column(const SlotMap& slots, int reach_voxels, int i, int j, std::span<const ColumnCover* const> covers);
 
   /// [squares along x][squares along y]: the first voxel from which on all above and around is air; 0 or less: all.
   /// Empty over no tiles.

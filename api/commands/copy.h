@@ -1,0 +1,23 @@
+#pragma once
+// The work of camber copy.
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "copymill/copy.h"
+#include "machine/copy_operations.h"
+#include "machine/job.h"
+
+namespace camber::api {
+
+struct CopyJob {
+  machine::Job job;
+  std::vector<machine::CopyOperation> operations;
+};
+/// A job with [[copy]]; a program is not needed. Throws InputError.
+CopyJob read_copy_job(const std::string& path, Diagnostics& diagnostics);
+
+/// Throws InputError. Writes nothing.
+copymill::CopyResult copy_job(const CopyJob& job, const copymill::CopyOptions& options, Diagnostics& diagnostics);
+
+}  // namespace camber::api

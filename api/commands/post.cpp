@@ -1,0 +1,141 @@
+#include "api/commands/post.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "api/commands/rotary_program.h"
+#include "base/numbers.h"
+#include "base/units.h"
+#include "kinematics/travel_check.h"
+#include "simulate/machine_collisions.h"
+
+namespace camber::api {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kSamples = 16;  ///< of each piece
+
+/// The moves of the new text at the blocks of the given one, so that messages are about what the user has.
+nc::Interpretation at_given_blocks(nc::Interpretation moves, const std::vector<std::uint32_t>& block_of_line) {
+  for (nc::Move& move : moves.moves) move.block = block_of_line[move.block];
+  return moves;
+}
+
+void require_kinematics(const machine::Machine& machine) {
+  if (machine.kinematics.given()) return;
+  fail_on_file(machine.path, "the machine has no [kinematics]; the chain of its axes was expected", "kinematics");
+}
+
+/// What the checks say of the new program; an error in its text is ours.
+void check_new_program(const PostRequest& request, const PostedProgram& program, const nc::Interpretation& after,
+                       Diagnostics& diagnostics) {
+  const nc::Interpretation moves = at_given_blocks(after, program.posted.block_of_line);
+  kinematics::check_travel(*request.machine, *request.text, moves, diagnostics);
+  diagnostics.throw_if_errors();
+  if (!request.job || request.job->machine.bodies.empty()) return;
+  simulate::check_machine_collisions(*request.job, *request.text, moves, diagnostics);
+  diagnostics.throw_if_errors();
+}
+
+std::string angle_text(double rad) { return format_trimmed(deg_from_rad(rad), 3); }
+
+std::string turns_text(const repath::TurnBack& back) {
+  std::string out;
+  for (int i = 0; i < 3; ++i)
+    if (back.from_rad[i] != back.to_rad[i])
+      out += fmt::format("{}{} from {} to {}", out.empty() ? "" : ", ", "ABC"[i], angle_text(back.from_rad[i]),
+                         angle_text(back.to_rad[i]));
+  return out;
+}
+
+}  // namespace
+
+PostedProgram post_program(const PostRequest& request, Diagnostics& diagnostics) {
+  const machine::Machine& machine = *request.machine;
+  require_kinematics(machine);
+  const nc::InterpreterOptions interpreter = rotary_interpreter_options(machine, request.interpreter);
+  nc::Interpretation moves = nc::interpret(*request.text, interpreter, diagnostics);
+  diagnostics.throw_if_errors();
+  place_rotary_lines(machine, moves);
+  PostedProgram out;
+  out.posted = repath::post(*request.text, moves, machine, request.options, diagnostics);
+  diagnostics.throw_if_errors();
+  Diagnostics again;  // what it says of the text was said above; an error is ours
+  const nc::Program text = nc::read_program(SourceText(request.output, out.posted.text), again);
+  const nc::Interpretation after = nc::interpret(text, interpreter, again);
+  again.throw_if_errors();
+  check_new_program(request, out, after, diagnostics);
+  out.deviation = repath::post_deviation(moves, after, machine, out.posted, kSamples);
+  const auto with_words = [](const nc::Program& p) {
+    return static_cast<std::size_t>(
+        std::count_if(p.blocks.begin(), p.blocks.end(), [](const nc::Block& b) { return b.word_count > 0; }));
+  };
+  out.blocks_before = with_words(*request.text);
+  out.blocks_after = with_words(text);
+  return out;
+}
+
+std::string post_text(const PostedProgram& program) {
+  const repath::Posted& p = program.posted;
+  const repath::PostDeviation& d = program.deviation;
+  std::string out = fmt::format("blocks     {} became {}; {} moves rewritten\n", program.blocks_before,
+                                program.blocks_after, p.moves);
+  out += fmt::format("feed       {} moves in {} blocks; by the one-degree rule {}, tip off by up to {:.4f} mm\n",
+                     p.feed_moves, p.feed_blocks, p.one_degree_blocks, p.one_degree_bound_mm);
+  out += fmt::format("tip        off its path by at most {:.4f} mm (largest of {} samples {:.4f})\n", p.tip_bound_mm,
+                     d.samples, d.tip_mm);
+  if (p.rapid_bound_mm > 0)
+    out += fmt::format("           in rapids by at most {:.4f} mm ({:.4f})\n", p.rapid_bound_mm, d.rapid_tip_mm);
+  out += fmt::format("axis       off its direction by at most {:.5f} degrees ({:.5f})\n",
+                     deg_from_rad(p.axis_bound_rad), deg_from_rad(d.axis_rad));
+  for (const repath::TurnBack& back : p.turns_back)
+    out += fmt::format("turns back {}: {}, {} mm off along the tool\n",
+                       back.in_air ? "in air" : "in a cut, which leaves a mark", turns_text(back),
+                       format_trimmed(back.retract_mm, 1));
+  return out;
+}
+
+std::string post_json(const PostedProgram& program, const PostRequest& request) {
+  const repath::Posted& p = program.posted;
+  const repath::PostDeviation& d = program.deviation;
+  ordered_json back = ordered_json::array();
+  for (const repath::TurnBack& t : p.turns_back) {
+    ordered_json from, to;
+    for (int i = 0; i < 3; ++i)
+      if (t.from_rad[i] != t.to_rad[i]) {
+        const std::string axis(1, "abc"[i]);
+        from[axis] = deg_from_rad(t.from_rad[i]);
+        to[axis] = deg_from_rad(t.to_rad[i]);
+      }
+    back.push_back({{"in_air", t.in_air}, {"from_deg", from}, {"to_deg", to}, {"retract_mm", t.retract_mm}});
+  }
+  const ordered_json report = {{"target", request.options.target == repath::PostTarget::tcp ? "tcp" : "joints"},
+                               {"tolerance_mm", request.options.tolerance_mm},
+                               {"rapid_tolerance_mm", request.options.rapid_tolerance_mm},
+                               {"inverse_time", request.options.inverse_time},
+                               {"rule", request.options.one_degree ? "one-degree" : "tolerance"},
+                               {"blocks_before", program.blocks_before},
+                               {"blocks_after", program.blocks_after},
+                               {"moves", p.moves},
+                               {"feed_moves", p.feed_moves},
+                               {"feed_blocks", p.feed_blocks},
+                               {"one_degree_blocks", p.one_degree_blocks},
+                               {"tip_bound_mm", p.tip_bound_mm},
+                               {"rapid_tip_bound_mm", p.rapid_bound_mm},
+                               {"one_degree_tip_bound_mm", p.one_degree_bound_mm},
+                               {"axis_bound_deg", deg_from_rad(p.axis_bound_rad)},
+                               {"sampled",
+                                {{"samples", d.samples},
+                                 {"tip_mm", d.tip_mm},
+                                 {"rapid_tip_mm", d.rapid_tip_mm},
+                                 {"axis_deg", deg_from_rad(d.axis_rad)},
+                                 {"end_tip_mm", d.end_tip_mm},
+                                 {"end_axis_deg", deg_from_rad(d.end_axis_rad)}}},
+                               {"turns_back", back}};
+  return report.dump(2) + "\n";
+}
+
+}  // namespace camber::api

@@ -1,0 +1,171 @@
+#include "copymill/approach.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camber::copymill {
+namespace {
+
+constexpr double kStep_mm = 0.2;  ///< at which ways are looked at
+constexpr int kDirections = 24;   ///< in which an entry from the side is looked for
+
+}  // namespace
+
+Runner::Ended Approach::follow(const Pass& pass) {
+  const double radius = cut_.shape.radius_mm;
+  Pass whole = pass;
+  if (runner_.at()) start_near(whole, *runner_.at());
+  std::vector<Pass> pieces = stretches_in_material(standing_, cut_.shape, whole, options_.more_than_mm, 0.2 * radius,
+                                                   std::max(2 * radius, 4.0));
+  // The nearest end of an open row first is for those who order passes; pieces keep the pass's direction.
+  for (Pass& piece : pieces)
+    if (cut_piece(std::move(piece)) == Runner::Ended::stopped) return Runner::Ended::stopped;
+  return Runner::Ended::done;
+}
+
+Runner::Ended Approach::cut_piece(Pass piece) {
+  if (runner_.at()) start_near(piece, *runner_.at());
+  ++runner_.summary().passes;
+  if (runner_.at() && stays_down(piece.points.front())) {
+    if (runner_.cut({piece.points.front()}, false) == Runner::Ended::stopped) return Runner::Ended::stopped;
+  } else if (enter(piece) == Runner::Ended::stopped) {
+    return Runner::Ended::stopped;
+  }
+  return runner_.cut(piece.points, piece.closed);
+}
+
+bool Approach::stays_down(const Vec3& to) const {
+  const Vec3& from = *runner_.at();
+  const double way = (to - from).norm();
+  if (way <= 0) return true;
+  const bool same_height = std::abs(to.z() - from.z()) < 1e-3;
+  if (!free_way(from, to)) return false;
+  if (way <= options_.link_mm && same_height) return true;
+  return way <= 20 * cut_.shape.radius_mm && in_air(from, to);
+}
+
+bool Approach::free_way(const Vec3& from, const Vec3& to) const {
+  const int n = std::max(1, static_cast<int>(std::ceil((to - from).norm() / kStep_mm)));
+  for (int k = 0; k <= n; ++k) {
+    const Vec3 p = from + static_cast<double>(k) / n * (to - from);
+    constexpr double kRounding_mm = 0.001;  // ends are rounded places of exact passes
+    if (!field_.free(p.head<2>(), p.z() + (k == 0 || k == n ? kRounding_mm : 0))) {
+      if ((k > 0 && k < n) || field_.lowest_mm(p.head<2>()) > p.z() + 1) return false;
+    }
+  }
+  return true;
+}
+
+bool Approach::in_air(const Vec3& from, const Vec3& to) const {
+  const int n = std::max(1, static_cast<int>(std::ceil((to - from).norm() / kStep_mm)));
+  for (int k = 0; k <= n; ++k)
+    if (standing_.meets(cut_.shape, from + static_cast<double>(k) / n * (to - from), options_.more_than_mm))
+      return false;
+  return true;
+}
+
+/// The least height above a place at which the tool meets nothing.
+double Approach::lift_into_air(const Vec3& tip) const {
+  const double step = 0.25,
+               most = std::max(0.0, standing_.highest_under_mm(tip.head<2>(), cut_.shape.radius_mm) - tip.z());
+  for (double lift = 0; lift < most; lift += step)
+    if (!standing_.meets(cut_.shape, tip + Vec3(0, 0, lift), options_.more_than_mm)) return lift;
+  return most;
+}
+
+Runner::Ended Approach::lift_over(const Vec3& to) {
+  if (!runner_.at()) return runner_.rapid({to.x(), to.y(), runner_.safe_z_mm()});
+  const Vec3 from = *runner_.at();
+  const Vec2 reach = Vec2::Constant(cut_.tool.diameter_mm / 2 + options_.clearance_mm);
+  const double highest = standing_.highest_mm(from.head<2>().cwiseMin(to.head<2>()) - reach,
+                                              from.head<2>().cwiseMax(to.head<2>()) + reach);
+  const double z = std::min(runner_.safe_z_mm(), std::max({highest + options_.clearance_mm, from.z(), to.z()}));
+  ++runner_.summary().retracts;
+  if (runner_.rapid({from.x(), from.y(), z}) == Runner::Ended::stopped) return Runner::Ended::stopped;
+  return runner_.rapid({to.x(), to.y(), z});
+}
+
+Runner::Ended Approach::lower_to(const Vec3& to) {
+  const double above = std::max(to.z(), to.z() + lift_into_air(to)) + options_.clearance_mm;
+  if (above < runner_.at()->z() && runner_.rapid({to.x(), to.y(), above}) == Runner::Ended::stopped)
+    return Runner::Ended::stopped;
+  return runner_.cut({to}, false);
+}
+
+/// A place in air from which the straight way to a place is free of the part.
+std::optional<Vec3> Approach::side_entry(const Vec3& to) const {
+  const double radius = cut_.shape.radius_mm;
+  for (const double reach : {0.5, 1.0, 1.5, 2.2}) {
+    for (int k = 0; k < kDirections; ++k) {
+      const double a = 2 * kPi * k / kDirections, far = reach * (radius + options_.clearance_mm);
+      const Vec3 from = to + far * Vec3(std::cos(a), std::sin(a), 0);
+      if (!standing_.meets(cut_.shape, from, options_.more_than_mm) && free_way(from, to)) return from;
+    }
+  }
+  return std::nullopt;
+}
+
+Runner::Ended Approach::enter(Pass& piece) {
+  const Vec3 start = piece.points.front();
+  const double lift = lift_into_air(start);
+  if (lift <= 0) {
+    if (lift_over(start) == Runner::Ended::stopped) return Runner::Ended::stopped;
+    return lower_to(start);
+  }
+  if (const auto side = side_entry(start)) {
+    if (lift_over(*side) == Runner::Ended::stopped || lower_to(*side) == Runner::Ended::stopped)
+      return Runner::Ended::stopped;
+    return runner_.cut({start}, false);
+  }
+  if (lift_over(start) == Runner::Ended::stopped) return Runner::Ended::stopped;
+  if (cut_.operation.plunge) {
+    ++runner_.summary().plunges;
+    const Vec3 above = start + Vec3(0, 0, lift + options_.clearance_mm);
+    if (above.z() < runner_.at()->z() && runner_.rapid(above) == Runner::Ended::stopped) return Runner::Ended::stopped;
+    constexpr double kPlungeShare = 1.0 / 3;
+    return runner_.cut({start}, false, kPlungeShare);
+  }
+  return ramp(piece, lift + 0.1);
+}
+
+/// Down along the piece; a closed one begins where the ramp ended then.
+Runner::Ended Approach::ramp(Pass& piece, double lift) {
+  ++runner_.summary().ramps;
+  const double slope = std::tan(cut_.operation.ramp_rad), longest = std::max(6 * cut_.shape.radius_mm, 5.0);
+  std::vector<Vec3> way = dense(piece, 0.5);
+  if (piece.closed) way.push_back(way.front());
+  if (!piece.closed) {
+    double gone = 0;
+    std::size_t n = 1;
+    while (n < way.size() && gone < longest) gone += (way[n] - way[n - 1]).norm(), ++n;
+    way.resize(n);
+  }
+  std::vector<Vec3> points{way.front() + Vec3(0, 0, lift)};
+  std::size_t at = 0;
+  bool back = false;
+  while (lift > 0) {
+    if (piece.closed && at + 1 == way.size()) at = 0;
+    if (!piece.closed && (back ? at == 0 : at + 1 == way.size())) back = !back;
+    const std::size_t next = back ? at - 1 : at + 1;
+    const double run = std::max(1e-3, (way[next] - way[at]).norm()), fall = slope * run;
+    const double share = std::min(1.0, lift / fall);
+    lift -= share * fall;
+    if (lift < 1e-9) lift = 0;
+    points.push_back(way[at] + share * (way[next] - way[at]) + Vec3(0, 0, lift));
+    at = next;
+  }
+  const Vec3 first = points.front();
+  if (first.z() < runner_.at()->z() && runner_.rapid(first) == Runner::Ended::stopped) return Runner::Ended::stopped;
+  if (runner_.cut(points, false) == Runner::Ended::stopped) return Runner::Ended::stopped;
+  if (piece.closed) {
+    const Vec3 end = points.back();
+    start_near(piece, end);
+    return Runner::Ended::done;
+  }
+  // Back along the piece, level, to where it begins.
+  std::vector<Vec3> home;
+  for (std::size_t k = back ? at + 1 : at; k-- > 0;) home.push_back(way[k]);
+  return runner_.cut(home, false);
+}
+
+}  // namespace camber::copymill

@@ -1,0 +1,67 @@
+#pragma once
+// Virtual copy milling: paths made from the part itself while the tool cuts, tick by tick.
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/geometry.h"
+#include "copymill/part_check.h"
+#include "machine/copy_operations.h"
+#include "machine/job.h"
+#include "removal/stock.h"
+
+namespace camber::copymill {
+
+/// One period of the control.
+struct Tick {
+  double t_s = 0;
+  Vec3 tip_mm = Vec3::Zero();
+  double feed_mm_per_s = 0;  ///< actual
+  double load_N = 0;         ///< lateral force of the last tooth passing; 0 in air
+};
+
+struct CopyOptions {
+  /// Of lines and arcs of the program from the path.
+  double tolerance_mm = 0.002;
+  /// Called with every tick, in order; may be empty.
+  std::function<void(const Tick&)> stream{};
+  /// The tool is stopped here, wherever it is, and lifted. Not given: it goes on to the end.
+  std::optional<double> stop_after_s{};
+};
+
+/// What one operation did.
+struct OperationSummary {
+  int tool = 0;
+  machine::CopyMode mode = machine::CopyMode::contour_line;
+  double time_s = 0, cutting_s = 0;
+  double removed_mm3 = 0;
+  std::size_t levels = 0, passes = 0;
+  std::size_t ramps = 0, plunges = 0, retracts = 0;
+  /// Cutting found nothing: all that the operation may take was gone.
+  bool nothing_left = false;
+};
+
+struct CopyResult {
+  std::string text;                       ///< the NC program
+  std::unique_ptr<removal::Stock> stock;  ///< what is left
+  std::vector<OperationSummary> operations;
+  double time_s = 0;
+  std::size_t ticks = 0, blocks = 0;
+  double tick_mean_ms = 0, tick_max_ms = 0;  ///< computing time
+  double removed_mm3 = 0;
+  bool stopped = false;            ///< by CopyOptions::stop_after_s
+  LeftMaterial left;               ///< on the part where the operations' tools could touch it
+  double path_depth_um = 0;        ///< greatest, of the milling path in the part, by the exact offset surface
+  Vec3 deepest_mm = Vec3::Zero();  ///< the tip's place there
+};
+
+/// Makes the paths of the operations, in their order, and cuts the job's stock along them. Requires operations that
+/// read_copy_operations() accepted for this job. Throws InputError: [part-missing], [stl-open], [part-outside-stock],
+/// [tool-too-large], [stock-missing] ...
+CopyResult copy(const machine::Job& job, const std::vector<machine::CopyOperation>& operations,
+                const CopyOptions& options, Diagnostics& diagnostics);
+
+}  // namespace camber::copymill

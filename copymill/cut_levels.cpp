@@ -1,0 +1,164 @@
+// Level by level: loops at equal distances from the walls, or rows and the outline.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/stage.h"
+#include "copymill/level_region.h"
+#include "copymill/levels.h"
+#include "copymill/operation.h"
+
+namespace camber::copymill {
+namespace {
+
+constexpr double kMaterial_mm = 0.02;  ///< thinner material above a level is not cut again
+constexpr double kMaxGridPoints = 4e6;
+
+/// Fine enough for the smallest way between walls that counts: a twentieth of the tool.
+double grid_step_mm(const Workplace& place) {
+  const machine::CopyOperation& o = place.cut.operation;
+  const Vec2 size = place.region.max_mm() - place.region.min_mm();
+  const double fine = std::clamp(std::min(place.cut.shape.radius_mm / 20, o.radial_depth_mm / 3), 0.05, 1.0);
+  return std::max(fine, std::sqrt((size.x() + 2) * (size.y() + 2) / kMaxGridPoints));
+}
+
+Levels levels_of(const Workplace& place, const SampledTips& tips) {
+  const machine::CopyOperation& o = place.cut.operation;
+  const Vec2 reach = Vec2::Constant(place.cut.shape.radius_mm);
+  double top = place.standing.highest_mm(place.region.min_mm() - reach, place.region.max_mm() + reach);
+  double bottom = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < tips.lowest_mm.size(); ++k)
+    if (tips.in_region[k]) bottom = std::min(bottom, tips.lowest_mm[k]);
+  bottom = std::max(bottom, place.stock_bottom_mm);
+  if (o.region.z_mm) bottom = std::max(bottom, (*o.region.z_mm)[0]), top = std::min(top, (*o.region.z_mm)[1]);
+  const double least_mm2 = place.cut.shape.radius_mm * place.cut.shape.radius_mm;
+  std::vector<double> floors = level_floors(place.part, place.region, least_mm2);
+  for (double& f : floors) f += o.allowance_mm;
+  return {top, bottom, std::move(floors)};
+}
+
+/// Loops of a component from the inside out where walls bound it; from the outside in where nothing does.
+std::vector<double> loop_distances(const LevelRegion& region, int component, double radial_mm) {
+  std::vector<double> out;
+  const double depth = region.depth_mm(component);
+  const double innermost = depth - std::min(0.5 * radial_mm, 0.25 * depth);
+  const int n = std::max(0, static_cast<int>(std::ceil(innermost / radial_mm - 1e-6)));
+  for (int k = n; k >= 0; --k) out.push_back(n > 0 ? innermost * k / n : 0);
+  if (!region.walled()) std::ranges::reverse(out);
+  return out;
+}
+
+class LevelCutter {
+ public:
+  LevelCutter(const Workplace& place, Approach& approach) : place_(place), approach_(approach) {}
+
+  Runner::Ended cut(const LevelRegion& region) {
+    for (int c = 0; c < region.components(); ++c) {
+      const bool loops = place_.cut.operation.mode == machine::CopyMode::contour_line;
+      const Runner::Ended ended = loops ? cut_loops(region, c) : cut_rows(region, c);
+      if (ended == Runner::Ended::stopped) return ended;
+    }
+    return Runner::Ended::done;
+  }
+
+ private:
+  Runner::Ended cut_loops(const LevelRegion& region, int component) {
+    const double radial = place_.cut.operation.radial_depth_mm;
+    for (const double d : loop_distances(region, component, radial))
+      if (cut_at(region, component, d) == Runner::Ended::stopped) return Runner::Ended::stopped;
+    return Runner::Ended::done;
+  }
+
+  /// The loops at one distance, the nearest first.
+  Runner::Ended cut_at(const LevelRegion& region, int component, double distance) {
+    std::vector<Pass> passes;
+    const bool climb = place_.cut.operation.sense != machine::MillingSense::conventional;
+    for (FlatPass& loop : region.loops(distance)) {
+      if (region.component_of(loop.points.front()) != component) continue;
+      // The region is on a loop's left; climb milling has what is still to be cut on its right.
+      const bool turn = region.walled() != climb;
+      passes.push_back(at_height(turn ? reversed(std::move(loop)) : std::move(loop), region.z_mm()));
+    }
+    return cut_nearest_first(std::move(passes), false);
+  }
+
+  Runner::Ended cut_nearest_first(std::vector<Pass> passes, bool may_turn) {
+    while (!passes.empty()) {
+      std::size_t best = 0;
+      bool turned = false;
+      double nearest = std::numeric_limits<double>::infinity();
+      const Vec3 here = place_.runner.at().value_or(passes.front().points.front());
+      for (std::size_t k = 0; k < passes.size(); ++k) {
+        Pass& p = passes[k];
+        start_near(p, here);
+        const double front = (p.points.front() - here).norm(), back = (p.points.back() - here).norm();
+        if (front < nearest) nearest = front, best = k, turned = false;
+        if (may_turn && !p.closed && back < nearest) nearest = back, best = k, turned = true;
+      }
+      Pass pass = std::move(passes[best]);
+      passes.erase(passes.begin() + static_cast<std::ptrdiff_t>(best));
+      if (approach_.follow(turned ? reversed(std::move(pass)) : pass) == Runner::Ended::stopped)
+        return Runner::Ended::stopped;
+    }
+    return Runner::Ended::done;
+  }
+
+  /// Rows across a component, to and fro or one way, then its outline, which takes what the rows' ends leave.
+  Runner::Ended cut_rows(const LevelRegion& region, int component) {
+    const machine::CopyOperation& o = place_.cut.operation;
+    const Vec2 along(std::cos(o.angle_rad), std::sin(o.angle_rad)), across(-along.y(), along.x());
+    double u0 = 1e300, u1 = -1e300, v0 = 1e300, v1 = -1e300;
+    for (const Outline& loop : region.outline())
+      for (const Vec2& p : loop) {
+        if (region.component_of(p) != component) continue;
+        u0 = std::min(u0, p.dot(along)), u1 = std::max(u1, p.dot(along));
+        v0 = std::min(v0, p.dot(across)), v1 = std::max(v1, p.dot(across));
+      }
+    if (u1 < u0) return Runner::Ended::done;
+    constexpr double kInside_mm = 0.001;  // rows on the outline itself are the outline's
+    const int n = std::max(1, static_cast<int>(std::ceil((v1 - v0 - 2 * kInside_mm) / o.radial_depth_mm - 1e-6)));
+    std::vector<Pass> waiting;
+    for (int k = 0; k <= n; ++k) {
+      const double v = v0 + kInside_mm + (v1 - v0 - 2 * kInside_mm) * k / n;
+      std::vector<FlatPass> row = region.stretches(u0 * along + v * across, u1 * along + v * across);
+      std::erase_if(row, [&](const FlatPass& s) { return region.component_of(s.points.front()) != component; });
+      // Up milling goes along, as what is still to be cut is on the left.
+      std::vector<Pass> passes;
+      for (FlatPass& s : row)
+        passes.push_back(
+            at_height(o.sense == machine::MillingSense::climb ? reversed(std::move(s)) : std::move(s), region.z_mm()));
+      if (cut_nearest_first(std::move(passes), o.sense == machine::MillingSense::both) == Runner::Ended::stopped)
+        return Runner::Ended::stopped;
+    }
+    return region.walled() ? cut_at(region, component, 0) : Runner::Ended::done;
+  }
+
+  const Workplace& place_;
+  Approach& approach_;
+};
+
+}  // namespace
+
+bool cut_levels(const Workplace& place) {
+  const machine::CopyOperation& o = place.cut.operation;
+  const SampledTips tips(place.field, place.region, grid_step_mm(place));
+  const Levels levels = levels_of(place, tips);
+  Approach approach(place.cut, place.field, place.standing, place.runner,
+                    {.more_than_mm = kMaterial_mm, .link_mm = 2.1 * o.radial_depth_mm});
+  LevelCutter cutter(place, approach);
+  bool placed = false, any_level = false;
+  Stage stage("copying by levels", 1000);
+  double level = 0;
+  for (double above = levels.top_mm(); levels.next(above, o.axial_depth_mm, level); above = level) {
+    any_level = true;
+    const LevelRegion region(tips, level);
+    placed = placed || !region.empty();
+    ++place.runner.summary().levels;
+    if (cutter.cut(region) == Runner::Ended::stopped) return true;
+    stage.advance(
+        static_cast<std::size_t>(1000 * (above - level) / std::max(1e-9, levels.top_mm() - place.stock_bottom_mm)));
+  }
+  return placed || !any_level;
+}
+
+}  // namespace camber::copymill

@@ -1,0 +1,55 @@
+// Finishing rows on the part's surface.
+#include <cmath>
+
+#include "copymill/operation.h"
+#include "repath/raster.h"
+
+namespace camber::copymill {
+namespace {
+
+constexpr double kFinishMaterial_mm = 0.005;
+
+/// The parts of a chain inside the region and its heights.
+std::vector<Pass> clipped(const std::vector<Vec3>& chain, const Workplace& place) {
+  const auto& z = place.cut.operation.region.z_mm;
+  const bool polygon = !place.cut.operation.region.polygon_mm.empty();
+  std::vector<Pass> out;
+  bool going = false;
+  for (const Vec3& p : chain) {
+    const bool in = (!z || (p.z() >= (*z)[0] - 1e-9 && p.z() <= (*z)[1] + 1e-9)) &&
+                    (!polygon || place.region.contains(p.head<2>()));
+    if (in && !going) out.emplace_back();
+    if (in) out.back().points.push_back(p);
+    going = in;
+  }
+  std::erase_if(out, [](const Pass& p) { return p.points.size() < 2; });
+  return out;
+}
+
+}  // namespace
+
+bool cut_scallops(const Workplace& place) {
+  const machine::CopyOperation& o = place.cut.operation;
+  const repath::DropCutter& drop = place.field.drop();
+  repath::RasterOptions options;
+  options.boundary = {place.region.min_mm().cwiseMax(drop.min_mm().head<2>()),
+                      place.region.max_mm().cwiseMin(drop.max_mm().head<2>())};
+  if ((options.boundary.min.array() >= options.boundary.max.array()).any()) return false;
+  options.direction_rad = o.angle_rad;
+  options.scallop_mm = o.scallop_mm;
+  options.tolerance_mm = 0.004;
+  const repath::Raster raster = repath::make_raster(drop, options);
+  Approach approach(place.cut, place.field, place.standing, place.runner, {.more_than_mm = kFinishMaterial_mm});
+  bool any = false;
+  for (const auto& chain : raster.chains) {
+    std::vector<Vec3> points = repath::points_of(drop, chain, options);
+    for (Vec3& p : points) p.z() += place.field.allowance_mm();
+    for (const Pass& pass : clipped(points, place)) {
+      any = true;
+      if (approach.follow(pass) == Runner::Ended::stopped) return true;
+    }
+  }
+  return any;
+}
+
+}  // namespace camber::copymill

@@ -1,0 +1,43 @@
+// Centre drilling, pecks, reaming.
+#include "copymill/operation.h"
+
+namespace camber::copymill {
+namespace {
+
+constexpr double kClearance_mm = 1;      ///< above material; feed begins here
+constexpr double kBackToDepth_mm = 0.5;  ///< a peck begins so far above the last one's bottom
+
+Runner::Ended drill(const Cut& cut, const Standing& standing, Runner& runner, const Vec2& at) {
+  const machine::CopyOperation& o = cut.operation;
+  const auto [bottom, top] = *o.region.z_mm;
+  const double begin = std::max(top, standing.highest_under_mm(at, cut.shape.radius_mm)) + kClearance_mm;
+  const Vec3 above(at.x(), at.y(), runner.safe_z_mm());
+  const auto to = [&](double z) { return Vec3(at.x(), at.y(), z); };
+  if (runner.rapid(above) == Runner::Ended::stopped || runner.rapid(to(begin)) == Runner::Ended::stopped)
+    return Runner::Ended::stopped;
+  double depth = top;
+  while (depth > bottom) {
+    depth = o.cycle == machine::HoleCycle::peck ? std::max(bottom, depth - o.axial_depth_mm) : bottom;
+    if (runner.cut({to(depth)}, false) == Runner::Ended::stopped) break;
+    if (depth <= bottom) break;
+    if (runner.rapid(to(begin)) == Runner::Ended::stopped) break;
+    const double down = depth + kBackToDepth_mm;
+    if (down < begin && runner.rapid(to(down)) == Runner::Ended::stopped) break;
+  }
+  if (o.cycle == machine::HoleCycle::ream && !runner.stopped()) runner.cut({to(begin)}, false);
+  return runner.rapid(above);
+}
+
+}  // namespace
+
+void drill_holes(const Cut& cut, const Standing& standing, Runner& runner) {
+  const machine::CopyOperation& o = cut.operation;
+  std::vector<Vec2> holes = o.holes_mm;
+  if (holes.empty()) holes.push_back(0.5 * ((*o.region.box_mm)[0] + (*o.region.box_mm)[1]));
+  for (const Vec2& hole : holes) {
+    ++runner.summary().passes;
+    if (drill(cut, standing, runner, hole) == Runner::Ended::stopped) return;
+  }
+}
+
+}  // namespace camber::copymill

@@ -1,0 +1,129 @@
+#include "copymill/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camber::copymill {
+namespace {
+
+constexpr double kAlongShare = 0.5, kArcShare = 0.7, kCornerShare = 0.45;  // of the acceleration
+constexpr double kFastest = 2000, kQuickest = 20000;                       // mm/s, mm/s^2, of machines without limits
+constexpr double kUnlimited = 1e9;
+constexpr double kStuck_mm = 1e-7;
+constexpr std::size_t kLongestWindow = 50;
+
+/// Along a direction, from limits of the axes.
+double along(const Vec3& limits, const Vec3& direction) {
+  double out = kUnlimited;
+  for (int a = 0; a < 3; ++a)
+    if (std::abs(direction[a]) > 1e-9) out = std::min(out, limits[a] / std::abs(direction[a]));
+  return out;
+}
+
+}  // namespace
+
+Motion::Motion(const machine::Machine& machine) : period_s_(machine.control.period_s) {
+  for (int a = 0; a < 3; ++a) {
+    const machine::Axis& axis = machine.axis[static_cast<std::size_t>(a)];
+    velocity_limit_[a] = std::min({axis.max_velocity_mm_per_s, axis.max_feed_mm_per_s, kFastest});
+    rapid_limit_[a] = std::min({axis.max_velocity_mm_per_s, axis.rapid_mm_per_s, kFastest});
+    acceleration_limit_[a] = std::min({axis.acceleration_mm_per_s2, axis.rapid_acceleration_mm_per_s2, kQuickest});
+  }
+  // A change of velocity dv over the time T takes the tip dv T / 8 off the corner.
+  const double time = std::sqrt(8 * kSmoothing_mm / (kCornerShare * acceleration_limit_.maxCoeff()));
+  window_.resize(std::clamp<std::size_t>(static_cast<std::size_t>(time / period_s_), 1, kLongestWindow));
+  settled_ = window_.size();
+}
+
+void Motion::place(const Vec3& tip) {
+  ideal_ = tip_ = tip;
+  std::ranges::fill(window_, tip);
+  settled_ = window_.size();
+  speed_ = 0;
+  path_.clear();
+  piece_ = 0;
+}
+
+double Motion::corner_speed(const PathPiece& before, const PathPiece& behind) const {
+  const Vec3 turn = behind.direction(0) - before.direction(before.length_mm);
+  return along(kCornerShare * smoothing_s() * acceleration_limit_, turn);
+}
+
+void Motion::plan() {
+  const std::size_t n = path_.size();
+  from_mm_.assign(n + 1, 0);
+  entry_.assign(n + 1, 0);
+  within_.assign(n, 0);
+  acceleration_ = kQuickest;
+  for (std::size_t k = 0; k < n; ++k) {
+    const PathPiece& p = path_[k];
+    from_mm_[k + 1] = from_mm_[k] + p.length_mm;
+    const Vec3& most = rapid_ ? rapid_limit_ : velocity_limit_;
+    if (p.arc) {
+      const double a = acceleration_limit_.head<2>().minCoeff();
+      within_[k] = std::min(most.head<2>().minCoeff(), std::sqrt(kArcShare * a * p.radius_mm()));
+      acceleration_ = std::min(acceleration_, a);
+    } else {
+      within_[k] = along(most, p.direction(0));
+      acceleration_ = std::min(acceleration_, along(acceleration_limit_, p.direction(0)));
+    }
+    if (k > 0) entry_[k] = std::min({within_[k - 1], within_[k], corner_speed(path_[k - 1], p)});
+  }
+  acceleration_ *= kAlongShare;
+}
+
+void Motion::start(std::vector<PathPiece> path, bool rapid) {
+  path_ = std::move(path);
+  std::erase_if(path_, [](const PathPiece& p) { return p.length_mm <= 0; });
+  rapid_ = rapid;
+  piece_ = 0;
+  along_ = speed_ = 0;
+  settled_ = 0;
+  plan();
+}
+
+void Motion::advance(double mm) {
+  along_ += mm;
+  while (!done() && along_ >= path_[piece_].length_mm - 1e-9) {
+    ideal_ = path_[piece_].to;
+    along_ = std::max(0.0, along_ - path_[piece_].length_mm);
+    if (++piece_ == path_.size()) speed_ = 0, along_ = 0;
+  }
+  if (!done()) ideal_ = path_[piece_].at(along_);
+}
+
+void Motion::tick(double wanted, const SpeedLimit& further) {
+  if (!done()) {
+    const double here = from_mm_[piece_] + along_;
+    const double horizon = here + stopping_mm() + 2 * (speed_ + acceleration_ * period_s_) * period_s_;
+    limits_.clear();
+    for (std::size_t k = piece_ + 1; k < entry_.size(); ++k) {
+      limits_.push_back({from_mm_[k] - here, entry_[k]});
+      if (from_mm_[k] > horizon) break;
+    }
+    if (further.speed_mm_per_s < kUnlimited) limits_.push_back(further);
+    const TickMotion moved = next_tick(speed_, std::min(wanted, within_[piece_]), limits_, acceleration_, period_s_);
+    speed_ = moved.speed_mm_per_s;
+    // Closer to a limit than a tick's resolution: the next piece.
+    const bool stuck = wanted > 0 && speed_ <= 0 && moved.distance_mm < kStuck_mm;
+    advance(stuck ? std::min(path_[piece_].length_mm - along_, acceleration_ * period_s_ * period_s_)
+                  : std::min(from_mm_.back() - here, moved.distance_mm));
+  }
+  settled_ = done() || speed_ <= 0 ? settled_ + 1 : 0;
+  window_[window_at_] = ideal_;
+  window_at_ = (window_at_ + 1) % window_.size();
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : window_) sum += p;
+  tip_ = sum / static_cast<double>(window_.size());
+}
+
+Motion::Ahead Motion::ahead(double distance) const {
+  std::size_t k = piece_;
+  double at = along_ + distance;
+  while (k < path_.size() && at > path_[k].length_mm) at -= path_[k++].length_mm;
+  if (k < path_.size()) return {path_[k].at(at), path_[k].direction(at)};
+  if (path_.empty()) return {ideal_, Vec3(0, 0, -1)};
+  return {path_.back().to, path_.back().direction(path_.back().length_mm)};
+}
+
+}  // namespace camber::copymill

@@ -1,0 +1,33 @@
+#pragma once
+// The modes of copy milling: each makes its passes from the part and what stands, and cuts them.
+#include "base/stl.h"
+#include "copymill/approach.h"
+#include "copymill/region.h"
+#include "copymill/runner.h"
+#include "copymill/standing.h"
+#include "copymill/tip_field.h"
+
+namespace camber::copymill {
+
+/// What an operation works on.
+struct Workplace {
+  const TriangleMesh& part;
+  const Cut& cut;
+  const TipField& field;
+  const AxisRegion& region;
+  Standing& standing;
+  Runner& runner;
+  double stock_bottom_mm = 0;
+};
+
+/// Roughing and finishing by levels, with loops or rows. Returns false where the tool's axis has no place in the region
+/// at any level although material stands there.
+bool cut_levels(const Workplace& place);
+
+/// Finishing on the part's surface by rows whose scallops have the height asked for. False as above.
+bool cut_scallops(const Workplace& place);
+
+/// Holes, where they are asked for: the part is not looked at.
+void drill_holes(const Cut& cut, const Standing& standing, Runner& runner);
+
+}  // namespace camber::copymill

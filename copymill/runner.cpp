@@ -1,0 +1,165 @@
+#include "copymill/runner.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "feedmodel/control_options.h"
+#include "removal/engagement.h"
+
+namespace camber::copymill {
+namespace {
+
+constexpr std::size_t kStampsAtATime = 2000;
+constexpr double kNoLimit_mm_per_s = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+Runner::Runner(const machine::Job& job, const CopyOptions& options, removal::Stock& stock)
+    : job_(job),
+      options_(options),
+      stock_(stock),
+      motion_(job.machine),
+      writer_(feedmodel::dialect_of(job.machine.control.kind), 3),
+      piece_options_{.tolerance_mm = options.tolerance_mm} {}
+
+void Runner::begin(const Cut& cut, Standing& standing, double safe_z, PathDepth* depth) {
+  cut_.emplace(cut);
+  standing_ = &standing;
+  depth_ = depth;
+  safe_z_ = rounded({0, 0, safe_z + 0.5 * piece_options_.increment_mm}, piece_options_.increment_mm).z();
+  summary_ = {.tool = cut.operation.tool, .mode = cut.operation.mode};
+  at_.reset();
+  writer_.begin(cut.operation, cut.tool, safe_z_);
+}
+
+void Runner::end() {
+  carve();
+  cut_.reset();
+}
+
+Runner::Ended Runner::rapid(const Vec3& to) {
+  const Vec3 target = rounded(to, piece_options_.increment_mm);
+  if (!at_) {  // the first place of a tool: nothing is known of the way there
+    at_ = target;
+    motion_.place(target);
+    writer_.rapid({target.x(), target.y(), safe_z_});
+    if (target.z() != safe_z_) writer_.rapid(target);
+    return stopped_ ? Ended::stopped : Ended::done;
+  }
+  if ((target - *at_).norm() <= 0) return stopped_ ? Ended::stopped : Ended::done;
+  return run({line_piece(*at_, target)}, true, 1);
+}
+
+Runner::Ended Runner::cut(const std::vector<Vec3>& points, bool closed, double feed_share) {
+  std::vector<Vec3> from_here{*at_};
+  from_here.insert(from_here.end(), points.begin(), points.end());
+  if (closed && !points.empty()) from_here.push_back(points.front());
+  std::vector<PathPiece> path = pieces_of(from_here, false, piece_options_);
+  if (path.empty()) return stopped_ ? Ended::stopped : Ended::done;
+  return run(std::move(path), false, feed_share);
+}
+
+Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_share) {
+  if (stopped_ && !rapid) return Ended::stopped;
+  motion_.start(std::move(path), rapid);
+  written_piece_ = 0, written_mm_ = 0;
+  if (rapid) first_stamp_ = true;
+  last_lowered_ = *at_;
+  const double begin_s = t_s_;
+  while (!motion_.finished() && !(stopped_ && !rapid && motion_.at_rest())) tick(rapid, feed_share);
+  const Vec3 end = motion_.piece() < motion_.path().size() ? rounded(motion_.tip(), piece_options_.increment_mm)
+                                                           : motion_.path().back().to;
+  if (!rapid) {
+    write_to(motion_.piece(), motion_.along_piece_mm(), feed_share * cut_->operation.feed_mm_per_s);
+    standing_->cut(cut_->shape, last_lowered_, end);
+    stamp_at(t_s_, end);
+    summary_.cutting_s += t_s_ - begin_s;
+  } else {
+    writer_.rapid(end);
+  }
+  at_ = end;
+  summary_.time_s += t_s_ - begin_s;
+  return stopped_ ? Ended::stopped : Ended::done;
+}
+
+void Runner::tick(bool rapid, double feed_share) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Vec3 before = motion_.tip();
+  if (options_.stop_after_s && t_s_ >= *options_.stop_after_s) stopped_ = true;
+  const double feed = rapid ? kNoLimit_mm_per_s : feed_share * cut_->operation.feed_mm_per_s;
+  motion_.tick(stopped_ && !rapid ? 0 : feed, {.distance_mm = 0, .speed_mm_per_s = kNoLimit_mm_per_s});
+  t_s_ += motion_.period_s();
+  if (!rapid) {
+    stamp_until(t_s_, before, motion_.tip());
+    lower_standing(motion_.tip());
+  }
+  ++ticks_;
+  if (options_.stream) options_.stream({t_s_, motion_.tip(), (motion_.tip() - before).norm() / motion_.period_s(), 0});
+  const auto took = std::chrono::steady_clock::now() - begin;
+  tick_time_ += took;
+  longest_tick_ = std::max<std::chrono::nanoseconds>(longest_tick_, took);
+  if (depth_ && !rapid) depth_->add(motion_.tip());
+}
+
+void Runner::stamp_until(double t_s, const Vec3& before, const Vec3& now) {
+  const double passing_s = 60 / (cut_->operation.spindle_rpm * cut_->tool.flutes);
+  if (first_stamp_) next_passing_s_ = t_s - motion_.period_s(), last_stamp_ = before;
+  for (; next_passing_s_ <= t_s; next_passing_s_ += passing_s) {
+    const double share = 1 - (t_s - next_passing_s_) / motion_.period_s();
+    stamp_at(next_passing_s_, before + share * (now - before));
+  }
+  if (stamps_.size() >= kStampsAtATime) carve();
+}
+
+void Runner::stamp_at(double t_s, const Vec3& tip) {
+  removal::Stamp stamp;
+  stamp.t_s = t_s;
+  stamp.pose.tip_mm = tip;
+  stamp.feed_per_tooth_mm = tip - last_stamp_;
+  stamp.first = first_stamp_;
+  if (!first_stamp_ && stamp.feed_per_tooth_mm.norm() <= 0) return;
+  last_stamp_ = tip;
+  first_stamp_ = false;
+  stamps_.push_back(stamp);
+}
+
+void Runner::lower_standing(const Vec3& tip) {
+  const double step = std::max(standing_->cell_mm(), cut_->shape.radius_mm / 16);
+  if ((tip - last_lowered_).norm() < step) return;
+  standing_->cut(cut_->shape, last_lowered_, tip);
+  last_lowered_ = tip;
+}
+
+void Runner::write_to(std::size_t piece, double along, double feed) {
+  const std::vector<PathPiece>& path = motion_.path();
+  for (; written_piece_ < piece; ++written_piece_, written_mm_ = 0)
+    writer_.cut(part_of(path[written_piece_], written_mm_, path[written_piece_].length_mm, piece_options_.increment_mm),
+                feed);
+  if (piece < path.size() && along > written_mm_) {
+    writer_.cut(part_of(path[piece], written_mm_, along, piece_options_.increment_mm), feed);
+    written_mm_ = along;
+  }
+}
+
+void Runner::carve() {
+  if (stamps_.empty()) return;
+  const double removed = removal::sweep(stock_, cut_->shape, stamps_, {.first_id = first_id_});
+  first_id_ += static_cast<std::int32_t>(stamps_.size());
+  summary_.removed_mm3 += removed;
+  removed_mm3_ += removed;
+  stamps_.clear();
+}
+
+void Runner::finish(CopyResult& result) {
+  result.text = writer_.finish();
+  result.blocks = writer_.blocks();
+  result.time_s = t_s_;
+  result.ticks = ticks_;
+  const double per_ms = 1e-6;
+  if (ticks_ > 0) result.tick_mean_ms = per_ms * static_cast<double>(tick_time_.count()) / static_cast<double>(ticks_);
+  result.tick_max_ms = per_ms * static_cast<double>(longest_tick_.count());
+  result.removed_mm3 = removed_mm3_;
+  result.stopped = stopped_;
+}
+
+}  // namespace camber::copymill

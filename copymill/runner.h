@@ -1,0 +1,90 @@
+#pragma once
+// Runs the tool along passes: ticks, tooth passings, loads, the stock, and the program that says the same.
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "copymill/copy.h"
+#include "copymill/motion.h"
+#include "copymill/part_check.h"
+#include "copymill/program_writer.h"
+#include "copymill/standing.h"
+#include "removal/cutter.h"
+#include "removal/tool_path.h"
+
+namespace camber::copymill {
+
+/// One operation with its tool.
+struct Cut {
+  const machine::CopyOperation& operation;
+  const machine::Tool& tool;
+  removal::CutterShape shape;
+};
+
+class Runner {
+ public:
+  enum class Ended { done, stopped };
+
+  Runner(const machine::Job& job, const CopyOptions& options, removal::Stock& stock);
+
+  /// The tool of an operation stands at the safe height from here on.
+  /// `depth`: judges the path; none for holes.
+  void begin(const Cut& cut, Standing& standing, double safe_z_mm, PathDepth* depth);
+  /// Writes what was cut to the stock.
+  void end();
+
+  /// Straight, in rapid, through air.
+  Ended rapid(const Vec3& to);
+  /// Along points from where the tool is, at a share of the feed. Nothing is done where it is there already.
+  Ended cut(const std::vector<Vec3>& points, bool closed, double feed_share = 1);
+
+  /// Not given at the start of an operation.
+  const std::optional<Vec3>& at() const { return at_; }
+  double safe_z_mm() const { return safe_z_; }
+  bool stopped() const { return stopped_; }
+
+  OperationSummary& summary() { return summary_; }
+  /// What concerns the whole run; the text is complete. Call once.
+  void finish(CopyResult& result);
+
+ private:
+  Ended run(std::vector<PathPiece> path, bool rapid, double feed_share);
+  void tick(bool rapid, double feed_share);
+  void stamp_until(double t_s, const Vec3& before, const Vec3& now);
+  void stamp_at(double t_s, const Vec3& tip);
+  void lower_standing(const Vec3& tip);
+  /// Writes the path up to where the motion is.
+  void write_to(std::size_t piece, double along_mm, double feed_mm_per_s);
+  void carve();
+
+  const machine::Job& job_;
+  const CopyOptions& options_;
+  removal::Stock& stock_;
+  Motion motion_;
+  ProgramWriter writer_;
+  PieceOptions piece_options_;
+  std::optional<Cut> cut_;
+  Standing* standing_ = nullptr;
+  PathDepth* depth_ = nullptr;
+  OperationSummary summary_;
+  std::optional<Vec3> at_;
+  double safe_z_ = 0;
+  double t_s_ = 0;
+  std::size_t ticks_ = 0;
+  std::chrono::nanoseconds tick_time_{0}, longest_tick_{0};
+  bool stopped_ = false;
+
+  // Since the last write.
+  std::size_t written_piece_ = 0;
+  double written_mm_ = 0;
+
+  std::vector<removal::Stamp> stamps_;
+  std::int32_t first_id_ = 0;
+  double next_passing_s_ = 0;
+  bool first_stamp_ = true;
+  Vec3 last_stamp_ = Vec3::Zero(), last_lowered_ = Vec3::Zero();
+  double removed_mm3_ = 0;
+};
+
+}  // namespace camber::copymill

@@ -1,0 +1,49 @@
+#pragma once
+// What still stands: the highest material in each cell, as the planner sees the stock.
+#include <vector>
+
+#include "base/geometry.h"
+#include "copymill/grid.h"
+#include "copymill/pass.h"
+#include "removal/cutter.h"
+#include "removal/stock.h"
+
+namespace camber::copymill {
+
+/// The stock as seen from above, a height a cell (taken at the cell's middle). Serves plans only: where a pass meets
+/// material, how high the tool must be lifted. Loads and the result come from the stock itself.
+class Standing {
+ public:
+  static constexpr double kAir = -1e30;
+
+  /// Reads the stock, column by column, down to `floor_mm`: below, all cells end there.
+  Standing(const removal::Stock& stock, double cell_mm, double floor_mm);
+
+  /// The cutter passes from one place to another.
+  void cut(const removal::CutterShape& shape, const Vec3& from, const Vec3& to);
+  /// Whether the cutter, its tip there, meets material by more than `more_than_mm` of height.
+  bool meets(const removal::CutterShape& shape, const Vec3& tip, double more_than_mm) const;
+  /// Highest material in a rectangle; kAir where there is none.
+  double highest_mm(const Vec2& min, const Vec2& max) const;
+  /// Highest material under a disc.
+  double highest_under_mm(const Vec2& axis, double radius_mm) const;
+  double at(const Vec2& p) const;
+  double top_mm() const { return top_; }  ///< of all, when it was read
+  double cell_mm() const { return grid_.step_mm; }
+  const Grid& grid() const { return grid_; }
+
+ private:
+  template <class Visit>
+  void visit(const Vec2& axis, double radius_mm, Visit visit) const;
+
+  Grid grid_;
+  std::vector<float> top_of_cell_;
+  double top_ = kAir;
+};
+
+/// The stretches of a pass that meet material, `lead_mm` longer at either end; shorter gaps than `join_mm` between them
+/// are passed through. A pass that meets material everywhere stays as it is.
+std::vector<Pass> stretches_in_material(const Standing& standing, const removal::CutterShape& shape, const Pass& pass,
+                                        double more_than_mm, double lead_mm, double join_mm);
+
+}  // namespace camber::copymill

@@ -1,0 +1,71 @@
+#include "report/copy_summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "report/summary.h"
+
+namespace camber::report {
+
+using copymill::CopyResult;
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json operations_json(const CopyResult& r) {
+  ordered_json out = ordered_json::array();
+  for (const copymill::OperationSummary& o : r.operations)
+    out.push_back({{"tool", o.tool},
+                   {"mode", machine::word_of(o.mode)},
+                   {"time_s", o.time_s},
+                   {"cutting_s", o.cutting_s},
+                   {"removed_mm3", o.removed_mm3},
+                   {"levels", o.levels},
+                   {"passes", o.passes},
+                   {"ramps", o.ramps},
+                   {"plunges", o.plunges},
+                   {"retracts", o.retracts},
+                   {"nothing_left", o.nothing_left}});
+  return out;
+}
+
+}  // namespace
+
+std::string copy_json(const CopyResult& r, double compute_s) {
+  ordered_json j;
+  j["schema_version"] = kSchemaVersion;
+  j["time_s"] = r.time_s;
+  j["blocks"] = r.blocks;
+  j["removed_mm3"] = r.removed_mm3;
+  j["left_um"] = {{"max", r.left.max_um}, {"p95", r.left.p95_um}, {"mean", r.left.mean_um}};
+  j["gouge_um"] = r.path_depth_um;
+  j["stock_gouge_um"] = r.left.gouge_um;
+  j["reached_mm2"] = r.left.reached_mm2;
+  j["unreached_mm2"] = r.left.unreached_mm2;
+  j["ticks"] = r.ticks;
+  j["tick_ms"] = {{"mean", r.tick_mean_ms}, {"max", r.tick_max_ms}};
+  j["stopped"] = r.stopped;
+  j["operations"] = operations_json(r);
+  j["compute_s"] = compute_s;
+  return j.dump(2) + "\n";
+}
+
+std::string copy_text(const CopyResult& r, double compute_s) {
+  std::string out = fmt::format("{:>4}  {:<14}{:>10}{:>12}{:>14}{:>8}{:>8}{:>7}{:>10}\n", "tool", "mode", "time, s",
+                                "cutting, s", "removed, mm3", "levels", "passes", "ramps", "retracts");
+  for (const copymill::OperationSummary& o : r.operations) {
+    out += fmt::format("{:>4}  {:<14}{:>10.1f}{:>12.1f}{:>14.1f}{:>8}{:>8}{:>7}{:>10}\n", fmt::format("T{}", o.tool),
+                       machine::word_of(o.mode), o.time_s, o.cutting_s, o.removed_mm3, o.levels, o.passes, o.ramps,
+                       o.retracts);
+    if (o.nothing_left) out += "      nothing was left for this operation\n";
+  }
+  out += fmt::format("time {:.1f} s, {} blocks, {:.1f} mm3 removed{}\n", r.time_s, r.blocks, r.removed_mm3,
+                     r.stopped ? "; stopped before the end" : "");
+  out += fmt::format("left on the part: {:.0f} um at most, {:.0f} um p95; path into the part: {:.1f} um; ",
+                     r.left.max_um, r.left.p95_um, r.path_depth_um);
+  out += fmt::format("{:.1f} mm2 that no tool reaches\n", r.left.unreached_mm2);
+  return out + fmt::format("{} ticks, {:.4f} ms each, at most {:.3f} ms; computed in {:.1f} s\n", r.ticks,
+                           r.tick_mean_ms, r.tick_max_ms, compute_s);
+}
+
+}  // namespace camber::report

@@ -1,0 +1,15 @@
+#pragma once
+// The figures of camber copy: JSON and text for a terminal.
+#include <string>
+#include <vector>
+
+#include "copymill/copy.h"
+
+namespace camber::report {
+
+std::string copy_json(const copymill::CopyResult& result, double compute_s);
+
+/// The same for a terminal, within 100 columns.
+std::string copy_text(const copymill::CopyResult& result, double compute_s);
+
+}  // namespace camber::report

@@ -1,0 +1,39 @@
+#include "simulate/job_stock.h"
+
+#include "base/diagnostics.h"
+#include "simulate/setup_checks.h"
+
+namespace camber::simulate {
+
+removal::Stock job_stock(const machine::Job& job, double band,
+                         const std::function<void(const Vec3&, const Vec3&)>& about_to) {
+  const double voxel = job.simulation.voxel_mm;
+  if (job.stock.box) {
+    const Vec3 lo = job.stock.box->min_mm, hi = job.stock.box->max_mm;
+    about_to(lo, hi);
+    return {[=](const Vec3& p) { return removal::box_distance_mm(p, lo, hi); }, lo, hi, voxel, band};
+  }
+  if (job.stock.cylinder) {
+    const machine::Cylinder c = *job.stock.cylinder;
+    const double r = c.diameter_mm / 2;
+    const Vec3 lo = c.base_mm - Vec3(r, r, 0), hi = c.base_mm + Vec3(r, r, c.height_mm);
+    about_to(lo, hi);
+    return {[=](const Vec3& p) { return removal::cylinder_distance_mm(p, c.base_mm, r, c.height_mm); }, lo, hi, voxel,
+            band};
+  }
+  if (!job.stock.vdb.empty()) {
+    removal::Stock stock = removal::Stock::load(job.stock.vdb, voxel, band);
+    about_to(stock.min_mm(), stock.max_mm());
+    return stock;
+  }
+  if (job.stock.mesh.empty())
+    fail_on_file(job.path, "has no stock; [stock] with box_mm, cylinder, mesh or vdb was expected", "stock-missing");
+  // What the stock alone needs is asked before the mesh takes its part.
+  const machine::Box box = stl_box(job.stock.mesh);
+  about_to(box.min_mm, box.max_mm);
+  // A leaf of voxels is skipped by the distance at its centre, so the mesh's band must hold a leaf's half diagonal.
+  const removal::MeshDistance mesh(job.stock.mesh, voxel, (band + 8) * voxel);
+  return {[&](const Vec3& p) { return mesh.distance_mm(p); }, mesh.min_mm(), mesh.max_mm(), voxel, band};
+}
+
+}  // namespace camber::simulate

@@ -1,0 +1,16 @@
+#pragma once
+// The stock that a job describes.
+#include <functional>
+
+#include "machine/job.h"
+#include "removal/stock.h"
+
+namespace camber::simulate {
+
+/// Box, cylinder, mesh or field of [stock], with the job's voxels; an allowance is not removed from it. `about_to` is
+/// called with the stock's corners before memory is taken for a box, a cylinder or a mesh, and after a field is read;
+/// it may throw. Throws InputError [stock-missing] and those of the readers.
+removal::Stock job_stock(const machine::Job& job, double band_voxels,
+                         const std::function<void(const Vec3& min_mm, const Vec3& max_mm)>& about_to);
+
+}  // namespace camber::simulate
