@@ -203,7 +203,8 @@ SweptSection sweep_section(const Job& job, const Programs& programs, std::size_t
                            Diagnostics& diagnostics) {
   SweptSection out;
   const SimulatedProgram& of_target = programs.of_target();
-  const removal::StampPath nominal = removal::nominal_path(of_target.moves, of_target.selected, of_target.path);
+  const removal::StampPath nominal =
+      removal::nominal_path(of_target.moves, of_target.selected, of_target.path, of_target.part_path());
   // The blank before any allowance: what lies above it is a part as any other.
   const TargetWork nothing{.allowance = [](Stock&) { return 1e300; }};
   const Blank raw = make_blank(job, of_target, diagnostics, 0, nothing);
