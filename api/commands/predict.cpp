@@ -20,6 +20,7 @@
 #include "report/report_data.h"
 #include "report/summary.h"
 #include "simulate/spindle_power.h"
+#include "simulate/travel.h"
 #include "simulate/turn.h"
 #include "simulate/verdict.h"
 
@@ -141,6 +142,7 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   std::optional<calib::TracedMotion> measured;
   const auto check = [&](const simulate::SimulatedProgram& given) {
     simulate::check_program(job, given, diagnostics);
+    if (given.rotary) simulate::check_travel(job, given, diagnostics);
     if (!request.trace.empty())
       simulate::refuse_rotary_motion(given.rotary.get(), given.text, "traces are of X, Y and Z", diagnostics);
     if (!request.folder.empty())
