@@ -20,8 +20,8 @@ struct ErrorFigures {
   double area_mm2 = 0;
 };
 
-/// A row of forces.csv: one spindle revolution or one block, whichever is shorter. Forces act on the tool, in the axes of
-/// the part, which are the machine's where nothing turns it.
+/// A row of forces.csv: one spindle revolution or one block, whichever is shorter. Forces act on the tool, in the axes
+/// of the part, which are the machine's where nothing turns it.
 struct ForceRow {
   double t_s = 0;
   double x_mm = 0, y_mm = 0, z_mm = 0;              ///< tool tip at the first tooth passing of the row
