@@ -14,5 +14,6 @@
 #include "camber/predict.h"
 #include "camber/program.h"
 #include "camber/run.h"
+#include "camber/study.h"
 #include "camber/time.h"
 #include "camber/verify.h"
