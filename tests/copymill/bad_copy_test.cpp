@@ -36,9 +36,9 @@ std::string operation(const std::string& keys) {
 
 TEST(BadCopy, DepthsOfZero) {
   EXPECT_EQ(said({.operations = operation("radial_depth_mm = 0\naxial_depth_mm = 0.0\n")}),
-            "job.toml:40:19: error: radial_depth_mm is 0; a number greater than zero was expected [value-range]\n"
+            "job.toml:33:19: error: radial_depth_mm is 0; a number greater than zero was expected [value-range]\n"
             "    radial_depth_mm = 0\n                      ^\n"
-            "job.toml:41:18: error: axial_depth_mm is 0; a number greater than zero was expected [value-range]\n"
+            "job.toml:34:18: error: axial_depth_mm is 0; a number greater than zero was expected [value-range]\n"
             "    axial_depth_mm = 0.0\n                     ^\n");
 }
 
@@ -48,14 +48,6 @@ TEST(BadCopy, MeshThatIsOpen) {
                  "endfacet\nendsolid\n"),
             "part.stl: error: the mesh is not closed: 3 of its edges have no second triangle, and the cutter could fall "
             "through; a closed one was expected [stl-open]\n");
-}
-
-TEST(BadCopy, ToolLargerThanEveryPocket) {
-  EXPECT_EQ(said({.part = "slot",
-                  .stock = "box_mm = [[0, 0, -12], [60, 30, 0]]",
-                  .operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\nallowance_mm = 2.5\n")}),
-            "job.toml:35:1: error: T1 with a diameter of 8 mm and an allowance of 2.5 mm has no place in the region; a tool "
-            "that fits between the part's walls was expected [tool-too-large]\n    [[copy]]\n    ^\n");
 }
 
 }  // namespace

@@ -22,10 +22,10 @@ using tests::SmallCopy;
 using tests::TempFolder;
 
 const std::string kRough =
-    "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 8000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
+    "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 2000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
     "axial_depth_mm = 4\nallowance_mm = 0.3\n";
 const std::string kRows =
-    "[[copy]]\ntool = 1\nmode = \"scanning-line\"\nspindle_rpm = 8000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
+    "[[copy]]\ntool = 1\nmode = \"scanning-line\"\nspindle_rpm = 2000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
     "axial_depth_mm = 4\nallowance_mm = 0.3\nangle_deg = 30\n";
 
 struct Copied {
@@ -64,7 +64,7 @@ TEST(Copy, RoughsThePocketByRowsAndItsOutline) {
 }
 
 const std::string kFinish =
-    "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 8000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
+    "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 4000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
     "axial_depth_mm = 8\n";
 
 TEST(Copy, FinishesWallsAndFloorToThePart) {
