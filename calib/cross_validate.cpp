@@ -20,7 +20,7 @@ HeldOutRun judge(const FeedRun& run, const FitFeedResult& fit) {
   held.converged = fit.converged;
   const std::vector<Part> parts = parts_of(run.program, fit.machine);
   held.accuracy = feed_accuracy(run.trace, run.program, fit.machine, parts, {});
-  held.constant_feed = constant_feed_accuracy(run.trace, run.program, parts, {});
+  held.constant_feed = constant_feed_accuracy(run.trace, run.program, fit.machine, parts, {});
   held.stop_every_block = feed_accuracy(run.trace, run.program, stopping(fit.machine), parts, {});
   for (int axis = 0; axis < 3; ++axis)
     if (run.trace.has_command[axis] && run.trace.has_actual[axis])

@@ -153,6 +153,22 @@ double motion_time(const Record& r) {
   return last > first ? static_cast<double>(last - first) * r.period_s : 0;
 }
 
+/// Time of each line at its programmed feed, by its 1-based number.
+std::vector<double> programmed_line_times_s(const nc::Interpretation& program, const machine::Machine& machine) {
+  std::vector<double> line_s;
+  if (feedmodel::has_rotary_motion(program, machine)) {
+    for (const LineFeed& line : feeds_of_lines(program, machine))
+      line_s.push_back(line.feed_per_s > 0 ? line.length / line.feed_per_s : 0.0);
+    return line_s;
+  }
+  for (const nc::Move& move : program.moves) {
+    if (move.kind != nc::MoveKind::linear && move.kind != nc::MoveKind::arc) continue;
+    if (line_s.size() <= move.block + 1) line_s.resize(move.block + 2, 0.0);
+    line_s[move.block + 1] += length_mm(program, move) / move.feed_mm_per_s;
+  }
+  return line_s;
+}
+
 }  // namespace
 
 std::vector<Part> parts_of(const nc::Interpretation& program) {
@@ -186,6 +202,7 @@ std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Mac
       last = nullptr;
       continue;
     }
+    if (line.length <= 0) continue;
     const auto meaning = line.turn->feed;
     const bool inverse = meaning == feedmodel::FeedMeaning::inverse;
     if (last && meaning == last->turn->feed && (inverse || move.feed_mm_per_s == last_f))
@@ -243,14 +260,10 @@ PartTimes part_times(const FeedAccuracy& accuracy) {
 }
 
 FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program,
-                                    const std::vector<Part>& parts, const FeedAccuracyOptions& options) {
-  const Record traced{trace.period_s, trace.command_mm, trace.actual_mm, trace.line};
-  std::vector<double> line_s;  // at the programmed feed
-  for (const nc::Move& move : program.moves) {
-    if (move.kind != nc::MoveKind::linear && move.kind != nc::MoveKind::arc) continue;
-    if (line_s.size() <= move.block + 1) line_s.resize(move.block + 2, 0.0);
-    line_s[move.block + 1] += length_mm(program, move) / move.feed_mm_per_s;
-  }
+                                    const machine::Machine& machine, const std::vector<Part>& parts,
+                                    const FeedAccuracyOptions& options) {
+  const Record traced = record_of(trace, program, machine);
+  const std::vector<double> line_s = programmed_line_times_s(program, machine);
   FeedAccuracy result;
   if (trace.line.empty()) return result;
   const auto windows = windows_of(traced, parts);

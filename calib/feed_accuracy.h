@@ -57,7 +57,8 @@ PartTimes part_times(const FeedAccuracy& accuracy);
 /// Baseline: every part at its programmed feed from its first to its last point, without the machine's lag. Times are
 /// those of the parts alone.
 FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program,
-                                    const std::vector<Part>& parts, const FeedAccuracyOptions& options);
+                                    const machine::Machine& machine, const std::vector<Part>& parts,
+                                    const FeedAccuracyOptions& options);
 
 /// Path speed of the actual axes over the fraction of path length, predicted against traced. A part begins with its
 /// first commanded sample and ends when another line is commanded (its tail, where the axes still come up

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "base/units.h"
 #include "feedmodel/control_options.h"
@@ -219,15 +220,27 @@ ProtocolProgram rapids(const machine::Machine& machine) {
   return w.finish();
 }
 
+/// The sense in which the axis may turn by this angle; 0: neither.
+int turn_sense(const machine::RotaryAxis& axis, double angle_deg) {
+  if (rad_from_deg(angle_deg) <= axis.travel_rad[1]) return 1;
+  return rad_from_deg(-angle_deg) >= axis.travel_rad[0] ? -1 : 0;
+}
+
+/// Where blocks overlap (G64 of LinuxCNC) their accelerations and the share of them that such a block has make up for
+/// each other; on the exact path every block has the whole acceleration.
 ProtocolProgram rotary(const machine::Machine& machine) {
   Writer w(machine, "rotary", "top speed, acceleration and lag of each rotary axis");
-  for (const char letter : machine.kinematics.rotary_axes()) {
-    const auto& travel_rad = machine.rotary[static_cast<std::size_t>(letter - 'a')].travel_rad;
-    for (const double angle : kTurns) {
-      const bool up = rad_from_deg(angle) <= travel_rad[1], down = rad_from_deg(-angle) >= travel_rad[0];
-      for (const double feed : kTurnFeeds)
-        if (up || down) w.turn(letter, up ? angle : -angle, feed);
-    }
+  const auto turn_all = [&](std::span<const double> feeds) {
+    for (const char letter : machine.kinematics.rotary_axes())
+      for (const double angle : kTurns)
+        for (const double feed : feeds)
+          if (const int sense = turn_sense(machine.rotary[static_cast<std::size_t>(letter - 'a')], angle))
+            w.turn(letter, sense * angle, feed);
+  };
+  turn_all(kTurnFeeds);
+  if (machine.control.kind.turning_blocks_overlap) {
+    w.line("G61");
+    turn_all(std::span(kTurnFeeds).last(1));
   }
   return w.finish();
 }

@@ -20,11 +20,11 @@ LineFeed line_feed(const nc::Interpretation& program, const machine::Machine& ma
   line.cutting = move.kind != nc::MoveKind::rapid;
   if (line.cutting)
     line.feed_per_s = feedmodel::feed_along_path(program, move, turn_rad, turns.now().g93_time_s, machine.control);
-  const double length = line.rotary_alone ? turn_deg : linear_mm;
+  line.length = line.rotary_alone ? turn_deg : linear_mm;
   for (int i = 0; i < 3; ++i)
     if (turn_rad[i] != 0)
       line.asked_deg_per_s[i] =
-          line.cutting ? std::abs(deg_from_rad(turn_rad[i])) / length * line.feed_per_s : machine::kNoLimit;
+          line.cutting ? std::abs(deg_from_rad(turn_rad[i])) / line.length * line.feed_per_s : machine::kNoLimit;
   return line;
 }
 

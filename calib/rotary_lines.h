@@ -16,6 +16,7 @@ struct LineFeed {
   bool cutting = false;
   /// Along the path, /s: mm, or degrees where only rotary axes move. 0 for rapids.
   double feed_per_s = 0;
+  double length = 0;                    ///< of the same path
   Vec3 asked_deg_per_s = Vec3::Zero();  ///< of a, b, c; infinite for those that turn in a rapid
 };
 

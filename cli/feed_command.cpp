@@ -14,6 +14,7 @@
 #include "feedmodel/timed_path.h"
 #include "machine/machine.h"
 #include "nc/program.h"
+#include "report/timed_track.h"
 
 namespace camber::cli {
 
@@ -36,7 +37,7 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   std::unique_ptr<feedmodel::FeedCsv> csv;
   if (!arguments.output.empty())
     csv = std::make_unique<feedmodel::FeedCsv>(moves, arguments.output, api::rotary_columns(moves, machine));
-  TimedTrack track(machine, moves);
+  report::TimedTrack track(machine, moves);
   const feedmodel::FeedSummary summary = api::predict_feed(
       moves, machine,
       [&](std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints) {

@@ -38,6 +38,7 @@ int run_time(const TimeArguments& arguments, const GlobalOptions& options) {
                                                      .keys = out.keys,
                                                      .rows = out.rows,
                                                      .picture = std::move(timed.picture),
+                                                     .machine = std::move(timed.machine),
                                                      .notes = out.notes}));
   return kDone;
 }

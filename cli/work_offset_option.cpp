@@ -51,7 +51,7 @@ void add_work_offsets(CLI::App& command, nc::InterpreterOptions& interpreter) {
                 interpreter.rotary_offsets_rad[offset->number] = offset->rotary_deg * rad_from_deg(1);
               }
           },
-          "machine coordinates of a work offset, mm and degrees; to check the travel of the axes")
+          "machine coordinates of a work offset, mm and degrees; for the positions of the axes")
       ->check(CLI::Validator(
           [](std::string& text) {
             return parse_work_offset(text) ? std::string()

@@ -8,10 +8,12 @@
 
 #include "base/units.h"
 #include "feedmodel/axis_places.h"
+#include "feedmodel/joint_map.h"
 #include "feedmodel/motion_times.h"
 #include "feedmodel/rapid.h"
 #include "feedmodel/spindle_start.h"
 #include "feedmodel/yan_shirase.h"
+#include "kinematics/program_joints.h"
 
 namespace camber::feedmodel {
 namespace {
@@ -40,7 +42,10 @@ class CycleClock {
         machine_(machine),
         places_(machine),
         rapid_speed_(rapid_speeds_mm_per_s(machine)),
-        rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)) {}
+        rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)) {
+    const bool clamps = std::ranges::any_of(machine.rotary, [](const machine::RotaryAxis& a) { return a.clamp_s > 0; });
+    if (clamps && has_rotary_motion(program, machine)) joints_.emplace(machine, program);
+  }
 
   CycleTime run() {
     out_.g00 = out_.g01 = DistanceHistogram(machine_.cycle.histogram_step_mm);
@@ -53,6 +58,7 @@ class CycleClock {
       work_off_events(i, motion.move_s[i]);
       use(program_.state_of(move).tool);
       add_move(move, motion.move_s[i], motion.acceleration[i]);
+      if (joints_) use(tool_).time.index_s += clamp_of_move_s(move, joints_->next());
     }
     work_off_events(program_.moves.size(), 0);
     for (CycleUse& tool : out_.tools) out_.all += tool;
@@ -123,6 +129,7 @@ class CycleClock {
           break;
         case EventKind::m_code:
           actions.codes_s += cycle.m_code_s;
+          if (joints_) actions.index_s += release_s(event.value);
           break;
         case EventKind::index:
           actions.index_s += turn_table(event);
@@ -134,6 +141,25 @@ class CycleClock {
     }
     actions.spindle_s = bring_spindle_to(turn_ * commanded_rpm_) + (orient ? machine_.spindle.orient_s : 0.0);
     return actions;
+  }
+
+  /// A code that releases axes: they are clamped again later, and both is booked here.
+  double release_s(double m_code) const {
+    double longest_s = 0;
+    for (const machine::RotaryAxis& axis : machine_.rotary)
+      if (axis.clamp_m > 0 && axis.unclamp_m == m_code) longest_s = std::max(longest_s, axis.clamp_s);
+    return longest_s;
+  }
+
+  /// Axes without such codes release and clamp themselves, together, for each positioning that turns them.
+  double clamp_of_move_s(const nc::Move& move, const kinematics::MoveJoints& now) const {
+    double longest_s = 0;
+    if (move.kind != nc::MoveKind::rapid) return 0;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const machine::RotaryAxis& axis = machine_.rotary[static_cast<std::size_t>(i)];
+      if (axis.clamp_m == 0 && now.start_rad[i] != now.end_rad[i]) longest_s = std::max(longest_s, axis.clamp_s);
+    }
+    return longest_s;
   }
 
   double bring_spindle_to(double signed_rpm) {
@@ -208,6 +234,7 @@ class CycleClock {
   const nc::Interpretation& program_;
   const machine::Machine& machine_;
   AxisPlaces places_;
+  std::optional<kinematics::ProgramJoints> joints_;  ///< of a program with rotary motion, where axes are clamped
   Vec3 rapid_speed_, rapid_acceleration_;
   CycleTime out_;
   std::size_t next_ = 0;  // event to come

@@ -11,7 +11,7 @@ namespace camber::feedmodel {
 /// Whether the program turns rotary axes of the machine's chain: only then has Segment a turn.
 bool has_rotary_motion(const nc::Interpretation& program, const machine::Machine& machine);
 
-/// Where the work offset or the tool length is not known (joints_known), the program's zero is the machine's, and tools
+/// Where the work offset or the tool length is not known, the program's zero is the machine's, and tools
 /// have the length 0.
 class JointMap {
  public:

@@ -169,6 +169,8 @@ class Builder {
       const AxisPlaces::Way way = places_.pass(move);
       if (move.kind == nc::MoveKind::dwell) {
         rest(move.dwell_s, i, move.start_mm);
+      } else if (move.reference && turning_ && move.kind == nc::MoveKind::rapid) {
+        turn_to_reference(i, way);
       } else if (move.reference || (dog_leg_ && move.kind == nc::MoveKind::rapid && !moves_together(state))) {
         position(i, way);
       } else {
@@ -233,20 +235,31 @@ class Builder {
     positioned_ = s;
   }
 
+  /// On a way to or from a reference point rotary axes turn, together with the axes whose way is known.
+  void turn_to_reference(std::size_t move, const AxisPlaces::Way& way) {
+    rest(0, move, way.from_mm);
+    previous_ = element_between(move, move + 1, way.from_mm, way.to_mm);
+    rest(0, move, way.to_mm, true, true);
+  }
+
   Element element_of(std::size_t first, std::size_t end) const {
+    return element_between(first, end, program_.moves[first].start_mm, program_.moves[end - 1].end_mm);
+  }
+
+  Element element_between(std::size_t first, std::size_t end, const Vec3& from_mm, const Vec3& to_mm) const {
     const nc::Move& move = program_.moves[first];
     const nc::Move& last = program_.moves[end - 1];
     const nc::ModalState& state = program_.state_of(move);
     Element e;
     e.line = move.arc == nc::Move::kNoArc;
     if (e.line) {
-      e.segment = line_segment(move.start_mm, last.end_mm);
+      e.segment = line_segment(from_mm, to_mm);
     } else {
       const nc::Arc& arc = program_.arcs[move.arc];
-      e.segment = arc_segment(move.start_mm, arc.center_mm, arc.normal, arc.sweep_rad,
-                              arc.normal.dot(move.end_mm - move.start_mm));
+      e.segment =
+          arc_segment(from_mm, arc.center_mm, arc.normal, arc.sweep_rad, arc.normal.dot(move.end_mm - move.start_mm));
     }
-    if (turns_) set_turn(e, move);
+    if (turns_) set_turn(e, from_mm);
     e.segment.mode = static_cast<std::uint8_t>(mode_of(machine_, state));
     e.settings = &settings_of(machine_, std::size_t{e.segment.mode});
     e.control = path_control_of(machine_, state);
@@ -260,7 +273,7 @@ class Builder {
   }
 
   /// The rotary axes along the element; where only they move, its length is in degrees.
-  void set_turn(Element& e, const nc::Move& move) const {
+  void set_turn(Element& e, const Vec3& from_mm) const {
     Segment& s = e.segment;
     if (s.length_mm < kNoLength && turning_) {
       const kinematics::MoveJoints& now = turns_->now();
@@ -269,7 +282,7 @@ class Builder {
     }
     s.turn = turns_->turn_along(s.length_mm);
     e.joint_limits = s.turn->tip_control && control_.joint_limits && s.length_mm >= kNoLength;
-    s.start_mm = move.start_mm;
+    s.start_mm = from_mm;
   }
 
   void set_limits(Element& e, const nc::Move& move) const {

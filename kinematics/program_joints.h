@@ -54,6 +54,13 @@ class ProgramJoints {
   /// known.
   std::optional<Vec3> start_mm() const { return programmed_mm(start_linear_mm_, now_.start_rad); }
   std::optional<Vec3> end_mm() const { return programmed_mm(end_linear_mm_, now_.end_rad); }
+  /// Where that move begins; NaN: not known.
+  const Vec3& start_linear_mm() const { return start_linear_mm_; }
+  /// X, Y, Z of the machine for a point in the coordinates of that move, at the angles of its end; nothing where
+  /// offsets are not known or axes are parallel.
+  std::optional<Vec3> linear_mm(const Vec3& point_mm) const {
+    return linear_of(moves_.moves[index()], point_mm, now_.end_rad);
+  }
   /// At a move of X, Y or Z in a tilted frame: angle between the tool and Z of the frame at its end, rad; else 0.
   double tilt_error_rad() const;
   const Chain& chain() const { return chain_; }
@@ -83,7 +90,8 @@ class ProgramJoints {
 };
 
 /// Gives the lines of a program the starts and ends that the machine gives them, where it is known that they differ
-/// from those programmed (ProgramJoints::start_mm). Requires machine.kinematics.given().
+/// from those programmed (ProgramJoints::start_mm). Frames stay as they are (machine_moves.h: place_moves). Requires
+/// machine.kinematics.given().
 void place_lines(nc::Interpretation& program, const machine::Machine& machine);
 
 }  // namespace camber::kinematics

@@ -38,6 +38,7 @@ class TravelCheck {
       const MoveJoints& now = joints_.next();
       const nc::Move& move = moves_.moves[joints_.index()];
       if (move.kind == nc::MoveKind::dwell) continue;
+      look_at_clamps(now, move);
       look_at_reach(now, move);
       look_at_tilt(move);
       look_at_known(now, move);
@@ -68,6 +69,30 @@ class TravelCheck {
 
   void say(Severity severity, const nc::Move& m, const char* check, std::string message) {
     diagnostics_.add(program_.source.diagnostic(severity, program_.blocks[m.block].offset, std::move(message), check));
+  }
+
+  /// Words that turn a clamped axis are errors already (nc/rotary_codes.cpp); directions and ways home are not.
+  void look_at_clamps(const MoveJoints& now, const nc::Move& m) {
+    const auto& events = moves_.events;
+    for (; next_event_ < events.size() && events[next_event_].before_move <= joints_.index(); ++next_event_) {
+      if (events[next_event_].kind != nc::EventKind::m_code) continue;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const machine::RotaryAxis& axis = machine_.rotary[i];
+        if (axis.clamp_m == 0) continue;
+        if (events[next_event_].value == axis.clamp_m) clamped_[i] = true;
+        if (events[next_event_].value == axis.unclamp_m) clamped_[i] = false;
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto index = static_cast<Eigen::Index>(i);
+      const double turn_rad = now.end_rad[index] - now.start_rad[index];
+      if (!clamped_[i] || said_clamped_[i] || std::abs(turn_rad) <= kTravelTolerance) continue;
+      said_clamped_[i] = true;
+      say(Severity::error, m, "clamped",
+          fmt::format("{} turns by {} degrees while M{} has it clamped; M{} was expected before", kLetters[3 + i],
+                      format_trimmed(deg_from_rad(turn_rad), 3), machine_.rotary[i].clamp_m,
+                      machine_.rotary[i].unclamp_m));
+    }
   }
 
   void look_at_tilt(const nc::Move& m) {
@@ -185,6 +210,8 @@ class TravelCheck {
   ProgramJoints joints_;
   std::array<std::array<double, 2>, 6> travel_{};
   std::array<Worst, 6> over_, fast_;
+  std::size_t next_event_ = 0;
+  std::array<bool, 3> clamped_{}, said_clamped_{};
   bool said_direction_ = false, said_tilt_ = false, said_unchecked_ = false;
 };
 

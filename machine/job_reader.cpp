@@ -65,6 +65,8 @@ std::optional<Cylinder> read_cylinder(TomlTable& stock) {
   return cylinder;
 }
 
+}  // namespace
+
 void read_stock(TomlTable table, const fs::path& folder, StockDescription& stock) {
   stock.box = read_box(table);
   stock.cylinder = read_cylinder(table);
@@ -83,6 +85,8 @@ void read_stock(TomlTable table, const fs::path& folder, StockDescription& stock
   if (first.empty()) table.missing("box_mm", "box_mm = [[x, y, z], [x, y, z]], cylinder, mesh or vdb");
   table.finish();
 }
+
+namespace {
 
 constexpr std::size_t kLongestPattern = 400;  // std::regex needs stack for each character
 

@@ -1,5 +1,6 @@
 #pragma once
 // Tables of a job that other readers share.
+#include <filesystem>
 #include <map>
 
 #include "machine/job.h"
@@ -9,5 +10,8 @@ namespace camber::machine {
 
 /// [tool.N] tables into `tools`. Problems go to the table's diagnostics.
 void read_tools(TomlTable table, std::map<int, Tool>& tools);
+
+/// A [stock] table; its paths count from `folder`. Problems go to the table's diagnostics.
+void read_stock(TomlTable table, const std::filesystem::path& folder, StockDescription& stock);
 
 }  // namespace camber::machine

@@ -31,16 +31,17 @@ const RotaryOption* BlockInterpreter::rotary_axis(char letter) const {
 
 /// True for an M code that clamps or releases an axis of the machine.
 bool BlockInterpreter::read_clamp(const Code& code) {
+  bool found = false;
   for (const RotaryOption& axis : options_.rotary_axes) {
     if (axis.clamp_m == 0 || (code.tenths != 10 * axis.clamp_m && code.tenths != 10 * axis.unclamp_m)) continue;
     if (code.tenths == 10 * axis.clamp_m)
       clamped_ = static_cast<std::uint8_t>(clamped_ | bit_of(axis.letter));
     else
       clamped_ = static_cast<std::uint8_t>(clamped_ & ~bit_of(axis.letter));
-    add_event(EventKind::m_code, code.word->value);
-    return true;
+    found = true;
   }
-  return false;
+  if (found) add_event(EventKind::m_code, code.word->value);
+  return found;
 }
 
 // --- tool-centre-point control
@@ -237,9 +238,8 @@ void BlockInterpreter::settle_tip() {
 
 /// What a message says of a code that turns rotary axes, on a machine without them.
 std::string BlockInterpreter::needs_kinematics(const Code& code, const char* name) const {
-  const bool frame = std::string_view(name) == "tilted frame" || std::string_view(name) == "dynamic work offset";
-  return fmt::format("{} ({}) is read by camber check{}, on a machine with [kinematics]", code_text(code), name,
-                     frame ? "" : ", feed, time and fit-feed");
+  return fmt::format("{} ({}) is read by camber check, feed, time and fit-feed, on a machine with [kinematics]",
+                     code_text(code), name);
 }
 
 /// G10 L2 A B C.

@@ -106,7 +106,7 @@ std::string cycle_page(const CyclePage& page) {
   out += tile("actual / commanded feed, e", fmt::format("{:.3f}", first.all.e())) + "</div>\n";
   ProgramCard path;
   if (!page.picture.points.empty()) path = program_card("The path" + of, page.picture);
-  out += path.card;
+  out += path.card + page.machine.pictures;
   out +=
       card("Where the time goes", wide(split_bars_svg(page.rows)) +
                                       fmt::format("<p class=\"note\">{}{}.</p>\n",
@@ -117,10 +117,12 @@ std::string cycle_page(const CyclePage& page) {
   out += card("By tool" + of, tools_table(first));
   out += card("Distances" + of,
               wide(distance_svg(first.g00, "positionings, G0") + distance_svg(first.g01, "straight cuts, G1")));
+  out += page.machine.axes;
   std::vector<std::string> notes = page.notes;
+  notes.insert(notes.end(), page.machine.notes.begin(), page.machine.notes.end());
   if (page.picture.thinned) notes.push_back(thinned_note(page.picture, "The picture of the path"));
   out += card("Notes", notes_list(notes));
-  return out + "</main>\n" + path.scripts + "</body>\n</html>\n";
+  return out + "</main>\n" + path.scripts + page.machine.scripts + "</body>\n</html>\n";
 }
 
 }  // namespace camber::report

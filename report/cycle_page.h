@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "feedmodel/cycle_time.h"
+#include "report/machine_page.h"
 #include "report/path_picture.h"
 
 namespace camber::report {
@@ -21,6 +22,7 @@ struct CyclePage {
   std::vector<std::string> keys;  ///< swept; empty: cases or a single run
   std::vector<CycleRow> rows;     ///< at least one; each with a value a key
   PathPicture picture;            ///< of the first row's program on its machine; without points: none
+  MachineCards machine;           ///< instead of it, where the program turns rotary axes of the machine
   std::vector<std::string> notes;
 };
 

@@ -181,32 +181,39 @@ TextTable axis_table(const machine::Machine& machine, std::span<const PoseSample
   return table;
 }
 
+MachineCards machine_cards(const machine::Machine& machine, std::span<const PoseSample> samples,
+                           const MachinePage& page) {
+  const std::vector<PoseSample> shown = thinned(samples, axes_of(machine), page.max_samples);
+  MachineCards out;
+  out.notes = notes_of(page, samples.size(), shown.size());
+  if (shown.empty()) {
+    out.pictures =
+        "<div class=\"card\"><p class=\"missing\">The positions of the axes are not known: the work offset, or the "
+        "length of the tool, is missing.</p></div>\n";
+    return out;
+  }
+  out.pictures = std::string(kMachineCard) + kJointsCard;
+  out.axes = table_html(axis_table(machine, samples));
+  PackedArrays arrays;
+  const json index = index_json(arrays, machine, shown, page);
+  out.scripts = fmt::format(
+      "<script type=\"application/json\" id=\"index\">{}</script>\n"
+      "<script type=\"text/plain\" id=\"arrays\">{}</script>\n<script>{}</script>\n",
+      script_safe(index.dump()), arrays.text(), kMachineScript);
+  return out;
+}
+
 std::string machine_page(const machine::Machine& machine, std::span<const PoseSample> samples,
                          const MachinePage& page) {
-  const std::vector<PoseSample> shown = thinned(samples, axes_of(machine), page.max_samples);
+  const MachineCards cards = machine_cards(machine, samples, page);
   ReportData figures;
   figures.figures = page.figures;
   std::string out = page_head(page.title, page.subtitle) + tiles_html(figures);
-  out += list_html("Warnings", "warnings", page.warnings);
-  if (shown.empty())
-    out +=
-        "<div class=\"card\"><p class=\"missing\">The positions of the axes are not known: the work offset, or the "
-        "length of the tool, is missing.</p></div>\n";
-  else
-    out += std::string(kMachineCard) + kJointsCard;
-  out += "<div class=\"columns\">\n" + figures_html(figures);
-  if (!shown.empty()) out += table_html(axis_table(machine, samples));
+  out += list_html("Warnings", "warnings", page.warnings) + cards.pictures;
+  out += "<div class=\"columns\">\n" + figures_html(figures) + cards.axes;
   for (const TextTable& table : page.tables) out += table_html(table);
-  out += list_html("Notes", "notes", notes_of(page, samples.size(), shown.size())) + "</div>\n</main>\n";
-  if (!shown.empty()) {
-    PackedArrays arrays;
-    const json index = index_json(arrays, machine, shown, page);
-    out += fmt::format(
-        "<script type=\"application/json\" id=\"index\">{}</script>\n"
-        "<script type=\"text/plain\" id=\"arrays\">{}</script>\n<script>{}</script>\n",
-        script_safe(index.dump()), arrays.text(), kMachineScript);
-  }
-  return out + "</body>\n</html>\n";
+  out += list_html("Notes", "notes", cards.notes) + "</div>\n</main>\n";
+  return out + cards.scripts + "</body>\n</html>\n";
 }
 
 void write_machine_page(const std::string& path, const machine::Machine& machine, std::span<const PoseSample> samples,

@@ -26,6 +26,17 @@ struct MachinePage {
   std::size_t max_triangles = 60000;  ///< a part of more triangles is not drawn
 };
 
+/// What a page shows of the machine.
+struct MachineCards {
+  std::string pictures;            ///< cards of machine and axes; without samples one that says so
+  std::string axes;                ///< axis_table; empty without samples
+  std::string scripts;             ///< before the end of the body
+  std::vector<std::string> notes;  ///< those of the page first
+};
+/// Of `page` only the part, the label of time and the notes count. Requires machine.kinematics.given().
+MachineCards machine_cards(const machine::Machine& machine, std::span<const kinematics::PoseSample> samples,
+                           const MachinePage& page);
+
 /// The page's text, UTF-8, self-contained. The same data give the same bytes. Without samples the page has no picture.
 /// Requires machine.kinematics.given().
 std::string machine_page(const machine::Machine& machine, std::span<const kinematics::PoseSample> samples,

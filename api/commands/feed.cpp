@@ -22,7 +22,7 @@ nc::Interpretation moves_of_feed(const nc::Program& text, const machine::Machine
   simulate::check_machine(machine, text, moves, diagnostics);
   simulate::check_spindle(text, moves, diagnostics);
   check_rotary_motion(machine, text, moves, true, diagnostics);
-  place_rotary_lines(machine, moves);
+  place_rotary_moves(machine, moves);
   if (!csv.empty()) feedmodel::check_feed_csv_size(moves, machine, csv, diagnostics);
   feedmodel::check_range(moves, text.source.name(), machine, diagnostics);
   return moves;

@@ -52,7 +52,7 @@ nc::Interpretation moves_of(const TracedProgram& traced, const machine::Machine&
     nc::Interpretation moves = nc::interpret(text, options, diagnostics);
     if (diagnostics.errors() == 0) {
       check_tip_control(start, text, moves, diagnostics);
-      place_rotary_lines(start, moves);
+      place_rotary_moves(start, moves);
     }
     return moves;
   };

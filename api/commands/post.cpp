@@ -31,7 +31,7 @@ void require_kinematics(const machine::Machine& machine) {
 
 /// What the checks say of the new program; an error in its text is ours.
 void check_new_program(const PostRequest& request, const PostedProgram& program, const nc::Interpretation& after,
-           Diagnostics& diagnostics) {
+                       Diagnostics& diagnostics) {
   const nc::Interpretation moves = at_given_blocks(after, program.posted.block_of_line);
   kinematics::check_travel(*request.machine, *request.text, moves, diagnostics);
   diagnostics.throw_if_errors();

@@ -1,5 +1,6 @@
 #include "api/commands/rotary_program.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -7,6 +8,7 @@
 
 #include "feedmodel/control_options.h"
 #include "feedmodel/joint_map.h"
+#include "kinematics/machine_moves.h"
 #include "kinematics/program_joints.h"
 #include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
@@ -20,20 +22,7 @@ class RotaryCheck {
               Diagnostics& diagnostics)
       : machine_(machine), program_(program), moves_(moves), diagnostics_(diagnostics) {}
 
-  /// Frames that turn with the tool are read by check alone.
-  void refuse_frames() {
-    for (const nc::Move& move : moves_.moves) {
-      const nc::WorkFrame frame = moves_.state_of(move).work_frame;
-      if (move.kind == nc::MoveKind::dwell || frame == nc::WorkFrame::machine) continue;
-      say(Severity::error, move, "not-read",
-          fmt::format("moves {} are read by camber check alone; tool-centre-point control or positions of the axes "
-                      "were expected",
-                      frame == nc::WorkFrame::tilted ? "in a tilted frame (G68.2)" : "under G254"));
-      return;
-    }
-  }
-
-  /// joints_count: those under tool-centre-point control; poses: poses of the tool as well.
+  /// joints_count: those under tool-centre-point control, too; poses: poses of the tool as well.
   void check_known(bool joints_count, bool poses) {
     const nc::Move* unknown = nullptr;
     for (const nc::Move& move : moves_.moves) {
@@ -41,7 +30,8 @@ class RotaryCheck {
       const nc::ModalState& state = moves_.state_of(move);
       if (moves_.machine_origin_mm && state.tool_length_mm) continue;
       if (!unknown) unknown = &move;
-      if (!joints_count || state.tip_control == nc::TipControl::off) continue;
+      const bool in_frame = state.work_frame != nc::WorkFrame::machine;
+      if (!in_frame && (!joints_count || state.tip_control == nc::TipControl::off)) continue;
       report_unknown(move, state);
       return;
     }
@@ -74,16 +64,22 @@ class RotaryCheck {
     return moves_.machine_origin_mm ? "the tool length" : "the work offset";
   }
 
+  static const char* where(const nc::ModalState& state) {
+    if (state.work_frame == nc::WorkFrame::tilted) return "in a tilted frame (G68.2)";
+    return state.work_frame == nc::WorkFrame::dynamic ? "under G254" : "under tool-centre-point control";
+  }
+
   void report_unknown(const nc::Move& move, const nc::ModalState& state) {
     if (state.tool_length_mm)
       say(Severity::error, move, "work-offset",
-          "the joints of this move under tool-centre-point control depend on the work offset, which is not known; its "
-          "value (G10 L2) was expected in the program");
+          fmt::format("the joints of this move {} depend on the work offset, which is not known; its value (G10 L2, or "
+                      "--work-offset) was expected",
+                      where(state)));
     else
       say(Severity::error, move, "tool-length",
-          fmt::format("the joints of this move under tool-centre-point control depend on the length of tool T{}, which "
-                      "is not known; --tool-length H=MM, or its value (G10 L1) in the program, was expected",
-                      state.tool));
+          fmt::format("the joints of this move {} depend on the length of tool T{}, which is not known; --tool-length "
+                      "H=MM, or its value (G10 L1) in the program, was expected",
+                      where(state), state.tool));
   }
 
   void check_limits(std::size_t i, const nc::Move& move) {
@@ -115,7 +111,6 @@ void check_rotary_motion(const machine::Machine& machine, const nc::Program& pro
                          bool poses, Diagnostics& diagnostics) {
   if (!feedmodel::has_rotary_motion(moves, machine)) return;
   RotaryCheck check(machine, program, moves, diagnostics);
-  check.refuse_frames();
   check.check_known(poses || machine.control.joint_limits, poses);
   check.check_limits();
   kinematics::check_travel(machine, program, moves, diagnostics);
@@ -125,11 +120,20 @@ void place_rotary_lines(const machine::Machine& machine, nc::Interpretation& mov
   if (feedmodel::has_rotary_motion(moves, machine)) kinematics::place_lines(moves, machine);
 }
 
+void place_rotary_moves(const machine::Machine& machine, nc::Interpretation& moves) {
+  if (feedmodel::has_rotary_motion(moves, machine)) kinematics::place_moves(moves, machine);
+}
+
+bool joints_known(const nc::Interpretation& moves) {
+  return moves.machine_origin_mm && std::ranges::all_of(moves.moves, [&](const nc::Move& move) {
+           return move.kind == nc::MoveKind::dwell || move.reference || moves.state_of(move).tool_length_mm;
+         });
+}
+
 void check_tip_control(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                        Diagnostics& diagnostics) {
   if (!feedmodel::has_rotary_motion(moves, machine)) return;
   RotaryCheck check(machine, program, moves, diagnostics);
-  check.refuse_frames();
   check.check_known(true, false);
 }
 

@@ -11,16 +11,24 @@ namespace camber::api {
 nc::InterpreterOptions rotary_interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given);
 
 /// Nothing without rotary motion. Otherwise what kinematics::check_travel says, and
-///  [tool-length], [work-offset]  error: tool-centre-point control, where its joints count (always with `poses`), needs
-///                                a length or an offset that is not known;
+///  [tool-length], [work-offset]  error: a tilted frame, G254 or tool-centre-point control where its joints count
+///  (always
+///                                with `poses`) needs a length or an offset that is not known;
 ///  [pose-unknown]                warning, with `poses`: tip and axis are reckoned with unknown values taken as 0;
 ///  [rotary-limits]               warning: an axis that turns has no speed or acceleration limit in the machine file.
 /// poses: joints and poses of the tool are asked for, not only times.
 void check_rotary_motion(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                          bool poses, Diagnostics& diagnostics);
 
-/// Lines as the machine runs them (kinematics::place_lines). Nothing without rotary motion.
+/// Lines as the machine runs them, in the frames of the program (kinematics::place_lines). Nothing without rotary
+/// motion.
 void place_rotary_lines(const machine::Machine& machine, nc::Interpretation& moves);
+
+/// Moves as the machine runs them (kinematics::place_moves). Nothing without rotary motion.
+void place_rotary_moves(const machine::Machine& machine, nc::Interpretation& moves);
+
+/// Whether positions of the axes follow from the program: work offset and tool lengths are known wherever it moves.
+bool joints_known(const nc::Interpretation& moves);
 
 /// Of these checks [tool-length] and [work-offset]: for traces, of which the tip's motion is looked at.
 void check_tip_control(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,

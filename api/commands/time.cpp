@@ -10,10 +10,12 @@
 #include "base/numbers.h"
 #include "calib/cycle_accuracy.h"
 #include "feedmodel/fitted_range.h"
+#include "feedmodel/joint_map.h"
 #include "machine/cases.h"
 #include "machine/set_number.h"
 #include "report/cycle_page.h"
 #include "report/planned_picture.h"
+#include "report/timed_track.h"
 
 namespace camber::api {
 namespace {
@@ -27,7 +29,7 @@ nc::Interpretation moves_of(const nc::Program& program, const machine::Machine& 
   nc::Interpretation moves = nc::interpret(program, options, diagnostics);
   if (diagnostics.errors() == 0) {
     check_rotary_motion(machine, program, moves, false, diagnostics);
-    place_rotary_lines(machine, moves);
+    place_rotary_moves(machine, moves);
   }
   feedmodel::check_range(moves, program.source.name(), machine, diagnostics);
   return moves;
@@ -50,11 +52,27 @@ report::CycleRow row_of(std::string name, std::vector<double> values, const nc::
 struct Timed {
   std::vector<report::CycleRow> rows{};
   report::PathPicture picture{};
+  report::MachineCards machine{};
+  bool machine_unknown = false;  ///< a program with rotary motion of which the positions of the axes are not known
 };
+
+report::MachineCards machine_of(const nc::Interpretation& moves, const machine::Machine& machine) {
+  report::MachinePage page;
+  page.time_label = "time, s";
+  page.work_origin_mm = -moves.machine_origin_mm.value_or(Vec3::Zero());
+  page.notes = {
+      "Positions are the predicted actual axes; their time is that of motion, without tool changes and other actions."};
+  return report::machine_cards(machine, report::timed_track(machine, moves), page);
+}
 
 void add_picture(Timed& timed, const TimeRequest& request, const nc::Interpretation& moves,
                  const machine::Machine& machine) {
-  if (request.picture && timed.rows.empty())
+  if (!request.picture || !timed.rows.empty()) return;
+  const bool rotary = feedmodel::has_rotary_motion(moves, machine);
+  timed.machine_unknown = rotary && !joints_known(moves);
+  if (rotary && !timed.machine_unknown)
+    timed.machine = machine_of(moves, machine);
+  else
     timed.picture = report::planned_picture(moves, machine, report::kMaxPicturePoints);
 }
 
@@ -174,7 +192,12 @@ TimedProgram time_program(const TimeRequest& request, Diagnostics& diagnostics) 
   }
   report.rows = std::move(timed.rows);
   report.notes = notes_of(report.rows);
+  if (timed.machine_unknown)
+    report.notes.emplace_back(
+        "the machine is not drawn: the work offset (G10 L2 in the program, or --work-offset) or the tool length "
+        "(--tool-length) is not known");
   out.picture = std::move(timed.picture);
+  out.machine = std::move(timed.machine);
   return out;
 }
 

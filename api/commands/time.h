@@ -9,6 +9,7 @@
 #include "machine/machine.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
+#include "report/machine_page.h"
 #include "report/path_card.h"
 
 namespace camber::api {
@@ -36,7 +37,8 @@ struct TimeRequest {
 
 struct TimedProgram {
   TimeReport report;
-  report::PathPicture picture;
+  report::PathPicture picture;   ///< of the first row
+  report::MachineCards machine;  ///< instead of it, where that program turns rotary axes
 };
 
 /// Throws InputError, and std::invalid_argument for a sweep that cannot be read.

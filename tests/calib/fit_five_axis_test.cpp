@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "calib/feed_accuracy.h"
 #include "calib/fit_feed.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/timed_path.h"
@@ -35,9 +36,9 @@ std::string positionings_and_turns() {
   return text + "M30\n";
 }
 
-FeedRun traced(const machine::Machine& machine) {
+FeedRun traced(const machine::Machine& machine, const std::string& text) {
   Diagnostics diagnostics;
-  const nc::Program program = nc::read_program(SourceText("turns.nc", positionings_and_turns()), diagnostics);
+  const nc::Program program = nc::read_program(SourceText("turns.nc", text), diagnostics);
   nc::InterpreterOptions options;
   options.rotary_axes = kinematics::rotary_options(machine);
   options.tool_offsets[1].length_mm = 80;
@@ -66,12 +67,43 @@ TEST(FitFiveAxes, PositioningsTellTheAccelerationsOfLinearAxes) {
       machine::read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml", diagnostics);
   machine::Machine start = known;
   start.control.stop_acceleration_fraction = machine::Control{}.stop_acceleration_fraction;
-  for (machine::Axis& axis : start.axis) axis.acceleration_mm_per_s2 = machine::Axis{}.acceleration_mm_per_s2;
-  const FitFeedResult fit = fit_feed({traced(known)}, start, {});
+  for (machine::Axis& axis : start.axis) {
+    axis.acceleration_mm_per_s2 = machine::Axis{}.acceleration_mm_per_s2;
+    axis.position_gain_per_s = machine::kNoLimit;
+    axis.velocity_lag_s = 0;
+  }
+  for (machine::RotaryAxis& axis : start.rotary) axis.position_gain_per_s = machine::kNoLimit, axis.velocity_lag_s = 0;
+  const FitFeedResult fit = fit_feed({traced(known, positionings_and_turns())}, start, {});
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(fit.machine.axis[i].acceleration_mm_per_s2 / known.axis[i].acceleration_mm_per_s2, 1, kLimitFraction)
         << i;
   EXPECT_NEAR(fit.machine.control.stop_acceleration_fraction, 0.5, 0.5 * kLimitFraction);
+  for (const std::size_t i : {0U, 2U}) {
+    EXPECT_NEAR(fit.machine.rotary[i].position_gain_per_s, known.rotary[i].position_gain_per_s, 0.1) << i;
+    EXPECT_NEAR(fit.machine.rotary[i].velocity_lag_s, known.rotary[i].velocity_lag_s, 1e-4) << i;
+  }
+}
+
+/// Lines of X Y Z, lines that turn as well and lines that only turn: all have a time at their programmed feed.
+TEST(FitFiveAxes, ConstantFeedIsThatOfWhatFCounts) {
+  Diagnostics diagnostics;
+  const machine::Machine machine =
+      machine::read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml", diagnostics);
+  const std::string text =
+      "G21 G90 G94 G64\nG0 X0 Y0 Z0 A0 C0\nG4 P0.1\nG1 A20 F600\nG4 P0.1\nG1 X30 C9 F1200\n"
+      "G4 P0.1\nG93 G1 X0 C0 F20\nC30 F15\nM2\n";
+  const FeedRun run = traced(machine, text);
+  const auto parts = parts_of(run.program, machine);
+  ASSERT_EQ(parts.size(), 3U);
+  const FeedAccuracy constant = constant_feed_accuracy(run.trace, run.program, machine, parts, {});
+  ASSERT_EQ(constant.parts.size(), 3U);
+  EXPECT_NEAR(constant.parts[0].time_model_s, 20.0 / 10, 1e-9);
+  EXPECT_NEAR(constant.parts[1].time_model_s, 30.0 / 20, 1e-9);
+  EXPECT_NEAR(constant.parts[2].time_model_s, 60.0 / 20 + 60.0 / 15, 1e-9);
+  for (const PartAccuracy& part : constant.parts) {
+    EXPECT_GT(part.speed_rms_percent, 0);
+    EXPECT_LT(part.speed_rms_percent, 50);
+  }
 }
 
 }  // namespace

@@ -7,8 +7,10 @@
 
 #include "base/units.h"
 #include "feedmodel/control_options.h"
+#include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
+#include "test_paths.h"
 
 namespace camber::calib {
 namespace {
@@ -16,7 +18,9 @@ namespace {
 nc::Interpretation read_back(const ProtocolProgram& program, const machine::Machine& machine) {
   Diagnostics diagnostics;
   const auto text = nc::read_program(SourceText(program.name, program.text), diagnostics);
-  auto moves = nc::interpret(text, feedmodel::interpreter_options(machine, std::nullopt), diagnostics);
+  nc::InterpreterOptions options;
+  options.rotary_axes = kinematics::rotary_options(machine);
+  auto moves = nc::interpret(text, feedmodel::interpreter_options(machine, options), diagnostics);
   EXPECT_TRUE(diagnostics.all().empty()) << program.name << ": " << to_string(diagnostics.all().front());
   return moves;
 }
@@ -79,6 +83,27 @@ TEST(Protocol, SaturationHasEveryChordAndStaysUnderTheTopSpeed) {
     EXPECT_DOUBLE_EQ(part.feed_mm_per_min, 3000);
   }
   EXPECT_EQ(chords, (std::set<double>{0.01, 0.02, 0.04, 0.06, 0.1, 0.2, 0.3, 0.5}));
+}
+
+/// Each axis alone, within its travel; where blocks overlap once more on the exact path.
+TEST(Protocol, RotaryAxesTurnAlone) {
+  Diagnostics diagnostics;
+  for (const bool overlap : {false, true}) {
+    machine::Machine machine =
+        machine::read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml", diagnostics);
+    machine.control.kind = *machine::control_kind_named(overlap ? "linuxcnc" : "fanuc");
+    machine.rotary[0].travel_rad = {rad_from_deg(-100), rad_from_deg(30)};
+    const ProtocolProgram program = named(protocol_programs(machine), overlap ? "rotary.ngc" : "rotary.nc");
+    EXPECT_EQ(program.parts.size(), overlap ? 2U * 4U * 5U : 2U * 4U * 4U);
+    EXPECT_EQ(program.text.find("G61") != std::string::npos, overlap);
+    const nc::Interpretation moves = read_back(program, machine);
+    EXPECT_EQ(moves.rotary.size(), 4 * program.parts.size());
+    for (const nc::RotaryTarget& target : moves.rotary) {
+      EXPECT_TRUE(target.end.x() == 0 || target.end.z() == 0);
+      EXPECT_GE(target.end.x(), rad_from_deg(-90.001));
+      EXPECT_LE(target.end.x(), rad_from_deg(30));
+    }
+  }
 }
 
 TEST(Protocol, PartsListNamesTheLines) {

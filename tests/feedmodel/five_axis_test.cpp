@@ -1,4 +1,5 @@
 // Programs with rotary axes: times and joints against closed forms and against the traces of a real control.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,68 +12,26 @@
 #include <vector>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/joint_map.h"
 #include "feedmodel/plan.h"
 #include "feedmodel/timed_path.h"
 #include "kinematics/program_joints.h"
-#include "kinematics/rotary_options.h"
-#include "nc/interpreter.h"
 #include "test_paths.h"
-#include "tests/kinematics/machines.h"
+#include "tests/feedmodel/rotary_programs.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::feedmodel {
 namespace {
 
-constexpr double kToolMm = 80;
-constexpr double kPeriodS = 0.001;
 const std::string kTraces = CAMBER_SHARED_DATA_DIR "/linuxcnc5/";
-const std::string kProlog = "G21 G90 G94 G10 L2 P1 X0 Y0 Z0\nG54\n";
 
-machine::Machine read(const std::string& file) {
-  Diagnostics diagnostics;
-  return machine::read_machine(file, diagnostics);
-}
-
-machine::Machine traced_machine() { return read(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml"); }
-
-nc::Interpretation moves_of(const SourceText& source, const machine::Machine& machine) {
-  Diagnostics diagnostics;
-  const nc::Program program = nc::read_program(source, diagnostics);
-  nc::InterpreterOptions options;
-  options.rotary_axes = kinematics::rotary_options(machine);
-  options.tool_offsets[1].length_mm = kToolMm;
-  nc::Interpretation moves = nc::interpret(program, interpreter_options(machine, options), diagnostics);
-  diagnostics.throw_if_errors();
-  return moves;
-}
-
-nc::Interpretation moves_of(const std::string& text, const machine::Machine& machine) {
-  return moves_of(SourceText("test.nc", text), machine);
-}
-
-/// A machine of samples/kinematics with a Fanuc control that stops at corners, axes without inertia, and these speeds.
-machine::Machine fast_machine(const std::string& name, double rotary_deg_per_s) {
-  machine::Machine m = kinematics::tests::sample(name);
-  m.control = machine::Control{};
-  m.control.period_s = kPeriodS;
-  for (machine::Axis& axis : m.axis) axis = machine::Axis{};
-  for (machine::RotaryAxis& axis : m.rotary) {
-    axis.max_velocity_rad_per_s = rad_from_deg(rotary_deg_per_s);
-    axis.acceleration_rad_per_s2 = machine::kNoLimit;
-    axis.travel_rad = {-machine::kNoLimit, machine::kNoLimit};
-  }
-  return m;
-}
-
-double cutting_time_s(const nc::Interpretation& moves, const machine::Machine& machine) {
-  const MotionPlan plan = plan_motion(moves, machine);
-  double sum = 0;
-  for (const SegmentTime& t : plan.times)
-    if (t.cutting && !t.rest) sum += t.duration_s;
-  return sum;
-}
+using tests::cutting_time_s;
+using tests::fast_machine;
+using tests::kPeriodS;
+using tests::kProlog;
+using tests::kToolMm;
+using tests::moves_of;
+using tests::traced_machine;
 
 // --- closed forms
 
@@ -137,6 +96,45 @@ TEST_P(FourMachines, TheSamePathTakesTheTimeOfTheSlowestJoint) {
   }
   ASSERT_GT(turn.maxCoeff(), 0.1);
   EXPECT_NEAR(cutting_time_s(program, m), deg_from_rad(turn.maxCoeff()) / 20, 1e-6);
+}
+
+/// The tool's direction at a tilt from Z, towards an azimuth from X, as words of G43.5.
+std::string direction(double tilt_deg, double azimuth_deg) {
+  const double tilt = rad_from_deg(tilt_deg), azimuth = rad_from_deg(azimuth_deg);
+  return fmt::format(" I{:.9f} J{:.9f} K{:.9f}", std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
+                     std::cos(tilt));
+}
+
+/// One path of the part from a tilt of 10 degrees to one of 50, on each machine: two axes tilt by the angle itself, the
+/// nutating head turns by b with cos(tilt) = (1 + cos b) / 2 about an axis of 45 degrees.
+TEST_P(FourMachines, ATiltTakesTheTimeOfTheAxisThatTilts) {
+  const auto turn_deg = [&](double tilt_deg) {
+    const bool nutates = GetParam() == std::string("nutating_head");
+    return nutates ? deg_from_rad(std::acos(2 * std::cos(rad_from_deg(tilt_deg)) - 1)) : tilt_deg;
+  };
+  machine::Machine m = fast_machine(GetParam(), 20);
+  const std::string start = kProlog + "G43.5 H1\nG0 X0 Y0 Z0" + direction(10, 90) + "\nG1";
+  const double rotary_s = (turn_deg(50) - turn_deg(10)) / 20;
+  EXPECT_NEAR(cutting_time_s(moves_of(start + " X0" + direction(50, 90) + " F1000000\n", m), m), rotary_s, 1e-6);
+  // A fan: the tip takes 4 s at F600, longer than the tilt.
+  EXPECT_NEAR(cutting_time_s(moves_of(start + " X40" + direction(50, 90) + " F600\n", m), m), 4, 1e-6);
+  EXPECT_NEAR(cutting_time_s(moves_of(start + " X1" + direction(50, 90) + " F600\n", m), m), rotary_s, 1e-6);
+}
+
+/// A degree off the pole a quarter of a turn around it is one of C, however short the way.
+TEST_P(FourMachines, AroundThePoleTakesTheTimeOfC) {
+  const machine::Machine m = fast_machine(GetParam(), 20);
+  const auto around =
+      moves_of(kProlog + "G43.5 H1\nG0 X0 Y0 Z0" + direction(1, 90) + "\nG1 X1" + direction(1, 0) + " F6000\n", m);
+  EXPECT_NEAR(cutting_time_s(around, m), 90.0 / 20, 1e-6);
+}
+
+/// A table that tilts about X and Y has its pole elsewhere: both turn by about a degree.
+TEST(FiveAxis, AnUprightToolIsNoPoleOfATableThatTiltsTwice) {
+  const machine::Machine m = fast_machine("table_ab", 20);
+  const auto around =
+      moves_of(kProlog + "G43.5 H1\nG0 X0 Y0 Z0" + direction(1, 90) + "\nG1 X0.1" + direction(1, 0) + " F6000\n", m);
+  EXPECT_NEAR(cutting_time_s(around, m), 1.0 / 20, 1e-4);
 }
 
 // --- what F means

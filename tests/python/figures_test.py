@@ -160,6 +160,21 @@ class Figures(unittest.TestCase):
         self.assertEqual([load.max_after for load in result.loads], [load["max_after"] for load in expected["loads"]])
         self.assertTrue(result.success)
 
+    def test_plan(self):
+        plan = SAMPLES / "15-plan/plan.toml"
+        with tempfile.TemporaryDirectory() as out:
+            folder = os.path.join(out, "planned")
+            expected = command_line("plan", plan, "-o", folder)
+            files = {name: pathlib.Path(folder, name).read_text() for name in os.listdir(folder)}
+        result = camber.plan(plan)
+        self.equal(result, expected)
+        self.assertTrue(result.success)
+        for name, text in result.files:
+            self.assertEqual(text, files[name])
+        self.assertEqual([o.tool for o in result.operations], [o["tool"] for o in expected["operations"]])
+        self.assertEqual([a.nominal_time_s for a in result.alternatives],
+                         [p["nominal_time_s"] for p in expected["plans"]])
+
     def test_time_with_a_sweep(self):
         program, machine = SAMPLES / "02-cycle-time/highspeed.nc", MACHINES[0]
         sweep = "axis.x.acceleration_mm_per_s2=500:2000:4"

@@ -1,0 +1,27 @@
+#pragma once
+// The work of camber plan.
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "plan/plan.h"
+
+namespace camber::api {
+
+struct PlannedFiles {
+  plan::PlanResult result;
+  /// Names within the output folder, and contents: operations.toml, plan-*.toml, part.stl ...
+  std::vector<std::pair<std::string, std::string>> files;
+};
+
+/// `operations`: an edited table of operations; empty: none. Throws InputError. Writes nothing.
+PlannedFiles plan_job(const plan::PlanInput& input, const std::string& operations, Diagnostics& diagnostics);
+
+/// The case base's text with the operations of a table as new cases; those that are there already are left out.
+struct LearnedCases {
+  std::string text;
+  std::size_t added = 0;
+};
+LearnedCases learn_cases(const plan::PlanInput& input, const plan::PlanResult& result);
+
+}  // namespace camber::api

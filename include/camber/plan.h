@@ -1,0 +1,56 @@
+#pragma once
+// From a blank and a part to operations: primitives, tools, conditions and order.
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "camber/run.h"
+
+namespace camber {
+inline namespace v0 {
+
+struct PlanOptions {
+  std::string operations{};  ///< file: an edited table of operations to go on from; empty: none
+};
+
+struct PlannedOperation {
+  std::size_t setup = 0;      ///< from 0
+  std::size_t primitive = 0;  ///< place in the order, from 1
+  std::string feature{};      ///< "closed pocket"
+  std::string kind{};         ///< "rough", "rest", "finish", "centre", "drill", "ream"
+  int tool = 0;
+  std::string mode{};  ///< "scanning-line", "contour-line", "drilling"
+  double spindle_rpm = 0, feed_mm_per_min = 0, radial_mm = 0, axial_mm = 0;
+  double nominal_time_s = 0;  ///< volume over removal rate
+  std::string limit{};        ///< what bounds the conditions; "cases": nothing but them
+  double force_N = 0, form_error_um = 0, power_W = 0;
+  std::vector<std::string> notes{};
+};
+
+struct PlanAlternative {
+  std::string division{};  ///< "yz", "zx", "largest"
+  double nominal_time_s = 0;
+  int tool_changes = 0;
+  double form_error_p95_um = 0;
+  bool complete = true;
+  bool taken = false;
+};
+
+struct PlanResult {
+  bool success = false;                         ///< everything is machined
+  std::vector<std::string> unmachined{};        ///< what is not, and why
+  std::vector<PlanAlternative> alternatives{};  ///< of the first set-up
+  std::vector<PlannedOperation> operations{};   ///< of the plans that are taken
+  double removal_mm3 = 0;                       ///< blank minus part
+  /// Files that `camber plan` writes to its folder, but for plan.json and report.html: names and contents.
+  std::vector<std::pair<std::string, std::string>> files{};
+  std::vector<Diagnostic> diagnostics{};  ///< warnings
+  std::string json{};                     ///< all figures, as `camber plan --json` writes them
+};
+
+/// Plans what a plan.toml describes. Writes no file. Throws InputError, Cancelled.
+CAMBER_API PlanResult plan(const std::string& path, const PlanOptions& options = {}, const RunOptions& run = {});
+
+}  // namespace v0
+}  // namespace camber

@@ -1,0 +1,63 @@
+#pragma once
+// The faces of a solid: planes along the axes, upright round holes, inner corners; what else there is is free-form.
+#include <array>
+#include <vector>
+
+#include "plan/solid.h"
+
+namespace camber::plan {
+
+struct FaceOptions {
+  double plane_tolerance_mm = 0.01;   ///< planes nearer to each other are one
+  double circle_tolerance_mm = 0.02;  ///< of the corners of a hole's facets
+  double min_face_mm2 = 0.2;          ///< smaller planes are not looked at
+};
+
+struct AxisPlane {
+  double at_mm = 0, area_mm2 = 0;
+  bool face = true;  ///< false: a bound of a face that is no plane along the axes
+};
+
+/// An upright round hole.
+struct Hole {
+  Vec2 centre_mm = Vec2::Zero();
+  double diameter_mm = 0;
+  double top_mm = 0;      ///< where it opens
+  double bottom_mm = 0;   ///< lower end of the cylinder
+  double tip_mm = 0;      ///< lowest point of the bottom: below bottom_mm where a drill's cone is left
+  double volume_mm3 = 0;  ///< of the facets, with the bottom's cone
+};
+
+/// An upright inner edge: the tool that finishes there has at most this radius.
+struct InnerCorner {
+  Vec2 at_mm = Vec2::Zero();
+  double from_mm = 0, to_mm = 0;  ///< heights
+  double radius_mm = 0;           ///< 0: sharp
+};
+
+struct Faces {
+  std::array<std::vector<AxisPlane>, 3> planes;  ///< x, y, z; ascending
+  std::vector<Hole> holes;                       ///< by x, then y, then top
+  std::vector<InnerCorner> corners;
+  double free_form_mm2 = 0;
+  Solid plugged;  ///< the solid with its holes filled
+};
+
+/// A plane is a connected patch of triangles whose normals are within 0.1 degrees of an axis; patches within the
+/// tolerance are one plane, at their mean weighted by area. A small patch in the middle of a curved surface (smooth to
+/// its neighbours, and not larger than three of them) is none. Triangles that are neither upright nor along an axis are
+/// free-form. The bounds of their patches, and in x and y those of other upright walls, come as planes that are no
+/// faces.
+///
+/// A hole is a closed ring of upright facets, ten or more, with the material outside, whose corners lie on one circle.
+/// Its diameter is that of the corners. The radius of an inner corner follows from the turn between neighbouring
+/// facets, r = w / (2 tan(turn / 2)) with the narrower facet's width w.
+Faces find_faces(const Solid& solid, const FaceOptions& options);
+
+/// Only the planes, of a solid that is no part: faces of the blank.
+std::array<std::vector<AxisPlane>, 3> find_planes(const Solid& solid, const FaceOptions& options);
+
+/// Joins planes within the tolerance; a face and a bound are a face.
+std::vector<AxisPlane> joined(std::vector<AxisPlane> planes, double tolerance_mm);
+
+}  // namespace camber::plan

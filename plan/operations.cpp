@@ -1,0 +1,349 @@
+#include "plan/operations.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace camber::plan {
+namespace {
+
+constexpr double kBeyond_mm = 1.0;  // how far the tool leaves the blank over an open side
+
+/// Where the axis may be: over the primitive, and so far beyond its open sides that the cutter leaves them.
+std::array<Vec2, 2> region_of(const Primitive& p, const OpenFaces& open, double radius_mm) {
+  std::array<Vec2, 2> box{Vec2(p.min_mm.x(), p.min_mm.y()), Vec2(p.max_mm.x(), p.max_mm.y())};
+  const double beyond = radius_mm + kBeyond_mm;
+  for (int side = 0; side < 4; ++side)
+    if (open.side[static_cast<std::size_t>(side)])
+      box[static_cast<std::size_t>(side % 2)][side / 2] += side % 2 == 0 ? -beyond : beyond;
+  return box;
+}
+
+Pattern pattern_of(Feature feature, bool contoured) {
+  switch (feature) {
+    case Feature::closed_pocket:
+      return Pattern::contour_line;
+    case Feature::through_hole:
+    case Feature::blind_hole:
+      return Pattern::drilling;
+    default:
+      return contoured ? Pattern::contour_line : Pattern::scanning_line;
+  }
+}
+
+/// Makes the operations of one primitive after the other.
+class Planner {
+ public:
+  Planner(const PlanInput& input, const RemovalVolume& removal, PlannedDivision& out)
+      : input_(input), removal_(removal), out_(out), work_(removal, out.primitives) {}
+
+  void plan() {
+    for (std::size_t i = 0; i < out_.order.steps.size(); ++i) {
+      const Step& step = out_.order.steps[i];
+      const std::size_t before = out_.operations.size();
+      number_ = i + 1;
+      if (out_.primitives[step.primitive].is_hole)
+        plan_hole(step);
+      else
+        plan_box(step);
+      if (out_.operations.size() == before &&
+          (out_.unmachined.empty() || out_.unmachined.back().primitive != step.primitive))
+        leave(step, "no operation");
+      work_.remove(step.primitive);
+    }
+    for (const Unreachable& u : out_.order.unreachable)
+      out_.unmachined.push_back({u.primitive, describe(out_.primitives[u.primitive]), u.reason + "; another set-up"});
+  }
+
+ private:
+  static std::string describe(const Primitive& p) {
+    return fmt::format("{} from ({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g})", p.is_hole ? "hole" : "volume",
+                       p.min_mm.x(), p.min_mm.y(), p.min_mm.z(), p.max_mm.x(), p.max_mm.y(), p.max_mm.z());
+  }
+
+  void leave(const Step& step, const std::string& reason) {
+    const Primitive& p = out_.primitives[step.primitive];
+    out_.unmachined.push_back({step.primitive, fmt::format("{}, {}", to_string(step.feature), describe(p)), reason});
+  }
+
+  /// Smallest radius of the rounded inner corners beside a primitive; infinite: none.
+  double inner_radius_mm(const Primitive& p, bool& sharp) const {
+    constexpr double kTouch_mm = 1e-3;
+    double least = machine::kNoLimit;
+    for (const InnerCorner& c : removal_.corners) {
+      if (c.to_mm < p.min_mm.z() + kTouch_mm || c.from_mm > p.max_mm.z() - kTouch_mm) continue;
+      if (c.at_mm.x() < p.min_mm.x() - kTouch_mm || c.at_mm.x() > p.max_mm.x() + kTouch_mm ||
+          c.at_mm.y() < p.min_mm.y() - kTouch_mm || c.at_mm.y() > p.max_mm.y() + kTouch_mm)
+        continue;
+      if (c.radius_mm <= 0)
+        sharp = true;
+      else
+        least = std::min(least, c.radius_mm);
+    }
+    return least;
+  }
+
+  ToolNeed need_of(const Step& step) const {
+    const Primitive& p = out_.primitives[step.primitive];
+    ToolNeed need;
+    need.feature = step.feature;
+    need.width_mm = step.width_mm;
+    need.depth_mm = p.max_mm.z() - p.min_mm.z();
+    need.wall_mm = [this, number = step.primitive, bottom = p.min_mm.z()](double radius) {
+      return work_.highest_near_mm(number, radius) - bottom;
+    };
+    if (!p.is_hole)
+      need.has_room = [this, &step](double radius) { return work_.has_room(step.primitive, step.open, radius); };
+    return need;
+  }
+
+  const PlanTool& tool(int number) const { return input_.tools.at(number); }
+
+  /// Null where the case base does not know the tool.
+  Operation* add(const Step& step, OperationKind kind, int number, Pattern pattern, const Cut& cut, std::string note) {
+    const Primitive& p = out_.primitives[step.primitive];
+    std::string said;
+    const auto conditions = conditions_for(input_, tool(number), cut, said);
+    if (!conditions) {
+      leave(step, said);
+      return nullptr;
+    }
+    Operation op{.primitive = number_,
+                 .feature = step.feature,
+                 .kind = kind,
+                 .tool = number,
+                 .pattern = pattern,
+                 .conditions = *conditions};
+    op.box_mm = region_of(p, step.open, tool(number).tool.diameter_mm / 2);
+    op.from_mm = p.min_mm.z(), op.to_mm = p.max_mm.z();
+    for (const std::string& n : {std::move(note), said})
+      if (!n.empty()) op.notes.push_back(n);
+    if (!conditions->within)
+      op.notes.push_back(fmt::format("the limit \"{}\" is not kept at a tenth of the depth", conditions->limit));
+    out_.operations.push_back(std::move(op));
+    return &out_.operations.back();
+  }
+
+  void set_volume(Operation& op, double volume_mm3) const {
+    op.volume_mm3 = volume_mm3;
+    op.nominal_time_s = volume_mm3 / removal_rate_mm3_per_s(tool(op.tool), op.conditions);
+  }
+
+  void plan_box(const Step& step) {
+    const Primitive& p = out_.primitives[step.primitive];
+    bool sharp = false;
+    const double inner = inner_radius_mm(p, sharp);
+    ToolNeed need = need_of(step);
+    if (step.feature == Feature::free_form) return plan_free_form(step, need);
+    std::string wanted;
+    auto pick = pick_mill(need, input_.tools, wanted);
+    if (!pick) return leave(step, "none of the tools will do; it needs " + wanted);
+    const double depth = p.max_mm.z() - p.min_mm.z();
+    const double surface = work_.wall_mm2(step.primitive) + work_.floor_mm2(step.primitive);
+    const Pattern pattern = pattern_of(step.feature, p.contoured);
+    Operation* rough =
+        add(step, OperationKind::rough, pick->tool, pattern, {false, depth, machine::kNoLimit}, pick->note);
+    if (rough == nullptr) return;
+    rough->allowance_mm = input_.fine && surface > 0 ? input_.allowance_mm : 0;
+    const double left = rough->allowance_mm * surface;
+    set_volume(*rough, std::max(p.volume_mm3 - left, 0.0));
+    if (sharp) rough->notes.push_back("sharp inner corners keep the radius of the tool");
+    int last = pick->tool;
+    if (inner < tool(pick->tool).tool.diameter_mm / 2 - 1e-3) last = add_rest(step, need, inner).value_or(last);
+    if (rough_of(step).allowance_mm > 0) {
+      add_finish(step, last, left);
+    }
+    out_.operations.back().surface_mm2 = surface;
+  }
+
+  Operation& rough_of(const Step&) {
+    const auto at = std::ranges::find_if(out_.operations, [&](const Operation& o) { return o.primitive == number_; });
+    return *at;
+  }
+
+  std::optional<int> add_rest(const Step& step, ToolNeed need, double inner_mm) {
+    need.inner_radius_mm = inner_mm;
+    std::string wanted;
+    const auto pick = pick_rest_mill(need, input_.tools, wanted);
+    if (!pick) {
+      rough_of(step).notes.push_back(
+          fmt::format("inner corners of {:.3g} mm keep more material; they need {}", inner_mm, wanted));
+      return std::nullopt;
+    }
+    Operation* rest =
+        add(step, OperationKind::rest, pick->tool, Pattern::contour_line,
+            {false, out_.primitives[step.primitive].max_mm.z() - out_.primitives[step.primitive].min_mm.z(),
+             machine::kNoLimit},
+            {});
+    if (rest == nullptr) return std::nullopt;
+    rest->allowance_mm = rough_of(step).allowance_mm;
+    // Four corners, each with what the larger tool leaves.
+    const double depth = rest->to_mm - rest->from_mm, r = tool(rough_of(step).tool).tool.diameter_mm / 2;
+    set_volume(*rest, (4 - kPi) * (r * r - inner_mm * inner_mm) * depth);
+    return pick->tool;
+  }
+
+  void add_finish(const Step& step, int number, double left_mm3) {
+    const Primitive& p = out_.primitives[step.primitive];
+    const bool level = step.feature == Feature::face;
+    Operation* finish = add(step, OperationKind::finish, number, level ? Pattern::scanning_line : Pattern::contour_line,
+                            {true, p.max_mm.z() - p.min_mm.z(), machine::kNoLimit}, {});
+    if (finish == nullptr) return;
+    Conditions& c = finish->conditions;
+    // Walls are finished over the radial depth of the allowance, floors over its axial depth.
+    finish->volume_mm3 = left_mm3;
+    const double floor = work_.floor_mm2(step.primitive), wall = work_.wall_mm2(step.primitive);
+    finish->nominal_time_s = 60 * (floor / (c.radial_mm * c.feed_mm_per_min) + wall / (c.axial_mm * c.feed_mm_per_min));
+  }
+
+  void plan_free_form(const Step& step, ToolNeed need) {
+    const Primitive& p = out_.primitives[step.primitive];
+    bool sharp = false;
+    need.inner_radius_mm = inner_radius_mm(p, sharp);
+    need.has_room = {};
+    std::string wanted;
+    const auto ball = pick_mill(need, input_.tools, wanted);
+    if (!ball) return leave(step, "none of the tools will do; it needs " + wanted);
+    const double depth = p.max_mm.z() - p.min_mm.z(), radius = tool(ball->tool).tool.diameter_mm / 2;
+    double left = p.volume_mm3;
+    std::string note = p.overhang ? "a face of it looks down; it is not reached there" : "";
+    if (depth > radius) left = rough_free_form(step, need);
+    Operation* op = add(step, OperationKind::finish, ball->tool, Pattern::scanning_line,
+                        {input_.fine, radius, machine::kNoLimit}, note);
+    if (op == nullptr) return;
+    op->scallop_mm = input_.fine ? input_.scallop_mm : 0;
+    if (op->scallop_mm > 0)  // rows whose ridges are this high
+      op->conditions.radial_mm = std::floor(2000 * std::sqrt(op->scallop_mm * (2 * radius - op->scallop_mm))) / 1000;
+    set_volume(*op, left);
+    op->surface_mm2 = free_form_mm2(p);
+  }
+
+  /// What is left for the ball end mill.
+  double rough_free_form(const Step& step, ToolNeed need) {
+    const Primitive& p = out_.primitives[step.primitive];
+    need.feature = Feature::open_pocket;
+    need.inner_radius_mm = machine::kNoLimit;
+    std::string wanted;
+    const auto pick = pick_mill(need, input_.tools, wanted);
+    if (!pick) return p.volume_mm3;
+    Operation* rough = add(step, OperationKind::rough, pick->tool, Pattern::contour_line,
+                           {false, p.max_mm.z() - p.min_mm.z(), machine::kNoLimit}, {});
+    if (rough == nullptr) return p.volume_mm3;
+    rough->allowance_mm = input_.allowance_mm;
+    // Steps as high as a level, and the allowance.
+    const double left =
+        std::min(p.volume_mm3, free_form_mm2(p) * (rough->allowance_mm + rough->conditions.axial_mm / 2));
+    set_volume(*rough, p.volume_mm3 - left);
+    return left;
+  }
+
+  double free_form_mm2(const Primitive& p) const {
+    double sum = 0;
+    for (const CellIndex& c : p.cells) sum += removal_.grid.at(c).free_form_mm2;
+    return sum;
+  }
+
+  void plan_hole(const Step& step) {
+    const Hole& hole = removal_.holes[out_.primitives[step.primitive].hole];
+    const ToolNeed need = need_of(step);
+    std::string wanted;
+    const auto tools = pick_hole_tools(need, input_.tools, wanted);
+    if (!tools) return leave(step, "none of the tools will do; it needs " + wanted);
+    const double volume = out_.primitives[step.primitive].volume_mm3;
+    if (tools->end_mill) {
+      Operation* op = add(step, OperationKind::rough, *tools->end_mill, Pattern::contour_line,
+                          {false, need.depth_mm, machine::kNoLimit}, tools->note);
+      if (op != nullptr) set_volume(*op, volume);
+      return;
+    }
+    const std::array<std::pair<std::optional<int>, OperationKind>, 3> all{{{tools->center_drill, OperationKind::centre},
+                                                                           {tools->drill, OperationKind::drill},
+                                                                           {tools->reamer, OperationKind::ream}}};
+    for (const auto& [number, kind] : all)
+      if (number) add_drilling(step, hole, *number, kind, kind == OperationKind::drill ? volume : 0);
+  }
+
+  void add_drilling(const Step& step, const Hole& hole, int number, OperationKind kind, double volume_mm3) {
+    Operation* op =
+        add(step, kind, number, Pattern::drilling, {kind == OperationKind::ream, step.width_mm, step.width_mm}, {});
+    if (op == nullptr) return;
+    op->box_mm = {hole.centre_mm, hole.centre_mm};
+    const machine::Tool& t = tool(number).tool;
+    const double half_point = t.point_angle_rad > 0 ? t.point_angle_rad / 2 : kPi / 2;
+    const double point = t.diameter_mm / 2 / std::tan(half_point);
+    if (kind == OperationKind::centre)
+      op->from_mm = hole.top_mm - std::max(point, t.diameter_mm / 2);
+    else if (step.feature == Feature::through_hole)
+      op->from_mm = hole.tip_mm - point - kBeyond_mm;
+    else if (hole.bottom_mm - hole.tip_mm < 1e-3 && kind == OperationKind::drill && t.point_angle_rad > 0)
+      op->notes.push_back(fmt::format("the bottom is flat; the drill's point leaves {:.3g} mm at its edge", point));
+    op->volume_mm3 = volume_mm3;
+    op->nominal_time_s = volume_mm3 > 0 ? volume_mm3 / removal_rate_mm3_per_s(tool(number), op->conditions)
+                                        : 60 * (op->to_mm - op->from_mm) / op->conditions.feed_mm_per_min;
+  }
+
+  const PlanInput& input_;
+  const RemovalVolume& removal_;
+  PlannedDivision& out_;
+  Workpiece work_;
+  std::size_t number_ = 0;
+};
+
+}  // namespace
+
+int tool_changes(const std::vector<Operation>& operations) {
+  int changes = 0;
+  for (std::size_t i = 1; i < operations.size(); ++i)
+    if (operations[i].tool != operations[i - 1].tool) ++changes;
+  return changes;
+}
+
+double total_time_s(const std::vector<Operation>& operations, double tool_change_s) {
+  double sum = tool_change_s * tool_changes(operations);
+  for (const Operation& o : operations) sum += o.nominal_time_s;
+  return sum;
+}
+
+double form_error_p95_mm(const std::vector<Operation>& operations) {
+  std::vector<std::pair<double, double>> errors;  // and surfaces
+  double all = 0;
+  for (const Operation& o : operations)
+    if (o.surface_mm2 > 0) {
+      errors.emplace_back(o.conditions.loads.form_error_mm, o.surface_mm2);
+      all += o.surface_mm2;
+    }
+  std::ranges::sort(errors);
+  double sum = 0;
+  for (const auto& [error, surface] : errors)
+    if ((sum += surface) >= 0.95 * all) return error;
+  return 0;
+}
+
+std::size_t best_plan(const std::vector<PlanFigures>& plans) {
+  constexpr double kEqual = 1e-9;
+  const auto before = [](const PlanFigures& a, const PlanFigures& b) {
+    if (a.complete != b.complete) return a.complete;
+    if (std::abs(a.time_s - b.time_s) > kEqual * (a.time_s + b.time_s)) return a.time_s < b.time_s;
+    if (a.tool_changes != b.tool_changes) return a.tool_changes < b.tool_changes;
+    return a.form_error_mm < b.form_error_mm - kEqual;
+  };
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < plans.size(); ++i)
+    if (before(plans[i], plans[best])) best = i;
+  return best;
+}
+
+PlannedDivision plan_division(const PlanInput& input, const RemovalVolume& removal, DivisionPlan division) {
+  PlannedDivision out;
+  out.division = division;
+  out.primitives = divide(removal, division);
+  out.order = put_in_order(removal, out.primitives);
+  Planner(input, removal, out).plan();
+  out.tool_changes = tool_changes(out.operations);
+  out.nominal_time_s = total_time_s(out.operations, input.tool_change_s);
+  out.form_error_p95_mm = form_error_p95_mm(out.operations);
+  return out;
+}
+
+}  // namespace camber::plan

@@ -1,0 +1,111 @@
+#pragma once
+// The order in which primitives are machined, the faces that are open then, and the features that follow from them.
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "plan/primitives.h"
+
+namespace camber::plan {
+
+enum class Feature : unsigned char {
+  closed_pocket,
+  open_pocket,
+  closed_slot,
+  open_slot,
+  face,
+  step,
+  through_hole,
+  blind_hole,
+  free_form
+};
+inline constexpr std::size_t kFeatures = 9;
+std::string_view to_string(Feature feature);
+
+/// Faces of a primitive that touch air.
+struct OpenFaces {
+  std::array<bool, 4> side{};  ///< -x, +x, -y, +y
+  bool top = false, bottom = false;
+  int count() const { return side[0] + side[1] + side[2] + side[3] + top + bottom; }
+  int sides() const { return side[0] + side[1] + side[2] + side[3]; }
+};
+
+/// A primitive at the time when it is machined.
+struct Step {
+  std::size_t primitive = 0;
+  OpenFaces open;
+  Feature feature = Feature::face;
+  double width_mm = 0;   ///< pocket: the shorter side; slot: across its run; hole: the diameter; else the shorter side
+  double length_mm = 0;  ///< the other side
+};
+
+/// A primitive that no order reaches from above.
+struct Unreachable {
+  std::size_t primitive = 0;
+  std::string reason;
+};
+
+struct Order {
+  std::vector<Step> steps;
+  std::vector<Unreachable> unreachable;
+};
+
+/// Keeps what is air already.
+class Workpiece {
+ public:
+  Workpiece(const RemovalVolume& removal, const std::vector<Primitive>& primitives);
+
+  /// A side is open where 98 % of it touches air; the top where all of it does.
+  OpenFaces open_faces(std::size_t primitive) const;
+  /// Empty where the tool gets to the primitive from above.
+  std::string blocked(std::size_t primitive) const;
+  void remove(std::size_t primitive);
+  bool is_removed(std::size_t primitive) const { return removed_[primitive]; }
+  /// Top of what stands within a distance of the primitive's outline, or inside it; its own bottom where nothing does.
+  double highest_near_mm(std::size_t primitive, double distance_mm) const;
+  /// True where a tool of this radius gets to all of the primitive but inner corners: its middle may go anywhere inside
+  /// and beyond open sides, as far as part and fixtures above the primitive's bottom leave it room. By points on a
+  /// grid.
+  bool has_room(std::size_t primitive, const OpenFaces& open, double radius_mm) const;
+  /// Of the primitive's faces, what the part has there.
+  double wall_mm2(std::size_t primitive) const;
+  double floor_mm2(std::size_t primitive) const;
+
+ private:
+  enum Owner : int { kAir = -1, kPart = -2, kFixture = -3, kMachined = -4 };  ///< or the number of a primitive
+  int owner(const CellIndex& c) const { return owners_[removal_.grid.place(c)]; }
+  bool is_air(const CellIndex& c) const;
+  double open_share(const Primitive& p, int axis, int step) const;
+  double part_area_mm2(const Primitive& p, int axis, int step) const;
+  std::vector<std::array<int, 2>> columns_of(const Hole& hole) const;
+  OpenFaces open_faces_of_hole(const Hole& hole, std::size_t primitive) const;
+  std::string blocked_hole(const Hole& hole, std::size_t primitive) const;
+
+  const RemovalVolume& removal_;
+  const std::vector<Primitive>& primitives_;
+  std::vector<int> owners_;
+  std::vector<bool> removed_;
+};
+
+/// By (1) greater height of the top, (2) greater volume, (3) more open faces, (4) less distance from the middle of the
+/// removal volume; (5) holes last whatever the others say. Of primitives that the tool reaches the first by these rules
+/// is taken, its open faces are noted, and those of the others are looked at again.
+Order put_in_order(const RemovalVolume& removal, const std::vector<Primitive>& primitives);
+
+/// From the open faces. Box: by the sides that are open besides the top: none, closed pocket; one, closed slot; two
+/// that meet, open pocket; two opposite ones, open slot; three, step; four, face. An open bottom (a window) does not
+/// count.
+Feature feature_of(const Primitive& primitive, const OpenFaces& open);
+
+/// How primitives compare, without their open faces' search: for the order and its tests.
+struct Rank {
+  bool is_hole = false;
+  double top_mm = 0, volume_mm3 = 0;
+  int open_faces = 0;
+  double from_middle_mm = 0;
+};
+/// True where `a` comes first; neither comes first where all rules are tied.
+bool comes_before(const Rank& a, const Rank& b);
+
+}  // namespace camber::plan

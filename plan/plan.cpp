@@ -1,0 +1,180 @@
+#include "plan/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/stage.h"
+#include "base/stl.h"
+#include "plan/stock_solid.h"
+
+namespace camber::plan {
+namespace {
+
+Solid read_solid(const std::string& path, double mm_per_unit) {
+  const TriangleMesh mesh = read_stl(path);
+  if (const std::size_t open = mesh.open_edges(); open > 0)
+    fail_on_file(path,
+                 fmt::format("the mesh has {} edges without exactly two triangles; a closed solid was expected", open),
+                 "stl-open");
+  Solid out = solid_of(mesh);
+  for (Vec3& p : out.points) p *= mm_per_unit;
+  return out;
+}
+
+struct Blank {
+  Solid solid;
+  std::array<std::vector<AxisPlane>, 3> planes{};
+  double tolerance_mm = 0;
+};
+
+Blank read_blank(const PlanInput& input) {
+  const machine::StockDescription& b = input.blank;
+  if (b.box) return {.solid = solid_of(*b.box)};
+  if (b.cylinder) return {.solid = solid_of(*b.cylinder)};
+  if (!b.mesh.empty()) return {.solid = read_solid(b.mesh, input.mm_per_unit)};
+  const double voxel = input.simulation.voxel_mm;
+  constexpr double kBand = 3, kHalf = 0.6;  // voxels
+  const removal::Stock stock = removal::Stock::load(b.vdb, voxel, kBand);
+  StockBlank from = blank_of(stock, input.faces);
+  return {.solid = std::move(from.solid), .planes = std::move(from.planes), .tolerance_mm = kHalf * voxel};
+}
+
+/// What the best plans of earlier set-ups machine, seen from a later one.
+class Machined {
+ public:
+  Machined(const SetupPlan& earlier, const Eigen::Matrix3d& later_turn)
+      : earlier_(&earlier), turn_(later_turn * earlier.setup.turn.transpose()) {
+    const PlannedDivision& plan = earlier.plans[earlier.best];
+    goes_.assign(earlier.removal.grid.size(), false);
+    for (const Operation& o : plan.operations) {
+      const Primitive& p = plan.primitives[plan.order.steps[o.primitive - 1].primitive];
+      if (p.is_hole) holes_.push_back(earlier.removal.holes[p.hole]);
+      for (const CellIndex& c : p.cells) goes_[earlier.removal.grid.place(c)] = true;
+    }
+  }
+
+  bool quarter_turns() const {
+    constexpr double kNear = 1e-9;
+    return (turn_.array().abs() < kNear || (turn_.array().abs() - 1).abs() < kNear).all();
+  }
+
+  bool holds(const Vec3& later) const {
+    const Vec3 at = turn_.transpose() * later;
+    for (const Hole& h : holes_)
+      if ((Vec2(at.x(), at.y()) - h.centre_mm).norm() < h.diameter_mm / 2 && at.z() > h.tip_mm && at.z() < h.top_mm)
+        return true;
+    const CellGrid& g = earlier_->removal.grid;
+    CellIndex c;
+    for (int a = 0; a < 3; ++a) {
+      int i = -1;
+      while (i < g.count(a) && g.plane_mm(a, i + 1) < at[a]) ++i;
+      (a == 0 ? c.x : a == 1 ? c.y : c.z) = i;
+    }
+    return g.holds(c) && goes_[g.place(c)];
+  }
+
+  void add_planes(std::array<std::vector<AxisPlane>, 3>& planes) const {
+    const CellGrid& g = earlier_->removal.grid;
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        if (std::abs(turn_(b, a)) > 0.5)
+          for (int i = 0; i <= g.count(a); ++i)
+            planes[static_cast<std::size_t>(b)].push_back(
+                {turn_(b, a) * g.plane_mm(a, i), g.plane(a, i).area_mm2, false});
+  }
+
+ private:
+  const SetupPlan* earlier_;
+  Eigen::Matrix3d turn_;
+  std::vector<bool> goes_;
+  std::vector<Hole> holes_;
+};
+
+void check_shapes(const RemovalVolume& removal, const PlanInput& input, Diagnostics& diagnostics) {
+  const double blank = removal.blank_mm3;
+  constexpr double kOutside = 1e-4;
+  if (removal.outside_mm3 > kOutside * removal.part_mm3)
+    fail_on_file(input.path,
+                 fmt::format("{:.4g} mm3 of the part {} are outside the blank; a part within it was expected",
+                             removal.outside_mm3, input.part_path),
+                 "part-outside-blank");
+  if (removal.cells_mm3 + removal.holes_mm3 <= 1e-6 * blank)
+    fail_on_file(input.path, fmt::format("the blank is the part {}; nothing is to be removed", input.part_path),
+                 "nothing-to-remove");
+  constexpr double kBalance = 1e-3;
+  if (std::abs(removal.balance()) > kBalance)
+    diagnostics.add({Severity::warning,
+                     {input.path, 0, 0},
+                     fmt::format("the volumes found are {:+.2f} % off blank minus part, {:.6g} mm3; at most 0.1 % was "
+                                 "expected",
+                                 100 * removal.balance(), removal.removal_mm3()),
+                     "volume-balance",
+                     {}});
+}
+
+RemovalVolume removal_of(const PlanInput& input, const Blank& blank, const Solid& part,
+                         const std::vector<Solid>& fixtures, const Eigen::Matrix3d& turn,
+                         const std::vector<Machined>& machined) {
+  RemovalInput in{.blank = turned(blank.solid, turn), .part = part, .faces = input.faces};
+  for (const Solid& f : fixtures) in.fixtures.push_back(turned(f, turn));
+  in.blank_planes = blank.planes;
+  if (blank.tolerance_mm > 0) in.tolerance_mm = blank.tolerance_mm;
+  for (const Machined& m : machined) m.add_planes(in.machined_planes);
+  if (!machined.empty())
+    in.machined = [&](const Vec3& at) {
+      return std::ranges::any_of(machined, [&](const Machined& m) { return m.holds(at); });
+    };
+  return removal_volume(in);
+}
+
+SetupPlan plan_setup(const PlanInput& input, const Blank& blank, const Solid& part, const std::vector<Solid>& fixtures,
+                     const Setup& setup, const std::vector<Machined>& machined) {
+  const Solid lying = turned(part, setup.turn);
+  SetupPlan out{setup, turned(blank.solid, setup.turn),
+                lying, removal_of(input, blank, lying, fixtures, setup.turn, machined),
+                {},    0};
+  std::vector<PlanFigures> figures;
+  Stage stage("planning", kDivisionPlans.size());
+  for (const DivisionPlan division : kDivisionPlans) {
+    out.plans.push_back(plan_division(input, out.removal, division));
+    const PlannedDivision& p = out.plans.back();
+    figures.push_back({p.complete(), p.nominal_time_s, p.tool_changes, p.form_error_p95_mm});
+    stage.advance();
+  }
+  out.best = best_plan(figures);
+  return out;
+}
+
+}  // namespace
+
+PlanResult make_plan(const PlanInput& input, Diagnostics& diagnostics) {
+  const Blank blank = read_blank(input);
+  const Solid part = read_solid(input.part_path, input.mm_per_unit);
+  std::vector<Solid> fixtures;
+  for (const std::string& path : input.fixture_paths) fixtures.push_back(read_solid(path, input.mm_per_unit));
+  PlanResult out;
+  out.setups.reserve(input.setups.size());
+  out.removal_mm3 = volume_mm3(blank.solid) - volume_mm3(part);
+  for (const Setup& setup : input.setups) {
+    std::vector<Machined> machined;
+    for (const SetupPlan& earlier : out.setups) machined.emplace_back(earlier, setup.turn);
+    for (const Machined& m : machined)
+      if (!m.quarter_turns())
+        fail_on_file(input.path,
+                     fmt::format("[[setup]] \"{}\" is not turned from the first one by quarter turns about the axes; "
+                                 "that was expected of every set-up but the first",
+                                 setup.name),
+                     "setup-turn");
+    if (!blank.planes[2].empty() && !setup.turn.isIdentity())
+      fail_on_file(input.path, "a blank from a stock.vdb is not turned; a set-up without turn was expected",
+                   "setup-turn");
+    out.setups.push_back(plan_setup(input, blank, part, fixtures, setup, machined));
+    if (out.setups.size() == 1) check_shapes(out.setups.front().removal, input, diagnostics);
+  }
+  return out;
+}
+
+}  // namespace camber::plan

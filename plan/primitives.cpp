@@ -1,0 +1,241 @@
+#include "plan/primitives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <tuple>
+
+namespace camber::plan {
+
+std::string_view to_string(DivisionPlan plan) {
+  switch (plan) {
+    case DivisionPlan::yz:
+      return "yz";
+    case DivisionPlan::zx:
+      return "zx";
+    case DivisionPlan::largest:
+      break;
+  }
+  return "largest";
+}
+
+namespace {
+
+using Column = std::array<int, 2>;  ///< x, y of a cell
+
+/// Cells of one kind that are connected within a layer.
+struct Region {
+  std::vector<Column> columns;  ///< ascending
+  int from = 0, to = 0;         ///< layers [from, to)
+  bool free_form = false;
+};
+
+bool is_to_go(CellKind kind) {
+  return kind == CellKind::clear || kind == CellKind::contoured || kind == CellKind::free_form;
+}
+
+std::vector<Region> regions_of_layer(const CellGrid& grid, int layer) {
+  std::vector<Region> out;
+  std::set<Column> seen;
+  for (int x = 0; x < grid.count(0); ++x)
+    for (int y = 0; y < grid.count(1); ++y) {
+      const CellKind kind = grid.at({x, y, layer}).kind;
+      if (!is_to_go(kind) || !seen.insert({x, y}).second) continue;
+      Region region{{{x, y}}, layer, layer + 1, kind == CellKind::free_form};
+      for (std::size_t i = 0; i < region.columns.size(); ++i)
+        for (const auto& [dx, dy] : {Column{1, 0}, Column{-1, 0}, Column{0, 1}, Column{0, -1}}) {
+          const CellIndex next{region.columns[i][0] + dx, region.columns[i][1] + dy, layer};
+          if (!grid.holds(next) || !is_to_go(grid.at(next).kind)) continue;
+          if ((grid.at(next).kind == CellKind::free_form) != region.free_form) continue;
+          if (seen.insert({next.x, next.y}).second) region.columns.push_back({next.x, next.y});
+        }
+      std::ranges::sort(region.columns);
+      out.push_back(std::move(region));
+    }
+  return out;
+}
+
+/// Regions of all layers; alike ones on both sides of a plane that is no face are one.
+std::vector<Region> regions_of(const CellGrid& grid) {
+  std::vector<Region> out;
+  for (int z = 0; z < grid.count(2); ++z)
+    for (Region& region : regions_of_layer(grid, z)) {
+      const auto below = std::ranges::find_if(out, [&](const Region& r) {
+        return r.to == z && r.free_form == region.free_form && r.columns == region.columns;
+      });
+      if (below != out.end() && !grid.plane(2, z).face)
+        below->to = z + 1;
+      else
+        out.push_back(std::move(region));
+    }
+  return out;
+}
+
+/// A region on the grid of its own outline's planes: cell (i, j) of it spans columns x[i] to x[i + 1], y[j] to y[j +
+/// 1].
+struct Outline {
+  std::vector<int> x, y;
+  std::vector<std::vector<bool>> filled;  ///< [i][j]
+};
+
+Outline outline_of(const Region& region) {
+  const std::set<Column> in(region.columns.begin(), region.columns.end());
+  std::set<int> x, y;
+  for (const auto& [cx, cy] : region.columns) {
+    if (!in.contains({cx - 1, cy})) x.insert(cx);
+    if (!in.contains({cx + 1, cy})) x.insert(cx + 1);
+    if (!in.contains({cx, cy - 1})) y.insert(cy);
+    if (!in.contains({cx, cy + 1})) y.insert(cy + 1);
+  }
+  Outline out{{x.begin(), x.end()}, {y.begin(), y.end()}, {}};
+  for (std::size_t i = 0; i + 1 < out.x.size(); ++i) {
+    out.filled.emplace_back();
+    for (std::size_t j = 0; j + 1 < out.y.size(); ++j) out.filled.back().push_back(in.contains({out.x[i], out.y[j]}));
+  }
+  return out;
+}
+
+/// [i0, i1) x [j0, j1) of an outline's cells.
+struct Rectangle {
+  std::size_t i0 = 0, i1 = 0, j0 = 0, j1 = 0;
+};
+
+/// Slabs along one axis, and runs in each of them.
+std::vector<Rectangle> slabs(const Outline& outline, bool across_x) {
+  std::vector<Rectangle> out;
+  const std::size_t ni = outline.x.size() - 1, nj = outline.y.size() - 1;
+  const std::size_t outer = across_x ? ni : nj, inner = across_x ? nj : ni;
+  for (std::size_t a = 0; a < outer; ++a)
+    for (std::size_t b = 0; b < inner;) {
+      const auto filled = [&](std::size_t k) { return across_x ? outline.filled[a][k] : outline.filled[k][a]; };
+      std::size_t end = b;
+      while (end < inner && filled(end)) ++end;
+      if (end > b) out.push_back(across_x ? Rectangle{a, a + 1, b, end} : Rectangle{b, end, a, a + 1});
+      b = std::max(end, b + 1);
+    }
+  return out;
+}
+
+class LargestRectangles {
+ public:
+  LargestRectangles(const CellGrid& grid, const Outline& outline) : grid_(grid), outline_(outline) {}
+
+  std::vector<Rectangle> find() {
+    left_ = outline_.filled;
+    std::vector<Rectangle> out;
+    while (const auto best = largest()) {
+      out.push_back(*best);
+      for (std::size_t i = best->i0; i < best->i1; ++i)
+        for (std::size_t j = best->j0; j < best->j1; ++j) left_[i][j] = false;
+    }
+    return out;
+  }
+
+ private:
+  double x(std::size_t i) const { return grid_.plane_mm(0, outline_.x[i]); }
+  double y(std::size_t j) const { return grid_.plane_mm(1, outline_.y[j]); }
+
+  bool better(const Rectangle& a, const Rectangle& b) const {
+    constexpr double kEqual = 1e-6;  // planes of a mesh are not exact
+    const double wa = x(a.i1) - x(a.i0), ha = y(a.j1) - y(a.j0), wb = x(b.i1) - x(b.i0), hb = y(b.j1) - y(b.j0);
+    if (std::abs(wa * ha - wb * hb) > kEqual * (wa * ha + wb * hb)) return wa * ha > wb * hb;
+    if (std::abs(wa + ha - wb - hb) > kEqual * (wa + ha)) return wa + ha < wb + hb;
+    return std::make_pair(a.i0 + a.i1, a.j0 + a.j1) < std::make_pair(b.i0 + b.i1, b.j0 + b.j1);
+  }
+
+  std::optional<Rectangle> largest() const {
+    std::optional<Rectangle> best;
+    const std::size_t ni = left_.size(), nj = left_.empty() ? 0 : left_[0].size();
+    for (std::size_t i0 = 0; i0 < ni; ++i0) {
+      std::vector<bool> open(nj, true);
+      for (std::size_t i1 = i0; i1 < ni; ++i1) {
+        for (std::size_t j = 0; j < nj; ++j) open[j] = open[j] && left_[i1][j];
+        for (std::size_t j = 0; j < nj;) {
+          std::size_t end = j;
+          while (end < nj && open[end]) ++end;
+          const Rectangle r{i0, i1 + 1, j, end};
+          if (end > j && (!best || better(r, *best))) best = r;
+          j = std::max(end, j + 1);
+        }
+      }
+    }
+    return best;
+  }
+
+  const CellGrid& grid_;
+  const Outline& outline_;
+  std::vector<std::vector<bool>> left_;
+};
+
+std::vector<Rectangle> rectangles_of(const CellGrid& grid, const Outline& outline, DivisionPlan plan) {
+  if (plan != DivisionPlan::largest) return slabs(outline, plan == DivisionPlan::yz);
+  std::vector<Rectangle> best = LargestRectangles(grid, outline).find();
+  for (const bool across_x : {true, false}) {
+    std::vector<Rectangle> other = slabs(outline, across_x);
+    if (other.size() < best.size()) best = std::move(other);
+  }
+  return best;
+}
+
+Primitive primitive_of(const CellGrid& grid, std::vector<CellIndex> cells) {
+  Primitive out;
+  Bounds bounds;
+  std::ranges::sort(cells);
+  for (const CellIndex& c : cells) {
+    const Cell& cell = grid.at(c);
+    out.volume_mm3 += cell.removal_mm3();
+    out.free_form = out.free_form || cell.kind == CellKind::free_form;
+    out.contoured = out.contoured || cell.kind == CellKind::contoured;
+    constexpr double kOverhang = 0.01;  // of the free-form area
+    out.overhang = out.overhang || cell.overhang_mm2 > kOverhang * cell.free_form_mm2;
+    bounds.add(grid.low_mm(c));
+    bounds.add(grid.high_mm(c));
+  }
+  out.min_mm = bounds.min_mm, out.max_mm = bounds.max_mm;
+  out.cells = std::move(cells);
+  return out;
+}
+
+std::vector<CellIndex> cells_of(const Region& region, const Outline& outline, const Rectangle& r) {
+  std::vector<CellIndex> cells;
+  for (int x = outline.x[r.i0]; x < outline.x[r.i1]; ++x)
+    for (int y = outline.y[r.j0]; y < outline.y[r.j1]; ++y)
+      for (int z = region.from; z < region.to; ++z) cells.push_back({x, y, z});
+  return cells;
+}
+
+void add_boxes(const CellGrid& grid, const Region& region, DivisionPlan plan, std::vector<Primitive>& out) {
+  if (region.free_form) {
+    std::vector<CellIndex> cells;
+    for (const auto& [x, y] : region.columns)
+      for (int z = region.from; z < region.to; ++z) cells.push_back({x, y, z});
+    out.push_back(primitive_of(grid, std::move(cells)));
+    return;
+  }
+  const Outline outline = outline_of(region);
+  for (const Rectangle& r : rectangles_of(grid, outline, plan))
+    out.push_back(primitive_of(grid, cells_of(region, outline, r)));
+}
+
+Primitive primitive_of(const Hole& hole, std::size_t number) {
+  Primitive out;
+  out.is_hole = true;
+  out.hole = number;
+  out.volume_mm3 = hole.volume_mm3;
+  const double r = hole.diameter_mm / 2;
+  out.min_mm = {hole.centre_mm.x() - r, hole.centre_mm.y() - r, hole.tip_mm};
+  out.max_mm = {hole.centre_mm.x() + r, hole.centre_mm.y() + r, hole.top_mm};
+  return out;
+}
+
+}  // namespace
+
+std::vector<Primitive> divide(const RemovalVolume& removal, DivisionPlan plan) {
+  std::vector<Primitive> out;
+  for (const Region& region : regions_of(removal.grid)) add_boxes(removal.grid, region, plan, out);
+  for (std::size_t h = 0; h < removal.holes.size(); ++h) out.push_back(primitive_of(removal.holes[h], h));
+  return out;
+}
+
+}  // namespace camber::plan

@@ -1,0 +1,45 @@
+#pragma once
+// What has to be removed: blank minus part, as cells and holes.
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "plan/cell_grid.h"
+
+namespace camber::plan {
+
+struct RemovalInput {
+  Solid blank{}, part{};
+  std::vector<Solid> fixtures{};
+  FaceOptions faces{};
+  /// Planes of a blank that comes as heights only.
+  std::array<std::vector<AxisPlane>, 3> blank_planes{};
+  /// Of the cells: what is thinner does not count. At least the tolerance of the planes.
+  double tolerance_mm = 0.01;
+  /// Of earlier set-ups: whether a place is machined, and the planes of what is.
+  std::function<bool(const Vec3&)> machined{};
+  std::array<std::vector<AxisPlane>, 3> machined_planes{};
+};
+
+struct RemovalVolume {
+  explicit RemovalVolume(CellGrid cells) : grid(std::move(cells)) {}
+
+  CellGrid grid;
+  std::vector<Hole> holes;  ///< those that the blank does not have yet; volumes are what the blank has there
+  std::vector<InnerCorner> corners;
+  double blank_mm3 = 0, part_mm3 = 0;
+  double cells_mm3 = 0, holes_mm3 = 0;  ///< to be removed
+  double outside_mm3 = 0;               ///< of the part, where there is no blank
+  double free_form_mm2 = 0;
+  Bounds blank_bounds;
+
+  double removal_mm3() const { return blank_mm3 - part_mm3; }
+  /// (cells + holes) / removal - 1.
+  double balance() const;
+};
+
+/// Planes are those of the faces of part and blank. Holes are taken out of the part first and the rest is divided as if
+/// they were not there.
+RemovalVolume removal_volume(const RemovalInput& input);
+
+}  // namespace camber::plan

@@ -1,0 +1,51 @@
+#pragma once
+// Closed solids as triangles, with exact volumes.
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/geometry.h"
+#include "base/stl.h"
+#include "machine/job.h"
+
+namespace camber::plan {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+struct Bounds {
+  Vec3 min_mm = Vec3::Constant(1e300), max_mm = Vec3::Constant(-1e300);
+  void add(const Vec3& point);
+  void add(const Bounds& other);
+  Vec3 middle() const { return 0.5 * (min_mm + max_mm); }
+};
+
+/// Triangles are counter-clockwise seen from outside. Where `heights_only`, only faces that look up or down are there:
+/// enough for volumes and heights, not for the search for faces.
+struct Solid {
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;
+  bool heights_only = false;
+
+  Vec3 corner(const Triangle& t, std::size_t c) const { return points[t[c]]; }
+  /// Twice the area, outward.
+  Vec3 normal_by_area(const Triangle& t) const;
+  Bounds bounds() const;
+};
+
+/// By the divergence theorem, exact for the polyhedron.
+double volume_mm3(const Solid& solid);
+
+Solid solid_of(const TriangleMesh& mesh);
+Solid solid_of(const machine::Box& box);
+/// A prism whose polygon has the cylinder's cross-section area.
+Solid solid_of(const machine::Cylinder& cylinder);
+/// Turned about the origin; `turn` is a rotation.
+Solid turned(const Solid& solid, const Eigen::Matrix3d& turn);
+
+/// Heights at which the vertical line through (x, y) passes the solid, in pairs from below: material lies between the
+/// first and the second, the third and the fourth ... A line through an edge is moved by a few nanometres.
+std::vector<double> material_along_z(const Solid& solid, double x_mm, double y_mm);
+bool contains(const Solid& solid, const Vec3& point);
+
+}  // namespace camber::plan

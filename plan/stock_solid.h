@@ -1,0 +1,17 @@
+#pragma once
+// A stock, as an interrupted run leaves it, as a blank.
+#include "plan/faces.h"
+#include "removal/stock.h"
+
+namespace camber::plan {
+
+struct StockBlank {
+  Solid solid;  ///< faces up and down of every column of voxels
+  std::array<std::vector<AxisPlane>, 3> planes;
+};
+
+/// Heights are those of the stock's surface along the columns' middles. A level is a plane where more than a hundredth
+/// of the stock's area lies within the tolerance of it; walls likewise, from crossings of lines along x and y.
+StockBlank blank_of(const removal::Stock& stock, const FaceOptions& options);
+
+}  // namespace camber::plan

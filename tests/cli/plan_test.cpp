@@ -1,0 +1,113 @@
+// camber plan from the command line: what it writes, and what it says where a part cannot be made.
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/block_part.h"
+#include "tests/support/run_camber.h"
+
+namespace camber {
+namespace {
+
+using tests::CamberRun;
+using tests::run_camber;
+using tests::TempFolder;
+
+const std::string kPlan =
+    "part = \"part.stl\"\nmachine = \"machine.toml\"\ncase_base = \"cases.toml\"\n[blank]\n"
+    "box_mm = [[0, 0, 0], [60, 40, 22]]\n[material]\npreset = \"FC250\"\nkrc_ratio = 0.4\n[work]\nmaterial = \"FC250\"\n"
+    "[tool.1]\ntype = \"flat\"\ndiameter_mm = 4\nflutes = 4\noverhang_mm = 30\n"
+    "[tool.2]\ntype = \"drill\"\ndiameter_mm = 8\nflutes = 2\noverhang_mm = 60\n";
+const std::string kCases =
+    "[[case]]\nmaterial = \"FC250\"\ntool = \"end mill\"\ntool_material = \"carbide\"\ndiameter_mm = 4\n"
+    "speed_m_per_min = 60\nfeed_mm_per_min = 400\naxial_depth_mm = 2\nradial_depth_mm = 1\n"
+    "[[case]]\nmaterial = \"FC250\"\ntool = \"drill\"\ntool_material = \"carbide\"\ndiameter_mm = 8\n"
+    "speed_m_per_min = 50\nfeed_mm_per_min = 300\n";
+
+/// A pocket, and a hole of this diameter.
+CamberRun plan(const TempFolder& folder, double hole_mm, const std::string& more = " -o out") {
+  const tests::BlockPart part{{{0, 0, 0}, {60, 40, 20}}, {{{10, 10, 12}, {30, 30, 21}}}, {{45, 20, hole_mm, 0}}};
+  tests::write_stl(part.mesh(), folder / "part.stl");
+  folder.write("plan.toml", kPlan);
+  if (!std::filesystem::exists(folder / "cases.toml")) folder.write("cases.toml", kCases);
+  folder.write("machine.toml", "[spindle]\nmax_rpm = 8000\n");
+  return run_camber(folder, "plan plan.toml" + more);
+}
+
+TEST(PlanCommand, WritesTablesPageAndFigures) {
+  const TempFolder folder;
+  const CamberRun run = plan(folder, 8);
+  ASSERT_EQ(run.status, 0) << run.err;
+  for (const char* file : {"operations.toml", "plan-yz.toml", "plan-zx.toml", "plan-largest.toml", "report.html"})
+    EXPECT_TRUE(std::filesystem::exists(folder / ("out/" + std::string(file)))) << file;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "out/plan.json"));
+  EXPECT_EQ(json.at("plans").size(), 3U);
+  ASSERT_EQ(json.at("operations").size(), 3U);
+  EXPECT_EQ(json.at("operations").at(0).at("feature"), "face");
+  EXPECT_EQ(json.at("operations").at(1).at("feature"), "closed pocket");
+  EXPECT_EQ(json.at("operations").at(2).at("feature"), "through hole");
+  const std::string page = tests::file_text(folder / "out/report.html");
+  EXPECT_NE(page.find("plan-data"), std::string::npos);
+  EXPECT_NE(page.find("closed pocket"), std::string::npos);
+}
+
+TEST(PlanCommand, WritesTheSameTwice) {
+  const TempFolder a, b;
+  ASSERT_EQ(plan(a, 8).status, 0);
+  ASSERT_EQ(plan(b, 8, " -o out --threads 1").status, 0);
+  for (const char* file : {"out/operations.toml", "out/plan-yz.toml", "out/report.html"})
+    EXPECT_EQ(tests::file_text(a / file), tests::file_text(b / file)) << file;
+}
+
+TEST(PlanCommand, GoesOnFromAnEditedTable) {
+  const TempFolder folder;
+  ASSERT_EQ(plan(folder, 8).status, 0);
+  const std::string table = tests::replaced(tests::file_text(folder / "out/operations.toml"), "radial_depth_mm = 1\n",
+                                            "radial_depth_mm = 0.5\n");
+  folder.write("edited.toml", table);
+  const CamberRun run = run_camber(folder, "plan plan.toml --operations edited.toml -o again");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "again/plan.json"));
+  EXPECT_EQ(json.at("operations").at(1).at("radial_mm"), 0.5);
+  EXPECT_EQ(json.at("operations").at(1).at("limit"), "given");
+}
+
+TEST(PlanCommand, SaysWhatToolWouldDo) {
+  const TempFolder folder;
+  const CamberRun run = plan(folder, 5);
+  EXPECT_EQ(run.status, 3);
+  EXPECT_EQ(run.err,
+            "camber: error: through hole, hole from (42.5, 17.5, 0) to (47.5, 22.5, 20) stays: none of the tools will "
+            "do; it needs a drill of 5 mm that reaches 20 mm deep\n");
+}
+
+TEST(PlanCommand, LearnsTheConditionsOfAPlan) {
+  const TempFolder folder;
+  const CamberRun first = plan(folder, 8, " -o out --learn");
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_NE(tests::file_text(folder / "cases.toml").find("[[case]]", kCases.size()), std::string::npos);
+  const std::string learned = tests::file_text(folder / "cases.toml");
+  EXPECT_EQ(learned.substr(0, kCases.size()), kCases);
+  ASSERT_EQ(plan(folder, 8, " -o out --operations out/operations.toml --learn").status, 0);
+  EXPECT_EQ(tests::file_text(folder / "cases.toml"), learned);
+}
+
+TEST(PlanCommand, PrintsHowWellTheCasesPredictEachOther) {
+  const TempFolder folder;
+  const CamberRun run = plan(folder, 8, " --cases-error");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out.substr(0, run.out.find('\n')),
+            "2 cases, each asked of the others: factor between predicted and true");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+TEST(PlanCommand, NeedsAFolderOrCasesError) {
+  const TempFolder folder;
+  const CamberRun run = plan(folder, 8, "");
+  EXPECT_EQ(run.status, 2);
+}
+
+}  // namespace
+}  // namespace camber
