@@ -17,7 +17,8 @@ using tests::TempFolder;
 
 const std::string kPlan =
     "part = \"part.stl\"\nmachine = \"machine.toml\"\ncase_base = \"cases.toml\"\n[blank]\n"
-    "box_mm = [[0, 0, 0], [60, 40, 22]]\n[material]\npreset = \"FC250\"\nkrc_ratio = 0.4\n[work]\nmaterial = \"FC250\"\n"
+    "box_mm = [[0, 0, 0], [60, 40, 22]]\n[material]\npreset = \"FC250\"\nkrc_ratio = 0.4\n[work]\nmaterial = "
+    "\"FC250\"\n"
     "[tool.1]\ntype = \"flat\"\ndiameter_mm = 4\nflutes = 4\noverhang_mm = 30\n"
     "[tool.2]\ntype = \"drill\"\ndiameter_mm = 8\nflutes = 2\noverhang_mm = 60\n";
 const std::string kCases =
