@@ -113,7 +113,7 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
     else if (options.feed)
       feedmodel::predict_feed(program.moves, job.machine, api::points_sink(program.moves, result.feed));
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    result.json = report::predict_json(program, prediction, compute_s, prepared.traced_run());
+    result.json = report::predict_json(program, prediction, compute_s, prepared.traced_run(), result.doubts);
     result.diagnostics = found.all();
     if (request.folder.empty()) return;
     Diagnostics failed;

@@ -11,6 +11,7 @@
 
 #include "base/output_file.h"
 #include "cli/console.h"
+#include "cli/mpi_run.h"
 #include "cli/plan_command.h"
 #include "machine/toml_table.h"
 
@@ -124,6 +125,10 @@ int run(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& problem) {
     if (problem.get_exit_code() == 0) return app.exit(problem), kDone;
     return refuse(app, problem, argc, argv) == 0 ? kDone : kCommandLineWrong;
+  }
+  if (const std::string& name = app.get_subcommands().front()->get_name(); name != "predict" && started_by_mpi()) {
+    print_error(fmt::format("under mpirun predict alone shares its work; {} runs without it", name));
+    return kCommandLineWrong;
   }
   if (json_to_standard_output(app)) claim_standard_output();
   remove_parts_on_signals();

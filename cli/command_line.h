@@ -19,7 +19,8 @@ using Action = std::function<int()>;
 void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< check, feed, fit-feed
 void add_force_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
-void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< predict, compensate, adapt
+/// predict, compensate, adapt, study
+void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_copy_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 /// completion, and an example for each of the subcommands that are there; to be called last.
 void add_help(CLI::App& app, Action& chosen);

@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "report/copy_page.h"
 #include "report/copy_summary.h"
 
 namespace camber::cli {
@@ -33,6 +34,12 @@ class StreamWriter {
   OutputFile file_;
 };
 
+std::vector<std::string> warnings_of(const Diagnostics& diagnostics) {
+  std::vector<std::string> out;
+  for (const Diagnostic& d : diagnostics.all()) out.push_back(to_string(d));
+  return out;
+}
+
 }  // namespace
 
 int run_copy(const CopyArguments& arguments, const GlobalOptions& options) {
@@ -40,16 +47,21 @@ int run_copy(const CopyArguments& arguments, const GlobalOptions& options) {
   Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
   const api::CopyJob job = api::read_copy_job(arguments.job, diagnostics);
-  check_outputs({arguments.output, arguments.stream, arguments.stock, arguments.json},
-                {job.job.path, job.job.machine_path, job.job.part.mesh, job.job.stock.mesh, job.job.stock.vdb});
+  check_outputs({arguments.output, arguments.stream, arguments.stock, arguments.log, arguments.report, arguments.json},
+                {job.job.path, job.job.machine_path, job.job.part.mesh, job.job.stock.mesh, job.job.stock.vdb,
+                 arguments.hardness});
   const StageScope stages([&](const std::string& what, double share) { progress.show(what, share); });
   std::optional<StreamWriter> stream;
-  copymill::CopyOptions copy_options{.stop_after_s = arguments.stop_after_s};
-  if (!arguments.stream.empty()) {
-    stream.emplace(arguments.stream);
-    copy_options.stream = [&](const copymill::Tick& t) { stream->add(t); };
-  }
-  const copymill::CopyResult result = api::copy_job(job, copy_options, diagnostics);
+  copymill::CopyOptions copy_options;
+  copy_options.stop_after_s = arguments.stop_after_s;
+  if (!arguments.hardness.empty()) copy_options.regions = simulate::read_force_regions(arguments.hardness);
+  if (!arguments.stream.empty()) stream.emplace(arguments.stream);
+  report::TickPicture picture;
+  copy_options.stream = [&](const copymill::Tick& t) {
+    if (stream) stream->add(t);
+    if (!arguments.report.empty()) picture.add(t);
+  };
+  const copymill::CopyResult result = api::copy_job(job, arguments.output, copy_options, diagnostics);
   progress.clear();
   settle(diagnostics, options);
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -57,6 +69,15 @@ int run_copy(const CopyArguments& arguments, const GlobalOptions& options) {
   try_to_write([&] { write_file(arguments.output, result.text); }, failed);
   if (stream) try_to_write([&] { stream->commit(); }, failed);
   if (!arguments.stock.empty()) try_to_write([&] { result.stock->save(arguments.stock); }, failed);
+  if (!arguments.log.empty()) try_to_write([&] { write_file(arguments.log, report::copy_log_csv(result)); }, failed);
+  if (!arguments.report.empty())
+    try_to_write(
+        [&] {
+          write_file(arguments.report,
+                     report::copy_page(result, picture, {arguments.job, job.job.part.mesh, arguments.output},
+                                       warnings_of(diagnostics)));
+        },
+        failed);
   if (!arguments.json.empty())
     try_to_write([&] { write_file(arguments.json, report::copy_json(result, compute_s)); }, failed);
   if (!options.quiet) fmt::print("{}", report::copy_text(result, compute_s));

@@ -37,6 +37,12 @@ void add_copy_command(CLI::App& app, const GlobalOptions& options, Action& chose
                    "stop after this time, s, and lift the tool; with --stock the run can be taken up again")
       ->check(CLI::PositiveNumber)
       ->type_name("SECONDS");
+  command->add_option("--log", arguments->log, "changes of feed and depths: time, place, reason")->type_name("LOG.csv");
+  command
+      ->add_option("--hardness", arguments->hardness,
+                   "boxes in which the material is harder by a factor: the cut feels it, the rule has to find out")
+      ->type_name("REGIONS.csv");
+  command->add_option("--report", arguments->report, "page with the path, loads and feeds")->type_name("R.html");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {

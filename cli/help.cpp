@@ -23,13 +23,19 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"protocol", "camber protocol --machine machine.toml -o programs"},
     {"fit-force", "camber fit-force --log means.csv --job job.toml -o material.toml"},
     {"init", "camber init finish.nc --machine machine.toml --material S55C -o first_job.toml"},
-    {"predict", "camber predict job.toml -o predicted"},
+    {"predict",
+     "camber predict job.toml -o predicted\n"
+     "  camber predict job.toml -o parts --sections 4 --section 1 --stage sweep"},
+    {"merge", "camber merge parts"},
     {"compensate",
      "camber compensate job.toml -o finish_compensated.nc --report report.html --json figures.json\n"
      "  camber compensate --verify finish_compensated.nc"},
     {"adapt",
      "camber adapt job.toml -o rough_adapted.nc --report report.html --json figures.json\n"
      "  camber adapt job.toml -o rough_adapted.nc --time-limit 22 --sweep"},
+    {"study",
+     "camber study study.toml -o study\n"
+     "  camber study study.toml -o study --list > commands.txt"},
     {"copy",
      "camber copy job.toml -o part.nc --stock left.vdb --json figures.json\n"
      "  camber copy job.toml -o part.nc --stream ticks.csv --stop-after 60"},
@@ -44,6 +50,9 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"post",
      "camber post dome.nc --machine machine.toml -o dome_joints.nc\n"
      "  camber post dome_joints.nc --machine machine.toml --to tcp -o dome_tip.nc"},
+    {"posture",
+     "camber posture finish.nc --job job.toml -o finish_5x.nc\n"
+     "  camber posture finish.nc --job job.toml -o finish_5x.nc --overhang 2.5 --json figures.json"},
     {"completion", "camber completion bash > ~/.local/share/bash-completion/completions/camber"}};
 
 }  // namespace

@@ -1,4 +1,4 @@
-// predict, compensate and adapt on the command line.
+// predict, compensate, adapt and study on the command line.
 #include <filesystem>
 #include <memory>
 
@@ -9,8 +9,11 @@
 #include "cli/command_line.h"
 #include "cli/compensate_command.h"
 #include "cli/console.h"
+#include "cli/mpi_run.h"
 #include "cli/outputs.h"
 #include "cli/predict_command.h"
+#include "cli/sections_command.h"
+#include "cli/study_command.h"
 #include "cli/verify_command.h"
 #include "compensate/verify.h"
 #include "machine/job.h"
@@ -35,6 +38,39 @@ std::vector<std::string> files_read(const std::string& job_path, std::vector<std
   return others;
 }
 
+void add_section_options(CLI::App& command, SectionsArguments& parts, CLI::Option& trace) {
+  auto* sections = command
+                       .add_option("--sections", parts.sections,
+                                   "in this many sections of the path; alone: all of them, and the merge")
+                       ->check(CLI::Range(std::size_t{1}, std::size_t{10000}))
+                       ->type_name("N")
+                       ->excludes(&trace);
+  auto* section = command.add_option("--section", parts.section, "only this one, from 1; camber merge joins them")
+                      ->check(CLI::Range(std::size_t{1}, std::size_t{10000}))
+                      ->type_name("I")
+                      ->needs(sections);
+  command.add_option("--stage", "of one section: sweep all sections first, then solve them")
+      ->check(CLI::IsMember({"sweep", "solve"}).description(""))
+      ->type_name("sweep|solve")
+      ->needs(section);
+  command.add_option("--round", parts.round, "of solving in static coupling")
+      ->check(CLI::Range(1, api::kMaxSectionRounds))
+      ->type_name("K")
+      ->needs(section);
+}
+
+/// Every rank comes here.
+int predict_with_mpi(const PredictArguments& arguments, const SectionsArguments& parts, bool in_sections,
+                     const GlobalOptions& options) {
+  if (in_sections || !arguments.trace.empty() || !has_mpi()) {
+    print_error(!has_mpi()
+                    ? "this camber is built without MPI; without mpirun, or with --sections, it runs"
+                    : "under mpirun the ranks are the sections; --sections and --trace are for a single process");
+    return kCommandLineWrong;
+  }
+  return run_predict_on_ranks(parts, options);
+}
+
 void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("predict", "cutting force, deflection and form error of a job");
   auto arguments = std::make_shared<PredictArguments>();
@@ -55,15 +91,43 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
                    "a map of the trace's columns, if they are not t_s, x_act_mm, y_act_mm, z_act_mm ...")
       ->type_name("MAP.toml")
       ->needs(trace);
-  command->callback([arguments, &options, &chosen] {
-    chosen = [arguments, &options] {
+  auto parts = std::make_shared<SectionsArguments>();
+  add_section_options(*command, *parts, *trace);
+  command->callback([arguments, parts, command, &options, &chosen] {
+    const bool in_sections = command->count("--sections") > 0, one = command->count("--section") > 0;
+    if (one != (command->count("--stage") > 0)) throw CLI::RequiredError(one ? "--stage" : "--section");
+    if (one && parts->section > parts->sections)
+      throw CLI::ValidationError("--section", fmt::format("{} of {} sections", parts->section, parts->sections));
+    parts->solve = one && command->get_option("--stage")->as<std::string>() == "solve";
+    if (command->count("--round") > 0 && !parts->solve) throw CLI::RequiredError("--stage solve");
+    chosen = [arguments, parts, in_sections, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);
       check_output_folder(arguments->output_folder);
       std::vector<std::string> outputs{arguments->json};
       for (const char* name : {"summary.json", "stock.vdb"}) outputs.push_back(arguments->output_folder + "/" + name);
       if (!std::filesystem::exists(arguments->output_folder)) outputs.resize(1);
       check_outputs(outputs, files_read(arguments->job, {arguments->trace, arguments->columns}));
-      return run_predict(*arguments, options);
+      parts->job = arguments->job, parts->output_folder = arguments->output_folder;
+      parts->json = arguments->json, parts->forces_at = arguments->forces_at;
+      if (started_by_mpi()) return predict_with_mpi(*arguments, *parts, in_sections, options);
+      return in_sections ? run_sections(*parts, options) : run_predict(*arguments, options);
+    };
+  });
+}
+
+void add_merge(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("merge", "join the parts that predict --sections has written");
+  auto arguments = std::make_shared<MergeArguments>();
+  command->add_option("folder", arguments->folder, "folder of the parts, and for the results")
+      ->required()
+      ->check(CLI::ExistingDirectory.description(""))
+      ->type_name("DIR");
+  command->add_option("--json", arguments->json, "also write the figures to this file")->type_name("R.json");
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      check_output_folder(arguments->folder);
+      check_outputs({arguments->json}, {});
+      return run_merge(*arguments, options);
     };
   });
 }
@@ -162,12 +226,33 @@ void add_adapt(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   });
 }
 
+void add_study(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("study", "a job varied over a grid of its keys: one table, one page");
+  auto arguments = std::make_shared<StudyArguments>();
+  command->add_option("study", arguments->study, "study.toml: job, command, [grid]")->required()->type_name("S.toml");
+  command->add_option("-o,--output", arguments->output_folder, "folder for cases, table and page")
+      ->required()
+      ->type_name("DIR");
+  command->add_flag("--list", arguments->list,
+                    "print the commands of the cases that are not done, one a line, and run none");
+  command->add_option("--json", arguments->json, "also write the table to this file")->type_name("R.json");
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      check_output_folder(arguments->output_folder);
+      check_outputs({arguments->json}, {arguments->study});
+      return run_study(*arguments, options);
+    };
+  });
+}
+
 }  // namespace
 
 void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   add_predict(app, options, chosen);
   add_compensate(app, options, chosen);
   add_adapt(app, options, chosen);
+  add_study(app, options, chosen);
+  add_merge(app, options, chosen);
 }
 
 }  // namespace camber::cli

@@ -47,7 +47,8 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   diagnostics.append(of_cut);
   const double compute_s = seconds_since(begin);
   Diagnostics failed;
-  const std::string json = report::predict_json(program, prediction, compute_s, prepared.traced_run());
+  const std::vector<std::string> wrong = api::doubts_of(job, program, prediction);
+  const std::string json = report::predict_json(program, prediction, compute_s, prepared.traced_run(), wrong);
   api::write_prediction(job, prepared, prediction, request, json, diagnostics, failed);
   if (!arguments.json.empty()) try_to_write([&] { write_file(arguments.json, json); }, failed);
   progress.clear();
@@ -55,7 +56,6 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
   if (!options.quiet) fmt::print("{}", report::predict_text(program, prediction, compute_s, prepared.traced_run()));
   failed.throw_if_errors();
   settle(of_cut, options);
-  const std::vector<std::string> wrong = api::doubts_of(job, program, prediction);
   for (const std::string& sentence : wrong) print_error(sentence);
   return wrong.empty() ? kDone : kNumbersDidNotWorkOut;
 }

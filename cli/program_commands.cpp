@@ -1,4 +1,4 @@
-// check, feed, time, compress, resegment, post and fit-feed on the command line.
+// check, feed, time, compress, resegment, post, posture and fit-feed on the command line.
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -12,6 +12,7 @@
 #include "api/commands/time.h"
 #include "base/numbers.h"
 #include "base/stage.h"
+#include "base/units.h"
 #include "cli/check_command.h"
 #include "cli/command_line.h"
 #include "cli/compress_command.h"
@@ -20,6 +21,7 @@
 #include "cli/fit_feed_command.h"
 #include "cli/outputs.h"
 #include "cli/post_command.h"
+#include "cli/posture_command.h"
 #include "cli/progress.h"
 #include "cli/protocol_command.h"
 #include "cli/raster_options.h"
@@ -448,6 +450,71 @@ void add_post(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   });
 }
 
+void add_posture_rules(CLI::App& command, posture::PostureOptions& options) {
+  using posture::Mode;
+  command
+      .add_option(
+          "--mode", options.mode,
+          "chosen: least error and rotary motion (default); normal to the part; lead-tilt: at constant angles to "
+          "the normal; seed: normal, and away from what interferes")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Mode>{{"chosen", Mode::chosen},
+                                                                      {"normal", Mode::normal},
+                                                                      {"lead-tilt", Mode::lead_tilt},
+                                                                      {"seed", Mode::seed}})
+                      .description(""))
+      ->type_name("chosen|normal|lead-tilt|seed");
+  command
+      .add_option("--clearance-mm", options.clearance_mm,
+                  "of neck, shank, holder and spindle to part and fixtures; default 1")
+      ->check(number_from_to(0, 100))
+      ->type_name("X");
+  const auto angle = [&command](const char* name, double& rad, double least, double most, const char* text) {
+    command
+        .add_option_function<double>(
+            name, [&rad](const double& deg) { rad = rad_from_deg(deg); }, text)
+        ->check(number_from_to(least, most))
+        ->type_name("A");
+  };
+  angle("--lead-deg", options.lead_rad, -60, 60, "lead-tilt: forward; default 10");
+  angle("--tilt-deg", options.tilt_rad, -60, 60, "lead-tilt: to the left of the motion; default 0");
+  angle("--max-tilt-deg", options.max_tilt_rad, 0, 90, "from Z of the program; default 75");
+  angle("--least-angle-deg", options.least_angle_rad, 0, 45,
+        "chosen: of tool and normal, so that the tip does not cut; default 10");
+}
+
+void add_posture(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("posture", "tilt the tool of a three-axis finishing program, clear of the part");
+  auto arguments = std::make_shared<PostureArguments>();
+  command->add_option("program", arguments->program, "NC program of three axes")->required()->type_name("P.nc");
+  command->add_option("--job", arguments->job, "job.toml: machine with [kinematics], tool, part")
+      ->required()
+      ->type_name("J.toml");
+  command->add_option("-o,--output", arguments->output, "the new program, under tool-centre-point control")
+      ->required()
+      ->type_name("OUT.nc");
+  add_posture_rules(*command, arguments->options);
+  command->add_option("--tool", arguments->tool, "number of the tool; default: the only one of the job")
+      ->type_name("N");
+  command->add_option("--step-mm", arguments->step_mm, "between the points of the path; default 1")
+      ->check(number_from_to(0.05, 20))
+      ->type_name("X");
+  command
+      ->add_option("--overhang", arguments->overhang_step_mm,
+                   "look for the shortest overhang that stays clear, in steps of so many mm from that of the job")
+      ->check(number_from_to(0.1, 50))
+      ->type_name("STEP");
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  add_tool_lengths(*command, arguments->interpreter);
+  add_work_offsets(*command, arguments->interpreter);
+  add_interpreter_options(*command, arguments->interpreter);
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->job});
+      return run_posture(*arguments, options);
+    };
+  });
+}
+
 void add_protocol(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("protocol", "write programs that provide fit-feed with the data it needs");
   auto arguments = std::make_shared<ProtocolArguments>();
@@ -473,6 +540,7 @@ void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& c
   add_compress(app, options, chosen);
   add_resegment(app, options, chosen);
   add_post(app, options, chosen);
+  add_posture(app, options, chosen);
 }
 
 }  // namespace camber::cli

@@ -19,7 +19,7 @@ Runner::Ended Approach::follow(const Pass& pass) {
                                                    std::max(2 * radius, 4.0));
   // The nearest end of an open row first is for those who order passes; pieces keep the pass's direction.
   for (Pass& piece : pieces)
-    if (cut_piece(std::move(piece)) == Runner::Ended::stopped) return Runner::Ended::stopped;
+    if (cut_piece(std::move(piece)) != Runner::Ended::done) return runner_.ended();
   return Runner::Ended::done;
 }
 
@@ -27,9 +27,9 @@ Runner::Ended Approach::cut_piece(Pass piece) {
   if (runner_.at()) start_near(piece, *runner_.at());
   ++runner_.summary().passes;
   if (runner_.at() && stays_down(piece.points.front())) {
-    if (runner_.cut({piece.points.front()}, false) == Runner::Ended::stopped) return Runner::Ended::stopped;
-  } else if (enter(piece) == Runner::Ended::stopped) {
-    return Runner::Ended::stopped;
+    if (runner_.cut({piece.points.front()}, false) != Runner::Ended::done) return runner_.ended();
+  } else if (enter(piece) != Runner::Ended::done) {
+    return runner_.ended();
   }
   return runner_.cut(piece.points, piece.closed);
 }
@@ -81,14 +81,14 @@ Runner::Ended Approach::lift_over(const Vec3& to) {
                                               from.head<2>().cwiseMax(to.head<2>()) + reach);
   const double z = std::min(runner_.safe_z_mm(), std::max({highest + options_.clearance_mm, from.z(), to.z()}));
   ++runner_.summary().retracts;
-  if (runner_.rapid({from.x(), from.y(), z}) == Runner::Ended::stopped) return Runner::Ended::stopped;
+  if (runner_.rapid({from.x(), from.y(), z}) != Runner::Ended::done) return runner_.ended();
   return runner_.rapid({to.x(), to.y(), z});
 }
 
 Runner::Ended Approach::lower_to(const Vec3& to) {
   const double above = std::max(to.z(), to.z() + lift_into_air(to)) + options_.clearance_mm;
-  if (above < runner_.at()->z() && runner_.rapid({to.x(), to.y(), above}) == Runner::Ended::stopped)
-    return Runner::Ended::stopped;
+  if (above < runner_.at()->z() && runner_.rapid({to.x(), to.y(), above}) != Runner::Ended::done)
+    return runner_.ended();
   return runner_.cut({to}, false);
 }
 
@@ -109,19 +109,18 @@ Runner::Ended Approach::enter(Pass& piece) {
   const Vec3 start = piece.points.front();
   const double lift = lift_into_air(start);
   if (lift <= 0) {
-    if (lift_over(start) == Runner::Ended::stopped) return Runner::Ended::stopped;
+    if (lift_over(start) != Runner::Ended::done) return runner_.ended();
     return lower_to(start);
   }
   if (const auto side = side_entry(start)) {
-    if (lift_over(*side) == Runner::Ended::stopped || lower_to(*side) == Runner::Ended::stopped)
-      return Runner::Ended::stopped;
+    if (lift_over(*side) != Runner::Ended::done || lower_to(*side) != Runner::Ended::done) return runner_.ended();
     return runner_.cut({start}, false);
   }
-  if (lift_over(start) == Runner::Ended::stopped) return Runner::Ended::stopped;
+  if (lift_over(start) != Runner::Ended::done) return runner_.ended();
   if (cut_.operation.plunge) {
     ++runner_.summary().plunges;
     const Vec3 above = start + Vec3(0, 0, lift + options_.clearance_mm);
-    if (above.z() < runner_.at()->z() && runner_.rapid(above) == Runner::Ended::stopped) return Runner::Ended::stopped;
+    if (above.z() < runner_.at()->z() && runner_.rapid(above) != Runner::Ended::done) return runner_.ended();
     constexpr double kPlungeShare = 1.0 / 3;
     return runner_.cut({start}, false, kPlungeShare);
   }
@@ -155,8 +154,8 @@ Runner::Ended Approach::ramp(Pass& piece, double lift) {
     at = next;
   }
   const Vec3 first = points.front();
-  if (first.z() < runner_.at()->z() && runner_.rapid(first) == Runner::Ended::stopped) return Runner::Ended::stopped;
-  if (runner_.cut(points, false) == Runner::Ended::stopped) return Runner::Ended::stopped;
+  if (first.z() < runner_.at()->z() && runner_.rapid(first) != Runner::Ended::done) return runner_.ended();
+  if (runner_.cut(points, false) != Runner::Ended::done) return runner_.ended();
   if (piece.closed) {
     const Vec3 end = points.back();
     start_near(piece, end);

@@ -84,19 +84,19 @@ void run_operation(const TriangleMesh& part, const Tooling& tooling, removal::St
                    double safe_z, CopyResult& result) {
   const Cut& cut = tooling.cut;
   Standing standing(stock, standing_cell_mm(stock, cut.tool), stock.min_mm().z());
-  std::optional<PathDepth> depth;
-  if (tooling.contact) depth.emplace(*tooling.contact);
-  runner.begin(cut, standing, safe_z, depth ? &*depth : nullptr);
   bool placed = true;
+  std::optional<PathDepth> depth;
   if (!tooling.contact) {
-    drill_holes(cut, standing, runner);
+    drill_holes(cut, standing, runner, safe_z);
   } else {
-    const Workplace place{part, cut, tooling.roughing(), tooling.region, standing, runner, stock.min_mm().z()};
+    depth.emplace(*tooling.contact);
+    const Workplace place{part,   cut,    tooling.roughing(), tooling.region, standing, runner,
+                          *depth, safe_z, stock.min_mm().z()};
     placed = cut.operation.scallop_mm > 0 ? cut_scallops(place) : cut_levels(place);
   }
+  if (!placed) fail_on_no_place(cut);
   if (runner.at()) runner.rapid({runner.at()->x(), runner.at()->y(), runner.safe_z_mm()});
   runner.end();
-  if (!placed) fail_on_no_place(cut);
   if (depth && 1000 * depth->max_mm() > result.path_depth_um)
     result.path_depth_um = 1000 * depth->max_mm(), result.deepest_mm = depth->worst_mm();
   runner.summary().nothing_left = runner.summary().passes == 0;
@@ -121,6 +121,8 @@ CopyResult copy(const machine::Job& job, const std::vector<machine::CopyOperatio
   const TriangleMesh part = read_part(job);
   out.stock = std::make_unique<removal::Stock>(simulate::job_stock(job, kBandVoxels, [](const Vec3&, const Vec3&) {}));
   check_part_inside(job, part, *out.stock);
+  out.stock->share();
+  out.blank = std::make_unique<removal::Stock>(*out.stock);
   Runner runner(job, options, *out.stock);
   const double safe_z = out.stock->max_mm().z() + kAboveAll_mm;
   std::vector<std::unique_ptr<Tooling>> toolings;

@@ -8,10 +8,12 @@
 
 #include "base/diagnostics.h"
 #include "base/geometry.h"
+#include "copymill/load_follower.h"
 #include "copymill/part_check.h"
 #include "machine/copy_operations.h"
 #include "machine/job.h"
 #include "removal/stock.h"
+#include "simulate/force_regions.h"
 
 namespace camber::copymill {
 
@@ -28,6 +30,8 @@ struct CopyOptions {
   double tolerance_mm = 0.002;
   /// Called with every tick, in order; may be empty.
   std::function<void(const Tick&)> stream{};
+  /// Parts of the material that are harder than the job says: felt, but not expected.
+  simulate::ForceRegions regions{};
   /// The tool is stopped here, wherever it is, and lifted. Not given: it goes on to the end.
   std::optional<double> stop_after_s{};
 };
@@ -42,11 +46,13 @@ struct OperationSummary {
   std::size_t ramps = 0, plunges = 0, retracts = 0;
   /// Cutting found nothing: all that the operation may take was gone.
   bool nothing_left = false;
+  LoadFigures load;
+  std::vector<Change> changes;  ///< of feed and depths, in order of time
 };
 
 struct CopyResult {
-  std::string text;                       ///< the NC program
-  std::unique_ptr<removal::Stock> stock;  ///< what is left
+  std::string text;                              ///< the NC program
+  std::unique_ptr<removal::Stock> blank, stock;  ///< before the first cut, and what is left
   std::vector<OperationSummary> operations;
   double time_s = 0;
   std::size_t ticks = 0, blocks = 0;

@@ -56,16 +56,16 @@ class LevelCutter {
     for (int c = 0; c < region.components(); ++c) {
       const bool loops = place_.cut.operation.mode == machine::CopyMode::contour_line;
       const Runner::Ended ended = loops ? cut_loops(region, c) : cut_rows(region, c);
-      if (ended == Runner::Ended::stopped) return ended;
+      if (ended != Runner::Ended::done) return ended;
     }
     return Runner::Ended::done;
   }
 
  private:
   Runner::Ended cut_loops(const LevelRegion& region, int component) {
-    const double radial = place_.cut.operation.radial_depth_mm;
+    const double radial = place_.runner.radial_mm();
     for (const double d : loop_distances(region, component, radial))
-      if (cut_at(region, component, d) == Runner::Ended::stopped) return Runner::Ended::stopped;
+      if (cut_at(region, component, d) != Runner::Ended::done) return place_.runner.ended();
     return Runner::Ended::done;
   }
 
@@ -97,8 +97,8 @@ class LevelCutter {
       }
       Pass pass = std::move(passes[best]);
       passes.erase(passes.begin() + static_cast<std::ptrdiff_t>(best));
-      if (approach_.follow(turned ? reversed(std::move(pass)) : pass) == Runner::Ended::stopped)
-        return Runner::Ended::stopped;
+      if (approach_.follow(turned ? reversed(std::move(pass)) : pass) != Runner::Ended::done)
+        return place_.runner.ended();
     }
     return Runner::Ended::done;
   }
@@ -116,8 +116,8 @@ class LevelCutter {
       }
     if (u1 < u0) return Runner::Ended::done;
     constexpr double kInside_mm = 0.001;  // rows on the outline itself are the outline's
-    const int n = std::max(1, static_cast<int>(std::ceil((v1 - v0 - 2 * kInside_mm) / o.radial_depth_mm - 1e-6)));
-    std::vector<Pass> waiting;
+    const int n =
+        std::max(1, static_cast<int>(std::ceil((v1 - v0 - 2 * kInside_mm) / place_.runner.radial_mm() - 1e-6)));
     for (int k = 0; k <= n; ++k) {
       const double v = v0 + kInside_mm + (v1 - v0 - 2 * kInside_mm) * k / n;
       std::vector<FlatPass> row = region.stretches(u0 * along + v * across, u1 * along + v * across);
@@ -127,8 +127,8 @@ class LevelCutter {
       for (FlatPass& s : row)
         passes.push_back(
             at_height(o.sense == machine::MillingSense::climb ? reversed(std::move(s)) : std::move(s), region.z_mm()));
-      if (cut_nearest_first(std::move(passes), o.sense == machine::MillingSense::both) == Runner::Ended::stopped)
-        return Runner::Ended::stopped;
+      if (cut_nearest_first(std::move(passes), o.sense == machine::MillingSense::both) != Runner::Ended::done)
+        return place_.runner.ended();
     }
     return region.walled() ? cut_at(region, component, 0) : Runner::Ended::done;
   }
@@ -143,20 +143,28 @@ bool cut_levels(const Workplace& place) {
   const machine::CopyOperation& o = place.cut.operation;
   const SampledTips tips(place.field, place.region, grid_step_mm(place));
   const Levels levels = levels_of(place, tips);
+  place.runner.begin(place.cut, place.standing, place.safe_z_mm, &place.depth, levels.bottom_mm());
   Approach approach(place.cut, place.field, place.standing, place.runner,
                     {.more_than_mm = kMaterial_mm, .link_mm = 2.1 * o.radial_depth_mm});
   LevelCutter cutter(place, approach);
   bool placed = false, any_level = false;
-  Stage stage("copying by levels", 1000);
+  constexpr double kShares = 1000;  // of the depth, for progress
+  Stage stage("copying by levels", static_cast<std::size_t>(kShares));
   double level = 0;
-  for (double above = levels.top_mm(); levels.next(above, o.axial_depth_mm, level); above = level) {
+  for (double above = levels.top_mm(); levels.next(above, place.runner.axial_mm(), level);) {
     any_level = true;
     const LevelRegion region(tips, level);
     placed = placed || !region.empty();
     ++place.runner.summary().levels;
-    if (cutter.cut(region) == Runner::Ended::stopped) return true;
-    stage.advance(
-        static_cast<std::size_t>(1000 * (above - level) / std::max(1e-9, levels.top_mm() - place.stock_bottom_mm)));
+    const Runner::Ended ended = cutter.cut(region);
+    if (ended == Runner::Ended::stopped) return true;
+    if (ended == Runner::Ended::replan) {
+      // With the axial depth that is now: a level in between, or this one again with other loops or rows.
+      place.runner.replanned();
+      continue;
+    }
+    stage.advance(static_cast<std::size_t>(kShares * (above - level) / (levels.top_mm() - levels.bottom_mm())));
+    above = level;
   }
   return placed || !any_level;
 }

@@ -1,6 +1,7 @@
 // Finishing rows on the part's surface.
-#include <cmath>
+#include <algorithm>
 
+#include "base/stage.h"
 #include "copymill/operation.h"
 #include "repath/raster.h"
 
@@ -26,6 +27,13 @@ std::vector<Pass> clipped(const std::vector<Vec3>& chain, const Workplace& place
   return out;
 }
 
+double lowest_mm(const std::vector<Pass>& passes) {
+  double out = passes.front().points.front().z();
+  for (const Pass& pass : passes)
+    for (const Vec3& p : pass.points) out = std::min(out, p.z());
+  return out;
+}
+
 }  // namespace
 
 bool cut_scallops(const Workplace& place) {
@@ -39,17 +47,23 @@ bool cut_scallops(const Workplace& place) {
   options.scallop_mm = o.scallop_mm;
   options.tolerance_mm = 0.004;
   const repath::Raster raster = repath::make_raster(drop, options);
-  Approach approach(place.cut, place.field, place.standing, place.runner, {.more_than_mm = kFinishMaterial_mm});
-  bool any = false;
+  std::vector<Pass> passes;
   for (const auto& chain : raster.chains) {
     std::vector<Vec3> points = repath::points_of(drop, chain, options);
     for (Vec3& p : points) p.z() += place.field.allowance_mm();
-    for (const Pass& pass : clipped(points, place)) {
-      any = true;
-      if (approach.follow(pass) == Runner::Ended::stopped) return true;
-    }
+    for (Pass& pass : clipped(points, place)) passes.push_back(std::move(pass));
   }
-  return any;
+  if (passes.empty()) return false;
+  place.runner.begin(place.cut, place.standing, place.safe_z_mm, &place.depth, lowest_mm(passes));
+  Approach approach(place.cut, place.field, place.standing, place.runner, {.more_than_mm = kFinishMaterial_mm});
+  Stage stage("finishing by rows", passes.size());
+  for (const Pass& pass : passes) {
+    // Rows have no other depth: after a change what is left of the pass goes on with the feed that is now.
+    while (approach.follow(pass) == Runner::Ended::replan) place.runner.replanned();
+    if (place.runner.stopped()) return true;
+    stage.advance();
+  }
+  return true;
 }
 
 }  // namespace camber::copymill

@@ -13,16 +13,16 @@ Runner::Ended drill(const Cut& cut, const Standing& standing, Runner& runner, co
   const double begin = std::max(top, standing.highest_under_mm(at, cut.shape.radius_mm)) + kClearance_mm;
   const Vec3 above(at.x(), at.y(), runner.safe_z_mm());
   const auto to = [&](double z) { return Vec3(at.x(), at.y(), z); };
-  if (runner.rapid(above) == Runner::Ended::stopped || runner.rapid(to(begin)) == Runner::Ended::stopped)
-    return Runner::Ended::stopped;
+  if (runner.rapid(above) != Runner::Ended::done || runner.rapid(to(begin)) != Runner::Ended::done)
+    return runner.ended();
   double depth = top;
   while (depth > bottom) {
     depth = o.cycle == machine::HoleCycle::peck ? std::max(bottom, depth - o.axial_depth_mm) : bottom;
-    if (runner.cut({to(depth)}, false) == Runner::Ended::stopped) break;
+    if (runner.cut({to(depth)}, false) != Runner::Ended::done) break;
     if (depth <= bottom) break;
-    if (runner.rapid(to(begin)) == Runner::Ended::stopped) break;
+    if (runner.rapid(to(begin)) != Runner::Ended::done) break;
     const double down = depth + kBackToDepth_mm;
-    if (down < begin && runner.rapid(to(down)) == Runner::Ended::stopped) break;
+    if (down < begin && runner.rapid(to(down)) != Runner::Ended::done) break;
   }
   if (o.cycle == machine::HoleCycle::ream && !runner.stopped()) runner.cut({to(begin)}, false);
   return runner.rapid(above);
@@ -30,13 +30,14 @@ Runner::Ended drill(const Cut& cut, const Standing& standing, Runner& runner, co
 
 }  // namespace
 
-void drill_holes(const Cut& cut, const Standing& standing, Runner& runner) {
+void drill_holes(const Cut& cut, Standing& standing, Runner& runner, double safe_z_mm) {
+  runner.begin(cut, standing, safe_z_mm, nullptr, (*cut.operation.region.z_mm)[0]);
   const machine::CopyOperation& o = cut.operation;
   std::vector<Vec2> holes = o.holes_mm;
   if (holes.empty()) holes.push_back(0.5 * ((*o.region.box_mm)[0] + (*o.region.box_mm)[1]));
   for (const Vec2& hole : holes) {
     ++runner.summary().passes;
-    if (drill(cut, standing, runner, hole) == Runner::Ended::stopped) return;
+    if (drill(cut, standing, runner, hole) != Runner::Ended::done) return;
   }
 }
 

@@ -25,7 +25,7 @@ std::vector<double> level_floors(const TriangleMesh& part, const AxisRegion& reg
   return out;
 }
 
-Levels::Levels(double top_mm, double bottom_mm, std::vector<double> floors_mm) : top_(top_mm) {
+Levels::Levels(double top_mm, double bottom_mm, std::vector<double> floors_mm) : top_(top_mm), bottom_(bottom_mm) {
   std::ranges::sort(floors_mm, std::greater<>());
   constexpr double kApart_mm = 1e-3;
   for (const double f : floors_mm)

@@ -20,9 +20,10 @@ class Levels {
   /// The next level below one, no deeper than the axial depth; nothing at the bottom.
   bool next(double above_mm, double axial_depth_mm, double& level_mm) const;
   double top_mm() const { return top_; }
+  double bottom_mm() const { return bottom_; }
 
  private:
-  double top_;
+  double top_, bottom_;
   std::vector<double> stops_;  ///< floors and the bottom, descending
 };
 

@@ -17,6 +17,8 @@ struct Workplace {
   const AxisRegion& region;
   Standing& standing;
   Runner& runner;
+  PathDepth& depth;
+  double safe_z_mm = 0;
   double stock_bottom_mm = 0;
 };
 
@@ -28,6 +30,6 @@ bool cut_levels(const Workplace& place);
 bool cut_scallops(const Workplace& place);
 
 /// Holes, where they are asked for: the part is not looked at.
-void drill_holes(const Cut& cut, const Standing& standing, Runner& runner);
+void drill_holes(const Cut& cut, Standing& standing, Runner& runner, double safe_z_mm);
 
 }  // namespace camber::copymill

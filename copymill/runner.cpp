@@ -4,12 +4,11 @@
 #include <limits>
 
 #include "feedmodel/control_options.h"
-#include "removal/engagement.h"
 
 namespace camber::copymill {
 namespace {
 
-constexpr std::size_t kStampsAtATime = 2000;
+constexpr double kBeside_mm = 20;  ///< of the stock: tips that enter from the side
 constexpr double kNoLimit_mm_per_s = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -22,19 +21,35 @@ Runner::Runner(const machine::Job& job, const CopyOptions& options, removal::Sto
       writer_(feedmodel::dialect_of(job.machine.control.kind), 3),
       piece_options_{.tolerance_mm = options.tolerance_mm} {}
 
-void Runner::begin(const Cut& cut, Standing& standing, double safe_z, PathDepth* depth) {
+void Runner::begin(const Cut& cut, Standing& standing, double safe_z, PathDepth* depth, double lowest) {
   cut_.emplace(cut);
   standing_ = &standing;
   depth_ = depth;
   safe_z_ = rounded({0, 0, safe_z + 0.5 * piece_options_.increment_mm}, piece_options_.increment_mm).z();
-  summary_ = {.tool = cut.operation.tool, .mode = cut.operation.mode};
+  summary_ = {};
+  summary_.tool = cut.operation.tool, summary_.mode = cut.operation.mode;
   at_.reset();
+  const double beside = kBeside_mm + 2 * cut.tool.diameter_mm;
+  const removal::TipBox tips{stock_.min_mm() - Vec3(beside, beside, 0), stock_.max_mm() + Vec3(beside, beside, 0)};
+  follower_.emplace(job_, cut.operation, stock_,
+                    removal::TipBox{{tips.min_mm.x(), tips.min_mm.y(), lowest - 0.01},
+                                    {tips.max_mm.x(), tips.max_mm.y(), safe_z_ + 1}},
+                    options_.regions, first_id_);
   writer_.begin(cut.operation, cut.tool, safe_z_);
 }
 
 void Runner::end() {
-  carve();
+  summary_.removed_mm3 = follower_->flush();
+  removed_mm3_ += summary_.removed_mm3;
+  first_id_ = follower_->next_id();
+  summary_.load = follower_->figures();
+  summary_.changes = follower_->changes();
+  follower_.reset();
   cut_.reset();
+}
+
+Runner::Ended Runner::ended() const {
+  return stopped_ ? Ended::stopped : follower_->replan() ? Ended::replan : Ended::done;
 }
 
 Runner::Ended Runner::rapid(const Vec3& to) {
@@ -44,9 +59,9 @@ Runner::Ended Runner::rapid(const Vec3& to) {
     motion_.place(target);
     writer_.rapid({target.x(), target.y(), safe_z_});
     if (target.z() != safe_z_) writer_.rapid(target);
-    return stopped_ ? Ended::stopped : Ended::done;
+    return ended();
   }
-  if ((target - *at_).norm() <= 0) return stopped_ ? Ended::stopped : Ended::done;
+  if ((target - *at_).norm() <= 0) return ended();
   return run({line_piece(*at_, target)}, true, 1);
 }
 
@@ -55,22 +70,23 @@ Runner::Ended Runner::cut(const std::vector<Vec3>& points, bool closed, double f
   from_here.insert(from_here.end(), points.begin(), points.end());
   if (closed && !points.empty()) from_here.push_back(points.front());
   std::vector<PathPiece> path = pieces_of(from_here, false, piece_options_);
-  if (path.empty()) return stopped_ ? Ended::stopped : Ended::done;
+  if (path.empty()) return ended();
   return run(std::move(path), false, feed_share);
 }
 
 Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_share) {
-  if (stopped_ && !rapid) return Ended::stopped;
+  if (!rapid && ended() != Ended::done) return ended();
   motion_.start(std::move(path), rapid);
   written_piece_ = 0, written_mm_ = 0;
   if (rapid) first_stamp_ = true;
   last_lowered_ = *at_;
   const double begin_s = t_s_;
-  while (!motion_.finished() && !(stopped_ && !rapid && motion_.at_rest())) tick(rapid, feed_share);
+  written_feed_ = commanded_ = feed_mm_per_s(feed_share);
+  while (!motion_.finished() && !(!rapid && ended() != Ended::done && motion_.at_rest())) tick(rapid, feed_share);
   const Vec3 end = motion_.piece() < motion_.path().size() ? rounded(motion_.tip(), piece_options_.increment_mm)
                                                            : motion_.path().back().to;
   if (!rapid) {
-    write_to(motion_.piece(), motion_.along_piece_mm(), feed_share * cut_->operation.feed_mm_per_s);
+    write_to(motion_.piece(), motion_.along_piece_mm(), written_feed_);
     standing_->cut(cut_->shape, last_lowered_, end);
     stamp_at(t_s_, end);
     summary_.cutting_s += t_s_ - begin_s;
@@ -79,22 +95,24 @@ Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_s
   }
   at_ = end;
   summary_.time_s += t_s_ - begin_s;
-  return stopped_ ? Ended::stopped : Ended::done;
+  return ended();
 }
 
 void Runner::tick(bool rapid, double feed_share) {
   const auto begin = std::chrono::steady_clock::now();
   const Vec3 before = motion_.tip();
   if (options_.stop_after_s && t_s_ >= *options_.stop_after_s) stopped_ = true;
-  const double feed = rapid ? kNoLimit_mm_per_s : feed_share * cut_->operation.feed_mm_per_s;
-  motion_.tick(stopped_ && !rapid ? 0 : feed, {.distance_mm = 0, .speed_mm_per_s = kNoLimit_mm_per_s});
+  if (!rapid) command(feed_mm_per_s(feed_share));
+  const double wanted = rapid ? kNoLimit_mm_per_s : ended() == Ended::done ? commanded_ : 0;
+  motion_.tick(wanted, {.distance_mm = 0, .speed_mm_per_s = kNoLimit_mm_per_s});
   t_s_ += motion_.period_s();
   if (!rapid) {
     stamp_until(t_s_, before, motion_.tip());
     lower_standing(motion_.tip());
   }
   ++ticks_;
-  if (options_.stream) options_.stream({t_s_, motion_.tip(), (motion_.tip() - before).norm() / motion_.period_s(), 0});
+  if (options_.stream)
+    options_.stream({t_s_, motion_.tip(), (motion_.tip() - before).norm() / motion_.period_s(), rapid ? 0 : load_N_});
   const auto took = std::chrono::steady_clock::now() - begin;
   tick_time_ += took;
   longest_tick_ = std::max<std::chrono::nanoseconds>(longest_tick_, took);
@@ -108,7 +126,6 @@ void Runner::stamp_until(double t_s, const Vec3& before, const Vec3& now) {
     const double share = 1 - (t_s - next_passing_s_) / motion_.period_s();
     stamp_at(next_passing_s_, before + share * (now - before));
   }
-  if (stamps_.size() >= kStampsAtATime) carve();
 }
 
 void Runner::stamp_at(double t_s, const Vec3& tip) {
@@ -120,7 +137,16 @@ void Runner::stamp_at(double t_s, const Vec3& tip) {
   if (!first_stamp_ && stamp.feed_per_tooth_mm.norm() <= 0) return;
   last_stamp_ = tip;
   first_stamp_ = false;
-  stamps_.push_back(stamp);
+  load_N_ = follower_->pass(stamp, commanded_);
+  const Motion::Ahead ahead = motion_.ahead(motion_.stopping_mm() + stamp.feed_per_tooth_mm.norm());
+  follower_->look_ahead(t_s, ahead.place, ahead.direction);
+}
+
+/// Another feed from here on.
+void Runner::command(double feed) {
+  if (feed == commanded_) return;
+  write_to(motion_.piece(), motion_.along_piece_mm(), written_feed_);
+  commanded_ = written_feed_ = feed;
 }
 
 void Runner::lower_standing(const Vec3& tip) {
@@ -139,15 +165,6 @@ void Runner::write_to(std::size_t piece, double along, double feed) {
     writer_.cut(part_of(path[piece], written_mm_, along, piece_options_.increment_mm), feed);
     written_mm_ = along;
   }
-}
-
-void Runner::carve() {
-  if (stamps_.empty()) return;
-  const double removed = removal::sweep(stock_, cut_->shape, stamps_, {.first_id = first_id_});
-  first_id_ += static_cast<std::int32_t>(stamps_.size());
-  summary_.removed_mm3 += removed;
-  removed_mm3_ += removed;
-  stamps_.clear();
 }
 
 void Runner::finish(CopyResult& result) {

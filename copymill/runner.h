@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "copymill/copy.h"
+#include "copymill/load_follower.h"
 #include "copymill/motion.h"
 #include "copymill/part_check.h"
 #include "copymill/program_writer.h"
@@ -24,13 +25,17 @@ struct Cut {
 
 class Runner {
  public:
-  enum class Ended { done, stopped };
+  enum class Ended {
+    done,
+    stopped,  ///< for good, by CopyOptions::stop_after_s
+    replan    ///< a depth has fallen: the tool stands in the cut and waits for other passes
+  };
 
   Runner(const machine::Job& job, const CopyOptions& options, removal::Stock& stock);
 
   /// The tool of an operation stands at the safe height from here on.
-  /// `depth`: judges the path; none for holes.
-  void begin(const Cut& cut, Standing& standing, double safe_z_mm, PathDepth* depth);
+  /// `depth`: judges the path; none for holes. `lowest_mm`: the tip goes no deeper.
+  void begin(const Cut& cut, Standing& standing, double safe_z_mm, PathDepth* depth, double lowest_mm);
   /// Writes what was cut to the stock.
   void end();
 
@@ -43,6 +48,12 @@ class Runner {
   const std::optional<Vec3>& at() const { return at_; }
   double safe_z_mm() const { return safe_z_; }
   bool stopped() const { return stopped_; }
+  Ended ended() const;
+  /// Of the next loops and rows, and of the next level.
+  double radial_mm() const { return follower_->radial_mm(); }
+  double axial_mm() const { return follower_->axial_mm(); }
+  /// Other passes follow.
+  void replanned() { follower_->replanned(); }
 
   OperationSummary& summary() { return summary_; }
   /// What concerns the whole run; the text is complete. Call once.
@@ -53,10 +64,11 @@ class Runner {
   void tick(bool rapid, double feed_share);
   void stamp_until(double t_s, const Vec3& before, const Vec3& now);
   void stamp_at(double t_s, const Vec3& tip);
+  void command(double feed_mm_per_s);
   void lower_standing(const Vec3& tip);
   /// Writes the path up to where the motion is.
   void write_to(std::size_t piece, double along_mm, double feed_mm_per_s);
-  void carve();
+  double feed_mm_per_s(double feed_share) const { return feed_share * follower_->feed_mm_per_s(); }
 
   const machine::Job& job_;
   const CopyOptions& options_;
@@ -79,7 +91,8 @@ class Runner {
   std::size_t written_piece_ = 0;
   double written_mm_ = 0;
 
-  std::vector<removal::Stamp> stamps_;
+  std::optional<LoadFollower> follower_;
+  double load_N_ = 0, commanded_ = 0, written_feed_ = 0;
   std::int32_t first_id_ = 0;
   double next_passing_s_ = 0;
   bool first_stamp_ = true;

@@ -7,11 +7,14 @@
 namespace camber::copymill {
 namespace {
 
-/// The greatest speed v at the end of a tick such that v^2 <= u^2 + 2 a (D - (v0 + v) dt / 2).
+/// The greatest speed v at the end of a tick from which a limit can be kept: v^2 <= u^2 + 2 a (D - (v0 + v) dt / 2).
+/// Where the limit stands in the tick, the speed is u there: u^2 >= v0^2 + 2 D (v - v0) / dt.
 double greatest_speed(double v0, const SpeedLimit& limit, double a, double dt) {
-  const double right = limit.speed_mm_per_s * limit.speed_mm_per_s + 2 * a * limit.distance_mm - a * v0 * dt;
-  if (right <= 0) return 0;
-  return 0.5 * (std::sqrt(a * a * dt * dt + 4 * right) - a * dt);
+  const double u2 = limit.speed_mm_per_s * limit.speed_mm_per_s, way = limit.distance_mm;
+  const double right = u2 + 2 * a * way - a * v0 * dt;
+  const double v = right <= 0 ? 0 : 0.5 * (std::sqrt(a * a * dt * dt + 4 * right) - a * dt);
+  if (0.5 * (v0 + v) * dt <= way) return v;
+  return way > 0 ? std::min(v, v0 + (u2 - v0 * v0) / (2 * way) * dt) : v;
 }
 
 }  // namespace
@@ -25,8 +28,11 @@ TickMotion next_tick(double v0, double wanted, std::span<const SpeedLimit> ahead
   }
   v = std::max({v, v0 - a * dt, 0.0});
   TickMotion out{v, 0.5 * (v0 + v) * dt};
-  // A stop within the tick.
-  if (stop >= 0 && v == 0) out.distance_mm = std::min(out.distance_mm, std::max(stop, stopping_distance_mm(v0, a)));
+  // At rest before the tick is over, and where a stop is asked for there.
+  if (v == 0) {
+    const double least = stopping_distance_mm(v0, a);
+    out.distance_mm = stop >= 0 && stop <= out.distance_mm ? std::max(stop, least) : least;
+  }
   return out;
 }
 

@@ -12,7 +12,7 @@ struct SpeedLimit {
   double distance_mm = 0, speed_mm_per_s = 0;
 };
 
-/// Motion in one tick, with even acceleration.
+/// Motion in one tick, with even acceleration; where it ends at rest, with an even one to rest and then none.
 struct TickMotion {
   double speed_mm_per_s = 0;  ///< at its end
   double distance_mm = 0;

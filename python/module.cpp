@@ -223,6 +223,10 @@ void add_functions(py::module_& module) {
              "Compensates the program of a job: shifts its path against the form error.");
   module.def("verify", verify, "place"_a, py::kw_only(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Judges a program that compensate has written again, from its text.");
+  module.def(
+      "open_study",
+      [](const Path& path, const Path& folder) { return camber::open_study(path.string(), folder.string()); }, "path"_a,
+      "folder"_a, "The cases of a study, each with a job of its own in the folder, and their table so far.");
   module.def("adapt", adapt, "job"_a, py::kw_only(), "time_limit_s"_a = py::none(), "sweep"_a = false,
              "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Changes the feeds of a job's program so that the loads of its cut keep the limits of [adapt].");

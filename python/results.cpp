@@ -150,6 +150,25 @@ void add_explain_kinematics(py::module_& module) {
       .def_readonly("text", &KinematicsExplanation::text);
 }
 
+void add_study(py::module_& module) {
+  using camber::Study, camber::StudyCase;
+  py::class_<StudyCase>(module, "StudyCase")
+      .def_readonly("hash", &StudyCase::hash)
+      .def_readonly("job_path", &StudyCase::job_path)
+      .def_readonly("folder", &StudyCase::folder)
+      .def_readonly("output", &StudyCase::output)
+      .def_readonly("report", &StudyCase::report)
+      .def_readonly("json", &StudyCase::json)
+      .def_readonly("values", &StudyCase::values)
+      .def_readonly("done", &StudyCase::done);
+  result_class<Study>(module, "Study")
+      .def_readonly("command", &Study::command)
+      .def_readonly("keys", &Study::keys)
+      .def_readonly("cases", &Study::cases)
+      .def_readonly("csv", &Study::csv)
+      .def_readonly("page", &Study::page);
+}
+
 void add_feed_and_time(py::module_& module) {
   using camber::FeedResult, camber::TimeResult, camber::TimeUse;
   auto feed = result_class<FeedResult>(module, "FeedResult")
@@ -322,6 +341,7 @@ void add_results(py::module_& module) {
   add_tables(module);
   add_check(module);
   add_explain_kinematics(module);
+  add_study(module);
   add_feed_and_time(module);
   add_fit(module);
   add_predict_and_compensate(module);

@@ -12,6 +12,28 @@ using nlohmann::ordered_json;
 
 namespace {
 
+ordered_json load_json(const copymill::LoadFigures& l) {
+  return {{"target", l.target_N},
+          {"max", l.max_N},
+          {"within_share", l.counted > 0 ? static_cast<double>(l.within) / static_cast<double>(l.counted) : 0.0},
+          {"passings", l.passings},
+          {"counted", l.counted},
+          {"over", l.over}};
+}
+
+/// Of the operations that have a target: all passings together, the greatest load by its own target.
+copymill::LoadFigures together(const CopyResult& r) {
+  copymill::LoadFigures out;
+  for (const copymill::OperationSummary& o : r.operations) {
+    if (o.load.target_N <= 0) continue;
+    if (out.target_N <= 0 || o.load.max_N / o.load.target_N > out.max_N / out.target_N)
+      out.target_N = o.load.target_N, out.max_N = o.load.max_N;
+    out.passings += o.load.passings, out.counted += o.load.counted, out.within += o.load.within,
+        out.over += o.load.over;
+  }
+  return out;
+}
+
 ordered_json operations_json(const CopyResult& r) {
   ordered_json out = ordered_json::array();
   for (const copymill::OperationSummary& o : r.operations)
@@ -25,7 +47,9 @@ ordered_json operations_json(const CopyResult& r) {
                    {"ramps", o.ramps},
                    {"plunges", o.plunges},
                    {"retracts", o.retracts},
-                   {"nothing_left", o.nothing_left}});
+                   {"nothing_left", o.nothing_left},
+                   {"load", load_json(o.load)},
+                   {"changes", o.changes.size()}});
   return out;
 }
 
@@ -42,12 +66,26 @@ std::string copy_json(const CopyResult& r, double compute_s) {
   j["stock_gouge_um"] = r.left.gouge_um;
   j["reached_mm2"] = r.left.reached_mm2;
   j["unreached_mm2"] = r.left.unreached_mm2;
+  j["load"] = load_json(together(r));
   j["ticks"] = r.ticks;
   j["tick_ms"] = {{"mean", r.tick_mean_ms}, {"max", r.tick_max_ms}};
   j["stopped"] = r.stopped;
   j["operations"] = operations_json(r);
   j["compute_s"] = compute_s;
   return j.dump(2) + "\n";
+}
+
+std::string copy_log_csv(const CopyResult& r) {
+  std::string out = "t_s,tool,x_mm,y_mm,z_mm,what,from,to,unit,load_over_target,reason\n";
+  for (const copymill::OperationSummary& o : r.operations)
+    for (const copymill::Change& c : o.changes) {
+      const bool feed = c.what == copymill::Quantity::feed;
+      const double scale = feed ? 60 : 1;
+      out += fmt::format("{:.4f},{},{:.3f},{:.3f},{:.3f},{},{:.3f},{:.3f},{},{:.3f},{}\n", c.t_s, o.tool,
+                         c.place_mm.x(), c.place_mm.y(), c.place_mm.z(), copymill::name_of(c.what), scale * c.from,
+                         scale * c.to, feed ? "mm/min" : "mm", c.share, copymill::text_of(c.cause));
+    }
+  return out;
 }
 
 std::string copy_text(const CopyResult& r, double compute_s) {
@@ -57,6 +95,13 @@ std::string copy_text(const CopyResult& r, double compute_s) {
     out += fmt::format("{:>4}  {:<14}{:>10.1f}{:>12.1f}{:>14.1f}{:>8}{:>8}{:>7}{:>10}\n", fmt::format("T{}", o.tool),
                        machine::word_of(o.mode), o.time_s, o.cutting_s, o.removed_mm3, o.levels, o.passes, o.ramps,
                        o.retracts);
+    if (o.load.target_N > 0)
+      out += fmt::format(
+          "      force {:.0f} N at most, target {:.0f} N; 80 to 105 % of it for {:.1f} % of {} passings that no "
+          "bound holds\n",
+          o.load.max_N, o.load.target_N,
+          o.load.counted > 0 ? 100.0 * static_cast<double>(o.load.within) / static_cast<double>(o.load.counted) : 0.0,
+          o.load.counted);
     if (o.nothing_left) out += "      nothing was left for this operation\n";
   }
   out += fmt::format("time {:.1f} s, {} blocks, {:.1f} mm3 removed{}\n", r.time_s, r.blocks, r.removed_mm3,

@@ -207,7 +207,7 @@ std::string traced_text(const simulate::TracedRun& t) {
 }  // namespace
 
 std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s,
-                         const simulate::TracedRun* traced) {
+                         const simulate::TracedRun* traced, const std::vector<std::string>& doubts) {
   ordered_json j;
   j["schema_version"] = kSchemaVersion;
   j["machine_time_s"] = program.feed.time_s;
@@ -241,6 +241,7 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
     if (const auto lines = unsettled_lines(program, p, reason); !lines.empty())
       j["static"]["unsettled_reasons"].push_back({{"reason", name(reason)}, {"lines", lines}});
   if (traced) j["trace"] = traced_json(*traced);
+  j["doubts"] = doubts;
   if (simulate::beyond_model(p)) leave_out_figures(program, p, j);
   return j.dump(2) + "\n";
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The figures of a run as JSON text: every figure that a person is shown, under the names that the user guide uses.
 #include <string>
+#include <vector>
 
 #include "compensate/compensate.h"
 #include "compensate/verify.h"
@@ -13,9 +14,10 @@ namespace camber::report {
 /// before, they were against the undeflected sweep as the machine runs it, which is deflection_um now.
 inline constexpr int kSchemaVersion = 2;
 
-/// `traced`: of a prediction at measured positions, else null.
+/// `traced`: of a prediction at measured positions, else null. `doubts`: why the figures are not reliable.
 std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
-                         double compute_s, const simulate::TracedRun* traced = nullptr);
+                         double compute_s, const simulate::TracedRun* traced = nullptr,
+                         const std::vector<std::string>& doubts = {});
 std::string compensate_json(const compensate::CompensationResult& result, const machine::CompensationSettings& asked,
                             double compute_s);
 

@@ -22,12 +22,12 @@ removal::EnvelopeGrid outline_of(const machine::Tool& tool) {
 }
 
 void mark_straight(removal::SurfaceMap& map, const removal::EnvelopeGrid& outline,
-                   std::span<const removal::Stamp> stamps, std::int32_t first_id, Stage& stage) {
+                   std::span<const removal::Stamp> stamps, std::int32_t first_id, Stage* stage) {
   for (std::size_t from = 0; from < stamps.size(); from += kStretch) {
     const std::size_t count = std::min(kStretch, stamps.size() - from);
     map.mark(outline, stamps.subspan(from, count), removal::DeflectionTable(count, 1, {0.0}),
              first_id + static_cast<std::int32_t>(from));
-    stage.advance(count);
+    if (stage) stage->advance(count);
   }
 }
 
@@ -38,9 +38,14 @@ void mark_contour(const machine::Job& job, const removal::StampPath& path, Targe
   Stage stage("marking the path of the machine", path.stamps.size());
   for (const auto& run : path.runs)
     mark_straight(map, outline_of(job.tools.at(run.tool)), std::span(path.stamps).subspan(run.from, run.count),
-                  static_cast<std::int32_t>(run.from), stage);
-  target.unseen_mm2 = map.unseen_mm2();
+                  static_cast<std::int32_t>(run.from), &stage);
   target.contour_mm = map.take_errors_mm();
+}
+
+void mark_contour_of(const machine::Job& job, const removal::StampPath& path, const removal::ToolRun& run,
+                     std::size_t from, std::size_t count, removal::SurfaceMap& map) {
+  mark_straight(map, outline_of(job.tools.at(run.tool)), std::span(path.stamps).subspan(run.from + from, count),
+                static_cast<std::int32_t>(run.from + from), nullptr);
 }
 
 }  // namespace camber::simulate

@@ -8,4 +8,8 @@ namespace camber::simulate {
 /// minus the nominal surface, along the nominal surface's normal at the points of Target::map.
 void mark_contour(const machine::Job& job, const removal::StampPath& path, Target& target);
 
+/// Marks stamps from ... from + count - 1 of a run on a map.
+void mark_contour_of(const machine::Job& job, const removal::StampPath& path, const removal::ToolRun& run,
+                     std::size_t from, std::size_t count, removal::SurfaceMap& map);
+
 }  // namespace camber::simulate

@@ -17,6 +17,7 @@
 #include "deflection/static_cut.h"
 #include "deflection/tooth_marks.h"
 #include "removal/engagement.h"
+#include "simulate/pieces.h"
 #include "simulate/tooth_loads.h"
 
 namespace camber::simulate {
@@ -417,16 +418,22 @@ class Cutter {
 
 CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& material, std::span<const Stamp> stamps,
               std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options) {
+  return cut_range(stock, tool, material, stamps, 0, stamps.size(), contacts, first_id, options);
+}
+
+CutResult cut_range(Stock& stock, const machine::Tool& tool, const machine::Material& material,
+                    std::span<const Stamp> stamps, std::size_t first, std::size_t count,
+                    std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options) {
   CutResult result;
-  result.loads.reserve(stamps.size());
+  result.loads.reserve(count);
   Cutter cutter(stock, tool, material, stamps, options);
   const std::size_t stretch =
       options.coupling == machine::Coupling::rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
-  for (std::size_t from = 0; from < stamps.size(); from += stretch) {
+  for (std::size_t done = 0; done < count; done += stretch) {
     cancellation_point();
-    const std::size_t n = std::min(stretch, stamps.size() - from);
-    cutter.cut(stamps, from, n, contacts.empty() ? contacts : contacts.subspan(from, n), first_id, result);
-    if (options.progress) options.progress(static_cast<double>(from + n) / static_cast<double>(stamps.size()));
+    const std::size_t n = std::min(stretch, count - done);
+    cutter.cut(stamps, first + done, n, contacts.empty() ? contacts : contacts.subspan(done, n), first_id, result);
+    if (options.progress) options.progress(static_cast<double>(done + n) / static_cast<double>(count));
   }
   cutter.finish(result);
   return result;

@@ -1,6 +1,7 @@
 #include "simulate/predict.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include "simulate/job_stock.h"
 #include "simulate/memory.h"
 #include "simulate/operations.h"
+#include "simulate/pieces.h"
 #include "simulate/region.h"
 #include "simulate/setup_checks.h"
 
@@ -165,6 +167,11 @@ double sweep_path(removal::Stock& stock, const Job& job, const removal::StampPat
 }
 
 Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, double min_chip_mm) {
+  return make_blank(job, target, diagnostics, min_chip_mm, {});
+}
+
+Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, double min_chip_mm,
+                 const TargetWork& work) {
   MemoryEstimate memory;
   removal::Stock blank = raw_stock(job, target, min_chip_mm, memory, diagnostics);
   blank.share();
@@ -173,8 +180,10 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
   std::optional<removal::Stock> whole;
   if (job.stock.allowance_mm > 0) {
     whole.emplace(blank);
-    if (sweep_path(blank, job, target.path, job.stock.allowance_mm, "cutting up to the allowance") < nothing_mm3(job))
-      report_allowance(job, diagnostics);
+    const double removed_mm3 =
+        work.allowance ? work.allowance(blank)
+                       : sweep_path(blank, job, target.path, job.stock.allowance_mm, "cutting up to the allowance");
+    if (removed_mm3 < nothing_mm3(job)) report_allowance(job, diagnostics);
     diagnostics.throw_if_errors();
     blank.clear_stamps();
     blank.share();
@@ -183,19 +192,24 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
 }
 
 Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics) {
-  auto [blank, whole, memory] = make_blank(job, target, diagnostics);
+  return make_target(job, target, diagnostics, {});
+}
+
+Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, const TargetWork& work) {
+  auto [blank, whole, memory] = make_blank(job, target, diagnostics, 0, work);
   const Places where = places_of(job, target, blank);
   removal::StampPath nominal = removal::nominal_path(target.moves, target.selected, target.path);
   removal::Stock surface(blank);
-  if (sweep_path(surface, job, nominal, 0, "cutting as the target") < nothing_mm3(job))
-    report_nothing_removed(target.text.source.name(), where, diagnostics);
+  const double removed_mm3 =
+      work.surface ? work.surface(surface) : sweep_path(surface, job, nominal, 0, "cutting as the target");
+  if (removed_mm3 < nothing_mm3(job)) report_nothing_removed(target.text.source.name(), where, diagnostics);
   diagnostics.throw_if_errors();
   removal::CutterPlaces places;
   for_each_run(job, nominal, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     places.add(static_cast<std::int32_t>(run.from), removal::shape_of(tool), stamps);
   });
   std::optional<removal::MeshDistance> part;
-  if (!job.part.mesh.empty()) {
+  if (!job.part.mesh.empty() && work.judged) {
     part.emplace(job.part.mesh, job.simulation.voxel_mm, 10 * job.simulation.voxel_mm);
     check_part_size(job.part.mesh, {part->min_mm(), part->max_mm()}, where.stock, diagnostics);
     diagnostics.throw_if_errors();
@@ -206,8 +220,12 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
   nominal = {};
   out.map.emplace(out.surface, places, out.blank, &out.solid());
   places = {};
-  mark_contour(job, target.path, out);
-  mark_region(job, target, out.map->points(), out);
+  out.unseen_mm2 = out.map->unseen_mm2();
+  if (work.contour)
+    work.contour(out);
+  else
+    mark_contour(job, target.path, out);
+  if (work.judged) mark_region(job, target, out.map->points(), out);
   out.memory = memory;
   return out;
 }
@@ -250,6 +268,16 @@ void add_figures(const CutResult& run, removal::RunKind kind, CutResult& out) {
   out.unsettled_reasons.insert(out.unsettled_reasons.end(), run.unsettled_reasons.begin(), run.unsettled_reasons.end());
 }
 
+CutResult cut_run_of(removal::Stock& stock, const Job& job, const removal::ToolRun& run,
+                     std::span<const removal::Stamp> stamps, const std::vector<Contact>& contacts,
+                     const CutOptions& options) {
+  const machine::Tool& tool = job.tools.at(run.tool);
+  const auto first_id = static_cast<std::int32_t>(run.from);
+  if (run.kind == removal::RunKind::milling) return cut(stock, tool, job.material, stamps, contacts, first_id, options);
+  if (run.kind == removal::RunKind::drilling) return drill(stock, tool, job.material, stamps, first_id, options);
+  return tap(stock, tool, stamps, first_id, options);
+}
+
 /// Cuts every run of the path out of `stock`, which is `blank` before the first one.
 PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job& job, const SimulatedProgram& program,
                    PathCut how) {
@@ -259,7 +287,6 @@ PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job
   out.holes.count = removal::count_holes(program.moves, program.holes);
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     const std::size_t from = run.from;
-    const bool milling = run.kind == removal::RunKind::milling;
     const std::vector<Contact> contacts = how.contacts.empty() ? std::vector<Contact>() : std::move(*next_contacts++);
     CutOptions options = cut_options_of(job, how, tool);
     if (from == program.path.runs.front().from) options.blank = &blank;
@@ -269,26 +296,45 @@ PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job
       };
     if (how.turn_from && *how.turn_from >= from && *how.turn_from < from + stamps.size())
       options.turn_from = *how.turn_from - from;
-    const auto first_id = static_cast<std::int32_t>(from);
-    CutResult cut_run = milling ? cut(stock, tool, job.material, stamps, contacts, first_id, options)
-                        : run.kind == removal::RunKind::drilling
-                            ? drill(stock, tool, job.material, stamps, first_id, options)
-                            : tap(stock, tool, stamps, first_id, options);
-    if (!milling) add_holes(run.kind, cut_run, out.holes);
-    add_figures(cut_run, run.kind, out.cut);
-    append(std::move(cut_run.loads), out.cut.loads);
-    if (how.chip_ratio > 0) {
-      cut_run.loads_at_ratio.resize(stamps.size());
-      append(std::move(cut_run.loads_at_ratio), out.cut.loads_at_ratio);
-    }
-    if (milling && slenderness(tool) > kMaxSlenderness && !std::ranges::count(out.slender_tools, run.tool))
-      out.slender_tools.push_back(run.tool);
-    if (options.turn_from) out.cut.turn = std::move(cut_run.turn);
+    CutResult cut_run = cut_run_of(stock, job, run, stamps, contacts, options);
+    if (how.chip_ratio > 0) cut_run.loads_at_ratio.resize(stamps.size());
+    add_piece(job, run, std::move(cut_run), out);
   });
   return out;
 }
 
 }  // namespace
+
+void add_piece(const Job& job, const removal::ToolRun& run, CutResult piece, PathLoads& out) {
+  const bool milling = run.kind == removal::RunKind::milling;
+  if (!milling) add_holes(run.kind, piece, out.holes);
+  add_figures(piece, run.kind, out.cut);
+  append(std::move(piece.loads), out.cut.loads);
+  if (!piece.loads_at_ratio.empty()) append(std::move(piece.loads_at_ratio), out.cut.loads_at_ratio);
+  if (milling && slenderness(job.tools.at(run.tool)) > kMaxSlenderness &&
+      !std::ranges::count(out.slender_tools, run.tool))
+    out.slender_tools.push_back(run.tool);
+  if (!piece.turn.teeth.empty()) out.cut.turn = std::move(piece.turn);
+}
+
+CutResult cut_piece(removal::Stock& stock, const Job& job, const removal::StampPath& path, const PieceCut& piece) {
+  const removal::ToolRun& run = path.runs[piece.run];
+  const machine::Tool& tool = job.tools.at(run.tool);
+  const std::span<const removal::Stamp> stamps = std::span(path.stamps).subspan(run.from, run.count);
+  const std::function<void(double)> progress = piece.progress;
+  CutOptions options =
+      cut_options_of(job, {.coupling = piece.coupling, .progress = progress, .surface = piece.surface}, tool);
+  options.blank = piece.before_run;
+  options.progress = progress;
+  if (run.kind != removal::RunKind::milling) {
+    assert(piece.from == 0 && piece.count == run.count);
+    return cut_run_of(stock, job, run, stamps, {}, options);
+  }
+  if (piece.turn_from && *piece.turn_from >= run.from) options.turn_from = *piece.turn_from - run.from;
+  const std::vector<Contact> contacts = find_contacts(*piece.target, tool, stamps.subspan(piece.from, piece.count));
+  return cut_range(stock, tool, job.material, stamps, piece.from, piece.count, contacts,
+                   static_cast<std::int32_t>(run.from), options);
+}
 
 PathLoads predict_loads(const Job& job, const removal::Stock& blank, const SimulatedProgram& program,
                         const LoadOptions& options) {
@@ -299,7 +345,6 @@ PathLoads predict_loads(const Job& job, const removal::Stock& blank, const Simul
 
 Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options) {
-  Prediction out;
   std::vector<std::vector<Contact>> contacts_of_runs;
   std::optional<Stage> stage(std::in_place, "finding the contacts", program.path.stamps.size());
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
@@ -310,18 +355,25 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
   stage.reset();
   if (options.surface_read) options.surface_read();
   removal::SurfaceMap map = options.take_map ? options.take_map() : *target.map;
-  out.machined = std::make_unique<removal::Stock>(target.blank);
-  PathLoads loads = cut_path(*out.machined, target.blank, job, program,
+  auto machined = std::make_unique<removal::Stock>(target.blank);
+  PathLoads loads = cut_path(*machined, target.blank, job, program,
                              {.coupling = job.simulation.coupling,
                               .chip_ratio = options.chip_ratio,
                               .turn_from = options.turn_from,
                               .progress = options.progress,
                               .surface = &map,
                               .contacts = std::move(contacts_of_runs)});
+  return judge(target, std::move(loads), map.take(), std::move(machined));
+}
+
+Prediction judge(const Target& target, PathLoads loads, std::vector<removal::SurfacePoint> surface,
+                 std::unique_ptr<removal::Stock> machined) {
+  Prediction out;
+  out.machined = std::move(machined);
   out.cut = std::move(loads.cut);
   out.holes = loads.holes;
   out.slender_tools = std::move(loads.slender_tools);
-  out.surface = map.take();
+  out.surface = std::move(surface);
   for (std::size_t i = 0; i < out.surface.size(); ++i)
     out.surface[i].contour_mm = static_cast<double>(target.contour_mm[i]);
   drop_left_out(target.region, out.surface);

@@ -6,12 +6,13 @@
 #include "simulate/flute_reach.h"
 #include "simulate/machine_checks.h"
 #include "simulate/machine_collisions.h"
+#include "simulate/pieces.h"
 #include "simulate/region.h"
 #include "simulate/setup_checks.h"
 
 namespace camber::simulate {
 
-Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings) {
+Programs read_programs(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings) {
   const bool other = !options.program.empty();
   SimulatedProgram program =
       simulate_motion(SourceText::read(other ? options.program : job.program), job, {}, findings.program);
@@ -23,8 +24,18 @@ Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFi
   if (!job.part.program.empty() || other || job.part.operations)
     original.emplace(simulate_motion(SourceText::read(job.part.program.empty() ? job.program : job.part.program),
                                      of_target, {}, findings.original));
-  Target target = make_target(job, original ? *original : program, findings.target);
-  return {std::move(program), std::move(original), std::move(target)};
+  return {std::move(program), std::move(original)};
+}
+
+Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings) {
+  return set_up(job, options, findings, {});
+}
+
+Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings,
+             const TargetWork& work) {
+  Programs programs = read_programs(job, options, findings);
+  Target target = make_target(job, programs.of_target(), findings.target, work);
+  return {std::move(programs.program), std::move(programs.original), std::move(target)};
 }
 
 void check_program(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics) {

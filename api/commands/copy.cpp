@@ -1,6 +1,11 @@
 #include "api/commands/copy.h"
 
+#include <algorithm>
+
 #include "machine/unprogrammed_job.h"
+#include "simulate/collisions.h"
+#include "simulate/flute_reach.h"
+#include "simulate/predict.h"
 
 namespace camber::api {
 
@@ -11,8 +16,16 @@ CopyJob read_copy_job(const std::string& path, Diagnostics& diagnostics) {
   return out;
 }
 
-copymill::CopyResult copy_job(const CopyJob& job, const copymill::CopyOptions& options, Diagnostics& diagnostics) {
-  return copymill::copy(job.job, job.operations, options, diagnostics);
+copymill::CopyResult copy_job(const CopyJob& job, const std::string& program, const copymill::CopyOptions& options,
+                              Diagnostics& diagnostics) {
+  copymill::CopyResult out = copymill::copy(job.job, job.operations, options, diagnostics);
+  if (std::ranges::all_of(out.operations, [](const copymill::OperationSummary& o) { return o.nothing_left; }))
+    return out;
+  const simulate::SimulatedProgram emitted =
+      simulate::simulate_motion(SourceText(program, out.text), job.job, {}, diagnostics);
+  simulate::check_collisions(job.job, emitted, *out.blank, diagnostics);
+  simulate::check_flute_reach(job.job, emitted, *out.blank, diagnostics);
+  return out;
 }
 
 }  // namespace camber::api

@@ -17,7 +17,9 @@ struct CopyJob {
 /// A job with [[copy]]; a program is not needed. Throws InputError.
 CopyJob read_copy_job(const std::string& path, Diagnostics& diagnostics);
 
-/// Throws InputError. Writes nothing.
-copymill::CopyResult copy_job(const CopyJob& job, const copymill::CopyOptions& options, Diagnostics& diagnostics);
+/// Throws InputError. Writes nothing. The emitted text is read again, as `program`, the file that it goes to: rapids
+/// through material, shank and holder in stock, and material above the flutes are diagnostics at its blocks.
+copymill::CopyResult copy_job(const CopyJob& job, const std::string& program, const copymill::CopyOptions& options,
+                              Diagnostics& diagnostics);
 
 }  // namespace camber::api

@@ -147,7 +147,8 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   };
   Diagnostics of_original;  // a program like the job's: what is to be said of it, the job's own says too
   PreparedJob out{
-      simulate::set_up(job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics}),
+      simulate::set_up(job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics},
+                       request.work),
       {}};
   out.setup.original.reset();
   out.setup.target.surface.clear_stamps();  // its points are in the map
@@ -177,13 +178,18 @@ simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prep
   auto prediction = prepared.traced
                         ? simulate::predict_traced(job, setup.target, setup.program, *prepared.traced, prepared.options)
                         : simulate::predict(job, setup.target, setup.program, prepared.options);
+  finish_prediction(job, prepared, prediction, of_cut);
+  return prediction;
+}
+
+void finish_prediction(const machine::Job& job, PreparedJob& prepared, simulate::Prediction& prediction,
+                       Diagnostics& of_cut) {
   // Nothing reads them any more, and the files need room.
-  setup.target.blank.clear();
-  setup.target.map.reset();
+  prepared.setup.target.blank.clear();
+  prepared.setup.target.map.reset();
   prediction.machined->unshare();
   prediction.machined->clear_stamps();
-  simulate::check_spindle_power(job.machine, setup.program, prediction.cut.loads, of_cut);
-  return prediction;
+  simulate::check_spindle_power(job.machine, prepared.setup.program, prediction.cut.loads, of_cut);
 }
 
 void write_prediction(const machine::Job& job, const PreparedJob& prepared, simulate::Prediction& prediction,

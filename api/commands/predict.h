@@ -7,6 +7,7 @@
 
 #include "base/diagnostics.h"
 #include "machine/job.h"
+#include "simulate/pieces.h"
 #include "simulate/setup.h"
 #include "simulate/traced.h"
 
@@ -20,7 +21,8 @@ struct PredictRequest {
   std::size_t forces_at = 0;  ///< line whose forces are kept over one turn; 0: none
   std::string trace{};        ///< servo trace at whose positions is cut; empty: the feed model's
   std::string columns{};      ///< column map of the trace; empty: its header names columns as Camber does
-  StepProgress progress;
+  StepProgress progress{};
+  simulate::TargetWork work{};  ///< of the target that other processes have done
 };
 
 /// Of a prediction from a trace, `setup.program` has the measured motion and `traced` the feed model's.
@@ -38,6 +40,10 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
 /// Cuts and judges. The target and the blank are given up on the way. `of_cut`: what only the cut shows.
 simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prepared, const PredictRequest& request,
                                       Diagnostics& of_cut);
+
+/// What follows every prediction: what nothing reads any more is given up, and the spindle is checked.
+void finish_prediction(const machine::Job& job, PreparedJob& prepared, simulate::Prediction& prediction,
+                       Diagnostics& of_cut);
 
 /// Every file of the folder, summary.json last, and `json` where a file is named. Whatever cannot be written goes to
 /// `failed`. The machined stock is given up once it is saved.

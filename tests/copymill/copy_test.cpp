@@ -22,10 +22,10 @@ using tests::SmallCopy;
 using tests::TempFolder;
 
 const std::string kRough =
-    "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 8000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
+    "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 2000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
     "axial_depth_mm = 4\nallowance_mm = 0.3\n";
 const std::string kRows =
-    "[[copy]]\ntool = 1\nmode = \"scanning-line\"\nspindle_rpm = 8000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
+    "[[copy]]\ntool = 1\nmode = \"scanning-line\"\nspindle_rpm = 2000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
     "axial_depth_mm = 4\nallowance_mm = 0.3\nangle_deg = 30\n";
 
 struct Copied {
@@ -64,7 +64,7 @@ TEST(Copy, RoughsThePocketByRowsAndItsOutline) {
 }
 
 const std::string kFinish =
-    "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 8000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
+    "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 4000\nfeed_mm_per_min = 3000\nradial_depth_mm = 4\n"
     "axial_depth_mm = 8\n";
 
 TEST(Copy, FinishesWallsAndFloorToThePart) {
@@ -147,7 +147,9 @@ TEST(Copy, DrillsPecksWhereItIsAskedTo) {
                                                      "feed_mm_per_min = 400\naxial_depth_mm = 3\n"
                                                      "holes_mm = [[10, 10], [20, 10]]\nregion = { z_mm = [-8, 0] }\n"})
                            .result;
-  EXPECT_NEAR(r.removed_mm3 / (2 * kPi * 6.25 * 8), 1, 0.03);
+  // The point of 118 degrees takes a cone less.
+  const double cone_mm = 2.5 / std::tan(59 * kPi / 180);
+  EXPECT_NEAR(r.removed_mm3 / (2 * kPi * 6.25 * (8 - 2 * cone_mm / 3)), 1, 0.01);
   EXPECT_EQ(r.operations[0].passes, 2u);
 }
 

@@ -1,0 +1,156 @@
+// Parts of a prediction in sections, as files.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "api/commands/sections.h"
+#include "base/bytes.h"
+#include "base/output_file.h"
+#include "compensate/header.h"
+
+namespace camber::api {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic = "camber part 1\n";
+
+struct PartFile {
+  std::string version, name;
+  PartKey key;
+  std::string content;
+};
+
+std::string packed(const PartName& name, const PartKey& key, std::string_view content) {
+  ByteWriter out;
+  out.text(CAMBER_VERSION);
+  out.text(file_name(name));
+  out.text(key.job_path);
+  out.text(key.hash);
+  out.value(static_cast<std::uint64_t>(key.sections));
+  out.value(static_cast<std::uint64_t>(key.forces_at));
+  out.text(content);
+  const std::string bytes = out.take();
+  return std::string(kMagic) + compensate::hash_of(bytes) + bytes;
+}
+
+/// Nothing where the file is not whole.
+std::optional<PartFile> unpacked(const std::string& text) {
+  constexpr std::size_t kHashLength = 16, kHead = kMagic.size() + kHashLength;
+  const std::string_view all = text;
+  if (all.size() < kHead || all.substr(0, kMagic.size()) != kMagic) return std::nullopt;
+  if (compensate::hash_of(all.substr(kHead)) != all.substr(kMagic.size(), kHashLength)) return std::nullopt;
+  try {
+    ByteReader in(all.substr(kHead));
+    PartFile out;
+    out.version = in.text();
+    out.name = in.text();
+    out.key.job_path = in.text();
+    out.key.hash = in.text();
+    out.key.sections = in.value<std::uint64_t>();
+    out.key.forces_at = in.value<std::uint64_t>();
+    out.content = in.text();
+    return out;
+  } catch (const BytesMissing&) {
+    return std::nullopt;
+  }
+}
+
+/// In the order of their names.
+std::vector<std::string> part_files(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code ec;
+  for (const auto& entry : fs::directory_iterator(folder + "/parts", ec))
+    if (entry.path().extension() == ".part") files.push_back(entry.path().string());
+  std::ranges::sort(files);
+  return files;
+}
+
+std::string command_of(const PartName& name, const PartKey& key, const std::string& folder) {
+  return fmt::format("camber predict {} -o {} --sections {} --section {} --stage {}{}{}", key.job_path, folder,
+                     name.sections, name.section + 1, name.stage == PartStage::sweep ? "sweep" : "solve",
+                     name.stage == PartStage::solve && name.round > 1 ? fmt::format(" --round {}", name.round) : "",
+                     key.forces_at > 0 ? fmt::format(" --forces-at {}", key.forces_at) : "");
+}
+
+}  // namespace
+
+std::string file_name(const PartName& name) {
+  const std::string place = fmt::format("{:03}-of-{:03}.part", name.section + 1, name.sections);
+  return name.stage == PartStage::sweep ? "sweep-" + place : fmt::format("solve-{}-{}", name.round, place);
+}
+
+PartKey part_key(const machine::Job& job, std::size_t sections, std::size_t forces_at) {
+  return {job.path, compensate::hash_of_inputs(job), sections, forces_at};
+}
+
+std::string PartFiles::path(const PartName& name) const { return folder_ + "/parts/" + file_name(name); }
+
+bool PartFiles::has(const PartName& name) {
+  std::error_code ec;
+  if (!fs::is_regular_file(path(name), ec)) return false;
+  const auto found = unpacked(SourceText::read(path(name)).text());
+  return found && found->version == CAMBER_VERSION && found->key.hash == key_.hash &&
+         found->key.forces_at == key_.forces_at && found->name == file_name(name);
+}
+
+void PartFiles::give(const PartName& name, std::string content) {
+  make_folder(folder_);
+  make_folder(folder_ + "/parts");
+  write_file(path(name), packed(name, key_, content));
+}
+
+std::string PartFiles::take(const PartName& name) {
+  const std::string file = path(name);
+  const std::string again = "run " + command_of(name, key_, folder_);
+  std::error_code ec;
+  if (!fs::is_regular_file(file, ec))
+    fail_on_file(file, "is missing; the part of this section was expected: " + again, "part-missing");
+  auto found = unpacked(SourceText::read(file).text());
+  if (!found)
+    fail_on_file(file, "is not whole; a part that was written to its end was expected: " + again, "part-torn");
+  if (found->version != CAMBER_VERSION)
+    fail_on_file(file,
+                 fmt::format("was written by camber {}, this is {}; parts of one version were expected: {}",
+                             found->version, CAMBER_VERSION, again),
+                 "part-version");
+  if (found->key.hash != key_.hash || found->key.forces_at != key_.forces_at || found->name != file_name(name))
+    fail_on_file(file,
+                 fmt::format("is of another job, program or setting (hash {}) than {} now (hash {}): {}",
+                             found->key.hash, key_.job_path, key_.hash, again),
+                 "part-job");
+  return std::move(found->content);
+}
+
+PartKey find_parts(const std::string& folder) {
+  std::optional<PartKey> out;
+  for (const std::string& file : part_files(folder)) {
+    const auto found = unpacked(SourceText::read(file).text());
+    if (!found) continue;
+    if (out && out->sections != found->key.sections)
+      fail_on_file(folder,
+                   fmt::format("has parts of {} and of {} sections; parts of one prediction were expected",
+                               out->sections, found->key.sections),
+                   "part-sections");
+    out = found->key;
+  }
+  if (!out)
+    fail_on_file(folder, "has no parts of a prediction; camber predict --sections N --section I writes them",
+                 "part-missing");
+  return *out;
+}
+
+int last_round(const std::string& folder, const PartKey& key) {
+  int out = 0;
+  for (const std::string& file : part_files(folder)) {
+    const std::string name = fs::path(file).filename().string();
+    if (name.rfind("solve-", 0) != 0) continue;
+    const auto found = unpacked(SourceText::read(file).text());
+    if (!found || found->key.hash == key.hash) out = std::max(out, std::atoi(name.c_str() + 6));
+  }
+  return out;
+}
+
+}  // namespace camber::api

@@ -1,0 +1,126 @@
+#include "api/commands/posture.h"
+
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "api/commands/rotary_program.h"
+#include "base/units.h"
+#include "feedmodel/cycle_time.h"
+#include "kinematics/travel_check.h"
+
+namespace camber::api {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 4> kModes{"chosen", "normal", "lead-tilt", "seed"};
+
+int tool_of(const PostureCommand& command) {
+  if (command.tool) return *command.tool;
+  if (command.job->tools.size() == 1) return command.job->tools.begin()->first;
+  fail_on_file(command.job->path,
+               "the job has several tools; --tool with the number of the finishing tool was expected", "no-tool");
+}
+
+/// Time on the machine, and what the checks of travel say, at the blocks of the given program.
+void read_again(const PostureCommand& command, PosturedProgram& program, Diagnostics& diagnostics) {
+  const machine::Machine& machine = command.job->machine;
+  Diagnostics again;  // an error in the new text is ours
+  const nc::Program text = nc::read_program(SourceText(command.output, program.postured.text), again);
+  nc::Interpretation moves = nc::interpret(text, rotary_interpreter_options(machine, command.interpreter), again);
+  again.throw_if_errors();
+  place_rotary_lines(machine, moves);
+  program.time_s = feedmodel::cycle_time(moves, machine).all.time.total_s();
+  for (nc::Move& move : moves.moves) move.block = program.postured.block_of_line[move.block];
+  kinematics::check_travel(machine, *command.text, moves, diagnostics);
+  diagnostics.throw_if_errors();
+}
+
+ordered_json figures_json(const PosturedProgram& program) {
+  const posture::PostureFigures& f = program.postured.figures;
+  return {{"overhang_mm", f.overhang_mm},
+          {"points", f.points},
+          {"contacts", f.contacts},
+          {"unclear", f.unclear},
+          {"rotary_motion_deg", f.rotary_motion_deg},
+          {"mean_angle_deg", deg_from_rad(f.mean_angle_rad)},
+          {"max_angle_deg", deg_from_rad(f.max_angle_rad)},
+          {"compliance_um_per_N", f.compliance_um_per_N},
+          {"time_s", program.time_s}};
+}
+
+}  // namespace
+
+PosturedProgram posture_program(const PostureCommand& command, Diagnostics& diagnostics) {
+  nc::InterpreterOptions options = rotary_interpreter_options(command.job->machine, command.interpreter);
+  if (!options.inch) options.inch = command.job->inch;
+  const nc::Interpretation moves = nc::interpret(*command.text, options, diagnostics);
+  diagnostics.throw_if_errors();
+  PosturedProgram out;
+  out.postured = posture::make_postures({.job = command.job,
+                                         .program = command.text,
+                                         .moves = &moves,
+                                         .tool = tool_of(command),
+                                         .step_mm = command.step_mm,
+                                         .options = command.options},
+                                        diagnostics);
+  diagnostics.throw_if_errors();
+  if (out.postured.blocked_move)
+    out.blocked_line = moves.moves[*out.postured.blocked_move].block + 1;
+  else
+    read_again(command, out, diagnostics);
+  return out;
+}
+
+std::vector<PosturedProgram> overhangs(const PostureCommand& command, double step_mm, Diagnostics& diagnostics) {
+  std::vector<PosturedProgram> out;
+  machine::Job job = *command.job;
+  PostureCommand now = command;
+  now.job = &job;
+  machine::Tool& tool = job.tools.at(tool_of(command));
+  for (const double least = posture::least_overhang_mm(tool); tool.overhang_mm >= least; tool.overhang_mm -= step_mm) {
+    Diagnostics of_row;  // the same as of the first
+    PosturedProgram made = posture_program(now, out.empty() ? diagnostics : of_row);
+    if (made.blocked_line > 0 || made.postured.figures.unclear > 0) break;
+    out.push_back(std::move(made));
+  }
+  return out;
+}
+
+std::string posture_text(const PosturedProgram& program, const PostureCommand& command) {
+  const posture::PostureFigures& f = program.postured.figures;
+  std::string out = fmt::format("points    {}, {} of them on the part; {} nearer than {:g} mm\n", f.points, f.contacts,
+                                f.unclear, command.options.clearance_mm);
+  out += fmt::format("tool      {:.1f} degrees from the normal, at most {:.1f}; rotary axes turn {:.0f} degrees\n",
+                     deg_from_rad(f.mean_angle_rad), deg_from_rad(f.max_angle_rad), f.rotary_motion_deg);
+  out +=
+      fmt::format("overhang  {:g} mm: {:.3f} um normal to the part for each N\n", f.overhang_mm, f.compliance_um_per_N);
+  out += fmt::format("time      {:.1f} s\n", program.time_s);
+  return out;
+}
+
+std::string overhang_text(const std::vector<PosturedProgram>& rows) {
+  std::string out =
+      fmt::format("{:>12} {:>10} {:>10} {:>12} {:>8}\n", "overhang mm", "um/N", "angle deg", "rotary deg", "time s");
+  for (const PosturedProgram& row : rows) {
+    const posture::PostureFigures& f = row.postured.figures;
+    out += fmt::format("{:>12.1f} {:>10.3f} {:>10.1f} {:>12.0f} {:>8.1f}\n", f.overhang_mm, f.compliance_um_per_N,
+                       deg_from_rad(f.mean_angle_rad), f.rotary_motion_deg, row.time_s);
+  }
+  return out;
+}
+
+std::string posture_json(const PosturedProgram& program, const std::vector<PosturedProgram>& rows,
+                         const PostureCommand& command) {
+  ordered_json report = figures_json(program);
+  report["mode"] = kModes[static_cast<std::size_t>(command.options.mode)];
+  report["clearance_mm"] = command.options.clearance_mm;
+  if (program.blocked_line > 0) report["blocked_line"] = program.blocked_line;
+  for (const PosturedProgram& row : rows) report["overhangs"].push_back(figures_json(row));
+  return report.dump(2) + "\n";
+}
+
+}  // namespace camber::api

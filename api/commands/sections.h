@@ -1,0 +1,126 @@
+#pragma once
+// The work of camber predict --sections and camber merge: parts as files or messages, stage after stage.
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/commands/predict.h"
+#include "base/diagnostics.h"
+#include "machine/job.h"
+#include "simulate/sections.h"
+
+namespace camber::api {
+
+enum class PartStage : std::uint8_t { sweep, solve };
+
+/// Part of a distributed prediction: what one section has computed in one stage.
+struct PartName {
+  PartStage stage = PartStage::sweep;
+  int round = 1;            ///< of solving
+  std::size_t section = 0;  ///< from 0
+  std::size_t sections = 1;
+};
+/// "sweep-003-of-016.part", "solve-1-003-of-016.part"; sections count from 1.
+std::string file_name(const PartName& name);
+
+/// What all parts of one prediction share; parts of another one are refused by its name.
+struct PartKey {
+  std::string job_path;  ///< absolute
+  std::string hash;      ///< of job, program and every file that the job reads
+  std::size_t sections = 1;
+  std::size_t forces_at = 0;
+};
+
+/// Where parts are kept for others.
+class PartStore {
+ public:
+  virtual ~PartStore() = default;
+  virtual bool has(const PartName& name) = 0;
+  virtual void give(const PartName& name, std::string content) = 0;
+  /// Throws InputError where it is missing [part-missing], torn [part-torn] or of another prediction [part-version],
+  /// [part-job].
+  virtual std::string take(const PartName& name) = 0;
+  /// All processes have given what they own of a stage. Nothing where parts are files.
+  virtual void gather(PartStage, int /*round*/) {}
+};
+
+/// Parts as files in FOLDER/parts, each written beside and renamed.
+class PartFiles : public PartStore {
+ public:
+  PartFiles(std::string folder, PartKey key) : folder_(std::move(folder)), key_(std::move(key)) {}
+  /// A whole part of this prediction.
+  bool has(const PartName& name) override;
+  void give(const PartName& name, std::string content) override;
+  std::string take(const PartName& name) override;
+  std::string path(const PartName& name) const;
+
+ private:
+  std::string folder_;
+  PartKey key_;
+};
+
+/// Of the parts in a folder; the hash is theirs. Throws InputError where there is none [part-missing], or where they
+/// are of several numbers of sections [part-sections].
+PartKey find_parts(const std::string& folder);
+/// The last round of solving that has a part which is of this prediction, or torn; 0: none.
+int last_round(const std::string& folder, const PartKey& key);
+
+PartKey part_key(const machine::Job& job, std::size_t sections, std::size_t forces_at);
+
+/// The stages of one prediction in sections. Programs are read once.
+class SectionRun {
+ public:
+  /// Throws InputError.
+  SectionRun(const machine::Job& job, PartKey key, PartStore& store, StepProgress progress, Diagnostics& diagnostics);
+
+  /// Computes a part unless it is there. False: it was.
+  bool sweep(std::size_t section);
+  bool solve(std::size_t section, int round);
+  /// Pieces that a round has solved again, in all sections; 0 in rigid coupling.
+  std::size_t solved_again(int round);
+  bool is_static() const { return job_.simulation.coupling == machine::Coupling::static_; }
+  /// What one process has done so far, for the efficiency of many.
+  const simulate::SectionWork& work() const { return work_; }
+
+ private:
+  std::vector<simulate::SolvedSection> solved_stocks(int round, std::size_t section, const removal::Region& region);
+
+  const machine::Job& job_;
+  PartKey key_;
+  PartStore& store_;
+  StepProgress progress_;
+  Diagnostics& diagnostics_;
+  simulate::Programs programs_;
+  std::optional<std::size_t> turn_from_;
+  simulate::SectionWork work_;
+};
+
+/// How the pieces of a path were joined.
+struct SectionFigures {
+  std::size_t pieces = 0, rounds = 1;
+  std::vector<std::size_t> solved_again{};  ///< pieces, of each round from the second on
+  std::vector<double> largest_change_um{};  ///< of the stock before a piece, likewise
+};
+/// summary.json of a prediction with them.
+std::string with_sections(const std::string& json, const SectionFigures& figures);
+
+/// A prediction joined from parts.
+struct MergedJob {
+  PreparedJob prepared;
+  simulate::Prediction prediction;
+  SectionFigures figures;
+  std::string doubt;  ///< about static coupling; empty: none
+};
+/// Joins all parts of the sweep and of a round. `request`: as for a prediction; its `work` is not looked at. `found`:
+/// what should be shown before. Throws InputError where a part is missing or not like the others: nothing is merged
+/// then.
+MergedJob merge_parts(const machine::Job& job, const PartKey& key, int round, PartStore& store,
+                      const PredictRequest& request, Diagnostics& found, Diagnostics& of_cut);
+
+/// Rounds of static coupling, at most.
+inline constexpr int kMaxSectionRounds = 12;
+
+}  // namespace camber::api

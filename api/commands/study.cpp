@@ -1,0 +1,191 @@
+#include "api/commands/study.h"
+
+#include <cctype>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "base/output_file.h"
+#include "compensate/header.h"
+#include "feedmodel/control_options.h"
+#include "machine/toml_text.h"
+#include "nc/emit.h"
+#include "nc/interpreter.h"
+
+namespace camber::api {
+namespace {
+
+namespace fs = std::filesystem;
+using machine::Study;
+using machine::StudyCase;
+using machine::StudyCommand;
+
+std::string command_name(const Study& study) {
+  return std::string(machine::kStudyCommandWords[static_cast<std::size_t>(study.command)]);
+}
+
+std::string content_hash(const std::string& path, std::map<std::string, std::string>& known) {
+  auto [at, is_new] = known.try_emplace(path);
+  std::error_code ec;
+  if (is_new && fs::is_regular_file(path, ec)) at->second = compensate::hash_of(SourceText::read(path).text());
+  return at->second;
+}
+
+/// Of version, command, job and the contents of its files. Where the study lies does not count.
+std::string case_hash(const Study& study, const StudyCase& one, std::map<std::string, std::string>& known) {
+  std::string all =
+      fmt::format("camber {} {}\n{}\n{}\n", CAMBER_VERSION, command_name(study), machine::feed_percent(study, one),
+                  machine::toml_text(machine::study_job(study, one, machine::kNamesAlone)));
+  for (const std::string& path : machine::study_files(study, one)) all += content_hash(path, known) + "\n";
+  std::string hash = compensate::hash_of(all);
+  for (char& c : hash) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return hash;
+}
+
+/// The program with all feeds of its cutting moves scaled. Warns of moves whose feed the text does not say alone.
+std::string scaled_program(const machine::Job& job, double percent, Diagnostics& diagnostics) {
+  Diagnostics ignored;  // said when the case itself is read
+  const nc::Program text = nc::read_program(SourceText::read(job.program), ignored);
+  const nc::Interpretation moves = nc::interpret(text, feedmodel::interpreter_options(job.machine, job.inch), ignored);
+  ignored.throw_if_errors();
+  std::vector<nc::MoveEdit> edits;
+  for (std::uint32_t i = 0; i < moves.moves.size(); ++i) {
+    const nc::Move& m = moves.moves[i];
+    if ((m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc) && m.feed_mm_per_s > 0)
+      edits.push_back({.move = i, .feed_mm_per_s = m.feed_mm_per_s * percent / 100});
+  }
+  nc::Emission out = nc::emit_edits(text, moves, edits, feedmodel::decimals_for(job.machine.control, text));
+  if (!out.not_made.empty()) {
+    const auto& first = out.not_made.front();
+    diagnostics.add({Severity::warning,
+                     {job.program, moves.moves[first.move].block + 1, 0},
+                     fmt::format("feed_percent = {}: the feed of {} moves stays as programmed, the first is {}",
+                                 percent, out.not_made.size(), nc::to_string(first.why)),
+                     "study-feed",
+                     {}});
+  }
+  return out.text;
+}
+
+/// Leaves a file that has this content already alone, with its time.
+void write_if_new(const std::string& path, const std::string& content) {
+  std::error_code ec;
+  if (fs::is_regular_file(path, ec) && SourceText::read(path).text() == content) return;
+  write_file(path, content);
+}
+
+std::string job_comment(const Study& study, const PlannedCase& one) {
+  std::string out = fmt::format("# A case of {}, made by camber study:\n", fs::path(study.path).filename().string());
+  for (std::size_t k = 0; k < study.keys.size(); ++k)
+    out +=
+        fmt::format("# {} = {}\n", study.keys[k].key, machine::toml_value(study.keys[k].values[one.values.values[k]]));
+  return out;
+}
+
+void write_job(const Study& study, const PlannedCase& one, Diagnostics& diagnostics) {
+  make_folder(one.folder);
+  machine::TomlNode job = machine::study_job(study, one.values, one.folder);
+  write_if_new(one.job_path, job_comment(study, one) + machine::toml_text(job));
+  const double percent = machine::feed_percent(study, one.values);
+  if (percent == 100) return;
+  Diagnostics of_job;
+  const machine::Job read = machine::read_job(one.job_path, of_job);
+  of_job.throw_if_errors();
+  machine::TomlNode name;
+  name.kind = machine::TomlNode::Kind::text;
+  name.text = "program.nc";
+  write_if_new(one.folder + "/" + name.text, scaled_program(read, percent, diagnostics));
+  machine::set_value(job, machine::key_parts("program"), name);
+  write_if_new(one.job_path, job_comment(study, one) + machine::toml_text(job));
+}
+
+/// Whether the command could run at all.
+void check_job(const Study& study, const PlannedCase& one, Diagnostics& diagnostics) {
+  Diagnostics found;
+  const machine::Job job = machine::read_job(one.job_path, found);
+  if (study.command == StudyCommand::adapt && !job.adapt && !found.has_errors())
+    found.add({Severity::error,
+               {one.job_path, 0, 0},
+               "has no [adapt]; a table with limits was expected",
+               "adapt-missing",
+               {}});
+  for (const Diagnostic& d : found.all())
+    if (d.severity == Severity::error) diagnostics.add(d);
+}
+
+std::string shell_word(const std::string& text) {
+  if (!text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=+") ==
+                           std::string::npos)
+    return text;
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace
+
+bool PlannedCase::done() const {
+  std::error_code ec;
+  return fs::is_regular_file(json_path, ec) && fs::is_regular_file(report_path, ec);
+}
+
+StudyPlan plan_study(const std::string& path, const std::string& folder, Diagnostics& diagnostics) {
+  StudyPlan out{machine::read_study(path, diagnostics), folder, {}};
+  diagnostics.throw_if_errors();
+  make_folder(folder);
+  make_folder(folder + "/cases");
+  std::map<std::string, std::string> known;
+  std::map<std::string, std::size_t> numbers;
+  for (std::size_t i = 0; i < out.study.cases(); ++i) {
+    PlannedCase one;
+    one.values = machine::study_case(out.study, i);
+    one.hash = case_hash(out.study, one.values, known);
+    if (const auto [first, is_new] = numbers.try_emplace(one.hash, i + 1); !is_new)
+      fail_on_file(path,
+                   fmt::format("cases {} and {} are the same; different values were expected", first->second, i + 1),
+                   "study-twice");
+    one.folder = folder + "/cases/" + one.hash;
+    one.job_path = one.folder + "/job.toml";
+    one.output = out.study.command == StudyCommand::predict ? one.folder : one.folder + "/new.nc";
+    one.report_path = one.folder + "/report.html";
+    one.json_path = one.folder + "/summary.json";
+    write_job(out.study, one, diagnostics);
+    check_job(out.study, one, diagnostics);
+    out.cases.push_back(std::move(one));
+  }
+  diagnostics.throw_if_errors();
+  return out;
+}
+
+std::string command_line(const StudyPlan& plan, const PlannedCase& one) {
+  const std::string command =
+      fmt::format("camber -q {} {} -o {}", command_name(plan.study), shell_word(one.job_path), shell_word(one.output));
+  if (plan.study.command == StudyCommand::predict) return command;
+  return command + fmt::format(" --report {} --json {}", shell_word(one.report_path), shell_word(one.json_path));
+}
+
+report::StudyTable study_table(const StudyPlan& plan) {
+  report::StudyTable out{plan.study.path, plan.study.job, command_name(plan.study), {}, plan.study.figures, {}};
+  if (out.figures.empty()) out.figures = report::default_study_figures(out.command);
+  for (const machine::StudyKey& key : plan.study.keys) out.keys.push_back(key.key);
+  for (const PlannedCase& one : plan.cases) {
+    report::StudyRow& row = out.rows.emplace_back();
+    row.number = out.rows.size();
+    row.hash = one.hash;
+    row.folder = "cases/" + one.hash;
+    row.figures.assign(out.figures.size(), "");
+    for (std::size_t k = 0; k < plan.study.keys.size(); ++k)
+      row.values.push_back(machine::shown_value(plan.study.keys[k].values[one.values.values[k]]));
+    if (one.done()) report::read_figures(SourceText::read(one.json_path).text(), out.figures, row);
+  }
+  return out;
+}
+
+void write_study(const StudyPlan& plan, const report::StudyTable& table) {
+  write_file(plan.folder + "/study.csv", report::study_csv(table));
+  write_file(plan.folder + "/study.json", report::study_json(table));
+  write_file(plan.folder + "/study.html", report::study_page(table));
+}
+
+}  // namespace camber::api

@@ -1,0 +1,20 @@
+#pragma once
+// mpirun -n N camber predict J.toml -o DIR: a rank computes a section, parts go from rank to rank.
+//
+// The same executable with and without mpirun; the only file that sees MPI is mpi_run.cpp.
+#include <string>
+
+#include "cli/global_options.h"
+#include "cli/sections_command.h"
+
+namespace camber::cli {
+
+/// Started by mpirun, by what it sets in the environment; one process alone counts where has_mpi().
+bool started_by_mpi();
+/// Whether this executable is built with MPI.
+bool has_mpi();
+
+/// camber predict on every rank; rank 0 merges and writes. The exit status is that of rank 0. Requires has_mpi().
+int run_predict_on_ranks(const SectionsArguments& arguments, const GlobalOptions& options);
+
+}  // namespace camber::cli

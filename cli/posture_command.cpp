@@ -1,0 +1,53 @@
+#include "cli/posture_command.h"
+
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "api/commands/posture.h"
+#include "base/output_file.h"
+#include "base/stage.h"
+#include "cli/console.h"
+#include "cli/progress.h"
+#include "machine/job.h"
+
+namespace camber::cli {
+
+int run_posture(const PostureArguments& arguments, const GlobalOptions& options) {
+  Diagnostics diagnostics;
+  ProgressLine progress(options, "reading");
+  const StageScope stages([&](const std::string& what, double share) { progress.show(what, share); });
+  const machine::Job job = machine::read_job(arguments.job, diagnostics);
+  const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
+  const api::PostureCommand command{.text = &text,
+                                    .output = arguments.output,
+                                    .job = &job,
+                                    .interpreter = arguments.interpreter,
+                                    .tool = arguments.tool,
+                                    .step_mm = arguments.step_mm,
+                                    .options = arguments.options};
+  std::vector<api::PosturedProgram> rows;
+  if (arguments.overhang_step_mm > 0) rows = api::overhangs(command, arguments.overhang_step_mm, diagnostics);
+  const api::PosturedProgram program = rows.empty() ? api::posture_program(command, diagnostics) : rows.back();
+  progress.clear();
+  settle(diagnostics, options);
+  const posture::PostureFigures& figures = program.postured.figures;
+  if (!arguments.json.empty()) write_file(arguments.json, api::posture_json(program, rows, command));
+  if (program.blocked_line > 0) {
+    fmt::print(stderr, "posture: no direction of the tool is clear by {:g} mm in line {}; nothing was written\n",
+               arguments.options.clearance_mm, program.blocked_line);
+    return kNumbersDidNotWorkOut;
+  }
+  write_file(arguments.output, program.postured.text);
+  if (!options.quiet) {
+    if (!rows.empty()) fmt::print("{}\n", api::overhang_text(rows));
+    fmt::print("{}", api::posture_text(program, command));
+  }
+  if (figures.unclear == 0) return kDone;
+  fmt::print(stderr, "posture: the tool is nearer than {:g} mm at {} of {} points; the program was written\n",
+             arguments.options.clearance_mm, figures.unclear, figures.points);
+  return kNumbersDidNotWorkOut;
+}
+
+}  // namespace camber::cli

@@ -1,0 +1,107 @@
+#include "copymill/load_follower.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simulate/predict.h"
+
+namespace camber::copymill {
+namespace {
+
+/// Coarser than a prediction's: a tick has half a millisecond. 2 degrees lose about a hundredth of a peak.
+constexpr double kEnvelopeStep_mm = 0.2, kRotationStep_rad = 2 * kPi / 180;
+constexpr double kFeedSteps = 25;  ///< of the nominal feed
+constexpr double kUpBelow = 0.86, kAim = 0.93;  ///< of the target
+constexpr double kUpStep = 0.5;                 ///< of the nominal feed; no step leads over the aim
+constexpr double kFromBand = 0.80, kToBand = 1.05, kNever = 1.2;  // of the target
+constexpr double kHeldBack = 0.9;  ///< of the commanded feed
+constexpr double kCutting = 0.01;  ///< of the target: less is air
+
+simulate::LoadProbeOptions probe_options(const machine::Job& job, const machine::CopyOperation& operation,
+                                         const simulate::ForceRegions& regions, std::int32_t first_id) {
+  return {.envelope_step_mm = std::max(kEnvelopeStep_mm, simulate::envelope_step_mm(job, job.tools.at(operation.tool))),
+          .rotation_step_rad = std::max(kRotationStep_rad, job.simulation.rotation_step_rad),
+          .first_id = first_id,
+          .drilling = operation.mode == machine::CopyMode::drilling,
+          .regions = regions.none() ? nullptr : &regions};
+}
+
+}  // namespace
+
+LoadFollower::LoadFollower(const machine::Job& job, const machine::CopyOperation& operation, removal::Stock& stock,
+                           const removal::TipBox& tips, const simulate::ForceRegions& regions, std::int32_t first_id)
+    : operation_(operation),
+      passing_s_(60 / (operation.spindle_rpm * job.tools.at(operation.tool).flutes)),
+      probe_(stock, job.tools.at(operation.tool), job.material, tips, probe_options(job, operation, regions, first_id)),
+      feed_(operation.feed_mm_per_s),
+      ahead_(std::numeric_limits<double>::infinity()) {
+  if (!operation.force_N) return;
+  band_.limit = figures_.target_N = *operation.force_N;
+  band_.up_below = kUpBelow, band_.aim = kAim, band_.up_step = kUpStep;
+  band_.teeth = job.tools.at(operation.tool).flutes;
+  const double radial = std::max(operation.radial_depth_mm, 1e-3), axial = std::max(operation.axial_depth_mm, 1e-3);
+  rule_.emplace(band_, Conditions{operation.feed_mm_per_s, radial, axial});
+}
+
+double LoadFollower::radial_mm() const { return rule_ ? rule_->conditions().radial_mm : operation_.radial_depth_mm; }
+double LoadFollower::axial_mm() const { return rule_ ? rule_->conditions().axial_mm : operation_.axial_depth_mm; }
+
+void LoadFollower::look_ahead(double t_s, const Vec3& place, const Vec3& direction) {
+  if (!rule_) return;
+  const double feed = operation_.feed_mm_per_s;
+  removal::Stamp stamp;
+  stamp.t_s = t_s;
+  stamp.pose.tip_mm = place;
+  stamp.feed_per_tooth_mm = feed * passing_s_ * direction;
+  const double load = load_of(probe_.look(stamp), LoadKind::force, operation_.spindle_rpm);
+  double at_half = 0;
+  if (load > 0) {
+    stamp.feed_per_tooth_mm *= 0.5;
+    at_half = load_of(probe_.look(stamp), LoadKind::force, operation_.spindle_rpm);
+  }
+  ahead_ = rule_->feed_ahead(load, at_half, feed);
+  rule_->note_ahead(t_s, place, ahead_);
+  choose_feed();
+}
+
+void LoadFollower::choose_feed() {
+  const double step = operation_.feed_mm_per_s / kFeedSteps;
+  const double wanted = std::min(rule_->conditions().feed_mm_per_s, ahead_);
+  const double lowest = band_.lowest * operation_.feed_mm_per_s;
+  const double stepped = std::max(lowest, step * std::floor(wanted / step + 1e-6));
+  // Up only where it is worth an F word.
+  if (stepped < feed_ || stepped > feed_ + 1.5 * step) feed_ = stepped;
+}
+
+double LoadFollower::pass(const removal::Stamp& stamp, double commanded) {
+  const simulate::ProbedLoad& load = probe_.append({&stamp, 1}).front();
+  const double force = load.felt.lateral_max_N;
+  const double actual = stamp.feed_per_tooth_mm.norm() / passing_s_;
+  figures_.max_N = std::max(figures_.max_N, force);
+  if (!rule_) return force;
+  // Slower than commanded at corners and where the tool sets off: the load there says little of the feed.
+  if (actual < kHeldBack * commanded && force <= figures_.target_N) return force;
+  rule_->feel({.t_s = stamp.t_s,
+               .place_mm = stamp.pose.tip_mm,
+               .load = force,
+               .expected = load.expected.lateral_max_N,
+               .feed_mm_per_s = actual});
+  choose_feed();
+  count(force, actual, commanded);
+  return force;
+}
+
+void LoadFollower::count(double force, double actual, double commanded) {
+  if (force < kCutting * figures_.target_N) return;
+  ++figures_.passings;
+  if (force > kNever * figures_.target_N) ++figures_.over;
+  const double nominal = operation_.feed_mm_per_s, step = nominal / kFeedSteps;
+  const bool bound = commanded >= band_.highest * nominal - step || commanded <= band_.lowest * nominal + 1e-9 ||
+                     actual < 0.97 * commanded;
+  if (bound) return;
+  ++figures_.counted;
+  if (force >= kFromBand * figures_.target_N && force <= kToBand * figures_.target_N) ++figures_.within;
+}
+
+}  // namespace camber::copymill

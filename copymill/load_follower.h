@@ -1,0 +1,63 @@
+#pragma once
+// The load of the cut, tooth passing by tooth passing, and the feed and depths that follow it.
+#include <optional>
+#include <vector>
+
+#include "copymill/load_rule.h"
+#include "machine/copy_operations.h"
+#include "machine/job.h"
+#include "removal/step_engagement.h"
+#include "removal/stock.h"
+#include "removal/tool_path.h"
+#include "simulate/load_probe.h"
+
+namespace camber::copymill {
+
+/// How well an operation's load kept to its target.
+struct LoadFigures {
+  double target_N = 0;  ///< 0: none, feed and depths stay as they are
+  double max_N = 0;
+  std::size_t passings = 0;    ///< that cut
+  std::size_t counted = 0;     ///< of these, at a feed that the rule chose: not its lowest or highest, not a corner's
+  std::size_t within = 0;      ///< of the counted, 80 to 105 % of the target
+  std::size_t over = 0;        ///< of all that cut, more than 120 %
+};
+
+/// One operation: the probe that cuts the stock, and the rule where the operation has a target.
+class LoadFollower {
+ public:
+  LoadFollower(const machine::Job& job, const machine::CopyOperation& operation, removal::Stock& stock,
+               const removal::TipBox& tips, const simulate::ForceRegions& regions, std::int32_t first_id);
+
+  /// The feed to command: that of the rule, or less where more load lies ahead. A multiple of a twenty-fifth of the
+  /// nominal feed, so that few F words are needed.
+  double feed_mm_per_s() const { return feed_; }
+  double radial_mm() const;
+  double axial_mm() const;
+  bool replan() const { return rule_ && rule_->replan(); }
+  void replanned() { rule_->replanned(); }
+
+  /// A place that the tool reaches soon, as far ahead as braking needs, and the direction in which it will go there.
+  void look_ahead(double t_s, const Vec3& place, const Vec3& direction);
+  /// Cuts one tooth passing. `commanded`: the feed it was to be cut at. Returns the lateral force.
+  double pass(const removal::Stamp& stamp, double commanded_mm_per_s);
+
+  double flush() { return probe_.flush(); }
+  std::int32_t next_id() const { return probe_.next_id(); }
+  const LoadFigures& figures() const { return figures_; }
+  std::vector<Change> changes() const { return rule_ ? rule_->log() : std::vector<Change>{}; }
+
+ private:
+  void choose_feed();
+  void count(double force_N, double actual_mm_per_s, double commanded_mm_per_s);
+
+  const machine::CopyOperation& operation_;
+  double passing_s_;
+  simulate::LoadProbe probe_;
+  std::optional<LoadRule> rule_;
+  LoadBand band_;
+  double feed_, ahead_;
+  LoadFigures figures_;
+};
+
+}  // namespace camber::copymill

@@ -1,0 +1,127 @@
+#pragma once
+// How feed and depths follow the load of a cut: feed first, then radial, then axial depth.
+//
+// - Every tooth passing tells its load and the feed at which it was cut. The load at the feed now commanded is taken as
+//   proportional to the feed, and of the passings of the last turn the greatest counts: teeth differ.
+// - Over the limit the feed falls at once, in proportion, to LoadBand::aim of the limit, down to the lowest feed.
+// - Below LoadBand::up_below of the limit it rises by a step a turn, up to the highest feed.
+// - Over the limit at the lowest feed for some passings, the radial depth falls, and when it is at its lowest the axial
+//   one: the tool has to leave the cut and go on with new depths. The feed waits for that at its lowest.
+// - Where for some turns the next greater depth would keep the limit at the nominal feed, it rises again: the axial
+//   depth first, then the radial one, for rows and levels to come.
+// - In air nothing is learned: after a turn of it the feed is the nominal one.
+//
+// What is felt over what the model expects is the hardness that the rule goes by when it looks ahead: it rises at once,
+// and falls slowly.
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/geometry.h"
+#include "simulate/cut.h"
+
+namespace camber::copymill {
+
+enum class LoadKind : std::uint8_t { force, torque, power, deflection };
+/// N (lateral), N mm (greatest of a passing), W, mm.
+double load_of(const simulate::StampLoad& load, LoadKind kind, double spindle_rpm);
+
+struct LoadBand {
+  double limit = 0;                      ///< of the load, in its unit
+  int teeth = 1;                         ///< tooth passings a turn
+  double up_below = 0.80, aim = 0.90;    ///< of the limit
+  double up_step = 0.10;                 ///< of the nominal feed
+  double lowest = 0.50, highest = 1.50;  ///< of the nominal feed
+  double max_feed_mm_per_s = 1e9;        ///< of machine and operation; wins over `highest`
+  int turns_at_lowest = 2;               ///< over the limit at the lowest feed before a depth falls
+  int turns_of_room = 10;                ///< before a depth rises
+  double depth_step = 0.80;              ///< a depth falls to this share of itself, or lower in proportion to the load
+  double lowest_depth = 0.25;            ///< of the nominal depths
+};
+
+struct Conditions {
+  double feed_mm_per_s = 0, radial_mm = 0, axial_mm = 0;
+};
+
+/// A tooth passing.
+struct Felt {
+  double t_s = 0;
+  Vec3 place_mm = Vec3::Zero();
+  double load = 0;           ///< what is felt; 0: in air
+  double expected = 0;       ///< what the model tells of the same passing
+  double feed_mm_per_s = 0;  ///< at which it was cut
+};
+
+enum class Quantity : std::uint8_t { feed, radial_depth, axial_depth };
+enum class Cause : std::uint8_t {
+  over_limit,
+  below_band,
+  over_at_lowest_feed,
+  room_for_depth,
+  in_air,
+  ahead,
+  clear_ahead
+};
+std::string_view name_of(Quantity quantity);
+std::string_view text_of(Cause cause);
+
+struct Change {
+  double t_s = 0;
+  Vec3 place_mm = Vec3::Zero();
+  Quantity what = Quantity::feed;
+  double from = 0, to = 0;  ///< mm/s, mm
+  Cause cause = Cause::over_limit;
+  double share = 0;  ///< load over limit, at the feed commanded before
+};
+
+class LoadRule {
+ public:
+  LoadRule(const LoadBand& band, const Conditions& nominal);
+
+  void feel(const Felt& passing);
+  /// Feed for the next tick; radial depth for the next row, axial depth for the next level.
+  const Conditions& conditions() const { return now_; }
+  /// True after a depth has fallen: the tool has to leave the cut and go on with conditions(). Until replanned().
+  bool replan() const { return replan_; }
+  void replanned();
+
+  /// The feed that keeps the limit at a place ahead, from what the model tells of it at two feeds, `feed` and half of
+  /// it; no lower than the lowest feed.
+  double feed_ahead(double load, double load_at_half, double feed_mm_per_s) const;
+  bool at_highest_feed() const { return now_.feed_mm_per_s >= highest_feed(); }
+  /// What is felt over what the model expects.
+  double hardness() const { return hardness_; }
+  /// Notes that a place ahead allows no more than this feed; infinite: nothing ahead binds. For the log: keeping it is
+  /// up to the motion (copymill/speed_ahead.h).
+  void note_ahead(double t_s, const Vec3& place_mm, double feed_mm_per_s);
+
+  const std::vector<Change>& log() const { return log_; }
+
+ private:
+  struct Passing {
+    double share;  ///< load over limit
+    double feed_mm_per_s;
+  };
+  double highest_feed() const;
+  double lowest_feed() const { return band_.lowest * nominal_.feed_mm_per_s; }
+  double share_at(double feed_mm_per_s) const;
+  void in_air(const Felt& passing);
+  void learn_hardness(const Felt& passing);
+  void follow_feed(const Felt& passing);
+  void follow_depths(const Felt& passing);
+  bool lower_a_depth(const Felt& passing, double share);
+  bool raise_a_depth(const Felt& passing, double share_at_nominal);
+  void set(double Conditions::*what, double to, Cause cause, const Felt& passing, double share);
+
+  LoadBand band_;
+  Conditions nominal_, now_;
+  std::deque<Passing> turn_;                                           ///< the last passings in material
+  int air_ = 0, since_step_ = 0, over_at_lowest_ = 0, with_room_ = 0;  ///< passings
+  double hardness_ = 1;
+  bool replan_ = false, bound_ahead_ = false;
+  std::vector<Change> log_;
+};
+
+}  // namespace camber::copymill

@@ -1,0 +1,368 @@
+#include "posture/choose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+#include <Eigen/Geometry>
+
+#include "base/stage.h"
+#include "base/units.h"
+
+namespace camber::posture {
+namespace {
+
+constexpr double kCap_mm = 2, kAirCap_mm = 10;  ///< room beyond this is not measured
+constexpr double kKnot_mm = 3;                ///< between the points at which the path through directions is looked for
+constexpr double kFarthest = 55 * kPi / 180;  ///< of tool and normal that is looked at
+constexpr double kRapidMmPerS = 200;
+constexpr double kSpeedCost = 0.5;  ///< of a tip that cuts, a mm of path
+constexpr double kTimeShare = 0.1;  ///< a second longer, as so much of the feed's way
+constexpr int kRounds = 12, kSmoothings = 15;
+constexpr float kNever = std::numeric_limits<float>::infinity();
+
+bool clear(const Surroundings& surroundings, const ToolShape& tool, const PathPoint& p, const Vec3& axis) {
+  return surroundings.room_mm(tool, p.tip_mm(axis), axis, 0) >= 0;
+}
+
+/// Half way between two points the tool goes straight, and the axis about evenly.
+bool clear_between(const Surroundings& surroundings, const ToolShape& tool, const PathPoint& p, const Vec3& a,
+                   const PathPoint& q, const Vec3& b) {
+  const Vec3 axis = (a + b).normalized();
+  return surroundings.room_mm(tool, (p.tip_mm(a) + q.tip_mm(b)) / 2, axis, 0) >= 0;
+}
+
+/// The points at which the direction is chosen: a few millimetres apart, and where contact begins and ends.
+std::vector<std::size_t> knots_of(std::span<const PathPoint> points) {
+  std::vector<std::size_t> out{0};
+  double way = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    way += points[i].way_mm;
+    const bool ends =
+        i + 1 == points.size() || points[i + 1].contact != points[i].contact || points[i + 1].rapid != points[i].rapid;
+    if (!ends && way < kKnot_mm) continue;
+    out.push_back(i);
+    way = 0;
+  }
+  return out;
+}
+
+/// The chosen directions: a shortest path through (point, direction).
+class Chooser {
+ public:
+  Chooser(std::span<const PathPoint> points, const Surroundings& surroundings, const ToolShape& tool,
+          const machine::Machine& machine, const PostureOptions& options)
+      : all_(points),
+        surroundings_(surroundings),
+        tool_(tool),
+        options_(options),
+        directions_(machine, options.grid_rad, options.max_tilt_rad),
+        knots_(knots_of(points)) {
+    for (std::size_t k = 0; k < knots_.size(); ++k) {
+      PathPoint p = all_[knots_[k]];
+      for (std::size_t i = k > 0 ? knots_[k - 1] + 1 : 0; i < knots_[k]; ++i) {
+        p.way_mm += all_[i].way_mm;
+        p.time_s += all_[i].time_s;
+      }
+      points_.push_back(p);
+    }
+  }
+
+  Postures run() {
+    Postures out;
+    find_clear();
+    barred_.assign(points_.size(), {});
+    for (int round = 0; round < kRounds; ++round) {
+      const auto path = shortest(out);
+      if (out.blocked) break;
+      out.axes = between_knots(path);
+      if (!bar_blocked_steps(path, out.axes)) {
+        smooth(out.axes);
+        return out;
+      }
+    }
+    out.blocked = knots_[out.blocked.value_or(first_barred_)];
+    out.axes.clear();
+    return out;
+  }
+
+ private:
+  /// Where the direction stays, the tool only moves: room at one point is room at the next ones.
+  void find_clear() {
+    Stage stage("looking for clear directions", directions_.size());
+    clear_.assign(points_.size() * directions_.size(), 0);
+    tbb::parallel_for(std::size_t{0}, directions_.size(), [&](std::size_t d) {
+      const Vec3& axis = directions_.axis(d);
+      double room = -1;
+      Vec3 there = Vec3::Zero();
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        if (points_[i].contact && angle_between(axis, points_[i].normal) > kFarthest) continue;
+        const Vec3 tip = points_[i].tip_mm(axis);
+        if (room <= 0 || (tip - there).norm() >= room) {
+          room = surroundings_.room_mm(tool_, tip, axis, points_[i].contact ? kCap_mm : kAirCap_mm);
+          there = tip;
+          if (room < 0) continue;
+        }
+        clear_[i * directions_.size() + d] = 1;
+      }
+      stage.advance();
+    });
+  }
+
+  float point_cost(const PathPoint& p, const Vec3& axis) const {
+    if (!p.contact) return 0;
+    const double angle = angle_between(axis, p.normal), least = std::sin(options_.least_angle_rad);
+    double cost = error_share(angle);
+    if (angle < options_.least_angle_rad) {
+      const double missing = (least - std::sin(angle)) / least;
+      cost += kSpeedCost * missing * missing;
+    }
+    return static_cast<float>(cost * p.way_mm);
+  }
+
+  float step_cost(const PathPoint& p, const Directions::Step& step) const {
+    const double time = p.time_s > 0 ? p.time_s : p.way_mm / kRapidMmPerS;
+    const double speed = p.time_s > 0 ? p.way_mm / p.time_s : kRapidMmPerS;
+    return static_cast<float>(options_.degree_cost_mm * step.turn_deg +
+                              kTimeShare * speed * std::max(0.0, step.time_s - time));
+  }
+
+  std::vector<std::uint16_t> shortest(Postures& out) const {
+    const std::size_t n = directions_.size();
+    std::vector<float> cost(n), next(n);
+    std::vector<std::uint16_t> from(points_.size() * n, 0);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      std::fill(next.begin(), next.end(), kNever);
+      std::uint16_t* parents = from.data() + i * n;
+      for (std::size_t a = 0; a < n; ++a) {
+        if (i == 0) {
+          next[a] = 0;
+          continue;
+        }
+        if (cost[a] == kNever) continue;
+        for (const Directions::Step& step : directions_.steps(a)) {
+          const float sum = cost[a] + step_cost(points_[i], step);
+          if (sum >= next[step.to] || barred(i, a, step.to)) continue;
+          next[step.to] = sum;
+          parents[step.to] = static_cast<std::uint16_t>(a);
+        }
+      }
+      bool any = false;
+      for (std::size_t d = 0; d < n; ++d) {
+        if (clear_[i * n + d] == 0) next[d] = kNever;
+        if (next[d] == kNever) continue;
+        next[d] += point_cost(points_[i], directions_.axis(d));
+        any = true;
+      }
+      if (!any) {
+        out.blocked = i;
+        return {};
+      }
+      cost.swap(next);
+    }
+    std::vector<std::uint16_t> path(points_.size());
+    std::size_t d = static_cast<std::size_t>(std::min_element(cost.begin(), cost.end()) - cost.begin());
+    for (std::size_t i = points_.size(); i-- > 0;) {
+      path[i] = static_cast<std::uint16_t>(d);
+      d = from[i * n + d];
+    }
+    return path;
+  }
+
+  bool barred(std::size_t i, std::size_t from, std::size_t to) const {
+    const auto& pairs = barred_[i];
+    return !pairs.empty() && std::find(pairs.begin(), pairs.end(), std::pair(from, to)) != pairs.end();
+  }
+
+  std::vector<Vec3> between_knots(const std::vector<std::uint16_t>& path) const {
+    std::vector<Vec3> out(all_.size(), directions_.axis(path[0]));
+    for (std::size_t k = 1; k < knots_.size(); ++k) {
+      const Vec3 &from = directions_.axis(path[k - 1]), &to = directions_.axis(path[k]);
+      double way = 0;
+      for (std::size_t i = knots_[k - 1] + 1; i <= knots_[k]; ++i) {
+        way += all_[i].way_mm;
+        const double u = i == knots_[k] || points_[k].way_mm <= 0 ? 1 : way / points_[k].way_mm;
+        out[i] = ((1 - u) * from + u * to).normalized();
+      }
+    }
+    return out;
+  }
+
+  bool bar_blocked_steps(const std::vector<std::uint16_t>& path, const std::vector<Vec3>& axes) {
+    std::vector<std::uint8_t> bad(path.size(), 0);
+    tbb::parallel_for(std::size_t{1}, path.size(), [&](std::size_t k) {
+      for (std::size_t i = knots_[k - 1] + 1; i <= knots_[k] && bad[k] == 0; ++i)
+        bad[k] = !clear(surroundings_, tool_, all_[i], axes[i]) ||
+                 !clear_between(surroundings_, tool_, all_[i - 1], axes[i - 1], all_[i], axes[i]);
+    });
+    bool any = false;
+    for (std::size_t k = 1; k < path.size(); ++k) {
+      if (bad[k] == 0) continue;
+      barred_[k].emplace_back(path[k - 1], path[k]);
+      if (!any) first_barred_ = k;
+      any = true;
+    }
+    return any;
+  }
+
+  /// Steps of the grid become even turns, as far as that stays clear.
+  void smooth(std::vector<Vec3>& axes) const {
+    const auto holds = [&](std::size_t i, const Vec3& axis) {
+      const PathPoint& p = all_[i];
+      if (p.contact &&
+          angle_between(axis, p.normal) < std::min(options_.least_angle_rad, angle_between(axes[i], p.normal)) - 1e-6)
+        return false;
+      return clear(surroundings_, tool_, p, axis) &&
+             clear_between(surroundings_, tool_, all_[i - 1], axes[i - 1], p, axis) &&
+             clear_between(surroundings_, tool_, p, axis, all_[i + 1], axes[i + 1]);
+    };
+    for (int pass = 0; pass < kSmoothings; ++pass)
+      for (std::size_t i = 1; i + 1 < axes.size(); ++i) {
+        const Vec3 middle = (axes[i - 1] + 2 * axes[i] + axes[i + 1]).normalized();
+        if ((middle - axes[i]).norm() > 1e-5 && holds(i, middle)) axes[i] = middle;
+      }
+  }
+
+  std::span<const PathPoint> all_;
+  const Surroundings& surroundings_;
+  const ToolShape& tool_;
+  const PostureOptions& options_;
+  Directions directions_;
+  std::vector<std::size_t> knots_;   ///< of all_
+  std::vector<PathPoint> points_;    ///< the knots, with the way and time from the one before
+  std::vector<std::uint8_t> clear_;  ///< point by point
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> barred_;
+  std::size_t first_barred_ = 0;
+};
+
+/// Postures from the surface alone.
+class BySurface {
+ public:
+  BySurface(std::span<const PathPoint> points, const Surroundings& surroundings, const ToolShape& tool,
+            const machine::Machine& machine, const PostureOptions& options)
+      : points_(points), surroundings_(surroundings), tool_(tool), chain_(machine), options_(options) {}
+
+  Postures run() {
+    Postures out;
+    std::vector<std::optional<Vec3>> wanted;
+    for (std::size_t i = 0; i < points_.size(); ++i) wanted.push_back(wanted_at(i));
+    out.axes = filled(wanted);
+    out.unclear = count_unclear(points_, out.axes, surroundings_, tool_);
+    return out;
+  }
+
+ private:
+  std::optional<Vec3> wanted_at(std::size_t i) const {
+    const PathPoint& p = points_[i];
+    if (!p.contact) return std::nullopt;
+    Vec3 axis = p.normal;
+    if (options_.mode == Mode::lead_tilt) {
+      const std::size_t a = i > 0 ? i - 1 : i, b = i > 0 ? i : std::min(i + 1, points_.size() - 1);
+      Vec3 forward = points_[b].centre_mm - points_[a].centre_mm;
+      forward -= forward.dot(axis) * axis;
+      if (forward.norm() > 1e-9) {
+        forward.normalize();
+        axis += std::tan(options_.lead_rad) * forward + std::tan(options_.tilt_rad) * axis.cross(forward);
+        axis.normalize();
+      }
+    }
+    if (options_.mode == Mode::seed) axis = away(p, axis);
+    return reached(axis);
+  }
+
+  /// The nearest direction towards +Z that the machine reaches.
+  Vec3 reached(const Vec3& axis) const {
+    const auto holds = [&](const Vec3& a) {
+      return angle_between(a, Vec3::UnitZ()) <= options_.max_tilt_rad &&
+             chain_.solve_tool_axis(a, {}).reach == kinematics::Reach::reached;
+    };
+    if (holds(axis)) return axis;
+    double good = 1, bad = 0;
+    for (int i = 0; i < 30; ++i) {
+      const double u = (good + bad) / 2;
+      (holds(((1 - u) * axis + u * Vec3::UnitZ()).normalized()) ? good : bad) = u;
+    }
+    return ((1 - good) * axis + good * Vec3::UnitZ()).normalized();
+  }
+
+  /// The seed's rule: from the point that is deepest in the virtual cylinder about shank and holder, in the plane of it
+  /// and the axis, by asin(R/L) - asin(e/L); again for what then is deepest.
+  Vec3 away(const PathPoint& p, Vec3 axis) const {
+    constexpr int kTurns = 40;
+    double radius = 0, from = std::numeric_limits<double>::infinity();
+    for (const ToolShape::Piece& piece : tool_.pieces)
+      if (piece.solid.part() != simulate::OutlineRing::Part::cutter) {
+        radius = std::max(radius, piece.radius_mm + piece.need_mm);
+        from = std::min(from, piece.bottom_mm);
+      }
+    for (int i = 0; i < kTurns; ++i) {
+      Surroundings::Inside inside;
+      if (!surroundings_.deepest_point(p.tip_mm(axis), axis, radius, from, inside)) break;
+      const Vec3 q = inside.point_mm - p.centre_mm;
+      const double length = q.norm();
+      const Vec3 about = q.cross(axis);
+      if (length <= radius || about.norm() < 1e-9) break;
+      const double turn = std::asin(radius / length) - std::asin(std::min(1.0, inside.from_axis_mm / length));
+      axis = (Eigen::AngleAxisd(turn + 1e-6, about.normalized()) * axis).normalized();
+    }
+    return axis;
+  }
+
+  /// Between contacts the direction goes over from the last to the next one.
+  std::vector<Vec3> filled(const std::vector<std::optional<Vec3>>& wanted) const {
+    std::vector<Vec3> out(wanted.size(), Vec3::UnitZ());
+    std::optional<std::size_t> last;
+    for (std::size_t i = 0; i <= wanted.size(); ++i) {
+      if (i < wanted.size() && !wanted[i]) continue;
+      const Vec3 to = i < wanted.size() ? *wanted[i] : last ? out[*last] : Vec3::UnitZ();
+      const Vec3 from = last ? out[*last] : to;
+      double way = 0, whole = 0;
+      const std::size_t first = last ? *last + 1 : 0;
+      for (std::size_t k = first; k <= std::min(i, wanted.size() - 1); ++k) whole += points_[k].way_mm;
+      for (std::size_t k = first; k < i; ++k) {
+        way += points_[k].way_mm;
+        const double u = whole > 0 ? way / whole : 1;
+        out[k] = ((1 - u) * from + u * to).normalized();
+      }
+      if (i < wanted.size()) out[i] = to;
+      last = i;
+    }
+    return out;
+  }
+
+  std::span<const PathPoint> points_;
+  const Surroundings& surroundings_;
+  const ToolShape& tool_;
+  kinematics::Chain chain_;
+  const PostureOptions& options_;
+};
+
+}  // namespace
+
+double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+double error_share(double angle_rad) {
+  const double s = std::sin(angle_rad);
+  return s * s + kAlong * s * std::abs(std::cos(angle_rad));
+}
+
+std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec3> axes,
+                          const Surroundings& surroundings, const ToolShape& tool) {
+  std::vector<std::uint8_t> bad(points.size(), 0);
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    bad[i] = !clear(surroundings, tool, points[i], axes[i]) ||
+             (i > 0 && !clear_between(surroundings, tool, points[i - 1], axes[i - 1], points[i], axes[i]));
+  });
+  return static_cast<std::size_t>(std::count(bad.begin(), bad.end(), 1));
+}
+
+Postures choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings, const ToolShape& tool,
+                         const machine::Machine& machine, const PostureOptions& options) {
+  if (points.empty()) return {};
+  if (options.mode == Mode::chosen) return Chooser(points, surroundings, tool, machine, options).run();
+  return BySurface(points, surroundings, tool, machine, options).run();
+}
+
+}  // namespace camber::posture

@@ -1,0 +1,54 @@
+#pragma once
+// The direction of the tool at every point of a path.
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "machine/machine.h"
+#include "posture/directions.h"
+#include "posture/path_points.h"
+#include "posture/surroundings.h"
+
+namespace camber::posture {
+
+enum class Mode : std::uint8_t {
+  chosen,     ///< least cost along the path: form error, rotary motion, time
+  normal,     ///< along the normal of the part
+  lead_tilt,  ///< at constant angles to the normal: forward and sideways
+  seed        ///< along the normal, and away from what interferes (Shirase, AF-2004012, section 4.3)
+};
+
+struct PostureOptions {
+  Mode mode = Mode::chosen;
+  double clearance_mm = 1;                         ///< of all that is not cutter
+  double lead_rad = 10 * kPi / 180, tilt_rad = 0;  ///< lead_tilt
+  double max_tilt_rad = 75 * kPi / 180;            ///< from +Z of the program
+  double least_angle_rad = 10 * kPi / 180;         ///< of tool and normal: nearer the tip cuts, which has no speed
+  double grid_rad = 7.5 * kPi / 180;               ///< of the directions that `chosen` looks at
+  double degree_cost_mm = 0.02;                    ///< a degree of rotary motion is worth so many mm of path with the
+                                                   ///< error of a tool at a right angle to the normal
+};
+
+double angle_between(const Vec3& a, const Vec3& b);
+
+/// Part of the lateral deflection that is normal to the part, of a tool at this angle to the normal: a force along the
+/// normal bends it by sin^2, one along the part by sin cos of the angle; kAlong is the share of the latter.
+inline constexpr double kAlong = 0.3;
+double error_share(double angle_rad);
+
+struct Postures {
+  std::vector<Vec3> axes;                ///< one a point; empty: none (`blocked`)
+  std::optional<std::size_t> blocked{};  ///< the first point at which no direction is clear, or none is reached
+  std::size_t unclear = 0;               ///< points whose tool is too near: normal, lead_tilt, seed
+};
+
+Postures choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings, const ToolShape& tool,
+                         const machine::Machine& machine, const PostureOptions& options);
+
+/// Points, and places half way between them, at which the tool is nearer than it needs to be.
+std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec3> axes,
+                          const Surroundings& surroundings, const ToolShape& tool);
+
+}  // namespace camber::posture

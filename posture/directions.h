@@ -1,0 +1,47 @@
+#pragma once
+// Directions of a tool that a machine reaches, and what it costs its rotary axes to go from one to the next.
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kinematics/chain.h"
+#include "machine/machine.h"
+
+namespace camber::posture {
+
+class Directions {
+ public:
+  struct Step {
+    std::uint16_t to = 0;
+    float turn_deg = 0;  ///< sum of the turns of the rotary axes
+    float time_s = 0;    ///< that the slowest of them takes at its speed, or with its acceleration from rest to rest
+  };
+
+  /// Directions about `step_rad` apart, up to `max_tilt_rad` from +Z, that the rotary axes of the machine reach within
+  /// their travel; neighbours up to one and a half steps away. Requires machine.kinematics.given().
+  Directions(const machine::Machine& machine, double step_rad, double max_tilt_rad);
+
+  std::size_t size() const { return axes_.size(); }
+  const Vec3& axis(std::size_t i) const { return axes_[i]; }
+  /// Of direction i, itself included.
+  std::span<const Step> steps(std::size_t i) const { return {steps_.data() + first_[i], first_[i + 1] - first_[i]}; }
+
+ private:
+  struct Angles {
+    std::array<Vec3, 2> rad;
+    std::size_t count = 0;
+  };
+  Step step_between(std::size_t a, std::size_t b) const;
+
+  const machine::Machine& machine_;
+  std::vector<Vec3> axes_;
+  std::vector<Angles> angles_;
+  std::vector<Step> steps_;
+  std::vector<std::size_t> first_;
+};
+
+/// Sum over the path of the turns of all rotary axes, degrees, each axis going on from where it is.
+double rotary_motion_deg(const kinematics::Chain& chain, std::span<const Vec3> axes);
+
+}  // namespace camber::posture

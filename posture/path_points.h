@@ -1,0 +1,35 @@
+#pragma once
+// Points along a finishing program: where the cutter touches the part, and where the tip goes for a direction of the
+// tool.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/stl.h"
+#include "machine/job.h"
+#include "nc/move.h"
+
+namespace camber::posture {
+
+struct PathPoint {
+  std::uint32_t move = 0;             ///< index into Interpretation::moves
+  double to = 1;                      ///< share of the move at its end
+  Vec3 centre_mm = Vec3::Zero();      ///< of the rounding where it touches: the ball, or the section of the torus
+  Vec3 normal = Vec3::UnitZ();        ///< of the part there; unit
+  double corner_mm = 0, flat_mm = 0;  ///< rounding, and distance of its centre from the axis
+  bool contact = false;
+  bool rapid = false;
+  double way_mm = 0;  ///< from the point before
+  double time_s = 0;  ///< at the programmed feed; 0: a rapid
+
+  /// The tip for a direction of the tool that keeps the contact.
+  Vec3 tip_mm(const Vec3& axis) const;
+};
+
+/// Of the moves [first, end), `step_mm` apart, in rapids five times as far. A cutter that is less than kContactMm above
+/// the part touches it. Requires a ball or a bull-nose cutter; the mesh in the frame of the moves.
+inline constexpr double kContactMm = 0.3;
+std::vector<PathPoint> path_points(const nc::Interpretation& moves, std::size_t first, std::size_t end,
+                                   const machine::Tool& tool, const TriangleMesh& part, double step_mm);
+
+}  // namespace camber::posture

@@ -1,0 +1,230 @@
+#include "posture/posture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include "base/stl.h"
+#include "deflection/beam.h"
+#include "feedmodel/control_options.h"
+#include "nc/emit/number_style.h"
+#include "repath/post_writer.h"
+#include "repath/tip_motion.h"
+
+namespace camber::posture {
+namespace {
+
+constexpr int kLeastDecimals = 4;
+
+/// The fixtures that stand still in the part's frame, and the part.
+Surroundings surroundings_of(const machine::Job& job, const TriangleMesh& part, const Vec3& origin_mm) {
+  Surroundings out;
+  out.add(part);
+  for (const machine::Body& body : job.machine.bodies) {
+    const bool still = body.axes == 0 || (body.axes == 1 && body.on.size() == 1 && body.on[0] < 'x');
+    if (!still) continue;
+    if (body.box_mm)
+      out.add_box((*body.box_mm)[0] + origin_mm, (*body.box_mm)[1] + origin_mm);
+    else
+      out.add(read_stl(body.mesh), origin_mm);
+  }
+  out.finish();
+  return out;
+}
+
+class Maker {
+ public:
+  Maker(const PostureRequest& request, Diagnostics& diagnostics)
+      : request_(request),
+        job_(*request.job),
+        program_(*request.program),
+        moves_(*request.moves),
+        diagnostics_(diagnostics) {}
+
+  /// False: refused.
+  bool ready() {
+    if (!tool_and_job_fit() || !moves_fit()) return false;
+    part_ = read_stl(job_.part.mesh);
+    if (!moves_.machine_origin_mm) moves_.machine_origin_mm = Vec3::Zero();
+    surroundings_ = surroundings_of(job_, part_, *moves_.machine_origin_mm);
+    points_ = path_points(moves_, first_, end_, tool(), part_, request_.step_mm);
+    return true;
+  }
+
+  Postured run(const machine::Tool& tool) {
+    Postured out;
+    const ToolShape shape = tool_shape(tool, job_.machine, request_.options.clearance_mm);
+    const Postures postures = choose_postures(points_, surroundings_, shape, job_.machine, request_.options);
+    out.points = points_;
+    if (postures.blocked) {
+      out.blocked_move = points_[*postures.blocked].move;
+      return out;
+    }
+    out.axes = postures.axes;
+    out.figures = figures_of(tool, postures);
+    return out;
+  }
+
+  void write(Postured& out) const;
+  const machine::Tool& tool() const { return job_.tools.at(request_.tool); }
+
+ private:
+  void say(std::size_t offset, const char* check, std::string message) {
+    diagnostics_.add(program_.source.diagnostic(Severity::error, offset, std::move(message), check));
+  }
+
+  bool tool_and_job_fit() {
+    const auto refuse = [&](std::string message, const char* check) {
+      diagnostics_.add({Severity::error, {job_.path, 0, 0}, std::move(message), check, {}});
+      return false;
+    };
+    if (!job_.machine.kinematics.given())
+      return refuse("the machine has no [kinematics]; rotary axes were expected", "kinematics");
+    if (job_.part.mesh.empty()) return refuse("[part] has no mesh; the STL file of the part was expected", "no-part");
+    const auto found = job_.tools.find(request_.tool);
+    if (found == job_.tools.end())
+      return refuse(
+          fmt::format("the job has no [tool.{}]; the tool of the finishing moves was expected", request_.tool),
+          "no-tool");
+    using machine::ToolType;
+    if (found->second.type != ToolType::ball && found->second.type != ToolType::bull)
+      return refuse(
+          fmt::format("[tool.{}] is neither a ball nor a bull-nose cutter; one of these was expected", request_.tool),
+          "not-ball");
+    return true;
+  }
+
+  bool moves_fit() {
+    first_ = end_ = moves_.moves.size();
+    for (std::size_t i = 0; i < moves_.moves.size(); ++i) {
+      const nc::Move& m = moves_.moves[i];
+      if (moves_.state_of(m).tool != request_.tool || m.reference) continue;
+      if (first_ == moves_.moves.size()) first_ = i;
+      end_ = i + 1;
+    }
+    if (first_ == moves_.moves.size()) {
+      say(0, "no-moves",
+          fmt::format("tool T{} has no moves in this program; finishing moves were expected", request_.tool));
+      return false;
+    }
+    for (std::size_t i = first_; i < end_; ++i)
+      if (!may_be_postured(i)) return false;
+    return true;
+  }
+
+  bool may_be_postured(std::size_t i) {
+    const nc::Move& m = moves_.moves[i];
+    const nc::ModalState& state = moves_.state_of(m);
+    const std::size_t offset = program_.blocks[m.block].offset;
+    if (state.tip_control != nc::TipControl::off || state.work_frame != nc::WorkFrame::machine ||
+        std::any_of(moves_.rotary.begin(), moves_.rotary.end(), [&](const auto& t) { return t.move == i; })) {
+      say(offset, "rotary-axis", "this move has directions of its own; moves of three axes were expected");
+      return false;
+    }
+    const bool alone = (i == 0 || moves_.moves[i - 1].block != m.block) &&
+                       (i + 1 == moves_.moves.size() || moves_.moves[i + 1].block != m.block);
+    if (m.kind == nc::MoveKind::dwell || (m.editable && alone && !m.canned && !m.reference)) return true;
+    say(offset, "not-editable",
+        "this move is made by a loop, a subprogram that is called more than once, an expression or a cycle, or goes to "
+        "a reference point, so that its coordinates cannot be rewritten; lines and arcs were expected");
+    return false;
+  }
+
+  PostureFigures figures_of(const machine::Tool& tool, const Postures& postures) const {
+    PostureFigures out;
+    out.points = points_.size();
+    out.unclear = postures.unclear;
+    out.overhang_mm = tool.overhang_mm;
+    const kinematics::Chain chain(job_.machine);
+    out.rotary_motion_deg = rotary_motion_deg(chain, postures.axes);
+    double way = 0, share = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (!points_[i].contact) continue;
+      const double angle = angle_between(postures.axes[i], points_[i].normal);
+      ++out.contacts;
+      way += points_[i].way_mm;
+      share += points_[i].way_mm * error_share(angle);
+      out.mean_angle_rad += points_[i].way_mm * angle;
+      out.max_angle_rad = std::max(out.max_angle_rad, angle);
+    }
+    if (way <= 0) return out;
+    out.mean_angle_rad /= way;
+    out.compliance_um_per_N = 1000 * deflection::beam_of(tool).compliance_mm_per_N(0, 0) * share / way;
+    return out;
+  }
+
+  const PostureRequest& request_;
+  const machine::Job& job_;
+  const nc::Program& program_;
+  nc::Interpretation moves_;
+  Diagnostics& diagnostics_;
+  std::size_t first_ = 0, end_ = 0;
+  TriangleMesh part_;
+  Surroundings surroundings_;
+  std::vector<PathPoint> points_;
+};
+
+void Maker::write(Postured& out) const {
+  const kinematics::Chain chain(job_.machine);
+  const int decimals = std::max(kLeastDecimals, nc::coordinate_decimals_of(program_));
+  const repath::PostRounding rounding{decimals, decimals + 1, decimals};
+  repath::PostMotions motions;
+  motions.of_move.assign(moves_.moves.size(), repath::PostMotions::kKept);
+  std::vector<repath::DividedMotion> divided;
+  kinematics::Joints now;
+  const Vec3& origin = *moves_.machine_origin_mm;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const PathPoint& p = points_[i];
+    if (i == 0 || points_[i - 1].move != p.move) {
+      repath::TipMotion motion;
+      motion.move = p.move;
+      motion.rapid = p.rapid;
+      motion.arc = moves_.moves[p.move].arc != nc::Move::kNoArc;
+      motions.of_move[p.move] = motions.motions.size();
+      motions.first_of_run.push_back(motions.motions.empty());
+      motions.motions.push_back(motion);
+      divided.emplace_back();
+    }
+    now.rotary_rad = chain.solve_tool_axis(out.axes[i], now).joints.rotary_rad;
+    repath::PostPoint point;
+    const Vec3 tip = p.tip_mm(out.axes[i]);
+    point.tip_mm = tip - origin;
+    point.rotary_deg = rounding.deg(now.rotary_rad);
+    point.to = p.to;
+    point.rapid = p.rapid;
+    // The contact keeps its feed, and the tip goes as fast as that takes.
+    point.time_s = p.time_s;
+    divided.back().points.push_back(point);
+  }
+  // Upright again where the tool is left: at the end of a rapid, in air.
+  repath::PostPoint upright = divided.back().points.back();
+  upright.rotary_deg = Vec3::Zero();
+  upright.rapid = upright.extra = true;
+  upright.time_s = 0;
+  divided.back().points.push_back(upright);
+  const repath::PostOptions options{.target = repath::PostTarget::tcp};
+  repath::Posted posted;
+  repath::PostWriter(program_, moves_, job_.machine, feedmodel::dialect_of(job_.machine.control.kind), options,
+                     rounding)
+      .write(motions, divided, posted);
+  out.text = std::move(posted.text);
+  out.block_of_line = std::move(posted.block_of_line);
+}
+
+}  // namespace
+
+Postured make_postures(const PostureRequest& request, Diagnostics& diagnostics) {
+  Maker maker(request, diagnostics);
+  if (!maker.ready()) return {};
+  Postured out = maker.run(maker.tool());
+  if (!out.blocked_move) maker.write(out);
+  return out;
+}
+
+double least_overhang_mm(const machine::Tool& tool) {
+  return std::max(tool.flute_length_mm.value_or(0), tool.diameter_mm);
+}
+
+}  // namespace camber::posture

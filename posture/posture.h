@@ -1,0 +1,60 @@
+#pragma once
+// From a three-axis finishing program to five axes: a direction of the tool at every point of its path.
+//
+// All moves of one ball or bull-nose tool come under tool-centre-point control. Where the cutter touches the part, the
+// tool is tilted about the centre of its rounding, so that the contact stays; elsewhere about the same point. The text
+// is that of the given program with other coordinates, rotary words, and further blocks (repath/post_writer.h).
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "machine/job.h"
+#include "nc/move.h"
+#include "nc/program.h"
+#include "posture/choose.h"
+
+namespace camber::posture {
+
+struct PostureRequest {
+  const machine::Job* job = nullptr;
+  const nc::Program* program = nullptr;
+  const nc::Interpretation* moves = nullptr;  ///< read with the machine's rotary axes
+  int tool = 0;
+  double step_mm = 1;  ///< between the points at which the direction is chosen
+  PostureOptions options;
+};
+
+struct PostureFigures {
+  std::size_t points = 0, contacts = 0;
+  std::size_t unclear = 0;  ///< points, and places between them, at which the tool is nearer than the clearance
+  double overhang_mm = 0;
+  double rotary_motion_deg = 0;
+  double mean_angle_rad = 0, max_angle_rad = 0;  ///< of tool and normal, weighted by the way
+  /// Deflection normal to the part per newton, mean over the way: lateral compliance at the tip times error_share().
+  double compliance_um_per_N = 0;
+};
+
+struct Postured {
+  std::string text;  ///< empty: blocked
+  std::vector<std::uint32_t> block_of_line;
+  PostureFigures figures;
+  std::optional<std::uint32_t> blocked_move{};  ///< the first move at which no direction is clear
+  std::vector<PathPoint> points;
+  std::vector<Vec3> axes;
+};
+
+/// Errors, at the blocks or the job:
+///  [not-ball]       the tool is neither a ball nor a bull-nose cutter;
+///  [no-part]        the job has no mesh of the part;
+///  [kinematics]     the machine has no rotary axes;
+///  [rotary-axis]    the program turns rotary axes already, or is under tool-centre-point control;
+///  [not-editable]   a move of the tool that the text does not say alone;
+///  [no-moves]       the tool has no moves.
+Postured make_postures(const PostureRequest& request, Diagnostics& diagnostics);
+
+/// The least overhang that is tried: flutes, and one diameter.
+double least_overhang_mm(const machine::Tool& tool);
+
+}  // namespace camber::posture

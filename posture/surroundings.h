@@ -1,0 +1,69 @@
+#pragma once
+// The room that a tool has beside part and fixtures, exactly.
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/geometry.h"
+#include "base/stl.h"
+#include "machine/job.h"
+#include "simulate/machine_solids.h"
+
+namespace camber::posture {
+
+/// What of a tool must stay clear: turned convex pieces in the tool's frame, origin at the tip, z along the axis.
+struct ToolShape {
+  struct Piece {
+    simulate::TurnedSolid solid;
+    double need_mm = 0;                               ///< least distance to the surroundings
+    double radius_mm = 0, bottom_mm = 0, top_mm = 0;  ///< of a cylinder about it
+  };
+  std::vector<Piece> pieces;
+  double pivot_mm = 0;  ///< height above the tip about which the tool is tilted
+
+  void add(simulate::TurnedSolid solid, double need_mm);
+};
+
+/// Neck, shank, holder and the bodies on the spindle (their cylinder about the axis) with `clearance_mm`, and the
+/// flutes above the cutter's rounded end, which only must not cut: they may touch to within kCutterSlack_mm.
+inline constexpr double kCutterSlack_mm = 0.02;
+ToolShape tool_shape(const machine::Tool& tool, const machine::Machine& machine, double clearance_mm);
+
+/// Triangles in a tree of spheres.
+class Surroundings {
+ public:
+  /// In the frame of the program.
+  void add(const TriangleMesh& mesh, const Vec3& shift_mm = Vec3::Zero());
+  void add_box(const Vec3& min_mm, const Vec3& max_mm);
+  /// After the last add(), before anything else.
+  void finish();
+
+  /// By how much the nearest piece is farther than it needs to be, `cap_mm` where it is more; negative: too near, by no
+  /// matter how much. Never more than the truth; less by up to the size of a triangle where it is not negative, which
+  /// is exact to 1e-4 mm or a thousandth of the distance.
+  double room_mm(const ToolShape& tool, const Vec3& tip_mm, const Vec3& axis, double cap_mm) const;
+
+  struct Inside {
+    Vec3 point_mm;
+    double from_axis_mm;
+  };
+  /// Corners and middles of the triangles inside the cylinder of this radius about the axis, from `from_mm` above `tip`
+  /// on: the one that is deepest.
+  bool deepest_point(const Vec3& tip_mm, const Vec3& axis, double radius_mm, double from_mm, Inside& out) const;
+
+  std::span<const std::array<Vec3, 3>> triangles() const { return triangles_; }
+
+ private:
+  struct Node {
+    Vec3 centre_mm = Vec3::Zero();
+    double radius_mm = 0;
+    std::uint32_t begin = 0, end = 0;  ///< of a leaf's triangles; inner: end is 0, children at begin and begin + 1
+  };
+  void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
+
+  std::vector<std::array<Vec3, 3>> triangles_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace camber::posture

@@ -1,0 +1,30 @@
+#pragma once
+// The page of camber copy: path, feeds and loads over time, changes, figures.
+#include <string>
+#include <vector>
+
+#include "copymill/copy.h"
+
+namespace camber::report {
+
+/// Takes the ticks of a run as they come and keeps no more of them than a page can show.
+class TickPicture {
+ public:
+  void add(const copymill::Tick& tick);
+  const std::vector<copymill::Tick>& ticks() const { return ticks_; }
+
+ private:
+  static constexpr std::size_t kMost = 40000;
+  std::vector<copymill::Tick> ticks_;  ///< every stride_-th
+  std::size_t stride_ = 1, count_ = 0;
+  copymill::Tick greatest_;  ///< of those since the last one kept: the greatest load
+};
+
+struct CopyFiles {
+  std::string job, part, output;
+};
+/// The page's text, UTF-8, self-contained. The same data give the same bytes. Does not throw.
+std::string copy_page(const copymill::CopyResult& result, const TickPicture& picture, const CopyFiles& files,
+                      const std::vector<std::string>& warnings);
+
+}  // namespace camber::report

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""Makes part.stl and finish.nc: a die cavity 40 mm deep with walls at 30 degrees to the vertical and a character line
+across its floor, and rows of a ball of 6 mm to and fro along X.
+
+    python3 make_sample.py [pitch in mm, default 4]
+"""
+import math
+import os
+import struct
+import sys
+
+DEPTH, WALL, BLEND = 40.0, math.tan(math.radians(30)), 5.0
+HALF = (50.0, 40.0)       # of the block
+FLOOR = (25.0, 15.0)      # half of the floor
+CORNER = 8.0              # of the floor's outline
+GRID, R = 0.5, 3.0
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def smooth_max(a, b, width):
+    h = max(width - abs(a - b), 0) / width
+    return max(a, b) + h * h * width / 4
+
+
+def outline(x, y):
+    """Signed distance to the floor's outline, positive outside."""
+    dx, dy = abs(x) - FLOOR[0] + CORNER, abs(y) - FLOOR[1] + CORNER
+    return math.hypot(max(dx, 0), max(dy, 0)) + min(max(dx, dy), 0) - CORNER
+
+
+def height(x, y):
+    line = 1.2 * math.exp(-(((y - 5 * math.sin(x / 12)) / 3.5) ** 2))
+    inside = smooth_max(outline(x, y) / WALL - DEPTH, -DEPTH + line, 2 * BLEND)
+    return -smooth_max(-inside, 0, 2)
+
+
+def main():
+    pitch = float(sys.argv[1]) if len(sys.argv) > 1 else 4.0
+    nx, ny = int(2 * HALF[0] / GRID) + 1, int(2 * HALF[1] / GRID) + 1
+    z = [[height(-HALF[0] + i * GRID, -HALF[1] + j * GRID) for j in range(ny)] for i in range(nx)]
+
+    def point(i, j):
+        return (-HALF[0] + i * GRID, -HALF[1] + j * GRID, z[i][j])
+
+    coarse = 2  # triangles of 1 mm
+    with open(os.path.join(HERE, "part.stl"), "wb") as file:
+        triangles = []
+        for i in range(0, nx - coarse, coarse):
+            for j in range(0, ny - coarse, coarse):
+                a, b, c, d = point(i, j), point(i + coarse, j), point(i + coarse, j + coarse), point(i, j + coarse)
+                triangles += [(a, b, c), (a, c, d)]
+        file.write(b"die cavity".ljust(80) + struct.pack("<I", len(triangles)))
+        for t in triangles:
+            file.write(struct.pack("<12fH", 0, 0, 0, *t[0], *t[1], *t[2], 0))
+
+    reach = int(R / GRID)
+    ball = [(di, dj, math.sqrt(R * R - (di * GRID) ** 2 - (dj * GRID) ** 2) - R)
+            for di in range(-reach, reach + 1) for dj in range(-reach, reach + 1)
+            if (di * GRID) ** 2 + (dj * GRID) ** 2 <= R * R]
+
+    def tip(i, j):
+        return max(z[i + di][j + dj] + rise for di, dj, rise in ball)
+
+    rows = []
+    y = -36.0
+    step = 2  # blocks of 1 mm
+    while y <= 36.0 + 1e-9:
+        j = round((y + HALF[1]) / GRID)
+        row = [(-HALF[0] + i * GRID, -HALF[1] + j * GRID, tip(i, j)) for i in range(8, nx - 8, step)]
+        rows.append([p for p in row if p[2] < -1.0])
+        y += pitch
+    rows = [r if k % 2 == 0 else r[::-1] for k, r in enumerate([r for r in rows if len(r) > 3])]
+    with open(os.path.join(HERE, "finish.nc"), "w") as file:
+        file.write("(DIE CAVITY, BALL 6, ROWS ALONG X)\nG21 G17 G40 G49 G80 G90 G94\nG64 P0.01\n"
+                   "G10 L2 P1 X25. Y-15. Z5.\nG10 L1 P1 Z140.\nT1 M6\nG54\nS12000 M3\nG43 H1\nG0 X0. Y0. Z30.\n")
+        for row in rows:
+            x, y, top = row[0]
+            file.write(f"G0 X{x:.3f} Y{y:.3f}\nG0 Z{top + 2:.3f}\nG1 Z{top:.4f} F600.\n")
+            for k, (x, y, depth) in enumerate(row[1:]):
+                file.write(f"{'G1 ' if k == 0 else ''}X{x:.3f} Z{depth:.4f}{' F1500.' if k == 0 else ''}\n")
+            file.write("G0 Z30.\n")
+        file.write("M5\nM2\n")
+
+
+main()

@@ -1,0 +1,71 @@
+#pragma once
+// A prediction put together from parts that were computed apart: pieces of the path, and a target that is joined
+// instead of swept. For simulate/sections.h.
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "machine/job.h"
+#include "simulate/cut.h"
+#include "simulate/predict.h"
+#include "simulate/setup.h"
+
+namespace camber::simulate {
+
+/// The programs of a job.
+struct Programs {
+  SimulatedProgram program;
+  std::optional<SimulatedProgram> original;  ///< the target's; empty: `program`
+
+  const SimulatedProgram& of_target() const { return original ? *original : program; }
+};
+/// Reads, times and stamps both programs, as set_up(). Throws InputError.
+Programs read_programs(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings);
+
+/// Work on a target that is done elsewhere: each function joins what others have computed. Empty: computed here.
+struct TargetWork {
+  /// Takes what lies above the allowance off the blank. Returns the volume, mm^3, or more.
+  std::function<double(removal::Stock& blank)> allowance{};
+  /// Sweeps the nominal path through the blank. Returns the volume, mm^3, or more.
+  std::function<double(removal::Stock& surface)> surface{};
+  std::function<void(Target& target)> contour{};  ///< sets Target::contour_mm
+  bool judged = true;  ///< false: nothing is judged: [part] mesh and Target::region are left out
+};
+Blank make_blank(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, double min_chip_mm,
+                 const TargetWork& work);
+Target make_target(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics,
+                   const TargetWork& work);
+Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings,
+             const TargetWork& work);
+
+/// A part of a run of the path.
+struct PieceCut {
+  std::size_t run = 0, from = 0, count = 0;  ///< from: of the run
+  machine::Coupling coupling = machine::Coupling::static_;
+  const removal::Stock* before_run = nullptr;
+  removal::SurfaceMap* surface = nullptr;
+  const removal::Stock* target = nullptr;  ///< for the deflection at the contact
+  std::optional<std::size_t> turn_from{};  ///< see PredictOptions
+  std::function<void(double)> progress{};
+};
+/// Cuts a part of a run; `stock` is as the stamps before it have left it.
+CutResult cut_piece(removal::Stock& stock, const machine::Job& job, const removal::StampPath& path,
+                    const PieceCut& piece);
+
+/// As cut(): stamps from ... from + count - 1 alone. Those before them are in the stock; contacts and loads are of
+/// these.
+CutResult cut_range(removal::Stock& stock, const machine::Tool& tool, const machine::Material& material,
+                    std::span<const removal::Stamp> stamps, std::size_t from, std::size_t count,
+                    std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options);
+
+/// Adds what a run, or a part of one, has given. In the order of the path.
+void add_piece(const machine::Job& job, const removal::ToolRun& run, CutResult piece, PathLoads& out);
+
+/// The prediction from what a cut left: all points of Target::map with their errors, as SurfaceMap::take() returns
+/// them.
+Prediction judge(const Target& target, PathLoads loads, std::vector<removal::SurfacePoint> surface,
+                 std::unique_ptr<removal::Stock> machined);
+
+}  // namespace camber::simulate

@@ -1,0 +1,107 @@
+// Parts of sections as bytes.
+#include "simulate/sections.h"
+
+namespace camber::simulate {
+namespace {
+
+void write_parts(ByteWriter& out, const std::vector<removal::StockPart>& parts) {
+  out.value(static_cast<std::uint64_t>(parts.size()));
+  for (const removal::StockPart& part : parts) part.write(out);
+}
+
+/// A count of things that take a byte each at least.
+std::size_t read_count(ByteReader& in) {
+  const auto count = in.value<std::uint64_t>();
+  if (count > in.left()) throw BytesMissing();
+  return count;
+}
+
+std::vector<removal::StockPart> read_parts(ByteReader& in) {
+  std::vector<removal::StockPart> out(read_count(in));
+  for (removal::StockPart& part : out) part = removal::StockPart::read(in);
+  return out;
+}
+
+/// What is not a list.
+struct CutFigures {
+  double chip_mm3, stock_mm3, deflection_max_mm, deflection_limit_mm, extrapolation_sum2_um2, extrapolation_max_um;
+  std::uint64_t read, unsettled, beyond, extrapolations;
+  std::int64_t rounds_max;
+};
+
+void write_cut(ByteWriter& out, const CutResult& cut) {
+  out.value(CutFigures{cut.chip_mm3, cut.stock_mm3, cut.deflection_max_mm, cut.deflection_limit_mm,
+                       cut.extrapolation.sum2_um2, cut.extrapolation.max_um, cut.read, cut.unsettled, cut.beyond,
+                       cut.extrapolation.count, cut.rounds_max});
+  out.list(cut.loads);
+  out.list(cut.unsettled_moves);
+  out.list(cut.unsettled_reasons);
+  out.list(cut.beyond_moves);
+  out.value(static_cast<std::uint64_t>(cut.turn.teeth.size()));
+  for (const auto& tooth : cut.turn.teeth) out.list(tooth);
+}
+
+CutResult read_cut(ByteReader& in) {
+  CutResult out;
+  const auto f = in.value<CutFigures>();
+  out.chip_mm3 = f.chip_mm3, out.stock_mm3 = f.stock_mm3;
+  out.deflection_max_mm = f.deflection_max_mm, out.deflection_limit_mm = f.deflection_limit_mm;
+  out.extrapolation = {f.extrapolations, f.extrapolation_sum2_um2, f.extrapolation_max_um};
+  out.read = f.read, out.unsettled = f.unsettled, out.beyond = f.beyond;
+  out.rounds_max = static_cast<int>(f.rounds_max);
+  out.loads = in.list<StampLoad>();
+  out.unsettled_moves = in.list<std::uint32_t>();
+  out.unsettled_reasons = in.list<deflection::NoEquilibrium>();
+  out.beyond_moves = in.list<std::uint32_t>();
+  out.turn.teeth.resize(read_count(in));
+  for (auto& tooth : out.turn.teeth) tooth = in.list<deflection::TurnForces::Tooth>();
+  return out;
+}
+
+}  // namespace
+
+void SweptSection::write(ByteWriter& out) const {
+  for (const auto* parts : {&stock, &target, &allowance}) write_parts(out, *parts);
+  out.value(target_mm3);
+  out.value(allowance_mm3);
+  out.value(work);
+}
+
+SweptSection SweptSection::read(ByteReader& in) {
+  SweptSection out;
+  for (auto* parts : {&out.stock, &out.target, &out.allowance}) *parts = read_parts(in);
+  out.target_mm3 = in.value<double>();
+  out.allowance_mm3 = in.value<double>();
+  out.work = in.value<SectionWork>();
+  return out;
+}
+
+void SolvedSection::write(ByteWriter& out) const {
+  out.value(static_cast<std::uint64_t>(pieces.size()));
+  for (const SolvedPiece& piece : pieces) {
+    write_cut(out, piece.cut);
+    out.list(piece.marks);
+    piece.stock.write(out);
+  }
+  out.value(static_cast<std::uint64_t>(contour.size()));
+  for (const SurfaceMarks& marks : contour) out.list(marks);
+  out.list(history);
+  out.value(work);
+}
+
+SolvedSection SolvedSection::read(ByteReader& in) {
+  SolvedSection out;
+  out.pieces.resize(read_count(in));
+  for (SolvedPiece& piece : out.pieces) {
+    piece.cut = read_cut(in);
+    piece.marks = in.list<SurfaceMark>();
+    piece.stock = removal::StockPart::read(in);
+  }
+  out.contour.resize(read_count(in));
+  for (SurfaceMarks& marks : out.contour) marks = in.list<SurfaceMark>();
+  out.history = in.list<Round>();
+  out.work = in.value<SectionWork>();
+  return out;
+}
+
+}  // namespace camber::simulate

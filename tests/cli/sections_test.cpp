@@ -1,0 +1,227 @@
+// camber predict --sections and camber merge: the same bytes whoever computes which part, and parts that are refused.
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_camber.h"
+
+namespace camber {
+namespace {
+
+namespace fs = std::filesystem;
+using tests::CamberRun;
+using tests::replaced;
+using tests::run_camber;
+using tests::TempFolder;
+
+const std::string kMachine =
+    "[axis.x]\nacceleration_mm_per_s2 = 3000\n[axis.y]\nacceleration_mm_per_s2 = 3000\n[axis.z]\n"
+    "acceleration_mm_per_s2 = 3000\n[spindle]\nmax_rpm = 12000\n";
+const std::string kJob =
+    "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"ball\"\ndiameter_mm = 4.0\nflutes = 2\n"
+    "overhang_mm = 25.0\n[tool.2]\ntype = \"flat\"\ndiameter_mm = 3.0\nflutes = 2\noverhang_mm = 20.0\n[material]\n"
+    "ktc_MPa = 800.0\nkrc_MPa = 250.0\nkte_N_per_mm = 5.0\nkre_N_per_mm = 5.0\n[stock]\n"
+    "box_mm = [[0, -3, -3], [14, 3, 0]]\nallowance_mm = 0.2\n[simulation]\nvoxel_mm = 0.4\ncoupling = \"rigid\"\n";
+
+/// Rows of a ball, then a slot of a flat end mill: about seven pieces and two tools.
+std::string program() {
+  std::string out = "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS6000 M3\nG0 X-4 Y-2 Z5\n";
+  for (int row = 0; row < 6; ++row) {
+    const std::string y = std::to_string(-2 + 0.7 * row);
+    out += "G0 X-4 Y" + y + "\nG0 Z-1\nG1 X18 F300\nG0 Z5\n";
+  }
+  return out + "T2 M6\nS6000 M3\nG0 X-4 Y1 Z5\nG0 Z-1.6\nG1 X18 F300\nG0 Z5\nM30\n";
+}
+
+void write_all(const TempFolder& folder, const std::string& job = kJob) {
+  folder.write("p.nc", program());
+  folder.write("job.toml", job);
+  folder.write("machine.toml", kMachine);
+}
+
+/// Every result, but for the computing time.
+std::map<std::string, std::string> results(const std::string& folder) {
+  std::map<std::string, std::string> out;
+  for (const char* name :
+       {"feed.csv", "forces.csv", "form_error.csv", "form_error.vtp", "form_error.ply", "stock.vdb", "report.html"})
+    out[name] = tests::file_text(folder + "/" + name);
+  auto json = nlohmann::json::parse(tests::file_text(folder + "/summary.json"));
+  json.erase("compute_s");
+  out["summary.json"] = json.dump();
+  return out;
+}
+
+void expect_same(const std::map<std::string, std::string>& a, const std::map<std::string, std::string>& b,
+                 const std::string& what) {
+  for (const auto& [name, text] : a) {
+    EXPECT_FALSE(text.empty()) << name;
+    EXPECT_TRUE(text == b.at(name)) << what << ": " << name << " differs";
+  }
+}
+
+std::string stage(const std::string& which, int section, int sections, const std::string& more = "") {
+  return "-q predict job.toml -o parts --sections " + std::to_string(sections) + " --section " +
+         std::to_string(section) + " --stage " + which + more;
+}
+
+TEST(Sections, GiveTheSameBytesForAnyNumber) {
+  const TempFolder folder;
+  write_all(folder);
+  const CamberRun one = run_camber(folder, "predict job.toml -o one --sections 1");
+  ASSERT_EQ(one.status, 0) << one.err;
+  const auto expected = results(folder / "one");
+  EXPECT_GE(nlohmann::json::parse(expected.at("summary.json")).at("sections").at("pieces"), 7);
+  for (const int sections : {2, 3, 7, 16}) {
+    const std::string n = std::to_string(sections);
+    const CamberRun run = run_camber(folder, "predict job.toml -o many --sections " + n + " --threads 1");
+    ASSERT_EQ(run.status, 0) << run.err;
+    expect_same(expected, results(folder / "many"), n + " sections");
+    fs::remove_all(folder / "many");
+  }
+  // Parts alone, in another order.
+  for (const char* which : {"sweep", "solve"})
+    for (const int section : {3, 1, 4, 2}) ASSERT_EQ(run_camber(folder, stage(which, section, 4)).status, 0);
+  const CamberRun merge = run_camber(folder, "merge parts");
+  ASSERT_EQ(merge.status, 0) << merge.err;
+  expect_same(expected, results(folder / "parts"), "parts");
+  // Without sections the stamps of a voxel are carved in another order: figures agree but for rounding.
+  ASSERT_EQ(run_camber(folder, "-q predict job.toml -o plain").status, 0);
+  const auto plain = nlohmann::json::parse(tests::file_text(folder / "plain/summary.json"));
+  const auto joined = nlohmann::json::parse(expected.at("summary.json"));
+  for (const char* figure : {"p95", "max", "min", "rms"})
+    EXPECT_NEAR(joined.at("form_error_um").at(figure).get<double>(), plain.at("form_error_um").at(figure).get<double>(),
+                0.02)
+        << figure;
+  EXPECT_NEAR(joined.at("removed_mm3").at("stock").get<double>() / plain.at("removed_mm3").at("stock").get<double>(), 1,
+              1e-4);
+  EXPECT_NEAR(joined.at("force_N").at("max").get<double>() / plain.at("force_N").at("max").get<double>(), 1, 1e-3);
+}
+
+const std::string kStaticDoubt =
+    "camber: error: static coupling in sections: each piece of the path begins without the deflection of the tooth "
+    "passing before it, so that form errors differ from those without sections by micrometres; coupling = \"rigid\", "
+    "or "
+    "no sections, was expected";
+
+TEST(Sections, SettleStaticCouplingInRoundsAndTellTheirDoubt) {
+  const TempFolder folder;
+  write_all(folder, replaced(kJob, "\"rigid\"", "\"static\""));
+  const std::string first_rows = program().substr(0, program().find("G0 X-4 Y0.1"));
+  folder.write("p.nc", first_rows + "M30\n");
+  const CamberRun run = run_camber(folder, "predict job.toml -o three --sections 3");
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find(kStaticDoubt), std::string::npos) << run.err;
+  const auto three = results(folder / "three");
+  const auto json = nlohmann::json::parse(three.at("summary.json"));
+  const auto& sections = json.at("sections");
+  EXPECT_GE(sections.at("rounds"), 2);
+  EXPECT_GT(sections.at("solved_again").at(0), 0);
+  EXPECT_EQ(sections.at("solved_again").back(), 0);
+  EXPECT_EQ(run_camber(folder, "-q predict job.toml -o two --sections 2").status, 3);
+  expect_same(three, results(folder / "two"), "2 sections");
+}
+
+class Parts : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write_all(folder_);
+    for (const char* which : {"sweep", "solve"})
+      for (const int section : {1, 2}) ASSERT_EQ(run_camber(folder_, stage(which, section, 2)).status, 0);
+  }
+  std::string part(const std::string& name) const { return folder_ / ("parts/parts/" + name); }
+  std::string again(const std::string& rest) const {
+    return "run camber predict job.toml -o parts --sections 2 " + rest;
+  }
+  /// Nothing is merged.
+  void expect_refused(const std::string& message) {
+    const CamberRun run = run_camber(folder_, "merge parts");
+    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.err, message);
+    EXPECT_FALSE(fs::exists(folder_ / "parts/summary.json"));
+    EXPECT_FALSE(fs::exists(folder_ / "parts/forces.csv"));
+  }
+  TempFolder folder_;
+};
+
+TEST_F(Parts, AreNotComputedTwice) {
+  const auto before = fs::last_write_time(part("sweep-001-of-002.part"));
+  const CamberRun run = run_camber(folder_, "predict job.toml -o parts --sections 2 --section 1 --stage sweep");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.out, "parts/parts/sweep-001-of-002.part: is there already\n");
+  EXPECT_EQ(fs::last_write_time(part("sweep-001-of-002.part")), before);
+}
+
+TEST_F(Parts, ThatAreMissingAreNamed) {
+  fs::remove(part("solve-1-002-of-002.part"));
+  expect_refused("parts/parts/solve-1-002-of-002.part: error: is missing; the part of this section was expected: " +
+                 again("--section 2 --stage solve [part-missing]\n"));
+}
+
+TEST_F(Parts, ThatAreTornAreNamedAndWrittenAgain) {
+  const std::string file = part("sweep-002-of-002.part");
+  fs::resize_file(file, fs::file_size(file) - 1);
+  expect_refused(
+      "parts/parts/sweep-002-of-002.part: error: is not whole; a part that was written to its end was expected: " +
+      again("--section 2 --stage sweep [part-torn]\n"));
+  ASSERT_EQ(run_camber(folder_, stage("sweep", 2, 2)).status, 0);
+  EXPECT_EQ(run_camber(folder_, "-q merge parts").status, 0);
+}
+
+/// FNV-1a with an end mark, as the head of a part has it.
+std::string hash_of(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037ull;
+  for (const char c : text + '\xff') hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  char out[17];
+  std::snprintf(out, sizeof out, "%016llX", static_cast<unsigned long long>(hash));
+  return out;
+}
+
+TEST_F(Parts, OfAnotherVersionAreNamed) {
+  constexpr std::size_t kMagic = 14, kHash = 16;
+  std::string text = tests::file_text(part("sweep-001-of-002.part"));
+  const std::string version = text.substr(text.find("0.", kMagic + kHash), 5);
+  text.replace(text.find(version), 5, "0.1.9");
+  text.replace(kMagic, kHash, hash_of(text.substr(kMagic + kHash)));
+  folder_.write("parts/parts/sweep-001-of-002.part", text);
+  expect_refused("parts/parts/sweep-001-of-002.part: error: was written by camber 0.1.9, this is " + version +
+                 "; parts of one version were expected: " + again("--section 1 --stage sweep [part-version]\n"));
+}
+
+TEST_F(Parts, OfAnotherJobAreNamed) {
+  folder_.write("job.toml", replaced(kJob, "overhang_mm = 25.0", "overhang_mm = 26.0"));
+  const CamberRun run = run_camber(folder_, "merge parts");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err.rfind("parts/parts/sweep-001-of-002.part: error: is of another job, program or setting (hash ", 0),
+            0u)
+      << run.err;
+  EXPECT_NE(run.err.find("[part-job]"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "parts/summary.json"));
+  const CamberRun solve = run_camber(folder_, stage("solve", 1, 2));
+  EXPECT_EQ(solve.status, 1);
+  EXPECT_NE(solve.err.find("[part-job]"), std::string::npos) << solve.err;
+}
+
+TEST(SectionOptions, AreRefusedWhereTheyDoNotFit) {
+  const TempFolder folder;
+  write_all(folder);
+  const auto expect = [&](const std::string& options, const std::string& message) {
+    const CamberRun run = run_camber(folder, "predict job.toml -o out " + options);
+    EXPECT_EQ(run.status, 2) << options;
+    EXPECT_EQ(run.err.substr(0, run.err.find('\n')), message);
+  };
+  expect("--sections 2 --section 1", "--stage is required");
+  expect("--sections 2 --stage sweep", "--stage requires --section");
+  expect("--section 1 --stage sweep", "--section requires --sections");
+  expect("--sections 2 --section 3 --stage sweep", "--section: 3 of 2 sections");
+  expect("--sections 2 --section 1 --stage sweep --round 2", "--stage solve is required");
+  const CamberRun none = run_camber(folder, "merge .");
+  EXPECT_EQ(none.status, 1);
+  EXPECT_EQ(none.err,
+            ".: error: has no parts of a prediction; camber predict --sections N --section I writes them "
+            "[part-missing]\n");
+}
+
+}  // namespace
+}  // namespace camber

@@ -1,0 +1,54 @@
+// What is said of jobs and parts that copy milling cannot take.
+#include <gtest/gtest.h>
+
+#include "copymill/copy.h"
+#include "tests/copymill/small_copy.h"
+
+namespace camber::copymill {
+namespace {
+
+using tests::read_copy;
+using tests::ReadCopy;
+using tests::SmallCopy;
+using tests::TempFolder;
+
+/// All messages, without the folders.
+std::string said(const SmallCopy& c, const std::string& part_text = {}) {
+  const TempFolder folder;
+  try {
+    ReadCopy job = read_copy(folder, c);
+    if (!part_text.empty()) job.job.part.mesh = folder.write("part.stl", part_text);
+    Diagnostics diagnostics;
+    copy(job.job, job.operations, {}, diagnostics);
+  } catch (const InputError& e) {
+    std::string out;
+    for (const Diagnostic& d : e.diagnostics()) out += to_string(d) + "\n";
+    for (const std::string& name : {folder.path() + "/", std::string(CAMBER_SOURCE_DIR "/samples/13-copy-milling/")})
+      for (std::size_t at = 0; (at = out.find(name, at)) != std::string::npos;) out.erase(at, name.size());
+    return out;
+  }
+  return "nothing";
+}
+
+std::string operation(const std::string& keys) {
+  return "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 8000\nfeed_mm_per_min = 3000\n" + keys;
+}
+
+TEST(BadCopy, DepthsOfZero) {
+  EXPECT_EQ(said({.operations = operation("radial_depth_mm = 0\naxial_depth_mm = 0.0\n")}),
+            "job.toml:33:19: error: radial_depth_mm is 0; a number greater than zero was expected [value-range]\n"
+            "    radial_depth_mm = 0\n                      ^\n"
+            "job.toml:34:18: error: axial_depth_mm is 0; a number greater than zero was expected [value-range]\n"
+            "    axial_depth_mm = 0.0\n                     ^\n");
+}
+
+TEST(BadCopy, MeshThatIsOpen) {
+  EXPECT_EQ(said({.operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\n")},
+                 "solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 -15\nvertex 60 0 0\nvertex 0 45 0\nendloop\n"
+                 "endfacet\nendsolid\n"),
+            "part.stl: error: the mesh is not closed: 3 of its edges have no second triangle, and the cutter could fall "
+            "through; a closed one was expected [stl-open]\n");
+}
+
+}  // namespace
+}  // namespace camber::copymill

@@ -1,0 +1,254 @@
+#include "posture/posture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include "base/units.h"
+#include "feedmodel/control_options.h"
+#include "kinematics/rotary_options.h"
+#include "nc/interpreter.h"
+#include "removal/cutter.h"
+#include "simulate/tool_surface.h"
+#include "test_paths.h"
+#include "tests/support/temp_folder.h"
+
+namespace camber::posture {
+namespace {
+
+machine::Tool ball_in_holder(double overhang_mm) {
+  machine::Tool tool;
+  tool.number = 1;
+  tool.type = machine::ToolType::ball;
+  tool.diameter_mm = 6;
+  tool.overhang_mm = overhang_mm;
+  tool.flute_length_mm = 10;
+  tool.shank_diameter_mm = 6;
+  tool.holder = {{20, 24, 20}, {40, 40, 30}};
+  return tool;
+}
+
+machine::Machine table() {
+  Diagnostics diagnostics;
+  return machine::read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml", diagnostics);
+}
+
+/// A point against the cylinders and cones of the tool: the other way to see whether there is room.
+double point_room_mm(const machine::Tool& tool, double clearance_mm, const Vec3& tip, const Vec3& axis, const Vec3& p) {
+  const double up = (p - tip).dot(axis), out = (p - tip).cross(axis).norm();
+  const auto cylinder = [&](double radius, double from, double to) {
+    return std::hypot(std::max(out - radius, 0.0), std::max({from - up, up - to, 0.0}));
+  };
+  double room = cylinder(3 - kCutterSlack_mm, 3, 10) > 0 ? 1e9 : -1;
+  room = std::min(room, cylinder(3, 10, tool.overhang_mm) - clearance_mm);
+  room = std::min(room, cylinder(10, tool.overhang_mm, tool.overhang_mm + 20) - clearance_mm);  // inside the cone
+  return std::min(room, cylinder(20, tool.overhang_mm + 20, tool.overhang_mm + 50) - clearance_mm);
+}
+
+/// A wavy floor between steep walls, 1 mm triangles.
+TriangleMesh trough(std::mt19937& random) {
+  std::uniform_real_distribution<double> one(-1, 1);
+  const double a = 2 * one(random), b = 3 + 2 * one(random), slope = 1.8 + 0.5 * one(random), w = 9 + 3 * one(random);
+  TriangleMesh mesh;
+  constexpr int kX = 41, kY = 81;
+  const auto height = [&](double x, double y) {
+    const double wall = std::max(0.0, std::abs(y) - w) * slope;
+    return std::min(wall, 45.0) + a * std::sin(x / b);
+  };
+  for (int i = 0; i < kX; ++i)
+    for (int k = 0; k < kY; ++k)
+      mesh.points.emplace_back(static_cast<float>(i - 20), static_cast<float>(k - 40),
+                               static_cast<float>(height(i - 20, k - 40)));
+  for (int i = 0; i + 1 < kX; ++i)
+    for (int k = 0; k + 1 < kY; ++k) {
+      const auto at = [&](int x, int y) { return static_cast<std::uint32_t>(x * kY + y); };
+      mesh.triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
+      mesh.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
+    }
+  return mesh;
+}
+
+TEST(Surroundings, RoomIsThatOfPointsAgainstCylinders) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> one(-1, 1);
+  const machine::Tool tool = ball_in_holder(35);
+  const ToolShape shape = tool_shape(tool, table(), 1);
+  int blocked = 0, free = 0;
+  for (int surface = 0; surface < 4; ++surface) {
+    const TriangleMesh mesh = trough(random);
+    Surroundings around;
+    around.add(mesh);
+    around.finish();
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 axis = Vec3(0.5 * one(random), 0.8 * one(random), 1).normalized();
+      const Vec3 tip(15 * one(random), 8 * one(random), 4 + 2 * one(random));
+      double room = 10;
+      for (const Eigen::Vector3f& p : mesh.points)
+        room = std::min(room, point_room_mm(tool, 1, tip, axis, p.cast<double>()));
+      const double ours = around.room_mm(shape, tip, axis, 10);
+      ASSERT_LE(ours, std::max(room, 0.0) + 0.02 + 0.02) << i;  // pieces are smaller by 0.01 mm all round
+      // A point is blocked: so are we, but for what the smaller pieces leave.
+      if (room < -0.05) {
+        ASSERT_LT(ours, 0) << i;
+        ++blocked;
+      }
+      free += ours >= 0;
+    }
+  }
+  EXPECT_GT(blocked, 10);
+  EXPECT_GT(free, 10);
+}
+
+TEST(PathPoint, KeepsTheContactOfBallAndBullNose) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> one(-1, 1);
+  for (const double corner : {4.0, 1.0}) {
+    removal::CutterShape shape;
+    shape.radius_mm = 4;
+    shape.corner_radius_mm = corner;
+    for (int i = 0; i < 200; ++i) {
+      PathPoint p;
+      p.normal = Vec3(0.5 * one(random), 0.5 * one(random), 1).normalized();
+      p.corner_mm = corner;
+      p.flat_mm = 4 - corner;
+      const Vec3 contact(10 * one(random), 10 * one(random), one(random));
+      p.centre_mm = contact + corner * p.normal;
+      Vec3 axis = p.normal + 0.6 * Vec3(one(random), one(random), one(random));
+      axis.normalize();
+      if (axis.cross(p.normal).norm() < 0.05) continue;
+      const Mat3 frame = simulate::outline_frame({p.tip_mm(axis), axis, 0});
+      const Vec3 there = frame.transpose() * (contact - p.tip_mm(axis));
+      EXPECT_NEAR(shape.distance_mm(there), 0, 1e-9) << corner;
+      EXPECT_GT((frame * shape.gradient(there)).dot(-p.normal), 1 - 1e-9) << corner;
+    }
+  }
+}
+
+class PostureInATrough : public ::testing::Test {
+ protected:
+  static std::string rows(const TriangleMesh& mesh) {
+    std::string text =
+        "G21 G17 G90 G94\nG10 L2 P1 X25. Y-15. Z5.\nG10 L1 P1 Z120.\nT1 M6\nG54\nS9000 M3\nG43 H1\nG0 X0. Y0. Z60.\n";
+    for (const int y : {-8, 0, 8}) {
+      text += "G0 X-14. Y" + std::to_string(y) + ".\nG0 Z8.\nG1 Z4. F600\n";
+      for (int x = -13; x <= 14; ++x) text += "X" + std::to_string(x) + ". Z" + std::to_string(tip(mesh, x, y)) + "\n";
+      text += "G0 Z60.\n";
+    }
+    return text + "M5\nM2\n";
+  }
+
+  /// Lowered onto the corners of the mesh: near enough to touch.
+  static double tip(const TriangleMesh& mesh, double x, double y) {
+    double z = -1e9;
+    for (const auto& p : mesh.points) {
+      const double d2 = (p.x() - x) * (p.x() - x) + (p.y() - y) * (p.y() - y);
+      if (d2 < 9) z = std::max(z, p.z() + std::sqrt(9 - d2) - 3);
+    }
+    return z + 0.05;
+  }
+
+  void SetUp() override {
+    std::mt19937 random(11);
+    mesh_ = trough(random);
+    const std::string stl = folder_ / "part.stl";
+    std::ofstream out(stl, std::ios::binary);
+    const std::string head(80, ' ');
+    out.write(head.data(), 80);
+    const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
+    out.write(reinterpret_cast<const char*>(&count), 4);
+    for (const auto& t : mesh_.triangles) {
+      float row[12] = {0, 0, 0};
+      for (std::size_t i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) row[3 + 3 * i + static_cast<std::size_t>(k)] = mesh_.points[t[i]][k];
+      out.write(reinterpret_cast<const char*>(row), 48);
+      out.write("\0\0", 2);
+    }
+    job_.path = "job.toml";
+    job_.machine = table();
+    job_.part.mesh = stl;
+    job_.tools[1] = ball_in_holder(35);
+  }
+
+  void read(const std::string& text) {
+    Diagnostics diagnostics;
+    nc::InterpreterOptions options;
+    options.inch = false;
+    options.rotary_axes = kinematics::rotary_options(job_.machine);
+    options = feedmodel::interpreter_options(job_.machine, options);
+    program_ = nc::read_program(SourceText("p.nc", text), diagnostics);
+    moves_ = nc::interpret(program_, options, diagnostics);
+    diagnostics.throw_if_errors();
+  }
+
+  Postured made(Mode mode, Diagnostics& diagnostics) const {
+    return make_postures({.job = &job_, .program = &program_, .moves = &moves_, .tool = 1, .options = {.mode = mode}},
+                         diagnostics);
+  }
+
+  std::string said(const machine::Job& job) const {
+    Diagnostics diagnostics;
+    make_postures({.job = &job, .program = &program_, .moves = &moves_, .tool = 1, .options = {}}, diagnostics);
+    std::string out;
+    for (Diagnostic d : diagnostics.all()) {
+      d.source_line.clear();
+      out += to_string(d) + "\n";
+    }
+    return out;
+  }
+
+  tests::TempFolder folder_;
+  TriangleMesh mesh_;
+  machine::Job job_;
+  nc::Program program_;
+  nc::Interpretation moves_;
+};
+
+TEST_F(PostureInATrough, ChosenDirectionsAreClearByASecondMethodAndTurnLess) {
+  read(rows(mesh_));
+  Diagnostics diagnostics;
+  const Postured chosen = made(Mode::chosen, diagnostics), seed = made(Mode::seed, diagnostics);
+  diagnostics.throw_if_errors();
+  ASSERT_FALSE(chosen.blocked_move);
+  EXPECT_EQ(chosen.figures.unclear, 0U);
+  EXPECT_GT(chosen.figures.contacts, 70U);
+  for (std::size_t i = 0; i < chosen.points.size(); ++i) {
+    const Vec3 axis = chosen.axes[i], tip = chosen.points[i].tip_mm(axis);
+    for (const Eigen::Vector3f& p : mesh_.points)
+      ASSERT_GE(point_room_mm(job_.tools.at(1), 1, tip, axis, p.cast<double>()), -0.02) << i;
+  }
+  EXPECT_LT(chosen.figures.rotary_motion_deg, seed.figures.rotary_motion_deg);
+  EXPECT_NE(chosen.text.find("\nM428\n"), std::string::npos);
+  EXPECT_EQ(chosen.text.substr(0, 15), program_.source.text().substr(0, 15));
+}
+
+TEST_F(PostureInATrough, SaysWhatItCannotTilt) {
+  read("G21 G17 G90 G94\nT1 M6\nG0 X0. Y0. Z60.\nG1 Z10. F600\nM2\n");
+  machine::Job job = job_;
+  job.part.mesh.clear();
+  EXPECT_EQ(said(job), "job.toml: error: [part] has no mesh; the STL file of the part was expected [no-part]\n");
+  job = job_;
+  job.tools[1].type = machine::ToolType::flat;
+  EXPECT_EQ(
+      said(job),
+      "job.toml: error: [tool.1] is neither a ball nor a bull-nose cutter; one of these was expected [not-ball]\n");
+  job = job_;
+  job.tools.clear();
+  EXPECT_EQ(said(job),
+            "job.toml: error: the job has no [tool.1]; the tool of the finishing moves was expected [no-tool]\n");
+  job = job_;
+  job.machine.kinematics = {};
+  EXPECT_EQ(said(job), "job.toml: error: the machine has no [kinematics]; rotary axes were expected [kinematics]\n");
+  read("G21 G17 G90 G94\nT1 M6\nG0 X0. Y0. Z60.\nG1 Z10. A5. F600\nM2\n");
+  EXPECT_EQ(said(job_),
+            "p.nc:4:1: error: this move has directions of its own; moves of three axes were expected [rotary-axis]\n");
+  read("G21 G17 G90 G94\nG0 X0. Y0. Z60.\nM2\n");
+  EXPECT_EQ(said(job_),
+            "p.nc:1:1: error: tool T1 has no moves in this program; finishing moves were expected [no-moves]\n");
+}
+
+}  // namespace
+}  // namespace camber::posture
