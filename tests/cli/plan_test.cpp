@@ -72,7 +72,7 @@ TEST(PlanCommand, MakesProgramsThatCutThePart) {
   // Sharp inner corners of the pocket stay; the rest of the removal volume goes.
   EXPECT_NEAR(taken.at("removed_mm3").get<double>(), json.at("removal_mm3").get<double>(),
               0.02 * json.at("removal_mm3").get<double>());
-  const CamberRun check = run_camber(folder, "check out/program.nc --machine machine.toml");
+  const CamberRun check = run_camber(folder, "check out/program.nc");
   EXPECT_EQ(check.status, 0) << check.err;
   const CamberRun copy = run_camber(folder, "copy out/job.toml -o out/copied.nc --effective-config");
   EXPECT_EQ(copy.status, 0) << copy.err;
