@@ -11,12 +11,12 @@ namespace {
 
 /// Coarser than a prediction's: a tick has half a millisecond. 2 degrees lose about a hundredth of a peak.
 constexpr double kEnvelopeStep_mm = 0.2, kRotationStep_rad = 2 * kPi / 180;
-constexpr double kFeedSteps = 25;  ///< of the nominal feed
-constexpr double kUpBelow = 0.86, kAim = 0.93;  ///< of the target
-constexpr double kUpStep = 0.5;                 ///< of the nominal feed; no step leads over the aim
+constexpr double kFeedSteps = 25;                                 ///< of the nominal feed
+constexpr double kUpBelow = 0.86, kAim = 0.93;                    ///< of the target
+constexpr double kUpStep = 0.5;                                   ///< of the nominal feed; no step leads over the aim
 constexpr double kFromBand = 0.80, kToBand = 1.05, kNever = 1.2;  // of the target
-constexpr double kHeldBack = 0.9;  ///< of the commanded feed
-constexpr double kCutting = 0.01;  ///< of the target: less is air
+constexpr double kHeldBack = 0.9;                                 ///< of the commanded feed
+constexpr double kCutting = 0.01;                                 ///< of the target: less is air
 
 simulate::LoadProbeOptions probe_options(const machine::Job& job, const machine::CopyOperation& operation,
                                          const simulate::ForceRegions& regions, std::int32_t first_id) {

@@ -17,10 +17,10 @@ namespace camber::copymill {
 struct LoadFigures {
   double target_N = 0;  ///< 0: none, feed and depths stay as they are
   double max_N = 0;
-  std::size_t passings = 0;    ///< that cut
-  std::size_t counted = 0;     ///< of these, at a feed that the rule chose: not its lowest or highest, not a corner's
-  std::size_t within = 0;      ///< of the counted, 80 to 105 % of the target
-  std::size_t over = 0;        ///< of all that cut, more than 120 %
+  std::size_t passings = 0;  ///< that cut
+  std::size_t counted = 0;   ///< of these, at a feed that the rule chose: not its lowest or highest, not a corner's
+  std::size_t within = 0;    ///< of the counted, 80 to 105 % of the target
+  std::size_t over = 0;      ///< of all that cut, more than 120 %
 };
 
 /// One operation: the probe that cuts the stock, and the rule where the operation has a target.

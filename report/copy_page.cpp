@@ -76,7 +76,8 @@ std::string from_above(const std::vector<Tick>& ticks) {
       const bool now = std::min(kShades - 1, static_cast<int>(depth * kShades)) == shade;
       if (now) {
         const auto at = [&](const Tick& t) {
-          return fmt::format("{:.1f} {:.1f}", 20 + scale * (t.tip_mm.x() - lo.x()), 20 + scale * (hi.y() - t.tip_mm.y()));
+          return fmt::format("{:.1f} {:.1f}", 20 + scale * (t.tip_mm.x() - lo.x()),
+                             20 + scale * (hi.y() - t.tip_mm.y()));
         };
         path += (down ? "L" : "M" + at(ticks[k - 1]) + "L") + at(ticks[k]);
       }
@@ -90,14 +91,15 @@ std::string from_above(const std::vector<Tick>& ticks) {
 }
 
 std::string card(const std::string& title, const std::string& svg, const std::string& note) {
-  return fmt::format("<div class=\"card\"><h2>{}</h2>\n<div class=\"wide\">\n{}</div>\n<p class=\"note\">{}</p></div>\n",
-                     html_text(title), svg, html_text(note));
+  return fmt::format(
+      "<div class=\"card\"><h2>{}</h2>\n<div class=\"wide\">\n{}</div>\n<p class=\"note\">{}</p></div>\n",
+      html_text(title), svg, html_text(note));
 }
 
 TextTable operations_table(const CopyResult& r) {
   TextTable out{.title = "Operations",
-                .columns = {"tool", "mode", "time, s", "removed, mm3", "levels", "passes", "ramps", "force, N", "target, N",
-                            "80 to 105 %"},
+                .columns = {"tool", "mode", "time, s", "removed, mm3", "levels", "passes", "ramps", "force, N",
+                            "target, N", "80 to 105 %"},
                 .rows = {},
                 .note = "The last column: tooth passings at a feed that the rule chose freely."};
   for (const copymill::OperationSummary& o : r.operations) {
@@ -160,11 +162,14 @@ std::string copy_page(const CopyResult& r, const TickPicture& picture, const Cop
   for (const copymill::OperationSummary& o : r.operations) target = std::max(target, o.load.target_N);
   if (picture.ticks().size() > 1) {
     out += card("Path", from_above(picture.ticks()), "The tip from above; deeper is darker.");
-    out += card("Load", over_time(picture.ticks(), [](const Tick& t) { return t.load_N; }, target, "lateral force, N"),
+    out += card("Load",
+                over_time(
+                    picture.ticks(), [](const Tick& t) { return t.load_N; }, target, "lateral force, N"),
                 "Of each tooth passing, its greatest lateral force. Dashed: the greatest target of the operations.");
     out += card("Feed",
-                over_time(picture.ticks(), [](const Tick& t) { return mm_per_min_from_mm_per_s(t.feed_mm_per_s); }, 0,
-                          "feed, mm/min"),
+                over_time(
+                    picture.ticks(), [](const Tick& t) { return mm_per_min_from_mm_per_s(t.feed_mm_per_s); }, 0,
+                    "feed, mm/min"),
                 "The tip's actual speed, rapids included.");
   }
   out += "<div class=\"columns\">\n" + figures_html(data) + table_html(operations_table(r));

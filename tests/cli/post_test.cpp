@@ -32,9 +32,10 @@ TEST(PostCommand, WritesNothingWhereAnAxisLeavesItsTravel) {
                "G43.4 H1 X900. Y0. Z50. A10. C0.\nG1 X910. F600\nG49\nG53 Z0\nM30\n");
   const CamberRun run = run_camber(folder, "post p.nc --machine " + kMachine + " -o out.nc");
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.err.substr(0, run.err.find('\n')),
-            "p.nc:6:1: error: X goes to 910 mm in machine coordinates in this move and 7 more; -250 to 250 was expected "
-            "(travel_mm of [axis.x]) [travel]");
+  EXPECT_EQ(
+      run.err.substr(0, run.err.find('\n')),
+      "p.nc:6:1: error: X goes to 910 mm in machine coordinates in this move and 7 more; -250 to 250 was expected "
+      "(travel_mm of [axis.x]) [travel]");
   EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
 }
 
@@ -43,7 +44,8 @@ TEST(PostCommand, RefusesAMachineWithoutRotaryAxes) {
   folder.write("m.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
   const CamberRun run = run_camber(folder, "post " + kDome + " --machine m.toml -o out.nc");
   EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.err, "m.toml: error: the machine has no [kinematics]; the chain of its axes was expected [kinematics]\n");
+  EXPECT_EQ(run.err,
+            "m.toml: error: the machine has no [kinematics]; the chain of its axes was expected [kinematics]\n");
 }
 
 TEST(PostureCommand, WritesAProgramThatPostReads) {

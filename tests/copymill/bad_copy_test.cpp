@@ -43,11 +43,12 @@ TEST(BadCopy, DepthsOfZero) {
 }
 
 TEST(BadCopy, MeshThatIsOpen) {
-  EXPECT_EQ(said({.operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\n")},
-                 "solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 -15\nvertex 60 0 0\nvertex 0 45 0\nendloop\n"
-                 "endfacet\nendsolid\n"),
-            "part.stl: error: the mesh is not closed: 3 of its edges have no second triangle, and the cutter could fall "
-            "through; a closed one was expected [stl-open]\n");
+  EXPECT_EQ(
+      said({.operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\n")},
+           "solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 -15\nvertex 60 0 0\nvertex 0 45 0\nendloop\n"
+           "endfacet\nendsolid\n"),
+      "part.stl: error: the mesh is not closed: 3 of its edges have no second triangle, and the cutter could fall "
+      "through; a closed one was expected [stl-open]\n");
 }
 
 }  // namespace

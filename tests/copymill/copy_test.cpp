@@ -176,5 +176,25 @@ TEST(Copy, SaysWhatIsWrongLikeACompiler) {
       "part that the stock holds was expected [part-outside-stock]\n");
 }
 
+/// The sample's slot, whose right half is 40 % harder than the rule knows.
+TEST(Copy, HoldsTheForceWhereTheMaterialIsHarderThanItKnows) {
+  const std::string folder = CAMBER_SOURCE_DIR "/samples/13-copy-milling/";
+  Diagnostics diagnostics;
+  const machine::Job job = machine::read_unprogrammed_job(folder + "slot.toml", diagnostics);
+  const auto operations = machine::read_copy_operations(folder + "slot.toml", job, diagnostics);
+  CopyOptions options;
+  options.regions = simulate::read_force_regions(folder + "hard.csv");
+  options.stop_after_s = 12;
+  const CopyResult r = copy(job, operations, options, diagnostics);
+  const LoadFigures& load = r.operations.at(0).load;
+  EXPECT_EQ(load.over, 0u);
+  EXPECT_GT(load.max_N, 0.95 * load.target_N);
+  EXPECT_GT(load.counted, 1000u);
+  EXPECT_GT(static_cast<double>(load.within), 0.95 * static_cast<double>(load.counted));
+  ASSERT_FALSE(r.operations[0].changes.empty());
+  for (std::size_t k = 1; k < r.operations[0].changes.size(); ++k)
+    EXPECT_GE(r.operations[0].changes[k].t_s, r.operations[0].changes[k - 1].t_s);
+}
+
 }  // namespace
 }  // namespace camber::copymill
