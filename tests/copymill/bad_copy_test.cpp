@@ -43,11 +43,25 @@ TEST(BadCopy, DepthsOfZero) {
 }
 
 TEST(BadCopy, MeshThatIsOpen) {
-  EXPECT_EQ(said({.operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\n")},
-                 "solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 -15\nvertex 60 0 0\nvertex 0 45 0\nendloop\n"
-                 "endfacet\nendsolid\n"),
-            "part.stl: error: the mesh is not closed: 3 of its edges have no second triangle, and the cutter could fall "
-            "through; a closed one was expected [stl-open]\n");
+  EXPECT_EQ(
+      said({.operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\n")},
+           "solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 -15\nvertex 60 0 0\nvertex 0 45 0\nendloop\n"
+           "endfacet\nendsolid\n"),
+      "part.stl: error: the mesh is not closed: 3 of its edges have no second triangle, and the cutter could fall "
+      "through; a closed one was expected [stl-open]\n");
+}
+
+TEST(BadCopy, ToolLargerThanEveryPocket) {
+  const std::string out =
+      said({.part = "slot",
+            .stock = "box_mm = [[0, 0, -12], [60, 30, 0]]",
+            .operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\nallowance_mm = 2.5\n")});
+  EXPECT_EQ(out.substr(0, 9), "job.toml:");
+  EXPECT_NE(
+      out.find("error: T1 with a diameter of 8 mm and an allowance of 2.5 mm has no place in the region; a tool that "
+               "fits between the part's walls was expected [tool-too-large]\n"),
+      std::string::npos)
+      << out;
 }
 
 }  // namespace
