@@ -24,6 +24,7 @@ PlannedOperation operation_of(const plan::Operation& o, std::size_t setup) {
           .radial_mm = c.radial_mm,
           .axial_mm = c.axial_mm,
           .nominal_time_s = o.nominal_time_s,
+          .time_s = o.time_s,
           .limit = c.limit,
           .force_N = c.loads.force_N,
           .form_error_um = 1000 * c.loads.form_error_mm,
@@ -39,8 +40,9 @@ PlanResult result_of(const plan::PlanResult& planned) {
   const plan::SetupPlan& first = planned.setups.front();
   for (std::size_t i = 0; i < first.plans.size(); ++i) {
     const plan::PlannedDivision& p = first.plans[i];
-    out.alternatives.push_back({std::string(plan::to_string(p.division)), p.nominal_time_s, p.tool_changes,
-                                1000 * p.form_error_p95_mm, p.complete(), i == first.best});
+    out.alternatives.push_back({std::string(plan::to_string(p.division)), p.nominal_time_s,
+                                p.program ? p.program->time_s : 0, p.tool_changes, 1000 * p.form_error_p95_mm,
+                                p.complete(), i == first.best});
   }
   for (std::size_t s = 0; s < planned.setups.size(); ++s)
     for (const plan::Operation& o : planned.setups[s].plans[planned.setups[s].best].operations)
@@ -57,7 +59,8 @@ PlanResult v0::plan(const std::string& path, const PlanOptions& options, const R
   run.execute([&] {
     Diagnostics found;
     const plan::PlanInput input = plan::read_plan_input(path, found);
-    const api::PlannedFiles done = api::plan_job(input, options.operations, found);
+    const api::PlannedFiles done =
+        api::plan_job(input, {.operations = options.operations, .programs = options.programs}, found);
     run.settle(found);
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result = result_of(done.result);

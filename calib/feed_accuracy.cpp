@@ -204,7 +204,7 @@ std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Mac
     }
     if (line.length <= 0) continue;
     const auto meaning = line.turn->feed;
-    const bool inverse = meaning == feedmodel::FeedMeaning::inverse;
+    const bool inverse = meaning == kinematics::FeedMeaning::inverse;
     if (last && meaning == last->turn->feed && (inverse || move.feed_mm_per_s == last_f))
       parts.back().line_last = move.block + 1;
     else

@@ -1,8 +1,8 @@
 #include "calib/rotary_lines.h"
 
 #include "base/units.h"
-#include "feedmodel/feed_meaning.h"
 #include "feedmodel/move_turns.h"
+#include "kinematics/feed_meaning.h"
 
 namespace camber::calib {
 namespace {
@@ -19,7 +19,7 @@ LineFeed line_feed(const nc::Interpretation& program, const machine::Machine& ma
   line.turns = turn_deg > 0;
   line.cutting = move.kind != nc::MoveKind::rapid;
   if (line.cutting)
-    line.feed_per_s = feedmodel::feed_along_path(program, move, turn_rad, turns.now().g93_time_s, machine.control);
+    line.feed_per_s = kinematics::feed_along_path(program, move, turn_rad, turns.now().g93_time_s, machine.control);
   line.length = line.rotary_alone ? turn_deg : linear_mm;
   for (int i = 0; i < 3; ++i)
     if (turn_rad[i] != 0)

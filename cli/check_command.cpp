@@ -22,7 +22,7 @@ namespace {
 struct Checked {
   nc::Summary summary;
   CheckPicture picture;  ///< where a page is asked for
-  std::vector<feedmodel::FeedMeaningUse> feed_meanings{};
+  std::vector<kinematics::FeedMeaningUse> feed_meanings{};
   std::optional<double> memory_bytes{};  ///< where a job is given
 };
 
@@ -109,7 +109,7 @@ std::string tool_table(const std::vector<nc::ToolUse>& tools) {
 
 std::string check_report(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics,
                          std::optional<double> memory_bytes,
-                         const std::vector<feedmodel::FeedMeaningUse>& feed_meanings) {
+                         const std::vector<kinematics::FeedMeaningUse>& feed_meanings) {
   std::string out = fmt::format("{}: {} blocks, {} of them with words, {}\n", program, s.blocks, s.blocks_with_words,
                                 api::unit_text(s));
   out += fmt::format("moves     {} rapid, {} linear, {} arc, {} dwell", s.rapids, s.lines, s.arcs, s.dwells);
@@ -127,9 +127,9 @@ std::string check_report(const std::string& program, const nc::Summary& s, const
   out += fmt::format("\ncutting   {:.1f} mm\n        {}\n", s.cutting_length_mm, extents_text(s.cutting));
   out += fmt::format("rapid     {:.1f} mm\n        {}\n", s.rapid_length_mm, extents_text(s.rapid));
   if (s.dwells > 0) out += fmt::format("dwell     {} s\n", format_trimmed(s.dwell_s, 3));
-  for (const feedmodel::FeedMeaningUse& use : feed_meanings)
+  for (const kinematics::FeedMeaningUse& use : feed_meanings)
     out += fmt::format("F         {}: {} block{}, first in line {}\n",
-                       feedmodel::kFeedMeaningTexts[static_cast<std::size_t>(use.meaning)].text, use.moves,
+                       kinematics::kFeedMeaningTexts[static_cast<std::size_t>(use.meaning)].text, use.moves,
                        use.moves == 1 ? "" : "s", use.first_line);
   out += tool_table(s.tools);
   if (memory_bytes) out += fmt::format("memory    about {:.2g} GB for predict\n", *memory_bytes / 1e9);

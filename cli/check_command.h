@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/diagnostics.h"
-#include "feedmodel/feed_meaning.h"
+#include "kinematics/feed_meaning.h"
 #include "nc/interpreter.h"
 #include "nc/summary.h"
 
@@ -34,6 +34,6 @@ int run_explain_kinematics(const CheckCommand& command, Diagnostics& diagnostics
 /// The report as it is printed.
 std::string check_report(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics,
                          std::optional<double> memory_bytes = {},
-                         const std::vector<feedmodel::FeedMeaningUse>& feed_meanings = {});
+                         const std::vector<kinematics::FeedMeaningUse>& feed_meanings = {});
 
 }  // namespace camber::cli

@@ -25,9 +25,8 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"init", "camber init finish.nc --machine machine.toml --material S55C -o first_job.toml"},
     {"predict",
      "camber predict job.toml -o predicted\n"
-     "  camber predict job.toml -o in_sections --sections 4\n"
      "  camber predict job.toml -o parts --sections 4 --section 1 --stage sweep"},
-    {"merge", "camber merge in_sections"},
+    {"merge", "camber merge parts"},
     {"compensate",
      "camber compensate job.toml -o finish_compensated.nc --report report.html --json figures.json\n"
      "  camber compensate --verify finish_compensated.nc"},

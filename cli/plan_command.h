@@ -1,5 +1,5 @@
 #pragma once
-// camber plan PLAN.toml -o DIR [--operations T.toml] [--json R.json]
+// camber plan PLAN.toml -o DIR [--operations T.toml] [--programs] [--json R.json]
 #include <string>
 
 #include "cli/command_line.h"
@@ -12,6 +12,7 @@ struct PlanArguments {
   std::string output_folder;
   std::string operations;  ///< an edited table; empty: none
   std::string json;        ///< besides DIR/plan.json; empty: none
+  bool programs = false;
   bool cases_error = false;
   bool learn = false;
 };

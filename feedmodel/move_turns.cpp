@@ -25,7 +25,7 @@ Turn MoveTurns::base() const {
   turn.start_rad = now_.start_rad;
   turn.tip_control = state.tip_control != nc::TipControl::off;
   turn.tool_length_mm = state.tool_length_mm.value_or(0);
-  turn.feed = feed_meaning(program_, move, now_.end_rad - now_.start_rad, machine_.control);
+  turn.feed = kinematics::feed_meaning(program_, move, now_.end_rad - now_.start_rad, machine_.control);
   return turn;
 }
 

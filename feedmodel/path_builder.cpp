@@ -333,7 +333,7 @@ class Builder {
   double feed_of(const nc::Move& move) const {
     if (!turns_) return move.feed_mm_per_s;
     const kinematics::MoveJoints& now = turns_->now();
-    return feed_along_path(program_, move, now.end_rad - now.start_rad, now.g93_time_s, control_);
+    return kinematics::feed_along_path(program_, move, now.end_rad - now.start_rad, now.g93_time_s, control_);
   }
 
   void set_feed(Element& e, const nc::Move& move) const {

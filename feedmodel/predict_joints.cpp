@@ -110,13 +110,13 @@ class JointSampler {
     tip_mm_ = tip_mm;
     const double linear = velocity.linear_mm.norm(), turning = deg_from_rad(velocity.rotary_rad.norm());
     switch (turn_->feed) {
-      case FeedMeaning::degrees:
+      case kinematics::FeedMeaning::degrees:
         return turning;
-      case FeedMeaning::joints:
+      case kinematics::FeedMeaning::joints:
         return std::hypot(linear, turning);
-      case FeedMeaning::linear:
-      case FeedMeaning::tip:
-      case FeedMeaning::inverse:
+      case kinematics::FeedMeaning::linear:
+      case kinematics::FeedMeaning::tip:
+      case kinematics::FeedMeaning::inverse:
         break;
     }
     return turn_->tip_control ? tip_speed : linear;

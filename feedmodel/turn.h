@@ -1,7 +1,7 @@
 #pragma once
 // Rotary axes along a segment of a program that turns them.
 #include "base/geometry.h"
-#include "feedmodel/feed_meaning.h"
+#include "kinematics/feed_meaning.h"
 
 namespace camber::feedmodel {
 
@@ -22,7 +22,7 @@ struct Turn {
   Vec3 bend_mm = Vec3::Zero();
   bool tip_control = false;
   double tool_length_mm = 0;
-  FeedMeaning feed = FeedMeaning::linear;
+  kinematics::FeedMeaning feed = kinematics::FeedMeaning::linear;
 
   bool turns() const { return !rate.isZero(0) || !bend.isZero(0); }
   bool bent() const { return !bend.isZero(0) || !bend_mm.isZero(0); }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 
 #include "base/numbers.h"
 #include "base/units.h"
+#include "kinematics/feed_meaning.h"
 #include "kinematics/program_joints.h"
 
 namespace camber::kinematics {
@@ -152,18 +152,9 @@ class TravelCheck {
       if (worst[axis] > kTravelTolerance) over_[axis].add(m, value[axis], worst[axis]);
   }
 
-  /// Duration of a feed move at the programmed feed; nothing where it does not follow from the program alone.
-  std::optional<double> duration_s(const MoveJoints& now, const nc::Move& m) const {
-    if (m.kind != nc::MoveKind::linear && m.kind != nc::MoveKind::arc) return std::nullopt;
-    if (now.g93_time_s > 0) return now.g93_time_s;
-    const double length_mm = nc::length_mm(moves_, m);
-    if (length_mm <= 0 || m.feed_mm_per_s <= 0) return std::nullopt;
-    return length_mm / m.feed_mm_per_s;
-  }
-
   void look_at_speed(const MoveJoints& now, const nc::Move& m) {
-    if (!now.turns()) return;
-    const auto time_s = duration_s(now, m);
+    if (!now.turns() || (m.kind != nc::MoveKind::linear && m.kind != nc::MoveKind::arc)) return;
+    const auto time_s = programmed_time_s(moves_, m, now.end_rad - now.start_rad, now.g93_time_s, machine_.control);
     if (!time_s) return;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto index = static_cast<Eigen::Index>(i);

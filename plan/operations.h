@@ -29,6 +29,7 @@ struct Operation {
   double from_mm = 0, to_mm = 0;  ///< heights of the tip: lowest and highest
   double volume_mm3 = 0;          ///< that it removes
   double nominal_time_s = 0;      ///< volume / removal rate
+  double time_s = 0;              ///< of its program, by the feed model; 0: none was made
   double surface_mm2 = 0;         ///< of the part that it finishes
   std::vector<std::string> notes{};
 };
@@ -39,6 +40,14 @@ struct Unmachined {
   std::string what, reason;
 };
 
+/// The program of a plan, and the cut along it.
+struct ProgramFigures {
+  double time_s = 0;  ///< by the feed model, with tool changes and spindle
+  double removed_mm3 = 0;
+  double left_p95_um = 0, left_max_um = 0;  ///< on the part, where tools can touch it
+  double gouge_um = 0;                      ///< of the stock's surface below the part's
+};
+
 /// One of the three plans.
 struct PlannedDivision {
   DivisionPlan division = DivisionPlan::largest;
@@ -47,8 +56,9 @@ struct PlannedDivision {
   std::vector<Operation> operations;
   std::vector<Unmachined> unmachined;
   int tool_changes = 0;
-  double nominal_time_s = 0;     ///< equation (3)
-  double form_error_p95_mm = 0;  ///< of the last operations at each surface, weighted by area
+  double nominal_time_s = 0;              ///< equation (3)
+  std::optional<ProgramFigures> program;  ///< not given: none was made
+  double form_error_p95_mm = 0;           ///< of the last operations at each surface, weighted by area
   bool complete() const { return unmachined.empty(); }
 };
 

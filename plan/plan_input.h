@@ -54,6 +54,7 @@ struct PlanInput {
   bool fast = false;
   double allowance_mm = 0.3;  ///< that roughing leaves where finishing follows
   double scallop_mm = 0.01;   ///< of free-form faces
+  bool coolant = false;       ///< M8 and M9 in the programs
   double tool_change_s = 0;
   PlanLimits limits;
   machine::Simulation simulation;

@@ -103,6 +103,7 @@ void read_work(TomlTable table, PlanInput& plan) {
   plan.fast = table.choice("machining", kMachiningWords, 0) == 1;
   plan.allowance_mm = table.number("allowance_mm", kPositive, plan.allowance_mm);
   plan.scallop_mm = table.number("scallop_mm", kPositive, plan.scallop_mm);
+  plan.coolant = table.boolean("coolant", false);
   table.finish();
 }
 

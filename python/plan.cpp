@@ -18,11 +18,12 @@ namespace {
 
 using Path = std::filesystem::path;
 
-camber::PlanResult make_plan(const Path& path, const std::optional<Path>& operations, const py::object& progress,
-                             bool strict, int threads) {
+camber::PlanResult make_plan(const Path& path, const std::optional<Path>& operations, bool programs,
+                             const py::object& progress, bool strict, int threads) {
   camber::PlanResult result;
   call({progress, strict, threads}, [&](const camber::RunOptions& run) {
-    result = camber::plan(path.string(), {.operations = operations ? operations->string() : std::string()}, run);
+    result = camber::plan(path.string(),
+                          {.operations = operations ? operations->string() : std::string(), .programs = programs}, run);
   });
   return result;
 }
@@ -41,6 +42,7 @@ void add_operation(py::module_& module) {
       .def_readonly("radial_mm", &PlannedOperation::radial_mm)
       .def_readonly("axial_mm", &PlannedOperation::axial_mm)
       .def_readonly("nominal_time_s", &PlannedOperation::nominal_time_s)
+      .def_readonly("time_s", &PlannedOperation::time_s)
       .def_readonly("limit", &PlannedOperation::limit)
       .def_readonly("force_N", &PlannedOperation::force_N)
       .def_readonly("form_error_um", &PlannedOperation::form_error_um)
@@ -56,6 +58,7 @@ void add_plan(py::module_& module) {
   py::class_<PlanAlternative>(module, "PlanAlternative")
       .def_readonly("division", &PlanAlternative::division)
       .def_readonly("nominal_time_s", &PlanAlternative::nominal_time_s)
+      .def_readonly("time_s", &PlanAlternative::time_s)
       .def_readonly("tool_changes", &PlanAlternative::tool_changes)
       .def_readonly("form_error_p95_um", &PlanAlternative::form_error_p95_um)
       .def_readonly("complete", &PlanAlternative::complete)
@@ -72,8 +75,8 @@ void add_plan(py::module_& module) {
       .def_readonly("operations", &PlanResult::operations)
       .def_readonly("removal_mm3", &PlanResult::removal_mm3)
       .def_readonly("files", &PlanResult::files);
-  module.def("plan", make_plan, "plan"_a, py::kw_only(), "operations"_a = py::none(), "progress"_a = py::none(),
-             "strict"_a = false, "threads"_a = 0,
+  module.def("plan", make_plan, "plan"_a, py::kw_only(), "operations"_a = py::none(), "programs"_a = false,
+             "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Operations, tools, conditions and order from the blank and the part of a plan.toml.");
 }
 

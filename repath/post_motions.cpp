@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "feedmodel/feed_meaning.h"
+#include "kinematics/feed_meaning.h"
 #include "kinematics/program_joints.h"
 
 namespace camber::repath {
@@ -178,11 +178,8 @@ class Collector {
   }
 
   double time_of(const nc::Move& m, const kinematics::MoveJoints& now) const {
-    constexpr double kShortMm = 1e-9;  // as feedmodel/feed_meaning.cpp
-    const Vec3 turn = now.end_rad - now.start_rad;
-    const double linear = nc::length_mm(moves_, m), length = linear < kShortMm ? deg_from_rad(turn.norm()) : linear;
-    const double speed = feedmodel::feed_along_path(moves_, m, turn, now.g93_time_s, machine_.control);
-    return speed > 0 ? length / speed : 0;
+    return kinematics::programmed_time_s(moves_, m, now.end_rad - now.start_rad, now.g93_time_s, machine_.control)
+        .value_or(0);
   }
 
   const nc::Program& program_;

@@ -14,7 +14,7 @@ namespace camber::repath {
 namespace {
 
 constexpr double kNoMotionS = 1e-3;   ///< of a block in inverse time that moves nothing
-constexpr double kNoLengthMm = 1e-9;  // as feedmodel/feed_meaning.cpp
+constexpr double kNoLengthMm = 1e-9;  // as kinematics/feed_meaning.cpp
 constexpr std::initializer_list<double> kTipControl{43.4, 43.5, 234};
 constexpr std::initializer_list<double> kFeedModes{93, 94, 95};
 constexpr std::initializer_list<double> kMotions{0, 1, 2, 3};
@@ -165,7 +165,7 @@ PostWriter::Number PostWriter::feed_of(const nc::Move& move, const PostPoint& po
   } else {
     const nc::Frame& frame = moves_.frame_of(move);
     const Vec3 way = frame.plain || frame.shift_only ? Vec3(at_ - before) : Vec3(frame.linear * (at_ - before));
-    const double length = way.norm();  // in the text's unit, as feedmodel/feed_meaning.cpp counts it
+    const double length = way.norm();  // in the text's unit, as kinematics/feed_meaning.cpp counts it
     const double length_mm = length * unit_mm(state), deg = turn_deg.norm();
     if (length_mm < kNoLengthMm)
       value = 60 * deg / point.time_s;

@@ -112,13 +112,13 @@ TextTable plans_table(const SetupPlan& s) {
 }
 
 TextTable operations_table(const plan::PlanInput& input, const SetupPlan& s) {
-  TextTable table{
-      "Operations of the plan that is taken",
-      {"", "feature", "kind", "tool", "pattern", "S", "F", "RD", "AD", "time, s", "limit", "N", "um", "W", "notes"},
-      {},
-      "S rpm, F mm/min, radial and axial depth mm. N, um, W: lateral force, deflection across the wall and "
-      "power of a straight cut at these conditions. Limit: what the conditions were reduced for; cases: "
-      "nothing."};
+  TextTable table{"Operations of the plan that is taken",
+                  {"", "feature", "kind", "tool", "pattern", "S", "F", "RD", "AD", "time (4), s", "program, s", "limit",
+                   "N", "um", "W", "notes"},
+                  {},
+                  "S rpm, F mm/min, radial and axial depth mm. N, um, W: lateral force, deflection across the wall and "
+                  "power of a straight cut at these conditions. Limit: what the conditions were reduced for; cases: "
+                  "nothing."};
   const PlannedDivision& p = s.plans[s.best];
   for (std::size_t i = 0; i < p.operations.size(); ++i) {
     const plan::Operation& o = p.operations[i];
@@ -132,8 +132,9 @@ TextTable operations_table(const plan::PlanInput& input, const SetupPlan& s) {
          fmt::format("T{} {} {}", o.tool, to_string(t.use), format_trimmed(t.tool.diameter_mm, 3)),
          std::string(plan::kPatterns[static_cast<std::size_t>(o.pattern)]), fmt::format("{:.0f}", c.spindle_rpm),
          fmt::format("{:.0f}", c.feed_mm_per_min), format_trimmed(c.radial_mm, 2), format_trimmed(c.axial_mm, 2),
-         fmt::format("{:.1f}", o.nominal_time_s), c.limit, fmt::format("{:.0f}", c.loads.force_N),
-         fmt::format("{:.1f}", 1000 * c.loads.form_error_mm), fmt::format("{:.0f}", c.loads.power_W), notes});
+         fmt::format("{:.1f}", o.nominal_time_s), o.time_s > 0 ? fmt::format("{:.1f}", o.time_s) : "-", c.limit,
+         fmt::format("{:.0f}", c.loads.force_N), fmt::format("{:.1f}", 1000 * c.loads.form_error_mm),
+         fmt::format("{:.0f}", c.loads.power_W), notes});
   }
   return table;
 }

@@ -43,6 +43,7 @@ ordered_json operation_json(const Operation& o) {
                  {"deflection_um", 1000 * c.loads.deflection_mm},
                  {"form_error_um", 1000 * c.loads.form_error_mm},
                  {"power_W", c.loads.power_W}};
+  if (o.time_s > 0) j["time_s"] = o.time_s;
   j["notes"] = o.notes;
   return j;
 }
@@ -60,6 +61,12 @@ ordered_json plan_row(const PlannedDivision& p) {
   ordered_json j{{"division", plan::to_string(p.division)}, {"nominal_time_s", p.nominal_time_s},
                  {"tool_changes", p.tool_changes},          {"form_error_p95_um", 1000 * p.form_error_p95_mm},
                  {"primitives", p.primitives.size()},       {"complete", p.complete()}};
+  if (p.program) {
+    j["time_s"] = p.program->time_s;
+    j["removed_mm3"] = p.program->removed_mm3;
+    j["left_um"] = {{"p95", p.program->left_p95_um}, {"max", p.program->left_max_um}};
+    j["gouge_um"] = p.program->gouge_um;
+  }
   j["unmachined"] = ordered_json::array();
   for (const plan::Unmachined& u : p.unmachined) j["unmachined"].push_back({{"what", u.what}, {"reason", u.reason}});
   return j;
@@ -147,6 +154,14 @@ std::string plan_text(const plan::PlanInput& input, const plan::PlanResult& resu
         out += fmt::format("operation {}, {}: {}\n", i + 1, size_text(s.plans[s.best].operations[i], s.plans[s.best]),
                            note);
   }
+  for (const SetupPlan& s : result.setups)
+    if (const auto& program = s.plans[s.best].program)
+      out += fmt::format(
+          "program: {:.1f} s by the feed model, {:.1f} s by equation (3) ({:+.0f} %); left on the part {:.0f} um "
+          "(p95), "
+          "gouge {:.1f} um\n",
+          program->time_s, s.plans[s.best].nominal_time_s, 100 * (s.plans[s.best].nominal_time_s / program->time_s - 1),
+          program->left_p95_um, program->gouge_um);
   return out + fmt::format("computed in {:.1f} s\n", compute_s);
 }
 

@@ -113,13 +113,13 @@ CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptio
   if (job) checked.memory_bytes = add_what_predict_says(*job, text.source.name(), found);
   found.throw_if_errors();
   checked.summary = nc::summarize(text, checked.moves);
-  if (machine) checked.feed_meanings = feedmodel::feed_meanings(checked.moves, *machine);
+  if (machine) checked.feed_meanings = kinematics::feed_meanings(checked.moves, *machine);
   return checked;
 }
 
 std::string check_json(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics,
                        std::optional<double> memory_bytes,
-                       const std::vector<feedmodel::FeedMeaningUse>& feed_meanings) {
+                       const std::vector<kinematics::FeedMeaningUse>& feed_meanings) {
   ordered_json tools = ordered_json::array(), found = ordered_json::array();
   for (const auto& t : s.tools) tools.push_back(tool_json(t));
   for (const auto& d : diagnostics.all()) found.push_back(diagnostic_json(d));
@@ -148,9 +148,9 @@ std::string check_json(const std::string& program, const nc::Summary& s, const D
                          {"tools", tools},
                          {"warnings", diagnostics.warnings()},
                          {"diagnostics", found}};
-  for (const feedmodel::FeedMeaningUse& use : feed_meanings)
+  for (const kinematics::FeedMeaningUse& use : feed_meanings)
     report["feed_meanings"].push_back(
-        {{"meaning", feedmodel::kFeedMeaningTexts[static_cast<std::size_t>(use.meaning)].name},
+        {{"meaning", kinematics::kFeedMeaningTexts[static_cast<std::size_t>(use.meaning)].name},
          {"moves", use.moves},
          {"first_line", use.first_line}});
   if (memory_bytes) report["memory_GB"] = *memory_bytes / 1e9;

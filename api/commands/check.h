@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "feedmodel/feed_meaning.h"
+#include "kinematics/feed_meaning.h"
 #include "machine/job.h"
 #include "nc/interpreter.h"
 #include "nc/summary.h"
@@ -16,8 +16,8 @@ namespace camber::api {
 struct CheckedProgram {
   nc::Interpretation moves;
   nc::Summary summary;
-  std::vector<feedmodel::FeedMeaningUse> feed_meanings{};  ///< of a program that turns rotary axes of the machine
-  std::optional<double> memory_bytes{};                    ///< that predict needs, about; of a job alone
+  std::vector<kinematics::FeedMeaningUse> feed_meanings{};  ///< of a program that turns rotary axes of the machine
+  std::optional<double> memory_bytes{};                     ///< that predict needs, about; of a job alone
 };
 
 /// Called with a program that could be read, before it is checked against machine and job.
@@ -39,6 +39,6 @@ std::string unit_text(const nc::Summary& summary);
 /// The figures of a report as JSON text, with a line end.
 std::string check_json(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics,
                        std::optional<double> memory_bytes = {},
-                       const std::vector<feedmodel::FeedMeaningUse>& feed_meanings = {});
+                       const std::vector<kinematics::FeedMeaningUse>& feed_meanings = {});
 
 }  // namespace camber::api

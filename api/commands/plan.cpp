@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "plan/plan_table.h"
+#include "plan/programs.h"
 
 namespace camber::api {
 namespace {
@@ -29,6 +31,55 @@ std::vector<std::pair<std::string, std::string>> files_of(const plan::PlanInput&
   return out;
 }
 
+std::string absolute(const std::string& path) {
+  return path.empty() ? path : std::filesystem::absolute(path).lexically_normal().string();
+}
+
+/// True where blank and part lie on the machine as in their files.
+bool lies_as_given(const plan::PlanInput& input, const plan::SetupPlan& setup) {
+  return setup.setup.turn.isIdentity() && input.mm_per_unit == 1;
+}
+
+/// The job of camber copy; solids that are turned or scaled are files beside it.
+void add_copy_job(const plan::PlanInput& input, const plan::SetupPlan& setup, const std::string& end,
+                  std::vector<std::pair<std::string, std::string>>& files) {
+  const bool as_given = lies_as_given(input, setup);
+  const std::string part = fmt::format("part{}.stl", end), blank = fmt::format("blank{}.stl", end);
+  if (!as_given) {
+    files.emplace_back(part, plan::stl_text(setup.part));
+    files.emplace_back(blank, plan::stl_text(setup.blank));
+  }
+  machine::Job job = plan::copy_job(input, as_given ? absolute(input.part_path) : part, as_given ? "" : blank);
+  job.machine_path = absolute(job.machine_path);
+  job.program = fmt::format("program{}.nc", end);
+  if (as_given) job.stock.mesh = absolute(job.stock.mesh), job.stock.vdb = absolute(job.stock.vdb);
+  files.emplace_back(fmt::format("job{}.toml", end),
+                     plan::copy_job_toml(job, plan::copy_operations(input, setup.plans[setup.best])));
+}
+
+/// program.nc, and one an operation, of a plan that is taken; its times go to the plan.
+void add_programs(const plan::PlanInput& input, plan::SetupPlan& setup, const std::string& end,
+                  Diagnostics& diagnostics, std::vector<std::pair<std::string, std::string>>& files) {
+  if (!lies_as_given(input, setup)) {
+    diagnostics.add({Severity::warning,
+                     {input.path, 0, 0},
+                     fmt::format("{} is turned or in inches: its programs are made by camber copy from job{}.toml",
+                                 setup.setup.name, end),
+                     "plan-programs",
+                     {}});
+    return;
+  }
+  plan::PlannedDivision& plan = setup.plans[setup.best];
+  const plan::PlanProgram made = plan::make_program(input, plan::copy_job(input, input.part_path, ""),
+                                                    plan::copy_operations(input, plan), diagnostics);
+  plan.program = made.figures;
+  for (std::size_t i = 0; i < plan.operations.size(); ++i) {
+    plan.operations[i].time_s = made.times_s[i];
+    if (!made.each[i].empty()) files.emplace_back(fmt::format("operation{}-{:02}.nc", end, i + 1), made.each[i]);
+  }
+  files.emplace_back(fmt::format("program{}.nc", end), made.whole);
+}
+
 bool same_conditions(const plan::Case& a, const plan::Case& b) {
   constexpr double kSame = 1e-3;
   return plan::to_toml(plan::Case{a.content}) == plan::to_toml(plan::Case{b.content}) &&
@@ -38,10 +89,15 @@ bool same_conditions(const plan::Case& a, const plan::Case& b) {
 
 }  // namespace
 
-PlannedFiles plan_job(const plan::PlanInput& input, const std::string& operations, Diagnostics& diagnostics) {
+PlannedFiles plan_job(const plan::PlanInput& input, const PlanJobOptions& options, Diagnostics& diagnostics) {
   PlannedFiles out{plan::make_plan(input, diagnostics), {}};
-  if (!operations.empty()) plan::read_operations(operations, input, out.result.setups.front(), diagnostics);
+  if (!options.operations.empty())
+    plan::read_operations(options.operations, input, out.result.setups.front(), diagnostics);
   out.files = files_of(input, out.result);
+  for (std::size_t i = 0; i < out.result.setups.size(); ++i) {
+    add_copy_job(input, out.result.setups[i], suffix(out.result, i), out.files);
+    if (options.programs) add_programs(input, out.result.setups[i], suffix(out.result, i), diagnostics, out.files);
+  }
   return out;
 }
 

@@ -10,12 +10,17 @@ namespace camber::api {
 
 struct PlannedFiles {
   plan::PlanResult result;
-  /// Names within the output folder, and contents: operations.toml, plan-*.toml, part.stl ...
+  /// Names within the output folder, and contents: operations.toml, plan-*.toml, job.toml, program.nc ...
   std::vector<std::pair<std::string, std::string>> files;
 };
 
-/// `operations`: an edited table of operations; empty: none. Throws InputError. Writes nothing.
-PlannedFiles plan_job(const plan::PlanInput& input, const std::string& operations, Diagnostics& diagnostics);
+struct PlanJobOptions {
+  std::string operations{};  ///< an edited table of operations; empty: none
+  bool programs = false;     ///< also program.nc and one an operation, of the plans that are taken
+};
+
+/// Throws InputError. Writes nothing.
+PlannedFiles plan_job(const plan::PlanInput& input, const PlanJobOptions& options, Diagnostics& diagnostics);
 
 /// The case base's text with the operations of a table as new cases; those that are there already are left out.
 struct LearnedCases {

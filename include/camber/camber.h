@@ -10,6 +10,7 @@
 #include "camber/job.h"
 #include "camber/machine.h"
 #include "camber/plan.h"
+#include "camber/post.h"
 #include "camber/predict.h"
 #include "camber/program.h"
 #include "camber/run.h"

@@ -12,6 +12,7 @@ inline namespace v0 {
 
 struct PlanOptions {
   std::string operations{};  ///< file: an edited table of operations to go on from; empty: none
+  bool programs = false;     ///< also the programs, by copy milling, and their times
 };
 
 struct PlannedOperation {
@@ -23,6 +24,7 @@ struct PlannedOperation {
   std::string mode{};  ///< "scanning-line", "contour-line", "drilling"
   double spindle_rpm = 0, feed_mm_per_min = 0, radial_mm = 0, axial_mm = 0;
   double nominal_time_s = 0;  ///< volume over removal rate
+  double time_s = 0;          ///< of its program; 0: none was made
   std::string limit{};        ///< what bounds the conditions; "cases": nothing but them
   double force_N = 0, form_error_um = 0, power_W = 0;
   std::vector<std::string> notes{};
@@ -31,6 +33,7 @@ struct PlannedOperation {
 struct PlanAlternative {
   std::string division{};  ///< "yz", "zx", "largest"
   double nominal_time_s = 0;
+  double time_s = 0;  ///< of its program; 0: none was made
   int tool_changes = 0;
   double form_error_p95_um = 0;
   bool complete = true;

@@ -17,7 +17,8 @@ using tests::TempFolder;
 
 const std::string kPlan =
     "part = \"part.stl\"\nmachine = \"machine.toml\"\ncase_base = \"cases.toml\"\n[blank]\n"
-    "box_mm = [[0, 0, 0], [60, 40, 22]]\n[material]\npreset = \"FC250\"\nkrc_ratio = 0.4\n[work]\nmaterial = \"FC250\"\n"
+    "box_mm = [[0, 0, 0], [60, 40, 22]]\n[material]\npreset = \"FC250\"\nkrc_ratio = 0.4\n[work]\nmaterial = "
+    "\"FC250\"\n"
     "[tool.1]\ntype = \"flat\"\ndiameter_mm = 4\nflutes = 4\noverhang_mm = 30\n"
     "[tool.2]\ntype = \"drill\"\ndiameter_mm = 8\nflutes = 2\noverhang_mm = 60\n";
 const std::string kCases =
@@ -51,6 +52,30 @@ TEST(PlanCommand, WritesTablesPageAndFigures) {
   const std::string page = tests::file_text(folder / "out/report.html");
   EXPECT_NE(page.find("plan-data"), std::string::npos);
   EXPECT_NE(page.find("closed pocket"), std::string::npos);
+}
+
+TEST(PlanCommand, MakesProgramsThatCutThePart) {
+  const TempFolder folder;
+  const CamberRun run = plan(folder, 8, " -o out --programs");
+  ASSERT_EQ(run.status, 0) << run.err;
+  for (const char* file : {"job.toml", "program.nc", "operation-01.nc", "operation-02.nc", "operation-03.nc"})
+    EXPECT_TRUE(std::filesystem::exists(folder / ("out/" + std::string(file)))) << file;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "out/plan.json"));
+  const auto& taken = json.at("plans").at(json.at("setups").at(0).at("best").get<std::size_t>());
+  double sum = 0;
+  for (const auto& o : json.at("operations")) {
+    EXPECT_GT(o.at("time_s").get<double>(), 0);
+    sum += o.at("time_s").get<double>();
+  }
+  EXPECT_NEAR(taken.at("time_s").get<double>(), sum, 0.2 * sum);
+  EXPECT_LT(taken.at("gouge_um"), 20);  // a tenth of a voxel
+  // Sharp inner corners of the pocket stay; the rest of the removal volume goes.
+  EXPECT_NEAR(taken.at("removed_mm3").get<double>(), json.at("removal_mm3").get<double>(),
+              0.02 * json.at("removal_mm3").get<double>());
+  const CamberRun check = run_camber(folder, "check out/program.nc");
+  EXPECT_EQ(check.status, 0) << check.err;
+  const CamberRun copy = run_camber(folder, "copy out/job.toml -o out/copied.nc --effective-config");
+  EXPECT_EQ(copy.status, 0) << copy.err;
 }
 
 TEST(PlanCommand, WritesTheSameTwice) {

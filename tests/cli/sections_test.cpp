@@ -1,5 +1,8 @@
 // camber predict --sections and camber merge: the same bytes whoever computes which part, and parts that are refused.
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include <gtest/gtest.h>

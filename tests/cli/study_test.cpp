@@ -1,4 +1,5 @@
 // camber study from the command line: what it refuses, word for word, and what it writes and does not write again.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>

@@ -178,6 +178,13 @@ TEST(TravelCheck, SaysWhereTheFeedAsksTooMuchOfARotaryAxis) {
   EXPECT_EQ(said(start + "G1 X2 C150. F1200\n", m), warning);
   EXPECT_EQ(said(start + "G93 G1 X2 C150. F600.\n", m), warning);
   EXPECT_EQ(said(start + "G93 G1 X2 C150. F60.\n", m), "");
+  // Without tool-centre-point control: of all axes together, 150.01 at 20 /s; or of X alone; degrees of C alone.
+  const std::string joints = "G10 L2 P1 X0 Y0 Z-300\nG54 G0 X0 Y0 Z50\n\n";
+  EXPECT_EQ(said(joints + "G1 X2 C150. F1200\n", m), "");
+  EXPECT_NE(said(joints + "G1 X2 C150. F20000\n", m).find("asks up to 19998 degrees/min of C"), std::string::npos);
+  EXPECT_NE(said(joints + "G1 C150. F20000\n", m).find("asks up to 20000 degrees/min of C"), std::string::npos);
+  m.control.rotary_feed = machine::RotaryFeed::linear;
+  EXPECT_EQ(said(joints + "G1 X2 C150. F1200\n", m), warning);
 }
 
 TEST(TravelCheck, SaysNothingOfUprightProgramsWithoutOffsets) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/diagnostics.h"
+#include "kinematics/machine_moves.h"
 #include "kinematics/pose_track.h"
 #include "kinematics/program_joints.h"
 #include "kinematics/rotary_options.h"
@@ -56,7 +57,7 @@ std::string random_program(std::mt19937& random) {
 }
 
 struct Counts {
-  std::size_t programs = 0, joined = 0, tilted = 0, dynamic = 0;
+  std::size_t programs = 0, joined = 0, tilted = 0, dynamic = 0, placed = 0;
 };
 
 /// Where both ends of two moves are known, the second starts where the first ends, unless the tool length changes.
@@ -78,6 +79,24 @@ void expect_no_jump(const machine::Machine& machine, const nc::Interpretation& m
     known = now.linear_known;
     if (known) last = joints.at(1);
     if (move.kind != nc::MoveKind::dwell) length_mm = length;
+  }
+}
+
+/// place_moves changes how moves are written, not where the joints are.
+void expect_same_joints_when_placed(const machine::Machine& machine, const nc::Interpretation& named, Counts& counts) {
+  nc::Interpretation placed = named;
+  place_moves(placed, machine);
+  ProgramJoints a(machine, named), b(machine, placed);
+  while (!a.done()) {
+    const MoveJoints of_a = a.next(), of_b = b.next();
+    if (!of_a.linear_known || !of_a.start_known) continue;
+    const nc::Move& move = placed.moves[a.index()];
+    ASSERT_TRUE(of_b.linear_known && of_b.start_known && !move.reference) << "line " << move.block + 1;
+    for (const double u : {0.0, 0.4, 1.0}) {
+      ASSERT_LE((a.at(u).linear_mm - b.at(u).linear_mm).norm(), kJumpMm) << "line " << move.block + 1 << " at " << u;
+      ASSERT_LE((a.at(u).rotary_rad - b.at(u).rotary_rad).norm(), kJumpMm) << "line " << move.block + 1;
+    }
+    ++counts.placed;
   }
 }
 
@@ -107,6 +126,7 @@ void run(int seed, const machine::Machine& machine, Counts& counts) {
   counts.tilted += summary.tilted_frame;
   counts.dynamic += summary.dynamic_offset;
   expect_no_jump(machine, moves, counts);
+  if (travel.errors() == 0) expect_same_joints_when_placed(machine, moves, counts);
   const PoseTrack track = programmed_track(machine, moves);
   for (const PoseSample& s : track.samples) ASSERT_TRUE(s.joints.linear_mm.allFinite() && s.pose.tip_mm.allFinite());
 }
@@ -121,6 +141,7 @@ TEST(RandomPrograms, TheMachineGoesOnFromWhereItIs) {
   EXPECT_GT(counts.joined, 500U);
   EXPECT_GT(counts.tilted, 200U);
   EXPECT_GT(counts.dynamic, 5U);
+  EXPECT_GT(counts.placed, 500U);
 }
 
 }  // namespace

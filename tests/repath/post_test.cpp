@@ -10,7 +10,7 @@
 
 #include "base/units.h"
 #include "feedmodel/control_options.h"
-#include "feedmodel/feed_meaning.h"
+#include "kinematics/feed_meaning.h"
 #include "kinematics/program_joints.h"
 #include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
@@ -78,7 +78,7 @@ double commanded_s(const Read& r, const machine::Machine& machine) {
     if (m.kind != nc::MoveKind::linear && m.kind != nc::MoveKind::arc) continue;
     const Vec3 turn = now.end_rad - now.start_rad;
     const double linear = nc::length_mm(r.moves, m), length = linear < 1e-9 ? deg_from_rad(turn.norm()) : linear;
-    if (length > 0) sum += length / feedmodel::feed_along_path(r.moves, m, turn, now.g93_time_s, machine.control);
+    if (length > 0) sum += length / kinematics::feed_along_path(r.moves, m, turn, now.g93_time_s, machine.control);
   }
   return sum;
 }

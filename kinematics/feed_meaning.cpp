@@ -1,11 +1,11 @@
-#include "feedmodel/feed_meaning.h"
+#include "kinematics/feed_meaning.h"
 
 #include <cmath>
 
 #include "base/units.h"
 #include "kinematics/program_joints.h"
 
-namespace camber::feedmodel {
+namespace camber::kinematics {
 namespace {
 
 constexpr double kNoLengthMm = 1e-9;
@@ -41,12 +41,21 @@ double feed_along_path(const nc::Interpretation& program, const nc::Move& move, 
   return move.feed_mm_per_s;
 }
 
+std::optional<double> programmed_time_s(const nc::Interpretation& program, const nc::Move& move, const Vec3& turn_rad,
+                                        double inverse_time_s, const machine::Control& control) {
+  const double linear_mm = nc::length_mm(program, move);
+  const double length = linear_mm < kNoLengthMm ? deg_from_rad(turn_rad.norm()) : linear_mm;
+  const double speed = feed_along_path(program, move, turn_rad, inverse_time_s, control);
+  if (length <= 0 || speed <= 0) return std::nullopt;
+  return length / speed;
+}
+
 std::vector<FeedMeaningUse> feed_meanings(const nc::Interpretation& program, const machine::Machine& machine) {
   if (!machine.kinematics.given() || program.rotary.empty()) return {};
   std::array<FeedMeaningUse, kFeedMeaningTexts.size()> uses;
-  kinematics::ProgramJoints joints(machine, program);
+  ProgramJoints joints(machine, program);
   while (!joints.done()) {
-    const kinematics::MoveJoints& now = joints.next();
+    const MoveJoints& now = joints.next();
     const nc::Move& move = program.moves[joints.index()];
     if (move.kind != nc::MoveKind::linear && move.kind != nc::MoveKind::arc) continue;
     const FeedMeaning meaning = feed_meaning(program, move, now.end_rad - now.start_rad, machine.control);
@@ -60,4 +69,4 @@ std::vector<FeedMeaningUse> feed_meanings(const nc::Interpretation& program, con
   return out;
 }
 
-}  // namespace camber::feedmodel
+}  // namespace camber::kinematics

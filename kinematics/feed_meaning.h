@@ -3,13 +3,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "machine/machine.h"
 #include "nc/move.h"
 
-namespace camber::feedmodel {
+namespace camber::kinematics {
 
 enum class FeedMeaning : std::uint8_t {
   linear,   ///< mm/min along X Y Z; rotary axes come along
@@ -42,6 +43,10 @@ FeedMeaning feed_meaning(const nc::Interpretation& program, const nc::Move& move
 double feed_along_path(const nc::Interpretation& program, const nc::Move& move, const Vec3& turn_rad,
                        double inverse_time_s, const machine::Control& control);
 
+/// How long a feed move takes at the speed that F asks for; nothing where nothing moves or F is not given.
+std::optional<double> programmed_time_s(const nc::Interpretation& program, const nc::Move& move, const Vec3& turn_rad,
+                                        double inverse_time_s, const machine::Control& control);
+
 /// How many feed moves have a meaning, and the line of the first.
 struct FeedMeaningUse {
   FeedMeaning meaning = FeedMeaning::linear;
@@ -53,4 +58,4 @@ struct FeedMeaningUse {
 /// [kinematics].
 std::vector<FeedMeaningUse> feed_meanings(const nc::Interpretation& program, const machine::Machine& machine);
 
-}  // namespace camber::feedmodel
+}  // namespace camber::kinematics

@@ -1,0 +1,180 @@
+#include "plan/programs.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "copymill/copy.h"
+#include "feedmodel/control_options.h"
+#include "feedmodel/cycle_time.h"
+#include "machine/number_key.h"
+#include "nc/interpreter.h"
+#include "nc/program.h"
+
+namespace camber::plan {
+namespace {
+
+machine::CopyMode mode_of(Pattern pattern) {
+  switch (pattern) {
+    case Pattern::scanning_line:
+      return machine::CopyMode::scanning_line;
+    case Pattern::contour_line:
+      return machine::CopyMode::contour_line;
+    case Pattern::drilling:
+      break;
+  }
+  return machine::CopyMode::drilling;
+}
+
+/// Rows run along the longer side.
+double row_angle_rad(const Operation& o) {
+  const Vec2 size = o.box_mm[1] - o.box_mm[0];
+  return size.x() >= size.y() ? 0 : kPi / 2;
+}
+
+machine::CopyOperation copy_operation(const Operation& o) {
+  machine::CopyOperation out;
+  out.tool = o.tool;
+  out.mode = mode_of(o.pattern);
+  out.spindle_rpm = o.conditions.spindle_rpm;
+  out.feed_mm_per_s = mm_per_s_from_mm_per_min(o.conditions.feed_mm_per_min);
+  out.axial_depth_mm = o.conditions.axial_mm;
+  out.region.z_mm = {o.from_mm, o.to_mm};
+  if (o.pattern == Pattern::drilling) {
+    out.holes_mm = {o.box_mm[0]};
+    out.cycle = o.kind == OperationKind::centre ? machine::HoleCycle::centre
+                : o.kind == OperationKind::ream ? machine::HoleCycle::ream
+                                                : machine::HoleCycle::peck;
+    return out;
+  }
+  out.radial_depth_mm = o.conditions.radial_mm;
+  out.allowance_mm = o.allowance_mm;
+  out.scallop_mm = o.pattern == Pattern::scanning_line ? o.scallop_mm : 0;
+  out.region.box_mm = o.box_mm;
+  if (o.pattern == Pattern::scanning_line) {
+    out.angle_rad = row_angle_rad(o);
+    out.sense = machine::MillingSense::both;
+  }
+  return out;
+}
+
+bool brings_tool(std::string_view line) {
+  return line.size() > 1 && line[0] == 'T' && line[1] >= '0' && line[1] <= '9' && line.find(" M6") != line.npos;
+}
+
+/// Head, then one text an operation, each from its tool change on, then the end.
+struct Sections {
+  std::string head;
+  std::vector<std::string> operations;
+  std::string end;
+};
+
+Sections sections_of(const std::string& text, bool coolant) {
+  Sections out;
+  std::string* into = &out.head;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size() - 1);
+    const std::string line = text.substr(at, end + 1 - at);
+    at = end + 1;
+    if (brings_tool(line)) into = &out.operations.emplace_back();
+    if (line == "M5\n") {
+      if (coolant) *into += "M9\n";
+      *into += line;
+      into = &out.end;
+      continue;
+    }
+    *into += line;
+    if (coolant && line.starts_with("G43 ")) *into += "M8\n";
+  }
+  return out;
+}
+
+feedmodel::CycleTime cycle_time_of(const std::string& name, const std::string& text, const machine::Job& job) {
+  Diagnostics ignored;
+  const nc::Program program = nc::read_program(SourceText(name, text), ignored);
+  const nc::Interpretation moves =
+      nc::interpret(program, feedmodel::interpreter_options(job.machine, job.inch), ignored);
+  return feedmodel::cycle_time(moves, job.machine);
+}
+
+/// Line of an error's place: the number of the operation.
+std::size_t refused(const InputError& error) {
+  for (const Diagnostic& d : error.diagnostics())
+    if (d.check == "tool-too-large") return d.location.line;
+  return 0;
+}
+
+}  // namespace
+
+std::vector<machine::CopyOperation> copy_operations(const PlanInput& input, const PlannedDivision& plan) {
+  std::vector<machine::CopyOperation> out;
+  for (const Operation& o : plan.operations) {
+    out.push_back(copy_operation(o));
+    out.back().place.location = {input.path, out.size(), 0};
+  }
+  return out;
+}
+
+machine::Job copy_job(const PlanInput& input, const std::string& part_stl, const std::string& blank_stl) {
+  machine::Job job;
+  job.path = input.path;
+  job.machine_path = input.machine_path;
+  job.machine = input.machine;
+  for (const auto& [number, tool] : input.tools) job.tools.emplace(number, tool.tool);
+  job.material = input.material;
+  job.part.mesh = part_stl;
+  job.simulation = input.simulation;
+  if (blank_stl.empty())
+    job.stock = input.blank;
+  else
+    job.stock.mesh = blank_stl;
+  return job;
+}
+
+std::string copy_job_toml(const machine::Job& job, const std::vector<machine::CopyOperation>& operations) {
+  std::string out = machine::to_toml(job);
+  for (const machine::CopyOperation& o : operations) out += "\n" + machine::to_toml(o);
+  return out;
+}
+
+PlanProgram make_program(const PlanInput& input, const machine::Job& job,
+                         const std::vector<machine::CopyOperation>& operations, Diagnostics& diagnostics) {
+  std::vector<machine::CopyOperation> left = operations;
+  copymill::CopyResult copied;
+  while (true) {
+    try {
+      copied = copymill::copy(job, left, {}, diagnostics);
+      break;
+    } catch (const InputError& error) {
+      const std::size_t number = refused(error);
+      if (number == 0) throw;
+      diagnostics.add({Severity::warning,
+                       {input.path, 0, 0},
+                       fmt::format("operation {}: T{} has no place between the part's walls; it is left out", number,
+                                   operations[number - 1].tool),
+                       "plan-no-place",
+                       {}});
+      std::erase_if(left, [&](const machine::CopyOperation& o) { return o.place.location.line == number; });
+    }
+  }
+  const Sections sections = sections_of(copied.text, input.coolant);
+  PlanProgram out;
+  out.whole = sections.head;
+  std::size_t next = 0;
+  for (const machine::CopyOperation& o : operations) {
+    const bool made = next < left.size() && left[next].place.location.line == o.place.location.line;
+    out.each.push_back(made ? sections.head + sections.operations[next] + sections.end : std::string());
+    out.times_s.push_back(made ? cycle_time_of(job.path, out.each.back(), job).all.time.total_s() : 0);
+    if (made) out.whole += sections.operations[next++];
+  }
+  out.whole += sections.end;
+  out.figures = {.time_s = cycle_time_of(job.path, out.whole, job).all.time.total_s(),
+                 .removed_mm3 = copied.removed_mm3,
+                 .left_p95_um = copied.left.p95_um,
+                 .left_max_um = copied.left.max_um,
+                 .gouge_um = copied.left.gouge_um};
+  return out;
+}
+
+}  // namespace camber::plan

@@ -1,0 +1,35 @@
+#pragma once
+// Programs of a plan, by copy milling.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "machine/copy_operations.h"
+#include "plan/plan.h"
+
+namespace camber::plan {
+
+struct PlanProgram {
+  std::string whole;              ///< all operations, with tool changes, spindle and coolant
+  std::vector<std::string> each;  ///< one an operation
+  std::vector<double> times_s;    ///< of each, by the feed model, with its rapids
+  ProgramFigures figures;
+};
+
+/// The operations as [[copy]] tables of a job.
+std::vector<machine::CopyOperation> copy_operations(const PlanInput& input, const PlannedDivision& plan);
+
+/// The job of camber copy: part and blank as they lie on the machine, tools, material. Without `blank_stl` the plan's
+/// own blank.
+machine::Job copy_job(const PlanInput& input, const std::string& part_stl, const std::string& blank_stl);
+
+/// job.toml for camber copy: the job and its [[copy]] tables.
+std::string copy_job_toml(const machine::Job& job, const std::vector<machine::CopyOperation>& operations);
+
+/// Makes the paths, cuts the blank along them, and times the text with the feed model. An operation whose tool has no
+/// place is left out with a warning [plan-no-place]. Throws InputError.
+PlanProgram make_program(const PlanInput& input, const machine::Job& job,
+                         const std::vector<machine::CopyOperation>& operations, Diagnostics& diagnostics);
+
+}  // namespace camber::plan

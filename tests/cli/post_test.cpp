@@ -1,0 +1,69 @@
+// camber post and camber posture as a user runs them.
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/run_camber.h"
+
+namespace camber::tests {
+namespace {
+
+const std::string kMachine = CAMBER_SOURCE_DIR "/samples/12-five-axis/machine.toml";
+const std::string kDome = CAMBER_SOURCE_DIR "/samples/12-five-axis/dome.nc";
+
+TEST(PostCommand, WritesTheProgramAndItsFigures) {
+  const TempFolder folder;
+  const CamberRun run = run_camber(folder, "post " + kDome + " --machine " + kMachine + " -o out.nc --json r.json");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("tip        off its path by at most 0.0050 mm"), std::string::npos) << run.out;
+  EXPECT_EQ(file_text(folder / "out.nc").find("G43.4"), std::string::npos);
+  EXPECT_NE(file_text(folder / "r.json").find("\"target\": \"joints\""), std::string::npos);
+  const CamberRun quiet = run_camber(folder, "post out.nc --machine " + kMachine + " --to tcp -o tip.nc -q");
+  EXPECT_EQ(quiet.status, 0) << quiet.err;
+  EXPECT_EQ(quiet.out, "");
+  EXPECT_NE(file_text(folder / "tip.nc").find("G43.4 H1"), std::string::npos);
+}
+
+TEST(PostCommand, WritesNothingWhereAnAxisLeavesItsTravel) {
+  const TempFolder folder;
+  folder.write("p.nc",
+               "G21 G17 G90 G94 G0\nG10 L2 P1 X0. Y0. Z-320.\nG10 L10 P1 R120.\nT1 M6\nG54 X0. Y0. Z150.\n"
+               "G43.4 H1 X900. Y0. Z50. A10. C0.\nG1 X910. F600\nG49\nG53 Z0\nM30\n");
+  const CamberRun run = run_camber(folder, "post p.nc --machine " + kMachine + " -o out.nc");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(
+      run.err.substr(0, run.err.find('\n')),
+      "p.nc:6:1: error: X goes to 910 mm in machine coordinates in this move and 7 more; -250 to 250 was expected "
+      "(travel_mm of [axis.x]) [travel]");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
+}
+
+TEST(PostCommand, RefusesAMachineWithoutRotaryAxes) {
+  const TempFolder folder;
+  folder.write("m.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
+  const CamberRun run = run_camber(folder, "post " + kDome + " --machine m.toml -o out.nc");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err,
+            "m.toml: error: the machine has no [kinematics]; the chain of its axes was expected [kinematics]\n");
+}
+
+TEST(PostureCommand, WritesAProgramThatPostReads) {
+  const TempFolder folder;
+  const std::string sample = CAMBER_SOURCE_DIR "/samples/13-die-cavity/";
+  const CamberRun run = run_camber(
+      folder, "posture " + sample + "finish.nc --job " + sample + "job.toml --mode normal --max-tilt-deg 0 -o up.nc");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("rotary axes turn 0 degrees"), std::string::npos) << run.out;
+  const CamberRun near =
+      run_camber(folder, "posture " + sample + "finish.nc --job " + sample + "job.toml --mode normal -o normal.nc");
+  EXPECT_EQ(near.status, 3);
+  EXPECT_NE(near.err.find("posture: the tool is nearer than 1 mm at "), std::string::npos) << near.err;
+  const CamberRun joints = run_camber(
+      folder, "post normal.nc --machine " CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml -o joints.nc");
+  EXPECT_EQ(joints.status, 0) << joints.err;
+  EXPECT_EQ(file_text(folder / "joints.nc").find("M428"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace camber::tests
