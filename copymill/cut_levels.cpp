@@ -48,6 +48,22 @@ std::vector<double> loop_distances(const LevelRegion& region, int component, dou
   return out;
 }
 
+/// Whether material that is not the part stands in the region, looked at on a coarse grid.
+bool stands_over_part(const Workplace& place, double bottom_mm) {
+  constexpr int kAcross = 100;
+  constexpr double kNeedle_mm = 0.01, kStands_mm = 0.05;
+  const TipField needle(place.part, {kNeedle_mm, 0, false, {}}, 0);
+  for (int j = 0; j <= kAcross; ++j)
+    for (int i = 0; i <= kAcross; ++i) {
+      const Vec2 size = place.region.max_mm() - place.region.min_mm();
+      const Vec2 p = place.region.min_mm() + Vec2(size.x() * i / kAcross, size.y() * j / kAcross);
+      if (place.region.contains(p) &&
+          place.standing.at(p) > std::max(needle.lowest_mm(p), bottom_mm) + place.field.allowance_mm() + kStands_mm)
+        return true;
+    }
+  return false;
+}
+
 class LevelCutter {
  public:
   LevelCutter(const Workplace& place, Approach& approach) : place_(place), approach_(approach) {}
@@ -166,7 +182,9 @@ bool cut_levels(const Workplace& place) {
     stage.advance(static_cast<std::size_t>(kShares * (above - level) / (levels.top_mm() - levels.bottom_mm())));
     above = level;
   }
-  return placed || !any_level;
+  // Nothing was cut: either nothing is left, or the tool fits nowhere.
+  const double bottom = o.region.z_mm ? (*o.region.z_mm)[0] : place.stock_bottom_mm;
+  return place.runner.summary().passes > 0 || (placed && any_level) || !stands_over_part(place, bottom);
 }
 
 }  // namespace camber::copymill

@@ -51,5 +51,18 @@ TEST(BadCopy, MeshThatIsOpen) {
       "through; a closed one was expected [stl-open]\n");
 }
 
+TEST(BadCopy, ToolLargerThanEveryPocket) {
+  const std::string out =
+      said({.part = "slot",
+            .stock = "box_mm = [[0, 0, -12], [60, 30, 0]]",
+            .operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\nallowance_mm = 2.5\n")});
+  EXPECT_EQ(out.substr(0, 9), "job.toml:");
+  EXPECT_NE(
+      out.find("error: T1 with a diameter of 8 mm and an allowance of 2.5 mm has no place in the region; a tool that "
+               "fits between the part's walls was expected [tool-too-large]\n"),
+      std::string::npos)
+      << out;
+}
+
 }  // namespace
 }  // namespace camber::copymill

@@ -251,6 +251,20 @@ TEST(TravelCheck, OfATiltedFrameAsksForG531) {
   EXPECT_EQ(said(start + "G0 B30. C-90.001\nG0 X0 Y0 Z10\n", sample("head_table")), "");
 }
 
+/// The program does not name the angles of G53.1 and G28.
+TEST(TravelCheck, NamesAClampedAxisThatTurnsWithoutAWord) {
+  machine::Machine machine = sample("head_table");
+  machine.rotary[1].clamp_m = 10, machine.rotary[1].unclamp_m = 11;
+  machine.rotary[2].clamp_m = 12, machine.rotary[2].unclamp_m = 13;
+  const std::string start = kOffset + "G43 H1\nG0 X0 Y0 Z80\n";
+  EXPECT_EQ(said(start + "M10\nM12\nG68.2 J30\nG53.1\nM11\nM13\n", machine),
+            "p.nc:8:1: error: B turns by 30 degrees while M10 has it clamped; M11 was expected before [clamped]\n"
+            "p.nc:8:1: error: C turns by -90 degrees while M12 has it clamped; M13 was expected before [clamped]\n");
+  EXPECT_EQ(said(start + "B20.\nM10\nG28 B20.\n", machine),
+            "p.nc:7:1: error: B turns by -20 degrees while M10 has it clamped; M11 was expected before [clamped]\n");
+  EXPECT_EQ(said(start + "M10\nM11\nG68.2 J30\nG53.1\nM10\nG69\nG28 X0 Y0 Z0\n", machine), "");
+}
+
 TEST(RotaryWords, OfAnArcUnderTipControlKeepTheTipOnTheArc) {
   const machine::Machine machine = sample("head_table");
   const Read r = read(kOffset + "G0 X30 Y0 Z5\nG43.4 H1\nG3 X-30 Y0 I-30 B20 C180 F500\n", machine);
