@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""bench/copy/table.py [--camber CAMBER] [JOB.toml ...]: copies the jobs of samples/13-copy-milling and prints a table.
+"""bench/copy/table.py [--camber CAMBER] [JOB.toml ...]: copies the jobs of samples/14-copy-milling and prints a table.
 
 force: greatest over target; within: of the tooth passings whose feed the rule chose freely, those with 80 to 105 % of
 the target; ticks in computing time, which depends on what else the machine does.
@@ -21,7 +21,7 @@ def main():
     parser.add_argument("--hardness", help="REGIONS.csv for every job")
     parser.add_argument("jobs", nargs="*")
     given = parser.parse_args()
-    jobs = given.jobs or sorted(glob.glob(os.path.join(ROOT, "samples/13-copy-milling/*.toml")))
+    jobs = given.jobs or sorted(glob.glob(os.path.join(ROOT, "samples/14-copy-milling/*.toml")))
     print(f"{'job':<16}{'time, s':>9}{'blocks':>8}{'force':>8}{'within':>8}{'counted':>9}{'over':>6}"
           f"{'gouge, um':>11}{'left p95, max, um':>20}{'tick mean, max, ms':>20}")
     for job in jobs:

@@ -50,7 +50,7 @@ TEST(PostCommand, RefusesAMachineWithoutRotaryAxes) {
 
 TEST(PostureCommand, WritesAProgramThatPostReads) {
   const TempFolder folder;
-  const std::string sample = CAMBER_SOURCE_DIR "/samples/13-die-cavity/";
+  const std::string sample = CAMBER_SOURCE_DIR "/samples/16-die-cavity/";
   const CamberRun run = run_camber(
       folder, "posture " + sample + "finish.nc --job " + sample + "job.toml --mode normal --max-tilt-deg 0 -o up.nc");
   EXPECT_EQ(run.status, 0) << run.err;

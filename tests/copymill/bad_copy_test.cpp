@@ -23,7 +23,7 @@ std::string said(const SmallCopy& c, const std::string& part_text = {}) {
   } catch (const InputError& e) {
     std::string out;
     for (const Diagnostic& d : e.diagnostics()) out += to_string(d) + "\n";
-    for (const std::string& name : {folder.path() + "/", std::string(CAMBER_SOURCE_DIR "/samples/13-copy-milling/")})
+    for (const std::string& name : {folder.path() + "/", std::string(CAMBER_SOURCE_DIR "/samples/14-copy-milling/")})
       for (std::size_t at = 0; (at = out.find(name, at)) != std::string::npos;) out.erase(at, name.size());
     return out;
   }

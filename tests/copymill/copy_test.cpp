@@ -162,7 +162,7 @@ std::string message_of(const SmallCopy& c) {
     for (const Diagnostic& d : e.diagnostics()) out += to_string(d) + "\n";
     for (std::size_t at = 0; (at = out.find(folder.path() + "/", at)) != std::string::npos;)
       out.erase(at, folder.path().size() + 1);
-    const std::string samples = CAMBER_SOURCE_DIR "/samples/13-copy-milling/";
+    const std::string samples = CAMBER_SOURCE_DIR "/samples/14-copy-milling/";
     for (std::size_t at = 0; (at = out.find(samples, at)) != std::string::npos;) out.erase(at, samples.size());
     return out;
   }
@@ -178,7 +178,7 @@ TEST(Copy, SaysWhatIsWrongLikeACompiler) {
 
 /// The sample's slot, whose right half is 40 % harder than the rule knows.
 TEST(Copy, HoldsTheForceWhereTheMaterialIsHarderThanItKnows) {
-  const std::string folder = CAMBER_SOURCE_DIR "/samples/13-copy-milling/";
+  const std::string folder = CAMBER_SOURCE_DIR "/samples/14-copy-milling/";
   Diagnostics diagnostics;
   const machine::Job job = machine::read_unprogrammed_job(folder + "slot.toml", diagnostics);
   const auto operations = machine::read_copy_operations(folder + "slot.toml", job, diagnostics);

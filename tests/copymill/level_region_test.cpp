@@ -13,7 +13,7 @@ namespace {
 /// The sample's pocket, 5 to 55 by 5 to 40, with an island, 24 to 36 by 17 to 27, 8 mm deep.
 struct Island {
   explicit Island(double radius, double allowance = 0)
-      : part(read_stl(CAMBER_SOURCE_DIR "/samples/13-copy-milling/island.stl")),
+      : part(read_stl(CAMBER_SOURCE_DIR "/samples/14-copy-milling/island.stl")),
         field(part, {radius, 0, false, {}}, allowance),
         region({}, {0, 0}, {60, 45}),
         tips(field, region, 0.25) {}
