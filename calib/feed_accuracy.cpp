@@ -205,7 +205,9 @@ std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Mac
     if (line.length <= 0) continue;
     const auto meaning = line.turn->feed;
     const bool inverse = meaning == kinematics::FeedMeaning::inverse;
-    if (last && meaning == last->turn->feed && (inverse || move.feed_mm_per_s == last_f))
+    // Speeds of lines that only turn are in degrees.
+    if (last && meaning == last->turn->feed && line.rotary_alone == last->rotary_alone &&
+        (inverse || move.feed_mm_per_s == last_f))
       parts.back().line_last = move.block + 1;
     else
       parts.push_back({move.block + 1, move.block + 1, line.feed_per_s});

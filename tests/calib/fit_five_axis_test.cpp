@@ -94,12 +94,13 @@ TEST(FitFiveAxes, ConstantFeedIsThatOfWhatFCounts) {
       "G4 P0.1\nG93 G1 X0 C0 F20\nC30 F15\nM2\n";
   const FeedRun run = traced(machine, text);
   const auto parts = parts_of(run.program, machine);
-  ASSERT_EQ(parts.size(), 3U);
+  ASSERT_EQ(parts.size(), 4U);
   const FeedAccuracy constant = constant_feed_accuracy(run.trace, run.program, machine, parts, {});
-  ASSERT_EQ(constant.parts.size(), 3U);
+  ASSERT_EQ(constant.parts.size(), 4U);
   EXPECT_NEAR(constant.parts[0].time_model_s, 20.0 / 10, 1e-9);
   EXPECT_NEAR(constant.parts[1].time_model_s, 30.0 / 20, 1e-9);
-  EXPECT_NEAR(constant.parts[2].time_model_s, 60.0 / 20 + 60.0 / 15, 1e-9);
+  EXPECT_NEAR(constant.parts[2].time_model_s, 60.0 / 20, 1e-9);
+  EXPECT_NEAR(constant.parts[3].time_model_s, 60.0 / 15, 1e-9);
   for (const PartAccuracy& part : constant.parts) {
     EXPECT_GT(part.speed_rms_percent, 0);
     EXPECT_LT(part.speed_rms_percent, 50);

@@ -21,7 +21,7 @@ class Reference(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
-        for room in ("machine", "calib", "feedmodel", "report", "api", "cli", "docs/reference"):
+        for room in ("machine", "calib", "feedmodel", "plan", "report", "api", "cli", "docs/reference"):
             shutil.copytree(SOURCE / room, self.root / room, ignore=shutil.ignore_patterns("web"))
 
     def edit(self, path, before, after):
@@ -36,7 +36,7 @@ class Reference(unittest.TestCase):
         self.assertIn(f"{path}: {key} stands in no line", out)
 
     def test_the_repository_is_complete(self):
-        self.assertEqual(check(SOURCE), (0, "reference: 3 pages, every key in one\n"))
+        self.assertEqual(check(SOURCE), (0, "reference: 4 pages, every key in one\n"))
         self.assertEqual(check(self.root)[0], 0)
 
     def test_a_new_number_of_the_machine(self):
