@@ -37,8 +37,8 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
      "camber study study.toml -o study\n"
      "  camber study study.toml -o study --list > commands.txt"},
     {"copy",
-     "camber copy job.toml -o part.nc --stock left.vdb --json figures.json\n"
-     "  camber copy job.toml -o part.nc --stream ticks.csv --stop-after 60"},
+     "camber copy slot.toml -o part.nc --stock left.vdb --json figures.json\n"
+     "  camber copy slot.toml -o part.nc --stream ticks.csv --stop-after 10"},
     {"plan",
      "camber plan plan.toml -o planned\n"
      "  camber plan plan.toml --operations planned/operations.toml -o planned_again"},

@@ -43,8 +43,9 @@ std::vector<std::string> examples_in(const std::string& help) {
 TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
   const TempFolder folder;
   const std::string samples = CAMBER_SOURCE_DIR "/samples/";
-  for (const char* sample : {"01-finishing", "03-force-fit", "10-raster", "11-feed-by-load", "17-study"})
-    std::filesystem::copy(samples + sample, folder / sample);
+  for (const char* sample : {"01-finishing", "03-force-fit", "10-raster", "11-feed-by-load", "12-five-axis",
+                             "14-copy-milling", "15-plan", "16-die-cavity", "17-study", "machines", "case_base.toml"})
+    std::filesystem::copy(samples + sample, folder / sample, std::filesystem::copy_options::recursive);
   const auto names = subcommands(folder);
   EXPECT_GE(names.size(), 11u);
   for (const auto& name : names) {
@@ -57,6 +58,10 @@ TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
       const bool part = example.find("--part") != std::string::npos;
       const std::string from = folder / (name == "fit-force" ? "03-force-fit"
                                          : name == "adapt"   ? "11-feed-by-load"
+                                         : name == "post"    ? "12-five-axis"
+                                         : name == "copy"    ? "14-copy-milling"
+                                         : name == "plan"    ? "15-plan"
+                                         : name == "posture" ? "16-die-cavity"
                                          : name == "study"   ? "17-study"
                                          : part              ? "10-raster"
                                                              : "01-finishing");
