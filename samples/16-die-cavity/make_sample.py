@@ -13,6 +13,7 @@ DEPTH, WALL, BLEND = 40.0, math.tan(math.radians(30)), 5.0
 HALF = (50.0, 40.0)       # of the block
 FLOOR = (25.0, 15.0)      # half of the floor
 CORNER = 8.0              # of the floor's outline
+BOTTOM = -50.0            # of the block
 GRID, R = 0.5, 3.0
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -49,6 +50,13 @@ def main():
             for j in range(0, ny - coarse, coarse):
                 a, b, c, d = point(i, j), point(i + coarse, j), point(i + coarse, j + coarse), point(i, j + coarse)
                 triangles += [(a, b, c), (a, c, d)]
+        ring = [(i, 0) for i in range(0, nx - 1, coarse)] + [(nx - 1, j) for j in range(0, ny - 1, coarse)] + \
+               [(i, ny - 1) for i in range(nx - 1, 0, -coarse)] + [(0, j) for j in range(ny - 1, 0, -coarse)]
+        foot = [(*point(i, j)[:2], BOTTOM) for i, j in ring]
+        for k in range(len(ring)):  # walls and bottom of the block
+            n = (k + 1) % len(ring)
+            a, b = point(*ring[k]), point(*ring[n])
+            triangles += [(foot[k], foot[n], b), (foot[k], b, a), (foot[n], foot[k], (0.0, 0.0, BOTTOM))]
         file.write(b"die cavity".ljust(80) + struct.pack("<I", len(triangles)))
         for t in triangles:
             file.write(struct.pack("<12fH", 0, 0, 0, *t[0], *t[1], *t[2], 0))

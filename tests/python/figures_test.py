@@ -16,8 +16,8 @@ import camber
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 CAMBER = os.environ["CAMBER"]
-FIVE_AXIS = SAMPLES / "12-five-axis"
-PROGRAMS = sorted(p for p in SAMPLES.glob("*/*.nc") if p.parent != FIVE_AXIS)
+FIVE_AXIS = [SAMPLES / "12-five-axis", SAMPLES / "13-dome"]
+PROGRAMS = sorted(p for p in SAMPLES.glob("*/*.nc") if p.parent not in FIVE_AXIS)
 MACHINES = [SAMPLES / "01-finishing/machine.toml", SAMPLES / "machines/yan_shirase.toml"]
 
 
@@ -56,8 +56,8 @@ class Figures(unittest.TestCase):
                 self.assertEqual([t.tool for t in result.tools], [t["tool"] for t in expected["tools"]])
 
     def test_check_of_five_axes(self):
-        machine = FIVE_AXIS / "machine.toml"
-        for program in sorted(FIVE_AXIS.glob("*.nc")):
+        for program in sorted(p for folder in FIVE_AXIS for p in folder.glob("*.nc")):
+            machine = program.parent / "machine.toml"
             with self.subTest(program=program):
                 result = camber.check(program, machine=machine)
                 expected = command_line("check", program, "--machine", machine)
