@@ -83,21 +83,31 @@ std::string job_comment(const Study& study, const PlannedCase& one) {
   return out;
 }
 
+/// A case's folder is named by what it is made of, so files that are there are right.
 void write_job(const Study& study, const PlannedCase& one, Diagnostics& diagnostics) {
   make_folder(one.folder);
-  machine::TomlNode job = machine::study_job(study, one.values, one.folder);
-  write_if_new(one.job_path, job_comment(study, one) + machine::toml_text(job));
+  const machine::TomlNode job = machine::study_job(study, one.values, one.folder);
+  const std::string comment = job_comment(study, one);
   const double percent = machine::feed_percent(study, one.values);
-  if (percent == 100) return;
+  if (percent == 100) {
+    write_if_new(one.job_path, comment + machine::toml_text(job));
+    return;
+  }
+  machine::TomlNode name, own = job;
+  name.kind = machine::TomlNode::Kind::text;
+  name.text = "program.nc";
+  machine::set_value(own, machine::key_parts("program"), name);
+  const std::string text = comment + machine::toml_text(own), program = one.folder + "/" + name.text;
+  std::error_code ec;
+  if (fs::is_regular_file(program, ec) && fs::is_regular_file(one.job_path, ec) &&
+      SourceText::read(one.job_path).text() == text)
+    return;
+  write_file(one.job_path, comment + machine::toml_text(job));
   Diagnostics of_job;
   const machine::Job read = machine::read_job(one.job_path, of_job);
   of_job.throw_if_errors();
-  machine::TomlNode name;
-  name.kind = machine::TomlNode::Kind::text;
-  name.text = "program.nc";
-  write_if_new(one.folder + "/" + name.text, scaled_program(read, percent, diagnostics));
-  machine::set_value(job, machine::key_parts("program"), name);
-  write_if_new(one.job_path, job_comment(study, one) + machine::toml_text(job));
+  write_file(program, scaled_program(read, percent, diagnostics));
+  write_file(one.job_path, text);
 }
 
 /// Whether the command could run at all.
