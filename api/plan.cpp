@@ -59,8 +59,9 @@ PlanResult v0::plan(const std::string& path, const PlanOptions& options, const R
   run.execute([&] {
     Diagnostics found;
     const plan::PlanInput input = plan::read_plan_input(path, found);
-    const api::PlannedFiles done =
-        api::plan_job(input, {.operations = options.operations, .programs = options.programs}, found);
+    const api::PlannedFiles done = api::plan_job(
+        input, {.operations = options.operations, .programs = options.programs, .all_programs = options.all_programs},
+        found);
     run.settle(found);
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result = result_of(done.result);

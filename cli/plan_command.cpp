@@ -37,8 +37,10 @@ int run_plan(const PlanArguments& arguments, const GlobalOptions& options) {
   const plan::PlanInput input = plan::read_plan_input(arguments.plan, diagnostics);
   if (arguments.cases_error) return progress.clear(), settle(diagnostics, options), print_cases_error(input);
   const StageScope stages([&](const std::string& what, double share) { progress.show(what, share); });
-  const api::PlannedFiles done =
-      api::plan_job(input, {.operations = arguments.operations, .programs = arguments.programs}, diagnostics);
+  const api::PlannedFiles done = api::plan_job(
+      input,
+      {.operations = arguments.operations, .programs = arguments.programs, .all_programs = arguments.all_programs},
+      diagnostics);
   progress.clear();
   settle(diagnostics, options);
   print_translation(input.machine.translation, options);
@@ -79,6 +81,8 @@ void add_plan_command(CLI::App& app, const GlobalOptions& options, Action& chose
       ->type_name("T.toml");
   command->add_flag("--programs", arguments->programs,
                     "also the programs of the plan, by copy milling, and their times by the feed model");
+  command->add_flag("--all-programs", arguments->all_programs,
+                    "programs of all three plans; their times decide which plan is taken");
   command->add_option("--json", arguments->json, "also write the figures to this file")->type_name("R.json");
   auto* cases = command->add_flag("--cases-error", arguments->cases_error,
                                   "print how well the cases predict each other, and plan nothing");

@@ -12,6 +12,7 @@ struct PlanArguments {
   std::string output_folder;
   std::string operations;  ///< an edited table; empty: none
   std::string json;        ///< besides DIR/plan.json; empty: none
+  bool all_programs = false;
   bool programs = false;
   bool cases_error = false;
   bool learn = false;

@@ -128,6 +128,7 @@ CopyResult copy(const machine::Job& job, const std::vector<machine::CopyOperatio
   std::vector<std::unique_ptr<Tooling>> toolings;
   for (const machine::CopyOperation& operation : operations) {
     toolings.push_back(std::make_unique<Tooling>(part, operation, job.tools.at(operation.tool), *out.stock));
+    if (options.before) options.before(toolings.size() - 1, *out.stock);
     run_operation(part, *toolings.back(), *out.stock, runner, safe_z, out);
     if (runner.stopped()) break;
   }

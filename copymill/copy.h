@@ -30,6 +30,11 @@ struct CopyOptions {
   double tolerance_mm = 0.002;
   /// Called with every tick, in order; may be empty.
   std::function<void(const Tick&)> stream{};
+  /// False: no load of an operation without force_N is read, and the stock is cut all at once when it ends. For those
+  /// who want the path alone.
+  bool loads = true;
+  /// Called before each operation, by its number from 0, with what stands; may be empty.
+  std::function<void(std::size_t, const removal::Stock&)> before{};
   /// Parts of the material that are harder than the job says: felt, but not expected.
   simulate::ForceRegions regions{};
   /// The tool is stopped here, wherever it is, and lifted. Not given: it goes on to the end.

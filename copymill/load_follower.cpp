@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "removal/engagement.h"
 #include "simulate/predict.h"
 
 namespace camber::copymill {
@@ -18,6 +19,11 @@ constexpr double kFromBand = 0.80, kToBand = 1.05, kNever = 1.2;  // of the targ
 constexpr double kHeldBack = 0.9;                                 ///< of the commanded feed
 constexpr double kCutting = 0.01;                                 ///< of the target: less is air
 
+constexpr double kRidge_mm = 0.0003;  ///< between stamps that are swept
+
+/// Stamps so far apart leave ridges of kRidge_mm.
+double stamps_apart_mm(const machine::Tool& tool) { return std::sqrt(4 * tool.diameter_mm * kRidge_mm); }
+
 simulate::LoadProbeOptions probe_options(const machine::Job& job, const machine::CopyOperation& operation,
                                          const simulate::ForceRegions& regions, std::int32_t first_id) {
   return {.envelope_step_mm = std::max(kEnvelopeStep_mm, simulate::envelope_step_mm(job, job.tools.at(operation.tool))),
@@ -30,12 +36,19 @@ simulate::LoadProbeOptions probe_options(const machine::Job& job, const machine:
 }  // namespace
 
 LoadFollower::LoadFollower(const machine::Job& job, const machine::CopyOperation& operation, removal::Stock& stock,
-                           const removal::TipBox& tips, const simulate::ForceRegions& regions, std::int32_t first_id)
+                           const removal::TipBox& tips, const simulate::ForceRegions& regions, std::int32_t first_id,
+                           bool loads)
     : operation_(operation),
       passing_s_(60 / (operation.spindle_rpm * job.tools.at(operation.tool).flutes)),
-      probe_(stock, job.tools.at(operation.tool), job.material, tips, probe_options(job, operation, regions, first_id)),
+      stock_(stock),
+      shape_(removal::shape_of(job.tools.at(operation.tool))),
+      first_id_(first_id),
+      apart_mm_(stamps_apart_mm(job.tools.at(operation.tool))),
       feed_(operation.feed_mm_per_s),
       ahead_(std::numeric_limits<double>::infinity()) {
+  if (loads || operation.force_N)
+    probe_.emplace(stock, job.tools.at(operation.tool), job.material, tips,
+                   probe_options(job, operation, regions, first_id));
   if (!operation.force_N) return;
   band_.limit = figures_.target_N = *operation.force_N;
   band_.up_below = kUpBelow, band_.aim = kAim, band_.up_step = kUpStep;
@@ -54,11 +67,11 @@ void LoadFollower::look_ahead(double t_s, const Vec3& place, const Vec3& directi
   stamp.t_s = t_s;
   stamp.pose.tip_mm = place;
   stamp.feed_per_tooth_mm = feed * passing_s_ * direction;
-  const double load = load_of(probe_.look(stamp), LoadKind::force, operation_.spindle_rpm);
+  const double load = load_of(probe_->look(stamp), LoadKind::force, operation_.spindle_rpm);
   double at_half = 0;
   if (load > 0) {
     stamp.feed_per_tooth_mm *= 0.5;
-    at_half = load_of(probe_.look(stamp), LoadKind::force, operation_.spindle_rpm);
+    at_half = load_of(probe_->look(stamp), LoadKind::force, operation_.spindle_rpm);
   }
   ahead_ = rule_->feed_ahead(load, at_half, feed);
   rule_->note_ahead(t_s, place, ahead_);
@@ -75,7 +88,8 @@ void LoadFollower::choose_feed() {
 }
 
 double LoadFollower::pass(const removal::Stamp& stamp, double commanded) {
-  const simulate::ProbedLoad& load = probe_.append({&stamp, 1}).front();
+  if (!probe_) return wait(stamp), 0;
+  const simulate::ProbedLoad& load = probe_->append({&stamp, 1}).front();
   const double force = load.felt.lateral_max_N;
   const double actual = stamp.feed_per_tooth_mm.norm() / passing_s_;
   figures_.max_N = std::max(figures_.max_N, force);
@@ -90,6 +104,33 @@ double LoadFollower::pass(const removal::Stamp& stamp, double commanded) {
   choose_feed();
   count(force, actual, commanded);
   return force;
+}
+
+/// A stamp in line with those before and behind it, and near them, is not needed.
+void LoadFollower::wait(const removal::Stamp& stamp) {
+  constexpr double kOffLine_mm = 1e-4;
+  const std::size_t n = waiting_.size();
+  if (n >= 2 && !stamp.first && !waiting_[n - 1].first) {
+    const Vec3 &a = waiting_[n - 2].pose.tip_mm, &b = waiting_[n - 1].pose.tip_mm, whole = stamp.pose.tip_mm - a;
+    const double way = whole.norm(), off = way > 0 ? (b - a).cross(whole).norm() / way : 0;
+    if (way <= apart_mm_ && off <= kOffLine_mm && (b - a).dot(whole) >= 0) {
+      waiting_.back() = stamp;
+      return;
+    }
+  }
+  waiting_.push_back(stamp);
+}
+
+double LoadFollower::flush() {
+  if (probe_) return probe_->flush();
+  const double removed = removal::sweep(stock_, shape_, waiting_, {.first_id = first_id_});
+  first_id_ = next_id();
+  waiting_.clear();
+  return removed;
+}
+
+std::int32_t LoadFollower::next_id() const {
+  return probe_ ? probe_->next_id() : first_id_ + static_cast<std::int32_t>(waiting_.size());
 }
 
 void LoadFollower::count(double force, double actual, double commanded) {

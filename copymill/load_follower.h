@@ -26,8 +26,9 @@ struct LoadFigures {
 /// One operation: the probe that cuts the stock, and the rule where the operation has a target.
 class LoadFollower {
  public:
+  /// Without `loads`, and without a target, passings tell a load of 0 and the stock is cut by flush().
   LoadFollower(const machine::Job& job, const machine::CopyOperation& operation, removal::Stock& stock,
-               const removal::TipBox& tips, const simulate::ForceRegions& regions, std::int32_t first_id);
+               const removal::TipBox& tips, const simulate::ForceRegions& regions, std::int32_t first_id, bool loads);
 
   /// The feed to command: that of the rule, or less where more load lies ahead. A multiple of a twenty-fifth of the
   /// nominal feed, so that few F words are needed.
@@ -42,18 +43,24 @@ class LoadFollower {
   /// Cuts one tooth passing. `commanded`: the feed it was to be cut at. Returns the lateral force.
   double pass(const removal::Stamp& stamp, double commanded_mm_per_s);
 
-  double flush() { return probe_.flush(); }
-  std::int32_t next_id() const { return probe_.next_id(); }
+  double flush();
+  std::int32_t next_id() const;
   const LoadFigures& figures() const { return figures_; }
   std::vector<Change> changes() const { return rule_ ? rule_->log() : std::vector<Change>{}; }
 
  private:
   void choose_feed();
+  void wait(const removal::Stamp& stamp);
   void count(double force_N, double actual_mm_per_s, double commanded_mm_per_s);
 
   const machine::CopyOperation& operation_;
   double passing_s_;
-  simulate::LoadProbe probe_;
+  std::optional<simulate::LoadProbe> probe_;  ///< not given: waiting_ is swept by flush()
+  removal::Stock& stock_;
+  removal::CutterShape shape_;
+  std::int32_t first_id_;
+  std::vector<removal::Stamp> waiting_;
+  double apart_mm_;  ///< of waiting stamps
   std::optional<LoadRule> rule_;
   LoadBand band_;
   double feed_, ahead_;

@@ -34,7 +34,7 @@ void Runner::begin(const Cut& cut, Standing& standing, double safe_z, PathDepth*
   follower_.emplace(job_, cut.operation, stock_,
                     removal::TipBox{{tips.min_mm.x(), tips.min_mm.y(), lowest - 0.01},
                                     {tips.max_mm.x(), tips.max_mm.y(), safe_z_ + 1}},
-                    options_.regions, first_id_);
+                    options_.regions, first_id_, options_.loads);
   writer_.begin(cut.operation, cut.tool, safe_z_);
 }
 

@@ -206,29 +206,42 @@ class Planner {
     const auto ball = pick_mill(need, input_.tools, wanted);
     if (!ball) return leave(step, "none of the tools will do; it needs " + wanted);
     const double depth = p.max_mm.z() - p.min_mm.z(), radius = tool(ball->tool).tool.diameter_mm / 2;
-    double left = p.volume_mm3;
-    std::string note = p.overhang ? "a face of it looks down; it is not reached there" : "";
-    if (depth > radius) left = rough_free_form(step, need);
+    const std::string note = p.overhang ? "a face of it looks down; it is not reached there" : "";
+    const double left = rough_free_form(step, need, ball->tool);
     Operation* op = add(step, OperationKind::finish, ball->tool, Pattern::scanning_line,
                         {input_.fine, radius, machine::kNoLimit}, note);
     if (op == nullptr) return;
-    op->scallop_mm = input_.fine ? input_.scallop_mm : 0;
-    if (op->scallop_mm > 0)  // rows whose ridges are this high
-      op->conditions.radial_mm = std::floor(2000 * std::sqrt(op->scallop_mm * (2 * radius - op->scallop_mm))) / 1000;
-    set_volume(*op, left);
-    op->surface_mm2 = free_form_mm2(p);
+    finish_free_form(*op, radius, std::min(left, depth * free_form_mm2(p)), free_form_mm2(p));
   }
 
-  /// What is left for the ball end mill.
-  double rough_free_form(const Step& step, ToolNeed need) {
+  /// Rows whose ridges have the height that is asked for; without one as far apart as the cases say.
+  void finish_free_form(Operation& op, double radius, double left_mm3, double surface_mm2) const {
+    Conditions& c = op.conditions;
+    if (input_.fine) {
+      op.scallop_mm = input_.scallop_mm;
+      c.radial_mm = std::floor(2000 * std::sqrt(op.scallop_mm * (2 * radius - op.scallop_mm))) / 1000;
+    } else {
+      const double half = std::min(c.radial_mm / 2, radius);
+      op.scallop_mm = std::round(1e4 * (radius - std::sqrt(radius * radius - half * half))) / 1e4;
+    }
+    op.volume_mm3 = left_mm3;
+    op.surface_mm2 = surface_mm2;
+    op.nominal_time_s = 60 * surface_mm2 / (c.radial_mm * c.feed_mm_per_min);
+  }
+
+  /// Levels, by an end mill where it is deeper than the ball end mill cuts at once, else by that itself. Returns what
+  /// is left.
+  double rough_free_form(const Step& step, ToolNeed need, int ball) {
     const Primitive& p = out_.primitives[step.primitive];
+    const double depth = p.max_mm.z() - p.min_mm.z();
     need.feature = Feature::open_pocket;
     need.inner_radius_mm = machine::kNoLimit;
     std::string wanted;
-    const auto pick = pick_mill(need, input_.tools, wanted);
-    if (!pick) return p.volume_mm3;
-    Operation* rough = add(step, OperationKind::rough, pick->tool, Pattern::contour_line,
-                           {false, p.max_mm.z() - p.min_mm.z(), machine::kNoLimit}, {});
+    const auto mill =
+        depth > tool(ball).tool.diameter_mm / 2 ? pick_mill(need, input_.tools, wanted) : std::optional<ToolPick>();
+    Operation* rough =
+        add(step, OperationKind::rough, mill ? mill->tool : ball, mill ? Pattern::contour_line : Pattern::scanning_line,
+            {false, depth, machine::kNoLimit}, {});
     if (rough == nullptr) return p.volume_mm3;
     rough->allowance_mm = input_.allowance_mm;
     // Steps as high as a level, and the allowance.

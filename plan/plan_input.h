@@ -55,6 +55,7 @@ struct PlanInput {
   double allowance_mm = 0.3;  ///< that roughing leaves where finishing follows
   double scallop_mm = 0.01;   ///< of free-form faces
   bool coolant = false;       ///< M8 and M9 in the programs
+  bool compensate = false;    ///< finishing operations are moved against their predicted form error
   double tool_change_s = 0;
   PlanLimits limits;
   machine::Simulation simulation;

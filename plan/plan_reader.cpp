@@ -104,6 +104,7 @@ void read_work(TomlTable table, PlanInput& plan) {
   plan.allowance_mm = table.number("allowance_mm", kPositive, plan.allowance_mm);
   plan.scallop_mm = table.number("scallop_mm", kPositive, plan.scallop_mm);
   plan.coolant = table.boolean("coolant", false);
+  plan.compensate = table.boolean("compensate", false);
   table.finish();
 }
 

@@ -56,7 +56,7 @@ std::vector<Region> regions_of_layer(const CellGrid& grid, int layer) {
   return out;
 }
 
-/// Regions of all layers; alike ones on both sides of a plane that is no face are one.
+/// Regions of all layers; alike ones on both sides of a plane are one: the plane is a face of another region.
 std::vector<Region> regions_of(const CellGrid& grid) {
   std::vector<Region> out;
   for (int z = 0; z < grid.count(2); ++z)
@@ -64,7 +64,7 @@ std::vector<Region> regions_of(const CellGrid& grid) {
       const auto below = std::ranges::find_if(out, [&](const Region& r) {
         return r.to == z && r.free_form == region.free_form && r.columns == region.columns;
       });
-      if (below != out.end() && !grid.plane(2, z).face)
+      if (below != out.end())
         below->to = z + 1;
       else
         out.push_back(std::move(region));

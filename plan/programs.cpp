@@ -1,9 +1,12 @@
 #include "plan/programs.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "base/temporary_folder.h"
 #include "base/units.h"
 #include "copymill/copy.h"
 #include "feedmodel/control_options.h"
@@ -11,6 +14,10 @@
 #include "machine/number_key.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
+#include "plan/compensated_program.h"
+#include "simulate/collisions.h"
+#include "simulate/flute_reach.h"
+#include "simulate/predict.h"
 
 namespace camber::plan {
 namespace {
@@ -27,6 +34,10 @@ machine::CopyMode mode_of(Pattern pattern) {
   return machine::CopyMode::drilling;
 }
 
+/// Meshes have single precision: what lies beyond the micrometre is noise.
+double to_micrometres(double mm) { return std::round(1000 * mm) / 1000 + 0.0; }
+Vec2 rounded(const Vec2& p) { return {to_micrometres(p.x()), to_micrometres(p.y())}; }
+
 /// Rows run along the longer side.
 double row_angle_rad(const Operation& o) {
   const Vec2 size = o.box_mm[1] - o.box_mm[0];
@@ -40,9 +51,9 @@ machine::CopyOperation copy_operation(const Operation& o) {
   out.spindle_rpm = o.conditions.spindle_rpm;
   out.feed_mm_per_s = mm_per_s_from_mm_per_min(o.conditions.feed_mm_per_min);
   out.axial_depth_mm = o.conditions.axial_mm;
-  out.region.z_mm = {o.from_mm, o.to_mm};
+  out.region.z_mm = {to_micrometres(o.from_mm), to_micrometres(o.to_mm)};
   if (o.pattern == Pattern::drilling) {
-    out.holes_mm = {o.box_mm[0]};
+    out.holes_mm = {rounded(o.box_mm[0])};
     out.cycle = o.kind == OperationKind::centre ? machine::HoleCycle::centre
                 : o.kind == OperationKind::ream ? machine::HoleCycle::ream
                                                 : machine::HoleCycle::peck;
@@ -51,7 +62,7 @@ machine::CopyOperation copy_operation(const Operation& o) {
   out.radial_depth_mm = o.conditions.radial_mm;
   out.allowance_mm = o.allowance_mm;
   out.scallop_mm = o.pattern == Pattern::scanning_line ? o.scallop_mm : 0;
-  out.region.box_mm = o.box_mm;
+  out.region.box_mm = {rounded(o.box_mm[0]), rounded(o.box_mm[1])};
   if (o.pattern == Pattern::scanning_line) {
     out.angle_rad = row_angle_rad(o);
     out.sense = machine::MillingSense::both;
@@ -105,6 +116,61 @@ std::size_t refused(const InputError& error) {
   return 0;
 }
 
+/// What stands before each finishing operation, as files.
+class SavedStocks {
+ public:
+  explicit SavedStocks(const PlannedDivision& plan) {
+    for (const Operation& o : plan.operations) finishes_.push_back(o.kind == OperationKind::finish);
+  }
+  bool has(std::size_t operation) const { return finishes_[operation]; }
+  std::string path(std::size_t operation) const { return fmt::format("{}/stock-{}.vdb", folder_.path(), operation); }
+
+ private:
+  TemporaryFolder folder_;
+  std::vector<bool> finishes_;
+};
+
+/// Operations whose tool has no place are taken out of `operations`; places of the others tell their number.
+copymill::CopyResult copy_what_fits(const PlanInput& input, const machine::Job& job,
+                                    std::vector<machine::CopyOperation>& operations,
+                                    const std::optional<SavedStocks>& saved, Diagnostics& diagnostics) {
+  while (true) {
+    copymill::CopyOptions options{.loads = false};
+    if (saved)
+      options.before = [&](std::size_t k, const removal::Stock& stock) {
+        const std::size_t i = operations[k].place.location.line - 1;
+        if (saved->has(i)) stock.save(saved->path(i));
+      };
+    try {
+      return copymill::copy(job, operations, options, diagnostics);
+    } catch (const InputError& error) {
+      const std::size_t number = refused(error);
+      if (number == 0) throw;
+      const auto of = std::ranges::find(operations, number, [](const auto& o) { return o.place.location.line; });
+      diagnostics.add(
+          {Severity::warning,
+           {input.path, 0, 0},
+           fmt::format("operation {}: T{} has no place between the part's walls; it is left out", number, of->tool),
+           "plan-no-place",
+           {}});
+      operations.erase(of);
+    }
+  }
+}
+
+/// What the emitted text does besides cutting; a plan is a proposal, so that nothing of it is an error.
+void add_warnings(const machine::Job& job, const std::string& name, const std::string& text,
+                  const removal::Stock& blank, Diagnostics& diagnostics) {
+  Diagnostics found;
+  const simulate::SimulatedProgram emitted = simulate::simulate_motion(SourceText(name, text), job, {}, found);
+  simulate::check_collisions(job, emitted, blank, found);
+  simulate::check_flute_reach(job, emitted, blank, found);
+  for (Diagnostic d : found.all()) {
+    d.severity = Severity::warning;
+    diagnostics.add(std::move(d));
+  }
+}
+
 }  // namespace
 
 std::vector<machine::CopyOperation> copy_operations(const PlanInput& input, const PlannedDivision& plan) {
@@ -138,38 +204,33 @@ std::string copy_job_toml(const machine::Job& job, const std::vector<machine::Co
   return out;
 }
 
-PlanProgram make_program(const PlanInput& input, const machine::Job& job,
-                         const std::vector<machine::CopyOperation>& operations, Diagnostics& diagnostics) {
-  std::vector<machine::CopyOperation> left = operations;
-  copymill::CopyResult copied;
-  while (true) {
-    try {
-      copied = copymill::copy(job, left, {}, diagnostics);
-      break;
-    } catch (const InputError& error) {
-      const std::size_t number = refused(error);
-      if (number == 0) throw;
-      diagnostics.add({Severity::warning,
-                       {input.path, 0, 0},
-                       fmt::format("operation {}: T{} has no place between the part's walls; it is left out", number,
-                                   operations[number - 1].tool),
-                       "plan-no-place",
-                       {}});
-      std::erase_if(left, [&](const machine::CopyOperation& o) { return o.place.location.line == number; });
-    }
-  }
+PlanProgram make_program(const PlanInput& input, const machine::Job& job, const PlannedDivision& plan,
+                         const std::string& name, Diagnostics& diagnostics) {
+  std::vector<machine::CopyOperation> operations = copy_operations(input, plan);
+  const std::size_t count = operations.size();
+  std::optional<SavedStocks> saved;
+  if (input.compensate) saved.emplace(plan);
+  const copymill::CopyResult copied = copy_what_fits(input, job, operations, saved, diagnostics);
   const Sections sections = sections_of(copied.text, input.coolant);
   PlanProgram out;
   out.whole = sections.head;
-  std::size_t next = 0;
-  for (const machine::CopyOperation& o : operations) {
-    const bool made = next < left.size() && left[next].place.location.line == o.place.location.line;
-    out.each.push_back(made ? sections.head + sections.operations[next] + sections.end : std::string());
-    out.times_s.push_back(made ? cycle_time_of(job.path, out.each.back(), job).all.time.total_s() : 0);
-    if (made) out.whole += sections.operations[next++];
+  out.each.resize(count), out.times_s.resize(count), out.notes.resize(count);
+  for (std::size_t k = 0; k < operations.size(); ++k) {
+    const std::size_t i = operations[k].place.location.line - 1;
+    std::string section = sections.operations[k];
+    const auto whole = [&] { return sections.head + section + sections.end; };
+    if (saved && saved->has(i)) {
+      const CompensatedProgram done = compensated(job, saved->path(i), whole());
+      section = sections_of(done.text, false).operations.at(0);
+      out.notes[i] = done.note;
+    }
+    out.each[i] = whole();
+    out.times_s[i] = cycle_time_of(name, out.each[i], job).all.time.total_s();
+    out.whole += section;
   }
   out.whole += sections.end;
-  out.figures = {.time_s = cycle_time_of(job.path, out.whole, job).all.time.total_s(),
+  add_warnings(job, name, out.whole, *copied.blank, diagnostics);
+  out.figures = {.time_s = cycle_time_of(name, out.whole, job).all.time.total_s(),
                  .removed_mm3 = copied.removed_mm3,
                  .left_p95_um = copied.left.p95_um,
                  .left_max_um = copied.left.max_um,

@@ -11,9 +11,10 @@
 namespace camber::plan {
 
 struct PlanProgram {
-  std::string whole;              ///< all operations, with tool changes, spindle and coolant
-  std::vector<std::string> each;  ///< one an operation
-  std::vector<double> times_s;    ///< of each, by the feed model, with its rapids
+  std::string whole;               ///< all operations, with tool changes, spindle and coolant
+  std::vector<std::string> each;   ///< one an operation
+  std::vector<double> times_s;     ///< of each, by the feed model, with its rapids
+  std::vector<std::string> notes;  ///< of each; mostly empty
   ProgramFigures figures;
 };
 
@@ -27,9 +28,10 @@ machine::Job copy_job(const PlanInput& input, const std::string& part_stl, const
 /// job.toml for camber copy: the job and its [[copy]] tables.
 std::string copy_job_toml(const machine::Job& job, const std::vector<machine::CopyOperation>& operations);
 
-/// Makes the paths, cuts the blank along them, and times the text with the feed model. An operation whose tool has no
-/// place is left out with a warning [plan-no-place]. Throws InputError.
-PlanProgram make_program(const PlanInput& input, const machine::Job& job,
-                         const std::vector<machine::CopyOperation>& operations, Diagnostics& diagnostics);
+/// Makes the paths, cuts the blank along them, and times the text with the feed model. With `input.compensate`
+/// finishing operations are compensated. Warnings, at lines of `name`: an operation whose tool has no place, which is
+/// left out [plan-no-place]; rapids, shanks and holders in material [collision-rapid] ... Throws InputError.
+PlanProgram make_program(const PlanInput& input, const machine::Job& job, const PlannedDivision& plan,
+                         const std::string& name, Diagnostics& diagnostics);
 
 }  // namespace camber::plan

@@ -240,5 +240,6 @@ PYBIND11_MODULE(_camber, module) {
   camber_python::add_inputs(module);
   camber_python::add_results(module);
   camber_python::add_functions(module);
+  camber_python::add_copy(module);
   camber_python::add_plan(module);
 }

@@ -18,12 +18,15 @@ namespace {
 
 using Path = std::filesystem::path;
 
-camber::PlanResult make_plan(const Path& path, const std::optional<Path>& operations, bool programs,
+camber::PlanResult make_plan(const Path& path, const std::optional<Path>& operations, bool programs, bool all_programs,
                              const py::object& progress, bool strict, int threads) {
   camber::PlanResult result;
   call({progress, strict, threads}, [&](const camber::RunOptions& run) {
     result = camber::plan(path.string(),
-                          {.operations = operations ? operations->string() : std::string(), .programs = programs}, run);
+                          {.operations = operations ? operations->string() : std::string(),
+                           .programs = programs,
+                           .all_programs = all_programs},
+                          run);
   });
   return result;
 }
@@ -76,7 +79,7 @@ void add_plan(py::module_& module) {
       .def_readonly("removal_mm3", &PlanResult::removal_mm3)
       .def_readonly("files", &PlanResult::files);
   module.def("plan", make_plan, "plan"_a, py::kw_only(), "operations"_a = py::none(), "programs"_a = false,
-             "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "all_programs"_a = false, "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Operations, tools, conditions and order from the blank and the part of a plan.toml.");
 }
 

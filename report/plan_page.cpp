@@ -89,12 +89,12 @@ std::string view_card(const SetupPlan& s) {
 }
 
 TextTable plans_table(const SetupPlan& s) {
-  TextTable table{
-      "Plans",
-      {"plan", "primitives", "operations", "tools", "time by (3), s", "tool changes", "form error p95, um", ""},
-      {},
-      "Time: the sum of volume over removal rate, and the tool changes. Form error: deflection across the "
-      "wall in a steady cut, weighted by surface."};
+  TextTable table{"Plans",
+                  {"plan", "primitives", "operations", "tools", "time by (3), s", "program, s", "tool changes",
+                   "form error p95, um", ""},
+                  {},
+                  "Time: the sum of volume over removal rate, and the tool changes. Form error: deflection across the "
+                  "wall in a steady cut, weighted by surface."};
   for (std::size_t i = 0; i < s.plans.size(); ++i) {
     const PlannedDivision& p = s.plans[i];
     std::vector<int> tools;
@@ -102,7 +102,8 @@ TextTable plans_table(const SetupPlan& s) {
       if (std::ranges::find(tools, o.tool) == tools.end()) tools.push_back(o.tool);
     table.rows.push_back({std::string(plan::to_string(p.division)), fmt::format("{}", p.primitives.size()),
                           fmt::format("{}", p.operations.size()), fmt::format("{}", tools.size()),
-                          fmt::format("{:.1f}", p.nominal_time_s), fmt::format("{}", p.tool_changes),
+                          fmt::format("{:.1f}", p.nominal_time_s),
+                          p.program ? fmt::format("{:.1f}", p.program->time_s) : "-", fmt::format("{}", p.tool_changes),
                           fmt::format("{:.1f}", 1000 * p.form_error_p95_mm),
                           i == s.best    ? "taken"
                           : p.complete() ? ""

@@ -102,6 +102,7 @@ addEventListener('resize', fit);
 plans.selectedIndex = data.best;
 choose();
 fit();
+document.documentElement.dataset.ready = 'yes';
 )js";
 
 }  // namespace camber::report

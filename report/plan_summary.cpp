@@ -109,16 +109,20 @@ std::string operations_text(const plan::PlanInput& input, const PlannedDivision&
 }
 
 std::string plans_text(const SetupPlan& s) {
-  std::string out = fmt::format("{:<10}{:>12}{:>12}{:>10}{:>14}{:>20}\n", "plan", "primitives", "operations", "time, s",
-                                "tool changes", "form error p95, um");
+  const bool programs = std::ranges::any_of(s.plans, [](const PlannedDivision& p) { return p.program.has_value(); });
+  std::string out = fmt::format("{:<10}{:>12}{:>12}{:>10}{}{:>14}{:>20}\n", "plan", "primitives", "operations",
+                                "time, s", programs ? "  program, s" : "", "tool changes", "form error p95, um");
   for (std::size_t i = 0; i < s.plans.size(); ++i) {
     const PlannedDivision& p = s.plans[i];
-    out +=
-        fmt::format("{:<10}{:>12}{:>12}{:>10.1f}{:>14}{:>20.1f}{}\n", plan::to_string(p.division), p.primitives.size(),
-                    p.operations.size(), p.nominal_time_s, p.tool_changes, 1000 * p.form_error_p95_mm,
-                    i == s.best    ? "  taken"
-                    : p.complete() ? ""
-                                   : "  incomplete");
+    out += fmt::format("{:<10}{:>12}{:>12}{:>10.1f}{}{:>14}{:>20.1f}{}\n", plan::to_string(p.division),
+                       p.primitives.size(), p.operations.size(), p.nominal_time_s,
+                       !programs   ? std::string()
+                       : p.program ? fmt::format("{:>12.1f}", p.program->time_s)
+                                   : fmt::format("{:>12}", "-"),
+                       p.tool_changes, 1000 * p.form_error_p95_mm,
+                       i == s.best    ? "  taken"
+                       : p.complete() ? ""
+                                      : "  incomplete");
   }
   return out;
 }

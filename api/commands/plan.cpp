@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -57,27 +59,61 @@ void add_copy_job(const plan::PlanInput& input, const plan::SetupPlan& setup, co
                      plan::copy_job_toml(job, plan::copy_operations(input, setup.plans[setup.best])));
 }
 
-/// program.nc, and one an operation, of a plan that is taken; its times go to the plan.
-void add_programs(const plan::PlanInput& input, plan::SetupPlan& setup, const std::string& end,
-                  Diagnostics& diagnostics, std::vector<std::pair<std::string, std::string>>& files) {
-  if (!lies_as_given(input, setup)) {
-    diagnostics.add({Severity::warning,
-                     {input.path, 0, 0},
-                     fmt::format("{} is turned or in inches: its programs are made by camber copy from job{}.toml",
-                                 setup.setup.name, end),
-                     "plan-programs",
-                     {}});
-    return;
+using Programs = std::vector<std::optional<plan::PlanProgram>>;  ///< of the plans of one set-up
+
+/// Of the plan that is taken, or of all that are complete; the times go to the plans.
+Programs make_programs(const plan::PlanInput& input, plan::SetupPlan& setup, const std::string& end, bool all,
+                       Diagnostics& diagnostics) {
+  Programs out(setup.plans.size());
+  const machine::Job job = plan::copy_job(input, input.part_path, "");
+  std::map<std::string, std::size_t> by_operations;  // plans that come to the same share their program
+  for (std::size_t p = 0; p < setup.plans.size(); ++p) {
+    plan::PlannedDivision& of = setup.plans[p];
+    if (p != setup.best && !(all && of.complete())) continue;
+    const std::string operations = plan::copy_job_toml(job, plan::copy_operations(input, of));
+    const auto [same, is_new] = by_operations.emplace(operations, p);
+    const std::string name =
+        all ? fmt::format("program-{}{}.nc", plan::to_string(of.division), end) : fmt::format("program{}.nc", end);
+    out[p] = is_new ? plan::make_program(input, job, of, name, diagnostics) : out[same->second];
+    of.program = out[p]->figures;
+    for (std::size_t i = 0; i < of.operations.size(); ++i) {
+      of.operations[i].time_s = out[p]->times_s[i];
+      if (!out[p]->notes[i].empty()) of.operations[i].notes.push_back(out[p]->notes[i]);
+    }
   }
-  plan::PlannedDivision& plan = setup.plans[setup.best];
-  const plan::PlanProgram made = plan::make_program(input, plan::copy_job(input, input.part_path, ""),
-                                                    plan::copy_operations(input, plan), diagnostics);
-  plan.program = made.figures;
-  for (std::size_t i = 0; i < plan.operations.size(); ++i) {
-    plan.operations[i].time_s = made.times_s[i];
-    if (!made.each[i].empty()) files.emplace_back(fmt::format("operation{}-{:02}.nc", end, i + 1), made.each[i]);
-  }
-  files.emplace_back(fmt::format("program{}.nc", end), made.whole);
+  return out;
+}
+
+/// By the times of the programs.
+std::size_t best_program(const plan::SetupPlan& setup) {
+  std::vector<plan::PlanFigures> figures;
+  for (const plan::PlannedDivision& p : setup.plans)
+    figures.push_back({p.complete() && p.program.has_value(), p.program ? p.program->time_s : p.nominal_time_s,
+                       p.tool_changes, p.form_error_p95_mm});
+  return plan::best_plan(figures);
+}
+
+/// program.nc and one an operation of the plan that is taken, program-<division>.nc of the others.
+void add_programs(const plan::SetupPlan& setup, const Programs& programs, const std::string& end,
+                  std::vector<std::pair<std::string, std::string>>& files) {
+  for (std::size_t p = 0; p < programs.size(); ++p)
+    if (programs[p] && p != setup.best)
+      files.emplace_back(fmt::format("program-{}{}.nc", plan::to_string(setup.plans[p].division), end),
+                         programs[p]->whole);
+  const plan::PlanProgram& taken = *programs[setup.best];
+  for (std::size_t i = 0; i < taken.each.size(); ++i)
+    if (!taken.each[i].empty()) files.emplace_back(fmt::format("operation{}-{:02}.nc", end, i + 1), taken.each[i]);
+  files.emplace_back(fmt::format("program{}.nc", end), taken.whole);
+}
+
+void warn_of_turned(const plan::PlanInput& input, const plan::SetupPlan& setup, const std::string& end,
+                    Diagnostics& diagnostics) {
+  diagnostics.add({Severity::warning,
+                   {input.path, 0, 0},
+                   fmt::format("{} is turned or in inches: its programs are made by camber copy from job{}.toml",
+                               setup.setup.name, end),
+                   "plan-programs",
+                   {}});
 }
 
 bool same_conditions(const plan::Case& a, const plan::Case& b) {
@@ -93,10 +129,22 @@ PlannedFiles plan_job(const plan::PlanInput& input, const PlanJobOptions& option
   PlannedFiles out{plan::make_plan(input, diagnostics), {}};
   if (!options.operations.empty())
     plan::read_operations(options.operations, input, out.result.setups.front(), diagnostics);
+  std::vector<Programs> programs(out.result.setups.size());
+  for (std::size_t i = 0; i < programs.size() && (options.programs || options.all_programs); ++i) {
+    plan::SetupPlan& setup = out.result.setups[i];
+    const std::string end = suffix(out.result, i);
+    if (!lies_as_given(input, setup)) {
+      warn_of_turned(input, setup, end, diagnostics);
+      continue;
+    }
+    programs[i] = make_programs(input, setup, end, options.all_programs, diagnostics);
+    if (options.all_programs && programs.size() == 1) setup.best = best_program(setup);
+  }
   out.files = files_of(input, out.result);
-  for (std::size_t i = 0; i < out.result.setups.size(); ++i) {
-    add_copy_job(input, out.result.setups[i], suffix(out.result, i), out.files);
-    if (options.programs) add_programs(input, out.result.setups[i], suffix(out.result, i), diagnostics, out.files);
+  for (std::size_t i = 0; i < programs.size(); ++i) {
+    const plan::SetupPlan& setup = out.result.setups[i];
+    add_copy_job(input, setup, suffix(out.result, i), out.files);
+    if (!programs[i].empty()) add_programs(setup, programs[i], suffix(out.result, i), out.files);
   }
   return out;
 }

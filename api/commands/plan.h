@@ -17,6 +17,8 @@ struct PlannedFiles {
 struct PlanJobOptions {
   std::string operations{};  ///< an edited table of operations; empty: none
   bool programs = false;     ///< also program.nc and one an operation, of the plans that are taken
+  /// Programs of every complete plan; with one set-up their times, not those of equation (3), decide which is taken.
+  bool all_programs = false;
 };
 
 /// Throws InputError. Writes nothing.

@@ -2,9 +2,11 @@
 // shares no code with Camber. Prints the figures of one program as a table.
 //
 //   copy_judge OUT.nc PART.stl X0,Y0,Z0,X1,Y1,Z1 CELL ALLOWANCE TOOL:DIAMETER[,CORNER[,FLUTES[,POINT_deg]]]...
-//   [TOOL@RADIUS,ABOVE_TIP]...
+//   [TOOL@RADIUS,ABOVE_TIP]... [in=X0,Y0,Z0,X1,Y1,Z1] [reach=TOOL]
 //
-// TOOL@RADIUS,ABOVE_TIP: a shank or holder part, a cylinder of that radius from that height over the tip on.
+// TOOL@RADIUS,ABOVE_TIP: a shank or holder part, a cylinder of that radius from that height over the tip on. in: the
+// part's surface is looked at in this box alone. reach: the cutter that is to have reached all of it, else the smallest
+// mill.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -45,6 +47,15 @@ int run(int argc, char** argv) {
   q.cell = std::atof(argv[4]), q.allowance = std::atof(argv[5]);
   for (int i = 6; i < argc; ++i) {
     const std::string tool = argv[i];
+    if (tool.starts_with("in=")) {
+      const std::vector<double> v = numbers(tool.substr(3));
+      q.from = {v.at(0), v.at(1), v.at(2)}, q.to = {v.at(3), v.at(4), v.at(5)};
+      continue;
+    }
+    if (tool.starts_with("reach=")) {
+      q.reaching = std::atoi(tool.c_str() + 6);
+      continue;
+    }
     const std::size_t at = tool.find_first_of(":@");
     if (at == std::string::npos) throw std::runtime_error("TOOL:DIAMETER was expected: " + tool);
     const std::vector<double> v = numbers(tool.substr(at + 1));

@@ -3,6 +3,7 @@
 #include "camber/adapt.h"
 #include "camber/check.h"
 #include "camber/compensate.h"
+#include "camber/copy.h"
 #include "camber/diagnostics.h"
 #include "camber/explain_kinematics.h"
 #include "camber/feed.h"

@@ -11,8 +11,9 @@ namespace camber {
 inline namespace v0 {
 
 struct PlanOptions {
-  std::string operations{};  ///< file: an edited table of operations to go on from; empty: none
-  bool programs = false;     ///< also the programs, by copy milling, and their times
+  std::string operations{};   ///< file: an edited table of operations to go on from; empty: none
+  bool programs = false;      ///< also the programs, by copy milling, and their times
+  bool all_programs = false;  ///< of all three plans; their times decide which one is taken
 };
 
 struct PlannedOperation {

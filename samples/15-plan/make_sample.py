@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes part.stl: a block with a closed pocket, an L-shaped open pocket, four slots, a free-form face and a hole.
+"""Writes part.stl: a block with a closed pocket, an L-shaped open pocket, four slots, a free-form face and a hole; and
+divided.stl: a block with an L-shaped closed pocket, whose legs differ in width.
 
 Every floor is at Z-10; the free-form face goes down to Z-4.5. The blank of plan.toml is 5 mm higher.
 """
@@ -17,6 +18,7 @@ POCKETS = [  # x from, to, y from, to
 FREE = (120, 160, 50, 100, 4.5)  # and depth
 HOLE = (10, 12, 10.0, 48)  # x, y, diameter, facets
 STEPS = 12
+DIVIDED = [(20, 80, 20, 130), (80, 180, 20, 50)]
 
 
 def free_form(x, y):
@@ -26,18 +28,21 @@ def free_form(x, y):
     return -depth * math.sin(math.pi * (x - x0) / (x1 - x0)) ** 2 * math.sin(math.pi * (y - y0) / (y1 - y0)) ** 2
 
 
-def lines(low, high, index):
+def lines(pockets, high, index):
     half = HOLE[2] / 2 + 2
-    out = {0.0, float(high), HOLE[index] - half, HOLE[index] + half}
-    for p in POCKETS:
+    out = {0.0, float(high)}
+    for p in pockets:
         out |= {float(p[2 * index]), float(p[2 * index + 1])}
+    if pockets is not POCKETS:
+        return sorted(out)
+    out |= {HOLE[index] - half, HOLE[index] + half}
     a, b = FREE[2 * index], FREE[2 * index + 1]
     out |= {a + (b - a) * i / STEPS for i in range(STEPS + 1)}
     return sorted(out)
 
 
-def pocket(x, y):
-    return any(p[0] < x < p[1] and p[2] < y < p[3] for p in POCKETS)
+def in_any(pockets, x, y):
+    return any(p[0] < x < p[1] and p[2] < y < p[3] for p in pockets)
 
 
 def ring(x0, x1, y0, y1, z, up):
@@ -54,9 +59,10 @@ def ring(x0, x1, y0, y1, z, up):
     return out if up else [(a, c, b) for a, b, c in out]
 
 
-def triangles():
-    xs, ys = lines(0, LENGTH, 0), lines(0, WIDTH, 1)
-    deep = [[pocket((a + b) / 2, (c + d) / 2) for c, d in zip(ys, ys[1:])] for a, b in zip(xs, xs[1:])]
+def triangles(pockets):
+    xs, ys = lines(pockets, LENGTH, 0), lines(pockets, WIDTH, 1)
+    whole = pockets is POCKETS  # with the free-form face and the hole
+    deep = [[in_any(pockets, (a + b) / 2, (c + d) / 2) for c, d in zip(ys, ys[1:])] for a, b in zip(xs, xs[1:])]
     out = []
 
     def quad(a, b, c, d):
@@ -64,8 +70,8 @@ def triangles():
 
     for i, (x0, x1) in enumerate(zip(xs, xs[1:])):
         for j, (y0, y1) in enumerate(zip(ys, ys[1:])):
-            holed = x0 < HOLE[0] < x1 and y0 < HOLE[1] < y1
-            z = [FLOOR if deep[i][j] else free_form(x, y) for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+            holed = whole and x0 < HOLE[0] < x1 and y0 < HOLE[1] < y1
+            z = [FLOOR if deep[i][j] else free_form(x, y) if whole else 0.0 for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
             if holed:
                 out += ring(x0, x1, y0, y1, 0.0, True) + ring(x0, x1, y0, y1, -HEIGHT, False)
             else:
@@ -82,20 +88,25 @@ def triangles():
                 for low, high in levels:
                     quad((*a, low), (*b, low), (*b, high), (*a, high))
     hx, hy, d, n = HOLE
-    for i in range(n):
+    for i in range(n if whole else 0):
         p, q = ((hx + d / 2 * math.cos(2 * math.pi * k / n), hy + d / 2 * math.sin(2 * math.pi * k / n))
                 for k in (i, (i + 1) % n))
         quad((*q, -HEIGHT), (*p, -HEIGHT), (*p, 0.0), (*q, 0.0))
     return out
 
 
-def main():
-    faces = triangles()
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "part.stl")
+def write(name, pockets):
+    faces = triangles(pockets)
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), name)
     with open(path, "wb") as file:
         file.write(b"camber sample 15".ljust(80) + struct.pack("<I", len(faces)))
         for face in faces:
             file.write(struct.pack("<12fH", 0, 0, 0, *(v for p in face for v in p), 0))
+
+
+def main():
+    write("part.stl", POCKETS)
+    write("divided.stl", DIVIDED)
 
 
 if __name__ == "__main__":

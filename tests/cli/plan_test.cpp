@@ -1,4 +1,5 @@
 // camber plan from the command line: what it writes, and what it says where a part cannot be made.
+#include <cstdio>
 #include <filesystem>
 #include <string>
 
@@ -6,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/block_part.h"
+#include "tests/support/open_page.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -54,6 +56,13 @@ TEST(PlanCommand, WritesTablesPageAndFigures) {
   EXPECT_NE(page.find("closed pocket"), std::string::npos);
 }
 
+TEST(PlanCommand, PageMachinesOnePrimitiveAfterTheOther) {
+  CAMBER_NEEDS_BROWSER();
+  const TempFolder folder;
+  ASSERT_EQ(plan(folder, 8).status, 0);
+  EXPECT_EQ(tests::open_page("plan", folder / "out/report.html"), "");
+}
+
 TEST(PlanCommand, MakesProgramsThatCutThePart) {
   const TempFolder folder;
   const CamberRun run = plan(folder, 8, " -o out --programs");
@@ -76,6 +85,51 @@ TEST(PlanCommand, MakesProgramsThatCutThePart) {
   EXPECT_EQ(check.status, 0) << check.err;
   const CamberRun copy = run_camber(folder, "copy out/job.toml -o out/copied.nc --effective-config");
   EXPECT_EQ(copy.status, 0) << copy.err;
+}
+
+TEST(PlanCommand, ComparesTheProgramsOfAllPlans) {
+  const TempFolder folder;
+  const CamberRun run = plan(folder, 8, " -o out --all-programs");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "out/plan.json"));
+  const std::size_t best = json.at("setups").at(0).at("best").get<std::size_t>();
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& row = json.at("plans").at(i);
+    EXPECT_GE(row.at("time_s").get<double>(), json.at("plans").at(best).at("time_s").get<double>());
+    const std::string name = "out/program-" + row.at("division").get<std::string>() + ".nc";
+    others += std::filesystem::exists(folder / name);
+    // The pocket is one box in each plan, so that all come to the same program.
+    if (i != best) {
+      EXPECT_EQ(tests::file_text(folder / name), tests::file_text(folder / "out/program.nc"));
+    }
+  }
+  EXPECT_EQ(others, 2U);
+}
+
+TEST(PlanCommand, CompensatesFinishingOperations) {
+  const TempFolder folder;
+  ASSERT_EQ(plan(folder, 8).status, 0);
+  const std::string text =
+      tests::replaced(kPlan, "material = \"FC250\"\n[tool.1]",
+                      "material = \"FC250\"\nfinish = \"fine\"\nallowance_mm = 0.2\ncompensate = true\n[tool.1]");
+  ASSERT_NE(text, kPlan);
+  folder.write("plan.toml", tests::replaced(text, "overhang_mm = 30", "overhang_mm = 20"));
+  const CamberRun run = run_camber(folder, "plan plan.toml -o out --programs");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "out/plan.json"));
+  std::size_t compensated = 0;
+  for (const auto& o : json.at("operations"))
+    for (const auto& note : o.at("notes")) {
+      const std::string said = note.get<std::string>();
+      if (!said.starts_with("compensated: form error ")) continue;
+      ++compensated;
+      double before = 0, after = 0;
+      ASSERT_EQ(std::sscanf(said.c_str(), "compensated: form error %lf um (p95) without, %lf", &before, &after), 2);
+      EXPECT_LT(after, before);
+      EXPECT_EQ(o.at("kind"), "finish");
+    }
+  EXPECT_GT(compensated, 0U) << json.at("operations").dump(1);
 }
 
 TEST(PlanCommand, WritesTheSameTwice) {

@@ -160,6 +160,27 @@ class Figures(unittest.TestCase):
         self.assertEqual([load.max_after for load in result.loads], [load["max_after"] for load in expected["loads"]])
         self.assertTrue(result.success)
 
+    def test_copy(self):
+        job = SAMPLES / "14-copy-milling/slot.toml"
+        with tempfile.TemporaryDirectory() as out:
+            program = os.path.join(out, "slot.nc")
+            expected = command_line("copy", job, "-o", program, "--stop-after", "3", "--stock", out + "/a.vdb")
+            text = pathlib.Path(program).read_text()
+            result = camber.copy(job, stop_after_s=3, stock=out + "/b.vdb")
+            self.assertTrue(os.path.exists(out + "/b.vdb"))
+        figures = result.figures
+        for both in (figures, expected):
+            del both["tick_ms"], both["compute_s"]
+        self.assertEqual(figures, expected)
+        self.assertEqual(result.program, text)
+        self.assertTrue(result.stopped)
+        self.assertEqual(result.time_s, expected["time_s"])
+        self.assertEqual([o.removed_mm3 for o in result.operations],
+                         [o["removed_mm3"] for o in expected["operations"]])
+        with self.assertRaises(camber.InputError) as caught:
+            camber.copy(SAMPLES / "14-copy-milling/machine.toml")
+        self.assertTrue(caught.exception.file.endswith("machine.toml"))
+
     def test_plan(self):
         plan = SAMPLES / "15-plan/plan.toml"
         with tempfile.TemporaryDirectory() as out:

@@ -367,6 +367,40 @@ const CHECKS = {
     expect((await whole())[0].share > 0.02, 'the view from the top is blank');
   },
 
+  // A plan: the slider machines one primitive after the other, in each of the plans.
+  async plan(page) {
+    const drawn = () => page.evaluate(() => {
+      const { data } = document.getElementById('view').getContext('2d').getImageData(0, 0, 900, 440);
+      let share = 0, sum = 0;
+      for (let i = 0; i < data.length; i += 4) if (data[i + 3]) { share++; sum = (sum * 31 + data[i] + i) >>> 0; }
+      return { share: 4 * share / data.length, sum };
+    });
+    const choices = await page.locator('#plans option').count();
+    expect(choices === 3, `${choices} plans`);
+    for (let k = 0; k < choices; k++) {
+      await page.locator('#plans').selectOption({ index: k });
+      const step = page.locator('#step'), last = Number(await step.getAttribute('max')), seen = new Set();
+      expect(last >= 2, `plan ${k} has ${last} primitives`);
+      for (let n = 0; n <= last; n++) {
+        await step.evaluate((slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }, n);
+        const picture = await drawn(), name = await page.locator('#step-name').innerText();
+        expect(picture.share > 0.02, `plan ${k} is blank at ${n}`);
+        expect(n === 0 || name.startsWith(`${n}: `), `at ${n} the label says "${name}"`);
+        seen.add(picture.sum);
+      }
+      expect(seen.size === last + 1, `plan ${k} has ${seen.size} pictures of ${last + 1}`);
+    }
+    const text = await page.locator('main').innerText();
+    for (const word of ['Operations of the plan that is taken', 'limit', 'taken', 'largest']) expect(text.includes(word), `"${word}" is missing`);
+  },
+
+  // A copied program: still pictures of the path and of feed and load over time.
+  async copy(page) {
+    const lines = await page.$$eval('svg.fixed', all => all.map(s => s.querySelectorAll('path, polyline, line').length));
+    expect(lines.length >= 2 && lines.every(n => n > 0), `pictures with ${lines} lines`);
+    expect((await page.locator('main').innerText()).includes('min'), 'no units');
+  },
+
   async large_program(page) {
     expect(opened_ms < 5000, `the page took ${opened_ms} ms`);
     expect((await strokes(page)).drawn > 1000, 'the picture is blank');
@@ -412,7 +446,7 @@ try {
   page.on('request', r => { if (!/^(file|blob|data):/.test(r.url())) problems.push(`asks for ${r.url()}`); });
   const asked = Date.now();
   await page.goto(pathToFileURL(file).href);
-  if (check !== 'without_script') await page.waitForFunction(() => document.documentElement.dataset.ready === 'yes');
+  if (check !== 'without_script' && check !== 'copy') await page.waitForFunction(() => document.documentElement.dataset.ready === 'yes');
   opened_ms = Date.now() - asked;
   await CHECKS[check](page);
 } catch (e) {

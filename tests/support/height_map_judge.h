@@ -49,7 +49,7 @@ struct Worst {
 struct Verdict {
   Worst gouge;               ///< into the part, along the normal
   Worst left;                ///< over the part, along the normal
-  Worst left_reachable;      ///< of it what the smallest cutter could have reached
+  Worst left_reachable;      ///< of it what the cutter that is asked for could have reached
   Worst rapid, shank, body;  ///< material above the lower side of what must not cut there, vertical
   double left_area = 0;      ///< mm2 with more left than asked about
   double removed = 0;        ///< mm3
@@ -66,7 +66,7 @@ class HeightMap {
   void cut(const Piece& piece, const Cutter& cutter, Verdict& verdict) {
     constexpr double kTouch = 1e-6;
     over(piece, cutter.radius(), [&](std::size_t at, const Point& p) {
-      const double z = lowest(piece, cutter, p);
+      const double z = std::max(lo_.z, lowest(piece, cutter, p));
       const double before = height_[at];
       if (z >= before - kTouch) return;
       if (piece.rapid) verdict.rapid.take(before - z, {p.x, p.y, z}, piece.line);
@@ -87,9 +87,9 @@ class HeightMap {
     }
   }
 
-  /// `of_interest`: less left over than this is not looked at, mm.
-  void compare(const PartMesh& part, double allowance, double of_interest, const Cutter& smallest,
-               Verdict& verdict) const {
+  /// Of the points of the part within a box. `of_interest`: less left over than this is not looked at, mm.
+  void compare(const PartMesh& part, const Point& from, const Point& to, double allowance, double of_interest,
+               const Cutter& reaching, Verdict& verdict) const {
     std::vector<double> tops(height_.size());
     for (int i = 0; i < nx_; ++i)
       for (int j = 0; j < ny_; ++j) tops[at(i, j)] = part.top(x(i), y(j));
@@ -97,14 +97,15 @@ class HeightMap {
     for (int i = 0; i < nx_; ++i)
       for (int j = 0; j < ny_; ++j) {
         const double z = height_[at(i, j)], top = tops[at(i, j)];
-        if (top == PartMesh::kNone) continue;
+        if (top == PartMesh::kNone || x(i) < from.x || x(i) > to.x || y(j) < from.y || y(j) > to.y) continue;
+        if (top < from.z || top > to.z) continue;
         if (z < top) verdict.gouge.take(deepest(part, {x(i), y(j), z}, top), {x(i), y(j), z}, cut_by_[at(i, j)]);
         if (z <= top + allowance + of_interest) continue;
         const double left = deepest(part, {x(i), y(j), top}, z);
         verdict.left.take(left, {x(i), y(j), z}, cut_by_[at(i, j)]);
         if (left <= allowance + of_interest) continue;
         verdict.left_area += cell_ * cell_;
-        if (reachable.empty()) reachable = reach(tops, smallest);
+        if (reachable.empty()) reachable = reach(tops, reaching);
         const double above = z - std::max(top, reachable[at(i, j)]);
         if (above > allowance + of_interest)
           verdict.left_reachable.take(std::min(left, above), {x(i), y(j), z}, cut_by_[at(i, j)]);
@@ -222,7 +223,16 @@ struct Question {
   double allowance = 0;       ///< may stand over the part
   double of_interest = 0.01;  ///< more than allowance and this is looked at
   std::map<int, Cutter> cutters{};
+  Point from{-1e9, -1e9, -1e9}, to{1e9, 1e9, 1e9};  ///< where the part is looked at
+  int reaching = 0;  ///< the cutter that is to have reached all of it; 0: the smallest that is no drill
 };
+
+inline const Cutter& reaching_cutter(const Question& question) {
+  if (question.reaching != 0) return question.cutters.at(question.reaching);
+  return std::ranges::min_element(question.cutters, {},
+                                  [](const auto& c) { return std::pair(c.second.point_angle > 0, c.second.diameter); })
+      ->second;
+}
 
 inline Verdict judge(const std::vector<Piece>& program, const PartMesh& part, const Question& question) {
   Verdict verdict;
@@ -234,8 +244,8 @@ inline Verdict judge(const std::vector<Piece>& program, const PartMesh& part, co
                                " is not given");
     map.cut(piece, cutter->second, verdict);
   }
-  const auto smallest = std::ranges::min_element(question.cutters, {}, [](const auto& c) { return c.second.diameter; });
-  map.compare(part, question.allowance, question.of_interest, smallest->second, verdict);
+  map.compare(part, question.from, question.to, question.allowance, question.of_interest, reaching_cutter(question),
+              verdict);
   return verdict;
 }
 
