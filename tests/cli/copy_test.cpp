@@ -15,7 +15,7 @@ using tests::CamberRun;
 using tests::SmallCopy;
 using tests::TempFolder;
 
-constexpr const char* kOperation =
+const std::string kOperation =
     "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 8000\nfeed_mm_per_min = 3000\n"
     "radial_depth_mm = 4\naxial_depth_mm = 4\n";
 
@@ -41,7 +41,7 @@ TEST(CopyCommand, RefusesAPartOutsideTheStock) {
 
 TEST(CopyCommand, RefusesAToolLargerThanEveryPocket) {
   const TempFolder folder;
-  const std::string operation = std::string(kOperation) + "allowance_mm = 2.5\n";
+  const std::string operation = kOperation + "allowance_mm = 2.5\n";
   EXPECT_EQ(refused(folder, {.part = "slot", .stock = "box_mm = [[0, 0, -12], [60, 30, 0]]", .operations = operation}),
             "job.toml:28:1: error: T1 with a diameter of 8 mm and an allowance of 2.5 mm has no place in the region; a "
             "tool that fits between the part's walls was expected [tool-too-large]\n");

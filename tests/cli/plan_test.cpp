@@ -87,6 +87,28 @@ TEST(PlanCommand, MakesProgramsThatCutThePart) {
   EXPECT_EQ(copy.status, 0) << copy.err;
 }
 
+TEST(PlanCommand, GoesOnFromTheStockOfAnInterruptedRun) {
+  const TempFolder folder;
+  ASSERT_EQ(plan(folder, 8).status, 0);
+  const auto whole = nlohmann::json::parse(tests::file_text(folder / "out/plan.json"));
+  const CamberRun copy =
+      run_camber(folder, "copy out/job.toml -o out/stopped.nc --stop-after 60 --stock left.vdb --json out/copy.json");
+  ASSERT_EQ(copy.status, 0) << copy.err;
+  const double cut = nlohmann::json::parse(tests::file_text(folder / "out/copy.json")).at("removed_mm3");
+  EXPECT_GT(cut, 300);
+  folder.write("plan.toml", tests::replaced(kPlan, "box_mm = [[0, 0, 0], [60, 40, 22]]", "vdb = \"left.vdb\""));
+  const CamberRun run = run_camber(folder, "plan plan.toml -o again --programs");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "again/plan.json"));
+  const double left = json.at("removal_mm3");
+  EXPECT_NEAR(left, whole.at("removal_mm3").get<double>() - cut, 0.01 * left);
+  EXPECT_NE(json.at("operations").at(0), whole.at("operations").at(0));
+  const auto& taken = json.at("plans").at(json.at("setups").at(0).at("best").get<std::size_t>());
+  // Sharp inner corners of the pocket stay.
+  EXPECT_NEAR(taken.at("removed_mm3").get<double>(), left, 0.02 * left);
+  EXPECT_LT(taken.at("gouge_um"), 25);
+}
+
 TEST(PlanCommand, ComparesTheProgramsOfAllPlans) {
   const TempFolder folder;
   const CamberRun run = plan(folder, 8, " -o out --all-programs");
