@@ -44,7 +44,7 @@ TEST(CopyCommand, RefusesAToolLargerThanEveryPocket) {
   const std::string operation = kOperation + "allowance_mm = 2.5\n";
   EXPECT_EQ(refused(folder, {.part = "slot", .stock = "box_mm = [[0, 0, -12], [60, 30, 0]]", .operations = operation}),
             "job.toml:28:1: error: T1 with a diameter of 8 mm and an allowance of 2.5 mm has no place in the region; a "
-            "tool that fits between the part's walls was expected [tool-too-large]\n");
+            "tool that fits between the part's walls was expected [tool-too-large]\n    [[copy]]\n    ^\n");
 }
 
 TEST(CopyCommand, RefusesAnOpenMesh) {

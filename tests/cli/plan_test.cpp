@@ -137,6 +137,10 @@ TEST(PlanCommand, CompensatesFinishingOperations) {
                       "material = \"FC250\"\nfinish = \"fine\"\nallowance_mm = 0.2\ncompensate = true\n[tool.1]");
   ASSERT_NE(text, kPlan);
   folder.write("plan.toml", tests::replaced(text, "overhang_mm = 30", "overhang_mm = 20"));
+  std::string machine = "[spindle]\nmax_rpm = 8000\n";
+  for (const char* axis : {"x", "y", "z"})
+    machine += std::string("[axis.") + axis + "]\nmax_velocity_mm_per_min = 9000\nacceleration_mm_per_s2 = 2000\n";
+  folder.write("machine.toml", machine);
   const CamberRun run = run_camber(folder, "plan plan.toml -o out --programs");
   ASSERT_EQ(run.status, 0) << run.err;
   const auto json = nlohmann::json::parse(tests::file_text(folder / "out/plan.json"));
