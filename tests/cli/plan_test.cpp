@@ -1,5 +1,4 @@
 // camber plan from the command line: what it writes, and what it says where a part cannot be made.
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
@@ -127,35 +126,6 @@ TEST(PlanCommand, ComparesTheProgramsOfAllPlans) {
     }
   }
   EXPECT_EQ(others, 2U);
-}
-
-TEST(PlanCommand, CompensatesFinishingOperations) {
-  const TempFolder folder;
-  ASSERT_EQ(plan(folder, 8).status, 0);
-  const std::string text =
-      tests::replaced(kPlan, "material = \"FC250\"\n[tool.1]",
-                      "material = \"FC250\"\nfinish = \"fine\"\nallowance_mm = 0.2\ncompensate = true\n[tool.1]");
-  ASSERT_NE(text, kPlan);
-  folder.write("plan.toml", tests::replaced(text, "overhang_mm = 30", "overhang_mm = 20"));
-  std::string machine = "[spindle]\nmax_rpm = 8000\n";
-  for (const char* axis : {"x", "y", "z"})
-    machine += std::string("[axis.") + axis + "]\nmax_velocity_mm_per_min = 9000\nacceleration_mm_per_s2 = 2000\n";
-  folder.write("machine.toml", machine);
-  const CamberRun run = run_camber(folder, "plan plan.toml -o out --programs");
-  ASSERT_EQ(run.status, 0) << run.err;
-  const auto json = nlohmann::json::parse(tests::file_text(folder / "out/plan.json"));
-  std::size_t compensated = 0;
-  for (const auto& o : json.at("operations"))
-    for (const auto& note : o.at("notes")) {
-      const std::string said = note.get<std::string>();
-      if (!said.starts_with("compensated: form error ")) continue;
-      ++compensated;
-      double before = 0, after = 0;
-      ASSERT_EQ(std::sscanf(said.c_str(), "compensated: form error %lf um (p95) without, %lf", &before, &after), 2);
-      EXPECT_LT(after, before);
-      EXPECT_EQ(o.at("kind"), "finish");
-    }
-  EXPECT_GT(compensated, 0U) << json.at("operations").dump(1);
 }
 
 TEST(PlanCommand, WritesTheSameTwice) {
