@@ -36,6 +36,11 @@ machine::CopyMode mode_of(Pattern pattern) {
 
 /// Meshes have single precision: what lies beyond the micrometre is noise.
 double to_micrometres(double mm) { return std::round(1000 * mm) / 1000 + 0.0; }
+/// A floor stays where the mesh has it: a level a fraction of a micrometre below it would cut nothing.
+double without_noise(double mm) {
+  constexpr double kNoise_mm = 1e-9;
+  return std::abs(mm - to_micrometres(mm)) < kNoise_mm ? to_micrometres(mm) : mm;
+}
 Vec2 rounded(const Vec2& p) { return {to_micrometres(p.x()), to_micrometres(p.y())}; }
 
 /// Rows run along the longer side.
@@ -51,7 +56,7 @@ machine::CopyOperation copy_operation(const Operation& o) {
   out.spindle_rpm = o.conditions.spindle_rpm;
   out.feed_mm_per_s = mm_per_s_from_mm_per_min(o.conditions.feed_mm_per_min);
   out.axial_depth_mm = o.conditions.axial_mm;
-  out.region.z_mm = {to_micrometres(o.from_mm), to_micrometres(o.to_mm)};
+  out.region.z_mm = {without_noise(o.from_mm), without_noise(o.to_mm)};
   if (o.pattern == Pattern::drilling) {
     out.holes_mm = {rounded(o.box_mm[0])};
     out.cycle = o.kind == OperationKind::centre ? machine::HoleCycle::centre
