@@ -360,7 +360,7 @@ CutResult cut_piece(removal::Stock& stock, const Job& job, const removal::StampP
   if (piece.turn_from && *piece.turn_from >= run.from) options.turn_from = *piece.turn_from - run.from;
   const std::vector<Contact> contacts = find_contacts(*piece.target, tool, stamps.subspan(piece.from, piece.count));
   return cut_range(stock, tool, job.material, stamps, piece.from, piece.count, contacts,
-                   static_cast<std::int32_t>(run.from), options);
+                   static_cast<std::int32_t>(run.from), options, piece.bend);
 }
 
 PathLoads predict_loads(const Job& job, const removal::Stock& blank, const SimulatedProgram& program,
