@@ -436,8 +436,8 @@ class Cutter {
   std::size_t different_teeth_ = 1;               ///< of which each takes another chip
   std::optional<removal::RigidEngager> engager_;  ///< rigid
   std::optional<StaticCut> static_cut_;
-  bool settled_ = true;          ///< the last tooth passing
-  DeflectionTable deflections_;  ///< of the stretch
+  bool settled_ = true;           ///< the last tooth passing
+  DeflectionTable deflections_;   ///< of the stretch
   std::vector<float> last_rows_;  ///< of the deflection tables before, BendBefore::kRows at most
   double largest_bend_mm_ = 0;    ///< so far
 };

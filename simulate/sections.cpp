@@ -317,9 +317,8 @@ SolvedSection solve_section(const Job& job, const Programs& programs, const Sect
     const BendBefore bend = bend_before(pieces, p, parts.last);
     if (again) {
       then->advance_to(p);
-      const double change_mm =
-          std::max(removal::largest_difference_mm(now.stock(), then->stock(), reach),
-                   largest_difference_mm(bend, bend_before(pieces, p, parts.before_last)));
+      const double change_mm = std::max(removal::largest_difference_mm(now.stock(), then->stock(), reach),
+                                        largest_difference_mm(bend, bend_before(pieces, p, parts.before_last)));
       out.history.back().largest_change_um = std::max(out.history.back().largest_change_um, 1000 * change_mm);
       if (change_mm <= kSettled_mm) {
         out.pieces.push_back(parts.last[options.section].pieces[p - range.begin]);

@@ -79,7 +79,7 @@ struct SolvedSection {
   std::vector<SurfaceMarks> contour;  ///< of the target program's pieces
   struct Round {
     std::uint64_t solved_again = 0;  ///< pieces
-    double largest_change_um = 0;    ///< of the stock before a piece, or of the tool's bend there, since the round before
+    double largest_change_um = 0;  ///< of the stock before a piece, or of the tool's bend there, since the round before
   };
   std::vector<Round> history;  ///< from the second round on
   SectionWork work;

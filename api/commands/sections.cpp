@@ -146,7 +146,8 @@ MergedJob merge_parts(const machine::Job& job, const PartKey& key, int round, Pa
       out.doubt = fmt::format("round {} has solved {} of {} pieces again for changes of up to {:.2f} um", round,
                               figures.solved_again.back(), figures.pieces, figures.largest_change_um.back());
     if (!out.doubt.empty())
-      out.doubt += fmt::format("; --stage solve --round {} of all sections, and then camber merge, was expected", round + 1);
+      out.doubt +=
+          fmt::format("; --stage solve --round {} of all sections, and then camber merge, was expected", round + 1);
   }
   return out;
 }

@@ -160,9 +160,10 @@ TEST(Sections, SayWhatAFirstRoundLeavesOut) {
   for (const char* which : {"sweep", "solve"}) ASSERT_EQ(run_camber(folder, stage(which, 1, 1)).status, 0);
   const CamberRun run = run_camber(folder, "merge parts");
   EXPECT_EQ(run.status, 3);
-  EXPECT_EQ(run.err.substr(0, run.err.find('\n')),
-            "camber: error: the first round of sections in static coupling begins from what an undeflected cutter leaves; "
-            "--stage solve --round 2 of all sections, and then camber merge, was expected");
+  EXPECT_EQ(
+      run.err.substr(0, run.err.find('\n')),
+      "camber: error: the first round of sections in static coupling begins from what an undeflected cutter leaves; "
+      "--stage solve --round 2 of all sections, and then camber merge, was expected");
 }
 
 class Parts : public ::testing::Test {
