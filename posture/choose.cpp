@@ -14,7 +14,7 @@
 namespace camber::posture {
 namespace {
 
-constexpr double kCap_mm = 2, kAirCap_mm = 10;  ///< room beyond this is not measured
+constexpr double kAirCap_mm = 10;             ///< room beyond this is not measured
 constexpr double kKnot_mm = 3;                ///< between the points at which the path through directions is looked for
 constexpr double kFarthest = 55 * kPi / 180;  ///< of tool and normal that is looked at
 constexpr double kRapidMmPerS = 200;
@@ -101,7 +101,7 @@ class Chooser {
         if (points_[i].contact && angle_between(axis, points_[i].normal) > kFarthest) continue;
         const Vec3 tip = points_[i].tip_mm(axis);
         if (room <= 0 || (tip - there).norm() >= room) {
-          room = surroundings_.room_mm(tool_, tip, axis, points_[i].contact ? kCap_mm : kAirCap_mm);
+          room = surroundings_.room_mm(tool_, tip, axis, points_[i].contact ? 0 : kAirCap_mm);
           there = tip;
           if (room < 0) continue;
         }
@@ -218,10 +218,19 @@ class Chooser {
              clear_between(surroundings_, tool_, all_[i - 1], axes[i - 1], p, axis) &&
              clear_between(surroundings_, tool_, p, axis, all_[i + 1], axes[i + 1]);
     };
+    std::vector<int> changed(axes.size(), 0), refused(axes.size(), -1);  // in which pass, last
     for (int pass = 0; pass < kSmoothings; ++pass)
       for (std::size_t i = 1; i + 1 < axes.size(); ++i) {
+        // Nothing near has changed since.
+        if (refused[i] > std::max({changed[i - 1], changed[i], changed[i + 1]})) continue;
         const Vec3 middle = (axes[i - 1] + 2 * axes[i] + axes[i + 1]).normalized();
-        if ((middle - axes[i]).norm() > 1e-5 && holds(i, middle)) axes[i] = middle;
+        if ((middle - axes[i]).norm() <= 1e-5) continue;
+        if (holds(i, middle)) {
+          axes[i] = middle;
+          changed[i] = pass;
+        } else {
+          refused[i] = pass;
+        }
       }
   }
 
