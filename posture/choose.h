@@ -44,8 +44,10 @@ struct Postures {
   std::size_t unclear = 0;               ///< points whose tool is too near: normal, lead_tilt, seed
 };
 
-Postures choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings, const ToolShape& tool,
-                         const machine::Machine& machine, const PostureOptions& options);
+/// For each tool: one tool, or the same one drawn in further and further.
+std::vector<Postures> choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings,
+                                      std::span<const ToolShape> tools, const machine::Machine& machine,
+                                      const PostureOptions& options);
 
 /// Points, and places half way between them, at which the tool is nearer than it needs to be.
 std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec3> axes,

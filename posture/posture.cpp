@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
 
 #include "base/stl.h"
@@ -53,24 +54,35 @@ class Maker {
     return true;
   }
 
-  Postured run(const machine::Tool& tool) {
-    Postured out;
-    const ToolShape shape = tool_shape(tool, job_.machine, request_.options.clearance_mm);
-    const Postures postures = choose_postures(points_, surroundings_, shape, job_.machine, request_.options);
-    out.points = points_;
-    if (postures.blocked) {
-      out.blocked_move = points_[*postures.blocked].move;
-      return out;
+  std::vector<Postured> run() {
+    std::vector<machine::Tool> tools(std::max<std::size_t>(1, request_.overhangs_mm.size()), tool());
+    std::vector<ToolShape> shapes;
+    for (std::size_t i = 0; i < tools.size(); ++i) {
+      if (!request_.overhangs_mm.empty()) tools[i].overhang_mm = request_.overhangs_mm[i];
+      shapes.push_back(tool_shape(tools[i], job_.machine, request_.options.clearance_mm));
     }
-    out.axes = postures.axes;
-    out.figures = figures_of(tool, postures);
+    const std::vector<Postures> postures =
+        choose_postures(points_, surroundings_, shapes, job_.machine, request_.options);
+    std::vector<Postured> out(tools.size());
+    tbb::parallel_for(std::size_t{0}, tools.size(), [&](std::size_t i) { finish(tools[i], postures[i], out[i]); });
     return out;
   }
 
-  void write(Postured& out) const;
+ private:
   const machine::Tool& tool() const { return job_.tools.at(request_.tool); }
 
- private:
+  void finish(const machine::Tool& tool, const Postures& postures, Postured& out) const {
+    out.points = points_;
+    if (postures.blocked) {
+      out.blocked_move = points_[*postures.blocked].move;
+      return;
+    }
+    out.axes = postures.axes;
+    out.figures = figures_of(tool, postures);
+    write(out);
+  }
+  void write(Postured& out) const;
+
   void say(std::size_t offset, const char* check, std::string message) {
     diagnostics_.add(program_.source.diagnostic(Severity::error, offset, std::move(message), check));
   }
@@ -215,12 +227,10 @@ void Maker::write(Postured& out) const {
 
 }  // namespace
 
-Postured make_postures(const PostureRequest& request, Diagnostics& diagnostics) {
+std::vector<Postured> make_postures(const PostureRequest& request, Diagnostics& diagnostics) {
   Maker maker(request, diagnostics);
   if (!maker.ready()) return {};
-  Postured out = maker.run(maker.tool());
-  if (!out.blocked_move) maker.write(out);
-  return out;
+  return maker.run();
 }
 
 double least_overhang_mm(const machine::Tool& tool) {

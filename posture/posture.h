@@ -22,7 +22,8 @@ struct PostureRequest {
   const nc::Program* program = nullptr;
   const nc::Interpretation* moves = nullptr;  ///< read with the machine's rotary axes
   int tool = 0;
-  double step_mm = 1;  ///< between the points at which the direction is chosen
+  std::vector<double> overhangs_mm{};  ///< ever less; empty: that of the job
+  double step_mm = 1;                  ///< between the points at which the direction is chosen
   PostureOptions options;
 };
 
@@ -52,7 +53,8 @@ struct Postured {
 ///  [rotary-axis]    the program turns rotary axes already, or is under tool-centre-point control;
 ///  [not-editable]   a move of the tool that the text does not say alone;
 ///  [no-moves]       the tool has no moves.
-Postured make_postures(const PostureRequest& request, Diagnostics& diagnostics);
+/// One result for each overhang; none where there are errors.
+std::vector<Postured> make_postures(const PostureRequest& request, Diagnostics& diagnostics);
 
 /// The least overhang that is tried: flutes, and one diameter.
 double least_overhang_mm(const machine::Tool& tool);

@@ -1,9 +1,11 @@
 #include "api/commands/posture.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <nlohmann/json.hpp>
 
 #include "api/commands/rotary_program.h"
@@ -36,8 +38,19 @@ void read_again(const PostureCommand& command, PosturedProgram& program, Diagnos
   program.time_s = feedmodel::cycle_time(moves, machine).all.time.total_s();
   for (nc::Move& move : moves.moves) move.block = program.postured.block_of_line[move.block];
   kinematics::check_travel(machine, *command.text, moves, diagnostics);
-  diagnostics.throw_if_errors();
 }
+
+/// From that of the job down to the least that is tried; without a step, that of the job.
+std::vector<double> overhangs_of(const machine::Job& job, int number, double step_mm) {
+  const auto tool = job.tools.find(number);
+  if (tool == job.tools.end() || step_mm <= 0) return {};
+  const double given = tool->second.overhang_mm, least = posture::least_overhang_mm(tool->second);
+  std::vector<double> out{given};
+  for (int i = 1; given - i * step_mm >= least - 1e-9; ++i) out.push_back(given - i * step_mm);
+  return out;
+}
+
+bool clear(const posture::Postured& row) { return !row.blocked_move && row.figures.unclear == 0; }
 
 ordered_json figures_json(const PosturedProgram& program) {
   const posture::PostureFigures& f = program.postured.figures;
@@ -54,39 +67,35 @@ ordered_json figures_json(const PosturedProgram& program) {
 
 }  // namespace
 
-PosturedProgram posture_program(const PostureCommand& command, Diagnostics& diagnostics) {
+std::vector<PosturedProgram> posture_programs(const PostureCommand& command, double step_mm, Diagnostics& diagnostics) {
   nc::InterpreterOptions options = rotary_interpreter_options(command.job->machine, command.interpreter);
   if (!options.inch) options.inch = command.job->inch;
   const nc::Interpretation moves = nc::interpret(*command.text, options, diagnostics);
   diagnostics.throw_if_errors();
-  PosturedProgram out;
-  out.postured = posture::make_postures({.job = command.job,
-                                         .program = command.text,
-                                         .moves = &moves,
-                                         .tool = tool_of(command),
-                                         .step_mm = command.step_mm,
-                                         .options = command.options},
-                                        diagnostics);
+  const int tool = tool_of(command);
+  std::vector<posture::Postured> made =
+      posture::make_postures({.job = command.job,
+                              .program = command.text,
+                              .moves = &moves,
+                              .tool = tool,
+                              .overhangs_mm = overhangs_of(*command.job, tool, step_mm),
+                              .step_mm = command.step_mm,
+                              .options = command.options},
+                             diagnostics);
   diagnostics.throw_if_errors();
-  if (out.postured.blocked_move)
-    out.blocked_line = moves.moves[*out.postured.blocked_move].block + 1;
-  else
-    read_again(command, out, diagnostics);
-  return out;
-}
-
-std::vector<PosturedProgram> overhangs(const PostureCommand& command, double step_mm, Diagnostics& diagnostics) {
-  std::vector<PosturedProgram> out;
-  machine::Job job = *command.job;
-  PostureCommand now = command;
-  now.job = &job;
-  machine::Tool& tool = job.tools.at(tool_of(command));
-  for (const double least = posture::least_overhang_mm(tool); tool.overhang_mm >= least; tool.overhang_mm -= step_mm) {
-    Diagnostics of_row;  // the same as of the first
-    PosturedProgram made = posture_program(now, out.empty() ? diagnostics : of_row);
-    if (made.blocked_line > 0 || made.postured.figures.unclear > 0) break;
-    out.push_back(std::move(made));
-  }
+  made.erase(std::find_if_not(made.begin() + 1, made.end(), clear), made.end());
+  if (!clear(made[0])) made.resize(1);
+  std::vector<PosturedProgram> out(made.size());
+  std::vector<Diagnostics> found(made.size());
+  tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t row) {
+    out[row].postured = std::move(made[row]);
+    if (out[row].postured.blocked_move)
+      out[row].blocked_line = moves.moves[*out[row].postured.blocked_move].block + 1;
+    else
+      read_again(command, out[row], found[row]);
+  });
+  for (const Diagnostic& d : found.back().all()) diagnostics.add(d);
+  diagnostics.throw_if_errors();
   return out;
 }
 
@@ -113,13 +122,14 @@ std::string overhang_text(const std::vector<PosturedProgram>& rows) {
   return out;
 }
 
-std::string posture_json(const PosturedProgram& program, const std::vector<PosturedProgram>& rows,
-                         const PostureCommand& command) {
+std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhangs, const PostureCommand& command) {
+  const PosturedProgram& program = rows.back();
   ordered_json report = figures_json(program);
   report["mode"] = kModes[static_cast<std::size_t>(command.options.mode)];
   report["clearance_mm"] = command.options.clearance_mm;
   if (program.blocked_line > 0) report["blocked_line"] = program.blocked_line;
-  for (const PosturedProgram& row : rows) report["overhangs"].push_back(figures_json(row));
+  if (overhangs && clear(program.postured))
+    for (const PosturedProgram& row : rows) report["overhangs"].push_back(figures_json(row));
   return report.dump(2) + "\n";
 }
 

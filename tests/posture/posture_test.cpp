@@ -186,7 +186,8 @@ class PostureInATrough : public ::testing::Test {
 
   Postured made(Mode mode, Diagnostics& diagnostics) const {
     return make_postures({.job = &job_, .program = &program_, .moves = &moves_, .tool = 1, .options = {.mode = mode}},
-                         diagnostics);
+                         diagnostics)
+        .at(0);
   }
 
   std::string said(const machine::Job& job) const {
@@ -223,6 +224,30 @@ TEST_F(PostureInATrough, ChosenDirectionsAreClearByASecondMethodAndTurnLess) {
   EXPECT_LT(chosen.figures.rotary_motion_deg, seed.figures.rotary_motion_deg);
   EXPECT_NE(chosen.text.find("\nM428\n"), std::string::npos);
   EXPECT_EQ(chosen.text.substr(0, 15), program_.source.text().substr(0, 15));
+}
+
+TEST_F(PostureInATrough, ATableOfOverhangsHasWhatEachOfThemGivesAlone) {
+  read(rows(mesh_));
+  job_.tools[1].holder = {{44, 44, 40}};
+  Diagnostics diagnostics;
+  PostureRequest request{.job = &job_, .program = &program_, .moves = &moves_, .tool = 1, .options = {}};
+  request.overhangs_mm = {45, 27, 20, 15, 10};
+  const std::vector<Postured> table = make_postures(request, diagnostics);
+  ASSERT_EQ(table.size(), 5U);
+  std::size_t blocked = 0, different = 0;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    PostureRequest one = request;
+    one.overhangs_mm = {request.overhangs_mm[i]};
+    const std::vector<Postured> alone = make_postures(one, diagnostics);
+    EXPECT_EQ(table[i].text, alone.at(0).text) << i;
+    EXPECT_EQ(table[i].blocked_move, alone[0].blocked_move) << i;
+    blocked += table[i].blocked_move.has_value();
+    different += i > 0 && !table[i].blocked_move && table[i].text != table[0].text;
+  }
+  diagnostics.throw_if_errors();
+  EXPECT_GT(blocked, 0U);  // the wide holder does not follow everywhere
+  EXPECT_LT(blocked, table.size());
+  EXPECT_GT(different, 0U);
 }
 
 TEST_F(PostureInATrough, SaysWhatItCannotTilt) {
