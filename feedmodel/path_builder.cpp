@@ -219,7 +219,7 @@ class Builder {
     Segment s = line_segment(way.from_mm, way.to_mm);
     if (turns_) s.turn = turns_->rest(true);
     if (!rapid || s.length_mm < kNoLength) {
-      if (program_.moves[move].reference) rest(0, move, way.to_mm, true, true);
+      if (unplaced(program_.moves[move])) rest(0, move, way.to_mm, true, true);
       return;
     }
     if (previous_) {

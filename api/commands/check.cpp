@@ -6,8 +6,8 @@
 
 #include "api/commands/predict.h"
 #include "feedmodel/control_options.h"
-#include "kinematics/rotary_options.h"
 #include "kinematics/reference_check.h"
+#include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
 #include "simulate/machine_checks.h"
 #include "simulate/setup_checks.h"
