@@ -393,6 +393,51 @@ TEST(FeedFiveAxes, BadInputByWholeMessage) {
             std::string::npos);
 }
 
+/// check, time and feed say the same of the same input, and write nothing where it is wrong.
+TEST(FiveAxisCommands, SayTheSameOfBadInput) {
+  const TempFolder folder;
+  write_fan(folder);
+  const std::string machine = tests::file_text(folder / "m.toml");
+  const auto with = [&](const std::string& key, const std::string& line) {
+    const auto from = machine.find(key), to = machine.find('\n', from);
+    return machine.substr(0, from) + line + machine.substr(to);
+  };
+  const std::string head = "G21 G90 G94 S1000 M3\nG10 L2 P1 X0 Y0 Z0\nG54\nG43 H1\nM428\nG0 X0 Y0 Z0 A-1\n";
+  const struct {
+    std::string machine, program, message;
+    bool refused = true;
+  } cases[] = {
+      {with("chain = ", "chain = [\"part\", \"c\", \"a\", \"bed\", \"x\", \"y\", \"spindle\"]"), "M2\n",
+       "m.toml:14:9: error: axis z is missing in the chain; x, y and z were expected [chain-axis]\n    chain = "
+       "[\"part\", "
+       "\"c\", \"a\", \"bed\", \"x\", \"y\", \"spindle\"]\n            ^\n"},
+      {machine, "G21 G90 G93 S1000 M3\nG0 X0 Y0 Z0\nG1 X1 A1 F10\nG1 X2 A2\nM2\n",
+       "p.nc:4:1: error: G1 in inverse time (G93) without F; every cutting block needs its own F [feed-missing]\n"
+       "    G1 X2 A2\n    ^\n"},
+      {machine, "G21 G90 G94 S1000 M3\nM428\nG0 X0 Y0 Z0 A-5\nM2\n",
+       "p.nc:2:1: error: M428 switches tool-centre-point control on without a tool length; G43 before it was expected "
+       "[tool-length]\n    M428\n    ^\n"},
+      {with("[axis.y]", "[axis.y]\ntravel_mm = [-10, 10]"), head + "G1 X1 C30 F100\nM2\n",
+       "p.nc:7:1: error: Y goes to -12.787 mm in machine coordinates; -10 to 10 was expected (travel_mm of [axis.y]) "
+       "[travel]\n    G1 X1 C30 F100\n    ^\n"},
+      {machine, head + "G1 X1 C180 F3000\nM2\n",
+       "p.nc:7:1: warning: the feed asks up to 540000 degrees/min of C, but m.toml allows 6000 "
+       "(max_velocity_deg_per_min of [axis.c]); the control slows down here [rotary-speed]\n    G1 X1 C180 F3000\n"
+       "    ^\n",
+       false}};
+  for (const auto& one : cases) {
+    folder.write("m.toml", one.machine);
+    folder.write("p.nc", one.program);
+    for (const char* command : {"check p.nc", "time p.nc --json out", "feed p.nc -o out"}) {
+      std::filesystem::remove(folder / "out");
+      const auto run = run_camber(folder, std::string(command) + " --machine m.toml --tool-length 1=80");
+      EXPECT_EQ(run.status, one.refused ? 1 : 0) << command;
+      EXPECT_EQ(run.err, one.message) << command;
+      EXPECT_EQ(std::filesystem::exists(folder / "out"), !one.refused && command[0] != 'c') << command;
+    }
+  }
+}
+
 TEST(CheckFiveAxes, OtherCommandsRefuseTheProgramByName) {
   const TempFolder folder;
   copy_machine(folder, "table_bc");
