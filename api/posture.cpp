@@ -63,8 +63,7 @@ PostureResult v0::posture(const Program& program, const Job& job, const PostureO
                               .tool = options.tool,
                               .step_mm = options.step_mm,
                               .options = rules_of(options)};
-  if (!options.write_as.empty())
-    command.written = word_of<nc::OneDirection>(kWrittenAs, options.write_as, "write_as");
+  if (!options.write_as.empty()) command.written = word_of<nc::OneDirection>(kWrittenAs, options.write_as, "write_as");
   api::Run run(run_options);
   run.execute([&] {
     Diagnostics found = job.impl().found;

@@ -12,10 +12,10 @@
 namespace camber::posture {
 namespace {
 
-constexpr double kCap_mm = 2;    ///< room beyond this is not measured
-constexpr double kSteps = 1.5;   ///< the directions are so many times nearer to each other than along a path
+constexpr double kCap_mm = 2;        ///< room beyond this is not measured
+constexpr double kSteps = 1.5;       ///< the directions are so many times nearer to each other than along a path
 constexpr std::size_t kAtOnce = 32;  ///< directions
-constexpr double kFarthest = kPi / 2;  ///< of tool and normal
+constexpr double kFarthestIndexed = kPi / 2;  ///< of tool and normal
 
 double cost_of(std::span<const PathPoint> points, const Vec3& axis, const PostureOptions& options) {
   double cost = 0;
@@ -35,7 +35,7 @@ std::optional<std::size_t> first_blocked(std::span<const PathPoint> points, cons
     return room >= 0;
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i].contact && angle_between(axis, points[i].normal) > kFarthest) return i;
+    if (points[i].contact && angle_between(axis, points[i].normal) > kFarthestIndexed) return i;
     const Vec3 tip = points[i].tip_mm(axis);
     if (i > 0 && !clear_at((points[i - 1].tip_mm(axis) + tip) / 2)) return i;
     if (!clear_at(tip)) return i;

@@ -172,7 +172,7 @@ class Figures(unittest.TestCase):
         self.assertEqual(result.feed_blocks, expected["feed_blocks"])
         self.assertLessEqual(result.tip_bound_mm, 0.005)
         back = camber.post(camber.program_from_text("dome_joints.nc", result.text), folder / "machine.toml", to="tcp")
-        self.assertIn("M428", back.text)
+        self.assertIn("G43.4", back.text)
         with self.assertRaises(ValueError):
             camber.post(folder / "dome.nc", folder / "machine.toml", to="pole")
 
