@@ -26,7 +26,8 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
                                     .interpreter = arguments.interpreter,
                                     .tool = arguments.tool,
                                     .step_mm = arguments.step_mm,
-                                    .options = arguments.options};
+                                    .options = arguments.options,
+                                    .written = arguments.written};
   const bool overhangs = arguments.overhang_step_mm > 0;
   const auto rows = api::posture_programs(command, arguments.overhang_step_mm, diagnostics);
   const api::PosturedProgram& program = rows.back();

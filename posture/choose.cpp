@@ -11,6 +11,7 @@
 #include "base/stage.h"
 #include "base/units.h"
 #include "posture/clear_directions.h"
+#include "posture/one_direction.h"
 
 namespace camber::posture {
 namespace {
@@ -92,17 +93,6 @@ class Chooser {
   }
 
  private:
-  float point_cost(const PathPoint& p, const Vec3& axis) const {
-    if (!p.contact) return 0;
-    const double angle = angle_between(axis, p.normal), least = std::sin(options_.least_angle_rad);
-    double cost = error_share(angle);
-    if (angle < options_.least_angle_rad) {
-      const double missing = (least - std::sin(angle)) / least;
-      cost += kSpeedCost * missing * missing;
-    }
-    return static_cast<float>(cost * p.way_mm);
-  }
-
   float step_cost(const PathPoint& p, const Directions::Step& step) const {
     const double time = p.time_s > 0 ? p.time_s : p.way_mm / kRapidMmPerS;
     const double speed = p.time_s > 0 ? p.way_mm / p.time_s : kRapidMmPerS;
@@ -134,7 +124,7 @@ class Chooser {
       for (std::size_t d = 0; d < n; ++d) {
         if (!clear_.clear(i, d, tool_index_)) next[d] = kNever;
         if (next[d] == kNever) continue;
-        next[d] += point_cost(points_[i], directions_.axis(d));
+        next[d] += static_cast<float>(posture_cost(points_[i], directions_.axis(d), options_));
         any = true;
       }
       if (!any) {
@@ -339,6 +329,17 @@ double error_share(double angle_rad) {
   return s * s + kAlong * s * std::abs(std::cos(angle_rad));
 }
 
+double posture_cost(const PathPoint& point, const Vec3& axis, const PostureOptions& options) {
+  if (!point.contact) return 0;
+  const double angle = angle_between(axis, point.normal), least = std::sin(options.least_angle_rad);
+  double cost = error_share(angle);
+  if (angle < options.least_angle_rad) {
+    const double missing = (least - std::sin(angle)) / least;
+    cost += kSpeedCost * missing * missing;
+  }
+  return cost * point.way_mm;
+}
+
 std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec3> axes,
                           const Surroundings& surroundings, const ToolShape& tool) {
   std::vector<std::uint8_t> bad(points.size(), 0);
@@ -354,6 +355,11 @@ std::vector<Postures> choose_postures(std::span<const PathPoint> points, const S
                                       const PostureOptions& options) {
   std::vector<Postures> out(tools.size());
   if (points.empty()) return out;
+  if (options.indexed) {
+    for (std::size_t i = 0; i < tools.size(); ++i)
+      out[i] = one_direction(points, surroundings, tools[i], machine, options);
+    return out;
+  }
   if (options.mode != Mode::chosen) {
     for (std::size_t i = 0; i < tools.size(); ++i)
       out[i] = BySurface(points, surroundings, tools[i], machine, options).run();

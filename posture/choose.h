@@ -22,6 +22,7 @@ enum class Mode : std::uint8_t {
 
 struct PostureOptions {
   Mode mode = Mode::chosen;
+  bool indexed = false;                            ///< one direction for all points; mode is not looked at
   double clearance_mm = 1;                         ///< of all that is not cutter
   double lead_rad = 10 * kPi / 180, tilt_rad = 0;  ///< lead_tilt
   double max_tilt_rad = 75 * kPi / 180;            ///< from +Z of the program
@@ -37,6 +38,9 @@ double angle_between(const Vec3& a, const Vec3& b);
 /// normal bends it by sin^2, one along the part by sin cos of the angle; kAlong is the share of the latter.
 inline constexpr double kAlong = 0.3;
 double error_share(double angle_rad);
+
+/// What the choice of this direction costs, a mm of path: share of the error, and a tip that cuts.
+double posture_cost(const PathPoint& point, const Vec3& axis, const PostureOptions& options);
 
 struct Postures {
   std::vector<Vec3> axes;                ///< one a point; empty: none (`blocked`)

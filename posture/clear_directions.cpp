@@ -45,9 +45,7 @@ struct Range {
   ToolShape whole, core;
   std::size_t halves = 0;  ///< of the list, side by side
 
-  std::uint32_t bits() const {
-    return (end == 32 ? ~0U : (1U << end) - 1U) & ~((1U << first) - 1U);
-  }
+  std::uint32_t bits() const { return (end == 32 ? ~0U : (1U << end) - 1U) & ~((1U << first) - 1U); }
 };
 
 void add_ranges(std::span<const ToolShape> tools, std::size_t index, std::size_t first, std::size_t end,

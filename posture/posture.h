@@ -11,6 +11,7 @@
 
 #include "base/diagnostics.h"
 #include "machine/job.h"
+#include "nc/five_axis_words.h"
 #include "nc/move.h"
 #include "nc/program.h"
 #include "posture/choose.h"
@@ -25,6 +26,8 @@ struct PostureRequest {
   std::vector<double> overhangs_mm{};  ///< ever less; empty: that of the job
   double step_mm = 1;                  ///< between the points at which the direction is chosen
   PostureOptions options;
+  /// How one direction is written (options.indexed): tip, tilted or dynamic; joints as the tip, for post().
+  nc::OneDirection written = nc::OneDirection::tip;
 };
 
 struct PostureFigures {
@@ -52,7 +55,8 @@ struct Postured {
 ///  [kinematics]     the machine has no rotary axes;
 ///  [rotary-axis]    the program turns rotary axes already, or is under tool-centre-point control;
 ///  [not-editable]   a move of the tool that the text does not say alone;
-///  [no-moves]       the tool has no moves.
+///  [no-moves]       the tool has no moves;
+///  [no-frame]       the machine cannot write one direction as asked for.
 /// One result for each overhang; none where there are errors.
 std::vector<Postured> make_postures(const PostureRequest& request, Diagnostics& diagnostics);
 

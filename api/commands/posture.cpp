@@ -10,8 +10,11 @@
 
 #include "api/commands/rotary_program.h"
 #include "base/units.h"
+#include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
+#include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
+#include "repath/post.h"
 
 namespace camber::api {
 namespace {
@@ -19,12 +22,38 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 4> kModes{"chosen", "normal", "lead-tilt", "seed"};
+constexpr std::array<std::string_view, 4> kWritten{"tip", "tilted", "dynamic", "joints"};
 
 int tool_of(const PostureCommand& command) {
   if (command.tool) return *command.tool;
   if (command.job->tools.size() == 1) return command.job->tools.begin()->first;
   fail_on_file(command.job->path,
                "the job has several tools; --tool with the number of the finishing tool was expected", "no-tool");
+}
+
+/// As asked for, else as the control has it; a head that turns has no G254.
+nc::OneDirection written_as(const PostureCommand& command) {
+  const machine::Machine& machine = command.job->machine;
+  if (!command.options.indexed) return nc::OneDirection::tip;
+  if (command.written) return *command.written;
+  const nc::OneDirection usual = nc::five_axis_words(feedmodel::dialect_of(machine.control.kind)).one_direction;
+  const auto axes = kinematics::rotary_options(machine);
+  const bool table = std::ranges::all_of(axes, &nc::RotaryOption::on_table);
+  return usual == nc::OneDirection::dynamic && !table ? nc::OneDirection::joints : usual;
+}
+
+/// The tip's program in joint coordinates; lines still map to the blocks of the given program.
+void to_joints(const PostureCommand& command, PosturedProgram& program, Diagnostics& diagnostics) {
+  const machine::Machine& machine = command.job->machine;
+  const nc::Program text = nc::read_program(SourceText(command.output, program.postured.text), diagnostics);
+  const nc::Interpretation moves =
+      nc::interpret(text, rotary_interpreter_options(machine, command.interpreter), diagnostics);
+  diagnostics.throw_if_errors();
+  repath::Posted posted = repath::post(text, moves, machine, {.target = repath::PostTarget::joints}, diagnostics);
+  diagnostics.throw_if_errors();
+  for (std::uint32_t& block : posted.block_of_line) block = program.postured.block_of_line[block];
+  program.postured.text = std::move(posted.text);
+  program.postured.block_of_line = std::move(posted.block_of_line);
 }
 
 /// Time on the machine, and what the checks of travel say, at the blocks of the given program.
@@ -73,6 +102,7 @@ std::vector<PosturedProgram> posture_programs(const PostureCommand& command, dou
   const nc::Interpretation moves = nc::interpret(*command.text, options, diagnostics);
   diagnostics.throw_if_errors();
   const int tool = tool_of(command);
+  const nc::OneDirection written = written_as(command);
   std::vector<posture::Postured> made =
       posture::make_postures({.job = command.job,
                               .program = command.text,
@@ -80,7 +110,8 @@ std::vector<PosturedProgram> posture_programs(const PostureCommand& command, dou
                               .tool = tool,
                               .overhangs_mm = overhangs_of(*command.job, tool, step_mm),
                               .step_mm = command.step_mm,
-                              .options = command.options},
+                              .options = command.options,
+                              .written = written},
                              diagnostics);
   diagnostics.throw_if_errors();
   made.erase(std::find_if_not(made.begin() + 1, made.end(), clear), made.end());
@@ -89,10 +120,13 @@ std::vector<PosturedProgram> posture_programs(const PostureCommand& command, dou
   std::vector<Diagnostics> found(made.size());
   tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t row) {
     out[row].postured = std::move(made[row]);
-    if (out[row].postured.blocked_move)
+    out[row].written = written;
+    if (out[row].postured.blocked_move) {
       out[row].blocked_line = moves.moves[*out[row].postured.blocked_move].block + 1;
-    else
-      read_again(command, out[row], found[row]);
+      return;
+    }
+    if (written == nc::OneDirection::joints) to_joints(command, out[row], found[row]);
+    read_again(command, out[row], found[row]);
   });
   for (const Diagnostic& d : found.back().all()) diagnostics.add(d);
   diagnostics.throw_if_errors();
@@ -107,6 +141,11 @@ std::string posture_text(const PosturedProgram& program, const PostureCommand& c
                      deg_from_rad(f.mean_angle_rad), deg_from_rad(f.max_angle_rad), f.rotary_motion_deg);
   out +=
       fmt::format("overhang  {:g} mm: {:.3f} um normal to the part for each N\n", f.overhang_mm, f.compliance_um_per_N);
+  if (command.options.indexed) {
+    const Vec3& axis = program.postured.axes.front();
+    out += fmt::format("direction I{:.4f} J{:.4f} K{:.4f} for all moves, written as {}\n", axis.x(), axis.y(), axis.z(),
+                       kWritten[static_cast<std::size_t>(program.written)]);
+  }
   out += fmt::format("time      {:.1f} s\n", program.time_s);
   return out;
 }
@@ -126,6 +165,14 @@ std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhang
   const PosturedProgram& program = rows.back();
   ordered_json report = figures_json(program);
   report["mode"] = kModes[static_cast<std::size_t>(command.options.mode)];
+  if (command.options.indexed) {
+    report["mode"] = "indexed";
+    report["written"] = kWritten[static_cast<std::size_t>(program.written)];
+    if (!program.postured.axes.empty()) {
+      const Vec3& axis = program.postured.axes.front();
+      report["direction"] = {axis.x(), axis.y(), axis.z()};
+    }
+  }
   report["clearance_mm"] = command.options.clearance_mm;
   if (program.blocked_line > 0) report["blocked_line"] = program.blocked_line;
   if (overhangs && clear(program.postured))

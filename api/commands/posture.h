@@ -20,12 +20,14 @@ struct PostureCommand {
   std::optional<int> tool{};  ///< default: the only one of the job
   double step_mm = 1;
   posture::PostureOptions options;
+  std::optional<nc::OneDirection> written{};  ///< options.indexed; default: that of the control
 };
 
 struct PosturedProgram {
   posture::Postured postured;    ///< without a text where no direction is clear
   double time_s = 0;             ///< of the whole program on the machine
   std::size_t blocked_line = 0;  ///< 1-based; 0: none
+  nc::OneDirection written = nc::OneDirection::tip;
 };
 
 /// With a step, also with ever less overhang, as long as the tool stays clear: the last one is the shortest that does.
