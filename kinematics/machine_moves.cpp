@@ -1,6 +1,8 @@
 #include "kinematics/machine_moves.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -31,7 +33,7 @@ class Placer {
   Placer(nc::Interpretation& program, const machine::Machine& machine) : program_(program), machine_(machine) {}
 
   void run() {
-    place_reference_points();
+    place_machine_targets();
     find_ends();
     fill_unknown_ends();
     // A move is changed after ProgramJoints has passed it; it does not look back.
@@ -46,14 +48,21 @@ class Placer {
  private:
   // --- where the axes are
 
-  void place_reference_points() {
+  /// Without offsets machine coordinates are not known. Reference points of the machine file are program coordinates.
+  void place_machine_targets() {
+    const bool offsets_known =
+        program_.machine_origin_mm &&
+        std::ranges::all_of(program_.states, [](const nc::ModalState& s) { return s.tool_length_mm.has_value(); });
     for (nc::MachineTarget& target : program_.machine_targets) {
       const nc::Move& move = program_.moves[target.move];
       const Vec3 zero_mm = linear_mm(move, Vec3::Zero());
-      for (int axis = 0; axis < 3; ++axis)
-        if (const double at_mm = reference_point_mm(machine_, move.reference_point, axis);
-            std::isnan(target.end_mm[axis]) && std::isfinite(at_mm))
-          target.end_mm[axis] = zero_mm[axis] + at_mm;
+      for (int axis = 0; axis < 3; ++axis) {
+        double& end_mm = target.end_mm[axis];
+        if (!offsets_known) end_mm = std::numeric_limits<double>::quiet_NaN();
+        const bool refers = (move.reference_axes >> static_cast<unsigned>(axis) & 1U) != 0;
+        const double at_mm = reference_point_mm(machine_, move.reference_point, axis);
+        if (refers && std::isnan(end_mm) && std::isfinite(at_mm)) end_mm = zero_mm[axis] + at_mm;
+      }
     }
   }
 

@@ -1,6 +1,5 @@
 #include "kinematics/program_joints.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -32,12 +31,7 @@ ProgramJoints::ProgramJoints(const machine::Machine& machine, const nc::Interpre
       tool_axis_(machine.kinematics.tool_axis.normalized()),
       gauge_mm_(machine.kinematics.gauge_point_mm),
       missing_(missing),
-      last_linear_mm_(kUnknown) {
-  if (missing_ == MissingOffset::zero)
-    machine_targets_known_ = moves.machine_origin_mm && std::ranges::all_of(moves.states, [](const nc::ModalState& s) {
-                               return s.tool_length_mm.has_value();
-                             });
-}
+      last_linear_mm_(kUnknown) {}
 
 std::optional<ProgramJoints::Offsets> ProgramJoints::offsets_of(const nc::Move& move) const {
   const std::optional<double>& length_mm = moves_.state_of(move).tool_length_mm;
@@ -123,8 +117,7 @@ void ProgramJoints::take_target(const nc::RotaryTarget& target, const nc::Move& 
 void ProgramJoints::take_machine_target(const nc::MachineTarget& target) {
   start_linear_mm_ = end_linear_mm_ = last_linear_mm_;
   for (int axis = 0; axis < 3; ++axis)
-    if ((target.given & (1U << static_cast<unsigned>(axis))) != 0)
-      end_linear_mm_[axis] = machine_targets_known_ ? target.end_mm[axis] : kUnknown[axis];
+    if ((target.given & (1U << static_cast<unsigned>(axis))) != 0) end_linear_mm_[axis] = target.end_mm[axis];
 }
 
 /// Where the last move has left the axes. The program's own number stays where it says the same, and for axes of which

@@ -35,10 +35,7 @@ struct MoveJoints {
 };
 
 /// What a work offset or a tool length is where it is not known.
-enum class MissingOffset : std::uint8_t {
-  unknown,
-  zero  ///< and machine coordinates (G53) are not known
-};
+enum class MissingOffset : std::uint8_t { unknown, zero };
 
 class ProgramJoints {
  public:
@@ -99,7 +96,6 @@ class ProgramJoints {
   Chain chain_;
   Vec3 tool_axis_, gauge_mm_;
   MissingOffset missing_;
-  bool machine_targets_known_ = true;
   std::size_t next_ = 0, next_target_ = 0, next_machine_target_ = 0;
   MoveJoints now_;
   bool follows_path_ = false;                                           ///< of the tip; else the joints go straight

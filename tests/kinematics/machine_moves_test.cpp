@@ -127,6 +127,18 @@ TEST(MachineMoves, TakeTheShortestWayAroundAnUnknownReferencePoint) {
   EXPECT_FALSE(placed.moves.back().reference);
 }
 
+/// G53 leads nowhere that is known then; a reference point is given in program coordinates.
+TEST(MachineMoves, WithoutAWorkOffsetKeepReferencePoints) {
+  machine::Machine machine = sample("table_ac_linuxcnc");
+  machine.tool_change.z_mm = 250;
+  nc::Interpretation placed = read("G0 X1 Y2 Z30 A-5\nG53 Z-7\nG0 Z20\nG28 G91 Z0\nG90 Z10\n", machine);
+  ASSERT_FALSE(placed.machine_origin_mm);
+  place_moves(placed, machine);
+  std::vector<double> z_mm;
+  for (const nc::Move& move : placed.moves) z_mm.push_back(move.end_mm.z());
+  EXPECT_EQ(z_mm, (std::vector<double>{30, 20, 20, 250, 10}));
+}
+
 TEST(MachineMoves, GoToReferencePointsOfTheMachine) {
   machine::Machine machine = sample("table_ac_linuxcnc");
   machine.tool_change.z_mm = 250;
