@@ -69,7 +69,7 @@ std::optional<Vec3> ProgramJoints::linear_of(const nc::Move& move, const Vec3& t
 Vec3 ProgramJoints::tip_of(const nc::Move& move, const Joints& joints) const {
   const Offsets offsets = *offsets_of(move);
   if (names_axes(move)) return joints.linear_mm - offsets.tool_length_mm * tool_axis_ + gauge_mm_ + offsets.origin_mm;
-  const Vec3 tip_mm = chain_.pose(joints, offsets.tool_length_mm).tip_mm + offsets.origin_mm;
+  Vec3 tip_mm = chain_.pose(joints, offsets.tool_length_mm).tip_mm + offsets.origin_mm;
   if (moves_.state_of(move).work_frame != nc::WorkFrame::dynamic) return tip_mm;
   const Vec3 origin_mm = moves_.frame_of(move).origin_mm;
   return origin_mm + chain_.table_rotation(joints.rotary_rad).transpose() * (tip_mm - origin_mm);
