@@ -76,20 +76,19 @@ Vec3 reduce(Simplex& simplex) {
   return best;
 }
 
-}  // namespace
-
-double convex_distance(const ConvexSolid& a, const ConvexSolid& b) {
-  const auto farthest = [&](const Vec3& direction) { return Vec3(a.support(direction) - b.support(-direction)); };
+/// The iteration from a first point of the difference of a and b on. `done`: with a lower and an upper bound, whether
+/// that is enough. Returns the lower bound; 0: they overlap.
+template <typename Done>
+double iterate(const ConvexSolid& a, const ConvexSolid& b, Vec3 nearest, const Done& done) {
   Simplex simplex;
-  Vec3 nearest = farthest(Vec3::UnitX());
   simplex.point[simplex.count++] = nearest;
   double least = 0;  // no smaller distance is possible
   for (int round = 0; round < kMaxRounds; ++round) {
     const double distance = nearest.norm();
     if (distance < kTouching_mm) return 0;
-    const Vec3 next = farthest(-nearest);
+    const Vec3 next = a.support(-nearest) - b.support(nearest);
     least = std::max(least, nearest.dot(next) / distance);
-    if (distance - least < std::max(kExact_mm, kExact * distance)) return least;
+    if (distance - least < std::max(kExact_mm, kExact * distance) || done(least, distance)) return least;
     simplex.point[simplex.count++] = next;
     const Vec3 nearer = reduce(simplex);
     if (simplex.count == 4) return 0;
@@ -97,6 +96,19 @@ double convex_distance(const ConvexSolid& a, const ConvexSolid& b) {
     nearest = nearer;
   }
   return least;
+}
+
+}  // namespace
+
+double convex_distance(const ConvexSolid& a, const ConvexSolid& b) {
+  return iterate(a, b, a.support(Vec3::UnitX()) - b.support(-Vec3::UnitX()), [](double, double) { return false; });
+}
+
+bool convex_nearer(const ConvexSolid& a, const ConvexSolid& b, double limit_mm, const Vec3& from_b_to_a) {
+  const Vec3 first = a.support(-from_b_to_a) - b.support(from_b_to_a);
+  if (first.dot(from_b_to_a) >= limit_mm * from_b_to_a.norm()) return false;
+  return iterate(a, b, first, [&](double least, double most) { return least >= limit_mm || most < limit_mm; }) <
+         limit_mm;
 }
 
 }  // namespace camber

@@ -15,4 +15,8 @@ class ConvexSolid {
 /// 1e-4 mm or a thousandth of it less; 0 where the solids overlap.
 double convex_distance(const ConvexSolid& a, const ConvexSolid& b);
 
+/// Whether convex_distance() is less than `limit_mm` (above zero), which is mostly known much sooner than the distance.
+/// `from_b_to_a`: about the direction in which a is off b, any but zero; the better it is, the sooner.
+bool convex_nearer(const ConvexSolid& a, const ConvexSolid& b, double limit_mm, const Vec3& from_b_to_a);
+
 }  // namespace camber

@@ -26,14 +26,15 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
                                     .interpreter = arguments.interpreter,
                                     .tool = arguments.tool,
                                     .step_mm = arguments.step_mm,
-                                    .options = arguments.options};
-  std::vector<api::PosturedProgram> rows;
-  if (arguments.overhang_step_mm > 0) rows = api::overhangs(command, arguments.overhang_step_mm, diagnostics);
-  const api::PosturedProgram program = rows.empty() ? api::posture_program(command, diagnostics) : rows.back();
+                                    .options = arguments.options,
+                                    .written = arguments.written};
+  const bool overhangs = arguments.overhang_step_mm > 0;
+  const auto rows = api::posture_programs(command, arguments.overhang_step_mm, diagnostics);
+  const api::PosturedProgram& program = rows.back();
   progress.clear();
   settle(diagnostics, options);
   const posture::PostureFigures& figures = program.postured.figures;
-  if (!arguments.json.empty()) write_file(arguments.json, api::posture_json(program, rows, command));
+  if (!arguments.json.empty()) write_file(arguments.json, api::posture_json(rows, overhangs, command));
   if (program.blocked_line > 0) {
     fmt::print(stderr, "posture: no direction of the tool is clear by {:g} mm in line {}; nothing was written\n",
                arguments.options.clearance_mm, program.blocked_line);
@@ -41,7 +42,7 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
   }
   write_file(arguments.output, program.postured.text);
   if (!options.quiet) {
-    if (!rows.empty()) fmt::print("{}\n", api::overhang_text(rows));
+    if (overhangs && figures.unclear == 0) fmt::print("{}\n", api::overhang_text(rows));
     fmt::print("{}", api::posture_text(program, command));
   }
   if (figures.unclear == 0) return kDone;

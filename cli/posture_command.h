@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/global_options.h"
+#include "nc/five_axis_words.h"
 #include "nc/interpreter.h"
 #include "posture/choose.h"
 
@@ -16,6 +17,7 @@ struct PostureArguments {
   double step_mm = 1;
   double overhang_step_mm = 0;  ///< greater than zero: the shortest overhang is looked for
   posture::PostureOptions options;
+  std::optional<nc::OneDirection> written{};
   nc::InterpreterOptions interpreter;
 };
 

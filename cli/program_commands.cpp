@@ -482,6 +482,24 @@ void add_posture_rules(CLI::App& command, posture::PostureOptions& options) {
         "chosen: of tool and normal, so that the tip does not cut; default 10");
 }
 
+void add_one_direction(CLI::App& command, PostureArguments& arguments) {
+  using nc::OneDirection;
+  auto* indexed = command.add_flag("--indexed", arguments.options.indexed,
+                                   "one direction for the whole operation (3+2) instead of --mode");
+  command
+      .add_option_function<OneDirection>(
+          "--write-as", [&arguments](const OneDirection& written) { arguments.written = written; },
+          "indexed: in a tilted frame (G68.2), under the dynamic work offset (G254), in joints, or under "
+          "tool-centre-point control (tip); default: as the control has it")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, OneDirection>{{"tilted", OneDirection::tilted},
+                                                                              {"dynamic", OneDirection::dynamic},
+                                                                              {"joints", OneDirection::joints},
+                                                                              {"tip", OneDirection::tip}})
+                      .description(""))
+      ->needs(indexed)
+      ->type_name("tilted|dynamic|joints|tip");
+}
+
 void add_posture(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("posture", "tilt the tool of a three-axis finishing program, clear of the part");
   auto arguments = std::make_shared<PostureArguments>();
@@ -493,6 +511,7 @@ void add_posture(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->required()
       ->type_name("OUT.nc");
   add_posture_rules(*command, arguments->options);
+  add_one_direction(*command, *arguments);
   command->add_option("--tool", arguments->tool, "number of the tool; default: the only one of the job")
       ->type_name("N");
   command->add_option("--step-mm", arguments->step_mm, "between the points of the path; default 1")

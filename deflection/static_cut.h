@@ -48,6 +48,10 @@ class StaticCut {
         equilibrium_(envelope, model),
         pace_(different_teeth, options.longest_gap) {}
 
+  /// See removal::DeflectedEngager::remember.
+  void remember(std::size_t from, std::span<const float> rows, std::size_t row_size, double largest_mm) {
+    engager_.remember(from, rows, row_size, largest_mm);
+  }
   /// Begins with stamps[from] ... stamps[from + count - 1]; row -1 of `deflections` is that of the stamp before. The
   /// rows are filled as their stamps are cut. `must_read`: passings that are read whatever the pace.
   void start(std::size_t from, std::size_t count, removal::DeflectionTable& deflections,

@@ -9,11 +9,16 @@
 
 namespace camber::feedmodel {
 
+/// Of programs with rotary motion: kinematics::place_moves has given this move a start and an end, also where they are
+/// not known (Move::reference). As it was read, a move with unknown ends has open ones.
+inline bool has_placed_ends(const nc::Move& move) { return move.open_axes == 0 && !move.start_open; }
+
 /// Follows the moves in order. While a program has not placed every axis (reference moves) an axis stands at the tool
 /// change position until it is taken to another coordinate, and again after G28, G30 or G53 (which take it to 0).
 class AxisPlaces {
  public:
-  explicit AxisPlaces(const machine::Machine& machine) {
+  /// rotary_motion: has_rotary_motion (joint_map.h); its moves may be placed.
+  explicit AxisPlaces(const machine::Machine& machine, bool rotary_motion = false) : rotary_motion_(rotary_motion) {
     const machine::ToolChange& change = machine.tool_change;
     home_.fill(Vec3(change.x_mm, change.y_mm, change.z_mm));
     for (std::size_t k = 0; k < machine.reference_points.size(); ++k) {
@@ -32,6 +37,11 @@ class AxisPlaces {
   Way pass(const nc::Move& move) {
     Way way{move.start_mm, move.end_mm, true};
     at_mm_ = move.end_mm;
+    if (rotary_motion_ && has_placed_ends(move)) {
+      at_home_.fill(false);
+      way.complete = !move.reference;
+      return way;
+    }
     if (!move.reference) {
       at_home_.fill(false);
       return way;
@@ -69,6 +79,7 @@ class AxisPlaces {
   std::array<Vec3, 4> home_;             ///< tool change position and first reference point, then the other points
   std::array<std::uint8_t, 3> point_{};  ///< at which an axis stands, where it is at home
   std::array<bool, 3> at_home_{true, true, true};
+  bool rotary_motion_;
   Vec3 at_mm_ = Vec3::Zero();
 };
 

@@ -40,7 +40,7 @@ class CycleClock {
   CycleClock(const nc::Interpretation& program, const machine::Machine& machine)
       : program_(program),
         machine_(machine),
-        places_(machine),
+        places_(machine, has_rotary_motion(program, machine)),
         rapid_speed_(rapid_speeds_mm_per_s(machine)),
         rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)) {
     const bool clamps = std::ranges::any_of(machine.rotary, [](const machine::RotaryAxis& a) { return a.clamp_s > 0; });

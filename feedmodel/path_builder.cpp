@@ -143,7 +143,7 @@ class Builder {
         rapid_velocity_(rapid_speeds_mm_per_s(machine)),
         rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)),
         feed_factor_(machine.cycle.feed_override_percent / 100.0),
-        places_(machine) {
+        places_(machine, has_rotary_motion(program, machine)) {
     if (has_rotary_motion(program, machine)) turns_.emplace(program, machine);
   }
 
@@ -152,6 +152,7 @@ class Builder {
     int tool = moves.empty() ? 0 : program_.state_of(moves.front()).tool;
     std::size_t next_rest = 0;
     bool tip_control = false;
+    std::optional<double> tool_length_mm;
     for (std::size_t i = 0; i < moves.size();) {
       cancellation_point();
       const nc::Move& move = moves[i];
@@ -162,16 +163,18 @@ class Builder {
       // X, Y and Z get another meaning: the control stops where axes are turned.
       const bool switched = (state.tip_control != nc::TipControl::off) != tip_control;
       tip_control ^= switched;
-      if (turns_ && switched && turns_->at(i).start_rad != Vec3::Zero()) rest(0, i, move.start_mm);
+      const bool other_length = tool_length_mm && state.tool_length_mm != tool_length_mm;
+      tool_length_mm = state.tool_length_mm;
+      if (turns_ && (other_length || (switched && turns_->at(i).start_rad != Vec3::Zero()))) rest(0, i, move.start_mm);
       if (state.tool != tool || asked) rest(0, i, move.start_mm);
       tool = state.tool;
       std::size_t end = i + 1;
       const AxisPlaces::Way way = places_.pass(move);
       if (move.kind == nc::MoveKind::dwell) {
         rest(move.dwell_s, i, move.start_mm);
-      } else if (move.reference && turning_ && move.kind == nc::MoveKind::rapid) {
+      } else if (unplaced(move) && turning_ && move.kind == nc::MoveKind::rapid) {
         turn_to_reference(i, way);
-      } else if (move.reference || (dog_leg_ && move.kind == nc::MoveKind::rapid && !moves_together(state))) {
+      } else if (unplaced(move) || (dog_leg_ && move.kind == nc::MoveKind::rapid && !moves_together(state))) {
         position(i, way);
       } else {
         end = run_end(i, state);
@@ -185,6 +188,9 @@ class Builder {
   }
 
  private:
+  /// Its start or its end is not known, and nobody has taken it to be anywhere (kinematics::place_moves).
+  bool unplaced(const nc::Move& move) const { return move.reference && !(turns_ && has_placed_ends(move)); }
+
   /// A positioning of which the axes end together: one that turns, or under tool-centre-point control.
   bool moves_together(const nc::ModalState& state) const {
     return turns_ && (turning_ || state.tip_control != nc::TipControl::off);
@@ -213,7 +219,7 @@ class Builder {
     Segment s = line_segment(way.from_mm, way.to_mm);
     if (turns_) s.turn = turns_->rest(true);
     if (!rapid || s.length_mm < kNoLength) {
-      if (program_.moves[move].reference) rest(0, move, way.to_mm, true, true);
+      if (unplaced(program_.moves[move])) rest(0, move, way.to_mm, true, true);
       return;
     }
     if (previous_) {

@@ -29,7 +29,7 @@ class JointSampler {
     turn_ = segment.turn;
     move_ = segment.move;
     cutting_ = segment.cutting;
-    start_at(motion.pose_at(segment, 0));
+    start_at(map_.joints(motion.pose_at(segment, 0), *turn_));
     const double moves_until_s = time.start_s + motion.duration_s, end_s = std::min(time.end_s(), next_start_s);
     for (double t = time_of(next_); t < end_s; t = time_of(++next_)) {
       ProgramPose pose = motion.pose_at(segment, t - time.start_s);
@@ -37,6 +37,7 @@ class JointSampler {
       put(t, pose, t < moves_until_s ? segment.feed_command_mm_per_s : 0.0);
     }
     end_ = motion.pose_at(segment, motion.duration_s);
+    end_joints_ = map_.joints(end_, *turn_);
     end_s_ = time.end_s();
     previous_.reset();
     if (next_start_s < moves_until_s) previous_ = {segment, motion, time.start_s};
@@ -61,9 +62,8 @@ class JointSampler {
 
   double time_of(std::uint64_t k) const { return static_cast<double>(k) * period_s_; }
 
-  void start_at(const ProgramPose& pose) {
-    const kinematics::Joints start = map_.joints(pose, *turn_);
-    if (axes_ && !jumps(start, map_.joints(end_, *turn_))) return;
+  void start_at(const kinematics::Joints& start) {
+    if (axes_ && !jumps(start, end_joints_)) return;
     axes_.emplace(machine_, start);
     contour_ = {};
     tip_mm_.reset();
@@ -142,7 +142,8 @@ class JointSampler {
   std::shared_ptr<const Turn> turn_;
   std::optional<Vec3> tip_mm_;  // of the last sample
   std::uint64_t next_ = 0;      // sample to come
-  ProgramPose end_;
+  ProgramPose end_;             // of the last segment, and its joints
+  kinematics::Joints end_joints_;
   double end_s_ = 0;
   std::uint32_t move_ = 0;
   bool cutting_ = false;

@@ -11,15 +11,39 @@ namespace camber::kinematics {
 namespace {
 
 const Vec3 kUnknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+/// Rounding of the way through a frame and back: places within it are the same.
+constexpr double kSamePlaceMm = 1e-6;
+
+/// m p, of which only those coordinates are unknown (NaN) that depend on unknown ones.
+Vec3 known_product(const Eigen::Matrix3d& m, const Vec3& p) {
+  Vec3 out = Vec3::Zero();
+  for (Eigen::Index row = 0; row < 3; ++row)
+    for (Eigen::Index column = 0; column < 3; ++column)
+      if (m(row, column) != 0) out[row] += m(row, column) * p[column];
+  return out;
+}
 
 }  // namespace
 
-ProgramJoints::ProgramJoints(const machine::Machine& machine, const nc::Interpretation& moves)
+ProgramJoints::ProgramJoints(const machine::Machine& machine, const nc::Interpretation& moves, MissingOffset missing)
     : moves_(moves),
       chain_(machine),
       tool_axis_(machine.kinematics.tool_axis.normalized()),
       gauge_mm_(machine.kinematics.gauge_point_mm),
+      missing_(missing),
       last_linear_mm_(kUnknown) {}
+
+std::optional<ProgramJoints::Offsets> ProgramJoints::offsets_of(const nc::Move& move) const {
+  const std::optional<double>& length_mm = moves_.state_of(move).tool_length_mm;
+  if (missing_ == MissingOffset::unknown && (!moves_.machine_origin_mm || !length_mm)) return std::nullopt;
+  return Offsets{moves_.machine_origin_mm.value_or(Vec3::Zero()), length_mm.value_or(0)};
+}
+
+/// X, Y and Z of the program belong to one linear axis each.
+bool ProgramJoints::names_axes(const nc::Move& move) const {
+  const nc::ModalState& state = moves_.state_of(move);
+  return state.tip_control == nc::TipControl::off && state.work_frame == nc::WorkFrame::machine;
+}
 
 /// The path of the tip is programmed; else that of the joints is, and lines are straight in the joints.
 bool ProgramJoints::follows_tip(const nc::Move& move) const {
@@ -29,26 +53,24 @@ bool ProgramJoints::follows_tip(const nc::Move& move) const {
 /// Positions of the linear axes for the programmed point; nothing where offsets are not known or axes are parallel.
 std::optional<Vec3> ProgramJoints::linear_of(const nc::Move& move, const Vec3& tip_mm, const Vec3& rotary_rad) const {
   const nc::ModalState& state = moves_.state_of(move);
-  if (!moves_.machine_origin_mm || !state.tool_length_mm) return std::nullopt;
-  const Vec3 tip_in_machine_mm = tip_mm - *moves_.machine_origin_mm;
+  const auto offsets = offsets_of(move);
+  if (!offsets) return std::nullopt;
+  const Vec3 tip_in_machine_mm = tip_mm - offsets->origin_mm;
   if (state.tip_control != nc::TipControl::off || state.work_frame == nc::WorkFrame::tilted)
-    return chain_.linear_mm(tip_in_machine_mm, rotary_rad, *state.tool_length_mm);
+    return chain_.linear_mm(tip_in_machine_mm, rotary_rad, offsets->tool_length_mm);
   if (state.work_frame == nc::WorkFrame::machine)
-    return Vec3(tip_in_machine_mm + *state.tool_length_mm * tool_axis_ - gauge_mm_);
-  const Vec3 origin_mm = moves_.frame_of(move).origin_mm - *moves_.machine_origin_mm;
+    return Vec3(tip_in_machine_mm + offsets->tool_length_mm * tool_axis_ - gauge_mm_);
+  const Vec3 origin_mm = moves_.frame_of(move).origin_mm - offsets->origin_mm;
   const Vec3 in_part_mm = origin_mm + chain_.table_rotation(rotary_rad) * (tip_in_machine_mm - origin_mm);
-  return chain_.linear_mm(in_part_mm, rotary_rad, *state.tool_length_mm);
+  return chain_.linear_mm(in_part_mm, rotary_rad, offsets->tool_length_mm);
 }
 
 /// The reverse. Requires what linear_of() needs.
 Vec3 ProgramJoints::tip_of(const nc::Move& move, const Joints& joints) const {
-  const nc::ModalState& state = moves_.state_of(move);
-  const Vec3 zero_mm = *moves_.machine_origin_mm;
-  const double length_mm = *state.tool_length_mm;
-  if (state.tip_control == nc::TipControl::off && state.work_frame == nc::WorkFrame::machine)
-    return joints.linear_mm - length_mm * tool_axis_ + gauge_mm_ + zero_mm;
-  const Vec3 tip_mm = chain_.pose(joints, length_mm).tip_mm + zero_mm;
-  if (state.work_frame != nc::WorkFrame::dynamic) return tip_mm;
+  const Offsets offsets = *offsets_of(move);
+  if (names_axes(move)) return joints.linear_mm - offsets.tool_length_mm * tool_axis_ + gauge_mm_ + offsets.origin_mm;
+  Vec3 tip_mm = chain_.pose(joints, offsets.tool_length_mm).tip_mm + offsets.origin_mm;
+  if (moves_.state_of(move).work_frame != nc::WorkFrame::dynamic) return tip_mm;
   const Vec3 origin_mm = moves_.frame_of(move).origin_mm;
   return origin_mm + chain_.table_rotation(joints.rotary_rad).transpose() * (tip_mm - origin_mm);
 }
@@ -57,14 +79,18 @@ Vec3 ProgramJoints::tip_of(const nc::Move& move, const Joints& joints) const {
 Vec3 ProgramJoints::closed(const nc::Move& move, const Vec3& given_mm, std::uint8_t open,
                            const Vec3& rotary_rad) const {
   if (open == 0) return given_mm;
-  if (!last_linear_mm_.allFinite() || !moves_.machine_origin_mm || !moves_.state_of(move).tool_length_mm)
-    return kUnknown;
+  if (!offsets_of(move)) return kUnknown;
+  const bool all_known = last_linear_mm_.allFinite();
+  if (!all_known && !names_axes(move)) return kUnknown;
   const nc::Frame& frame = moves_.frame_of(move);
-  const Vec3 here = frame.to_program(tip_of(move, {last_linear_mm_, rotary_rad}));
+  const Vec3 tip_mm = tip_of(move, {last_linear_mm_, rotary_rad});
+  const Vec3 here =
+      all_known || frame.plain ? frame.to_program(tip_mm) : known_product(frame.inverse, tip_mm - frame.shift_mm);
   Vec3 programmed = frame.to_program(given_mm);
   for (int axis = 0; axis < 3; ++axis)
     if ((open & (1U << static_cast<unsigned>(axis))) != 0) programmed[axis] = here[axis];
-  return frame.from_program(programmed);
+  return all_known || frame.plain ? frame.from_program(programmed)
+                                  : Vec3(known_product(frame.linear, programmed) + frame.shift_mm);
 }
 
 void ProgramJoints::take_target(const nc::RotaryTarget& target, const nc::Move& move) {
@@ -79,10 +105,10 @@ void ProgramJoints::take_target(const nc::RotaryTarget& target, const nc::Move& 
   }
   Joints near;
   near.rotary_rad = now_.start_rad;
-  const bool located = move.open_axes == 0 && moves_.machine_origin_mm && moves_.state_of(move).tool_length_mm;
-  const Solution solution = located ? chain_.solve({move.end_mm - *moves_.machine_origin_mm, target.end},
-                                                   *moves_.state_of(move).tool_length_mm, near)
-                                    : chain_.solve_tool_axis(target.end, near);
+  const auto offsets = move.open_axes == 0 ? offsets_of(move) : std::nullopt;
+  const Solution solution =
+      offsets ? chain_.solve({move.end_mm - offsets->origin_mm, target.end}, offsets->tool_length_mm, near)
+              : chain_.solve_tool_axis(target.end, near);
   now_.reach = solution.reach;
   if (solution.reach == Reach::reached || solution.reach == Reach::travel) now_.end_rad = solution.joints.rotary_rad;
 }
@@ -94,9 +120,21 @@ void ProgramJoints::take_machine_target(const nc::MachineTarget& target) {
     if ((target.given & (1U << static_cast<unsigned>(axis))) != 0) end_linear_mm_[axis] = target.end_mm[axis];
 }
 
+/// Where the last move has left the axes. The program's own number stays where it says the same, and for axes of which
+/// the last place is not known.
 void ProgramJoints::settle_start(const nc::Move& move) {
   start_tip_mm_ = closed(move, move.start_mm, move.start_open ? 7 : 0, now_.start_rad);
   start_linear_mm_ = linear_of(move, start_tip_mm_, now_.start_rad).value_or(kUnknown);
+  if (!offsets_of(move) || move.arc != nc::Move::kNoArc) return;
+  if (!names_axes(move) && !last_linear_mm_.allFinite()) return;
+  bool elsewhere = false;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(last_linear_mm_[axis])) continue;
+    if (std::abs(start_linear_mm_[axis] - last_linear_mm_[axis]) <= kSamePlaceMm) continue;
+    start_linear_mm_[axis] = last_linear_mm_[axis];
+    elsewhere = true;
+  }
+  if (elsewhere) start_tip_mm_ = tip_of(move, {start_linear_mm_, now_.start_rad});
 }
 
 void ProgramJoints::take_line(const nc::Move& move) {
@@ -109,7 +147,7 @@ void ProgramJoints::take_line(const nc::Move& move) {
   in_frame_ = true;
   const auto end = linear_of(move, end_tip_mm_, now_.end_rad);
   end_linear_mm_ = end.value_or(kUnknown);
-  if (!end && moves_.machine_origin_mm && moves_.state_of(move).tool_length_mm) now_.reach = Reach::linear;
+  if (!end && offsets_of(move)) now_.reach = Reach::linear;
   settle_start(move);
 }
 
@@ -163,7 +201,7 @@ std::optional<ToolPose> ProgramJoints::pose_at(double u) const {
 
 std::optional<Vec3> ProgramJoints::programmed_mm(const Vec3& linear_mm, const Vec3& rotary_rad) const {
   const nc::Move& move = moves_.moves[index()];
-  if (!linear_mm.allFinite() || !moves_.machine_origin_mm || !moves_.state_of(move).tool_length_mm) return std::nullopt;
+  if (!linear_mm.allFinite() || !offsets_of(move)) return std::nullopt;
   return tip_of(move, {linear_mm, rotary_rad});
 }
 

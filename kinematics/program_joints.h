@@ -9,10 +9,11 @@
 //               rotation of the table at the angles of the move.
 // Under tool-centre-point control the tip follows its path. In every other mode the joints do: rotary axes move at a
 // constant rate from the start to the end of a move, and so do the linear axes of a line. The machine goes on from
-// where it is: where the program leaves coordinates open after rotary axes have turned (Move::open_axes), they are
-// those of the joints. Under G43.5 and G53.1 the end is the solution of the direction that is nearest to the start,
-// within travel.
+// where it is: a line starts where the last move has left the axes, whatever tool length or frame was switched since,
+// and where the program leaves coordinates open after rotary axes have turned (Move::open_axes), they are those of the
+// joints. Under G43.5 and G53.1 the end is the solution of the direction that is nearest to the start, within travel.
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "kinematics/chain.h"
@@ -33,10 +34,14 @@ struct MoveJoints {
   bool turns() const { return start_rad != end_rad; }
 };
 
+/// What a work offset or a tool length is where it is not known.
+enum class MissingOffset : std::uint8_t { unknown, zero };
+
 class ProgramJoints {
  public:
   /// `moves` must outlive this. Requires machine.kinematics.given().
-  ProgramJoints(const machine::Machine& machine, const nc::Interpretation& moves);
+  ProgramJoints(const machine::Machine& machine, const nc::Interpretation& moves,
+                MissingOffset missing = MissingOffset::unknown);
 
   bool done() const { return next_ >= moves_.moves.size(); }
   /// Goes to the next move, in the order of the program. Requires !done().
@@ -54,8 +59,11 @@ class ProgramJoints {
   /// known.
   std::optional<Vec3> start_mm() const { return programmed_mm(start_linear_mm_, now_.start_rad); }
   std::optional<Vec3> end_mm() const { return programmed_mm(end_linear_mm_, now_.end_rad); }
-  /// Where that move begins; NaN: not known.
+  /// X, Y, Z of the machine where that move begins and ends; NaN: not known.
   const Vec3& start_linear_mm() const { return start_linear_mm_; }
+  const Vec3& end_linear_mm() const { return end_linear_mm_; }
+  /// The joints in the coordinates of that move. Requires offsets that are known, or taken as zero.
+  Vec3 programmed_mm(const Joints& joints) const { return tip_of(moves_.moves[index()], joints); }
   /// X, Y, Z of the machine for a point in the coordinates of that move, at the angles of its end; nothing where
   /// offsets are not known or axes are parallel.
   std::optional<Vec3> linear_mm(const Vec3& point_mm) const {
@@ -66,6 +74,13 @@ class ProgramJoints {
   const Chain& chain() const { return chain_; }
 
  private:
+  /// Work offset and tool length of a move.
+  struct Offsets {
+    Vec3 origin_mm = Vec3::Zero();
+    double tool_length_mm = 0;
+  };
+  std::optional<Offsets> offsets_of(const nc::Move& move) const;
+  bool names_axes(const nc::Move& move) const;
   bool follows_tip(const nc::Move& move) const;
   std::optional<Vec3> linear_of(const nc::Move& move, const Vec3& tip_mm, const Vec3& rotary_rad) const;
   Vec3 tip_of(const nc::Move& move, const Joints& joints) const;
@@ -80,6 +95,7 @@ class ProgramJoints {
   const nc::Interpretation& moves_;
   Chain chain_;
   Vec3 tool_axis_, gauge_mm_;
+  MissingOffset missing_;
   std::size_t next_ = 0, next_target_ = 0, next_machine_target_ = 0;
   MoveJoints now_;
   bool follows_path_ = false;                                           ///< of the tip; else the joints go straight

@@ -12,6 +12,10 @@ namespace {
 
 constexpr char kLetters[] = "ABC";
 constexpr char kAxisLetters[] = "XYZ";
+/// Commands that read rotary axes, on a machine with [kinematics]. Of these, predict and compensate refuse frames that
+/// follow the part (simulate/rotary_motion.cpp).
+constexpr char kReaders[] = "check, time, feed, fit-feed, predict, compensate and post";
+constexpr char kFrameReaders[] = "check, time, feed, fit-feed and post";
 
 std::uint8_t bit_of(char letter) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(letter - 'A')); }
 
@@ -238,8 +242,9 @@ void BlockInterpreter::settle_tip() {
 
 /// What a message says of a code that turns rotary axes, on a machine without them.
 std::string BlockInterpreter::needs_kinematics(const Code& code, const char* name) const {
-  return fmt::format("{} ({}) is read by camber check, feed, time and fit-feed, on a machine with [kinematics]",
-                     code_text(code), name);
+  const bool frame = code.tenths == 682 || code.tenths == 531 || code.tenths == 2540 || code.tenths == 2550;
+  return fmt::format("{} ({}) is read on a machine with [kinematics], by camber {}", code_text(code), name,
+                     frame ? kFrameReaders : kReaders);
 }
 
 /// G10 L2 A B C.
@@ -288,9 +293,8 @@ void BlockInterpreter::check_rotary_letter(char letter) {
   if (options_.rotary_axes.empty()) {
     if (words_.value(letter) != 0)
       error(words_.offset_of(letter), "rotary-axis",
-            fmt::format("rotary axis {} is read by camber check, feed, time and fit-feed, on a machine with "
-                        "[kinematics]; X, Y and Z were expected",
-                        letter),
+            fmt::format("rotary axis {} is read on a machine with [kinematics], by camber {}; X, Y and Z were expected",
+                        letter, kReaders),
             std::string(1, letter));
     else
       report_.warning(words_.offset_of(letter), "rotary-axis",

@@ -10,11 +10,12 @@
 
 #include "base/stage.h"
 #include "base/units.h"
+#include "posture/clear_directions.h"
+#include "posture/one_direction.h"
 
 namespace camber::posture {
 namespace {
 
-constexpr double kCap_mm = 2, kAirCap_mm = 10;  ///< room beyond this is not measured
 constexpr double kKnot_mm = 3;                ///< between the points at which the path through directions is looked for
 constexpr double kFarthest = 55 * kPi / 180;  ///< of tool and normal that is looked at
 constexpr double kRapidMmPerS = 200;
@@ -35,16 +36,25 @@ bool clear_between(const Surroundings& surroundings, const ToolShape& tool, cons
 }
 
 /// The points at which the direction is chosen: a few millimetres apart, and where contact begins and ends.
-std::vector<std::size_t> knots_of(std::span<const PathPoint> points) {
-  std::vector<std::size_t> out{0};
-  double way = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) {
+struct Knots {
+  std::vector<std::size_t> of;    ///< of all points
+  std::vector<PathPoint> points;  ///< with the way and time from the one before
+};
+
+Knots knots_of(std::span<const PathPoint> points) {
+  Knots out;
+  double way = 0, time = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
     way += points[i].way_mm;
-    const bool ends =
-        i + 1 == points.size() || points[i + 1].contact != points[i].contact || points[i + 1].rapid != points[i].rapid;
+    time += points[i].time_s;
+    const bool ends = i == 0 || i + 1 == points.size() || points[i + 1].contact != points[i].contact ||
+                      points[i + 1].rapid != points[i].rapid;
     if (!ends && way < kKnot_mm) continue;
-    out.push_back(i);
-    way = 0;
+    out.of.push_back(i);
+    out.points.push_back(points[i]);
+    out.points.back().way_mm = way;
+    out.points.back().time_s = time;
+    way = time = 0;
   }
   return out;
 }
@@ -52,27 +62,21 @@ std::vector<std::size_t> knots_of(std::span<const PathPoint> points) {
 /// The chosen directions: a shortest path through (point, direction).
 class Chooser {
  public:
-  Chooser(std::span<const PathPoint> points, const Surroundings& surroundings, const ToolShape& tool,
-          const machine::Machine& machine, const PostureOptions& options)
+  Chooser(std::span<const PathPoint> points, const Knots& knots, const Directions& directions,
+          const ClearDirections& clear, std::size_t tool_index, const Surroundings& surroundings, const ToolShape& tool,
+          const PostureOptions& options)
       : all_(points),
         surroundings_(surroundings),
         tool_(tool),
         options_(options),
-        directions_(machine, options.grid_rad, options.max_tilt_rad),
-        knots_(knots_of(points)) {
-    for (std::size_t k = 0; k < knots_.size(); ++k) {
-      PathPoint p = all_[knots_[k]];
-      for (std::size_t i = k > 0 ? knots_[k - 1] + 1 : 0; i < knots_[k]; ++i) {
-        p.way_mm += all_[i].way_mm;
-        p.time_s += all_[i].time_s;
-      }
-      points_.push_back(p);
-    }
-  }
+        directions_(directions),
+        clear_(clear),
+        tool_index_(tool_index),
+        knots_(knots.of),
+        points_(knots.points) {}
 
   Postures run() {
     Postures out;
-    find_clear();
     barred_.assign(points_.size(), {});
     for (int round = 0; round < kRounds; ++round) {
       const auto path = shortest(out);
@@ -89,39 +93,6 @@ class Chooser {
   }
 
  private:
-  /// Where the direction stays, the tool only moves: room at one point is room at the next ones.
-  void find_clear() {
-    Stage stage("looking for clear directions", directions_.size());
-    clear_.assign(points_.size() * directions_.size(), 0);
-    tbb::parallel_for(std::size_t{0}, directions_.size(), [&](std::size_t d) {
-      const Vec3& axis = directions_.axis(d);
-      double room = -1;
-      Vec3 there = Vec3::Zero();
-      for (std::size_t i = 0; i < points_.size(); ++i) {
-        if (points_[i].contact && angle_between(axis, points_[i].normal) > kFarthest) continue;
-        const Vec3 tip = points_[i].tip_mm(axis);
-        if (room <= 0 || (tip - there).norm() >= room) {
-          room = surroundings_.room_mm(tool_, tip, axis, points_[i].contact ? kCap_mm : kAirCap_mm);
-          there = tip;
-          if (room < 0) continue;
-        }
-        clear_[i * directions_.size() + d] = 1;
-      }
-      stage.advance();
-    });
-  }
-
-  float point_cost(const PathPoint& p, const Vec3& axis) const {
-    if (!p.contact) return 0;
-    const double angle = angle_between(axis, p.normal), least = std::sin(options_.least_angle_rad);
-    double cost = error_share(angle);
-    if (angle < options_.least_angle_rad) {
-      const double missing = (least - std::sin(angle)) / least;
-      cost += kSpeedCost * missing * missing;
-    }
-    return static_cast<float>(cost * p.way_mm);
-  }
-
   float step_cost(const PathPoint& p, const Directions::Step& step) const {
     const double time = p.time_s > 0 ? p.time_s : p.way_mm / kRapidMmPerS;
     const double speed = p.time_s > 0 ? p.way_mm / p.time_s : kRapidMmPerS;
@@ -151,9 +122,9 @@ class Chooser {
       }
       bool any = false;
       for (std::size_t d = 0; d < n; ++d) {
-        if (clear_[i * n + d] == 0) next[d] = kNever;
+        if (!clear_.clear(i, d, tool_index_)) next[d] = kNever;
         if (next[d] == kNever) continue;
-        next[d] += point_cost(points_[i], directions_.axis(d));
+        next[d] += static_cast<float>(posture_cost(points_[i], directions_.axis(d), options_));
         any = true;
       }
       if (!any) {
@@ -218,10 +189,19 @@ class Chooser {
              clear_between(surroundings_, tool_, all_[i - 1], axes[i - 1], p, axis) &&
              clear_between(surroundings_, tool_, p, axis, all_[i + 1], axes[i + 1]);
     };
+    std::vector<int> changed(axes.size(), 0), refused(axes.size(), -1);  // in which pass, last
     for (int pass = 0; pass < kSmoothings; ++pass)
       for (std::size_t i = 1; i + 1 < axes.size(); ++i) {
+        // Nothing near has changed since.
+        if (refused[i] > std::max({changed[i - 1], changed[i], changed[i + 1]})) continue;
         const Vec3 middle = (axes[i - 1] + 2 * axes[i] + axes[i + 1]).normalized();
-        if ((middle - axes[i]).norm() > 1e-5 && holds(i, middle)) axes[i] = middle;
+        if ((middle - axes[i]).norm() <= 1e-5) continue;
+        if (holds(i, middle)) {
+          axes[i] = middle;
+          changed[i] = pass;
+        } else {
+          refused[i] = pass;
+        }
       }
   }
 
@@ -229,10 +209,11 @@ class Chooser {
   const Surroundings& surroundings_;
   const ToolShape& tool_;
   const PostureOptions& options_;
-  Directions directions_;
-  std::vector<std::size_t> knots_;   ///< of all_
-  std::vector<PathPoint> points_;    ///< the knots, with the way and time from the one before
-  std::vector<std::uint8_t> clear_;  ///< point by point
+  const Directions& directions_;
+  const ClearDirections& clear_;
+  std::size_t tool_index_;
+  const std::vector<std::size_t>& knots_;  ///< of all_
+  const std::vector<PathPoint>& points_;   ///< the knots
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> barred_;
   std::size_t first_barred_ = 0;
 };
@@ -348,6 +329,17 @@ double error_share(double angle_rad) {
   return s * s + kAlong * s * std::abs(std::cos(angle_rad));
 }
 
+double posture_cost(const PathPoint& point, const Vec3& axis, const PostureOptions& options) {
+  if (!point.contact) return 0;
+  const double angle = angle_between(axis, point.normal), least = std::sin(options.least_angle_rad);
+  double cost = error_share(angle);
+  if (angle < options.least_angle_rad) {
+    const double missing = (least - std::sin(angle)) / least;
+    cost += kSpeedCost * missing * missing;
+  }
+  return cost * point.way_mm;
+}
+
 std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec3> axes,
                           const Surroundings& surroundings, const ToolShape& tool) {
   std::vector<std::uint8_t> bad(points.size(), 0);
@@ -358,11 +350,33 @@ std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec
   return static_cast<std::size_t>(std::count(bad.begin(), bad.end(), 1));
 }
 
-Postures choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings, const ToolShape& tool,
-                         const machine::Machine& machine, const PostureOptions& options) {
-  if (points.empty()) return {};
-  if (options.mode == Mode::chosen) return Chooser(points, surroundings, tool, machine, options).run();
-  return BySurface(points, surroundings, tool, machine, options).run();
+std::vector<Postures> choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings,
+                                      std::span<const ToolShape> tools, const machine::Machine& machine,
+                                      const PostureOptions& options) {
+  std::vector<Postures> out(tools.size());
+  if (points.empty()) return out;
+  if (options.indexed) {
+    for (std::size_t i = 0; i < tools.size(); ++i)
+      out[i] = one_direction(points, surroundings, tools[i], machine, options);
+    return out;
+  }
+  if (options.mode != Mode::chosen) {
+    for (std::size_t i = 0; i < tools.size(); ++i)
+      out[i] = BySurface(points, surroundings, tools[i], machine, options).run();
+    return out;
+  }
+  const Knots knots = knots_of(points);
+  const Directions directions(machine, options.grid_rad, options.max_tilt_rad);
+  for (std::size_t first = 0; first < tools.size(); first += ClearDirections::kMaxTools) {
+    const auto some = tools.subspan(first, std::min(tools.size() - first, ClearDirections::kMaxTools));
+    const ClearDirections clear(knots.points, surroundings, some, directions, kFarthest);
+    Stage stage("choosing directions", some.size());
+    tbb::parallel_for(std::size_t{0}, some.size(), [&](std::size_t i) {
+      out[first + i] = Chooser(points, knots, directions, clear, i, surroundings, some[i], options).run();
+      stage.advance();
+    });
+  }
+  return out;
 }
 
 }  // namespace camber::posture

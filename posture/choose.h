@@ -22,6 +22,7 @@ enum class Mode : std::uint8_t {
 
 struct PostureOptions {
   Mode mode = Mode::chosen;
+  bool indexed = false;                            ///< one direction for all points; mode is not looked at
   double clearance_mm = 1;                         ///< of all that is not cutter
   double lead_rad = 10 * kPi / 180, tilt_rad = 0;  ///< lead_tilt
   double max_tilt_rad = 75 * kPi / 180;            ///< from +Z of the program
@@ -38,14 +39,19 @@ double angle_between(const Vec3& a, const Vec3& b);
 inline constexpr double kAlong = 0.3;
 double error_share(double angle_rad);
 
+/// What the choice of this direction costs, a mm of path: share of the error, and a tip that cuts.
+double posture_cost(const PathPoint& point, const Vec3& axis, const PostureOptions& options);
+
 struct Postures {
   std::vector<Vec3> axes;                ///< one a point; empty: none (`blocked`)
   std::optional<std::size_t> blocked{};  ///< the first point at which no direction is clear, or none is reached
   std::size_t unclear = 0;               ///< points whose tool is too near: normal, lead_tilt, seed
 };
 
-Postures choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings, const ToolShape& tool,
-                         const machine::Machine& machine, const PostureOptions& options);
+/// For each tool: one tool, or the same one drawn in further and further.
+std::vector<Postures> choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings,
+                                      std::span<const ToolShape> tools, const machine::Machine& machine,
+                                      const PostureOptions& options);
 
 /// Points, and places half way between them, at which the tool is nearer than it needs to be.
 std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec3> axes,

@@ -4,12 +4,15 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
 
 #include "base/stl.h"
 #include "deflection/beam.h"
 #include "feedmodel/control_options.h"
+#include "kinematics/rotary_options.h"
 #include "nc/emit/number_style.h"
+#include "posture/frame_text.h"
 #include "repath/post_writer.h"
 #include "repath/tip_motion.h"
 
@@ -53,24 +56,35 @@ class Maker {
     return true;
   }
 
-  Postured run(const machine::Tool& tool) {
-    Postured out;
-    const ToolShape shape = tool_shape(tool, job_.machine, request_.options.clearance_mm);
-    const Postures postures = choose_postures(points_, surroundings_, shape, job_.machine, request_.options);
-    out.points = points_;
-    if (postures.blocked) {
-      out.blocked_move = points_[*postures.blocked].move;
-      return out;
+  std::vector<Postured> run() {
+    std::vector<machine::Tool> tools(std::max<std::size_t>(1, request_.overhangs_mm.size()), tool());
+    std::vector<ToolShape> shapes;
+    for (std::size_t i = 0; i < tools.size(); ++i) {
+      if (!request_.overhangs_mm.empty()) tools[i].overhang_mm = request_.overhangs_mm[i];
+      shapes.push_back(tool_shape(tools[i], job_.machine, request_.options.clearance_mm));
     }
-    out.axes = postures.axes;
-    out.figures = figures_of(tool, postures);
+    const std::vector<Postures> postures =
+        choose_postures(points_, surroundings_, shapes, job_.machine, request_.options);
+    std::vector<Postured> out(tools.size());
+    tbb::parallel_for(std::size_t{0}, tools.size(), [&](std::size_t i) { finish(tools[i], postures[i], out[i]); });
     return out;
   }
 
-  void write(Postured& out) const;
+ private:
   const machine::Tool& tool() const { return job_.tools.at(request_.tool); }
 
- private:
+  void finish(const machine::Tool& tool, const Postures& postures, Postured& out) const {
+    out.points = points_;
+    if (postures.blocked) {
+      out.blocked_move = points_[*postures.blocked].move;
+      return;
+    }
+    out.axes = postures.axes;
+    out.figures = figures_of(tool, postures);
+    write(out);
+  }
+  void write(Postured& out) const;
+
   void say(std::size_t offset, const char* check, std::string message) {
     diagnostics_.add(program_.source.diagnostic(Severity::error, offset, std::move(message), check));
   }
@@ -89,11 +103,19 @@ class Maker {
           fmt::format("the job has no [tool.{}]; the tool of the finishing moves was expected", request_.tool),
           "no-tool");
     using machine::ToolType;
+    if (request_.options.indexed && request_.written == nc::OneDirection::dynamic && !table_alone())
+      return refuse("the head of the machine turns; G254 turns with the table, and tilted, joints or tip was expected",
+                    "no-frame");
     if (found->second.type != ToolType::ball && found->second.type != ToolType::bull)
       return refuse(
           fmt::format("[tool.{}] is neither a ball nor a bull-nose cutter; one of these was expected", request_.tool),
           "not-ball");
     return true;
+  }
+
+  bool table_alone() const {
+    const auto options = kinematics::rotary_options(job_.machine);
+    return std::all_of(options.begin(), options.end(), [](const nc::RotaryOption& axis) { return axis.on_table; });
   }
 
   bool moves_fit() {
@@ -114,6 +136,11 @@ class Maker {
     return true;
   }
 
+  bool turned_frame(const nc::Move& m) const {
+    const nc::Frame& frame = moves_.frame_of(m);
+    return request_.options.indexed && !frame.plain && !frame.shift_only;
+  }
+
   bool may_be_postured(std::size_t i) {
     const nc::Move& m = moves_.moves[i];
     const nc::ModalState& state = moves_.state_of(m);
@@ -121,6 +148,12 @@ class Maker {
     if (state.tip_control != nc::TipControl::off || state.work_frame != nc::WorkFrame::machine ||
         std::any_of(moves_.rotary.begin(), moves_.rotary.end(), [&](const auto& t) { return t.move == i; })) {
       say(offset, "rotary-axis", "this move has directions of its own; moves of three axes were expected");
+      return false;
+    }
+    if (turned_frame(m)) {
+      say(offset, "no-frame",
+          "this move has turned, mirrored or scaled coordinates; a frame for one direction of the "
+          "tool was expected to be the only one");
       return false;
     }
     const bool alone = (i == 0 || moves_.moves[i - 1].block != m.block) &&
@@ -170,6 +203,15 @@ void Maker::write(Postured& out) const {
   const kinematics::Chain chain(job_.machine);
   const int decimals = std::max(kLeastDecimals, nc::coordinate_decimals_of(program_));
   const repath::PostRounding rounding{decimals, decimals + 1, decimals};
+  repath::PostOptions options{.target = repath::PostTarget::tcp};
+  std::vector<Vec3>& axes = out.axes;
+  const bool framed = request_.options.indexed &&
+                      (request_.written == nc::OneDirection::tilted || request_.written == nc::OneDirection::dynamic);
+  if (framed) {
+    const WrittenFrame frame = frame_text(chain, request_.written, axes.front(), decimals, nc::style_of(program_));
+    options.frame = frame.frame;
+    axes.assign(axes.size(), frame.axis);
+  }
   repath::PostMotions motions;
   motions.of_move.assign(moves_.moves.size(), repath::PostMotions::kKept);
   std::vector<repath::DividedMotion> divided;
@@ -187,9 +229,9 @@ void Maker::write(Postured& out) const {
       motions.motions.push_back(motion);
       divided.emplace_back();
     }
-    now.rotary_rad = chain.solve_tool_axis(out.axes[i], now).joints.rotary_rad;
+    now.rotary_rad = chain.solve_tool_axis(axes[i], now).joints.rotary_rad;
     repath::PostPoint point;
-    const Vec3 tip = p.tip_mm(out.axes[i]);
+    const Vec3 tip = p.tip_mm(axes[i]);
     point.tip_mm = tip - origin;
     point.rotary_deg = rounding.deg(now.rotary_rad);
     point.to = p.to;
@@ -198,13 +240,14 @@ void Maker::write(Postured& out) const {
     point.time_s = p.time_s;
     divided.back().points.push_back(point);
   }
-  // Upright again where the tool is left: at the end of a rapid, in air.
-  repath::PostPoint upright = divided.back().points.back();
-  upright.rotary_deg = Vec3::Zero();
-  upright.rapid = upright.extra = true;
-  upright.time_s = 0;
-  divided.back().points.push_back(upright);
-  const repath::PostOptions options{.target = repath::PostTarget::tcp};
+  if (!framed) {
+    // Upright again where the tool is left: at the end of a rapid, in air.
+    repath::PostPoint upright = divided.back().points.back();
+    upright.rotary_deg = Vec3::Zero();
+    upright.rapid = upright.extra = true;
+    upright.time_s = 0;
+    divided.back().points.push_back(upright);
+  }
   repath::Posted posted;
   repath::PostWriter(program_, moves_, job_.machine, feedmodel::dialect_of(job_.machine.control.kind), options,
                      rounding)
@@ -215,12 +258,10 @@ void Maker::write(Postured& out) const {
 
 }  // namespace
 
-Postured make_postures(const PostureRequest& request, Diagnostics& diagnostics) {
+std::vector<Postured> make_postures(const PostureRequest& request, Diagnostics& diagnostics) {
   Maker maker(request, diagnostics);
   if (!maker.ready()) return {};
-  Postured out = maker.run(maker.tool());
-  if (!out.blocked_move) maker.write(out);
-  return out;
+  return maker.run();
 }
 
 double least_overhang_mm(const machine::Tool& tool) {

@@ -11,6 +11,7 @@
 
 #include "base/diagnostics.h"
 #include "machine/job.h"
+#include "nc/five_axis_words.h"
 #include "nc/move.h"
 #include "nc/program.h"
 #include "posture/choose.h"
@@ -22,8 +23,11 @@ struct PostureRequest {
   const nc::Program* program = nullptr;
   const nc::Interpretation* moves = nullptr;  ///< read with the machine's rotary axes
   int tool = 0;
-  double step_mm = 1;  ///< between the points at which the direction is chosen
+  std::vector<double> overhangs_mm{};  ///< ever less; empty: that of the job
+  double step_mm = 1;                  ///< between the points at which the direction is chosen
   PostureOptions options;
+  /// How one direction is written (options.indexed): tip, tilted or dynamic; joints as the tip, for post().
+  nc::OneDirection written = nc::OneDirection::tip;
 };
 
 struct PostureFigures {
@@ -51,8 +55,10 @@ struct Postured {
 ///  [kinematics]     the machine has no rotary axes;
 ///  [rotary-axis]    the program turns rotary axes already, or is under tool-centre-point control;
 ///  [not-editable]   a move of the tool that the text does not say alone;
-///  [no-moves]       the tool has no moves.
-Postured make_postures(const PostureRequest& request, Diagnostics& diagnostics);
+///  [no-moves]       the tool has no moves;
+///  [no-frame]       the machine cannot write one direction as asked for.
+/// One result for each overhang; none where there are errors.
+std::vector<Postured> make_postures(const PostureRequest& request, Diagnostics& diagnostics);
 
 /// The least overhang that is tried: flutes, and one diameter.
 double least_overhang_mm(const machine::Tool& tool);

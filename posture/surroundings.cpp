@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Geometry>
 
@@ -15,6 +16,7 @@ namespace camber::posture {
 namespace {
 
 constexpr std::uint32_t kLeaf = 4;
+constexpr double kFar_mm = std::numeric_limits<double>::infinity();
 constexpr double kTouch_mm = 1e-3;  ///< a cutter nearer than this overlaps
 
 class Facet : public ConvexSolid {
@@ -29,15 +31,15 @@ class Facet : public ConvexSolid {
   const std::array<Vec3, 3>& corners_;
 };
 
-/// Distance of a point, `out` from the axis and `up` along it, from the cylinder about a piece: a lower bound of that
-/// from the piece.
-double bound_mm(const ToolShape::Piece& piece, double out, double up) {
-  const double across = std::max(out - piece.radius_mm, 0.0);
-  const double along = std::max({piece.bottom_mm - up, up - piece.top_mm, 0.0});
-  return std::sqrt(across * across + along * along);
+/// Whether a triangle, in the tool's frame, is nearer to the piece than it needs to be.
+bool too_near(const ToolShape::Piece& piece, const std::array<Vec3, 3>& corners) {
+  const Vec3 centre = (corners[0] + corners[1] + corners[2]) / 3;
+  const double out = centre.head<2>().norm(), across = out > 0 ? std::min(out, piece.radius_mm) / out : 0;
+  const Vec3 nearest(across * centre.x(), across * centre.y(), std::clamp(centre.z(), piece.bottom_mm, piece.top_mm));
+  Vec3 off = nearest - centre;
+  if (off.squaredNorm() < 1e-12) off = Vec3::UnitZ();
+  return convex_nearer(piece.solid, Facet(corners), piece.need_mm, off);
 }
-
-double from_axis_mm(const Vec3& p) { return std::sqrt(p.x() * p.x() + p.y() * p.y()); }
 
 std::array<Vec3, 3> in_tool(const std::array<Vec3, 3>& triangle, const Mat3& frame, const Vec3& tip_mm) {
   std::array<Vec3, 3> out;
@@ -123,16 +125,35 @@ void Surroundings::finish() {
   if (triangles_.empty()) return;
   nodes_.emplace_back();
   build(0, 0, static_cast<std::uint32_t>(triangles_.size()));
+  volumes_.clear();
+  for (const auto& triangle : triangles_) volumes_.push_back(volume_of({&triangle, 1}));
+}
+
+Surroundings::Volume Surroundings::volume_of(std::span<const std::array<Vec3, 3>> triangles) const {
+  Volume out;
+  Vec3 low = triangles[0][0], high = low, normal = Vec3::Zero();
+  for (const auto& [a, b, c] : triangles) {
+    low = low.cwiseMin(a).cwiseMin(b).cwiseMin(c);
+    high = high.cwiseMax(a).cwiseMax(b).cwiseMax(c);
+    normal += (b - a).cross(c - a);
+  }
+  out.centre_mm = (low + high) / 2;
+  if (normal.norm() > 0) out.normal = normal.normalized();
+  out.low_mm = out.high_mm = out.normal.dot(triangles[0][0]);
+  for (const auto& triangle : triangles)
+    for (const Vec3& p : triangle) {
+      out.radius_mm = std::max(out.radius_mm, (p - out.centre_mm).norm());
+      out.low_mm = std::min(out.low_mm, out.normal.dot(p));
+      out.high_mm = std::max(out.high_mm, out.normal.dot(p));
+    }
+  return out;
 }
 
 void Surroundings::build(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
+  Node now{volume_of(std::span(triangles_).subspan(begin, end - begin))};
   Vec3 low = triangles_[begin][0], high = low;
   for (std::uint32_t i = begin; i < end; ++i)
     for (const Vec3& p : triangles_[i]) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  Node now;
-  now.centre_mm = (low + high) / 2;
-  for (std::uint32_t i = begin; i < end; ++i)
-    for (const Vec3& p : triangles_[i]) now.radius_mm = std::max(now.radius_mm, (p - now.centre_mm).norm());
   if (end - begin <= kLeaf) {
     now.begin = begin;
     now.end = end;
@@ -154,53 +175,83 @@ void Surroundings::build(std::uint32_t node, std::uint32_t begin, std::uint32_t 
   build(now.begin + 1, middle, end);
 }
 
+/// A tool somewhere, and the room that is left so far.
+struct Surroundings::Probe {
+  const ToolShape& tool;
+  const Vec3& tip_mm;
+  const Vec3& axis;
+  double room_mm;  ///< never negative
+
+  /// A volume as the tool sees it.
+  struct Seen {
+    double out, up;       ///< the centre, from the axis and up from the tip
+    double tilt, wide;    ///< of the axis: along the slab's normal, and across it
+    double below, above;  ///< from the tip to the slab's sides, along its normal
+  };
+  Seen seen(const Volume& volume) const {
+    const Vec3 from_tip = volume.centre_mm - tip_mm;
+    const double up = from_tip.dot(axis), tilt = volume.normal.dot(axis), tip = volume.normal.dot(tip_mm);
+    return {std::sqrt(std::max(from_tip.squaredNorm() - up * up, 0.0)),
+            up,
+            tilt,
+            std::sqrt(std::max(1 - tilt * tilt, 0.0)),
+            volume.low_mm - tip,
+            volume.high_mm - tip};
+  }
+  /// By how much the volume is at least farther from the piece than needed, by ball and cylinder, then by the slab;
+  /// kFar_mm: by no less than the room.
+  double bound_mm(const Seen& seen, double radius_mm, const ToolShape::Piece& piece) const {
+    const double across = std::max(seen.out - piece.radius_mm, 0.0);
+    const double along = std::max({piece.bottom_mm - seen.up, seen.up - piece.top_mm, 0.0});
+    const double squared = across * across + along * along, spare = radius_mm + piece.need_mm;
+    if (squared >= (spare + room_mm) * (spare + room_mm)) return kFar_mm;
+    const double wide = piece.radius_mm * seen.wide, a = seen.tilt * piece.bottom_mm, b = seen.tilt * piece.top_mm;
+    const double slab = std::max(std::min(a, b) - wide - seen.above, seen.below - std::max(a, b) - wide);
+    return std::max(std::sqrt(squared) - spare, slab - piece.need_mm);
+  }
+  double bound_mm(const Volume& volume) const {
+    const Seen at = seen(volume);
+    double bound = kFar_mm;
+    for (const ToolShape::Piece& piece : tool.pieces) bound = std::min(bound, bound_mm(at, volume.radius_mm, piece));
+    return bound;
+  }
+};
+
 double Surroundings::room_mm(const ToolShape& tool, const Vec3& tip_mm, const Vec3& axis, double cap_mm) const {
   if (nodes_.empty()) return cap_mm;
-  const Mat3 frame = simulate::outline_frame({tip_mm, axis, 0});
-  double room = cap_mm;
-  const auto least = [&](const Vec3& centre, double radius) {
-    double bound = std::numeric_limits<double>::infinity();
-    const double out = from_axis_mm(centre);
-    for (const ToolShape::Piece& piece : tool.pieces)
-      bound = std::min(bound, bound_mm(piece, out, centre.z()) - radius - piece.need_mm);
-    return bound;
-  };
+  Probe probe{tool, tip_mm, axis, cap_mm};
+  std::optional<Mat3> frame;
   struct Open {
     std::uint32_t node;
-    double bound;
-  };
-  const auto opened = [&](std::uint32_t n) {
-    return Open{n, least(frame.transpose() * (nodes_[n].centre_mm - tip_mm), nodes_[n].radius_mm)};
+    double bound_mm;
   };
   std::array<Open, 128> stack;
   std::size_t size = 0;
-  stack[size++] = opened(0);
+  stack[size++] = {0, probe.bound_mm(nodes_[0])};
   while (size > 0) {
     const Open now = stack[--size];
-    if (now.bound >= room) continue;
+    if (now.bound_mm >= probe.room_mm) continue;
     const Node& node = nodes_[now.node];
     if (node.end == 0) {
-      Open a = opened(node.begin), b = opened(node.begin + 1);
-      if (a.bound < b.bound) std::swap(a, b);
-      stack[size++] = a;
-      stack[size++] = b;
+      Open a{node.begin, probe.bound_mm(nodes_[node.begin])}, b{node.begin + 1, probe.bound_mm(nodes_[node.begin + 1])};
+      if (a.bound_mm < b.bound_mm) std::swap(a, b);
+      if (a.bound_mm < probe.room_mm) stack[size++] = a;
+      if (b.bound_mm < probe.room_mm) stack[size++] = b;
       continue;
     }
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
-      const auto corners = in_tool(triangles_[i], frame, tip_mm);
-      const Vec3 centre = (corners[0] + corners[1] + corners[2]) / 3;
-      const double radius =
-          std::max({(corners[0] - centre).norm(), (corners[1] - centre).norm(), (corners[2] - centre).norm()});
-      const double out = from_axis_mm(centre);
+      const Probe::Seen seen = probe.seen(volumes_[i]);
       for (const ToolShape::Piece& piece : tool.pieces) {
-        const double bound = bound_mm(piece, out, centre.z()) - radius - piece.need_mm;
-        if (bound >= room) continue;
-        room = std::min(room, bound >= 0 ? bound : convex_distance(piece.solid, Facet(corners)) - piece.need_mm);
+        const double bound = probe.bound_mm(seen, volumes_[i].radius_mm, piece);
+        if (bound >= probe.room_mm) continue;
+        probe.room_mm = std::max(bound, 0.0);
+        if (bound >= 0) continue;
+        if (!frame) frame = simulate::outline_frame({tip_mm, axis, 0});
+        if (too_near(piece, in_tool(triangles_[i], *frame, tip_mm))) return -1;
       }
-      if (room < 0) return room;
     }
   }
-  return room;
+  return probe.room_mm;
 }
 
 bool Surroundings::deepest_point(const Vec3& tip_mm, const Vec3& axis, double radius_mm, double from_mm,

@@ -24,6 +24,8 @@ using Path = std::filesystem::path;
 
 std::string path_of(const py::handle& object) { return object.cast<Path>().string(); }
 
+}  // namespace
+
 camber::Program program_of(const py::handle& object) {
   if (py::isinstance<camber::Program>(object)) return object.cast<camber::Program>();
   return camber::read_program(path_of(object));
@@ -38,6 +40,8 @@ camber::Job job_of(const py::handle& object) {
   if (py::isinstance<camber::Job>(object)) return object.cast<camber::Job>();
   return camber::read_job(path_of(object));
 }
+
+namespace {
 
 camber::ReadOptions read_options(const std::optional<std::string>& units, bool block_skip,
                                  const std::vector<int>& skip_switches, const std::string& dialect,
@@ -242,4 +246,5 @@ PYBIND11_MODULE(_camber, module) {
   camber_python::add_functions(module);
   camber_python::add_copy(module);
   camber_python::add_plan(module);
+  camber_python::add_five_axis(module);
 }

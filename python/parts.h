@@ -2,6 +2,10 @@
 // The parts of the module.
 #include <pybind11/pybind11.h>
 
+#include "camber/job.h"
+#include "camber/machine.h"
+#include "camber/program.h"
+
 namespace camber_python {
 
 void add_exceptions(pybind11::module_& module);  ///< with Diagnostic
@@ -10,5 +14,11 @@ void add_results(pybind11::module_& module);
 void add_functions(pybind11::module_& module);
 void add_copy(pybind11::module_& module);
 void add_plan(pybind11::module_& module);
+void add_five_axis(pybind11::module_& module);  ///< post, posture
+
+/// What a function is given, or what the file of that path holds.
+camber::Program program_of(const pybind11::handle& object);
+camber::Machine machine_of(const pybind11::handle& object);
+camber::Job job_of(const pybind11::handle& object);
 
 }  // namespace camber_python

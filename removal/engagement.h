@@ -199,6 +199,9 @@ class DeflectedEngager {
                    std::int32_t first_id);
   ~DeflectedEngager();
 
+  /// The deflections of the stamps before stamps[from], where they were cut elsewhere: rows of the last ones, one after
+  /// the other, and the largest of all. Before the first start().
+  void remember(std::size_t from, std::span<const float> rows, std::size_t row_size, double largest_mm);
   /// Begins with stamps[from] ... stamps[from + count - 1], which must come after all that were cut before. Row k of
   /// `deflections` is that of stamps[from + k]; it is read with its stamp and with the next one.
   void start(std::size_t from, std::size_t count, const DeflectionTable& deflections);

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "base/diagnostics.h"
 #include "machine/machine.h"
 #include "nc/move.h"
@@ -20,6 +22,12 @@ namespace camber::repath {
 
 enum class PostTarget : std::uint8_t { joints, tcp };
 
+/// Blocks at one direction of the tool, in a frame that follows it: neither rotary words nor tool-centre-point control.
+struct PostFrame {
+  Eigen::Matrix3d frame_from_work = Eigen::Matrix3d::Identity();
+  std::vector<std::string> before, behind;  ///< lines that switch it on and off
+};
+
 struct PostOptions {
   PostTarget target = PostTarget::joints;
   double tolerance_mm = 0.005;      ///< of the tip, rounding included
@@ -28,6 +36,8 @@ struct PostOptions {
   bool one_degree = false;          ///< divide where a rotary axis turns by a degree or more, whatever the tip does
   double retract_mm = 50;           ///< along the tool, where axes turn back
   std::optional<int> decimals{};    ///< of lengths and angles; default: the program's, at least 4
+  /// Target tcp, one run of blocks that all have the same direction. post() does not look at it, PostWriter does.
+  std::optional<PostFrame> frame{};
 };
 
 /// Axes that turn back: to another solution, or by whole turns.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "nc/five_axis_words.h"
 
 namespace camber::repath {
 namespace {
@@ -19,13 +20,8 @@ constexpr std::initializer_list<double> kTipControl{43.4, 43.5, 234};
 constexpr std::initializer_list<double> kFeedModes{93, 94, 95};
 constexpr std::initializer_list<double> kMotions{0, 1, 2, 3};
 
-/// What switches tool-centre-point control on, by the name of the dialect; else G43.4.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 1> kTipControlWords{{{"haas", "G234"}}};
-
 std::string tip_control_word(const nc::Dialect& dialect) {
-  for (const auto& [name, word] : kTipControlWords)
-    if (name == dialect.name) return std::string(word);
-  return "G43.4";
+  return std::string(nc::five_axis_words(dialect).tip_control);
 }
 
 double unit_mm(const nc::ModalState& state) { return state.inch ? kMmPerInch : 1; }
@@ -114,6 +110,8 @@ Vec3 PostWriter::joint_point_mm(const nc::Move& move, const Vec3& linear_mm) con
 }
 
 Vec3 PostWriter::wanted_point(const nc::Move& move, const PostPoint& point) const {
+  if (options_.frame)
+    return options_.frame->frame_from_work * text_point(move, Vec3(point.tip_mm + *moves_.machine_origin_mm));
   return text_point(move, options_.target == PostTarget::tcp ? Vec3(point.tip_mm + *moves_.machine_origin_mm)
                                                              : joint_point_mm(move, point.linear_mm));
 }
@@ -140,7 +138,7 @@ void PostWriter::set_places(const nc::Move& move, const PostPoint& point, BlockE
   const bool inch = moves_.state_of(move).inch;
   for (int axis = 0; axis < 6; ++axis) {
     const char letter = "XYZABC"[axis];
-    if (axis >= 3 && axes_.find(letter) == std::string::npos) continue;
+    if (axis >= 3 && (options_.frame || axes_.find(letter) == std::string::npos)) continue;
     double& now = axis < 3 ? at_[axis] : deg_[axis - 3];
     const double to = axis >= 3 ? point.rotary_deg[axis - 3]
                                 : nc::rounded(wanted[axis], inch ? rounding_.decimals_inch : rounding_.decimals_mm);
@@ -203,7 +201,8 @@ void PostWriter::set_feed(const nc::Move& move, const PostPoint& point, const Ve
 
 /// Tool-centre-point control on.
 void PostWriter::open_run(const nc::Move& move, std::vector<std::string>& lines) {
-  if (options_.target != PostTarget::tcp) return;
+  if (options_.frame) lines.insert(lines.end(), options_.frame->before.begin(), options_.frame->before.end());
+  if (options_.target != PostTarget::tcp || options_.frame) return;
   look_at_codes_until(move.block);
   const std::string number = length_active_ && !length_number_.empty() ? length_number_ : "0";
   if (dialect_.tip_control_on_m == 0) {
@@ -218,7 +217,7 @@ void PostWriter::open_run(const nc::Move& move, std::vector<std::string>& lines)
 
 /// Where a G code switches tool-centre-point control on, G43 and G49 of the same length switch it off.
 void PostWriter::keep_tip_control(std::uint32_t first, std::uint32_t end) {
-  if (options_.target != PostTarget::tcp || dialect_.tip_control_on_m != 0) return;
+  if (options_.target != PostTarget::tcp || options_.frame || dialect_.tip_control_on_m != 0) return;
   for (std::uint32_t b = first; b < end; ++b) {
     BlockEdit block(program_, b);
     if (const nc::Word* w = block.find_code('G', {43})) edit_of(b).replace(*w, tip_control_word(dialect_).substr(1));
@@ -316,6 +315,7 @@ std::string PostWriter::place_line(const nc::Move& move) const {
 
 /// Tool-centre-point control off.
 std::vector<std::string> PostWriter::codes_behind(const nc::Move& last, std::size_t next) {
+  if (options_.frame) return options_.frame->behind;
   std::vector<std::string> out;
   if (options_.target == PostTarget::joints || next >= moves_.moves.size()) return out;
   if (dialect_.tip_control_on_m != 0) {

@@ -105,7 +105,9 @@ class Cutter {
       deflections_ = DeflectionTable(stamps.size(), (rigid_ ? kFine : 1) * model_.steps(), model_.node_height_mm(),
                                      model_.axial());
     DeflectionTable& deflections = deflections_;
-    if (!last_row_.empty()) std::copy(last_row_.begin(), last_row_.end(), deflections.row(-1));
+    if (last_rows_.size() >= deflections.row_size())
+      std::copy_n(last_rows_.end() - static_cast<std::ptrdiff_t>(deflections.row_size()), deflections.row_size(),
+                  deflections.row(-1));
     std::vector<StampLoad> loads(stamps.size());
     if (rigid_)
       engage(all, from, deflections, loads, first_id, result);
@@ -121,20 +123,38 @@ class Cutter {
     }
     for (const StampLoad& load : loads) result.chip_mm3 += load.chip_mm3;
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
-    const float* last = deflections.row(static_cast<std::ptrdiff_t>(stamps.size()) - 1);
-    last_row_.assign(last, last + deflections.row_size());
+    keep_last_rows(deflections);
+  }
+
+  /// The stamps before the first one were cut elsewhere.
+  void begin_after(const BendBefore& before) {
+    last_rows_ = before.rows;
+    largest_bend_mm_ = before.largest_mm;
   }
 
   /// Leaves the stock as cut.
   void finish(CutResult& result) {
     if (engager_) result.stock_mm3 += engager_->commit();
-    if (static_cut_) result.stock_mm3 += static_cut_->commit();
+    if (!static_cut_) return;
+    result.stock_mm3 += static_cut_->commit();
+    result.bend = {std::move(last_rows_), largest_bend_mm_};
   }
 
  private:
   /// In static coupling the run-out of equally spaced teeth displaces the tool (StaticCut): to the chips they are even.
   static Teeth teeth_in_model(const Teeth& teeth, bool rigid) {
     return !rigid && teeth.evenly_spaced() ? teeth.without_run_out() : teeth;
+  }
+
+  void keep_last_rows(const DeflectionTable& deflections) {
+    const std::size_t most = rigid_ ? 1 : BendBefore::kRows, kept = std::min(most, deflections.stamps);
+    const auto count = static_cast<std::ptrdiff_t>(deflections.stamps);
+    const std::size_t old = std::min(last_rows_.size(), (most - kept) * deflections.row_size());
+    last_rows_.erase(last_rows_.begin(), last_rows_.end() - static_cast<std::ptrdiff_t>(old));
+    const float* from = deflections.row(count - static_cast<std::ptrdiff_t>(kept));
+    last_rows_.insert(last_rows_.end(), from, from + kept * deflections.row_size());
+    for (std::ptrdiff_t k = 0; k < count && !rigid_; ++k)
+      largest_bend_mm_ = std::max(largest_bend_mm_, deflections.largest_mm(k));
   }
 
   DeflectionTable without_run_out(const DeflectionTable& rows, std::size_t from) const {
@@ -325,9 +345,11 @@ class Cutter {
 
   void settle(std::span<const Stamp> all, std::size_t from, DeflectionTable& deflections, std::vector<StampLoad>& loads,
               std::int32_t first_id, CutResult& result) {
-    if (!static_cut_)
+    if (!static_cut_) {
       static_cut_.emplace(stock_, *blank_, envelope_, model_, all, first_id, settle_options(), run_out_,
                           different_teeth_);
+      static_cut_->remember(from, last_rows_, deflections.row_size(), largest_bend_mm_);
+    }
     // Loads between two readings lie between theirs; each stretch of passings ends with readings.
     static_cut_->start(from, loads.size(), deflections, [this, from, count = loads.size()](std::size_t k) {
       return in_turn(from + k) || k + different_teeth_ >= count;
@@ -414,9 +436,10 @@ class Cutter {
   std::size_t different_teeth_ = 1;               ///< of which each takes another chip
   std::optional<removal::RigidEngager> engager_;  ///< rigid
   std::optional<StaticCut> static_cut_;
-  bool settled_ = true;          ///< the last tooth passing
-  DeflectionTable deflections_;  ///< of the stretch
-  std::vector<float> last_row_;
+  bool settled_ = true;           ///< the last tooth passing
+  DeflectionTable deflections_;   ///< of the stretch
+  std::vector<float> last_rows_;  ///< of the deflection tables before, BendBefore::kRows at most
+  double largest_bend_mm_ = 0;    ///< so far
 };
 
 }  // namespace
@@ -428,10 +451,12 @@ CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& 
 
 CutResult cut_range(Stock& stock, const machine::Tool& tool, const machine::Material& material,
                     std::span<const Stamp> stamps, std::size_t first, std::size_t count,
-                    std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options) {
+                    std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options,
+                    const BendBefore* before) {
   CutResult result;
   result.loads.reserve(count);
   Cutter cutter(stock, tool, material, stamps, options);
+  if (before) cutter.begin_after(*before);
   const std::size_t stretch =
       options.coupling == machine::Coupling::rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
   for (std::size_t done = 0; done < count; done += stretch) {

@@ -66,6 +66,13 @@ struct CutOptions {
   double chip_ratio = 0;
 };
 
+/// How the tool was bent while it cut the stamps before others, static coupling.
+struct BendBefore {
+  std::vector<float> rows;  ///< of removal::DeflectionTable, of the last stamps, kRows at most
+  double largest_mm = 0;    ///< of all
+  static constexpr std::size_t kRows = 4;
+};
+
 struct CutResult {
   std::vector<StampLoad> loads;                   ///< one per stamp
   std::vector<StampLoad> loads_at_ratio;          ///< one per stamp; empty without CutOptions::chip_ratio
@@ -81,6 +88,7 @@ struct CutResult {
   std::vector<std::uint32_t> beyond_moves;  ///< their Stamp::move, without consecutive repetitions
   double deflection_max_mm = 0;             ///< of the edge at the tip, in any tooth passing
   double deflection_limit_mm = 0;           ///< smallest limit among those exceeded
+  BendBefore bend;                          ///< static: at the end
   deflection::TurnForces turn;              ///< empty without CutOptions::turn_from
 };
 

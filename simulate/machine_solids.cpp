@@ -39,15 +39,15 @@ class Moved : public ConvexSolid {
   const Eigen::Isometry3d& motion_;
 };
 
-/// Whether the profile through three circles is bent outwards or straight.
-bool convex(const OutlineRing& a, const OutlineRing& b, const OutlineRing& c) {
-  constexpr double kRounding_mm2 = 1e-9;
+constexpr double kRounding_mm2 = 1e-9;
+
+/// Of the profile through three circles: above zero where it is bent outwards, 0 where it is straight.
+double bend_mm2(const OutlineRing& a, const OutlineRing& b, const OutlineRing& c) {
   return (b.radius_mm - a.radius_mm) * (c.height_mm - b.height_mm) -
-             (b.height_mm - a.height_mm) * (c.radius_mm - b.radius_mm) >=
-         -kRounding_mm2;
+         (b.height_mm - a.height_mm) * (c.radius_mm - b.radius_mm);
 }
 
-/// Runs of rings of one part with a convex profile; neighbours share a ring.
+/// Runs of rings of one part with a convex profile; neighbours share a ring. Rings on a straight line are left out.
 std::vector<std::vector<OutlineRing>> convex_runs(const std::vector<OutlineRing>& rings) {
   std::vector<std::vector<OutlineRing>> out;
   for (const OutlineRing& ring : rings) {
@@ -59,7 +59,10 @@ std::vector<std::vector<OutlineRing>> convex_runs(const std::vector<OutlineRing>
     std::vector<OutlineRing>& run = out.back();
     const OutlineRing& last = run.back();
     if (last.radius_mm == ring.radius_mm && last.height_mm == ring.height_mm) continue;
-    if (run.size() < 2 || convex(run[run.size() - 2], last, ring))
+    const double bend = run.size() < 2 ? 1 : bend_mm2(run[run.size() - 2], last, ring);
+    if (std::abs(bend) <= kRounding_mm2)
+      run.back() = ring;
+    else if (bend > 0)
       run.push_back(ring);
     else
       out.push_back({last, ring});
@@ -85,7 +88,7 @@ BodySolid::Sphere sphere_about(const Vec3& lo, const Vec3& hi) { return {(lo + h
 }  // namespace
 
 Vec3 TurnedSolid::support(const Vec3& direction) const {
-  const double across = std::hypot(direction.x(), direction.y());
+  const double across = std::sqrt(direction.x() * direction.x() + direction.y() * direction.y());
   const Circle& c = *std::ranges::max_element(
       circles_, {}, [&](const Circle& circle) { return circle.radius_mm * across + circle.height_mm * direction.z(); });
   if (across == 0) return {c.radius_mm, 0, c.height_mm};

@@ -24,10 +24,12 @@ class TurnedSolid : public ConvexSolid {
   double bottom_mm() const { return circles_.front().height_mm; }
   double top_mm() const { return circles_.back().height_mm; }
 
- private:
   struct Circle {
     double radius_mm, height_mm;
   };
+  const std::vector<Circle>& circles() const { return circles_; }
+
+ private:
   OutlineRing::Part part_;
   std::vector<Circle> circles_;  ///< upwards
 };

@@ -48,17 +48,19 @@ struct PieceCut {
   removal::SurfaceMap* surface = nullptr;
   const removal::Stock* target = nullptr;  ///< for the deflection at the contact
   std::optional<std::size_t> turn_from{};  ///< see PredictOptions
+  const BendBefore* bend = nullptr;        ///< static: of the stamps before, where it is known
   std::function<void(double)> progress{};
 };
 /// Cuts a part of a run; `stock` is as the stamps before it have left it.
 CutResult cut_piece(removal::Stock& stock, const machine::Job& job, const removal::StampPath& path,
                     const PieceCut& piece);
 
-/// As cut(): stamps from ... from + count - 1 alone. Those before them are in the stock; contacts and loads are of
-/// these.
+/// As cut(): stamps from ... from + count - 1 alone. Those before them are in the stock, and `before` says how they
+/// were bent, where that is known; contacts and loads are of these.
 CutResult cut_range(removal::Stock& stock, const machine::Tool& tool, const machine::Material& material,
                     std::span<const removal::Stamp> stamps, std::size_t from, std::size_t count,
-                    std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options);
+                    std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options,
+                    const BendBefore* before = nullptr);
 
 /// Adds what a run, or a part of one, has given. In the order of the path.
 void add_piece(const machine::Job& job, const removal::ToolRun& run, CutResult piece, PathLoads& out);

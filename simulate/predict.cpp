@@ -15,6 +15,7 @@
 #include "simulate/job_checks.h"
 #include "simulate/job_stock.h"
 #include "simulate/memory.h"
+#include "simulate/never_turns.h"
 #include "simulate/operations.h"
 #include "simulate/pieces.h"
 #include "simulate/region.h"
@@ -123,6 +124,7 @@ SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmo
   out.text = nc::read_program(std::move(source), diagnostics);
   out.moves = nc::interpret(out.text, interpreter_options(job, names_rotary_axes(job.machine, out.text)), diagnostics);
   diagnostics.throw_if_errors();
+  if (never_turns(job.machine, out.moves)) out.moves.rotary.clear();
   out.rotary = read_rotary_motion(job.machine, out.text, out.moves, diagnostics);
   if (out.rotary) out.moves = out.rotary->path().moves_in_part();
   const machine::Operations operations = as_lines(job.operations, out.text, out.moves);
@@ -202,7 +204,10 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
   MemoryEstimate memory;
   removal::Stock blank = raw_stock(job, target, min_chip_mm, memory, diagnostics);
   blank.share();
-  check_places(target.text.source.name(), places_of(job, target, blank), diagnostics);
+  Places places = places_of(job, target, blank);
+  if (!removal::all_upright(target.path.stamps))  // a tilted tool reaches down past its tip
+    places.tip.add(places.tip.min_mm - Vec3(0, 0, places.radius_mm));
+  check_places(target.text.source.name(), places, diagnostics);
   diagnostics.throw_if_errors();
   std::optional<removal::Stock> whole;
   if (job.stock.allowance_mm > 0) {
@@ -360,7 +365,7 @@ CutResult cut_piece(removal::Stock& stock, const Job& job, const removal::StampP
   if (piece.turn_from && *piece.turn_from >= run.from) options.turn_from = *piece.turn_from - run.from;
   const std::vector<Contact> contacts = find_contacts(*piece.target, tool, stamps.subspan(piece.from, piece.count));
   return cut_range(stock, tool, job.material, stamps, piece.from, piece.count, contacts,
-                   static_cast<std::int32_t>(run.from), options);
+                   static_cast<std::int32_t>(run.from), options, piece.bend);
 }
 
 PathLoads predict_loads(const Job& job, const removal::Stock& blank, const SimulatedProgram& program,

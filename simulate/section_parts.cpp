@@ -34,6 +34,8 @@ void write_cut(ByteWriter& out, const CutResult& cut) {
                        cut.extrapolation.sum2_um2, cut.extrapolation.max_um, cut.read, cut.unsettled, cut.beyond,
                        cut.extrapolation.count, cut.rounds_max});
   out.list(cut.loads);
+  out.list(cut.bend.rows);
+  out.value(cut.bend.largest_mm);
   out.list(cut.unsettled_moves);
   out.list(cut.unsettled_reasons);
   out.list(cut.beyond_moves);
@@ -50,6 +52,8 @@ CutResult read_cut(ByteReader& in) {
   out.read = f.read, out.unsettled = f.unsettled, out.beyond = f.beyond;
   out.rounds_max = static_cast<int>(f.rounds_max);
   out.loads = in.list<StampLoad>();
+  out.bend.rows = in.list<float>();
+  out.bend.largest_mm = in.value<double>();
   out.unsettled_moves = in.list<std::uint32_t>();
   out.unsettled_reasons = in.list<deflection::NoEquilibrium>();
   out.beyond_moves = in.list<std::uint32_t>();

@@ -1,6 +1,7 @@
 #include "simulate/sections.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/cancel.h"
@@ -102,6 +103,31 @@ class StockBefore {
   std::size_t next_ = 0;
 };
 
+/// How the tool was bent before a piece, as a round has found: the rows of the piece before, the largest of its run.
+/// Without rows where the piece begins a run, or the round did not solve it.
+BendBefore bend_before(const std::vector<PathPiece>& pieces, std::size_t piece,
+                       const std::vector<SolvedSection>& round) {
+  BendBefore out;
+  std::size_t p = 0;
+  for (const SolvedSection& section : round)
+    for (const SolvedPiece& solved : section.pieces) {
+      if (p >= piece) return out;
+      if (pieces[p].run == pieces[piece].run) {
+        out.largest_mm = std::max(out.largest_mm, solved.cut.bend.largest_mm);
+        if (p + 1 == piece) out.rows = solved.cut.bend.rows;
+      }
+      ++p;
+    }
+  return out;
+}
+
+double largest_difference_mm(const BendBefore& a, const BendBefore& b) {
+  if (a.rows.size() != b.rows.size()) return std::max(a.largest_mm, b.largest_mm);
+  float out = 0;
+  for (std::size_t i = 0; i < a.rows.size(); ++i) out = std::max(out, std::abs(a.rows[i] - b.rows[i]));
+  return static_cast<double>(out);
+}
+
 /// Each of a section's pieces carved alone out of `raw`.
 std::vector<StockPart> swept_parts(const Stock& raw, const Job& job, const removal::StampPath& path, double shrink_mm,
                                    std::size_t section, std::size_t sections, double& removed_mm3, SectionWork& work,
@@ -160,7 +186,9 @@ void keep_within(SweptSection& section, const Region& region, double voxel_mm) {
 
 void keep_stock_within(SolvedSection& section, const Region& region, double voxel_mm) {
   for (SolvedPiece& piece : section.pieces) {
+    BendBefore bend = std::move(piece.cut.bend);
     piece.cut = {};
+    piece.cut.bend = std::move(bend);
     piece.marks = {};
     piece.stock.keep_within(region, voxel_mm);
   }
@@ -286,9 +314,11 @@ SolvedSection solve_section(const Job& job, const Programs& programs, const Sect
     now.advance_to(p);
     Region reach;
     add_reach(job, path, pieces[p], reach);
+    const BendBefore bend = bend_before(pieces, p, parts.last);
     if (again) {
       then->advance_to(p);
-      const double change_mm = removal::largest_difference_mm(now.stock(), then->stock(), reach);
+      const double change_mm = std::max(removal::largest_difference_mm(now.stock(), then->stock(), reach),
+                                        largest_difference_mm(bend, bend_before(pieces, p, parts.before_last)));
       out.history.back().largest_change_um = std::max(out.history.back().largest_change_um, 1000 * change_mm);
       if (change_mm <= kSettled_mm) {
         out.pieces.push_back(parts.last[options.section].pieces[p - range.begin]);
@@ -309,6 +339,7 @@ SolvedSection solve_section(const Job& job, const Programs& programs, const Sect
                             .surface = &map,
                             .target = &target.surface,
                             .turn_from = options.turn_from,
+                            .bend = bend.rows.empty() ? nullptr : &bend,
                             .progress = [&](double share) {
                               if (options.progress)
                                 options.progress((static_cast<double>(done) + share) / static_cast<double>(all));

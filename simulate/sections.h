@@ -9,7 +9,8 @@
 //    target, and what lies above the allowance. The stock before a piece is the pointwise maximum of the parts before.
 // 2. Solve: forces, deflections and marks of each piece from that stock. In rigid coupling this is all. In static
 //    coupling the deflected cutter leaves another stock, so that rounds follow: each piece whose stock has changed by
-//    more than kSettled_mm where it cuts is solved again from the parts of the round before.
+//    more than kSettled_mm where it cuts, or which the tool enters bent in another way, is solved again from the parts
+//    of the round before.
 // 3. Merge: loads, marks and stock of all pieces become one prediction.
 #include <cstddef>
 #include <functional>
@@ -78,7 +79,7 @@ struct SolvedSection {
   std::vector<SurfaceMarks> contour;  ///< of the target program's pieces
   struct Round {
     std::uint64_t solved_again = 0;  ///< pieces
-    double largest_change_um = 0;    ///< of the stock before a piece, since the round before
+    double largest_change_um = 0;  ///< of the stock before a piece, or of the tool's bend there, since the round before
   };
   std::vector<Round> history;  ///< from the second round on
   SectionWork work;
@@ -87,7 +88,8 @@ struct SolvedSection {
   static SolvedSection read(ByteReader& in);
 };
 
-/// Change of the stock that a piece must feel before it is solved again.
+/// Change of the stock that a piece must feel, or of the deflection with which the tool enters it, before it is solved
+/// again.
 inline constexpr double kSettled_mm = 5e-5;
 
 /// All sections' parts, in order.
@@ -109,7 +111,7 @@ SolvedSection solve_section(const machine::Job& job, const Programs& programs, c
 removal::Region section_region(const machine::Job& job, const Programs& programs, std::size_t section,
                                std::size_t sections);
 void keep_within(SweptSection& section, const removal::Region& region, double voxel_mm);
-/// Keeps nothing but stocks.
+/// Keeps nothing but stocks, and how the tool was bent.
 void keep_stock_within(SolvedSection& section, const removal::Region& region, double voxel_mm);
 
 /// Joins the target's parts instead of sweeping it. `parts` must outlive the result; `within` (null: everywhere) bounds

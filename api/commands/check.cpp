@@ -6,6 +6,7 @@
 
 #include "api/commands/predict.h"
 #include "feedmodel/control_options.h"
+#include "kinematics/reference_check.h"
 #include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
 #include "simulate/machine_checks.h"
@@ -103,7 +104,10 @@ CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptio
   found.throw_if_errors();
   if (read) read(checked.moves);
   if (machine) simulate::check_machine(*machine, text, checked.moves, found);
-  if (machine && machine->kinematics.given()) kinematics::check_travel(*machine, text, checked.moves, found);
+  if (machine && machine->kinematics.given()) {
+    kinematics::check_travel(*machine, text, checked.moves, found);
+    kinematics::check_reference_points(*machine, text, checked.moves, found);
+  }
   simulate::check_feeds(text, checked.moves, found);
   if (job)
     simulate::check_job(*job, text, checked.moves, found);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "camber part 1\n";
+constexpr std::string_view kMagic = "camber part 2\n";
 
 struct PartFile {
   std::string version, name;

@@ -1,15 +1,20 @@
 #include "api/commands/posture.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <nlohmann/json.hpp>
 
 #include "api/commands/rotary_program.h"
 #include "base/units.h"
+#include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
+#include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
+#include "repath/post.h"
 
 namespace camber::api {
 namespace {
@@ -17,12 +22,38 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 4> kModes{"chosen", "normal", "lead-tilt", "seed"};
+constexpr std::array<std::string_view, 4> kWritten{"tip", "tilted", "dynamic", "joints"};
 
 int tool_of(const PostureCommand& command) {
   if (command.tool) return *command.tool;
   if (command.job->tools.size() == 1) return command.job->tools.begin()->first;
   fail_on_file(command.job->path,
                "the job has several tools; --tool with the number of the finishing tool was expected", "no-tool");
+}
+
+/// As asked for, else as the control has it; a head that turns has no G254.
+nc::OneDirection written_as(const PostureCommand& command) {
+  const machine::Machine& machine = command.job->machine;
+  if (!command.options.indexed) return nc::OneDirection::tip;
+  if (command.written) return *command.written;
+  const nc::OneDirection usual = nc::five_axis_words(feedmodel::dialect_of(machine.control.kind)).one_direction;
+  const auto axes = kinematics::rotary_options(machine);
+  const bool table = std::ranges::all_of(axes, &nc::RotaryOption::on_table);
+  return usual == nc::OneDirection::dynamic && !table ? nc::OneDirection::joints : usual;
+}
+
+/// The tip's program in joint coordinates; lines still map to the blocks of the given program.
+void to_joints(const PostureCommand& command, PosturedProgram& program, Diagnostics& diagnostics) {
+  const machine::Machine& machine = command.job->machine;
+  const nc::Program text = nc::read_program(SourceText(command.output, program.postured.text), diagnostics);
+  const nc::Interpretation moves =
+      nc::interpret(text, rotary_interpreter_options(machine, command.interpreter), diagnostics);
+  diagnostics.throw_if_errors();
+  repath::Posted posted = repath::post(text, moves, machine, {.target = repath::PostTarget::joints}, diagnostics);
+  diagnostics.throw_if_errors();
+  for (std::uint32_t& block : posted.block_of_line) block = program.postured.block_of_line[block];
+  program.postured.text = std::move(posted.text);
+  program.postured.block_of_line = std::move(posted.block_of_line);
 }
 
 /// Time on the machine, and what the checks of travel say, at the blocks of the given program.
@@ -36,8 +67,19 @@ void read_again(const PostureCommand& command, PosturedProgram& program, Diagnos
   program.time_s = feedmodel::cycle_time(moves, machine).all.time.total_s();
   for (nc::Move& move : moves.moves) move.block = program.postured.block_of_line[move.block];
   kinematics::check_travel(machine, *command.text, moves, diagnostics);
-  diagnostics.throw_if_errors();
 }
+
+/// From that of the job down to the least that is tried; without a step, that of the job.
+std::vector<double> overhangs_of(const machine::Job& job, int number, double step_mm) {
+  const auto tool = job.tools.find(number);
+  if (tool == job.tools.end() || step_mm <= 0) return {};
+  const double given = tool->second.overhang_mm, least = posture::least_overhang_mm(tool->second);
+  std::vector<double> out{given};
+  for (int i = 1; given - i * step_mm >= least - 1e-9; ++i) out.push_back(given - i * step_mm);
+  return out;
+}
+
+bool clear(const posture::Postured& row) { return !row.blocked_move && row.figures.unclear == 0; }
 
 ordered_json figures_json(const PosturedProgram& program) {
   const posture::PostureFigures& f = program.postured.figures;
@@ -54,39 +96,40 @@ ordered_json figures_json(const PosturedProgram& program) {
 
 }  // namespace
 
-PosturedProgram posture_program(const PostureCommand& command, Diagnostics& diagnostics) {
+std::vector<PosturedProgram> posture_programs(const PostureCommand& command, double step_mm, Diagnostics& diagnostics) {
   nc::InterpreterOptions options = rotary_interpreter_options(command.job->machine, command.interpreter);
   if (!options.inch) options.inch = command.job->inch;
   const nc::Interpretation moves = nc::interpret(*command.text, options, diagnostics);
   diagnostics.throw_if_errors();
-  PosturedProgram out;
-  out.postured = posture::make_postures({.job = command.job,
-                                         .program = command.text,
-                                         .moves = &moves,
-                                         .tool = tool_of(command),
-                                         .step_mm = command.step_mm,
-                                         .options = command.options},
-                                        diagnostics);
+  const int tool = tool_of(command);
+  const nc::OneDirection written = written_as(command);
+  std::vector<posture::Postured> made =
+      posture::make_postures({.job = command.job,
+                              .program = command.text,
+                              .moves = &moves,
+                              .tool = tool,
+                              .overhangs_mm = overhangs_of(*command.job, tool, step_mm),
+                              .step_mm = command.step_mm,
+                              .options = command.options,
+                              .written = written},
+                             diagnostics);
   diagnostics.throw_if_errors();
-  if (out.postured.blocked_move)
-    out.blocked_line = moves.moves[*out.postured.blocked_move].block + 1;
-  else
-    read_again(command, out, diagnostics);
-  return out;
-}
-
-std::vector<PosturedProgram> overhangs(const PostureCommand& command, double step_mm, Diagnostics& diagnostics) {
-  std::vector<PosturedProgram> out;
-  machine::Job job = *command.job;
-  PostureCommand now = command;
-  now.job = &job;
-  machine::Tool& tool = job.tools.at(tool_of(command));
-  for (const double least = posture::least_overhang_mm(tool); tool.overhang_mm >= least; tool.overhang_mm -= step_mm) {
-    Diagnostics of_row;  // the same as of the first
-    PosturedProgram made = posture_program(now, out.empty() ? diagnostics : of_row);
-    if (made.blocked_line > 0 || made.postured.figures.unclear > 0) break;
-    out.push_back(std::move(made));
-  }
+  made.erase(std::find_if_not(made.begin() + 1, made.end(), clear), made.end());
+  if (!clear(made[0])) made.resize(1);
+  std::vector<PosturedProgram> out(made.size());
+  std::vector<Diagnostics> found(made.size());
+  tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t row) {
+    out[row].postured = std::move(made[row]);
+    out[row].written = written;
+    if (out[row].postured.blocked_move) {
+      out[row].blocked_line = moves.moves[*out[row].postured.blocked_move].block + 1;
+      return;
+    }
+    if (written == nc::OneDirection::joints) to_joints(command, out[row], found[row]);
+    read_again(command, out[row], found[row]);
+  });
+  for (const Diagnostic& d : found.back().all()) diagnostics.add(d);
+  diagnostics.throw_if_errors();
   return out;
 }
 
@@ -98,6 +141,11 @@ std::string posture_text(const PosturedProgram& program, const PostureCommand& c
                      deg_from_rad(f.mean_angle_rad), deg_from_rad(f.max_angle_rad), f.rotary_motion_deg);
   out +=
       fmt::format("overhang  {:g} mm: {:.3f} um normal to the part for each N\n", f.overhang_mm, f.compliance_um_per_N);
+  if (command.options.indexed) {
+    const Vec3& axis = program.postured.axes.front();
+    out += fmt::format("direction I{:.4f} J{:.4f} K{:.4f} for all moves, written as {}\n", axis.x(), axis.y(), axis.z(),
+                       kWritten[static_cast<std::size_t>(program.written)]);
+  }
   out += fmt::format("time      {:.1f} s\n", program.time_s);
   return out;
 }
@@ -113,13 +161,22 @@ std::string overhang_text(const std::vector<PosturedProgram>& rows) {
   return out;
 }
 
-std::string posture_json(const PosturedProgram& program, const std::vector<PosturedProgram>& rows,
-                         const PostureCommand& command) {
+std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhangs, const PostureCommand& command) {
+  const PosturedProgram& program = rows.back();
   ordered_json report = figures_json(program);
   report["mode"] = kModes[static_cast<std::size_t>(command.options.mode)];
+  if (command.options.indexed) {
+    report["mode"] = "indexed";
+    report["written"] = kWritten[static_cast<std::size_t>(program.written)];
+    if (!program.postured.axes.empty()) {
+      const Vec3& axis = program.postured.axes.front();
+      report["direction"] = {axis.x(), axis.y(), axis.z()};
+    }
+  }
   report["clearance_mm"] = command.options.clearance_mm;
   if (program.blocked_line > 0) report["blocked_line"] = program.blocked_line;
-  for (const PosturedProgram& row : rows) report["overhangs"].push_back(figures_json(row));
+  if (overhangs && clear(program.postured))
+    for (const PosturedProgram& row : rows) report["overhangs"].push_back(figures_json(row));
   return report.dump(2) + "\n";
 }
 

@@ -20,26 +20,26 @@ struct PostureCommand {
   std::optional<int> tool{};  ///< default: the only one of the job
   double step_mm = 1;
   posture::PostureOptions options;
+  std::optional<nc::OneDirection> written{};  ///< options.indexed; default: that of the control
 };
 
 struct PosturedProgram {
   posture::Postured postured;    ///< without a text where no direction is clear
   double time_s = 0;             ///< of the whole program on the machine
   std::size_t blocked_line = 0;  ///< 1-based; 0: none
+  nc::OneDirection written = nc::OneDirection::tip;
 };
 
-/// Throws InputError: what make_postures() says, and kinematics::check_travel of the new program, at the given blocks.
-PosturedProgram posture_program(const PostureCommand& command, Diagnostics& diagnostics);
-
-/// The same with ever less overhang, as long as the tool stays clear; the last one is the shortest that does. Empty:
-/// not even the given overhang does.
-std::vector<PosturedProgram> overhangs(const PostureCommand& command, double step_mm, Diagnostics& diagnostics);
+/// With a step, also with ever less overhang, as long as the tool stays clear: the last one is the shortest that does.
+/// Without: one. The first may be blocked, and not be clear. Throws InputError: what make_postures() says, and
+/// kinematics::check_travel of the last new program, at the given blocks.
+std::vector<PosturedProgram> posture_programs(const PostureCommand& command, double overhang_step_mm,
+                                              Diagnostics& diagnostics);
 
 /// For people.
 std::string posture_text(const PosturedProgram& program, const PostureCommand& command);
 std::string overhang_text(const std::vector<PosturedProgram>& rows);
-/// With a line end. `rows`: of overhangs(); empty: not asked for.
-std::string posture_json(const PosturedProgram& program, const std::vector<PosturedProgram>& rows,
-                         const PostureCommand& command);
+/// With a line end: the figures of the last row, and with `overhangs` those of all.
+std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhangs, const PostureCommand& command);
 
 }  // namespace camber::api

@@ -10,6 +10,7 @@
 #include "feedmodel/joint_map.h"
 #include "kinematics/machine_moves.h"
 #include "kinematics/program_joints.h"
+#include "kinematics/reference_check.h"
 #include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
 
@@ -114,6 +115,7 @@ void check_rotary_motion(const machine::Machine& machine, const nc::Program& pro
   check.check_known(poses || machine.control.joint_limits, poses);
   check.check_limits();
   kinematics::check_travel(machine, program, moves, diagnostics);
+  kinematics::check_reference_points(machine, program, moves, diagnostics);
 }
 
 void place_rotary_lines(const machine::Machine& machine, nc::Interpretation& moves) {

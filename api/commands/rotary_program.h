@@ -10,7 +10,7 @@ namespace camber::api {
 /// As the control of the machine reads the program, with the rotary axes of its chain.
 nc::InterpreterOptions rotary_interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given);
 
-/// Nothing without rotary motion. Otherwise what kinematics::check_travel says, and
+/// Nothing without rotary motion. Otherwise what kinematics::check_travel and check_reference_points say, and
 ///  [tool-length], [work-offset]  error: a tilted frame, G254 or tool-centre-point control where its joints count
 ///  (always
 ///                                with `poses`) needs a length or an offset that is not known;

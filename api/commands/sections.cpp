@@ -140,17 +140,14 @@ MergedJob merge_parts(const machine::Job& job, const PartKey& key, int round, Pa
   setup.target.whole.reset();
   finish_prediction(job, out.prepared, out.prediction, of_cut);
   if (job.simulation.coupling == machine::Coupling::static_ && figures.pieces > 1) {
-    out.doubt =
-        "static coupling in sections: each piece of the path begins without the deflection of the tooth passing before "
-        "it, so that form errors differ from those without sections by micrometres; coupling = \"rigid\", or no "
-        "sections, was expected";
     if (round == 1)
-      out.doubt += "; the first round has not been followed by a second one";
+      out.doubt = "the first round of sections in static coupling begins from what an undeflected cutter leaves";
     else if (figures.solved_again.back() > 0)
-      out.doubt += fmt::format(
-          "; round {} has solved {} of {} pieces again for changes of up to {:.2f} um and was not "
-          "followed by another one",
-          round, figures.solved_again.back(), figures.pieces, figures.largest_change_um.back());
+      out.doubt = fmt::format("round {} has solved {} of {} pieces again for changes of up to {:.2f} um", round,
+                              figures.solved_again.back(), figures.pieces, figures.largest_change_um.back());
+    if (!out.doubt.empty())
+      out.doubt +=
+          fmt::format("; --stage solve --round {} of all sections, and then camber merge, was expected", round + 1);
   }
   return out;
 }

@@ -53,6 +53,7 @@ struct Timed {
   std::vector<report::CycleRow> rows{};
   report::PathPicture picture{};
   report::MachineCards machine{};
+  bool rotary_motion = false;    ///< of the first of it
   bool machine_unknown = false;  ///< a program with rotary motion of which the positions of the axes are not known
 };
 
@@ -94,6 +95,7 @@ Timed sweep_rows(const TimeRequest& request, const std::vector<Sweep>& sweeps, c
       machine::set_number(changed, sweeps[k].key, values[k]);
       name += fmt::format("{}{}", k > 0 ? " / " : "", format_trimmed(values[k], 4));
     }
+    timed.rotary_motion = feedmodel::has_rotary_motion(moves, changed);
     add_picture(timed, request, moves, changed);
     timed.rows.push_back(row_of(std::move(name), std::move(values), moves, changed));
   }
@@ -111,6 +113,7 @@ Timed case_rows(const TimeRequest& request, const machine::Machine* machine, Dia
       const auto same = [&](const Diagnostic& known) { return to_string(known) == to_string(d); };
       if (std::none_of(diagnostics.all().begin(), diagnostics.all().end(), same)) diagnostics.add(d);
     }
+    if (timed.rows.empty()) timed.rotary_motion = feedmodel::has_rotary_motion(moves, one.machine);
     add_picture(timed, request, moves, one.machine);
     timed.rows.push_back(row_of(one.title.empty() ? one.name : one.name + ": " + one.title, {}, moves, one.machine));
   }
@@ -135,8 +138,10 @@ std::vector<Sweep> checked_sweeps(const TimeRequest& request, const machine::Mac
   return sweeps;
 }
 
-std::vector<std::string> notes_of(const std::vector<report::CycleRow>& rows) {
+/// Programs with rotary motion have a warning with its place instead ([reference-unknown]).
+std::vector<std::string> notes_of(const std::vector<report::CycleRow>& rows, bool rotary_motion) {
   std::vector<std::string> notes;
+  if (rotary_motion) return notes;
   const std::size_t unplaced = rows.front().time.unplaced_moves;
   if (unplaced > 0)
     notes.push_back(
@@ -183,6 +188,7 @@ TimedProgram time_program(const TimeRequest& request, Diagnostics& diagnostics) 
       if (!request.trace.empty())
         report.accuracy = calib::cycle_accuracy(calib::read_trace(request.trace, diagnostics), moves, time);
       time.move_s = {};
+      timed.rotary_motion = feedmodel::has_rotary_motion(moves, machine);
       add_picture(timed, request, moves, machine);
       timed.rows.push_back({request.machine_path, {}, std::move(time)});
     } else {
@@ -191,7 +197,7 @@ TimedProgram time_program(const TimeRequest& request, Diagnostics& diagnostics) 
     }
   }
   report.rows = std::move(timed.rows);
-  report.notes = notes_of(report.rows);
+  report.notes = notes_of(report.rows, timed.rotary_motion);
   if (timed.machine_unknown)
     report.notes.emplace_back(
         "the machine is not drawn: the work offset (G10 L2 in the program, or --work-offset) or the tool length "

@@ -22,24 +22,29 @@ corner = { law = "blend", tolerance_mm = 0.01 }
 max_rpm = 18000.0
 """
 
-JOB = """program = "%(name)s.nc"
-machine = "machine.toml"
-[tool.1]
+def tool_text(diameter_mm, tangential_MPa, edge_N_per_mm, radial_MPa):
+    """[tool.1], a long carbide ball with two flutes, and [material]."""
+    return """[tool.1]
 type = "ball"
-diameter_mm = 12.0
+diameter_mm = %.1f
 flutes = 2
 helix_deg = 30.0
 overhang_mm = 40.0
 effective_diameter_ratio = 0.8
 youngs_modulus_GPa = 600.0
 [material]
-ktc_MPa = 700.0
-krc_MPa = 200.0
+ktc_MPa = %.1f
+krc_MPa = %.1f
 kac_MPa = 0.0
-kte_N_per_mm = 10.0
-kre_N_per_mm = 10.0
+kte_N_per_mm = %.1f
+kre_N_per_mm = %.1f
 kae_N_per_mm = 0.0
-[stock]
+""" % (diameter_mm, tangential_MPa, radial_MPa, edge_N_per_mm, edge_N_per_mm)
+
+
+JOB = """program = "%(name)s.nc"
+machine = "machine.toml"
+""" + tool_text(12, 700, 10, 200) + """[stock]
 box_mm = [[0, 0, %(bottom)g], [%(side)g, %(side)g, 4]]
 allowance_mm = 0.3
 [simulation]

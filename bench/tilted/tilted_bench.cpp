@@ -1,8 +1,11 @@
 // What a path that is not upright costs: the same path, upright and by the code for any pose (the tool turned about its
 // axis by nothing that counts).
+//
+//     bench/tilted_bench [CUTTER]
 #include <ctime>
 
 #include <cstdio>
+#include <string_view>
 #include <vector>
 
 #include "removal/engagement.h"
@@ -36,8 +39,8 @@ machine::Tool tool_of(machine::ToolType type) {
 /// Rows 0.3 mm apart on a plane that climbs, 0.1 mm a tooth.
 std::vector<removal::Stamp> rows() {
   std::vector<removal::Stamp> out;
-  for (double y = 0; y < 3; y += 0.3)
-    for (int i = 0; i <= 160; ++i) {
+  for (double y = 0; y < 1.2; y += 0.3)
+    for (int i = 0; i <= 140; ++i) {
       removal::Stamp s;
       s.pose.tip_mm = {15 - 0.1 * i, y, -0.3 + 0.1 * y};
       s.feed_per_tooth_mm = {-0.1, 0, 0};
@@ -76,7 +79,7 @@ Seconds cut(const machine::Tool& tool, double spin_rad) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
   const double passings = static_cast<double>(rows().size());
   std::printf("passings a second of processor, upright / any pose (ratio)\n%-13s %24s %24s %24s\n", "cutter", "carving",
               "rigid", "static");
@@ -84,6 +87,7 @@ int main() {
                                    {machine::ToolType::flat, "flat"},
                                    {machine::ToolType::bull, "bull"},
                                    {machine::ToolType::tapered_ball, "tapered ball"}}) {
+    if (argc > 1 && std::string_view(argv[1]) != name) continue;
     const machine::Tool tool = tool_of(type);
     const Seconds upright = cut(tool, 0), any = cut(tool, 1e-9);
     std::printf("%-13s", name);
@@ -91,5 +95,6 @@ int main() {
          {std::pair{upright.carve, any.carve}, {upright.rigid, any.rigid}, {upright.static_, any.static_}})
       std::printf(" %9.0f /%7.0f (%4.2f)", passings / a, passings / b, a / b);
     std::printf("\n");
+    std::fflush(stdout);
   }
 }

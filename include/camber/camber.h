@@ -12,6 +12,7 @@
 #include "camber/machine.h"
 #include "camber/plan.h"
 #include "camber/post.h"
+#include "camber/posture.h"
 #include "camber/predict.h"
 #include "camber/program.h"
 #include "camber/run.h"

@@ -115,6 +115,14 @@ DeflectedEngager::DeflectedEngager(Stock& stock, const Stock& blank, const Envel
 }
 DeflectedEngager::~DeflectedEngager() = default;
 
+void DeflectedEngager::remember(std::size_t from, std::span<const float> rows, std::size_t row_size,
+                                double largest_mm) {
+  Impl& m = *impl_;
+  if (m.tilted) return m.tilted->remember(from, rows, row_size);
+  m.max_deflection_mm = std::max(m.max_deflection_mm, largest_mm);
+  m.memory.add_before(from, rows, row_size);
+}
+
 void DeflectedEngager::start(std::size_t from, std::size_t count, const DeflectionTable& deflections) {
   Impl& m = *impl_;
   if (m.tilted) return m.tilted->start(from, count, deflections);
@@ -130,7 +138,7 @@ void DeflectedEngager::start(std::size_t from, std::size_t count, const Deflecti
   load_cut(m.stock, m.arena, m.envelope.shape, tips_by_id(m.all, m.first_id, m.max_deflection_mm), m.tiles);
   m.arena.read_tops(static_cast<int>(std::ceil((m.lanes->widest_mm() + kMaxDeflection_mm) / m.stock.voxel_mm())),
                     [&](std::size_t t) -> const ColumnCover& { return m.tiles[t]->cover; });
-  m.memory.begin(deflections);
+  m.memory.begin(deflections.row_size(), from);
   m.bends.emplace(m.envelope, deflections);
   m.reader.emplace(m.envelope, *m.lanes, m.all, m.stamps, m.first_id, m.stock.voxel_mm(), deflections, m.memory);
 }

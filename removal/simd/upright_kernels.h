@@ -33,6 +33,15 @@ struct StampBend {
   float axial_reach_mm = 0;  ///< the same of its axial part, added
 };
 
+/// A stamp of any pose in the arena.
+struct TiltedPlace {
+  StampPlace tip;        ///< its motion in the tool's frame
+  float turn_rad[3];     ///< how the tool turns meanwhile, in its frame
+  float voxels[3][3];    ///< from the tip along each of the part's axes, by mm along the tool's x, y and z
+  float max_tilt;        ///< of the deflected envelope, for each mm of motion
+  float min_cap_per_mm;  ///< a point whose motion allows no more than this times its square makes no chip
+};
+
 /// What is read at each point.
 struct LaneReading {
   static constexpr int kMax = 64;
@@ -112,6 +121,8 @@ struct Kernels {
   /// `count`: a multiple of 8, at most LaneReading::kMax.
   void (*read_points)(const PointLanes& points, int from, int count, const StampPlace& stamp, const StampBend& bend,
                       const ArenaView& arena, LaneReading& out);
+  void (*read_tilted_points)(const PointLanes& points, int from, int count, const TiltedPlace& stamp,
+                             const StampBend& bend, const ArenaView& arena, LaneReading& out);
   /// Thickness of what a rounded cylinder left at a stamp, along the point's normal: distance over slope, the slope at
   /// least `min_slope`; at most 0 where it has cut the point away.
   void (*thin_pairs)(const PairLanes& pairs, float flat, float corner, float min_slope);

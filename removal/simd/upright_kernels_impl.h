@@ -38,7 +38,50 @@ struct Vectors {
     return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
   }
 
-  static void read_points(const PointLanes& p, int from, int count, const StampPlace& s, const StampBend& b,
+  /// Motion of a point of the tool since the stamp before.
+  struct Motion {
+    F x, y, z;
+  };
+  static Motion motion_of(const StampPlace& s, const F&, const F&, const F&) {
+    return {F(s.feed_mm[0]), F(s.feed_mm[1]), F(s.feed_mm[2])};
+  }
+  static Motion motion_of(const TiltedPlace& s, const F& x, const F& y, const F& z) {
+    const Motion tip = motion_of(s.tip, x, y, z);
+    const F wx(s.turn_rad[0]), wy(s.turn_rad[1]), wz(s.turn_rad[2]);
+    return {tip.x + wy * z - wz * y, tip.y + wz * x - wx * z, tip.z + wx * y - wy * x};
+  }
+
+  /// Place of a point, voxels from the stamp's.
+  struct InVoxels {
+    F x, y, z;
+  };
+  static InVoxels in_voxels(const StampPlace& s, const F& x, const F& y, const F& z) {
+    const F per_voxel(s.per_voxel);
+    return {F(s.fraction[0]) + x * per_voxel, F(s.fraction[1]) + y * per_voxel, F(s.fraction[2]) + z * per_voxel};
+  }
+  static InVoxels in_voxels(const TiltedPlace& s, const F& x, const F& y, const F& z) {
+    const auto along = [&](int a) {
+      return F(s.tip.fraction[a]) + (F(s.voxels[a][0]) * x + F(s.voxels[a][1]) * y + F(s.voxels[a][2]) * z);
+    };
+    return {along(0), along(1), along(2)};
+  }
+
+  static F max_tilt_mm(const StampPlace&, const StampBend& b, const Motion&) { return F(b.max_tilt_mm); }
+  static F max_tilt_mm(const TiltedPlace& s, const StampBend&, const Motion& m) {
+    return F(s.max_tilt) * xsimd::sqrt(m.x * m.x + m.y * m.y + m.z * m.z);
+  }
+
+  /// What the motion must allow at least, beside what deflections do.
+  static F raised(const StampPlace&, const F& least, const Motion&) { return least; }
+  static F raised(const TiltedPlace& s, const F& least, const Motion& m) {
+    return least + F(s.min_cap_per_mm) * (m.x * m.x + m.y * m.y + m.z * m.z);
+  }
+
+  static const StampPlace& tip_of(const StampPlace& s) { return s; }
+  static const StampPlace& tip_of(const TiltedPlace& s) { return s.tip; }
+
+  template <class Place>
+  static void read_points(const PointLanes& p, int from, int count, const Place& s, const StampBend& b,
                           const ArenaView& arena, LaneReading& out) {
     const F zero(0.0f), one(1.0f);
     for (int l = 0; l < count; l += n) {
@@ -47,8 +90,8 @@ struct Vectors {
       F z = load(p.z + k);
       const F nx = load(p.nx + k), ny = load(p.ny + k), nz = load(p.nz + k);
       const F cosine_phi = load(p.cos_phi + k), sine_phi = load(p.sin_phi + k);
-      const F fx(s.feed_mm[0]), fy(s.feed_mm[1]), fz(s.feed_mm[2]);
-      F mx = fx, my = fy, mz = fz, tilt = zero;
+      const Motion f = motion_of(s, x, y, z);
+      F mx = f.x, my = f.y, mz = f.z, tilt = zero;
       if (b.deflection.now) {
         const I lower = load(p.lower + k), step = load(p.step + k), steps(b.deflection.steps);
         const I lower_at = lower * steps;
@@ -74,10 +117,11 @@ struct Vectors {
         const F by_angle = F(b.per_rad) * by_step;
         const F by_height = ((high.x - low.x) * nx + (high.y - low.y) * ny) / F(b.deflection.node_step_mm);
         const F sine = load(p.sine + k);
-        const F around = cosine_phi * fy - sine_phi * fx;
-        const F up = load(p.cosine + k) * (cosine_phi * fx + sine_phi * fy) + sine * fz;
+        const F around = cosine_phi * f.y - sine_phi * f.x;
+        const F up = load(p.cosine + k) * (cosine_phi * f.x + sine_phi * f.y) + sine * f.z;
         tilt = around * by_angle * load(p.per_radius + k) + up * sine * (by_height - F(b.lag_per_mm) * by_angle);
-        tilt = xsimd::min(xsimd::max(tilt, F(-b.max_tilt_mm)), F(b.max_tilt_mm));
+        const F most = max_tilt_mm(s, b, f);
+        tilt = xsimd::min(xsimd::max(tilt, -most), most);
         tilt = xsimd::select(sine < F(BlockBounds::kLevel), zero, tilt);
         x += now.x, y += now.y;
         mx += now.x - before.x, my += now.y - before.y;
@@ -87,19 +131,18 @@ struct Vectors {
       const F around = cosine_phi * my - sine_phi * mx, around2 = around * around;
       const F cap =
           along + F(0.5f) * (load(p.k1 + k) * xsimd::max(zero, tangential2 - around2) + load(p.k2 + k) * around2);
-      const F per_voxel(s.per_voxel);
-      const F gx = F(s.fraction[0]) + x * per_voxel, gy = F(s.fraction[1]) + y * per_voxel,
-              gz = F(s.fraction[2]) + z * per_voxel;
-      const F bx = xsimd::floor(gx), by = xsimd::floor(gy), bz = xsimd::floor(gz);
+      const InVoxels g = in_voxels(s, x, y, z);
+      const F bx = xsimd::floor(g.x), by = xsimd::floor(g.y), bz = xsimd::floor(g.z);
       // A lateral deflection brings a point nearer to the material across the axis alone, an axial one along it.
       const F lateral = xsimd::sqrt(nx * nx + ny * ny);
-      const auto forward = cap > -F(b.reach_mm) * lateral - F(b.axial_reach_mm) * xsimd::abs(nz);
+      const F least = -F(b.reach_mm) * lateral - F(b.axial_reach_mm) * xsimd::abs(nz);
+      const auto forward = cap > raised(s, least, {mx, my, mz});
       if (!xsimd::any(forward)) {
         I(-1).store_unaligned(out.cell + l);
         continue;
       }
-      const I cell = ArenaLanes<A>::cell_of(s, arena, bx, by, bz);
-      const F u = gx - bx, v = gy - by, w = gz - bz;
+      const I cell = ArenaLanes<A>::cell_of(tip_of(s), arena, bx, by, bz);
+      const F u = g.x - bx, v = g.y - by, w = g.z - bz;
       const F field = ArenaLanes<A>::field_at(arena.distance, cell, u, v, w);
       cap.store_unaligned(out.cap + l);
       field.store_unaligned(out.field + l);
@@ -376,7 +419,14 @@ struct Vectors {
   }
 
   static constexpr Kernels table() {
-    return {n, &read_points, &thin_pairs, &cut_line, &cut_line_deflected, &cut_winners, &find_winners};
+    return {n,
+            &read_points<StampPlace>,
+            &read_points<TiltedPlace>,
+            &thin_pairs,
+            &cut_line,
+            &cut_line_deflected,
+            &cut_winners,
+            &find_winners};
   }
 };
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Makes the programs of this sample, for the table-table machine beside it (A about X, C about Z on it).
 
-A dome of 8 mm radius on the end of a bar of 12 mm is finished by a ball of 3 mm radius in a spiral from near the top
-down over the edge; the tool leans 10 degrees ahead of the surface normal, so that its tip, which has no cutting speed,
-stays off the surface. The top of the dome is the program's zero.
+A dome of 8 mm radius on the end of a bar of 8 mm is finished by a long ball of 3 mm radius in a spiral from near the
+top down. The tool leans 10 degrees ahead of the surface normal, so that its tip, which has no cutting speed, stays off
+the surface, and 30 degrees aside, down the dome. The top of the dome is the program's zero.
 
 dome.nc: under tool-centre-point control (G43.4): X Y Z is the tip on the part.
 dome_axes.nc: the same path without it, as a post-processor writes it that knows the machine: X Y Z are the linear axes,
@@ -13,8 +13,10 @@ import math
 import os
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-DOME, BALL, LEAD = 8.0, 3.0, math.radians(10)
-TOP, BOTTOM, ROW, BLOCK = math.radians(14), math.radians(56), 0.35, 0.5
+DOME, BALL, LEAD, TILT = 8.0, 3.0, math.radians(10), math.radians(30)
+TOP, BOTTOM, ROW = math.radians(12), math.radians(36), 0.25
+CHORD = 0.001  # of the contact, off the dome
+LIFT = 0.3  # of the tool where it comes in; in the first sixth of a turn it sinks onto the dome
 FEED = 1200.0
 ZERO = (0.0, 0.0, -300.0)  # G54
 PIVOT = (0.0, -360.0)      # Y, Z of the axis of A
@@ -46,11 +48,13 @@ def linear_axes(tip, a, c):
 
 def dome_point(polar, turn):
     """Tip and tool axis at a contact of the dome."""
+    lift = LIFT * max(0.0, 1 + 3 * turn / math.pi)
     sp, cp, st, ct = math.sin(polar), math.cos(polar), math.sin(turn), math.cos(turn)
     normal = (sp * ct, sp * st, cp)
-    ahead = (-st, ct, 0.0)
-    axis = [math.cos(LEAD) * n + math.sin(LEAD) * t for n, t in zip(normal, ahead)]
-    tip = [(DOME + BALL) * n - BALL * k for n, k in zip(normal, axis)]
+    ahead, down = (st, -ct, 0.0), (cp * ct, cp * st, -sp)
+    axis = [n + math.tan(LEAD) * t + math.tan(TILT) * d for n, t, d in zip(normal, ahead, down)]
+    axis = [a / math.hypot(*axis) for a in axis]
+    tip = [(DOME + BALL + lift) * n - BALL * k for n, k in zip(normal, axis)]
     tip[2] -= DOME
     return tip, axis
 
@@ -62,8 +66,8 @@ def spiral():
         tip, axis = dome_point(polar, turn)
         a, near = angles(axis, near)
         out.append((tip, axis, round(a, 3), round(near, 3)))
-        step = BLOCK / ((DOME + BALL) * math.sin(polar))
-        turn += step
+        step = math.sqrt(8 * CHORD / (DOME * math.sin(polar)))
+        turn -= step
         polar += ROW / DOME * step / (2 * math.pi)
     return out
 

@@ -87,6 +87,23 @@ TEST(ConvexDistance, OfParallelBoxesThatAreATenthApartOrDeepIsExact) {
   }
 }
 
+TEST(ConvexDistance, NearerThanALimitIsThatOfTheDistanceFromAnyFirstDirection) {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> size(0.5, 100), around(0.5, 1.5), one(-1, 1);
+  int nearer = 0, farther = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Points a = box(Vec3(size(random), size(random), size(random)), random_motion(random, 150));
+    const Points b = box(Vec3(size(random), size(random), size(random)), random_motion(random, 150));
+    const double distance = convex_distance(a, b), limit = std::max(0.01, distance * around(random));
+    if (std::abs(limit - distance) < 2e-3 * distance) continue;
+    const Vec3 guess(one(random), one(random), one(random));
+    EXPECT_EQ(convex_nearer(a, b, limit, guess), distance < limit) << distance << " " << limit;
+    (distance < limit ? nearer : farther)++;
+  }
+  EXPECT_GT(nearer, 1000);
+  EXPECT_GT(farther, 1000);
+}
+
 TEST(ConvexDistance, ThinTriangleInABigBoxOverlaps) {
   const Points triangle({{0, 0, 0}, {0.01, 0, 0}, {0, 500, 0.01}});
   EXPECT_EQ(convex_distance(triangle, box(Vec3::Constant(1000), Eigen::Isometry3d::Identity())), 0);

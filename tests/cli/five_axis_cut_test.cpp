@@ -1,9 +1,11 @@
 // predict, compensate and adapt on programs with rotary motion, as a user runs them.
 #include <cmath>
+#include <regex>
 #include <string>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include "base/geometry.h"
@@ -45,15 +47,16 @@ coupling = "rigid"
 )");
 }
 
-/// Three rows along X by a ball that leans 20 degrees ahead (C90 puts the tilt of A into X), its lowest point at `z`.
-std::string rows(double z = -0.2) {
-  const double lead = rad_from_deg(20);
+/// Three rows along X by a ball that leans ahead (C90 puts the tilt of A into X), its lowest point at `z`.
+std::string rows(double z = -0.2, int lead_deg = 20) {
+  const double lead = rad_from_deg(lead_deg);
   const Vec3 axis(std::sin(lead), 0, std::cos(lead)), tip = Vec3(0, 0, 3 + z) - 3 * axis;
-  std::string text = kStart + "G0 X0 Y0 Z150\nA20 C90\n";
+  const std::string angles = fmt::format("A{} C{}", std::abs(lead_deg), lead_deg < 0 ? -90 : 90);
+  std::string text = kStart + "G0 X0 Y0 Z150\n" + angles + "\n";
   bool first = true;
   for (const double y : {0.5, 1.0, 1.5}) {
     text += fmt::format("G0 {}X{:.4f} Y{:.4f} Z{:.4f}\n", first ? "G43.4 H1 " : "", tip.x() - 5, y, tip.z() + 5);
-    text += fmt::format("G1 Z{:.4f} F300\nX{:.4f} A20 C90 F1200\nG0 Z{:.4f}\n", tip.z(), tip.x() + 7, tip.z() + 5);
+    text += fmt::format("G1 Z{:.4f} F300\nX{:.4f} {} F1200\nG0 Z{:.4f}\n", tip.z(), tip.x() + 7, angles, tip.z() + 5);
     first = false;
   }
   return text + "G0 Z100\nM30\n";
@@ -114,6 +117,38 @@ TEST(PredictFiveAxes, SaysWhatIsMissing) {
             std::string::npos);
 }
 
+/// The tip of a ball that leans back by 35 degrees stays above the plate, which its side cuts.
+TEST(PredictFiveAxes, ATiltedBallReachesDownPastItsTip) {
+  const TempFolder folder;
+  write_job(folder, rows(-0.2, -35));
+  const auto run = run_camber(folder, "predict job.toml -o result --json r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_GT(nlohmann::json::parse(tests::file_text(folder / "r.json"))["removed_mm3"]["stock"], 0.3);
+}
+
+/// Under tool-centre-point control and with words A0 C0, against the same program on three axes: the same bytes.
+TEST(PredictFiveAxes, WithoutTiltTheBytesAreThoseOfThreeAxes) {
+  const TempFolder folder;
+  const auto program = [](const std::string& on, const std::string& angles) {
+    std::string text = kStart + "G0 X-6 Y0.5 Z30\n" + on + " H1 Z5" + angles + "\n";
+    for (const double y : {0.5, 1.0, 1.5})
+      text += fmt::format("G0 X-6 Y{:.4f}\nG1 Z-0.2 F300\nX7 Z-0.15{} F1200\nG0 Z5\n", y, angles);
+    return text + "G49\nM30\n";
+  };
+  const auto outputs_of = [&](const std::string& text) {
+    write_job(folder, text);
+    const auto run = run_camber(folder, "predict job.toml -o result");
+    EXPECT_EQ(run.status, 0) << run.err;
+    std::string out;
+    for (const char* name : {"feed.csv", "forces.csv", "form_error.csv", "form_error.vtp", "stock.vdb"})
+      out += tests::file_text(folder / ("result/" + std::string(name)));
+    auto summary = nlohmann::json::parse(tests::file_text(folder / "result/summary.json"));
+    summary.erase("compute_s");
+    return out + summary.dump();
+  };
+  EXPECT_EQ(outputs_of(program("G43.4", " A0 C0")), outputs_of(program("G43", "")));
+}
+
 /// The work offset of the job is that of G54.
 TEST(PredictFiveAxes, TakesTheWorkOffsetOfTheJob) {
   const TempFolder folder;
@@ -166,6 +201,62 @@ TEST(PredictFiveAxes, NamesTheLineThatMeetsABodyOfTheMachine) {
   EXPECT_EQ(hits.status, 1);
   EXPECT_EQ(hits.err.find(fmt::format("p.nc:{}:1: error: the holder of T1 meets the body \"clamp\"", line)), 0u)
       << hits.err;
+}
+
+/// X Y Z of the axes without tool-centre-point control that take the tip there; the tables of sample 13.
+Vec3 linear_axes_mm(const Vec3& tip, double a_deg, double c_deg) {
+  const Vec3 zero(0, 0, -300), pivot(0, 0, -360);
+  const Vec3 turned = Eigen::AngleAxisd(-rad_from_deg(c_deg), Vec3::UnitZ()) * (tip + zero);
+  return pivot + Eigen::AngleAxisd(-rad_from_deg(a_deg), Vec3::UnitX()) * Vec3(turned - pivot) - zero;
+}
+
+/// Rows in which the table turns from block to block.
+std::string turning_rows(bool tip_control) {
+  std::string text = kStart + "G0 X0 Y0 Z150\nA30 C80\n" + (tip_control ? "G43.4 H1\n" : "G43 H1\n");
+  const auto block = [&](double x, double y, double up, double c_deg) {
+    const double a = rad_from_deg(30), c = rad_from_deg(c_deg);
+    const Vec3 axis(std::sin(a) * std::sin(c), -std::sin(a) * std::cos(c), std::cos(a));
+    const Vec3 tip = Vec3(x, y, 2.8 + up) - 3 * axis, at = tip_control ? tip : linear_axes_mm(tip, 30, c_deg);
+    return fmt::format("X{:.4f} Y{:.4f} Z{:.4f} A30 C{:g}", at.x(), at.y(), at.z(), c_deg);
+  };
+  for (const double y : {-0.4, 0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4}) {
+    text += "G0 " + block(-2, y, 9, 80) + "\nG1 " + block(-2, y, 0, 80) + " F500\n";
+    for (int i = 1; i <= 14; ++i) text += block(-2 + 0.5 * i, y, 0, 80 + 1.5 * i) + (i == 1 ? " F1200\n" : "\n");
+    text += "G0 " + block(5, y, 9, 101) + "\n";
+  }
+  return text + "M30\n";
+}
+
+/// The program without the values of its words X, Y and Z.
+std::string without_coordinates(const std::string& program) {
+  return std::regex_replace(program, std::regex("([XYZ])[-0-9.]+"), "$1");
+}
+
+/// The tip is moved and the axis kept: in both kinds of program coordinates change, and nothing else.
+TEST(CompensateFiveAxes, ChangesCoordinatesAndNothingElse) {
+  for (const bool tip_control : {true, false}) {
+    SCOPED_TRACE(tip_control);
+    const TempFolder folder;
+    const std::string program = turning_rows(tip_control);
+    write_job(folder, program);
+    std::string job = tests::file_text(folder / "job.toml");
+    job.replace(job.find("overhang_mm = 30.0"), 18, "overhang_mm = 40.0\nhelix_deg = 30.0");
+    job.replace(job.find("coupling = \"rigid\""), 18, "[compensation]\ntolerance_um = 0.5");
+    folder.write("job.toml", job);
+    const auto run = run_camber(folder, "compensate job.toml -o out.nc --json c.json");
+    const std::string out = tests::file_text(folder / "out.nc");
+    EXPECT_EQ(without_coordinates(out), without_coordinates(program));
+    const auto figures = nlohmann::json::parse(tests::file_text(folder / "c.json"));
+    EXPECT_GT(figures["blocks"]["changed"], 60);
+    EXPECT_EQ(figures["blocks"]["before"], figures["blocks"]["after"]);
+    const double before = figures["before_um"]["p95"], after = figures["after_um"]["p95"];
+    EXPECT_LT(after, 0.6 * before) << run.err;
+    // What the loop says of its result is what verify finds.
+    const auto verify = run_camber(folder, "compensate --verify out.nc --json v.json");
+    EXPECT_NEAR(nlohmann::json::parse(tests::file_text(folder / "v.json"))["emitted"]["error_um"]["p95"], after,
+                0.05 * after)
+        << verify.err;
+  }
 }
 
 }  // namespace

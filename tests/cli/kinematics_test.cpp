@@ -1,6 +1,9 @@
 // camber check on machines with rotary axes.
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -102,6 +105,28 @@ TEST(CheckFiveAxes, ReadsTheProgramAndChecksTheTravel) {
   EXPECT_NE(bad.err.find("1:100: a number of H and a length in mm were expected, such as 1=80"), std::string::npos);
 }
 
+/// G43 and G43.4 alone move nothing: the length counts from the next move on, which starts where the machine is.
+TEST(CheckFiveAxes, TakesTheToolLengthFromWhereTheMachineIs) {
+  const TempFolder folder;
+  folder.write("m.toml", tests::file_text(kFiveAxis + "machine.toml"));
+  for (const char* code : {"G43", "G43.4"}) {
+    folder.write("p.nc", std::string("G21 G90 G94\nG10 L2 P1 X0 Y0 Z-320.\nG10 L10 P1 R120.\nT1 M6\n"
+                                     "G54 G0 X0 Y0 Z310. S900 M3\n") +
+                             code + " H1\nG0 X10. Y0 Z150.\nG1 X20. A10. F500\nM30\n");
+    const auto run = run_camber(folder, "check p.nc --machine m.toml");  // Z has 10 mm left: 310 + 120 would be beyond
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+  }
+  folder.write("p.nc",
+               "G21 G90 G94\nG10 L2 P1 X0 Y0 Z-320.\nG10 L10 P1 R120.\nT1 M6\nG54 G0 X0 Y0 Z310. S900 M3\n"
+               "G43 H1\nG0 X10. Y0 Z210.\nG1 X20. A10. F500\nM30\n");
+  const auto run = run_camber(folder, "check p.nc --machine m.toml");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err,
+            "p.nc:7:1: error: Z goes to 10 mm in machine coordinates in this move and 1 more; -400 to 0 was expected "
+            "(travel_mm of [axis.z]) [travel]\n    G0 X10. Y0 Z210.\n    ^\n");
+}
+
 TEST(CheckFiveAxes, SaysWhatItCannotCheck) {
   const TempFolder folder;
   copy_machine(folder, "table_bc");
@@ -178,13 +203,46 @@ TEST(FeedFiveAxes, AxesDoNotJump) {
   const auto& block = columns.at("block");
   for (const char* axis : {"x_mm", "y_mm", "z_mm", "a_deg", "c_deg"}) {
     const auto& q = columns.at(axis);
-    for (std::size_t i = 1; i < q.size() && block[i] <= 390; ++i)  // then it goes to reference points
+    for (std::size_t i = 1; i < q.size(); ++i)
       ASSERT_LT(std::abs(q[i] - q[i - 1]), 0.5) << axis << " in line " << block[i];
   }
   const std::string page = tests::file_text(folder / "r.html");
   EXPECT_NE(page.find("Feed of s/dome.nc"), std::string::npos);
   EXPECT_NE(page.find("time, s"), std::string::npos);
   EXPECT_EQ(page.find("The positions of the axes are not known"), std::string::npos);
+}
+
+/// From sample to sample, with the speeds of samples/12-five-axis.
+void expect_no_jumps(const std::map<std::string, std::vector<double>>& columns) {
+  constexpr double kPeriodS = 0.001, kRounding = 2e-5;
+  const std::map<std::string, double> max_per_s{
+      {"x_mm", 500}, {"y_mm", 500}, {"z_mm", 400}, {"a_deg", 100}, {"c_deg", 14000.0 / 60}};
+  for (const auto& [axis, speed] : max_per_s) {
+    const auto& q = columns.at(axis);
+    for (std::size_t i = 1; i < q.size(); ++i)
+      ASSERT_LE(std::abs(q[i] - q[i - 1]), speed * kPeriodS + kRounding)
+          << axis << " in line " << columns.at("block")[i];
+  }
+}
+
+/// Whatever switches what X, Y and Z mean, the axes go on from where they are.
+TEST(FeedFiveAxes, AxesDoNotJumpWhereverTheirMeaningIsSwitched) {
+  const TempFolder folder;
+  std::filesystem::copy(CAMBER_SOURCE_DIR "/samples/12-five-axis", folder / "s");
+  const std::string start = "G21 G90 G94\nG10 L2 P1 X0 Y0 Z-320.\nG10 L10 P1 R120.\nT1 M6\nG54 S9000 M3\n";
+  const std::vector<std::string> programs{
+      "G0 X5 Y5\nG53 Z0\nG43.4 H1\nG0 X0 Y0 Z50.\nG1 A20. C30. F900\nX20.\nG49\nG0 X0 Y0 Z150.\nG53 Z0\n",
+      "G0 X5 Y5 Z160.\nG68.2 X1 Y2 Z3 I20. J30. K10.\nG53.1\nG43 H1\nG0 X9.\nZ30.\nG1 X20. F900\nG69\nG49\nG28 Z0\n"
+      "G0 X1. Y1. Z170.\nA0 C0\n",
+      "G0 X5 Y5 Z160.\nG43 H1\nG0 X0 Z40.\nG254\nG0 A20. C10.\nX0 Y0 Z40.\nG1 X20. F900\nG255\nG53 Z0\nG30 X0\n",
+      "G53 X10. Y10.\nG53 Z-10.\nG43 H1\nG0 X0\nG0 Y5. Z30. A15.\nG49\nX5.\nG43 H1 Z30.\nG28 A0 C0\nG28 X0 Y0 Z30.\n"};
+  for (const std::string& program : programs) {
+    SCOPED_TRACE(program);
+    folder.write("p.nc", start + program + "M30\n");
+    const auto run = run_camber(folder, "feed p.nc --machine s/machine.toml -o feed.csv");
+    ASSERT_EQ(run.status, 0) << run.err;
+    expect_no_jumps(camber::tests::columns_of(tests::file_text(folder / "feed.csv")));
+  }
 }
 
 /// Two faces in tilted frames: every move takes its time, the last pose is where check says that the machine ends.
@@ -195,8 +253,10 @@ TEST(FeedFiveAxes, ReadsTiltedFrames) {
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
   const auto columns = camber::tests::columns_of(tests::file_text(folder / "feed.csv"));
-  EXPECT_NEAR(columns.at("t_s").back(), 58.52, 0.05);
+  expect_no_jumps(columns);
+  EXPECT_NEAR(columns.at("t_s").back(), 59.206, 0.05);
   EXPECT_EQ(columns.at("block").back(), 73);
+  EXPECT_EQ(columns.at("z_mm").front(), 0);  // where G53 Z0 in line 8 leaves it
   const auto time = run_camber(folder, "time s/faces.nc --machine s/machine.toml --json t.json --report t.html");
   ASSERT_EQ(time.status, 0) << time.err;
   EXPECT_EQ(time.err, "");
@@ -211,6 +271,45 @@ TEST(FeedFiveAxes, ReadsTiltedFrames) {
   EXPECT_NE(page.find("id=\"machine\""), std::string::npos);
   EXPECT_NE(page.find("<h2>Where the time goes</h2>"), std::string::npos);
   EXPECT_NE(page.find("<h2>Axes</h2>"), std::string::npos);
+}
+
+/// A way of which the end is not known takes that to where the axis is next known, and is named.
+TEST(TimeFiveAxes, NamesWaysToUnknownReferencePoints) {
+  const TempFolder folder;
+  folder.write("m.toml", tests::file_text(kFiveAxis + "machine.toml"));
+  const std::string start = "G21 G90 G94\nG10 L2 P1 X0 Y0 Z-320.\nG54 S9000 M3\nG0 X0 Y0 Z0\n";
+  folder.write("p.nc", start + "G28 G91 Z0\nG90 A10. C20.\nG0 Z160.\nG30 G91 X0 Y0\nG90 G0 X0 Y0\nM30\n");
+  const std::string warning =
+      "p.nc:5:1: warning: Z goes to a reference point that is not known; this move, like 1 more to such points, takes "
+      "the time of the shortest way to where the axes are next known. z_mm of [tool_change] in m.toml was expected "
+      "[reference-unknown]\n    G28 G91 Z0\n    ^\n";
+  for (const char* command : {"check p.nc --machine m.toml", "time p.nc --machine m.toml --json t.json",
+                              "feed p.nc --machine m.toml -o feed.csv"}) {
+    const auto run = run_camber(folder, command);
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err, warning) << command;
+  }
+  expect_no_jumps(camber::tests::columns_of(tests::file_text(folder / "feed.csv")));
+  const auto timed = nlohmann::json::parse(tests::file_text(folder / "t.json"));
+  EXPECT_EQ(timed["notes"].size(), 0U);
+  EXPECT_GE(timed["unplaced_moves"], 3);
+  const auto positioning_s = [&](const std::string& program) {
+    folder.write("p.nc", start + program);
+    EXPECT_EQ(run_camber(folder, "time p.nc --machine m.toml --json t.json").status, 0);
+    return nlohmann::json::parse(tests::file_text(folder / "t.json"))["positioning_s"].get<double>();
+  };
+  const std::string program = tests::file_text(folder / "p.nc").substr(start.size());
+  const double up_s = positioning_s("G0 Z160.\nA10. C20.\nM30\n");
+  EXPECT_NEAR(timed["positioning_s"].get<double>(), up_s, 1e-3);
+  const double higher_s = positioning_s("G0 Z320.\nZ0\nZ320.\nA10. C20.\nG0 Z160.\nM30\n") -
+                          positioning_s("G0 Z320.\nM30\n");  // Z stands at 320 before the program
+  folder.write("m.toml", tests::file_text(kFiveAxis + "machine.toml") +
+                             "[tool_change]\nz_mm = 320\n[reference_point.2]\nx_mm = 0\ny_mm = 0\n");
+  folder.write("p.nc", start + program);
+  EXPECT_EQ(run_camber(folder, "check p.nc --machine m.toml").err, "");
+  EXPECT_EQ(run_camber(folder, "time p.nc --machine m.toml --json t.json").err, "");
+  const auto known = nlohmann::json::parse(tests::file_text(folder / "t.json"));
+  EXPECT_NEAR(known["positioning_s"].get<double>(), higher_s, 1e-3);
 }
 
 TEST(TimeFiveAxes, ThePageSaysWhyItHasNoMachine) {
@@ -294,6 +393,51 @@ TEST(FeedFiveAxes, BadInputByWholeMessage) {
             std::string::npos);
 }
 
+/// check, time and feed say the same of the same input, and write nothing where it is wrong.
+TEST(FiveAxisCommands, SayTheSameOfBadInput) {
+  const TempFolder folder;
+  write_fan(folder);
+  const std::string machine = tests::file_text(folder / "m.toml");
+  const auto with = [&](const std::string& key, const std::string& line) {
+    const auto from = machine.find(key), to = machine.find('\n', from);
+    return machine.substr(0, from) + line + machine.substr(to);
+  };
+  const std::string head = "G21 G90 G94 S1000 M3\nG10 L2 P1 X0 Y0 Z0\nG54\nG43 H1\nM428\nG0 X0 Y0 Z0 A-1\n";
+  const struct {
+    std::string machine, program, message;
+    bool refused = true;
+  } cases[] = {
+      {with("chain = ", "chain = [\"part\", \"c\", \"a\", \"bed\", \"x\", \"y\", \"spindle\"]"), "M2\n",
+       "m.toml:14:9: error: axis z is missing in the chain; x, y and z were expected [chain-axis]\n    chain = "
+       "[\"part\", "
+       "\"c\", \"a\", \"bed\", \"x\", \"y\", \"spindle\"]\n            ^\n"},
+      {machine, "G21 G90 G93 S1000 M3\nG0 X0 Y0 Z0\nG1 X1 A1 F10\nG1 X2 A2\nM2\n",
+       "p.nc:4:1: error: G1 in inverse time (G93) without F; every cutting block needs its own F [feed-missing]\n"
+       "    G1 X2 A2\n    ^\n"},
+      {machine, "G21 G90 G94 S1000 M3\nM428\nG0 X0 Y0 Z0 A-5\nM2\n",
+       "p.nc:2:1: error: M428 switches tool-centre-point control on without a tool length; G43 before it was expected "
+       "[tool-length]\n    M428\n    ^\n"},
+      {with("[axis.y]", "[axis.y]\ntravel_mm = [-10, 10]"), head + "G1 X1 C30 F100\nM2\n",
+       "p.nc:7:1: error: Y goes to -12.787 mm in machine coordinates; -10 to 10 was expected (travel_mm of [axis.y]) "
+       "[travel]\n    G1 X1 C30 F100\n    ^\n"},
+      {machine, head + "G1 X1 C180 F3000\nM2\n",
+       "p.nc:7:1: warning: the feed asks up to 540000 degrees/min of C, but m.toml allows 6000 "
+       "(max_velocity_deg_per_min of [axis.c]); the control slows down here [rotary-speed]\n    G1 X1 C180 F3000\n"
+       "    ^\n",
+       false}};
+  for (const auto& one : cases) {
+    folder.write("m.toml", one.machine);
+    folder.write("p.nc", one.program);
+    for (const char* command : {"check p.nc", "time p.nc --json out", "feed p.nc -o out"}) {
+      std::filesystem::remove(folder / "out");
+      const auto run = run_camber(folder, std::string(command) + " --machine m.toml --tool-length 1=80");
+      EXPECT_EQ(run.status, one.refused ? 1 : 0) << command;
+      EXPECT_EQ(run.err, one.message) << command;
+      EXPECT_EQ(std::filesystem::exists(folder / "out"), !one.refused && command[0] != 'c') << command;
+    }
+  }
+}
+
 TEST(CheckFiveAxes, OtherCommandsRefuseTheProgramByName) {
   const TempFolder folder;
   copy_machine(folder, "table_bc");
@@ -301,13 +445,14 @@ TEST(CheckFiveAxes, OtherCommandsRefuseTheProgramByName) {
   for (const char* command : {"resegment p.nc --machine m.toml --tolerance-mm 0.01 -o out.nc", "check p.nc"}) {
     const auto run = run_camber(folder, command);
     EXPECT_EQ(run.status, 1) << command;
-    EXPECT_NE(run.err.find("p.nc:4:1: error: G234 (tool-centre-point control) is read by camber check, feed, time and "
-                           "fit-feed, on a machine with [kinematics] [not-read]"),
+    EXPECT_NE(run.err.find("p.nc:4:1: error: G234 (tool-centre-point control) is read on a machine with [kinematics], "
+                           "by camber check, time, feed, fit-feed, predict, compensate and post [not-read]"),
               std::string::npos)
         << run.err;
-    EXPECT_NE(run.err.find("p.nc:5:9: error: rotary axis B is read by camber check, feed, time and fit-feed, on a "
-                           "machine with [kinematics]; X, Y and Z were expected [rotary-axis]"),
-              std::string::npos)
+    EXPECT_NE(
+        run.err.find("p.nc:5:9: error: rotary axis B is read on a machine with [kinematics], by camber check, time, "
+                     "feed, fit-feed, predict, compensate and post; X, Y and Z were expected [rotary-axis]"),
+        std::string::npos)
         << run.err;
   }
 }

@@ -34,7 +34,7 @@ TEST(PostCommand, WritesNothingWhereAnAxisLeavesItsTravel) {
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(
       run.err.substr(0, run.err.find('\n')),
-      "p.nc:6:1: error: X goes to 910 mm in machine coordinates in this move and 7 more; -250 to 250 was expected "
+      "p.nc:6:1: error: X goes to 910 mm in machine coordinates in this move and 5 more; -250 to 250 was expected "
       "(travel_mm of [axis.x]) [travel]");
   EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
 }

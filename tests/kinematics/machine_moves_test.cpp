@@ -109,18 +109,51 @@ TEST(MachineMoves, AcrossTipControlStartWhereTheMachineIs) {
   EXPECT_NEAR(g53->start_mm.y(), g53->end_mm.y(), kSameMm);
 }
 
-TEST(MachineMoves, LeaveAnUnknownReferencePointUnknown) {
+/// It is taken to be where the axes are next known, and the moves say so.
+TEST(MachineMoves, TakeTheShortestWayAroundAnUnknownReferencePoint) {
   const machine::Machine machine = sample("table_ac_linuxcnc");
   nc::Interpretation placed = expect_same_motion(
       kStart + "G43 H1\nG0 Z30\nG68.2 J30\nG53.1\nG28 G91 Z0\nG90 G0 X1 Y1\nZ5\nG1 X9 F100\n", machine);
   const auto home = std::ranges::find_if(placed.moves, [](const nc::Move& m) { return m.reference_axes != 0; });
   ASSERT_NE(home, placed.moves.end());
   EXPECT_TRUE(home->reference);
-  EXPECT_EQ(home->end_mm.z(), 0);
   EXPECT_EQ(home->start_mm.x(), home->end_mm.x());
-  EXPECT_TRUE((home + 1)->reference);  // X1 Y1: Z is not known yet
-  EXPECT_EQ((home + 1)->start_mm, (home + 1)->end_mm);
+  EXPECT_TRUE((home + 1)->reference);  // X1 Y1: Z is not known yet, and the axes follow from all three
+  EXPECT_EQ(home->end_mm.z(), (home + 1)->end_mm.z());
+  EXPECT_EQ((home + 1)->start_mm, home->end_mm);
+  EXPECT_TRUE((home + 2)->reference);
+  EXPECT_EQ((home + 2)->start_mm, (home + 1)->end_mm);
+  EXPECT_EQ((home + 2)->start_mm, (home + 2)->end_mm);  // Z5: known
   EXPECT_FALSE(placed.moves.back().reference);
+}
+
+/// G53 leads nowhere that is known then; a reference point is given in program coordinates.
+TEST(MachineMoves, WithoutAWorkOffsetKeepReferencePoints) {
+  machine::Machine machine = sample("table_ac_linuxcnc");
+  machine.tool_change.z_mm = 250;
+  nc::Interpretation placed = read("G0 X1 Y2 Z30 A-5\nG53 Z-7\nG0 Z20\nG28 G91 Z0\nG90 Z10\n", machine);
+  ASSERT_FALSE(placed.machine_origin_mm);
+  place_moves(placed, machine);
+  std::vector<double> z_mm;
+  for (const nc::Move& move : placed.moves) z_mm.push_back(move.end_mm.z());
+  EXPECT_EQ(z_mm, (std::vector<double>{30, 20, 20, 250, 10}));
+}
+
+TEST(MachineMoves, GoToReferencePointsOfTheMachine) {
+  machine::Machine machine = sample("table_ac_linuxcnc");
+  machine.tool_change.z_mm = 250;
+  machine.reference_points[0].z_mm = 150;
+  const std::string text =
+      "G10 L2 P1 X10 Y20 Z-300\nG54 G0 X1 Y2 A-5\nG43 H1\nG0 Z30\nG28 G91 Z0\nG90 X5\n"
+      "G30 G91 P2 Z0\nG90 G0 Z20\n";
+  nc::Interpretation placed = read(text, machine);
+  place_moves(placed, machine);
+  std::vector<double> z_mm;
+  for (const nc::Move& move : placed.moves) z_mm.push_back(move.end_mm.z());
+  // Before the first Z the axis stands at the point of [tool_change], which G43 has not lowered yet.
+  EXPECT_EQ(z_mm, (std::vector<double>{250, 30, 250, 250, 150, 20}));
+  EXPECT_EQ(placed.moves[1].start_mm.z(), 150);
+  for (std::size_t i = 2; i < placed.moves.size(); ++i) EXPECT_EQ(placed.moves[i].start_mm, placed.moves[i - 1].end_mm);
 }
 
 }  // namespace

@@ -113,6 +113,7 @@ TEST(PartPath, ArcsOfTheAxesTurnWithTheTable) {
   EXPECT_EQ(PartPath(machine, bent).bent_arcs().size(), 1u);
 }
 
+/// A tool that gets longer has its tip lower, where the machine stands still.
 TEST(PartPath, EveryMoveStartsWhereTheLastOneEnded) {
   const machine::Machine machine = tests::sample("table_bc");
   const auto text = moves_of(machine,
@@ -122,7 +123,10 @@ TEST(PartPath, EveryMoveStartsWhereTheLastOneEnded) {
   const nc::Interpretation part = path.moves_in_part();
   for (std::uint32_t m = 1; m < part.moves.size(); ++m) {
     if (!path.start_known(m) || !path.end_known(m - 1) || path.length_mm(m) == 0) continue;
-    EXPECT_LT((part.moves[m].start_mm - part.moves[m - 1].end_mm).norm(), 1e-9) << m;
+    const double longer_mm =
+        *text.state_of(text.moves[m]).tool_length_mm - *text.state_of(text.moves[m - 1]).tool_length_mm;
+    const Vec3 gauge_mm = part.moves[m].start_mm + longer_mm * path.pose_at(m, 0).axis;
+    EXPECT_LT((gauge_mm - part.moves[m - 1].end_mm).norm(), 1e-9) << m;
   }
 }
 

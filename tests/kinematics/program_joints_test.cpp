@@ -91,10 +91,11 @@ TEST(ProgramJoints, AreThoseOfTheTraceAtTheEndsOfBlocks) {
 
 TEST(ProgramJoints, FollowTheTipUnderTipControl) {
   const machine::Machine machine = sample("head_table");
-  const Read r = read(SourceText("p.nc",
-                                 "G10 L2 P1 X10 Y20 Z-300\nG54 G0 X0 Y0 Z60\nZ50\nG43.4 H1\nG1 X30 B30. C45. F500\n"
-                                 "G49\nG0 X0 Y0 Z100\n"),
-                      machine, "fanuc", 100);
+  const Read r =
+      read(SourceText("p.nc",
+                      "G10 L2 P1 X10 Y20 Z-300\nG54 G0 X0 Y0 Z60\nZ50\nG43.4 H1\nZ50\nG1 X30 B30. C45. F500\n"
+                      "G49\nG0 X0 Y0 Z100\n"),
+           machine, "fanuc", 100);
   ProgramJoints joints(machine, r.moves);
   const MoveJoints& first = joints.next();
   EXPECT_FALSE(first.start_known);  // nothing is known of where it starts
@@ -102,6 +103,9 @@ TEST(ProgramJoints, FollowTheTipUnderTipControl) {
   EXPECT_EQ(joints.at(1).linear_mm, Vec3(10, 20, -240));
   EXPECT_TRUE(joints.next().linear_known);
   EXPECT_EQ(joints.at(1).linear_mm, Vec3(10, 20, -250));  // no length is active
+  EXPECT_TRUE(joints.next().start_known);                 // G43.4 alone moves nothing
+  EXPECT_EQ(joints.at(0).linear_mm, Vec3(10, 20, -250));
+  EXPECT_EQ(joints.at(1).linear_mm, Vec3(10, 20, -150));
   const MoveJoints& tilted = joints.next();
   EXPECT_TRUE(tilted.turns());
   const Chain chain(machine);
@@ -113,6 +117,33 @@ TEST(ProgramJoints, FollowTheTipUnderTipControl) {
   EXPECT_TRUE(joints.next().start_known);  // where the tilted move ended
   EXPECT_LE((joints.at(0).linear_mm - end_mm).norm(), 1e-12);
   EXPECT_EQ(joints.at(1).linear_mm, Vec3(10, 20, -200));
+  EXPECT_TRUE(joints.done());
+}
+
+/// X and Y are placed, Z by a machine coordinate: axes become known one by one.
+TEST(ProgramJoints, AxesBecomeKnownOneByOne) {
+  const machine::Machine machine = sample("head_table");
+  const Read r = read(SourceText("p.nc",
+                                 "G10 L2 P1 X10 Y20 Z-300\nG54 G0 X1 Y2\nG53 Z-5\nG43 H1\nX3\nG68 X0 Y0 R90.\nX4\n"
+                                 "G69\nG28 G91 Y0\nG90 X5\nG68.2 J10.\nX6\n"),
+                      machine, "fanuc", 100);
+  ProgramJoints joints(machine, r.moves);
+  EXPECT_FALSE(joints.next().linear_known);
+  EXPECT_TRUE(joints.next().linear_known);  // G53
+  EXPECT_EQ(joints.at(1).linear_mm, Vec3(11, 22, -5));
+  EXPECT_TRUE(joints.next().start_known);
+  EXPECT_EQ(joints.at(0).linear_mm, Vec3(11, 22, -5));
+  EXPECT_EQ(joints.at(1).linear_mm, Vec3(13, 22, -5));
+  EXPECT_TRUE(joints.next().linear_known);  // G68 turns X to Y
+  EXPECT_NEAR(joints.at(1).linear_mm.y(), 24, 1e-9);
+  EXPECT_NEAR(joints.at(1).linear_mm.z(), -5, 1e-9);
+  EXPECT_FALSE(joints.next().linear_known);  // G28 Y
+  EXPECT_FALSE(joints.next().linear_known);
+  EXPECT_NEAR(joints.end_linear_mm().x(), 15, 1e-9);
+  EXPECT_TRUE(std::isnan(joints.end_linear_mm().y()));
+  EXPECT_NEAR(joints.end_linear_mm().z(), -5, 1e-9);
+  EXPECT_FALSE(joints.next().linear_known);  // in a tilted frame all axes depend on Y
+  EXPECT_TRUE(std::isnan(joints.end_linear_mm().x()));
   EXPECT_TRUE(joints.done());
 }
 

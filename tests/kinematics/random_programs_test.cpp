@@ -33,6 +33,7 @@ constexpr std::array<std::string_view, 56> kWords{
 constexpr std::array kDialects{"fanuc", "haas", "linuxcnc", "mazak"};
 /// Sums of increments and the way through a frame and back.
 constexpr double kJumpMm = 1e-6;
+constexpr double kUnlimited = 1e9;
 
 std::string random_program(std::mt19937& random) {
   std::string text = "G54 G0 X0 Y0 Z50.\n";
@@ -57,10 +58,11 @@ std::string random_program(std::mt19937& random) {
 }
 
 struct Counts {
-  std::size_t programs = 0, joined = 0, tilted = 0, dynamic = 0, placed = 0;
+  std::size_t programs = 0, joined = 0, tilted = 0, dynamic = 0, placed = 0, unplaced = 0;
 };
 
-/// Where both ends of two moves are known, the second starts where the first ends, unless the tool length changes.
+/// Where both ends of two moves are known, the second starts where the first ends. An arc after another tool length is
+/// where the program has it.
 void expect_no_jump(const machine::Machine& machine, const nc::Interpretation& moves, Counts& counts) {
   ProgramJoints joints(machine, moves);
   Joints last;
@@ -70,7 +72,8 @@ void expect_no_jump(const machine::Machine& machine, const nc::Interpretation& m
     const MoveJoints& now = joints.next();
     const nc::Move& move = moves.moves[joints.index()];
     const double length = moves.state_of(move).tool_length_mm.value_or(0);
-    if (known && now.linear_known && now.start_known && length == length_mm && now.reach == Reach::reached) {
+    const bool fixed = length != length_mm && move.arc != nc::Move::kNoArc;
+    if (known && now.linear_known && now.start_known && !fixed && now.reach == Reach::reached) {
       const Joints start = joints.at(0);
       ASSERT_LE((start.linear_mm - last.linear_mm).norm(), kJumpMm) << "line " << move.block + 1;
       ASSERT_EQ(start.rotary_rad, last.rotary_rad) << "line " << move.block + 1;
@@ -82,10 +85,35 @@ void expect_no_jump(const machine::Machine& machine, const nc::Interpretation& m
   }
 }
 
+/// Placed moves follow each other without a jump, also around places that are not known.
+void expect_no_jump_when_placed(const machine::Machine& machine, const nc::Interpretation& placed, Counts& counts) {
+  ProgramJoints joints(machine, placed, MissingOffset::zero);
+  Joints last;
+  double length_mm = 0;
+  bool reached = true;
+  for (bool first = true; !joints.done(); first = false) {
+    const MoveJoints& now = joints.next();
+    const nc::Move& move = placed.moves[joints.index()];
+    const double length = placed.state_of(move).tool_length_mm.value_or(0);
+    reached = reached && now.reach == Reach::reached;
+    if (!reached) return;
+    ASSERT_TRUE(now.linear_known && now.start_known) << "line " << move.block + 1;
+    const Vec3 start_mm = joints.programmed_mm(joints.at(0));
+    ASSERT_LE((start_mm - move.start_mm).norm(), move.kind == nc::MoveKind::dwell ? kUnlimited : kJumpMm);
+    if (!first && !(length != length_mm && move.arc != nc::Move::kNoArc)) {
+      ASSERT_LE((joints.at(0).linear_mm - last.linear_mm).norm(), kJumpMm) << "line " << move.block + 1;
+      counts.unplaced += move.reference;
+    }
+    last = joints.at(1);
+    if (move.kind != nc::MoveKind::dwell) length_mm = length;
+  }
+}
+
 /// place_moves changes how moves are written, not where the joints are.
 void expect_same_joints_when_placed(const machine::Machine& machine, const nc::Interpretation& named, Counts& counts) {
   nc::Interpretation placed = named;
   place_moves(placed, machine);
+  expect_no_jump_when_placed(machine, placed, counts);
   ProgramJoints a(machine, named), b(machine, placed);
   while (!a.done()) {
     const MoveJoints of_a = a.next(), of_b = b.next();
@@ -142,6 +170,7 @@ TEST(RandomPrograms, TheMachineGoesOnFromWhereItIs) {
   EXPECT_GT(counts.tilted, 200U);
   EXPECT_GT(counts.dynamic, 5U);
   EXPECT_GT(counts.placed, 500U);
+  EXPECT_GT(counts.unplaced, 100U);
 }
 
 }  // namespace

@@ -230,8 +230,8 @@ TEST(NcInterpreter, NamesWhatItDoesNotKnow) {
   EXPECT_EQ(read_text("G0 X1 E5").messages,
             Messages{"p.nc:1:7: error: E is not a letter of a milling program [unknown-letter]"});
   EXPECT_EQ(read_text("G0 X1 A90.").messages,
-            Messages{"p.nc:1:7: error: rotary axis A is read by camber check, feed, time and fit-feed, on a machine "
-                     "with [kinematics]; X, Y and Z were expected [rotary-axis]"});
+            Messages{"p.nc:1:7: error: rotary axis A is read on a machine with [kinematics], by camber check, time, "
+                     "feed, fit-feed, predict, compensate and post; X, Y and Z were expected [rotary-axis]"});
   EXPECT_EQ(read_text("G0 X1 A0").messages,
             Messages{"p.nc:1:7: warning: rotary axis A is not supported; it is assumed to stay at 0 [rotary-axis]"});
   EXPECT_EQ(read_text("G0 X1 A0 B0\nY1 B0\n").messages,

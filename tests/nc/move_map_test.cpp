@@ -10,10 +10,10 @@
 namespace camber::nc {
 namespace {
 
-struct Read {
+struct MappedText {
   Program text;
   Interpretation moves;
-  explicit Read(const std::string& program) {
+  explicit MappedText(const std::string& program) {
     Diagnostics diagnostics;
     text = read_program(SourceText("p.nc", program), diagnostics);
     moves = interpret(text, {}, diagnostics);
@@ -22,7 +22,7 @@ struct Read {
 };
 
 TEST(MoveMap, FindsTheGivenMoveBehindSplitBlocksAndAHeader) {
-  const Read given("%\nO0001\nG21 G90\nG1 X10. F100\nX20.\nX30.\n%\n");
+  const MappedText given("%\nO0001\nG21 G90\nG1 X10. F100\nX20.\nX30.\n%\n");
   EmitOptions options;
   options.header_comment = "ONE\nTWO";
   std::vector<MoveEdit> edits(1);
@@ -31,7 +31,7 @@ TEST(MoveMap, FindsTheGivenMoveBehindSplitBlocksAndAHeader) {
   edits[0].end_mm = Vec3(20, 0, 0);
   const Emission emission = emit_edits(given.text, given.moves, edits, options);
   EXPECT_EQ(emission.text, "%\nO0001\n(ONE)\n(TWO)\nG21 G90\nG1 X10. F100\nX12.5 Z1.\nX20. Z0.\nX30.\n%\n");
-  const Read emitted(emission.text);
+  const MappedText emitted(emission.text);
   ASSERT_EQ(emitted.moves.moves.size(), 4u);
   const MoveMap map(given.moves, emitted.moves, emission.block_of_line);
   EXPECT_EQ(map.given(0, 0.5).move, 0u);

@@ -164,14 +164,14 @@ TEST(Rotary, ClampsOfTheMachine) {
 /// Programs in which nothing turns read as they always did.
 TEST(Rotary, WithoutRotaryAxesCodesAreRefusedByName) {
   EXPECT_EQ(read_text("G43.4 H1\n").messages,
-            Messages{"p.nc:1:1: error: G43.4 (tool-centre-point control) is read by camber check, feed, time and "
-                     "fit-feed, on a machine with [kinematics] [not-read]"});
+            Messages{"p.nc:1:1: error: G43.4 (tool-centre-point control) is read on a machine with [kinematics], by "
+                     "camber check, time, feed, fit-feed, predict, compensate and post [not-read]"});
   EXPECT_EQ(read_text("G234 H1\n").messages,
-            Messages{"p.nc:1:1: error: G234 (tool-centre-point control) is read by camber check, feed, time and "
-                     "fit-feed, on a machine with [kinematics] [not-read]"});
+            Messages{"p.nc:1:1: error: G234 (tool-centre-point control) is read on a machine with [kinematics], by "
+                     "camber check, time, feed, fit-feed, predict, compensate and post [not-read]"});
   EXPECT_EQ(read_text("G43 H1\nG0 X1 A5.\n").messages,
-            Messages{"p.nc:2:7: error: rotary axis A is read by camber check, feed, time and fit-feed, on a machine "
-                     "with [kinematics]; X, Y and Z were expected [rotary-axis]"});
+            Messages{"p.nc:2:7: error: rotary axis A is read on a machine with [kinematics], by camber check, time, "
+                     "feed, fit-feed, predict, compensate and post; X, Y and Z were expected [rotary-axis]"});
 }
 
 }  // namespace

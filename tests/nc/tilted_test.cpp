@@ -124,14 +124,12 @@ TEST(TiltedFrame, BadInputByWholeMessage) {
                      "expected [position-open]"});
   EXPECT_EQ(said(start + "G68.2 J30.\nG53.1\nG91 G0 X1\n"),
             Messages{"p.nc:4:8: error: X in G91 after G53.1, which leaves X open; G90 was expected [position-open]"});
-  EXPECT_EQ(
-      read_text("G68.2 J30.\n").messages,
-      Messages{"p.nc:1:1: error: G68.2 (tilted frame) is read by camber check, feed, time and fit-feed, on a machine "
-               "with [kinematics] [not-read]"});
-  EXPECT_EQ(
-      read_text("G53.1\n").messages,
-      Messages{"p.nc:1:1: error: G53.1 (tilted frame) is read by camber check, feed, time and fit-feed, on a machine "
-               "with [kinematics] [not-read]"});
+  EXPECT_EQ(read_text("G68.2 J30.\n").messages,
+            Messages{"p.nc:1:1: error: G68.2 (tilted frame) is read on a machine with [kinematics], by camber check, "
+                     "time, feed, fit-feed and post [not-read]"});
+  EXPECT_EQ(read_text("G53.1\n").messages,
+            Messages{"p.nc:1:1: error: G53.1 (tilted frame) is read on a machine with [kinematics], by camber check, "
+                     "time, feed, fit-feed and post [not-read]"});
 }
 
 TEST(TiltedFrame, OtherCodesForPlanesAreRefusedByName) {
@@ -177,8 +175,8 @@ TEST(DynamicOffset, BadInputByWholeMessage) {
             Messages{"p.nc:2:1: error: G254 on a machine whose head turns about B is not supported; rotary axes of the "
                      "table were expected [tilted-frame]"});
   EXPECT_EQ(read_text("G254\n").messages,
-            Messages{"p.nc:1:1: error: G254 (dynamic work offset) is read by camber check, feed, time and fit-feed, "
-                     "on a machine with [kinematics] [not-read]"});
+            Messages{"p.nc:1:1: error: G254 (dynamic work offset) is read on a machine with [kinematics], by camber "
+                     "check, time, feed, fit-feed and post [not-read]"});
 }
 
 TEST(RotaryWords, WithReferencePointsGoToZeroOfTheMachine) {

@@ -10,6 +10,7 @@
 
 #include "base/units.h"
 #include "feedmodel/control_options.h"
+#include "kinematics/program_joints.h"
 #include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
 #include "removal/cutter.h"
@@ -184,9 +185,31 @@ class PostureInATrough : public ::testing::Test {
     diagnostics.throw_if_errors();
   }
 
+  /// Poses at the ends of the feed moves, as the machine of the job runs them.
+  std::vector<ToolPose> cut_ends(const std::string& text) const {
+    Diagnostics diagnostics;
+    nc::InterpreterOptions options;
+    options.inch = false;
+    options.rotary_axes = kinematics::rotary_options(job_.machine);
+    options = feedmodel::interpreter_options(job_.machine, options);
+    const nc::Program program = nc::read_program(SourceText("out.nc", text), diagnostics);
+    nc::Interpretation moves = nc::interpret(program, options, diagnostics);
+    diagnostics.throw_if_errors();
+    kinematics::place_lines(moves, job_.machine);
+    kinematics::ProgramJoints joints(job_.machine, moves);
+    std::vector<ToolPose> out;
+    while (!joints.done()) {
+      joints.next();
+      const auto pose = joints.pose_at(1);
+      if (pose && moves.moves[joints.index()].kind == nc::MoveKind::linear) out.push_back(*pose);
+    }
+    return out;
+  }
+
   Postured made(Mode mode, Diagnostics& diagnostics) const {
     return make_postures({.job = &job_, .program = &program_, .moves = &moves_, .tool = 1, .options = {.mode = mode}},
-                         diagnostics);
+                         diagnostics)
+        .at(0);
   }
 
   std::string said(const machine::Job& job) const {
@@ -223,6 +246,62 @@ TEST_F(PostureInATrough, ChosenDirectionsAreClearByASecondMethodAndTurnLess) {
   EXPECT_LT(chosen.figures.rotary_motion_deg, seed.figures.rotary_motion_deg);
   EXPECT_NE(chosen.text.find("\nM428\n"), std::string::npos);
   EXPECT_EQ(chosen.text.substr(0, 15), program_.source.text().substr(0, 15));
+}
+
+TEST_F(PostureInATrough, ATableOfOverhangsHasWhatEachOfThemGivesAlone) {
+  read(rows(mesh_));
+  job_.tools[1].holder = {{44, 44, 40}};
+  Diagnostics diagnostics;
+  PostureRequest request{.job = &job_, .program = &program_, .moves = &moves_, .tool = 1, .options = {}};
+  request.overhangs_mm = {45, 27, 20, 15, 10};
+  const std::vector<Postured> table = make_postures(request, diagnostics);
+  ASSERT_EQ(table.size(), 5U);
+  std::size_t blocked = 0, different = 0;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    PostureRequest one = request;
+    one.overhangs_mm = {request.overhangs_mm[i]};
+    const std::vector<Postured> alone = make_postures(one, diagnostics);
+    EXPECT_EQ(table[i].text, alone.at(0).text) << i;
+    EXPECT_EQ(table[i].blocked_move, alone[0].blocked_move) << i;
+    blocked += table[i].blocked_move.has_value();
+    different += i > 0 && !table[i].blocked_move && table[i].text != table[0].text;
+  }
+  diagnostics.throw_if_errors();
+  EXPECT_GT(blocked, 0U);  // the wide holder does not follow everywhere
+  EXPECT_LT(blocked, table.size());
+  EXPECT_GT(different, 0U);
+}
+
+TEST_F(PostureInATrough, OneDirectionIsTheSameHoweverItIsWritten) {
+  read(rows(mesh_));
+  std::vector<std::vector<ToolPose>> all;
+  for (const nc::OneDirection written : {nc::OneDirection::tip, nc::OneDirection::tilted, nc::OneDirection::dynamic}) {
+    Diagnostics diagnostics;
+    PostureRequest request{.job = &job_, .program = &program_, .moves = &moves_, .tool = 1, .options = {}};
+    request.options.indexed = true;
+    request.written = written;
+    const std::vector<Postured> made = make_postures(request, diagnostics);
+    diagnostics.throw_if_errors();
+    ASSERT_FALSE(made.at(0).blocked_move);
+    EXPECT_EQ(made[0].text.find("M428") != std::string::npos, written == nc::OneDirection::tip);
+    EXPECT_EQ(made[0].text.find("G68.2 X0. Y0. Z0. I") != std::string::npos, written == nc::OneDirection::tilted);
+    EXPECT_EQ(made[0].text.find("\nG254\n") != std::string::npos, written == nc::OneDirection::dynamic);
+    for (std::size_t i = 0; i < made[0].points.size(); ++i) {
+      const Vec3 axis = made[0].axes[i], tip = made[0].points[i].tip_mm(axis);
+      for (const Eigen::Vector3f& p : mesh_.points)
+        ASSERT_GE(point_room_mm(job_.tools.at(1), 1, tip, axis, p.cast<double>()), -0.02) << i;
+    }
+    all.push_back(cut_ends(made[0].text));
+  }
+  ASSERT_GT(all[0].size(), 80U);
+  EXPECT_GT(angle_between(all[0][0].axis, Vec3::UnitZ()), rad_from_deg(4));
+  for (std::size_t way = 1; way < all.size(); ++way) {
+    ASSERT_EQ(all[way].size(), all[0].size());
+    for (std::size_t i = 0; i < all[0].size(); ++i) {
+      EXPECT_LT((all[way][i].tip_mm - all[0][i].tip_mm).norm(), 0.001) << way << " " << i;
+      EXPECT_LT(angle_between(all[way][i].axis, all[0][i].axis), 1e-5) << way << " " << i;
+    }
+  }
 }
 
 TEST_F(PostureInATrough, SaysWhatItCannotTilt) {

@@ -181,6 +181,37 @@ class Figures(unittest.TestCase):
             camber.copy(SAMPLES / "14-copy-milling/machine.toml")
         self.assertTrue(caught.exception.file.endswith("machine.toml"))
 
+    def test_post_there_and_back(self):
+        folder = SAMPLES / "12-five-axis"
+        with tempfile.TemporaryDirectory() as out:
+            joints = os.path.join(out, "dome_joints.nc")
+            expected = command_line("post", folder / "dome.nc", "--machine", folder / "machine.toml", "-o", joints)
+            text = pathlib.Path(joints).read_bytes()
+        result = camber.post(folder / "dome.nc", folder / "machine.toml")
+        self.equal(result, expected)
+        self.assertEqual(result.text.encode(), text)
+        self.assertEqual(result.feed_blocks, expected["feed_blocks"])
+        self.assertLessEqual(result.tip_bound_mm, 0.005)
+        back = camber.post(camber.program_from_text("dome_joints.nc", result.text), folder / "machine.toml", to="tcp")
+        self.assertIn("G43.4", back.text)
+        with self.assertRaises(ValueError):
+            camber.post(folder / "dome.nc", folder / "machine.toml", to="pole")
+
+    def test_posture_of_a_die(self):
+        folder = SAMPLES / "16-die-cavity"
+        arguments = (folder / "finish.nc", "--job", folder / "job.toml", "--step-mm", 5, "--indexed")
+        with tempfile.TemporaryDirectory() as out:
+            program = os.path.join(out, "finish_5x.nc")
+            expected = command_line("posture", *arguments, "-o", program)
+            text = pathlib.Path(program).read_bytes()
+        result = camber.posture(folder / "finish.nc", folder / "job.toml", step_mm=5, indexed=True)
+        self.equal(result, expected)
+        self.assertTrue(result.success)
+        self.assertEqual(result.text.encode(), text)
+        self.assertEqual(result.of_program.time_s, expected["time_s"])
+        with self.assertRaisesRegex(ValueError, "write_as: g68; one of tip, tilted, dynamic, joints was expected"):
+            camber.posture(folder / "finish.nc", folder / "job.toml", indexed=True, write_as="g68")
+
     def test_plan(self):
         plan = SAMPLES / "15-plan/plan.toml"
         with tempfile.TemporaryDirectory() as out:

@@ -89,9 +89,14 @@ struct TiltedResult {
   std::size_t points = 0, unsettled = 0;
 };
 
+/// Heights of the upright scene.
+struct Heights {
+  double from = -1e9, to = 1e9;
+};
+
 /// In the steady middle of the rows. Errors within the upright scene's `y_from` ... `y_to`.
 inline TiltedResult cut_turned(const TiltedScene& upright, const Mat3& turn, machine::Coupling coupling, double y_from,
-                               double y_to) {
+                               double y_to, const Heights& heights = {}) {
   const machine::Material material{2000, 700, 0, 15, 15, 0};
   const TiltedScene scene = turned(upright, turn);
   auto stock = stock_of(upright, turn);
@@ -126,6 +131,7 @@ inline TiltedResult cut_turned(const TiltedScene& upright, const Mat3& turn, mac
   for (const auto& p : map.take()) {
     const Vec3 place = turn.transpose() * p.place_mm;
     if (place.x() < 2.03 || place.x() > 3.97 || place.y() < y_from || place.y() > y_to) continue;
+    if (place.z() < heights.from || place.z() > heights.to) continue;
     error.push_back(1000 * p.error_mm);
     area.push_back(p.area_mm2);
   }

@@ -14,6 +14,7 @@
 #include "removal/field/cell.h"
 #include "removal/field/tilted/carve.h"
 #include "removal/field/upright/tile_arena.h"
+#include "removal/simd/upright_kernels.h"
 #include "removal/tool_path.h"
 
 namespace camber::removal::tilted {
@@ -39,14 +40,20 @@ class ChipReader {
     double up_mm;
     std::size_t first_pair;
   };
+  /// A stamp that left a surface.
+  struct OtherStamp {
+    std::int32_t stamp = -1;
+    Frame frame{ToolPose{}};
+    std::size_t turned_from = static_cast<std::size_t>(-1);  ///< Reading::number
+    Mat3 turn = Mat3::Identity();                            ///< from that stamp's frame to this one's
+  };
   /// What one thread needs; may be used for stamp after stamp.
   struct Buffers {
     std::vector<Shallow> shallow;
     std::size_t pairs = 0;  ///< of the lists below (upright::PairLanes); they are longer
     std::vector<float> x, y, z, nx, ny, nz, guess_x, guess_y, guess_z, known, farther, thickness;
     std::vector<std::int32_t> row, id;
-    /// Frames of stamps that were needed last, by the lowest bits of their numbers.
-    std::vector<std::pair<std::int32_t, Frame>> frames;
+    std::vector<OtherStamp> others;  ///< that were needed last, by the lowest bits of their numbers
   };
 
   /// As upright::ChipReader.
@@ -56,7 +63,8 @@ class ChipReader {
 
   /// A stamp that is read.
   struct Reading {
-    std::size_t k;  ///< of the stretch
+    std::size_t k;       ///< of the stretch
+    std::size_t number;  ///< of all stamps
     Frame frame;
     ToothMotion motion;
     /// How much more than its motion allows a point may take, since the stamp before was deflected otherwise when it
@@ -78,17 +86,11 @@ class ChipReader {
     std::array<float, 3> deeper;  ///< by a deflection in x, y and z of the tool
     bool own_surface;
   };
-  /// Envelope points as the stamp's deflection displaces them.
-  struct Points {
-    static constexpr int kMost = 64;
-    alignas(64) std::array<float, kMost> x, y, z;  ///< in the tool's frame
-    alignas(64) std::array<float, kMost> cap_mm;   ///< none where the motion leads off the material
-  };
-  struct Cell;
-  void straight_points(int from, int count, const Reading& stamp, Points& out) const;
-  void deflected_points(int from, int count, const Reading& stamp, Points& out) const;
-  void sort_point(const upright::TileArena& arena, const Reading& stamp, int lane, const Vec3& place_mm, float cap_mm,
-                  Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
+  upright::TiltedPlace place_of(const upright::TileArena& arena, const Reading& stamp) const;
+  upright::StampBend bend_of(const Reading& stamp) const;
+  void sort_points(const upright::TileArena& arena, const Reading& stamp, const upright::LaneReading& reading,
+                   int first_lane, int count, Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
+  bool reach_below_blank(const upright::TileArena& arena, const Reading& stamp, Shallow& p) const;
   bool place_in_ring(const upright::TileArena& arena, const Reading& stamp, float half_mm, float axial_mm, Shallow& p,
                      Buffers& buffers) const;
   static void make_room(Buffers& buffers);
@@ -98,7 +100,8 @@ class ChipReader {
   void thin_general(Buffers& buffers) const;
   Depth depth(const upright::TileArena& arena, const Reading& stamp, const Shallow& p, std::size_t end_pair,
               Buffers& buffers) const;
-  const Frame& frame(std::int32_t stamp, Buffers& buffers) const;
+  OtherStamp& other(std::int32_t stamp, Buffers& buffers) const;
+  static const Mat3& turn_to(const Reading& from, OtherStamp& to);
   Vec3 normal(std::uint32_t point) const { return {envelope_.nx[point], envelope_.ny[point], envelope_.nz[point]}; }
 
   const EnvelopeGrid& envelope_;
@@ -110,6 +113,7 @@ class ChipReader {
   const DeflectionTable& deflections_;
   const upright::BendMemory& memory_;
   ReadingRule rule_;
+  const upright::Kernels& kernels_;
   float node_step_mm_;
   double max_curved_per_mm_ = 0;
   std::vector<float> wall_half_mm_;  ///< of the rings (removal/engage/upright/level_faces.h)

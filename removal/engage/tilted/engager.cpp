@@ -99,6 +99,10 @@ Engager::Engager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope,
     : impl_(std::make_unique<Impl>(stock, blank, with_patches(envelope, stock.band_mm()), stamps, first_id, rule)) {}
 Engager::~Engager() = default;
 
+void Engager::remember(std::size_t from, std::span<const float> rows, std::size_t row_size) {
+  impl_->memory.add_before(from, rows, row_size);
+}
+
 void Engager::start(std::size_t from, std::size_t count, const DeflectionTable& deflections) {
   Impl& m = *impl_;
   m.from = from;
@@ -111,7 +115,7 @@ void Engager::start(std::size_t from, std::size_t count, const DeflectionTable& 
       m.stock, m.blank, m.envelope.shape, m.stamps, [&](auto left) { m.leave(left); },
       m.rule.rigid ? 0 : DeflectedEngager::kMaxDeflection_mm);
   load_cut(m.stock, m.arena, m.tiles);
-  m.memory.begin(deflections);
+  m.memory.begin(deflections.row_size(), from);
   m.carvers.emplace(DeflectedCarver(m.envelope, deflections));
   m.reader.emplace(m.envelope, *m.lanes, m.all, m.stamps, m.first_id, m.stock.voxel_mm(), deflections, m.memory,
                    m.rule);

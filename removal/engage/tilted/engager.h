@@ -18,6 +18,7 @@ class Engager {
           std::int32_t first_id, const ReadingRule& rule);
   ~Engager();
 
+  void remember(std::size_t from, std::span<const float> rows, std::size_t row_size);
   void start(std::size_t from, std::size_t count, const DeflectionTable& deflections);
   std::span<const DeflectedChipSample> read(std::size_t k);
   double glance(std::size_t k);

@@ -1,0 +1,41 @@
+# Builds of everything at once (CAMBER_UNITY) compile the files of a folder in groups, and read the headers that nearly
+# every file includes once. Other builds compile each file alone, so that a change costs one file.
+if(CAMBER_UNITY)
+  find_package(Python3 COMPONENTS Interpreter)
+endif()
+if(CAMBER_UNITY AND Python3_FOUND)
+  file(WRITE ${PROJECT_BINARY_DIR}/headers.cpp "")
+  add_library(camber_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
+  target_link_libraries(camber_headers PRIVATE camber_options fmt::fmt)
+  target_precompile_headers(camber_headers PRIVATE <algorithm> <array> <cmath> <filesystem> <fstream> <functional>
+    <limits> <map> <memory> <numbers> <numeric> <optional> <set> <span> <sstream> <string> <string_view>
+    <unordered_map> <variant> <vector> <Eigen/Core> <Eigen/Geometry> <fmt/format.h>)
+endif()
+
+# camber_compile_together(TARGET): files of a group have no local name in common.
+function(camber_compile_together target)
+  if(NOT CAMBER_UNITY OR NOT Python3_FOUND)
+    return()
+  endif()
+  get_target_property(files ${target} SOURCES)
+  list(FILTER files INCLUDE REGEX "\\.cpp$")
+  list(FILTER files EXCLUDE REGEX "/simd/")
+  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/unity_groups.py 1800 ${files}
+    OUTPUT_VARIABLE groups OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  string(REPLACE ";" "," groups "${groups}")
+  string(REPLACE "\n" ";" groups "${groups}")
+  set(number 0)
+  foreach(group IN LISTS groups)
+    string(REPLACE "," ";" group "${group}")
+    math(EXPR number "${number} + 1")
+    set_source_files_properties(${group} PROPERTIES UNITY_GROUP ${number})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # A group's file is no header, though the compiler takes what it includes for one.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  target_compile_options(${target} PRIVATE -fPIC)  # tests too: precompiled headers ask for the same flags
+  # Those of removal differ: OpenVDB's templates are visible there.
+  if(NOT target STREQUAL "camber_removal")
+    target_precompile_headers(${target} REUSE_FROM camber_headers)
+  endif()
+endfunction()

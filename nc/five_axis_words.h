@@ -1,0 +1,25 @@
+#pragma once
+// Words with which the dialects tilt the tool. Beside Dialect, as few files need them.
+#include <cstdint>
+#include <string_view>
+
+#include "nc/dialect.h"
+
+namespace camber::nc {
+
+/// How a whole operation at one direction of the tool (3+2) is written.
+enum class OneDirection : std::uint8_t {
+  tip,      ///< under tool-centre-point control
+  tilted,   ///< in a tilted frame: G68.2, G53.1
+  dynamic,  ///< under the dynamic work offset, G254: rotary axes of the table alone
+  joints    ///< X Y Z of the linear axes
+};
+
+struct FiveAxisWords {
+  std::string_view tip_control = "G43.4";  ///< switches tool-centre-point control on, where no M code does
+  OneDirection one_direction = OneDirection::tilted;
+};
+
+FiveAxisWords five_axis_words(const Dialect& dialect);
+
+}  // namespace camber::nc
