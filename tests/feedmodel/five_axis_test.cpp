@@ -25,13 +25,13 @@ namespace {
 
 const std::string kTraces = CAMBER_SHARED_DATA_DIR "/linuxcnc5/";
 
-using tests::cutting_time_s;
-using tests::fast_machine;
-using tests::kPeriodS;
-using tests::kProlog;
-using tests::kToolMm;
-using tests::moves_of;
-using tests::traced_machine;
+using rotary_tests::cutting_time_s;
+using rotary_tests::fast_machine;
+using rotary_tests::kPeriodS;
+using rotary_tests::kProlog;
+using rotary_tests::kToolMm;
+using rotary_tests::moves_of;
+using rotary_tests::traced_machine;
 
 // --- closed forms
 

@@ -14,12 +14,12 @@
 namespace camber::feedmodel {
 namespace {
 
-using tests::cutting_time_s;
-using tests::fast_machine;
-using tests::kPeriodS;
-using tests::kProlog;
-using tests::motion_time_s;
-using tests::moves_of;
+using rotary_tests::cutting_time_s;
+using rotary_tests::fast_machine;
+using rotary_tests::kPeriodS;
+using rotary_tests::kProlog;
+using rotary_tests::motion_time_s;
+using rotary_tests::moves_of;
 
 constexpr double kSameS = 1e-6;
 const std::string kPocket =

@@ -12,7 +12,7 @@
 #include "test_paths.h"
 #include "tests/kinematics/machines.h"
 
-namespace camber::feedmodel::tests {
+namespace camber::feedmodel::rotary_tests {
 
 constexpr double kToolMm = 80;
 constexpr double kPeriodS = 0.001;
@@ -70,4 +70,4 @@ inline double motion_time_s(const nc::Interpretation& moves, const machine::Mach
   return plan_motion(moves, machine).time_s();
 }
 
-}  // namespace camber::feedmodel::tests
+}  // namespace camber::feedmodel::rotary_tests
