@@ -166,9 +166,10 @@ TEST(RotaryMotion, PositionsOfTheAxesCutAsTipControlDoes) {
 
 TEST(RotaryMotion, WithoutTiltThePathIsTheOneOfThreeAxes) {
   const machine::Job job = job_on("table_bc");
-  const std::string rest = "G1 Z-0.2 F300\nX-4 F1200\nG0 Z5\nX9 Y1\nG1 Z-0.2 F300\nX-4 F1200\nG0 Z5\nM30\n";
-  const Cut three = cut_of(job, kStart + "G43 H1\nG0 X9 Y0.5 Z5\n" + rest),
-            five = cut_of(job, kStart + "G43.4 H1\nG0 X9 Y0.5 Z5 B0 C0\n" + rest);
+  const std::string rest = "G1 Z-0.2 F300\nX-4 F1200\nG0 Z5\nX9 Y1\nG1 Z-0.2 F300\nX-4 F1200\nG0 Z5\n";
+  // A program that never turned would be read as one of three axes: this one turns its table when all is cut.
+  const Cut three = cut_of(job, kStart + "G43 H1\nG0 X9 Y0.5 Z5\n" + rest + "M30\n"),
+            five = cut_of(job, kStart + "G43.4 H1\nG0 X9 Y0.5 Z5 B0 C0\n" + rest + "G0 C90\nM30\n");
   EXPECT_FALSE(three.program.rotary);
   ASSERT_TRUE(five.program.rotary);
   EXPECT_TRUE(removal::all_upright(five.program.path.stamps));
