@@ -8,6 +8,7 @@
 #include "api/error_figures.h"
 #include "api/feed_points.h"
 #include "api/job.h"
+#include "api/predict_result.h"
 #include "api/run.h"
 #include "base/output_file.h"
 #include "report/forces_csv.h"
@@ -66,8 +67,9 @@ TraceComparison comparison_of(const simulate::TracedRun& t) {
           .difference_um = api::figures_of(t.difference_um)};
 }
 
-/// All but json.
-PredictResult result_of(const machine::Job& job, const api::PreparedJob& prepared, const simulate::Prediction& p) {
+}  // namespace
+
+PredictResult api::result_of(const machine::Job& job, const PreparedJob& prepared, const simulate::Prediction& p) {
   const simulate::SimulatedProgram& program = prepared.setup.program;
   PredictResult out{.machine_time_s = program.feed.time_s,
                     .cutting_time_s = program.feed.cutting_time_s,
@@ -84,8 +86,6 @@ PredictResult result_of(const machine::Job& job, const api::PreparedJob& prepare
   report::for_each_force_row(job, program, p, [&](const report::ForceRow& row) { out.forces.push_back(row_of(row)); });
   return out;
 }
-
-}  // namespace
 
 PredictResult v0::predict(const Job& given, const PredictOptions& options, const RunOptions& run_options) {
   const auto begin = std::chrono::steady_clock::now();
@@ -108,7 +108,7 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
     found.append(of_cut);
     run.settle(of_cut);
     const simulate::SimulatedProgram& program = prepared.setup.program;
-    result = result_of(job, prepared, prediction);
+    result = api::result_of(job, prepared, prediction);
     if (options.feed && prepared.traced)
       api::points_sink(program.moves, result.feed)(prepared.traced->samples);
     else if (options.feed)

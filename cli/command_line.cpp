@@ -126,8 +126,9 @@ int run(int argc, const char* const* argv) {
     if (problem.get_exit_code() == 0) return app.exit(problem), kDone;
     return refuse(app, problem, argc, argv) == 0 ? kDone : kCommandLineWrong;
   }
-  if (const std::string& name = app.get_subcommands().front()->get_name(); name != "predict" && started_by_mpi()) {
-    print_error(fmt::format("under mpirun predict alone shares its work; {} runs without it", name));
+  const std::string& name = app.get_subcommands().front()->get_name();
+  if (name != "predict" && name != "compensate" && started_by_mpi()) {
+    print_error(fmt::format("under mpirun predict and compensate share their work; {} runs without it", name));
     return kCommandLineWrong;
   }
   if (json_to_standard_output(app)) claim_standard_output();

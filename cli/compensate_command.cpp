@@ -43,6 +43,19 @@ void write_report(const CompensateArguments& arguments, const machine::Job& job,
 
 }  // namespace
 
+api::CompensateRequest compensate_request(const CompensateArguments& arguments) {
+  return {.uncertainty = arguments.uncertainty,
+          .measured = arguments.measured,
+          .measured_program = arguments.measured_program,
+          .check_voxels_mm = arguments.check_voxels_mm,
+          .time_budget_percent = arguments.time_budget_percent,
+          .keep_anyway = arguments.keep_anyway,
+          .header = arguments.header,
+          .header_hash = arguments.header_hash,
+          .max_stock_crossings = arguments.report.empty() ? 0 : report::kMaxStockCrossings,
+          .progress = {}};
+}
+
 int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Diagnostics diagnostics;
@@ -54,20 +67,12 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   });
   RoundsProgress rounds(given.compensation.max_rounds,
                         static_cast<int>(2 * arguments.check_voxels_mm.size() + arguments.uncertainty.size()));
-  const api::CompensateRequest request{.uncertainty = arguments.uncertainty,
-                                       .measured = arguments.measured,
-                                       .measured_program = arguments.measured_program,
-                                       .check_voxels_mm = arguments.check_voxels_mm,
-                                       .time_budget_percent = arguments.time_budget_percent,
-                                       .keep_anyway = arguments.keep_anyway,
-                                       .header = arguments.header,
-                                       .header_hash = arguments.header_hash,
-                                       .max_stock_crossings = arguments.report.empty() ? 0 : report::kMaxStockCrossings,
-                                       .progress = [&](const std::string& what, double share) {
-                                         in_rounds = true;
-                                         const RoundsProgress::Whole whole = rounds.at(what, share);
-                                         progress.show_whole(whole.what, whole.share);
-                                       }};
+  api::CompensateRequest request = compensate_request(arguments);
+  request.progress = [&](const std::string& what, double share) {
+    in_rounds = true;
+    const RoundsProgress::Whole whole = rounds.at(what, share);
+    progress.show_whole(whole.what, whole.share);
+  };
   api::CompensatedJob done;
   try {
     done = api::compensate_job(given, request, diagnostics);

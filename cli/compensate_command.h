@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "api/commands/compensate.h"
 #include "cli/global_options.h"
 
 namespace camber::cli {
@@ -20,6 +21,9 @@ struct CompensateArguments {
   std::optional<double> time_budget_percent{};
   bool keep_anyway = false;  ///< write the program even where it is no better than the given one
 };
+
+/// What the computation takes of the arguments.
+api::CompensateRequest compensate_request(const CompensateArguments& arguments);
 
 /// Throws InputError. Returns kDone or kNumbersDidNotWorkOut (a static solution did not settle, or the residual is
 /// over the tolerance).

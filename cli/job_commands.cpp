@@ -186,6 +186,10 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
         if (other != verify && !other->check_lname("json") && !other->empty())
           throw CLI::ExcludesError("--verify", other->get_name());
       chosen = [place = verify->as<std::string>(), json = arguments->json, &options] {
+        if (started_by_mpi()) {
+          print_error("--verify judges one program; without mpirun it runs");
+          return static_cast<int>(kCommandLineWrong);
+        }
         return run_verify({place, json}, options);
       };
       return;
@@ -197,7 +201,10 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
       check_outputs(
           {arguments->dry_run ? "" : arguments->output, record_of(*arguments), arguments->report, arguments->json},
           files_read(arguments->job, {arguments->measured, arguments->measured_program}));
-      return run_compensate(*arguments, options);
+      if (!started_by_mpi()) return run_compensate(*arguments, options);
+      if (has_mpi()) return run_compensate_on_ranks(*arguments, options);
+      print_error("this camber is built without MPI; without mpirun it runs");
+      return static_cast<int>(kCommandLineWrong);
     };
   });
 }

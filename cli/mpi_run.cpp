@@ -5,9 +5,19 @@
 #include "cli/console.h"
 
 #ifdef CAMBER_MPI
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <map>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -16,6 +26,7 @@
 #include "api/commands/sections.h"
 #include "base/output_file.h"
 #include "cli/progress.h"
+#include "simulate/shared_prediction.h"
 #endif
 
 namespace camber::cli {
@@ -33,6 +44,7 @@ bool started_by_mpi() {
 bool has_mpi() { return false; }
 
 int run_predict_on_ranks(const SectionsArguments&, const GlobalOptions&) { return kCommandLineWrong; }
+int run_compensate_on_ranks(const CompensateArguments&, const GlobalOptions&) { return kCommandLineWrong; }
 
 #else
 
@@ -59,41 +71,123 @@ class Ranks {
   int rank_ = 0, size_ = 1;
 };
 
-/// `bytes` of one rank to all others, in messages that an int can count.
-void send_to_all(std::string& bytes, int from) {
-  constexpr std::uint64_t kMessage = std::uint64_t{1} << 30;
-  std::uint64_t size = bytes.size();
-  MPI_Bcast(&size, 1, MPI_UINT64_T, from, MPI_COMM_WORLD);
-  bytes.resize(size);
-  for (std::uint64_t at = 0; at < size; at += kMessage)
-    MPI_Bcast(bytes.data() + at, static_cast<int>(std::min(kMessage, size - at)), MPI_CHAR, from, MPI_COMM_WORLD);
+volatile std::sig_atomic_t part_in_work = 0, asked_to_end = 0;
+
+[[noreturn]] void leave() {
+  constexpr std::string_view kSaid = "camber: ended by mpirun; the parts of this rank are written\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kSaid.data(), kSaid.size());
+  _exit(128 + SIGTERM);
 }
 
-/// A rank's own part is also a file, so that it is not lost when another rank is; the others' come as messages.
+/// Where a rank is lost, mpirun sends SIGTERM to the others. A part that is in work is written first.
+class PartInWork {
+ public:
+  PartInWork() { part_in_work = 1; }
+  ~PartInWork() {
+    part_in_work = 0;
+    if (asked_to_end) leave();
+  }
+  PartInWork(const PartInWork&) = delete;
+  PartInWork& operator=(const PartInWork&) = delete;
+};
+
+/// While it lives, SIGTERM ends the process between parts.
+class EndsBetweenParts {
+ public:
+  EndsBetweenParts()
+      : before_(std::signal(SIGTERM, [](int) {
+          asked_to_end = 1;
+          if (!part_in_work) leave();
+        })) {}
+  ~EndsBetweenParts() { std::signal(SIGTERM, before_); }
+  EndsBetweenParts(const EndsBetweenParts&) = delete;
+  EndsBetweenParts& operator=(const EndsBetweenParts&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
+constexpr std::uint64_t kMessage = std::uint64_t{1} << 30;  // bytes that an int can count
+
+int part_of_message(std::uint64_t at, std::uint64_t size) {
+  return at < size ? static_cast<int>(std::min(kMessage, size - at)) : 0;
+}
+
+/// Sends `bytes` to a rank while it receives those of another.
+std::string exchange(const std::string& bytes, int to, int from) {
+  std::uint64_t size = bytes.size(), coming = 0;
+  MPI_Sendrecv(&size, 1, MPI_UINT64_T, to, 0, &coming, 1, MPI_UINT64_T, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  std::string out(coming, '\0');
+  for (std::uint64_t at = 0; at < std::max(size, coming); at += kMessage)
+    MPI_Sendrecv(bytes.data() + std::min(at, size), part_of_message(at, size), MPI_CHAR, to, 0,
+                 out.data() + std::min(at, coming), part_of_message(at, coming), MPI_CHAR, from, 0, MPI_COMM_WORLD,
+                 MPI_STATUS_IGNORE);
+  return out;
+}
+
+void send(const std::string& bytes, int to) {
+  const std::uint64_t size = bytes.size();
+  MPI_Send(&size, 1, MPI_UINT64_T, to, 0, MPI_COMM_WORLD);
+  for (std::uint64_t at = 0; at < size; at += kMessage)
+    MPI_Send(bytes.data() + at, part_of_message(at, size), MPI_CHAR, to, 0, MPI_COMM_WORLD);
+}
+
+std::string receive(int from) {
+  std::uint64_t size = 0;
+  MPI_Recv(&size, 1, MPI_UINT64_T, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  std::string out(size, '\0');
+  for (std::uint64_t at = 0; at < size; at += kMessage)
+    MPI_Recv(out.data() + at, part_of_message(at, size), MPI_CHAR, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  return out;
+}
+
+/// Every rank gives every other one what that needs, in turns; only two messages of a rank are under way at a time.
+template <class Bytes, class Take>
+std::uint64_t exchange_all(const Ranks& ranks, const Bytes& bytes, const Take& take) {
+  std::uint64_t sent = 0;
+  const std::size_t n = ranks.size();
+  for (std::size_t step = 1; step < n; ++step) {
+    const std::size_t to = (ranks.rank() + step) % n, from = (ranks.rank() + n - step) % n;
+    const std::string given = bytes(to);
+    sent += given.size();
+    take(from, exchange(given, static_cast<int>(to), static_cast<int>(from)));
+  }
+  return sent;
+}
+
+/// A rank's own parts are files, so that they are not lost when another rank is; what it needs of others' comes as
+/// messages.
 class RankParts : public api::PartStore {
  public:
   RankParts(const Ranks& ranks, const std::string& folder, const api::PartKey& key)
       : ranks_(ranks), files_(folder, key), sections_(key.sections) {}
 
-  bool has(const api::PartName& name) override {
-    if (!files_.has(name)) return false;
-    parts_[api::file_name(name)] = files_.take(name);
-    return true;
+  bool has(const api::PartName& name) override { return files_.has(name); }
+  void give(const api::PartName& name, std::string content) override { files_.give(name, std::move(content)); }
+  std::string take(const api::PartName& name) override {
+    if (name.section == ranks_.rank()) return files_.take(name);
+    return merging_ ? receive(static_cast<int>(name.section)) : parts_.at(api::file_name(name));
   }
-  void give(const api::PartName& name, std::string content) override {
-    files_.give(name, content);
-    parts_[api::file_name(name)] = std::move(content);
-  }
-  std::string take(const api::PartName& name) override { return parts_.at(api::file_name(name)); }
-  void gather(api::PartStage stage, int round) override {
-    // What no later stage reads.
+  void exchange_parts(api::SectionRun& run, api::PartStage stage, int round) {
+    // What no later round reads.
     if (stage == api::PartStage::solve && round > 2)
       for (std::size_t s = 0; s < sections_; ++s)
         parts_.erase(api::file_name({api::PartStage::solve, round - 2, s, sections_}));
-    for (std::size_t s = 0; s < sections_; ++s) {
-      std::string& part = parts_[api::file_name({stage, round, s, sections_})];
-      send_to_all(part, static_cast<int>(s));
-      if (s == ranks_.rank()) sent_bytes_ += part.size();
+    const auto name = [&](std::size_t section) { return api::PartName{stage, round, section, sections_}; };
+    sent_bytes_ +=
+        exchange_all(ranks_, run.part_for_others(name(ranks_.rank())),
+                     [&](std::size_t from, std::string part) { parts_[api::file_name(name(from))] = std::move(part); });
+  }
+  /// From now on rank 0 takes whole parts, in the order in which a merge asks for them.
+  void begin_merge(int round) {
+    merging_ = true;
+    parts_.clear();
+    if (ranks_.rank() == 0) return;
+    for (const api::PartName& name : {api::PartName{api::PartStage::sweep, 1, ranks_.rank(), sections_},
+                                      api::PartName{api::PartStage::solve, round, ranks_.rank(), sections_}}) {
+      const std::string part = files_.take(name);
+      send(part, 0);
+      sent_bytes_ += part.size();
     }
   }
   std::uint64_t sent_bytes() const { return sent_bytes_; }
@@ -102,24 +196,40 @@ class RankParts : public api::PartStore {
   const Ranks& ranks_;
   api::PartFiles files_;
   std::size_t sections_;
-  std::map<std::string, std::string> parts_;
+  std::map<std::string, std::string> parts_;  ///< of others: what this rank needs of them
+  bool merging_ = false;
   std::uint64_t sent_bytes_ = 0;
 };
 
-/// What every rank has done, on rank 0.
-void tell_work(const Ranks& ranks, const simulate::SectionWork& work, std::uint64_t sent_bytes) {
-  const std::uint64_t own[3] = {work.stamps, work.voxels, sent_bytes};
-  std::vector<std::uint64_t> all(3 * ranks.size());
-  MPI_Gather(own, 3, MPI_UINT64_T, all.data(), 3, MPI_UINT64_T, 0, MPI_COMM_WORLD);
-  if (ranks.rank() != 0) return;
+/// The mean over the ranks in percent of the largest.
+double balance_percent(const std::vector<std::uint64_t>& of_ranks) {
   std::uint64_t sum = 0, most = 0;
-  for (std::size_t r = 0; r < ranks.size(); ++r) {
-    fmt::print(stderr, "rank {}: {} stamps, {} voxels, {} bytes sent\n", r, all[3 * r], all[3 * r + 1], all[3 * r + 2]);
-    sum += all[3 * r];
-    most = std::max(most, all[3 * r]);
-  }
-  fmt::print(stderr, "stamps: the mean of the ranks is {:.1f} % of the largest\n",
-             most == 0 ? 100.0 : 100.0 * static_cast<double>(sum) / static_cast<double>(most * ranks.size()));
+  for (const std::uint64_t n : of_ranks) sum += n, most = std::max(most, n);
+  return most == 0 ? 100.0 : 100.0 * static_cast<double>(sum) / static_cast<double>(most * of_ranks.size());
+}
+
+/// What every rank has done, on rank 0. `work`: before the merge.
+void tell_work(const Ranks& ranks, const simulate::SectionWork& work, std::uint64_t sent_bytes) {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  const auto milliseconds = [](const timeval& t) {
+    return static_cast<std::uint64_t>(t.tv_sec) * 1000 + static_cast<std::uint64_t>(t.tv_usec) / 1000;
+  };
+  constexpr std::size_t kFigures = 5;
+  const std::uint64_t own[kFigures] = {work.stamps, work.voxels, sent_bytes,
+                                       milliseconds(use.ru_utime) + milliseconds(use.ru_stime),
+                                       static_cast<std::uint64_t>(use.ru_maxrss) / 1024};
+  std::vector<std::uint64_t> all(kFigures * ranks.size());
+  MPI_Gather(own, kFigures, MPI_UINT64_T, all.data(), kFigures, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+  if (ranks.rank() != 0) return;
+  std::vector<std::uint64_t> of_ranks[kFigures];
+  for (std::size_t i = 0; i < all.size(); ++i) of_ranks[i % kFigures].push_back(all[i]);
+  for (std::size_t r = 0; r < ranks.size(); ++r)
+    fmt::print(stderr, "rank {}: {} stamps, {} voxels, {} bytes sent, {:.1f} s of processor time, {} MB\n", r,
+               of_ranks[0][r], of_ranks[1][r], of_ranks[2][r], static_cast<double>(of_ranks[3][r]) / 1000,
+               of_ranks[4][r]);
+  fmt::print(stderr, "mean of the ranks: stamps {:.1f} %, voxels {:.1f} %, processor time {:.1f} % of the largest\n",
+             balance_percent(of_ranks[0]), balance_percent(of_ranks[1]), balance_percent(of_ranks[3]));
 }
 
 int predict_on(const Ranks& ranks, SectionsArguments arguments, GlobalOptions options) {
@@ -132,18 +242,28 @@ int predict_on(const Ranks& ranks, SectionsArguments arguments, GlobalOptions op
   settle(diagnostics, options);
   const api::PartKey key = api::part_key(job, arguments.sections, arguments.forces_at);
   RankParts store(ranks, arguments.output_folder, key);
-  api::SectionRun run(job, key, store, section_steps(progress), of_run);
-  run.sweep(ranks.rank());
-  store.gather(api::PartStage::sweep, 1);
   int round = 1;
-  for (bool again = true; again;) {
-    run.solve(ranks.rank(), round);
-    store.gather(api::PartStage::solve, round);
-    again = run.is_static() && round < api::kMaxSectionRounds && (round == 1 || run.solved_again(round) > 0);
-    if (again) ++round;
+  simulate::SectionWork work;
+  const auto compute = [](const auto& part) {
+    const PartInWork in_work;
+    part();
+  };
+  {
+    const EndsBetweenParts ends;
+    api::SectionRun run(job, key, store, section_steps(progress), of_run);
+    compute([&] { run.sweep(ranks.rank()); });
+    store.exchange_parts(run, api::PartStage::sweep, 1);
+    for (bool again = true; again;) {
+      compute([&] { run.solve(ranks.rank(), round); });
+      store.exchange_parts(run, api::PartStage::solve, round);
+      again = run.is_static() && round < api::kMaxSectionRounds && (round == 1 || run.solved_again(round) > 0);
+      if (again) ++round;
+    }
+    work = run.work();
   }
   progress.clear();
-  if (options.verbosity > 0) tell_work(ranks, run.work(), store.sent_bytes());
+  if (options.verbosity > 0) tell_work(ranks, work, store.sent_bytes());
+  store.begin_merge(round);
   int status = kDone;
   if (ranks.rank() == 0)
     status = merge_and_write(job, key, round, store, {arguments.output_folder, arguments.json}, options, begin);
@@ -151,28 +271,62 @@ int predict_on(const Ranks& ranks, SectionsArguments arguments, GlobalOptions op
   return status;
 }
 
-/// What is wrong with the input is found by every rank, and said by the first.
-[[noreturn]] void end_all(const Ranks& ranks, const std::function<void()>& say) {
+/// Every rank compensates, and the predictions are shared; rank 0 writes.
+int compensate_on(const Ranks& ranks, const CompensateArguments& arguments, const GlobalOptions& options) {
+  const simulate::Crew crew{ranks.rank(), ranks.size(), [&](const std::function<std::string(std::size_t)>& bytes) {
+                              std::vector<std::string> out(ranks.size());
+                              exchange_all(ranks, bytes,
+                                           [&](std::size_t from, std::string given) { out[from] = std::move(given); });
+                              return out;
+                            }};
+  const simulate::CrewScope shared(crew);
+  int status = kDone;
   if (ranks.rank() == 0) {
-    say();
-    std::fflush(nullptr);
+    status = run_compensate(arguments, options);
+  } else {
+    Diagnostics diagnostics;  // rank 0 says them
+    const machine::Job job = machine::read_job(arguments.job, diagnostics);
+    diagnostics.throw_if_errors();
+    try {
+      api::compensate_job(job, compensate_request(arguments), diagnostics);
+    } catch (const BeyondModel&) {  // so does rank 0
+    }
   }
+  MPI_Bcast(&status, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  return status;
+}
+
+/// What is wrong with the input is found by every rank, and said by the first; the others say what is wrong where they
+/// are alone with it.
+[[noreturn]] void end_all(const Ranks& ranks, const std::function<void()>& say) {
+  if (ranks.rank() > 0) std::this_thread::sleep_for(std::chrono::seconds(2));
+  say();
+  std::fflush(nullptr);
   remove_empty_folders();
   MPI_Abort(MPI_COMM_WORLD, kInputWrong);
   std::abort();
 }
 
-}  // namespace
-
-int run_predict_on_ranks(const SectionsArguments& arguments, const GlobalOptions& options) {
+template <class Work>
+int run_on_ranks(const GlobalOptions& options, const Work& work) {
   const Ranks ranks;
   try {
-    return predict_on(ranks, arguments, options);
+    return work(ranks);
   } catch (const InputError& problem) {
     end_all(ranks, [&] { print_diagnostics(problem.diagnostics(), options); });
   } catch (const std::exception& problem) {
     end_all(ranks, [&] { print_error(problem.what()); });
   }
+}
+
+}  // namespace
+
+int run_predict_on_ranks(const SectionsArguments& arguments, const GlobalOptions& options) {
+  return run_on_ranks(options, [&](const Ranks& ranks) { return predict_on(ranks, arguments, options); });
+}
+
+int run_compensate_on_ranks(const CompensateArguments& arguments, const GlobalOptions& options) {
+  return run_on_ranks(options, [&](const Ranks& ranks) { return compensate_on(ranks, arguments, options); });
 }
 
 #endif

@@ -1,9 +1,11 @@
 #pragma once
-// mpirun -n N camber predict J.toml -o DIR: a rank computes a section, parts go from rank to rank.
+// mpirun -n N camber predict J.toml -o DIR: a rank computes a section, parts go from rank to rank. camber compensate
+// shares each of its predictions in the same way.
 //
 // The same executable with and without mpirun; the only file that sees MPI is mpi_run.cpp.
 #include <string>
 
+#include "cli/compensate_command.h"
 #include "cli/global_options.h"
 #include "cli/sections_command.h"
 
@@ -16,5 +18,7 @@ bool has_mpi();
 
 /// camber predict on every rank; rank 0 merges and writes. The exit status is that of rank 0. Requires has_mpi().
 int run_predict_on_ranks(const SectionsArguments& arguments, const GlobalOptions& options);
+/// camber compensate on every rank; rank 0 writes. As above.
+int run_compensate_on_ranks(const CompensateArguments& arguments, const GlobalOptions& options);
 
 }  // namespace camber::cli

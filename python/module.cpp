@@ -231,6 +231,31 @@ void add_functions(py::module_& module) {
       "open_study",
       [](const Path& path, const Path& folder) { return camber::open_study(path.string(), folder.string()); }, "path"_a,
       "folder"_a, "The cases of a study, each with a job of its own in the folder, and their table so far.");
+  module.def(
+      "predict_section",
+      [](const Path& job_path, const Path& folder, std::size_t sections, std::size_t section, bool solve, int round,
+         std::size_t forces_at, const py::object& progress, bool strict, int threads) {
+        camber::SectionResult result;
+        call({progress, strict, threads}, [&](const camber::RunOptions& run) {
+          result = camber::predict_section(
+              job_path.string(), folder.string(),
+              {.sections = sections, .section = section, .solve = solve, .round = round, .forces_at = forces_at}, run);
+        });
+        return result;
+      },
+      "job_path"_a, "folder"_a, py::kw_only(), "sections"_a, "section"_a, "solve"_a = false, "round"_a = 1,
+      "forces_at"_a = 0, "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+      "Computes one part of a prediction in sections of the path, unless it is there.");
+  module.def(
+      "merge",
+      [](const Path& folder, const py::object& progress, bool strict, int threads) {
+        camber::PredictResult result;
+        call({progress, strict, threads},
+             [&](const camber::RunOptions& run) { result = camber::merge(folder.string(), run); });
+        return result;
+      },
+      "folder"_a, py::kw_only(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+      "Joins the parts that predict_section has written.");
   module.def("adapt", adapt, "job"_a, py::kw_only(), "time_limit_s"_a = py::none(), "sweep"_a = false,
              "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Changes the feeds of a job's program so that the loads of its cut keep the limits of [adapt].");

@@ -151,6 +151,17 @@ void add_explain_kinematics(py::module_& module) {
       .def_readonly("text", &KinematicsExplanation::text);
 }
 
+void add_sections(py::module_& module) {
+  using camber::SectionResult;
+  py::class_<SectionResult>(module, "SectionResult")
+      .def_readonly("part", &SectionResult::part)
+      .def_readonly("computed", &SectionResult::computed)
+      .def_readonly("stamps", &SectionResult::stamps)
+      .def_readonly("voxels", &SectionResult::voxels)
+      .def_readonly("solved_again", &SectionResult::solved_again)
+      .def_readonly("diagnostics", &SectionResult::diagnostics);
+}
+
 void add_study(py::module_& module) {
   using camber::Study, camber::StudyCase;
   py::class_<StudyCase>(module, "StudyCase")
@@ -343,6 +354,7 @@ void add_results(py::module_& module) {
   add_check(module);
   add_explain_kinematics(module);
   add_study(module);
+  add_sections(module);
   add_feed_and_time(module);
   add_fit(module);
   add_predict_and_compensate(module);

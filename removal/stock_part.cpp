@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 
 #include <tbb/parallel_for.h>
@@ -145,7 +146,7 @@ void StockPart::join_to(Stock& stock, const Region* within, bool stamps) const {
   }
 }
 
-void StockPart::keep_within(const Region& region, double voxel_mm) {
+StockPart StockPart::within(const Region& region, double voxel_mm) const {
   StockPart kept;
   for (std::size_t t = 0; t < tile_.size(); ++t) {
     if (!region.meets(tile_[t].index, voxel_mm)) continue;
@@ -156,7 +157,43 @@ void StockPart::keep_within(const Region& region, double voxel_mm) {
     kept.distance_.insert(kept.distance_.end(), distance_.begin() + from, distance_.begin() + end);
     kept.stamp_.insert(kept.stamp_.end(), stamp_.begin() + from, stamp_.begin() + end);
   }
-  *this = std::move(kept);
+  return kept;
+}
+
+StockPart::StockPart(std::span<const StockPart* const> parts) {
+  std::map<Index3, std::vector<std::pair<const StockPart*, std::size_t>>> tiles;
+  for (const StockPart* part : parts)
+    for (std::size_t t = 0; t < part->tile_.size(); ++t) tiles[part->tile_[t].index].emplace_back(part, t);
+  for (const auto& [index, of_parts] : tiles) add_joined(index, of_parts);
+}
+
+/// `parts`: each with its number of the tile, in the order in which they are joined. Of equal values the first stays.
+void StockPart::add_joined(const Index3& index, std::span<const std::pair<const StockPart*, std::size_t>> parts) {
+  OfTile out;
+  out.index = index;
+  out.first = distance_.size();
+  std::array<float, kVoxels> distance{};
+  std::array<std::int32_t, kVoxels> stamp{};
+  for (const auto& [part, t] : parts) {
+    const OfTile& tile = part->tile_[t];
+    std::size_t next = tile.first;
+    for (std::size_t n = 0; n < kVoxels; ++n) {
+      if (tile.air.has(n)) out.air.set(n);
+      if (!tile.cut.has(n)) continue;
+      const std::size_t at = next++;
+      if (out.cut.has(n) && !(part->distance_[at] > distance[n])) continue;
+      out.cut.set(n);
+      distance[n] = part->distance_[at];
+      stamp[n] = part->stamp_[at];
+    }
+  }
+  for (std::size_t w = 0; w < out.cut.bits.size(); ++w) out.cut.bits[w] &= ~out.air.bits[w];
+  for (std::size_t n = 0; n < kVoxels; ++n) {
+    if (!out.cut.has(n)) continue;
+    distance_.push_back(distance[n]);
+    stamp_.push_back(stamp[n]);
+  }
+  tile_.push_back(out);
 }
 
 void StockPart::write(ByteWriter& out) const {

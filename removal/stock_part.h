@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.h"
@@ -19,6 +21,10 @@ struct Region {
   void add(const Vec3& point) {
     min_mm = min_mm.cwiseMin(point);
     max_mm = max_mm.cwiseMax(point);
+  }
+  void add(const Region& other) {
+    min_mm = min_mm.cwiseMin(other.min_mm);
+    max_mm = max_mm.cwiseMax(other.max_mm);
   }
   bool empty() const { return min_mm.x() > max_mm.x(); }
   Region wider(double by_mm) const { return {min_mm.array() - by_mm, max_mm.array() + by_mm}; }
@@ -41,14 +47,17 @@ class StockPart {
   StockPart(const Stock& cut, const Stock& before, const Region& reach,
             std::optional<std::array<std::int32_t, 2>> stamps = {});
 
+  /// What parts have cut together: joining it is as joining them in their order.
+  explicit StockPart(std::span<const StockPart* const> parts);
+
   std::size_t tiles() const { return tile_.size(); }
   std::size_t voxels() const { return distance_.size(); }  ///< with a value of their own
   /// Cuts `stock` where the part is deeper, and where `within`, if given, meets the tile. Without `stamps` joined
   /// voxels count as blank.
   void join_to(Stock& stock, const Region* within = nullptr, bool stamps = true) const;
 
-  /// Forgets the tiles that a region does not meet.
-  void keep_within(const Region& region, double voxel_mm);
+  /// The tiles that a region meets.
+  StockPart within(const Region& region, double voxel_mm) const;
 
   void write(ByteWriter& out) const;
   /// Throws BytesMissing.
@@ -68,6 +77,8 @@ class StockPart {
     Mask cut, air;
     std::uint64_t first = 0;  ///< of its cut voxels in the lists below
   };
+
+  void add_joined(const Index3& tile, std::span<const std::pair<const StockPart*, std::size_t>> parts);
 
   std::vector<OfTile> tile_;  ///< ascending
   std::vector<float> distance_;

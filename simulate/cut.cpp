@@ -18,6 +18,7 @@
 #include "deflection/tooth_marks.h"
 #include "removal/engagement.h"
 #include "simulate/pieces.h"
+#include "simulate/section_pieces.h"
 #include "simulate/tooth_loads.h"
 
 namespace camber::simulate {
@@ -457,11 +458,14 @@ CutResult cut_range(Stock& stock, const machine::Tool& tool, const machine::Mate
   result.loads.reserve(count);
   Cutter cutter(stock, tool, material, stamps, options);
   if (before) cutter.begin_after(*before);
-  const std::size_t stretch =
-      options.coupling == machine::Coupling::rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
-  for (std::size_t done = 0; done < count; done += stretch) {
+  // Which stamps are read depends on where stretches begin: in rigid coupling they are the pieces of sections.
+  const bool rigid = options.coupling == machine::Coupling::rigid;
+  const std::size_t most = rigid ? std::min(options.rigid_stretch_stamps, kPieceStamps) : options.stretch_stamps,
+                    stretches = (count + most - 1) / most;
+  for (std::size_t i = 0; i < stretches; ++i) {
     cancellation_point();
-    const std::size_t n = std::min(stretch, count - done);
+    const std::size_t done = rigid ? count * i / stretches : most * i,
+                      n = (rigid ? count * (i + 1) / stretches : std::min(most * (i + 1), count)) - done;
     cutter.cut(stamps, first + done, n, contacts.empty() ? contacts : contacts.subspan(done, n), first_id, result);
     if (options.progress) options.progress(static_cast<double>(done + n) / static_cast<double>(count));
   }

@@ -20,6 +20,7 @@
 #include "simulate/pieces.h"
 #include "simulate/region.h"
 #include "simulate/setup_checks.h"
+#include "simulate/shared_prediction.h"
 
 namespace camber::simulate {
 
@@ -377,6 +378,8 @@ PathLoads predict_loads(const Job& job, const removal::Stock& blank, const Simul
 
 Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options) {
+  if (const Crew* crew = current_crew(); crew && !options.turn_from && options.chip_ratio == 0)
+    return predict_together(job, target, program, *crew, options.progress);
   std::vector<std::vector<Contact>> contacts_of_runs;
   std::optional<Stage> stage(std::in_place, "finding the contacts", program.path.stamps.size());
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {

@@ -1,12 +1,15 @@
 // Parts of sections as bytes.
-#include "simulate/sections.h"
+#include "simulate/section_parts.h"
 
 namespace camber::simulate {
 namespace {
 
-void write_parts(ByteWriter& out, const std::vector<removal::StockPart>& parts) {
+using removal::Region;
+using removal::StockPart;
+
+void write_parts(ByteWriter& out, const std::vector<StockPart>& parts) {
   out.value(static_cast<std::uint64_t>(parts.size()));
-  for (const removal::StockPart& part : parts) part.write(out);
+  for (const StockPart& part : parts) part.write(out);
 }
 
 /// A count of things that take a byte each at least.
@@ -16,9 +19,15 @@ std::size_t read_count(ByteReader& in) {
   return count;
 }
 
-std::vector<removal::StockPart> read_parts(ByteReader& in) {
-  std::vector<removal::StockPart> out(read_count(in));
-  for (removal::StockPart& part : out) part = removal::StockPart::read(in);
+std::vector<StockPart> read_parts(ByteReader& in) {
+  std::vector<StockPart> out(read_count(in));
+  for (StockPart& part : out) part = StockPart::read(in);
+  return out;
+}
+
+std::vector<StockPart> parts_within(const std::vector<StockPart>& parts, const Region& region, double voxel_mm) {
+  std::vector<StockPart> out;
+  for (const StockPart& part : parts) out.push_back(part.within(region, voxel_mm));
   return out;
 }
 
@@ -64,8 +73,19 @@ CutResult read_cut(ByteReader& in) {
 
 }  // namespace
 
+SweptSection SweptSection::within(const Region& region, double voxel_mm) const {
+  return {.stock = parts_within(stock, region, voxel_mm),
+          .target = target.within(region, voxel_mm),
+          .allowance = allowance.within(region, voxel_mm),
+          .target_mm3 = target_mm3,
+          .allowance_mm3 = allowance_mm3,
+          .work = work};
+}
+
 void SweptSection::write(ByteWriter& out) const {
-  for (const auto* parts : {&stock, &target, &allowance}) write_parts(out, *parts);
+  write_parts(out, stock);
+  target.write(out);
+  allowance.write(out);
   out.value(target_mm3);
   out.value(allowance_mm3);
   out.value(work);
@@ -73,38 +93,72 @@ void SweptSection::write(ByteWriter& out) const {
 
 SweptSection SweptSection::read(ByteReader& in) {
   SweptSection out;
-  for (auto* parts : {&out.stock, &out.target, &out.allowance}) *parts = read_parts(in);
+  out.stock = read_parts(in);
+  out.target = StockPart::read(in);
+  out.allowance = StockPart::read(in);
   out.target_mm3 = in.value<double>();
   out.allowance_mm3 = in.value<double>();
   out.work = in.value<SectionWork>();
   return out;
 }
 
+void OwnSweep::write(ByteWriter& out) const { write_parts(out, stock); }
+OwnSweep OwnSweep::read(ByteReader& in) { return {read_parts(in)}; }
+
+SolvedSection SolvedSection::within(const Region& region, double voxel_mm) const {
+  return {.stock = parts_within(stock, region, voxel_mm),
+          .largest_bend_mm = largest_bend_mm,
+          .last_bend = last_bend,
+          .history = history,
+          .work = work,
+          .cuts = {},
+          .marks = {},
+          .contour = {}};
+}
+
 void SolvedSection::write(ByteWriter& out) const {
+  write_parts(out, stock);
+  out.list(largest_bend_mm);
+  out.list(last_bend);
+  out.list(history);
+  out.value(work);
+  out.value(static_cast<std::uint64_t>(cuts.size()));
+  for (const CutResult& cut : cuts) write_cut(out, cut);
+  out.list(marks);
+  out.list(contour);
+}
+
+SolvedSection SolvedSection::read(ByteReader& in) {
+  SolvedSection out;
+  out.stock = read_parts(in);
+  out.largest_bend_mm = in.list<double>();
+  out.last_bend = in.list<float>();
+  out.history = in.list<Round>();
+  out.work = in.value<SectionWork>();
+  out.cuts.resize(read_count(in));
+  for (CutResult& cut : out.cuts) cut = read_cut(in);
+  out.marks = in.list<SurfaceMark>();
+  out.contour = in.list<SurfaceMark>();
+  return out;
+}
+
+void OwnSolution::write(ByteWriter& out) const {
   out.value(static_cast<std::uint64_t>(pieces.size()));
   for (const SolvedPiece& piece : pieces) {
     write_cut(out, piece.cut);
     out.list(piece.marks);
     piece.stock.write(out);
   }
-  out.value(static_cast<std::uint64_t>(contour.size()));
-  for (const SurfaceMarks& marks : contour) out.list(marks);
-  out.list(history);
-  out.value(work);
 }
 
-SolvedSection SolvedSection::read(ByteReader& in) {
-  SolvedSection out;
+OwnSolution OwnSolution::read(ByteReader& in) {
+  OwnSolution out;
   out.pieces.resize(read_count(in));
   for (SolvedPiece& piece : out.pieces) {
     piece.cut = read_cut(in);
-    piece.marks = in.list<SurfaceMark>();
-    piece.stock = removal::StockPart::read(in);
+    piece.marks = in.list<OwnMark>();
+    piece.stock = StockPart::read(in);
   }
-  out.contour.resize(read_count(in));
-  for (SurfaceMarks& marks : out.contour) marks = in.list<SurfaceMark>();
-  out.history = in.list<Round>();
-  out.work = in.value<SectionWork>();
   return out;
 }
 

@@ -1,13 +1,14 @@
 #include "simulate/sections.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <utility>
 
 #include "base/cancel.h"
 #include "base/stage.h"
 #include "removal/engagement.h"
 #include "simulate/contour.h"
+#include "simulate/section_stock.h"
 
 namespace camber::simulate {
 
@@ -18,32 +19,41 @@ using removal::StockPart;
 
 namespace {
 
-/// Where pieces cut, read and mark: a cutter about each tip, and all above it. Everywhere where an axis is tilted.
-void add_reach(const Job& job, const removal::StampPath& path, const PathPiece& piece, Region& region) {
-  constexpr double kMaxBandVoxels = 12, kFar_mm = 1e9;
-  const removal::ToolRun& run = path.runs[piece.run];
-  const auto stamps = std::span(path.stamps).subspan(run.from + piece.from, piece.count);
-  const double around = removal::shape_of(job.tools.at(run.tool)).radius_mm + kMaxBandVoxels * job.simulation.voxel_mm +
-                        removal::DeflectedEngager::kMaxDeflection_mm;
-  for (const removal::Stamp& s : stamps) {
-    const Vec3 wide(around, around, around);
-    region.add(s.pose.tip_mm - wide);
-    region.add(s.pose.tip_mm + wide);
-    region.max_mm.z() = kFar_mm;
-    if (s.pose.upright()) continue;
-    region.add(Vec3::Constant(-kFar_mm));
-    region.add(Vec3::Constant(kFar_mm));
-    return;
-  }
-}
-
 /// The points that a map without marks before has marked since.
-SurfaceMarks marks_of(const removal::SurfaceMap& map) {
-  SurfaceMarks out;
-  for (const removal::SurfacePoint& p : map.points())
-    if (p.machined_stamp != Stock::kUncut) out.push_back({p.place_mm, p.error_mm, p.machined_stamp});
+std::vector<OwnMark> marks_of(const removal::SurfaceMap& map) {
+  std::vector<OwnMark> out;
+  const auto points = map.points();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].machined_stamp != Stock::kUncut)
+      out.push_back({points[i].error_mm, static_cast<std::uint32_t>(i), points[i].machined_stamp});
   return out;
 }
+
+/// The deepest mark of each point; of equal ones the first.
+class DeepestMarks {
+ public:
+  explicit DeepestMarks(const removal::SurfaceMap& map) : points_(map.points()), error_mm_(points_.size()) {
+    stamp_.assign(points_.size(), Stock::kUncut);
+  }
+  void add(const std::vector<OwnMark>& marks) {
+    for (const OwnMark& mark : marks) {
+      if (stamp_[mark.point] != Stock::kUncut && !(mark.error_mm < error_mm_[mark.point])) continue;
+      error_mm_[mark.point] = mark.error_mm;
+      stamp_[mark.point] = mark.stamp;
+    }
+  }
+  SurfaceMarks marks() const {
+    SurfaceMarks out;
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (stamp_[i] != Stock::kUncut) out.push_back({points_[i].place_mm, error_mm_[i], stamp_[i]});
+    return out;
+  }
+
+ private:
+  std::span<const removal::SurfacePoint> points_;
+  std::vector<double> error_mm_;
+  std::vector<std::int32_t> stamp_;
+};
 
 /// Takes marks to the points of a map without marks, as SurfaceMap::take() returns them: what is left of the blank is
 /// the surface where no mark is deeper. Of equal marks the first counts.
@@ -62,98 +72,63 @@ void join(const SurfaceMarks& marks, std::vector<removal::SurfacePoint>& points)
   }
 }
 
-/// The parts of all sections, in the order of the path.
-std::vector<const StockPart*> stock_parts(const std::vector<SweptSection>& sections) {
+std::vector<const StockPart*> pointers_to(const std::vector<StockPart>& parts) {
   std::vector<const StockPart*> out;
-  for (const auto& s : sections)
-    for (const StockPart& part : s.stock) out.push_back(&part);
+  for (const StockPart& part : parts) out.push_back(&part);
   return out;
 }
-std::vector<const StockPart*> stock_parts(const std::vector<SolvedSection>& sections) {
+std::vector<const StockPart*> pointers_to(const OwnSolution& own) {
   std::vector<const StockPart*> out;
-  for (const auto& s : sections)
-    for (const SolvedPiece& piece : s.pieces) out.push_back(&piece.stock);
+  for (const SolvedPiece& piece : own.pieces) out.push_back(&piece.stock);
+  return out;
+}
+template <class Section>
+std::vector<const std::vector<StockPart>*> stocks_of(const std::vector<Section>& sections) {
+  std::vector<const std::vector<StockPart>*> out;
+  for (const Section& s : sections) out.push_back(&s.stock);
   return out;
 }
 
-/// The stock before one piece after the other.
-class StockBefore {
- public:
-  StockBefore(const Stock& blank, const std::vector<PathPiece>& pieces, std::vector<const StockPart*> parts,
-              const Region* within)
-      : pieces_(pieces), parts_(std::move(parts)), within_(within) {
-    before_run_.emplace(blank);
-    stock_.emplace(blank);
-  }
-  void advance_to(std::size_t piece) {
-    while (next_ < piece) {
-      parts_[next_]->join_to(*stock_, within_);
-      ++next_;
-      if (next_ < pieces_.size() && pieces_[next_].run != pieces_[next_ - 1].run) before_run_.emplace(*stock_);
-    }
-  }
-  const Stock& stock() const { return *stock_; }
-  const Stock& before_run() const { return *before_run_; }
-
- private:
-  const std::vector<PathPiece>& pieces_;
-  std::vector<const StockPart*> parts_;
-  const Region* within_;
-  std::optional<Stock> before_run_, stock_;
-  std::size_t next_ = 0;
-};
-
-/// How the tool was bent before a piece, as a round has found: the rows of the piece before, the largest of its run.
-/// Without rows where the piece begins a run, or the round did not solve it.
-BendBefore bend_before(const std::vector<PathPiece>& pieces, std::size_t piece,
-                       const std::vector<SolvedSection>& round) {
-  BendBefore out;
-  std::size_t p = 0;
-  for (const SolvedSection& section : round)
-    for (const SolvedPiece& solved : section.pieces) {
-      if (p >= piece) return out;
-      if (pieces[p].run == pieces[piece].run) {
-        out.largest_mm = std::max(out.largest_mm, solved.cut.bend.largest_mm);
-        if (p + 1 == piece) out.rows = solved.cut.bend.rows;
-      }
-      ++p;
-    }
+/// The parts of a section's pieces, joined run by run.
+std::vector<StockPart> joined_runs(const SectionPlace& place, const std::vector<const StockPart*>& own) {
+  std::vector<StockPart> out;
+  for (const RunPieces& r : place.runs(place.section))
+    out.emplace_back(std::span(own).subspan(r.pieces.begin - place.own.begin, r.pieces.end - r.pieces.begin));
   return out;
-}
-
-double largest_difference_mm(const BendBefore& a, const BendBefore& b) {
-  if (a.rows.size() != b.rows.size()) return std::max(a.largest_mm, b.largest_mm);
-  float out = 0;
-  for (std::size_t i = 0; i < a.rows.size(); ++i) out = std::max(out, std::abs(a.rows[i] - b.rows[i]));
-  return static_cast<double>(out);
 }
 
 /// Each of a section's pieces carved alone out of `raw`.
-std::vector<StockPart> swept_parts(const Stock& raw, const Job& job, const removal::StampPath& path, double shrink_mm,
-                                   std::size_t section, std::size_t sections, double& removed_mm3, SectionWork& work,
+std::vector<StockPart> swept_parts(const Stock& raw, const Job& job, const removal::StampPath& path,
+                                   const SectionPlace& place, double shrink_mm, double& removed_mm3, SectionWork& work,
                                    Stage& stage) {
-  const std::vector<PathPiece> pieces = path_pieces(path);
-  const PieceRange range = section_pieces(pieces, section, sections);
   std::vector<StockPart> out;
-  for (std::size_t p = range.begin; p < range.end; ++p) {
+  for (std::size_t p = place.own.begin; p < place.own.end; ++p) {
     cancellation_point();
-    const removal::ToolRun& run = path.runs[pieces[p].run];
+    const PathPiece& piece = place.pieces[p];
+    const removal::ToolRun& run = path.runs[piece.run];
     if (shrink_mm > 0 && run.kind != removal::RunKind::milling) {
       out.emplace_back();
       continue;
     }
     Stock scratch(raw);
-    const std::size_t from = run.from + pieces[p].from;
+    const std::size_t from = run.from + piece.from;
     removed_mm3 += removal::sweep(scratch, removal::shape_of(job.tools.at(run.tool)),
-                                  std::span(path.stamps).subspan(from, pieces[p].count),
+                                  std::span(path.stamps).subspan(from, piece.count),
                                   {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(from)});
-    Region reach;
-    add_reach(job, path, pieces[p], reach);
-    out.emplace_back(scratch, raw, reach);
-    work.stamps += pieces[p].count;
+    out.emplace_back(scratch, raw, reach_of(job, path, piece));
+    work.stamps += piece.count;
     work.voxels += out.back().voxels();
-    stage.advance(pieces[p].count);
+    stage.advance(piece.count);
   }
+  return out;
+}
+
+Swept swept_path(const Job& job, const Stock& raw, const removal::StampPath& path, const SectionPlace& place,
+                 Stage& stage) {
+  Swept out;
+  double ignored_mm3 = 0;
+  out.own.stock = swept_parts(raw, job, path, place, 0, ignored_mm3, out.section.work, stage);
+  out.section.stock = joined_runs(place, pointers_to(out.own.stock));
   return out;
 }
 
@@ -161,75 +136,153 @@ Region reach_of_section(const Job& job, const Programs& programs, std::size_t se
   Region out;
   for (const removal::StampPath* path : {&programs.program.path, &programs.of_target().path}) {
     const std::vector<PathPiece> pieces = path_pieces(*path);
-    const PieceRange range = section_pieces(pieces, section, sections);
-    for (std::size_t p = range.begin; p < range.end; ++p) add_reach(job, *path, pieces[p], out);
+    out.add(reach_of(job, *path, pieces, section_pieces(pieces, section, sections)));
   }
   return out;
 }
 
-/// What a section does not cut is joined this far around it, so that no reading of a neighbour misses it.
-Region joined_region(const Job& job, const Region& reach) {
-  return reach.wider(2 * removal::kTileVoxels * job.simulation.voxel_mm);
+/// One section of a path, piece after piece.
+class SectionSolver {
+ public:
+  SectionSolver(const Job& job, const removal::StampPath& path, const Target& target, const SectionParts& parts,
+                const SolveOptions& options)
+      : job_(job),
+        path_(path),
+        target_(target),
+        options_(options),
+        place_(path, options.section, options.sections),
+        joined_(joined_region(job, reach_of(job, path, place_.pieces, place_.own))),
+        parts_(parts),
+        again_(!parts.last.empty()),
+        coupling_(job.simulation.coupling),
+        bends_(bends_before(place_, parts.last, parts.own_last)),
+        earlier_bends_(bends_before(place_, parts.before_last, parts.own_before_last)) {}
+
+  void solve(Solved& out) {
+    if (place_.own.empty()) return;
+    const auto swept = [&] { return stocks_of(parts_.swept); };
+    const auto own_swept = [&] { return pointers_to(parts_.own_sweep.stock); };
+    StockBefore now(target_.blank, place_, again_ ? stocks_of(parts_.last) : swept(),
+                    again_ ? pointers_to(parts_.own_last) : own_swept(), joined_);
+    std::optional<StockBefore> then;
+    if (again_) {
+      const bool first = parts_.before_last.empty();
+      then.emplace(target_.blank, place_, first ? swept() : stocks_of(parts_.before_last),
+                   first ? own_swept() : pointers_to(parts_.own_before_last), joined_);
+    }
+    for (std::size_t p = place_.own.begin; p < place_.own.end; ++p) {
+      now.advance_to(p);
+      if (then) then->advance_to(p);
+      if (then && is_settled(p, now.stock(), then->stock(), out.section.history.back())) {
+        out.own.pieces.push_back(parts_.own_last.pieces[p - place_.own.begin]);
+        continue;
+      }
+      out.own.pieces.push_back(solve_piece(p, now, out.section.work));
+    }
+    join_pieces(out);
+  }
+
+ private:
+  const BendBefore& bend(std::size_t p) const { return bends_[p - place_.own.begin]; }
+
+  bool is_settled(std::size_t p, const Stock& now, const Stock& then, SolvedSection::Round& round) const {
+    const double of_stock_mm = removal::largest_difference_mm(now, then, reach_of(job_, path_, place_.pieces[p]));
+    const double change_mm =
+        std::max(of_stock_mm, largest_difference_mm(bend(p), earlier_bends_[p - place_.own.begin]));
+    round.largest_change_um = std::max(round.largest_change_um, 1000 * change_mm);
+    if (change_mm <= kSettled_mm) return true;
+    ++round.solved_again;
+    return false;
+  }
+
+  SolvedPiece solve_piece(std::size_t p, const StockBefore& before, SectionWork& work) const {
+    const PathPiece& piece = place_.pieces[p];
+    Stock stock(before.stock());
+    removal::SurfaceMap map(*target_.map);
+    const auto done = static_cast<double>(p - place_.own.begin),
+               all = static_cast<double>(place_.own.end - place_.own.begin);
+    SolvedPiece out;
+    out.cut = cut_piece(stock, job_, path_,
+                        {.run = piece.run,
+                         .from = piece.from,
+                         .count = piece.count,
+                         .coupling = coupling_,
+                         .before_run = &before.before_run(),
+                         .surface = &map,
+                         .target = &target_.surface,
+                         .turn_from = options_.turn_from,
+                         .bend = bend(p).rows.empty() ? nullptr : &bend(p),
+                         .progress = [&](double share) {
+                           if (options_.progress) options_.progress((done + share) / all);
+                         }});
+    out.marks = marks_of(map);
+    work.stamps += piece.count;
+    if (coupling_ != machine::Coupling::static_) return out;
+    const auto first = static_cast<std::int32_t>(path_.runs[piece.run].from + piece.from);
+    out.stock = StockPart(stock, before.stock(), reach_of(job_, path_, piece),
+                          std::array{first, first + static_cast<std::int32_t>(piece.count)});
+    work.voxels += out.stock.voxels();
+    return out;
+  }
+
+  /// What others need of the pieces.
+  void join_pieces(Solved& out) const {
+    DeepestMarks marks(*target_.map);
+    for (const SolvedPiece& piece : out.own.pieces) {
+      marks.add(piece.marks);
+      CutResult& cut = out.section.cuts.emplace_back(piece.cut);
+      cut.bend = {};
+    }
+    out.section.marks = marks.marks();
+    if (coupling_ != machine::Coupling::static_) {
+      out.own = {};  // there is no other round
+      return;
+    }
+    out.section.stock = joined_runs(place_, pointers_to(out.own));
+    for (const RunPieces& r : place_.runs(place_.section)) {
+      double largest_mm = 0;
+      for (std::size_t p = r.pieces.begin; p < r.pieces.end; ++p)
+        largest_mm = std::max(largest_mm, out.own.pieces[p - place_.own.begin].cut.bend.largest_mm);
+      out.section.largest_bend_mm.push_back(largest_mm);
+    }
+    out.section.last_bend = out.own.pieces.back().cut.bend.rows;
+  }
+
+  const Job& job_;
+  const removal::StampPath& path_;
+  const Target& target_;
+  const SolveOptions& options_;
+  SectionPlace place_;
+  Region joined_;
+  const SectionParts& parts_;
+  bool again_;
+  machine::Coupling coupling_;
+  std::vector<BendBefore> bends_, earlier_bends_;
+};
+
+/// Contour and history of the round before, if there was one.
+SolvedSection begin_round(const SectionParts& parts, std::size_t section) {
+  SolvedSection out;
+  if (parts.last.empty()) return out;
+  out.contour = parts.last[section].contour;
+  out.history = parts.last[section].history;
+  out.history.emplace_back();
+  return out;
 }
 
 }  // namespace
 
 Region section_region(const Job& job, const Programs& programs, std::size_t section, std::size_t sections) {
-  const Region reach = reach_of_section(job, programs, section, sections);
-  return reach.empty() ? reach : joined_region(job, reach);
+  return joined_region(job, reach_of_section(job, programs, section, sections));
 }
 
-void keep_within(SweptSection& section, const Region& region, double voxel_mm) {
-  for (auto* parts : {&section.stock, &section.target, &section.allowance})
-    for (StockPart& part : *parts) part.keep_within(region, voxel_mm);
+Region section_region(const Job& job, const removal::StampPath& path, std::size_t section, std::size_t sections) {
+  const SectionPlace place(path, section, sections);
+  return joined_region(job, reach_of(job, path, place.pieces, place.own));
 }
 
-void keep_stock_within(SolvedSection& section, const Region& region, double voxel_mm) {
-  for (SolvedPiece& piece : section.pieces) {
-    BendBefore bend = std::move(piece.cut.bend);
-    piece.cut = {};
-    piece.cut.bend = std::move(bend);
-    piece.marks = {};
-    piece.stock.keep_within(region, voxel_mm);
-  }
-  section.contour.clear();
-}
-
-std::vector<PathPiece> path_pieces(const removal::StampPath& path) {
-  std::vector<PathPiece> out;
-  for (std::size_t r = 0; r < path.runs.size(); ++r) {
-    const removal::ToolRun& run = path.runs[r];
-    const std::size_t count =
-        run.kind == removal::RunKind::milling ? (run.count + kPieceStamps - 1) / kPieceStamps : std::size_t{1};
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t from = run.count * i / count;
-      out.push_back({r, from, run.count * (i + 1) / count - from});
-    }
-  }
-  return out;
-}
-
-PieceRange section_pieces(const std::vector<PathPiece>& pieces, std::size_t section, std::size_t sections) {
-  std::size_t total = 0, before = 0;
-  for (const PathPiece& p : pieces) total += p.count;
-  PieceRange out{pieces.size(), pieces.size()};
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    // The section in which the piece's middle lies.
-    const std::size_t of = (2 * before + pieces[i].count) * sections / std::max<std::size_t>(2 * total, 1);
-    before += pieces[i].count;
-    if (of >= section && out.begin == pieces.size()) out.begin = i;
-    if (of > section) {
-      out.end = i;
-      break;
-    }
-  }
-  if (out.begin > out.end) out.begin = out.end;
-  return out;
-}
-
-SweptSection sweep_section(const Job& job, const Programs& programs, std::size_t section, std::size_t sections,
-                           Diagnostics& diagnostics) {
-  SweptSection out;
+Swept sweep_section(const Job& job, const Programs& programs, std::size_t section, std::size_t sections,
+                    Diagnostics& diagnostics) {
   const SimulatedProgram& of_target = programs.of_target();
   const removal::StampPath nominal =
       removal::nominal_path(of_target.moves, of_target.selected, of_target.path, of_target.part_path());
@@ -238,140 +291,112 @@ SweptSection sweep_section(const Job& job, const Programs& programs, std::size_t
   const Blank raw = make_blank(job, of_target, diagnostics, 0, nothing);
   diagnostics.throw_if_errors();
   Stage stage("carving the section", (programs.program.path.stamps.size() + nominal.stamps.size()) / sections + 1);
-  double ignored_mm3 = 0;
-  out.stock = swept_parts(raw.stock, job, programs.program.path, 0, section, sections, ignored_mm3, out.work, stage);
-  out.target = swept_parts(raw.stock, job, nominal, 0, section, sections, out.target_mm3, out.work, stage);
+  const removal::StampPath& path = programs.program.path;
+  Swept out = swept_path(job, raw.stock, path, SectionPlace(path, section, sections), stage);
+  const auto joined = [&](const removal::StampPath& of, double shrink_mm, double& removed_mm3) {
+    const std::vector<StockPart> parts = swept_parts(raw.stock, job, of, SectionPlace(of, section, sections), shrink_mm,
+                                                     removed_mm3, out.section.work, stage);
+    return StockPart(pointers_to(parts));
+  };
+  out.section.target = joined(nominal, 0, out.section.target_mm3);
   if (job.stock.allowance_mm > 0)
-    out.allowance = swept_parts(raw.stock, job, of_target.path, job.stock.allowance_mm, section, sections,
-                                out.allowance_mm3, out.work, stage);
+    out.section.allowance = joined(of_target.path, job.stock.allowance_mm, out.section.allowance_mm3);
   return out;
 }
 
-TargetWork joined_target(const SectionParts& parts, const Region* within) {
+Swept sweep_path_section(const Job& job, const Stock& blank, const removal::StampPath& path, std::size_t section,
+                         std::size_t sections) {
+  Stage stage("carving the section", path.stamps.size() / sections + 1);
+  return swept_path(job, blank, path, SectionPlace(path, section, sections), stage);
+}
+
+TargetWork joined_target(const std::vector<SweptSection>& swept, const std::vector<SolvedSection>& solved,
+                         const Region* within) {
   TargetWork out;
-  out.allowance = [&parts, within](Stock& blank) {
+  out.allowance = [&swept, within](Stock& blank) {
     double removed_mm3 = 0;
-    for (const SweptSection& s : parts.swept) {
-      for (const StockPart& part : s.allowance) part.join_to(blank, within, false);
+    for (const SweptSection& s : swept) {
+      s.allowance.join_to(blank, within, false);
       removed_mm3 += s.allowance_mm3;
     }
     return removed_mm3;
   };
-  out.surface = [&parts, within](Stock& surface) {
+  out.surface = [&swept, within](Stock& surface) {
     double removed_mm3 = 0;
-    for (const SweptSection& s : parts.swept) {
-      for (const StockPart& part : s.target) part.join_to(surface, within);
+    for (const SweptSection& s : swept) {
+      s.target.join_to(surface, within);
       removed_mm3 += s.target_mm3;
     }
     return removed_mm3;
   };
-  out.contour = [&parts](Target& target) {
+  out.contour = [&solved](Target& target) {
     std::vector<removal::SurfacePoint> points = removal::SurfaceMap(*target.map).take();
-    for (const SolvedSection& s : parts.last)
-      for (const SurfaceMarks& marks : s.contour) join(marks, points);
+    for (const SolvedSection& s : solved) join(s.contour, points);
     target.contour_mm.reserve(points.size());
     for (const removal::SurfacePoint& p : points) target.contour_mm.push_back(static_cast<float>(p.error_mm));
   };
   return out;
 }
 
-SolvedSection solve_section(const Job& job, const Programs& programs, const SectionParts& parts,
-                            const SolveOptions& options, Diagnostics& diagnostics) {
-  SolvedSection out;
-  const removal::StampPath& path = programs.program.path;
-  const removal::StampPath& target_path = programs.of_target().path;
-  const std::vector<PathPiece> pieces = path_pieces(path), target_pieces = path_pieces(target_path);
-  const PieceRange range = section_pieces(pieces, options.section, options.sections),
-                   target_range = section_pieces(target_pieces, options.section, options.sections);
-  const bool again = !parts.last.empty();
-  if (again) {
-    out.contour = parts.last[options.section].contour;
-    out.history = parts.last[options.section].history;
-    out.history.emplace_back();
-  }
-  const Region region = reach_of_section(job, programs, options.section, options.sections);
-  if (region.empty()) return out;
-  const Region joined = joined_region(job, region);
-  TargetWork work = joined_target(parts, &joined);
+Solved solve_section(const Job& job, const Programs& programs, const SectionParts& parts, const SolveOptions& options,
+                     Diagnostics& diagnostics) {
+  Solved out;
+  out.section = begin_round(parts, options.section);
+  const Region joined = section_region(job, programs, options.section, options.sections);
+  if (joined.empty()) return out;
+  TargetWork work = joined_target(parts.swept, parts.last, &joined);
   work.judged = false;
   work.contour = [&](Target& target) {
-    for (std::size_t p = target_range.begin; p < target_range.end && !again; ++p) {
-      const PathPiece& piece = target_pieces[p];
+    if (!parts.last.empty()) return;
+    const removal::StampPath& path = programs.of_target().path;
+    const SectionPlace place(path, options.section, options.sections);
+    DeepestMarks marks(*target.map);
+    for (std::size_t p = place.own.begin; p < place.own.end; ++p) {
+      const PathPiece& piece = place.pieces[p];
       removal::SurfaceMap map(*target.map);
-      mark_contour_of(job, target_path, target_path.runs[piece.run], piece.from, piece.count, map);
-      out.contour.push_back(marks_of(map));
-      out.work.stamps += piece.count;
+      mark_contour_of(job, path, path.runs[piece.run], piece.from, piece.count, map);
+      marks.add(marks_of(map));
+      out.section.work.stamps += piece.count;
     }
+    out.section.contour = marks.marks();
   };
-  Target target = make_target(job, programs.of_target(), diagnostics, work);
-  StockBefore now(target.blank, pieces, again ? stock_parts(parts.last) : stock_parts(parts.swept), &joined);
-  std::optional<StockBefore> then;
-  if (again)
-    then.emplace(target.blank, pieces,
-                 parts.before_last.empty() ? stock_parts(parts.swept) : stock_parts(parts.before_last), &joined);
-  const machine::Coupling coupling = job.simulation.coupling;
-  for (std::size_t p = range.begin; p < range.end; ++p) {
-    now.advance_to(p);
-    Region reach;
-    add_reach(job, path, pieces[p], reach);
-    const BendBefore bend = bend_before(pieces, p, parts.last);
-    if (again) {
-      then->advance_to(p);
-      const double change_mm = std::max(removal::largest_difference_mm(now.stock(), then->stock(), reach),
-                                        largest_difference_mm(bend, bend_before(pieces, p, parts.before_last)));
-      out.history.back().largest_change_um = std::max(out.history.back().largest_change_um, 1000 * change_mm);
-      if (change_mm <= kSettled_mm) {
-        out.pieces.push_back(parts.last[options.section].pieces[p - range.begin]);
-        continue;
-      }
-      ++out.history.back().solved_again;
-    }
-    Stock stock(now.stock());
-    removal::SurfaceMap map(*target.map);
-    SolvedPiece solved;
-    const std::size_t done = p - range.begin, all = range.end - range.begin;
-    solved.cut = cut_piece(stock, job, path,
-                           {.run = pieces[p].run,
-                            .from = pieces[p].from,
-                            .count = pieces[p].count,
-                            .coupling = coupling,
-                            .before_run = &now.before_run(),
-                            .surface = &map,
-                            .target = &target.surface,
-                            .turn_from = options.turn_from,
-                            .bend = bend.rows.empty() ? nullptr : &bend,
-                            .progress = [&](double share) {
-                              if (options.progress)
-                                options.progress((static_cast<double>(done) + share) / static_cast<double>(all));
-                            }});
-    solved.marks = marks_of(map);
-    if (coupling == machine::Coupling::static_) {
-      const auto first = static_cast<std::int32_t>(path.runs[pieces[p].run].from + pieces[p].from);
-      solved.stock =
-          StockPart(stock, now.stock(), reach, std::array{first, first + static_cast<std::int32_t>(pieces[p].count)});
-      out.work.voxels += solved.stock.voxels();
-    }
-    out.work.stamps += pieces[p].count;
-    out.pieces.push_back(std::move(solved));
-  }
+  const Target target = make_target(job, programs.of_target(), diagnostics, work);
+  SectionSolver(job, programs.program.path, target, parts, options).solve(out);
   return out;
 }
 
-Prediction merge_sections(const Job& job, Target& target, const SimulatedProgram& program, const SectionParts& parts) {
+Solved solve_path_section(const Job& job, const Target& target, const removal::StampPath& path,
+                          const SectionParts& parts, const SolveOptions& options) {
+  Solved out;
+  out.section = begin_round(parts, options.section);
+  SectionSolver(job, path, target, parts, options).solve(out);
+  return out;
+}
+
+Prediction merge_sections(const Job& job, Target& target, const SimulatedProgram& program,
+                          const std::vector<SweptSection>& swept, std::vector<SolvedSection> solved) {
+  removal::SurfaceMap map = std::move(*target.map);
+  target.map.reset();
+  return merge_sections(job, target, std::move(map), program, swept, std::move(solved));
+}
+
+Prediction merge_sections(const Job& job, const Target& target, removal::SurfaceMap map,
+                          const SimulatedProgram& program, const std::vector<SweptSection>& swept,
+                          std::vector<SolvedSection> solved) {
   PathLoads loads;
   loads.holes.count = removal::count_holes(program.moves, program.holes);
-  const std::vector<PathPiece> pieces = path_pieces(program.path);
   auto machined = std::make_unique<Stock>(target.blank);
-  std::vector<removal::SurfacePoint> surface = std::exchange(target.map, std::nullopt)->take();
-  const auto stocks =
-      job.simulation.coupling == machine::Coupling::static_ ? stock_parts(parts.last) : stock_parts(parts.swept);
-  for (const StockPart* part : stocks) part->join_to(*machined);
+  std::vector<removal::SurfacePoint> surface = map.take();
+  const bool is_static = job.simulation.coupling == machine::Coupling::static_;
+  for (const auto* parts : is_static ? stocks_of(solved) : stocks_of(swept))
+    for (const StockPart& part : *parts) part.join_to(*machined);
+  const std::vector<PathPiece> pieces = path_pieces(program.path);
   std::size_t p = 0;
-  for (const SolvedSection& section : parts.last)
-    for (const SolvedPiece& piece : section.pieces) {
-      join(piece.marks, surface);
-      add_piece(job, program.path.runs[pieces[p++].run], piece.cut, loads);
-    }
+  for (SolvedSection& section : solved) {
+    join(section.marks, surface);
+    for (CutResult& cut : section.cuts) add_piece(job, program.path.runs[pieces[p++].run], std::move(cut), loads);
+    section = {};
+  }
   return judge(target, std::move(loads), std::move(surface), std::move(machined));
 }
 

@@ -15,7 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "camber part 2\n";
+constexpr std::string_view kMagic = "camber part 3\n";
+
+constexpr std::string_view kOwn = "own-";
 
 struct PartFile {
   std::string version, name;
@@ -58,12 +60,13 @@ std::optional<PartFile> unpacked(const std::string& text) {
   }
 }
 
-/// In the order of their names.
+/// In the order of their names; without those that a section keeps for itself.
 std::vector<std::string> part_files(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code ec;
   for (const auto& entry : fs::directory_iterator(folder + "/parts", ec))
-    if (entry.path().extension() == ".part") files.push_back(entry.path().string());
+    if (entry.path().extension() == ".part" && !entry.path().filename().string().starts_with(kOwn))
+      files.push_back(entry.path().string());
   std::ranges::sort(files);
   return files;
 }
@@ -79,7 +82,8 @@ std::string command_of(const PartName& name, const PartKey& key, const std::stri
 
 std::string file_name(const PartName& name) {
   const std::string place = fmt::format("{:03}-of-{:03}.part", name.section + 1, name.sections);
-  return name.stage == PartStage::sweep ? "sweep-" + place : fmt::format("solve-{}-{}", name.round, place);
+  const std::string of = name.stage == PartStage::sweep ? "sweep-" : fmt::format("solve-{}-", name.round);
+  return (name.own ? std::string(kOwn) : std::string()) + of + place;
 }
 
 PartKey part_key(const machine::Job& job, std::size_t sections, std::size_t forces_at) {

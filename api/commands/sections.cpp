@@ -1,11 +1,12 @@
 #include "api/commands/sections.h"
 
+#include <memory>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "base/bytes.h"
 #include "base/stage.h"
 #include "simulate/turn.h"
 
@@ -13,17 +14,8 @@ namespace camber::api {
 namespace {
 
 template <class Part>
-std::string bytes_of(const Part& part) {
-  ByteWriter out;
-  part.write(out);
-  return out.take();
-}
-
-template <class Part>
 Part part_of(PartStore& store, const PartName& name) {
-  const std::string bytes = store.take(name);
-  ByteReader in(bytes);
-  return Part::read(in);
+  return simulate::part_from<Part>(store.take(name));
 }
 
 void add(const simulate::SectionWork& more, simulate::SectionWork& work) {
@@ -48,58 +40,91 @@ SectionRun::SectionRun(const machine::Job& job, PartKey key, PartStore& store, S
   diagnostics.throw_if_errors();
 }
 
+bool SectionRun::is_there(const PartName& name) {
+  if (!store_.has(name)) return false;
+  PartName own = name;
+  own.own = true;
+  const bool solved_once = name.stage == PartStage::solve && !is_static();
+  return solved_once || store_.has(own);
+}
+
+const removal::Region& SectionRun::region(std::size_t section) {
+  for (std::size_t s = regions_.size(); s < key_.sections; ++s)
+    regions_.push_back(simulate::section_region(job_, programs_, s, key_.sections));
+  return regions_[section];
+}
+
 bool SectionRun::sweep(std::size_t section) {
-  const PartName name{PartStage::sweep, 1, section, key_.sections};
-  if (store_.has(name)) return false;
+  const PartName whole = name(PartStage::sweep, 1, section);
+  if (is_there(whole)) return false;
   const StageScope stages(progress_);
-  const simulate::SweptSection part = simulate::sweep_section(job_, programs_, section, key_.sections, diagnostics_);
-  add(part.work, work_);
-  store_.give(name, bytes_of(part));
+  const simulate::Swept part = simulate::sweep_section(job_, programs_, section, key_.sections, diagnostics_);
+  add(part.section.work, work_);
+  store_.give(name(PartStage::sweep, 1, section, true), simulate::bytes_of_part(part.own));
+  store_.give(whole, simulate::bytes_of_part(part.section));
   return true;
 }
 
-std::vector<simulate::SolvedSection> SectionRun::solved_stocks(int round, std::size_t section,
-                                                               const removal::Region& region) {
-  std::vector<simulate::SolvedSection> out;
-  for (std::size_t s = 0; s < key_.sections; ++s) {
-    out.push_back(part_of<simulate::SolvedSection>(store_, {PartStage::solve, round, s, key_.sections}));
-    if (s != section) simulate::keep_stock_within(out.back(), region, job_.simulation.voxel_mm);
+/// What a round of solving reads. Of the other sections only what lies in the section's region.
+simulate::SectionParts SectionRun::parts_before(std::size_t section, int round) {
+  const double voxel_mm = job_.simulation.voxel_mm;
+  simulate::SectionParts out;
+  const auto take_all = [&](auto& parts, PartStage stage, int of_round) {
+    using Part = typename std::remove_reference_t<decltype(parts)>::value_type;
+    for (std::size_t s = 0; s < key_.sections; ++s) {
+      auto part = part_of<Part>(store_, name(stage, of_round, s));
+      parts.push_back(s == section ? std::move(part) : part.within(region(section), voxel_mm));
+    }
+  };
+  take_all(out.swept, PartStage::sweep, 1);
+  if (round <= 2) out.own_sweep = part_of<simulate::OwnSweep>(store_, name(PartStage::sweep, 1, section, true));
+  if (round > 1) {
+    take_all(out.last, PartStage::solve, round - 1);
+    out.own_last = part_of<simulate::OwnSolution>(store_, name(PartStage::solve, round - 1, section, true));
+  }
+  if (round > 2) {
+    take_all(out.before_last, PartStage::solve, round - 2);
+    out.own_before_last = part_of<simulate::OwnSolution>(store_, name(PartStage::solve, round - 2, section, true));
   }
   return out;
 }
 
 bool SectionRun::solve(std::size_t section, int round) {
-  const PartName name{PartStage::solve, round, section, key_.sections};
-  if (store_.has(name)) return false;
+  const PartName whole = name(PartStage::solve, round, section);
+  if (is_there(whole)) return false;
   const StageScope stages(progress_);
-  const removal::Region region = simulate::section_region(job_, programs_, section, key_.sections);
-  simulate::SectionParts parts;
-  for (std::size_t s = 0; s < key_.sections; ++s) {
-    parts.swept.push_back(part_of<simulate::SweptSection>(store_, {PartStage::sweep, 1, s, key_.sections}));
-    simulate::keep_within(parts.swept.back(), region, job_.simulation.voxel_mm);
-  }
-  if (round > 1) parts.last = solved_stocks(round - 1, section, region);
-  if (round > 2) parts.before_last = solved_stocks(round - 2, section, region);
-  const simulate::SolvedSection part = simulate::solve_section(job_, programs_, parts,
-                                                               {.section = section,
-                                                                .sections = key_.sections,
-                                                                .turn_from = turn_from_,
-                                                                .progress =
-                                                                    [&](double share) {
-                                                                      if (progress_) progress_("cutting", share);
-                                                                    }},
-                                                               diagnostics_);
-  add(part.work, work_);
-  store_.give(name, bytes_of(part));
+  const simulate::SectionParts parts = parts_before(section, round);
+  const auto tell = [&](double share) {
+    if (progress_) progress_("cutting", share);
+  };
+  const simulate::SolveOptions options{
+      .section = section, .sections = key_.sections, .turn_from = turn_from_, .progress = tell};
+  const simulate::Solved part = simulate::solve_section(job_, programs_, parts, options, diagnostics_);
+  add(part.section.work, work_);
+  if (is_static()) store_.give(name(PartStage::solve, round, section, true), simulate::bytes_of_part(part.own));
+  store_.give(whole, simulate::bytes_of_part(part.section));
   return true;
+}
+
+std::function<std::string(std::size_t)> SectionRun::part_for_others(const PartName& of) {
+  const auto sender = [this](auto part) {
+    return [this, part = std::make_shared<const decltype(part)>(std::move(part))](std::size_t section) {
+      return simulate::bytes_of_part(part->within(region(section), job_.simulation.voxel_mm));
+    };
+  };
+  if (of.stage == PartStage::sweep) return sender(part_of<simulate::SweptSection>(store_, of));
+  return sender(part_of<simulate::SolvedSection>(store_, of));
+}
+
+std::size_t SectionRun::solved_again_in(const PartName& of) {
+  if (of.stage == PartStage::sweep || of.round < 2) return 0;
+  const auto part = part_of<simulate::SolvedSection>(store_, of);
+  return part.history.empty() ? 0 : part.history.back().solved_again;
 }
 
 std::size_t SectionRun::solved_again(int round) {
   std::size_t out = 0;
-  for (std::size_t s = 0; s < key_.sections && round > 1; ++s) {
-    const auto part = part_of<simulate::SolvedSection>(store_, {PartStage::solve, round, s, key_.sections});
-    if (!part.history.empty()) out += part.history.back().solved_again;
-  }
+  for (std::size_t s = 0; s < key_.sections; ++s) out += solved_again_in(name(PartStage::solve, round, s));
   return out;
 }
 
@@ -114,28 +139,29 @@ std::string with_sections(const std::string& json, const SectionFigures& figures
 
 MergedJob merge_parts(const machine::Job& job, const PartKey& key, int round, PartStore& store,
                       const PredictRequest& request, Diagnostics& found, Diagnostics& of_cut) {
-  simulate::SectionParts parts;
+  std::vector<simulate::SweptSection> swept;
+  std::vector<simulate::SolvedSection> solved;
   SectionFigures figures;
   for (std::size_t s = 0; s < key.sections; ++s)
-    parts.swept.push_back(part_of<simulate::SweptSection>(store, {PartStage::sweep, 1, s, key.sections}));
+    swept.push_back(part_of<simulate::SweptSection>(store, {PartStage::sweep, 1, s, key.sections}));
   figures.rounds = static_cast<std::size_t>(round);
   figures.solved_again.assign(static_cast<std::size_t>(round) - 1, 0);
   figures.largest_change_um.assign(static_cast<std::size_t>(round) - 1, 0);
   for (std::size_t s = 0; s < key.sections; ++s) {
-    parts.last.push_back(part_of<simulate::SolvedSection>(store, {PartStage::solve, round, s, key.sections}));
-    const simulate::SolvedSection& part = parts.last.back();
+    solved.push_back(part_of<simulate::SolvedSection>(store, {PartStage::solve, round, s, key.sections}));
+    const simulate::SolvedSection& part = solved.back();
     for (std::size_t r = 0; r < part.history.size() && r < figures.solved_again.size(); ++r) {
       figures.solved_again[r] += part.history[r].solved_again;
       figures.largest_change_um[r] = std::max(figures.largest_change_um[r], part.history[r].largest_change_um);
     }
-    figures.pieces += part.pieces.size();
+    figures.pieces += part.cuts.size();
   }
   PredictRequest joined = request;
   joined.forces_at = key.forces_at;
-  joined.work = simulate::joined_target(parts);
+  joined.work = simulate::joined_target(swept, solved);
   MergedJob out{prepare(job, joined, found), {}, figures, {}};
   simulate::Setup& setup = out.prepared.setup;
-  out.prediction = simulate::merge_sections(job, setup.target, setup.program, parts);
+  out.prediction = simulate::merge_sections(job, setup.target, setup.program, swept, std::move(solved));
   setup.target.surface.clear();
   setup.target.whole.reset();
   finish_prediction(job, out.prepared, out.prediction, of_cut);

@@ -22,8 +22,9 @@ struct PartName {
   int round = 1;            ///< of solving
   std::size_t section = 0;  ///< from 0
   std::size_t sections = 1;
+  bool own = false;  ///< what only later stages of the same section read
 };
-/// "sweep-003-of-016.part", "solve-1-003-of-016.part"; sections count from 1.
+/// "sweep-003-of-016.part", "solve-1-003-of-016.part", "own-sweep-003-of-016.part"; sections count from 1.
 std::string file_name(const PartName& name);
 
 /// What all parts of one prediction share; parts of another one are refused by its name.
@@ -43,8 +44,6 @@ class PartStore {
   /// Throws InputError where it is missing [part-missing], torn [part-torn] or of another prediction [part-version],
   /// [part-job].
   virtual std::string take(const PartName& name) = 0;
-  /// All processes have given what they own of a stage. Nothing where parts are files.
-  virtual void gather(PartStage, int /*round*/) {}
 };
 
 /// Parts as files in FOLDER/parts, each written beside and renamed.
@@ -79,14 +78,23 @@ class SectionRun {
   /// Computes a part unless it is there. False: it was.
   bool sweep(std::size_t section);
   bool solve(std::size_t section, int round);
+  /// What each other section needs of a part that this process has made; for messages.
+  std::function<std::string(std::size_t section)> part_for_others(const PartName& name);
   /// Pieces that a round has solved again, in all sections; 0 in rigid coupling.
   std::size_t solved_again(int round);
+  /// In one section.
+  std::size_t solved_again_in(const PartName& name);
   bool is_static() const { return job_.simulation.coupling == machine::Coupling::static_; }
   /// What one process has done so far, for the efficiency of many.
   const simulate::SectionWork& work() const { return work_; }
 
  private:
-  std::vector<simulate::SolvedSection> solved_stocks(int round, std::size_t section, const removal::Region& region);
+  PartName name(PartStage stage, int round, std::size_t section, bool own = false) const {
+    return {stage, round, section, key_.sections, own};
+  }
+  bool is_there(const PartName& name);
+  const removal::Region& region(std::size_t section);
+  simulate::SectionParts parts_before(std::size_t section, int round);
 
   const machine::Job& job_;
   PartKey key_;
@@ -96,6 +104,7 @@ class SectionRun {
   simulate::Programs programs_;
   std::optional<std::size_t> turn_from_;
   simulate::SectionWork work_;
+  std::vector<removal::Region> regions_;  ///< of all sections, once one is asked for
 };
 
 /// How the pieces of a path were joined.
@@ -120,7 +129,6 @@ struct MergedJob {
 MergedJob merge_parts(const machine::Job& job, const PartKey& key, int round, PartStore& store,
                       const PredictRequest& request, Diagnostics& found, Diagnostics& of_cut);
 
-/// Rounds of static coupling, at most.
-inline constexpr int kMaxSectionRounds = 12;
+using simulate::kMaxSectionRounds;
 
 }  // namespace camber::api

@@ -16,6 +16,7 @@
 #include "camber/predict.h"
 #include "camber/program.h"
 #include "camber/run.h"
+#include "camber/sections.h"
 #include "camber/study.h"
 #include "camber/time.h"
 #include "camber/verify.h"

@@ -33,6 +33,31 @@ def long_program(minutes):
 
 
 
+class Sections(unittest.TestCase):
+    def test_parts_are_merged_as_the_command_line_does(self):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([ROOT / "bench/many/make_job.py", folder, "2", "0.8"], check=True)
+            job, out = pathlib.Path(folder) / "job.toml", pathlib.Path(folder) / "out"
+            with self.assertRaises(camber.InputError) as missing:
+                camber.predict_section(job, out, sections=2, section=1, solve=True)
+            self.assertEqual(missing.exception.id, "part-missing")
+            for solve in (False, True):
+                for section in (2, 1):
+                    part = camber.predict_section(job, out, sections=2, section=section, solve=solve)
+                    self.assertTrue(part.computed)
+                    self.assertGreater(part.stamps, 500)
+                    self.assertTrue(pathlib.Path(part.part).exists())
+            self.assertFalse(camber.predict_section(job, out, sections=2, section=1).computed)
+            merged = camber.merge(out)
+            self.assertEqual(merged.figures["sections"]["pieces"], 3)
+            self.assertEqual(merged.doubts, [])
+            plain = camber.predict(job)
+            self.assertAlmostEqual(merged.form_error_um.p95, plain.form_error_um.p95, places=2)
+            self.assertTrue((out / "report.html").exists())
+            with self.assertRaises(ValueError):
+                camber.predict_section(job, out, sections=2, section=3)
+
+
 class Trace(unittest.TestCase):
     def test_its_own_motion_as_a_trace_gives_the_same_map(self):
         plain = camber.predict(COARSE, feed=True)

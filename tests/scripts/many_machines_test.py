@@ -80,14 +80,43 @@ class SameBytes(unittest.TestCase):
         self.needs("mpirun")
         for ranks in (2, 3):
             place = "mpi%d" % ranks
-            done = subprocess.run(["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), CAMBER, "-v",
-                                   "predict", "job.toml", "-o", place, "--threads", "1"],
-                                  cwd=self.folder, capture_output=True, text=True)
-            if "is built without MPI" in done.stderr:
-                self.skipTest("camber is built without MPI")
+            done = self.mpirun(ranks, "-v", "predict", "job.toml", "-o", place)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("rank %d: " % (ranks - 1), done.stderr)
             self.assertEqual(digest(self.folder / place), self.expected)
+
+    def mpirun(self, ranks, *command):
+        done = subprocess.run(["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), CAMBER, *command,
+                               "--threads", "1"], cwd=self.folder, capture_output=True, text=True)
+        if "is built without MPI" in done.stderr:
+            self.skipTest("camber is built without MPI")
+        return done
+
+    def test_compensate_by_mpi(self):
+        self.needs("mpirun")
+        job = (self.folder / "job.toml").read_text().replace('"rigid"', '"static"').replace("= 0.5", "= 0.8")
+        (self.folder / "compensated.toml").write_text(job + "[compensation]\ntolerance_um = 1.0\nmax_rounds = 1\n")
+        lines = (self.folder / "raster.nc").read_text().split("\n")
+        (self.folder / "compensated.nc").write_text("\n".join(lines[:8] + ["M30", ""]))
+        (self.folder / "compensated.toml").write_text(
+            (self.folder / "compensated.toml").read_text().replace("raster.nc", "compensated.nc"))
+        found = []
+        for ranks in (1, 2):
+            done = self.mpirun(ranks, "compensate", "compensated.toml", "-o", "out.nc", "--json", "out.json",
+                               "--keep-anyway")
+            self.assertIn(done.returncode, (0, 3), done.stderr)
+            figures = json.loads((self.folder / "out.json").read_text())
+            del figures["compute_s"]
+            found.append((self.folder / "out.nc").read_text() + json.dumps(figures))
+            self.assertNotEqual((self.folder / "out.nc").read_text(), (self.folder / "compensated.nc").read_text())
+        self.assertEqual(found[0], found[1])
+
+    def test_other_commands_are_refused_under_mpi(self):
+        self.needs("mpirun")
+        done = self.mpirun(2, "merge", "one")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("camber: error: under mpirun predict and compensate share their work; merge runs without it\n",
+                      done.stderr)
 
     def test_slurm(self):
         self.needs("slurmctld", "slurmd", "sbatch", "squeue")

@@ -1,0 +1,107 @@
+#pragma once
+// What a section has computed: its part for the others, joined over its pieces, and what it keeps for itself, piece by
+// piece.
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/bytes.h"
+#include "removal/form_error.h"
+#include "removal/stock_part.h"
+#include "simulate/cut.h"
+
+namespace camber::simulate {
+
+/// What was done, for the efficiency of many.
+struct SectionWork {
+  std::size_t stamps = 0;  ///< carved, read or marked
+  std::size_t voxels = 0;  ///< of the parts that were made
+};
+
+/// What a section has carved out of the raw stock, for the others.
+struct SweptSection {
+  std::vector<removal::StockPart> stock;     ///< of the program; one per run of which the section has pieces
+  removal::StockPart target;                 ///< of the nominal path
+  removal::StockPart allowance;              ///< of the target program with the cutter shrunk by the allowance
+  double target_mm3 = 0, allowance_mm3 = 0;  ///< sums over pieces
+  SectionWork work;
+
+  /// What a section that reads within `region` needs.
+  SweptSection within(const removal::Region& region, double voxel_mm) const;
+  void write(ByteWriter& out) const;
+  static SweptSection read(ByteReader& in);
+};
+/// The same of the program alone, one per piece; no other section reads it.
+struct OwnSweep {
+  std::vector<removal::StockPart> stock;
+
+  void write(ByteWriter& out) const;
+  static OwnSweep read(ByteReader& in);
+};
+
+/// A mark on a point of the target's surface.
+struct SurfaceMark {
+  Vec3 place_mm = Vec3::Zero();  ///< of the point: none has another one's
+  double error_mm = 0;
+  std::int32_t stamp = -1;
+  std::int32_t unused = 0;  ///< no byte of a file is left to chance
+};
+using SurfaceMarks = std::vector<SurfaceMark>;  ///< in the order of the map's points
+
+/// A mark on a point of the section's map.
+struct OwnMark {
+  double error_mm = 0;
+  std::uint32_t point = 0;
+  std::int32_t stamp = -1;
+};
+
+/// What a section has solved, for the others, and for the merge.
+struct SolvedSection {
+  std::vector<removal::StockPart> stock;  ///< static: what the deflected cutter cut, one per run
+  std::vector<double> largest_bend_mm;    ///< static: one per run
+  std::vector<float> last_bend;           ///< static: BendBefore::rows of its last piece
+  struct Round {
+    std::uint64_t solved_again = 0;  ///< pieces
+    double largest_change_um = 0;  ///< of the stock before a piece, or of the tool's bend there, since the round before
+  };
+  std::vector<Round> history;  ///< from the second round on
+  SectionWork work;
+  // For the merge.
+  std::vector<CutResult> cuts;  ///< one per piece, without bend
+  SurfaceMarks marks, contour;  ///< the deepest of all pieces; contour: of the target program
+
+  /// What a section that reads within `region` needs: nothing for the merge.
+  SolvedSection within(const removal::Region& region, double voxel_mm) const;
+  void write(ByteWriter& out) const;
+  static SolvedSection read(ByteReader& in);
+};
+
+/// A piece that was solved.
+struct SolvedPiece {
+  CutResult cut;
+  std::vector<OwnMark> marks;
+  removal::StockPart stock;  ///< static: what the deflected cutter cut
+};
+/// What the next rounds of the same section read.
+struct OwnSolution {
+  std::vector<SolvedPiece> pieces;
+
+  void write(ByteWriter& out) const;
+  static OwnSolution read(ByteReader& in);
+};
+
+/// Bytes of a part.
+template <class Part>
+std::string bytes_of_part(const Part& part) {
+  ByteWriter out;
+  part.write(out);
+  return out.take();
+}
+template <class Part>
+Part part_from(std::string_view bytes) {
+  ByteReader in(bytes);
+  return Part::read(in);
+}
+
+}  // namespace camber::simulate

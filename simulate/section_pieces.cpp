@@ -1,0 +1,85 @@
+#include "simulate/section_pieces.h"
+
+#include <algorithm>
+#include <span>
+
+#include "removal/engagement.h"
+
+namespace camber::simulate {
+
+using machine::Job;
+using removal::Region;
+
+std::vector<PathPiece> path_pieces(const removal::StampPath& path) {
+  std::vector<PathPiece> out;
+  for (std::size_t r = 0; r < path.runs.size(); ++r) {
+    const removal::ToolRun& run = path.runs[r];
+    const std::size_t count =
+        run.kind == removal::RunKind::milling ? (run.count + kPieceStamps - 1) / kPieceStamps : std::size_t{1};
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t from = run.count * i / count;
+      out.push_back({r, from, run.count * (i + 1) / count - from});
+    }
+  }
+  return out;
+}
+
+PieceRange section_pieces(const std::vector<PathPiece>& pieces, std::size_t section, std::size_t sections) {
+  std::size_t total = 0, before = 0;
+  for (const PathPiece& p : pieces) total += p.count;
+  PieceRange out{pieces.size(), pieces.size()};
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    // The section in which the piece's middle lies.
+    const std::size_t of = (2 * before + pieces[i].count) * sections / std::max<std::size_t>(2 * total, 1);
+    before += pieces[i].count;
+    if (of >= section && out.begin == pieces.size()) out.begin = i;
+    if (of > section) {
+      out.end = i;
+      break;
+    }
+  }
+  if (out.begin > out.end) out.begin = out.end;
+  return out;
+}
+
+std::vector<RunPieces> runs_of(const std::vector<PathPiece>& pieces, const PieceRange& range) {
+  std::vector<RunPieces> out;
+  for (std::size_t p = range.begin; p < range.end; ++p) {
+    if (out.empty() || out.back().run != pieces[p].run) out.push_back({pieces[p].run, {p, p}});
+    out.back().pieces.end = p + 1;
+  }
+  return out;
+}
+
+Region reach_of(const Job& job, const removal::StampPath& path, const PathPiece& piece) {
+  constexpr double kMaxBandVoxels = 12, kFar_mm = 1e9;
+  Region out;
+  const removal::ToolRun& run = path.runs[piece.run];
+  const auto stamps = std::span(path.stamps).subspan(run.from + piece.from, piece.count);
+  const double around = removal::shape_of(job.tools.at(run.tool)).radius_mm + kMaxBandVoxels * job.simulation.voxel_mm +
+                        removal::DeflectedEngager::kMaxDeflection_mm;
+  const Vec3 wide(around, around, around);
+  for (const removal::Stamp& s : stamps) {
+    out.add(s.pose.tip_mm - wide);
+    out.add(s.pose.tip_mm + wide);
+    out.max_mm.z() = kFar_mm;
+    if (s.pose.upright()) continue;
+    out.add(Vec3::Constant(-kFar_mm));
+    out.add(Vec3::Constant(kFar_mm));
+    break;
+  }
+  return out;
+}
+
+Region reach_of(const Job& job, const removal::StampPath& path, const std::vector<PathPiece>& pieces,
+                const PieceRange& range) {
+  Region out;
+  for (std::size_t p = range.begin; p < range.end; ++p) out.add(reach_of(job, path, pieces[p]));
+  return out;
+}
+
+Region joined_region(const Job& job, const Region& reach) {
+  return reach.empty() ? reach : reach.wider(2 * removal::kTileVoxels * job.simulation.voxel_mm);
+}
+
+}  // namespace camber::simulate

@@ -1,0 +1,56 @@
+#pragma once
+// What a section finds before each of its pieces: the stock that earlier pieces have left, and how the tool was bent.
+#include <optional>
+#include <vector>
+
+#include "simulate/section_parts.h"
+#include "simulate/section_pieces.h"
+
+namespace camber::simulate {
+
+/// How a path is divided, and which part is a section's own.
+struct SectionPlace {
+  std::vector<PathPiece> pieces;
+  std::size_t section = 0, sections = 1;
+  PieceRange own{};
+
+  SectionPlace(const removal::StampPath& path, std::size_t section, std::size_t sections);
+  std::vector<RunPieces> runs(std::size_t of_section) const {
+    return runs_of(pieces, section_pieces(pieces, of_section, sections));
+  }
+};
+
+/// The stock before one piece of a section after the other.
+class StockBefore {
+ public:
+  /// `others`: what each of the sections before has cut, run by run; `own`: the section's pieces.
+  StockBefore(const removal::Stock& blank, const SectionPlace& place,
+              std::vector<const std::vector<removal::StockPart>*> others, std::vector<const removal::StockPart*> own,
+              const removal::Region& within);
+
+  /// `piece`: of the section's own, ascending.
+  void advance_to(std::size_t piece);
+  const removal::Stock& stock() const { return stock_; }
+  /// Before the first piece of the run.
+  const removal::Stock& before_run() const { return *before_run_; }
+
+ private:
+  void enter(std::size_t run);
+
+  const SectionPlace& place_;
+  std::vector<const removal::StockPart*> own_;
+  removal::Region within_;
+  removal::Stock stock_;
+  std::optional<removal::Stock> before_run_;
+  std::optional<std::size_t> run_;
+  std::size_t next_;
+};
+
+/// How the tool was bent before each piece of a section, as a round has found. Without rows where a piece begins a run,
+/// or where there was no round.
+std::vector<BendBefore> bends_before(const SectionPlace& place, const std::vector<SolvedSection>& round,
+                                     const OwnSolution& own);
+
+double largest_difference_mm(const BendBefore& a, const BendBefore& b);
+
+}  // namespace camber::simulate
