@@ -52,9 +52,9 @@ TEST(PostCommand, RefusesAMachineWithoutRotaryAxes) {
 TEST(PostureCommand, WritesAProgramThatPostReads) {
   const TempFolder folder;
   const std::string sample = CAMBER_SOURCE_DIR "/samples/16-die-cavity/";
-  const CamberRun run = run_camber(
-      folder, "posture " + sample + "finish.nc --job " + sample + "job.toml --mode normal --max-tilt-deg 0 -o up.nc "
-                                              "--report up.html --json up.json");
+  const CamberRun run = run_camber(folder, "posture " + sample + "finish.nc --job " + sample +
+                                               "job.toml --mode normal --max-tilt-deg 0 -o up.nc "
+                                               "--report up.html --json up.json");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.out.find("rotary axes turn 0 degrees"), std::string::npos) << run.out;
   EXPECT_NE(file_text(folder / "up.html").find("Before and after"), std::string::npos);
