@@ -121,9 +121,11 @@ class Maker {
     if (!request_.options.indexed) return {};
     const nc::Dialect& dialect = feedmodel::dialect_of(job_.machine.control.kind);
     const bool dynamic = request_.written == nc::OneDirection::dynamic;
-    if (!nc::five_axis_words(dialect).writes(request_.written))
-      return fmt::format("{} has no {}; joints or tip was expected for one direction of the tool", dialect.title,
-                         dynamic ? "dynamic work offset (G254)" : "tilted frames (G68.2)");
+    const nc::FiveAxisWords words = nc::five_axis_words(dialect);
+    if (!words.writes(request_.written))
+      return fmt::format("{} has no {}; {}joints or tip was expected for one direction of the tool", dialect.title,
+                         dynamic ? "dynamic work offset (G254)" : "tilted frames (G68.2)",
+                         words.tilted_frames ? "tilted, " : "");
     if (dynamic && !table_alone())
       return "the head of the machine turns; G254 turns with the table, and tilted, joints or tip was expected";
     return {};
