@@ -52,7 +52,7 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
      "  camber post dome_joints.nc --machine machine.toml --to tcp -o dome_tip.nc"},
     {"posture",
      "camber posture finish.nc --job job.toml -o finish_5x.nc\n"
-     "  camber posture finish.nc --job job.toml -o finish_5x.nc --overhang 2.5 --json figures.json"},
+     "  camber posture finish.nc --job job.toml -o finish_5x.nc --overhang 10 --json figures.json"},
     {"completion", "camber completion bash > ~/.local/share/bash-completion/completions/camber"}};
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "base/output_file.h"
 #include "base/stage.h"
 #include "cli/console.h"
+#include "cli/posture_page.h"
 #include "cli/progress.h"
 #include "machine/job.h"
 
@@ -41,6 +42,8 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
     return kNumbersDidNotWorkOut;
   }
   write_file(arguments.output, program.postured.text);
+  if (!arguments.report.empty())
+    write_file(arguments.report, posture_page(rows, overhangs && figures.unclear == 0, command, diagnostics));
   if (!options.quiet) {
     if (overhangs && figures.unclear == 0) fmt::print("{}\n", api::overhang_text(rows));
     fmt::print("{}", api::posture_text(program, command));

@@ -12,7 +12,7 @@ namespace camber::cli {
 
 struct PostureArguments {
   std::string program, output, job;
-  std::string json;  ///< empty: none
+  std::string json, report;  ///< empty: none
   std::optional<int> tool{};
   double step_mm = 1;
   double overhang_step_mm = 0;  ///< greater than zero: the shortest overhang is looked for

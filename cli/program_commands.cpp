@@ -523,12 +523,14 @@ void add_posture(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->check(number_from_to(0.1, 50))
       ->type_name("STEP");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  command->add_option("--report", arguments->report, "a page that shows the machine along the new program")
+      ->type_name("R.html");
   add_tool_lengths(*command, arguments->interpreter);
   add_work_offsets(*command, arguments->interpreter);
   add_interpreter_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
-      check_outputs({arguments->output, arguments->json}, {arguments->program, arguments->job});
+      check_outputs({arguments->output, arguments->json, arguments->report}, {arguments->program, arguments->job});
       return run_posture(*arguments, options);
     };
   });

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "nc/dialect.h"
+#include "nc/five_axis_words.h"
 
 namespace camber::nc {
 
@@ -57,5 +58,12 @@ inline constexpr Dialect kLinuxCnc{.name = "linuxcnc",
 
 /// The first row is default_dialect().
 inline constexpr std::array kDialects{kFanuc, kHaas, kMazak, kLinuxCnc};
+
+/// Words of five axes: a row for each of kDialects. LinuxCNC has no tilted frames.
+inline constexpr std::array<FiveAxisWords, kDialects.size()> kFiveAxisWords{
+    {{},
+     {.tip_control = "G234", .one_direction = OneDirection::dynamic, .dynamic_offset = true},
+     {},
+     {.one_direction = OneDirection::joints, .tilted_frames = false}}};
 
 }  // namespace camber::nc

@@ -1,21 +1,14 @@
 #include "nc/five_axis_words.h"
 
-#include <array>
-#include <utility>
+#include <algorithm>
+
+#include "nc/dialects.h"
 
 namespace camber::nc {
-namespace {
-
-/// Rows that differ from the default.
-constexpr std::array<std::pair<std::string_view, FiveAxisWords>, 2> kFiveAxisWords{
-    {{"haas", {"G234", OneDirection::dynamic}}, {"linuxcnc", {"G43.4", OneDirection::joints}}}};
-
-}  // namespace
 
 FiveAxisWords five_axis_words(const Dialect& dialect) {
-  for (const auto& [name, words] : kFiveAxisWords)
-    if (name == dialect.name) return words;
-  return {};
+  const auto row = std::ranges::find(kDialects, dialect.name, &Dialect::name);
+  return kFiveAxisWords[static_cast<std::size_t>(row - kDialects.begin())];
 }
 
 }  // namespace camber::nc

@@ -1,5 +1,5 @@
 #pragma once
-// Words with which the dialects tilt the tool. Beside Dialect, as few files need them.
+// Words with which the dialects tilt the tool. Beside Dialect, as few files need them; the rows are in nc/dialects.h.
 #include <cstdint>
 #include <string_view>
 
@@ -16,10 +16,17 @@ enum class OneDirection : std::uint8_t {
 };
 
 struct FiveAxisWords {
-  std::string_view tip_control = "G43.4";  ///< switches tool-centre-point control on, where no M code does
-  OneDirection one_direction = OneDirection::tilted;
+  std::string_view tip_control = "G43.4";             ///< switches tool-centre-point control on, where no M code does
+  OneDirection one_direction = OneDirection::tilted;  ///< usual
+  bool tilted_frames = true;                          ///< has G68.2 and G53.1
+  bool dynamic_offset = false;                        ///< has G254
+
+  bool writes(OneDirection way) const {
+    return way == OneDirection::tilted ? tilted_frames : way != OneDirection::dynamic || dynamic_offset;
+  }
 };
 
+/// Of a dialect of dialects().
 FiveAxisWords five_axis_words(const Dialect& dialect);
 
 }  // namespace camber::nc

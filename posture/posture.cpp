@@ -75,12 +75,17 @@ class Maker {
 
   void finish(const machine::Tool& tool, const Postures& postures, Postured& out) const {
     out.points = points_;
+    out.tool = request_.tool;
+    out.origin_mm = -*moves_.machine_origin_mm;
+    out.upright = figures_of(this->tool(), std::vector<Vec3>(points_.size(), Vec3::UnitZ()));
     if (postures.blocked) {
       out.blocked_move = points_[*postures.blocked].move;
       return;
     }
     out.axes = postures.axes;
-    out.figures = figures_of(tool, postures);
+    out.figures = figures_of(tool, postures.axes);
+    out.figures.unclear = postures.unclear;
+    out.figures.rotary_motion_deg = rotary_motion_deg(kinematics::Chain(job_.machine), postures.axes);
     write(out);
   }
   void write(Postured& out) const;
@@ -103,14 +108,27 @@ class Maker {
           fmt::format("the job has no [tool.{}]; the tool of the finishing moves was expected", request_.tool),
           "no-tool");
     using machine::ToolType;
-    if (request_.options.indexed && request_.written == nc::OneDirection::dynamic && !table_alone())
-      return refuse("the head of the machine turns; G254 turns with the table, and tilted, joints or tip was expected",
-                    "no-frame");
+    if (const std::string message = frame_refused(); !message.empty()) return refuse(message, "no-frame");
     if (found->second.type != ToolType::ball && found->second.type != ToolType::bull)
       return refuse(
           fmt::format("[tool.{}] is neither a ball nor a bull-nose cutter; one of these was expected", request_.tool),
           "not-ball");
     return true;
+  }
+
+  /// Why one direction cannot be written as asked for; empty: it can.
+  std::string frame_refused() const {
+    if (!request_.options.indexed) return {};
+    const nc::Dialect& dialect = feedmodel::dialect_of(job_.machine.control.kind);
+    const bool dynamic = request_.written == nc::OneDirection::dynamic;
+    const nc::FiveAxisWords words = nc::five_axis_words(dialect);
+    if (!words.writes(request_.written))
+      return fmt::format("{} has no {}; {}joints or tip was expected for one direction of the tool", dialect.title,
+                         dynamic ? "dynamic work offset (G254)" : "tilted frames (G68.2)",
+                         words.tilted_frames ? "tilted, " : "");
+    if (dynamic && !table_alone())
+      return "the head of the machine turns; G254 turns with the table, and tilted, joints or tip was expected";
+    return {};
   }
 
   bool table_alone() const {
@@ -165,17 +183,14 @@ class Maker {
     return false;
   }
 
-  PostureFigures figures_of(const machine::Tool& tool, const Postures& postures) const {
+  PostureFigures figures_of(const machine::Tool& tool, const std::vector<Vec3>& axes) const {
     PostureFigures out;
     out.points = points_.size();
-    out.unclear = postures.unclear;
     out.overhang_mm = tool.overhang_mm;
-    const kinematics::Chain chain(job_.machine);
-    out.rotary_motion_deg = rotary_motion_deg(chain, postures.axes);
     double way = 0, share = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!points_[i].contact) continue;
-      const double angle = angle_between(postures.axes[i], points_[i].normal);
+      const double angle = angle_between(axes[i], points_[i].normal);
       ++out.contacts;
       way += points_[i].way_mm;
       share += points_[i].way_mm * error_share(angle);

@@ -44,6 +44,9 @@ struct Postured {
   std::string text;  ///< empty: blocked
   std::vector<std::uint32_t> block_of_line;
   PostureFigures figures;
+  PostureFigures upright;  ///< of the tool of the job along Z; unclear and rotary motion are not counted
+  int tool = 0;
+  Vec3 origin_mm = Vec3::Zero();                ///< of the work offset, in the machine frame
   std::optional<std::uint32_t> blocked_move{};  ///< the first move at which no direction is clear
   std::vector<PathPoint> points;
   std::vector<Vec3> axes;

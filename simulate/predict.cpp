@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include "base/freed_memory.h"
 #include "base/stage.h"
@@ -241,9 +242,9 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
   for_each_run(job, nominal, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     places.add(static_cast<std::int32_t>(run.from), removal::shape_of(tool), stamps);
   });
-  std::optional<removal::MeshDistance> part;
+  std::optional<removal::PartMesh> part;
   if (!job.part.mesh.empty() && work.judged) {
-    part.emplace(job.part.mesh, job.simulation.voxel_mm, 10 * job.simulation.voxel_mm);
+    part.emplace(job.part.mesh);
     check_part_size(job.part.mesh, {part->min_mm(), part->max_mm()}, where.stock, diagnostics);
     diagnostics.throw_if_errors();
   }
@@ -424,7 +425,13 @@ Prediction judge(const Target& target, PathLoads loads, std::vector<removal::Sur
     deflection_um.push_back(1000 * (p.error_mm - p.contour_mm));
     contour_um.push_back(1000 * p.contour_mm);
     area.push_back(p.area_mm2);
-    if (target.part) out.total_error_mm.push_back(target.part->distance_mm(p.place_mm + p.error_mm * p.normal));
+  }
+  if (target.part) {
+    out.total_error_mm.resize(out.surface.size());
+    tbb::parallel_for(std::size_t{0}, out.surface.size(), [&](std::size_t i) {
+      const removal::SurfacePoint& p = out.surface[i];
+      out.total_error_mm[i] = target.part->distance_mm(p.place_mm + p.error_mm * p.normal);
+    });
   }
   out.form_error_um = removal::error_figures(error_um, area);
   out.deflection_um = removal::error_figures(deflection_um, area);

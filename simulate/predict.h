@@ -12,6 +12,7 @@
 #include "nc/move.h"
 #include "nc/program.h"
 #include "removal/form_error.h"
+#include "removal/part_mesh.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 #include "simulate/cut.h"
@@ -76,7 +77,7 @@ struct SurfaceRegion {
 struct Target {
   removal::Stock blank;    ///< before this job's first cut
   removal::Stock surface;  ///< the nominal one
-  std::optional<removal::MeshDistance> part;
+  std::optional<removal::PartMesh> part;
   HoleStamps holes;                          ///< of the nominal path
   std::optional<removal::Stock> whole{};     ///< the stock before the allowance was removed; empty: `blank`
   std::vector<PathFraction> stamps{};        ///< the nominal path's, on the target program's moves

@@ -56,14 +56,21 @@ void to_joints(const PostureCommand& command, PosturedProgram& program, Diagnost
   program.postured.block_of_line = std::move(posted.block_of_line);
 }
 
+/// The moves of the new program; an error in its text is ours.
+nc::Interpretation moves_of(const PosturedProgram& program, const PostureCommand& command) {
+  Diagnostics again;
+  const nc::Program text = nc::read_program(SourceText(command.output, program.postured.text), again);
+  nc::Interpretation moves =
+      nc::interpret(text, rotary_interpreter_options(command.job->machine, command.interpreter), again);
+  again.throw_if_errors();
+  place_rotary_lines(command.job->machine, moves);
+  return moves;
+}
+
 /// Time on the machine, and what the checks of travel say, at the blocks of the given program.
 void read_again(const PostureCommand& command, PosturedProgram& program, Diagnostics& diagnostics) {
   const machine::Machine& machine = command.job->machine;
-  Diagnostics again;  // an error in the new text is ours
-  const nc::Program text = nc::read_program(SourceText(command.output, program.postured.text), again);
-  nc::Interpretation moves = nc::interpret(text, rotary_interpreter_options(machine, command.interpreter), again);
-  again.throw_if_errors();
-  place_rotary_lines(machine, moves);
+  nc::Interpretation moves = moves_of(program, command);
   program.time_s = feedmodel::cycle_time(moves, machine).all.time.total_s();
   for (nc::Move& move : moves.moves) move.block = program.postured.block_of_line[move.block];
   kinematics::check_travel(machine, *command.text, moves, diagnostics);
@@ -116,11 +123,13 @@ std::vector<PosturedProgram> posture_programs(const PostureCommand& command, dou
   diagnostics.throw_if_errors();
   made.erase(std::find_if_not(made.begin() + 1, made.end(), clear), made.end());
   if (!clear(made[0])) made.resize(1);
+  const double given_time_s = feedmodel::cycle_time(moves, command.job->machine).all.time.total_s();
   std::vector<PosturedProgram> out(made.size());
   std::vector<Diagnostics> found(made.size());
   tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t row) {
     out[row].postured = std::move(made[row]);
     out[row].written = written;
+    out[row].given_time_s = given_time_s;
     if (out[row].postured.blocked_move) {
       out[row].blocked_line = moves.moves[*out[row].postured.blocked_move].block + 1;
       return;
@@ -133,10 +142,18 @@ std::vector<PosturedProgram> posture_programs(const PostureCommand& command, dou
   return out;
 }
 
+kinematics::PoseTrack posture_track(const PosturedProgram& program, const PostureCommand& command) {
+  return kinematics::programmed_track(command.job->machine, moves_of(program, command));
+}
+
 std::string posture_text(const PosturedProgram& program, const PostureCommand& command) {
   const posture::PostureFigures& f = program.postured.figures;
+  const posture::PostureFigures& before = program.postured.upright;
   std::string out = fmt::format("points    {}, {} of them on the part; {} nearer than {:g} mm\n", f.points, f.contacts,
                                 f.unclear, command.options.clearance_mm);
+  out += fmt::format("before    {:.1f} degrees from the normal; overhang {:g} mm, {:.3f} um for each N; {:.1f} s\n",
+                     deg_from_rad(before.mean_angle_rad), before.overhang_mm, before.compliance_um_per_N,
+                     program.given_time_s);
   out += fmt::format("tool      {:.1f} degrees from the normal, at most {:.1f}; rotary axes turn {:.0f} degrees\n",
                      deg_from_rad(f.mean_angle_rad), deg_from_rad(f.max_angle_rad), f.rotary_motion_deg);
   out +=
@@ -174,6 +191,12 @@ std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhang
     }
   }
   report["clearance_mm"] = command.options.clearance_mm;
+  const posture::PostureFigures& before = program.postured.upright;
+  report["before"] = {{"overhang_mm", before.overhang_mm},
+                      {"mean_angle_deg", deg_from_rad(before.mean_angle_rad)},
+                      {"max_angle_deg", deg_from_rad(before.max_angle_rad)},
+                      {"compliance_um_per_N", before.compliance_um_per_N},
+                      {"time_s", program.given_time_s}};
   if (program.blocked_line > 0) report["blocked_line"] = program.blocked_line;
   if (overhangs && clear(program.postured))
     for (const PosturedProgram& row : rows) report["overhangs"].push_back(figures_json(row));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "kinematics/pose_track.h"
 #include "machine/job.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
@@ -26,6 +27,7 @@ struct PostureCommand {
 struct PosturedProgram {
   posture::Postured postured;    ///< without a text where no direction is clear
   double time_s = 0;             ///< of the whole program on the machine
+  double given_time_s = 0;       ///< and of the given one
   std::size_t blocked_line = 0;  ///< 1-based; 0: none
   nc::OneDirection written = nc::OneDirection::tip;
 };
@@ -35,6 +37,9 @@ struct PosturedProgram {
 /// kinematics::check_travel of the last new program, at the given blocks.
 std::vector<PosturedProgram> posture_programs(const PostureCommand& command, double overhang_step_mm,
                                               Diagnostics& diagnostics);
+
+/// Positions of the machine along the new program.
+kinematics::PoseTrack posture_track(const PosturedProgram& program, const PostureCommand& command);
 
 /// For people.
 std::string posture_text(const PosturedProgram& program, const PostureCommand& command);

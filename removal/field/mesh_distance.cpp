@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
-#include "base/diagnostics.h"
 #include "base/free_memory.h"
 #include "base/stl.h"
 #include "removal/field/mesh_memory.h"
+#include "removal/part_mesh.h"
 
 namespace camber::removal {
 
@@ -21,12 +20,7 @@ struct MeshDistance::Impl {
 
 MeshDistance::MeshDistance(const std::string& path, double voxel_mm, double band_mm) {
   openvdb::initialize();
-  const TriangleMesh mesh = read_stl(path);
-  if (const std::size_t open = mesh.open_edges(); open > 0)
-    fail_on_file(path,
-                 fmt::format("the mesh is not closed: {} of its edges {} no second triangle, so it has no inside", open,
-                             open == 1 ? "has" : "have"),
-                 "stl-open");
+  const TriangleMesh mesh = read_closed_stl(path);
   require_mesh_memory(path, mesh, voxel_mm, band_mm, free_memory_bytes());
   Eigen::Vector3f lo = mesh.points.front(), hi = lo;
   std::vector<openvdb::Vec3s> points;

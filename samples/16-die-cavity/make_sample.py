@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Makes part.stl and finish.nc: a die cavity 40 mm deep with walls at 30 degrees to the vertical and a character line
-across its floor, and rows of a ball of 6 mm to and fro along X.
+across its floor, and rows of a ball of 6 mm to and fro along X; and rows.nc with rows_stock.stl: rows of the finishing
+pass down one wall and over the character line, and the material around them that the pass before has left.
 
     python3 make_sample.py [pitch in mm, default 4]
 """
@@ -15,6 +16,7 @@ FLOOR = (25.0, 15.0)      # half of the floor
 CORNER = 8.0              # of the floor's outline
 BOTTOM = -50.0            # of the block
 GRID, R = 0.5, 3.0
+ALLOWANCE = 0.15
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 
@@ -35,50 +37,72 @@ def height(x, y):
     return -smooth_max(-inside, 0, 2)
 
 
-def main():
-    pitch = float(sys.argv[1]) if len(sys.argv) > 1 else 4.0
+def grid():
+    """Heights of the part, GRID apart: z[i][j] at (-HALF[0] + i * GRID, -HALF[1] + j * GRID)."""
     nx, ny = int(2 * HALF[0] / GRID) + 1, int(2 * HALF[1] / GRID) + 1
-    z = [[height(-HALF[0] + i * GRID, -HALF[1] + j * GRID) for j in range(ny)] for i in range(nx)]
+    return [[height(-HALF[0] + i * GRID, -HALF[1] + j * GRID) for j in range(ny)] for i in range(nx)]
+
+
+def write_block(path, z, i_range, j_range, bottom):
+    """A block with the surface z on top, as an STL file with triangles of 1 mm."""
+    coarse = 2
+    (i0, i1), (j0, j1) = i_range, j_range
 
     def point(i, j):
         return (-HALF[0] + i * GRID, -HALF[1] + j * GRID, z[i][j])
 
-    coarse = 2  # triangles of 1 mm
-    with open(os.path.join(HERE, "part.stl"), "wb") as file:
-        triangles = []
-        for i in range(0, nx - coarse, coarse):
-            for j in range(0, ny - coarse, coarse):
-                a, b, c, d = point(i, j), point(i + coarse, j), point(i + coarse, j + coarse), point(i, j + coarse)
-                triangles += [(a, b, c), (a, c, d)]
-        ring = [(i, 0) for i in range(0, nx - 1, coarse)] + [(nx - 1, j) for j in range(0, ny - 1, coarse)] + \
-               [(i, ny - 1) for i in range(nx - 1, 0, -coarse)] + [(0, j) for j in range(ny - 1, 0, -coarse)]
-        foot = [(*point(i, j)[:2], BOTTOM) for i, j in ring]
-        for k in range(len(ring)):  # walls and bottom of the block
-            n = (k + 1) % len(ring)
-            a, b = point(*ring[k]), point(*ring[n])
-            triangles += [(foot[k], foot[n], b), (foot[k], b, a), (foot[n], foot[k], (0.0, 0.0, BOTTOM))]
+    triangles = []
+    for i in range(i0, i1, coarse):
+        for j in range(j0, j1, coarse):
+            a, b, c, d = point(i, j), point(i + coarse, j), point(i + coarse, j + coarse), point(i, j + coarse)
+            triangles += [(a, b, c), (a, c, d)]
+    ring = [(i, j0) for i in range(i0, i1, coarse)] + [(i1, j) for j in range(j0, j1, coarse)] + \
+           [(i, j1) for i in range(i1, i0, -coarse)] + [(i0, j) for j in range(j1, j0, -coarse)]
+    foot = [(*point(i, j)[:2], bottom) for i, j in ring]
+    middle = ((foot[0][0] + point(i1, j1)[0]) / 2, (foot[0][1] + point(i1, j1)[1]) / 2, bottom)
+    for k in range(len(ring)):  # walls and bottom
+        n = (k + 1) % len(ring)
+        a, b = point(*ring[k]), point(*ring[n])
+        triangles += [(foot[k], foot[n], b), (foot[k], b, a), (foot[n], foot[k], middle)]
+    with open(path, "wb") as file:
         file.write(b"die cavity".ljust(80) + struct.pack("<I", len(triangles)))
         for t in triangles:
             file.write(struct.pack("<12fH", 0, 0, 0, *t[0], *t[1], *t[2], 0))
 
+
+def raised(z, by):
+    """The surface that is `by` off z along its normal, to first order."""
+    def slope(low, high, n):
+        return (high - low) / (n * GRID)
+
+    nx, ny = len(z), len(z[0])
+    return [[z[i][j] + by * math.hypot(1, slope(z[max(i - 1, 0)][j], z[min(i + 1, nx - 1)][j],
+                                                min(i + 1, nx - 1) - max(i - 1, 0)),
+                                       slope(z[i][max(j - 1, 0)], z[i][min(j + 1, ny - 1)],
+                                             min(j + 1, ny - 1) - max(j - 1, 0)))
+             for j in range(ny)] for i in range(nx)]
+
+
+def finishing_rows(z, pitch, ys=(-36.0, 36.0), xs=(-46.0, 46.0)):
+    """Tips of the ball in rows along X, to and fro, where it is below the face of the block."""
     reach = int(R / GRID)
     ball = [(di, dj, math.sqrt(R * R - (di * GRID) ** 2 - (dj * GRID) ** 2) - R)
             for di in range(-reach, reach + 1) for dj in range(-reach, reach + 1)
             if (di * GRID) ** 2 + (dj * GRID) ** 2 <= R * R]
-
-    def tip(i, j):
-        return max(z[i + di][j + dj] + rise for di, dj, rise in ball)
-
+    first, last = round((xs[0] + HALF[0]) / GRID), round((xs[1] + HALF[0]) / GRID)
     rows = []
-    y = -36.0
-    step = 2  # blocks of 1 mm
-    while y <= 36.0 + 1e-9:
+    y = ys[0]
+    while y <= ys[1] + 1e-9:
         j = round((y + HALF[1]) / GRID)
-        row = [(-HALF[0] + i * GRID, -HALF[1] + j * GRID, tip(i, j)) for i in range(8, nx - 8, step)]
+        row = [(-HALF[0] + i * GRID, -HALF[1] + j * GRID, max(z[i + di][j + dj] + rise for di, dj, rise in ball))
+               for i in range(first, last + 1, 2)]  # blocks of 1 mm
         rows.append([p for p in row if p[2] < -1.0])
         y += pitch
-    rows = [r if k % 2 == 0 else r[::-1] for k, r in enumerate([r for r in rows if len(r) > 3])]
-    with open(os.path.join(HERE, "finish.nc"), "w") as file:
+    return [r if k % 2 == 0 else r[::-1] for k, r in enumerate([r for r in rows if len(r) > 3])]
+
+
+def write_program(path, rows):
+    with open(path, "w") as file:
         file.write("(DIE CAVITY, BALL 6, ROWS ALONG X)\nG21 G17 G40 G49 G80 G90 G94\nG64 P0.01\n"
                    "G10 L2 P1 X25. Y-15. Z5.\nG10 L1 P1 Z140.\nT1 M6\nG54\nS12000 M3\nG43 H1\nG0 X0. Y0. Z30.\n")
         for row in rows:
@@ -90,4 +114,18 @@ def main():
         file.write("M5\nM2\n")
 
 
-main()
+def column(x, y):
+    return round((x + HALF[0]) / GRID), round((y + HALF[1]) / GRID)
+
+
+def main():
+    z = grid()
+    write_block(os.path.join(HERE, "part.stl"), z, (0, len(z) - 1), (0, len(z[0]) - 1), BOTTOM)
+    write_program(os.path.join(HERE, "finish.nc"), finishing_rows(z, float(sys.argv[1]) if len(sys.argv) > 1 else 4.0))
+    write_program(os.path.join(HERE, "rows.nc"), finishing_rows(z, 0.5, (-4.5, -3.5), (-46.0, 0.0)))
+    (i0, j0), (i1, j1) = column(-49, -8), column(3, 0)
+    write_block(os.path.join(HERE, "rows_stock.stl"), raised(z, ALLOWANCE), (i0, i1), (j0, j1), BOTTOM)
+
+
+if __name__ == "__main__":
+    main()

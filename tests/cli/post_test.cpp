@@ -3,6 +3,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/run_camber.h"
 
@@ -51,10 +52,15 @@ TEST(PostCommand, RefusesAMachineWithoutRotaryAxes) {
 TEST(PostureCommand, WritesAProgramThatPostReads) {
   const TempFolder folder;
   const std::string sample = CAMBER_SOURCE_DIR "/samples/16-die-cavity/";
-  const CamberRun run = run_camber(
-      folder, "posture " + sample + "finish.nc --job " + sample + "job.toml --mode normal --max-tilt-deg 0 -o up.nc");
+  const CamberRun run = run_camber(folder, "posture " + sample + "finish.nc --job " + sample +
+                                               "job.toml --mode normal --max-tilt-deg 0 -o up.nc "
+                                               "--report up.html --json up.json");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_NE(run.out.find("rotary axes turn 0 degrees"), std::string::npos) << run.out;
+  EXPECT_NE(file_text(folder / "up.html").find("Before and after"), std::string::npos);
+  const auto report = nlohmann::json::parse(file_text(folder / "up.json"));
+  EXPECT_EQ(report["before"]["mean_angle_deg"], report["mean_angle_deg"]);  // it stays upright
+  EXPECT_EQ(report["before"]["compliance_um_per_N"], report["compliance_um_per_N"]);
   const CamberRun near =
       run_camber(folder, "posture " + sample + "finish.nc --job " + sample + "job.toml --mode normal -o normal.nc");
   EXPECT_EQ(near.status, 3);

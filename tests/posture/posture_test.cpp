@@ -212,9 +212,15 @@ class PostureInATrough : public ::testing::Test {
         .at(0);
   }
 
-  std::string said(const machine::Job& job) const {
+  /// The control of the machine becomes another.
+  void speak(const char* control) { job_.machine.control.kind = *machine::control_kind_named(control); }
+
+  std::string said(const machine::Job& job, std::optional<nc::OneDirection> indexed = {}) const {
     Diagnostics diagnostics;
-    make_postures({.job = &job, .program = &program_, .moves = &moves_, .tool = 1, .options = {}}, diagnostics);
+    PostureRequest request{.job = &job, .program = &program_, .moves = &moves_, .tool = 1, .options = {}};
+    request.options.indexed = indexed.has_value();
+    if (indexed) request.written = *indexed;
+    make_postures(request, diagnostics);
     std::string out;
     for (Diagnostic d : diagnostics.all()) {
       d.source_line.clear();
@@ -276,6 +282,7 @@ TEST_F(PostureInATrough, OneDirectionIsTheSameHoweverItIsWritten) {
   read(rows(mesh_));
   std::vector<std::vector<ToolPose>> all;
   for (const nc::OneDirection written : {nc::OneDirection::tip, nc::OneDirection::tilted, nc::OneDirection::dynamic}) {
+    speak(written == nc::OneDirection::tip ? "linuxcnc" : written == nc::OneDirection::tilted ? "fanuc" : "haas");
     Diagnostics diagnostics;
     PostureRequest request{.job = &job_, .program = &program_, .moves = &moves_, .tool = 1, .options = {}};
     request.options.indexed = true;
@@ -302,6 +309,29 @@ TEST_F(PostureInATrough, OneDirectionIsTheSameHoweverItIsWritten) {
       EXPECT_LT(angle_between(all[way][i].axis, all[0][i].axis), 1e-5) << way << " " << i;
     }
   }
+}
+
+TEST_F(PostureInATrough, SaysWhichFramesItCannotWrite) {
+  using enum nc::OneDirection;
+  read(rows(mesh_));
+  const std::string end = "; joints or tip was expected for one direction of the tool [no-frame]\n";
+  EXPECT_EQ(said(job_, tilted), "job.toml: error: LinuxCNC has no tilted frames (G68.2)" + end);
+  EXPECT_EQ(said(job_, dynamic), "job.toml: error: LinuxCNC has no dynamic work offset (G254)" + end);
+  speak("fanuc");
+  EXPECT_EQ(said(job_, dynamic), "job.toml: error: Fanuc has no dynamic work offset (G254); tilted, " + end.substr(2));
+  Diagnostics diagnostics;
+  job_.machine = machine::read_machine(CAMBER_SOURCE_DIR "/samples/kinematics/head_table.toml", diagnostics);
+  speak("haas");
+  EXPECT_EQ(said(job_, dynamic),
+            "job.toml: error: the head of the machine turns; G254 turns with the table, and tilted, joints or tip was "
+            "expected [no-frame]\n");
+  job_.machine = table();
+  speak("fanuc");
+  read("G21 G17 G90 G94\nT1 M6\nG0 X0. Y0. Z60.\nG68 X0 Y0 R30\nG1 Z10. F600\nG69\nM30\n");
+  EXPECT_EQ(
+      said(job_, tilted),
+      "p.nc:5:1: error: this move has turned, mirrored or scaled coordinates; a frame for one direction of the tool "
+      "was expected to be the only one [no-frame]\n");
 }
 
 TEST_F(PostureInATrough, SaysWhatItCannotTilt) {
