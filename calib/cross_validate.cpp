@@ -1,5 +1,6 @@
 #include "calib/cross_validate.h"
 
+#include <cstddef>
 #include <utility>
 
 namespace camber::calib {
@@ -14,6 +15,16 @@ Machine stopping(Machine m) {
   return m;
 }
 
+/// In degrees.
+double rotary_drive_rms(const ServoTrace& rotary, int axis, const machine::RotaryAxis& model) {
+  machine::Axis drive;
+  drive.position_gain_per_s = model.position_gain_per_s;
+  drive.velocity_lag_s = model.velocity_lag_s;
+  drive.feed_forward_percent = model.feed_forward_percent;
+  drive.filter_s = model.filter_s;
+  return drive_rms_mm({&rotary}, axis, drive);
+}
+
 HeldOutRun judge(const FeedRun& run, const FitFeedResult& fit) {
   HeldOutRun held;
   held.program_name = run.program_name;
@@ -25,6 +36,14 @@ HeldOutRun judge(const FeedRun& run, const FitFeedResult& fit) {
   for (int axis = 0; axis < 3; ++axis)
     if (run.trace.has_command[axis] && run.trace.has_actual[axis])
       held.drive_rms_mm[axis] = drive_rms_mm({&run.trace}, axis, fit.machine.axis[axis]);
+  if (run.trace.rotary_command_deg.empty()) return held;
+  const ServoTrace rotary = rotary_trace(run.trace);
+  for (const char letter : fit.machine.kinematics.rotary_axes()) {
+    const auto axis = static_cast<std::size_t>(letter - 'a');
+    if (rotary.has_command[axis] && rotary.has_actual[axis])
+      held.rotary_drive_rms_deg.emplace_back(
+          letter, rotary_drive_rms(rotary, static_cast<int>(axis), fit.machine.rotary[axis]));
+  }
   return held;
 }
 

@@ -2,6 +2,7 @@
 // Leave one trace out: each is predicted by a machine that was fitted on the others.
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/fit_feed.h"
@@ -14,6 +15,7 @@ struct HeldOutRun {
   FeedAccuracy constant_feed;            ///< baseline: the programmed feed everywhere, no lag
   FeedAccuracy stop_every_block;         ///< baseline: the fitted accelerations, rest at the end of every block
   std::array<double, 3> drive_rms_mm{};  ///< drive model alone, driven by the traced command; 0: the axis rests
+  std::vector<std::pair<char, double>> rotary_drive_rms_deg;  ///< the same of a, b, c, of the axes that the trace has
   bool converged = false;
 };
 

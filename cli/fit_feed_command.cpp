@@ -149,8 +149,11 @@ void print(const std::vector<calib::HeldOutRun>& runs) {
     line(slash == std::string::npos ? run.program_name : run.program_name.substr(slash + 1), run.accuracy);
     line("  constant feed", run.constant_feed);
     line("  stop at every block", run.stop_every_block);
-    fmt::print("  drives alone: x {:.3f}, y {:.3f}, z {:.3f} um rms\n", 1000 * run.drive_rms_mm[0],
+    fmt::print("  drives alone: x {:.3f}, y {:.3f}, z {:.3f} um rms", 1000 * run.drive_rms_mm[0],
                1000 * run.drive_rms_mm[1], 1000 * run.drive_rms_mm[2]);
+    for (const auto& [letter, rms_deg] : run.rotary_drive_rms_deg)
+      fmt::print(", {} {:.5f} degrees rms", letter, rms_deg);
+    fmt::print("\n");
   }
 }
 

@@ -12,6 +12,7 @@ namespace {
 constexpr double kLeastSine = 1e-3;
 constexpr double kNoSpeed = 1e-8;  // mm/s
 constexpr double kAtEnd_mm = 1e-9;
+constexpr double kTop = 1 - 1e-12;    // rounding
 constexpr double kMaxCycles = 3.6e7;  // a block of ten hours at 1 ms
 
 double reachable(const PlanRow& row, double length_mm) {
@@ -26,14 +27,33 @@ class Block {
 
   /// One period at the speed from which the block can still stop at its end.
   void step() {
-    const double half = a_ * t_ / 2;
+    const double gain = a_ * t_, half = gain / 2;
     const double reach = half * half + a_ * (2 * (length_ - way_) - speed_ * t_);
     const double can_stop = reach > half * half ? std::sqrt(reach) - half : -half;
-    const double change = std::clamp((std::min(can_stop, limit_) - speed_) / t_, -a_, a_);
-    const double speed = std::max(0.0, speed_ + change * t_);
+    const double change = std::clamp(std::min(can_stop, limit_) - speed_, -gain, gain);
+    const double speed = std::max(0.0, speed_ + change);
     way_ = speed > 0 ? std::min(length_, way_ + (speed + speed_) * t_ / 2) : length_;
     speed_ = speed;
     braking_ = change < 0 && std::abs(can_stop - speed_) < kNoSpeed;
+  }
+
+  /// The whole periods of constant acceleration from rest at once; returns their number.
+  double start() {
+    const double gain = a_ * t_;
+    const double n = std::floor(std::min(limit_ / gain - 1, std::sqrt(a_ * length_) / gain - 4));
+    if (n <= 0) return 0;
+    way_ = n * n * gain * t_ / 2;
+    speed_ = n * gain;
+    return n;
+  }
+
+  /// The same at the highest speed, until the block must brake.
+  double cruise() {
+    if (speed_ < kTop * limit_) return 0;
+    const double way = limit_ * t_, n = std::floor((length_ - way_ - limit_ * limit_ / (2 * a_)) / way) - 2;
+    if (n <= 0) return 0;
+    way_ += n * way;
+    return n;
   }
 
   bool over() const { return way_ >= length_ - kAtEnd_mm; }
@@ -68,8 +88,9 @@ OverlapTimes overlap_times(const PlanRow& row, const OverlapOptions& o) {
   Block block(row, o.period_s);
   OverlapTimes out;
   bool begun = false;
-  double cycle = 0;
+  double cycle = block.start();
   for (; !block.over() && cycle < kMaxCycles; ++cycle) {
+    cycle += block.cruise();
     block.step();
     const double now_s = o.start_s + cycle * o.period_s;
     if (begun || o.speed <= 0 || now_s < o.alone_from_s - 1e-9 || !block.braking() || block.speed() >= o.speed)

@@ -198,9 +198,10 @@ class Builder {
 
   /// Index after the last move that is driven as one with move i. What turns is not merged.
   std::size_t run_end(std::size_t i, const nc::ModalState& state) const {
-    const std::size_t end = merged_run_end(program_.moves, i, merge_tolerance_mm(state, settings_of(machine_, state)));
-    if (!turns_) return end;
-    return turning_ ? i + 1 : turns_->next_turning(i + 1, end);
+    if (turning_) return i + 1;
+    const std::span<const nc::Move> moves = program_.moves;
+    const std::size_t end = turns_ ? turns_->next_turning(i + 1, moves.size()) : moves.size();
+    return merged_run_end(moves.first(end), i, merge_tolerance_mm(state, settings_of(machine_, state)));
   }
 
   void add(std::size_t first, std::size_t end) {

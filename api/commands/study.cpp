@@ -1,5 +1,6 @@
 #include "api/commands/study.h"
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <map>
@@ -12,6 +13,7 @@
 #include "machine/toml_text.h"
 #include "nc/emit.h"
 #include "nc/interpreter.h"
+#include "simulate/rotary_motion.h"
 
 namespace camber::api {
 namespace {
@@ -43,11 +45,26 @@ std::string case_hash(const Study& study, const StudyCase& one, std::map<std::st
   return hash;
 }
 
+/// In inverse time (G93) moves of rotary axes alone have a time and no feed along a path.
+void warn_of_timed_turns(const machine::Job& job, const nc::Interpretation& moves, double percent,
+                         Diagnostics& diagnostics) {
+  const auto timed = [&](const nc::RotaryTarget& t) { return t.time_s > 0 && moves.moves[t.move].feed_mm_per_s <= 0; };
+  const auto first = std::ranges::find_if(moves.rotary, timed);
+  if (first == moves.rotary.end()) return;
+  diagnostics.add({Severity::warning,
+                   {job.program, moves.moves[first->move].block + 1, 0},
+                   fmt::format("feed_percent = {}: the times (G93) of {} moves of rotary axes alone stay as programmed",
+                               percent, std::ranges::count_if(moves.rotary, timed)),
+                   "study-feed",
+                   {}});
+}
+
 /// The program with all feeds of its cutting moves scaled. Warns of moves whose feed the text does not say alone.
 std::string scaled_program(const machine::Job& job, double percent, Diagnostics& diagnostics) {
   Diagnostics ignored;  // said when the case itself is read
   const nc::Program text = nc::read_program(SourceText::read(job.program), ignored);
-  const nc::Interpretation moves = nc::interpret(text, feedmodel::interpreter_options(job.machine, job.inch), ignored);
+  const auto options = simulate::interpreter_options(job, simulate::names_rotary_axes(job.machine, text));
+  const nc::Interpretation moves = nc::interpret(text, options, ignored);
   ignored.throw_if_errors();
   std::vector<nc::MoveEdit> edits;
   for (std::uint32_t i = 0; i < moves.moves.size(); ++i) {
@@ -55,6 +72,7 @@ std::string scaled_program(const machine::Job& job, double percent, Diagnostics&
     if ((m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc) && m.feed_mm_per_s > 0)
       edits.push_back({.move = i, .feed_mm_per_s = m.feed_mm_per_s * percent / 100});
   }
+  warn_of_timed_turns(job, moves, percent, diagnostics);
   nc::Emission out = nc::emit_edits(text, moves, edits, feedmodel::decimals_for(job.machine.control, text));
   if (!out.not_made.empty()) {
     const auto& first = out.not_made.front();

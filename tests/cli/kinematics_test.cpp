@@ -336,6 +336,17 @@ TEST(TimeFiveAxes, ShowsTheMachineAlongTheProgram) {
   EXPECT_EQ(tests::open_page("machine", folder / "r.html"), "");
 }
 
+TEST(FeedFiveAxes, ThePageTurnsThePartAndMovesTheAxes) {
+  CAMBER_NEEDS_BROWSER();
+  const TempFolder folder;
+  for (const char* command : {"time", "feed"}) {
+    const auto run = run_camber(folder, std::string(command) + " '" + kFiveAxis + "faces.nc' --machine '" + kFiveAxis +
+                                            "machine.toml' --report r.html");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(tests::open_page("faces", folder / "r.html"), "") << command;
+  }
+}
+
 TEST(FeedFiveAxes, ThePageNeedsRotaryMotion) {
   const TempFolder folder;
   write_fan(folder);

@@ -147,6 +147,31 @@ TEST(StudyCommand, HashesFollowContentsNotPlaces) {
   EXPECT_NE(table_in(folder).at("cases").at(0).at("hash"), first);
 }
 
+/// Feeds of lines that turn, of rotary axes alone and in inverse time; but turns in inverse time have no feed.
+TEST(StudyCommand, ScalesFeedsOfProgramsWithRotaryAxes) {
+  const std::string program =
+      "G21 G90 G94 G17\nG10 L2 P1 X0 Y0 Z-300\nG10 L1 P1 R120\nT1 M6\nS3000 M3\nG54\nG0 X0 Y0 Z150\nA20 C0\n"
+      "G0 G43.4 H1 X-6 Y0 Z5\nG1 Z-2 F300\nX4 A30 F500\nA20 F900\nG93 X-6 C30 F20\nC0 F30\nG94 G0 Z5\nM30\n";
+  const TempFolder folder;
+  write_all(folder, "job = \"../job.toml\"\n[grid]\nfeed_percent = [200]\n");
+  folder.write("p.nc", program);
+  std::string machine = tests::file_text(CAMBER_SOURCE_DIR "/samples/13-dome/machine.toml");
+  machine.erase(machine.find("[[body]]"));
+  folder.write("machine.toml", machine);
+  const CamberRun run = run_camber(folder, "study s/study.toml -o out --list");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(
+      run.err,
+      "p.nc:14:0: warning: feed_percent = 200: the times (G93) of 1 moves of rotary axes alone stay as programmed "
+      "[study-feed]\n");
+  std::string scaled = program;
+  for (const auto& [from, to] : {std::pair{"F300", "F600"}, {"F500", "F1000"}, {"F900", "F1800"}, {"F20", "F40"}})
+    scaled = replaced(scaled, from, to);
+  EXPECT_EQ(tests::file_text(
+                folder / ("out/" + table_in(folder).at("cases").at(0).at("folder").get<std::string>() + "/program.nc")),
+            scaled);
+}
+
 TEST(StudyCommand, OtherCasesGoOnWhenOneFails) {
   const TempFolder folder;
   write_all(folder, "job = \"../job.toml\"\n[grid]\nprogram = [\"../p.nc\", \"air.nc\"]\n");

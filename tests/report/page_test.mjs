@@ -367,6 +367,48 @@ const CHECKS = {
     expect((await whole())[0].share > 0.02, 'the view from the top is blank');
   },
 
+  // samples/12-five-axis/faces.nc on a page of feed or time: two tilted planes, A tilts about X and carries C.
+  async faces(page) {
+    const rad = degrees => degrees * Math.PI / 180, number = text => Number(text.replaceAll('\u2212', '-'));
+    const near = (a, b, by) => a.every((v, k) => Math.abs(v - b[k]) < by);
+    const at = line => page.evaluate(wanted => {
+      const { page: shown } = window.machinePage, first = shown.line.indexOf(wanted), last = shown.line.lastIndexOf(wanted);
+      window.machinePage.pause();
+      window.machinePage.go(shown.time[(first + last) >> 1]);
+      const bodies = window.machinePage.scenes.map(s => ({ part: s.partBody.matrix.toArray(), tool: s.toolBody.matrix.toArray() }));
+      return { bodies, gauge: shown.chain.gauge.toArray(), work: shown.work };
+    }, line);
+    const apply = (m, [x, y, z]) => [0, 1, 2].map(k => m[k] * x + m[4 + k] * y + m[8 + k] * z + m[12 + k]);
+    // Z of the plane of G68.2 with the Euler angles I J, and a point of it.
+    const planes = [{ lines: [22, 26, 30], i: 110, j: 30, origin: [14.095, 5.13, -14.019] }, { lines: [53, 57, 61], i: 230, j: 60, origin: [-19.902, 16.7, -25] }];
+    for (const { lines, i, j, origin } of planes)
+      for (const line of lines) {
+        const { bodies: [inBed, onPart], work } = await at(line);
+        await painted(page);
+        const text = await page.locator('#selected').innerText(), fact = name => number(new RegExp(`\\b${name} ([\u2212-]?[\\d.]+)`).exec(text)?.[1] ?? 'none');
+        const [a, c] = [rad(fact('A')), rad(fact('C'))];
+        const axis = /tool axis \(([^)]*)\)/.exec(text)[1].split(',').map(number);
+        const normal = [Math.sin(rad(i)) * Math.sin(rad(j)), -Math.cos(rad(i)) * Math.sin(rad(j)), Math.cos(rad(j))];
+        expect(near(axis, normal, 1e-3), `on line ${line} the tool is along ${axis}, not ${normal}`);
+        const tip = /tip on the part X(\S+) Y(\S+) Z(\S+)/.exec(text).slice(1).map(number);
+        const height = tip.reduce((sum, v, k) => sum + (v - origin[k]) * normal[k], 0);
+        expect(Math.abs(height) < 0.01, `on line ${line} the tip is ${height} mm from the plane`);
+        // The table turns by -C about Z and then by -A about X at Z-360.
+        const place = ([x, y, z]) => {
+          const [u, v, w] = [Math.cos(c) * x + Math.sin(c) * y, Math.cos(c) * y - Math.sin(c) * x, z + 360];
+          return [u, Math.cos(a) * v + Math.sin(a) * w, Math.cos(a) * w - Math.sin(a) * v - 360];
+        };
+        for (const point of [[0, 0, 0], [50, 0, -300], [0, 40, -320]])
+          expect(near(apply(inBed.part, point), place(point), 1e-3), `on line ${line} the part is at ${apply(inBed.part, point)}, not ${place(point)}`);
+        expect(near(inBed.tool.slice(12, 15), ['X', 'Y', 'Z'].map(fact), 2e-3), `on line ${line} the spindle is at ${inBed.tool.slice(12, 15)}`);
+        // The tip of a tool of 120 mm meets its place on the part.
+        const there = apply(inBed.tool, [0, 0, -120]), here = apply(inBed.part, tip.map((v, k) => v + work[k]));
+        expect(near(there, here, 0.05), `on line ${line} the tip is at ${there} and its place on the part at ${here}`);
+        expect(near(onPart.part, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], 1e-9), 'the part of the second picture moves');
+        expect(near(onPart.tool.slice(8, 11), normal, 1e-3), `around the part the tool is along ${onPart.tool.slice(8, 11)}`);
+      }
+  },
+
   // A plan: the slider machines one primitive after the other, in each of the plans.
   async plan(page) {
     const drawn = () => page.evaluate(() => {
