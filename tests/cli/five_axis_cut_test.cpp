@@ -11,6 +11,7 @@
 #include "base/geometry.h"
 #include "base/units.h"
 #include "tests/support/csv_columns.h"
+#include "tests/support/open_page.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -201,6 +202,20 @@ TEST(PredictFiveAxes, NamesTheLineThatMeetsABodyOfTheMachine) {
   EXPECT_EQ(hits.status, 1);
   EXPECT_EQ(hits.err.find(fmt::format("p.nc:{}:1: error: the holder of T1 meets the body \"clamp\"", line)), 0u)
       << hits.err;
+}
+
+/// At a clicked place the page shows the tool there and turns the part as the table does.
+TEST(PredictFiveAxes, ThePageOfTheDomeTurnsThePart) {
+  if (!tests::has_browser()) GTEST_SKIP() << "no browser";
+  const TempFolder folder;
+  const std::string sample = CAMBER_SOURCE_DIR "/samples/13-dome/";
+  for (const char* name : {"dome.nc", "machine.toml"}) folder.write(name, tests::file_text(sample + name));
+  std::string job = tests::file_text(sample + "job.toml");
+  job.replace(job.find("voxel_mm = 0.1"), 14, "voxel_mm = 0.2\ncoupling = \"rigid\"");
+  folder.write("job.toml", job);
+  const auto run = run_camber(folder, "predict job.toml -o result");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(tests::open_page(folder / "result/report.html", "dome"), "");
 }
 
 /// X Y Z of the axes without tool-centre-point control that take the tip there; the tables of sample 13.
