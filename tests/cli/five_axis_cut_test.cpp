@@ -212,7 +212,7 @@ TEST(PredictFiveAxes, ThePageOfTheDomeTurnsThePart) {
   for (const char* name : {"dome.nc", "machine.toml", "job.toml"}) folder.write(name, tests::file_text(sample + name));
   const auto run = run_camber(folder, "predict job.toml -o result");
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(tests::open_page(folder / "result/report.html", "dome"), "");
+  EXPECT_EQ(tests::open_page("dome", folder / "result/report.html"), "");
 }
 
 /// X Y Z of the axes without tool-centre-point control that take the tip there; the tables of sample 13.
