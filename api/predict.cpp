@@ -14,6 +14,7 @@
 #include "report/forces_csv.h"
 #include "report/report_data.h"
 #include "report/summary.h"
+#include "simulate/moves_of_axes.h"
 
 namespace camber {
 namespace {
@@ -111,8 +112,11 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
     result = api::result_of(job, prepared, prediction);
     if (options.feed && prepared.traced)
       api::points_sink(program.moves, result.feed)(prepared.traced->samples);
+    else if (options.feed && program.rotary)
+      feedmodel::predict_feed(simulate::moves_of_axes(*program.rotary, job.machine), job.machine,
+                              api::points_sink(program.moves, result.feed));
     else if (options.feed)
-      feedmodel::predict_feed(program.text_moves(), job.machine, api::points_sink(program.moves, result.feed));
+      feedmodel::predict_feed(program.moves, job.machine, api::points_sink(program.moves, result.feed));
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.json = report::predict_json(program, prediction, compute_s, prepared.traced_run(), result.doubts);
     result.diagnostics = found.all();

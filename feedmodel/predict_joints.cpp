@@ -26,6 +26,7 @@ class JointSampler {
 
   /// next_start_s: of the segment after it, which may begin before this one ends.
   void pass(const Segment& segment, const SegmentMotion& motion, const SegmentTime& time, double next_start_s) {
+    if (turn_ && turn_->tool_length_mm != segment.turn->tool_length_mm) tip_mm_.reset();  // another tip
     turn_ = segment.turn;
     move_ = segment.move;
     cutting_ = segment.cutting;

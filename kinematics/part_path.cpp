@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "kinematics/program_joints.h"
 
 namespace camber::kinematics {
@@ -10,6 +12,19 @@ namespace {
 
 /// A turn of this much between two places: at 100 mm from the axis the chord leaves the arc by 4 um.
 constexpr double kTurnStep_rad = kPi / 180;
+
+/// From X Y Z of the text to the tip on the part, where rotary axes stand and X Y Z are those of a frame on it: under
+/// G254 the frame is parallel to the machine, as the work lies at these angles.
+Eigen::Isometry3d part_from_text(const nc::Interpretation& text, const nc::Move& move, const Chain& chain,
+                                 const Vec3& rotary_rad) {
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  const nc::ModalState& state = text.state_of(move);
+  if (state.work_frame != nc::WorkFrame::dynamic || state.tip_control != nc::TipControl::off) return out;
+  const Vec3 origin_mm = text.frame_of(move).origin_mm;
+  out.linear() = chain.table_rotation(rotary_rad);
+  out.translation() = origin_mm - out.linear() * origin_mm;
+  return out;
+}
 
 }  // namespace
 
@@ -34,8 +49,9 @@ PartPath::PartPath(const machine::Machine& machine, const nc::Interpretation& te
     at.turn_rad = (now.end_rad - now.start_rad).lpNorm<1>();
     const bool to_machine_place = target != text.machine_targets.end() && target->move == program.index();
     if (to_machine_place) ++target;
+    const bool in_frame = state.work_frame != nc::WorkFrame::machine && at.turn_rad == 0;  // lines are straight there
     at.follows_tip = !to_machine_place && move.open_axes != 7 && move.kind != nc::MoveKind::dwell &&
-                     (state.tip_control != nc::TipControl::off || state.work_frame == nc::WorkFrame::tilted);
+                     (state.tip_control != nc::TipControl::off || in_frame);
   }
   for (std::uint32_t i = 0; i < at_.size(); ++i) at_[i].length_mm = measured_length_mm(i);
   find_bent_arcs();
@@ -69,7 +85,8 @@ ToolPose PartPath::pose_at(std::uint32_t move, double u) const {
   const Vec3 angles =
       u >= 1 ? at.end.rotary_rad : Vec3(at.start.rotary_rad + u * (at.end.rotary_rad - at.start.rotary_rad));
   ToolPose pose = chain_.pose({Vec3::Zero(), angles}, at.tool_length_mm);
-  pose.tip_mm = nc::point_at(text_, text_.moves[move], u);
+  const nc::Move& m = text_.moves[move];
+  pose.tip_mm = part_from_text(text_, m, chain_, at.end.rotary_rad) * nc::point_at(text_, m, u);
   return pose;
 }
 
@@ -114,7 +131,9 @@ double PartPath::angle_distance_mm(std::uint32_t move, double u, const Joints& j
 std::optional<Vec3> PartPath::text_mm(std::uint32_t move, const Vec3& tip_mm) const {
   const At& at = at_[move];
   if (!at.end_known) return std::nullopt;
-  if (at.follows_tip) return tip_mm;
+  const nc::Move& m = text_.moves[move];
+  if (at.follows_tip || text_.state_of(m).work_frame != nc::WorkFrame::machine)
+    return part_from_text(text_, m, chain_, at.end.rotary_rad).inverse() * tip_mm;
   const auto linear = chain_.linear_mm(tip_mm - origin_mm_, at.end.rotary_rad, at.tool_length_mm);
   if (!linear) return std::nullopt;
   return Vec3(*linear - at.tool_length_mm * tool_axis_ + gauge_mm_ + origin_mm_);
@@ -124,7 +143,12 @@ std::optional<Vec3> PartPath::text_mm(std::uint32_t move, const Vec3& tip_mm) co
 std::optional<nc::Arc> PartPath::arc_in_part(std::uint32_t move) const {
   const At& at = at_[move];
   nc::Arc arc = text_.arcs[text_.moves[move].arc];
-  if (at.follows_tip) return arc;
+  if (at.follows_tip) {
+    const Eigen::Isometry3d map = part_from_text(text_, text_.moves[move], chain_, at.end.rotary_rad);
+    arc.center_mm = map * arc.center_mm;
+    arc.normal = map.linear() * arc.normal;
+    return arc;
+  }
   if (at.turn_rad > 0) return std::nullopt;
   Mat3 turn;  // part from axes
   const Joints zero{Vec3::Zero(), at.end.rotary_rad};

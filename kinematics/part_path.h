@@ -56,7 +56,7 @@ class PartPath {
     Joints start, end;
     double tool_length_mm = 0, length_mm = 0, turn_rad = 0;
     bool start_known = false, end_known = false;
-    bool follows_tip = false;  ///< X Y Z of the text are the tip on the part
+    bool follows_tip = false;  ///< X Y Z of the text are the tip in the part's frame, or in one that stands in it
   };
 
   Joints joints_at(std::uint32_t move, double u) const;

@@ -12,10 +12,8 @@ namespace {
 
 constexpr char kLetters[] = "ABC";
 constexpr char kAxisLetters[] = "XYZ";
-/// Commands that read rotary axes, on a machine with [kinematics]. Of these, predict and compensate refuse frames that
-/// follow the part (simulate/rotary_motion.cpp).
+/// Commands that read rotary axes, on a machine with [kinematics].
 constexpr char kReaders[] = "check, time, feed, fit-feed, predict, compensate and post";
-constexpr char kFrameReaders[] = "check, time, feed, fit-feed and post";
 
 std::uint8_t bit_of(char letter) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(letter - 'A')); }
 
@@ -242,9 +240,7 @@ void BlockInterpreter::settle_tip() {
 
 /// What a message says of a code that turns rotary axes, on a machine without them.
 std::string BlockInterpreter::needs_kinematics(const Code& code, const char* name) const {
-  const bool frame = code.tenths == 682 || code.tenths == 531 || code.tenths == 2540 || code.tenths == 2550;
-  return fmt::format("{} ({}) is read on a machine with [kinematics], by camber {}", code_text(code), name,
-                     frame ? kFrameReaders : kReaders);
+  return fmt::format("{} ({}) is read on a machine with [kinematics], by camber {}", code_text(code), name, kReaders);
 }
 
 /// G10 L2 A B C.

@@ -8,8 +8,10 @@
 
 #include "feedmodel/control_options.h"
 #include "feedmodel/joint_map.h"
+#include "kinematics/machine_moves.h"
 #include "kinematics/program_joints.h"
 #include "kinematics/rotary_options.h"
+#include "simulate/moves_of_axes.h"
 
 namespace camber::simulate {
 namespace {
@@ -24,16 +26,6 @@ class Reading {
  public:
   Reading(const nc::Program& text, const nc::Interpretation& moves, Diagnostics& diagnostics)
       : text_(text), moves_(moves), diagnostics_(diagnostics) {}
-
-  void refuse_frames() {
-    for (const nc::Move& move : moves_.moves) {
-      const nc::WorkFrame frame = moves_.state_of(move).work_frame;
-      if (move.kind == nc::MoveKind::dwell || frame == nc::WorkFrame::machine) continue;
-      return error(move, "not-read",
-                   fmt::format("moves {} are not cut; tool-centre-point control or positions of the axes were expected",
-                               frame == nc::WorkFrame::tilted ? "in a tilted frame (G68.2)" : "under G254"));
-    }
-  }
 
   void check_known() {
     for (const nc::Move& move : moves_.moves) {
@@ -96,7 +88,6 @@ bool names_rotary_axes(const machine::Machine& machine, const nc::Program& text)
 std::shared_ptr<const RotaryMotion> read_rotary_motion(const machine::Machine& machine, const nc::Program& text,
                                                        const nc::Interpretation& moves, Diagnostics& diagnostics) {
   Reading reading(text, moves, diagnostics);
-  reading.refuse_frames();
   if (!feedmodel::has_rotary_motion(moves, machine)) return nullptr;
   reading.check_known();
   diagnostics.throw_if_errors();
@@ -117,11 +108,17 @@ void refuse_rotary_motion(const RotaryMotion* rotary, const nc::Program& text, c
       fmt::format("{}, but rotary axes turn here; a program of X, Y and Z alone was expected", what), "rotary-motion"));
 }
 
+nc::Interpretation moves_of_axes(const RotaryMotion& rotary, const machine::Machine& machine) {
+  nc::Interpretation out = rotary.text();
+  kinematics::place_moves(out, machine);
+  return out;
+}
+
 feedmodel::FeedSummary predict_on_part(const RotaryMotion& rotary, const machine::Machine& machine,
                                        const PartSink& sink) {
   feedmodel::PartSamples on_part;
   return feedmodel::predict_joints(
-      rotary.text(), machine,
+      moves_of_axes(rotary, machine), machine,
       [&](std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints) {
         on_part.take(samples, joints);
         sink(on_part);

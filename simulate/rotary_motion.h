@@ -41,7 +41,7 @@ nc::InterpreterOptions interpreter_options(const machine::Job& job, bool rotary_
 bool names_rotary_axes(const machine::Machine& machine, const nc::Program& text);
 
 /// Nothing without rotary motion. Errors at the program's blocks:
-///  [not-read]                   moves in a tilted frame or under G254; arcs that are none on the part;
+///  [not-read]                   arcs that are none on the part;
 ///  [work-offset], [tool-length] the tool's place on the part depends on a value that is not known.
 std::shared_ptr<const RotaryMotion> read_rotary_motion(const machine::Machine& machine, const nc::Program& text,
                                                        const nc::Interpretation& moves, Diagnostics& diagnostics);

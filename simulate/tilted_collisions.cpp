@@ -7,6 +7,7 @@
 #include "feedmodel/rapid.h"
 #include "feedmodel/timed_path.h"
 #include "simulate/collision_search.h"
+#include "simulate/moves_of_axes.h"
 #include "simulate/swept_stock.h"
 
 namespace camber::simulate {
@@ -49,7 +50,7 @@ void pose_by_joints(const machine::Job& job, const SimulatedProgram& program, co
     if (poses.size() > 1 && tool.displacement_mm(poses[poses.size() - 2], pose) < kClose_mm) poses.pop_back();
     append(poses, pose, tool);
   };
-  feedmodel::predict_joints(program.text_moves(), job.machine, [&](auto samples, auto joints) {
+  feedmodel::predict_joints(moves_of_axes(*program.rotary, job.machine), job.machine, [&](auto samples, auto joints) {
     for (std::size_t i = 0; i < samples.size(); ++i) take(samples[i], joints[i].command_tool);
   });
 }

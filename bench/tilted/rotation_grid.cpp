@@ -1,7 +1,9 @@
 // Rotation tells all: stock, path and axis of an upright cut, turned together by every lead and tilt of -40 to 40
-// degrees, against that cut. Static coupling, voxels of 0.1 mm. Prints the differences of each cutter's worst case.
+// degrees, against that cut. Static coupling. Prints the differences of each cutter's worst case.
 //
-//     build/dev/bench/rotation_grid [STEP_DEG [CUTTER]]
+//     build/dev/bench/rotation_grid [STEP_DEG [CUTTER [VOXEL_MM]]]
+//
+// Default: steps of 20 degrees, all cutters, voxels of 0.1 mm.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -72,7 +74,9 @@ int main(int argc, char** argv) {
   const auto scenes = testing::scenes();
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     if (argc > 2 && std::string_view(argv[2]) != kNames[i]) continue;
-    const Worst worst = worst_of(scenes[i], step_deg);
+    testing::TiltedScene scene = scenes[i];
+    if (argc > 3) scene.voxel_mm = std::atof(argv[3]);
+    const Worst worst = worst_of(scene, step_deg);
     std::printf("| %s | %.2f %% | %g, %g | %.2f %% | %.2f %% | %.2f %% | %g, %g | %.2f %% |\n", kNames[i],
                 100 * worst.force, worst.force_at[0], worst.force_at[1], 100 * worst.components, 100 * worst.chips,
                 100 * worst.p95, worst.p95_at[0], worst.p95_at[1], 100 * worst.mean);

@@ -33,6 +33,14 @@ struct CutTile {
   std::vector<std::int32_t> batch{};
 };
 
+/// True where the glance at k lies on the line between those at a and b.
+bool on_line_of_glances(std::span<const double> glances, std::size_t a, std::size_t k, std::size_t b) {
+  constexpr double kMaterialChange = 0.06;
+  const double way = static_cast<double>(k - a) / static_cast<double>(b - a);
+  const double expected = (1 - way) * glances[a] + way * glances[b];
+  return expected > 0 && std::abs(glances[k] - expected) <= kMaterialChange * expected;
+}
+
 /// A path that is not upright: stamp by stamp, with chips sorted into blocks.
 class TiltedPath {
  public:
@@ -49,16 +57,90 @@ class TiltedPath {
   }
 
   void engage(std::size_t from, std::size_t count, const ChipSink& sink) {
-    if (straight_.stamps != count) straight_ = DeflectionTable(count, steps_, {0.0});
-    engager_.start(from, count, straight_);
+    start(from, count);
     for (std::size_t k = 0; k < count; ++k) {
       sink(k, in_blocks(engager_.read(k)));
       engager_.cut(k);
     }
   }
+
+  /// Each stamp is cut before the next is read. Between two readings the middle one is read, too: where it or a glance
+  /// at another one is not on the line between them, the tiles go back to the first, and all are read.
+  void engage(std::size_t from, std::size_t count, const SparseChipSink& sink) {
+    start(from, count);
+    glances_.assign(count, kUnknown);
+    loads_known_.assign(count, 0);
+    if (count > 0) read(0, sink);
+    for (std::size_t last = 0, gap = 1; last + 1 < count;) {
+      const std::size_t end = end_of_gap(last, gap, count, sink);
+      gap = pass(last, end, sink) ? std::min(2 * (end - last), kWidestGap) : std::max<std::size_t>(1, (end - last) / 4);
+      last = end;
+    }
+    if (count > 0) engager_.cut(count - 1);
+  }
   double commit() { return engager_.commit(); }
 
  private:
+  static constexpr std::size_t kWidestGap = 16;
+  static constexpr double kUnknown = -1;
+
+  void read(std::size_t k, const SparseChipSink& sink) {
+    if (loads_known_[k] != 0) return;
+    const std::span<const DeflectedChipSample> chips = engager_.read(k);
+    glances_[k] = engager_.glance_of(chips);
+    sink.read(k, in_blocks(chips));
+    loads_known_[k] = 1;
+  }
+
+  static std::size_t end_of_gap(std::size_t last, std::size_t gap, std::size_t count, const SparseChipSink& sink) {
+    std::size_t end = last + 1;
+    while (end < last + gap && end + 1 < count && !sink.must_read(end)) ++end;
+    return end;
+  }
+
+  /// From a, which is read and not cut, to b, which then is the same. False where the stamps between were all read.
+  bool pass(std::size_t a, std::size_t b, const SparseChipSink& sink) {
+    const std::size_t middle = a + (b - a) / 2;
+    const bool leaves_out = b - a > 2;
+    if (leaves_out) engager_.keep();
+    engager_.cut(a);
+    for (std::size_t k = a + 1; k < b; ++k) {
+      if (leaves_out && k != middle)
+        glances_[k] = engager_.glance(k);
+      else
+        read(k, sink);
+      engager_.cut(k);
+    }
+    read(b, sink);
+    if (b == a + 1) return true;
+    bool even = sink.on_line(a, middle, b);
+    for (std::size_t k = a + 1; k < b; ++k) even = even && as_glanced(a, k, b);
+    if (!leaves_out) return even;
+    if (even)
+      for (std::size_t k = a + 1; k < b; ++k) {
+        if (k != middle) sink.between(k < middle ? a : middle, k, k < middle ? middle : b);
+      }
+    else
+      read_all(a, b, sink);
+    return even;
+  }
+
+  void read_all(std::size_t a, std::size_t b, const SparseChipSink& sink) {
+    engager_.go_back();
+    engager_.cut(a);
+    for (std::size_t k = a + 1; k < b; ++k) {
+      read(k, sink);
+      engager_.cut(k);
+    }
+  }
+
+  bool as_glanced(std::size_t a, std::size_t k, std::size_t b) const { return on_line_of_glances(glances_, a, k, b); }
+
+  void start(std::size_t from, std::size_t count) {
+    if (straight_.stamps != count) straight_ = DeflectionTable(count, steps_, {0.0});
+    engager_.start(from, count, straight_);
+  }
+
   std::span<const ChipBlock> in_blocks(std::span<const DeflectedChipSample> chips) {
     sorted_.clear();
     for (const DeflectedChipSample& c : chips) sorted_.emplace_back(place_[c.chip.point], &c.chip);
@@ -86,6 +168,8 @@ class TiltedPath {
   DeflectionTable straight_;
   std::vector<std::pair<std::uint32_t, const ChipSample*>> sorted_;
   std::vector<ChipBlock> blocks_of_stamp_;
+  std::vector<double> glances_;    ///< of the stretch's stamps, where some are left out
+  std::vector<char> loads_known_;  ///< stamps that were read
 };
 
 }  // namespace
@@ -155,12 +239,8 @@ void RigidEngager::Impl::read_batch(std::size_t begin, std::size_t end, const Ch
   tbb::parallel_for(begin, end, [&](std::size_t k) { sink(k, read(k)); });
 }
 
-/// True where the glance at k lies on the line between those at a and b.
 bool RigidEngager::Impl::as_glanced(std::size_t a, std::size_t k, std::size_t b) const {
-  constexpr double kMaterialChange = 0.06;
-  const double way = static_cast<double>(k - a) / static_cast<double>(b - a);
-  const double expected = (1 - way) * glances[a] + way * glances[b];
-  return expected > 0 && std::abs(glances[k] - expected) <= kMaterialChange * expected;
+  return on_line_of_glances(glances, a, k, b);
 }
 
 void RigidEngager::Impl::read_some(std::size_t begin, std::size_t end, const SparseChipSink& sink) {
@@ -287,7 +367,7 @@ void RigidEngager::engage(std::size_t from, std::size_t count, const ChipSink& s
 }
 
 void RigidEngager::engage(std::size_t from, std::size_t count, const SparseChipSink& sink) {
-  if (impl_->tilted) return impl_->tilted->engage(from, count, sink.read);
+  if (impl_->tilted) return impl_->tilted->engage(from, count, sink);
   impl_->glances.assign(count, 0.0);
   impl_->engage(from, count, [&](std::size_t begin, std::size_t end) { impl_->read_some(begin, end, sink); });
 }

@@ -11,6 +11,7 @@
 #include "base/geometry.h"
 #include "base/units.h"
 #include "tests/support/csv_columns.h"
+#include "tests/support/open_page.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -203,6 +204,50 @@ TEST(PredictFiveAxes, NamesTheLineThatMeetsABodyOfTheMachine) {
       << hits.err;
 }
 
+/// A tool that leans by 60 degrees over the edge of the plate at X3: on the way down at that edge is
+/// (10.6 sin 60 - 1.3 cos 60) = 8.53 mm up the tool, and the holder begins at its overhang.
+TEST(CheckFiveAxes, AHolderThatMeetsTheStockIsNamedAndOneThatMissesIsNot) {
+  const TempFolder folder;
+  const auto check = [&](double overhang_mm) {
+    write_job(folder, rows(-0.2, 60));
+    std::string job = tests::file_text(folder / "job.toml");
+    job.replace(job.find("overhang_mm = 30.0"), 18, fmt::format("overhang_mm = {}", overhang_mm));
+    job.replace(job.find("voxel_mm = 0.2"), 14, "voxel_mm = 0.1");
+    folder.write("job.toml", job);
+    return run_camber(folder, "check p.nc --job job.toml");
+  };
+  const auto meets = check(8.2), misses = check(8.63);
+  EXPECT_EQ(meets.status, 1);
+  EXPECT_NE(meets.err.find("p.nc:11:1: error: the holder of T1 in stock at X2."), std::string::npos) << meets.err;
+  EXPECT_NE(meets.err.find("[collision-holder]"), std::string::npos);
+  EXPECT_EQ(misses.status, 0) << misses.err;
+  EXPECT_EQ(misses.err.find("[collision"), std::string::npos) << misses.err;
+}
+
+/// The first turns of the dome of sample 13, in voxels of 0.2 mm.
+void write_top_of_the_dome(const TempFolder& folder) {
+  const std::string sample = CAMBER_SOURCE_DIR "/samples/13-dome/";
+  std::string program = tests::file_text(sample + "dome.nc"), job = tests::file_text(sample + "job.toml");
+  std::size_t from = 0;
+  constexpr int kLines = 430;
+  for (int line = 0; line < kLines; ++line) from = program.find('\n', from) + 1;
+  program.replace(from, program.find("G49\n") - from, "G0 Z20.\n");
+  job.replace(job.find("voxel_mm = 0.1"), 14, "voxel_mm = 0.2");
+  folder.write("dome.nc", program);
+  folder.write("job.toml", job);
+  folder.write("machine.toml", tests::file_text(sample + "machine.toml"));
+}
+
+/// At a clicked place the page shows the tool there and turns the part as the table does.
+TEST(PredictFiveAxes, ThePageOfTheDomeTurnsThePart) {
+  CAMBER_NEEDS_BROWSER();
+  const TempFolder folder;
+  write_top_of_the_dome(folder);
+  const auto run = run_camber(folder, "predict job.toml -o result");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(tests::open_page("dome", folder / "result/report.html"), "");
+}
+
 /// X Y Z of the axes without tool-centre-point control that take the tip there; the tables of sample 13.
 Vec3 linear_axes_mm(const Vec3& tip, double a_deg, double c_deg) {
   const Vec3 zero(0, 0, -300), pivot(0, 0, -360);
@@ -256,6 +301,98 @@ TEST(CompensateFiveAxes, ChangesCoordinatesAndNothingElse) {
     EXPECT_NEAR(nlohmann::json::parse(tests::file_text(folder / "v.json"))["emitted"]["error_um"]["p95"], after,
                 0.05 * after)
         << verify.err;
+  }
+}
+
+/// Rows by a ball that leans 30 degrees, in X Y Z of the part, of the axes, or of a frame along the tool. The frame's
+/// Euler angles are those of the axes, so that under G254 the words are those of the tilted frame.
+enum class Frame { tip, axes, tilted, dynamic };
+
+const Eigen::Matrix3d& leaning_plane() {
+  static const Eigen::Matrix3d plane =
+      (Eigen::AngleAxisd(rad_from_deg(80), Vec3::UnitZ()) * Eigen::AngleAxisd(rad_from_deg(30), Vec3::UnitX()))
+          .toRotationMatrix();
+  return plane;
+}
+
+std::string leaning_rows(Frame frame) {
+  std::string text = kStart + "G0 X0 Y0 Z150\nA30 C80\n";
+  if (frame == Frame::tilted) text += "G68.2 X0 Y0 Z0 I80 J30 K0\nG53.1\n";
+  if (frame == Frame::dynamic) text += "G254\n";
+  text += frame == Frame::tip ? "G43.4 H1\n" : "G43 H1\n";
+  const auto block = [&](double x, double y, double up) {
+    const Vec3 tip = Vec3(x, y, 2.8 + up) - 3 * leaning_plane().col(2);
+    const Vec3 at = frame == Frame::tip    ? tip
+                    : frame == Frame::axes ? linear_axes_mm(tip, 30, 80)
+                                           : Vec3(leaning_plane().transpose() * tip);
+    return fmt::format("X{:.5f} Y{:.5f} Z{:.5f}", at.x(), at.y(), at.z());
+  };
+  for (const double y : {0.0, 0.4, 0.8, 1.2, 1.6, 2.0}) {
+    text += "G0 " + block(-2, y, 9) + "\nG1 " + block(-2, y, 0) + " F500\n";
+    for (int i = 1; i <= 14; ++i) text += block(-2 + 0.5 * i, y, 0) + (i == 1 ? " F1200\n" : "\n");
+    text += "G0 " + block(5, y, 9) + "\n";
+  }
+  return text + "M30\n";
+}
+
+/// Ends of the blocks on the part, of a program of leaning_rows.
+std::vector<Vec3> places_of(const std::string& program, Frame frame) {
+  static const std::regex kPlace("X([-0-9.]+) Y([-0-9.]+) Z([-0-9.]+)");
+  std::vector<Vec3> out;
+  const std::string rows = program.substr(program.find("H1\n"));
+  for (auto it = std::sregex_iterator(rows.begin(), rows.end(), kPlace); it != std::sregex_iterator(); ++it) {
+    const Vec3 at(std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3]));
+    if (frame == Frame::axes) {
+      // linear_axes_mm is affine.
+      const Vec3 zero = linear_axes_mm(Vec3::Zero(), 30, 80);
+      Eigen::Matrix3d map;
+      for (int i = 0; i < 3; ++i) map.col(i) = linear_axes_mm(Vec3::Unit(i), 30, 80) - zero;
+      out.emplace_back(map.transpose() * (at - zero));
+    } else {
+      out.emplace_back(frame == Frame::tip ? at : Vec3(leaning_plane() * at));
+    }
+  }
+  return out;
+}
+
+/// One cut in four writings: the same forces, and compensated the same places on the part, each in its own coordinates.
+TEST(CompensateFiveAxes, TiltedFramesAreCompensatedInTheirOwnCoordinates) {
+  std::vector<Vec3> given, expected;
+  double force_N = 0, error_um = 0;
+  for (const Frame frame : {Frame::axes, Frame::tilted, Frame::dynamic, Frame::tip}) {
+    SCOPED_TRACE(static_cast<int>(frame));
+    const TempFolder folder;
+    const std::string program = leaning_rows(frame);
+    write_job(folder, program);
+    std::string job = tests::file_text(folder / "job.toml");
+    job.replace(job.find("overhang_mm = 30.0"), 18, "overhang_mm = 40.0\nhelix_deg = 30.0");
+    job.replace(job.find("coupling = \"rigid\""), 18, "[compensation]\ntolerance_um = 0.5\nmax_rounds = 1");
+    folder.write("job.toml", job);
+    const auto predicted = run_camber(folder, "predict job.toml -o result --json p.json");
+    ASSERT_EQ(predicted.status, 0) << predicted.err;
+    const auto p = nlohmann::json::parse(tests::file_text(folder / "p.json"));
+    const auto run = run_camber(folder, "compensate job.toml -o out.nc --json c.json");
+    ASSERT_NE(run.status, 1) << run.err;
+    const std::string out = tests::file_text(folder / "out.nc");
+    EXPECT_EQ(without_coordinates(out), without_coordinates(program));
+    const std::vector<Vec3> places = places_of(out, frame);
+    const auto c = nlohmann::json::parse(tests::file_text(folder / "c.json"));
+    EXPECT_LT(c["after_um"]["p95"], c["before_um"]["p95"].get<double>());
+    if (frame == Frame::axes) {
+      given = places_of(program, frame), expected = places;
+      force_N = p["force_N"]["max"], error_um = c["after_um"]["p95"];
+      ASSERT_EQ(places.size(), given.size());
+      double shifted = 0;
+      for (std::size_t i = 0; i < places.size(); ++i) shifted = std::max(shifted, (places[i] - given[i]).norm());
+      EXPECT_GT(shifted, 0.0009);
+      continue;
+    }
+    EXPECT_NEAR(p["force_N"]["max"], force_N, (frame == Frame::tip ? 0.02 : 2e-3) * force_N);
+    // The control plans the tip's corners under tool-centre-point control, and those of the axes else.
+    EXPECT_NEAR(c["after_um"]["p95"], error_um, (frame == Frame::tip ? 0.06 : 0.02) * error_um);
+    if (frame == Frame::tip) continue;
+    ASSERT_EQ(places.size(), expected.size());
+    for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LT((places[i] - expected[i]).norm(), 4e-4) << i;
   }
 }
 

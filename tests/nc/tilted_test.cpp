@@ -126,10 +126,10 @@ TEST(TiltedFrame, BadInputByWholeMessage) {
             Messages{"p.nc:4:8: error: X in G91 after G53.1, which leaves X open; G90 was expected [position-open]"});
   EXPECT_EQ(read_text("G68.2 J30.\n").messages,
             Messages{"p.nc:1:1: error: G68.2 (tilted frame) is read on a machine with [kinematics], by camber check, "
-                     "time, feed, fit-feed and post [not-read]"});
+                     "time, feed, fit-feed, predict, compensate and post [not-read]"});
   EXPECT_EQ(read_text("G53.1\n").messages,
             Messages{"p.nc:1:1: error: G53.1 (tilted frame) is read on a machine with [kinematics], by camber check, "
-                     "time, feed, fit-feed and post [not-read]"});
+                     "time, feed, fit-feed, predict, compensate and post [not-read]"});
 }
 
 TEST(TiltedFrame, OtherCodesForPlanesAreRefusedByName) {
@@ -176,7 +176,7 @@ TEST(DynamicOffset, BadInputByWholeMessage) {
                      "table were expected [tilted-frame]"});
   EXPECT_EQ(read_text("G254\n").messages,
             Messages{"p.nc:1:1: error: G254 (dynamic work offset) is read on a machine with [kinematics], by camber "
-                     "check, time, feed, fit-feed and post [not-read]"});
+                     "check, time, feed, fit-feed, predict, compensate and post [not-read]"});
 }
 
 TEST(RotaryWords, WithReferencePointsGoToZeroOfTheMachine) {

@@ -183,6 +183,35 @@ const CHECKS = {
     expect(['16', '17', '18', '19'].includes(line), `a click on the part's middle selects line ${line}`);
   },
 
+  // The top of samples/13-dome: a ball of 3 mm on a dome of 8 mm about (0, 0, -8), on a table-table machine.
+  async dome(page) {
+    const plot = page.locator('[data-quantity=feed] .u-over'), scene = page.locator('#scene');
+    const { width, height } = await plot.boundingBox();
+    const numbers = async name => (await scene.getAttribute(`data-${name}`)).replaceAll('\u2212', '-').split(' ').map(Number);
+    const near = (a, b, by) => a.every((v, k) => Math.abs(v - b[k]) < by);
+    const axes = [];
+    for (const share of [0.4, 0.43, 0.55]) {
+      await plot.click({ position: { x: width * share, y: height / 2 } });
+      await painted(page);
+      const { facts } = await selected(page), words = /A([\u2212-]?[\d.]+) C([\u2212-]?[\d.]+)/.exec(facts);
+      expect(words, `the facts are "${facts}"`);
+      const [a, c] = words.slice(1).map(v => v.replace('\u2212', '-') * Math.PI / 180);
+      const axis = await numbers('axis'), tip = await numbers('tip');
+      expect(near(axis, [Math.sin(a) * Math.sin(c), -Math.sin(a) * Math.cos(c), Math.cos(a)], 1e-3), `at A${a} C${c} rad the axis is ${axis}`);
+      const centre = tip.map((v, k) => v + 3 * axis[k] + (k === 2 ? 8 : 0));
+      expect(Math.abs(Math.hypot(...centre) - 11) < 0.02, `the ball is ${Math.hypot(...centre)} mm from the dome's centre`);
+      expect(near(await numbers('shown'), [0, 0, 1], 1e-3), `on the table the tool is shown along ${await numbers('shown')}`);
+      const turned = await page.locator('#scene canvas').screenshot();
+      await page.click('button[data-value=still]');
+      await painted(page);
+      expect(near(await numbers('shown'), axis, 1e-3), 'at rest the tool is not shown along its axis in the part');
+      expect(!turned.equals(await page.locator('#scene canvas').screenshot()), 'the part does not turn');
+      await page.click('button[data-value=turned]');
+      axes.push(axis);
+    }
+    expect(!near(axes[0], axes[1], 0.05) && !near(axes[1], axes[2], 0.05), `the axis hardly turns: ${axes.join('; ')}`);
+  },
+
   // A wall of the stock in front of the surface.
   async stock(page) {
     const grey = await page.evaluate(GREY);

@@ -27,6 +27,7 @@ struct TiltedScene {
   machine::Tool tool;
   std::vector<removal::Stamp> stamps{};
   Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();  ///< of the stock
+  double voxel_mm = kTiltedVoxel_mm;
 };
 
 /// Rows of a ball on a plane that climbs at an angle.
@@ -79,7 +80,8 @@ inline removal::Stock stock_of(const TiltedScene& scene, const Mat3& turn) {
   const auto distance = [&](const Vec3& p) {
     return removal::box_distance_mm(turn.transpose() * p, scene.lo, scene.hi);
   };
-  return {distance, lo, hi, kTiltedVoxel_mm, 5};
+  constexpr double kBand_mm = 5 * kTiltedVoxel_mm;
+  return {distance, lo, hi, scene.voxel_mm, kBand_mm / scene.voxel_mm};
 }
 
 struct TiltedResult {

@@ -29,6 +29,13 @@ struct CutTile {
   RowsDue rows{};
 };
 
+/// A tile as it was at Engager::keep().
+struct KeptTile {
+  std::size_t number;
+  Tile tile;
+  CutTile cut;
+};
+
 /// Begins with the tiles that the arena has loaded last, and with the ways of a new stretch.
 void load_cut(const Stock& stock, TileArena& arena, std::vector<std::optional<CutTile>>& tiles) {
   if (tiles.size() < arena.size()) tiles.resize(arena.size());
@@ -59,7 +66,7 @@ struct Engager::Impl {
   ReadingRule rule;
   std::size_t from = 0;             ///< its first stamp
   std::span<const Stamp> stamps{};  ///< of the stretch
-  std::vector<double> way{};        ///< of them
+  std::vector<Way> way{};           ///< of them
   const DeflectionTable* deflections = nullptr;
   std::optional<upright::PatchLanes> lanes{};
   std::optional<ChipReader> reader{};
@@ -73,6 +80,10 @@ struct Engager::Impl {
   std::vector<DeflectedChipSample> chips{};
   tbb::enumerable_thread_specific<ChipReader::Buffers> buffers{};
   std::optional<tbb::enumerable_thread_specific<DeflectedCarver>> carvers{};
+  bool keeps = false;            ///< since keep(), in this stretch
+  std::vector<KeptTile> kept{};  ///< of which kept_count count
+  std::size_t kept_count = 0;
+  std::vector<char> is_kept{};  ///< by tile of the arena
 
   Impl(Stock& stock_, const Stock& blank_, EnvelopeGrid envelope_, std::span<const Stamp> stamps_,
        std::int32_t first_id_, const ReadingRule& rule_)
@@ -89,6 +100,19 @@ struct Engager::Impl {
     for (std::uint32_t patch = 0; patch < envelope.patches.size(); ++patch) {
       const upright::PatchLanes::Range range = lanes->range(patch);
       for (int l = 0; glanced_at(patch) && l < range.count; ++l) glanced_point[lanes->point(range.from + l)] = 1;
+    }
+  }
+  /// The tiles that the stamp may change, as they are before.
+  void keep_tiles(std::span<const std::int32_t> reached, const Carving& stamp, const StampDeflection& deflection) {
+    for (const std::int32_t number : reached) {
+      const auto t = static_cast<std::size_t>(number);
+      if (is_kept[t] || !is_due(tiles[t]->rows, stamp, deflection)) continue;
+      is_kept[t] = 1;
+      if (kept_count == kept.size())
+        kept.push_back({t, arena[t], *tiles[t]});
+      else
+        kept[kept_count] = {t, arena[t], *tiles[t]};
+      ++kept_count;
     }
   }
   void leave(std::span<const std::size_t> numbers) { removed_mm3 += upright::store_cut(stock, arena, numbers, tiles); }
@@ -108,9 +132,10 @@ void Engager::start(std::size_t from, std::size_t count, const DeflectionTable& 
   m.from = from;
   m.stamps = m.all.subspan(from, count);
   m.deflections = &deflections;
+  m.keeps = false;
   if (count == 0) return;
   if (!m.lanes) m.begin(deflections);
-  m.way = way_mm(m.stamps, m.stock.min_mm(), m.stock.max_mm());
+  m.way = ways(m.stamps, m.stock.min_mm(), m.stock.max_mm());
   m.arena.load(
       m.stock, m.blank, m.envelope.shape, m.stamps, [&](auto left) { m.leave(left); },
       m.rule.rigid ? 0 : DeflectedEngager::kMaxDeflection_mm);
@@ -158,7 +183,7 @@ void Engager::cut(std::size_t k) {
   const auto row = static_cast<std::ptrdiff_t>(k);
   const StampDeflection deflection = m.rule.rigid ? StampDeflection{m.deflections->row(row), 0, {}}
                                                   : StampDeflections(m.envelope, *m.deflections).of(row);
-  m.memory.add(m.deflections->row(row));
+  if (!m.memory.knows(static_cast<std::int32_t>(m.from + k))) m.memory.add(m.deflections->row(row));
   const Frame frame(m.stamps[k].pose);
   const Carving stamp{m.envelope.shape,
                       m.profile,
@@ -168,11 +193,28 @@ void Engager::cut(std::size_t k) {
                       m.first_id + static_cast<std::int32_t>(m.from + k),
                       m.way[k]};
   const auto reached = m.arena.reached_by(k);
+  if (m.keeps) m.keep_tiles(reached, stamp, deflection);
   tbb::parallel_for(std::size_t{0}, reached.size(), [&](std::size_t i) {
     const auto t = static_cast<std::size_t>(reached[i]);
     CutTile& tile = *m.tiles[t];
     tile.changed |= m.carvers->local().carve(m.arena[t], tile.rows, m.arena.index(t), stamp, deflection);
   });
+}
+
+void Engager::keep() {
+  Impl& m = *impl_;
+  m.keeps = true;
+  m.kept_count = 0;
+  m.is_kept.assign(m.arena.size(), 0);
+}
+
+void Engager::go_back() {
+  Impl& m = *impl_;
+  for (const KeptTile& kept : std::span(m.kept).first(m.kept_count)) {
+    m.arena[kept.number] = kept.tile;
+    *m.tiles[kept.number] = kept.cut;
+  }
+  keep();
 }
 
 double Engager::commit() {
@@ -192,7 +234,7 @@ double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stam
   };
   for (std::size_t from = 0; from < stamps.size(); from += kAtOnce) {
     const auto part = stamps.subspan(from, std::min(kAtOnce, stamps.size() - from));
-    const std::vector<double> way = way_mm(part, stock.min_mm(), stock.max_mm());
+    const std::vector<Way> way = ways(part, stock.min_mm(), stock.max_mm());
     arena.load(stock, stock, shape, part, leave);
     load_cut(stock, arena, tiles);
     std::vector<std::vector<std::size_t>> by_tile(arena.size());

@@ -24,6 +24,9 @@ class Engager {
   double glance(std::size_t k);
   double glance_of(std::span<const DeflectedChipSample> chips) const;
   void cut(std::size_t k);
+  /// From here on go_back() leaves the stock as it is now; until the next call, within one stretch.
+  void keep();
+  void go_back();
   double commit();
 
  private:

@@ -15,6 +15,9 @@ namespace {
 constexpr int kPadded = 24;            ///< voxels of a row, filled up to whole vectors
 constexpr double kRounding_mm = 1e-4;  ///< of distances in single precision
 
+/// What the plane under a cutter leaves may be lower by this without a change: of heights in single precision.
+constexpr double kPlaneRounding_mm = 1e-5;
+
 /// The voxels of a row in the tool's frame: the first, and from each to the next.
 struct Row {
   Eigen::Vector3f start, step;
@@ -83,62 +86,102 @@ float above_mm(const float* __restrict value, const float* __restrict distance, 
   return least;
 }
 
-/// Calls cut(first voxel, row, distance) for the rows that the stamp may change when displaced by `deflection_mm`.
+/// How far the voxels of a row that are not air lie above what the cutter's lowest plane would leave.
+CAMBER_VECTOR_CLONES
+float above_plane_mm(const float* __restrict value, const Row& row, float shrink, float band) {
+  constexpr float kAir = 1e30f;
+  float least = kAir;
+  for (int k = 0; k < Tile::kSide; ++k) {
+    const float height = row.start.z() + static_cast<float>(k) * row.step.z() - shrink;
+    least = std::min(least, value[k] < band ? value[k] - height : kAir);
+  }
+  return least;
+}
+
+float reach_mm(const StampDeflection& deflection) { return static_cast<float>(deflection.largest_mm + kRounding_mm); }
+
+RowsDue::Now now_of(const Carving& stamp, const StampDeflection& deflection) {
+  return {static_cast<float>(stamp.way.any_mm) + reach_mm(deflection),
+          stamp.way.up_mm + deflection.axial_mm - kPlaneRounding_mm};
+}
+
+/// Calls cut(first voxel, row, distance) for the rows that the stamp may change.
 template <class Cut>
-void for_rows(Tile& tile, RowsDue& rows, const Index3& index, const Carving& stamp, double deflection_mm, Cut cut) {
-  const auto band = static_cast<float>(stamp.band_mm), now = static_cast<float>(stamp.way_mm),
-             reach = static_cast<float>(deflection_mm + kRounding_mm);
+void for_rows(Tile& tile, RowsDue& rows, const Index3& index, const Carving& stamp, const StampDeflection& deflection,
+              Cut cut) {
+  const auto band = static_cast<float>(stamp.band_mm), shrink = static_cast<float>(stamp.shrink_mm),
+             reach = reach_mm(deflection);
   const float half_and_band = 0.5f * Tile::kCore * static_cast<float>(stamp.voxel_mm) + band;
-  if (now + reach <= rows.first) return;
+  const RowsDue::Now now = now_of(stamp, deflection);
+  if (!rows.due(now)) return;
   const Grid grid(index, stamp);
   alignas(64) std::array<float, kPadded> middle, distance;
-  float first_due = std::numeric_limits<float>::infinity();
   for (int i = 0; i < Tile::kSide; ++i) {
-    float* due = rows.due.data() + static_cast<std::ptrdiff_t>(i) * Tile::kSide;
-    const float earliest = *std::min_element(due, due + Tile::kSide);
-    if (now + reach <= earliest) {
-      first_due = std::min(first_due, earliest);
-      continue;
-    }
+    if (!rows.due(now, i)) continue;
     distances(stamp, grid.middles(i), middle.data());
     for (int j = 0; j < Tile::kSide; ++j) {
-      if (now + reach > due[j]) {
-        const float nearest = middle[static_cast<std::size_t>(j)] - half_and_band;
-        if (nearest >= reach) {
-          due[j] = now + nearest;
-        } else {
-          const Row row = grid.row(i, j);
-          distances(stamp, row, distance.data());
-          const float above = above_mm(tile.distance.data() + Tile::offset(i, j, 0), distance.data(), band);
-          due[j] = now + above;
-          if (above < reach) cut(Tile::offset(i, j, 0), row, distance.data());
-        }
+      if (!rows.due(now, i, j)) continue;
+      const float nearest = middle[static_cast<std::size_t>(j)] - half_and_band;
+      if (nearest >= reach) {
+        rows.set_above(i, j, stamp.way, nearest);
+        continue;
       }
-      first_due = std::min(first_due, due[j]);
+      const Row row = grid.row(i, j);
+      const float* value = tile.distance.data() + Tile::offset(i, j, 0);
+      distances(stamp, row, distance.data());
+      const float above = above_mm(value, distance.data(), band);
+      rows.set_above(i, j, stamp.way, above);
+      if (above >= reach) continue;
+      cut(Tile::offset(i, j, 0), row, distance.data());
+      rows.set_above_plane(i, j, stamp.way, above_plane_mm(value, row, shrink, band));
     }
+    rows.gather(i, now);
   }
-  rows.first = first_due;
+  rows.gather();
 }
 
 }  // namespace
 
-std::vector<double> way_mm(std::span<const Stamp> stamps, const Vec3& lo, const Vec3& hi) {
-  std::vector<double> out(stamps.size(), 0.0);
+std::vector<Way> ways(std::span<const Stamp> stamps, const Vec3& lo, const Vec3& hi) {
+  std::vector<Way> out(stamps.size());
   double farthest = 0;
   for (const Stamp& s : stamps)
     farthest = std::max(farthest, (lo - s.pose.tip_mm).cwiseAbs().cwiseMax((hi - s.pose.tip_mm).cwiseAbs()).norm());
   for (std::size_t k = 1; k < stamps.size(); ++k) {
     const ToolPose &a = stamps[k - 1].pose, &b = stamps[k].pose;
-    const double half = std::min(1.0, (b.axis - a.axis).norm() / 2);
-    out[k] = out[k - 1] + (b.tip_mm - a.tip_mm).norm() + 2 * std::asin(half) * farthest;
+    const Vec3 move = b.tip_mm - a.tip_mm;
+    const double half = std::min(1.0, (b.axis - a.axis).norm() / 2), turn = 2 * std::asin(half) * farthest;
+    out[k].any_mm = out[k - 1].any_mm + move.norm() + turn;
+    out[k].up_mm = out[k - 1].up_mm - move.dot(b.axis) + turn;
   }
   return out;
+}
+
+void RowsDue::gather(int i, const Now& now) {
+  First first{std::numeric_limits<float>::infinity(), std::numeric_limits<double>::infinity()};
+  for (std::size_t row = at(i, 0); row < at(i + 1, 0); ++row) {
+    if (up_[row] >= now.up_mm)
+      first.up = std::min(first.up, up_[row]);
+    else
+      first.any = std::min(first.any, any_[row]);
+  }
+  of_i_[static_cast<std::size_t>(i)] = first;
+}
+
+void RowsDue::gather() {
+  First first{std::numeric_limits<float>::infinity(), std::numeric_limits<double>::infinity()};
+  for (const First& f : of_i_) first = {std::min(first.any, f.any), std::min(first.up, f.up)};
+  tile_ = first;
+}
+
+bool is_due(const RowsDue& rows, const Carving& stamp, const StampDeflection& deflection) {
+  return rows.due(now_of(stamp, deflection));
 }
 
 bool carve(Tile& tile, RowsDue& rows, const Index3& index, const Carving& stamp) {
   const auto band = static_cast<float>(stamp.band_mm);
   bool changed = false;
-  for_rows(tile, rows, index, stamp, 0, [&](int first, const Row&, const float* distance) {
+  for_rows(tile, rows, index, stamp, {}, [&](int first, const Row&, const float* distance) {
     float* value = tile.distance.data() + first;
     std::int32_t* id = tile.stamp.data() + first;
     for (int k = 0; k < Tile::kSide; ++k) {
@@ -156,7 +199,7 @@ bool DeflectedCarver::carve(Tile& tile, RowsDue& rows, const Index3& index, cons
   if (deflection.largest_mm == 0) return tilted::carve(tile, rows, index, stamp);
   const auto band = static_cast<float>(stamp.band_mm), largest = static_cast<float>(deflection.largest_mm);
   voxel_.clear(), x_.clear(), y_.clear(), z_.clear();
-  for_rows(tile, rows, index, stamp, deflection.largest_mm, [&](int first, const Row& row, const float* distance) {
+  for_rows(tile, rows, index, stamp, deflection, [&](int first, const Row& row, const float* distance) {
     const float* value = tile.distance.data() + first;
     for (int k = 0; k < Tile::kSide; ++k) {
       if (std::min(largest - distance[k], band) <= value[k]) continue;

@@ -27,26 +27,68 @@ struct Frame {
   Vec3 axis() const { return to_part.col(2); }
 };
 
-/// How far any point of the stock has moved against the cutter since the first stamp, at most, mm, for every stamp:
-/// what a stamp changes at a place within the stock differs from what another changes by no more than the difference.
-std::vector<double> way_mm(std::span<const Stamp> stamps, const Vec3& stock_min_mm, const Vec3& stock_max_mm);
+/// How far points of the stock have moved against the cutter since the first stamp.
+struct Way {
+  double any_mm = 0;  ///< any point at most: what a stamp changes at a place differs by no more than the difference
+  /// Up the cutter's axis, at most: what a stamp leaves above its lowest plane differs by no more than the difference.
+  /// Less than before where the cutter draws back.
+  double up_mm = 0;
+};
+/// Of every stamp, for places within the stock.
+std::vector<Way> ways(std::span<const Stamp> stamps, const Vec3& stock_min_mm, const Vec3& stock_max_mm);
 
 /// What is known of the rows (along z) of a tile's voxels.
 ///
 /// The distance to a cutter is 1-Lipschitz, and material is only removed: a row whose voxels all lie by `d` above what
 /// the cutter at one stamp would leave is not changed before the cutter has moved, or bends, by d. So each row keeps
-/// the way (way_mm()) at which it must be looked at again.
-struct RowsDue {
-  static constexpr int kRows = Tile::kSide * Tile::kSide;
-  std::array<float, kRows> due{};
-  float first = 0;  ///< no row is due before
-
+/// the way (Way::any_mm) at which it must be looked at again.
+///
+/// A cutter is above the plane through its tip, square to its axis. A row whose voxels all are what that plane leaves,
+/// or lower, is not changed before the cutter has gone down its axis: under a flat bottom each row is done when the
+/// bottom has passed, however long the tool stays above it.
+class RowsDue {
+ public:
   RowsDue() { forget(); }
   /// All, for ways that count anew.
   void forget() {
-    due.fill(-1);
-    first = -1;
+    any_.fill(-1);
+    up_.fill(kNever);
+    tile_ = {};
+    of_i_.fill({});
   }
+
+  /// The way of a stamp, with what its cutter bends by.
+  struct Now {
+    float any_mm;
+    double up_mm;
+  };
+  bool due(const Now& now) const { return due(tile_, now); }
+  bool due(const Now& now, int i) const { return due(of_i_[static_cast<std::size_t>(i)], now); }
+  bool due(const Now& now, int i, int j) const { return now.any_mm > any_[at(i, j)] && now.up_mm > up_[at(i, j)]; }
+
+  /// The row lies so far above what the cutter at `way` leaves; infinity: it is air.
+  void set_above(int i, int j, const Way& way, float mm) { any_[at(i, j)] = static_cast<float>(way.any_mm) + mm; }
+  /// And so far above what its lowest plane leaves; negative: partly below.
+  void set_above_plane(int i, int j, const Way& way, float mm) { up_[at(i, j)] = way.up_mm + static_cast<double>(mm); }
+  /// To be called when the rows of one i were looked at, and when all that were due in the tile were.
+  void gather(int i, const Now& now);
+  void gather();
+
+ private:
+  static constexpr std::size_t kSide = Tile::kSide;
+  static constexpr double kNever = -1e300;
+  /// Of several rows: those that the plane has passed are not due before `up`, the others not before `any`.
+  struct First {
+    float any = -1;
+    double up = kNever;
+  };
+  static std::size_t at(int i, int j) { return static_cast<std::size_t>(i) * kSide + static_cast<std::size_t>(j); }
+  static bool due(const First& first, const Now& now) { return now.any_mm > first.any || now.up_mm > first.up; }
+
+  std::array<float, kSide * kSide> any_{};
+  std::array<double, kSide * kSide> up_{};
+  std::array<First, kSide> of_i_{};
+  First tile_{};
 };
 
 /// One stamp in a tile.
@@ -56,9 +98,12 @@ struct Carving {
   const Frame& frame;
   double voxel_mm, band_mm;
   std::int32_t id;
-  double way_mm;         ///< of the stamp
+  Way way;               ///< of the stamp
   double shrink_mm = 0;  ///< the cutter is smaller by this
 };
+
+/// Whether carving needs to look at the tile.
+bool is_due(const RowsDue& rows, const Carving& stamp, const StampDeflection& deflection);
 
 /// stock = max(stock, -cutter) where that is more; voxels that change take the id. True where one did.
 bool carve(Tile& tile, RowsDue& rows, const Index3& index, const Carving& stamp);
