@@ -69,7 +69,7 @@ std::string slot_means(std::initializer_list<double> feeds_per_tooth) {
 }
 
 TEST(FitForce, PublishedSlotMeansGiveThePublishedCoefficients) {
-  const std::string folder = std::string(CAMBER_SOURCE_DIR) + "/samples/03-force-fit/";
+  const std::string folder = CAMBER_SOURCE_DIR "/samples/03-force-fit/";
   Diagnostics diagnostics;
   const auto how = machine::read_force_log(folder + "job.toml", diagnostics);
   const auto r = fit_force({read_measured_log(folder + "means.csv", how, diagnostics)});
@@ -95,7 +95,7 @@ TEST(FitForce, ClosedFormMeansGiveTheirCoefficientsBack) {
 
 TEST(FitForce, StandardErrorsAreThoseOfAStraightLine) {
   // In a slot Fy = (N a / 4) Ktc f + (N a / pi) Kte: a line through five points; but the errors share one variance.
-  const std::string folder = std::string(CAMBER_SOURCE_DIR) + "/samples/03-force-fit/";
+  const std::string folder = CAMBER_SOURCE_DIR "/samples/03-force-fit/";
   Diagnostics diagnostics;
   const auto how = machine::read_force_log(folder + "job.toml", diagnostics);
   const auto r = fit_force({read_measured_log(folder + "means.csv", how, diagnostics)});

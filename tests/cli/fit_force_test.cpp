@@ -16,7 +16,7 @@ using tests::file_text;
 using tests::run_camber;
 using tests::TempFolder;
 
-const std::string kSample = std::string(CAMBER_SOURCE_DIR) + "/samples/03-force-fit/";
+const std::string kSample = CAMBER_SOURCE_DIR "/samples/03-force-fit/";
 
 TEST(FitForceCommand, WritesAMaterialThatAJobTakes) {
   const TempFolder folder;

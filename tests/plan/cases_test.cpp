@@ -10,7 +10,7 @@ namespace {
 
 CaseBase sample_base() {
   Diagnostics diagnostics;
-  return read_case_base(std::string(CAMBER_SOURCE_DIR) + "/samples/case_base.toml", diagnostics);
+  return read_case_base(CAMBER_SOURCE_DIR "/samples/case_base.toml", diagnostics);
 }
 
 /// The content of the published experiment: FC250, carbide, coated, rough.

@@ -161,7 +161,7 @@ class SamplePlan : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     Diagnostics diagnostics;
-    input = new PlanInput(read_plan_input(std::string(CAMBER_SOURCE_DIR) + "/samples/15-plan/plan.toml", diagnostics));
+    input = new PlanInput(read_plan_input(CAMBER_SOURCE_DIR "/samples/15-plan/plan.toml", diagnostics));
     result = new PlanResult(make_plan(*input, diagnostics));
     warnings = diagnostics.warnings();
   }
