@@ -37,19 +37,11 @@ struct Worst {
   }
 };
 
-/// A wall's error grows towards its foot, where the last row of points lies anywhere within a voxel of the edge: there
-/// the share of the foot decides on the percentile. Rows that far from the edges show what was cut.
-testing::Heights judged(const testing::TiltedScene& scene) {
-  if (scene.tool.type != machine::ToolType::flat) return {};
-  constexpr double kEdge_mm = 2 * testing::kTiltedVoxel_mm;
-  return {scene.stamps.front().pose.tip_mm.z() + kEdge_mm, scene.hi.z() - kEdge_mm};
-}
-
 Worst worst_of(const testing::TiltedScene& scene, double step_deg) {
   constexpr double kMost_deg = 40;
   constexpr auto kStatic = machine::Coupling::static_;
   const testing::TiltedResult upright =
-      testing::cut_turned(scene, Mat3::Identity(), kStatic, 0.23, 1.17, judged(scene));
+      testing::cut_turned(scene, Mat3::Identity(), kStatic, 0.23, 1.17, testing::away_from_edges(scene));
   Worst worst;
   for (double lead = -kMost_deg; lead <= kMost_deg; lead += step_deg)
     for (double tilt = -kMost_deg; tilt <= kMost_deg; tilt += step_deg) {
@@ -57,7 +49,8 @@ Worst worst_of(const testing::TiltedScene& scene, double step_deg) {
       const Mat3 turn =
           (Eigen::AngleAxisd(rad_from_deg(lead), Vec3::UnitY()) * Eigen::AngleAxisd(rad_from_deg(tilt), Vec3::UnitX()))
               .toRotationMatrix();
-      worst.add(testing::cut_turned(scene, turn, kStatic, 0.23, 1.17, judged(scene)), upright, lead, tilt);
+      worst.add(testing::cut_turned(scene, turn, kStatic, 0.23, 1.17, testing::away_from_edges(scene)), upright, lead,
+                tilt);
     }
   return worst;
 }

@@ -96,6 +96,14 @@ struct Heights {
   double from = -1e9, to = 1e9;
 };
 
+/// A wall's error grows towards its foot, where the last row of points lies anywhere within a voxel of the edge: there
+/// the share of the foot decides on the percentile. Rows 0.2 mm from the edges show what was cut.
+inline Heights away_from_edges(const TiltedScene& scene) {
+  if (scene.tool.type != machine::ToolType::flat) return {};
+  constexpr double kEdge_mm = 0.2;
+  return {scene.stamps.front().pose.tip_mm.z() + kEdge_mm, scene.hi.z() - kEdge_mm};
+}
+
 /// In the steady middle of the rows. Errors within the upright scene's `y_from` ... `y_to`.
 inline TiltedResult cut_turned(const TiltedScene& upright, const Mat3& turn, machine::Coupling coupling, double y_from,
                                double y_to, const Heights& heights = {}) {
