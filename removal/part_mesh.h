@@ -12,9 +12,9 @@ namespace camber::removal {
 /// triangle: the mesh has no inside).
 TriangleMesh read_closed_stl(const std::string& path);
 
-/// Signed distances to a closed mesh, negative inside, exact to the rounding of its coordinates. Found through a tree of
-/// boxes around the triangles; the sign is that of the angle-weighted normal at the nearest place (Baerentzen and Aanaes,
-/// "Signed distance computation using the angle weighted pseudonormal", 2005).
+/// Signed distances to a closed mesh, negative inside, exact to the rounding of its coordinates. Found through a tree
+/// of boxes around the triangles; the sign is that of the angle-weighted normal at the nearest place (Baerentzen and
+/// Aanaes, "Signed distance computation using the angle weighted pseudonormal", 2005).
 class PartMesh {
  public:
   /// What read_closed_stl throws.

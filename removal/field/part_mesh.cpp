@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "base/diagnostics.h"
 
