@@ -5,30 +5,17 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 import unittest
 
 import numpy
 
 import camber
-
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-SAMPLE = ROOT / "samples/01-finishing"
-MACHINE = SAMPLE / "machine.toml"
-COARSE = camber.read_job(ROOT / "samples/06-wall/job.toml")
-COARSE.set_voxel_mm(0.3)  # takes a second
+from quick_inputs import COARSE, MACHINE, ROOT, SAMPLE, long_program
 
 
 def resident_bytes():
     with open("/proc/self/statm", encoding="ascii") as file:
         return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE")
-
-
-def long_program(minutes):
-    """Straight cuts that take so long."""
-    return camber.program_from_text(
-        "long.nc", "G21 G90 G94\nS3000 M3\nG0 X0 Y0 Z5\n" +
-        "".join(f"G1 X{200 * (i % 2)} F200\n" for i in range(1, minutes + 1)) + "M30\n")
 
 
 class Sections(unittest.TestCase):

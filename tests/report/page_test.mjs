@@ -94,6 +94,18 @@ const rowsDown = page => page.evaluate(() => {
 
 const painted = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
 
+const near = (a, b, by) => a.every((v, k) => Math.abs(v - b[k]) < by);
+
+// Held still, the part is drawn in another place, and the tool along its axis in the part. numbers(name): of a data attribute.
+async function expectTurningPart(page, axis, numbers) {
+  const turned = await page.locator('#scene canvas').screenshot();
+  await page.click('button[data-value=still]');
+  await painted(page);
+  expect(near(await numbers('shown'), axis, 1e-3), 'at rest the tool is not shown along its axis in the part');
+  expect(!turned.equals(await page.locator('#scene canvas').screenshot()), 'the part does not turn');
+  await page.click('button[data-value=turned]');
+}
+
 async function selected(page) {
   const box = page.locator('#selected');
   await box.locator('.facts').waitFor();
@@ -154,7 +166,6 @@ const CHECKS = {
     const plot = page.locator('[data-quantity=feed] .u-over'), scene = page.locator('#scene');
     const { width, height } = await plot.boundingBox();
     const numbers = async name => (await scene.getAttribute(`data-${name}`)).split(' ').map(Number);
-    const near = (a, b, by) => a.every((v, k) => Math.abs(v - b[k]) < by);
     for (const at of [5.5, 25.5]) {
       await plot.click({ position: { x: width * at / 30, y: height / 2 } });
       await painted(page);
@@ -167,12 +178,7 @@ const CHECKS = {
       expect(near(shown, [0, 0, 1], 1e-3), `on the table the tool is shown along ${shown}`);
       expect(near(await numbers('tip'), [at, 5, 0.513], 0.2), `the tip is at ${await numbers('tip')}`);
       expect(await amber() > 200, `the tool has ${await amber()} pixels`);
-      const turned = await page.locator('#scene canvas').screenshot();
-      await page.click('button[data-value=still]');
-      await painted(page);
-      expect(near(await numbers('shown'), axis, 1e-3), 'at rest the tool is not shown along its axis in the part');
-      expect(!turned.equals(await page.locator('#scene canvas').screenshot()), 'the part does not turn');
-      await page.click('button[data-value=turned]');
+      await expectTurningPart(page, axis, numbers);
     }
     // A click on the turned part finds the line made there.
     await page.getByRole('button', { name: 'Top', exact: true }).click();
@@ -188,7 +194,6 @@ const CHECKS = {
     const plot = page.locator('[data-quantity=feed] .u-over'), scene = page.locator('#scene');
     const { width, height } = await plot.boundingBox();
     const numbers = async name => (await scene.getAttribute(`data-${name}`)).replaceAll('\u2212', '-').split(' ').map(Number);
-    const near = (a, b, by) => a.every((v, k) => Math.abs(v - b[k]) < by);
     const axes = [];
     for (const share of [0.4, 0.43, 0.55]) {
       await plot.click({ position: { x: width * share, y: height / 2 } });
@@ -201,12 +206,7 @@ const CHECKS = {
       const centre = tip.map((v, k) => v + 3 * axis[k] + (k === 2 ? 8 : 0));
       expect(Math.abs(Math.hypot(...centre) - 11) < 0.02, `the ball is ${Math.hypot(...centre)} mm from the dome's centre`);
       expect(near(await numbers('shown'), [0, 0, 1], 1e-3), `on the table the tool is shown along ${await numbers('shown')}`);
-      const turned = await page.locator('#scene canvas').screenshot();
-      await page.click('button[data-value=still]');
-      await painted(page);
-      expect(near(await numbers('shown'), axis, 1e-3), 'at rest the tool is not shown along its axis in the part');
-      expect(!turned.equals(await page.locator('#scene canvas').screenshot()), 'the part does not turn');
-      await page.click('button[data-value=turned]');
+      await expectTurningPart(page, axis, numbers);
       axes.push(axis);
     }
     expect(!near(axes[0], axes[1], 0.05) && !near(axes[1], axes[2], 0.05), `the axis hardly turns: ${axes.join('; ')}`);
@@ -399,7 +399,6 @@ const CHECKS = {
   // samples/12-five-axis/faces.nc on a page of feed or time: two tilted planes, A tilts about X and carries C.
   async faces(page) {
     const rad = degrees => degrees * Math.PI / 180, number = text => Number(text.replaceAll('\u2212', '-'));
-    const near = (a, b, by) => a.every((v, k) => Math.abs(v - b[k]) < by);
     const at = line => page.evaluate(wanted => {
       const { page: shown } = window.machinePage, first = shown.line.indexOf(wanted), last = shown.line.lastIndexOf(wanted);
       window.machinePage.pause();

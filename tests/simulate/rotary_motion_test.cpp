@@ -10,33 +10,15 @@
 
 #include "base/units.h"
 #include "simulate/predict.h"
-#include "tests/kinematics/machines.h"
 #include "tests/support/cutting.h"
+#include "tests/support/plate_job.h"
 
 namespace camber::simulate {
 namespace {
 
-/// Ball end mill on a plate of 5 mm by 2 mm; axes without inertia.
+/// A plate of 5 mm by 2 mm.
 machine::Job job_on(const std::string& machine) {
-  machine::Job job;
-  job.program = "p.nc";
-  job.machine = kinematics::tests::sample(machine);
-  job.machine.control = machine::Control{};
-  for (machine::Axis& axis : job.machine.axis) {
-    axis = machine::Axis{};
-    axis.given = true;
-  }
-  for (machine::RotaryAxis& axis : job.machine.rotary) {
-    axis.max_velocity_rad_per_s = axis.acceleration_rad_per_s2 = machine::kNoLimit;
-    axis.travel_rad = {-machine::kNoLimit, machine::kNoLimit};
-  }
-  job.tools[1] = testing::make_tool(machine::ToolType::ball, 6, 2, 30);
-  job.tools[1].number = 1;
-  job.material = {2000, 700, 0, 15, 15, 0};
-  job.stock.box = machine::Box{{0, 0, -1}, {5, 2, 0}};
-  job.simulation.voxel_mm = 0.1;
-  job.simulation.coupling = machine::Coupling::rigid;
-  return job;
+  return testing::job_without_inertia(machine, {{0, 0, -1}, {5, 2, 0}});
 }
 
 const std::string kStart = "G21 G90 G94\nG10 L2 P1 X0 Y0 Z-100\nG10 L1 P1 R90\nT1 M6\nS6000 M3\nG54\n";

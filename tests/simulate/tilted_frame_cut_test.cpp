@@ -10,33 +10,14 @@
 
 #include "base/units.h"
 #include "simulate/predict.h"
-#include "tests/kinematics/machines.h"
-#include "tests/support/cutting.h"
+#include "tests/support/plate_job.h"
 
 namespace camber::simulate {
 namespace {
 
-/// A ball on a plate, since under a flat bottom rounding decides where an edge rubs; axes without inertia.
+/// A ball, since under a flat bottom rounding decides where an edge rubs.
 machine::Job framed_job(const std::string& machine) {
-  machine::Job job;
-  job.program = "p.nc";
-  job.machine = kinematics::tests::sample(machine);
-  job.machine.control = machine::Control{};
-  for (machine::Axis& axis : job.machine.axis) {
-    axis = machine::Axis{};
-    axis.given = true;
-  }
-  for (machine::RotaryAxis& axis : job.machine.rotary) {
-    axis.max_velocity_rad_per_s = axis.acceleration_rad_per_s2 = machine::kNoLimit;
-    axis.travel_rad = {-machine::kNoLimit, machine::kNoLimit};
-  }
-  job.tools[1] = testing::make_tool(machine::ToolType::ball, 6, 2, 30);
-  job.tools[1].number = 1;
-  job.material = {2000, 700, 0, 15, 15, 0};
-  job.stock.box = machine::Box{{-2, -2, -1}, {2, 2, 0.2}};
-  job.simulation.voxel_mm = 0.1;
-  job.simulation.coupling = machine::Coupling::rigid;
-  return job;
+  return testing::job_without_inertia(machine, {{-2, -2, -1}, {2, 2, 0.2}});
 }
 
 /// How X, Y and Z are written.
