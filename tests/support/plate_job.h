@@ -1,6 +1,6 @@
 #pragma once
-// A job that cuts a plate with a ball on a machine of samples/kinematics whose axes have no inertia and no end of travel:
-// what differs between two programs is then their geometry.
+// A job that cuts a plate with a ball on a machine of samples/kinematics whose axes have no inertia and no end of
+// travel: what differs between two programs is then their geometry.
 #include <string>
 
 #include "machine/job.h"
