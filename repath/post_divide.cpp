@@ -113,9 +113,10 @@ void Divider::go(const TipMotion& motion, const RotaryChoice& choice, double fro
       at = next;
     }
   }
-  const std::vector<double> cuts = options_.one_degree ? by_degree : even_cuts(motion, choice, from, to, tolerance_mm);
+  std::vector<double> even;
+  if (!options_.one_degree) even = even_cuts(motion, choice, from, to, tolerance_mm);
   at = from;
-  for (const double next : cuts) {
+  for (const double next : options_.one_degree ? by_degree : even) {
     out.points.push_back(point(motion, choice, at, next));
     out.points.back().extra = extra;
     out.bound_mm = std::max(out.bound_mm, bound(motion, choice, at, next));
