@@ -55,16 +55,20 @@ class Signals(unittest.TestCase):
         except KeyboardInterrupt:
             return time.monotonic() - sent[0]
 
-    def everywhere(self, name, call, take_s):
+    def everywhere(self, name, call):
+        take_s = self.timed(call)
         latencies = []
         for step in range(1, 6):
-            try:
-                latency = self.interrupted(call, take_s * step / 6)
-            except KeyboardInterrupt:
-                latency = None
-            if latency is not None:
-                latencies.append(latency)
-        self.assertGreaterEqual(len(latencies), 3, name)
+            latency = None
+            while latency is None:  # a call that was done before the signal: it takes less than was thought
+                try:
+                    latency = self.interrupted(call, take_s * step / 6)
+                except KeyboardInterrupt:  # the signal came when the call had just ended
+                    pass
+                if latency is None:
+                    take_s *= 0.8
+                    self.assertGreater(take_s, 0.01, name)
+            latencies.append(latency)
         print(f"{name}: {len(latencies)} interrupts, at most {1000 * max(latencies):.0f} ms", file=sys.stderr)
         self.assertLess(max(latencies), self.LIMIT_S, name)
 
@@ -75,19 +79,19 @@ class Signals(unittest.TestCase):
 
     def test_predict(self):
         call = lambda: camber.predict(SAMPLE / "job.toml")  # noqa: E731
-        self.everywhere("predict", call, self.timed(call))
+        self.everywhere("predict", call)
 
     def test_compensate(self):
-        self.everywhere("compensate", lambda: camber.compensate(COARSE), 3)
+        self.everywhere("compensate", lambda: camber.compensate(COARSE))
 
     def test_fit_feed(self):
         call = lambda: camber.fit_feed([(SAMPLE / "trace_program.nc", SAMPLE / "trace.csv")], MACHINE)  # noqa: E731
-        self.everywhere("fit_feed", call, self.timed(call))
+        self.everywhere("fit_feed", call)
 
     def test_feed(self):
         program = long_program(40)
         call = lambda: camber.feed(program, MACHINE, points=False)  # noqa: E731
-        self.everywhere("feed", call, self.timed(call))
+        self.everywhere("feed", call)
 
     def test_the_module_works_after_an_interrupt(self):
         before = camber.predict(COARSE).json
