@@ -31,6 +31,7 @@ posture::PostureOptions rules_of(const PostureOptions& options) {
   out.mode = word_of<posture::Mode>(kPostureModes, options.mode, "mode");
   out.indexed = options.indexed;
   out.clearance_mm = options.clearance_mm;
+  out.stock = options.stock;
   out.lead_rad = rad_from_deg(options.lead_deg);
   out.tilt_rad = rad_from_deg(options.tilt_deg);
   out.max_tilt_rad = rad_from_deg(options.max_tilt_deg);

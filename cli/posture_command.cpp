@@ -37,7 +37,8 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
   const posture::PostureFigures& figures = program.postured.figures;
   if (!arguments.json.empty()) write_file(arguments.json, api::posture_json(rows, overhangs, command));
   if (program.blocked_line > 0) {
-    fmt::print(stderr, "posture: no direction of the tool is clear by {:g} mm in line {}; nothing was written\n",
+    fmt::print(stderr, "posture: no direction of the tool is clear of {} by {:g} mm in line {}; nothing was written\n",
+               arguments.options.stock ? "part, stock and fixtures" : "part and fixtures",
                arguments.options.clearance_mm, program.blocked_line);
     return kNumbersDidNotWorkOut;
   }

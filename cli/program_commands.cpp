@@ -465,9 +465,10 @@ void add_posture_rules(CLI::App& command, posture::PostureOptions& options) {
       ->type_name("chosen|normal|lead-tilt|seed");
   command
       .add_option("--clearance-mm", options.clearance_mm,
-                  "of neck, shank, holder and spindle to part and fixtures; default 1")
+                  "of neck, shank, holder and spindle to part, stock and fixtures; default 1")
       ->check(number_from_to(0, 100))
       ->type_name("X");
+  command.add_flag("!--no-stock", options.stock, "the stock of the job is no obstacle");
   const auto angle = [&command](const char* name, double& rad, double least, double most, const char* text) {
     command
         .add_option_function<double>(
@@ -501,7 +502,8 @@ void add_one_direction(CLI::App& command, PostureArguments& arguments) {
 }
 
 void add_posture(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand("posture", "tilt the tool of a three-axis finishing program, clear of the part");
+  auto* command =
+      app.add_subcommand("posture", "tilt the tool of a three-axis finishing program, clear of part and stock");
   auto arguments = std::make_shared<PostureArguments>();
   command->add_option("program", arguments->program, "NC program of three axes")->required()->type_name("P.nc");
   command->add_option("--job", arguments->job, "job.toml: machine with [kinematics], tool, part")

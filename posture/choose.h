@@ -23,6 +23,7 @@ enum class Mode : std::uint8_t {
 struct PostureOptions {
   Mode mode = Mode::chosen;
   bool indexed = false;                            ///< one direction for all points; mode is not looked at
+  bool stock = true;                               ///< is an obstacle, but for the flutes
   double clearance_mm = 1;                         ///< of all that is not cutter
   double lead_rad = 10 * kPi / 180, tilt_rad = 0;  ///< lead_tilt
   double max_tilt_rad = 75 * kPi / 180;            ///< from +Z of the program

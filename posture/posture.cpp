@@ -13,6 +13,7 @@
 #include "kinematics/rotary_options.h"
 #include "nc/emit/number_style.h"
 #include "posture/frame_text.h"
+#include "posture/stock_obstacle.h"
 #include "repath/post_writer.h"
 #include "repath/tip_motion.h"
 
@@ -33,7 +34,6 @@ Surroundings surroundings_of(const machine::Job& job, const TriangleMesh& part, 
     else
       out.add(read_stl(body.mesh), origin_mm);
   }
-  out.finish();
   return out;
 }
 
@@ -52,6 +52,8 @@ class Maker {
     part_ = read_stl(job_.part.mesh);
     if (!moves_.machine_origin_mm) moves_.machine_origin_mm = Vec3::Zero();
     surroundings_ = surroundings_of(job_, part_, *moves_.machine_origin_mm);
+    if (request_.options.stock) add_stock(job_, program_, moves_, first_, surroundings_, diagnostics_);
+    surroundings_.finish();
     points_ = path_points(moves_, first_, end_, tool(), part_, request_.step_mm);
     return true;
   }

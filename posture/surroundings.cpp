@@ -99,15 +99,20 @@ ToolShape tool_shape(const machine::Tool& tool, const machine::Machine& machine,
   return out;
 }
 
-void Surroundings::add(const TriangleMesh& mesh, const Vec3& shift_mm) {
+void Surroundings::add(const TriangleMesh& mesh, const Vec3& shift_mm, Obstacle what) {
   for (const auto& t : mesh.triangles) {
     std::array<Vec3, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) corners[i] = mesh.points[t[i]].cast<double>() + shift_mm;
-    triangles_.push_back(corners);
+    tree_of(what).triangles.push_back(corners);
   }
 }
 
-void Surroundings::add_box(const Vec3& min_mm, const Vec3& max_mm) {
+void Surroundings::add(std::span<const std::array<Vec3, 3>> triangles, Obstacle what) {
+  auto& all = tree_of(what).triangles;
+  all.insert(all.end(), triangles.begin(), triangles.end());
+}
+
+void Surroundings::add_box(const Vec3& min_mm, const Vec3& max_mm, Obstacle what) {
   const auto corner = [&](int i) {
     return Vec3((i & 1) != 0 ? max_mm.x() : min_mm.x(), (i & 2) != 0 ? max_mm.y() : min_mm.y(),
                 (i & 4) != 0 ? max_mm.z() : min_mm.z());
@@ -115,21 +120,24 @@ void Surroundings::add_box(const Vec3& min_mm, const Vec3& max_mm) {
   constexpr std::array<std::array<int, 4>, 6> kFaces{
       {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
   for (const auto& f : kFaces) {
-    triangles_.push_back({corner(f[0]), corner(f[1]), corner(f[2])});
-    triangles_.push_back({corner(f[0]), corner(f[2]), corner(f[3])});
+    tree_of(what).triangles.push_back({corner(f[0]), corner(f[1]), corner(f[2])});
+    tree_of(what).triangles.push_back({corner(f[0]), corner(f[2]), corner(f[3])});
   }
 }
 
 void Surroundings::finish() {
-  nodes_.clear();
-  if (triangles_.empty()) return;
-  nodes_.emplace_back();
-  build(0, 0, static_cast<std::uint32_t>(triangles_.size()));
-  volumes_.clear();
-  for (const auto& triangle : triangles_) volumes_.push_back(volume_of({&triangle, 1}));
+  tree_of(Obstacle::stock).stock = true;
+  for (Tree& tree : trees_) {
+    tree.nodes.clear();
+    tree.volumes.clear();
+    if (tree.triangles.empty()) continue;
+    tree.nodes.emplace_back();
+    tree.build(0, 0, static_cast<std::uint32_t>(tree.triangles.size()));
+    for (const auto& triangle : tree.triangles) tree.volumes.push_back(volume_of({&triangle, 1}));
+  }
 }
 
-Surroundings::Volume Surroundings::volume_of(std::span<const std::array<Vec3, 3>> triangles) const {
+Surroundings::Volume Surroundings::volume_of(std::span<const std::array<Vec3, 3>> triangles) {
   Volume out;
   Vec3 low = triangles[0][0], high = low, normal = Vec3::Zero();
   for (const auto& [a, b, c] : triangles) {
@@ -149,28 +157,28 @@ Surroundings::Volume Surroundings::volume_of(std::span<const std::array<Vec3, 3>
   return out;
 }
 
-void Surroundings::build(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
-  Node now{volume_of(std::span(triangles_).subspan(begin, end - begin))};
-  Vec3 low = triangles_[begin][0], high = low;
+void Surroundings::Tree::build(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
+  Node now{volume_of(std::span(triangles).subspan(begin, end - begin))};
+  Vec3 low = triangles[begin][0], high = low;
   for (std::uint32_t i = begin; i < end; ++i)
-    for (const Vec3& p : triangles_[i]) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    for (const Vec3& p : triangles[i]) low = low.cwiseMin(p), high = high.cwiseMax(p);
   if (end - begin <= kLeaf) {
     now.begin = begin;
     now.end = end;
-    nodes_[node] = now;
+    nodes[node] = now;
     return;
   }
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
   const std::uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end,
+  std::nth_element(triangles.begin() + begin, triangles.begin() + middle, triangles.begin() + end,
                    [&](const auto& a, const auto& b) {
                      return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
                    });
-  now.begin = static_cast<std::uint32_t>(nodes_.size());
-  nodes_[node] = now;
-  nodes_.emplace_back();
-  nodes_.emplace_back();
+  now.begin = static_cast<std::uint32_t>(nodes.size());
+  nodes[node] = now;
+  nodes.emplace_back();
+  nodes.emplace_back();
   build(now.begin, begin, middle);
   build(now.begin + 1, middle, end);
 }
@@ -180,7 +188,12 @@ struct Surroundings::Probe {
   const ToolShape& tool;
   const Vec3& tip_mm;
   const Vec3& axis;
+  bool stock;      ///< which the flutes cut
   double room_mm;  ///< never negative
+
+  bool counts(const ToolShape::Piece& piece) const {
+    return !stock || piece.solid.part() != simulate::OutlineRing::Part::cutter;
+  }
 
   /// A volume as the tool sees it.
   struct Seen {
@@ -212,14 +225,15 @@ struct Surroundings::Probe {
   double bound_mm(const Volume& volume) const {
     const Seen at = seen(volume);
     double bound = kFar_mm;
-    for (const ToolShape::Piece& piece : tool.pieces) bound = std::min(bound, bound_mm(at, volume.radius_mm, piece));
+    for (const ToolShape::Piece& piece : tool.pieces)
+      if (counts(piece)) bound = std::min(bound, bound_mm(at, volume.radius_mm, piece));
     return bound;
   }
 };
 
-double Surroundings::room_mm(const ToolShape& tool, const Vec3& tip_mm, const Vec3& axis, double cap_mm) const {
-  if (nodes_.empty()) return cap_mm;
-  Probe probe{tool, tip_mm, axis, cap_mm};
+double Surroundings::Tree::room_mm(const ToolShape& tool, const Vec3& tip_mm, const Vec3& axis, double cap_mm) const {
+  if (nodes.empty()) return cap_mm;
+  Probe probe{tool, tip_mm, axis, stock, cap_mm};
   std::optional<Mat3> frame;
   struct Open {
     std::uint32_t node;
@@ -227,45 +241,58 @@ double Surroundings::room_mm(const ToolShape& tool, const Vec3& tip_mm, const Ve
   };
   std::array<Open, 128> stack;
   std::size_t size = 0;
-  stack[size++] = {0, probe.bound_mm(nodes_[0])};
+  stack[size++] = {0, probe.bound_mm(nodes[0])};
   while (size > 0) {
     const Open now = stack[--size];
     if (now.bound_mm >= probe.room_mm) continue;
-    const Node& node = nodes_[now.node];
+    const Node& node = nodes[now.node];
     if (node.end == 0) {
-      Open a{node.begin, probe.bound_mm(nodes_[node.begin])}, b{node.begin + 1, probe.bound_mm(nodes_[node.begin + 1])};
+      Open a{node.begin, probe.bound_mm(nodes[node.begin])}, b{node.begin + 1, probe.bound_mm(nodes[node.begin + 1])};
       if (a.bound_mm < b.bound_mm) std::swap(a, b);
       if (a.bound_mm < probe.room_mm) stack[size++] = a;
       if (b.bound_mm < probe.room_mm) stack[size++] = b;
       continue;
     }
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
-      const Probe::Seen seen = probe.seen(volumes_[i]);
+      const Probe::Seen seen = probe.seen(volumes[i]);
       for (const ToolShape::Piece& piece : tool.pieces) {
-        const double bound = probe.bound_mm(seen, volumes_[i].radius_mm, piece);
+        if (!probe.counts(piece)) continue;
+        const double bound = probe.bound_mm(seen, volumes[i].radius_mm, piece);
         if (bound >= probe.room_mm) continue;
         probe.room_mm = std::max(bound, 0.0);
         if (bound >= 0) continue;
         if (!frame) frame = simulate::outline_frame({tip_mm, axis, 0});
-        if (too_near(piece, in_tool(triangles_[i], *frame, tip_mm))) return -1;
+        if (too_near(piece, in_tool(triangles[i], *frame, tip_mm))) return -1;
       }
     }
   }
   return probe.room_mm;
 }
 
+double Surroundings::room_mm(const ToolShape& tool, const Vec3& tip_mm, const Vec3& axis, double cap_mm) const {
+  double room = cap_mm;
+  for (const Tree& tree : trees_)
+    if (room >= 0) room = tree.room_mm(tool, tip_mm, axis, room);
+  return room;
+}
+
 bool Surroundings::deepest_point(const Vec3& tip_mm, const Vec3& axis, double radius_mm, double from_mm,
                                  Inside& out) const {
   out.from_axis_mm = radius_mm;
+  for (const Tree& tree : trees_) tree.deepest_point(tip_mm, axis, from_mm, out);
+  return out.from_axis_mm < radius_mm;
+}
+
+void Surroundings::Tree::deepest_point(const Vec3& tip_mm, const Vec3& axis, double from_mm, Inside& out) const {
   std::vector<std::uint32_t> open;
-  if (!nodes_.empty()) open.push_back(0);
+  if (!nodes.empty()) open.push_back(0);
   const auto off = [&](const Vec3& p) { return (p - tip_mm).cross(axis).norm(); };
   const auto look = [&](const Vec3& p) {
     if ((p - tip_mm).dot(axis) <= from_mm) return;
     if (const double e = off(p); e < out.from_axis_mm) out = {p, e};
   };
   while (!open.empty()) {
-    const Node& node = nodes_[open.back()];
+    const Node& node = nodes[open.back()];
     open.pop_back();
     if (off(node.centre_mm) - node.radius_mm >= out.from_axis_mm ||
         (node.centre_mm - tip_mm).dot(axis) + node.radius_mm <= from_mm)
@@ -276,11 +303,10 @@ bool Surroundings::deepest_point(const Vec3& tip_mm, const Vec3& axis, double ra
       continue;
     }
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
-      for (const Vec3& p : triangles_[i]) look(p);
-      look((triangles_[i][0] + triangles_[i][1] + triangles_[i][2]) / 3);
+      for (const Vec3& p : triangles[i]) look(p);
+      look((triangles[i][0] + triangles[i][1] + triangles[i][2]) / 3);
     }
   }
-  return out.from_axis_mm < radius_mm;
 }
 
 }  // namespace camber::posture

@@ -1,5 +1,5 @@
 #pragma once
-// The room that a tool has beside part and fixtures, exactly.
+// The room that a tool has beside part, fixtures and stock, exactly.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -30,12 +30,16 @@ struct ToolShape {
 inline constexpr double kCutterSlack_mm = 0.02;
 ToolShape tool_shape(const machine::Tool& tool, const machine::Machine& machine, double clearance_mm);
 
-/// Triangles in a tree of spheres.
+/// What an obstacle is for the flutes: they cut stock, and must not cut the rest.
+enum class Obstacle : std::uint8_t { solid, stock };
+
+/// Triangles in trees of spheres.
 class Surroundings {
  public:
   /// In the frame of the program.
-  void add(const TriangleMesh& mesh, const Vec3& shift_mm = Vec3::Zero());
-  void add_box(const Vec3& min_mm, const Vec3& max_mm);
+  void add(const TriangleMesh& mesh, const Vec3& shift_mm = Vec3::Zero(), Obstacle what = Obstacle::solid);
+  void add(std::span<const std::array<Vec3, 3>> triangles, Obstacle what);
+  void add_box(const Vec3& min_mm, const Vec3& max_mm, Obstacle what = Obstacle::solid);
   /// After the last add(), before anything else.
   void finish();
 
@@ -52,8 +56,6 @@ class Surroundings {
   /// on: the one that is deepest.
   bool deepest_point(const Vec3& tip_mm, const Vec3& axis, double radius_mm, double from_mm, Inside& out) const;
 
-  std::span<const std::array<Vec3, 3>> triangles() const { return triangles_; }
-
  private:
   /// Holds triangles: a ball, and a slab across about their normal.
   struct Volume {
@@ -65,13 +67,21 @@ class Surroundings {
   struct Node : Volume {
     std::uint32_t begin = 0, end = 0;  ///< of a leaf's triangles; inner: end is 0, children at begin and begin + 1
   };
-  struct Probe;
-  Volume volume_of(std::span<const std::array<Vec3, 3>> triangles) const;
-  void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
+  struct Tree {
+    std::vector<std::array<Vec3, 3>> triangles;
+    std::vector<Node> nodes;
+    std::vector<Volume> volumes;  ///< of the triangles
+    bool stock = false;
 
-  std::vector<std::array<Vec3, 3>> triangles_;
-  std::vector<Node> nodes_;
-  std::vector<Volume> volumes_;  ///< of the triangles
+    void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
+    double room_mm(const ToolShape& tool, const Vec3& tip_mm, const Vec3& axis, double cap_mm) const;
+    void deepest_point(const Vec3& tip_mm, const Vec3& axis, double from_mm, Inside& out) const;
+  };
+  struct Probe;
+  static Volume volume_of(std::span<const std::array<Vec3, 3>> triangles);
+  Tree& tree_of(Obstacle what) { return trees_[static_cast<std::size_t>(what)]; }
+
+  std::array<Tree, 2> trees_;  ///< by Obstacle
 };
 
 }  // namespace camber::posture

@@ -5,11 +5,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "api/commands/new_program.h"
 #include "api/commands/rotary_program.h"
 #include "base/numbers.h"
 #include "base/units.h"
-#include "kinematics/travel_check.h"
-#include "simulate/machine_collisions.h"
 
 namespace camber::api {
 namespace {
@@ -18,26 +17,9 @@ using nlohmann::ordered_json;
 
 constexpr int kSamples = 16;  ///< of each piece
 
-/// The moves of the new text at the blocks of the given one, so that messages are about what the user has.
-nc::Interpretation at_given_blocks(nc::Interpretation moves, const std::vector<std::uint32_t>& block_of_line) {
-  for (nc::Move& move : moves.moves) move.block = block_of_line[move.block];
-  return moves;
-}
-
 void require_kinematics(const machine::Machine& machine) {
   if (machine.kinematics.given()) return;
   fail_on_file(machine.path, "the machine has no [kinematics]; the chain of its axes was expected", "kinematics");
-}
-
-/// What the checks say of the new program; an error in its text is ours.
-void check_new_program(const PostRequest& request, const PostedProgram& program, const nc::Interpretation& after,
-                       Diagnostics& diagnostics) {
-  const nc::Interpretation moves = at_given_blocks(after, program.posted.block_of_line);
-  kinematics::check_travel(*request.machine, *request.text, moves, diagnostics);
-  diagnostics.throw_if_errors();
-  if (!request.job || request.job->machine.bodies.empty()) return;
-  simulate::check_machine_collisions(*request.job, *request.text, moves, diagnostics);
-  diagnostics.throw_if_errors();
 }
 
 std::string angle_text(double rad) { return format_trimmed(deg_from_rad(rad), 3); }
@@ -63,18 +45,16 @@ PostedProgram post_program(const PostRequest& request, Diagnostics& diagnostics)
   PostedProgram out;
   out.posted = repath::post(*request.text, moves, machine, request.options, diagnostics);
   diagnostics.throw_if_errors();
-  Diagnostics again;  // what it says of the text was said above; an error is ours
-  const nc::Program text = nc::read_program(SourceText(request.output, out.posted.text), again);
-  const nc::Interpretation after = nc::interpret(text, interpreter, again);
-  again.throw_if_errors();
-  check_new_program(request, out, after, diagnostics);
-  out.deviation = repath::post_deviation(moves, after, machine, out.posted, kSamples);
+  const NewProgram after = read_new_program(machine, request.output, out.posted.text, request.interpreter);
+  check_new_program(machine, request.job, *request.text, after.moves, out.posted.block_of_line, diagnostics);
+  diagnostics.throw_if_errors();
+  out.deviation = repath::post_deviation(moves, after.moves, machine, out.posted, kSamples);
   const auto with_words = [](const nc::Program& p) {
     return static_cast<std::size_t>(
         std::count_if(p.blocks.begin(), p.blocks.end(), [](const nc::Block& b) { return b.word_count > 0; }));
   };
   out.blocks_before = with_words(*request.text);
-  out.blocks_after = with_words(text);
+  out.blocks_after = with_words(after.text);
   return out;
 }
 

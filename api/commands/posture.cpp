@@ -8,12 +8,12 @@
 #include <tbb/parallel_for.h>
 #include <nlohmann/json.hpp>
 
+#include "api/commands/new_program.h"
 #include "api/commands/rotary_program.h"
 #include "base/units.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
 #include "kinematics/rotary_options.h"
-#include "kinematics/travel_check.h"
 #include "repath/post.h"
 
 namespace camber::api {
@@ -45,35 +45,31 @@ nc::OneDirection written_as(const PostureCommand& command) {
 /// The tip's program in joint coordinates; lines still map to the blocks of the given program.
 void to_joints(const PostureCommand& command, PosturedProgram& program, Diagnostics& diagnostics) {
   const machine::Machine& machine = command.job->machine;
-  const nc::Program text = nc::read_program(SourceText(command.output, program.postured.text), diagnostics);
-  const nc::Interpretation moves =
-      nc::interpret(text, rotary_interpreter_options(machine, command.interpreter), diagnostics);
-  diagnostics.throw_if_errors();
-  repath::Posted posted = repath::post(text, moves, machine, {.target = repath::PostTarget::joints}, diagnostics);
+  const NewProgram tip = read_new_program(machine, command.output, program.postured.text, command.interpreter);
+  repath::Posted posted =
+      repath::post(tip.text, tip.moves, machine, {.target = repath::PostTarget::joints}, diagnostics);
   diagnostics.throw_if_errors();
   for (std::uint32_t& block : posted.block_of_line) block = program.postured.block_of_line[block];
   program.postured.text = std::move(posted.text);
   program.postured.block_of_line = std::move(posted.block_of_line);
 }
 
-/// The moves of the new program; an error in its text is ours.
+/// The moves of the new program.
 nc::Interpretation moves_of(const PosturedProgram& program, const PostureCommand& command) {
-  Diagnostics again;
-  const nc::Program text = nc::read_program(SourceText(command.output, program.postured.text), again);
+  const machine::Machine& machine = command.job->machine;
   nc::Interpretation moves =
-      nc::interpret(text, rotary_interpreter_options(command.job->machine, command.interpreter), again);
-  again.throw_if_errors();
-  place_rotary_lines(command.job->machine, moves);
+      read_new_program(machine, command.output, program.postured.text, command.interpreter).moves;
+  place_rotary_lines(machine, moves);
   return moves;
 }
 
-/// Time on the machine, and what the checks of travel say, at the blocks of the given program.
+/// Time on the machine, and what the checks of travel and of collisions with its bodies say.
 void read_again(const PostureCommand& command, PosturedProgram& program, Diagnostics& diagnostics) {
-  const machine::Machine& machine = command.job->machine;
-  nc::Interpretation moves = moves_of(program, command);
-  program.time_s = feedmodel::cycle_time(moves, machine).all.time.total_s();
-  for (nc::Move& move : moves.moves) move.block = program.postured.block_of_line[move.block];
-  kinematics::check_travel(machine, *command.text, moves, diagnostics);
+  const nc::Interpretation moves = moves_of(program, command);
+  program.time_s = feedmodel::cycle_time(moves, command.job->machine).all.time.total_s();
+  machine::Job job = *command.job;
+  job.tools.at(program.postured.tool).overhang_mm = program.postured.figures.overhang_mm;
+  check_new_program(job.machine, &job, *command.text, moves, program.postured.block_of_line, diagnostics);
 }
 
 /// From that of the job down to the least that is tried; without a step, that of the job.

@@ -34,7 +34,7 @@ struct PosturedProgram {
 
 /// With a step, also with ever less overhang, as long as the tool stays clear: the last one is the shortest that does.
 /// Without: one. The first may be blocked, and not be clear. Throws InputError: what make_postures() says, and
-/// kinematics::check_travel of the last new program, at the given blocks.
+/// kinematics::check_travel and simulate::check_machine_collisions of the last new program, at the given blocks.
 std::vector<PosturedProgram> posture_programs(const PostureCommand& command, double overhang_step_mm,
                                               Diagnostics& diagnostics);
 

@@ -21,6 +21,7 @@ struct PostureOptions {
   double step_mm = 1;           ///< between the points of the path
   double overhang_step_mm = 0;  ///< greater than zero: the shortest overhang is looked for
   double clearance_mm = 1;
+  bool stock = true;                   ///< that of the job is an obstacle, but for the flutes
   double lead_deg = 10, tilt_deg = 0;  ///< lead-tilt
   double max_tilt_deg = 75;
   double least_angle_deg = 10;  ///< of tool and normal

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes part.stl and finish.nc: a die cavity 40 mm deep with walls at 30 degrees to the vertical and a character line
-across its floor, and rows of a ball of 6 mm to and fro along X; and rows.nc with rows_stock.stl: rows of the finishing
-pass down one wall and over the character line, and the material around them that the pass before has left.
+"""Makes part.stl, finish.nc and stock.stl: a die cavity 40 mm deep with walls at 30 degrees to the vertical and a
+character line across its floor, rows of a ball of 6 mm to and fro along X, and what the pass before has left; and rows.nc
+with rows_stock.stl: rows of the finishing pass down one wall and over the character line, and the material around them.
 
     python3 make_sample.py [pitch in mm, default 4]
 """
@@ -17,6 +17,7 @@ CORNER = 8.0              # of the floor's outline
 BOTTOM = -50.0            # of the block
 GRID, R = 0.5, 3.0
 ALLOWANCE = 0.15
+LEFT = 0.5                # by the pass before, all over
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 
@@ -43,9 +44,8 @@ def grid():
     return [[height(-HALF[0] + i * GRID, -HALF[1] + j * GRID) for j in range(ny)] for i in range(nx)]
 
 
-def write_block(path, z, i_range, j_range, bottom):
-    """A block with the surface z on top, as an STL file with triangles of 1 mm."""
-    coarse = 2
+def write_block(path, z, i_range, j_range, bottom, coarse=2):
+    """A block with the surface z on top, as an STL file with triangles of `coarse` grid steps."""
     (i0, i1), (j0, j1) = i_range, j_range
 
     def point(i, j):
@@ -121,6 +121,7 @@ def column(x, y):
 def main():
     z = grid()
     write_block(os.path.join(HERE, "part.stl"), z, (0, len(z) - 1), (0, len(z[0]) - 1), BOTTOM)
+    write_block(os.path.join(HERE, "stock.stl"), raised(z, LEFT), (0, len(z) - 1), (0, len(z[0]) - 1), BOTTOM, 5)
     write_program(os.path.join(HERE, "finish.nc"), finishing_rows(z, float(sys.argv[1]) if len(sys.argv) > 1 else 4.0))
     write_program(os.path.join(HERE, "rows.nc"), finishing_rows(z, 0.5, (-4.5, -3.5), (-46.0, 0.0)))
     (i0, j0), (i1, j1) = column(-49, -8), column(3, 0)

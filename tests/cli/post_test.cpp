@@ -71,5 +71,49 @@ TEST(PostureCommand, WritesAProgramThatPostReads) {
   EXPECT_EQ(file_text(folder / "joints.nc").find("M428"), std::string::npos);
 }
 
+/// rows.toml of the die cavity, to be read from anywhere, with one text replaced.
+std::string rows_job(const std::string& from, const std::string& to) {
+  const std::string sample = CAMBER_SOURCE_DIR "/samples/16-die-cavity/";
+  std::string job = file_text(sample + "rows.toml");
+  const auto set = [&job](const std::string& old, const std::string& text) {
+    job.replace(job.find(old), old.size(), text);
+  };
+  set(from, to);
+  for (const char* name : {"rows.nc", "part.stl", "rows_stock.stl"})
+    if (job.find(std::string("\"") + name) != std::string::npos) set(name, sample + name);
+  if (job.find("../machines") != std::string::npos) set("../machines", CAMBER_SOURCE_DIR "/samples/machines");
+  return job;
+}
+
+TEST(PostureCommand, WritesNothingWhereTheToolMeetsTheMachine) {
+  const TempFolder folder;
+  folder.write("m.toml", file_text(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml") +
+                             "[[body]]\nname = \"post\"\non = \"bed\"\nbox_mm = [[20, -20, 60], [30, -10, 80]]\n");
+  folder.write("job.toml", rows_job("../machines/linuxcnc_five_axis.toml", "m.toml"));
+  const CamberRun run = run_camber(folder, "posture " CAMBER_SOURCE_DIR
+                                           "/samples/16-die-cavity/rows.nc --job job.toml -o out.nc "
+                                           "--mode normal --max-tilt-deg 0");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("rows.nc:10:1: error: the shank of T1 meets the body \"post\" where the tip of T1 is at X0.00 "
+                         "Y0.00 Z30.00; a path or a set-up that clears it was expected [collision-table]\n"),
+            std::string::npos)
+      << run.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
+}
+
+TEST(PostureCommand, TheStockIsAnObstacle) {
+  const TempFolder folder;
+  folder.write("job.toml", rows_job("mesh = \"rows_stock.stl\"", "box_mm = [[-50, -40, -50], [50, 40, 1]]"));
+  const std::string command = "posture " CAMBER_SOURCE_DIR "/samples/16-die-cavity/rows.nc --job job.toml -o out.nc -q";
+  const CamberRun run = run_camber(folder, command);
+  EXPECT_EQ(run.status, 3);
+  EXPECT_EQ(run.err,
+            "posture: no direction of the tool is clear of part, stock and fixtures by 1 mm in line 20; nothing was "
+            "written\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
+  const CamberRun without = run_camber(folder, command + " --no-stock");
+  EXPECT_EQ(without.status, 0) << without.err;
+}
+
 }  // namespace
 }  // namespace camber::tests

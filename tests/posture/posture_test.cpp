@@ -13,6 +13,7 @@
 #include "kinematics/program_joints.h"
 #include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
+#include "posture/stock_obstacle.h"
 #include "removal/cutter.h"
 #include "simulate/tool_surface.h"
 #include "test_paths.h"
@@ -38,16 +39,26 @@ machine::Machine table() {
   return machine::read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_five_axis.toml", diagnostics);
 }
 
-/// A point against the cylinders and cones of the tool: the other way to see whether there is room.
-double point_room_mm(const machine::Tool& tool, double clearance_mm, const Vec3& tip, const Vec3& axis, const Vec3& p) {
+/// A point against a cylinder.
+double cylinder_room_mm(const Vec3& tip, const Vec3& axis, const Vec3& p, double radius, double from, double to) {
   const double up = (p - tip).dot(axis), out = (p - tip).cross(axis).norm();
+  return std::hypot(std::max(out - radius, 0.0), std::max({from - up, up - to, 0.0}));
+}
+
+/// A point against the cylinders and cones of shank and holder: the other way to see whether there is room.
+double room_behind_mm(const machine::Tool& tool, double clearance_mm, const Vec3& tip, const Vec3& axis,
+                      const Vec3& p) {
   const auto cylinder = [&](double radius, double from, double to) {
-    return std::hypot(std::max(out - radius, 0.0), std::max({from - up, up - to, 0.0}));
+    return cylinder_room_mm(tip, axis, p, radius, from, to) - clearance_mm;
   };
-  double room = cylinder(3 - kCutterSlack_mm, 3, 10) > 0 ? 1e9 : -1;
-  room = std::min(room, cylinder(3, 10, tool.overhang_mm) - clearance_mm);
-  room = std::min(room, cylinder(10, tool.overhang_mm, tool.overhang_mm + 20) - clearance_mm);  // inside the cone
-  return std::min(room, cylinder(20, tool.overhang_mm + 20, tool.overhang_mm + 50) - clearance_mm);
+  const double l = tool.overhang_mm;
+  return std::min({cylinder(3, 10, l), cylinder(10, l, l + 20), cylinder(20, l + 20, l + 50)});  // inside the cone
+}
+
+/// And of the flutes, which must not cut.
+double point_room_mm(const machine::Tool& tool, double clearance_mm, const Vec3& tip, const Vec3& axis, const Vec3& p) {
+  const bool cuts = cylinder_room_mm(tip, axis, p, 3 - kCutterSlack_mm, 3, 10) <= 0;
+  return cuts ? -1 : room_behind_mm(tool, clearance_mm, tip, axis, p);
 }
 
 /// A wavy floor between steep walls, 1 mm triangles.
@@ -104,6 +115,19 @@ TEST(Surroundings, RoomIsThatOfPointsAgainstCylinders) {
   EXPECT_GT(free, 10);
 }
 
+TEST(Surroundings, FlutesMayBeInStockAndNothingElse) {
+  const ToolShape shape = tool_shape(ball_in_holder(35), table(), 1);
+  const auto room = [&](Obstacle what, double top_mm) {
+    Surroundings around;
+    around.add_box({4.9, -50, -50}, {50, 50, top_mm}, what);
+    around.finish();
+    return around.room_mm(shape, {1.95, 0, 0}, Vec3::UnitZ(), 5);
+  };
+  EXPECT_LT(room(Obstacle::solid, 8), 0);  // beside the flutes, which end at 10
+  EXPECT_GE(room(Obstacle::stock, 8), 0);
+  EXPECT_LT(room(Obstacle::stock, 11), 0);  // the shank begins at 10, and keeps 1 mm
+}
+
 TEST(PathPoint, KeepsTheContactOfBallAndBullNose) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> one(-1, 1);
@@ -152,25 +176,29 @@ class PostureInATrough : public ::testing::Test {
     return z + 0.05;
   }
 
-  void SetUp() override {
-    std::mt19937 random(11);
-    mesh_ = trough(random);
-    const std::string stl = folder_ / "part.stl";
+  std::string write_mesh(const TriangleMesh& mesh, const std::string& name) const {
+    const std::string stl = folder_ / name;
     std::ofstream out(stl, std::ios::binary);
     const std::string head(80, ' ');
     out.write(head.data(), 80);
-    const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
+    const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
     out.write(reinterpret_cast<const char*>(&count), 4);
-    for (const auto& t : mesh_.triangles) {
+    for (const auto& t : mesh.triangles) {
       float row[12] = {0, 0, 0};
       for (std::size_t i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) row[3 + 3 * i + static_cast<std::size_t>(k)] = mesh_.points[t[i]][k];
+        for (int k = 0; k < 3; ++k) row[3 + 3 * i + static_cast<std::size_t>(k)] = mesh.points[t[i]][k];
       out.write(reinterpret_cast<const char*>(row), 48);
       out.write("\0\0", 2);
     }
+    return stl;
+  }
+
+  void SetUp() override {
+    std::mt19937 random(11);
+    mesh_ = trough(random);
     job_.path = "job.toml";
     job_.machine = table();
-    job_.part.mesh = stl;
+    job_.part.mesh = write_mesh(mesh_, "part.stl");
     job_.tools[1] = ball_in_holder(35);
   }
 
@@ -252,6 +280,65 @@ TEST_F(PostureInATrough, ChosenDirectionsAreClearByASecondMethodAndTurnLess) {
   EXPECT_LT(chosen.figures.rotary_motion_deg, seed.figures.rotary_motion_deg);
   EXPECT_NE(chosen.text.find("\nM428\n"), std::string::npos);
   EXPECT_EQ(chosen.text.substr(0, 15), program_.source.text().substr(0, 15));
+}
+
+TEST_F(PostureInATrough, ShankAndHolderAreClearOfTheStockByASecondMethod) {
+  read(rows(mesh_));
+  Diagnostics diagnostics;
+  const Postured without = made(Mode::chosen, diagnostics);
+  // Something stands where the shank was in the middle of the path.
+  const std::size_t middle = without.points.size() / 2;
+  const Vec3 there = without.points[middle].tip_mm(without.axes[middle]) + 25 * without.axes[middle];
+  job_.stock.box = machine::Box{there - Vec3::Constant(2), there + Vec3::Constant(2)};
+  const Postured with = made(Mode::chosen, diagnostics);
+  diagnostics.throw_if_errors();
+  ASSERT_FALSE(with.blocked_move);
+  const auto least_room = [&](const Postured& made) {
+    double least = 1e9;
+    for (std::size_t i = 0; i < made.points.size(); ++i)
+      for (int k = 0; k < 125; ++k)
+        least = std::min(least, room_behind_mm(job_.tools.at(1), 1, made.points[i].tip_mm(made.axes[i]), made.axes[i],
+                                               there + Vec3(k % 5 - 2, k / 5 % 5 - 2, k / 25 - 2)));
+    return least;
+  };
+  EXPECT_GT(least_room(with), -0.02);
+  EXPECT_LT(least_room(without), -0.9);
+}
+
+TEST_F(PostureInATrough, WhatEarlierToolsCutIsNoObstacle) {
+  const std::string head = "G21 G17 G90 G94\nT2 M6\nS3000 M3\nG0 X-20. Y0. Z60.\nG0 Z20.\n";
+  const std::string slot = "G1 Z6. F600\nX20.\nG0 Z60.\n", tail = "T1 M6\nG0 X0. Y0. Z60.\nG1 Z7. F600\nG0 Z60.\nM2\n";
+  job_.tools[1].flutes = 2;
+  job_.tools[2] = job_.tools[1];
+  job_.tools[2].number = 2;
+  job_.tools[2].type = machine::ToolType::flat;
+  job_.tools[2].diameter_mm = 16;
+  job_.simulation.voxel_mm = 0.5;
+  job_.stock.box = machine::Box{{-30, -30, -5}, {30, 30, 40}};
+  const auto room = [&](const std::string& text, const Vec3& tip, double allowance) {
+    read(text);
+    job_.stock.allowance_mm = allowance;
+    Diagnostics diagnostics;
+    Surroundings around;
+    const auto first = std::find_if(moves_.moves.begin(), moves_.moves.end(),
+                                    [&](const nc::Move& m) { return moves_.state_of(m).tool == 1; });
+    add_stock(job_, program_, moves_, static_cast<std::size_t>(first - moves_.moves.begin()), around, diagnostics);
+    diagnostics.throw_if_errors();
+    around.finish();
+    // A pin of 2 mm that goes up from the tip.
+    simulate::TurnedSolid pin(simulate::OutlineRing::Part::holder);
+    pin.add(1, 0);
+    pin.add(1, 50);
+    ToolShape shape;
+    shape.add(std::move(pin), 0.01);
+    return around.room_mm(shape, tip, Vec3::UnitZ(), 20);
+  };
+  EXPECT_NEAR(room(head + slot + tail, {0, 0, 8}, 0), 2, 0.55);   // over the floor of the slot
+  EXPECT_NEAR(room(head + slot + tail, {0, 3, 15}, 0), 4, 0.55);  // from its wall
+  EXPECT_LT(room(head + slot + tail, {0, 8.5, 15}, 0), 0);
+  EXPECT_LT(room(tail, {0, 3, 15}, 0), 0);                               // the whole block
+  EXPECT_NEAR(room(head + slot + tail, {0, 0, 9}, 1), 2, 0.55);          // the slot is cut after the allowance
+  EXPECT_NEAR(room(head + "G0 Z60.\n" + tail, {0, 0, 42}, 1), 2, 0.55);  // of the last tool alone a dimple
 }
 
 TEST_F(PostureInATrough, ATableOfOverhangsHasWhatEachOfThemGivesAlone) {

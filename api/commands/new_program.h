@@ -1,0 +1,29 @@
+#pragma once
+// What camber post and camber posture have written: read again, and checked at the blocks of the given program.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "machine/job.h"
+#include "nc/interpreter.h"
+#include "nc/program.h"
+
+namespace camber::api {
+
+struct NewProgram {
+  nc::Program text;
+  nc::Interpretation moves;
+};
+
+/// `name`: in messages. Throws InputError: an error in the text is ours. Warnings were said of the given text.
+NewProgram read_new_program(const machine::Machine& machine, const std::string& name, const std::string& text,
+                            const nc::InterpreterOptions& interpreter);
+
+/// What kinematics::check_travel says of the new moves, and, with a job whose machine has bodies and where that says
+/// nothing, simulate::check_machine_collisions; at the blocks of the given program.
+void check_new_program(const machine::Machine& machine, const machine::Job* job, const nc::Program& given,
+                       nc::Interpretation moves, const std::vector<std::uint32_t>& block_of_line,
+                       Diagnostics& diagnostics);
+
+}  // namespace camber::api
