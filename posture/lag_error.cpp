@@ -6,15 +6,14 @@
 namespace camber::posture {
 namespace {
 
-constexpr double kStep = 1e-5;     ///< mm, rad: of difference quotients
-constexpr double kSameS = 1e-7;    ///< delays that differ by less are the same
+constexpr double kStep = 1e-5;   ///< mm, rad: of difference quotients
+constexpr double kSameS = 1e-7;  ///< delays that differ by less are the same
 constexpr double kShortest = 1e-9;
 
 template <class Axis>
 double delay_s(const Axis& axis) {
-  const double loop = std::isinf(axis.position_gain_per_s)
-                          ? 0
-                          : (1 - axis.feed_forward_percent / 100) / axis.position_gain_per_s;
+  const double loop =
+      std::isinf(axis.position_gain_per_s) ? 0 : (1 - axis.feed_forward_percent / 100) / axis.position_gain_per_s;
   return axis.filter_s / 2 + axis.exponential_1_s + axis.exponential_2_s + loop;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 // What the following errors of the axes leave on the surface: each axis is behind its command by its own time.
 //
-// An axis i at the speed q'_i is behind by  tau_i q'_i,  tau = filter / 2 + T1 + T2 + (1 - Kf) / Kp  (feedmodel/drive.h at
-// constant speed). The centre of the cutter's rounding, c(q) in the part's frame, is off by  J (tau o q'),  J = dc/dq, and
-// the surface by the component along the normal:
+// An axis i at the speed q'_i is behind by  tau_i q'_i,  tau = filter / 2 + T1 + T2 + (1 - Kf) / Kp  (feedmodel/drive.h
+// at constant speed). The centre of the cutter's rounding, c(q) in the part's frame, is off by  J (tau o q'),  J =
+// dc/dq, and the surface by the component along the normal:
 //     e = n . J (tau o q')
 // which is 0 where all axes are behind by the same time, as the centre goes along the surface.
 #include <array>

@@ -74,7 +74,8 @@ TEST(LagError, IsTheDisplacementOfTheMachineMovedBackByItsLag) {
     kinematics::Joints late = place_b.joints;
     for (Eigen::Index k = 0; k < 3; ++k) {
       const auto n = static_cast<std::size_t>(k);
-      late.linear_mm[k] -= (place_b.joints.linear_mm[k] - place_a.joints.linear_mm[k]) / dt / machine.axis[n].position_gain_per_s;
+      late.linear_mm[k] -=
+          (place_b.joints.linear_mm[k] - place_a.joints.linear_mm[k]) / dt / machine.axis[n].position_gain_per_s;
       if (!std::isinf(machine.rotary[n].position_gain_per_s))
         late.rotary_rad[k] -=
             (place_b.joints.rotary_rad[k] - place_a.joints.rotary_rad[k]) / dt / machine.rotary[n].position_gain_per_s;
