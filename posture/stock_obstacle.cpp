@@ -69,9 +69,8 @@ removal::StampPath before_block(const simulate::SimulatedProgram& program, std::
 }
 
 bool cuts_before(const nc::Interpretation& moves, std::size_t first) {
-  return std::any_of(moves.moves.begin(), moves.moves.begin() + static_cast<std::ptrdiff_t>(first), [](const auto& m) {
-    return m.kind != nc::MoveKind::rapid && m.kind != nc::MoveKind::dwell;
-  });
+  return std::any_of(moves.moves.begin(), moves.moves.begin() + static_cast<std::ptrdiff_t>(first),
+                     [](const auto& m) { return m.kind != nc::MoveKind::rapid && m.kind != nc::MoveKind::dwell; });
 }
 
 void add_cut_stock(machine::Job job, const nc::Program& program, std::uint32_t first, Surroundings& out,

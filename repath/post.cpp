@@ -98,8 +98,9 @@ class Post {
       count(motion, divided.back(), out);
       stage.advance();
     }
-    out.axis_bound_rad = static_cast<double>(frame.chain().rotary_axes().size()) *
-                         rad_from_deg(0.5 * std::pow(10.0, -rounding_.decimals_deg));
+    for (const DividedMotion& d : divided) out.axis_bound_rad = std::max(out.axis_bound_rad, d.axis_bound_rad);
+    out.axis_bound_rad += static_cast<double>(frame.chain().rotary_axes().size()) *
+                          rad_from_deg(0.5 * std::pow(10.0, -rounding_.decimals_deg));
     return divided;
   }
 

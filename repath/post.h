@@ -65,7 +65,7 @@ struct Posted {
   std::size_t one_degree_blocks = 0;  ///< that the one-degree rule gives for the same feed moves
   double tip_bound_mm = 0, rapid_bound_mm = 0;
   double one_degree_bound_mm = 0;  ///< of that rule, feed moves
-  double axis_bound_rad = 0;       ///< rounding of the angles
+  double axis_bound_rad = 0;       ///< rounding of the angles, and even turns in the other branch of a nutating head
   std::vector<TurnBack> turns_back;
 };
 

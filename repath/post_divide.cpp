@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kMaxStepRad = rad_from_deg(170);  ///< of a block: the shortest way is the way meant
 constexpr double kDegree = kPi / 180;
-constexpr double kReturnMmPerS = 10;  ///< to a cut whose tip stands still
+constexpr double kAxisToleranceRad = rad_from_deg(0.005);  ///< where even turns are not those of the tool
+constexpr double kReturnMmPerS = 10;                       ///< to a cut whose tip stands still
 
 }  // namespace
 
@@ -49,7 +50,8 @@ double Divider::farthest(const TipMotion& motion, const RotaryChoice& choice, do
                          double tolerance_mm) const {
   const double turn = (motion.rotary_rad(to) - motion.rotary_rad(from)).lpNorm<Eigen::Infinity>();
   const auto holds = [&](double at) {
-    return turn * (at - from) / (to - from) <= kMaxStepRad && bound(motion, choice, from, at) <= tolerance_mm;
+    return turn * (at - from) / (to - from) <= kMaxStepRad && bound(motion, choice, from, at) <= tolerance_mm &&
+           choice.deviation_rad(motion.rotary_rad(from), motion.rotary_rad(at)) <= kAxisToleranceRad;
   };
   if (holds(to)) return to;
   double good = from, bad = to;
@@ -120,6 +122,8 @@ void Divider::go(const TipMotion& motion, const RotaryChoice& choice, double fro
     out.points.push_back(point(motion, choice, at, next));
     out.points.back().extra = extra;
     out.bound_mm = std::max(out.bound_mm, bound(motion, choice, at, next));
+    out.axis_bound_rad =
+        std::max(out.axis_bound_rad, choice.deviation_rad(motion.rotary_rad(at), motion.rotary_rad(next)));
     at = next;
   }
 }

@@ -29,6 +29,7 @@ struct PostRounding {
 struct DividedMotion {
   std::vector<PostPoint> points;  ///< the last one is the end of the move
   double bound_mm = 0;            ///< rounding included
+  double axis_bound_rad = 0;      ///< of the tool's direction, but for rounding
   std::size_t one_degree_blocks = 0;
   double one_degree_bound_mm = 0;
 };

@@ -5,40 +5,16 @@
 #include <limits>
 #include <optional>
 
-#include <Eigen/Geometry>
-
 #include "base/units.h"
-#include "kinematics/rotary_solver.h"
 
 namespace camber::repath {
 namespace {
 
 constexpr double kTurn = 2 * kPi;
-constexpr double kSlack = 1e-9;    ///< rad, mm: as kinematics::Chain::outside_travel
-constexpr double kMaxTurns = 8;    ///< either way, that are looked at
-constexpr double kSquare = 1e-12;  ///< cosine of axes that count as square
+constexpr double kSlack = 1e-9;  ///< rad, mm: as kinematics::Chain::outside_travel
+constexpr double kMaxTurns = 8;  ///< either way, that are looked at
 // Costs, in degrees of rotary motion: the order of what is worse is all that matters.
 constexpr double kInAir = 100, kBesideRapid = 200, kInCut = 1e6, kBarrier = 1e5, kWrongPose = 1e9, kOutside = 1e10;
-
-/// The other branch, where there is one that is followed exactly: nothing else.
-std::optional<RotaryChoice> mirrored_choice(const machine::Machine& machine, const kinematics::Chain& chain) {
-  const std::string& letters = chain.rotary_axes();
-  if (letters.size() != 2) return std::nullopt;
-  const auto direction = [&](std::size_t i) -> Vec3 {
-    return machine.rotary[static_cast<std::size_t>(letters[i] - 'a')].direction.normalized();
-  };
-  const Vec3 first = direction(0), second = direction(1), tool = machine.kinematics.tool_axis.normalized();
-  if (std::abs(first.dot(second)) > kSquare || std::abs(second.dot(tool)) > kSquare) return std::nullopt;
-  const Eigen::Index i = letters[0] - 'a', k = letters[1] - 'a';
-  const bool tool_sense = machine.rotary[static_cast<std::size_t>(k)].positive == machine::PositiveTurn::tool;
-  const double pole_rad = (tool_sense ? 1 : -1) * std::atan2(tool.cross(first).dot(second), tool.dot(first));
-  RotaryChoice out;
-  out.mirrored = true;
-  out.offset_rad[i] = kPi;
-  out.sign[k] = -1;
-  out.mirror_rad[k] = 2 * pole_rad;
-  return out;
-}
 
 class Planner {
  public:
@@ -103,8 +79,8 @@ class Planner {
 
   bool within(const RotaryChoice& choice, const TipMotion& m, double from, double to) const {
     for (const char letter : frame_.chain().rotary_axes())
-      for (const double u : {from, to}) {
-        if (u == from && !m.start_known) continue;
+      for (const double u : {from, (from + to) / 2, to}) {
+        if (u < to && !m.start_known) continue;
         const double angle = choice.of(m.rotary_rad(u))[letter - 'a'];
         const auto& range = travel(letter - 'a');
         if (angle < range[0] - kSlack || angle > range[1] + kSlack) return false;
@@ -121,12 +97,27 @@ class Planner {
       for (const RotaryChoice& c : choices_)
         for (const char letter : frame_.chain().rotary_axes()) {
           const double start = c.of(m.start_rad)[letter - 'a'], way = c.of(m.end_rad)[letter - 'a'] - start;
-          for (const double limit : travel(letter - 'a'))
-            if (const double u = (limit - start) / way; u > 1e-9 && u < 1 - 1e-9) cuts.push_back(u);
+          for (const double limit : travel(letter - 'a')) {
+            const double u = c.twist ? where_at(m, c, letter - 'a', limit) : (limit - start) / way;
+            if (u > 1e-9 && u < 1 - 1e-9) cuts.push_back(u);
+          }
         }
     std::sort(cuts.begin(), cuts.end());
     for (std::size_t k = 1; k < cuts.size(); ++k)
       if (cuts[k] - cuts[k - 1] > 1e-9 || k + 1 == cuts.size()) stretches_.push_back({i, cuts[k - 1], cuts[k]});
+  }
+
+  /// The place at which a twisted axis comes to a limit; negative: it does not.
+  static double where_at(const TipMotion& m, const RotaryChoice& c, Eigen::Index axis, double limit_rad) {
+    const auto beyond = [&](double u) { return c.of(m.rotary_rad(u))[axis] > limit_rad; };
+    const bool first = beyond(0);
+    if (std::isinf(limit_rad) || beyond(1) == first) return -1;
+    double low = 0, high = 1;
+    for (int i = 0; i < 50; ++i) {
+      const double middle = (low + high) / 2;
+      (beyond(middle) == first ? low : high) = middle;
+    }
+    return first ? high : low;  // within
   }
 
   bool linear_within(const RotaryChoice& choice, const Stretch& s) const {

@@ -2,29 +2,19 @@
 // Which of the solutions of the machine a program under tool-centre-point control runs with, from its start to its end.
 //
 // A choice is kept as long as travel allows: a stretch of motion is followed without a jump in every choice. Choices
-// differ by whole turns of the rotary axes and, on chains whose second rotary axis is square to the first and to the
-// tool, by the other branch, which leads from the other side to the pole: the second axis mirrored about it, the first
-// turned by half a turn. Both give the tool the same direction everywhere along the stretch. Where no choice lasts, a
-// shortest path through (stretch, choice) decides where the axes turn back: in air rather than in a cut.
+// differ by whole turns of the rotary axes and, on chains whose tool comes to lie along the first rotary axis, by the
+// other branch, which leads from the other side to that pole (rotary_choice.h). Both give the tool the same direction
+// everywhere along the stretch. Where no choice lasts, a shortest path through (stretch, choice) decides where the axes
+// turn back: in air rather than in a cut.
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "machine/machine.h"
+#include "repath/rotary_choice.h"
 #include "repath/tip_motion.h"
 
 namespace camber::repath {
-
-/// One way to run the rotary axes.
-struct RotaryChoice {
-  bool mirrored = false;
-  Vec3 offset_rad = Vec3::Zero();  ///< of A, B, C
-  Vec3 mirror_rad = Vec3::Zero();  ///< twice the angle of the pole, at the mirrored axis
-  Vec3 sign = Vec3::Ones();        ///< -1 at the mirrored axis
-
-  Vec3 of(const Vec3& programmed_rad) const { return sign.cwiseProduct(programmed_rad) + mirror_rad + offset_rad; }
-  bool as_programmed() const { return !mirrored && offset_rad.isZero(0); }
-};
 
 /// A part of a motion that is run with one choice.
 struct PlannedStretch {

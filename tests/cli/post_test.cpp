@@ -40,6 +40,37 @@ TEST(PostCommand, WritesNothingWhereAnAxisLeavesItsTravel) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
 }
 
+/// Over the pole of a nutating head that does not turn past the upright spindle; a beam across the table above the tool
+/// at work, where the holder goes when the tool is lifted to turn.
+TEST(PostCommand, LooksForCollisionsWhereAHeadTurnsAtItsPole) {
+  const TempFolder folder;
+  std::string machine = file_text(CAMBER_SOURCE_DIR "/samples/kinematics/nutating_head.toml");
+  machine.replace(machine.find("[-185, 185]"), 11, "[0, 185]");
+  folder.write("m.toml", machine);
+  folder.write("beam.toml",
+               machine + "[[body]]\nname = \"beam\"\non = \"bed\"\nbox_mm = [[15, -60, 20], [35, 60, 30]]\n");
+  folder.write("p.nc",
+               "G21 G17 G90 G94\nG10 L2 P1 X0. Y0. Z-100.\nG10 L10 P1 R80.\nG54\nT1 M6\nG0\n"
+               "G43.5 H1 X0. Y-20. Z3. I0 J-0.3 K1\nG1 Z0. F1000 I0 J-0.3 K1\nY0. J0. K1\nY20. J0.3 K1\nM30\n");
+  for (const char* name : {"m", "beam"})
+    folder.write(
+        std::string(name) + "_job.toml",
+        "program = \"p.nc\"\nmachine = \"" + std::string(name) +
+            ".toml\"\n[tool.1]\ntype = \"ball\"\ndiameter_mm = 6.0\nflutes = 2\noverhang_mm = 50.0\n"
+            "holder_mm = [[40, 40, 30]]\n[material]\nktc_MPa = 1860.0\nkrc_MPa = 700.0\nkac_MPa = 0.0\nkte_N_per_mm = "
+            "15.0\nkre_N_per_mm = 15.0\nkae_N_per_mm = 0.0\n[stock]\nbox_mm = [[-5, -25, -30], [5, 25, 0]]\n");
+  const CamberRun free = run_camber(folder, "post p.nc --job m_job.toml -o free.nc");
+  EXPECT_EQ(free.status, 0) << free.err;
+  EXPECT_NE(free.out.find("turns back in a cut, which leaves a mark: C from "), std::string::npos) << free.out;
+  const CamberRun beam = run_camber(folder, "post p.nc --job beam_job.toml -o beam.nc");
+  EXPECT_EQ(beam.status, 1);
+  EXPECT_EQ(
+      beam.err.substr(0, beam.err.find('\n')),
+      "p.nc:10:1: error: the holder of T1 meets the body \"beam\" where the tip of T1 is at X0.00 Y0.00 Z40.11; a "
+      "path or a set-up that clears it was expected [collision-table]");
+  EXPECT_FALSE(std::filesystem::exists(folder / "beam.nc"));
+}
+
 TEST(PostCommand, RefusesAMachineWithoutRotaryAxes) {
   const TempFolder folder;
   folder.write("m.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
