@@ -11,7 +11,7 @@
 #include "cli/console.h"
 #include "cli/posture_page.h"
 #include "cli/progress.h"
-#include "machine/job.h"
+#include "machine/unprogrammed_job.h"
 
 namespace camber::cli {
 
@@ -19,7 +19,7 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
   Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
   const StageScope stages([&](const std::string& what, double share) { progress.show(what, share); });
-  const machine::Job job = machine::read_job(arguments.job, diagnostics);
+  const machine::Job job = machine::read_unprogrammed_job(arguments.job, diagnostics);
   const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const api::PostureCommand command{.text = &text,
                                     .output = arguments.output,

@@ -1,6 +1,7 @@
 #include "posture/choose.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -12,15 +13,16 @@
 #include "base/units.h"
 #include "posture/clear_directions.h"
 #include "posture/one_direction.h"
+#include "posture/path_cost.h"
 
 namespace camber::posture {
 namespace {
 
 constexpr double kKnot_mm = 3;                ///< between the points at which the path through directions is looked for
 constexpr double kFarthest = 55 * kPi / 180;  ///< of tool and normal that is looked at
+constexpr double kFarthestLate = 75 * kPi / 180;  ///< the same where the axes follow late: turns cost more
 constexpr double kRapidMmPerS = 200;
 constexpr double kSpeedCost = 0.5;  ///< of a tip that cuts, a mm of path
-constexpr double kTimeShare = 0.1;  ///< a second longer, as so much of the feed's way
 constexpr int kRounds = 12, kSmoothings = 15;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
@@ -64,10 +66,11 @@ class Chooser {
  public:
   Chooser(std::span<const PathPoint> points, const Knots& knots, const Directions& directions,
           const ClearDirections& clear, std::size_t tool_index, const Surroundings& surroundings, const ToolShape& tool,
-          const PostureOptions& options)
+          const LagError& lag, const PostureOptions& options)
       : all_(points),
         surroundings_(surroundings),
         tool_(tool),
+        lag_(lag),
         options_(options),
         directions_(directions),
         clear_(clear),
@@ -100,13 +103,35 @@ class Chooser {
                               kTimeShare * speed * std::max(0.0, step.time_s - time));
   }
 
+  /// The machine at a point: for each direction that is clear, its solutions.
+  using Places = std::vector<std::array<LagError::Place, 2>>;
+  void place(std::size_t i, Places& out) const {
+    out.resize(directions_.size());
+    for (std::size_t d = 0; d < directions_.size(); ++d)
+      if (clear_.clear(i, d, tool_index_))
+        for (std::size_t k = 0; k < directions_.angles(d).size(); ++k)
+          out[d][k] = lag_.place(points_[i], directions_.axis(d), directions_.angles(d)[k]);
+  }
+  /// What the axes leave on the surface on the way from one direction to another, at the programmed feed: that turns
+  /// slow the axes down is no merit.
+  float lag_cost(const PathPoint& p, const Directions::Step& step, std::size_t from, const Places& before,
+                 const Places& here) const {
+    const double error = LagError::error_mm(before[from][step.from_branch], here[step.to][step.to_branch], p.time_s);
+    return static_cast<float>(p.way_mm * lag_share(error, tool_));
+  }
+
   std::vector<std::uint16_t> shortest(Postures& out) const {
     const std::size_t n = directions_.size();
+    const bool lags = tool_.error_mm > 0 && lag_.any();
+    Places before, here;
     std::vector<float> cost(n), next(n);
     std::vector<std::uint16_t> from(points_.size() * n, 0);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       std::fill(next.begin(), next.end(), kNever);
       std::uint16_t* parents = from.data() + i * n;
+      before.swap(here);
+      if (lags) place(i, here);
+      const bool left = lags && i > 0 && points_[i].contact && points_[i].time_s > 0;
       for (std::size_t a = 0; a < n; ++a) {
         if (i == 0) {
           next[a] = 0;
@@ -114,7 +139,9 @@ class Chooser {
         }
         if (cost[a] == kNever) continue;
         for (const Directions::Step& step : directions_.steps(a)) {
-          const float sum = cost[a] + step_cost(points_[i], step);
+          float sum = cost[a] + step_cost(points_[i], step);
+          if (sum >= next[step.to] || !clear_.clear(i, step.to, tool_index_)) continue;
+          if (left) sum += lag_cost(points_[i], step, a, before, here);
           if (sum >= next[step.to] || barred(i, a, step.to)) continue;
           next[step.to] = sum;
           parents[step.to] = static_cast<std::uint16_t>(a);
@@ -122,7 +149,7 @@ class Chooser {
       }
       bool any = false;
       for (std::size_t d = 0; d < n; ++d) {
-        if (!clear_.clear(i, d, tool_index_)) next[d] = kNever;
+        if (i == 0 && !clear_.clear(i, d, tool_index_)) next[d] = kNever;
         if (next[d] == kNever) continue;
         next[d] += static_cast<float>(posture_cost(points_[i], directions_.axis(d), options_));
         any = true;
@@ -208,6 +235,7 @@ class Chooser {
   std::span<const PathPoint> all_;
   const Surroundings& surroundings_;
   const ToolShape& tool_;
+  const LagError& lag_;
   const PostureOptions& options_;
   const Directions& directions_;
   const ClearDirections& clear_;
@@ -217,6 +245,13 @@ class Chooser {
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> barred_;
   std::size_t first_barred_ = 0;
 };
+
+void take_cheaper(std::span<const PathPoint> points, const ToolShape& tool, const LagError& lag,
+                  const machine::Machine& machine, const PostureOptions& options, Postures other, Postures& best) {
+  if (other.blocked) return;
+  const auto cost = [&](const Postures& p) { return path_cost(points, p.axes, tool, lag, machine, options); };
+  if (best.blocked || cost(other) < cost(best)) best = std::move(other);
+}
 
 /// Postures from the surface alone.
 class BySurface {
@@ -329,6 +364,11 @@ double error_share(double angle_rad) {
   return s * s + kAlong * s * std::abs(std::cos(angle_rad));
 }
 
+double lag_share(double error_mm, const ToolShape& tool) {
+  const double share = error_mm / tool.error_mm;
+  return share * share;
+}
+
 double posture_cost(const PathPoint& point, const Vec3& axis, const PostureOptions& options) {
   if (!point.contact) return 0;
   const double angle = angle_between(axis, point.normal), least = std::sin(options.least_angle_rad);
@@ -352,12 +392,12 @@ std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec
 
 std::vector<Postures> choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings,
                                       std::span<const ToolShape> tools, const machine::Machine& machine,
-                                      const PostureOptions& options) {
+                                      const LagError& lag, const PostureOptions& options) {
   std::vector<Postures> out(tools.size());
   if (points.empty()) return out;
   if (options.indexed) {
     for (std::size_t i = 0; i < tools.size(); ++i)
-      out[i] = one_direction(points, surroundings, tools[i], machine, options);
+      out[i] = one_direction(points, surroundings, tools[i], machine, lag, options);
     return out;
   }
   if (options.mode != Mode::chosen) {
@@ -369,10 +409,20 @@ std::vector<Postures> choose_postures(std::span<const PathPoint> points, const S
   const Directions directions(machine, options.grid_rad, options.max_tilt_rad);
   for (std::size_t first = 0; first < tools.size(); first += ClearDirections::kMaxTools) {
     const auto some = tools.subspan(first, std::min(tools.size() - first, ClearDirections::kMaxTools));
-    const ClearDirections clear(knots.points, surroundings, some, directions, kFarthest);
+    const ClearDirections clear(knots.points, surroundings, some, directions, lag.any() ? kFarthestLate : kFarthest);
     Stage stage("choosing directions", some.size());
     tbb::parallel_for(std::size_t{0}, some.size(), [&](std::size_t i) {
-      out[first + i] = Chooser(points, knots, directions, clear, i, surroundings, some[i], options).run();
+      const auto chosen = [&](const ToolShape& tool) {
+        return Chooser(points, knots, directions, clear, i, surroundings, tool, lag, options).run();
+      };
+      out[first + i] = chosen(some[i]);
+      if (lag.any()) {
+        // The steps of the grid stand for even turns, and one direction for the whole path is not among them.
+        ToolShape without = some[i];
+        without.error_mm = 0;
+        for (Postures other : {chosen(without), one_direction(points, surroundings, some[i], machine, lag, options)})
+          take_cheaper(points, some[i], lag, machine, options, std::move(other), out[first + i]);
+      }
       stage.advance();
     });
   }

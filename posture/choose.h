@@ -8,6 +8,7 @@
 
 #include "machine/machine.h"
 #include "posture/directions.h"
+#include "posture/lag_error.h"
 #include "posture/path_points.h"
 #include "posture/surroundings.h"
 
@@ -33,12 +34,18 @@ struct PostureOptions {
                                                    ///< error of a tool at a right angle to the normal
 };
 
+inline constexpr double kTimeShare = 0.1;  ///< a second longer, as so much of the feed's way
+
 double angle_between(const Vec3& a, const Vec3& b);
 
 /// Part of the lateral deflection that is normal to the part, of a tool at this angle to the normal: a force along the
 /// normal bends it by sin^2, one along the part by sin cos of the angle; kAlong is the share of the latter.
 inline constexpr double kAlong = 0.3;
 double error_share(double angle_rad);
+
+/// The same of what the axes leave on the surface (lag_error.h). Its square: a turn leaves as much however it is spread
+/// along the path, and is to be spread.
+double lag_share(double error_mm, const ToolShape& tool);
 
 /// What the choice of this direction costs, a mm of path: share of the error, and a tip that cuts.
 double posture_cost(const PathPoint& point, const Vec3& axis, const PostureOptions& options);
@@ -49,10 +56,11 @@ struct Postures {
   std::size_t unclear = 0;               ///< points whose tool is too near: normal, lead_tilt, seed
 };
 
-/// For each tool: one tool, or the same one drawn in further and further.
+/// For each tool: one tool, or the same one drawn in further and further. Where a tool has an error_mm, what its axes
+/// leave on the surface (`lag`) counts as that much of the share of the error.
 std::vector<Postures> choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings,
                                       std::span<const ToolShape> tools, const machine::Machine& machine,
-                                      const PostureOptions& options);
+                                      const LagError& lag, const PostureOptions& options);
 
 /// Points, and places half way between them, at which the tool is nearer than it needs to be.
 std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec3> axes,

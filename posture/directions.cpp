@@ -71,7 +71,9 @@ Directions::Step Directions::step_between(std::size_t a, std::size_t b) const {
         turn += deg_from_rad(way);
         time = std::max({time, way / of.max_velocity_rad_per_s, std::sqrt(4 * way / of.acceleration_rad_per_s2)});
       }
-      if (turn < best.turn_deg) best = {best.to, static_cast<float>(turn), static_cast<float>(time)};
+      if (turn < best.turn_deg)
+        best = {best.to, static_cast<float>(turn), static_cast<float>(time), static_cast<std::uint8_t>(i),
+                static_cast<std::uint8_t>(k)};
     }
   return best;
 }

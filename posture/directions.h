@@ -16,6 +16,7 @@ class Directions {
     std::uint16_t to = 0;
     float turn_deg = 0;  ///< sum of the turns of the rotary axes
     float time_s = 0;    ///< that the slowest of them takes at its speed, or with its acceleration from rest to rest
+    std::uint8_t from_branch = 0, to_branch = 0;  ///< of angles()
   };
 
   /// Directions about `step_rad` apart, up to `max_tilt_rad` from +Z, that the rotary axes of the machine reach within
@@ -24,6 +25,8 @@ class Directions {
 
   std::size_t size() const { return axes_.size(); }
   const Vec3& axis(std::size_t i) const { return axes_[i]; }
+  /// Of A, B and C, one or two solutions.
+  std::span<const Vec3> angles(std::size_t i) const { return {angles_[i].rad.data(), angles_[i].count}; }
   /// Of direction i, itself included.
   std::span<const Step> steps(std::size_t i) const { return {steps_.data() + first_[i], first_[i + 1] - first_[i]}; }
 

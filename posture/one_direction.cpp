@@ -17,9 +17,13 @@ constexpr double kSteps = 1.5;       ///< the directions are so many times neare
 constexpr std::size_t kAtOnce = 32;  ///< directions
 constexpr double kFarthestIndexed = kPi / 2;  ///< of tool and normal
 
-double cost_of(std::span<const PathPoint> points, const Vec3& axis, const PostureOptions& options) {
+double cost_of(std::span<const PathPoint> points, const Vec3& axis, const ToolShape& tool, const LagError& lag,
+               const kinematics::Chain& chain, const PostureOptions& options) {
   double cost = 0;
   for (const PathPoint& p : points) cost += posture_cost(p, axis, options);
+  if (tool.error_mm <= 0 || !lag.any()) return cost;
+  const std::vector<double> errors = lag.along(points, axis, chain.solve_tool_axis(axis, {}).joints.rotary_rad);
+  for (std::size_t i = 0; i < points.size(); ++i) cost += points[i].way_mm * lag_share(errors[i], tool);
   return cost;
 }
 
@@ -46,11 +50,12 @@ std::optional<std::size_t> first_blocked(std::span<const PathPoint> points, cons
 }  // namespace
 
 Postures one_direction(std::span<const PathPoint> points, const Surroundings& surroundings, const ToolShape& tool,
-                       const machine::Machine& machine, const PostureOptions& options) {
+                       const machine::Machine& machine, const LagError& lag, const PostureOptions& options) {
   const Directions directions(machine, options.grid_rad / kSteps, options.max_tilt_rad);
+  const kinematics::Chain chain(machine);
   std::vector<double> costs(directions.size());
   tbb::parallel_for(std::size_t{0}, costs.size(),
-                    [&](std::size_t d) { costs[d] = cost_of(points, directions.axis(d), options); });
+                    [&](std::size_t d) { costs[d] = cost_of(points, directions.axis(d), tool, lag, chain, options); });
   std::vector<std::size_t> order(costs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t d) { return costs[d]; });

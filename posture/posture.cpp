@@ -9,10 +9,12 @@
 
 #include "base/stl.h"
 #include "deflection/beam.h"
+#include "deflection/edge_force.h"
 #include "feedmodel/control_options.h"
 #include "kinematics/rotary_options.h"
 #include "nc/emit/number_style.h"
 #include "posture/frame_text.h"
+#include "posture/path_cost.h"
 #include "posture/stock_obstacle.h"
 #include "repath/post_writer.h"
 #include "repath/tip_motion.h"
@@ -21,6 +23,8 @@ namespace camber::posture {
 namespace {
 
 constexpr int kLeastDecimals = 4;
+constexpr double kOrdinaryChip_mm = 0.2;  ///< width
+constexpr double kLeastError_mm = 0.01;   ///< a tool that bends less counts as one that bends so much
 
 /// The fixtures that stand still in the part's frame, and the part.
 Surroundings surroundings_of(const machine::Job& job, const TriangleMesh& part, const Vec3& origin_mm) {
@@ -64,9 +68,12 @@ class Maker {
     for (std::size_t i = 0; i < tools.size(); ++i) {
       if (!request_.overhangs_mm.empty()) tools[i].overhang_mm = request_.overhangs_mm[i];
       shapes.push_back(tool_shape(tools[i], job_.machine, request_.options.clearance_mm));
+      shapes.back().error_mm = std::max(
+          kLeastError_mm, deflection::beam_of(tools[i]).compliance_mm_per_N(0, 0) * ordinary_force_N(tools[i]));
     }
+    lag_.emplace(job_.machine, *moves_.machine_origin_mm, tool_length_mm(), shapes[0].pivot_mm);
     const std::vector<Postures> postures =
-        choose_postures(points_, surroundings_, shapes, job_.machine, request_.options);
+        choose_postures(points_, surroundings_, shapes, job_.machine, *lag_, request_.options);
     std::vector<Postured> out(tools.size());
     tbb::parallel_for(std::size_t{0}, tools.size(), [&](std::size_t i) { finish(tools[i], postures[i], out[i]); });
     return out;
@@ -91,6 +98,37 @@ class Maker {
     write(out);
   }
   void write(Postured& out) const;
+
+  /// Of the spindle's gauge line to the tip, in the first cut; not known: that of the holder and the overhang.
+  double tool_length_mm() const {
+    double length = tool().overhang_mm;
+    for (const machine::HolderPart& part : tool().holder) length += part.length_mm;
+    return moves_.state_of(moves_.moves[first_]).tool_length_mm.value_or(length);
+  }
+
+  /// Of an edge that takes a chip as thick as the feed per tooth of the first cut and kOrdinaryChip_mm wide.
+  double ordinary_force_N(const machine::Tool& tool) const {
+    for (std::size_t i = first_; i < end_; ++i) {
+      const nc::Move& m = moves_.moves[i];
+      const double teeth_per_s = moves_.state_of(m).spindle_speed_rpm / 60 * tool.flutes;
+      if (m.feed_mm_per_s <= 0 || teeth_per_s <= 0) continue;
+      const deflection::EdgeForce force =
+          deflection::edge_force(job_.material, m.feed_mm_per_s / teeth_per_s, kOrdinaryChip_mm);
+      return std::hypot(force.tangential_N, force.radial_N);
+    }
+    return 0;
+  }
+
+  double lag_um(const std::vector<Vec3>& axes) const {
+    const std::vector<AxisStep> steps = axis_steps(points_, axes, *lag_, job_.machine);
+    double sum = 0, way = 0;
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      if (!points_[i].contact) continue;
+      sum += points_[i].way_mm * std::abs(steps[i].lag_error_mm);
+      way += points_[i].way_mm;
+    }
+    return way > 0 ? 1000 * sum / way : 0;
+  }
 
   void say(std::size_t offset, const char* check, std::string message) {
     diagnostics_.add(program_.source.diagnostic(Severity::error, offset, std::move(message), check));
@@ -201,6 +239,7 @@ class Maker {
     }
     if (way <= 0) return out;
     out.mean_angle_rad /= way;
+    out.lag_um = lag_um(axes);
     out.compliance_um_per_N = 1000 * deflection::beam_of(tool).compliance_mm_per_N(0, 0) * share / way;
     return out;
   }
@@ -214,6 +253,7 @@ class Maker {
   TriangleMesh part_;
   Surroundings surroundings_;
   std::vector<PathPoint> points_;
+  std::optional<LagError> lag_;
 };
 
 void Maker::write(Postured& out) const {

@@ -38,6 +38,9 @@ struct PostureFigures {
   double mean_angle_rad = 0, max_angle_rad = 0;  ///< of tool and normal, weighted by the way
   /// Deflection normal to the part per newton, mean over the way: lateral compliance at the tip times error_share().
   double compliance_um_per_N = 0;
+  /// What the axes leave on the surface by following late, mean magnitude over the way at the feed that the rotary axes
+  /// allow (lag_error.h).
+  double lag_um = 0;
 };
 
 struct Postured {

@@ -21,6 +21,7 @@ struct ToolShape {
   };
   std::vector<Piece> pieces;
   double pivot_mm = 0;  ///< height above the tip about which the tool is tilted
+  double error_mm = 0;  ///< what an ordinary force bends the tip by; 0: errors of the axes do not count (choose.h)
 
   void add(simulate::TurnedSolid solid, double need_mm);
 };

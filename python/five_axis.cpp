@@ -105,6 +105,7 @@ void add_posture(py::module_& module) {
       .def_readonly("mean_angle_deg", &PostureFigures::mean_angle_deg)
       .def_readonly("max_angle_deg", &PostureFigures::max_angle_deg)
       .def_readonly("compliance_um_per_N", &PostureFigures::compliance_um_per_N)
+      .def_readonly("lag_um", &PostureFigures::lag_um)
       .def_readonly("time_s", &PostureFigures::time_s);
   with_json<PostureResult>(module, "PostureResult")
       .def_readonly("success", &PostureResult::success)

@@ -18,10 +18,10 @@ namespace camber::repath {
 /// psi(-delta) = -psi(delta). The same direction at -delta therefore takes  2 psi(delta) = -pi + 2 atan(...)  more of
 /// the first axis: half a turn, which RotaryChoice::offset_rad has, and this.
 struct PoleTwist {
-  Eigen::Index first = 0, second = 0;            ///< of A, B, C
-  double first_sense = 1, second_sense = 1;      ///< of the tool against the part, for growing words
-  double pole_rad = 0;                           ///< second axis
-  double cosine = 0;                             ///< of beta
+  Eigen::Index first = 0, second = 0;        ///< of A, B, C
+  double first_sense = 1, second_sense = 1;  ///< of the tool against the part, for growing words
+  double pole_rad = 0;                       ///< second axis
+  double cosine = 0;                         ///< of beta
 
   double past_pole_rad(const Vec3& programmed_rad) const;
   /// Of the first axis; continuous.

@@ -94,6 +94,7 @@ ordered_json figures_json(const PosturedProgram& program) {
           {"mean_angle_deg", deg_from_rad(f.mean_angle_rad)},
           {"max_angle_deg", deg_from_rad(f.max_angle_rad)},
           {"compliance_um_per_N", f.compliance_um_per_N},
+          {"lag_um", f.lag_um},
           {"time_s", program.time_s}};
 }
 
@@ -159,6 +160,8 @@ std::string posture_text(const PosturedProgram& program, const PostureCommand& c
     out += fmt::format("direction I{:.4f} J{:.4f} K{:.4f} for all moves, written as {}\n", axis.x(), axis.y(), axis.z(),
                        kWritten[static_cast<std::size_t>(program.written)]);
   }
+  if (before.lag_um > 0 || f.lag_um > 0)
+    out += fmt::format("axes      late by {:.1f} um normal to the part, before {:.1f}\n", f.lag_um, before.lag_um);
   out += fmt::format("time      {:.1f} s\n", program.time_s);
   return out;
 }
@@ -192,6 +195,7 @@ std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhang
                       {"mean_angle_deg", deg_from_rad(before.mean_angle_rad)},
                       {"max_angle_deg", deg_from_rad(before.max_angle_rad)},
                       {"compliance_um_per_N", before.compliance_um_per_N},
+                      {"lag_um", before.lag_um},
                       {"time_s", program.given_time_s}};
   if (program.blocked_line > 0) report["blocked_line"] = program.blocked_line;
   if (overhangs && clear(program.postured))

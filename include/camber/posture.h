@@ -34,6 +34,7 @@ struct PostureFigures {
   double rotary_motion_deg = 0;
   double mean_angle_deg = 0, max_angle_deg = 0;  ///< of tool and normal
   double compliance_um_per_N = 0;                ///< normal to the part
+  double lag_um = 0;                             ///< left by axes that follow late, normal to the part, mean
   double time_s = 0;                             ///< of the program on the machine
 };
 

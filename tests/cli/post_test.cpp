@@ -146,5 +146,51 @@ TEST(PostureCommand, TheStockIsAnObstacle) {
   EXPECT_EQ(without.status, 0) << without.err;
 }
 
+/// A block whose top falls from z0 at x = 0 to z1 at x = 20, as an ASCII STL file.
+std::string sloped_block(double z0, double z1) {
+  const auto corner = [&](int i) {
+    const int x = (i & 1) * 20, y = (i >> 1 & 1) * 12;
+    return "vertex " + std::to_string(x) + " " + std::to_string(y) + " " +
+           std::to_string(i < 4    ? -15.0
+                          : x == 0 ? z0
+                                   : z1) +
+           "\n";
+  };
+  std::string out = "solid block\n";
+  for (const char* face : {"021", "123", "456", "657", "014", "154", "263", "367", "042", "246", "135", "375"}) {
+    out += "facet normal 0 0 0\nouter loop\n";
+    for (int k = 0; k < 3; ++k) out += corner(face[k] - '0');
+    out += "endloop\nendfacet\n";
+  }
+  return out + "endsolid block\n";
+}
+
+/// The job of the copy names no program: the raster is what camber copy has written.
+TEST(PostureCommand, TiltsTheToolOfARasterThatCopyMade) {
+  const TempFolder folder;
+  folder.write("part.stl", sloped_block(0, -6));
+  folder.write("stock.stl", sloped_block(0.3, -5.7));
+  folder.write("job.toml",
+               "machine = \"" CAMBER_SOURCE_DIR
+               "/samples/machines/linuxcnc_five_axis.toml\"\n[part]\nmesh = "
+               "\"part.stl\"\n[stock]\nmesh = \"stock.stl\"\n[tool.1]\ntype = \"ball\"\ndiameter_mm = 6.0\nflutes = 2\n"
+               "overhang_mm = 30.0\nflute_length_mm = 10.0\nholder_mm = [[20, 24, 20]]\n[material]\nktc_MPa = "
+               "1860.0\nkrc_MPa = 700.0\nkac_MPa = 0.0\nkte_N_per_mm = 15.0\nkre_N_per_mm = 15.0\nkae_N_per_mm = "
+               "0.0\n[simulation]\nvoxel_mm = 0.25\n[[copy]]\ntool = 1\nmode = \"scanning-line\"\nscallop_mm = 0.3\n"
+               "spindle_rpm = 12000\nfeed_mm_per_min = 1500\nallowance_mm = 0\nregion = { box_mm = [[4, 3], [16, 9]], "
+               "z_mm = [-10, 2] }\n");
+  const CamberRun copied = run_camber(folder, "copy job.toml -o raster.nc -q");
+  ASSERT_EQ(copied.status, 0) << copied.err;
+  const CamberRun run = run_camber(folder,
+                                   "posture raster.nc --job job.toml -o tilted.nc --json r.json --tool-length 1=120 "
+                                   "--work-offset G54=0,0,-100");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto report = nlohmann::json::parse(file_text(folder / "r.json"));
+  EXPECT_GT(report["contacts"], 20);
+  EXPECT_EQ(report["unclear"], 0);
+  EXPECT_LT(report["compliance_um_per_N"], report["before"]["compliance_um_per_N"]);
+  EXPECT_NE(file_text(folder / "tilted.nc").find("M428"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace camber::tests

@@ -314,7 +314,7 @@ TEST_F(PostureInATrough, WhatEarlierToolsCutIsNoObstacle) {
   job_.tools[2].type = machine::ToolType::flat;
   job_.tools[2].diameter_mm = 16;
   job_.simulation.voxel_mm = 0.5;
-  job_.stock.box = machine::Box{{-30, -30, -5}, {30, 30, 40}};
+  job_.stock.box = machine::Box{{-24, -12, -2}, {24, 12, 20}};
   const auto room = [&](const std::string& text, const Vec3& tip, double allowance) {
     read(text);
     job_.stock.allowance_mm = allowance;
@@ -338,7 +338,7 @@ TEST_F(PostureInATrough, WhatEarlierToolsCutIsNoObstacle) {
   EXPECT_LT(room(head + slot + tail, {0, 8.5, 15}, 0), 0);
   EXPECT_LT(room(tail, {0, 3, 15}, 0), 0);                               // the whole block
   EXPECT_NEAR(room(head + slot + tail, {0, 0, 9}, 1), 2, 0.55);          // the slot is cut after the allowance
-  EXPECT_NEAR(room(head + "G0 Z60.\n" + tail, {0, 0, 42}, 1), 2, 0.55);  // of the last tool alone a dimple
+  EXPECT_NEAR(room(head + "G0 Z60.\n" + tail, {0, 0, 22}, 1), 2, 0.55);  // of the last tool alone a dimple
 }
 
 TEST_F(PostureInATrough, ATableOfOverhangsHasWhatEachOfThemGivesAlone) {

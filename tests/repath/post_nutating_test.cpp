@@ -42,7 +42,8 @@ TEST(RotaryChoice, TheOtherBranchOfANutatingHeadHasTheSameDirectionEverywhere) {
     ASSERT_TRUE(other && other->twist);
     for (int i = 0; i < 200; ++i) {
       const Vec3 rad(0, angle(random), angle(random));
-      const Vec3 here = chain.pose({Vec3::Zero(), rad}, 0).axis, there = chain.pose({Vec3::Zero(), other->of(rad)}, 0).axis;
+      const Vec3 here = chain.pose({Vec3::Zero(), rad}, 0).axis,
+                 there = chain.pose({Vec3::Zero(), other->of(rad)}, 0).axis;
       ASSERT_LT((here - there).norm(), 1e-12) << rad.transpose();
       EXPECT_EQ(other->of(rad)[kB], -rad[kB] + other->mirror_rad[kB]);
     }

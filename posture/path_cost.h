@@ -1,0 +1,26 @@
+#pragma once
+// What a path costs with its directions chosen: on the machine, axis by axis.
+#include <span>
+#include <vector>
+
+#include "machine/machine.h"
+#include "posture/choose.h"
+
+namespace camber::posture {
+
+/// The way from the point before.
+struct AxisStep {
+  double turn_deg = 0;      ///< of all rotary axes
+  double time_s = 0;        ///< at the programmed feed, longer where a rotary axis is too slow
+  double lag_error_mm = 0;  ///< LagError; 0 off the part
+};
+
+/// One for each point; rotary axes go on from where they are.
+std::vector<AxisStep> axis_steps(std::span<const PathPoint> points, std::span<const Vec3> axes, const LagError& lag,
+                                 const machine::Machine& machine);
+
+/// The same cost that the choice is made by, of whole directions: posture_cost(), lag_share(), rotary motion and time.
+double path_cost(std::span<const PathPoint> points, std::span<const Vec3> axes, const ToolShape& tool,
+                 const LagError& lag, const machine::Machine& machine, const PostureOptions& options);
+
+}  // namespace camber::posture
