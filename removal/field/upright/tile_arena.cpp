@@ -160,7 +160,7 @@ void TileArena::read_tile(std::size_t t, const Stock& stock, const Stock* blank)
   blank->read(first, Tile::kSide, distance, nullptr);
   edges_[t].find(distance, blank->voxel_mm(), blank->band_mm(), [&](const Index3& cell, float* out) {
     blank->read({first[0] + cell[0] - 1, first[1] + cell[1] - 1, first[2] + cell[2] - 1}, BlankEdges::kAround, out,
-               nullptr);
+                nullptr);
   });
 }
 
