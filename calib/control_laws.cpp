@@ -23,6 +23,7 @@ constexpr double kWideGapRad = 12.0 * kPi / 180.0;
 constexpr double kSlightRad = 0.5 * kPi / 180.0;
 constexpr double kBluntRad = 125.0 * kPi / 180.0;  // sharper corners are stops for every law, or all but stops
 constexpr int kCoarseSteps = 16;
+constexpr double kAddedUp = 1.5;  // of a limit: a block at half of it and one that stops, together
 constexpr double kThresholdRad = 5.0 * kPi / 180.0;
 
 struct NamedLaw {
@@ -71,15 +72,18 @@ bool is_number_of_law(const LimitParameter& p) {
 bool is_stop_share(const LimitParameter& p) { return p.name == "control.stop_acceleration_share"; }
 
 /// Start values of the law's number and of the accelerations, which make up for each other: the commands of a trace may
-/// have been smoothed, so that the accelerations seen in them are too low by a factor that all axes share.
+/// have been smoothed, so that the accelerations seen in them are too low by a factor that all axes share. Where blocks
+/// overlap they are not, but motions that add up show too much.
 void start_together(const std::vector<TimedLines>& data, const Machine& base, std::vector<LimitParameter>& parameters) {
   std::vector<LimitParameter> best = parameters;
   double least = INFINITY;
   const bool overlap = blocks_overlap(data, base);
-  for (const double factor : {1.0, 2.0, 4.0, 8.0}) {
+  const std::vector<double> factors = overlap ? std::vector{1.0, 1 / kAddedUp} : std::vector{1.0, 2.0, 4.0, 8.0};
+  for (const double factor : factors) {
     std::vector<LimitParameter> here = parameters;
     for (LimitParameter& p : here)
-      if (axis_of_acceleration(p)) p.start = std::clamp(factor * p.start, p.least * 1.001, p.most * 0.999);
+      if (axis_of_acceleration(p) && !p.from_ramps)
+        p.start = std::clamp(factor * p.start, p.least * 1.001, p.most * 0.999);
     double cost = scan_start(data, base, here, here.size() - 1, kCoarseSteps);
     for (std::size_t i = 0; i < here.size(); ++i)
       if (is_number_of_law(here[i]) || (overlap && is_stop_share(here[i])))
@@ -89,6 +93,19 @@ void start_together(const std::vector<TimedLines>& data, const Machine& base, st
     best = here;
   }
   parameters = best;
+}
+
+/// Whether the parts' times agree clearly better with one of the accelerations that ramps hold a little different.
+bool times_contradict_ramps(const std::vector<TimedLines>& data, const LimitFit& fit) {
+  constexpr double kOther = 1.01, kBetter = 0.9;
+  const auto better = [&](const LimitParameter& p, double factor) {
+    Machine other = fit.whole;
+    p.set(other, factor * p.fitted.value);
+    return cost_of(data, other).fitted < kBetter * fit.fitted_cost;
+  };
+  return std::ranges::any_of(fit.parameters, [&](const LimitParameter& p) {
+    return p.from_ramps && (better(p, 1 / kOther) || better(p, kOther));
+  });
 }
 
 LimitFit refit(const std::vector<TimedLines>& data, const Machine& machine, const LimitFit& from, int max_iterations) {
@@ -117,12 +134,24 @@ std::vector<std::pair<std::string, Machine>> machines_of_each_law(const Machine&
   return machines;
 }
 
-LimitFit fit_law(const std::vector<TimedLines>& data, const Machine& base, const Accelerations& acceleration,
+LimitFit fit_law(const std::vector<TimedLines>& data, const Machine& base, const TracedAccelerations& acceleration,
                  int max_iterations) {
   std::vector<LimitParameter> parameters = limit_parameters(base, any_logged(data));
-  for (LimitParameter& p : parameters)
-    if (const auto axis = axis_of_acceleration(p); axis && acceleration[*axis] > p.least) p.start = acceleration[*axis];
+  const bool overlap = blocks_overlap(data, base);
+  for (LimitParameter& p : parameters) {
+    const auto axis = axis_of_acceleration(p);
+    if (!axis) continue;
+    const FittedValue& held = acceleration.held[*axis];
+    if (acceleration.highest[*axis] > p.least) p.start = acceleration.highest[*axis];
+    if (!overlap || held.value <= p.least || held.value >= p.most) continue;
+    p.start = held.value;
+    p.fitted = held;
+    p.from_ramps = true;
+  }
   start_together(data, base, parameters);
+  LimitFit fit = fit_limits(data, base, parameters, max_iterations, true);
+  if (!times_contradict_ramps(data, fit)) return fit;
+  for (LimitParameter& p : parameters) p.from_ramps = false;
   return fit_limits(data, base, std::move(parameters), max_iterations, true);
 }
 
@@ -141,10 +170,12 @@ double held_out_percent(const std::vector<TimedLines>& data, const Machine& mach
 }
 
 std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const Machine& start,
-                               const Accelerations& acceleration, int max_iterations, std::size_t& best) {
+                               const TracedAccelerations& acceleration, int max_iterations, std::size_t& best) {
   std::vector<TriedLaw> tried;
   best = 0;
+  const bool overlap = blocks_overlap(data, start);
   for (const auto& [name, machine] : machines_of_each_law(start)) {
+    if (overlap && machine.control.corner.law != CornerLaw::blend) continue;
     LimitFit fit = fit_law(data, machine, acceleration, max_iterations);
     const double percent = held_out_percent(data, fit.whole);
     tried.push_back({name, std::move(fit), percent});

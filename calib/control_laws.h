@@ -19,23 +19,30 @@ struct TriedLaw {
 /// Of x, y, z in mm/s^2, and of a, b, c in degrees/s^2; 0: the axis rests.
 using Accelerations = std::array<double, 6>;
 
+/// What the commands of the traces show (traced_acceleration.h).
+struct TracedAccelerations {
+  Accelerations highest{};
+  std::array<FittedValue, 6> held{};  ///< limits that ramps keep; 0: none
+};
+
 /// The machine with each corner law, that of `start` first: rounding within a tolerance (G64 P), speed difference by
 /// axis, speed change by angle, radius of three points, exact stop. `start` gives everything else.
 std::vector<std::pair<std::string, machine::Machine>> machines_of_each_law(const machine::Machine& start);
 
 /// Fits `base` (its law stands) from values that the data give: accelerations as commanded at most
-/// (`acceleration`), the law's own number and the block time by a scan of their ranges.
-LimitFit fit_law(const std::vector<TimedLines>& data, const machine::Machine& base, const Accelerations& acceleration,
-                 int max_iterations);
+/// (`acceleration`), the law's own number and the block time by a scan of their ranges. Where blocks overlap,
+/// accelerations that ramps hold stand, unless the times contradict them.
+LimitFit fit_law(const std::vector<TimedLines>& data, const machine::Machine& base,
+                 const TracedAccelerations& acceleration, int max_iterations);
 
 /// Mean absolute error of the times of the parts that were held out, %.
 double held_out_percent(const std::vector<TimedLines>& data, const machine::Machine& machine);
 
-/// Tries every law; the first is that of `start`. Index of the best: the least held-out cost, but the law of
-/// `start` unless another is better by a thousandth, and the exact stop, which has no number, unless another is better
-/// by 5 %.
+/// Tries every law; the first is that of `start`. Where blocks overlap, rounding alone, the law that such a control has
+/// for them. Index of the best: the least held-out cost, but the law of `start` unless another is better by a
+/// thousandth, and the exact stop, which has no number, unless another is better by 5 %.
 std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const machine::Machine& start,
-                               const Accelerations& acceleration, int max_iterations, std::size_t& best);
+                               const TracedAccelerations& acceleration, int max_iterations, std::size_t& best);
 
 /// Tries, under the law of `standing`, a stop at corners sharper than each wide gap between the corners of the
 /// programs, and corners under 5 degrees passed as none. Keeps what lowers the held-out cost by 5 %.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "base/units.h"
 #include "calib/fit_limits.h"
@@ -12,6 +11,7 @@
 #include "calib/fit_smoothing.h"
 #include "calib/logged_lines.h"
 #include "calib/rotary_lines.h"
+#include "calib/traced_acceleration.h"
 #include "feedmodel/fitted_range.h"
 #include "feedmodel/joint_map.h"
 
@@ -176,38 +176,6 @@ Plateau rapid_plateau(const std::vector<FeedRun>& runs, int axis) {
   return plateau;
 }
 
-/// Acceleration that an axis was commanded at most, over windows of ten periods (a trace is rounded); the few
-/// highest are left out. 0: the axis rests.
-double traced_acceleration(const std::vector<const ServoTrace*>& traces, int axis) {
-  constexpr std::size_t kWindow = 10, kLeftOut = 20;
-  std::vector<double> highest;  // a heap, least in front
-  for (const ServoTrace* trace : traces) {
-    const auto& c = trace->command_mm;
-    const double t = static_cast<double>(kWindow) * trace->period_s;
-    for (const Stretch& s : trace->stretches)
-      for (std::size_t k = s.first; k + 2 * kWindow < s.end; ++k) {
-        const double a = std::abs(c[k + 2 * kWindow][axis] - 2 * c[k + kWindow][axis] + c[k][axis]) / (t * t);
-        if (highest.size() > kLeftOut && a <= highest.front()) continue;
-        highest.push_back(a);
-        std::push_heap(highest.begin(), highest.end(), std::greater<>());
-        if (highest.size() <= kLeftOut + 1) continue;
-        std::pop_heap(highest.begin(), highest.end(), std::greater<>());
-        highest.pop_back();
-      }
-  }
-  return highest.empty() ? 0 : highest.front();
-}
-
-Accelerations traced_accelerations(const std::vector<const ServoTrace*>& traces,
-                                   const std::vector<const ServoTrace*>& rotary) {
-  Accelerations out{};
-  for (int axis = 0; axis < 3; ++axis) {
-    out[static_cast<std::size_t>(axis)] = traced_acceleration(traces, axis);
-    if (!rotary.empty()) out[static_cast<std::size_t>(3 + axis)] = traced_acceleration(rotary, axis);
-  }
-  return out;
-}
-
 /// Top speed of a rotary axis: the highest in moves that ask for more, if it is held.
 Plateau rotary_plateau(const std::vector<FeedRun>& runs, const Machine& machine, int axis) {
   constexpr double kWindowS = 0.02, kAskedMore = 1.01;
@@ -266,7 +234,7 @@ Machine base_with_law(const Machine& start, const machine::Corner& corner) {
 }
 
 /// Every law, and angles under the best one. LinuxCNC's rounding knows neither a stop angle nor a threshold.
-LimitFit choose_law(FitFeedResult& result, const std::vector<TimedLines>& data, const Accelerations& acceleration,
+LimitFit choose_law(FitFeedResult& result, const std::vector<TimedLines>& data, const TracedAccelerations& acceleration,
                     int max_iterations) {
   std::size_t best = 0;
   std::vector<TriedLaw> tried = try_laws(data, result.machine, acceleration, max_iterations, best);
@@ -317,29 +285,37 @@ double rest_latency_s(const std::vector<FeedRun>& runs) {
   return std::max(0.0, std::round(*middle * 1e6) / 1e6);
 }
 
+void start_from_fitted(LimitParameter& p) { p.start = std::clamp(p.fitted.value, p.least * 1.001, p.most * 0.999); }
+
 /// Fits the limits for each value of a list and keeps the value that predicts the kept-back parts best; the
-/// first one stands unless another is clearly better.
+/// first one stands unless another is clearly better. A value that changes no time is passed over; returns whether any
+/// was tried.
 template <class Set>
-void choose(LimitFit& best, const std::vector<TimedLines>& data, const std::vector<double>& values, const Set& set,
+bool choose(LimitFit& best, const std::vector<TimedLines>& data, const std::vector<double>& values, const Set& set,
             int iterations) {
   LimitFit standing = best;
+  bool any = false;
   for (double value : values) {
     Machine m = best.machine;
     set(m, value);
+    if (same_times(data, m, standing.machine)) continue;
+    any = true;
     auto parameters = best.parameters;
-    for (LimitParameter& p : parameters) p.start = std::clamp(p.fitted.value, p.least * 1.001, p.most * 0.999);
+    for (LimitParameter& p : parameters) start_from_fitted(p);
     const LimitFit fit = fit_limits(data, m, std::move(parameters), iterations, false);
     const double gain = kSettledFraction * (1 + standing.fitted_cost);
     if (fit.fitted_cost + fit.held_out_cost < standing.fitted_cost + standing.held_out_cost - gain) standing = fit;
   }
   best = standing;
+  return any;
 }
 
 /// Fits again from the best block time of its whole range.
 void refine_block_time(LimitFit& fit, const std::vector<TimedLines>& data, const Machine& base, int iterations) {
   auto parameters = fit.parameters;
-  for (LimitParameter& p : parameters) p.start = std::clamp(p.fitted.value, p.least * 1.001, p.most * 0.999);
-  scan_start(data, base, parameters, parameters.size() - 1);
+  for (LimitParameter& p : parameters) start_from_fitted(p);
+  constexpr int kSteps = 48, kFewSteps = 16;
+  scan_start(data, base, parameters, parameters.size() - 1, blocks_overlap(data, base) ? kFewSteps : kSteps);
   fit = fit_limits(data, base, std::move(parameters), iterations, false);
 }
 
@@ -366,8 +342,8 @@ std::string source_of(const LimitParameter& p) {
 void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start, bool logged) {
   for (const LimitParameter& p : fit.parameters) {
     if (p.determined) {
-      result.parameters.push_back(
-          {p.name, p.fitted.value, p.unit, p.fitted.std_error, logged ? source_of(p) : "", true});
+      const std::string note = p.from_ramps ? "constant accelerations of the commands" : logged ? source_of(p) : "";
+      result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, note, true});
     } else {
       result.parameters.push_back({p.name, p.get(start), p.unit, std::nullopt,
                                    fmt::format("not determined by the {}; start value kept ({})",
@@ -570,18 +546,19 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
   const double width_mm = result.machine.control.in_position_mm;
   result.machine.control.in_position_mm = machine::kNoLimit;  // waits are between the parts
   const Machine base_of_all = result.machine;
-  LimitFit limits = choose_law(result, data, traced_accelerations(traces, rotary), options.max_iterations / 4);
+  LimitFit limits = choose_law(result, data, {traced_accelerations(traces, rotary), held_accelerations(runs)},
+                               options.max_iterations / 4);
   result.machine = base_with_law(base_of_all, limits.whole.control.corner);
   refine_block_time(limits, data, result.machine, options.max_iterations / 3);
   const double period = result.machine.control.period_s;
   if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend) {
-    choose(
+    bool tried = choose(
         limits, data, {2 * period, 4 * period, 8 * period},
         [](Machine& m, double v) { m.control.corner.short_line_time_s = v; }, kListIterations);
-    choose(
+    tried |= choose(
         limits, data, {25, 50, 100}, [](Machine& m, double v) { m.control.lookahead_blocks = static_cast<int>(v); },
         kListIterations);
-    refine_block_time(limits, data, limits.machine, options.max_iterations / 3);
+    if (tried) refine_block_time(limits, data, limits.machine, options.max_iterations / 3);
   }
   const Machine base = result.machine;
   result.machine = limits.machine;

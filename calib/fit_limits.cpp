@@ -28,7 +28,7 @@ constexpr double kWideLossScale = 300.0;
 constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
 constexpr double kStep = 1e-3;  // of a logarithm; the plan has small kinks (whole periods): a wide step ignores them
 constexpr double kWideStep = 1e-2;  // blocks that overlap last whole periods: their times are steps
-constexpr double kFirstSearchStep = 0.04, kLastSearchStep = 2e-4;  // of a logarithm
+constexpr double kFarSearchStep = 0.04, kNearSearchStep = 0.01, kLastSearchStep = 2e-4;  // of a logarithm
 constexpr int kMaxSearches = 200;
 
 template <int axis>
@@ -169,30 +169,63 @@ std::unique_ptr<ceres::CostFunction> make_cost(const std::vector<TimedLines>& da
   return cost;
 }
 
-/// Compass search: the times of blocks that overlap are steps of a period, on which a derivative cannot settle.
-void search(const std::vector<TimedLines>& data, const Machine& base, const std::vector<LimitParameter>& parameters,
-            std::vector<double>& logs) {
+/// Least squares; returns whether it has converged.
+bool solve_limits(const std::vector<TimedLines>& data, const Machine& base,
+                  const std::vector<LimitParameter>& parameters, double loss_scale, int max_iterations,
+                  std::vector<double>& logs) {
+  std::vector<double> residuals;
+  residuals_of(data, machine_at(base, parameters, logs.data()), false, residuals);
+  ceres::Problem problem;
+  problem.AddResidualBlock(make_cost(data, base, parameters, residuals.size(), loss_scale).release(), nullptr,
+                           logs.data());
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    problem.SetParameterLowerBound(logs.data(), static_cast<int>(i), std::log(parameters[i].least));
+    problem.SetParameterUpperBound(logs.data(), static_cast<int>(i), std::log(parameters[i].most));
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = max_iterations;
+  options.function_tolerance = 1e-4;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return summary.termination_type == ceres::CONVERGENCE;
+}
+
+/// Compass search: the times of blocks that overlap are steps of a period, on which a derivative cannot settle. A
+/// parameter that changes nothing either way is left out of the finer steps. Returns whether it came to the finest.
+bool search(const std::vector<TimedLines>& data, const Machine& base, const std::vector<LimitParameter>& parameters,
+            double first_step, std::vector<double>& logs) {
   std::vector<double> residuals;
   const auto cost = [&](const std::vector<double>& at) {
     residuals_of(data, machine_at(base, parameters, at.data()), false, residuals);
     return robust_cost(residuals);
   };
   double least = cost(logs);
+  std::vector<char> idle(logs.size(), 0);
+  for (std::size_t i = 0; i < idle.size(); ++i) idle[i] = parameters[i].from_ramps;
   const auto improve = [&](std::size_t i, double step) {
-    std::vector<double> there = logs;
-    there[i] = std::clamp(logs[i] + step, std::log(parameters[i].least), std::log(parameters[i].most));
-    const double here = cost(there);
-    if (here >= least) return false;
-    least = here;
-    logs = there;
-    return true;
+    bool changes = false;
+    for (const double by : {step, -step}) {
+      std::vector<double> there = logs;
+      there[i] = std::clamp(logs[i] + by, std::log(parameters[i].least), std::log(parameters[i].most));
+      const double here = cost(there);
+      changes = changes || here != least;
+      if (here >= least) continue;
+      least = here;
+      logs = there;
+      return true;
+    }
+    idle[i] = !changes;
+    return false;
   };
   int searches = 0;
-  for (double step = kFirstSearchStep; step > kLastSearchStep && searches < kMaxSearches; ++searches) {
+  for (double step = first_step; step > kLastSearchStep && searches < kMaxSearches; ++searches) {
     bool improved = false;
-    for (std::size_t i = 0; i < logs.size(); ++i) improved |= improve(i, step) || improve(i, -step);
+    for (std::size_t i = 0; i < logs.size(); ++i) improved |= !idle[i] && improve(i, step);
     if (!improved) step /= 2;
   }
+  return searches < kMaxSearches;
 }
 
 /// What each residual of the fitted parts is of, in their order.
@@ -225,6 +258,10 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
   const auto rows = rows_of(data);
   std::vector<int> determined;
   for (int i = 0; i < n; ++i) {
+    if (fit.parameters[i].from_ramps) {
+      fit.parameters[i].determined = true;
+      continue;
+    }
     fit.parameters[i].determined = j.col(i).norm() > 1.0;  // a change by a factor e moves some time by its noise
     double logged = 0;
     for (std::size_t row = 0; row < count; ++row)
@@ -266,6 +303,26 @@ bool blocks_overlap(const std::vector<TimedLines>& data, const Machine& machine)
   if (!machine.control.kind.turning_blocks_overlap || machine.control.joint_limits) return false;
   return std::ranges::any_of(
       data, [&](const TimedLines& lines) { return feedmodel::has_rotary_motion(*lines.program, machine); });
+}
+
+LimitCost cost_of(const std::vector<TimedLines>& data, const Machine& machine) {
+  LimitCost cost;
+  std::vector<double> residuals;
+  residuals_of(data, machine, false, residuals);
+  cost.fitted = robust_cost(residuals);
+  residuals_of(data, machine, true, residuals);
+  cost.held_out = robust_cost(residuals);
+  return cost;
+}
+
+bool same_times(const std::vector<TimedLines>& data, const Machine& a, const Machine& b) {
+  std::vector<double> of_a, of_b;
+  for (const bool kept_back : {false, true}) {
+    residuals_of(data, a, kept_back, of_a);
+    residuals_of(data, b, kept_back, of_b);
+    if (of_a != of_b) return false;
+  }
+  return true;
 }
 
 bool any_logged(const std::vector<TimedLines>& data) {
@@ -384,33 +441,16 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
   fit.machine = fit.whole = start;
   if (residuals.size() <= fit.parameters.size()) return fit;
 
+  const bool overlap = blocks_overlap(data, start);
   // A wide loss first: from far away every part looks like one that no plan explains.
-  for (double loss_scale : {kWideLossScale, kLossScale}) {
-    if (loss_scale == kWideLossScale && !far_away) continue;
-    ceres::Problem problem;
-    problem.AddResidualBlock(make_cost(data, start, fit.parameters, residuals.size(), loss_scale).release(), nullptr,
-                             logs.data());
-    for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-      problem.SetParameterLowerBound(logs.data(), static_cast<int>(i), std::log(fit.parameters[i].least));
-      problem.SetParameterUpperBound(logs.data(), static_cast<int>(i), std::log(fit.parameters[i].most));
-    }
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = max_iterations;
-    options.function_tolerance = 1e-4;
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    fit.converged = summary.termination_type == ceres::CONVERGENCE;
-  }
-  if (blocks_overlap(data, start)) search(data, start, fit.parameters, logs);
+  if (far_away && !overlap) solve_limits(data, start, fit.parameters, kWideLossScale, max_iterations, logs);
+  if (!overlap) fit.converged = solve_limits(data, start, fit.parameters, kLossScale, max_iterations, logs);
+  if (overlap) fit.converged = search(data, start, fit.parameters, far_away ? kFarSearchStep : kNearSearchStep, logs);
   set_errors(fit, data, start, logs, residuals.size());
 
   const Machine fitted = fit.whole = machine_at(start, fit.parameters, logs.data());
   for (const LimitParameter& p : fit.parameters)
     if (p.determined) p.set(fit.machine, p.fitted.value);
-  residuals_of(data, fitted, false, residuals);
-  fit.fitted_cost = robust_cost(residuals);
   std::vector<double> milliseconds;
   for (const TimedLines& lines : data) {
     const auto planned = planned_times_s(lines, fitted, feedmodel::plan_motion(*lines.program, fitted).times);
@@ -421,8 +461,9 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
   const auto middle = milliseconds.begin() + static_cast<std::ptrdiff_t>(milliseconds.size() / 2);
   std::nth_element(milliseconds.begin(), middle, milliseconds.end());
   fit.residual_median_ms = *middle;
-  residuals_of(data, fitted, true, residuals);
-  fit.held_out_cost = robust_cost(residuals);
+  const LimitCost cost = cost_of(data, fitted);
+  fit.fitted_cost = cost.fitted;
+  fit.held_out_cost = cost.held_out;
   return fit;
 }
 

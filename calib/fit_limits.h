@@ -29,6 +29,15 @@ bool any_logged(const std::vector<TimedLines>& data);
 /// Whether the plan of some program has blocks that last whole periods (feedmodel/overlap.h).
 bool blocks_overlap(const std::vector<TimedLines>& data, const machine::Machine& machine);
 
+/// Mean robust cost of a part, and of one that is held out.
+struct LimitCost {
+  double fitted = 0, held_out = 0;
+};
+LimitCost cost_of(const std::vector<TimedLines>& data, const machine::Machine& machine);
+
+/// Whether the parts have the same times on both machines.
+bool same_times(const std::vector<TimedLines>& data, const machine::Machine& a, const machine::Machine& b);
+
 /// A number of the machine that the fit may change.
 struct LimitParameter {
   std::string name, unit;
@@ -37,6 +46,8 @@ struct LimitParameter {
   double least = 0, most = 0, start = 0;
   FittedValue fitted;
   bool determined = false;  ///< determined by the data
+  /// `fitted` was read in the commands of the traces (traced_acceleration.h) and stays.
+  bool from_ramps = false;
   /// Fraction of its squared derivatives that comes from logged times.
   double logged_fraction = 0;
 };
@@ -59,7 +70,7 @@ struct LimitFit {
 /// units of what it is known to, whether a servo trace or a log has it. Standard errors: the sandwich (J'J)^-1 sum(s
 /// s') (J'J)^-1 over groups, s = J'r of a group, and beside it what a common shift of all traced times by half a period
 /// does, since a trace tells times to a period. far_away: the start values may be wrong by much; a wide loss leads
-/// first. Where blocks overlap, a compass search follows.
+/// first. Where blocks overlap, a compass search instead.
 LimitFit fit_limits(const std::vector<TimedLines>& data, const machine::Machine& start,
                     std::vector<LimitParameter> parameters, int max_iterations, bool far_away);
 

@@ -163,7 +163,7 @@ class RankParts : public api::PartStore {
       : ranks_(ranks), files_(folder, key), sections_(key.sections) {}
 
   bool has(const api::PartName& name) override { return files_.has(name); }
-  void give(const api::PartName& name, std::string content) override { files_.give(name, std::move(content)); }
+  void give(const api::PartName& name, const Write& write) override { files_.give(name, write); }
   std::string take(const api::PartName& name) override {
     if (name.section == ranks_.rank()) return files_.take(name);
     return merging_ ? receive(static_cast<int>(name.section)) : parts_.at(api::file_name(name));

@@ -15,13 +15,18 @@ namespace {
 
 constexpr std::uint64_t kBasis = 14695981039346656037ull, kPrime = 1099511628211ull;
 
-void add(std::uint64_t& hash, std::string_view text) {
+constexpr std::string_view kEnd = "\xff";  // so that two files are not one
+
+void mix(std::uint64_t& hash, std::string_view text) {
   for (const char c : text) {
     hash ^= static_cast<unsigned char>(c);
     hash *= kPrime;
   }
-  hash ^= 0xff;  // an end, so that two files are not one
-  hash *= kPrime;
+}
+
+void add(std::uint64_t& hash, std::string_view text) {
+  mix(hash, text);
+  mix(hash, kEnd);
 }
 
 /// What every control accepts within a comment.
@@ -82,10 +87,18 @@ std::string header_lines(const machine::Job& job, const CompensationResult& c, c
   return plain(out + material_line(job.material));
 }
 
+RunningHash::RunningHash() : hash_(kBasis) {}
+void RunningHash::add(std::string_view text) { mix(hash_, text); }
+std::string RunningHash::text() const {
+  std::uint64_t whole = hash_;
+  mix(whole, kEnd);
+  return fmt::format("{:016X}", whole);
+}
+
 std::string hash_of(std::string_view text) {
-  std::uint64_t hash = kBasis;
-  add(hash, text);
-  return fmt::format("{:016X}", hash);
+  RunningHash hash;
+  hash.add(text);
+  return hash.text();
 }
 
 std::string hash_of_inputs(const machine::Job& job) {

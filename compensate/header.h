@@ -1,5 +1,6 @@
 #pragma once
 // Header comment of the emitted program.
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,16 @@ std::string header_lines(const machine::Job& job, const CompensationResult& resu
 
 /// 16 hexadecimal digits of a text (FNV-1a, 64 bits; distinguishes versions, not cryptographic).
 std::string hash_of(std::string_view text);
+/// The same of a text that comes in pieces.
+class RunningHash {
+ public:
+  RunningHash();
+  void add(std::string_view text);
+  std::string text() const;
+
+ private:
+  std::uint64_t hash_;
+};
 
 /// 16 hexadecimal digits over everything the result depends on: the contents of the program, the machine and of every
 /// file that the job reads, and the job with every default (FNV-1a, 64 bits; distinguishes versions, not

@@ -12,8 +12,8 @@ namespace {
 
 /// Coarser than a prediction's: a tick has half a millisecond. 2 degrees lose about a hundredth of a peak.
 constexpr double kEnvelopeStep_mm = 0.2, kRotationStep_rad = 2 * kPi / 180;
-constexpr double kFeedSteps = 25;                                 ///< of the nominal feed
-constexpr double kUpBelow = 0.86, kAim = 0.93;                    ///< of the target
+constexpr double kFeedSteps = 50;                                 ///< of the nominal feed
+constexpr double kUpBelow = 0.88, kAim = 0.94;                    ///< of the target
 constexpr double kUpStep = 0.5;                                   ///< of the nominal feed; no step leads over the aim
 constexpr double kFromBand = 0.80, kToBand = 1.05, kNever = 1.2;  // of the target
 constexpr double kHeldBack = 0.9;                                 ///< of the commanded feed
@@ -44,8 +44,7 @@ LoadFollower::LoadFollower(const machine::Job& job, const machine::CopyOperation
       shape_(removal::shape_of(job.tools.at(operation.tool))),
       first_id_(first_id),
       apart_mm_(stamps_apart_mm(job.tools.at(operation.tool))),
-      feed_(operation.feed_mm_per_s),
-      ahead_(std::numeric_limits<double>::infinity()) {
+      feed_(operation.feed_mm_per_s) {
   if (loads || operation.force_N)
     probe_.emplace(stock, job.tools.at(operation.tool), job.material, tips,
                    probe_options(job, operation, regions, first_id));
@@ -60,38 +59,52 @@ LoadFollower::LoadFollower(const machine::Job& job, const machine::CopyOperation
 double LoadFollower::radial_mm() const { return rule_ ? rule_->conditions().radial_mm : operation_.radial_depth_mm; }
 double LoadFollower::axial_mm() const { return rule_ ? rule_->conditions().axial_mm : operation_.axial_depth_mm; }
 
-void LoadFollower::look_ahead(double t_s, const Vec3& place, const Vec3& direction) {
+void LoadFollower::look_ahead(double t_s, const Ahead& ahead) {
   if (!rule_) return;
   const double feed = operation_.feed_mm_per_s;
   removal::Stamp stamp;
   stamp.t_s = t_s;
-  stamp.pose.tip_mm = place;
-  stamp.feed_per_tooth_mm = feed * passing_s_ * direction;
+  stamp.pose.tip_mm = ahead.place;
+  stamp.feed_per_tooth_mm = feed * passing_s_ * ahead.direction;
   const double load = load_of(probe_->look(stamp), LoadKind::force, operation_.spindle_rpm);
   double at_half = 0;
   if (load > 0) {
     stamp.feed_per_tooth_mm *= 0.5;
     at_half = load_of(probe_->look(stamp), LoadKind::force, operation_.spindle_rpm);
   }
-  ahead_ = rule_->feed_ahead(load, at_half, feed);
-  rule_->note_ahead(t_s, place, ahead_);
+  braking_mm_per_s2_ = ahead.braking_mm_per_s2;
+  bounds_.push_back({gone_mm_ + ahead.way_mm, rule_->feed_ahead(load, at_half, feed)});
+  rule_->note_ahead(t_s, ahead.place, allowed_mm_per_s());
   choose_feed();
+}
+
+/// The feed from which every bound ahead can be kept by braking, done a passing before it.
+double LoadFollower::allowed_mm_per_s() const {
+  double out = std::numeric_limits<double>::infinity();
+  for (const Bound& bound : bounds_) {
+    const double way = std::max(0.0, bound.at_mm - gone_mm_ - passing_mm_);
+    out = std::min(out, std::sqrt(bound.feed_mm_per_s * bound.feed_mm_per_s + 2 * braking_mm_per_s2_ * way));
+  }
+  return out;
 }
 
 void LoadFollower::choose_feed() {
   const double step = operation_.feed_mm_per_s / kFeedSteps;
-  const double wanted = std::min(rule_->conditions().feed_mm_per_s, ahead_);
-  const double lowest = band_.lowest * operation_.feed_mm_per_s;
+  const double wanted = std::min(rule_->conditions().feed_mm_per_s, allowed_mm_per_s());
+  const double lowest = band_.lowest * operation_.feed_mm_per_s, highest = band_.highest * operation_.feed_mm_per_s;
   const double stepped = std::max(lowest, step * std::floor(wanted / step + 1e-6));
-  // Up only where it is worth an F word.
-  if (stepped < feed_ || stepped > feed_ + 1.5 * step) feed_ = stepped;
+  // Up only where it is worth an F word, or to the highest.
+  if (stepped < feed_ || stepped > feed_ + 1.5 * step || stepped > highest - 0.5 * step) feed_ = stepped;
 }
 
 double LoadFollower::pass(const removal::Stamp& stamp, double commanded) {
   if (!probe_) return wait(stamp), 0;
   const simulate::ProbedLoad& load = probe_->append({&stamp, 1}).front();
   const double force = load.felt.lateral_max_N;
-  const double actual = stamp.feed_per_tooth_mm.norm() / passing_s_;
+  passing_mm_ = stamp.feed_per_tooth_mm.norm(), gone_mm_ += passing_mm_;
+  if (stamp.first) bounds_.clear();
+  while (!bounds_.empty() && bounds_.front().at_mm <= gone_mm_) bounds_.pop_front();
+  const double actual = passing_mm_ / passing_s_;
   figures_.max_N = std::max(figures_.max_N, force);
   if (!rule_) return force;
   // Slower than commanded at corners and where the tool sets off: the load there says little of the feed.

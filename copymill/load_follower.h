@@ -1,5 +1,6 @@
 #pragma once
 // The load of the cut, tooth passing by tooth passing, and the feed and depths that follow it.
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -30,7 +31,7 @@ class LoadFollower {
   LoadFollower(const machine::Job& job, const machine::CopyOperation& operation, removal::Stock& stock,
                const removal::TipBox& tips, const simulate::ForceRegions& regions, std::int32_t first_id, bool loads);
 
-  /// The feed to command: that of the rule, or less where more load lies ahead. A multiple of a twenty-fifth of the
+  /// The feed to command: that of the rule, or less where more load lies ahead. A multiple of a fiftieth of the
   /// nominal feed, so that few F words are needed.
   double feed_mm_per_s() const { return feed_; }
   double radial_mm() const;
@@ -38,8 +39,13 @@ class LoadFollower {
   bool replan() const { return rule_ && rule_->replan(); }
   void replanned() { rule_->replanned(); }
 
-  /// A place that the tool reaches soon, as far ahead as braking needs, and the direction in which it will go there.
-  void look_ahead(double t_s, const Vec3& place, const Vec3& direction);
+  /// A place that the tool reaches soon.
+  struct Ahead {
+    Vec3 place, direction;         ///< of the tip there
+    double way_mm = 0;             ///< along the path to it, as far as braking needs or farther
+    double braking_mm_per_s2 = 1;  ///< deceleration along the path
+  };
+  void look_ahead(double t_s, const Ahead& ahead);
   /// Cuts one tooth passing. `commanded`: the feed it was to be cut at. Returns the lateral force.
   double pass(const removal::Stamp& stamp, double commanded_mm_per_s);
 
@@ -50,6 +56,7 @@ class LoadFollower {
 
  private:
   void choose_feed();
+  double allowed_mm_per_s() const;
   void wait(const removal::Stamp& stamp);
   void count(double force_N, double actual_mm_per_s, double commanded_mm_per_s);
 
@@ -63,7 +70,12 @@ class LoadFollower {
   double apart_mm_;  ///< of waiting stamps
   std::optional<LoadRule> rule_;
   LoadBand band_;
-  double feed_, ahead_;
+  double feed_;
+  struct Bound {
+    double at_mm, feed_mm_per_s;  ///< along the path, and no faster there
+  };
+  std::deque<Bound> bounds_;  ///< where the tool has not been yet, the nearest first
+  double gone_mm_ = 0, passing_mm_ = 0, braking_mm_per_s2_ = 1;
   LoadFigures figures_;
 };
 

@@ -31,6 +31,7 @@ class Motion {
   double speed_mm_per_s() const { return speed_; }
   double period_s() const { return period_s_; }
   double smoothing_s() const { return period_s_ * static_cast<double>(window_.size()); }
+  double braking_mm_per_s2() const { return acceleration_; }
   double stopping_mm() const { return stopping_distance_mm(speed_, acceleration_); }
   /// How far along the path, before the average.
   std::size_t piece() const { return piece_; }

@@ -138,8 +138,9 @@ void Runner::stamp_at(double t_s, const Vec3& tip) {
   last_stamp_ = tip;
   first_stamp_ = false;
   load_N_ = follower_->pass(stamp, commanded_);
-  const Motion::Ahead ahead = motion_.ahead(motion_.stopping_mm() + stamp.feed_per_tooth_mm.norm());
-  follower_->look_ahead(t_s, ahead.place, ahead.direction);
+  const double way = motion_.stopping_mm() + stamp.feed_per_tooth_mm.norm();
+  const Motion::Ahead ahead = motion_.ahead(way);
+  follower_->look_ahead(t_s, {ahead.place, ahead.direction, way, motion_.braking_mm_per_s2()});
 }
 
 /// Another feed from here on.

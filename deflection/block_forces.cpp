@@ -94,11 +94,15 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
     const double u = static_cast<double>(j) / kFine;
     const double share = std::clamp((e.at - u) / (2 * half) + 0.5, 0.0, 1.0);
     if ((u <= 0 && share == 1) || (u >= 1 && share == 0)) continue;
-    // Over the part of the ring that is in the cut the chip falls evenly to nothing.
-    const double thickness = e.fall_mm > 0
-                                 ? e.fall_mm * (std::max(0.0, e.at + half - u) + std::max(0.0, e.at - half - u)) / 2
-                                 : e.thickness_mm;
-    const double drawn = e.thickness_mm - std::min(u, 0.0) * e.fall_mm;
+    // On the way back from the sample, steps: the line to the sample before.
+    const double back = std::max(0.0, -u), drawn = e.thickness_mm + back * (e.inside_mm - e.thickness_mm);
+    // Over the part of the ring that is in the cut the chip falls evenly to nothing. Nowhere is it thicker than the
+    // chip that it is the end of, however steep the fall.
+    const double most = std::max(e.thickness_mm, e.inside_mm) + back * std::max(0.0, e.inside_mm - e.thickness_mm);
+    const double thickness =
+        e.fall_mm > 0
+            ? std::min(most, e.fall_mm * (std::max(0.0, e.at + half - u) + std::max(0.0, e.at - half - u)) / 2)
+            : drawn;
     const double left = std::clamp(1 - u, 0.0, 1.0);  // of the line to the sample that is out of the cut
     std::array<double, 4> f;
     if (affine) {

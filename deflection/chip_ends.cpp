@@ -13,6 +13,7 @@ using removal::EnvelopeBlocks;
 namespace {
 constexpr double kMaxRamp = 2;  ///< steps; ends that run along a ring are not drawn out further
 constexpr double kSameEnd = 3;  ///< steps within which the ends of two rings belong together
+constexpr double kAbrupt = 2;   ///< ways between samples: a chip does not fall to a material that is farther
 }  // namespace
 
 std::span<const ChipEnd> ChipEnds::find(const removal::EnvelopeGrid& envelope, const EnvelopeBlocks& blocks,
@@ -44,6 +45,7 @@ void ChipEnds::add_ring(const removal::EnvelopeGrid& envelope, int ring, std::sp
   const auto count_of = [&](const ChipBlock& chip) {
     return whole ? kSteps : std::min(kSteps, pitch - blocks.block(chip.block).step);
   };
+  const double way_mm = envelope.rings[static_cast<std::size_t>(ring)].profile.radius_mm * 2 * kPi / envelope.steps;
   const auto samples_of = [&](const ChipBlock& chip) { return chip.thickness_mm.data() + half * kSteps; };
   // The block that follows in the turn; null: nothing is cut there, nor nearly.
   const auto neighbour = [&](std::size_t k, int side) -> const ChipBlock* {
@@ -74,7 +76,12 @@ void ChipEnds::add_ring(const removal::EnvelopeGrid& envelope, int ring, std::sp
         e.width_fraction = chips[k].cut_255[static_cast<std::size_t>(lane)] / 255.0;
         double inside = 0;  // of the sample before, on the way out
         if (l - side >= 0 && l - side <= count + 1) inside = at(l - side);
-        e.fall_mm = at(l + side) < 0 ? at(l) - at(l + side) : std::max(0.0, inside - at(l));
+        e.inside_mm = std::max(0.0, inside);
+        const double beyond = at(l + side);
+        if (beyond < -kAbrupt * way_mm)
+          e.fall_mm = 0;
+        else
+          e.fall_mm = beyond < 0 ? at(l) - beyond : std::max(0.0, inside - at(l));
         if (e.fall_mm > 0) e.at = std::min(1.0, at(l) / e.fall_mm);
         ends_.push_back(e);
       }

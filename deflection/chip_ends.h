@@ -17,12 +17,15 @@ struct ChipEnd {
   double at = 0.5;            ///< from the sample outwards, 0 to 1: end of the chip in the middle of the ring
   double ramp = 0;            ///< time over which the end crosses the ring width; 0: at once, or not known
   double thickness_mm = 0;    ///< at the sample
+  double inside_mm = 0;       ///< thickness at the sample before, on the way out; 0: that one is out of the cut, too
   double fall_mm = 0;         ///< decrease of the thickness per step outwards; 0: the chip ends at its full thickness
   double width_fraction = 1;  ///< of the ring that is in the cut at the sample
 };
 
 /// Ends of all chips of a stamp, ring by ring. For a sample out of the cut the negative thickness is the distance to
-/// the material; without it, the chip is extrapolated from its last two samples.
+/// the material; without it, the chip is extrapolated from its last two samples. Where that distance is many times the
+/// way between two samples the material ends in a face nearly along the normal: the chip ends there at its full
+/// thickness, midway between the samples, which is as near as they tell.
 class ChipEnds {
  public:
   /// The result is valid until the next call.

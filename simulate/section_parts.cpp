@@ -102,8 +102,11 @@ SweptSection SweptSection::read(ByteReader& in) {
   return out;
 }
 
-void OwnSweep::write(ByteWriter& out) const { write_parts(out, stock); }
-OwnSweep OwnSweep::read(ByteReader& in) { return {read_parts(in)}; }
+OwnSweep OwnSweep::read(ByteReader& in) {
+  OwnSweep out;
+  while (in.left() > 0) out.stock.push_back(StockPart::read(in));
+  return out;
+}
 
 SolvedSection SolvedSection::within(const Region& region, double voxel_mm) const {
   return {.stock = parts_within(stock, region, voxel_mm),

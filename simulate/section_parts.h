@@ -32,11 +32,10 @@ struct SweptSection {
   void write(ByteWriter& out) const;
   static SweptSection read(ByteReader& in);
 };
-/// The same of the program alone, one per piece; no other section reads it.
+/// The same of the program alone, one per piece; no other section reads it. Its bytes are those of the parts.
 struct OwnSweep {
   std::vector<removal::StockPart> stock;
 
-  void write(ByteWriter& out) const;
   static OwnSweep read(ByteReader& in);
 };
 

@@ -7,6 +7,7 @@
 #include "base/cancel.h"
 #include "base/stage.h"
 #include "removal/engagement.h"
+#include "removal/joined_parts.h"
 #include "simulate/contour.h"
 #include "simulate/section_stock.h"
 
@@ -97,38 +98,43 @@ std::vector<StockPart> joined_runs(const SectionPlace& place, const std::vector<
   return out;
 }
 
-/// Each of a section's pieces carved alone out of `raw`.
-std::vector<StockPart> swept_parts(const Stock& raw, const Job& job, const removal::StampPath& path,
-                                   const SectionPlace& place, double shrink_mm, double& removed_mm3, SectionWork& work,
-                                   Stage& stage) {
-  std::vector<StockPart> out;
+/// Each of a section's pieces carved alone out of `raw`; `use(run, part)` for each.
+template <class Use>
+void sweep_pieces(const Stock& raw, const Job& job, const removal::StampPath& path, const SectionPlace& place,
+                  double shrink_mm, double& removed_mm3, SectionWork& work, Stage& stage, const Use& use) {
   for (std::size_t p = place.own.begin; p < place.own.end; ++p) {
     cancellation_point();
     const PathPiece& piece = place.pieces[p];
     const removal::ToolRun& run = path.runs[piece.run];
-    if (shrink_mm > 0 && run.kind != removal::RunKind::milling) {
-      out.emplace_back();
-      continue;
-    }
+    if (shrink_mm > 0 && run.kind != removal::RunKind::milling) continue;
     Stock scratch(raw);
     const std::size_t from = run.from + piece.from;
     removed_mm3 += removal::sweep(scratch, removal::shape_of(job.tools.at(run.tool)),
                                   std::span(path.stamps).subspan(from, piece.count),
                                   {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(from)});
-    out.emplace_back(scratch, raw, reach_of(job, path, piece));
+    StockPart part(scratch, raw, reach_of(job, path, piece));
     work.stamps += piece.count;
-    work.voxels += out.back().voxels();
+    work.voxels += part.voxels();
     stage.advance(piece.count);
+    use(piece.run, std::move(part));
   }
-  return out;
 }
 
-Swept swept_path(const Job& job, const Stock& raw, const removal::StampPath& path, const SectionPlace& place,
-                 Stage& stage) {
-  Swept out;
+/// `own(part)` for each piece of the section.
+template <class Own>
+SweptSection swept_path(const Job& job, const Stock& raw, const removal::StampPath& path, const SectionPlace& place,
+                        Stage& stage, const Own& own) {
+  SweptSection out;
+  removal::JoinedParts joined;
+  std::optional<std::size_t> of_run;
   double ignored_mm3 = 0;
-  out.own.stock = swept_parts(raw, job, path, place, 0, ignored_mm3, out.section.work, stage);
-  out.section.stock = joined_runs(place, pointers_to(out.own.stock));
+  sweep_pieces(raw, job, path, place, 0, ignored_mm3, out.work, stage, [&](std::size_t run, StockPart part) {
+    if (of_run && *of_run != run) out.stock.push_back(joined.take());
+    of_run = run;
+    own(part);
+    joined.add(std::move(part));
+  });
+  if (of_run) out.stock.push_back(joined.take());
   return out;
 }
 
@@ -281,8 +287,8 @@ Region section_region(const Job& job, const removal::StampPath& path, std::size_
   return joined_region(job, reach_of(job, path, place.pieces, place.own));
 }
 
-Swept sweep_section(const Job& job, const Programs& programs, std::size_t section, std::size_t sections,
-                    Diagnostics& diagnostics) {
+SweptSection sweep_section(const Job& job, const Programs& programs, std::size_t section, std::size_t sections,
+                           const std::function<void(const StockPart&)>& own, Diagnostics& diagnostics) {
   const SimulatedProgram& of_target = programs.of_target();
   const removal::StampPath nominal =
       removal::nominal_path(of_target.moves, of_target.selected, of_target.path, of_target.part_path());
@@ -292,22 +298,25 @@ Swept sweep_section(const Job& job, const Programs& programs, std::size_t sectio
   diagnostics.throw_if_errors();
   Stage stage("carving the section", (programs.program.path.stamps.size() + nominal.stamps.size()) / sections + 1);
   const removal::StampPath& path = programs.program.path;
-  Swept out = swept_path(job, raw.stock, path, SectionPlace(path, section, sections), stage);
+  SweptSection out = swept_path(job, raw.stock, path, SectionPlace(path, section, sections), stage, own);
   const auto joined = [&](const removal::StampPath& of, double shrink_mm, double& removed_mm3) {
-    const std::vector<StockPart> parts = swept_parts(raw.stock, job, of, SectionPlace(of, section, sections), shrink_mm,
-                                                     removed_mm3, out.section.work, stage);
-    return StockPart(pointers_to(parts));
+    removal::JoinedParts parts;
+    sweep_pieces(raw.stock, job, of, SectionPlace(of, section, sections), shrink_mm, removed_mm3, out.work, stage,
+                 [&](std::size_t, StockPart part) { parts.add(std::move(part)); });
+    return parts.take();
   };
-  out.section.target = joined(nominal, 0, out.section.target_mm3);
-  if (job.stock.allowance_mm > 0)
-    out.section.allowance = joined(of_target.path, job.stock.allowance_mm, out.section.allowance_mm3);
+  out.target = joined(nominal, 0, out.target_mm3);
+  if (job.stock.allowance_mm > 0) out.allowance = joined(of_target.path, job.stock.allowance_mm, out.allowance_mm3);
   return out;
 }
 
 Swept sweep_path_section(const Job& job, const Stock& blank, const removal::StampPath& path, std::size_t section,
                          std::size_t sections) {
   Stage stage("carving the section", path.stamps.size() / sections + 1);
-  return swept_path(job, blank, path, SectionPlace(path, section, sections), stage);
+  Swept out;
+  out.section = swept_path(job, blank, path, SectionPlace(path, section, sections), stage,
+                           [&](const StockPart& part) { out.own.stock.push_back(part); });
+  return out;
 }
 
 TargetWork joined_target(const std::vector<SweptSection>& swept, const std::vector<SolvedSection>& solved,

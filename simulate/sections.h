@@ -27,8 +27,9 @@ struct Swept {
   SweptSection section;
   OwnSweep own;
 };
-Swept sweep_section(const machine::Job& job, const Programs& programs, std::size_t section, std::size_t sections,
-                    Diagnostics& diagnostics);
+/// What the section keeps for itself (OwnSweep) is given piece by piece to `own`, and not kept.
+SweptSection sweep_section(const machine::Job& job, const Programs& programs, std::size_t section, std::size_t sections,
+                           const std::function<void(const removal::StockPart&)>& own, Diagnostics& diagnostics);
 /// The program's path alone, out of a stock.
 Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const removal::StampPath& path,
                          std::size_t section, std::size_t sections);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/commands/predict.h"
+#include "api/commands/rotary_program.h"
 #include "feedmodel/control_options.h"
 #include "kinematics/reference_check.h"
 #include "kinematics/rotary_options.h"
@@ -105,6 +106,7 @@ CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptio
   if (read) read(checked.moves);
   if (machine) simulate::check_machine(*machine, text, checked.moves, found);
   if (machine && machine->kinematics.given()) {
+    check_tip_lengths(*machine, text, checked.moves, found);
     kinematics::check_travel(*machine, text, checked.moves, found);
     kinematics::check_reference_points(*machine, text, checked.moves, found);
   }

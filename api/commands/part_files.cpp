@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -15,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "camber part 3\n";
+constexpr std::string_view kMagic = "camber part 4\n";
+constexpr std::size_t kHashLength = 16;
 
 constexpr std::string_view kOwn = "own-";
 
@@ -25,7 +27,8 @@ struct PartFile {
   std::string content;
 };
 
-std::string packed(const PartName& name, const PartKey& key, std::string_view content) {
+/// What stands before the content.
+std::string head_of(const PartName& name, const PartKey& key) {
   ByteWriter out;
   out.text(CAMBER_VERSION);
   out.text(file_name(name));
@@ -33,14 +36,20 @@ std::string packed(const PartName& name, const PartKey& key, std::string_view co
   out.text(key.hash);
   out.value(static_cast<std::uint64_t>(key.sections));
   out.value(static_cast<std::uint64_t>(key.forces_at));
-  out.text(content);
-  const std::string bytes = out.take();
-  return std::string(kMagic) + compensate::hash_of(bytes) + bytes;
+  return out.take();
+}
+
+std::string bytes_of_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string out(static_cast<std::size_t>(fs::file_size(path)), '\0');
+  in.read(out.data(), static_cast<std::streamsize>(out.size()));
+  out.resize(static_cast<std::size_t>(in.gcount()));
+  return out;
 }
 
 /// Nothing where the file is not whole.
-std::optional<PartFile> unpacked(const std::string& text) {
-  constexpr std::size_t kHashLength = 16, kHead = kMagic.size() + kHashLength;
+std::optional<PartFile> unpacked(std::string text) {
+  constexpr std::size_t kHead = kMagic.size() + kHashLength;
   const std::string_view all = text;
   if (all.size() < kHead || all.substr(0, kMagic.size()) != kMagic) return std::nullopt;
   if (compensate::hash_of(all.substr(kHead)) != all.substr(kMagic.size(), kHashLength)) return std::nullopt;
@@ -53,7 +62,8 @@ std::optional<PartFile> unpacked(const std::string& text) {
     out.key.hash = in.text();
     out.key.sections = in.value<std::uint64_t>();
     out.key.forces_at = in.value<std::uint64_t>();
-    out.content = in.text();
+    text.erase(0, text.size() - in.left());
+    out.content = std::move(text);
     return out;
   } catch (const BytesMissing&) {
     return std::nullopt;
@@ -95,15 +105,26 @@ std::string PartFiles::path(const PartName& name) const { return folder_ + "/par
 bool PartFiles::has(const PartName& name) {
   std::error_code ec;
   if (!fs::is_regular_file(path(name), ec)) return false;
-  const auto found = unpacked(SourceText::read(path(name)).text());
+  const auto found = unpacked(bytes_of_file(path(name)));
   return found && found->version == CAMBER_VERSION && found->key.hash == key_.hash &&
          found->key.forces_at == key_.forces_at && found->name == file_name(name);
 }
 
-void PartFiles::give(const PartName& name, std::string content) {
+void PartFiles::give(const PartName& name, const Write& write) {
   make_folder(folder_);
   make_folder(folder_ + "/parts");
-  write_file(path(name), packed(name, key_, content));
+  OutputFile file(path(name));
+  compensate::RunningHash hash;
+  const auto put = [&](std::string_view bytes) {
+    hash.add(bytes);
+    file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  };
+  file.stream() << kMagic << std::string(kHashLength, ' ');
+  put(head_of(name, key_));
+  write(put);
+  file.stream().seekp(static_cast<std::streamoff>(kMagic.size()));
+  file.stream() << hash.text();
+  file.commit();
 }
 
 std::string PartFiles::take(const PartName& name) {
@@ -112,7 +133,7 @@ std::string PartFiles::take(const PartName& name) {
   std::error_code ec;
   if (!fs::is_regular_file(file, ec))
     fail_on_file(file, "is missing; the part of this section was expected: " + again, "part-missing");
-  auto found = unpacked(SourceText::read(file).text());
+  auto found = unpacked(bytes_of_file(file));
   if (!found)
     fail_on_file(file, "is not whole; a part that was written to its end was expected: " + again, "part-torn");
   if (found->version != CAMBER_VERSION)
@@ -131,7 +152,7 @@ std::string PartFiles::take(const PartName& name) {
 PartKey find_parts(const std::string& folder) {
   std::optional<PartKey> out;
   for (const std::string& file : part_files(folder)) {
-    const auto found = unpacked(SourceText::read(file).text());
+    const auto found = unpacked(bytes_of_file(file));
     if (!found) continue;
     if (out && out->sections != found->key.sections)
       fail_on_file(folder,
@@ -151,7 +172,7 @@ int last_round(const std::string& folder, const PartKey& key) {
   for (const std::string& file : part_files(folder)) {
     const std::string name = fs::path(file).filename().string();
     if (name.rfind("solve-", 0) != 0) continue;
-    const auto found = unpacked(SourceText::read(file).text());
+    const auto found = unpacked(bytes_of_file(file));
     if (!found || found->key.hash == key.hash) out = std::max(out, std::atoi(name.c_str() + 6));
   }
   return out;

@@ -41,6 +41,16 @@ class RotaryCheck {
           fmt::format("{} is not known and taken as 0 for the pose of the tool", missing(moves_.state_of(*unknown))));
   }
 
+  /// The first move under tool-centre-point control whose tool length is not known.
+  void check_tip_lengths() {
+    const auto at = std::ranges::find_if(moves_.moves, [&](const nc::Move& move) {
+      const nc::ModalState& state = moves_.state_of(move);
+      return move.kind != nc::MoveKind::dwell && !move.reference && state.tip_control != nc::TipControl::off &&
+             !state.tool_length_mm;
+    });
+    if (at != moves_.moves.end()) report_unknown(*at, moves_.state_of(*at));
+  }
+
   void check_limits() {
     kinematics::ProgramJoints joints(machine_, moves_);
     std::array<bool, 3> said{};
@@ -130,6 +140,12 @@ bool joints_known(const nc::Interpretation& moves) {
   return moves.machine_origin_mm && std::ranges::all_of(moves.moves, [&](const nc::Move& move) {
            return move.kind == nc::MoveKind::dwell || move.reference || moves.state_of(move).tool_length_mm;
          });
+}
+
+void check_tip_lengths(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
+                       Diagnostics& diagnostics) {
+  if (feedmodel::has_rotary_motion(moves, machine))
+    RotaryCheck(machine, program, moves, diagnostics).check_tip_lengths();
 }
 
 void check_tip_control(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,

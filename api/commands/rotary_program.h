@@ -30,6 +30,10 @@ void place_rotary_moves(const machine::Machine& machine, nc::Interpretation& mov
 /// Whether positions of the axes follow from the program: work offset and tool lengths are known wherever it moves.
 bool joints_known(const nc::Interpretation& moves);
 
+/// Of these checks [tool-length] under tool-centre-point control: without a length it means nothing.
+void check_tip_lengths(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
+                       Diagnostics& diagnostics);
+
 /// Of these checks [tool-length] and [work-offset]: for traces, of which the tip's motion is looked at.
 void check_tip_control(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                        Diagnostics& diagnostics);

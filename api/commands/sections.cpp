@@ -18,6 +18,11 @@ Part part_of(PartStore& store, const PartName& name) {
   return simulate::part_from<Part>(store.take(name));
 }
 
+template <class Part>
+void give_part(PartStore& store, const PartName& name, const Part& part) {
+  store.give(name, [&](const auto& put) { put(simulate::bytes_of_part(part)); });
+}
+
 void add(const simulate::SectionWork& more, simulate::SectionWork& work) {
   work.stamps += more.stamps;
   work.voxels += more.voxels;
@@ -58,10 +63,15 @@ bool SectionRun::sweep(std::size_t section) {
   const PartName whole = name(PartStage::sweep, 1, section);
   if (is_there(whole)) return false;
   const StageScope stages(progress_);
-  const simulate::Swept part = simulate::sweep_section(job_, programs_, section, key_.sections, diagnostics_);
-  add(part.section.work, work_);
-  store_.give(name(PartStage::sweep, 1, section, true), simulate::bytes_of_part(part.own));
-  store_.give(whole, simulate::bytes_of_part(part.section));
+  simulate::SweptSection part;
+  // Its own pieces are many times what others need: they are written as they are carved.
+  store_.give(name(PartStage::sweep, 1, section, true), [&](const auto& put) {
+    part = simulate::sweep_section(
+        job_, programs_, section, key_.sections,
+        [&](const removal::StockPart& piece) { put(simulate::bytes_of_part(piece)); }, diagnostics_);
+  });
+  add(part.work, work_);
+  give_part(store_, whole, part);
   return true;
 }
 
@@ -101,8 +111,8 @@ bool SectionRun::solve(std::size_t section, int round) {
       .section = section, .sections = key_.sections, .turn_from = turn_from_, .progress = tell};
   const simulate::Solved part = simulate::solve_section(job_, programs_, parts, options, diagnostics_);
   add(part.section.work, work_);
-  if (is_static()) store_.give(name(PartStage::solve, round, section, true), simulate::bytes_of_part(part.own));
-  store_.give(whole, simulate::bytes_of_part(part.section));
+  if (is_static()) give_part(store_, name(PartStage::solve, round, section, true), part.own);
+  give_part(store_, whole, part.section);
   return true;
 }
 

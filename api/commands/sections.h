@@ -40,7 +40,9 @@ class PartStore {
  public:
   virtual ~PartStore() = default;
   virtual bool has(const PartName& name) = 0;
-  virtual void give(const PartName& name, std::string content) = 0;
+  /// `write` gives the content piece by piece.
+  using Write = std::function<void(const std::function<void(std::string_view)>& put)>;
+  virtual void give(const PartName& name, const Write& write) = 0;
   /// Throws InputError where it is missing [part-missing], torn [part-torn] or of another prediction [part-version],
   /// [part-job].
   virtual std::string take(const PartName& name) = 0;
@@ -52,7 +54,7 @@ class PartFiles : public PartStore {
   PartFiles(std::string folder, PartKey key) : folder_(std::move(folder)), key_(std::move(key)) {}
   /// A whole part of this prediction.
   bool has(const PartName& name) override;
-  void give(const PartName& name, std::string content) override;
+  void give(const PartName& name, const Write& write) override;
   std::string take(const PartName& name) override;
   std::string path(const PartName& name) const;
 

@@ -133,7 +133,7 @@ void DeflectedEngager::start(std::size_t from, std::size_t count, const Deflecti
   if (count == 0) return;
   if (!m.lanes) m.begin(deflections);
   m.arena.load(
-      m.stock, m.blank, m.envelope.shape, m.stamps,
+      m.stock, &m.blank, m.envelope.shape, m.stamps,
       [&](auto left) { m.removed_mm3 += store_cut(m.stock, m.arena, left, m.tiles); }, kMaxDeflection_mm);
   load_cut(m.stock, m.arena, m.envelope.shape, tips_by_id(m.all, m.first_id, m.max_deflection_mm), m.tiles);
   m.arena.read_tops(static_cast<int>(std::ceil((m.lanes->widest_mm() + kMaxDeflection_mm) / m.stock.voxel_mm())),

@@ -350,7 +350,7 @@ void RigidEngager::Impl::engage(std::size_t first, std::size_t count, ReadBatch 
   stamps = all.subspan(from, count);
   if (count == 0) return;
   order = StampOrder::of_path(stamps, envelope.shape);
-  arena.load(stock, blank, envelope.shape, stamps,
+  arena.load(stock, &blank, envelope.shape, stamps,
              [&](auto left) { removed_mm3 += store_cut(stock, arena, left, tiles); });
   start_tiles();
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {

@@ -132,11 +132,31 @@ TEST(CheckFiveAxes, SaysWhatItCannotCheck) {
   copy_machine(folder, "table_bc");
   folder.write("p.nc", kProgram);
   const auto run = run_camber(folder, "check p.nc --machine m.toml");
-  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.status, 1);
   EXPECT_NE(run.err.find("the travel of X, Y and Z is not checked, as the tool length (--tool-length) is not known "
                          "[travel-unchecked]"),
             std::string::npos)
       << run.err;
+  EXPECT_NE(
+      run.err.find("p.nc:5:1: error: the joints of this move under tool-centre-point control depend on the length "
+                   "of tool T0, which is not known; --tool-length H=MM, or its value (G10 L1) in the program, was "
+                   "expected [tool-length]\n    G1 X20. B30. C90. F500\n    ^\n"),
+      std::string::npos)
+      << run.err;
+  const auto known = run_camber(folder, "check p.nc --machine m.toml --tool-length 1=100");
+  EXPECT_EQ(known.err.find("[tool-length]"), std::string::npos) << known.err;
+}
+
+/// Without tool-centre-point control the travel alone needs a length.
+TEST(CheckFiveAxes, NeedsNoToolLengthWithoutTipControl) {
+  const TempFolder folder;
+  copy_machine(folder, "table_bc");
+  folder.write("p.nc",
+               "G21 G90 G94 G17 G40 G49 G80\nG10 L2 P1 X10. Y5. Z-300.\nG54 G0 X0 Y0 Z100. S5000 M3\nG43 H1\n"
+               "G1 X20. B30. C90. F500\nM30\n");
+  const auto run = run_camber(folder, "check p.nc --machine m.toml");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("[travel-unchecked]"), std::string::npos) << run.err;
 }
 
 // --- check, time and feed

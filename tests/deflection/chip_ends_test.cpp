@@ -1,9 +1,11 @@
 #include "deflection/chip_ends.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "deflection/tooth_pass.h"
 #include "tests/support/cutting.h"
 
 namespace camber::deflection {
@@ -63,6 +65,36 @@ TEST(ChipEnds, LieWhereTheThicknessPassesThroughZero) {
       EXPECT_NEAR(e.ramp, e.side < 0 ? 0.1 : 0.25, 1e-3);
     }
   }
+}
+
+/// Greatest lateral force of a chip of 0.02 mm that a slanting face bounds: behind it there is no material for
+/// `beyond_mm` along the normal. In the cut from `from` on, turned back by two degrees and a bit a ring, to 60 degrees.
+double greatest_force_N(double step_deg, double from_deg, double beyond_mm) {
+  const auto tool = testing::make_tool(machine::ToolType::flat, 10, 2, 30);
+  const auto grid = removal::make_envelope(tool, 2, 0.1, step_deg * kPi / 180);
+  const EnvelopeBlocks blocks(grid, kVoxel, kBand);
+  const machine::Material material{800, 300, 100, 12, 10, 1};
+  const ToothPassModel model(grid, material, beam_of(tool), {0, 1, 2}, 0, Teeth(tool));
+  constexpr double kBackOfARing_deg = 2.1, kTo_deg = 60;
+  const auto chips = chips_where(grid, blocks, [&](int ring, int step) {
+    const double at_deg = (step > grid.steps / 2 ? step - grid.steps : step) * step_deg;
+    const bool in = at_deg > from_deg - kBackOfARing_deg * ring && at_deg < kTo_deg;
+    return in ? 0.02 : -beyond_mm;
+  });
+  ToothPass pass;
+  std::vector<float> fine(removal::DeflectionTable(0, kFine * model.steps(), model.node_height_mm(), false).row_size());
+  model.evaluate(blocks, chips, 0, removal::ToothMotion{Vec3(0.05, 0, 0)}, pass, fine);
+  double most = 0;
+  for (const Vec3& f : pass.force_N) most = std::max(most, f.head<2>().norm());
+  return most;
+}
+
+TEST(ChipEnds, AtAFaceAlongTheNormalAddNoForce) {
+  for (const double from_deg : {20.0, 20.7, 21.3})
+    for (const double beyond_mm : {0.1, 0.3, 0.4, 2.0}) {
+      const double fine_N = greatest_force_N(0.25, from_deg, beyond_mm);
+      EXPECT_NEAR(greatest_force_N(2, from_deg, beyond_mm), fine_N, 0.02 * fine_N) << from_deg << ' ' << beyond_mm;
+    }
 }
 
 TEST(ChipEnds, AreDrawnOutWhereTheNextSampleTellsNothing) {

@@ -269,7 +269,7 @@ TEST(BlockKernels, WideAndNarrowVectorsReadTheSame) {
   const std::vector<Stamp> stamps = wavy_rows();
   const Stock stock = box();
   TileArena arena;
-  arena.load(stock, stock, envelope.shape, stamps, [](std::span<const std::size_t>) {});
+  arena.load(stock, &stock, envelope.shape, stamps, [](std::span<const std::size_t>) {});
   // Voxels as if stamps had cut them.
   std::mt19937 random(3);
   for (std::size_t t = 1; t < arena.size(); ++t)

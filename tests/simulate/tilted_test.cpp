@@ -84,17 +84,26 @@ TEST(TiltedTool, TurnsOfEverythingChangeNothing) {
   }
 }
 
-/// A corner of the grid of bench/rotation_grid, which has larger differences elsewhere (docs/engagement.md).
-TEST(TiltedTool, LeadAndTiltOfMinusFortyDegreesChangeNothing) {
-  const double angle = rad_from_deg(-40);
-  const Mat3 turn =
-      (Eigen::AngleAxisd(angle, Vec3::UnitY()) * Eigen::AngleAxisd(angle, Vec3::UnitX())).toRotationMatrix();
-  for (const Scene& scene : scenes()) {
-    SCOPED_TRACE(static_cast<int>(scene.tool.type));
-    const auto heights = testing::away_from_edges(scene);
-    const auto cut = [&](const Mat3& t) { return cut_turned(scene, t, kStatic, 0.23, 1.17, heights); };
-    // Under a flat bottom the edge rubs on the floor or does not, by the rounding of the voxels.
-    expect_same(cut(turn), cut(Mat3::Identity()), scene.tool.type == machine::ToolType::flat ? 0.03 : 0.02, 0.05);
+/// Of the grid of bench/rotation_grid: a corner, and where a blank's edge that is read trilinearly, rounded, makes most
+/// of the peak force (2.1 % with the bull-nose cutter, 3.0 % with the flat one).
+TEST(TiltedTool, LeadAndTiltChangeNothing) {
+  struct Case {
+    machine::ToolType type;
+    double lead_deg, tilt_deg, force_share;
+  };
+  const auto all = scenes();
+  std::vector<std::pair<const Scene*, Case>> cases;
+  for (const Scene& scene : all) cases.push_back({&scene, {scene.tool.type, -40, -40, 0.02}});
+  for (const Case& c : {Case{machine::ToolType::flat, -20, -40, 0.02}, {machine::ToolType::bull, 20, -20, 0.01}})
+    cases.push_back({&*std::ranges::find(all, c.type, [](const Scene& s) { return s.tool.type; }), c});
+  for (const auto& [scene, c] : cases) {
+    SCOPED_TRACE(static_cast<int>(c.type));
+    const Mat3 turn = (Eigen::AngleAxisd(rad_from_deg(c.lead_deg), Vec3::UnitY()) *
+                       Eigen::AngleAxisd(rad_from_deg(c.tilt_deg), Vec3::UnitX()))
+                          .toRotationMatrix();
+    const auto heights = testing::away_from_edges(*scene);
+    const auto cut = [&](const Mat3& t) { return cut_turned(*scene, t, kStatic, 0.23, 1.17, heights); };
+    expect_same(cut(turn), cut(Mat3::Identity()), c.force_share, 0.05);
   }
 }
 

@@ -172,12 +172,8 @@ void ChipReader::sort_points(const TileArena& arena, const Reading& stamp, const
 
 /// Tells a point how far it lies below the blank's surface. False far out of it.
 bool ChipReader::reach_below_blank(const TileArena& arena, const Reading& stamp, Shallow& p) const {
-  const float* blank = arena.blank(tile_of(p.cell));
-  if (!blank) return true;
-  const float* lowest = blank + in_tile(p.cell);
-  p.below_blank_mm = -trilinear(lowest, p.share);
-  if (p.up_mm != 0)
-    p.below_blank_mm -= as_float(p.up_mm * trilinear_gradient(lowest, p.share, voxel_mm_).dot(stamp.frame.axis()));
+  if (!arena.blank(tile_of(p.cell))) return true;
+  p.below_blank_mm = -as_float(arena.blank_at(p.cell, p.share).distance_mm(p.up_mm, stamp.frame.axis()));
   return p.below_blank_mm > -kNear_mm;
 }
 
@@ -222,21 +218,12 @@ bool ChipReader::place_in_ring(const TileArena& arena, const Reading& stamp, flo
   const auto half = static_cast<double>(half_mm);
   upright::RingPart part{-half, half};
   const Vec3 axis = stamp.frame.axis(), n = stamp.frame.to_part * normal(p.point);
-  if (const float* blank = arena.blank(tile_of(p.cell))) {
-    const float* lowest = blank + in_tile(p.cell);
-    const auto above = static_cast<double>(trilinear(lowest, p.share));
-    if (std::abs(above) < kWithin * half) {
-      const Vec3 outwards = trilinear_gradient(lowest, p.share, voxel_mm_);
+  if (arena.blank(tile_of(p.cell)))
+    arena.blank_at(p.cell, p.share).for_each_face([&](double above, const Vec3& outwards) {
       const double up = outwards.dot(axis);
-      if (std::abs(outwards.dot(n)) < kSquare * std::abs(up)) {
-        const double face = -above / up;
-        if (up > 0)
-          part.to_mm = std::min(part.to_mm, face);
-        else
-          part.from_mm = std::max(part.from_mm, face);
-      }
-    }
-  }
+      if (std::abs(above) < kWithin * half && std::abs(outwards.dot(n)) < kSquare * std::abs(up))
+        part.cut_by(-above / up, up > 0);
+    });
   const std::int32_t* ids = arena.view().stamp + p.cell;
   for (int c = 0; c < 8; ++c) {
     const std::int32_t id = ids[cell_corner(c)] - first_id_;
@@ -379,10 +366,15 @@ ChipReader::Depth ChipReader::depth(const TileArena& arena, const Reading& stamp
     if (b.thickness[i] < thinnest) thinnest = b.thickness[i], of = i;
   // A slope is at most 1: what is deeper than the thinnest so far cannot become thinner.
   if (p.below_blank_mm < std::max(0.0f, thinnest)) {
-    const float* lowest = arena.blank(tile_of(p.cell)) + in_tile(p.cell);
-    const Vec3 outwards = -(stamp.frame.to_part.transpose() * trilinear_gradient(lowest, p.share, voxel_mm_));
-    const float mm = p.below_blank_mm / slope(outwards.dot(normal(p.point)));
-    if (mm < thinnest) return of_field(mm, outwards, false);
+    float mm = thinnest;
+    Vec3 into = Vec3::Zero();
+    arena.blank_at(p.cell, p.share).for_each_face([&](double above, const Vec3& outwards) {
+      const Vec3 inwards = -(stamp.frame.to_part.transpose() * outwards);
+      const double below = -above - p.up_mm * outwards.dot(stamp.frame.axis());
+      const float thickness = as_float(below) / slope(inwards.dot(normal(p.point)));
+      if (thickness < mm) mm = thickness, into = inwards;
+    });
+    if (mm < thinnest) return of_field(mm, into, false);
   }
   if (p.first_pair == end_pair) return {kSolid, {}, false};
   const Vec3 from_tip(static_cast<double>(b.x[of]), static_cast<double>(b.y[of]), static_cast<double>(b.z[of]));

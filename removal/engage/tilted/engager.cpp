@@ -137,7 +137,7 @@ void Engager::start(std::size_t from, std::size_t count, const DeflectionTable& 
   if (!m.lanes) m.begin(deflections);
   m.way = ways(m.stamps, m.stock.min_mm(), m.stock.max_mm());
   m.arena.load(
-      m.stock, m.blank, m.envelope.shape, m.stamps, [&](auto left) { m.leave(left); },
+      m.stock, &m.blank, m.envelope.shape, m.stamps, [&](auto left) { m.leave(left); },
       m.rule.rigid ? 0 : DeflectedEngager::kMaxDeflection_mm);
   load_cut(m.stock, m.arena, m.tiles);
   m.memory.begin(deflections.row_size(), from);
@@ -235,7 +235,7 @@ double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stam
   for (std::size_t from = 0; from < stamps.size(); from += kAtOnce) {
     const auto part = stamps.subspan(from, std::min(kAtOnce, stamps.size() - from));
     const std::vector<Way> way = ways(part, stock.min_mm(), stock.max_mm());
-    arena.load(stock, stock, shape, part, leave);
+    arena.load(stock, nullptr, shape, part, leave);
     load_cut(stock, arena, tiles);
     std::vector<std::vector<std::size_t>> by_tile(arena.size());
     for (std::size_t k = 0; k < part.size(); ++k)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "removal/field/cell.h"
@@ -206,15 +207,13 @@ BlockReader::Point BlockReader::raised(Point point, float up_mm) {
 RingPart BlockReader::part_of_ring(const TileArena& arena, const Stamp& stamp, const ShallowPoints& points,
                                    int i) const {
   const int cell = points.cell[i];
-  const float* blank = arena.blank(static_cast<std::size_t>(cell / (2 * Tile::kVolume)));
+  std::optional<BlankCell> blank;
+  if (arena.blank(static_cast<std::size_t>(cell / (2 * Tile::kVolume))))
+    blank = arena.blank_at(cell, {points.share[0][i], points.share[1][i], points.share[2][i]});
   const Point p = point(stamp, points.lane[i]);
-  return part_in_material({blank ? blank + cell % (2 * Tile::kVolume) : nullptr,
-                           arena.view().stamp + cell,
-                           {points.share[0][i], points.share[1][i], points.share[2][i]},
-                           p.place_mm,
-                           p.normal,
+  return part_in_material({blank ? &*blank : nullptr, arena.view().stamp + cell, p.place_mm, p.normal,
                            static_cast<double>(blocks_.wall_half_mm(points.lane[i]))},
-                          tips_.view(), first_id_, envelope_.shape, voxel_mm_);
+                          tips_.view(), first_id_, envelope_.shape);
 }
 
 /// From thickness to depth: the blank's surface counts as one field more, read trilinearly.
@@ -226,6 +225,10 @@ void BlockReader::thin_by_blank(const TileArena& arena, const ShallowPoints& poi
     if (!(b.thickness[at] > 0)) continue;
     const auto cell = static_cast<std::size_t>(points.cell[i]), tile = cell / (2 * Tile::kVolume);
     if (!arena.blank(tile)) continue;
+    if (arena.has_edge(points.cell[i])) {
+      b.depth[at] = below_blank(arena, points, i, 0, b.thickness[at]);
+      continue;
+    }
     b.blank_point[to] = i;
     b.blank_lane[to] = points.lane[i];
     b.blank_cell[to] = static_cast<std::int32_t>(cell - tile * Tile::kVolume);
@@ -254,17 +257,18 @@ void BlockReader::thin_by_blank(const TileArena& arena, const ShallowPoints& poi
 float BlockReader::below_blank(const TileArena& arena, const ShallowPoints& points, int i, float up_mm,
                                float thinnest) const {
   const int cell = points.cell[i];
-  const float* blank = arena.blank(static_cast<std::size_t>(cell / (2 * Tile::kVolume)));
-  if (!blank) return thinnest;
-  const float* lowest = blank + cell % (2 * Tile::kVolume);
-  const CellShare share{points.share[0][i], points.share[1][i], points.share[2][i]};
-  const float distance =
-      trilinear(lowest, share) + up_mm * static_cast<float>(trilinear_gradient(lowest, share, voxel_mm_).z());
+  if (!arena.blank(static_cast<std::size_t>(cell / (2 * Tile::kVolume)))) return thinnest;
+  const BlankCell blank = arena.blank_at(cell, {points.share[0][i], points.share[1][i], points.share[2][i]});
+  const auto distance = static_cast<float>(blank.distance_mm(static_cast<double>(up_mm), Vec3::UnitZ()));
   // A slope is at most 1: what is deeper than the thinnest so far cannot become thinner.
   if (distance >= 0 || -distance >= thinnest) return std::min(thinnest, -distance);
   const auto p = blocks_.point(static_cast<std::uint32_t>(points.lane[i] / kLanes), points.lane[i] % kLanes);
   const Vec3 normal(envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]);
-  return std::min(thinnest, -distance / slope(-trilinear_gradient(lowest, share, voxel_mm_).dot(normal)));
+  blank.for_each_face([&](double above, const Vec3& outwards) {
+    const auto below = static_cast<float>(-above - static_cast<double>(up_mm) * outwards.z());
+    thinnest = std::min(thinnest, below / slope(-outwards.dot(normal)));
+  });
+  return thinnest;
 }
 
 /// As BlockKernels::thin_points, for any cutter.

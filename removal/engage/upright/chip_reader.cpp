@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "removal/engage/upright/level_faces.h"
 #include "removal/field/upright/carve_general.h"
@@ -136,12 +137,9 @@ void ChipReader::sort_points(const TileArena& arena, std::size_t k, const LaneRe
       }
     }
     const auto tile = static_cast<std::size_t>(point.cell / (2 * Tile::kVolume));
-    if (const float* blank = arena.blank(tile)) {
-      const float* lowest = blank + point.cell % (2 * Tile::kVolume);
-      point.below_blank_mm = -trilinear(lowest, point.share);
-      if (point.up_mm != 0)
-        point.below_blank_mm -=
-            static_cast<float>(point.up_mm * trilinear_gradient(lowest, point.share, voxel_mm_).z());
+    if (arena.blank(tile)) {
+      point.below_blank_mm =
+          -static_cast<float>(arena.blank_at(point.cell, point.share).distance_mm(point.up_mm, Vec3::UnitZ()));
       if (point.below_blank_mm <= -kNear_mm) continue;
     }
     b.shallow.push_back(point);
@@ -170,11 +168,12 @@ struct ChipReader::Place {
 /// Floors that the tool left before count as displaced along its axis by `axial_mm`, as it is now.
 bool ChipReader::place_in_ring(const TileArena& arena, float half_mm, float axial_mm, Shallow& p) const {
   const Place place(arena, p, voxel_mm_);
-  const float* blank = arena.blank(place.tile);
+  std::optional<BlankCell> blank;
+  if (arena.blank(place.tile)) blank = arena.blank_at(p.cell, p.share);
   const auto half = static_cast<double>(half_mm);
-  const RingPart part = part_in_material({blank ? blank + place.in_tile : nullptr, arena.view().stamp + p.cell, p.share,
-                                          place.point_mm, normal(p.point), half, static_cast<double>(axial_mm)},
-                                         all_, first_id_, envelope_.shape, voxel_mm_);
+  const RingPart part = part_in_material({blank ? &*blank : nullptr, arena.view().stamp + p.cell, place.point_mm,
+                                          normal(p.point), half, static_cast<double>(axial_mm)},
+                                         all_, first_id_, envelope_.shape);
   p.cut_255 = part.cut_255(half);
   p.up_mm = part.middle_mm();
   return p.cut_255 > 0;
@@ -289,11 +288,14 @@ ChipReader::Depth ChipReader::depth(const TileArena& arena, const Shallow& p, st
     if (b.thickness[i] < thinnest) thinnest = b.thickness[i], of = i;
   // A slope is at most 1: what is deeper than the thinnest so far cannot become thinner.
   if (p.below_blank_mm < std::max(0.0f, thinnest)) {
-    const float* lowest =
-        arena.blank(static_cast<std::size_t>(p.cell / (2 * Tile::kVolume))) + p.cell % (2 * Tile::kVolume);
-    const Vec3 outwards = -trilinear_gradient(lowest, p.share, voxel_mm_);
-    const float mm = p.below_blank_mm / slope(outwards.dot(normal(p.point)));
-    if (mm < thinnest) return of_field(mm, outwards);
+    float mm = thinnest;
+    Vec3 into = Vec3::Zero();
+    arena.blank_at(p.cell, p.share).for_each_face([&](double above, const Vec3& outwards) {
+      const double below = -above - p.up_mm * outwards.z();
+      const float thickness = static_cast<float>(below) / slope(-outwards.dot(normal(p.point)));
+      if (thickness < mm) mm = thickness, into = -outwards;
+    });
+    if (mm < thinnest) return of_field(mm, into);
   }
   if (p.first_pair == end_pair) return {kSolid, {}};
   return of_field(thinnest, envelope_.shape.gradient(Vec3(b.x[of], b.y[of], b.z[of])));

@@ -27,22 +27,13 @@ std::uint8_t RingPart::cut_255(double half_width_mm) const {
   return static_cast<std::uint8_t>(std::lround(255 * std::max(0.0, to_mm - from_mm) / (2 * half_width_mm)));
 }
 
-RingPart part_in_material(const RingPlace& ring, const TipView& tips, std::int32_t first_id, const CutterShape& shape,
-                          double voxel_mm) {
+RingPart part_in_material(const RingPlace& ring, const TipView& tips, std::int32_t first_id, const CutterShape& shape) {
   RingPart part{-ring.half_width_mm, ring.half_width_mm};
-  if (ring.blank) {
-    const auto above = static_cast<double>(trilinear(ring.blank, ring.share));  // the blank's face
-    if (std::abs(above) < kWithin * ring.half_width_mm) {
-      const Vec3 up = trilinear_gradient(ring.blank, ring.share, voxel_mm);
-      if (std::abs(up.dot(ring.normal)) < kUpright * std::abs(up.z())) {
-        const double face = -above / up.z();
-        if (up.z() > 0)
-          part.to_mm = std::min(part.to_mm, face);
-        else
-          part.from_mm = std::max(part.from_mm, face);
-      }
-    }
-  }
+  if (ring.blank)
+    ring.blank->for_each_face([&](double above, const Vec3& up) {
+      if (std::abs(above) < kWithin * ring.half_width_mm && std::abs(up.dot(ring.normal)) < kUpright * std::abs(up.z()))
+        part.cut_by(-above / up.z(), up.z() > 0);
+    });
   for (int c = 0; c < 8; ++c) {
     const std::int32_t id = ring.ids[cell_corner(c)] - first_id;
     if (id < 0) continue;

@@ -51,7 +51,7 @@ void StepArena::load(std::size_t place, const Stock& stock, const Stock& blank) 
   slots_.all()[place] = static_cast<std::int32_t>(number);
   if (last_near_.size() <= number) last_near_.resize(number + 1);
   last_near_[number] = stamps_;
-  read_tile(number, stock, blank);
+  read_tile(number, stock, &blank);
   fresh_.push_back(number);
   ++there_;
 }

@@ -29,7 +29,7 @@ void TileArena::copy_shared(const Tile& from, const std::array<int, 3>& up, Tile
     }
 }
 
-void TileArena::load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps,
+void TileArena::load(const Stock& stock, const Stock* blank, const CutterShape& shape, std::span<const Stamp> stamps,
                      const Leave& leave, double deflection_mm) {
   voxel_ = stock.voxel_mm();
   list_tiles(stock, shape, stamps, leave, deflection_mm);
@@ -148,15 +148,23 @@ void TileArena::make_room(std::size_t tiles_wanted) {
     if (const float* from = blank(t)) std::copy_n(from, Tile::kVolume, blanks.get() + t * Tile::kVolume);
   tiles_ = std::move(tiles);
   blanks_ = std::move(blanks);
+  edges_.resize(room_);
 }
 
-void TileArena::read_tile(std::size_t t, const Stock& stock, const Stock& blank) {
+void TileArena::read_tile(std::size_t t, const Stock& stock, const Stock* blank) {
   stock.load(index_[t], tiles_[t]);
-  in_solid_[t] = static_cast<char>(blank.is_solid(index_[t]));
-  if (in_solid_[t] == 0) blank.read(first_voxel(index_[t]), Tile::kSide, blanks_.get() + t * Tile::kVolume, nullptr);
+  in_solid_[t] = static_cast<char>(!blank || blank->is_solid(index_[t]));
+  if (in_solid_[t] != 0) return edges_[t].clear();
+  const Index3 first = first_voxel(index_[t]);
+  float* distance = blanks_.get() + t * Tile::kVolume;
+  blank->read(first, Tile::kSide, distance, nullptr);
+  edges_[t].find(distance, blank->voxel_mm(), blank->band_mm(), [&](const Index3& cell, float* out) {
+    blank->read({first[0] + cell[0] - 1, first[1] + cell[1] - 1, first[2] + cell[2] - 1}, BlankEdges::kAround, out,
+                nullptr);
+  });
 }
 
-void TileArena::load_fresh(const Stock& stock, const Stock& blank) {
+void TileArena::load_fresh(const Stock& stock, const Stock* blank) {
   tiles_[0].distance.fill(static_cast<float>(stock.band_mm()));
   tiles_[0].stamp.fill(Stock::kUncut);
   tbb::parallel_for(std::size_t{0}, fresh_.size(), [&](std::size_t i) { read_tile(fresh_[i], stock, blank); });

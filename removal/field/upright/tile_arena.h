@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "removal/cutter.h"
+#include "removal/field/blank_edges.h"
 #include "removal/field/slot_map.h"
 #include "removal/field/tile.h"
 #include "removal/field/upright/top_map.h"
@@ -24,8 +25,9 @@ class TileArena {
   using Leave = std::function<void(std::span<const std::size_t> tiles)>;
 
   /// Loads what is not air and not there yet, and gives up what these stamps do not reach. Tile 0 is air all over and
-  /// stands for all others. `blank`: the stock before the first stamp. deflection_mm: how far cutters may lean.
-  void load(const Stock& stock, const Stock& blank, const CutterShape& shape, std::span<const Stamp> stamps,
+  /// stands for all others. `blank`: the stock before the first stamp; null where no
+  /// chips are read. deflection_mm: how far cutters may lean.
+  void load(const Stock& stock, const Stock* blank, const CutterShape& shape, std::span<const Stamp> stamps,
             const Leave& leave, double deflection_mm = 0);
   /// Gives up all tiles.
   void clear(const Leave& leave);
@@ -37,6 +39,15 @@ class TileArena {
   /// Distances of the blank there; null where the blank is solid.
   const float* blank(std::size_t tile) const {
     return in_solid_[tile] != 0 ? nullptr : blanks_.get() + tile * Tile::kVolume;
+  }
+  bool has_edge(std::int32_t cell) const {
+    return !edges_[static_cast<std::size_t>(cell / (2 * Tile::kVolume))].faces(cell % (2 * Tile::kVolume)).empty();
+  }
+  /// The blank at a point of a cell of that tile, which is not solid.
+  BlankCell blank_at(std::int32_t cell, const CellShare& share) const {
+    const auto tile = static_cast<std::size_t>(cell / (2 * Tile::kVolume));
+    const int in_tile = cell % (2 * Tile::kVolume);
+    return {blanks_.get() + tile * Tile::kVolume + in_tile, edges_[tile].faces(in_tile), share, voxel_};
   }
   /// Of all tiles, Tile::kVolume each; only what blank() points to counts.
   const float* blanks() const { return blanks_.get(); }
@@ -56,7 +67,7 @@ class TileArena {
   std::size_t take_number(const Index3& index);
   void make_room(std::size_t tiles);
   /// The tile and its blank, as the stocks have them.
-  void read_tile(std::size_t tile, const Stock& stock, const Stock& blank);
+  void read_tile(std::size_t tile, const Stock& stock, const Stock* blank);
   /// Its upper layer from the neighbours that are there, but for those that `is_read` says are as the stock has them.
   template <class IsRead>
   void share_upper_layer(std::size_t tile, IsRead is_read);
@@ -71,13 +82,14 @@ class TileArena {
   std::vector<Index3> index_;
   std::unique_ptr<Tile[]> tiles_;    ///< not cleared
   std::unique_ptr<float[]> blanks_;  ///< not cleared
+  std::vector<BlankEdges> edges_;    ///< of the blanks
   std::vector<std::size_t> fresh_, free_;
 
  private:
   void list_tiles(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const Leave& leave,
                   double deflection_mm);
   void reset_slots(const Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, double reach_mm);
-  void load_fresh(const Stock& stock, const Stock& blank);
+  void load_fresh(const Stock& stock, const Stock* blank);
   static void copy_shared(const Tile& from, const std::array<int, 3>& up, Tile& to);
 };
 
