@@ -76,6 +76,7 @@ PostureResult v0::posture(const Program& program, const Job& job, const PostureO
     const api::PosturedProgram& last = rows.back();
     result.success = last.blocked_line == 0 && last.postured.figures.unclear == 0;
     result.blocked_line = last.blocked_line;
+    result.unclear_line = last.unclear_line;
     result.text = last.postured.text;
     result.figures = figures_of(last);
     if (options.overhang_step_mm > 0 && result.success)

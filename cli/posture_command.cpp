@@ -50,8 +50,11 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
     fmt::print("{}", api::posture_text(program, command));
   }
   if (figures.unclear == 0) return kDone;
-  fmt::print(stderr, "posture: the tool is nearer than {:g} mm at {} of {} points; the program was written\n",
-             arguments.options.clearance_mm, figures.unclear, figures.points);
+  fmt::print(
+      stderr,
+      "posture: the tool is nearer than {:g} mm, or swings, at {} of {} points, first in line {}; the program was "
+      "written\n",
+      arguments.options.clearance_mm, figures.unclear, figures.points, program.unclear_line);
   return kNumbersDidNotWorkOut;
 }
 

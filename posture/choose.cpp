@@ -14,6 +14,7 @@
 #include "posture/clear_directions.h"
 #include "posture/one_direction.h"
 #include "posture/path_cost.h"
+#include "posture/rotary_path.h"
 
 namespace camber::posture {
 namespace {
@@ -23,7 +24,7 @@ constexpr double kFarthest = 55 * kPi / 180;  ///< of tool and normal that is lo
 constexpr double kFarthestLate = 75 * kPi / 180;  ///< the same where the axes follow late: turns cost more
 constexpr double kRapidMmPerS = 200;
 constexpr double kSpeedCost = 0.5;  ///< of a tip that cuts, a mm of path
-constexpr int kRounds = 12, kSmoothings = 15;
+constexpr int kRounds = 12, kSmoothings = 15, kSwingRounds = 6;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 bool clear(const Surroundings& surroundings, const ToolShape& tool, const PathPoint& p, const Vec3& axis) {
@@ -35,6 +36,14 @@ bool clear_between(const Surroundings& surroundings, const ToolShape& tool, cons
                    const PathPoint& q, const Vec3& b) {
   const Vec3 axis = (a + b).normalized();
   return surroundings.room_mm(tool, (p.tip_mm(a) + q.tip_mm(b)) / 2, axis, 0) >= 0;
+}
+
+/// With the rotary axes turning evenly.
+bool clear_on_the_way(const Surroundings& surroundings, const ToolShape& tool, const kinematics::Chain& chain,
+                      const Vec3& from_mm, const Vec3& to_mm, const Vec3& from_rad, const Vec3& to_rad) {
+  return each_between(chain, from_rad, to_rad, [&](double share, const Vec3& axis) {
+    return surroundings.room_mm(tool, from_mm + share * (to_mm - from_mm), axis, 0) >= 0;
+  });
 }
 
 /// The points at which the direction is chosen: a few millimetres apart, and where contact begins and ends.
@@ -66,10 +75,11 @@ class Chooser {
  public:
   Chooser(std::span<const PathPoint> points, const Knots& knots, const Directions& directions,
           const ClearDirections& clear, std::size_t tool_index, const Surroundings& surroundings, const ToolShape& tool,
-          const LagError& lag, const PostureOptions& options)
+          const machine::Machine& machine, const LagError& lag, const PostureOptions& options)
       : all_(points),
         surroundings_(surroundings),
         tool_(tool),
+        machine_(machine),
         lag_(lag),
         options_(options),
         directions_(directions),
@@ -79,17 +89,30 @@ class Chooser {
         points_(knots.points) {}
 
   Postures run() {
-    Postures out;
+    Postures out, best;
+    std::size_t least = std::numeric_limits<std::size_t>::max();
     barred_.assign(points_.size(), {});
+    restricted_.assign(points_.size(), 0);
     for (int round = 0; round < kRounds; ++round) {
       const auto path = shortest(out);
+      if (out.blocked && restricts_) {
+        stop_restricting();
+        out.blocked.reset();
+        continue;
+      }
       if (out.blocked) break;
       out.axes = between_knots(path);
-      if (!bar_blocked_steps(path, out.axes)) {
-        smooth(out.axes);
-        return out;
+      if (bar_blocked_steps(path, out.axes)) continue;
+      smooth(out.axes);
+      const std::vector<std::size_t> unclear = unclear_knots(out.axes);
+      if (unclear.size() < least) {
+        least = unclear.size();
+        best = out;
       }
+      if (unclear.empty() || ++swings_ > kSwingRounds) return best;
+      avoid(path, unclear);
     }
+    if (!best.axes.empty()) return best;  // the figures say where it is not clear
     out.blocked = knots_[out.blocked.value_or(first_barred_)];
     out.axes.clear();
     return out;
@@ -140,7 +163,7 @@ class Chooser {
         if (cost[a] == kNever) continue;
         for (const Directions::Step& step : directions_.steps(a)) {
           float sum = cost[a] + step_cost(points_[i], step);
-          if (sum >= next[step.to] || !clear_.clear(i, step.to, tool_index_)) continue;
+          if (sum >= next[step.to] || !open(i, step.to)) continue;
           if (left) sum += lag_cost(points_[i], step, a, before, here);
           if (sum >= next[step.to] || barred(i, a, step.to)) continue;
           next[step.to] = sum;
@@ -149,7 +172,7 @@ class Chooser {
       }
       bool any = false;
       for (std::size_t d = 0; d < n; ++d) {
-        if (i == 0 && !clear_.clear(i, d, tool_index_)) next[d] = kNever;
+        if (i == 0 && !open(i, d)) next[d] = kNever;
         if (next[d] == kNever) continue;
         next[d] += static_cast<float>(posture_cost(points_[i], directions_.axis(d), options_));
         any = true;
@@ -167,6 +190,43 @@ class Chooser {
       d = from[i * n + d];
     }
     return path;
+  }
+
+  bool open(std::size_t i, std::size_t d) const {
+    return clear_.clear(i, d, tool_index_) && (restricted_[i] == 0 || directions_.whole(d));
+  }
+
+  /// Knots on the way to which the axes, as they turn, take the tool too near, or swing it.
+  std::vector<std::size_t> unclear_knots(const std::vector<Vec3>& axes) const {
+    std::vector<std::size_t> out;
+    const std::vector<Vec3> rotary_rad = rotary_path(machine_, all_, axes);
+    for (const std::size_t i : unclear_points(all_, axes, rotary_rad, surroundings_, tool_, machine_)) {
+      const auto k = static_cast<std::size_t>(std::ranges::lower_bound(knots_, i) - knots_.begin());
+      if (out.empty() || out.back() != k) out.push_back(k);
+    }
+    return out;
+  }
+
+  /// These steps are not taken again; and the cuts about them, between rapids, keep to directions that do not end the
+  /// travel of any solution.
+  void avoid(const std::vector<std::uint16_t>& path, const std::vector<std::size_t>& unclear) {
+    for (const std::size_t k : unclear) {
+      if (k == 0) continue;
+      barred_[k].emplace_back(path[k - 1], path[k]);
+      if (!may_restrict_ || points_[k].rapid) continue;
+      std::size_t first = k, end = k;
+      while (first > 0 && !points_[first].rapid) --first;
+      while (end < points_.size() && !points_[end].rapid) ++end;
+      std::fill(restricted_.begin() + static_cast<std::ptrdiff_t>(first),
+                restricted_.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{1});
+      restricts_ = true;
+    }
+  }
+
+  /// Where nothing else is clear.
+  void stop_restricting() {
+    std::fill(restricted_.begin(), restricted_.end(), std::uint8_t{0});
+    restricts_ = may_restrict_ = false;
   }
 
   bool barred(std::size_t i, std::size_t from, std::size_t to) const {
@@ -235,6 +295,7 @@ class Chooser {
   std::span<const PathPoint> all_;
   const Surroundings& surroundings_;
   const ToolShape& tool_;
+  const machine::Machine& machine_;
   const LagError& lag_;
   const PostureOptions& options_;
   const Directions& directions_;
@@ -244,6 +305,9 @@ class Chooser {
   const std::vector<PathPoint>& points_;   ///< the knots
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> barred_;
   std::size_t first_barred_ = 0;
+  std::vector<std::uint8_t> restricted_;  ///< knots
+  bool may_restrict_ = true, restricts_ = false;
+  int swings_ = 0;
 };
 
 void take_cheaper(std::span<const PathPoint> points, const ToolShape& tool, const LagError& lag,
@@ -265,7 +329,6 @@ class BySurface {
     std::vector<std::optional<Vec3>> wanted;
     for (std::size_t i = 0; i < points_.size(); ++i) wanted.push_back(wanted_at(i));
     out.axes = filled(wanted);
-    out.unclear = count_unclear(points_, out.axes, surroundings_, tool_);
     return out;
   }
 
@@ -380,14 +443,21 @@ double posture_cost(const PathPoint& point, const Vec3& axis, const PostureOptio
   return cost * point.way_mm;
 }
 
-std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec3> axes,
-                          const Surroundings& surroundings, const ToolShape& tool) {
+std::vector<std::size_t> unclear_points(std::span<const PathPoint> points, std::span<const Vec3> axes,
+                                        std::span<const Vec3> rotary_rad, const Surroundings& surroundings,
+                                        const ToolShape& tool, const machine::Machine& machine) {
+  const kinematics::Chain chain(machine);
   std::vector<std::uint8_t> bad(points.size(), 0);
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
     bad[i] = !clear(surroundings, tool, points[i], axes[i]) ||
-             (i > 0 && !clear_between(surroundings, tool, points[i - 1], axes[i - 1], points[i], axes[i]));
+             (i > 0 && (swings(chain, points, axes, rotary_rad, i) ||
+                        !clear_on_the_way(surroundings, tool, chain, points[i - 1].tip_mm(axes[i - 1]),
+                                          points[i].tip_mm(axes[i]), rotary_rad[i - 1], rotary_rad[i])));
   });
-  return static_cast<std::size_t>(std::count(bad.begin(), bad.end(), 1));
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < bad.size(); ++i)
+    if (bad[i] != 0) out.push_back(i);
+  return out;
 }
 
 std::vector<Postures> choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings,
@@ -413,7 +483,7 @@ std::vector<Postures> choose_postures(std::span<const PathPoint> points, const S
     Stage stage("choosing directions", some.size());
     tbb::parallel_for(std::size_t{0}, some.size(), [&](std::size_t i) {
       const auto chosen = [&](const ToolShape& tool) {
-        return Chooser(points, knots, directions, clear, i, surroundings, tool, lag, options).run();
+        return Chooser(points, knots, directions, clear, i, surroundings, tool, machine, lag, options).run();
       };
       out[first + i] = chosen(some[i]);
       if (lag.any()) {

@@ -53,7 +53,6 @@ double posture_cost(const PathPoint& point, const Vec3& axis, const PostureOptio
 struct Postures {
   std::vector<Vec3> axes;                ///< one a point; empty: none (`blocked`)
   std::optional<std::size_t> blocked{};  ///< the first point at which no direction is clear, or none is reached
-  std::size_t unclear = 0;               ///< points whose tool is too near: normal, lead_tilt, seed
 };
 
 /// For each tool: one tool, or the same one drawn in further and further. Where a tool has an error_mm, what its axes
@@ -62,8 +61,10 @@ std::vector<Postures> choose_postures(std::span<const PathPoint> points, const S
                                       std::span<const ToolShape> tools, const machine::Machine& machine,
                                       const LagError& lag, const PostureOptions& options);
 
-/// Points, and places half way between them, at which the tool is nearer than it needs to be.
-std::size_t count_unclear(std::span<const PathPoint> points, std::span<const Vec3> axes,
-                          const Surroundings& surroundings, const ToolShape& tool);
+/// Points at which the tool is nearer than it needs to be, or on whose way from the point before it is, or swings
+/// (rotary_path.h). Between points the tip goes straight and the axes turn evenly.
+std::vector<std::size_t> unclear_points(std::span<const PathPoint> points, std::span<const Vec3> axes,
+                                        std::span<const Vec3> rotary_rad, const Surroundings& surroundings,
+                                        const ToolShape& tool, const machine::Machine& machine);
 
 }  // namespace camber::posture

@@ -46,6 +46,7 @@ Directions::Directions(const machine::Machine& machine, double step_rad, double 
       if (inside) angles.rad[angles.count++] = rad;
     }
     if (angles.count == 0) continue;
+    angles.whole = angles.count == branches.count;
     axes_.push_back(axis);
     angles_.push_back(angles);
   }
@@ -76,17 +77,6 @@ Directions::Step Directions::step_between(std::size_t a, std::size_t b) const {
                 static_cast<std::uint8_t>(k)};
     }
   return best;
-}
-
-double rotary_motion_deg(const kinematics::Chain& chain, std::span<const Vec3> axes) {
-  kinematics::Joints now;
-  double sum = 0;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const kinematics::Solution next = chain.solve_tool_axis(axes[i], now);
-    if (i > 0) sum += deg_from_rad((next.joints.rotary_rad - now.rotary_rad).lpNorm<1>());
-    now.rotary_rad = next.joints.rotary_rad;
-  }
-  return sum;
 }
 
 }  // namespace camber::posture

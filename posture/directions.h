@@ -27,6 +27,8 @@ class Directions {
   const Vec3& axis(std::size_t i) const { return axes_[i]; }
   /// Of A, B and C, one or two solutions.
   std::span<const Vec3> angles(std::size_t i) const { return {angles_[i].rad.data(), angles_[i].count}; }
+  /// Every solution of the inverse kinematics is within travel.
+  bool whole(std::size_t i) const { return angles_[i].whole; }
   /// Of direction i, itself included.
   std::span<const Step> steps(std::size_t i) const { return {steps_.data() + first_[i], first_[i + 1] - first_[i]}; }
 
@@ -34,6 +36,7 @@ class Directions {
   struct Angles {
     std::array<Vec3, 2> rad;
     std::size_t count = 0;
+    bool whole = false;
   };
   Step step_between(std::size_t a, std::size_t b) const;
 
@@ -43,8 +46,5 @@ class Directions {
   std::vector<Step> steps_;
   std::vector<std::size_t> first_;
 };
-
-/// Sum over the path of the turns of all rotary axes, degrees, each axis going on from where it is.
-double rotary_motion_deg(const kinematics::Chain& chain, std::span<const Vec3> axes);
 
 }  // namespace camber::posture

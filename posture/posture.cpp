@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "base/stl.h"
+#include "base/units.h"
 #include "deflection/beam.h"
 #include "deflection/edge_force.h"
 #include "feedmodel/control_options.h"
@@ -15,6 +16,7 @@
 #include "nc/emit/number_style.h"
 #include "posture/frame_text.h"
 #include "posture/path_cost.h"
+#include "posture/rotary_path.h"
 #include "posture/stock_obstacle.h"
 #include "repath/post_writer.h"
 #include "repath/tip_motion.h"
@@ -75,14 +77,15 @@ class Maker {
     const std::vector<Postures> postures =
         choose_postures(points_, surroundings_, shapes, job_.machine, *lag_, request_.options);
     std::vector<Postured> out(tools.size());
-    tbb::parallel_for(std::size_t{0}, tools.size(), [&](std::size_t i) { finish(tools[i], postures[i], out[i]); });
+    tbb::parallel_for(std::size_t{0}, tools.size(),
+                      [&](std::size_t i) { finish(tools[i], shapes[i], postures[i], out[i]); });
     return out;
   }
 
  private:
   const machine::Tool& tool() const { return job_.tools.at(request_.tool); }
 
-  void finish(const machine::Tool& tool, const Postures& postures, Postured& out) const {
+  void finish(const machine::Tool& tool, const ToolShape& shape, const Postures& postures, Postured& out) const {
     out.points = points_;
     out.tool = request_.tool;
     out.origin_mm = -*moves_.machine_origin_mm;
@@ -93,8 +96,12 @@ class Maker {
     }
     out.axes = postures.axes;
     out.figures = figures_of(tool, postures.axes);
-    out.figures.unclear = postures.unclear;
-    out.figures.rotary_motion_deg = rotary_motion_deg(kinematics::Chain(job_.machine), postures.axes);
+    out.rotary_rad = rotary_path(job_.machine, points_, out.axes);
+    const auto unclear = unclear_points(points_, out.axes, out.rotary_rad, surroundings_, shape, job_.machine);
+    out.figures.unclear = unclear.size();
+    if (!unclear.empty()) out.unclear_move = points_[unclear.front()].move;
+    for (std::size_t i = 1; i < points_.size(); ++i)
+      out.figures.rotary_motion_deg += deg_from_rad((out.rotary_rad[i] - out.rotary_rad[i - 1]).lpNorm<1>());
     write(out);
   }
   void write(Postured& out) const;
@@ -272,7 +279,6 @@ void Maker::write(Postured& out) const {
   repath::PostMotions motions;
   motions.of_move.assign(moves_.moves.size(), repath::PostMotions::kKept);
   std::vector<repath::DividedMotion> divided;
-  kinematics::Joints now;
   const Vec3& origin = *moves_.machine_origin_mm;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const PathPoint& p = points_[i];
@@ -286,11 +292,10 @@ void Maker::write(Postured& out) const {
       motions.motions.push_back(motion);
       divided.emplace_back();
     }
-    now.rotary_rad = chain.solve_tool_axis(axes[i], now).joints.rotary_rad;
     repath::PostPoint point;
     const Vec3 tip = p.tip_mm(axes[i]);
     point.tip_mm = tip - origin;
-    point.rotary_deg = rounding.deg(now.rotary_rad);
+    point.rotary_deg = rounding.deg(out.rotary_rad[i]);
     point.to = p.to;
     point.rapid = p.rapid;
     // The contact keeps its feed, and the tip goes as fast as that takes.

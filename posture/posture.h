@@ -32,7 +32,7 @@ struct PostureRequest {
 
 struct PostureFigures {
   std::size_t points = 0, contacts = 0;
-  std::size_t unclear = 0;  ///< points, and places between them, at which the tool is nearer than the clearance
+  std::size_t unclear = 0;  ///< unclear_points()
   double overhang_mm = 0;
   double rotary_motion_deg = 0;
   double mean_angle_rad = 0, max_angle_rad = 0;  ///< of tool and normal, weighted by the way
@@ -51,8 +51,10 @@ struct Postured {
   int tool = 0;
   Vec3 origin_mm = Vec3::Zero();                ///< of the work offset, in the machine frame
   std::optional<std::uint32_t> blocked_move{};  ///< the first move at which no direction is clear
+  std::optional<std::uint32_t> unclear_move{};  ///< the first one of figures.unclear
   std::vector<PathPoint> points;
   std::vector<Vec3> axes;
+  std::vector<Vec3> rotary_rad;
 };
 
 /// Errors, at the blocks or the job:

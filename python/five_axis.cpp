@@ -110,6 +110,7 @@ void add_posture(py::module_& module) {
   with_json<PostureResult>(module, "PostureResult")
       .def_readonly("success", &PostureResult::success)
       .def_readonly("blocked_line", &PostureResult::blocked_line)
+      .def_readonly("unclear_line", &PostureResult::unclear_line)
       .def_readonly("of_program", &PostureResult::figures, "PostureFigures of the new program.")
       .def_readonly("overhangs", &PostureResult::overhangs);
   module.def("posture", posture, "program"_a, "job"_a, py::kw_only(), "mode"_a = "chosen", "indexed"_a = false,

@@ -127,6 +127,8 @@ std::vector<PosturedProgram> posture_programs(const PostureCommand& command, dou
     out[row].postured = std::move(made[row]);
     out[row].written = written;
     out[row].given_time_s = given_time_s;
+    if (out[row].postured.unclear_move)
+      out[row].unclear_line = moves.moves[*out[row].postured.unclear_move].block + 1;
     if (out[row].postured.blocked_move) {
       out[row].blocked_line = moves.moves[*out[row].postured.blocked_move].block + 1;
       return;
@@ -198,6 +200,7 @@ std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhang
                       {"lag_um", before.lag_um},
                       {"time_s", program.given_time_s}};
   if (program.blocked_line > 0) report["blocked_line"] = program.blocked_line;
+  if (program.unclear_line > 0) report["unclear_line"] = program.unclear_line;
   if (overhangs && clear(program.postured))
     for (const PosturedProgram& row : rows) report["overhangs"].push_back(figures_json(row));
   return report.dump(2) + "\n";

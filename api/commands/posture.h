@@ -29,6 +29,7 @@ struct PosturedProgram {
   double time_s = 0;             ///< of the whole program on the machine
   double given_time_s = 0;       ///< and of the given one
   std::size_t blocked_line = 0;  ///< 1-based; 0: none
+  std::size_t unclear_line = 0;  ///< the first of figures.unclear, 1-based; 0: none
   nc::OneDirection written = nc::OneDirection::tip;
 };
 

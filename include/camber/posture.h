@@ -30,7 +30,7 @@ struct PostureOptions {
 struct PostureFigures {
   double overhang_mm = 0;
   std::size_t points = 0, contacts = 0;
-  std::size_t unclear = 0;  ///< points at which the tool is nearer than the clearance
+  std::size_t unclear = 0;  ///< points at which, or on the way to which, the tool is too near or swings
   double rotary_motion_deg = 0;
   double mean_angle_deg = 0, max_angle_deg = 0;  ///< of tool and normal
   double compliance_um_per_N = 0;                ///< normal to the part
@@ -41,6 +41,7 @@ struct PostureFigures {
 struct PostureResult {
   bool success = false;                     ///< the tool is clear everywhere
   std::size_t blocked_line = 0;             ///< where no direction is clear; 0: none
+  std::size_t unclear_line = 0;             ///< the first with points of figures.unclear; 0: none
   std::string text{};                       ///< the new program; empty: blocked
   PostureFigures figures{};                 ///< of it
   std::vector<PostureFigures> overhangs{};  ///< with overhang_step_mm: from the given one to the shortest

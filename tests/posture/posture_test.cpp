@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <random>
+#include <sstream>
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -15,6 +16,7 @@
 #include "nc/interpreter.h"
 #include "posture/stock_obstacle.h"
 #include "removal/cutter.h"
+#include "repath/drop_cutter.h"
 #include "simulate/tool_surface.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"
@@ -363,6 +365,55 @@ TEST_F(PostureInATrough, ATableOfOverhangsHasWhatEachOfThemGivesAlone) {
   EXPECT_GT(blocked, 0U);  // the wide holder does not follow everywhere
   EXPECT_LT(blocked, table.size());
   EXPECT_GT(different, 0U);
+}
+
+/// A flank, ever steeper towards +X or -X: from 10 to 50 degrees.
+TriangleMesh flank(double side) {
+  TriangleMesh mesh;
+  constexpr int kCount = 41;
+  std::vector<double> height{0};
+  for (int i = 1; i < kCount; ++i) height.push_back(height.back() - std::tan(rad_from_deg(10 + i - 0.5)));
+  for (int i = 0; i < kCount; ++i)
+    for (const int y : {-20, 20})
+      mesh.points.emplace_back(static_cast<float>(side * (i - 20)), static_cast<float>(y),
+                               static_cast<float>(height[static_cast<std::size_t>(i)]));
+  for (std::uint32_t i = 0; i + 1 < kCount; ++i) {
+    mesh.triangles.push_back({2 * i, 2 * i + 2, 2 * i + 3});
+    mesh.triangles.push_back({2 * i, 2 * i + 3, 2 * i + 1});
+    if (side > 0) continue;
+    for (std::size_t t = mesh.triangles.size() - 2; t < mesh.triangles.size(); ++t)
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  }
+  return mesh;
+}
+
+TEST_F(PostureInATrough, RotaryAxesKeepTheirSolutionInACutThoughTheOtherOneIsNearer) {
+  Diagnostics diagnostics;
+  job_.machine = machine::read_machine(CAMBER_SOURCE_DIR "/samples/kinematics/table_bc.toml", diagnostics);
+  job_.tools[1].holder = {{20, 24, 20}};
+  for (const double side : {-1.0, 1.0}) {
+    const TriangleMesh mesh = flank(side);
+    job_.part.mesh = write_mesh(mesh, "flank.stl");
+    removal::CutterShape ball;
+    ball.radius_mm = ball.corner_radius_mm = 3;
+    repath::DropCutter drop(mesh, ball);
+    std::string text = "G21 G17 G90 G94\nG10 L2 P1 X0. Y0. Z0.\nG10 L1 P1 Z120.\nT1 M6\nG54\nS9000 M3\nG43 H1\n";
+    text += "G0 X" + std::to_string(-14 * side) + " Y0. Z40.\n";
+    for (int x = -14; x <= 14; ++x)
+      text += "G1 X" + std::to_string(side * x) + " Z" +
+              std::to_string(drop.at(Eigen::Vector2d(side * x, 0), std::nullopt)->tip_mm) + " F600.\n";
+    read(text + "G0 Z40.\nM5\nM2\n");
+    const Postured made_now = made(Mode::normal, diagnostics);
+    diagnostics.throw_if_errors();
+    EXPECT_EQ(made_now.figures.unclear, 0U);
+    std::vector<double> b;
+    std::istringstream lines(made_now.text);
+    for (std::string line; std::getline(lines, line);)
+      if (const auto at = line.find('B'); at != std::string::npos) b.push_back(std::stod(line.substr(at + 1)));
+    ASSERT_GT(b.size(), 25U);
+    EXPECT_GT(*std::ranges::max_element(b), 40) << side;  // beyond what B-35 reaches
+    EXPECT_GT(*std::ranges::min_element(b), -1e-9) << side;
+  }
 }
 
 TEST_F(PostureInATrough, OneDirectionIsTheSameHoweverItIsWritten) {

@@ -1,0 +1,41 @@
+#pragma once
+// Where the rotary axes are along a path whose directions are chosen: one solution of the inverse kinematics with its
+// winding for each point, looked for over the whole path at once.
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "kinematics/chain.h"
+#include "machine/machine.h"
+#include "posture/path_points.h"
+
+namespace camber::posture {
+
+/// A to C of one point, and its direction.
+struct RotaryPlace {
+  Vec3 rotary_rad = Vec3::Zero();
+  Vec3 axis = Vec3::UnitZ();
+};
+
+/// Angle between the direction half way between two places where the axes turn evenly, and the one half way between
+/// their directions: how far the tool swings.
+double swing_rad(const kinematics::Chain& chain, const RotaryPlace& from, const RotaryPlace& to);
+
+/// A swing that takes the centre of the rounding, on the part, farther than this off its way.
+inline constexpr double kSwing_mm = 0.1;
+/// On the way to point i from the one before. `rotary_rad`: of rotary_path().
+bool swings(const kinematics::Chain& chain, std::span<const PathPoint> points, std::span<const Vec3> axes,
+            std::span<const Vec3> rotary_rad, std::size_t i);
+
+/// Of A to C, a value for each point: within travel, of least swing in feed moves and then of least turn, from 0 on.
+/// The axes change their solution in rapids, as high as may be, where there is any such way.
+std::vector<Vec3> rotary_path(const machine::Machine& machine, std::span<const PathPoint> points,
+                              std::span<const Vec3> axes);
+
+/// Directions between two places, the axes turning evenly, no more than a degree apart; at least the one half way.
+/// Calls with the share of the way, until it returns false.
+bool each_between(const kinematics::Chain& chain, const Vec3& from_rad, const Vec3& to_rad,
+                  const std::function<bool(double share, const Vec3& axis)>& visit);
+
+}  // namespace camber::posture
