@@ -127,8 +127,7 @@ std::vector<PosturedProgram> posture_programs(const PostureCommand& command, dou
     out[row].postured = std::move(made[row]);
     out[row].written = written;
     out[row].given_time_s = given_time_s;
-    if (out[row].postured.unclear_move)
-      out[row].unclear_line = moves.moves[*out[row].postured.unclear_move].block + 1;
+    if (out[row].postured.unclear_move) out[row].unclear_line = moves.moves[*out[row].postured.unclear_move].block + 1;
     if (out[row].postured.blocked_move) {
       out[row].blocked_line = moves.moves[*out[row].postured.blocked_move].block + 1;
       return;
