@@ -5,17 +5,27 @@ if(CAMBER_UNITY)
 endif()
 if(CAMBER_UNITY AND Python3_FOUND)
   file(WRITE ${PROJECT_BINARY_DIR}/headers.cpp "")
+  set(headers <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <limits> <map> <memory> <numbers>
+    <numeric> <optional> <set> <span> <sstream> <string> <string_view> <unordered_map> <variant> <vector> <Eigen/Core>
+    <Eigen/Geometry> <fmt/format.h>)
   add_library(camber_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
   target_link_libraries(camber_headers PRIVATE camber_options fmt::fmt)
-  target_precompile_headers(camber_headers PRIVATE <algorithm> <array> <cmath> <filesystem> <fstream> <functional>
-    <limits> <map> <memory> <numbers> <numeric> <optional> <set> <span> <sstream> <string> <string_view>
-    <unordered_map> <variant> <vector> <Eigen/Core> <Eigen/Geometry> <fmt/format.h>)
+  target_precompile_headers(camber_headers PRIVATE ${headers})
+  if(CAMBER_TESTS)
+    # Precompiled headers ask for the same optimization.
+    find_package(GTest REQUIRED)
+    add_library(camber_plain_test_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
+    target_link_libraries(camber_plain_test_headers PRIVATE camber_options fmt::fmt GTest::gtest)
+    target_compile_options(camber_plain_test_headers PRIVATE -fPIC -O0)
+    target_precompile_headers(camber_plain_test_headers PRIVATE ${headers} <gtest/gtest.h>)
+  endif()
 endif()
 
 # Names of theirs stand in headers that others of their folder include.
 set(CAMBER_COMPILED_ALONE cli/compress_command.cpp tests/calib/fit_stretches_test.cpp tests/repath/resegment_test.cpp)
 
-# camber_compile_together(TARGET): files of a group have no local name in common.
+# camber_compile_together(TARGET [HEADERS]): files of a group have no local name in common. HEADERS: the target whose
+# precompiled headers it takes; camber_headers without it.
 function(camber_compile_together target)
   if(NOT CAMBER_UNITY OR NOT Python3_FOUND)
     return()
@@ -43,6 +53,10 @@ function(camber_compile_together target)
   target_compile_options(${target} PRIVATE -fPIC)  # tests too: precompiled headers ask for the same flags
   # Those of removal differ: OpenVDB's templates are visible there.
   if(NOT target STREQUAL "camber_removal")
-    target_precompile_headers(${target} REUSE_FROM camber_headers)
+    if(ARGC GREATER 1)
+      target_precompile_headers(${target} REUSE_FROM ${ARGV1})
+    else()
+      target_precompile_headers(${target} REUSE_FROM camber_headers)
+    endif()
   endif()
 endfunction()
