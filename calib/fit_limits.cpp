@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "base/units.h"
+#include "calib/bounded_least_squares.h"
 #include "feedmodel/joint_map.h"
 #include "feedmodel/plan.h"
 
@@ -175,21 +176,8 @@ bool solve_limits(const std::vector<TimedLines>& data, const Machine& base,
                   std::vector<double>& logs) {
   std::vector<double> residuals;
   residuals_of(data, machine_at(base, parameters, logs.data()), false, residuals);
-  ceres::Problem problem;
-  problem.AddResidualBlock(make_cost(data, base, parameters, residuals.size(), loss_scale).release(), nullptr,
-                           logs.data());
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    problem.SetParameterLowerBound(logs.data(), static_cast<int>(i), std::log(parameters[i].least));
-    problem.SetParameterUpperBound(logs.data(), static_cast<int>(i), std::log(parameters[i].most));
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-4;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return summary.termination_type == ceres::CONVERGENCE;
+  return least_squares_within_bounds(make_cost(data, base, parameters, residuals.size(), loss_scale), parameters,
+                                     {.function_tolerance = 1e-4, .max_iterations = max_iterations}, logs);
 }
 
 /// Compass search: the times of blocks that overlap are steps of a period, on which a derivative cannot settle. A

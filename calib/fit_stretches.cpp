@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 
+#include "calib/bounded_least_squares.h"
 #include "calib/fit_limits.h"
 #include "feedmodel/fitted_range.h"
 #include "feedmodel/plan.h"
@@ -223,20 +224,9 @@ Solution solve(const Data& data, const Machine& base, const std::vector<LimitPar
       new StretchResiduals(data, base, parameters, left_out, loss_scale), ceres::TAKE_OWNERSHIP, step);
   cost->AddParameterBlock(static_cast<int>(parameters.size()));
   cost->SetNumResiduals(static_cast<int>(data.items.size()));
-  ceres::Problem problem;
-  problem.AddResidualBlock(cost.release(), nullptr, logs.data());
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    problem.SetParameterLowerBound(logs.data(), static_cast<int>(i), std::log(parameters[i].least));
-    problem.SetParameterUpperBound(logs.data(), static_cast<int>(i), std::log(parameters[i].most));
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-6;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return {std::move(logs), summary.termination_type == ceres::CONVERGENCE};
+  const bool converged = least_squares_within_bounds(
+      std::move(cost), parameters, {.function_tolerance = 1e-6, .max_iterations = max_iterations}, logs);
+  return {std::move(logs), converged};
 }
 
 double known_to_s(const TimedStretch& t) { return std::hypot(t.sigma_s, kTimeFraction * t.time_s); }

@@ -8,6 +8,8 @@ import math
 import pathlib
 import sys
 
+import raster_job
+
 folder = pathlib.Path(sys.argv[1])
 rows = int(sys.argv[2]) if len(sys.argv) > 2 else 1000
 folder.mkdir(parents=True, exist_ok=True)
@@ -19,24 +21,5 @@ with open(folder / "raster.nc", "w") as out:
             z = -1 - 0.5 * math.sin(i / 40) * math.cos(y / 20)
             out.write("%sX%.1f Y%.1f Z%.3f%s\n" % ("" if n else "G1 ", 0.5 * i, y, z, "" if n else " F1200"))
     out.write("G0 Z5\nM30\n")
-(folder / "machine.toml").write_text("".join("[axis.%s]\nacceleration_mm_per_s2 = 3000\n" % axis for axis in "xyz") +
-                                     "[control]\ncorner = { law = \"blend\", tolerance_mm = 0.01 }\n"
-                                     "[spindle]\nmax_rpm = 12000\n")
-(folder / "job.toml").write_text("""program = "raster.nc"
-machine = "machine.toml"
-[tool.1]
-type = "ball"
-diameter_mm = 6.0
-flutes = 2
-overhang_mm = 25.0
-[material]
-ktc_MPa = 800.0
-krc_MPa = 250.0
-kte_N_per_mm = 5.0
-kre_N_per_mm = 5.0
-[stock]
-box_mm = [[0, 0, -100], [500, 500, 0]]
-[simulation]
-voxel_mm = 0.2
-coupling = "rigid"
-""")
+raster_job.write(folder, 6.0, "[[0, 0, -100], [500, 500, 0]]", 0.2, "rigid",
+                 '[control]\ncorner = { law = "blend", tolerance_mm = 0.01 }\n')

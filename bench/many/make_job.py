@@ -4,6 +4,8 @@ job.toml, machine.toml, raster.nc."""
 import pathlib
 import sys
 
+import raster_job
+
 folder = pathlib.Path(sys.argv[1])
 rows = int(sys.argv[2]) if len(sys.argv) > 2 else 12
 voxel_mm = float(sys.argv[3]) if len(sys.argv) > 3 else 0.4
@@ -14,23 +16,4 @@ lines = ["G21 G90 G17 G40 G49 G80 G54", "T1 M6", "S6000 M3", "G0 X-4 Y0 Z5"]
 for row in range(rows):
     lines += ["G0 X-4 Y%.2f" % (step * row), "G0 Z-1", "G1 X%.1f F300" % (length + 4), "G0 Z5"]
 (folder / "raster.nc").write_text("\n".join(lines + ["M30", ""]))
-(folder / "machine.toml").write_text("".join("[axis.%s]\nacceleration_mm_per_s2 = 3000\n" % axis for axis in "xyz") +
-                                     "[spindle]\nmax_rpm = 12000\n")
-(folder / "job.toml").write_text("""program = "raster.nc"
-machine = "machine.toml"
-[tool.1]
-type = "ball"
-diameter_mm = 4.0
-flutes = 2
-overhang_mm = 25.0
-[material]
-ktc_MPa = 800.0
-krc_MPa = 250.0
-kte_N_per_mm = 5.0
-kre_N_per_mm = 5.0
-[stock]
-box_mm = [[0, -2, -3], [%.1f, %.1f, 0]]
-[simulation]
-voxel_mm = %g
-coupling = "%s"
-""" % (length, step * rows + 2, voxel_mm, coupling))
+raster_job.write(folder, 4.0, "[[0, -2, -3], [%.1f, %.1f, 0]]" % (length, step * rows + 2), voxel_mm, coupling)

@@ -6,15 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
-#include "kinematics/program_joints.h"
-#include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
-#include "nc/interpreter.h"
 #include "repath/post.h"
 #include "repath/post_deviation.h"
 #include "repath/rotary_choice.h"
 #include "tests/kinematics/machines.h"
+#include "tests/repath/five_axis_program.h"
 
 namespace camber::repath {
 namespace {
@@ -89,27 +86,6 @@ TEST(RotaryChoice, HeadsThatDoNotReachTheirPoleHaveNoOtherBranch) {
   EXPECT_FALSE(mirrored_choice(machine, kinematics::Chain(machine)));
 }
 
-struct NutatingProgram {
-  nc::Program text;
-  nc::Interpretation moves;
-};
-
-NutatingProgram nutating_program(const std::string& text, const machine::Machine& machine) {
-  nc::InterpreterOptions options;
-  options.inch = false;
-  options.rotary_axes = kinematics::rotary_options(machine);
-  options = feedmodel::interpreter_options(machine, options);
-  options.work_offsets_mm[54] = Vec3(0, 0, -100);
-  options.tool_offsets[1].length_mm = 80;
-  Diagnostics diagnostics;
-  NutatingProgram out;
-  out.text = nc::read_program(SourceText("p.nc", text), diagnostics);
-  out.moves = nc::interpret(out.text, options, diagnostics);
-  diagnostics.throw_if_errors();
-  kinematics::place_lines(out.moves, machine);
-  return out;
-}
-
 /// A head that does not turn past the upright spindle. The cut goes over the pole.
 class NutatingPole : public ::testing::Test {
  protected:
@@ -118,15 +94,15 @@ class NutatingPole : public ::testing::Test {
   }
 
   TurnBack turned_once() {
-    const NutatingProgram given = nutating_program(
+    const tests::FiveAxisProgram given = tests::read_five_axes(
         "G21 G17 G90 G94\nG54\nT1 M6\nG0\nG43.5 H1 X0. Y-20. Z20. I0 J-0.5 K1\nG1 Z0. F1000 I0 J-0.5 K1\nY-10. J-0.15 "
         "K1\nY0. J0. K1\nY10. J0.15 K1\nY20. J0.6 K1\nG0 Z30. J0.6 K1\nG49\nG53 Z0\nM30\n",
         machine_);
     Diagnostics diagnostics;
-    const Posted out = post(given.text, given.moves, machine_, {}, diagnostics);
+    const Posted out = post(given.program, given.moves, machine_, {}, diagnostics);
     diagnostics.throw_if_errors();
-    const NutatingProgram made = nutating_program(out.text, machine_);
-    kinematics::check_travel(machine_, made.text, made.moves, diagnostics);
+    const tests::FiveAxisProgram made = tests::read_five_axes(out.text, machine_);
+    kinematics::check_travel(machine_, made.program, made.moves, diagnostics);
     diagnostics.throw_if_errors();
     const PostDeviation d = post_deviation(given.moves, made.moves, machine_, out, 16);
     EXPECT_LE(d.tip_mm, out.tip_bound_mm);

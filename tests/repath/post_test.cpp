@@ -9,14 +9,11 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
 #include "kinematics/feed_meaning.h"
-#include "kinematics/program_joints.h"
-#include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
-#include "nc/interpreter.h"
 #include "repath/post_deviation.h"
 #include "tests/kinematics/machines.h"
+#include "tests/repath/five_axis_program.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::repath {
@@ -24,26 +21,8 @@ namespace {
 
 using kinematics::tests::sample;
 
-struct Read {
-  nc::Program program;
-  nc::Interpretation moves;
-};
-
-Read read(const std::string& text, const machine::Machine& machine) {
-  nc::InterpreterOptions options;
-  options.inch = false;
-  options.rotary_axes = kinematics::rotary_options(machine);
-  options = feedmodel::interpreter_options(machine, options);
-  options.work_offsets_mm[54] = Vec3(0, 0, -100);
-  options.tool_offsets[1].length_mm = 80;
-  Diagnostics diagnostics;
-  Read r;
-  r.program = nc::read_program(SourceText("p.nc", text), diagnostics);
-  r.moves = nc::interpret(r.program, options, diagnostics);
-  diagnostics.throw_if_errors();
-  kinematics::place_lines(r.moves, machine);
-  return r;
-}
+using Read = tests::FiveAxisProgram;
+using tests::read_five_axes;
 
 Posted posted(const Read& given, const machine::Machine& machine, const PostOptions& options = {}) {
   Diagnostics diagnostics;
@@ -53,12 +32,12 @@ Posted posted(const Read& given, const machine::Machine& machine, const PostOpti
 }
 
 std::string text_of(const std::string& text, const machine::Machine& machine, const PostOptions& options = {}) {
-  return posted(read(text, machine), machine, options).text;
+  return posted(read_five_axes(text, machine), machine, options).text;
 }
 
 std::string said(const std::string& text, const machine::Machine& machine, const PostOptions& options = {}) {
   Diagnostics diagnostics;
-  const Read given = read(text, machine);
+  const Read given = read_five_axes(text, machine);
   post(given.program, given.moves, machine, options, diagnostics);
   std::string out;
   for (Diagnostic d : diagnostics.all()) {
@@ -163,9 +142,10 @@ TEST(Post, BackToTheTipSwitchesControlOnAndOff) {
 TEST(Post, WritesIncrementsInG91) {
   const machine::Machine machine = fanuc_table();
   const std::string head = std::string(kHead) + "G43.4 H1 X0. Y0. Z50. B10. C0.\nG1 F600\n";
-  const Read absolute = read(head + "X10. C20.\nX20. C40.\nG49\nG53 Z0\nM30\n", machine);
-  const Read steps = read(head + "G91 X10. C20.\nX10. C20.\nG90 G49\nG53 Z0\nM30\n", machine);
-  const Read a = read(posted(absolute, machine).text, machine), b = read(posted(steps, machine).text, machine);
+  const Read absolute = read_five_axes(head + "X10. C20.\nX20. C40.\nG49\nG53 Z0\nM30\n", machine);
+  const Read steps = read_five_axes(head + "G91 X10. C20.\nX10. C20.\nG90 G49\nG53 Z0\nM30\n", machine);
+  const Read a = read_five_axes(posted(absolute, machine).text, machine),
+             b = read_five_axes(posted(steps, machine).text, machine);
   ASSERT_EQ(a.moves.moves.size(), b.moves.moves.size());
   for (std::size_t i = 0; i < a.moves.moves.size(); ++i)
     EXPECT_LT((a.moves.moves[i].end_mm - b.moves.moves[i].end_mm).norm(), 1e-9) << i;
@@ -173,15 +153,16 @@ TEST(Post, WritesIncrementsInG91) {
 
 TEST(Post, FollowsArcs) {
   const machine::Machine machine = fanuc_table();
-  const Read given = read(std::string(kHead) +
-                              "G43.4 H1 X0. Y0. Z50. B10. C0.\nG1 F600 X10.\nG2 X30. I10. C45.\nG3 X30. I-10. B20.\n"
-                              "G1 X40.\nG49\nG53 Z0\nM30\n",
-                          machine);
+  const Read given =
+      read_five_axes(std::string(kHead) +
+                         "G43.4 H1 X0. Y0. Z50. B10. C0.\nG1 F600 X10.\nG2 X30. I10. C45.\nG3 X30. I-10. B20.\n"
+                         "G1 X40.\nG49\nG53 Z0\nM30\n",
+                     machine);
   for (const PostTarget target : {PostTarget::joints, PostTarget::tcp}) {
     const Posted first = posted(given, machine);
-    const Read from = target == PostTarget::joints ? given : read(first.text, machine);
+    const Read from = target == PostTarget::joints ? given : read_five_axes(first.text, machine);
     const Posted out = target == PostTarget::joints ? first : posted(from, machine, {.target = target});
-    const PostDeviation d = post_deviation(from.moves, read(out.text, machine).moves, machine, out, 32);
+    const PostDeviation d = post_deviation(from.moves, read_five_axes(out.text, machine).moves, machine, out, 32);
     EXPECT_GT(d.samples, 1000U);
     EXPECT_LE(d.tip_mm, out.tip_bound_mm);
     EXPECT_LE(out.tip_bound_mm, 0.005);
@@ -202,15 +183,15 @@ TEST(Post, ThereAndBackGivesTheSamePosesOnRealPrograms) {
   for (const std::string& path : programs) {
     SCOPED_TRACE(path);
     const machine::Machine& machine = path.ends_with("dome.nc") ? dome : linuxcnc;
-    const Read given = read(tests::file_text(path), machine);
+    const Read given = read_five_axes(tests::file_text(path), machine);
     const bool to_joints = std::any_of(given.moves.states.begin(), given.moves.states.end(),
                                        [](const auto& s) { return s.tip_control != nc::TipControl::off; });
     const PostTarget there = to_joints ? PostTarget::joints : PostTarget::tcp,
                      back = to_joints ? PostTarget::tcp : PostTarget::joints;
     const Posted out = posted(given, machine, {.target = there});
-    const Read middle = read(out.text, machine);
+    const Read middle = read_five_axes(out.text, machine);
     const Posted home = posted(middle, machine, {.target = back, .decimals = 3});
-    const Read again = read(home.text, machine);
+    const Read again = read_five_axes(home.text, machine);
     const PostDeviation first = post_deviation(given.moves, middle.moves, machine, out, 16);
     const PostDeviation second = post_deviation(middle.moves, again.moves, machine, home, 16);
     EXPECT_LE(first.tip_mm, out.tip_bound_mm);
@@ -219,7 +200,7 @@ TEST(Post, ThereAndBackGivesTheSamePosesOnRealPrograms) {
     EXPECT_LE(first.axis_rad, out.axis_bound_rad);
     EXPECT_LE(second.tip_mm, home.tip_bound_mm);
     EXPECT_LE(second.axis_rad, home.axis_bound_rad);
-    const Read exact = read(posted(given, machine, {.target = there, .inverse_time = true}).text, machine);
+    const Read exact = read_five_axes(posted(given, machine, {.target = there, .inverse_time = true}).text, machine);
     EXPECT_NEAR(commanded_s(middle, machine), commanded_s(given, machine), 1e-4 * commanded_s(given, machine));
     EXPECT_NEAR(commanded_s(exact, machine), commanded_s(given, machine), 1e-4 * commanded_s(given, machine));
 
@@ -259,12 +240,12 @@ TEST(Post, NeedsFewerBlocksThanTheOneDegreeRuleThroughThePole) {
   const std::string path = CAMBER_SHARED_DATA_DIR "/linuxcnc5/programs/tcp_singular_g64.ngc";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   const machine::Machine machine = sample("table_ac_linuxcnc");
-  const Read given = read(tests::file_text(path), machine);
+  const Read given = read_five_axes(tests::file_text(path), machine);
   const Posted ours = posted(given, machine), rule = posted(given, machine, {.one_degree = true});
   EXPECT_LE(2 * ours.feed_blocks, ours.one_degree_blocks);
   EXPECT_EQ(rule.feed_blocks, ours.one_degree_blocks);
   EXPECT_NEAR(rule.tip_bound_mm, ours.one_degree_bound_mm, 2e-4);
-  const PostDeviation d = post_deviation(given.moves, read(rule.text, machine).moves, machine, rule, 16);
+  const PostDeviation d = post_deviation(given.moves, read_five_axes(rule.text, machine).moves, machine, rule, 16);
   EXPECT_LE(d.tip_mm, rule.tip_bound_mm);
 }
 
@@ -291,10 +272,10 @@ void expect_within_travel(const Read& made, const machine::Machine& machine) {
 
 TEST(Post, CrossesThePoleWithoutAJumpWhereTheMachineCan) {
   const machine::Machine machine = trunnion(-30, 110, 360);
-  const Read given = read(kOverThePole, machine);
+  const Read given = read_five_axes(kOverThePole, machine);
   const Posted out = posted(given, machine);
   EXPECT_TRUE(out.turns_back.empty());
-  const Read made = read(out.text, machine);
+  const Read made = read_five_axes(out.text, machine);
   kinematics::ProgramJoints joints(machine, made.moves);
   while (!joints.done()) {
     const auto& now = joints.next();
@@ -306,7 +287,7 @@ TEST(Post, CrossesThePoleWithoutAJumpWhereTheMachineCan) {
 
 TEST(Post, TurnsAtThePoleOffThePartWhereTheMachineCannot) {
   const machine::Machine machine = trunnion(0, 110, 360);
-  const Read given = read(kOverThePole, machine);
+  const Read given = read_five_axes(kOverThePole, machine);
   const Posted out = posted(given, machine);
   ASSERT_EQ(out.turns_back.size(), 1U);
   const TurnBack& back = out.turns_back.front();
@@ -314,7 +295,7 @@ TEST(Post, TurnsAtThePoleOffThePartWhereTheMachineCannot) {
   EXPECT_EQ(back.retract_mm, 50);
   EXPECT_NEAR(std::abs(back.to_rad.z() - back.from_rad.z()), kPi, 1e-9);
   EXPECT_NEAR(back.to_rad.x(), 0, 1e-9);
-  const Read made = read(out.text, machine);
+  const Read made = read_five_axes(out.text, machine);
   expect_within_travel(made, machine);
   const PostDeviation d = post_deviation(given.moves, made.moves, machine, out, 16);
   EXPECT_LE(d.tip_mm, out.tip_bound_mm);
@@ -332,7 +313,7 @@ TEST(Post, TurnsBackInAirBeforeTravelEnds) {
     text += "G0 Z30.\n";
   }
   text += "G49\nG53 Z0\nM30\n";
-  const Read given = read(text, machine);
+  const Read given = read_five_axes(text, machine);
   Diagnostics before;
   kinematics::check_travel(machine, given.program, given.moves, before);
   EXPECT_TRUE(before.has_errors());
@@ -340,18 +321,18 @@ TEST(Post, TurnsBackInAirBeforeTravelEnds) {
   ASSERT_FALSE(out.turns_back.empty());
   EXPECT_LE(out.turns_back.size(), 2U);
   for (const TurnBack& back : out.turns_back) EXPECT_TRUE(back.in_air);
-  expect_within_travel(read(out.text, machine), machine);
+  expect_within_travel(read_five_axes(out.text, machine), machine);
 }
 
 TEST(Post, RunsTheWholeProgramOnTheOtherBranchWhereTheFirstIsOutOfTravel) {
   const machine::Machine machine = trunnion(-110, 0, 360);
   const Read given =
-      read(std::string(kHead) +
-               "G10 L2 P1 X0. Y0. Z-320.\nG43.4 H1 X20. Y0. Z30. A20. C0.\nG1 Z0. F500\nX10. A15. C10.\nG49\n"
-               "G53 Z0\nM30\n",
-           machine);
+      read_five_axes(std::string(kHead) +
+                         "G10 L2 P1 X0. Y0. Z-320.\nG43.4 H1 X20. Y0. Z30. A20. C0.\nG1 Z0. F500\nX10. A15. C10.\nG49\n"
+                         "G53 Z0\nM30\n",
+                     machine);
   const Posted out = posted(given, machine);
-  const Read made = read(out.text, machine);
+  const Read made = read_five_axes(out.text, machine);
   expect_within_travel(made, machine);
   const PostDeviation d = post_deviation(given.moves, made.moves, machine, out, 16);
   EXPECT_LE(d.tip_mm, out.tip_bound_mm);
