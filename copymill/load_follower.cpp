@@ -103,7 +103,7 @@ double LoadFollower::pass(const removal::Stamp& stamp, double commanded) {
   const double force = load.felt.lateral_max_N;
   passing_mm_ = stamp.feed_per_tooth_mm.norm(), gone_mm_ += passing_mm_;
   if (stamp.first) bounds_.clear();
-  while (!bounds_.empty() && bounds_.front().at_mm <= gone_mm_) bounds_.pop_front();
+  std::erase_if(bounds_, [&](const Bound& bound) { return bound.at_mm <= gone_mm_; });
   const double actual = passing_mm_ / passing_s_;
   figures_.max_N = std::max(figures_.max_N, force);
   if (!rule_) return force;

@@ -1,6 +1,5 @@
 #pragma once
 // The load of the cut, tooth passing by tooth passing, and the feed and depths that follow it.
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -74,7 +73,7 @@ class LoadFollower {
   struct Bound {
     double at_mm, feed_mm_per_s;  ///< along the path, and no faster there
   };
-  std::deque<Bound> bounds_;  ///< where the tool has not been yet, the nearest first
+  std::vector<Bound> bounds_;  ///< where the tool has not been yet
   double gone_mm_ = 0, passing_mm_ = 0, braking_mm_per_s2_ = 1;
   LoadFigures figures_;
 };
