@@ -302,7 +302,8 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
     check_part_size(job.part.mesh, {part->min_mm(), part->max_mm()}, where.stock, diagnostics);
     diagnostics.throw_if_errors();
   }
-  Target out{std::move(blank), std::move(surface),       std::move(part), HoleStamps({{}, cutters.runs, {}}),
+  Target out{std::move(blank), std::move(surface),
+             std::move(part),  HoleStamps(removal::StampPath{{}, cutters.runs, {}}),
              std::move(whole), std::move(cutters.stamps)};
   out.map.emplace(out.surface, cutters.places, out.blank, &out.solid());
   cutters = {};

@@ -274,9 +274,9 @@ TEST(Stock, ACopyOfASharedOneHasOnlyWhatItChanges) {
 
 TEST(Stock, ACopyWithinABoxIsCutThereAsTheWholeIs) {
   const Family shared = family(true);
-  const Vec3 lo(2, -3, -3), hi(7, 3, 1e9);
+  const Vec3 lo(1, -3, -3), hi(8, 4, 1e9);
   std::vector<Stamp> row;
-  add_row(row, {3.5, 1, -1.8}, {5.5, 1, -1.8}, 0.15);
+  add_row(row, {4.2, 0.5, -1.8}, {4.8, 0.5, -1.8}, 0.15);  // in the box with all of the cutter
   for (const Stock* cut : {&shared.first, &shared.second, &shared.blank}) {
     Stock whole(*cut), part = cut->copy_within(lo, hi);
     EXPECT_LE(part.memory_bytes(), whole.memory_bytes());
