@@ -2,7 +2,6 @@
 
 #include <cassert>
 #include <cstdint>
-#include <cstdlib>
 #include <utility>
 
 #include "simulate/sections.h"
@@ -84,7 +83,6 @@ Prediction predict_together(const machine::Job& job, const Target& target, const
   const Division division = division_of(target.blank, path);
   SectionParts parts;
   parts.from_another_path = in_rounds && !memory.solved.empty() && memory.division == division;
-  if (std::getenv("CAMBER_COLD")) parts.from_another_path = false;
   const SectionPlace place =
       parts.from_another_path ? SectionPlace(path, crew.rank, memory.ranges) : SectionPlace(path, crew.rank, crew.size);
   std::vector<removal::Region> regions;
