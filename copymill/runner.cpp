@@ -106,8 +106,13 @@ Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_s
   if (rapid) first_stamp_ = true;
   last_lowered_ = *at_;
   const double begin_s = t_s_;
+  // A rapid that begins after the stop lifts the tool.
+  const auto halted = [&, lifts = rapid && stopped_] { return rapid ? stopped_ && !lifts : ended() != Ended::done; };
   written_feed_ = commanded_ = feed_mm_per_s(feed_share);
-  while (!motion_.finished() && !(!rapid && ended() != Ended::done && motion_.at_rest())) tick(rapid, feed_share);
+  while (!motion_.finished() && !(halted() && motion_.at_rest())) {
+    if (options_.stop_after_s && t_s_ >= *options_.stop_after_s) stopped_ = true;
+    tick(rapid, feed_share, halted());
+  }
   const Vec3 end = motion_.piece() < motion_.path().size() ? rounded(motion_.tip(), piece_options_.increment_mm)
                                                            : motion_.path().back().to;
   if (!rapid) {
@@ -123,13 +128,12 @@ Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_s
   return ended();
 }
 
-void Runner::tick(bool rapid, double feed_share) {
+void Runner::tick(bool rapid, double feed_share, bool halted) {
   const auto begin = std::chrono::steady_clock::now();
   const double processor_begin_ms = options_.stream ? processor_ms() : 0;
   const Vec3 before = motion_.tip();
-  if (options_.stop_after_s && t_s_ >= *options_.stop_after_s) stopped_ = true;
   if (!rapid) command(feed_mm_per_s(feed_share));
-  const double wanted = rapid ? kNoLimit_mm_per_s : ended() == Ended::done ? commanded_ : 0;
+  const double wanted = halted ? 0 : rapid ? kNoLimit_mm_per_s : commanded_;
   motion_.tick(wanted, {.distance_mm = 0, .speed_mm_per_s = kNoLimit_mm_per_s});
   t_s_ += motion_.period_s();
   if (!rapid) {

@@ -70,7 +70,7 @@ class Runner {
 
  private:
   Ended run(std::vector<PathPiece> path, bool rapid, double feed_share);
-  void tick(bool rapid, double feed_share);
+  void tick(bool rapid, double feed_share, bool halted);
   void stamp_until(double t_s, const Vec3& before, const Vec3& now);
   void stamp_at(double t_s, const Vec3& tip);
   void command(double feed_mm_per_s);
