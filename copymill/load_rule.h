@@ -96,7 +96,8 @@ class LoadRule {
 
   /// The feed that keeps the limit at a place ahead, from what the model tells of it at two feeds, `feed` and half of
   /// it; no lower than the lowest feed. `hardness_there`: what has been felt near that place over what was expected.
-  /// It may lie a little farther on: with it the load may be over the limit by kRemembered. The present hardness() counts in full.
+  /// It may lie a little farther on: with it the load may be over the limit by kRemembered. The present hardness()
+  /// counts in full.
   double feed_ahead(double load, double load_at_half, double feed_mm_per_s, double hardness_there = 1) const;
   bool at_highest_feed() const { return now_.feed_mm_per_s >= highest_feed(); }
   /// What is felt over what the model expects.

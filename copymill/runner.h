@@ -57,8 +57,8 @@ class Runner {
   double axial_mm() const { return follower_->axial_mm(); }
   /// Other passes follow.
   void replanned() { follower_->replanned(); }
-  /// The load that the model expects of a level cut at a place at the lowest feed, with what is felt over it, as a share
-  /// of the target; nothing where the operation has none.
+  /// The load that the model expects of a level cut at a place at the lowest feed, with what is felt over it, as a
+  /// share of the target; nothing where the operation has none.
   std::optional<double> share_at_lowest_feed(const Vec3& tip, const Vec2& direction);
   /// For the log: how a full cut was made, or avoided. At the present time.
   void note_slot(const Vec3& tip, double from_mm, double to_mm, Cause cause, double share);

@@ -6,13 +6,13 @@
 namespace camber::copymill {
 namespace {
 
-constexpr double kFullWidth_rad = 150 * kPi / 180;  ///< of the leading half circumference: material on either side
-constexpr double kStands_mm = 0.02;                 ///< thinner material is not met
-constexpr int kAround = 48;                         ///< directions in which a circle is looked at
-constexpr double kWithin = 0.99, kWithin_mm = 0.005;  ///< between two of these a wall may stand out
-constexpr double kGrowth = 0.15;                    ///< of a circle's radius over its advance
-constexpr double kEven_mm = 0.02;                   ///< of radii: no more is growth
-constexpr double kAlready = 0.3;                    ///< of a circle's radius: places so near its centre are done
+constexpr double kFullWidth_rad = 150 * kPi / 180;     ///< of the leading half circumference: material on either side
+constexpr double kStands_mm = 0.02;                    ///< thinner material is not met
+constexpr int kAround = 48;                            ///< directions in which a circle is looked at
+constexpr double kWithin = 0.99, kWithin_mm = 0.005;   ///< between two of these a wall may stand out
+constexpr double kGrowth = 0.15;                       ///< of a circle's radius over its advance
+constexpr double kEven_mm = 0.02;                      ///< of radii: no more is growth
+constexpr double kAlready = 0.3;                       ///< of a circle's radius: places so near its centre are done
 constexpr double kHeld = 1 / LoadBand{}.lowest_depth;  ///< of the target: more is over it at the lowest depths too
 
 bool counter_clockwise(const machine::CopyOperation& operation) {
@@ -126,8 +126,8 @@ double Slotting::room_mm(const Vec2& centre, double z) const {
 /// Whether the line from one circle to the next stays within.
 bool Slotting::joined(const Circle& a, const Circle& b, double z) const {
   const bool ccw = counter_clockwise(place_.cut.operation);
-  const Vec2 from = start_of({a, b}, ccw), to = from + (b.centre - a.centre) +
-                                               (b.radius_mm - a.radius_mm) * (from - a.centre) / a.radius_mm;
+  const Vec2 from = start_of({a, b}, ccw),
+             to = from + (b.centre - a.centre) + (b.radius_mm - a.radius_mm) * (from - a.centre) / a.radius_mm;
   constexpr int kPlaces = 8;
   for (int k = 0; k <= kPlaces; ++k)
     if (!inside(from + static_cast<double>(k) / kPlaces * (to - from), z)) return false;
@@ -238,8 +238,8 @@ Runner::Ended Slotting::cut(const Row& row, double z) {
   Pass entered = ring;
   if (approach_.enter_ring(entered) != Runner::Ended::done) return runner.ended();
   // From where the helix ended on, to where the first circle begins.
-  const auto here = std::ranges::min_element(
-      ring.points, {}, [&](const Vec3& p) { return (p - *runner.at()).squaredNorm(); });
+  const auto here =
+      std::ranges::min_element(ring.points, {}, [&](const Vec3& p) { return (p - *runner.at()).squaredNorm(); });
   std::vector<Vec3> rest(here, ring.points.end());
   rest.push_back(ring.points.front());
   if (runner.cut(here == ring.points.begin() ? std::vector<Vec3>{ring.points.front()} : rest, false) !=

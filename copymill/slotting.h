@@ -12,8 +12,8 @@ namespace camber::copymill {
 
 /// Where a pass would cut the tool's full width, circles are cut around it first, which advance so that the tool's
 /// engagement angle stays within that of the operation's radial depth (copymill/trochoid.h); the pass then finds no
-/// more than the rest. With CopyOperation::slotting `by_load` that is done only where a full cut would be over the force
-/// that the operation asks for even at the lowest feed and depth; without such a target never.
+/// more than the rest. With CopyOperation::slotting `by_load` that is done only where a full cut would be over the
+/// force that the operation asks for even at the lowest feed and depth; without such a target never.
 class Slotting {
  public:
   /// Of the tool's diameter: no smaller circles are run. A slot, less the allowance on either side, must be wider than

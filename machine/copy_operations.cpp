@@ -159,8 +159,7 @@ std::string to_toml(const CopyOperation& o) {
     if (o.*k.field != given.*k.field) out += toml_line(k.key, o.*k.field, k.unit);
   out += toml_line("sense", kSenseWords[static_cast<std::size_t>(o.sense)]);
   if (o.plunge) out += "plunge = true\n";
-  if (o.slotting != given.slotting)
-    out += toml_line("slotting", kSlottingWords[static_cast<std::size_t>(o.slotting)]);
+  if (o.slotting != given.slotting) out += toml_line("slotting", kSlottingWords[static_cast<std::size_t>(o.slotting)]);
   if (o.force_N) out += toml_line("force_N", *o.force_N, kAsIs);
   if (o.mode == CopyMode::drilling) out += toml_line("cycle", kCycleWords[static_cast<std::size_t>(o.cycle)]);
   const auto point = [](const Vec2& p) {

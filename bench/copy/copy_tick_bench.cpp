@@ -1,8 +1,8 @@
-// Processor time of whole ticks of `camber copy`, one core: motion, tooth passings with their loads, the look ahead, the
-// rule, and the heights that the planner keeps. The jobs are run one after another, again and again, until so many ticks
-// are done. Prints a row every hundred thousand ticks: mean, 99th and 99.99th percentile and worst, ticks of more than
-// half a millisecond, the longest planning between two ticks (the tool is at rest then), and the memory that the process
-// holds.
+// Processor time of whole ticks of `camber copy`, one core: motion, tooth passings with their loads, the look ahead,
+// the rule, and the heights that the planner keeps. The jobs are run one after another, again and again, until so many
+// ticks are done. Prints a row every hundred thousand ticks: mean, 99th and 99.99th percentile and worst, ticks of more
+// than half a millisecond, the longest planning between two ticks (the tool is at rest then), and the memory that the
+// process holds.
 //
 //   copy_tick_bench TICKS JOB.toml...
 #include <algorithm>
@@ -39,8 +39,8 @@ double resident_MB() {
 class Table {
  public:
   Table() {
-    std::printf("%10s %9s %9s %9s %9s %9s %11s %12s\n", "ticks", "mean_ms", "p99_ms", "p9999_ms", "worst_ms", "over_half",
-                "planning_ms", "resident_MB");
+    std::printf("%10s %9s %9s %9s %9s %9s %11s %12s\n", "ticks", "mean_ms", "p99_ms", "p9999_ms", "worst_ms",
+                "over_half", "planning_ms", "resident_MB");
   }
   /// `between_ms`: since the last tick ended.
   void add(double ms, double between_ms) {

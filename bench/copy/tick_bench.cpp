@@ -112,5 +112,6 @@ int main(int argc, char** argv) {
     sum_of_all += sum;
     ms.clear();
   }
-  std::printf("%10ld %9.4f %9s %9s %9.4f\n", passings, sum_of_all / static_cast<double>(passings), "", "", worst_of_all);
+  std::printf("%10ld %9.4f %9s %9s %9.4f\n", passings, sum_of_all / static_cast<double>(passings), "", "",
+              worst_of_all);
 }

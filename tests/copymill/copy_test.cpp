@@ -130,8 +130,8 @@ TEST(Copy, EveryStopLeavesNoGouge) {
   }
 }
 
-/// Wherever the tool is when it is told to stop, in a cut or in a rapid between two: axes brake within their 1000 mm/s^2,
-/// and all that is left of the way is what braking takes, with half of that, and the rounding of corners.
+/// Wherever the tool is when it is told to stop, in a cut or in a rapid between two: axes brake within their 1000
+/// mm/s^2, and all that is left of the way is what braking takes, with half of that, and the rounding of corners.
 TEST(Copy, AStopAtAnyTickBrakesWithinTheLimits) {
   const TempFolder folder;
   const double fastest = 150, dt = 0.001, acceleration = 1000;

@@ -16,7 +16,8 @@ namespace {
 constexpr double kRadius = 4, kRadial = 1.6, kDeep = -6;
 
 std::string loops(const std::string& keys) {
-  return "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 2000\nfeed_mm_per_min = 600\nradial_depth_mm = 1.6\n"
+  return "[[copy]]\ntool = 1\nmode = \"contour-line\"\nspindle_rpm = 2000\nfeed_mm_per_min = 600\nradial_depth_mm = "
+         "1.6\n"
          "axial_depth_mm = 6\n" +
          keys;
 }

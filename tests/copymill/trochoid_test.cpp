@@ -64,7 +64,8 @@ TEST(Trochoid, EngagementIsThatOfDiscsTakenAway) {
   struct Case {
     double R, r0, r1, advance;
   };
-  for (const Case& c : {Case{5, 0.8, 0.8, 0.15}, {5, 0.8, 0.8, 0.5}, {5, 2.5, 2.5, 1}, {4, 2, 2, 1.5}, {3, 1, 1.2, 0.4}}) {
+  for (const Case& c :
+       {Case{5, 0.8, 0.8, 0.15}, {5, 0.8, 0.8, 0.5}, {5, 2.5, 2.5, 1}, {4, 2, 2, 1.5}, {3, 1, 1.2, 0.4}}) {
     const Circle before{Vec2::Zero(), c.r0}, next{Vec2(c.advance, 0), c.r1};
     const std::vector<Vec2> places = walked(c.R, before, next);
     int most = 0;
