@@ -47,13 +47,13 @@ report::TextTable overhang_table(const std::vector<api::PosturedProgram>& rows) 
 std::vector<report::Figure> posture_figures(const api::PosturedProgram& program) {
   const posture::PostureFigures &f = program.postured.figures, &before = program.postured.upright;
   return {{"deflection normal to the part", before.compliance_um_per_N, f.compliance_um_per_N, "um/N", 3,
-           "compliance_um_per_N"},
-          {"overhang", before.overhang_mm, f.overhang_mm, "mm", 1, "overhang_mm"},
-          {"time", program.given_time_s, program.time_s, "s", 1, "time_s"},
+           "before.compliance_um_per_N", "compliance_um_per_N"},
+          {"overhang", before.overhang_mm, f.overhang_mm, "mm", 1, "before.overhang_mm", "overhang_mm"},
+          {"time", program.given_time_s, program.time_s, "s", 1, "before.time_s", "time_s"},
           {"points that are too near", static_cast<double>(f.unclear), std::nullopt, "", 0, "unclear"},
           {"rotary motion", f.rotary_motion_deg, std::nullopt, "deg", 0, "rotary_motion_deg"},
           {"angle of tool and normal", deg_from_rad(before.mean_angle_rad), deg_from_rad(f.mean_angle_rad), "deg", 1,
-           "mean_angle_deg"}};
+           "before.mean_angle_deg", "mean_angle_deg"}};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/open_page.h"
 #include "tests/support/run_camber.h"
 
 namespace camber::tests {
@@ -144,6 +145,16 @@ TEST(PostureCommand, TheStockIsAnObstacle) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
   const CamberRun without = run_camber(folder, command + " --no-stock");
   EXPECT_EQ(without.status, 0) << without.err;
+}
+
+TEST(PostureCommand, ThePageShowsTheMachineAlongTheNewProgram) {
+  CAMBER_NEEDS_BROWSER();
+  const TempFolder folder;
+  const std::string sample = CAMBER_SOURCE_DIR "/samples/16-die-cavity/";
+  const CamberRun run = run_camber(folder, "posture " + sample + "rows.nc --job " + sample +
+                                               "rows.toml --overhang 20 -o out.nc -q --report page.html --json r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(open_page("machine", folder / "page.html", folder / "r.json"), "");
 }
 
 /// A block whose top falls from z0 at x = 0 to z1 at x = 20, as an ASCII STL file.
