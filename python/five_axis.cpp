@@ -48,7 +48,7 @@ camber::PostureResult posture(const py::object& program, const py::object& job, 
                               double tilt_deg, double max_tilt_deg, double least_angle_deg, const py::object& progress,
                               bool strict, int threads) {
   const camber::Program text = program_of(program);
-  const camber::Job given = job_of(job);
+  const camber::Job given = unprogrammed_job_of(job);
   const camber::PostureOptions options{.mode = mode,
                                        .indexed = indexed,
                                        .write_as = write_as,
