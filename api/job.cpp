@@ -80,7 +80,8 @@ const machine::Job& api::programmed(const Job& job) {
   found.add({Severity::error,
              {job.path(), 0, 0},
              "the job has no program; a program in the file, or set_program(), was expected",
-             "job-program"});
+             "job-program",
+             {}});
   found.throw_if_errors();
   return job.impl().job;
 }
