@@ -50,6 +50,7 @@ PostureFigures figures_of(const api::PosturedProgram& program) {
           .max_angle_deg = deg_from_rad(f.max_angle_rad),
           .compliance_um_per_N = f.compliance_um_per_N,
           .lag_um = f.lag_um,
+          .error_um = f.error_um,
           .time_s = program.time_s};
 }
 

@@ -106,6 +106,7 @@ void add_posture(py::module_& module) {
       .def_readonly("max_angle_deg", &PostureFigures::max_angle_deg)
       .def_readonly("compliance_um_per_N", &PostureFigures::compliance_um_per_N)
       .def_readonly("lag_um", &PostureFigures::lag_um)
+      .def_readonly("error_um", &PostureFigures::error_um)
       .def_readonly("time_s", &PostureFigures::time_s);
   with_json<PostureResult>(module, "PostureResult")
       .def_readonly("success", &PostureResult::success)

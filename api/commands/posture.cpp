@@ -95,6 +95,7 @@ ordered_json figures_json(const PosturedProgram& program) {
           {"max_angle_deg", deg_from_rad(f.max_angle_rad)},
           {"compliance_um_per_N", f.compliance_um_per_N},
           {"lag_um", f.lag_um},
+          {"error_um", f.error_um},
           {"time_s", program.time_s}};
 }
 
@@ -163,17 +164,20 @@ std::string posture_text(const PosturedProgram& program, const PostureCommand& c
   }
   if (before.lag_um > 0 || f.lag_um > 0)
     out += fmt::format("axes      late by {:.1f} um normal to the part, before {:.1f}\n", f.lag_um, before.lag_um);
+  out +=
+      fmt::format("error     about {:.1f} um, before {:.1f}; camber predict says where\n", f.error_um, before.error_um);
   out += fmt::format("time      {:.1f} s\n", program.time_s);
   return out;
 }
 
 std::string overhang_text(const std::vector<PosturedProgram>& rows) {
-  std::string out =
-      fmt::format("{:>12} {:>10} {:>10} {:>12} {:>8}\n", "overhang mm", "um/N", "angle deg", "rotary deg", "time s");
+  std::string out = fmt::format("{:>12} {:>10} {:>10} {:>10} {:>12} {:>8}\n", "overhang mm", "um/N", "error um",
+                                "angle deg", "rotary deg", "time s");
   for (const PosturedProgram& row : rows) {
     const posture::PostureFigures& f = row.postured.figures;
-    out += fmt::format("{:>12.1f} {:>10.3f} {:>10.1f} {:>12.0f} {:>8.1f}\n", f.overhang_mm, f.compliance_um_per_N,
-                       deg_from_rad(f.mean_angle_rad), f.rotary_motion_deg, row.time_s);
+    out +=
+        fmt::format("{:>12.1f} {:>10.3f} {:>10.1f} {:>10.1f} {:>12.0f} {:>8.1f}\n", f.overhang_mm,
+                    f.compliance_um_per_N, f.error_um, deg_from_rad(f.mean_angle_rad), f.rotary_motion_deg, row.time_s);
   }
   return out;
 }
@@ -197,6 +201,7 @@ std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhang
                       {"max_angle_deg", deg_from_rad(before.max_angle_rad)},
                       {"compliance_um_per_N", before.compliance_um_per_N},
                       {"lag_um", before.lag_um},
+                      {"error_um", before.error_um},
                       {"time_s", program.given_time_s}};
   if (program.blocked_line > 0) report["blocked_line"] = program.blocked_line;
   if (program.unclear_line > 0) report["unclear_line"] = program.unclear_line;

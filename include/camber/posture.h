@@ -35,6 +35,7 @@ struct PostureFigures {
   double mean_angle_deg = 0, max_angle_deg = 0;  ///< of tool and normal
   double compliance_um_per_N = 0;                ///< normal to the part
   double lag_um = 0;                             ///< left by axes that follow late, normal to the part, mean
+  double error_um = 0;                           ///< expected form error, mean magnitude: deflection and lag
   double time_s = 0;                             ///< of the program on the machine
 };
 
