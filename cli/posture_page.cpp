@@ -60,16 +60,16 @@ std::vector<report::Figure> posture_figures(const api::PosturedProgram& program)
 
 }  // namespace
 
-std::string posture_page(const std::vector<api::PosturedProgram>& rows, bool overhangs,
-                         const api::PostureCommand& command, const Diagnostics& found) {
-  const api::PosturedProgram& program = rows.back();
+std::string posture_page(const api::PosturedOverhangs& overhangs, const api::PostureCommand& command,
+                         const Diagnostics& found) {
+  const api::PosturedProgram& program = overhangs.program();
   const machine::Job& job = *command.job;
   report::MachinePage page;
   page.title = "Postures of " + command.text->source.name();
   page.subtitle = fmt::format("with the job {}, camber {}", job.path, CAMBER_VERSION);
   page.figures = posture_figures(program);
   page.tables = {before_and_after(program)};
-  if (overhangs && rows.size() > 1) page.tables.push_back(overhang_table(rows));
+  if (overhangs.rows.size() > 1) page.tables.push_back(overhang_table(overhangs.rows));
   for (const Diagnostic& d : found.all()) page.warnings.push_back(to_string(d));
   page.part = read_stl(job.part.mesh);
   page.work_origin_mm = program.postured.origin_mm;

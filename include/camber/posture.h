@@ -20,6 +20,7 @@ struct PostureOptions {
   std::optional<int> tool{};    ///< default: the only one of the job
   double step_mm = 1;           ///< between the points of the path
   double overhang_step_mm = 0;  ///< greater than zero: the shortest overhang is looked for
+  bool least_error = false;     ///< with it: the overhang of the least expected error
   double clearance_mm = 1;
   bool stock = true;                   ///< that of the job is an obstacle, but for the flutes
   double lead_deg = 10, tilt_deg = 0;  ///< lead-tilt
