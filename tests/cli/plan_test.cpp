@@ -108,6 +108,38 @@ TEST(PlanCommand, GoesOnFromTheStockOfAnInterruptedRun) {
   EXPECT_LT(taken.at("gouge_um"), 25);
 }
 
+TEST(PlanCommand, PlansForWhatAProgramLeaves) {
+  const TempFolder folder;
+  ASSERT_EQ(plan(folder, 8).status, 0);
+  const auto first = nlohmann::json::parse(tests::file_text(folder / "out/plan.json"));
+  const CamberRun copy = run_camber(folder, "copy out/job.toml -o out/made.nc --stock made.vdb --json out/copy.json");
+  ASSERT_EQ(copy.status, 0) << copy.err;
+  const double removed = nlohmann::json::parse(tests::file_text(folder / "out/copy.json")).at("removed_mm3");
+  folder.write("plan.toml", tests::replaced(kPlan, "part.stl", "made.vdb"));
+  const CamberRun run = run_camber(folder, "plan plan.toml -o again --programs");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "again/plan.json"));
+  EXPECT_NEAR(json.at("removal_mm3").get<double>(), removed, 2e-3 * removed);
+  ASSERT_EQ(json.at("operations").size(), first.at("operations").size());
+  for (std::size_t i = 0; i < json.at("operations").size(); ++i) {
+    EXPECT_EQ(json.at("operations").at(i).at("feature"), first.at("operations").at(i).at("feature"));
+    EXPECT_EQ(json.at("operations").at(i).at("tool"), first.at("operations").at(i).at("tool"));
+  }
+  const auto& taken = json.at("plans").at(json.at("setups").at(0).at("best").get<std::size_t>());
+  EXPECT_NEAR(taken.at("removed_mm3").get<double>(), removed, 5e-3 * removed);
+  EXPECT_LT(taken.at("gouge_um"), 25);
+  // The job goes through camber copy by itself.
+  const CamberRun again = run_camber(folder, "copy again/job.toml -o again/copied.nc --effective-config");
+  EXPECT_EQ(again.status, 0) << again.err;
+
+  folder.write("plan.toml", tests::replaced(kPlan, "part.stl", "made.vdb") + "[[setup]]\nturn = [[1, 0, 0, 180]]\n");
+  const CamberRun turned = run_camber(folder, "plan plan.toml -o turned");
+  EXPECT_EQ(turned.status, 1);
+  EXPECT_EQ(
+      turned.err,
+      "plan.toml: error: a part from a stock.vdb is not turned; a set-up without turn was expected [setup-turn]\n");
+}
+
 TEST(PlanCommand, ComparesTheProgramsOfAllPlans) {
   const TempFolder folder;
   const CamberRun run = plan(folder, 8, " -o out --all-programs");
@@ -167,6 +199,41 @@ TEST(PlanCommand, LearnsTheConditionsOfAPlan) {
   EXPECT_EQ(learned.substr(0, kCases.size()), kCases);
   ASSERT_EQ(plan(folder, 8, " -o out --operations out/operations.toml --learn").status, 0);
   EXPECT_EQ(tests::file_text(folder / "cases.toml"), learned);
+}
+
+TEST(PlanCommand, AnswersOtherwiseAfterALearnedJob) {
+  const TempFolder folder;
+  ASSERT_EQ(plan(folder, 8).status, 0);
+  const auto pocket = [&] {
+    return nlohmann::json::parse(tests::file_text(folder / "out/plan.json")).at("operations").at(1);
+  };
+  const double before = pocket().at("S");
+  const std::string table = tests::file_text(folder / "out/operations.toml");
+  const std::string row = "spindle_rpm = " + std::to_string(static_cast<int>(before));
+  ASSERT_NE(table.find(row), std::string::npos);
+  folder.write("edited.toml",
+               tests::replaced(table, row, "spindle_rpm = " + std::to_string(static_cast<int>(1.4 * before))));
+  ASSERT_EQ(plan(folder, 8, " -o out --operations edited.toml --learn").status, 0);
+  EXPECT_EQ(pocket().at("limit"), "given");
+  ASSERT_EQ(plan(folder, 8).status, 0);
+  // The mean of the old case and the learned one.
+  EXPECT_NEAR(pocket().at("S").get<double>() / before, 1.2, 0.01);
+}
+
+/// docs/plan.md shows what is printed.
+TEST(PlanCommand, PrintsTheErrorsOfTheSampleBaseAsDocumented) {
+  const TempFolder folder;
+  const CamberRun run = run_camber(folder, "plan " CAMBER_SOURCE_DIR "/samples/15-plan/plan.toml --cases-error");
+  EXPECT_EQ(run.status, 0) << run.err;
+  const std::string page = tests::file_text(CAMBER_SOURCE_DIR "/docs/plan.md");
+  std::size_t rows = 0;
+  for (const char* tool : {"\nall ", "\ndrill ", "\nend mill ", "\nface mill "}) {
+    const std::size_t at = run.out.find(tool);
+    ASSERT_NE(at, std::string::npos) << tool;
+    EXPECT_NE(page.find(run.out.substr(at, run.out.find('\n', at + 1) - at)), std::string::npos) << tool;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 4U);
 }
 
 TEST(PlanCommand, PrintsHowWellTheCasesPredictEachOther) {
