@@ -49,7 +49,7 @@ AdaptResult v0::adapt(const Job& job, const AdaptOptions& options, const RunOpti
   api::Run run(run_options);
   run.execute([&] {
     Diagnostics found = job.impl().found;
-    const machine::Job& of = job.impl().job;
+    const machine::Job& of = api::programmed(job);
     const adapt::AdaptResult done = api::adapt_job(
         of, {.time_limit_s = options.time_limit_s, .sweep = options.sweep, .progress = run.progress()}, found);
     run.settle(found);

@@ -72,7 +72,7 @@ CompensateResult v0::compensate(const Job& job, const CompensateOptions& options
   api::Run run(run_options);
   run.execute([&] {
     Diagnostics found = job.impl().found;
-    check_output(options.output, job.impl().job);
+    check_output(options.output, api::programmed(job));
     const api::CompensateRequest request{.uncertainty = options.uncertainty,
                                          .measured = options.measured,
                                          .measured_program = options.measured_program,

@@ -37,7 +37,8 @@ CopiedOperation copied_operation(const copymill::OperationSummary& o) {
           .nothing_left = o.nothing_left,
           .target_N = l.target_N,
           .max_N = l.max_N,
-          .within_share = l.counted > 0 ? static_cast<double>(l.within) / static_cast<double>(l.counted) : 0};
+          .within_share = l.counted > 0 ? static_cast<double>(l.within) / static_cast<double>(l.counted) : 0,
+          .trochoid_circles = o.trochoid_circles};
 }
 
 CopyResult copy_result_of(const copymill::CopyResult& r) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "machine/set_number.h"
+#include "machine/unprogrammed_job.h"
 
 namespace camber {
 
@@ -64,6 +65,25 @@ Job v0::read_job(const std::string& path) {
   impl->job = machine::read_job(path, impl->found);
   impl->found.throw_if_errors();
   return Job(std::move(impl));
+}
+
+Job v0::read_unprogrammed_job(const std::string& path) {
+  auto impl = std::make_shared<Job::Impl>();
+  impl->job = machine::read_unprogrammed_job(path, impl->found);
+  impl->found.throw_if_errors();
+  return Job(std::move(impl));
+}
+
+const machine::Job& api::programmed(const Job& job) {
+  if (!job.program_path().empty()) return job.impl().job;
+  Diagnostics found = job.impl().found;
+  found.add({Severity::error,
+             {job.path(), 0, 0},
+             "the job has no program; a program in the file, or set_program(), was expected",
+             "job-program",
+             {}});
+  found.throw_if_errors();
+  return job.impl().job;
 }
 
 }  // namespace camber

@@ -16,4 +16,10 @@ struct Job::Impl {
   Diagnostics found;  ///< in its files
 };
 
+namespace api {
+
+/// The job, which must have a program: else an error, [job-program].
+const machine::Job& programmed(const Job& job);
+
+}  // namespace api
 }  // namespace camber

@@ -50,6 +50,7 @@ PostureFigures figures_of(const api::PosturedProgram& program) {
           .max_angle_deg = deg_from_rad(f.max_angle_rad),
           .compliance_um_per_N = f.compliance_um_per_N,
           .lag_um = f.lag_um,
+          .error_um = f.error_um,
           .time_s = program.time_s};
 }
 
@@ -64,25 +65,27 @@ PostureResult v0::posture(const Program& program, const Job& job, const PostureO
                               .interpreter = program.impl().options,
                               .tool = options.tool,
                               .step_mm = options.step_mm,
-                              .options = rules_of(options)};
+                              .options = rules_of(options),
+                              .overhang_step_mm = options.overhang_step_mm,
+                              .least_error = options.least_error};
   if (!options.write_as.empty()) command.written = word_of<nc::OneDirection>(kWrittenAs, options.write_as, "write_as");
   api::Run run(run_options);
   run.execute([&] {
     Diagnostics found = job.impl().found;
     found.append(program.impl().found);
     const StageScope stages([&](const std::string& what, double share) { run.show(what, share); });
-    const auto rows = api::posture_programs(command, options.overhang_step_mm, found);
+    const api::PosturedOverhangs overhangs = api::posture_programs(command, found);
     run.settle(found);
-    const api::PosturedProgram& last = rows.back();
-    result.success = last.blocked_line == 0 && last.postured.figures.unclear == 0;
-    result.blocked_line = last.blocked_line;
-    result.unclear_line = last.unclear_line;
-    result.text = last.postured.text;
-    result.figures = figures_of(last);
+    const api::PosturedProgram& chosen = overhangs.program();
+    result.success = chosen.blocked_line == 0 && chosen.postured.figures.unclear == 0;
+    result.blocked_line = chosen.blocked_line;
+    result.unclear_line = chosen.unclear_line;
+    result.text = chosen.postured.text;
+    result.figures = figures_of(chosen);
     if (options.overhang_step_mm > 0 && result.success)
-      for (const api::PosturedProgram& row : rows) result.overhangs.push_back(figures_of(row));
+      for (const api::PosturedProgram& row : overhangs.rows) result.overhangs.push_back(figures_of(row));
     result.diagnostics = found.all();
-    result.json = api::posture_json(rows, options.overhang_step_mm > 0, command);
+    result.json = api::posture_json(overhangs, command);
   });
   return result;
 }

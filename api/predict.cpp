@@ -90,7 +90,7 @@ PredictResult api::result_of(const machine::Job& job, const PreparedJob& prepare
 
 PredictResult v0::predict(const Job& given, const PredictOptions& options, const RunOptions& run_options) {
   const auto begin = std::chrono::steady_clock::now();
-  const machine::Job& job = given.impl().job;
+  const machine::Job& job = api::programmed(given);
   PredictResult result;
   api::Run run(run_options);
   run.execute([&] {

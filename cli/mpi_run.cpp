@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -201,6 +202,17 @@ class RankParts : public api::PartStore {
   std::uint64_t sent_bytes_ = 0;
 };
 
+/// That of rank 0. The others wait asleep: meanwhile it merges, and a rank that polls takes a processor.
+int status_of_first(int status) {
+  MPI_Request request{};
+  MPI_Ibcast(&status, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
+  for (int done = 0;;) {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done != 0) return status;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
 /// The mean over the ranks in percent of the largest.
 double balance_percent(const std::vector<std::uint64_t>& of_ranks) {
   std::uint64_t sum = 0, most = 0;
@@ -244,6 +256,7 @@ int predict_on(const Ranks& ranks, SectionsArguments arguments, GlobalOptions op
   RankParts store(ranks, arguments.output_folder, key);
   int round = 1;
   simulate::SectionWork work;
+  std::shared_ptr<simulate::ReadPrograms> programs;
   const auto compute = [](const auto& part) {
     const PartInWork in_work;
     part();
@@ -260,15 +273,22 @@ int predict_on(const Ranks& ranks, SectionsArguments arguments, GlobalOptions op
       if (again) ++round;
     }
     work = run.work();
+    if (ranks.rank() == 0) programs = run.take_programs();
   }
   progress.clear();
   if (options.verbosity > 0) tell_work(ranks, work, store.sent_bytes());
   store.begin_merge(round);
   int status = kDone;
   if (ranks.rank() == 0)
-    status = merge_and_write(job, key, round, store, {arguments.output_folder, arguments.json}, options, begin);
-  MPI_Bcast(&status, 1, MPI_INT, 0, MPI_COMM_WORLD);
-  return status;
+    status = merge_and_write(job, key, round, store, {arguments.output_folder, arguments.json, std::move(programs)},
+                             options, begin);
+  return status_of_first(status);
+}
+
+/// How the predictions of a compensation were shared.
+void tell_predictions(const simulate::CrewFigures& f) {
+  fmt::print(stderr, "{} predictions, {} of them from the one before: {} pieces, {} rounds, {} pieces solved\n",
+             f.predictions, f.from_the_last, f.pieces, f.rounds, f.solved);
 }
 
 /// Every rank compensates, and the predictions are shared; rank 0 writes.
@@ -292,8 +312,8 @@ int compensate_on(const Ranks& ranks, const CompensateArguments& arguments, cons
     } catch (const BeyondModel&) {  // so does rank 0
     }
   }
-  MPI_Bcast(&status, 1, MPI_INT, 0, MPI_COMM_WORLD);
-  return status;
+  if (options.verbosity > 0 && ranks.rank() == 0) tell_predictions(shared.figures());
+  return status_of_first(status);
 }
 
 /// What is wrong with the input is found by every rank, and said by the first; the others say what is wrong where they

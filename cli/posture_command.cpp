@@ -28,14 +28,15 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
                                     .tool = arguments.tool,
                                     .step_mm = arguments.step_mm,
                                     .options = arguments.options,
-                                    .written = arguments.written};
-  const bool overhangs = arguments.overhang_step_mm > 0;
-  const auto rows = api::posture_programs(command, arguments.overhang_step_mm, diagnostics);
-  const api::PosturedProgram& program = rows.back();
+                                    .written = arguments.written,
+                                    .overhang_step_mm = arguments.overhang_step_mm,
+                                    .least_error = arguments.least_error};
+  const api::PosturedOverhangs overhangs = api::posture_programs(command, diagnostics);
+  const api::PosturedProgram& program = overhangs.program();
   progress.clear();
   settle(diagnostics, options);
   const posture::PostureFigures& figures = program.postured.figures;
-  if (!arguments.json.empty()) write_file(arguments.json, api::posture_json(rows, overhangs, command));
+  if (!arguments.json.empty()) write_file(arguments.json, api::posture_json(overhangs, command));
   if (program.blocked_line > 0) {
     fmt::print(stderr, "posture: no direction of the tool is clear of {} by {:g} mm in line {}; nothing was written\n",
                arguments.options.stock ? "part, stock and fixtures" : "part and fixtures",
@@ -43,10 +44,9 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
     return kNumbersDidNotWorkOut;
   }
   write_file(arguments.output, program.postured.text);
-  if (!arguments.report.empty())
-    write_file(arguments.report, posture_page(rows, overhangs && figures.unclear == 0, command, diagnostics));
+  if (!arguments.report.empty()) write_file(arguments.report, posture_page(overhangs, command, diagnostics));
   if (!options.quiet) {
-    if (overhangs && figures.unclear == 0) fmt::print("{}\n", api::overhang_text(rows));
+    if (arguments.overhang_step_mm > 0 && figures.unclear == 0) fmt::print("{}\n", api::overhang_text(overhangs));
     fmt::print("{}", api::posture_text(program, command));
   }
   if (figures.unclear == 0) return kDone;

@@ -16,6 +16,7 @@ struct PostureArguments {
   std::optional<int> tool{};
   double step_mm = 1;
   double overhang_step_mm = 0;  ///< greater than zero: the shortest overhang is looked for
+  bool least_error = false;     ///< that of the least expected error instead
   posture::PostureOptions options;
   std::optional<nc::OneDirection> written{};
   nc::InterpreterOptions interpreter;

@@ -16,6 +16,7 @@ std::vector<std::string> posture_row(std::string name, const posture::PostureFig
   return {std::move(name),
           number_text(f.overhang_mm, 1),
           number_text(f.compliance_um_per_N, 3),
+          number_text(f.error_um, 1),
           number_text(deg_from_rad(f.mean_angle_rad), 1),
           number_text(deg_from_rad(f.max_angle_rad), 1),
           number_text(f.rotary_motion_deg, 0),
@@ -24,7 +25,7 @@ std::vector<std::string> posture_row(std::string name, const posture::PostureFig
 
 report::TextTable posture_table(std::string title, std::string first) {
   return {std::move(title),
-          {std::move(first), "overhang, mm", "deflection, um/N", "angle to the normal, deg", "at most",
+          {std::move(first), "overhang, mm", "deflection, um/N", "error, um", "angle to the normal, deg", "at most",
            "rotary motion, deg", "time, s"},
           {},
           {}};
@@ -47,27 +48,28 @@ report::TextTable overhang_table(const std::vector<api::PosturedProgram>& rows) 
 std::vector<report::Figure> posture_figures(const api::PosturedProgram& program) {
   const posture::PostureFigures &f = program.postured.figures, &before = program.postured.upright;
   return {{"deflection normal to the part", before.compliance_um_per_N, f.compliance_um_per_N, "um/N", 3,
-           "compliance_um_per_N"},
-          {"overhang", before.overhang_mm, f.overhang_mm, "mm", 1, "overhang_mm"},
-          {"time", program.given_time_s, program.time_s, "s", 1, "time_s"},
+           "before.compliance_um_per_N", "compliance_um_per_N"},
+          {"form error, about", before.error_um, f.error_um, "um", 1, "before.error_um", "error_um"},
+          {"overhang", before.overhang_mm, f.overhang_mm, "mm", 1, "before.overhang_mm", "overhang_mm"},
+          {"time", program.given_time_s, program.time_s, "s", 1, "before.time_s", "time_s"},
           {"points that are too near", static_cast<double>(f.unclear), std::nullopt, "", 0, "unclear"},
           {"rotary motion", f.rotary_motion_deg, std::nullopt, "deg", 0, "rotary_motion_deg"},
           {"angle of tool and normal", deg_from_rad(before.mean_angle_rad), deg_from_rad(f.mean_angle_rad), "deg", 1,
-           "mean_angle_deg"}};
+           "before.mean_angle_deg", "mean_angle_deg"}};
 }
 
 }  // namespace
 
-std::string posture_page(const std::vector<api::PosturedProgram>& rows, bool overhangs,
-                         const api::PostureCommand& command, const Diagnostics& found) {
-  const api::PosturedProgram& program = rows.back();
+std::string posture_page(const api::PosturedOverhangs& overhangs, const api::PostureCommand& command,
+                         const Diagnostics& found) {
+  const api::PosturedProgram& program = overhangs.program();
   const machine::Job& job = *command.job;
   report::MachinePage page;
   page.title = "Postures of " + command.text->source.name();
   page.subtitle = fmt::format("with the job {}, camber {}", job.path, CAMBER_VERSION);
   page.figures = posture_figures(program);
   page.tables = {before_and_after(program)};
-  if (overhangs && rows.size() > 1) page.tables.push_back(overhang_table(rows));
+  if (overhangs.rows.size() > 1) page.tables.push_back(overhang_table(overhangs.rows));
   for (const Diagnostic& d : found.all()) page.warnings.push_back(to_string(d));
   page.part = read_mesh(job.part.mesh);
   page.work_origin_mm = program.postured.origin_mm;

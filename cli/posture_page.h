@@ -7,9 +7,9 @@
 
 namespace camber::cli {
 
-/// The page's text, UTF-8, self-contained. The same input gives the same bytes. The last row is the program; with
-/// `overhangs` all rows are listed. Requires a last row with a text.
-std::string posture_page(const std::vector<api::PosturedProgram>& rows, bool overhangs,
-                         const api::PostureCommand& command, const Diagnostics& found);
+/// The page's text, UTF-8, self-contained. The same input gives the same bytes. All rows are listed, where there are
+/// several. Requires a chosen row with a text.
+std::string posture_page(const api::PosturedOverhangs& overhangs, const api::PostureCommand& command,
+                         const Diagnostics& found);
 
 }  // namespace camber::cli

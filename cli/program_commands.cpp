@@ -519,11 +519,16 @@ void add_posture(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command->add_option("--step-mm", arguments->step_mm, "between the points of the path; default 1")
       ->check(number_from_to(0.05, 20))
       ->type_name("X");
+  CLI::Option* overhang =
+      command
+          ->add_option("--overhang", arguments->overhang_step_mm,
+                       "look for the shortest overhang that stays clear, in steps of so many mm from that of the job")
+          ->check(number_from_to(0.1, 50))
+          ->type_name("STEP");
   command
-      ->add_option("--overhang", arguments->overhang_step_mm,
-                   "look for the shortest overhang that stays clear, in steps of so many mm from that of the job")
-      ->check(number_from_to(0.1, 50))
-      ->type_name("STEP");
+      ->add_flag("--least-error", arguments->least_error,
+                 "write the program of the overhang whose expected error is least, instead of the shortest")
+      ->needs(overhang);
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
   command->add_option("--report", arguments->report, "a page that shows the machine along the new program")
       ->type_name("R.html");

@@ -24,8 +24,10 @@ int merge_and_write(const machine::Job& job, const api::PartKey& key, int round,
                     std::chrono::steady_clock::time_point begin) {
   Diagnostics found, of_cut;
   ProgressLine progress(options, "merging");
-  const api::PredictRequest request{
-      .folder = arguments.folder, .forces_at = key.forces_at, .progress = section_steps(progress)};
+  const api::PredictRequest request{.folder = arguments.folder,
+                                    .forces_at = key.forces_at,
+                                    .progress = section_steps(progress),
+                                    .programs = arguments.programs};
   api::MergedJob merged = api::merge_parts(job, key, round, store, request, found, of_cut);
   progress.clear();
   settle(found, options);
@@ -95,7 +97,8 @@ int run_sections(const SectionsArguments& arguments, const GlobalOptions& option
     if (!again) break;
   }
   progress.clear();
-  return merge_and_write(job, key, round, store, {arguments.output_folder, arguments.json}, options, begin);
+  return merge_and_write(job, key, round, store, {arguments.output_folder, arguments.json, run.take_programs()},
+                         options, begin);
 }
 
 int run_merge(const MergeArguments& arguments, const GlobalOptions& options) {

@@ -1,6 +1,7 @@
 #pragma once
 // camber predict --sections and camber merge.
 #include <chrono>
+#include <memory>
 #include <string>
 
 #include "api/commands/sections.h"
@@ -25,6 +26,7 @@ int run_sections(const SectionsArguments& arguments, const GlobalOptions& option
 struct MergeArguments {
   std::string folder;
   std::string json;
+  std::shared_ptr<simulate::ReadPrograms> programs{};  ///< see api::PredictRequest
 };
 
 /// Joins the parts, writes the folder of a prediction, and says what camber predict says.

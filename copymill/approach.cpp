@@ -131,6 +131,17 @@ Runner::Ended Approach::enter(Pass& piece) {
   return ramp(piece, lift + 0.1);
 }
 
+Runner::Ended Approach::enter_ring(Pass& ring) {
+  const Vec3 start = ring.points.front();
+  double lift = 0;
+  for (const Vec3& p : ring.points) lift = std::max(lift, lift_into_air(p));
+  if (lift <= 0 && runner_.at() && (start - *runner_.at()).norm() <= 20 * cut_.shape.radius_mm &&
+      free_way(*runner_.at(), start) && in_air(*runner_.at(), start))
+    return runner_.cut({start}, false);
+  if (lift_over(start) != Runner::Ended::done) return runner_.ended();
+  return lift <= 0 ? lower_to(start) : ramp(ring, lift + 0.1);
+}
+
 /// Down along the piece; a closed one begins where the ramp ended then.
 Runner::Ended Approach::ramp(Pass& piece, double lift) {
   ++runner_.summary().ramps;

@@ -24,6 +24,9 @@ class Approach {
 
   /// Cuts the stretches of a pass that meet material.
   Runner::Ended follow(const Pass& pass);
+  /// To a closed pass that is cut from its beginning on: down through air where none of it meets material, else in a
+  /// helix along it. Begins the pass where the tool is then, or as near to that as its points allow.
+  Runner::Ended enter_ring(Pass& ring);
   /// Up, over what stands on the way to a place, and to its X and Y.
   Runner::Ended lift_over(const Vec3& to);
   /// Down in rapid to the clearance above a place in air, and on at the feed.

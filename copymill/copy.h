@@ -23,6 +23,7 @@ struct Tick {
   Vec3 tip_mm = Vec3::Zero();
   double feed_mm_per_s = 0;  ///< actual
   double load_N = 0;         ///< lateral force of the last tooth passing; 0 in air
+  double processor_ms = 0;   ///< that the calling thread has spent on this tick
 };
 
 struct CopyOptions {
@@ -49,6 +50,7 @@ struct OperationSummary {
   double removed_mm3 = 0;
   std::size_t levels = 0, passes = 0;
   std::size_t ramps = 0, plunges = 0, retracts = 0;
+  std::size_t trochoid_circles = 0;
   /// Cutting found nothing: all that the operation may take was gone.
   bool nothing_left = false;
   LoadFigures load;

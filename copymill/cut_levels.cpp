@@ -7,6 +7,7 @@
 #include "copymill/level_region.h"
 #include "copymill/levels.h"
 #include "copymill/operation.h"
+#include "copymill/slotting.h"
 
 namespace camber::copymill {
 namespace {
@@ -66,7 +67,8 @@ bool stands_over_part(const Workplace& place, double bottom_mm) {
 
 class LevelCutter {
  public:
-  LevelCutter(const Workplace& place, Approach& approach) : place_(place), approach_(approach) {}
+  LevelCutter(const Workplace& place, Approach& approach)
+      : place_(place), approach_(approach), slotting_(place, approach) {}
 
   Runner::Ended cut(const LevelRegion& region) {
     for (int c = 0; c < region.components(); ++c) {
@@ -80,13 +82,40 @@ class LevelCutter {
  private:
   Runner::Ended cut_loops(const LevelRegion& region, int component) {
     const double radial = place_.runner.radial_mm();
-    for (const double d : loop_distances(region, component, radial))
+    // As far inside as loops can be had from the grid.
+    double before = 0.97 * region.depth_mm(component);
+    for (const double d : loop_distances(region, component, radial)) {
+      if (region.walled() && clear_slots(region, component, before, d) != Runner::Ended::done)
+        return place_.runner.ended();
       if (cut_at(region, component, d) != Runner::Ended::done) return place_.runner.ended();
+      before = d;
+    }
+    return Runner::Ended::done;
+  }
+
+  /// Trochoids where the region is so narrow that the loop at a distance, or one between it and the loop before, would
+  /// be a full cut; around the loops farthest from the walls, where the largest circles fit.
+  Runner::Ended clear_slots(const LevelRegion& region, int component, double before, double distance) {
+    if (!slotting_.wanted()) return Runner::Ended::done;
+    constexpr int kBetween = 4;
+    for (int k = kBetween; k >= 0; --k) {
+      const double d = distance + (before - distance) * k / kBetween;
+      if (k > 0 && d < slotting_.smallest_mm()) continue;
+      std::vector<Pass> passes = passes_at(region, component, d);
+      for (Pass& pass : passes) {
+        if (place_.runner.at()) start_near(pass, *place_.runner.at());
+        if (slotting_.clear(pass, k == 0) != Runner::Ended::done) return place_.runner.ended();
+      }
+    }
     return Runner::Ended::done;
   }
 
   /// The loops at one distance, the nearest first.
   Runner::Ended cut_at(const LevelRegion& region, int component, double distance) {
+    return cut_nearest_first(passes_at(region, component, distance), false);
+  }
+
+  std::vector<Pass> passes_at(const LevelRegion& region, int component, double distance) const {
     std::vector<Pass> passes;
     const bool climb = place_.cut.operation.sense != machine::MillingSense::conventional;
     for (FlatPass& loop : region.loops(distance)) {
@@ -95,7 +124,7 @@ class LevelCutter {
       const bool turn = region.walled() != climb;
       passes.push_back(at_height(turn ? reversed(std::move(loop)) : std::move(loop), region.z_mm()));
     }
-    return cut_nearest_first(std::move(passes), false);
+    return passes;
   }
 
   Runner::Ended cut_nearest_first(std::vector<Pass> passes, bool may_turn) {
@@ -136,13 +165,24 @@ class LevelCutter {
         std::max(1, static_cast<int>(std::ceil((v1 - v0 - 2 * kInside_mm) / place_.runner.radial_mm() - 1e-6)));
     for (int k = 0; k <= n; ++k) {
       const double v = v0 + kInside_mm + (v1 - v0 - 2 * kInside_mm) * k / n;
-      std::vector<FlatPass> row = region.stretches(u0 * along + v * across, u1 * along + v * across);
-      std::erase_if(row, [&](const FlatPass& s) { return region.component_of(s.points.front()) != component; });
-      // Up milling goes along, as what is still to be cut is on the left.
-      std::vector<Pass> passes;
-      for (FlatPass& s : row)
-        passes.push_back(
-            at_height(o.sense == machine::MillingSense::climb ? reversed(std::move(s)) : std::move(s), region.z_mm()));
+      const auto row_at = [&](double at) {
+        std::vector<FlatPass> row = region.stretches(u0 * along + at * across, u1 * along + at * across);
+        std::erase_if(row, [&](const FlatPass& s) { return region.component_of(s.points.front()) != component; });
+        // Up milling goes along, as what is still to be cut is on the left.
+        std::vector<Pass> passes;
+        for (FlatPass& s : row)
+          passes.push_back(at_height(o.sense == machine::MillingSense::climb ? reversed(std::move(s)) : std::move(s),
+                                     region.z_mm()));
+        return passes;
+      };
+      std::vector<Pass> passes = row_at(v);
+      if (slotting_.wanted() && std::ranges::any_of(passes, [&](const Pass& p) { return slotting_.full_width(p); })) {
+        // Circles as large as they may be, from the row on.
+        for (const Pass& pass : row_at(v + std::min(slotting_.largest_mm(), 0.5 * (v1 - v))))
+          if (slotting_.clear(pass, false) != Runner::Ended::done) return place_.runner.ended();
+        for (const Pass& pass : passes)
+          if (slotting_.clear(pass, true) != Runner::Ended::done) return place_.runner.ended();
+      }
       if (cut_nearest_first(std::move(passes), o.sense == machine::MillingSense::both) != Runner::Ended::done)
         return place_.runner.ended();
     }
@@ -151,6 +191,7 @@ class LevelCutter {
 
   const Workplace& place_;
   Approach& approach_;
+  Slotting slotting_;
 };
 
 }  // namespace

@@ -17,6 +17,8 @@ constexpr double kUpBelow = 0.88, kAim = 0.94;                    ///< of the ta
 constexpr double kUpStep = 0.5;                                   ///< of the nominal feed; no step leads over the aim
 constexpr double kFromBand = 0.80, kToBand = 1.05, kNever = 1.2;  // of the target
 constexpr double kHeldBack = 0.9;                                 ///< of the commanded feed
+constexpr double kCellShare = 0.1;                                ///< of the radius: columns that remember hardness
+constexpr double kTellsHardness = 0.1;                            ///< of the target: less expected load tells nothing
 constexpr double kCutting = 0.01;                                 ///< of the target: less is air
 
 constexpr double kRidge_mm = 0.0003;  ///< between stamps that are swept
@@ -44,6 +46,7 @@ LoadFollower::LoadFollower(const machine::Job& job, const machine::CopyOperation
       shape_(removal::shape_of(job.tools.at(operation.tool))),
       first_id_(first_id),
       apart_mm_(stamps_apart_mm(job.tools.at(operation.tool))),
+      felt_(kCellShare * shape_.radius_mm),
       feed_(operation.feed_mm_per_s) {
   if (loads || operation.force_N)
     probe_.emplace(stock, job.tools.at(operation.tool), job.material, tips,
@@ -59,6 +62,15 @@ LoadFollower::LoadFollower(const machine::Job& job, const machine::CopyOperation
 double LoadFollower::radial_mm() const { return rule_ ? rule_->conditions().radial_mm : operation_.radial_depth_mm; }
 double LoadFollower::axial_mm() const { return rule_ ? rule_->conditions().axial_mm : operation_.axial_depth_mm; }
 
+std::optional<double> LoadFollower::share_at_lowest_feed(const Vec3& tip, const Vec3& direction) {
+  if (!rule_) return std::nullopt;
+  removal::Stamp stamp;
+  stamp.pose.tip_mm = tip;
+  stamp.feed_per_tooth_mm = band_.lowest * operation_.feed_mm_per_s * passing_s_ * direction;
+  const double load = load_of(probe_->look(stamp), LoadKind::force, operation_.spindle_rpm);
+  return load * std::max({1.0, rule_->hardness(), felt_.at(tip)}) / band_.limit;
+}
+
 void LoadFollower::look_ahead(double t_s, const Ahead& ahead) {
   if (!rule_) return;
   const double feed = operation_.feed_mm_per_s;
@@ -73,7 +85,7 @@ void LoadFollower::look_ahead(double t_s, const Ahead& ahead) {
     at_half = load_of(probe_->look(stamp), LoadKind::force, operation_.spindle_rpm);
   }
   braking_mm_per_s2_ = ahead.braking_mm_per_s2;
-  bounds_.push_back({gone_mm_ + ahead.way_mm, rule_->feed_ahead(load, at_half, feed)});
+  bounds_.push_back({gone_mm_ + ahead.way_mm, rule_->feed_ahead(load, at_half, feed, felt_.at(ahead.place))});
   rule_->note_ahead(t_s, ahead.place, allowed_mm_per_s());
   choose_feed();
 }
@@ -107,6 +119,8 @@ double LoadFollower::pass(const removal::Stamp& stamp, double commanded) {
   const double actual = passing_mm_ / passing_s_;
   figures_.max_N = std::max(figures_.max_N, force);
   if (!rule_) return force;
+  if (load.expected.lateral_max_N > kTellsHardness * band_.limit)
+    felt_.feel(stamp.pose.tip_mm, force / load.expected.lateral_max_N);
   // Slower than commanded at corners and where the tool sets off: the load there says little of the feed.
   if (actual < kHeldBack * commanded && force <= figures_.target_N) return force;
   rule_->feel({.t_s = stamp.t_s,

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "copymill/felt_hardness.h"
 #include "copymill/load_rule.h"
 #include "machine/copy_operations.h"
 #include "machine/job.h"
@@ -38,6 +39,10 @@ class LoadFollower {
   bool replan() const { return rule_ && rule_->replan(); }
   void replanned() { rule_->replanned(); }
 
+  /// The load that the model expects of a cut at a place at the lowest feed, with what is felt over it, as a share of
+  /// the target. `direction`: of length 1. Nothing without a target.
+  std::optional<double> share_at_lowest_feed(const Vec3& tip, const Vec3& direction);
+
   /// A place that the tool reaches soon.
   struct Ahead {
     Vec3 place, direction;         ///< of the tip there
@@ -68,6 +73,7 @@ class LoadFollower {
   std::vector<removal::Stamp> waiting_;
   double apart_mm_;  ///< of waiting stamps
   std::optional<LoadRule> rule_;
+  FeltHardness felt_;
   LoadBand band_;
   double feed_;
   struct Bound {

@@ -46,6 +46,8 @@ std::string_view name_of(Quantity quantity) {
       return "radial depth";
     case Quantity::axial_depth:
       return "axial depth";
+    case Quantity::radial_engagement:
+      return "radial engagement";
   }
   return "";
 }
@@ -66,6 +68,14 @@ std::string_view text_of(Cause cause) {
       return "more load ahead";
     case Cause::clear_ahead:
       return "nothing ahead binds";
+    case Cause::trochoids_asked_for:
+      return "trochoids instead of a full cut";
+    case Cause::full_cut_over_limit:
+      return "trochoids; a full cut is over the limit at the lowest feed and depth";
+    case Cause::full_cut_within_limit:
+      return "full cut; feed and depth can hold the limit";
+    case Cause::slot_too_narrow:
+      return "full cut; the slot is too narrow for trochoids";
   }
   return "";
 }
@@ -177,8 +187,8 @@ void LoadRule::replanned() {
   since_step_ = over_at_lowest_ = with_room_ = 0;
 }
 
-double LoadRule::feed_ahead(double load, double load_at_half, double feed_mm_per_s) const {
-  const double limit = band_.limit / std::max(1.0, hardness_);
+double LoadRule::feed_ahead(double load, double load_at_half, double feed_mm_per_s, double hardness_there) const {
+  const double limit = band_.limit / std::max({1.0, hardness_, hardness_there / kRemembered});
   const double highest = highest_feed();
   if (!(load > 0)) return highest;
   const double per_feed = std::max(0.0, load - load_at_half) / (0.5 * feed_mm_per_s);

@@ -54,7 +54,7 @@ struct Felt {
   double feed_mm_per_s = 0;  ///< at which it was cut
 };
 
-enum class Quantity : std::uint8_t { feed, radial_depth, axial_depth };
+enum class Quantity : std::uint8_t { feed, radial_depth, axial_depth, radial_engagement };
 enum class Cause : std::uint8_t {
   over_limit,
   below_band,
@@ -62,7 +62,12 @@ enum class Cause : std::uint8_t {
   room_for_depth,
   in_air,
   ahead,
-  clear_ahead
+  clear_ahead,
+  // Of the radial engagement, where the cutter's full width would be in the cut (copymill/slotting.h).
+  trochoids_asked_for,
+  full_cut_over_limit,
+  full_cut_within_limit,
+  slot_too_narrow
 };
 std::string_view name_of(Quantity quantity);
 std::string_view text_of(Cause cause);
@@ -78,6 +83,8 @@ struct Change {
 
 class LoadRule {
  public:
+  static constexpr double kRemembered = 1.06;
+
   LoadRule(const LoadBand& band, const Conditions& nominal);
 
   void feel(const Felt& passing);
@@ -88,8 +95,10 @@ class LoadRule {
   void replanned();
 
   /// The feed that keeps the limit at a place ahead, from what the model tells of it at two feeds, `feed` and half of
-  /// it; no lower than the lowest feed.
-  double feed_ahead(double load, double load_at_half, double feed_mm_per_s) const;
+  /// it; no lower than the lowest feed. `hardness_there`: what has been felt near that place over what was expected.
+  /// It may lie a little farther on: with it the load may be over the limit by kRemembered. The present hardness()
+  /// counts in full.
+  double feed_ahead(double load, double load_at_half, double feed_mm_per_s, double hardness_there = 1) const;
   bool at_highest_feed() const { return now_.feed_mm_per_s >= highest_feed(); }
   /// What is felt over what the model expects.
   double hardness() const { return hardness_; }

@@ -1,6 +1,8 @@
 #include "copymill/runner.h"
 
 #include <algorithm>
+#include <cassert>
+#include <ctime>
 #include <limits>
 
 #include "feedmodel/control_options.h"
@@ -10,6 +12,13 @@ namespace {
 
 constexpr double kBeside_mm = 20;  ///< of the stock: tips that enter from the side
 constexpr double kNoLimit_mm_per_s = std::numeric_limits<double>::infinity();
+
+/// Of this thread.
+double processor_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
+}
 
 }  // namespace
 
@@ -28,6 +37,7 @@ void Runner::begin(const Cut& cut, Standing& standing, double safe_z, PathDepth*
   safe_z_ = rounded({0, 0, safe_z + 0.5 * piece_options_.increment_mm}, piece_options_.increment_mm).z();
   summary_ = {};
   summary_.tool = cut.operation.tool, summary_.mode = cut.operation.mode;
+  notes_.clear();
   at_.reset();
   const double beside = kBeside_mm + 2 * cut.tool.diameter_mm;
   const removal::TipBox tips{stock_.min_mm() - Vec3(beside, beside, 0), stock_.max_mm() + Vec3(beside, beside, 0)};
@@ -44,6 +54,8 @@ void Runner::end() {
   first_id_ = follower_->next_id();
   summary_.load = follower_->figures();
   summary_.changes = follower_->changes();
+  summary_.changes.insert(summary_.changes.end(), notes_.begin(), notes_.end());
+  std::ranges::stable_sort(summary_.changes, {}, &Change::t_s);
   follower_.reset();
   cut_.reset();
 }
@@ -74,6 +86,19 @@ Runner::Ended Runner::cut(const std::vector<Vec3>& points, bool closed, double f
   return run(std::move(path), false, feed_share);
 }
 
+Runner::Ended Runner::follow(std::vector<PathPiece> path) {
+  assert(at_ && !path.empty() && (path.front().from - *at_).norm() < piece_options_.increment_mm);
+  return run(std::move(path), false, 1);
+}
+
+std::optional<double> Runner::share_at_lowest_feed(const Vec3& tip, const Vec2& direction) {
+  return follower_->share_at_lowest_feed(tip, {direction.x(), direction.y(), 0});
+}
+
+void Runner::note_slot(const Vec3& tip, double from, double to, Cause cause, double share) {
+  notes_.push_back({t_s_, tip, Quantity::radial_engagement, from, to, cause, share});
+}
+
 Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_share) {
   if (!rapid && ended() != Ended::done) return ended();
   motion_.start(std::move(path), rapid);
@@ -81,8 +106,13 @@ Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_s
   if (rapid) first_stamp_ = true;
   last_lowered_ = *at_;
   const double begin_s = t_s_;
+  // A rapid that begins after the stop lifts the tool.
+  const auto halted = [&, lifts = rapid && stopped_] { return rapid ? stopped_ && !lifts : ended() != Ended::done; };
   written_feed_ = commanded_ = feed_mm_per_s(feed_share);
-  while (!motion_.finished() && !(!rapid && ended() != Ended::done && motion_.at_rest())) tick(rapid, feed_share);
+  while (!motion_.finished() && !(halted() && motion_.at_rest())) {
+    if (options_.stop_after_s && t_s_ >= *options_.stop_after_s) stopped_ = true;
+    tick(rapid, feed_share, halted());
+  }
   const Vec3 end = motion_.piece() < motion_.path().size() ? rounded(motion_.tip(), piece_options_.increment_mm)
                                                            : motion_.path().back().to;
   if (!rapid) {
@@ -98,12 +128,12 @@ Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_s
   return ended();
 }
 
-void Runner::tick(bool rapid, double feed_share) {
+void Runner::tick(bool rapid, double feed_share, bool halted) {
   const auto begin = std::chrono::steady_clock::now();
+  const double processor_begin_ms = options_.stream ? processor_ms() : 0;
   const Vec3 before = motion_.tip();
-  if (options_.stop_after_s && t_s_ >= *options_.stop_after_s) stopped_ = true;
   if (!rapid) command(feed_mm_per_s(feed_share));
-  const double wanted = rapid ? kNoLimit_mm_per_s : ended() == Ended::done ? commanded_ : 0;
+  const double wanted = halted ? 0 : rapid ? kNoLimit_mm_per_s : commanded_;
   motion_.tick(wanted, {.distance_mm = 0, .speed_mm_per_s = kNoLimit_mm_per_s});
   t_s_ += motion_.period_s();
   if (!rapid) {
@@ -112,7 +142,8 @@ void Runner::tick(bool rapid, double feed_share) {
   }
   ++ticks_;
   if (options_.stream)
-    options_.stream({t_s_, motion_.tip(), (motion_.tip() - before).norm() / motion_.period_s(), rapid ? 0 : load_N_});
+    options_.stream({t_s_, motion_.tip(), (motion_.tip() - before).norm() / motion_.period_s(), rapid ? 0 : load_N_,
+                     processor_ms() - processor_begin_ms});
   const auto took = std::chrono::steady_clock::now() - begin;
   tick_time_ += took;
   longest_tick_ = std::max<std::chrono::nanoseconds>(longest_tick_, took);

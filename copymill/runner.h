@@ -44,6 +44,9 @@ class Runner {
   /// Along points from where the tool is, at a share of the feed. Nothing is done where it is there already.
   Ended cut(const std::vector<Vec3>& points, bool closed, double feed_share = 1);
 
+  /// Along lines and arcs that begin where the tool is.
+  Ended follow(std::vector<PathPiece> path);
+
   /// Not given at the start of an operation.
   const std::optional<Vec3>& at() const { return at_; }
   double safe_z_mm() const { return safe_z_; }
@@ -54,6 +57,12 @@ class Runner {
   double axial_mm() const { return follower_->axial_mm(); }
   /// Other passes follow.
   void replanned() { follower_->replanned(); }
+  /// The load that the model expects of a level cut at a place at the lowest feed, with what is felt over it, as a
+  /// share of the target; nothing where the operation has none.
+  std::optional<double> share_at_lowest_feed(const Vec3& tip, const Vec2& direction);
+  /// For the log: how a full cut was made, or avoided. At the present time.
+  void note_slot(const Vec3& tip, double from_mm, double to_mm, Cause cause, double share);
+  double increment_mm() const { return piece_options_.increment_mm; }
 
   OperationSummary& summary() { return summary_; }
   /// What concerns the whole run; the text is complete. Call once.
@@ -61,7 +70,7 @@ class Runner {
 
  private:
   Ended run(std::vector<PathPiece> path, bool rapid, double feed_share);
-  void tick(bool rapid, double feed_share);
+  void tick(bool rapid, double feed_share, bool halted);
   void stamp_until(double t_s, const Vec3& before, const Vec3& now);
   void stamp_at(double t_s, const Vec3& tip);
   void command(double feed_mm_per_s);
@@ -80,6 +89,7 @@ class Runner {
   Standing* standing_ = nullptr;
   PathDepth* depth_ = nullptr;
   OperationSummary summary_;
+  std::vector<Change> notes_;  ///< of the operation, beside the follower's changes
   std::optional<Vec3> at_;
   double safe_z_ = 0;
   double t_s_ = 0;

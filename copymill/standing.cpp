@@ -94,6 +94,23 @@ bool Standing::meets(const removal::CutterShape& shape, const Vec3& tip, double 
   return out;
 }
 
+double Standing::engaged_rad(const removal::CutterShape& shape, const Vec3& tip, const Vec2& direction,
+                             double more_than) const {
+  constexpr int kSteps = 24;  // of half a turn
+  int engaged = 0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double a = ((k + 0.5) / kSteps - 0.5) * kPi, c = std::cos(a), s = std::sin(a);
+    const Vec2 spoke(c * direction.x() - s * direction.y(), s * direction.x() + c * direction.y());
+    for (const double share : {0.97, 0.8, 0.6}) {
+      const double r = share * shape.radius_mm;
+      if (at(tip.head<2>() + r * spoke) <= tip.z() + more_than + underside_mm(shape, r)) continue;
+      ++engaged;
+      break;
+    }
+  }
+  return engaged * kPi / kSteps;
+}
+
 double Standing::highest_mm(const Vec2& min, const Vec2& max) const {
   const Vec2 lo = grid_.cells(min), hi = grid_.cells(max);
   double out = kAir;

@@ -57,6 +57,9 @@ class Planner {
 
   MotionPlan run() {
     constexpr std::size_t kTogether = 1024;
+    // Rounded corners are segments as well; room that is not written to takes no memory, and a list that doubles does.
+    plan_.rows.reserve(2 * program_.moves.size());
+    plan_.times.reserve(2 * program_.moves.size());
     Stage stage("planning the motion", program_.moves.size());
     build_segments(program_, machine_, [&](const Segment& s) {
       add(s);

@@ -10,6 +10,7 @@ namespace camber::machine {
 inline constexpr std::array<std::string_view, 3> kModeWords{"scanning-line", "contour-line", "drilling"};
 inline constexpr std::array<std::string_view, 3> kSenseWords{"climb", "conventional", "both"};
 inline constexpr std::array<std::string_view, 3> kCycleWords{"centre", "peck", "ream"};
+inline constexpr std::array<std::string_view, 3> kSlottingWords{"by-load", "full-width", "trochoidal"};
 inline constexpr NumberRange kRampDeg{.min = 0, .max = 45, .above_min = true};
 inline constexpr NumberRange kAngleDeg{.min = -360, .max = 360};
 

@@ -62,6 +62,15 @@ void require_depths(TomlTable& table, const CopyOperation& operation) {
     table.missing("axial_depth_mm", drilling ? "the depth of a peck" : "the distance between levels");
 }
 
+void check_slotting(TomlTable& table, const CopyOperation& operation) {
+  if (!table.has("slotting")) return;
+  if (operation.mode == CopyMode::drilling || operation.scallop_mm > 0)
+    table.error_at_name("slotting",
+                        fmt::format("slotting in {}; it is for loops and rows level by level",
+                                    operation.mode == CopyMode::drilling ? "drilling" : "finishing by scallop"),
+                        "copy-mode");
+}
+
 void check_tool(TomlTable& table, const CopyOperation& operation, const Job& job) {
   const auto found = job.tools.find(operation.tool);
   if (found == job.tools.end()) {
@@ -115,12 +124,14 @@ CopyOperation read_operation(TomlTable table, const Job& job) {
     table.error_at("sense", "sense = \"both\" is for rows; contour-line needs \"climb\" or \"conventional\"",
                    "copy-mode");
   out.plunge = table.boolean("plunge", false);
+  out.slotting = static_cast<Slotting>(table.choice("slotting", kSlottingWords, 0));
   out.force_N = table.optional_number("force_N", kPositive);
   out.cycle = static_cast<HoleCycle>(table.choice("cycle", kCycleWords, 1));
   out.holes_mm = points_of(table, "holes_mm", 0, kPlaces);
   if (auto region = table.table("region")) out.region = read_region(*region);
   if (mode) {
     require_depths(table, out);
+    check_slotting(table, out);
     check_tool(table, out, job);
     check_holes(table, out);
   }
@@ -148,6 +159,7 @@ std::string to_toml(const CopyOperation& o) {
     if (o.*k.field != given.*k.field) out += toml_line(k.key, o.*k.field, k.unit);
   out += toml_line("sense", kSenseWords[static_cast<std::size_t>(o.sense)]);
   if (o.plunge) out += "plunge = true\n";
+  if (o.slotting != given.slotting) out += toml_line("slotting", kSlottingWords[static_cast<std::size_t>(o.slotting)]);
   if (o.force_N) out += toml_line("force_N", *o.force_N, kAsIs);
   if (o.mode == CopyMode::drilling) out += toml_line("cycle", kCycleWords[static_cast<std::size_t>(o.cycle)]);
   const auto point = [](const Vec2& p) {

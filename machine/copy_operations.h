@@ -28,6 +28,13 @@ enum class HoleCycle {
   ream     ///< in and out at the feed
 };
 
+/// What is done where a pass would have the cutter's full width in the cut.
+enum class Slotting {
+  by_load,     ///< trochoids where a full cut at the lowest feed and depth would be over CopyOperation::force_N
+  full_width,  ///< a full cut
+  trochoidal   ///< trochoids, whose engagement is that of the radial depth
+};
+
 /// Where the tool's axis may be while it cuts. Not given: over the stock.
 struct CopyRegion {
   std::optional<std::array<Vec2, 2>> box_mm{};  ///< lower and upper corner
@@ -48,6 +55,7 @@ struct CopyOperation {
   MillingSense sense = MillingSense::climb;
   double ramp_rad = 3 * kPi / 180;  ///< steepest way into material
   bool plunge = false;              ///< the cutter may go straight down into material
+  Slotting slotting = Slotting::by_load;
   std::optional<double> force_N{};  ///< load that feed and depths follow; not given: they stay as they are
   CopyRegion region;
   HoleCycle cycle = HoleCycle::peck;

@@ -248,6 +248,7 @@ class Maker {
     out.mean_angle_rad /= way;
     out.lag_um = lag_um(axes);
     out.compliance_um_per_N = 1000 * deflection::beam_of(tool).compliance_mm_per_N(0, 0) * share / way;
+    out.error_um = out.compliance_um_per_N * ordinary_force_N(tool) + out.lag_um;
     return out;
   }
 

@@ -41,6 +41,9 @@ struct PostureFigures {
   /// What the axes leave on the surface by following late, mean magnitude over the way at the feed that the rotary axes
   /// allow (lag_error.h).
   double lag_um = 0;
+  /// Expected form error, mean magnitude over the way: compliance_um_per_N times the force of an edge at the feed per
+  /// tooth of the first cut (posture.cpp, kOrdinaryChip_mm), and lag_um.
+  double error_um = 0;
 };
 
 struct Postured {

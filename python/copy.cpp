@@ -48,7 +48,8 @@ void add_copy(py::module_& module) {
       .def_readonly("nothing_left", &CopiedOperation::nothing_left)
       .def_readonly("target_N", &CopiedOperation::target_N)
       .def_readonly("max_N", &CopiedOperation::max_N)
-      .def_readonly("within_share", &CopiedOperation::within_share);
+      .def_readonly("within_share", &CopiedOperation::within_share)
+      .def_readonly("trochoid_circles", &CopiedOperation::trochoid_circles);
   py::class_<CopyResult>(module, "CopyResult")
       .def_readonly("json", &CopyResult::json, "All figures, as --json of the command line writes them.")
       .def_property_readonly(

@@ -44,17 +44,18 @@ camber::PostResult post(const py::object& program, const py::object& machine, co
 
 camber::PostureResult posture(const py::object& program, const py::object& job, const std::string& mode, bool indexed,
                               const std::string& write_as, const std::optional<int>& tool, double step_mm,
-                              double overhang_step_mm, double clearance_mm, bool stock, double lead_deg,
-                              double tilt_deg, double max_tilt_deg, double least_angle_deg, const py::object& progress,
-                              bool strict, int threads) {
+                              double overhang_step_mm, bool least_error, double clearance_mm, bool stock,
+                              double lead_deg, double tilt_deg, double max_tilt_deg, double least_angle_deg,
+                              const py::object& progress, bool strict, int threads) {
   const camber::Program text = program_of(program);
-  const camber::Job given = job_of(job);
+  const camber::Job given = unprogrammed_job_of(job);
   const camber::PostureOptions options{.mode = mode,
                                        .indexed = indexed,
                                        .write_as = write_as,
                                        .tool = tool,
                                        .step_mm = step_mm,
                                        .overhang_step_mm = overhang_step_mm,
+                                       .least_error = least_error,
                                        .clearance_mm = clearance_mm,
                                        .stock = stock,
                                        .lead_deg = lead_deg,
@@ -106,6 +107,7 @@ void add_posture(py::module_& module) {
       .def_readonly("max_angle_deg", &PostureFigures::max_angle_deg)
       .def_readonly("compliance_um_per_N", &PostureFigures::compliance_um_per_N)
       .def_readonly("lag_um", &PostureFigures::lag_um)
+      .def_readonly("error_um", &PostureFigures::error_um)
       .def_readonly("time_s", &PostureFigures::time_s);
   with_json<PostureResult>(module, "PostureResult")
       .def_readonly("success", &PostureResult::success)
@@ -115,9 +117,9 @@ void add_posture(py::module_& module) {
       .def_readonly("overhangs", &PostureResult::overhangs);
   module.def("posture", posture, "program"_a, "job"_a, py::kw_only(), "mode"_a = "chosen", "indexed"_a = false,
              "write_as"_a = "", "tool"_a = py::none(), "step_mm"_a = 1.0, "overhang_step_mm"_a = 0.0,
-             "clearance_mm"_a = 1.0, "stock"_a = true, "lead_deg"_a = 10.0, "tilt_deg"_a = 0.0, "max_tilt_deg"_a = 75.0,
-             "least_angle_deg"_a = 10.0, "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
-             "Tilts the tool of a three-axis finishing program, clear of part and stock.");
+             "least_error"_a = false, "clearance_mm"_a = 1.0, "stock"_a = true, "lead_deg"_a = 10.0, "tilt_deg"_a = 0.0,
+             "max_tilt_deg"_a = 75.0, "least_angle_deg"_a = 10.0, "progress"_a = py::none(), "strict"_a = false,
+             "threads"_a = 0, "Tilts the tool of a three-axis finishing program, clear of part and stock.");
 }
 
 }  // namespace

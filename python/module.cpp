@@ -41,6 +41,11 @@ camber::Job job_of(const py::handle& object) {
   return camber::read_job(path_of(object));
 }
 
+camber::Job unprogrammed_job_of(const py::handle& object) {
+  if (py::isinstance<camber::Job>(object)) return object.cast<camber::Job>();
+  return camber::read_unprogrammed_job(path_of(object));
+}
+
 namespace {
 
 camber::ReadOptions read_options(const std::optional<std::string>& units, bool block_skip,
@@ -192,6 +197,8 @@ void add_readers(py::module_& module) {
       "read_machine", [](const Path& path) { return camber::read_machine(path.string()); }, "path"_a);
   module.def(
       "read_job", [](const Path& path) { return camber::read_job(path.string()); }, "path"_a);
+  module.def(
+      "read_unprogrammed_job", [](const Path& path) { return camber::read_unprogrammed_job(path.string()); }, "path"_a);
 }
 
 }  // namespace

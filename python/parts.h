@@ -20,5 +20,7 @@ void add_five_axis(pybind11::module_& module);  ///< post, posture
 camber::Program program_of(const pybind11::handle& object);
 camber::Machine machine_of(const pybind11::handle& object);
 camber::Job job_of(const pybind11::handle& object);
+/// A path of a job that may leave out its program.
+camber::Job unprogrammed_job_of(const pybind11::handle& object);
 
 }  // namespace camber_python

@@ -35,8 +35,11 @@ class CutterPlaces {
   struct Run {
     std::int32_t first_id;
     CutterShape shape;
-    std::vector<ToolPose> poses;
-    const ToolPose& pose(std::int32_t id) const { return poses[static_cast<std::size_t>(id - first_id)]; }
+    std::vector<Vec3> tips;       ///< of upright stamps
+    std::vector<ToolPose> poses;  ///< of others
+    std::size_t size() const { return tips.size() + poses.size(); }
+    ToolPose pose(std::size_t k) const { return poses.empty() ? ToolPose{tips[k]} : poses[k]; }
+    ToolPose pose_of(std::int32_t id) const { return pose(static_cast<std::size_t>(id - first_id)); }
   };
   const Run* find(std::int32_t id) const;
   std::vector<Run> runs_;
@@ -91,6 +94,13 @@ struct ErrorSpread {
 /// Forty bins or fewer of a round width (1, 2 or 5 times a power of ten) from the minimum to the maximum error.
 ErrorSpread error_spread(const std::vector<double>& error, const std::vector<double>& area_mm2);
 
+/// What cutters have left at a point of a SurfaceMap.
+struct PointMark {
+  double error_mm = 0;
+  std::uint32_t point = 0;  ///< index in SurfaceMap::points
+  std::int32_t stamp = -1;
+};
+
 class TiltedStamps;  // removal/form_error/tilted_stamps.h
 
 /// Points of the target's surface (as compare_surfaces has them, moved along their grid line onto the cutters that made
@@ -123,6 +133,9 @@ class SurfaceMap {
   std::vector<SurfacePoint> take();
   /// The errors that take() would return, and the map is without marks again.
   std::vector<float> take_errors_mm();
+  /// The points that have a mark, ascending; the map is without marks again. Takes as long as the part of the surface
+  /// is large that was marked.
+  std::vector<PointMark> take_marks();
   /// Their errors mean nothing before take().
   std::span<const SurfacePoint> points() const;
 

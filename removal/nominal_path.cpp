@@ -1,9 +1,9 @@
+#include "removal/nominal_path.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
-
-#include "removal/tool_path.h"
 
 namespace camber::removal {
 namespace {
@@ -22,12 +22,15 @@ double turn_between(const ToolPose& a, const ToolPose& b) {
 class NominalBuilder {
  public:
   NominalBuilder(const nc::Interpretation& program, const std::vector<bool>& selected,
-                 const kinematics::PartPath* rotary)
-      : program_(program), selected_(selected), rotary_(rotary) {}
+                 const kinematics::PartPath* rotary, const TakeNominal& take)
+      : program_(program), selected_(selected), rotary_(rotary), take_(take) {}
 
-  void begin_run(const ToolRun& run) { out_.runs.push_back({run.tool, out_.stamps.size(), 0, run.kind}); }
-  void end_run() { out_.runs.back().count = out_.stamps.size() - out_.runs.back().from; }
-  void copy(const Stamp& stamp) { out_.stamps.push_back(stamp); }
+  void begin_run(const ToolRun& run) { runs_.push_back({run.tool, count_, 0, run.kind}); }
+  void end_run() { runs_.back().count = count_ - runs_.back().from; }
+  void copy(const Stamp& stamp) {
+    newest_ = stamp;
+    take_(runs_.back(), count_++, stamp);
+  }
 
   /// Goes on to where the programmed path is nearest to a stamp of the axes.
   void follow(const Stamp& stamp) {
@@ -57,7 +60,7 @@ class NominalBuilder {
     open_ = false;
   }
 
-  StampPath take() { return std::move(out_); }
+  std::vector<ToolRun> take_runs() { return std::move(runs_); }
 
  private:
   struct Place {
@@ -86,7 +89,7 @@ class NominalBuilder {
   }
 
   bool straight_past(std::uint32_t move, const Vec3& goal) const {
-    const Vec3 from = out_.stamps.back().pose.tip_mm, chord = goal - from, vertex = program_.moves[move].end_mm - from;
+    const Vec3 from = newest_.pose.tip_mm, chord = goal - from, vertex = program_.moves[move].end_mm - from;
     const double length = chord.norm();
     if (length <= kStraight_mm) return vertex.norm() <= kStraight_mm;
     const double along = vertex.dot(chord) / length;
@@ -119,13 +122,13 @@ class NominalBuilder {
     stamp.fraction = at.fraction;
     stamp.first = first;
     stamp.pose = pose_of(at);
-    if (!first) stamp.feed_per_tooth_mm = stamp.pose.tip_mm - out_.stamps.back().pose.tip_mm;
+    if (!first) stamp.feed_per_tooth_mm = stamp.pose.tip_mm - newest_.pose.tip_mm;
     if (!first && still(stamp.pose)) return;
-    out_.stamps.push_back(stamp);
+    copy(stamp);
   }
 
   bool still(const ToolPose& pose) const {
-    const ToolPose& last = out_.stamps.back().pose;
+    const ToolPose& last = newest_.pose;
     return (pose.tip_mm - last.tip_mm).norm() < kStill_mm && (pose.axis - last.axis).norm() < kStill &&
            std::abs(pose.spin_rad - last.spin_rad) < kStill;
   }
@@ -133,7 +136,10 @@ class NominalBuilder {
   const nc::Interpretation& program_;
   const std::vector<bool>& selected_;
   const kinematics::PartPath* rotary_;
-  StampPath out_;
+  const TakeNominal& take_;
+  std::vector<ToolRun> runs_;
+  std::size_t count_ = 0;
+  Stamp newest_;  ///< that was taken
   bool open_ = false;
   Place at_;                ///< of the last stamp, or a vertex that needed none
   std::uint32_t next_ = 0;  ///< moves before this one are covered
@@ -142,9 +148,10 @@ class NominalBuilder {
 
 }  // namespace
 
-StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected, const StampPath& path,
-                       const kinematics::PartPath* rotary) {
-  NominalBuilder builder(program, selected, rotary);
+std::vector<ToolRun> follow_nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected,
+                                         const StampPath& path, const kinematics::PartPath* rotary,
+                                         const TakeNominal& take) {
+  NominalBuilder builder(program, selected, rotary, take);
   for (const ToolRun& run : path.runs) {
     builder.begin_run(run);
     for (std::size_t k = run.from; k < run.from + run.count; ++k) {
@@ -158,7 +165,17 @@ StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool
                                              : static_cast<std::uint32_t>(program.moves.size()));
     builder.end_run();
   }
-  return builder.take();
+  return builder.take_runs();
+}
+
+StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected, const StampPath& path,
+                       const kinematics::PartPath* rotary) {
+  StampPath out;
+  // Room for a few more than the axes have: a list that doubles would be in memory one and a half times.
+  out.stamps.reserve(path.stamps.size() + path.stamps.size() / 8);
+  out.runs = follow_nominal_path(program, selected, path, rotary,
+                                 [&](const ToolRun&, std::size_t, const Stamp& stamp) { out.stamps.push_back(stamp); });
+  return out;
 }
 
 }  // namespace camber::removal

@@ -23,6 +23,7 @@
 #include "base/diagnostics.h"
 #include "base/output_file.h"
 #include "base/stage.h"
+#include "base/window_buffer.h"
 
 namespace camber::removal {
 
@@ -482,6 +483,34 @@ void Stock::share() {
   impl_->below.insert(impl_->below.begin(), std::exchange(impl_->distance, std::move(own)));
 }
 
+Stock Stock::copy_within(const Vec3& min_mm, const Vec3& max_mm) const {
+  if (impl_->below.empty()) return *this;
+  auto impl = std::make_unique<Impl>(
+      Impl{layer_like(*impl_->distance, kBelow), openvdb::Int32Grid::create(kUncut), impl_->below});
+  Coord lo, hi;
+  for (int a = 0; a < 3; ++a) {
+    const double from = std::max(min_mm[a], min_mm_[a] - band_mm_), to = std::min(max_mm[a], max_mm_[a] + band_mm_);
+    if (to < from) return {voxel_mm_, band_mm_, min_mm_, max_mm_, std::move(impl)};
+    lo[a] = floor_div(static_cast<int>(std::floor(from / voxel_mm_)), Tile::kCore) * Tile::kCore;
+    hi[a] = floor_div(static_cast<int>(std::ceil(to / voxel_mm_)), Tile::kCore) * Tile::kCore + Tile::kSide;
+  }
+  const auto distances = std::as_const(*impl_->distance).getConstUnsafeAccessor();
+  const auto stamps = std::as_const(*impl_->stamp).getConstUnsafeAccessor();
+  auto distance = impl->distance->getAccessor();
+  auto stamp = impl->stamp->getAccessor();
+  for (int i = lo.x(); i < hi.x(); i += kLeaf)
+    for (int j = lo.y(); j < hi.y(); j += kLeaf)
+      for (int k = lo.z(); k < hi.z(); k += kLeaf) {
+        const Coord at(i, j, k);
+        if (const Leaf* leaf = distances.probeConstLeaf(at))
+          distance.addLeaf(new Leaf(*leaf));
+        else if (const float value = distances.getValue(at); value != kBelow)
+          distance.addTile(1, at, value, false);
+        if (const auto* leaf = stamps.probeConstLeaf(at)) stamp.addLeaf(new openvdb::Int32Tree::LeafNodeType(*leaf));
+      }
+  return {voxel_mm_, band_mm_, min_mm_, max_mm_, std::move(impl)};
+}
+
 void Stock::unshare() {
   auto own = std::exchange(impl_->distance, nullptr);
   impl_->distance = merged(std::move(own), std::exchange(impl_->below, {}));
@@ -557,15 +586,12 @@ void Stock::save(const std::string& path) const {
     whole.unshare();
     return whole.save(path);
   }
-  // Written at once: the library seeks after every leaf, which empties a file stream's buffer.
-  // Room for all of it, uncompressed: only what is written takes memory, and nothing is copied as it grows.
-  constexpr std::size_t kLeafBytes = 2300, kRest = 1 << 20;
-  std::string room;
-  room.reserve(impl_->distance->tree().leafCount() * kLeafBytes + kRest);
-  std::ostringstream bytes(std::move(room), std::ios::binary);
-  VdbArchive().write_to(bytes, {impl_->distance});
   OutputFile file(path);
-  file.stream() << bytes.view();
+  // The library seeks after every leaf, which would empty a file stream's buffer.
+  WindowBuffer window(file.stream());
+  std::ostream out(&window);
+  VdbArchive().write_to(out, {impl_->distance});
+  window.finish();
   file.commit();
 }
 

@@ -84,6 +84,9 @@ class Stock {
   /// From now on copies share what the stock is at this moment, and each has only what it changes for itself: a copy
   /// takes hardly any memory or time. Not thread safe; copies may then be made and cut by different threads.
   void share();
+  /// A copy for who reads and cuts within a box alone, mm: elsewhere it has what was shared, if anything was. Takes as
+  /// long as what of its own the stock has there, and as all of its own where nothing is shared.
+  Stock copy_within(const Vec3& min_mm, const Vec3& max_mm) const;
   /// Ends the sharing: the stock takes over what no other copy has, and copies the rest. Not thread safe.
   void unshare();
 

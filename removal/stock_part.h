@@ -27,6 +27,9 @@ struct Region {
     max_mm = max_mm.cwiseMax(other.max_mm);
   }
   bool empty() const { return min_mm.x() > max_mm.x(); }
+  bool contains(const Vec3& point) const {
+    return (point.array() >= min_mm.array()).all() && (point.array() <= max_mm.array()).all();
+  }
   Region wider(double by_mm) const { return {min_mm.array() - by_mm, max_mm.array() + by_mm}; }
   /// True where a part of the tile is inside.
   bool meets(const Index3& tile, double voxel_mm) const;

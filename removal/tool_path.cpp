@@ -20,6 +20,26 @@ bool still(const Stamp& stamp, const Stamp& before) {
          std::abs(stamp.pose.spin_rad - before.pose.spin_rad) < kStill;
 }
 
+double passing_s_of(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools,
+                    const nc::Move& move) {
+  const nc::ModalState& state = program.state_of(move);
+  return 60.0 / (state.spindle_speed_rpm * tools.at(state.tool).flutes);
+}
+
+/// Room for the stamps of moves that are cut at their programmed feeds, and some more, since axes brake. A list that
+/// doubles would be in memory one and a half times; room that is not written to takes none. 0 where they are too many.
+std::size_t room_for(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools,
+                     const std::vector<bool>& selected) {
+  constexpr double kMore = 1.25, kMax = 3e7;
+  double passings = 0;
+  for (std::size_t i = 0; i < selected.size(); ++i) {
+    const nc::Move& move = program.moves[i];
+    if (selected[i] && move.feed_mm_per_s > 0)
+      passings += nc::length_mm(program, move) / (move.feed_mm_per_s * passing_s_of(program, tools, move));
+  }
+  return passings < kMax ? static_cast<std::size_t>(kMore * passings) : 0;
+}
+
 /// Tips go straight, the frame turns about one axis.
 ToolPose between(const ToolPose& a, const ToolPose& b, double u) {
   const Vec3 tip = (1 - u) * a.tip_mm + u * b.tip_mm;
@@ -78,6 +98,7 @@ StampBuilder::StampBuilder(const nc::Interpretation& program, const std::map<int
     const nc::ModalState& state = program.state_of(move);
     return !stamped || (tools.contains(state.tool) && state.spindle_speed_rpm > 0);
   }));
+  path_.stamps.reserve(room_for(program, tools, selected_));
 }
 
 feedmodel::PathMeasure StampBuilder::measure_of(const kinematics::PartPath* rotary) const {
@@ -174,8 +195,7 @@ void StampBuilder::append(const Stamp& stamp, int tool, RunKind kind) {
 }
 
 double StampBuilder::passing_s(std::uint32_t move) const {
-  const nc::ModalState& state = program_.state_of(program_.moves[move]);
-  return 60.0 / (state.spindle_speed_rpm * tools_.at(state.tool).flutes);
+  return passing_s_of(program_, tools_, program_.moves[move]);
 }
 
 void StampBuilder::drill(const TimedSample& sample, const feedmodel::PathPlace& place) {

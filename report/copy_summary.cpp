@@ -47,6 +47,7 @@ ordered_json operations_json(const CopyResult& r) {
                    {"ramps", o.ramps},
                    {"plunges", o.plunges},
                    {"retracts", o.retracts},
+                   {"trochoid_circles", o.trochoid_circles},
                    {"nothing_left", o.nothing_left},
                    {"load", load_json(o.load)},
                    {"changes", o.changes.size()}});
@@ -102,6 +103,8 @@ std::string copy_text(const CopyResult& r, double compute_s) {
           o.load.max_N, o.load.target_N,
           o.load.counted > 0 ? 100.0 * static_cast<double>(o.load.within) / static_cast<double>(o.load.counted) : 0.0,
           o.load.counted);
+    if (o.trochoid_circles > 0)
+      out += fmt::format("      {} trochoid circles instead of full cuts\n", o.trochoid_circles);
     if (o.nothing_left) out += "      nothing was left for this operation\n";
   }
   out += fmt::format("time {:.1f} s, {} blocks, {:.1f} mm3 removed{}\n", r.time_s, r.blocks, r.removed_mm3,

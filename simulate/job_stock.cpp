@@ -1,25 +1,43 @@
 #include "simulate/job_stock.h"
 
+#include <cmath>
+
 #include "base/diagnostics.h"
 #include "simulate/setup_checks.h"
 
 namespace camber::simulate {
+namespace {
+
+using Distance = std::function<double(const Vec3&)>;
+
+/// Out of the region, and a tile around it, all counts as far from any surface.
+Distance within_region(Distance distance, const removal::Region* region, double voxel_mm) {
+  if (!region) return distance;
+  constexpr double kFar_mm = 1e9;
+  return [distance = std::move(distance), near = region->wider(removal::kTileVoxels * voxel_mm)](const Vec3& p) {
+    const double d = distance(p);
+    return near.contains(p) ? d : std::copysign(kFar_mm, d);
+  };
+}
+
+}  // namespace
 
 removal::Stock job_stock(const machine::Job& job, double band,
-                         const std::function<void(const Vec3&, const Vec3&)>& about_to) {
+                         const std::function<void(const Vec3&, const Vec3&)>& about_to, const removal::Region* within) {
   const double voxel = job.simulation.voxel_mm;
   if (job.stock.box) {
     const Vec3 lo = job.stock.box->min_mm, hi = job.stock.box->max_mm;
     about_to(lo, hi);
-    return {[=](const Vec3& p) { return removal::box_distance_mm(p, lo, hi); }, lo, hi, voxel, band};
+    return {within_region([=](const Vec3& p) { return removal::box_distance_mm(p, lo, hi); }, within, voxel), lo, hi,
+            voxel, band};
   }
   if (job.stock.cylinder) {
     const machine::Cylinder c = *job.stock.cylinder;
     const double r = c.diameter_mm / 2;
     const Vec3 lo = c.base_mm - Vec3(r, r, 0), hi = c.base_mm + Vec3(r, r, c.height_mm);
     about_to(lo, hi);
-    return {[=](const Vec3& p) { return removal::cylinder_distance_mm(p, c.base_mm, r, c.height_mm); }, lo, hi, voxel,
-            band};
+    const auto distance = [=](const Vec3& p) { return removal::cylinder_distance_mm(p, c.base_mm, r, c.height_mm); };
+    return {within_region(distance, within, voxel), lo, hi, voxel, band};
   }
   if (!job.stock.vdb.empty()) {
     removal::Stock stock = removal::Stock::load(job.stock.vdb, voxel, band);
@@ -33,7 +51,8 @@ removal::Stock job_stock(const machine::Job& job, double band,
   about_to(box.min_mm, box.max_mm);
   // A leaf of voxels is skipped by the distance at its centre, so the mesh's band must hold a leaf's half diagonal.
   const removal::MeshDistance mesh(job.stock.mesh, voxel, (band + 8) * voxel);
-  return {[&](const Vec3& p) { return mesh.distance_mm(p); }, mesh.min_mm(), mesh.max_mm(), voxel, band};
+  return {within_region([&](const Vec3& p) { return mesh.distance_mm(p); }, within, voxel), mesh.min_mm(),
+          mesh.max_mm(), voxel, band};
 }
 
 }  // namespace camber::simulate

@@ -107,9 +107,37 @@ double cut_area_mm2(const Job& job, const removal::StampPath& path, const StockS
   return map.cut_area_mm2();
 }
 
+namespace {
+
+double box_mm2(const Vec3& size) { return 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x()); }
+
+double bytes_of_surface(double mm2, double voxel, double band_voxels) {
+  return kBytesPerVoxel * mm2 / (voxel * voxel) * thickness(band_voxels);
+}
+
+/// The part of a stock in a region.
+StockSize clipped(const StockSize& stock, const removal::Region& region) {
+  StockSize out = stock;
+  out.min_mm = stock.min_mm.cwiseMax(region.min_mm).cwiseMin(stock.max_mm);
+  out.max_mm = stock.max_mm.cwiseMin(region.max_mm).cwiseMax(out.min_mm);
+  return out;
+}
+
+/// Of a box's faces, what lies in another box within it.
+double faces_mm2(const StockSize& box, const StockSize& part) {
+  const Vec3 size = part.max_mm - part.min_mm;
+  double out = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double face = size[(a + 1) % 3] * size[(a + 2) % 3];
+    out += face * ((part.min_mm[a] <= box.min_mm[a] ? 1 : 0) + (part.max_mm[a] >= box.max_mm[a] ? 1 : 0));
+  }
+  return out;
+}
+
+}  // namespace
+
 double field_bytes(const Vec3& size, double voxel, double band_voxels) {
-  const double area = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  return kBytesPerVoxel * area / (voxel * voxel) * thickness(band_voxels);
+  return bytes_of_surface(box_mm2(size), voxel, band_voxels);
 }
 
 namespace {
@@ -150,37 +178,44 @@ double table_bytes(const Job& job, const removal::StampPath& path, const StockSi
 }  // namespace
 
 MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::Interpretation& moves,
-                             const removal::StampPath& path, const StockSize& stock) {
-  const double cut = cut_area_mm2(job, path, stock);
-  return {.text_bytes = text.source.text().size(),
-          .blocks = text.blocks.size(),
-          .moves = moves.moves.size(),
-          .stamps = path.stamps.size(),
-          .size_mm = stock.max_mm - stock.min_mm,
-          .band_mm = stock.band_voxels * job.simulation.voxel_mm,
-          .cut_mm2 = cut,
-          .at_once_mm2 = swept_at_once_mm2(job, path, cut),
-          .table_bytes = table_bytes(job, path, stock),
-          .allowance = job.stock.allowance_mm > 0};
+                             const removal::StampPath& path, const StockSize& stock, const removal::Region* within) {
+  const StockSize part = within ? clipped(stock, *within) : stock;
+  const double cut = cut_area_mm2(job, path, part);
+  MemoryFactors out{.text_bytes = text.source.text().size(),
+                    .blocks = text.blocks.size(),
+                    .moves = moves.moves.size(),
+                    .stamps = path.stamps.size(),
+                    .size_mm = stock.max_mm - stock.min_mm,
+                    .band_mm = stock.band_voxels * job.simulation.voxel_mm,
+                    .cut_mm2 = cut,
+                    .at_once_mm2 = swept_at_once_mm2(job, path, cut),
+                    .table_bytes = table_bytes(job, path, stock),
+                    .allowance = job.stock.allowance_mm > 0};
+  if (!within) return out;
+  out.blank_mm2 = faces_mm2(stock, part);
+  out.own_stamps = static_cast<std::size_t>(std::ranges::count_if(
+      path.stamps, [&](const removal::Stamp& stamp) { return within->contains(stamp.pose.tip_mm); }));
+  return out;
 }
 
 MemoryEstimate estimate_memory(const MemoryFactors& f, double voxel_mm) {
   constexpr double kAlways = 80e6, kBytesPerBlock = 112, kBytesPerMove = 80 + 96;  // with the plan
   constexpr double kPointsPerVoxel = 1.2, kGroups = 12, kMinBand = 4, kTilesDeep = 2;
   constexpr double kTileSide = 16, kTileBytes = 17 * 17 * 17 * 8;  // voxels; with one more layer, distance and stamp
-  const auto stamps = static_cast<double>(f.stamps);
+  const auto stamps = static_cast<double>(f.stamps), own = static_cast<double>(f.own_stamps.value_or(f.stamps));
   const double given = kAlways + static_cast<double>(f.text_bytes) + kBytesPerBlock * static_cast<double>(f.blocks) +
                        kBytesPerMove * static_cast<double>(f.moves) + sizeof(removal::Stamp) * stamps;
   const double band = std::max(kMinBand, f.band_mm / voxel_mm), voxel_mm2 = voxel_mm * voxel_mm;
   const double distance = kBytesPerVoxel * f.cut_mm2 / voxel_mm2 * thickness(band);
   const double tiles = kTilesDeep * kTileBytes * f.at_once_mm2 / voxel_mm2 / (kTileSide * kTileSide);
   const double points = kPointsPerVoxel * f.cut_mm2 / voxel_mm2;
-  const double blank = field_bytes(f.size_mm, voxel_mm, band), allowance = f.allowance ? distance : 0;
+  const double blank = bytes_of_surface(f.blank_mm2.value_or(box_mm2(f.size_mm)), voxel_mm, band),
+               allowance = f.allowance ? distance : 0;
   // The target is cut; the points of the map are put together; the program is cut, with its loads.
-  const MemoryEstimate target{given + sizeof(removal::Stamp) * stamps, blank, allowance + 2 * distance + tiles, 0};
-  const MemoryEstimate map{given + sizeof(ToolPose) * stamps, blank, allowance + 2 * distance,
+  const MemoryEstimate target{given + sizeof(removal::Stamp) * own, blank, allowance + 2 * distance + tiles, 0};
+  const MemoryEstimate map{given + sizeof(Vec3) * own, blank, allowance + 2 * distance,
                            1.125 * sizeof(removal::SurfacePoint) * points};
-  const MemoryEstimate cut{given + f.table_bytes + (sizeof(StampLoad) + sizeof(Contact)) * stamps, blank, 2 * distance,
+  const MemoryEstimate cut{given + f.table_bytes + (sizeof(StampLoad) + sizeof(Contact)) * own, blank, 2 * distance,
                            (sizeof(removal::SurfacePoint) + kGroups) * points};
   return std::max({target, map, cut}, [](const auto& a, const auto& b) { return a.total() < b.total(); });
 }

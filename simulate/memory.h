@@ -1,11 +1,13 @@
 #pragma once
 // How much memory a job needs, before its fields are made.
 #include <cstddef>
+#include <optional>
 
 #include "base/diagnostics.h"
 #include "machine/job.h"
 #include "nc/move.h"
 #include "nc/program.h"
+#include "removal/stock_part.h"
 #include "removal/tool_path.h"
 
 namespace camber::simulate {
@@ -34,11 +36,16 @@ struct MemoryFactors {
   double at_once_mm2 = 0;  ///< of it, by the stamps that are swept together
   double table_bytes = 0;  ///< deflections of the stamps that are cut together
   bool allowance = false;
+  // Of a part of the prediction (a section); not given: the whole.
+  std::optional<double> blank_mm2{};        ///< of the stock's surface, what has a field
+  std::optional<std::size_t> own_stamps{};  ///< that have loads and cutters of the target
 };
 
-/// The area that the tools cut is taken from a coarse height map of the path (cut_area_mm2).
+/// The area that the tools cut is taken from a coarse height map of the path (cut_area_mm2). `within` (null:
+/// everywhere): where a part of the prediction has its fields.
 MemoryFactors memory_factors(const machine::Job& job, const nc::Program& text, const nc::Interpretation& moves,
-                             const removal::StampPath& path, const StockSize& stock);
+                             const removal::StampPath& path, const StockSize& stock,
+                             const removal::Region* within = nullptr);
 
 /// Of `predict`; within 30 % of the measured peak on the jobs of bench/real/memory.
 MemoryEstimate estimate_memory(const MemoryFactors& factors, double voxel_mm);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "machine/job.h"
+#include "removal/stock_part.h"
 #include "simulate/cut.h"
 #include "simulate/predict.h"
 #include "simulate/setup.h"
@@ -24,6 +25,12 @@ struct Programs {
 /// Reads, times and stamps both programs, as set_up(). Throws InputError.
 Programs read_programs(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings);
 
+/// Programs that this process has read before, and what was said of the job's.
+struct ReadPrograms {
+  Programs programs;
+  Diagnostics said;
+};
+
 /// Work on a target that is done elsewhere: each function joins what others have computed. Empty: computed here.
 struct TargetWork {
   /// Takes what lies above the allowance off the blank. Returns the volume, mm^3, or more.
@@ -32,13 +39,17 @@ struct TargetWork {
   std::function<double(removal::Stock& surface)> surface{};
   std::function<void(Target& target)> contour{};  ///< sets Target::contour_mm
   bool judged = true;  ///< false: nothing is judged: [part] mesh and Target::region are left out
+  /// All that is read of blank and target lies here; null: everywhere. The target then has the cutters that reach in
+  /// there, and no Target::stamps. Needs `surface`.
+  const removal::Region* within = nullptr;
 };
 Blank make_blank(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, double min_chip_mm,
                  const TargetWork& work);
 Target make_target(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics,
                    const TargetWork& work);
+/// `read` (null: they are read): the programs, which are used up.
 Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings,
-             const TargetWork& work);
+             const TargetWork& work, ReadPrograms* read = nullptr);
 
 /// A part of a run of the path.
 struct PieceCut {

@@ -12,6 +12,7 @@
 #include "feedmodel/control_options.h"
 #include "nc/interpreter.h"
 #include "removal/engagement.h"
+#include "removal/nominal_path.h"
 #include "simulate/contour.h"
 #include "simulate/job_checks.h"
 #include "simulate/job_stock.h"
@@ -51,14 +52,14 @@ double band_voxels(const Job& job, const removal::StampPath& path, double thicke
 }
 
 removal::Stock raw_stock(const Job& job, const SimulatedProgram& program, double min_chip_mm, MemoryEstimate& memory,
-                         Diagnostics& diagnostics) {
+                         Diagnostics& diagnostics, const removal::Region* within) {
   const double band = band_voxels(job, program.path, min_chip_mm);
   const auto require_memory = [&](const Vec3& lo, const Vec3& hi) {
-    memory =
-        check_memory(job, memory_factors(job, program.text, program.moves, program.path, {lo, hi, band}), diagnostics);
+    memory = check_memory(job, memory_factors(job, program.text, program.moves, program.path, {lo, hi, band}, within),
+                          diagnostics);
     diagnostics.throw_if_errors();
   };
-  return job_stock(job, band, require_memory);
+  return job_stock(job, band, require_memory, within);
 }
 
 template <class Function>
@@ -178,6 +179,55 @@ Places places_of(const Job& job, const SimulatedProgram& program, const removal:
   return out;
 }
 
+/// The cutters of a nominal path.
+struct NominalCutters {
+  std::vector<removal::ToolRun> runs;
+  std::vector<PathFraction> stamps;  ///< as Target::stamps
+  removal::CutterPlaces places;
+};
+
+NominalCutters cutters_of(const Job& job, const removal::StampPath& nominal) {
+  NominalCutters out{nominal.runs, {}, {}};
+  for_each_run(job, nominal, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    out.places.add(static_cast<std::int32_t>(run.from), removal::shape_of(tool), stamps);
+  });
+  out.stamps.reserve(nominal.stamps.size());
+  for (const auto& s : nominal.stamps) out.stamps.push_back({s.move, static_cast<float>(s.fraction)});
+  return out;
+}
+
+/// Those that reach into a region, or nearly. Without `stamps`.
+NominalCutters cutters_within(const Job& job, const SimulatedProgram& target, const removal::Region& region) {
+  constexpr double kTilesAround = 4;
+  NominalCutters out;
+  std::vector<removal::Stamp> stretch;
+  std::size_t first = 0;
+  int tool = 0;
+  const auto put = [&] {
+    if (!stretch.empty())
+      out.places.add(static_cast<std::int32_t>(first), removal::shape_of(job.tools.at(tool)), stretch);
+    stretch.clear();
+  };
+  std::optional<std::size_t> run_from;
+  removal::Region near;
+  out.runs = removal::follow_nominal_path(
+      target.moves, target.selected, target.path, target.part_path(),
+      [&](const removal::ToolRun& run, std::size_t number, const removal::Stamp& stamp) {
+        if (run_from != run.from) {
+          put();
+          run_from = run.from;
+          tool = run.tool;
+          near = region.wider(removal::shape_of(job.tools.at(tool)).radius_mm +
+                              kTilesAround * removal::kTileVoxels * job.simulation.voxel_mm);
+        }
+        if (!near.contains(stamp.pose.tip_mm)) return put();
+        if (stretch.empty()) first = number;
+        stretch.push_back(stamp);
+      });
+  put();
+  return out;
+}
+
 /// Less than this is what fields that touch may differ by.
 double nothing_mm3(const Job& job) { return std::pow(job.simulation.voxel_mm, 3); }
 
@@ -204,7 +254,7 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
 Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, double min_chip_mm,
                  const TargetWork& work) {
   MemoryEstimate memory;
-  removal::Stock blank = raw_stock(job, target, min_chip_mm, memory, diagnostics);
+  removal::Stock blank = raw_stock(job, target, min_chip_mm, memory, diagnostics, work.within);
   blank.share();
   Places places = places_of(job, target, blank);
   if (!removal::all_upright(target.path.stamps))  // a tilted tool reaches down past its tip
@@ -232,28 +282,31 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
 Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, const TargetWork& work) {
   auto [blank, whole, memory] = make_blank(job, target, diagnostics, 0, work);
   const Places where = places_of(job, target, blank);
-  removal::StampPath nominal = removal::nominal_path(target.moves, target.selected, target.path, target.part_path());
   removal::Stock surface(blank);
-  const double removed_mm3 =
-      work.surface ? work.surface(surface) : sweep_path(surface, job, nominal, 0, "cutting as the target");
+  NominalCutters cutters;
+  double removed_mm3 = 0;
+  if (work.within) {
+    removed_mm3 = work.surface(surface);
+    cutters = cutters_within(job, target, *work.within);
+  } else {
+    const removal::StampPath nominal =
+        removal::nominal_path(target.moves, target.selected, target.path, target.part_path());
+    removed_mm3 = work.surface ? work.surface(surface) : sweep_path(surface, job, nominal, 0, "cutting as the target");
+    cutters = cutters_of(job, nominal);
+  }
   if (removed_mm3 < nothing_mm3(job)) report_nothing_removed(target.text.source.name(), where, diagnostics);
   diagnostics.throw_if_errors();
-  removal::CutterPlaces places;
-  for_each_run(job, nominal, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
-    places.add(static_cast<std::int32_t>(run.from), removal::shape_of(tool), stamps);
-  });
   std::optional<removal::PartMesh> part;
   if (!job.part.mesh.empty() && work.judged) {
     part.emplace(job.part.mesh);
     check_part_size(job.part.mesh, {part->min_mm(), part->max_mm()}, where.stock, diagnostics);
     diagnostics.throw_if_errors();
   }
-  Target out{std::move(blank), std::move(surface), std::move(part), HoleStamps(nominal), std::move(whole)};
-  out.stamps.reserve(nominal.stamps.size());
-  for (const auto& s : nominal.stamps) out.stamps.push_back({s.move, static_cast<float>(s.fraction)});
-  nominal = {};
-  out.map.emplace(out.surface, places, out.blank, &out.solid());
-  places = {};
+  Target out{std::move(blank), std::move(surface),
+             std::move(part),  HoleStamps(removal::StampPath{{}, cutters.runs, {}}),
+             std::move(whole), std::move(cutters.stamps)};
+  out.map.emplace(out.surface, cutters.places, out.blank, &out.solid());
+  cutters = {};
   out.unseen_mm2 = out.map->unseen_mm2();
   if (work.contour)
     work.contour(out);
@@ -379,8 +432,8 @@ PathLoads predict_loads(const Job& job, const removal::Stock& blank, const Simul
 
 Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options) {
-  if (const Crew* crew = current_crew(); crew && !options.turn_from && options.chip_ratio == 0)
-    return predict_together(job, target, program, *crew, options.progress);
+  if (const CrewScope::Current* now = current_crew(); now && !options.turn_from && options.chip_ratio == 0)
+    return predict_together(job, target, program, now->crew, now->memory, options.progress);
   std::vector<std::vector<Contact>> contacts_of_runs;
   std::optional<Stage> stage(std::in_place, "finding the contacts", program.path.stamps.size());
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {

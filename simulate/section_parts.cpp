@@ -102,11 +102,7 @@ SweptSection SweptSection::read(ByteReader& in) {
   return out;
 }
 
-OwnSweep OwnSweep::read(ByteReader& in) {
-  OwnSweep out;
-  while (in.left() > 0) out.stock.push_back(StockPart::read(in));
-  return out;
-}
+void OwnSweep::add(const StockPart& piece) { bytes += bytes_of_part(piece); }
 
 SolvedSection SolvedSection::within(const Region& region, double voxel_mm) const {
   return {.stock = parts_within(stock, region, voxel_mm),
@@ -159,7 +155,7 @@ OwnSolution OwnSolution::read(ByteReader& in) {
   out.pieces.resize(read_count(in));
   for (SolvedPiece& piece : out.pieces) {
     piece.cut = read_cut(in);
-    piece.marks = in.list<OwnMark>();
+    piece.marks = in.list<removal::PointMark>();
     piece.stock = StockPart::read(in);
   }
   return out;

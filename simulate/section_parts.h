@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/bytes.h"
@@ -32,11 +33,12 @@ struct SweptSection {
   void write(ByteWriter& out) const;
   static SweptSection read(ByteReader& in);
 };
-/// The same of the program alone, one per piece; no other section reads it. Its bytes are those of the parts.
+/// The same of the program alone, one per piece; no other section reads it. Pieces are read one after the other, so
+/// that they stay the bytes that they are in a file, which are not copied.
 struct OwnSweep {
-  std::vector<removal::StockPart> stock;
+  std::string bytes;
 
-  static OwnSweep read(ByteReader& in);
+  void add(const removal::StockPart& piece);
 };
 
 /// A mark on a point of the target's surface.
@@ -47,13 +49,6 @@ struct SurfaceMark {
   std::int32_t unused = 0;  ///< no byte of a file is left to chance
 };
 using SurfaceMarks = std::vector<SurfaceMark>;  ///< in the order of the map's points
-
-/// A mark on a point of the section's map.
-struct OwnMark {
-  double error_mm = 0;
-  std::uint32_t point = 0;
-  std::int32_t stamp = -1;
-};
 
 /// What a section has solved, for the others, and for the merge.
 struct SolvedSection {
@@ -79,8 +74,8 @@ struct SolvedSection {
 /// A piece that was solved.
 struct SolvedPiece {
   CutResult cut;
-  std::vector<OwnMark> marks;
-  removal::StockPart stock;  ///< static: what the deflected cutter cut
+  std::vector<removal::PointMark> marks;  ///< on the section's map
+  removal::StockPart stock;               ///< static: what the deflected cutter cut
 };
 /// What the next rounds of the same section read.
 struct OwnSolution {

@@ -1,7 +1,6 @@
 #include "simulate/section_pieces.h"
 
 #include <algorithm>
-#include <span>
 
 #include "removal/engagement.h"
 
@@ -51,15 +50,13 @@ std::vector<RunPieces> runs_of(const std::vector<PathPiece>& pieces, const Piece
   return out;
 }
 
-Region reach_of(const Job& job, const removal::StampPath& path, const PathPiece& piece) {
+Region reach_of(const Job& job, const PathStretch& path, const PathPiece& piece) {
   constexpr double kMaxBandVoxels = 12, kFar_mm = 1e9;
   Region out;
-  const removal::ToolRun& run = path.runs[piece.run];
-  const auto stamps = std::span(path.stamps).subspan(run.from + piece.from, piece.count);
-  const double around = removal::shape_of(job.tools.at(run.tool)).radius_mm + kMaxBandVoxels * job.simulation.voxel_mm +
-                        removal::DeflectedEngager::kMaxDeflection_mm;
+  const double around = removal::shape_of(job.tools.at(path.run_of(piece).tool)).radius_mm +
+                        kMaxBandVoxels * job.simulation.voxel_mm + removal::DeflectedEngager::kMaxDeflection_mm;
   const Vec3 wide(around, around, around);
-  for (const removal::Stamp& s : stamps) {
+  for (const removal::Stamp& s : path.stamps_of(piece)) {
     out.add(s.pose.tip_mm - wide);
     out.add(s.pose.tip_mm + wide);
     out.max_mm.z() = kFar_mm;
@@ -71,7 +68,7 @@ Region reach_of(const Job& job, const removal::StampPath& path, const PathPiece&
   return out;
 }
 
-Region reach_of(const Job& job, const removal::StampPath& path, const std::vector<PathPiece>& pieces,
+Region reach_of(const Job& job, const PathStretch& path, const std::vector<PathPiece>& pieces,
                 const PieceRange& range) {
   Region out;
   for (std::size_t p = range.begin; p < range.end; ++p) out.add(reach_of(job, path, pieces[p]));

@@ -3,6 +3,7 @@
 //
 // Pieces lie at places that depend on the path alone; a section is a number of consecutive pieces.
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "machine/job.h"
@@ -16,6 +17,7 @@ struct PathPiece {
   std::size_t run = 0, from = 0, count = 0;
 };
 inline constexpr std::size_t kPieceStamps = 1000;  ///< at most, in milling; runs of holes are not cut
+/// From the runs alone.
 std::vector<PathPiece> path_pieces(const removal::StampPath& path);
 
 /// Half open.
@@ -33,10 +35,26 @@ struct RunPieces {
 };
 std::vector<RunPieces> runs_of(const std::vector<PathPiece>& pieces, const PieceRange& range);
 
+/// Stamps of a path from one on: all, or those of some pieces.
+struct PathStretch {
+  std::span<const removal::ToolRun> runs;  ///< of the whole path
+  std::span<const removal::Stamp> stamps;
+  std::size_t first = 0;  ///< number of the first of them in the path
+
+  PathStretch(const removal::StampPath& path, std::size_t first_stamp = 0)
+      : runs(path.runs), stamps(path.stamps), first(first_stamp) {}
+  const removal::ToolRun& run_of(const PathPiece& piece) const { return runs[piece.run]; }
+  /// Number of a piece's first stamp in the path.
+  std::size_t begin_of(const PathPiece& piece) const { return run_of(piece).from + piece.from; }
+  std::span<const removal::Stamp> stamps_of(const PathPiece& piece) const {
+    return stamps.subspan(begin_of(piece) - first, piece.count);
+  }
+};
+
 /// Where a piece cuts, reads and marks: a cutter about each tip, and all above it. Everywhere where an axis is tilted.
-removal::Region reach_of(const machine::Job& job, const removal::StampPath& path, const PathPiece& piece);
+removal::Region reach_of(const machine::Job& job, const PathStretch& path, const PathPiece& piece);
 /// Of all pieces in a range. Empty where there is none.
-removal::Region reach_of(const machine::Job& job, const removal::StampPath& path, const std::vector<PathPiece>& pieces,
+removal::Region reach_of(const machine::Job& job, const PathStretch& path, const std::vector<PathPiece>& pieces,
                          const PieceRange& range);
 
 /// What a section does not cut is joined this far around it, so that no reading of a neighbour misses it. Empty where

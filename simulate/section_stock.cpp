@@ -10,15 +10,29 @@ using removal::Region;
 using removal::Stock;
 using removal::StockPart;
 
-SectionPlace::SectionPlace(const removal::StampPath& path, std::size_t section_, std::size_t sections_)
-    : pieces(path_pieces(path)),
-      section(section_),
-      sections(sections_),
-      own(section_pieces(pieces, section_, sections_)) {}
+SectionPlace::SectionPlace(const removal::StampPath& path, std::size_t section_, std::size_t sections)
+    : pieces(path_pieces(path)), section(section_) {
+  for (std::size_t s = 0; s < sections; ++s) ranges.push_back(section_pieces(pieces, s, sections));
+  own = ranges[section];
+}
+
+SectionPlace::SectionPlace(const removal::StampPath& path, std::size_t section_, std::vector<PieceRange> ranges_)
+    : pieces(path_pieces(path)), ranges(std::move(ranges_)), section(section_), own(ranges[section_]) {}
+
+JoinOwnPiece pieces_of(const OwnSweep& own) {
+  return [in = ByteReader(own.bytes)](std::size_t, Stock& stock, const Region& within) mutable {
+    StockPart::read(in).join_to(stock, &within);
+  };
+}
+
+JoinOwnPiece pieces_of(const OwnSolution& own) {
+  return [&own](std::size_t piece, Stock& stock, const Region& within) {
+    own.pieces[piece].stock.join_to(stock, &within);
+  };
+}
 
 StockBefore::StockBefore(const Stock& blank, const SectionPlace& place,
-                         std::vector<const std::vector<StockPart>*> others, std::vector<const StockPart*> own,
-                         const Region& within)
+                         std::vector<const std::vector<StockPart>*> others, JoinOwnPiece own, const Region& within)
     : place_(place), own_(std::move(own)), within_(within), stock_(blank), next_(place.own.begin) {
   for (std::size_t s = 0; s < place.section; ++s) {
     std::size_t part = 0;
@@ -38,7 +52,8 @@ void StockBefore::enter(std::size_t run) {
 void StockBefore::advance_to(std::size_t piece) {
   while (next_ < piece) {
     enter(place_.pieces[next_].run);
-    own_[next_++ - place_.own.begin]->join_to(stock_, &within_);
+    own_(next_ - place_.own.begin, stock_, within_);
+    ++next_;
   }
   enter(place_.pieces[piece].run);
 }

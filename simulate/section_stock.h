@@ -1,5 +1,7 @@
 #pragma once
 // What a section finds before each of its pieces: the stock that earlier pieces have left, and how the tool was bent.
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -11,21 +13,28 @@ namespace camber::simulate {
 /// How a path is divided, and which part is a section's own.
 struct SectionPlace {
   std::vector<PathPiece> pieces;
-  std::size_t section = 0, sections = 1;
+  std::vector<PieceRange> ranges;  ///< of all sections
+  std::size_t section = 0;
   PieceRange own{};
 
   SectionPlace(const removal::StampPath& path, std::size_t section, std::size_t sections);
-  std::vector<RunPieces> runs(std::size_t of_section) const {
-    return runs_of(pieces, section_pieces(pieces, of_section, sections));
-  }
+  /// Divided as another path of as many pieces.
+  SectionPlace(const removal::StampPath& path, std::size_t section, std::vector<PieceRange> ranges);
+  std::vector<RunPieces> runs(std::size_t of_section) const { return runs_of(pieces, ranges[of_section]); }
 };
+
+/// Joins to `stock`, in a region, what one piece of a section has cut; asked for each of them once, in order.
+using JoinOwnPiece = std::function<void(std::size_t piece, removal::Stock& stock, const removal::Region& within)>;
+/// Both must outlive the result.
+JoinOwnPiece pieces_of(const OwnSweep& own);
+JoinOwnPiece pieces_of(const OwnSolution& own);
 
 /// The stock before one piece of a section after the other.
 class StockBefore {
  public:
   /// `others`: what each of the sections before has cut, run by run; `own`: the section's pieces.
   StockBefore(const removal::Stock& blank, const SectionPlace& place,
-              std::vector<const std::vector<removal::StockPart>*> others, std::vector<const removal::StockPart*> own,
+              std::vector<const std::vector<removal::StockPart>*> others, JoinOwnPiece own,
               const removal::Region& within);
 
   /// `piece`: of the section's own, ascending.
@@ -38,7 +47,7 @@ class StockBefore {
   void enter(std::size_t run);
 
   const SectionPlace& place_;
-  std::vector<const removal::StockPart*> own_;
+  JoinOwnPiece own_;
   removal::Region within_;
   removal::Stock stock_;
   std::optional<removal::Stock> before_run_;

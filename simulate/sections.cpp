@@ -8,6 +8,7 @@
 #include "base/stage.h"
 #include "removal/engagement.h"
 #include "removal/joined_parts.h"
+#include "removal/nominal_path.h"
 #include "simulate/contour.h"
 #include "simulate/section_stock.h"
 
@@ -20,24 +21,14 @@ using removal::StockPart;
 
 namespace {
 
-/// The points that a map without marks before has marked since.
-std::vector<OwnMark> marks_of(const removal::SurfaceMap& map) {
-  std::vector<OwnMark> out;
-  const auto points = map.points();
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (points[i].machined_stamp != Stock::kUncut)
-      out.push_back({points[i].error_mm, static_cast<std::uint32_t>(i), points[i].machined_stamp});
-  return out;
-}
-
 /// The deepest mark of each point; of equal ones the first.
 class DeepestMarks {
  public:
   explicit DeepestMarks(const removal::SurfaceMap& map) : points_(map.points()), error_mm_(points_.size()) {
     stamp_.assign(points_.size(), Stock::kUncut);
   }
-  void add(const std::vector<OwnMark>& marks) {
-    for (const OwnMark& mark : marks) {
+  void add(const std::vector<removal::PointMark>& marks) {
+    for (const removal::PointMark& mark : marks) {
       if (stamp_[mark.point] != Stock::kUncut && !(mark.error_mm < error_mm_[mark.point])) continue;
       error_mm_[mark.point] = mark.error_mm;
       stamp_[mark.point] = mark.stamp;
@@ -73,11 +64,6 @@ void join(const SurfaceMarks& marks, std::vector<removal::SurfacePoint>& points)
   }
 }
 
-std::vector<const StockPart*> pointers_to(const std::vector<StockPart>& parts) {
-  std::vector<const StockPart*> out;
-  for (const StockPart& part : parts) out.push_back(&part);
-  return out;
-}
 std::vector<const StockPart*> pointers_to(const OwnSolution& own) {
   std::vector<const StockPart*> out;
   for (const SolvedPiece& piece : own.pieces) out.push_back(&piece.stock);
@@ -100,18 +86,17 @@ std::vector<StockPart> joined_runs(const SectionPlace& place, const std::vector<
 
 /// Each of a section's pieces carved alone out of `raw`; `use(run, part)` for each.
 template <class Use>
-void sweep_pieces(const Stock& raw, const Job& job, const removal::StampPath& path, const SectionPlace& place,
+void sweep_pieces(const Stock& raw, const Job& job, const PathStretch& path, const SectionPlace& place,
                   double shrink_mm, double& removed_mm3, SectionWork& work, Stage& stage, const Use& use) {
   for (std::size_t p = place.own.begin; p < place.own.end; ++p) {
     cancellation_point();
     const PathPiece& piece = place.pieces[p];
-    const removal::ToolRun& run = path.runs[piece.run];
+    const removal::ToolRun& run = path.run_of(piece);
     if (shrink_mm > 0 && run.kind != removal::RunKind::milling) continue;
     Stock scratch(raw);
-    const std::size_t from = run.from + piece.from;
-    removed_mm3 += removal::sweep(scratch, removal::shape_of(job.tools.at(run.tool)),
-                                  std::span(path.stamps).subspan(from, piece.count),
-                                  {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(from)});
+    removed_mm3 +=
+        removal::sweep(scratch, removal::shape_of(job.tools.at(run.tool)), path.stamps_of(piece),
+                       {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(path.begin_of(piece))});
     StockPart part(scratch, raw, reach_of(job, path, piece));
     work.stamps += piece.count;
     work.voxels += part.voxels();
@@ -122,7 +107,7 @@ void sweep_pieces(const Stock& raw, const Job& job, const removal::StampPath& pa
 
 /// `own(part)` for each piece of the section.
 template <class Own>
-SweptSection swept_path(const Job& job, const Stock& raw, const removal::StampPath& path, const SectionPlace& place,
+SweptSection swept_path(const Job& job, const Stock& raw, const PathStretch& path, const SectionPlace& place,
                         Stage& stage, const Own& own) {
   SweptSection out;
   removal::JoinedParts joined;
@@ -147,19 +132,48 @@ Region reach_of_section(const Job& job, const Programs& programs, std::size_t se
   return out;
 }
 
+/// The stamps of a section's pieces on the programmed path.
+struct NominalSection {
+  removal::StampPath path;  ///< all runs; stamps from `first` on
+  std::size_t first = 0;
+  SectionPlace place;
+
+  PathStretch stretch() const { return {path, first}; }
+};
+
+/// The path is gone through twice: where a section lies is known when all of it is counted.
+NominalSection nominal_section(const SimulatedProgram& program, std::size_t section, std::size_t sections) {
+  const auto follow = [&](const removal::TakeNominal& take) {
+    return removal::follow_nominal_path(program.moves, program.selected, program.path, program.part_path(), take);
+  };
+  removal::StampPath path;
+  path.runs = follow([](const removal::ToolRun&, std::size_t, const removal::Stamp&) {});
+  SectionPlace place(path, section, sections);
+  if (place.own.empty()) return {std::move(path), 0, std::move(place)};
+  const PathStretch whole(path);
+  const PathPiece& last = place.pieces[place.own.end - 1];
+  const std::size_t first = whole.begin_of(place.pieces[place.own.begin]), end = whole.begin_of(last) + last.count;
+  path.stamps.reserve(end - first);
+  follow([&](const removal::ToolRun&, std::size_t number, const removal::Stamp& stamp) {
+    if (number >= first && number < end) path.stamps.push_back(stamp);
+  });
+  return {std::move(path), first, std::move(place)};
+}
+
 /// One section of a path, piece after piece.
 class SectionSolver {
  public:
-  SectionSolver(const Job& job, const removal::StampPath& path, const Target& target, const SectionParts& parts,
-                const SolveOptions& options)
+  SectionSolver(const Job& job, const removal::StampPath& path, const Target& target, const SectionPlace& place,
+                const SectionParts& parts, const SolveOptions& options)
       : job_(job),
         path_(path),
         target_(target),
         options_(options),
-        place_(path, options.section, options.sections),
+        place_(place),
         joined_(joined_region(job, reach_of(job, path, place_.pieces, place_.own))),
+        map_(*target.map),
         parts_(parts),
-        again_(!parts.last.empty()),
+        again_(!parts.last.empty() && !parts.from_another_path),
         coupling_(job.simulation.coupling),
         bends_(bends_before(place_, parts.last, parts.own_last)),
         earlier_bends_(bends_before(place_, parts.before_last, parts.own_before_last)) {}
@@ -167,14 +181,14 @@ class SectionSolver {
   void solve(Solved& out) {
     if (place_.own.empty()) return;
     const auto swept = [&] { return stocks_of(parts_.swept); };
-    const auto own_swept = [&] { return pointers_to(parts_.own_sweep.stock); };
-    StockBefore now(target_.blank, place_, again_ ? stocks_of(parts_.last) : swept(),
-                    again_ ? pointers_to(parts_.own_last) : own_swept(), joined_);
+    const bool solved = !parts_.last.empty();
+    StockBefore now(target_.blank, place_, solved ? stocks_of(parts_.last) : swept(),
+                    solved ? pieces_of(parts_.own_last) : pieces_of(parts_.own_sweep), joined_);
     std::optional<StockBefore> then;
     if (again_) {
       const bool first = parts_.before_last.empty();
       then.emplace(target_.blank, place_, first ? swept() : stocks_of(parts_.before_last),
-                   first ? own_swept() : pointers_to(parts_.own_before_last), joined_);
+                   first ? pieces_of(parts_.own_sweep) : pieces_of(parts_.own_before_last), joined_);
     }
     for (std::size_t p = place_.own.begin; p < place_.own.end; ++p) {
       now.advance_to(p);
@@ -201,10 +215,12 @@ class SectionSolver {
     return false;
   }
 
-  SolvedPiece solve_piece(std::size_t p, const StockBefore& before, SectionWork& work) const {
+  SolvedPiece solve_piece(std::size_t p, const StockBefore& before, SectionWork& work) {
     const PathPiece& piece = place_.pieces[p];
-    Stock stock(before.stock());
-    removal::SurfaceMap map(*target_.map);
+    const Region reach = reach_of(job_, path_, piece);
+    // What a cutter reads beside its reach is a tile away at most.
+    const Region read = joined_region(job_, reach);
+    Stock stock = before.stock().copy_within(read.min_mm, read.max_mm);
     const auto done = static_cast<double>(p - place_.own.begin),
                all = static_cast<double>(place_.own.end - place_.own.begin);
     SolvedPiece out;
@@ -214,19 +230,19 @@ class SectionSolver {
                          .count = piece.count,
                          .coupling = coupling_,
                          .before_run = &before.before_run(),
-                         .surface = &map,
+                         .surface = &map_,
                          .target = &target_.surface,
                          .turn_from = options_.turn_from,
                          .bend = bend(p).rows.empty() ? nullptr : &bend(p),
                          .progress = [&](double share) {
                            if (options_.progress) options_.progress((done + share) / all);
                          }});
-    out.marks = marks_of(map);
+    out.marks = map_.take_marks();
     work.stamps += piece.count;
     if (coupling_ != machine::Coupling::static_) return out;
     const auto first = static_cast<std::int32_t>(path_.runs[piece.run].from + piece.from);
-    out.stock = StockPart(stock, before.stock(), reach_of(job_, path_, piece),
-                          std::array{first, first + static_cast<std::int32_t>(piece.count)});
+    out.stock =
+        StockPart(stock, before.stock(), reach, std::array{first, first + static_cast<std::int32_t>(piece.count)});
     work.voxels += out.stock.voxels();
     return out;
   }
@@ -258,8 +274,9 @@ class SectionSolver {
   const removal::StampPath& path_;
   const Target& target_;
   const SolveOptions& options_;
-  SectionPlace place_;
+  const SectionPlace& place_;
   Region joined_;
+  removal::SurfaceMap map_;  ///< without marks between pieces
   const SectionParts& parts_;
   bool again_;
   machine::Coupling coupling_;
@@ -269,7 +286,7 @@ class SectionSolver {
 /// Contour and history of the round before, if there was one.
 SolvedSection begin_round(const SectionParts& parts, std::size_t section) {
   SolvedSection out;
-  if (parts.last.empty()) return out;
+  if (parts.last.empty() || parts.from_another_path) return out;
   out.contour = parts.last[section].contour;
   out.history = parts.last[section].history;
   out.history.emplace_back();
@@ -282,40 +299,42 @@ Region section_region(const Job& job, const Programs& programs, std::size_t sect
   return joined_region(job, reach_of_section(job, programs, section, sections));
 }
 
-Region section_region(const Job& job, const removal::StampPath& path, std::size_t section, std::size_t sections) {
-  const SectionPlace place(path, section, sections);
-  return joined_region(job, reach_of(job, path, place.pieces, place.own));
+Region section_region(const Job& job, const removal::StampPath& path, const SectionPlace& place, std::size_t section) {
+  return joined_region(job, reach_of(job, path, place.pieces, place.ranges[section]));
 }
 
 SweptSection sweep_section(const Job& job, const Programs& programs, std::size_t section, std::size_t sections,
                            const std::function<void(const StockPart&)>& own, Diagnostics& diagnostics) {
   const SimulatedProgram& of_target = programs.of_target();
-  const removal::StampPath nominal =
-      removal::nominal_path(of_target.moves, of_target.selected, of_target.path, of_target.part_path());
+  const NominalSection nominal = nominal_section(of_target, section, sections);
+  Region reach = reach_of_section(job, programs, section, sections);
+  reach.add(reach_of(job, nominal.stretch(), nominal.place.pieces, nominal.place.own));
+  const Region within = joined_region(job, reach);
   // The blank before any allowance: what lies above it is a part as any other.
-  const TargetWork nothing{.allowance = [](Stock&) { return 1e300; }};
+  const TargetWork nothing{.allowance = [](Stock&) { return 1e300; }, .within = &within};
   const Blank raw = make_blank(job, of_target, diagnostics, 0, nothing);
   diagnostics.throw_if_errors();
-  Stage stage("carving the section", (programs.program.path.stamps.size() + nominal.stamps.size()) / sections + 1);
   const removal::StampPath& path = programs.program.path;
+  Stage stage("carving the section", path.stamps.size() / sections + nominal.path.stamps.size() + 1);
   SweptSection out = swept_path(job, raw.stock, path, SectionPlace(path, section, sections), stage, own);
-  const auto joined = [&](const removal::StampPath& of, double shrink_mm, double& removed_mm3) {
+  const auto joined = [&](const PathStretch& of, const SectionPlace& place, double shrink_mm, double& removed_mm3) {
     removal::JoinedParts parts;
-    sweep_pieces(raw.stock, job, of, SectionPlace(of, section, sections), shrink_mm, removed_mm3, out.work, stage,
+    sweep_pieces(raw.stock, job, of, place, shrink_mm, removed_mm3, out.work, stage,
                  [&](std::size_t, StockPart part) { parts.add(std::move(part)); });
     return parts.take();
   };
-  out.target = joined(nominal, 0, out.target_mm3);
-  if (job.stock.allowance_mm > 0) out.allowance = joined(of_target.path, job.stock.allowance_mm, out.allowance_mm3);
+  out.target = joined(nominal.stretch(), nominal.place, 0, out.target_mm3);
+  if (job.stock.allowance_mm > 0)
+    out.allowance = joined(of_target.path, SectionPlace(of_target.path, section, sections), job.stock.allowance_mm,
+                           out.allowance_mm3);
   return out;
 }
 
-Swept sweep_path_section(const Job& job, const Stock& blank, const removal::StampPath& path, std::size_t section,
-                         std::size_t sections) {
-  Stage stage("carving the section", path.stamps.size() / sections + 1);
+Swept sweep_path_section(const Job& job, const Stock& blank, const removal::StampPath& path,
+                         const SectionPlace& place) {
+  Stage stage("carving the section", path.stamps.size() / place.ranges.size() + 1);
   Swept out;
-  out.section = swept_path(job, blank, path, SectionPlace(path, section, sections), stage,
-                           [&](const StockPart& part) { out.own.stock.push_back(part); });
+  out.section = swept_path(job, blank, path, place, stage, [&](const StockPart& part) { out.own.add(part); });
   return out;
 }
 
@@ -348,37 +367,49 @@ TargetWork joined_target(const std::vector<SweptSection>& swept, const std::vect
 }
 
 Solved solve_section(const Job& job, const Programs& programs, const SectionParts& parts, const SolveOptions& options,
-                     Diagnostics& diagnostics) {
+                     Diagnostics& diagnostics, std::optional<Target>* kept) {
   Solved out;
   out.section = begin_round(parts, options.section);
+  std::optional<Target> own;
+  std::optional<Target>& target = kept ? *kept : own;
+  const SectionPlace own_place(programs.program.path, options.section, options.sections);
+  if (target) {
+    SectionSolver(job, programs.program.path, *target, own_place, parts, options).solve(out);
+    return out;
+  }
   const Region joined = section_region(job, programs, options.section, options.sections);
   if (joined.empty()) return out;
   TargetWork work = joined_target(parts.swept, parts.last, &joined);
+  const Region within = joined_region(job, joined);
+  work.within = &within;
   work.judged = false;
-  work.contour = [&](Target& target) {
+  work.contour = [&](Target& made) {
     if (!parts.last.empty()) return;
     const removal::StampPath& path = programs.of_target().path;
     const SectionPlace place(path, options.section, options.sections);
-    DeepestMarks marks(*target.map);
+    removal::SurfaceMap& map = *made.map;
+    DeepestMarks marks(map);
     for (std::size_t p = place.own.begin; p < place.own.end; ++p) {
       const PathPiece& piece = place.pieces[p];
-      removal::SurfaceMap map(*target.map);
       mark_contour_of(job, path, path.runs[piece.run], piece.from, piece.count, map);
-      marks.add(marks_of(map));
+      marks.add(map.take_marks());
       out.section.work.stamps += piece.count;
     }
     out.section.contour = marks.marks();
   };
-  const Target target = make_target(job, programs.of_target(), diagnostics, work);
-  SectionSolver(job, programs.program.path, target, parts, options).solve(out);
+  target.emplace(make_target(job, programs.of_target(), diagnostics, work));
+  SectionSolver(job, programs.program.path, *target, own_place, parts, options).solve(out);
   return out;
 }
 
 Solved solve_path_section(const Job& job, const Target& target, const removal::StampPath& path,
-                          const SectionParts& parts, const SolveOptions& options) {
+                          const SectionPlace& place, const SectionParts& parts,
+                          const std::function<void(double)>& progress) {
   Solved out;
-  out.section = begin_round(parts, options.section);
-  SectionSolver(job, path, target, parts, options).solve(out);
+  out.section = begin_round(parts, place.section);
+  const SolveOptions options{
+      .section = place.section, .sections = place.ranges.size(), .turn_from = {}, .progress = progress};
+  SectionSolver(job, path, target, place, parts, options).solve(out);
   return out;
 }
 

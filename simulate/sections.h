@@ -20,6 +20,7 @@
 #include "simulate/pieces.h"
 #include "simulate/section_parts.h"
 #include "simulate/section_pieces.h"
+#include "simulate/section_stock.h"
 
 namespace camber::simulate {
 
@@ -32,7 +33,7 @@ SweptSection sweep_section(const machine::Job& job, const Programs& programs, st
                            const std::function<void(const removal::StockPart&)>& own, Diagnostics& diagnostics);
 /// The program's path alone, out of a stock.
 Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const removal::StampPath& path,
-                         std::size_t section, std::size_t sections);
+                         const SectionPlace& place);
 
 /// Change of the stock that a piece must feel, or of the deflection with which the tool enters it, before it is solved
 /// again.
@@ -48,6 +49,9 @@ struct SectionParts {
   std::vector<SolvedSection> last, before_last;
   OwnSweep own_sweep;
   OwnSolution own_last, own_before_last;
+  /// `last` is of a path much like this one, with as many pieces: the first round begins from what it left, instead of
+  /// the sweeps, and solves all pieces.
+  bool from_another_path = false;
 };
 struct SolveOptions {
   std::size_t section = 0, sections = 1;
@@ -58,18 +62,20 @@ struct Solved {
   SolvedSection section;
   OwnSolution own;
 };
-/// Solves a section; in a later round only the pieces whose stock has changed.
+/// Solves a section; in a later round only the pieces whose stock has changed. `kept` (null: nothing is kept): the
+/// section's target, made where it is empty, for the next round of the same section.
 Solved solve_section(const machine::Job& job, const Programs& programs, const SectionParts& parts,
-                     const SolveOptions& options, Diagnostics& diagnostics);
+                     const SolveOptions& options, Diagnostics& diagnostics, std::optional<Target>* kept = nullptr);
 /// The same against a whole target; no contour.
 Solved solve_path_section(const machine::Job& job, const Target& target, const removal::StampPath& path,
-                          const SectionParts& parts, const SolveOptions& options);
+                          const SectionPlace& place, const SectionParts& parts,
+                          const std::function<void(double)>& progress);
 
 /// What a section reads of others' parts: the rest may be left out, here. Empty where the section has nothing.
 removal::Region section_region(const machine::Job& job, const Programs& programs, std::size_t section,
                                std::size_t sections);
-removal::Region section_region(const machine::Job& job, const removal::StampPath& path, std::size_t section,
-                               std::size_t sections);
+removal::Region section_region(const machine::Job& job, const removal::StampPath& path, const SectionPlace& place,
+                               std::size_t section);
 
 /// Joins the target's parts instead of sweeping it. `swept` and `solved` must outlive the result; `within` (null:
 /// everywhere) bounds what is joined.

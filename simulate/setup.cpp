@@ -31,9 +31,20 @@ Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFi
   return set_up(job, options, findings, {});
 }
 
+namespace {
+
+Programs taken_from(ReadPrograms& read, const SetupOptions& options, const SetupFindings& findings) {
+  findings.program.append(read.said);
+  if (options.check) options.check(read.programs.program);
+  findings.program.throw_if_errors();
+  return std::move(read.programs);
+}
+
+}  // namespace
+
 Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings,
-             const TargetWork& work) {
-  Programs programs = read_programs(job, options, findings);
+             const TargetWork& work, ReadPrograms* read) {
+  Programs programs = read ? taken_from(*read, options, findings) : read_programs(job, options, findings);
   Target target = make_target(job, programs.of_target(), findings.target, work);
   return {std::move(programs.program), std::move(programs.original), std::move(target)};
 }

@@ -84,6 +84,12 @@ std::vector<double> overhangs_of(const machine::Job& job, int number, double ste
 
 bool clear(const posture::Postured& row) { return !row.blocked_move && row.figures.unclear == 0; }
 
+/// The first row of the least expected error.
+std::size_t least_error(const std::vector<PosturedProgram>& rows) {
+  const auto error_um = [](const PosturedProgram& row) { return row.postured.figures.error_um; };
+  return static_cast<std::size_t>(std::ranges::min_element(rows, {}, error_um) - rows.begin());
+}
+
 ordered_json figures_json(const PosturedProgram& program) {
   const posture::PostureFigures& f = program.postured.figures;
   return {{"overhang_mm", f.overhang_mm},
@@ -95,12 +101,13 @@ ordered_json figures_json(const PosturedProgram& program) {
           {"max_angle_deg", deg_from_rad(f.max_angle_rad)},
           {"compliance_um_per_N", f.compliance_um_per_N},
           {"lag_um", f.lag_um},
+          {"error_um", f.error_um},
           {"time_s", program.time_s}};
 }
 
 }  // namespace
 
-std::vector<PosturedProgram> posture_programs(const PostureCommand& command, double step_mm, Diagnostics& diagnostics) {
+PosturedOverhangs posture_programs(const PostureCommand& command, Diagnostics& diagnostics) {
   nc::InterpreterOptions options = rotary_interpreter_options(command.job->machine, command.interpreter);
   if (!options.inch) options.inch = command.job->inch;
   const nc::Interpretation moves = nc::interpret(*command.text, options, diagnostics);
@@ -112,7 +119,7 @@ std::vector<PosturedProgram> posture_programs(const PostureCommand& command, dou
                               .program = command.text,
                               .moves = &moves,
                               .tool = tool,
-                              .overhangs_mm = overhangs_of(*command.job, tool, step_mm),
+                              .overhangs_mm = overhangs_of(*command.job, tool, command.overhang_step_mm),
                               .step_mm = command.step_mm,
                               .options = command.options,
                               .written = written},
@@ -121,7 +128,9 @@ std::vector<PosturedProgram> posture_programs(const PostureCommand& command, dou
   made.erase(std::find_if_not(made.begin() + 1, made.end(), clear), made.end());
   if (!clear(made[0])) made.resize(1);
   const double given_time_s = feedmodel::cycle_time(moves, command.job->machine).all.time.total_s();
-  std::vector<PosturedProgram> out(made.size());
+  PosturedOverhangs overhangs;
+  std::vector<PosturedProgram>& out = overhangs.rows;
+  out.resize(made.size());
   std::vector<Diagnostics> found(made.size());
   tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t row) {
     out[row].postured = std::move(made[row]);
@@ -135,9 +144,10 @@ std::vector<PosturedProgram> posture_programs(const PostureCommand& command, dou
     if (written == nc::OneDirection::joints) to_joints(command, out[row], found[row]);
     read_again(command, out[row], found[row]);
   });
-  for (const Diagnostic& d : found.back().all()) diagnostics.add(d);
+  overhangs.chosen = command.least_error ? least_error(out) : out.size() - 1;
+  for (const Diagnostic& d : found[overhangs.chosen].all()) diagnostics.add(d);
   diagnostics.throw_if_errors();
-  return out;
+  return overhangs;
 }
 
 kinematics::PoseTrack posture_track(const PosturedProgram& program, const PostureCommand& command) {
@@ -163,23 +173,34 @@ std::string posture_text(const PosturedProgram& program, const PostureCommand& c
   }
   if (before.lag_um > 0 || f.lag_um > 0)
     out += fmt::format("axes      late by {:.1f} um normal to the part, before {:.1f}\n", f.lag_um, before.lag_um);
+  out +=
+      fmt::format("error     about {:.1f} um, before {:.1f}; camber predict says where\n", f.error_um, before.error_um);
   out += fmt::format("time      {:.1f} s\n", program.time_s);
   return out;
 }
 
-std::string overhang_text(const std::vector<PosturedProgram>& rows) {
-  std::string out =
-      fmt::format("{:>12} {:>10} {:>10} {:>12} {:>8}\n", "overhang mm", "um/N", "angle deg", "rotary deg", "time s");
-  for (const PosturedProgram& row : rows) {
+std::string overhang_text(const PosturedOverhangs& overhangs) {
+  std::string out = fmt::format("{:>12} {:>10} {:>10} {:>10} {:>12} {:>8}\n", "overhang mm", "um/N", "error um",
+                                "angle deg", "rotary deg", "time s");
+  for (const PosturedProgram& row : overhangs.rows) {
     const posture::PostureFigures& f = row.postured.figures;
-    out += fmt::format("{:>12.1f} {:>10.3f} {:>10.1f} {:>12.0f} {:>8.1f}\n", f.overhang_mm, f.compliance_um_per_N,
-                       deg_from_rad(f.mean_angle_rad), f.rotary_motion_deg, row.time_s);
+    out +=
+        fmt::format("{:>12.1f} {:>10.3f} {:>10.1f} {:>10.1f} {:>12.0f} {:>8.1f}\n", f.overhang_mm,
+                    f.compliance_um_per_N, f.error_um, deg_from_rad(f.mean_angle_rad), f.rotary_motion_deg, row.time_s);
   }
+  const posture::PostureFigures& least = overhangs.rows[least_error(overhangs.rows)].postured.figures;
+  const posture::PostureFigures &shortest = overhangs.rows.back().postured.figures,
+                                &chosen = overhangs.program().postured.figures;
+  if (least.overhang_mm > chosen.overhang_mm)
+    out += fmt::format("the least error is that of {:g} mm; --least-error writes its program\n", least.overhang_mm);
+  else if (chosen.overhang_mm > shortest.overhang_mm)
+    out += fmt::format("the program is that of {:g} mm, which has the least error; {:g} mm are clear, too\n",
+                       chosen.overhang_mm, shortest.overhang_mm);
   return out;
 }
 
-std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhangs, const PostureCommand& command) {
-  const PosturedProgram& program = rows.back();
+std::string posture_json(const PosturedOverhangs& overhangs, const PostureCommand& command) {
+  const PosturedProgram& program = overhangs.program();
   ordered_json report = figures_json(program);
   report["mode"] = kModes[static_cast<std::size_t>(command.options.mode)];
   if (command.options.indexed) {
@@ -197,11 +218,12 @@ std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhang
                       {"max_angle_deg", deg_from_rad(before.max_angle_rad)},
                       {"compliance_um_per_N", before.compliance_um_per_N},
                       {"lag_um", before.lag_um},
+                      {"error_um", before.error_um},
                       {"time_s", program.given_time_s}};
   if (program.blocked_line > 0) report["blocked_line"] = program.blocked_line;
   if (program.unclear_line > 0) report["unclear_line"] = program.unclear_line;
-  if (overhangs && clear(program.postured))
-    for (const PosturedProgram& row : rows) report["overhangs"].push_back(figures_json(row));
+  if (command.overhang_step_mm > 0 && clear(program.postured))
+    for (const PosturedProgram& row : overhangs.rows) report["overhangs"].push_back(figures_json(row));
   return report.dump(2) + "\n";
 }
 

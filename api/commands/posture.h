@@ -22,6 +22,8 @@ struct PostureCommand {
   double step_mm = 1;
   posture::PostureOptions options;
   std::optional<nc::OneDirection> written{};  ///< options.indexed; default: that of the control
+  double overhang_step_mm = 0;                ///< greater than zero: shorter overhangs, too
+  bool least_error = false;  ///< of the overhangs, that of the least expected error instead of the shortest
 };
 
 struct PosturedProgram {
@@ -33,19 +35,26 @@ struct PosturedProgram {
   nc::OneDirection written = nc::OneDirection::tip;
 };
 
-/// With a step, also with ever less overhang, as long as the tool stays clear: the last one is the shortest that does.
-/// Without: one. The first may be blocked, and not be clear. Throws InputError: what make_postures() says, and
-/// kinematics::check_travel and simulate::check_machine_collisions of the last new program, at the given blocks.
-std::vector<PosturedProgram> posture_programs(const PostureCommand& command, double overhang_step_mm,
-                                              Diagnostics& diagnostics);
+/// With a step the rows of a table, with ever less overhang as long as the tool stays clear; without: one.
+struct PosturedOverhangs {
+  std::vector<PosturedProgram> rows;  ///< the first may be blocked, and not be clear
+  std::size_t chosen = 0;             ///< whose program is written
+
+  const PosturedProgram& program() const { return rows[chosen]; }
+};
+
+/// Throws InputError: what make_postures() says, and kinematics::check_travel and simulate::check_machine_collisions of
+/// the chosen program, at the given blocks.
+PosturedOverhangs posture_programs(const PostureCommand& command, Diagnostics& diagnostics);
 
 /// Positions of the machine along the new program.
 kinematics::PoseTrack posture_track(const PosturedProgram& program, const PostureCommand& command);
 
 /// For people.
 std::string posture_text(const PosturedProgram& program, const PostureCommand& command);
-std::string overhang_text(const std::vector<PosturedProgram>& rows);
-/// With a line end: the figures of the last row, and with `overhangs` those of all.
-std::string posture_json(const std::vector<PosturedProgram>& rows, bool overhangs, const PostureCommand& command);
+/// Of the row that is written, and whether another one has the least expected error or is shorter.
+std::string overhang_text(const PosturedOverhangs& overhangs);
+/// With a line end: the figures of the row that is written, and where overhangs were asked for those of all.
+std::string posture_json(const PosturedOverhangs& overhangs, const PostureCommand& command);
 
 }  // namespace camber::api

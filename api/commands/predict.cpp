@@ -153,7 +153,7 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   Diagnostics of_original;  // a program like the job's: what is to be said of it, the job's own says too
   PreparedJob out{
       simulate::set_up(job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics},
-                       request.work),
+                       request.work, request.programs.get()),
       {}};
   out.setup.original.reset();
   out.setup.target.surface.clear_stamps();  // its points are in the map

@@ -1,6 +1,7 @@
 #pragma once
 // The work of camber predict: a job made ready, cut, judged, and written to a folder.
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ struct PredictRequest {
   std::string columns{};      ///< column map of the trace; empty: its header names columns as Camber does
   StepProgress progress{};
   simulate::TargetWork work{};  ///< of the target that other processes have done
+  /// The job's, where this process has read them before: they are used up. Null: they are read.
+  std::shared_ptr<simulate::ReadPrograms> programs{};
 };
 
 /// Of a prediction from a trace, `setup.program` has the measured motion and `traced` the feed model's.

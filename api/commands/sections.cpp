@@ -35,13 +35,14 @@ SectionRun::SectionRun(const machine::Job& job, PartKey key, PartStore& store, S
     : job_(job), key_(std::move(key)), store_(store), progress_(std::move(progress)), diagnostics_(diagnostics) {
   const StageScope stages(progress_);
   const auto check = [&](const simulate::SimulatedProgram& program) {
+    diagnostics.append(read_.said);
     simulate::check_program(job, program, diagnostics);
     diagnostics.throw_if_errors();
   };
   Diagnostics of_original;
-  programs_ = simulate::read_programs(job, {.check = check},
-                                      {.program = diagnostics, .original = of_original, .target = diagnostics});
-  if (key_.forces_at > 0) turn_from_ = simulate::turn_at_line(programs_.program, job, key_.forces_at, diagnostics);
+  read_.programs = simulate::read_programs(job, {.check = check},
+                                           {.program = read_.said, .original = of_original, .target = diagnostics});
+  if (key_.forces_at > 0) turn_from_ = simulate::turn_at_line(read_.programs.program, job, key_.forces_at, diagnostics);
   diagnostics.throw_if_errors();
 }
 
@@ -55,7 +56,7 @@ bool SectionRun::is_there(const PartName& name) {
 
 const removal::Region& SectionRun::region(std::size_t section) {
   for (std::size_t s = regions_.size(); s < key_.sections; ++s)
-    regions_.push_back(simulate::section_region(job_, programs_, s, key_.sections));
+    regions_.push_back(simulate::section_region(job_, read_.programs, s, key_.sections));
   return regions_[section];
 }
 
@@ -67,7 +68,7 @@ bool SectionRun::sweep(std::size_t section) {
   // Its own pieces are many times what others need: they are written as they are carved.
   store_.give(name(PartStage::sweep, 1, section, true), [&](const auto& put) {
     part = simulate::sweep_section(
-        job_, programs_, section, key_.sections,
+        job_, read_.programs, section, key_.sections,
         [&](const removal::StockPart& piece) { put(simulate::bytes_of_part(piece)); }, diagnostics_);
   });
   add(part.work, work_);
@@ -86,8 +87,9 @@ simulate::SectionParts SectionRun::parts_before(std::size_t section, int round) 
       parts.push_back(s == section ? std::move(part) : part.within(region(section), voxel_mm));
     }
   };
-  take_all(out.swept, PartStage::sweep, 1);
-  if (round <= 2) out.own_sweep = part_of<simulate::OwnSweep>(store_, name(PartStage::sweep, 1, section, true));
+  // Later rounds read of the sweeps what the target is made of, if it is not kept.
+  if (round <= 2 || !target_) take_all(out.swept, PartStage::sweep, 1);
+  if (round <= 2) out.own_sweep.bytes = store_.take(name(PartStage::sweep, 1, section, true));
   if (round > 1) {
     take_all(out.last, PartStage::solve, round - 1);
     out.own_last = part_of<simulate::OwnSolution>(store_, name(PartStage::solve, round - 1, section, true));
@@ -103,13 +105,16 @@ bool SectionRun::solve(std::size_t section, int round) {
   const PartName whole = name(PartStage::solve, round, section);
   if (is_there(whole)) return false;
   const StageScope stages(progress_);
+  if (target_section_ != section) target_.reset();
+  target_section_ = section;
   const simulate::SectionParts parts = parts_before(section, round);
   const auto tell = [&](double share) {
     if (progress_) progress_("cutting", share);
   };
   const simulate::SolveOptions options{
       .section = section, .sections = key_.sections, .turn_from = turn_from_, .progress = tell};
-  const simulate::Solved part = simulate::solve_section(job_, programs_, parts, options, diagnostics_);
+  const simulate::Solved part =
+      simulate::solve_section(job_, read_.programs, parts, options, diagnostics_, is_static() ? &target_ : nullptr);
   add(part.section.work, work_);
   if (is_static()) give_part(store_, name(PartStage::solve, round, section, true), part.own);
   give_part(store_, whole, part.section);

@@ -89,6 +89,11 @@ class SectionRun {
   bool is_static() const { return job_.simulation.coupling == machine::Coupling::static_; }
   /// What one process has done so far, for the efficiency of many.
   const simulate::SectionWork& work() const { return work_; }
+  /// The programs, for the merge by the same process (PredictRequest::programs). Ends the run.
+  std::shared_ptr<simulate::ReadPrograms> take_programs() {
+    target_.reset();
+    return std::make_shared<simulate::ReadPrograms>(std::move(read_));
+  }
 
  private:
   PartName name(PartStage stage, int round, std::size_t section, bool own = false) const {
@@ -103,10 +108,13 @@ class SectionRun {
   PartStore& store_;
   StepProgress progress_;
   Diagnostics& diagnostics_;
-  simulate::Programs programs_;
+  simulate::ReadPrograms read_;
   std::optional<std::size_t> turn_from_;
   simulate::SectionWork work_;
   std::vector<removal::Region> regions_;  ///< of all sections, once one is asked for
+  // In static coupling: of the section that was solved last, whose next round may follow.
+  std::optional<simulate::Target> target_;
+  std::size_t target_section_ = 0;
 };
 
 /// How the pieces of a path were joined.

@@ -35,6 +35,7 @@ struct CopiedOperation {
   double target_N = 0, max_N = 0;  ///< lateral force; target 0: none
   /// Of the tooth passings whose feed no bound holds, those with 80 to 105 % of the target.
   double within_share = 0;
+  std::size_t trochoid_circles = 0;  ///< instead of full cuts, of the trochoids that were begun
 };
 
 struct CopyResult {

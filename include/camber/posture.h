@@ -20,6 +20,7 @@ struct PostureOptions {
   std::optional<int> tool{};    ///< default: the only one of the job
   double step_mm = 1;           ///< between the points of the path
   double overhang_step_mm = 0;  ///< greater than zero: the shortest overhang is looked for
+  bool least_error = false;     ///< with it: the overhang of the least expected error
   double clearance_mm = 1;
   bool stock = true;                   ///< that of the job is an obstacle, but for the flutes
   double lead_deg = 10, tilt_deg = 0;  ///< lead-tilt
@@ -35,6 +36,7 @@ struct PostureFigures {
   double mean_angle_deg = 0, max_angle_deg = 0;  ///< of tool and normal
   double compliance_um_per_N = 0;                ///< normal to the part
   double lag_um = 0;                             ///< left by axes that follow late, normal to the part, mean
+  double error_um = 0;                           ///< expected form error, mean magnitude: deflection and lag
   double time_s = 0;                             ///< of the program on the machine
 };
 

@@ -42,6 +42,7 @@ struct Group {
 struct TilePoints {
   Group all;
   std::vector<Group> blocks;
+  bool marked = false;  ///< cutters came near since the map had no marks
 };
 
 Group group_of(std::span<const SurfacePoint> points, std::size_t first, std::size_t count, double highest) {
@@ -317,15 +318,17 @@ struct SurfaceMap::Impl {
       p.machined_stamp = Stock::kUncut;
     }
   }
-  void clear_marks() {
-    for (SurfacePoint& p : points) {
+  void clear_marks(TilePoints& tile) {
+    for (SurfacePoint& p : of(tile)) {
       p.error_mm = band_mm;
       p.machined_stamp = Stock::kUncut;
     }
-    for (TilePoints& tile : tiles) {
-      tile.all.highest = band_mm;
-      for (Group& block : tile.blocks) block.highest = band_mm;
-    }
+    tile.all.highest = band_mm;
+    for (Group& block : tile.blocks) block.highest = band_mm;
+    tile.marked = false;
+  }
+  std::span<SurfacePoint> of(const TilePoints& tile) {
+    return std::span(points).subspan(tile.all.first, tile.all.count);
   }
 };
 
@@ -405,6 +408,7 @@ void SurfaceMap::mark(const EnvelopeGrid& envelope, std::span<const Stamp> stamp
     near_tips.clear();
     for (const std::size_t k : near) near_tips.add(stamps[k].pose.tip_mm);
     if (near.empty()) return;
+    tile.marked = true;
     tile.all.highest = -std::numeric_limits<double>::infinity();
     for (Group& block : tile.blocks) {
       near_tips.distances_to(envelope.shape, block, distance);
@@ -438,6 +442,7 @@ void SurfaceMap::mark_tilted(const TiltedStamps& stamps) {
     auto& [marks, near_tile, near_block] = rooms.local();
     stamps.find_near(tile.all.centre, tile.all.radius + tile.all.reach_mm(), near_tile);
     if (near_tile.empty()) return;
+    tile.marked = true;
     tile.all.highest = -std::numeric_limits<double>::infinity();
     for (Group& block : tile.blocks) {
       near_block = near_tile;
@@ -465,7 +470,21 @@ std::vector<float> SurfaceMap::take_errors_mm() {
   std::vector<float> out;
   out.reserve(impl_->points.size());
   for (const SurfacePoint& p : impl_->points) out.push_back(static_cast<float>(p.error_mm));
-  impl_->clear_marks();
+  for (TilePoints& tile : impl_->tiles) impl_->clear_marks(tile);
+  return out;
+}
+
+std::vector<PointMark> SurfaceMap::take_marks() {
+  std::vector<PointMark> out;
+  for (TilePoints& tile : impl_->tiles) {
+    if (!tile.marked) continue;
+    auto index = static_cast<std::uint32_t>(tile.all.first);
+    for (const SurfacePoint& p : impl_->of(tile)) {
+      if (p.machined_stamp != Stock::kUncut) out.push_back({p.error_mm, index, p.machined_stamp});
+      ++index;
+    }
+    impl_->clear_marks(tile);
+  }
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/open_page.h"
 #include "tests/support/run_camber.h"
 
 namespace camber::tests {
@@ -144,6 +145,47 @@ TEST(PostureCommand, TheStockIsAnObstacle) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
   const CamberRun without = run_camber(folder, command + " --no-stock");
   EXPECT_EQ(without.status, 0) << without.err;
+}
+
+TEST(PostureCommand, ThePageShowsTheMachineAlongTheNewProgram) {
+  CAMBER_NEEDS_BROWSER();
+  const TempFolder folder;
+  const std::string sample = CAMBER_SOURCE_DIR "/samples/16-die-cavity/";
+  const CamberRun run = run_camber(folder, "posture " + sample + "rows.nc --job " + sample +
+                                               "rows.toml --overhang 20 -o out.nc -q --report page.html --json r.json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(open_page("machine", folder / "page.html", folder / "r.json"), "");
+}
+
+TEST(PostureCommand, WritesTheOverhangOfTheLeastErrorWhereThatIsAskedFor) {
+  const TempFolder folder;
+  const std::string sample = CAMBER_SOURCE_DIR "/samples/16-die-cavity/";
+  const std::string command =
+      "posture " + sample + "rows.nc --job " + sample + "rows.toml --overhang 20 --json r.json ";
+  const CamberRun shortest = run_camber(folder, command + "-o shortest.nc");
+  ASSERT_EQ(shortest.status, 0) << shortest.err;
+  EXPECT_EQ(nlohmann::json::parse(file_text(folder / "r.json"))["overhang_mm"], 20);
+  const CamberRun least = run_camber(folder, command + "-o least.nc --least-error");
+  ASSERT_EQ(least.status, 0) << least.err;
+  const auto report = nlohmann::json::parse(file_text(folder / "r.json"));
+  ASSERT_EQ(report["overhangs"].size(), 3);
+  double error_um = 1e9, overhang_mm = 0;
+  for (const auto& row : report["overhangs"])
+    if (row["error_um"] < error_um) error_um = row["error_um"], overhang_mm = row["overhang_mm"];
+  EXPECT_EQ(report["error_um"], error_um);
+  EXPECT_EQ(report["overhang_mm"], overhang_mm);
+  EXPECT_GT(overhang_mm, 20);  // axes follow less late in another direction, which takes a longer tool
+  EXPECT_NE(shortest.out.find("the least error is that of 40 mm; --least-error writes its program\n"),
+            std::string::npos)
+      << shortest.out;
+  EXPECT_NE(least.out.find("the program is that of 40 mm, which has the least error; 20 mm are clear, too\n"),
+            std::string::npos)
+      << least.out;
+  EXPECT_NE(file_text(folder / "shortest.nc"), file_text(folder / "least.nc"));
+  const CamberRun alone =
+      run_camber(folder, "posture " + sample + "rows.nc --job " + sample + "rows.toml -o alone.nc --least-error");
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_NE(alone.err.find("--least-error requires --overhang"), std::string::npos) << alone.err;
 }
 
 /// A block whose top falls from z0 at x = 0 to z1 at x = 20, as an ASCII STL file.

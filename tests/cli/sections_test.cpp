@@ -1,16 +1,20 @@
 // camber predict --sections and camber merge: the same bytes whoever computes which part, and parts that are refused.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "camber/sections.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -233,18 +237,129 @@ TEST_F(Parts, OfAnotherVersionAreNamed) {
                  "; parts of one version were expected: " + again("--section 1 --stage sweep [part-version]\n"));
 }
 
+/// The text with the hexadecimal numbers of a part's and of a job's hash taken out; they have to differ.
+std::string without_hashes(std::string text) {
+  std::vector<std::string> hashes;
+  for (std::size_t at = 0; (at = text.find("(hash ", at)) != std::string::npos; at += 6) {
+    constexpr std::size_t kHash = 16;
+    hashes.push_back(text.substr(at + 6, kHash));
+    EXPECT_EQ(hashes.back().find_first_not_of("0123456789ABCDEF"), std::string::npos) << text;
+    text.erase(at + 6, kHash);
+  }
+  EXPECT_TRUE(hashes.size() == 2 && hashes[0] != hashes[1]) << text;
+  return text;
+}
+
 TEST_F(Parts, OfAnotherJobAreNamed) {
   folder_.write("job.toml", replaced(kJob, "overhang_mm = 25.0", "overhang_mm = 26.0"));
-  const CamberRun run = run_camber(folder_, "merge parts");
-  EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(run.err.rfind("parts/parts/sweep-001-of-002.part: error: is of another job, program or setting (hash ", 0),
-            0u)
-      << run.err;
-  EXPECT_NE(run.err.find("[part-job]"), std::string::npos);
-  EXPECT_FALSE(fs::exists(folder_ / "parts/summary.json"));
-  const CamberRun solve = run_camber(folder_, stage("solve", 1, 2));
-  EXPECT_EQ(solve.status, 1);
-  EXPECT_NE(solve.err.find("[part-job]"), std::string::npos) << solve.err;
+  const std::string message =
+      "parts/parts/sweep-001-of-002.part: error: is of another job, program or setting (hash ) than job.toml now (hash "
+      "): " +
+      again("--section 1 --stage sweep [part-job]\n");
+  for (const std::string& command : {std::string("merge parts"), stage("solve", 1, 2)}) {
+    const CamberRun run = run_camber(folder_, command);
+    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(without_hashes(run.err), message) << command;
+    EXPECT_FALSE(fs::exists(folder_ / "parts/summary.json"));
+  }
+}
+
+TEST_F(Parts, OfAnotherNumberOfSectionsAreNamed) {
+  ASSERT_EQ(run_camber(folder_, stage("sweep", 1, 3)).status, 0);
+  expect_refused(
+      "parts: error: has parts of 2 and of 3 sections; parts of one prediction were expected [part-sections]\n");
+}
+
+TEST_F(Parts, ThatASectionKeptForItselfAreNamed) {
+  fs::remove(part("solve-1-001-of-002.part"));
+  const std::string file = part("own-sweep-001-of-002.part");
+  fs::resize_file(file, fs::file_size(file) / 2);
+  const CamberRun torn = run_camber(folder_, stage("solve", 1, 2));
+  EXPECT_EQ(torn.status, 1);
+  EXPECT_EQ(torn.err,
+            "parts/parts/own-sweep-001-of-002.part: error: is not whole; a part that was written to its end was "
+            "expected: " +
+                again("--section 1 --stage sweep [part-torn]\n"));
+  // The same commands again do what is missing.
+  for (const char* which : {"sweep", "solve"}) ASSERT_EQ(run_camber(folder_, stage(which, 1, 2)).status, 0);
+  EXPECT_EQ(run_camber(folder_, "-q merge parts").status, 0);
+}
+
+/// Files of no more than so many blocks of 512 bytes.
+CamberRun run_on_full_disk(const TempFolder& folder, int blocks, const std::string& arguments) {
+  const std::string command = "cd '" + folder.path() + "' && (ulimit -f " + std::to_string(blocks) +
+                              "; exec '" CAMBER_EXECUTABLE "' " + arguments + ") 2>&1 | cat > said; true";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  return {0, "", tests::file_text(folder / "said")};
+}
+
+TEST_F(Parts, ThatHaveNoRoomAreNamedAndNothingIsLeft) {
+  const auto files = [&] {
+    std::vector<std::string> out;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / "parts"))
+      out.push_back(entry.path().filename().string());
+    std::sort(out.begin(), out.end());
+    return out;
+  };
+  for (const char* own : {"", "own-"}) fs::remove(part(std::string(own) + "sweep-001-of-002.part"));
+  const auto before = files();
+  EXPECT_EQ(run_on_full_disk(folder_, 1, stage("sweep", 1, 2)).err,
+            "parts/parts/own-sweep-001-of-002.part: error: could not be written to its end (is the disk full?) "
+            "[file-unwritable]\n");
+  EXPECT_EQ(files(), before);
+
+  ASSERT_EQ(run_camber(folder_, stage("sweep", 1, 2)).status, 0);
+  const auto whole = files();
+  std::string expected;
+  for (const char* name :
+       {"stock.vdb", "form_error.csv", "form_error.vtp", "forces.csv", "form_error.ply", "feed.csv", "report.html"})
+    expected += name;
+  // Which of the files is named depends on which is written first.
+  const std::string said = run_on_full_disk(folder_, 1, "-q merge parts").err;
+  EXPECT_NE(said.find(": error: could not be written to its end (is the disk full?) [file-unwritable]\n"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(expected.find(fs::path(said.substr(0, said.find(": error"))).filename().string()), std::string::npos)
+      << said;
+  EXPECT_EQ(files(), whole);
+  ASSERT_EQ(run_camber(folder_, "-q merge parts").status, 0);
+}
+
+TEST(SectionsOfTheLibrary, AreThePartsOfTheCommandLine) {
+  const TempFolder folder;
+  write_all(folder);
+  const std::string job = folder / "job.toml", out = folder / "library";
+  SectionOptions options{.sections = 2, .section = 1, .solve = true};
+  try {
+    predict_section(job, out, options);
+    FAIL() << "nothing was swept";
+  } catch (const InputError& problem) {
+    ASSERT_EQ(problem.diagnostics().size(), 1u);
+    EXPECT_EQ(problem.diagnostics().front().check, "part-missing");
+  }
+  for (const bool solve : {false, true})
+    for (const std::size_t section : {2, 1}) {
+      options.section = section, options.solve = solve;
+      const SectionResult part = predict_section(job, out, options);
+      EXPECT_TRUE(part.computed);
+      EXPECT_GT(part.stamps, 1000);
+      EXPECT_EQ(part.solved_again, 0);
+      EXPECT_TRUE(fs::exists(part.part)) << part.part;
+      const std::string command = stage(solve ? "solve" : "sweep", static_cast<int>(section), 2);
+      ASSERT_EQ(run_camber(folder, replaced(command, "job.toml", job)).status, 0);
+      const std::string name = fs::path(part.part).filename().string();
+      EXPECT_TRUE(tests::file_text(part.part) == tests::file_text(folder / ("parts/parts/" + name))) << name;
+      EXPECT_FALSE(predict_section(job, out, options).computed);
+    }
+  const PredictResult merged = merge(out);
+  EXPECT_TRUE(merged.doubts.empty());
+  ASSERT_EQ(run_camber(folder, "-q merge parts").status, 0);
+  expect_same(results(folder / "parts"), results(out), "library");
+
+  for (const auto& [section, round] : {std::pair(3, 1), std::pair(0, 1), std::pair(1, 13)}) {
+    options.section = static_cast<std::size_t>(section), options.round = round;
+    EXPECT_THROW(predict_section(job, out, options), std::invalid_argument) << section << " " << round;
+  }
 }
 
 TEST(SectionOptions, AreRefusedWhereTheyDoNotFit) {

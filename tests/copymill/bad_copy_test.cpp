@@ -64,5 +64,27 @@ TEST(BadCopy, ToolLargerThanEveryPocket) {
       << out;
 }
 
+TEST(BadCopy, SlottingWhereThereAreNoSlots) {
+  EXPECT_EQ(said({.operations = "[[copy]]\ntool = 3\nmode = \"drilling\"\nspindle_rpm = 4000\nfeed_mm_per_min = 400\n"
+                                "axial_depth_mm = 3\nslotting = \"full-width\"\nholes_mm = [[10, 10]]\n"
+                                "region = { z_mm = [-8, 0] }\n"}),
+            "job.toml:34:1: error: slotting in drilling; it is for loops and rows level by level [copy-mode]\n"
+            "    slotting = \"full-width\"\n    ^\n");
+  EXPECT_EQ(said({.operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\nslotting = \"never\"\n")}),
+            "job.toml:35:12: error: slotting is \"never\"; \"by-load\", \"full-width\" or \"trochoidal\" was expected "
+            "[value-choice]\n    slotting = \"never\"\n               ^\n");
+}
+
+TEST(BadCopy, SlottingIsWrittenAsItIsRead) {
+  const TempFolder folder;
+  for (const std::string word : {"full-width", "trochoidal"}) {
+    const ReadCopy read = read_copy(
+        folder, {.operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\nslotting = \"" + word + "\"\n")});
+    EXPECT_NE(machine::to_toml(read.operations.at(0)).find("slotting = \"" + word + "\"\n"), std::string::npos);
+  }
+  const ReadCopy by_load = read_copy(folder, {.operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\n")});
+  EXPECT_EQ(machine::to_toml(by_load.operations.at(0)).find("slotting"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace camber::copymill

@@ -130,6 +130,36 @@ TEST(Copy, EveryStopLeavesNoGouge) {
   }
 }
 
+/// Wherever the tool is when it is told to stop, in a cut or in a rapid between two: axes brake within their 1000
+/// mm/s^2, and all that is left of the way is what braking takes, with half of that, and the rounding of corners.
+TEST(Copy, AStopAtAnyTickBrakesWithinTheLimits) {
+  const TempFolder folder;
+  const double fastest = 150, dt = 0.001, acceleration = 1000;
+  for (const std::string& operations : {kRough, kRough + "slotting = \"trochoidal\"\n"}) {
+    for (const double stop : {2.001, 4.4, 9.999}) {
+      std::vector<Tick> ticks;
+      CopyOptions options;
+      options.loads = false;
+      options.stream = [&](const Tick& t) { ticks.push_back(t); };
+      options.stop_after_s = stop;
+      const CopyResult r = copied(folder, {.operations = operations, .voxel_mm = 0.5}, options).result;
+      EXPECT_TRUE(r.stopped);
+      EXPECT_LT(r.path_depth_um, 5) << stop;
+      double worst = 0, way_mm = 0;
+      for (std::size_t k = 2; k < ticks.size(); ++k) {
+        const Vec3 v1 = (ticks[k].tip_mm - ticks[k - 1].tip_mm) / dt;
+        const Vec3 v0 = (ticks[k - 1].tip_mm - ticks[k - 2].tip_mm) / dt;
+        worst = std::max(worst, ((v1 - v0) / dt).cwiseAbs().maxCoeff());
+        const bool lifted = ticks[k].tip_mm.z() > ticks[k - 1].tip_mm.z() + 1e-6;
+        if (ticks[k - 1].t_s >= stop && !lifted) way_mm += v1.norm() * dt;
+        if (ticks[k - 1].t_s >= stop && lifted && v0.norm() < 1e-9) break;  // the tool stands, and is lifted
+      }
+      EXPECT_LT(worst, 1.001 * acceleration) << stop;
+      EXPECT_LT(way_mm, fastest * fastest / (2 * 0.5 * acceleration) + fastest * 0.01) << stop;
+    }
+  }
+}
+
 TEST(Copy, TheStreamHasATickEveryPeriodAndKeepsTheFeed) {
   const TempFolder folder;
   std::vector<Tick> ticks;

@@ -1,6 +1,7 @@
 """What the module promises beside its figures: shared memory, exceptions, progress."""
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -114,6 +115,24 @@ class Inputs(unittest.TestCase):
         with self.assertRaises(camber.InputError) as raised:
             camber.compensate(job, output=job.program_path)
         self.assertEqual(raised.exception.id, "output-is-input")
+
+    def test_a_job_may_be_read_before_its_program_is_made(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "job.toml")
+            text = (SAMPLE / "job.toml").read_text().replace('machine = "', f'machine = "{SAMPLE}/')
+            text, left_out = re.subn(r"(?m)^program = .*\n", "", re.sub(r'mesh = "', f'mesh = "{SAMPLE}/', text))
+            self.assertEqual(left_out, 1)
+            pathlib.Path(path).write_text(text)
+            with self.assertRaises(camber.InputError):
+                camber.read_job(path)
+            job = camber.read_unprogrammed_job(path)
+        self.assertEqual(job.program_path, "")
+        for call in (camber.predict, camber.compensate, camber.adapt):
+            with self.assertRaises(camber.InputError) as raised:
+                call(job)
+            self.assertEqual(raised.exception.id, "job-program")
+            self.assertEqual(str(raised.exception), f"{path}: error: the job has no program; a program in the file, or "
+                             "set_program(), was expected [job-program]")
 
     def test_strict_raises_on_warnings(self):
         program = camber.program_from_text("no_unit.nc", "G90 G94\nS1000 M3\nG1 X10 F100\nM30\n")

@@ -272,6 +272,42 @@ TEST(Stock, ACopyOfASharedOneHasOnlyWhatItChanges) {
   EXPECT_LT(copy.memory_bytes(), whole + whole / 100);
 }
 
+TEST(Stock, ACopyWithinABoxIsCutThereAsTheWholeIs) {
+  const Family shared = family(true);
+  const Vec3 lo(1, -3, -3), hi(8, 4, 1e9);
+  std::vector<Stamp> row;
+  add_row(row, {4.2, 0.5, -1.8}, {4.8, 0.5, -1.8}, 0.15);  // in the box with all of the cutter
+  for (const Stock* cut : {&shared.first, &shared.second, &shared.blank}) {
+    Stock whole(*cut), part = cut->copy_within(lo, hi);
+    EXPECT_LE(part.memory_bytes(), whole.memory_bytes());
+    for (const bool again : {false, true}) {
+      for (const Index3& first : {Index3{20, -30, -31}, Index3{23, -14, -25}}) {
+        constexpr int kSide = 33;
+        std::vector<float> distance(kSide * kSide * kSide), expected(distance);
+        std::vector<std::int32_t> stamp(distance.size()), expected_stamp(stamp);
+        part.read(first, kSide, distance.data(), stamp.data());
+        whole.read(first, kSide, expected.data(), expected_stamp.data());
+        EXPECT_EQ(distance, expected);
+        EXPECT_EQ(stamp, expected_stamp);
+      }
+      if (again) break;
+      const double of_whole = carve_row(whole, ball_envelope(), row), of_part = carve_row(part, ball_envelope(), row);
+      EXPECT_EQ(of_part, of_whole);
+      EXPECT_GT(of_part, 0.1);
+    }
+  }
+  // Elsewhere it has what was shared alone.
+  const Stock part = shared.first.copy_within({8, -3, -3}, {9, 3, 1e9});
+  EXPECT_LT(part.memory_bytes(), shared.first.memory_bytes());
+  EXPECT_NE(shared.first.distance_mm({2, 0.5, -1.2}), shared.blank.distance_mm({2, 0.5, -1.2}));
+  EXPECT_EQ(part.distance_mm({2, 0.5, -1.2}), shared.blank.distance_mm({2, 0.5, -1.2}));
+
+  // A stock that shares nothing is copied whole; a box beside it holds nothing.
+  const Family copied = family(false);
+  EXPECT_EQ(copied.first.copy_within(lo, hi).volume_mm3(), copied.first.volume_mm3());
+  EXPECT_EQ(shared.first.copy_within({50, 50, 0}, {60, 60, 1}).volume_mm3(), shared.blank.volume_mm3());
+}
+
 TEST(Stock, ComesBackFromItsFile) {
   const tests::TempFolder folder;
   Stock stock = make_box({0, -5, -3}, {10, 5, 0}, 0.1);

@@ -72,6 +72,33 @@ TEST(Memory, IsRefusedWithTheVoxelsThatFit) {
   EXPECT_TRUE(none.all().empty());
 }
 
+TEST(Memory, OfASectionIsThatOfItsRegion) {
+  const machine::Job job = job_with(machine::ToolType::flat);
+  const StockSize stock{{0, 0, -100}, {500, 500, 0}, 4};
+  const removal::StampPath path = rows(0, 500, 500, -1);
+  removal::Region quarter;
+  quarter.add(Vec3(-50, -50, -20));
+  quarter.add(Vec3(250, 250, 1e9));
+  const nc::Program text;
+  const nc::Interpretation moves;
+  const MemoryFactors whole = memory_factors(job, text, moves, path, stock),
+                      section = memory_factors(job, text, moves, path, stock, &quarter);
+  EXPECT_FALSE(whole.blank_mm2);
+  // The top, and two sides down to the region's end.
+  EXPECT_DOUBLE_EQ(section.blank_mm2.value(), 250 * 250 + 2 * 250 * 20);
+  EXPECT_NEAR(section.cut_mm2, whole.cut_mm2 / 4, kAreaTolerance * whole.cut_mm2 / 4);
+  EXPECT_NEAR(static_cast<double>(*section.own_stamps), static_cast<double>(whole.stamps) / 4,
+              0.02 * static_cast<double>(whole.stamps));
+  EXPECT_EQ(section.stamps, whole.stamps) << "every process has the whole path";
+  const MemoryEstimate of_whole = estimate_memory(whole, 0.2), of_section = estimate_memory(section, 0.2);
+  EXPECT_LT(of_section.blank, 0.11 * of_whole.blank);
+  EXPECT_LT(of_section.total(), 0.4 * of_whole.total());
+
+  // Nothing of the stock in the region: the program alone.
+  const removal::Region nothing;
+  EXPECT_EQ(memory_factors(job, text, moves, path, stock, &nothing).blank_mm2.value(), 0);
+}
+
 TEST(Memory, OfALongProgramAloneCannotBeMadeSmallerByVoxels) {
   machine::Job job = job_with(machine::ToolType::ball);
   job.simulation.max_memory_GB = 1.0;

@@ -1,0 +1,28 @@
+#pragma once
+// How much harder than expected the material was where the tool has been.
+#include <cstdint>
+#include <unordered_map>
+
+#include "base/geometry.h"
+
+namespace camber::copymill {
+
+/// What is felt over what the model expects, remembered by the tip's place in X and Y, whatever its height: a loop
+/// beside one that has been cut, or the level below, need not find out again that a part of the material is hard.
+class FeltHardness {
+ public:
+  explicit FeltHardness(double cell_mm) : cell_mm_(cell_mm) {}
+
+  /// Of a tooth passing. What is remembered of a cell rises at once, and falls by a fifth of the difference.
+  void feel(const Vec3& tip, double ratio);
+  /// The greatest in the cell of a place and those beside it; 1 at least.
+  double at(const Vec3& tip) const;
+
+ private:
+  std::uint64_t cell(const Vec3& tip, int di, int dj) const;
+
+  double cell_mm_;
+  std::unordered_map<std::uint64_t, float> ratio_;
+};
+
+}  // namespace camber::copymill
