@@ -7,9 +7,9 @@
 
 #include "api/commands/check.h"
 #include "api/commands/explain_kinematics.h"
+#include "base/mesh_file.h"
 #include "base/numbers.h"
 #include "base/output_file.h"
-#include "base/stl.h"
 #include "cli/check_page.h"
 #include "kinematics/pose_track.h"
 #include "machine/job.h"
@@ -45,7 +45,7 @@ CheckPicture picture_of(const nc::Interpretation& moves, const machine::Machine*
     for (machine::Axis& axis : picture.machine->axis) axis.travel_mm = machine::Axis{}.travel_mm;
     picture.offset_assumed = true;
   }
-  if (job && !job->part.mesh.empty()) picture.part = read_stl(job->part.mesh);
+  if (job && !job->part.mesh.empty()) picture.part = read_mesh(job->part.mesh);
   if (job && job->tools.size() == 1) picture.tool_diameter_mm = job->tools.begin()->second.diameter_mm;
   return picture;
 }

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "base/stl.h"
+#include "base/mesh_file.h"
 #include "base/units.h"
 #include "report/machine_page.h"
 #include "report/page_tables.h"
@@ -71,7 +71,7 @@ std::string posture_page(const api::PosturedOverhangs& overhangs, const api::Pos
   page.tables = {before_and_after(program)};
   if (overhangs.rows.size() > 1) page.tables.push_back(overhang_table(overhangs.rows));
   for (const Diagnostic& d : found.all()) page.warnings.push_back(to_string(d));
-  page.part = read_stl(job.part.mesh);
+  page.part = read_mesh(job.part.mesh);
   page.work_origin_mm = program.postured.origin_mm;
   page.tool_diameter_mm = job.tools.at(program.postured.tool).diameter_mm;
   page.notes = {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/mesh_file.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
@@ -29,7 +30,7 @@ constexpr double kLargestPartMm = 1e4;
 constexpr double kFineToleranceMm = 0.004;  ///< below, coordinates have four decimals
 
 TriangleMesh read_part(const std::string& path) {
-  TriangleMesh mesh = read_stl(path);
+  TriangleMesh mesh = read_mesh(path);
   if (const std::size_t open = mesh.open_edges(); open > 0)
     fail_on_file(path,
                  fmt::format("the mesh is not closed: {} of its edges have no second triangle, and the cutter could "
@@ -86,7 +87,7 @@ std::optional<double> top_of_stock_mm(const machine::StockDescription& stock) {
   if (stock.cylinder) return stock.cylinder->base_mm.z() + stock.cylinder->height_mm;
   if (stock.mesh.empty()) return std::nullopt;
   double top = -std::numeric_limits<double>::infinity();
-  for (const auto& p : read_stl(stock.mesh).points) top = std::max(top, static_cast<double>(p.z()));
+  for (const auto& p : read_mesh(stock.mesh).points) top = std::max(top, static_cast<double>(p.z()));
   return top;
 }
 

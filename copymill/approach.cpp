@@ -92,16 +92,20 @@ Runner::Ended Approach::lower_to(const Vec3& to) {
   return runner_.cut({to}, false);
 }
 
-/// A place in air from which the straight way to a place is free of the part.
+/// A place in air from which the straight way to a place is free of the part. Rather one beside which a cell is free
+/// too: cells stand for their middles, and the tool comes down there in rapid.
 std::optional<Vec3> Approach::side_entry(const Vec3& to) const {
-  const double radius = cut_.shape.radius_mm;
-  for (const double reach : {0.5, 1.0, 1.5, 2.2}) {
-    for (int k = 0; k < kDirections; ++k) {
-      const double a = 2 * kPi * k / kDirections, far = reach * (radius + options_.clearance_mm);
-      const Vec3 from = to + far * Vec3(std::cos(a), std::sin(a), 0);
-      if (!standing_.meets(cut_.shape, from, options_.more_than_mm) && free_way(from, to)) return from;
+  removal::CutterShape wide = cut_.shape;
+  wide.radius_mm += standing_.cell_mm();
+  for (const bool beside : {true, false})
+    for (const double reach : {0.5, 1.0, 1.5, 2.2}) {
+      for (int k = 0; k < kDirections; ++k) {
+        const double a = 2 * kPi * k / kDirections, far = reach * (cut_.shape.radius_mm + options_.clearance_mm);
+        const Vec3 from = to + far * Vec3(std::cos(a), std::sin(a), 0);
+        if (!standing_.meets(beside ? wide : cut_.shape, from, options_.more_than_mm) && free_way(from, to))
+          return from;
+      }
     }
-  }
   return std::nullopt;
 }
 

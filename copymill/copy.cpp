@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/mesh_file.h"
 #include "copymill/operation.h"
 #include "simulate/job_stock.h"
 
@@ -18,7 +19,7 @@ constexpr double kBandVoxels = 4;
 TriangleMesh read_part(const machine::Job& job) {
   if (job.part.mesh.empty())
     fail_on_file(job.path, "has no [part] mesh, from which paths are made; one was expected", "part-missing");
-  TriangleMesh mesh = read_stl(job.part.mesh);
+  TriangleMesh mesh = read_mesh(job.part.mesh);
   if (const std::size_t open = mesh.open_edges(); open > 0)
     fail_on_file(job.part.mesh,
                  fmt::format("the mesh is not closed: {} of its edges have no second triangle, and the cutter could "

@@ -6,21 +6,23 @@
 
 #include <fmt/format.h>
 
+#include "base/mesh_file.h"
 #include "base/stage.h"
-#include "base/stl.h"
 #include "plan/stock_solid.h"
 
 namespace camber::plan {
 namespace {
 
+/// STEP files say their unit themselves.
 Solid read_solid(const std::string& path, double mm_per_unit) {
-  const TriangleMesh mesh = read_stl(path);
+  const TriangleMesh mesh = read_mesh(path);
   if (const std::size_t open = mesh.open_edges(); open > 0)
     fail_on_file(path,
                  fmt::format("the mesh has {} edges without exactly two triangles; a closed solid was expected", open),
                  "stl-open");
   Solid out = solid_of(mesh);
-  for (Vec3& p : out.points) p *= mm_per_unit;
+  if (!is_step_file(path))
+    for (Vec3& p : out.points) p *= mm_per_unit;
   return out;
 }
 

@@ -24,11 +24,12 @@ namespace {
 
 using Column = std::array<int, 2>;  ///< x, y of a cell
 
-/// Cells of one kind that are connected within a layer.
+/// Cells of one kind that are connected within a layer; with a free-form face also from layer to layer.
 struct Region {
-  std::vector<Column> columns;  ///< ascending
+  std::vector<Column> columns;  ///< ascending; of a free-form one in its layer
   int from = 0, to = 0;         ///< layers [from, to)
   bool free_form = false;
+  std::vector<CellIndex> cells{};  ///< of a free-form one, ascending
 };
 
 bool is_to_go(CellKind kind) {
@@ -56,14 +57,41 @@ std::vector<Region> regions_of_layer(const CellGrid& grid, int layer) {
   return out;
 }
 
+/// Takes all regions with a free-form face that touch this one from below into it: the plane between them is a face of
+/// something else, and rows of two operations would meet there.
+void add_free_form(Region region, std::vector<Region>& regions) {
+  for (const auto& [x, y] : region.columns) region.cells.push_back({x, y, region.from});
+  const auto touches = [&](const Region& below) {
+    return below.free_form && std::ranges::any_of(region.columns, [&](const Column& c) {
+             return std::ranges::binary_search(below.cells, CellIndex{c[0], c[1], region.from - 1});
+           });
+  };
+  std::size_t place = regions.size();
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (!touches(regions[i])) continue;
+    place = std::min(place, i);
+    region.cells.insert(region.cells.end(), regions[i].cells.begin(), regions[i].cells.end());
+    regions[i].cells.clear();
+  }
+  std::ranges::sort(region.cells);
+  if (place == regions.size())
+    regions.push_back(std::move(region));
+  else
+    regions[place] = std::move(region);
+  std::erase_if(regions, [](const Region& r) { return r.free_form && r.cells.empty(); });
+}
+
 /// Regions of all layers; alike ones on both sides of a plane are one: the plane is a face of another region.
 std::vector<Region> regions_of(const CellGrid& grid) {
   std::vector<Region> out;
   for (int z = 0; z < grid.count(2); ++z)
     for (Region& region : regions_of_layer(grid, z)) {
-      const auto below = std::ranges::find_if(out, [&](const Region& r) {
-        return r.to == z && r.free_form == region.free_form && r.columns == region.columns;
-      });
+      if (region.free_form) {
+        add_free_form(std::move(region), out);
+        continue;
+      }
+      const auto below = std::ranges::find_if(
+          out, [&](const Region& r) { return r.to == z && !r.free_form && r.columns == region.columns; });
       if (below != out.end())
         below->to = z + 1;
       else
@@ -207,10 +235,7 @@ std::vector<CellIndex> cells_of(const Region& region, const Outline& outline, co
 
 void add_boxes(const CellGrid& grid, const Region& region, DivisionPlan plan, std::vector<Primitive>& out) {
   if (region.free_form) {
-    std::vector<CellIndex> cells;
-    for (const auto& [x, y] : region.columns)
-      for (int z = region.from; z < region.to; ++z) cells.push_back({x, y, z});
-    out.push_back(primitive_of(grid, std::move(cells)));
+    out.push_back(primitive_of(grid, region.cells));
     return;
   }
   const Outline outline = outline_of(region);

@@ -27,10 +27,10 @@ struct Primitive {
 
 /// Each layer between two neighbouring planes parallel to xy is divided by itself, and in it each connected region by
 /// the planes that its own outline has: a pocket is not cut by planes of another one. A region with a free-form face is
-/// one primitive. `largest` takes the greatest rectangle that is left again and again (equal: less perimeter, then less
-/// x, then less y of the middle), or one of the other ways where that gives fewer boxes. A plane parallel to xy does
-/// not divide what is alike above and below: it is the floor of another region. Boxes first, by layer from below; then
-/// holes.
+/// one primitive, with those above and below it that it touches. `largest` takes the greatest rectangle that is left
+/// again and again (equal: less perimeter, then less x, then less y of the middle), or one of the other ways where that
+/// gives fewer boxes. A plane parallel to xy does not divide what is alike above and below: it is the floor of another
+/// region. Boxes first, by layer from below; then holes.
 std::vector<Primitive> divide(const RemovalVolume& removal, DivisionPlan plan);
 
 }  // namespace camber::plan

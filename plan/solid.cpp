@@ -97,7 +97,9 @@ double cross2(const Vec3& a, const Vec3& b, double x, double y) {
   return (b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x());
 }
 
-/// False where the line passes an edge.
+bool upright_edge(const Vec3& a, const Vec3& b) { return a.x() == b.x() && a.y() == b.y(); }
+
+/// False where the line passes an edge. Upright triangles do not count, though rounding may leave them an area.
 bool cross_all(const Solid& solid, double x, double y, std::vector<std::pair<double, int>>& crossings) {
   crossings.clear();
   for (const Triangle& t : solid.triangles) {
@@ -106,7 +108,7 @@ bool cross_all(const Solid& solid, double x, double y, std::vector<std::pair<dou
         y < std::min({a.y(), b.y(), c.y()}) || y > std::max({a.y(), b.y(), c.y()}))
       continue;
     const double u = cross2(b, c, x, y), v = cross2(c, a, x, y), w = cross2(a, b, x, y), all = u + v + w;
-    if (all == 0) continue;
+    if (all == 0 || upright_edge(a, b) || upright_edge(b, c) || upright_edge(c, a)) continue;
     if (u == 0 || v == 0 || w == 0) return false;
     if ((u > 0) != (v > 0) || (v > 0) != (w > 0)) continue;
     crossings.emplace_back((u * a.z() + v * b.z() + w * c.z()) / all, all > 0 ? -1 : 1);
@@ -129,7 +131,12 @@ std::vector<double> material_along_z(const Solid& solid, double x_mm, double y_m
   for (const auto& [z, change] : crossings) {
     const int before = inside;
     inside += change;
-    if ((before > 0) != (inside > 0)) out.push_back(z);
+    if ((before > 0) == (inside > 0)) continue;
+    constexpr double kRounding_mm = 1e-9;  // of heights on triangles of different shape
+    if (inside > 0 && !out.empty() && z - out.back() < kRounding_mm)
+      out.pop_back();
+    else
+      out.push_back(z);
   }
   if (out.size() % 2 != 0) out.pop_back();
   return out;

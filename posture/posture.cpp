@@ -7,7 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
 
-#include "base/stl.h"
+#include "base/mesh_file.h"
 #include "base/units.h"
 #include "deflection/beam.h"
 #include "deflection/edge_force.h"
@@ -38,7 +38,7 @@ Surroundings surroundings_of(const machine::Job& job, const TriangleMesh& part, 
     if (body.box_mm)
       out.add_box((*body.box_mm)[0] + origin_mm, (*body.box_mm)[1] + origin_mm);
     else
-      out.add(read_stl(body.mesh), origin_mm);
+      out.add(read_mesh(body.mesh), origin_mm);
   }
   return out;
 }
@@ -55,7 +55,7 @@ class Maker {
   /// False: refused.
   bool ready() {
     if (!tool_and_job_fit() || !moves_fit()) return false;
-    part_ = read_stl(job_.part.mesh);
+    part_ = read_mesh(job_.part.mesh);
     if (!moves_.machine_origin_mm) moves_.machine_origin_mm = Vec3::Zero();
     surroundings_ = surroundings_of(job_, part_, *moves_.machine_origin_mm);
     if (request_.options.stock) add_stock(job_, program_, moves_, first_, surroundings_, diagnostics_);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/stl.h"
+#include "base/mesh_file.h"
 #include "removal/stock.h"
 #include "simulate/job_stock.h"
 #include "simulate/predict.h"
@@ -102,7 +102,7 @@ void add_stock(const machine::Job& job, const nc::Program& program, const nc::In
   else if (stock.cylinder)
     out.add(prism(*stock.cylinder), Obstacle::stock);
   else
-    out.add(read_stl(stock.mesh), Vec3::Zero(), Obstacle::stock);
+    out.add(read_mesh(stock.mesh), Vec3::Zero(), Obstacle::stock);
 }
 
 }  // namespace camber::posture

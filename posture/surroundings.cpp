@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "base/convex_distance.h"
+#include "base/mesh_file.h"
 #include "base/tool_pose.h"
 #include "simulate/tool_outline.h"
 #include "simulate/tool_surface.h"
@@ -55,7 +56,7 @@ void add_spindle(const machine::Body& body, const Vec3& gauge_mm, const Vec3& ax
     for (int i = 0; i < 8; ++i)
       corners.emplace_back((*body.box_mm)[i & 1].x(), (*body.box_mm)[(i >> 1) & 1].y(), (*body.box_mm)[i >> 2].z());
   } else {
-    for (const Eigen::Vector3f& p : read_stl(body.mesh).points) corners.push_back(p.cast<double>());
+    for (const Eigen::Vector3f& p : read_mesh(body.mesh).points) corners.push_back(p.cast<double>());
   }
   double radius = 0, bottom = std::numeric_limits<double>::infinity(), top = -bottom;
   for (const Vec3& corner : corners) {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "base/stl.h"
+#include "base/mesh_file.h"
 
 namespace camber::simulate {
 namespace {
@@ -111,7 +111,7 @@ BodySolid::BodySolid(const machine::Body& body) {
       points_.emplace_back((*body.box_mm)[c & 1 ? 1 : 0].x(), (*body.box_mm)[c & 2 ? 1 : 0].y(),
                            (*body.box_mm)[c & 4 ? 1 : 0].z());
   } else {
-    const TriangleMesh mesh = read_stl(body.mesh);
+    const TriangleMesh mesh = read_mesh(body.mesh);
     for (const auto& triangle : mesh.triangles)
       for (const std::uint32_t corner : triangle) points_.push_back(mesh.points[corner].cast<double>());
   }

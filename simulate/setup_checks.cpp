@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "base/stl.h"
+#include "base/mesh_file.h"
 #include "base/units.h"
 #include "feedmodel/joint_map.h"
 #include "simulate/job_checks.h"
@@ -96,7 +96,7 @@ void add(Severity severity, const std::string& file, std::string message, const 
 }  // namespace
 
 machine::Box stl_box(const std::string& path) {
-  const TriangleMesh mesh = read_stl(path);
+  const TriangleMesh mesh = read_mesh(path);
   machine::Box out{mesh.points.front().cast<double>(), mesh.points.front().cast<double>()};
   for (const auto& p : mesh.points) {
     out.min_mm = out.min_mm.cwiseMin(p.cast<double>());

@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 
 #include "base/diagnostics.h"
+#include "base/mesh_file.h"
 
 namespace camber::removal {
 namespace {
@@ -62,7 +63,7 @@ struct Box {
 }  // namespace
 
 TriangleMesh read_closed_stl(const std::string& path) {
-  TriangleMesh mesh = read_stl(path);
+  TriangleMesh mesh = read_mesh(path);
   if (const std::size_t open = mesh.open_edges(); open > 0)
     fail_on_file(path,
                  fmt::format("the mesh is not closed: {} of its edges {} no second triangle, so it has no inside", open,

@@ -169,6 +169,41 @@ TEST(PlanCommand, LearnsTheConditionsOfAPlan) {
   EXPECT_EQ(tests::file_text(folder / "cases.toml"), learned);
 }
 
+TEST(PlanCommand, AnswersOtherwiseAfterALearnedJob) {
+  const TempFolder folder;
+  ASSERT_EQ(plan(folder, 8).status, 0);
+  const auto pocket = [&] {
+    return nlohmann::json::parse(tests::file_text(folder / "out/plan.json")).at("operations").at(1);
+  };
+  const double before = pocket().at("S");
+  const std::string table = tests::file_text(folder / "out/operations.toml");
+  const std::string row = "spindle_rpm = " + std::to_string(static_cast<int>(before));
+  ASSERT_NE(table.find(row), std::string::npos);
+  folder.write("edited.toml",
+               tests::replaced(table, row, "spindle_rpm = " + std::to_string(static_cast<int>(1.4 * before))));
+  ASSERT_EQ(plan(folder, 8, " -o out --operations edited.toml --learn").status, 0);
+  EXPECT_EQ(pocket().at("limit"), "given");
+  ASSERT_EQ(plan(folder, 8).status, 0);
+  // The mean of the old case and the learned one.
+  EXPECT_NEAR(pocket().at("S").get<double>() / before, 1.2, 0.01);
+}
+
+/// docs/plan.md shows what is printed.
+TEST(PlanCommand, PrintsTheErrorsOfTheSampleBaseAsDocumented) {
+  const TempFolder folder;
+  const CamberRun run = run_camber(folder, "plan " CAMBER_SOURCE_DIR "/samples/15-plan/plan.toml --cases-error");
+  EXPECT_EQ(run.status, 0) << run.err;
+  const std::string page = tests::file_text(CAMBER_SOURCE_DIR "/docs/plan.md");
+  std::size_t rows = 0;
+  for (const char* tool : {"\nall ", "\ndrill ", "\nend mill ", "\nface mill "}) {
+    const std::size_t at = run.out.find(tool);
+    ASSERT_NE(at, std::string::npos) << tool;
+    EXPECT_NE(page.find(run.out.substr(at, run.out.find('\n', at + 1) - at)), std::string::npos) << tool;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 4U);
+}
+
 TEST(PlanCommand, PrintsHowWellTheCasesPredictEachOther) {
   const TempFolder folder;
   const CamberRun run = plan(folder, 8, " --cases-error");

@@ -143,8 +143,12 @@ TEST(LoadRule, ALookAheadCountsWithTheHardnessThatIsFelt) {
   EXPECT_NEAR(rule.feed_ahead(65, 47.5, 10), 20, 1e-9);
   EXPECT_NEAR(rule.feed_ahead(200, 130, 20), 10, 1e-9);
   EXPECT_EQ(rule.feed_ahead(0, 0, 20), 30);
+  // Remembered of the place: 1.59 / 1.06 = 1.5 is kept.
+  EXPECT_NEAR(rule.feed_ahead(100, 65, 20, 1.59), (100 / 1.5 - 30) / 3.5, 1e-9);
+  EXPECT_NEAR(rule.feed_ahead(100, 65, 20, 0.7), 20, 1e-9);
   for (int k = 0; k < 3; ++k) feel(rule, 60, 1.25);
   EXPECT_NEAR(rule.hardness(), 1.25, 1e-9);
+  EXPECT_NEAR(rule.feed_ahead(100, 65, 20, 1.2), (80 - 30) / 3.5, 1e-9);
   EXPECT_NEAR(rule.feed_ahead(100, 65, 20), (80 - 30) / 3.5, 1e-9);
   for (int k = 0; k < 200; ++k) feel(rule, 60);
   EXPECT_NEAR(rule.hardness(), 1, 1e-3);

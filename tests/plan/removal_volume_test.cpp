@@ -34,6 +34,18 @@ TEST(Solid, TellsWhereMaterialIsAlongALine) {
   EXPECT_FALSE(contains(solid_of(part.mesh()), {20, 20, 8}));
 }
 
+TEST(Solid, TellsWhereMaterialIsBesideAnUprightFacet) {
+  // A micrometre outside the chord of a hole's facet, which rounding leaves an area as seen from above.
+  const BlockPart part{box(0, 0, 0, 90.5, 65.5, 31.5), {}, {{46, 55.5, 10, 2}}};
+  const Solid solid = solid_of(part.mesh());
+  for (const double x : {43.490262187744143, 43.490262188, 43.4903})
+    for (int i = 0; i < 200; ++i) {
+      const auto z = material_along_z(solid, x - 1e-5 * i, 51.174874222457255);
+      ASSERT_EQ(z.size(), 2U);
+      EXPECT_NEAR(z[1], 31.5, 1e-6) << x - 1e-5 * i;
+    }
+}
+
 TEST(Holes, HaveCentreDiameterAndDepth) {
   const BlockPart part{box(0, 0, 0, 60, 40, 20), {box(5, 5, 15, 55, 35, 20)}, {{45, 20, 10, 0}, {15, 20, 6.5, 4, 36}}};
   const Faces faces = find_faces(solid_of(part.mesh()), {});

@@ -87,9 +87,10 @@ class HeightMap {
     }
   }
 
-  /// Of the points of the part within a box. `of_interest`: less left over than this is not looked at, mm.
+  /// Of the points of the part within a box. `of_interest`: less left over than this is not looked at, mm. `grown`: of
+  /// the cutter's radius, where its places are looked for; as far as a wall may be beyond the last point before it.
   void compare(const PartMesh& part, const Point& from, const Point& to, double allowance, double of_interest,
-               const Cutter& reaching, Verdict& verdict) const {
+               const Cutter& reaching, Verdict& verdict, double grown = 0) const {
     std::vector<double> tops(height_.size());
     for (int i = 0; i < nx_; ++i)
       for (int j = 0; j < ny_; ++j) tops[at(i, j)] = part.top(x(i), y(j));
@@ -105,7 +106,7 @@ class HeightMap {
         verdict.left.take(left, {x(i), y(j), z}, cut_by_[at(i, j)]);
         if (left <= allowance + of_interest) continue;
         verdict.left_area += cell_ * cell_;
-        if (reachable.empty()) reachable = reach(tops, reaching);
+        if (reachable.empty()) reachable = reach(tops, reaching, grown, to.z);
         const double above = z - std::max(top, reachable[at(i, j)]);
         if (above > allowance + of_interest)
           verdict.left_reachable.take(std::min(left, above), {x(i), y(j), z}, cut_by_[at(i, j)]);
@@ -184,22 +185,27 @@ class HeightMap {
     return deepest;
   }
 
-  /// What a cutter leaves that goes as deep as the part allows everywhere.
-  std::vector<double> reach(const std::vector<double>& tops, const Cutter& cutter) const {
-    const int n = static_cast<int>(std::floor(cutter.radius() / cell_));
-    std::vector<std::pair<std::pair<int, int>, double>> disc;
-    for (int i = -n; i <= n; ++i)
-      for (int j = -n; j <= n; ++j)
-        if (const double r = std::hypot(i, j) * cell_; r <= cutter.radius()) disc.push_back({{i, j}, cutter.height(r)});
+  /// What a cutter leaves that goes as deep as the part allows everywhere, with its tip no higher than `highest`.
+  std::vector<double> reach(const std::vector<double>& tops, const Cutter& cutter, double grown, double highest) const {
+    const auto disc_of = [&](double radius) {
+      const int n = static_cast<int>(std::floor(radius / cell_));
+      std::vector<std::pair<std::pair<int, int>, double>> disc;
+      for (int i = -n; i <= n; ++i)
+        for (int j = -n; j <= n; ++j)
+          if (const double r = std::hypot(i, j) * cell_; r <= radius)
+            disc.push_back({{i, j}, cutter.height(std::min(r, cutter.radius()))});
+      return disc;
+    };
+    const auto wide = disc_of(cutter.radius() + grown), disc = disc_of(cutter.radius());
     std::vector<double> tips(tops.size()), out(tops.size(), std::numeric_limits<double>::infinity());
     for (int i = 0; i < nx_; ++i)
       for (int j = 0; j < ny_; ++j) {
         double tip = PartMesh::kNone;
-        for (const auto& [d, h] : disc) {
+        for (const auto& [d, h] : wide) {
           const int a = i + d.first, b = j + d.second;
           if (a >= 0 && b >= 0 && a < nx_ && b < ny_) tip = std::max(tip, tops[at(a, b)] - h);
         }
-        tips[at(i, j)] = tip;
+        tips[at(i, j)] = tip <= highest ? tip : std::numeric_limits<double>::infinity();
       }
     for (int i = 0; i < nx_; ++i)
       for (int j = 0; j < ny_; ++j)
