@@ -10,12 +10,14 @@
 namespace camber::compensate {
 namespace {
 
-constexpr double kMinGain = 0.03;  // a round that lowers the rms by less has stalled
-constexpr int kPatience = 2;       // rounds without that gain before it counts
-constexpr double kWorse = 1.02;    // a round whose rms is over the best one's by this has over-corrected
-constexpr double kShorter = 0.5;   // then the next step starts at the best one's shifts, shorter
-constexpr int kGuardRounds = 5;    // beyond max_rounds, to stay out of the part
-constexpr int kStiffenings = 12;   // of the path where its angles grow by more than the bound
+constexpr double kMinGain = 0.03;   // a round that lowers the rms by less has stalled
+constexpr int kPatience = 2;        // rounds without that gain before it counts
+constexpr double kWorse = 1.02;     // a round whose rms is over the best one's by this has over-corrected
+constexpr double kShorter = 0.5;    // then the next step starts at the best one's shifts, shorter
+constexpr int kGuardRounds = 5;     // beyond max_rounds, to stay out of the part
+constexpr int kGuardPatience = 2;   // of these, without the least depth so far falling by ...
+constexpr double kGuardGain = 0.1;  // ... this part of what it is over the limit
+constexpr int kStiffenings = 12;    // of the path where its angles grow by more than the bound
 constexpr double kStiffer = 2.5;
 constexpr double kGuardReach_mm = 2.0;   // a lift fades out over this length, or ...
 constexpr double kGuardSmoothings = 8;   // ... so many smoothing lengths
@@ -85,11 +87,15 @@ void Loop::stay_out_of_part(CompensationResult& out) {
   free_correctable_um_ = out.rounds[out.best].split.correctable_um;
   free_ = best_->emitted;
   free_round_ = out.best;
-  double deepest_um = out.rounds[out.best].deepest_um;
-  for (int i = 0; i < kGuardRounds && deepest_um > depth_limit_um_; ++i) {
+  double deepest_um = out.rounds[out.best].deepest_um, least_um = deepest_um;
+  int without_gain = 0;
+  for (int i = 0; i < kGuardRounds && without_gain < kGuardPatience && deepest_um > depth_limit_um_; ++i) {
     guard.learn(last_->observed, deepest_um / 1000);
     step(out, share_, &guard);
     deepest_um = out.rounds.back().deepest_um;
+    const bool gain = deepest_um - depth_limit_um_ < (1 - kGuardGain) * (least_um - depth_limit_um_);
+    without_gain = gain ? 0 : without_gain + 1;
+    least_um = std::min(least_um, deepest_um);
   }
 }
 
