@@ -8,34 +8,18 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <string>
 #include <vector>
 
 #include <tbb/global_control.h>
 
+#include "bench/copy/process_figures.h"
 #include "simulate/load_probe.h"
 
 namespace {
 
 using camber::Vec3;
 using camber::removal::Stamp;
-
-double processor_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
-}
-
-/// Resident, MB.
-double resident_MB() {
-  long pages = 0, resident = 0;
-  if (std::FILE* f = std::fopen("/proc/self/statm", "r")) {
-    if (std::fscanf(f, "%ld %ld", &pages, &resident) != 2) resident = 0;
-    std::fclose(f);
-  }
-  return static_cast<double>(resident) * 4096 / 1e6;
-}
 
 /// Levels of rows to and fro over a block; when it is through, all begins again a little lower.
 class Rows {
