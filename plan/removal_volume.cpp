@@ -81,7 +81,8 @@ void sum_up(RemovalVolume& out, double tolerance_mm) {
 double RemovalVolume::balance() const { return removal_mm3() > 0 ? (cells_mm3 + holes_mm3) / removal_mm3() - 1 : 0; }
 
 RemovalVolume removal_volume(const RemovalInput& input) {
-  const Faces part = find_faces(input.part, input.faces);
+  Faces part = find_faces(input.part, input.faces);
+  part.holes.insert(part.holes.end(), input.part_holes.begin(), input.part_holes.end());
   Bounds space = input.blank.bounds();
   const Bounds blank_bounds = space;
   space.add(part.plugged.bounds());
@@ -91,6 +92,7 @@ RemovalVolume removal_volume(const RemovalInput& input) {
   out.blank_bounds = blank_bounds;
   out.blank_mm3 = volume_mm3(input.blank);
   out.part_mm3 = volume_mm3(input.part);
+  for (const Hole& h : input.part_holes) out.part_mm3 -= h.volume_mm3;
   out.free_form_mm2 = part.free_form_mm2;
   out.grid.add(input.blank, &Cell::blank_mm3, false);
   out.grid.add(part.plugged, &Cell::part_mm3, true);

@@ -10,6 +10,8 @@ namespace camber::plan {
 
 struct RemovalInput {
   Solid blank{}, part{};
+  /// Of a part that comes with its holes filled.
+  std::vector<Hole> part_holes{};
   std::vector<Solid> fixtures{};
   FaceOptions faces{};
   /// Planes of a blank that comes as heights only.

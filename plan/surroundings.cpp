@@ -59,7 +59,11 @@ bool Workpiece::has_room(std::size_t primitive, const OpenFaces& open, double ra
     for (int y = 0; y < g.count(1); ++y)
       for (int z = 0; z < g.count(2); ++z) {
         const int of = owner({x, y, z});
-        if ((of != kPart && of != kFixture) || g.plane_mm(2, z + 1) < p.min_mm.z() + kTouch_mm) continue;
+        const Cell& cell = g.at({x, y, z});
+        // A cell that is mostly part is one with an island in it; a rounded corner of a pocket takes little of its
+        // cell.
+        const bool island = cell.kind == CellKind::contoured && cell.part_mm3 > 0.5 * g.volume_mm3({x, y, z});
+        if ((of != kPart && of != kFixture && !island) || g.plane_mm(2, z + 1) < p.min_mm.z() + kTouch_mm) continue;
         const Rect r = rect_of(g, x, y);
         if (r.distance(room) < radius_mm) obstacles.push_back(r);
         break;
@@ -79,6 +83,7 @@ bool Workpiece::has_room(std::size_t primitive, const OpenFaces& open, double ra
   for (int i = 0; i < kPoints; ++i)
     for (int j = 0; j < kPoints; ++j) {
       const Vec2 at(own.x0 + (i + 0.5) * (own.x1 - own.x0) / kPoints, own.y0 + (j + 0.5) * (own.y1 - own.y0) / kPoints);
+      if (std::ranges::any_of(obstacles, [&](const Rect& o) { return o.distance(at.x(), at.y()) <= 0; })) continue;
       if (std::ranges::none_of(centres, [&](const Vec2& c) { return (c - at).squaredNorm() < reach; })) ++missed;
     }
   const double area = (own.x1 - own.x0) * (own.y1 - own.y0);
