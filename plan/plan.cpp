@@ -33,9 +33,9 @@ removal::Stock load_stock(const std::string& path, const PlanInput& input) {
 }
 
 /// With its holes filled where it comes as a stock.
-StockPart read_part(const PlanInput& input) {
-  if (!is_stock_file(input.part_path)) return {read_solid(input.part_path, input.mm_per_unit), {}};
-  StockPart out = part_of(load_stock(input.part_path, input), input.faces);
+StockPart read_part(const PlanInput& input, const Bounds& blank) {
+  if (!is_stock_file(input.part_path)) return {read_solid(input.part_path, input.mm_per_unit), {}, {}};
+  StockPart out = part_of(load_stock(input.part_path, input), blank, input.faces);
   if (out.solid.triangles.empty())
     fail_on_file(input.part_path, "has no material with an upright wall between two levels; a part was expected",
                  "part-missing");
@@ -133,11 +133,25 @@ void check_shapes(const RemovalVolume& removal, const PlanInput& input, Diagnost
                      {}});
 }
 
+/// Diameter; 0: there is none.
+double narrowest_mill_mm(const PlanTools& tools) {
+  double out = 0;
+  for (const auto& [number, t] : tools)
+    if (t.use == ToolUse::end_mill || t.use == ToolUse::face_mill)
+      out = out > 0 ? std::min(out, t.tool.diameter_mm) : t.tool.diameter_mm;
+  return out;
+}
+
 RemovalVolume removal_of(const PlanInput& input, const Blank& blank, const Solid& part, const std::vector<Hole>& holes,
                          const std::vector<Solid>& fixtures, const Eigen::Matrix3d& turn,
                          const std::vector<Machined>& machined) {
   RemovalInput in{.blank = turned(blank.solid, turn), .part = part, .part_holes = holes, .faces = input.faces};
   for (const Solid& f : fixtures) in.fixtures.push_back(turned(f, turn));
+  in.narrowest_mm = narrowest_mill_mm(input.tools);
+  // Outlines of layers thinner than a voxel are those of edges that the field rounds.
+  constexpr double kEdges = 0.2;
+  if (is_stock_file(input.part_path))
+    in.faces.plane_tolerance_mm = std::max(in.faces.plane_tolerance_mm, kEdges * input.simulation.voxel_mm);
   in.blank_planes = blank.planes;
   if (blank.tolerance_mm > 0) in.tolerance_mm = blank.tolerance_mm;
   for (const Machined& m : machined) m.add_planes(in.machined_planes);
@@ -151,9 +165,12 @@ RemovalVolume removal_of(const PlanInput& input, const Blank& blank, const Solid
 SetupPlan plan_setup(const PlanInput& input, const Blank& blank, const StockPart& part,
                      const std::vector<Solid>& fixtures, const Setup& setup, const std::vector<Machined>& machined) {
   const Solid lying = turned(part.solid, setup.turn);
-  SetupPlan out{setup, turned(blank.solid, setup.turn),
-                lying, removal_of(input, blank, lying, part.holes, fixtures, setup.turn, machined),
-                {},    0};
+  SetupPlan out{setup,
+                turned(blank.solid, setup.turn),
+                part.drilled.triangles.empty() ? lying : turned(part.drilled, setup.turn),
+                removal_of(input, blank, lying, part.holes, fixtures, setup.turn, machined),
+                {},
+                0};
   std::vector<PlanFigures> figures;
   Stage stage("planning", kDivisionPlans.size());
   for (const DivisionPlan division : kDivisionPlans) {
@@ -170,7 +187,7 @@ SetupPlan plan_setup(const PlanInput& input, const Blank& blank, const StockPart
 
 PlanResult make_plan(const PlanInput& input, Diagnostics& diagnostics) {
   const Blank blank = read_blank(input);
-  const StockPart part = read_part(input);
+  const StockPart part = read_part(input, blank.solid.bounds());
   std::vector<Solid> fixtures;
   for (const std::string& path : input.fixture_paths) fixtures.push_back(read_solid(path, input.mm_per_unit));
   PlanResult out;

@@ -79,10 +79,30 @@ Outline straightened(Outline loop) {
   return out;
 }
 
+/// Sides of the blank that the outline is on, and its corners within two voxels, are the blank's.
+Outline with_blank_corners(const Outline& loop, const Vec2& low, const Vec2& high, double voxel_mm) {
+  const double side = 0.1 * voxel_mm, corner = 2 * voxel_mm;
+  Outline out;
+  for (Vec2 p : loop) {
+    bool at_corner = true;
+    for (int a = 0; a < 2; ++a) {
+      const double end = p[a] - low[a] < high[a] - p[a] ? low[a] : high[a];
+      if (std::abs(p[a] - end) < side) p[a] = end;
+      at_corner = at_corner && std::abs(p[a] - end) < corner;
+    }
+    if (at_corner)
+      for (int a = 0; a < 2; ++a) p[a] = p[a] - low[a] < high[a] - p[a] ? low[a] : high[a];
+    if (out.empty() || out.back() != p) out.push_back(p);
+  }
+  if (out.size() > 1 && out.front() == out.back()) out.pop_back();
+  return out;
+}
+
 class Slices {
  public:
-  explicit Slices(const removal::Stock& stock)
+  Slices(const removal::Stock& stock, const Bounds& blank)
       : stock_(stock),
+        blank_(blank),
         probe_(stock),
         grid_(Grid::over(stock.min_mm().head<2>(), stock.max_mm().head<2>(), 2.37 * stock.voxel_mm(),
                          stock.voxel_mm())) {}
@@ -107,7 +127,9 @@ class Slices {
 
   Outline exact(const Outline& loop, double z) const {
     const auto in = [&](const Vec2& p) { return inside(probe_, p, z); };
-    return straightened(simplified(copymill::refined(loop, in, 0.002, grid_.step_mm)));
+    const Outline outline = copymill::refined(loop, in, 0.002, grid_.step_mm);
+    return straightened(
+        simplified(with_blank_corners(outline, blank_.min_mm.head<2>(), blank_.max_mm.head<2>(), stock_.voxel_mm())));
   }
 
  private:
@@ -116,6 +138,7 @@ class Slices {
   }
 
   const removal::Stock& stock_;
+  Bounds blank_;
   removal::Stock::Probe probe_;
   Grid grid_;
 };
@@ -178,7 +201,7 @@ std::vector<Chain> chains_of(const Slices& slices, const removal::Stock& stock, 
 }
 
 /// Heights at which much of the stock ends, with its own.
-std::vector<double> levels_of(const removal::Stock& stock, const FaceOptions& options) {
+std::vector<double> levels_of(const removal::Stock& stock, const Bounds& blank, const FaceOptions& options) {
   const removal::Stock::Probe probe(stock);
   const double step = stock.voxel_mm();
   const Vec3 low = stock.min_mm(), high = stock.max_mm();
@@ -189,8 +212,14 @@ std::vector<double> levels_of(const removal::Stock& stock, const FaceOptions& op
   constexpr double kShare = 1 / 300.0;
   const double least = std::max(options.min_face_mm2, kShare * (high.x() - low.x()) * (high.y() - low.y()));
   std::vector<double> out;
-  for (const AxisPlane& p : joined(std::move(all), options.plane_tolerance_mm))
-    if (p.area_mm2 >= least) out.push_back(std::round(1e4 * p.at_mm) / 1e4);
+  const double near_end = 0.2 * step;
+  for (const AxisPlane& p : joined(std::move(all), options.plane_tolerance_mm)) {
+    double at = p.at_mm;
+    for (const double end : {blank.min_mm.z(), blank.max_mm.z()})
+      if (std::abs(at - end) < near_end) at = end;
+    const double rounded = std::round(1e4 * at) / 1e4;
+    if (p.area_mm2 >= least && (out.empty() || rounded > out.back())) out.push_back(rounded);
+  }
   return out;
 }
 
@@ -214,12 +243,98 @@ Hole hole_of(const Chain& c, const std::vector<double>& levels, const removal::S
   return out;
 }
 
+using Loops = std::vector<Outline>;
+
+/// Coordinates of long sides along an axis, in x and in y.
+std::array<std::vector<double>, 2> walls_of(const Loops& loops) {
+  std::array<std::vector<double>, 2> out;
+  constexpr double kLong_mm = 1;
+  for (const Outline& loop : loops)
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const Vec2 &a = loop[k], &b = loop[(k + 1) % loop.size()];
+      for (int axis = 0; axis < 2; ++axis)
+        if (a[axis] == b[axis] && (b - a).norm() > kLong_mm) out[static_cast<std::size_t>(axis)].push_back(a[axis]);
+    }
+  return out;
+}
+
+Bounds bounds_of(const Outline& loop) {
+  Bounds out;
+  for (const Vec2& p : loop) out.add(Vec3(p.x(), p.y(), 0));
+  return out;
+}
+
+/// Replaces loops by the nearest of others, by their bounds, where that is near enough.
+void take_alike(Loops& loops, const Loops& others, double within_mm) {
+  for (Outline& loop : loops) {
+    const Bounds own = bounds_of(loop);
+    const auto apart = [&](const Outline& other) {
+      const Bounds b = bounds_of(other);
+      return std::max((b.min_mm - own.min_mm).cwiseAbs().maxCoeff(), (b.max_mm - own.max_mm).cwiseAbs().maxCoeff());
+    };
+    const auto near = std::ranges::min_element(others, {}, apart);
+    if (near != others.end() && apart(*near) < within_mm && (signed_area_mm2(*near) > 0) == (signed_area_mm2(loop) > 0))
+      loop = *near;
+  }
+}
+
+/// Layers with the holes in them, their ends as levels.
+Solid drilled(const std::vector<Loops>& layers, const std::vector<double>& levels, const std::vector<Hole>& holes) {
+  std::vector<double> ends = levels;
+  for (const Hole& h : holes)
+    for (const double z : {h.tip_mm, h.top_mm})
+      if (z > levels.front() && z < levels.back()) ends.push_back(std::round(1e4 * z) / 1e4);
+  std::ranges::sort(ends);
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  Solid out;
+  constexpr int kFacets = 72;
+  for (std::size_t e = 0; e + 1 < ends.size(); ++e) {
+    const double middle = 0.5 * (ends[e] + ends[e + 1]);
+    std::size_t k = 0;
+    while (levels[k + 1] < middle) ++k;
+    Loops loops = layers[k];
+    std::vector<const Hole*> here;  // the widest of those with one middle
+    for (const Hole& h : holes) {
+      if (middle < h.tip_mm || middle > h.top_mm) continue;
+      const auto same = std::ranges::find_if(
+          here, [&](const Hole* o) { return (o->centre_mm - h.centre_mm).norm() < o->diameter_mm / 2; });
+      if (same == here.end())
+        here.push_back(&h);
+      else if ((*same)->diameter_mm < h.diameter_mm)
+        *same = &h;
+    }
+    for (const Hole* h : here) {
+      Outline& ring = loops.emplace_back();
+      for (int i = 0; i < kFacets; ++i) {
+        const double a = -2 * kPi * i / kFacets;
+        const Vec2 p = h->centre_mm + h->diameter_mm / 2 * Vec2(std::cos(a), std::sin(a));
+        ring.emplace_back(std::round(1e3 * p.x()) / 1e3, std::round(1e3 * p.y()) / 1e3);
+      }
+    }
+    add_layer(out, loops, ends[e], ends[e + 1]);
+  }
+  return out;
+}
+
+void put_in_line(Loops& loops, const std::array<std::vector<double>, 2>& walls, double within_mm) {
+  for (Outline& loop : loops)
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      Vec2 &a = loop[k], &b = loop[(k + 1) % loop.size()];
+      for (int axis = 0; axis < 2; ++axis) {
+        const std::vector<double>& all = walls[static_cast<std::size_t>(axis)];
+        if (a[axis] != b[axis] || all.empty()) continue;
+        const double near = *std::ranges::min_element(all, {}, [&](double at) { return std::abs(at - a[axis]); });
+        if (std::abs(near - a[axis]) < within_mm) a[axis] = b[axis] = near;
+      }
+    }
+}
+
 }  // namespace
 
-StockPart part_of(const removal::Stock& stock, const FaceOptions& options) {
+StockPart part_of(const removal::Stock& stock, const Bounds& blank, const FaceOptions& options) {
   StockPart out;
-  const Slices slices(stock);
-  const std::vector<double> levels = levels_of(stock, options);
+  const Slices slices(stock, blank);
+  const std::vector<double> levels = levels_of(stock, blank, options);
   if (levels.size() < 2) return out;
   for (const Chain& c : chains_of(slices, stock, options)) out.holes.push_back(hole_of(c, levels, stock));
   std::ranges::sort(out.holes, {},
@@ -231,14 +346,30 @@ StockPart part_of(const removal::Stock& stock, const FaceOptions& options) {
              return (h.centre_mm - ring->centre).norm() < 0.05 && ring->radius_mm < kMouth * h.diameter_mm / 2;
            });
   };
-  for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
+  std::vector<Loops> layers(levels.size() - 1);
+  std::array<std::vector<double>, 2> walls;   // of the thicker ones
+  constexpr double kThin = 2, kInLine = 0.5;  // voxels
+  const auto thin = [&](std::size_t k) { return levels[k + 1] - levels[k] < kThin * stock.voxel_mm(); };
+  for (std::size_t k = 0; k < layers.size(); ++k) {
     const double middle = 0.5 * (levels[k] + levels[k + 1]);
-    std::vector<std::vector<Vec2>> loops;
     for (const Outline& loop : slices.coarse(middle))
-      if (!is_hole(loop)) loops.push_back(slices.exact(loop, middle));
-    std::erase_if(loops, [](const auto& loop) { return loop.size() < 3; });
-    add_layer(out.solid, loops, levels[k], levels[k + 1]);
+      if (!is_hole(loop)) layers[k].push_back(slices.exact(loop, middle));
+    std::erase_if(layers[k], [](const auto& loop) { return loop.size() < 3; });
+    if (thin(k)) continue;
+    const auto of_layer = walls_of(layers[k]);
+    for (std::size_t a = 0; a < 2; ++a) walls[a].insert(walls[a].end(), of_layer[a].begin(), of_layer[a].end());
   }
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    if (thin(k)) {
+      Loops beside;
+      if (k > 0) beside = layers[k - 1];
+      if (k + 1 < layers.size()) beside.insert(beside.end(), layers[k + 1].begin(), layers[k + 1].end());
+      take_alike(layers[k], beside, kInLine * stock.voxel_mm());
+      put_in_line(layers[k], walls, kInLine * stock.voxel_mm());
+    }
+    add_layer(out.solid, layers[k], levels[k], levels[k + 1]);
+  }
+  out.drilled = drilled(layers, levels, out.holes);
   return out;
 }
 

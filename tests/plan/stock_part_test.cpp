@@ -60,7 +60,7 @@ double carved_mm(const Vec3& p) {
 
 TEST(StockPart, HasTheWallsFloorsAndHolesOfTheStock) {
   const removal::Stock stock(carved_mm, {0, 0, 0}, {50, 40, 20}, 0.25, 3);
-  const StockPart part = part_of(stock, {});
+  const StockPart part = part_of(stock, solid_of(machine::Box{{0, 0, 0}, {50, 40, 22}}).bounds(), {});
   ASSERT_EQ(part.holes.size(), 2U);
   EXPECT_NEAR(part.holes[0].centre_mm.y(), 12, 0.005);
   EXPECT_NEAR(part.holes[0].diameter_mm, 5, 0.02);
@@ -93,7 +93,7 @@ TEST(StockPart, HasTheWallsFloorsAndHolesOfTheStock) {
 TEST(Workpiece, HasNoRoomBetweenWallsAndARoundIsland) {
   std::vector<Vec2> pocket{{10, 10}, {10, 50}, {50, 50}, {50, 10}}, island;
   for (int i = 0; i < 48; ++i)
-    island.emplace_back(30 + 6 * std::cos(2 * kPi * i / 48), 30 + 6 * std::sin(2 * kPi * i / 48));
+    island.emplace_back(30 + 14 * std::cos(2 * kPi * i / 48), 30 + 14 * std::sin(2 * kPi * i / 48));
   const std::vector<Vec2> block{{0, 0}, {60, 0}, {60, 60}, {0, 60}};
   Solid part;
   add_layer(part, {block}, 0, 5);
@@ -103,9 +103,9 @@ TEST(Workpiece, HasNoRoomBetweenWallsAndARoundIsland) {
   const auto primitives = divide(removal, DivisionPlan::largest);
   ASSERT_EQ(primitives.size(), 1U);
   const Workpiece work(removal, primitives);
-  // 14 mm are between them.
-  EXPECT_TRUE(work.has_room(0, work.open_faces(0), 6));
-  EXPECT_FALSE(work.has_room(0, work.open_faces(0), 8));
+  // 6 mm are between them. A cutter of 12 mm gets into the corners only, one of 6 mm everywhere but into their ends.
+  EXPECT_TRUE(work.has_room(0, work.open_faces(0), 2.9));
+  EXPECT_FALSE(work.has_room(0, work.open_faces(0), 6));
 }
 
 }  // namespace
