@@ -278,40 +278,42 @@ void take_alike(Loops& loops, const Loops& others, double within_mm) {
   }
 }
 
-/// Layers with the holes in them, their ends as levels.
-Solid drilled(const std::vector<Loops>& layers, const std::vector<double>& levels, const std::vector<Hole>& holes) {
-  std::vector<double> ends = levels;
-  for (const Hole& h : holes)
-    for (const double z : {h.tip_mm, h.top_mm})
-      if (z > levels.front() && z < levels.back()) ends.push_back(std::round(1e4 * z) / 1e4);
-  std::ranges::sort(ends);
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  Solid out;
+/// Of holes with one middle one, from the top of the highest to the tip of the lowest, as wide as the widest.
+std::vector<Hole> as_wells(const std::vector<Hole>& holes) {
+  std::vector<Hole> out;
+  for (const Hole& h : holes) {
+    const auto same = std::ranges::find_if(
+        out, [&](const Hole& o) { return (o.centre_mm - h.centre_mm).norm() < o.diameter_mm / 2; });
+    if (same == out.end()) {
+      out.push_back(h);
+      continue;
+    }
+    same->top_mm = std::max(same->top_mm, h.top_mm);
+    same->tip_mm = std::min(same->tip_mm, h.tip_mm);
+    same->diameter_mm = std::max(same->diameter_mm, h.diameter_mm);
+  }
+  return out;
+}
+
+Outline ring_of(const Hole& hole) {
   constexpr int kFacets = 72;
-  for (std::size_t e = 0; e + 1 < ends.size(); ++e) {
-    const double middle = 0.5 * (ends[e] + ends[e + 1]);
-    std::size_t k = 0;
-    while (levels[k + 1] < middle) ++k;
-    Loops loops = layers[k];
-    std::vector<const Hole*> here;  // the widest of those with one middle
-    for (const Hole& h : holes) {
-      if (middle < h.tip_mm || middle > h.top_mm) continue;
-      const auto same = std::ranges::find_if(
-          here, [&](const Hole* o) { return (o->centre_mm - h.centre_mm).norm() < o->diameter_mm / 2; });
-      if (same == here.end())
-        here.push_back(&h);
-      else if ((*same)->diameter_mm < h.diameter_mm)
-        *same = &h;
-    }
-    for (const Hole* h : here) {
-      Outline& ring = loops.emplace_back();
-      for (int i = 0; i < kFacets; ++i) {
-        const double a = -2 * kPi * i / kFacets;
-        const Vec2 p = h->centre_mm + h->diameter_mm / 2 * Vec2(std::cos(a), std::sin(a));
-        ring.emplace_back(std::round(1e3 * p.x()) / 1e3, std::round(1e3 * p.y()) / 1e3);
-      }
-    }
-    add_layer(out, loops, ends[e], ends[e + 1]);
+  Outline out;
+  for (int i = 0; i < kFacets; ++i) {
+    const double a = -2 * kPi * i / kFacets;
+    const Vec2 p = hole.centre_mm + hole.diameter_mm / 2 * Vec2(std::cos(a), std::sin(a));
+    out.emplace_back(std::round(1e3 * p.x()) / 1e3, std::round(1e3 * p.y()) / 1e3);
+  }
+  return out;
+}
+
+Solid drilled(const std::vector<Loops>& layers, const std::vector<double>& levels, const std::vector<Hole>& holes) {
+  Solid out;
+  const std::vector<Hole> wells = as_wells(holes);
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    std::vector<Well> here;
+    for (const Hole& w : wells)
+      if (w.tip_mm < levels[k + 1] && w.top_mm > levels[k]) here.push_back({ring_of(w), w.tip_mm});
+    add_layer(out, layers[k], levels[k], levels[k + 1], here);
   }
   return out;
 }
@@ -361,10 +363,9 @@ StockPart part_of(const removal::Stock& stock, const Bounds& blank, const FaceOp
   }
   for (std::size_t k = 0; k < layers.size(); ++k) {
     if (thin(k)) {
-      Loops beside;
-      if (k > 0) beside = layers[k - 1];
-      if (k + 1 < layers.size()) beside.insert(beside.end(), layers[k + 1].begin(), layers[k + 1].end());
-      take_alike(layers[k], beside, kInLine * stock.voxel_mm());
+      // With the layer below it is machined.
+      if (k + 1 < layers.size()) take_alike(layers[k], layers[k + 1], kInLine * stock.voxel_mm());
+      if (k > 0) take_alike(layers[k], layers[k - 1], kInLine * stock.voxel_mm());
       put_in_line(layers[k], walls, kInLine * stock.voxel_mm());
     }
     add_layer(out.solid, layers[k], levels[k], levels[k + 1]);

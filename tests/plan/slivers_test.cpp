@@ -61,7 +61,7 @@ RemovalVolume removal_of(const Solid& part, const machine::Box& blank, double na
 
 TEST(PolygonTriangles, FillARegionWithHolesAndIslands) {
   const std::vector<Loop> loops{rectangle(0, 0, 60, 40), turned_round(rounded(5, 5, 40, 35, 4, 5)),
-                                circle(20, 20, 6, 24), turned_round(circle(50, 20, 4, 16)),
+                                circle(25, 20, 6, 24), turned_round(circle(50, 20, 4, 16)),
                                 turned_round(circle(50, 30, 4, 16))};
   double wanted = 0, sum = 0;
   Loop all;
@@ -76,6 +76,13 @@ TEST(PolygonTriangles, FillARegionWithHolesAndIslands) {
   add_layer(solid, loops, -1, 2);
   EXPECT_TRUE(closed(solid));
   EXPECT_NEAR(volume_mm3(solid), 3 * wanted, 1e-6);
+  const Loop ring = turned_round(circle(50, 10, 2, 12));
+  for (const double bottom : {1.5, -1.0}) {
+    Solid drilled;
+    add_layer(drilled, loops, -1, 2, {{ring, bottom}});
+    EXPECT_TRUE(closed(drilled));
+    EXPECT_NEAR(volume_mm3(drilled), 3 * wanted + area_of(ring) * (2 - bottom), 1e-6);
+  }
 }
 
 TEST(PolygonTriangles, FillStarsAtRandom) {

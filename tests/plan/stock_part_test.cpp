@@ -74,6 +74,9 @@ TEST(StockPart, HasTheWallsFloorsAndHolesOfTheStock) {
   EXPECT_TRUE(mesh_of(part.solid).closed());
   const double filled = 50 * 40 * 12 + kPi * 36 * 8 - 24 * 16 * 5;
   EXPECT_NEAR(volume_mm3(part.solid), filled, 2e-3 * filled);
+  EXPECT_TRUE(mesh_of(part.drilled).closed());
+  const double tip = 9 - 2.5 / std::tan(59 * kPi / 180);
+  EXPECT_NEAR(volume_mm3(part.solid) - volume_mm3(part.drilled), kPi * (2.5 * 2.5 * (20 - tip) + 3.5 * 3.5 * 12), 10);
 
   const RemovalVolume removal = removal_volume(
       {.blank = solid_of(machine::Box{{0, 0, 0}, {50, 40, 22}}), .part = part.solid, .part_holes = part.holes});
