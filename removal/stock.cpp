@@ -24,6 +24,7 @@
 #include "base/output_file.h"
 #include "base/stage.h"
 #include "base/window_buffer.h"
+#include "removal/field/repeated_leaves.h"
 
 namespace camber::removal {
 
@@ -40,11 +41,23 @@ constexpr std::size_t kMaxBelow = 2;
 
 }  // namespace
 
+namespace {
+
+/// What copies share, which does not change while they do. Leaves that stand in it more than once are in `repeated`.
+struct SharedLayer {
+  openvdb::FloatGrid::Ptr grid;
+  std::shared_ptr<const RepeatedLeaves> repeated;
+
+  bool alone() const { return grid.use_count() == 1; }
+};
+
+}  // namespace
+
 /// Layers: `distance` is this stock's alone and hides those below, which copies share (Stock::share).
 struct Stock::Impl {
   openvdb::FloatGrid::Ptr distance;
   openvdb::Int32Grid::Ptr stamp;
-  std::vector<openvdb::FloatGrid::Ptr> below{};  ///< uppermost first; not changed while they are shared
+  std::vector<SharedLayer> below{};  ///< uppermost first
 };
 
 namespace {
@@ -53,9 +66,12 @@ namespace {
 /// lock, and no reader lives while the tree changes.
 class LayerReader {
  public:
-  explicit LayerReader(const openvdb::FloatGrid& own, std::span<const openvdb::FloatGrid::Ptr> below)
+  explicit LayerReader(const openvdb::FloatGrid& own, std::span<const SharedLayer> below)
       : own_(own.getConstUnsafeAccessor()), count_(below.size()) {
-    for (std::size_t i = 0; i < count_; ++i) below_[i].emplace(std::as_const(*below[i]).getConstUnsafeAccessor());
+    for (std::size_t i = 0; i < count_; ++i) {
+      below_[i].emplace(std::as_const(*below[i].grid).getConstUnsafeAccessor());
+      repeated_[i] = below[i].repeated.get();
+    }
   }
 
   struct Found {
@@ -69,12 +85,16 @@ class LayerReader {
     for (std::size_t i = 0; i < count_ && value == kBelow; ++i) {
       if (const Leaf* node = below_[i]->probeConstLeaf(origin)) return {node, 0, false};
       value = below_[i]->getValue(origin);
+      if (value == RepeatedLeaves::kHere) return {&repeated_[i]->leaf(origin), 0, false};
     }
     return {nullptr, value, false};
   }
   float getValue(const Coord& at) const {
     float value = own_.getValue(at);
-    for (std::size_t i = 0; i < count_ && value == kBelow; ++i) value = below_[i]->getValue(at);
+    for (std::size_t i = 0; i < count_ && value == kBelow; ++i) {
+      value = below_[i]->getValue(at);
+      if (value == RepeatedLeaves::kHere) return repeated_[i]->leaf(at).getValue(at);
+    }
     return value;
   }
 
@@ -82,6 +102,7 @@ class LayerReader {
   using Accessor = openvdb::FloatGrid::ConstUnsafeAccessor;
   Accessor own_;
   std::array<std::optional<Accessor>, kMaxBelow> below_;
+  std::array<const RepeatedLeaves*, kMaxBelow> repeated_{};
   std::size_t count_;
 };
 
@@ -461,18 +482,18 @@ void put_over(openvdb::FloatTree& upper, openvdb::FloatTree& lower) {
   for (Leaf* leaf : leaves) lower.addLeaf(leaf);
 }
 
-/// One field of all layers. Layers that nobody else has are used up.
-openvdb::FloatGrid::Ptr merged(openvdb::FloatGrid::Ptr own, std::vector<openvdb::FloatGrid::Ptr> below) {
-  while (!below.empty()) {
-    auto lower = std::move(below.back());
-    below.pop_back();
-    if (lower.use_count() > 1) lower = lower->deepCopy();
-    openvdb::FloatGrid::Ptr& upper = below.empty() ? own : below.back();
-    if (upper.use_count() > 1) upper = upper->deepCopy();
-    put_over(upper->tree(), lower->tree());
-    upper = std::move(lower);
+/// One layer of several, uppermost first. Layers that nobody else has are used up.
+SharedLayer merged(std::vector<SharedLayer> layers) {
+  SharedLayer out = std::move(layers.back());
+  layers.pop_back();
+  for (; !layers.empty(); layers.pop_back()) {
+    SharedLayer& upper = layers.back();
+    if (!out.alone()) out.grid = out.grid->deepCopy();
+    if (!upper.alone()) upper.grid = upper.grid->deepCopy();
+    if (upper.repeated) upper.repeated->put_back(upper.grid->tree());
+    put_over(upper.grid->tree(), out.grid->tree());
   }
-  return own;
+  return out;
 }
 
 }  // namespace
@@ -480,7 +501,17 @@ openvdb::FloatGrid::Ptr merged(openvdb::FloatGrid::Ptr own, std::vector<openvdb:
 void Stock::share() {
   if (impl_->below.size() >= kMaxBelow || impl_->distance->tree().empty()) return;
   auto own = layer_like(*impl_->distance, kBelow);
-  impl_->below.insert(impl_->below.begin(), std::exchange(impl_->distance, std::move(own)));
+  SharedLayer shared{std::exchange(impl_->distance, std::move(own)), nullptr};
+  shared.repeated = RepeatedLeaves::take_from(shared.grid->tree());
+  impl_->below.insert(impl_->below.begin(), std::move(shared));
+}
+
+void Stock::share_as_one() {
+  if (impl_->below.empty()) return share();
+  auto own = layer_like(*impl_->distance, kBelow);
+  std::vector<SharedLayer> layers = std::exchange(impl_->below, {});
+  layers.insert(layers.begin(), {std::exchange(impl_->distance, std::move(own)), nullptr});
+  impl_->below = {merged(std::move(layers))};
 }
 
 Stock Stock::copy_within(const Vec3& min_mm, const Vec3& max_mm) const {
@@ -512,8 +543,12 @@ Stock Stock::copy_within(const Vec3& min_mm, const Vec3& max_mm) const {
 }
 
 void Stock::unshare() {
-  auto own = std::exchange(impl_->distance, nullptr);
-  impl_->distance = merged(std::move(own), std::exchange(impl_->below, {}));
+  if (impl_->below.empty()) return;
+  std::vector<SharedLayer> layers = std::exchange(impl_->below, {});
+  layers.insert(layers.begin(), {std::exchange(impl_->distance, nullptr), nullptr});
+  SharedLayer one = merged(std::move(layers));
+  if (one.repeated) one.repeated->put_back(one.grid->tree());
+  impl_->distance = std::move(one.grid);
 }
 
 void Stock::clear() {
@@ -542,15 +577,20 @@ double Stock::volume_mm3() const {
 std::vector<Index3> Stock::surface_tiles() const {
   std::vector<Index3> tiles;
   const LayerReader reader(*impl_->distance, impl_->below);
+  const auto add_tile_of = [&](const Coord& o) {
+    tiles.push_back({floor_div(o.x(), Tile::kCore), floor_div(o.y(), Tile::kCore), floor_div(o.z(), Tile::kCore)});
+  };
   const auto add = [&](const openvdb::FloatGrid& layer) {
-    for (auto it = layer.tree().cbeginLeaf(); it; ++it) {
-      const Coord& o = it->origin();
-      if (reader.leaf(o).leaf != &*it) continue;
-      tiles.push_back({floor_div(o.x(), Tile::kCore), floor_div(o.y(), Tile::kCore), floor_div(o.z(), Tile::kCore)});
-    }
+    for (auto it = layer.tree().cbeginLeaf(); it; ++it)
+      if (reader.leaf(it->origin()).leaf == &*it) add_tile_of(it->origin());
   };
   add(*impl_->distance);
-  for (const auto& layer : impl_->below) add(*layer);
+  for (const SharedLayer& layer : impl_->below) {
+    add(*layer.grid);
+    for_each_repeated(layer.grid->tree(), [&](const Coord& origin) {
+      if (reader.leaf(origin).leaf == &layer.repeated->leaf(origin)) add_tile_of(origin);
+    });
+  }
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
   return tiles;
@@ -558,7 +598,7 @@ std::vector<Index3> Stock::surface_tiles() const {
 
 std::size_t Stock::memory_bytes() const {
   std::size_t bytes = impl_->distance->memUsage() + impl_->stamp->memUsage();
-  for (const auto& layer : impl_->below) bytes += layer->memUsage();
+  for (const SharedLayer& layer : impl_->below) bytes += layer.grid->memUsage() + layer.repeated->memory_bytes();
   return bytes;
 }
 
