@@ -16,9 +16,7 @@ std::string_view bytes_of(const Leaf& leaf) {
   return {reinterpret_cast<const char*>(leaf.buffer().data()), Leaf::SIZE * sizeof(float)};
 }
 
-bool same(const Leaf& a, const Leaf& b) {
-  return a.getValueMask() == b.getValueMask() && bytes_of(a) == bytes_of(b);
-}
+bool same(const Leaf& a, const Leaf& b) { return a.getValueMask() == b.getValueMask() && bytes_of(a) == bytes_of(b); }
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #pragma once
-// Leaves of a field that are the same at many places, each kept once: along a flat face of a box they differ by nothing.
+// Leaves of a field that are the same at many places, each kept once: along a flat face of a box they differ by
+// nothing.
 #include <memory>
 #include <vector>
 
