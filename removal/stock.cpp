@@ -10,6 +10,8 @@
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,7 +26,6 @@
 #include "base/output_file.h"
 #include "base/stage.h"
 #include "base/window_buffer.h"
-#include "removal/field/repeated_leaves.h"
 
 namespace camber::removal {
 
@@ -39,9 +40,97 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 constexpr float kBelow = std::numeric_limits<float>::max();
 constexpr std::size_t kMaxBelow = 2;
 
-}  // namespace
+/// Leaves of a field that are the same at many places, each kept once: along a flat face of a box they differ by
+/// nothing. Does not change once it is made; may be read by many threads.
+class RepeatedLeaves {
+ public:
+  /// What the field has at the place of a leaf that was taken out.
+  static constexpr float kHere = std::numeric_limits<float>::lowest();
 
-namespace {
+  /// Takes every leaf whose values and active voxels stand at least twice in the tree out of it.
+  static std::shared_ptr<const RepeatedLeaves> take_from(openvdb::FloatTree& tree);
+
+  /// Where the tree has kHere; `at`: any voxel of the leaf. The leaf's own origin is that of one of its places.
+  const Leaf& leaf(const openvdb::Coord& at) const {
+    return *leaves_[static_cast<std::size_t>(numbers_.getValue(place(at)))];
+  }
+  /// Puts the leaves back into a tree, each at all the places at which the tree still has kHere.
+  void put_back(openvdb::FloatTree& tree) const;
+  std::size_t memory_bytes() const;
+
+ private:
+  using Numbers = openvdb::tree::Tree4<openvdb::Int32, 3, 3, 3>::Type;  // nodes smaller than the usual ones: 4 kB
+
+  static constexpr openvdb::Int32 kLog2Side = static_cast<openvdb::Int32>(Leaf::LOG2DIM);
+  static openvdb::Coord place(const openvdb::Coord& at) { return at >> kLog2Side; }
+
+  std::vector<std::unique_ptr<const Leaf>> leaves_;
+  Numbers numbers_{-1};  ///< of the leaf at a place, by place()
+};
+
+/// Calls f(origin) for every place at which a tree has RepeatedLeaves::kHere.
+template <class Function>
+void for_each_repeated(const openvdb::FloatTree& tree, Function f) {
+  auto tile = tree.cbeginValueOff();
+  tile.setMaxDepth(openvdb::FloatTree::ValueOffCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (tile.getValue() == RepeatedLeaves::kHere) f(tile.getCoord());
+}
+
+std::string_view bytes_of(const Leaf& leaf) {
+  return {reinterpret_cast<const char*>(leaf.buffer().data()), Leaf::SIZE * sizeof(float)};
+}
+
+bool same(const Leaf& a, const Leaf& b) { return a.getValueMask() == b.getValueMask() && bytes_of(a) == bytes_of(b); }
+
+std::shared_ptr<const RepeatedLeaves> RepeatedLeaves::take_from(openvdb::FloatTree& tree) {
+  std::vector<const Leaf*> leaves;
+  leaves.reserve(tree.leafCount());
+  for (auto it = std::as_const(tree).cbeginLeaf(); it; ++it) leaves.push_back(&*it);
+  std::vector<std::size_t> hashes(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(),
+                    [&](std::size_t i) { hashes[i] = std::hash<std::string_view>{}(bytes_of(*leaves[i])); });
+  // Of every leaf the first one that is the same.
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::unordered_map<std::size_t, std::size_t> first_with;
+  std::vector<std::size_t> first(leaves.size(), kNone), count(leaves.size(), 0);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const std::size_t f = first_with.try_emplace(hashes[i], i).first->second;
+    if (!same(*leaves[f], *leaves[i])) continue;
+    first[i] = f;
+    ++count[f];
+  }
+  auto out = std::make_shared<RepeatedLeaves>();
+  std::vector<openvdb::Int32> number(leaves.size(), -1);
+  openvdb::tree::ValueAccessor<openvdb::FloatTree> field(tree);
+  openvdb::tree::ValueAccessor<Numbers> numbers(out->numbers_);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (first[i] == kNone || count[first[i]] < 2) continue;
+    const openvdb::Coord origin = leaves[i]->origin();
+    if (first[i] == i) {
+      number[i] = static_cast<openvdb::Int32>(out->leaves_.size());
+      out->leaves_.push_back(std::make_unique<const Leaf>(*leaves[i]));
+    }
+    numbers.setValue(place(origin), number[first[i]]);
+    field.addTile(1, origin, kHere, false);
+  }
+  return out;
+}
+
+void RepeatedLeaves::put_back(openvdb::FloatTree& tree) const {
+  std::vector<openvdb::Coord> origins;
+  for_each_repeated(tree, [&](const openvdb::Coord& origin) { origins.push_back(origin); });
+  std::vector<std::unique_ptr<Leaf>> copies(origins.size());
+  tbb::parallel_for(std::size_t{0}, origins.size(), [&](std::size_t i) {
+    copies[i] = std::make_unique<Leaf>(leaf(origins[i]));
+    copies[i]->setOrigin(origins[i]);
+  });
+  for (auto& copy : copies) tree.addLeaf(copy.release());
+}
+
+std::size_t RepeatedLeaves::memory_bytes() const {
+  return static_cast<std::size_t>(numbers_.memUsage()) + leaves_.size() * (sizeof(Leaf) + Leaf::SIZE * sizeof(float));
+}
 
 /// What copies share, which does not change while they do. Leaves that stand in it more than once are in `repeated`.
 struct SharedLayer {
