@@ -234,7 +234,7 @@ MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::
 }
 
 MemoryEstimate estimate_memory(const MemoryFactors& f, double voxel_mm) {
-  constexpr double kAlways = 80e6, kBytesPerBlock = 112, kBytesPerMove = 80 + 96;  // with the plan
+  constexpr double kAlways = 80e6, kBytesPerBlock = 112, kBytesPerMove = 80 + 48;  // with the plan
   constexpr double kPointsPerVoxel = 1.2, kGroups = 12, kMinBand = 4, kTilesDeep = 2;
   constexpr double kTileSide = 16, kTileBytes = 17 * 17 * 17 * 8;  // voxels; with one more layer, distance and stamp
   const auto stamps = static_cast<double>(f.stamps), own = static_cast<double>(f.own_stamps.value_or(f.stamps));

@@ -22,7 +22,8 @@ constexpr std::size_t kLongestText = 200'000;
 constexpr std::size_t kWhole = std::numeric_limits<std::size_t>::max();
 
 void give_up_text(SimulatedProgram& program) {
-  program.text = {.source = SourceText(program.text.source.name(), {}), .blocks = {}, .words = {}, .macro = {}};
+  nc::Program none{.source = SourceText(program.text.source.name(), {}), .blocks = {}, .words = {}, .macro = {}};
+  std::swap(program.text, none);  // a string that is assigned a short one keeps its memory
 }
 
 /// Goes along the path; of it the program keeps the runs.
@@ -98,7 +99,8 @@ SectionPlace place_in(const PathOutline& outline, std::size_t section, std::size
   return {PathStretch(outline.runs, {}, {}), section, sections};
 }
 
-/// Which blocks a section reads: those of its own pieces, with one more at either end, and those near `region`.
+/// Which blocks a section reads: those of its own pieces, with one more at either end, those near `region`, and the
+/// first of each run: vector kernels look there where the stock names no stamp of the run.
 std::vector<bool> blocks_near(const Job& job, const PathOutline& outline, const ListRange& own, const Region& region) {
   constexpr double kTilesAround = 4;
   double radius_mm = 0;
@@ -114,6 +116,7 @@ std::vector<bool> blocks_near(const Job& job, const PathOutline& outline, const 
     out[b] = is_own || ((box.min_mm.array() <= near.max_mm.array()).all() &&
                         (box.max_mm.array() >= near.min_mm.array()).all());
   }
+  for (const ToolRun& run : outline.runs) out[run.from / PathOutline::kBlock] = true;
   return out;
 }
 
