@@ -46,8 +46,7 @@ void AddressRoom::open_pages(std::size_t from, std::size_t count) {
   const std::size_t begin = std::max(open_end_, from / page_bytes() * page_bytes());
   // Where one part follows the other, many pages at a time: what is not written takes no memory.
   const std::size_t ahead = begin == open_end_ ? kTogether : 0;
-  const std::size_t end =
-      std::min(bytes_, (from + count + ahead + page_bytes() - 1) / page_bytes() * page_bytes());
+  const std::size_t end = std::min(bytes_, (from + count + ahead + page_bytes() - 1) / page_bytes() * page_bytes());
   if (mprotect(static_cast<char*>(data_) + begin, end - begin, PROT_READ | PROT_WRITE) != 0) throw std::bad_alloc();
   open_end_ = end;
 }

@@ -112,9 +112,8 @@ class Planner {
   std::size_t segments() const { return entry_mm_per_s_.size(); }
 
   /// Segments in order, with their rows and times; `next_start_s`: of the one after it.
-  using Take =
-      std::function<void(const Segment& segment, const PlanRow& row, const SegmentTime& time, double exit_speed_mm_per_s,
-                         double next_start_s)>;
+  using Take = std::function<void(const Segment& segment, const PlanRow& row, const SegmentTime& time,
+                                  double exit_speed_mm_per_s, double next_start_s)>;
   void time_segments(const Take& take) {
     build_segments(program_, machine_, [&](const Segment& s) {
       arrive(s);
@@ -195,9 +194,7 @@ class Planner {
   Row& at(std::size_t i) { return rows_[i - first_]; }
   const Row& at(std::size_t i) const { return rows_[i - first_]; }
   bool row_exponential(std::size_t i) const { return exponential(at(i).time.mode); }
-  double exit_speed_mm_per_s(std::size_t i) const {
-    return i + 1 < known() ? at(i + 1).row.entry_speed_mm_per_s : 0.0;
-  }
+  double exit_speed_mm_per_s(std::size_t i) const { return i + 1 < known() ? at(i + 1).row.entry_speed_mm_per_s : 0.0; }
   Trapezoid profile_at(std::size_t i) const { return trapezoid_of(at(i).row, exit_speed_mm_per_s(i)); }
 
   void hand_out(const Take& take) {

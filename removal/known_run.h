@@ -17,9 +17,9 @@ using TipSteps = std::array<SparseList<std::int32_t>, 3>;
 
 /// A run whose stamps are all upright.
 struct KnownRun {
-  std::span<const Stamp> stamps;                           ///< by number; those that are not kept may not be read
-  Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();       ///< of all its tips
-  std::shared_ptr<const TipSteps> tips{};                  ///< of those that are kept
+  std::span<const Stamp> stamps;                      ///< by number; those that are not kept may not be read
+  Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();  ///< of all its tips
+  std::shared_ptr<const TipSteps> tips{};             ///< of those that are kept
 
   /// kept: of `stamps`, ascending; what stamps within reach of a piece that is cut have.
   KnownRun(std::span<const Stamp> stamps, const Vec3& min_mm, const Vec3& max_mm, std::span<const ListRange> kept);

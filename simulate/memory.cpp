@@ -169,8 +169,7 @@ double swept_at_once_mm2(const Job& job, const PathStretch& path, double cut_mm2
     double way = 0;
     std::size_t count = 0;
     for (const auto& stamps : kept_of(path, run)) {
-      for (std::size_t k = 1; k < stamps.size(); ++k)
-        way += (stamps[k].pose.tip_mm - stamps[k - 1].pose.tip_mm).norm();
+      for (std::size_t k = 1; k < stamps.size(); ++k) way += (stamps[k].pose.tip_mm - stamps[k - 1].pose.tip_mm).norm();
       count += stamps.size();
     }
     const double length = count == 0 ? 0 : way * std::min(1.0, kAtOnce / static_cast<double>(count));

@@ -16,8 +16,8 @@ struct PathOutline {
   };
   static constexpr std::size_t kBlock = 256;  ///< stamps
 
-  std::vector<removal::ToolRun> runs;  ///< with their counts
-  std::vector<Run> of_runs;            ///< the same
+  std::vector<removal::ToolRun> runs;   ///< with their counts
+  std::vector<Run> of_runs;             ///< the same
   std::vector<removal::Region> blocks;  ///< of the tips of kBlock stamps each
   std::size_t stamps = 0;
   bool upright = true;

@@ -46,8 +46,7 @@ double thickest_chip_mm(const Job& job, const removal::StampPath& path) {
   double out = 0;
   for (const auto& run : path.runs)
     if (run.kind != removal::RunKind::tapping)
-      out = std::max(out,
-                     longest_feed_mm(job.tools.at(run.tool), std::span(path.stamps).subspan(run.from, run.count)));
+      out = std::max(out, longest_feed_mm(job.tools.at(run.tool), std::span(path.stamps).subspan(run.from, run.count)));
   return out;
 }
 
@@ -249,18 +248,18 @@ NominalCutters cutters_within(const Job& job, const SimulatedProgram& target, co
   std::optional<std::size_t> run_from;
   removal::Region near;
   const auto take = [&](const removal::ToolRun& run, std::size_t number, const removal::Stamp& stamp) {
-        if (run_from != run.from) {
-          put();
-          run_from = run.from;
-          tool = run.tool;
-          near = region.wider(removal::shape_of(job.tools.at(tool)).radius_mm +
-                              kTilesAround * removal::kTileVoxels * job.simulation.voxel_mm);
-        }
-        if (first + stretch.size() != number) put();
-        if (!near.contains(stamp.pose.tip_mm)) return put();
-        if (stretch.empty()) first = number;
-        stretch.push_back(stamp);
-      };
+    if (run_from != run.from) {
+      put();
+      run_from = run.from;
+      tool = run.tool;
+      near = region.wider(removal::shape_of(job.tools.at(tool)).radius_mm +
+                          kTilesAround * removal::kTileVoxels * job.simulation.voxel_mm);
+    }
+    if (first + stretch.size() != number) put();
+    if (!near.contains(stamp.pose.tip_mm)) return put();
+    if (stretch.empty()) first = number;
+    stretch.push_back(stamp);
+  };
   if (work.nominal)
     out.runs = take_kept(*work.nominal, take);
   else

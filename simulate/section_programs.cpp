@@ -110,11 +110,11 @@ std::vector<bool> blocks_near(const Job& job, const PathOutline& outline, const 
   std::vector<bool> out(outline.blocks.size());
   for (std::size_t b = 0; b < out.size(); ++b) {
     const std::size_t begin = b * PathOutline::kBlock, end = begin + PathOutline::kBlock;
-    const bool is_own = own.from < own.end && begin < own.end + PathOutline::kBlock &&
-                        end + PathOutline::kBlock > own.from;
+    const bool is_own =
+        own.from < own.end && begin < own.end + PathOutline::kBlock && end + PathOutline::kBlock > own.from;
     const Region& box = outline.blocks[b];
-    out[b] = is_own || ((box.min_mm.array() <= near.max_mm.array()).all() &&
-                        (box.max_mm.array() >= near.min_mm.array()).all());
+    out[b] = is_own ||
+             ((box.min_mm.array() <= near.max_mm.array()).all() && (box.max_mm.array() >= near.min_mm.array()).all());
   }
   for (const ToolRun& run : outline.runs) out[run.from / PathOutline::kBlock] = true;
   return out;
@@ -182,8 +182,7 @@ void SectionPrograms::go_to(std::size_t section, std::size_t sections) {
   region.min_mm.z() = std::min(region.min_mm.z(), -1e9);
   const auto keeper = [&](ThinPath& path) {
     const PathOutline& outline = path.outline;
-    const ListRange own =
-        numbers_of(PathStretch(outline.runs, {}, {}), place_in(outline, section, sections));
+    const ListRange own = numbers_of(PathStretch(outline.runs, {}, {}), place_in(outline, section, sections));
     return BlockKeeper(path, blocks_near(job_, outline, own, region));
   };
   BlockKeeper keep = keeper(thin_->path), keep_nominal = keeper(thin_->nominal);

@@ -369,8 +369,8 @@ TargetWork joined_target(EachSwept swept, EachSolved solved, const Region* withi
   return out;
 }
 
-Solved solve_section(const Job& job, const SectionPrograms& programs, const SectionParts& parts, const SolveOptions& options,
-                     Diagnostics& diagnostics, std::optional<Target>* kept) {
+Solved solve_section(const Job& job, const SectionPrograms& programs, const SectionParts& parts,
+                     const SolveOptions& options, Diagnostics& diagnostics, std::optional<Target>* kept) {
   Solved out;
   out.section = begin_round(parts, options.section);
   std::optional<Target> own;
@@ -409,9 +409,8 @@ Solved solve_section(const Job& job, const SectionPrograms& programs, const Sect
   return out;
 }
 
-Solved solve_path_section(const Job& job, const Target& target, const PathStretch& path,
-                          const SectionPlace& place, const SectionParts& parts,
-                          const std::function<void(double)>& progress) {
+Solved solve_path_section(const Job& job, const Target& target, const PathStretch& path, const SectionPlace& place,
+                          const SectionParts& parts, const std::function<void(double)>& progress) {
   Solved out;
   out.section = begin_round(parts, place.section);
   const SolveOptions options{

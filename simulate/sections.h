@@ -31,8 +31,9 @@ struct Swept {
 };
 /// What the section keeps for itself (OwnSweep) is given piece by piece to `own`, and not kept. `programs` are at the
 /// section, here and below.
-SweptSection sweep_section(const machine::Job& job, const SectionPrograms& programs, std::size_t section, std::size_t sections,
-                           const std::function<void(const removal::StockPart&)>& own, Diagnostics& diagnostics);
+SweptSection sweep_section(const machine::Job& job, const SectionPrograms& programs, std::size_t section,
+                           std::size_t sections, const std::function<void(const removal::StockPart&)>& own,
+                           Diagnostics& diagnostics);
 /// The program's path alone, out of a stock.
 Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const PathStretch& path,
                          const SectionPlace& place);

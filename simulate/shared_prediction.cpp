@@ -124,8 +124,8 @@ Prediction predict_together(const machine::Job& job, const Target& target, const
   }
   if (!in_rounds) memory.figures.solved += place.pieces.size();
   std::vector<SolvedSection> all = whole_parts_of_crew(crew, solved.section);
-  Prediction out = merge_sections(job, target, removal::SurfaceMap(*target.map), program, each_of(parts.swept),
-                                  each_of(all));
+  Prediction out =
+      merge_sections(job, target, removal::SurfaceMap(*target.map), program, each_of(parts.swept), each_of(all));
   out.cut.unsettled += unsettled;  // pieces that the last round has changed still
   return out;
 }

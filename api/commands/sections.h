@@ -149,9 +149,9 @@ struct MergedJob {
   SectionFigures figures;
   std::string doubt;  ///< about static coupling; empty: none
 };
-/// Joins all parts of the sweep and of a round, of which one is in memory at a time. `request`: as for a prediction; its `work` is not looked at. `found`:
-/// what should be shown before. Throws InputError where a part is missing or not like the others: nothing is merged
-/// then.
+/// Joins all parts of the sweep and of a round, of which one is in memory at a time. `request`: as for a prediction;
+/// its `work` is not looked at. `found`: what should be shown before. Throws InputError where a part is missing or not
+/// like the others: nothing is merged then.
 MergedJob merge_parts(const machine::Job& job, const PartKey& key, int round, PartStore& store,
                       const PredictRequest& request, Diagnostics& found, Diagnostics& of_cut);
 

@@ -40,7 +40,12 @@ TEST(SparseListDeathTest, DoesNotAnswerForWhatWasNotPut) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   SparseList<std::int64_t> list(1'000'000);
   list.put(10, 1);
-  EXPECT_DEATH({ volatile std::int64_t value = list.all()[900'000]; (void)value; }, "");
+  EXPECT_DEATH(
+      {
+        volatile std::int64_t value = list.all()[900'000];
+        (void)value;
+      },
+      "");
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ class StampTips {
   std::span<const Stamp> stamps_;
   Vec3 min_mm_ = Vec3::Zero();
   float step_mm_ = 1;
-  std::shared_ptr<const TipSteps> known_;        ///< of a known run
+  std::shared_ptr<const TipSteps> known_;         ///< of a known run
   std::array<std::vector<std::int32_t>, 3> tip_;  ///< of any other
 };
 
