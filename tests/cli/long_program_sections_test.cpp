@@ -100,7 +100,7 @@ TEST(SectionsOfLongPrograms, KeepWhatLiesNearTheSection) {
   write_all(folder, kJob);
   const machine::Job job = read(folder);
   Diagnostics diagnostics;
-  simulate::SectionPrograms programs(job, {.longest_path = kShort, .check = {}},
+  simulate::SectionPrograms programs(job, {.longest_path = 20, .check = {}},
                                      {.program = diagnostics, .original = diagnostics, .target = diagnostics});
   ASSERT_TRUE(programs.thin());
   EXPECT_TRUE(programs.program().text.blocks.empty());
@@ -110,8 +110,8 @@ TEST(SectionsOfLongPrograms, KeepWhatLiesNearTheSection) {
     std::size_t kept = 0;
     for (const ListRange& range : *programs.path().kept) kept += range.end - range.from;
     EXPECT_GT(kept, all / 9) << section;
-    const bool has_holes = section >= 7;  // a run of its own, all along the stock
-    EXPECT_LT(kept, has_holes ? all + 1 : all * 3 / 4) << section;
+    const bool has_holes = section >= 6;  // a run of its own, all along the stock
+    EXPECT_LT(kept, has_holes ? all + 1 : all * 5 / 6) << section;
   }
   simulate::SectionPrograms whole(job, {}, {.program = diagnostics, .original = diagnostics, .target = diagnostics});
   EXPECT_FALSE(whole.thin());
