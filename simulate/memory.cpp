@@ -225,7 +225,8 @@ MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::
                     .cut_mm2 = cut,
                     .at_once_mm2 = swept_at_once_mm2(job, path, cut),
                     .table_bytes = table_bytes(job, path, stock),
-                    .allowance = job.stock.allowance_mm > 0};
+                    .allowance = job.stock.allowance_mm > 0,
+                    .flat = job.stock.box.has_value()};
   if (!within) return out;
   out.blank_mm2 = faces_mm2(stock, part);
   out.own_stamps = own;
@@ -245,13 +246,18 @@ MemoryEstimate estimate_memory(const MemoryFactors& f, double voxel_mm) {
   const double points = kPointsPerVoxel * f.cut_mm2 / voxel_mm2;
   const double blank = bytes_of_surface(f.blank_mm2.value_or(box_mm2(f.size_mm)), voxel_mm, band),
                allowance = f.allowance ? distance : 0;
-  // The target is cut; the points of the map are put together; the program is cut, with its loads.
-  const MemoryEstimate target{given + sizeof(removal::Stamp) * own, blank, allowance + 2 * distance + tiles, 0};
-  const MemoryEstimate map{given + sizeof(Vec3) * own, blank, allowance + 2 * distance,
-                           1.125 * sizeof(removal::SurfacePoint) * points};
-  const MemoryEstimate cut{given + f.table_bytes + (sizeof(StampLoad) + sizeof(Contact)) * own, blank, 2 * distance,
-                           (sizeof(removal::SurfacePoint) + kGroups) * points};
-  return std::max({target, map, cut}, [](const auto& a, const auto& b) { return a.total() < b.total(); });
+  constexpr double kOfFlat = 0.02;  // of the leaves along edges, and numbers in place of the others
+  const double kept = f.flat ? kOfFlat * blank : blank;
+  const double loads = (sizeof(StampLoad) + sizeof(Contact)) * own, map_points = sizeof(removal::SurfacePoint) * points;
+  // The blank is made; the target is cut; the points of the map are put together; the program is cut, with its loads;
+  // the stock is written.
+  const MemoryEstimate made{given, blank, 0, 0};
+  const MemoryEstimate target{given + sizeof(removal::Stamp) * own, kept, allowance + 2 * distance + tiles, 0};
+  const MemoryEstimate map{given + sizeof(Vec3) * own, kept, allowance + 2 * distance, 1.125 * map_points};
+  const MemoryEstimate cut{given + f.table_bytes + loads, kept, 2 * distance, map_points + kGroups * points};
+  const MemoryEstimate written{given + loads, blank, distance, map_points};
+  return std::max({made, target, map, cut, written},
+                  [](const auto& a, const auto& b) { return a.total() < b.total(); });
 }
 
 double memory_limit_bytes(const Job& job) {

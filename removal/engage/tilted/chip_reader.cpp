@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "removal/engage/thinnest_chip.h"
 #include "removal/engage/upright/level_faces.h"
 #include "removal/field/upright/carve_general.h"
 
@@ -145,6 +146,7 @@ void ChipReader::sort_points(const TileArena& arena, const Reading& stamp, const
     if (reading.cell[l] < 0) continue;
     const float field = reading.field[l], cap = reading.cap[l];
     const std::uint32_t p = lanes_.point(first_lane + l), ring = p / static_cast<std::uint32_t>(envelope_.steps);
+    if (rule_.rigid && cap > 0 && cap <= kThinnestChip_mm) continue;
     const float half = wall_half_mm_[ring];
     if (field > std::max(air, half)) continue;
     const float more = reach * envelope_.rings[ring].sine + axial_reach * std::abs(envelope_.rings[ring].cosine);

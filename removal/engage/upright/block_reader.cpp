@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "removal/engage/thinnest_chip.h"
 #include "removal/field/cell.h"
 
 namespace camber::removal::upright {
@@ -20,6 +21,9 @@ bool is_glanced(std::uint32_t block) {
   constexpr std::uint32_t kGolden = 2654435769u, kTopBits = 29;
   return block * kGolden >> kTopBits == 0;
 }
+
+/// A distance to the material stays.
+float without_thinnest(float chip_mm) { return chip_mm > 0 && chip_mm <= kThinnestChip_mm ? 0.0f : chip_mm; }
 
 }  // namespace
 
@@ -194,7 +198,8 @@ std::span<const ChipBlock> BlockReader::read_found(const TileArena& arena, const
   for (int h = 0; h < hits.count; ++h) {
     ChipBlock& chip = b.chips[static_cast<std::size_t>(h)];
     chip.after_tooth = static_cast<std::uint16_t>(hits.deep[h]);
-    std::copy_n(hits.thickness + h * kLanes, kLanes, chip.thickness_mm.begin());
+    std::transform(hits.thickness + h * kLanes, hits.thickness + (h + 1) * kLanes, chip.thickness_mm.begin(),
+                   without_thinnest);
   }
   return b.chips;
 }
