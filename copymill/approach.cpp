@@ -92,31 +92,36 @@ Runner::Ended Approach::lower_to(const Vec3& to) {
   return runner_.cut({to}, false);
 }
 
-/// A place in air from which the straight way to a place is free of the part. Rather one beside which a cell is free
-/// too: cells stand for their middles, and the tool comes down there in rapid.
-std::optional<Vec3> Approach::side_entry(const Vec3& to) const {
-  removal::CutterShape wide = cut_.shape;
-  wide.radius_mm += standing_.cell_mm();
-  for (const bool beside : {true, false})
-    for (const double reach : {0.5, 1.0, 1.5, 2.2}) {
-      for (int k = 0; k < kDirections; ++k) {
-        const double a = 2 * kPi * k / kDirections, far = reach * (cut_.shape.radius_mm + options_.clearance_mm);
-        const Vec3 from = to + far * Vec3(std::cos(a), std::sin(a), 0);
-        if (!standing_.meets(beside ? wide : cut_.shape, from, options_.more_than_mm) && free_way(from, to))
-          return from;
-      }
+removal::CutterShape Approach::wide() const {
+  removal::CutterShape out = cut_.shape;
+  constexpr double kCells = 2;
+  out.radius_mm += kCells * standing_.cell_mm();
+  return out;
+}
+
+/// A place at which this cutter is in air and from which the straight way to a place is free of the part.
+std::optional<Vec3> Approach::side_entry(const Vec3& to, const removal::CutterShape& shape) const {
+  for (const double reach : {0.5, 1.0, 1.5, 2.2}) {
+    for (int k = 0; k < kDirections; ++k) {
+      const double a = 2 * kPi * k / kDirections, far = reach * (cut_.shape.radius_mm + options_.clearance_mm);
+      const Vec3 from = to + far * Vec3(std::cos(a), std::sin(a), 0);
+      if (!standing_.meets(shape, from, options_.more_than_mm) && free_way(from, to)) return from;
     }
+  }
   return std::nullopt;
 }
 
 Runner::Ended Approach::enter(Pass& piece) {
   const Vec3 start = piece.points.front();
   const double lift = lift_into_air(start);
-  if (lift <= 0) {
+  const bool in_air = lift <= 0, clear = in_air && !standing_.meets(wide(), start, options_.more_than_mm);
+  std::optional<Vec3> side = clear ? std::nullopt : side_entry(start, wide());
+  if (in_air && !side) {
     if (lift_over(start) != Runner::Ended::done) return runner_.ended();
     return lower_to(start);
   }
-  if (const auto side = side_entry(start)) {
+  if (!side) side = side_entry(start, cut_.shape);
+  if (side) {
     if (lift_over(*side) != Runner::Ended::done || lower_to(*side) != Runner::Ended::done) return runner_.ended();
     return runner_.cut({start}, false);
   }

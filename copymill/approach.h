@@ -36,7 +36,10 @@ class Approach {
   Runner::Ended cut_piece(Pass piece);
   bool stays_down(const Vec3& to) const;
   Runner::Ended enter(Pass& piece);
-  std::optional<Vec3> side_entry(const Vec3& to) const;
+  std::optional<Vec3> side_entry(const Vec3& to, const removal::CutterShape& shape) const;
+  /// Two cells wider: cells stand for their middles, and where the tool comes down in rapid, the tip of what stands may
+  /// reach beyond them.
+  removal::CutterShape wide() const;
   bool free_way(const Vec3& from, const Vec3& to) const;
   bool in_air(const Vec3& from, const Vec3& to) const;
   double lift_into_air(const Vec3& tip) const;

@@ -20,6 +20,25 @@ struct Point {
   double area_mm2 = 0;
 };
 
+/// Of a slender triangle: rows across it, from the corner between its long sides on.
+void add_rows(const std::array<Vec3, 3>& corners, const Vec3& normal, double area, double step,
+              std::vector<Point>& out) {
+  std::size_t tip = 0;  // opposite the shortest side
+  const auto side = [&](std::size_t k) { return (corners[(k + 1) % 3] - corners[(k + 2) % 3]).norm(); };
+  for (std::size_t k = 1; k < 3; ++k)
+    if (side(k) < side(tip)) tip = k;
+  const Vec3 u = corners[(tip + 1) % 3] - corners[tip], v = corners[(tip + 2) % 3] - corners[tip];
+  const int rows = std::max(1, static_cast<int>(std::ceil(std::max(u.norm(), v.norm()) / step)));
+  for (int i = 0; i < rows; ++i) {
+    const double at = (i + 0.5) / rows, share = (2.0 * i + 1) / rows / rows;
+    const int places = std::max(1, static_cast<int>(std::ceil(at * side(tip) / step)));
+    for (int j = 0; j < places; ++j) {
+      const double across = (j + 0.5) / places;
+      out.push_back({corners[tip] + at * ((1 - across) * u + across * v), normal, area * share / places});
+    }
+  }
+}
+
 std::vector<Point> points_on(const TriangleMesh& part, double step) {
   std::vector<Point> out;
   for (const auto& t : part.triangles) {
@@ -28,8 +47,13 @@ std::vector<Point> points_on(const TriangleMesh& part, double step) {
     const Vec3 across(u.y() * v.z() - u.z() * v.y(), u.z() * v.x() - u.x() * v.z(), u.x() * v.y() - u.y() * v.x());
     const double area = 0.5 * across.norm();
     if (area <= 0 || across.z() < kOverhang * across.norm()) continue;
-    const int n =
-        std::clamp(static_cast<int>(std::ceil(std::max({u.norm(), v.norm(), (u - v).norm()}) / step)), 1, 400);
+    const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
+    constexpr double kSlender = 10;  // times as long as wide
+    if (longest > step && longest * longest > kSlender * 2 * area) {
+      add_rows({a, Vec3(a + u), Vec3(a + v)}, across / across.norm(), area, step, out);
+      continue;
+    }
+    const int n = std::clamp(static_cast<int>(std::ceil(longest / step)), 1, 400);
     for (int i = 0; i < n; ++i)
       for (int j = 0; i + j < n; ++j) {
         out.push_back({a + (i + 1.0 / 3) / n * u + (j + 1.0 / 3) / n * v, across / across.norm(), area / (n * n)});

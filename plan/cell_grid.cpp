@@ -65,6 +65,11 @@ std::size_t CellGrid::place(const CellIndex& c) const {
 
 double CellGrid::volume_mm3(const CellIndex& c) const { return (high_mm(c) - low_mm(c)).prod(); }
 
+int CellGrid::cell_of(int axis, double at_mm) const {
+  const std::vector<AxisPlane>& planes = planes_[static_cast<std::size_t>(axis)];
+  return static_cast<int>(std::ranges::upper_bound(planes, at_mm, {}, &AxisPlane::at_mm) - planes.begin()) - 1;
+}
+
 double CellGrid::face_mm2(const CellIndex& c, int axis) const {
   const Vec3 size = high_mm(c) - low_mm(c);
   return size.prod() / size[axis];

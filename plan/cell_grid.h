@@ -49,6 +49,8 @@ class CellGrid {
   Vec3 low_mm(const CellIndex& c) const { return {plane_mm(0, c.x), plane_mm(1, c.y), plane_mm(2, c.z)}; }
   Vec3 high_mm(const CellIndex& c) const { return {plane_mm(0, c.x + 1), plane_mm(1, c.y + 1), plane_mm(2, c.z + 1)}; }
   double volume_mm3(const CellIndex& c) const;
+  /// Number of the cell along an axis that a coordinate lies in; -1 or count(axis) beyond the ends.
+  int cell_of(int axis, double at_mm) const;
   double face_mm2(const CellIndex& c, int axis) const;
 
   /// Adds the volume of a solid in each cell to `field`, exactly: each triangle is clipped to the cells' columns, and

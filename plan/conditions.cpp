@@ -131,10 +131,16 @@ Conditions bounded(Conditions c, const PlanInput& plan, const PlanTool& tool) {
 
 std::optional<Conditions> conditions_for(const PlanInput& plan, const PlanTool& tool, const Cut& cut,
                                          std::string& note) {
-  const CaseContent query{
+  CaseContent query{
       plan.work_material,   std::string(to_string(tool.use)), tool.material, tool.coated, cut.fine, plan.fast,
       tool.tool.diameter_mm};
-  const auto answer = conditions_by_cases(plan.cases, query);
+  auto answer = conditions_by_cases(plan.cases, query);
+  if (!answer && plan.fast) {
+    query.fast = false;
+    answer = conditions_by_cases(plan.cases, query);
+    if (answer && answer->similar)
+      note = fmt::format("no case of fast machining with a {}; usual ones are used", to_string(tool.use));
+  }
   if (!answer) {
     note = fmt::format("{} has no case of {} machining with a {}", plan.cases.path, plan.fast ? "fast" : "usual",
                        to_string(tool.use));

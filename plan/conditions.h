@@ -40,7 +40,8 @@ struct Cut {
 /// to half, then the axial depth to a tenth. `limit` names the last one that changed something.
 Conditions bounded(Conditions c, const PlanInput& plan, const PlanTool& tool);
 
-/// Nothing where the case base has no case of the tool's type.
+/// Nothing where the case base has no case of the tool's type. Where it has none of fast machining, usual ones answer,
+/// with a note.
 std::optional<Conditions> conditions_for(const PlanInput& plan, const PlanTool& tool, const Cut& cut,
                                          std::string& note);
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kAlongAxis = 1 - 1.5e-6;  // cosine of 0.1 degrees
 constexpr double kSmoothPatch = 0.966;     // cosine of 15 degrees
+constexpr double kSmoothWall = 0.857;      // cosine of 31 degrees: facets of small rounded corners
 constexpr int kNoAxis = -1, kUprightWall = 3, kFreeForm = 4;
 
 /// 0 to 2: along that axis.
@@ -30,6 +31,9 @@ struct Patch {
   double at_mm = 0;                  ///< planes: mean coordinate
   bool smooth_all_round = true;      ///< no edge of it is sharp
   double largest_neighbour_mm2 = 0;  ///< of the triangles round it
+  double turn = 0;                   ///< upright walls: > 0 where the facets turn towards each other
+  /// Upright walls: coordinates in x and in y at which they go over smoothly into a wall that runs along that axis.
+  std::array<std::vector<double>, 2> goes_over_mm{};
 };
 
 class PatchFinder {
@@ -60,12 +64,24 @@ class PatchFinder {
   bool joins(std::uint32_t a, std::uint32_t b) const {
     if (kinds_[a] != kinds_[b]) return false;
     const double cosine = normals_[a].dot(normals_[b]);
-    return kinds_[a] < 3 ? cosine > 0 : cosine > kSmoothPatch;
+    return kinds_[a] < 3 ? cosine > 0 : cosine > (kinds_[a] == kUprightWall ? kSmoothWall : kSmoothPatch);
+  }
+
+  void look_along_wall(Patch& patch, std::uint32_t t, std::size_t e, std::uint32_t next) const {
+    if (normals_[t].dot(normals_[next]) < kSmoothWall) return;
+    const Vec3 a = solid_.corner(solid_.triangles[t], e), b = solid_.corner(solid_.triangles[t], (e + 1) % 3);
+    for (std::size_t c = 0; c < 3; ++c) patch.turn += (solid_.corner(solid_.triangles[next], c) - a).dot(normals_[t]);
+    if (kinds_[next] < 2) {
+      const int along = 1 - kinds_[next];
+      patch.goes_over_mm[static_cast<std::size_t>(along)].push_back(0.5 * (a[along] + b[along]));
+    }
   }
 
   void grow(Patch& patch, std::uint32_t t, std::vector<bool>& seen) const {
     for (std::size_t e = 0; e < 3; ++e) {
       const std::uint32_t next = edges_.across(t, e);
+      if (next != MeshEdges::kNone && patch.kind == kUprightWall && kinds_[next] != kNoAxis && kinds_[next] != 2)
+        look_along_wall(patch, t, e, next);
       if (next == MeshEdges::kNone) {
         patch.smooth_all_round = false;
       } else if (joins(t, next)) {
@@ -103,30 +119,54 @@ bool is_facet(const Patch& p) {
   return p.smooth_all_round && p.largest_neighbour_mm2 > 0 && p.area_mm2 < kFacets * p.largest_neighbour_mm2;
 }
 
+/// Seen from above.
+double length_mm(const Patch& p) {
+  const Vec3 size = p.bounds.max_mm - p.bounds.min_mm;
+  return std::max(size.x(), size.y());
+}
+
+/// True for the end of a rounded inner corner beside a wall along the axis.
+bool wall_goes_on(const Patch& p, int axis, double at_mm, double tolerance_mm) {
+  return p.turn > 0 && std::ranges::any_of(p.goes_over_mm[static_cast<std::size_t>(axis)],
+                                           [&](double end) { return std::abs(end - at_mm) < tolerance_mm; });
+}
+
 void add_planes(const std::vector<Patch>& patches, const FaceOptions& options,
                 std::array<std::vector<AxisPlane>, 3>& planes) {
   for (const Patch& p : patches) {
     if (p.area_mm2 < options.min_face_mm2) continue;
     if (p.kind < 3) {
-      if (!is_facet(p)) planes[static_cast<std::size_t>(p.kind)].push_back({p.at_mm, p.area_mm2, true});
+      AxisPlane plane{p.at_mm, p.area_mm2, true};
+      if (p.kind < 2) plane.length_mm = length_mm(p);
+      if (!is_facet(p)) planes[static_cast<std::size_t>(p.kind)].push_back(plane);
       continue;
     }
     // An upright wall ends where other faces do.
-    const int axes = p.kind == kUprightWall ? 2 : 3;
-    for (int a = 0; a < axes; ++a)
-      for (const double at : {p.bounds.min_mm[a], p.bounds.max_mm[a]})
-        planes[static_cast<std::size_t>(a)].push_back({at, 0, false});
+    const bool wall = p.kind == kUprightWall;
+    for (int a = 0; a < (wall ? 2 : 3); ++a)
+      for (const double at : {p.bounds.min_mm[a], p.bounds.max_mm[a]}) {
+        if (wall && wall_goes_on(p, a, at, options.plane_tolerance_mm)) continue;
+        AxisPlane bound{at, 0, false};
+        if (wall) bound.length_mm = length_mm(p);
+        planes[static_cast<std::size_t>(a)].push_back(bound);
+      }
   }
   for (auto& of_axis : planes) of_axis = joined(std::move(of_axis), options.plane_tolerance_mm);
 }
 
-/// Corners of the outline between upright facets whose normals turn towards each other.
+/// Corners of the outline between upright facets whose normals turn towards each other. A facet may be several
+/// triangles side by side.
 class CornerFinder {
  public:
   CornerFinder(const Solid& solid, const MeshEdges& edges, const std::vector<bool>& of_hole)
-      : solid_(solid), edges_(edges), of_hole_(of_hole) {}
+      : solid_(solid),
+        edges_(edges),
+        of_hole_(of_hole),
+        widths_(solid.triangles.size(), 0),
+        chain_(solid.triangles.size(), 0) {}
 
   std::vector<InnerCorner> find() {
+    find_widths();
     for (std::uint32_t t = 0; t < solid_.triangles.size(); ++t) {
       const Vec3 n = unit_normal(solid_, t);
       if (of_hole_[t] || !is_upright(n)) continue;
@@ -135,19 +175,54 @@ class CornerFinder {
         if (next != MeshEdges::kNone && next > t && !of_hole_[next]) look_at(t, next, e, n);
       }
     }
-    return std::move(out_);
+    return with_radii_of_chains();
   }
 
  private:
-  /// Across the wall, of the facet's triangle.
-  double width(std::uint32_t t, const Vec3& n) const {
-    double low = 1e300, high = -1e300;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3 p = solid_.corner(solid_.triangles[t], c);
-      const double along = -n.y() * p.x() + n.x() * p.y();
-      low = std::min(low, along), high = std::max(high, along);
+  static constexpr double kFlat = 1e-3;  ///< rad; less is no turn
+
+  /// Along the wall, of all triangles of a facet.
+  void find_widths() {
+    std::vector<bool> seen(solid_.triangles.size(), false);
+    for (std::uint32_t first = 0; first < seen.size(); ++first) {
+      const Vec3 n = unit_normal(solid_, first);
+      if (seen[first] || !is_upright(n)) continue;
+      std::vector<std::uint32_t> facet{first};
+      seen[first] = true;
+      double low = 1e300, high = -1e300;
+      for (std::size_t i = 0; i < facet.size(); ++i)
+        for (std::size_t e = 0; e < 3; ++e) {
+          const Vec3 p = solid_.corner(solid_.triangles[facet[i]], e);
+          const double along = -n.y() * p.x() + n.x() * p.y();
+          low = std::min(low, along), high = std::max(high, along);
+          const std::uint32_t next = edges_.across(facet[i], e);
+          if (next == MeshEdges::kNone || seen[next] || unit_normal(solid_, next).dot(n) < 1 - kFlat * kFlat / 2)
+            continue;
+          seen[next] = true;
+          facet.push_back(next);
+        }
+      for (const std::uint32_t t : facet) widths_[t] = high - low, chain_[t] = first;
     }
-    return high - low;
+  }
+
+  std::uint32_t chain_of(std::uint32_t t) const {
+    while (chain_[t] != t) t = chain_[t];
+    return t;
+  }
+
+  /// Facets of a round wall follow each other, and the mesh may have cut it unevenly: the median of its corners' radii
+  /// is that of them all. The corner beside a long wall says nothing of it.
+  std::vector<InnerCorner> with_radii_of_chains() {
+    std::map<std::uint32_t, std::vector<double>> radii;
+    for (std::size_t k = 0; k < out_.size(); ++k)
+      if (out_[k].radius_mm > 0 && among_facets_[k]) radii[chain_of(facet_[k])].push_back(out_[k].radius_mm);
+    for (auto& [chain, of] : radii) std::ranges::sort(of);
+    for (std::size_t k = 0; k < out_.size(); ++k) {
+      if (out_[k].radius_mm <= 0) continue;
+      const auto found = radii.find(chain_of(facet_[k]));
+      if (found != radii.end()) out_[k].radius_mm = found->second[found->second.size() / 2];
+    }
+    return std::move(out_);
   }
 
   void look_at(std::uint32_t t, std::uint32_t next, std::size_t e, const Vec3& n) {
@@ -156,22 +231,31 @@ class CornerFinder {
     const Vec3 a = solid_.corner(solid_.triangles[t], e), b = solid_.corner(solid_.triangles[t], (e + 1) % 3);
     if (std::abs(a.z() - b.z()) < 1e-6) return;
     const double turn = std::acos(std::clamp(n.dot(m), -1.0, 1.0));
-    constexpr double kFlat = 1e-3, kSharp = kPi / 4;
+    constexpr double kSharp = kPi / 4;
     if (turn < kFlat) return;
     // Concave: the other facet's far corner lies on the side to which this one's normal points.
     double most = 0;
     for (std::size_t c = 0; c < 3; ++c) most = std::max(most, (solid_.corner(solid_.triangles[next], c) - a).dot(n));
     if (most < 1e-6) return;
-    const double w = std::min(width(t, n), width(next, m));
+    const double one = widths_[t], other = widths_[next], narrower = std::min(one, other);
+    const double w = 0.5 * (narrower + std::min(std::max(one, other), 2 * narrower));
     out_.push_back({{a.x(), a.y()},
                     std::min(a.z(), b.z()),
                     std::max(a.z(), b.z()),
-                    turn > kSharp ? 0 : w / (2 * std::tan(turn / 2))});
+                    turn > kSharp + kFlat ? 0 : w / (2 * std::sin(turn / 2))});
+    constexpr double kWall = 4;  // times the narrower facet
+    facet_.push_back(one < other ? t : next);
+    among_facets_.push_back(std::max(one, other) < kWall * narrower);
+    if (turn <= kSharp + kFlat && among_facets_.back()) chain_[chain_of(next)] = chain_of(t);
   }
 
   const Solid& solid_;
   const MeshEdges& edges_;
   const std::vector<bool>& of_hole_;
+  std::vector<double> widths_;        ///< of each triangle's facet
+  std::vector<std::uint32_t> chain_;  ///< triangle to another one of its facet or round wall
+  std::vector<std::uint32_t> facet_;  ///< of each corner: triangle of the narrower one
+  std::vector<bool> among_facets_;    ///< of each corner: no wall beside it
   std::vector<InnerCorner> out_;
 };
 
@@ -201,8 +285,24 @@ std::vector<AxisPlane> joined(std::vector<AxisPlane> planes, double tolerance_mm
     const double area = last.area_mm2 + p.area_mm2;
     if (area > 0) last.at_mm = (last.at_mm * last.area_mm2 + p.at_mm * p.area_mm2) / area;
     last.area_mm2 = area;
+    last.length_mm = std::max(last.length_mm, p.length_mm);
     last.face = last.face || p.face;
   }
+  return out;
+}
+
+std::vector<AxisPlane> without_slivers(const std::vector<AxisPlane>& planes, double narrowest_mm) {
+  std::vector<AxisPlane> by_weight = planes, out;
+  std::ranges::stable_sort(by_weight, [](const AxisPlane& a, const AxisPlane& b) {
+    return a.length_mm != b.length_mm ? a.length_mm > b.length_mm : a.area_mm2 > b.area_mm2;
+  });
+  constexpr double kRounding = 1 - 1e-3;
+  const double least = kRounding * narrowest_mm;
+  for (const AxisPlane& p : by_weight)
+    if (p.length_mm >= least ||
+        std::ranges::none_of(out, [&](const AxisPlane& o) { return std::abs(o.at_mm - p.at_mm) < least; }))
+      out.push_back(p);
+  std::ranges::sort(out, {}, &AxisPlane::at_mm);
   return out;
 }
 

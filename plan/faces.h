@@ -15,7 +15,8 @@ struct FaceOptions {
 
 struct AxisPlane {
   double at_mm = 0, area_mm2 = 0;
-  bool face = true;  ///< false: a bound of a face that is no plane along the axes
+  bool face = true;          ///< false: a bound of a face that is no plane along the axes
+  double length_mm = 1e300;  ///< of upright walls: how long the longest one is, seen from above
 };
 
 /// An upright round hole.
@@ -47,11 +48,14 @@ struct Faces {
 /// tolerance are one plane, at their mean weighted by area. A small patch in the middle of a curved surface (smooth to
 /// its neighbours, and not larger than three of them) is none. Triangles that are neither upright nor along an axis are
 /// free-form. The bounds of their patches, and in x and y those of other upright walls, come as planes that are no
-/// faces.
+/// faces; but not the lines at which the rounded inner corner of a pocket goes over into a wall along an axis: that
+/// corner is the pocket's.
 ///
 /// A hole is a closed ring of upright facets, ten or more, with the material outside, whose corners lie on one circle.
 /// Its diameter is that of the corners. The radius of an inner corner follows from the turn between neighbouring
-/// facets, r = w / (2 tan(turn / 2)) with the narrower facet's width w.
+/// facets, whose corners are on it: r = w / (2 sin(turn / 2)) with the mean w of their widths, of which the wider
+/// counts at most as twice the narrower: beside a round corner stands a long wall. Facets of one round wall have one
+/// radius, the median.
 Faces find_faces(const Solid& solid, const FaceOptions& options);
 
 /// Only the planes, of a solid that is no part: faces of the blank.
@@ -59,5 +63,9 @@ std::array<std::vector<AxisPlane>, 3> find_planes(const Solid& solid, const Face
 
 /// Joins planes within the tolerance; a face and a bound are a face.
 std::vector<AxisPlane> joined(std::vector<AxisPlane> planes, double tolerance_mm);
+
+/// Without the planes of walls shorter than `narrowest_mm` that are nearer than that to another plane: no mill gets
+/// between them. Planes are ascending; longer walls come first, then larger faces.
+std::vector<AxisPlane> without_slivers(const std::vector<AxisPlane>& planes, double narrowest_mm);
 
 }  // namespace camber::plan

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,9 @@ namespace camber::plan {
 namespace {
 
 constexpr double kBeyond_mm = 1.0;  // how far the tool leaves the blank over an open side
+// Shares of a primitive: that a first tool may leave in gaps between walls, and that is no gap.
+constexpr double kIsland_mm2 = 1;
+constexpr double kGaps = 0.15, kNoGap = 0.005;
 
 /// Where the axis may be: over the primitive, and so far beyond its open sides that the cutter leaves them.
 std::array<Vec2, 2> region_of(const Primitive& p, const OpenFaces& open, double radius_mm) {
@@ -36,7 +40,12 @@ Pattern pattern_of(Feature feature, bool contoured) {
 class Planner {
  public:
   Planner(const PlanInput& input, const RemovalVolume& removal, PlannedDivision& out)
-      : input_(input), removal_(removal), out_(out), work_(removal, out.primitives) {}
+      : input_(input),
+        removal_(removal),
+        out_(out),
+        work_(removal, out.primitives),
+        begun_(removal.holes.size(), false),
+        drilled_(removal.holes.size(), false) {}
 
   void plan() {
     for (std::size_t i = 0; i < out_.order.steps.size(); ++i) {
@@ -47,11 +56,13 @@ class Planner {
         plan_hole(step);
       else
         plan_box(step);
-      if (out_.operations.size() == before &&
+      const Primitive& p = out_.primitives[step.primitive];
+      if (out_.operations.size() == before && !(p.is_hole && drilled_[p.hole]) &&
           (out_.unmachined.empty() || out_.unmachined.back().primitive != step.primitive))
         leave(step, "no operation");
       work_.remove(step.primitive);
     }
+    group_holes();
     for (const Unreachable& u : out_.order.unreachable)
       out_.unmachined.push_back({u.primitive, describe(out_.primitives[u.primitive]), u.reason + "; another set-up"});
   }
@@ -84,6 +95,23 @@ class Planner {
     return least;
   }
 
+  /// Holes are the last ones and do not depend on each other, but where one is under another: first all centres, then
+  /// the drills and the reamers, each tool once.
+  void group_holes() {
+    for (std::size_t h = 0; h < begun_.size(); ++h)
+      if (begun_[h] && !drilled_[h]) return;
+    const auto is_of_hole = [&](const Operation& o) {
+      return out_.primitives[out_.order.steps[o.primitive - 1].primitive].is_hole;
+    };
+    const auto first = std::ranges::find_if(out_.operations, is_of_hole);
+    std::vector<int> tools;  // in the order in which they come
+    for (auto o = first; o != out_.operations.end(); ++o)
+      if (std::ranges::find(tools, o->tool) == tools.end()) tools.push_back(o->tool);
+    std::ranges::stable_sort(first, out_.operations.end(), {}, [&](const Operation& o) {
+      return std::make_pair(o.kind, std::ranges::find(tools, o.tool) - tools.begin());
+    });
+  }
+
   ToolNeed need_of(const Step& step) const {
     const Primitive& p = out_.primitives[step.primitive];
     ToolNeed need;
@@ -95,7 +123,20 @@ class Planner {
     };
     if (!p.is_hole)
       need.has_room = [this, &step](double radius) { return work_.has_room(step.primitive, step.open, radius); };
+    if (p.contoured && !p.free_form) {
+      // Gaps between walls may be left to a rest operation.
+      need.walls_within = work_.stands_within_mm2(step.primitive) > kIsland_mm2;
+      need.has_room = [this, &step, most = kGaps * area_mm2(p)](double radius) {
+        return unreached_mm2(step, radius) <= most;
+      };
+    }
     return need;
+  }
+
+  static double area_mm2(const Primitive& p) { return (p.max_mm.x() - p.min_mm.x()) * (p.max_mm.y() - p.min_mm.y()); }
+
+  double unreached_mm2(const Step& step, double radius_mm) const {
+    return work_.unreached_mm2(step.primitive, step.open, radius_mm);
   }
 
   const PlanTool& tool(int number) const { return input_.tools.at(number); }
@@ -150,7 +191,11 @@ class Planner {
     set_volume(*rough, std::max(p.volume_mm3 - left, 0.0));
     if (sharp) rough->notes.push_back("sharp inner corners keep the radius of the tool");
     int last = pick->tool;
-    if (inner < tool(pick->tool).tool.diameter_mm / 2 - 1e-3) last = add_rest(step, need, inner).value_or(last);
+    const double radius = tool(pick->tool).tool.diameter_mm / 2;
+    if (inner * (1 + kCornerShare) < radius)
+      last = add_rest(step, need, inner).value_or(last);
+    else if (p.contoured)
+      last = add_rest_of_gaps(step, need, radius, sharp).value_or(last);
     if (rough_of(step).allowance_mm > 0) {
       add_finish(step, last, left);
     }
@@ -181,6 +226,33 @@ class Planner {
     // Four corners, each with what the larger tool leaves.
     const double depth = rest->to_mm - rest->from_mm, r = tool(rough_of(step).tool).tool.diameter_mm / 2;
     set_volume(*rest, (4 - kPi) * (r * r - inner_mm * inner_mm) * depth);
+    return pick->tool;
+  }
+
+  /// Where walls leave gaps that the tool does not get into, and the smallest end mill does.
+  std::optional<int> add_rest_of_gaps(const Step& step, ToolNeed need, double radius_mm, bool sharp) {
+    const double smallest = removal_.narrowest_mm / 2;
+    if (smallest <= 0 || smallest >= radius_mm) return std::nullopt;
+    const double depth = need.depth_mm, area = area_mm2(out_.primitives[step.primitive]);
+    const double least = unreached_mm2(step, smallest), left = unreached_mm2(step, radius_mm);
+    const auto narrow = [&](double unreached, double radius) {
+      return unreached - least > (sharp ? sharp_corners_mm2(radius) : 0) + kNoGap * area;
+    };
+    if (!narrow(left, radius_mm)) return std::nullopt;
+    need.inner_radius_mm = radius_mm * (1 - 2 * kCornerShare);
+    need.has_room = [&](double radius) { return !narrow(unreached_mm2(step, radius), radius); };
+    std::string wanted;
+    const auto pick = pick_rest_mill(need, input_.tools, wanted);
+    if (!pick) {
+      rough_of(step).notes.push_back(
+          fmt::format("gaps of {:.3g} mm2 in all keep material; they need {}", left - least, wanted));
+      return std::nullopt;
+    }
+    Operation* rest =
+        add(step, OperationKind::rest, pick->tool, Pattern::contour_line, {false, depth, machine::kNoLimit}, {});
+    if (rest == nullptr) return std::nullopt;
+    rest->allowance_mm = rough_of(step).allowance_mm;
+    set_volume(*rest, (left - unreached_mm2(step, tool(pick->tool).tool.diameter_mm / 2)) * depth);
     return pick->tool;
   }
 
@@ -257,11 +329,26 @@ class Planner {
     return sum;
   }
 
+  /// The hole that goes on under this one with the same middle.
+  std::optional<std::size_t> hole_below(const Hole& hole) const {
+    constexpr double kSame_mm = 0.05;
+    for (std::size_t h = 0; h < removal_.holes.size(); ++h) {
+      const Hole& below = removal_.holes[h];
+      if ((below.centre_mm - hole.centre_mm).norm() < kSame_mm && below.top_mm < hole.top_mm - kSame_mm &&
+          below.top_mm > hole.tip_mm - kSame_mm && below.diameter_mm < hole.diameter_mm + kSame_mm)
+        return h;
+    }
+    return std::nullopt;
+  }
+
   void plan_hole(const Step& step) {
-    const Hole& hole = removal_.holes[out_.primitives[step.primitive].hole];
+    const std::size_t number = out_.primitives[step.primitive].hole;
+    if (drilled_[number]) return;
+    const Hole& hole = removal_.holes[number];
     const ToolNeed need = need_of(step);
     std::string wanted;
-    const auto tools = pick_hole_tools(need, input_.tools, wanted);
+    auto tools = pick_hole_tools(need, input_.tools, wanted);
+    if (tools && begun_[number]) tools->center_drill.reset();  // the hole above leads the drill
     if (!tools) return leave(step, "none of the tools will do; it needs " + wanted);
     const double volume = out_.primitives[step.primitive].volume_mm3;
     if (tools->end_mill) {
@@ -273,8 +360,38 @@ class Planner {
     const std::array<std::pair<std::optional<int>, OperationKind>, 3> all{{{tools->center_drill, OperationKind::centre},
                                                                            {tools->drill, OperationKind::drill},
                                                                            {tools->reamer, OperationKind::ream}}};
-    for (const auto& [number, kind] : all)
-      if (number) add_drilling(step, hole, *number, kind, kind == OperationKind::drill ? volume : 0);
+    for (const auto& [with, kind] : all)
+      if (with) add_drilling(step, hole, *with, kind, kind == OperationKind::drill ? volume : 0);
+    const auto below = hole_below(hole);
+    if (!below) return;
+    begun_[*below] = true;
+    constexpr double kFits_mm = 0.05;
+    if (tools->reamer && tools->drill &&
+        std::abs(tool(*tools->drill).tool.diameter_mm - removal_.holes[*below].diameter_mm) < kFits_mm)
+      drill_on(removal_.holes[*below], *below);
+  }
+
+  /// The drill of a reamed hole goes on to the end of the hole below, which has its diameter.
+  void drill_on(const Hole& below, std::size_t number) {
+    const auto drill = std::ranges::find_if(
+        out_.operations, [&](const Operation& o) { return o.primitive == number_ && o.kind == OperationKind::drill; });
+    if (drill == out_.operations.end()) return;
+    drilled_[number] = true;
+    drill->from_mm = below.tip_mm;
+    if (is_through(below)) drill->from_mm -= drill_point_mm(tool(drill->tool).tool) + kBeyond_mm;
+    set_volume(*drill, drill->volume_mm3 + below.volume_mm3);
+    drill->notes.clear();
+  }
+
+  bool is_through(const Hole& hole) const {
+    const auto p = std::ranges::find_if(
+        out_.primitives, [&](const Primitive& of) { return of.is_hole && &removal_.holes[of.hole] == &hole; });
+    return p != out_.primitives.end() && work_.open_faces(static_cast<std::size_t>(p - out_.primitives.begin())).bottom;
+  }
+
+  static double drill_point_mm(const machine::Tool& t) {
+    const double half_point = t.point_angle_rad > 0 ? t.point_angle_rad / 2 : kPi / 2;
+    return t.diameter_mm / 2 / std::tan(half_point);
   }
 
   void add_drilling(const Step& step, const Hole& hole, int number, OperationKind kind, double volume_mm3) {
@@ -283,10 +400,10 @@ class Planner {
     if (op == nullptr) return;
     op->box_mm = {hole.centre_mm, hole.centre_mm};
     const machine::Tool& t = tool(number).tool;
-    const double half_point = t.point_angle_rad > 0 ? t.point_angle_rad / 2 : kPi / 2;
-    const double point = t.diameter_mm / 2 / std::tan(half_point);
+    const double point = drill_point_mm(t);
     if (kind == OperationKind::centre)
-      op->from_mm = hole.top_mm - std::max(point, t.diameter_mm / 2);
+      op->from_mm = hole.top_mm - (t.diameter_mm < hole.diameter_mm ? std::max(point, t.diameter_mm / 2)
+                                                                    : point * hole.diameter_mm / t.diameter_mm);
     else if (step.feature == Feature::through_hole)
       op->from_mm = hole.tip_mm - point - kBeyond_mm;
     else if (hole.bottom_mm - hole.tip_mm < 1e-3 && kind == OperationKind::drill && t.point_angle_rad > 0)
@@ -300,6 +417,7 @@ class Planner {
   const RemovalVolume& removal_;
   PlannedDivision& out_;
   Workpiece work_;
+  std::vector<bool> begun_, drilled_;  ///< holes under others: led by them; made by their drill
   std::size_t number_ = 0;
 };
 

@@ -64,7 +64,8 @@ struct PlannedDivision {
 
 /// Operations of the primitives in their order. Each box: one with the tool of the rules; a rest operation where an
 /// inner corner is narrower; with `finish = "fine"` the first leaves an allowance, and another one finishes. Free form:
-/// an end mill first where it is deeper than the ball end mill cuts. Holes: centre, drill, ream.
+/// an end mill first where it is deeper than the ball end mill cuts. Holes: centre, drill, ream, each tool for all
+/// holes; a drill goes on into the hole under a reamed one where that has its diameter.
 PlannedDivision plan_division(const PlanInput& input, const RemovalVolume& removal, DivisionPlan division);
 
 /// Number of times that the tool changes from one operation to the next.

@@ -73,15 +73,15 @@ std::string Workpiece::blocked(std::size_t primitive) const {
   const Primitive& p = primitives_[primitive];
   if (p.is_hole) return blocked_hole(removal_.holes[p.hole], primitive);
   constexpr double kThin = 0.02;  // share of a cell that an overhang may take
+  const CellGrid& g = removal_.grid;
+  const auto stays = [&](const CellIndex& c) { return g.at(c).part_mm3 / g.volume_mm3(c); };
   for (const CellIndex& c : p.cells)
     for (CellIndex above{c.x, c.y, c.z + 1}; removal_.grid.holds(above); ++above.z) {
       const int of = owner(above);
       if (of == kFixture) return "a fixture is above it";
       if (of == kPart) return "the part is above it";
       if (of >= 0 && of != static_cast<int>(primitive)) return "other material is above it";
-      const Cell& cell = removal_.grid.at(above);
-      if (of == kMachined && removal_.grid.at(c).kind == CellKind::clear &&
-          cell.part_mm3 > kThin * removal_.grid.volume_mm3(above))
+      if (of == kMachined && g.at(c).kind == CellKind::clear && stays(above) > stays(c) + kThin)
         return "the part is above it";
     }
   return {};

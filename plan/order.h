@@ -64,9 +64,12 @@ class Workpiece {
   bool is_removed(std::size_t primitive) const { return removed_[primitive]; }
   /// Top of what stands within a distance of the primitive's outline, or inside it; its own bottom where nothing does.
   double highest_near_mm(std::size_t primitive, double distance_mm) const;
-  /// True where a tool of this radius gets to all of the primitive but inner corners: its middle may go anywhere inside
-  /// and beyond open sides, as far as part and fixtures above the primitive's bottom leave it room. By points on a
-  /// grid.
+  /// Of the primitive, seen from above, what a tool of this radius does not get to: its middle may go anywhere inside
+  /// and beyond open sides, as far as part and fixtures above the primitive's bottom leave it room.
+  double unreached_mm2(std::size_t primitive, const OpenFaces& open, double radius_mm) const;
+  /// Of its box, where part or fixtures stand above its bottom.
+  double stands_within_mm2(std::size_t primitive) const;
+  /// True where that is no more than the inner corners between sides that are not open, and 0.5 % of the primitive.
   bool has_room(std::size_t primitive, const OpenFaces& open, double radius_mm) const;
   /// Of the primitive's faces, what the part has there.
   double wall_mm2(std::size_t primitive) const;
@@ -87,6 +90,9 @@ class Workpiece {
   std::vector<int> owners_;
   std::vector<bool> removed_;
 };
+
+/// What a round tool leaves in four sharp inner corners.
+double sharp_corners_mm2(double radius_mm);
 
 /// By (1) greater height of the top, (2) greater volume, (3) more open faces, (4) less distance from the middle of the
 /// removal volume; (5) holes last whatever the others say. Of primitives that the tool reaches the first by these rules

@@ -8,6 +8,7 @@
 
 #include "base/mesh_file.h"
 #include "base/stage.h"
+#include "plan/stock_part.h"
 #include "plan/stock_solid.h"
 
 namespace camber::plan {
@@ -26,6 +27,21 @@ Solid read_solid(const std::string& path, double mm_per_unit) {
   return out;
 }
 
+removal::Stock load_stock(const std::string& path, const PlanInput& input) {
+  constexpr double kBand = 3;  // voxels
+  return removal::Stock::load(path, input.simulation.voxel_mm, kBand);
+}
+
+/// With its holes filled where it comes as a stock.
+StockPart read_part(const PlanInput& input, const Bounds& blank) {
+  if (!is_stock_file(input.part_path)) return {read_solid(input.part_path, input.mm_per_unit), {}, {}};
+  StockPart out = part_of(load_stock(input.part_path, input), blank, input.faces);
+  if (out.solid.triangles.empty())
+    fail_on_file(input.part_path, "has no material with an upright wall between two levels; a part was expected",
+                 "part-missing");
+  return out;
+}
+
 struct Blank {
   Solid solid;
   std::array<std::vector<AxisPlane>, 3> planes{};
@@ -37,11 +53,11 @@ Blank read_blank(const PlanInput& input) {
   if (b.box) return {.solid = solid_of(*b.box)};
   if (b.cylinder) return {.solid = solid_of(*b.cylinder)};
   if (!b.mesh.empty()) return {.solid = read_solid(b.mesh, input.mm_per_unit)};
-  const double voxel = input.simulation.voxel_mm;
-  constexpr double kBand = 3, kHalf = 0.6;  // voxels
-  const removal::Stock stock = removal::Stock::load(b.vdb, voxel, kBand);
-  StockBlank from = blank_of(stock, input.faces);
-  return {.solid = std::move(from.solid), .planes = std::move(from.planes), .tolerance_mm = kHalf * voxel};
+  constexpr double kHalf = 0.6;  // voxels
+  StockBlank from = blank_of(load_stock(b.vdb, input), input.faces);
+  return {.solid = std::move(from.solid),
+          .planes = std::move(from.planes),
+          .tolerance_mm = kHalf * input.simulation.voxel_mm};
 }
 
 /// What the best plans of earlier set-ups machine, seen from a later one.
@@ -117,11 +133,25 @@ void check_shapes(const RemovalVolume& removal, const PlanInput& input, Diagnost
                      {}});
 }
 
-RemovalVolume removal_of(const PlanInput& input, const Blank& blank, const Solid& part,
+/// Diameter; 0: there is none.
+double narrowest_mill_mm(const PlanTools& tools) {
+  double out = 0;
+  for (const auto& [number, t] : tools)
+    if (t.use == ToolUse::end_mill || t.use == ToolUse::face_mill)
+      out = out > 0 ? std::min(out, t.tool.diameter_mm) : t.tool.diameter_mm;
+  return out;
+}
+
+RemovalVolume removal_of(const PlanInput& input, const Blank& blank, const Solid& part, const std::vector<Hole>& holes,
                          const std::vector<Solid>& fixtures, const Eigen::Matrix3d& turn,
                          const std::vector<Machined>& machined) {
-  RemovalInput in{.blank = turned(blank.solid, turn), .part = part, .faces = input.faces};
+  RemovalInput in{.blank = turned(blank.solid, turn), .part = part, .part_holes = holes, .faces = input.faces};
   for (const Solid& f : fixtures) in.fixtures.push_back(turned(f, turn));
+  in.narrowest_mm = narrowest_mill_mm(input.tools);
+  // Outlines of layers thinner than a voxel are those of edges that the field rounds.
+  constexpr double kEdges = 0.2;
+  if (is_stock_file(input.part_path))
+    in.faces.plane_tolerance_mm = std::max(in.faces.plane_tolerance_mm, kEdges * input.simulation.voxel_mm);
   in.blank_planes = blank.planes;
   if (blank.tolerance_mm > 0) in.tolerance_mm = blank.tolerance_mm;
   for (const Machined& m : machined) m.add_planes(in.machined_planes);
@@ -132,12 +162,15 @@ RemovalVolume removal_of(const PlanInput& input, const Blank& blank, const Solid
   return removal_volume(in);
 }
 
-SetupPlan plan_setup(const PlanInput& input, const Blank& blank, const Solid& part, const std::vector<Solid>& fixtures,
-                     const Setup& setup, const std::vector<Machined>& machined) {
-  const Solid lying = turned(part, setup.turn);
-  SetupPlan out{setup, turned(blank.solid, setup.turn),
-                lying, removal_of(input, blank, lying, fixtures, setup.turn, machined),
-                {},    0};
+SetupPlan plan_setup(const PlanInput& input, const Blank& blank, const StockPart& part,
+                     const std::vector<Solid>& fixtures, const Setup& setup, const std::vector<Machined>& machined) {
+  const Solid lying = turned(part.solid, setup.turn);
+  SetupPlan out{setup,
+                turned(blank.solid, setup.turn),
+                part.drilled.triangles.empty() ? lying : turned(part.drilled, setup.turn),
+                removal_of(input, blank, lying, part.holes, fixtures, setup.turn, machined),
+                {},
+                0};
   std::vector<PlanFigures> figures;
   Stage stage("planning", kDivisionPlans.size());
   for (const DivisionPlan division : kDivisionPlans) {
@@ -154,12 +187,13 @@ SetupPlan plan_setup(const PlanInput& input, const Blank& blank, const Solid& pa
 
 PlanResult make_plan(const PlanInput& input, Diagnostics& diagnostics) {
   const Blank blank = read_blank(input);
-  const Solid part = read_solid(input.part_path, input.mm_per_unit);
+  const StockPart part = read_part(input, blank.solid.bounds());
   std::vector<Solid> fixtures;
   for (const std::string& path : input.fixture_paths) fixtures.push_back(read_solid(path, input.mm_per_unit));
   PlanResult out;
   out.setups.reserve(input.setups.size());
-  out.removal_mm3 = volume_mm3(blank.solid) - volume_mm3(part);
+  out.removal_mm3 = volume_mm3(blank.solid) - volume_mm3(part.solid);
+  for (const Hole& h : part.holes) out.removal_mm3 += h.volume_mm3;
   for (const Setup& setup : input.setups) {
     std::vector<Machined> machined;
     for (const SetupPlan& earlier : out.setups) machined.emplace_back(earlier, setup.turn);
@@ -170,8 +204,10 @@ PlanResult make_plan(const PlanInput& input, Diagnostics& diagnostics) {
                                  "that was expected of every set-up but the first",
                                  setup.name),
                      "setup-turn");
-    if (!blank.planes[2].empty() && !setup.turn.isIdentity())
-      fail_on_file(input.path, "a blank from a stock.vdb is not turned; a set-up without turn was expected",
+    if ((!blank.planes[2].empty() || is_stock_file(input.part_path)) && !setup.turn.isIdentity())
+      fail_on_file(input.path,
+                   fmt::format("a {} from a stock.vdb is not turned; a set-up without turn was expected",
+                               blank.planes[2].empty() ? "part" : "blank"),
                    "setup-turn");
     out.setups.push_back(plan_setup(input, blank, part, fixtures, setup, machined));
     if (out.setups.size() == 1) check_shapes(out.setups.front().removal, input, diagnostics);

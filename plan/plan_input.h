@@ -63,6 +63,9 @@ struct PlanInput {
   std::vector<Setup> setups;  ///< one at least
 };
 
+/// True for *.vdb: a part that is what a program leaves.
+bool is_stock_file(const std::string& path);
+
 /// Reads the plan, its machine and its case base. Throws InputError with file:line:column.
 PlanInput read_plan_input(const std::string& path, Diagnostics& diagnostics);
 

@@ -188,6 +188,8 @@ double tool_change_s(TomlTable& top, const machine::Machine& machine) {
 
 }  // namespace
 
+bool is_stock_file(const std::string& path) { return path.ends_with(".vdb"); }
+
 PlanInput read_plan_input(const std::string& path, Diagnostics& diagnostics) {
   const auto file = machine::read_toml(path, "a plan (part, machine, case_base, [blank], [tool.1] ...)", diagnostics);
   diagnostics.throw_if_errors();

@@ -36,9 +36,9 @@ bool is_to_go(CellKind kind) {
   return kind == CellKind::clear || kind == CellKind::contoured || kind == CellKind::free_form;
 }
 
-std::vector<Region> regions_of_layer(const CellGrid& grid, int layer) {
+/// Without the columns of `seen`.
+std::vector<Region> regions_of_layer(const CellGrid& grid, int layer, std::set<Column> seen) {
   std::vector<Region> out;
-  std::set<Column> seen;
   for (int x = 0; x < grid.count(0); ++x)
     for (int y = 0; y < grid.count(1); ++y) {
       const CellKind kind = grid.at({x, y, layer}).kind;
@@ -81,22 +81,57 @@ void add_free_form(Region region, std::vector<Region>& regions) {
   std::erase_if(regions, [](const Region& r) { return r.free_form && r.cells.empty(); });
 }
 
+bool goes(const CellGrid& grid, const CellIndex& c) {
+  return is_to_go(grid.at(c).kind) && grid.at(c).kind != CellKind::free_form;
+}
+
+/// True where a region has the same outline as the one below it, also round what stays in its cells.
+bool goes_on(const CellGrid& grid, const Region& below, const Region& above) {
+  if (below.free_form || below.columns != above.columns) return false;
+  constexpr double kAlike = 0.005;  // of a cell
+  const auto stays = [&](const Column& c, int layer) {
+    const CellIndex cell{c[0], c[1], layer};
+    return grid.at(cell).kind == CellKind::contoured ? grid.at(cell).part_mm3 / grid.volume_mm3(cell) : 0;
+  };
+  return std::ranges::all_of(below.columns, [&](const Column& c) {
+    const bool contoured = grid.at({c[0], c[1], below.to - 1}).kind == CellKind::contoured;
+    return contoured == (grid.at({c[0], c[1], above.from}).kind == CellKind::contoured) &&
+           std::abs(stays(c, below.to - 1) - stays(c, above.from)) < kAlike;
+  });
+}
+
+/// Takes a layer that is too thin for a pass of its own into the regions below it, where all of a region goes there
+/// too. What is taken is in `taken`.
+void take_thin_layer(const CellGrid& grid, int layer, std::vector<Region>& regions, std::set<Column>& taken) {
+  for (Region& below : regions) {
+    if (below.to != layer || below.free_form) continue;
+    const auto goes_above = [&](const Column& c) { return goes(grid, {c[0], c[1], layer}); };
+    if (!std::ranges::all_of(below.columns, goes_above)) continue;
+    below.to = layer + 1;
+    taken.insert(below.columns.begin(), below.columns.end());
+  }
+}
+
 /// Regions of all layers; alike ones on both sides of a plane are one: the plane is a face of another region.
-std::vector<Region> regions_of(const CellGrid& grid) {
+std::vector<Region> regions_of(const CellGrid& grid, double narrowest_mm) {
   std::vector<Region> out;
-  for (int z = 0; z < grid.count(2); ++z)
-    for (Region& region : regions_of_layer(grid, z)) {
+  constexpr double kThin = 0.1;  // of the smallest mill
+  for (int z = 0; z < grid.count(2); ++z) {
+    std::set<Column> taken;
+    if (grid.plane_mm(2, z + 1) - grid.plane_mm(2, z) < kThin * narrowest_mm) take_thin_layer(grid, z, out, taken);
+    for (Region& region : regions_of_layer(grid, z, taken)) {
       if (region.free_form) {
         add_free_form(std::move(region), out);
         continue;
       }
-      const auto below = std::ranges::find_if(
-          out, [&](const Region& r) { return r.to == z && !r.free_form && r.columns == region.columns; });
+      const auto below =
+          std::ranges::find_if(out, [&](const Region& r) { return r.to == z && goes_on(grid, r, region); });
       if (below != out.end())
         below->to = z + 1;
       else
         out.push_back(std::move(region));
     }
+  }
   return out;
 }
 
@@ -196,11 +231,89 @@ class LargestRectangles {
   std::vector<std::vector<bool>> left_;
 };
 
-std::vector<Rectangle> rectangles_of(const CellGrid& grid, const Outline& outline, DivisionPlan plan) {
-  if (plan != DivisionPlan::largest) return slabs(outline, plan == DivisionPlan::yz);
-  std::vector<Rectangle> best = LargestRectangles(grid, outline).find();
+using Rectangles = std::vector<Rectangle>;  ///< of one primitive
+
+/// Joins rectangles that are narrower than the smallest mill to one that lies along them.
+class SliverJoiner {
+ public:
+  SliverJoiner(const CellGrid& grid, const Outline& outline, double narrowest_mm)
+      : grid_(grid), outline_(outline), least_((1 - 1e-3) * narrowest_mm) {}
+
+  std::vector<Rectangles> joined(const std::vector<Rectangle>& rectangles) const {
+    std::vector<Rectangles> out;
+    for (const Rectangle& r : rectangles) out.push_back({r});
+    while (join_one(out)) {
+    }
+    return out;
+  }
+
+ private:
+  double x(std::size_t i) const { return grid_.plane_mm(0, outline_.x[i]); }
+  double y(std::size_t j) const { return grid_.plane_mm(1, outline_.y[j]); }
+
+  static Rectangle bounds_of(const Rectangles& group) {
+    Rectangle b = group.front();
+    for (const Rectangle& r : group)
+      b = {std::min(b.i0, r.i0), std::max(b.i1, r.i1), std::min(b.j0, r.j0), std::max(b.j1, r.j1)};
+    return b;
+  }
+
+  /// Length along which two of them touch.
+  double border_mm(const Rectangle& a, const Rectangle& b) const {
+    const double along_x = std::min(x(a.i1), x(b.i1)) - std::max(x(a.i0), x(b.i0));
+    const double along_y = std::min(y(a.j1), y(b.j1)) - std::max(y(a.j0), y(b.j0));
+    if (a.i1 == b.i0 || b.i1 == a.i0) return std::max(along_y, 0.0);
+    if (a.j1 == b.j0 || b.j1 == a.j0) return std::max(along_x, 0.0);
+    return 0;
+  }
+
+  /// The box round both has nothing in it that goes with another primitive.
+  bool only_theirs(const Rectangles& a, const Rectangles& b) const {
+    Rectangles both = a;
+    both.insert(both.end(), b.begin(), b.end());
+    const Rectangle box = bounds_of(both);
+    for (std::size_t i = box.i0; i < box.i1; ++i)
+      for (std::size_t j = box.j0; j < box.j1; ++j)
+        if (outline_.filled[i][j] && std::ranges::none_of(both, [&](const Rectangle& r) {
+              return i >= r.i0 && i < r.i1 && j >= r.j0 && j < r.j1;
+            }))
+          return false;
+    return true;
+  }
+
+  bool join_one(std::vector<Rectangles>& groups) const {
+    for (std::size_t s = 0; s < groups.size(); ++s) {
+      const Rectangle box = bounds_of(groups[s]);
+      const double w = x(box.i1) - x(box.i0), h = y(box.j1) - y(box.j0);
+      if (std::min(w, h) >= least_) continue;
+      double longest = 0.5 * std::max(w, h);  // a slot that opens with its end is a slot
+      std::size_t to = s;
+      for (std::size_t g = 0; g < groups.size(); ++g) {
+        if (g == s) continue;
+        double border = 0;
+        for (const Rectangle& a : groups[s])
+          for (const Rectangle& b : groups[g]) border += border_mm(a, b);
+        if (border > longest && only_theirs(groups[s], groups[g])) longest = border, to = g;
+      }
+      if (to == s) continue;
+      groups[to].insert(groups[to].end(), groups[s].begin(), groups[s].end());
+      groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(s));
+      return true;
+    }
+    return false;
+  }
+
+  const CellGrid& grid_;
+  const Outline& outline_;
+  double least_;
+};
+
+std::vector<Rectangles> rectangles_of(const RemovalVolume& removal, const Outline& outline, DivisionPlan plan) {
+  const SliverJoiner joiner(removal.grid, outline, removal.narrowest_mm);
+  if (plan != DivisionPlan::largest) return joiner.joined(slabs(outline, plan == DivisionPlan::yz));
+  std::vector<Rectangles> best = joiner.joined(LargestRectangles(removal.grid, outline).find());
   for (const bool across_x : {true, false}) {
-    std::vector<Rectangle> other = slabs(outline, across_x);
+    std::vector<Rectangles> other = joiner.joined(slabs(outline, across_x));
     if (other.size() < best.size()) best = std::move(other);
   }
   return best;
@@ -225,22 +338,23 @@ Primitive primitive_of(const CellGrid& grid, std::vector<CellIndex> cells) {
   return out;
 }
 
-std::vector<CellIndex> cells_of(const Region& region, const Outline& outline, const Rectangle& r) {
+std::vector<CellIndex> cells_of(const Region& region, const Outline& outline, const Rectangles& rectangles) {
   std::vector<CellIndex> cells;
-  for (int x = outline.x[r.i0]; x < outline.x[r.i1]; ++x)
-    for (int y = outline.y[r.j0]; y < outline.y[r.j1]; ++y)
-      for (int z = region.from; z < region.to; ++z) cells.push_back({x, y, z});
+  for (const Rectangle& r : rectangles)
+    for (int x = outline.x[r.i0]; x < outline.x[r.i1]; ++x)
+      for (int y = outline.y[r.j0]; y < outline.y[r.j1]; ++y)
+        for (int z = region.from; z < region.to; ++z) cells.push_back({x, y, z});
   return cells;
 }
 
-void add_boxes(const CellGrid& grid, const Region& region, DivisionPlan plan, std::vector<Primitive>& out) {
+void add_boxes(const RemovalVolume& removal, const Region& region, DivisionPlan plan, std::vector<Primitive>& out) {
   if (region.free_form) {
-    out.push_back(primitive_of(grid, region.cells));
+    out.push_back(primitive_of(removal.grid, region.cells));
     return;
   }
   const Outline outline = outline_of(region);
-  for (const Rectangle& r : rectangles_of(grid, outline, plan))
-    out.push_back(primitive_of(grid, cells_of(region, outline, r)));
+  for (const Rectangles& r : rectangles_of(removal, outline, plan))
+    out.push_back(primitive_of(removal.grid, cells_of(region, outline, r)));
 }
 
 Primitive primitive_of(const Hole& hole, std::size_t number) {
@@ -258,7 +372,7 @@ Primitive primitive_of(const Hole& hole, std::size_t number) {
 
 std::vector<Primitive> divide(const RemovalVolume& removal, DivisionPlan plan) {
   std::vector<Primitive> out;
-  for (const Region& region : regions_of(removal.grid)) add_boxes(removal.grid, region, plan, out);
+  for (const Region& region : regions_of(removal.grid, removal.narrowest_mm)) add_boxes(removal, region, plan, out);
   for (std::size_t h = 0; h < removal.holes.size(); ++h) out.push_back(primitive_of(removal.holes[h], h));
   return out;
 }

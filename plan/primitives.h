@@ -18,7 +18,7 @@ struct Primitive {
   bool free_form = false;        ///< one of its faces is
   bool contoured = false;        ///< a part stays in it, with upright walls
   bool overhang = false;         ///< a free-form face of it looks down
-  std::vector<CellIndex> cells;  ///< ascending; none of a hole
+  std::vector<CellIndex> cells;  ///< ascending; none of a hole; all of the box but of slivers that are joined
   std::size_t hole = 0;          ///< among RemovalVolume::holes
   Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();
   double volume_mm3 = 0;  ///< to be removed
@@ -30,7 +30,9 @@ struct Primitive {
 /// one primitive, with those above and below it that it touches. `largest` takes the greatest rectangle that is left
 /// again and again (equal: less perimeter, then less x, then less y of the middle), or one of the other ways where that
 /// gives fewer boxes. A plane parallel to xy does not divide what is alike above and below: it is the floor of another
-/// region. Boxes first, by layer from below; then holes.
+/// region. A box narrower than the smallest mill that lies along another one is joined to that, and a layer thinner
+/// than a tenth of it to the layer below where that is no larger: then a primitive has more than one box. Boxes first,
+/// by layer from below; then holes.
 std::vector<Primitive> divide(const RemovalVolume& removal, DivisionPlan plan);
 
 }  // namespace camber::plan

@@ -45,6 +45,7 @@ CellGrid make_grid(const RemovalInput& input, const Faces& part, const Bounds& s
     }
     planes[a] = planes_within(std::move(all), space.min_mm[static_cast<int>(a)], space.max_mm[static_cast<int>(a)],
                               input.faces.plane_tolerance_mm);
+    if (a < 2) planes[a] = without_slivers(planes[a], input.narrowest_mm);
   }
   return CellGrid(std::move(planes));
 }
@@ -58,6 +59,12 @@ void take_machined(const RemovalInput& input, CellGrid& g) {
         if (input.machined(0.5 * (g.low_mm(c) + g.high_mm(c))))
           g.at(c).blank_mm3 = std::min(g.at(c).blank_mm3, g.at(c).part_mm3);
       }
+}
+
+void append(Solid& to, const Solid& from) {
+  const auto first = static_cast<std::uint32_t>(to.points.size());
+  to.points.insert(to.points.end(), from.points.begin(), from.points.end());
+  for (const Triangle& t : from.triangles) to.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
 }
 
 void sum_up(RemovalVolume& out, double tolerance_mm) {
@@ -81,7 +88,8 @@ void sum_up(RemovalVolume& out, double tolerance_mm) {
 double RemovalVolume::balance() const { return removal_mm3() > 0 ? (cells_mm3 + holes_mm3) / removal_mm3() - 1 : 0; }
 
 RemovalVolume removal_volume(const RemovalInput& input) {
-  const Faces part = find_faces(input.part, input.faces);
+  Faces part = find_faces(input.part, input.faces);
+  part.holes.insert(part.holes.end(), input.part_holes.begin(), input.part_holes.end());
   Bounds space = input.blank.bounds();
   const Bounds blank_bounds = space;
   space.add(part.plugged.bounds());
@@ -91,6 +99,7 @@ RemovalVolume removal_volume(const RemovalInput& input) {
   out.blank_bounds = blank_bounds;
   out.blank_mm3 = volume_mm3(input.blank);
   out.part_mm3 = volume_mm3(input.part);
+  for (const Hole& h : input.part_holes) out.part_mm3 -= h.volume_mm3;
   out.free_form_mm2 = part.free_form_mm2;
   out.grid.add(input.blank, &Cell::blank_mm3, false);
   out.grid.add(part.plugged, &Cell::part_mm3, true);
@@ -108,6 +117,9 @@ RemovalVolume removal_volume(const RemovalInput& input) {
     if (share > kThere && !(input.machined && input.machined(middle))) out.holes.push_back(hole);
   }
   sum_up(out, tolerance);
+  out.narrowest_mm = input.narrowest_mm;
+  out.stays = std::move(part.plugged);
+  for (const Solid& f : input.fixtures) append(out.stays, f);
   out.outside_mm3 = std::max(0.0, out.outside_mm3 - 1.01 * done_mm3);
   return out;
 }

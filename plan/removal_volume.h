@@ -10,12 +10,16 @@ namespace camber::plan {
 
 struct RemovalInput {
   Solid blank{}, part{};
+  /// Of a part that comes with its holes filled.
+  std::vector<Hole> part_holes{};
   std::vector<Solid> fixtures{};
   FaceOptions faces{};
   /// Planes of a blank that comes as heights only.
   std::array<std::vector<AxisPlane>, 3> blank_planes{};
   /// Of the cells: what is thinner does not count. At least the tolerance of the planes.
   double tolerance_mm = 0.01;
+  /// Diameter of the smallest mill; 0: there is none, and everything is divided.
+  double narrowest_mm = 0;
   /// Of earlier set-ups: whether a place is machined, and the planes of what is.
   std::function<bool(const Vec3&)> machined{};
   std::array<std::vector<AxisPlane>, 3> machined_planes{};
@@ -32,13 +36,16 @@ struct RemovalVolume {
   double outside_mm3 = 0;               ///< of the part, where there is no blank
   double free_form_mm2 = 0;
   Bounds blank_bounds;
+  Solid stays;              ///< part with its holes filled, and fixtures
+  double narrowest_mm = 0;  ///< see RemovalInput
 
   double removal_mm3() const { return blank_mm3 - part_mm3; }
   /// (cells + holes) / removal - 1.
   double balance() const;
 };
 
-/// Planes are those of the faces of part and blank. Holes are taken out of the part first and the rest is divided as if
+/// Planes are those of the faces of part and blank; short walls do not divide into slivers narrower than
+/// `narrowest_mm`. Holes are taken out of the part first and the rest is divided as if
 /// they were not there.
 RemovalVolume removal_volume(const RemovalInput& input);
 

@@ -6,21 +6,6 @@
 namespace camber::plan {
 namespace {
 
-/// Material of one column, in pairs of heights.
-std::vector<double> column_of(const removal::Stock::Probe& probe, const removal::Stock& stock, double x, double y) {
-  const double step = stock.voxel_mm();
-  std::vector<double> out;
-  double before = stock.voxel_mm();  // air below
-  const int count = static_cast<int>(std::ceil((stock.max_mm().z() - stock.min_mm().z()) / step)) + 3;
-  for (int i = -1; i < count; ++i) {
-    const double z = stock.min_mm().z() + i * step, value = probe.distance_mm({x, y, z});
-    if ((before < 0) != (value < 0)) out.push_back(z - step * value / (value - before));
-    before = value;
-  }
-  if (out.size() % 2 != 0) out.pop_back();
-  return out;
-}
-
 void add_level(Solid& out, double x0, double x1, double y0, double y1, double z, bool up) {
   const auto first = static_cast<std::uint32_t>(out.points.size());
   out.points.insert(out.points.end(), {{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}});
@@ -47,6 +32,21 @@ std::vector<AxisPlane> gathered(std::vector<AxisPlane> all, double tolerance_mm,
 
 }  // namespace
 
+std::vector<double> material_along_z(const removal::Stock::Probe& probe, const removal::Stock& stock, double x,
+                                     double y) {
+  const double step = stock.voxel_mm();
+  std::vector<double> out;
+  double before = stock.voxel_mm();  // air below
+  const int count = static_cast<int>(std::ceil((stock.max_mm().z() - stock.min_mm().z()) / step)) + 3;
+  for (int i = -1; i < count; ++i) {
+    const double z = stock.min_mm().z() + i * step, value = probe.distance_mm({x, y, z});
+    if ((before < 0) != (value < 0)) out.push_back(z - step * value / (value - before));
+    before = value;
+  }
+  if (out.size() % 2 != 0) out.pop_back();
+  return out;
+}
+
 StockBlank blank_of(const removal::Stock& stock, const FaceOptions& options) {
   StockBlank out;
   out.solid.heights_only = true;
@@ -60,7 +60,7 @@ StockBlank blank_of(const removal::Stock& stock, const FaceOptions& options) {
     const auto y_of = [&](int j) { return low.y() + size.y() * j / ny; };
     for (int j = 0; j < ny;) {
       const auto column = [&](int k) {
-        return column_of(probe, stock, 0.5 * (x0 + x1), 0.5 * (y_of(k) + y_of(k + 1)));
+        return material_along_z(probe, stock, 0.5 * (x0 + x1), 0.5 * (y_of(k) + y_of(k + 1)));
       };
       const std::vector<double> heights = column(j);
       int end = j + 1;

@@ -1,21 +1,13 @@
 // What stands round a primitive.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "plan/order.h"
+#include "plan/room.h"
 
 namespace camber::plan {
 namespace {
-
-struct Rect {
-  double x0 = 0, x1 = 0, y0 = 0, y1 = 0;
-  double distance(double x, double y) const {
-    return std::hypot(std::max({x0 - x, x - x1, 0.0}), std::max({y0 - y, y - y1, 0.0}));
-  }
-  double distance(const Rect& o) const {
-    return std::hypot(std::max({x0 - o.x1, o.x0 - x1, 0.0}), std::max({y0 - o.y1, o.y0 - y1, 0.0}));
-  }
-};
 
 Rect rect_of(const CellGrid& g, int x, int y) {
   return {g.plane_mm(0, x), g.plane_mm(0, x + 1), g.plane_mm(1, y), g.plane_mm(1, y + 1)};
@@ -23,10 +15,11 @@ Rect rect_of(const CellGrid& g, int x, int y) {
 
 Rect rect_of(const Primitive& p) { return {p.min_mm.x(), p.max_mm.x(), p.min_mm.y(), p.max_mm.y()}; }
 
-constexpr double kTouch_mm = 1e-3;
-constexpr int kCentres = 40, kPoints = 20;  // of the grid, along each side
+constexpr double kTouch_mm = 1e-3, kFloor_mm = 0.02;
 
 }  // namespace
+
+double sharp_corners_mm2(double radius_mm) { return (4 - kPi) * radius_mm * radius_mm; }
 
 double Workpiece::highest_near_mm(std::size_t primitive, double distance_mm) const {
   const Primitive& p = primitives_[primitive];
@@ -44,47 +37,42 @@ double Workpiece::highest_near_mm(std::size_t primitive, double distance_mm) con
   return top;
 }
 
-bool Workpiece::has_room(std::size_t primitive, const OpenFaces& open, double radius_mm) const {
+double Workpiece::unreached_mm2(std::size_t primitive, const OpenFaces& open, double radius_mm) const {
   const Primitive& p = primitives_[primitive];
   const CellGrid& g = removal_.grid;
   const Rect own = rect_of(p);
-  Rect room = own;
+  Rect middles = own;
   const double beyond = radius_mm + 1;
-  if (open.side[0]) room.x0 -= beyond;
-  if (open.side[1]) room.x1 += beyond;
-  if (open.side[2]) room.y0 -= beyond;
-  if (open.side[3]) room.y1 += beyond;
-  std::vector<Rect> obstacles;
-  for (int x = 0; x < g.count(0); ++x)
-    for (int y = 0; y < g.count(1); ++y)
-      for (int z = 0; z < g.count(2); ++z) {
-        const int of = owner({x, y, z});
-        if ((of != kPart && of != kFixture) || g.plane_mm(2, z + 1) < p.min_mm.z() + kTouch_mm) continue;
-        const Rect r = rect_of(g, x, y);
-        if (r.distance(room) < radius_mm) obstacles.push_back(r);
-        break;
-      }
-  const double dx = (room.x1 - room.x0) / kCentres, dy = (room.y1 - room.y0) / kCentres;
-  const double half_step = 0.5 * std::hypot(dx, dy);
-  std::vector<Vec2> centres;
-  for (int i = 0; i <= kCentres; ++i)
-    for (int j = 0; j <= kCentres; ++j) {
-      const Vec2 c(room.x0 + i * dx, room.y0 + j * dy);
-      if (std::ranges::all_of(obstacles,
-                              [&](const Rect& o) { return o.distance(c.x(), c.y()) > radius_mm - half_step; }))
-        centres.push_back(c);
-    }
-  const double reach = (radius_mm + half_step) * (radius_mm + half_step);
-  int missed = 0;
-  for (int i = 0; i < kPoints; ++i)
-    for (int j = 0; j < kPoints; ++j) {
-      const Vec2 at(own.x0 + (i + 0.5) * (own.x1 - own.x0) / kPoints, own.y0 + (j + 0.5) * (own.y1 - own.y0) / kPoints);
-      if (std::ranges::none_of(centres, [&](const Vec2& c) { return (c - at).squaredNorm() < reach; })) ++missed;
-    }
-  const double area = (own.x1 - own.x0) * (own.y1 - own.y0);
-  const double corners = 4 * (1 - kPi / 4) * radius_mm * radius_mm / area;
-  constexpr double kCoarse = 0.02;  // the grid's own error
-  return missed <= (std::min(corners, 0.25) + kCoarse) * kPoints * kPoints;
+  if (open.side[0]) middles.x0 -= beyond;
+  if (open.side[1]) middles.x1 += beyond;
+  if (open.side[2]) middles.y0 -= beyond;
+  if (open.side[3]) middles.y1 += beyond;
+  std::set<std::array<int, 2>> columns;
+  for (const CellIndex& c : p.cells) columns.insert({c.x, c.y});
+  const auto wanted = [&](double x, double y) {
+    return own.holds(x, y) && columns.contains({g.cell_of(0, x), g.cell_of(1, y)});
+  };
+  return Room(removal_.stays, middles, radius_mm, p.min_mm.z() + kFloor_mm).unreached_mm2(wanted);
+}
+
+double Workpiece::stands_within_mm2(std::size_t primitive) const {
+  const Primitive& p = primitives_[primitive];
+  const Rect own = rect_of(p);
+  constexpr double kFine_mm = 1;  // the grid's radius
+  return Room(removal_.stays, own, kFine_mm, p.min_mm.z() + kFloor_mm).standing_mm2([&](double x, double y) {
+    return own.holds(x, y);
+  });
+}
+
+bool Workpiece::has_room(std::size_t primitive, const OpenFaces& open, double radius_mm) const {
+  const Primitive& p = primitives_[primitive];
+  const double area = (p.max_mm.x() - p.min_mm.x()) * (p.max_mm.y() - p.min_mm.y());
+  constexpr double kCoarse = 0.005;  // the grid's own error
+  int inner = 0;                     // corners between sides that are not open
+  for (const auto& [x, y] : {std::pair(0, 2), std::pair(0, 3), std::pair(1, 2), std::pair(1, 3)})
+    inner += !open.side[static_cast<std::size_t>(x)] && !open.side[static_cast<std::size_t>(y)];
+  const double corners = std::min(inner * sharp_corners_mm2(radius_mm) / 4, 0.25 * area);
+  return unreached_mm2(primitive, open, radius_mm) <= corners + kCoarse * area;
 }
 
 double Workpiece::part_area_mm2(const Primitive& p, int axis, int step) const {

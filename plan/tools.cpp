@@ -96,11 +96,14 @@ std::optional<ToolPick> pick_mill(const ToolNeed& need, const PlanTools& tools, 
   const ToolUse use = use_for(need.feature);
   const auto candidates = tools_for(tools, use);
   const double rule = largest_diameter_mm(need.feature, need.width_mm);
-  if (const PlanTool* t = first_usable(candidates, need, rule)) return ToolPick{t->tool.number, {}};
+  const bool walls = use == ToolUse::face_mill && need.walls_within;
+  if (const PlanTool* t = walls ? nullptr : first_usable(candidates, need, rule)) return ToolPick{t->tool.number, {}};
   const auto end_mills = tools_for(tools, ToolUse::end_mill);
   if (use == ToolUse::face_mill) {
     if (const PlanTool* t = first_usable(end_mills, need, machine::kNoLimit))
-      return ToolPick{t->tool.number, candidates.empty() ? "there is no face mill" : "no face mill has room and reach"};
+      return ToolPick{t->tool.number, candidates.empty() ? "there is no face mill"
+                                      : walls            ? "walls stand within it: an end mill"
+                                                         : "no face mill has room and reach"};
   } else if (std::isfinite(rule)) {
     const double narrower = need.width_mm * (1 - 1e-3);
     if (const PlanTool* t = first_usable(candidates, need, narrower))
@@ -111,10 +114,10 @@ std::optional<ToolPick> pick_mill(const ToolNeed& need, const PlanTools& tools, 
 }
 
 std::optional<ToolPick> pick_rest_mill(const ToolNeed& need, const PlanTools& tools, std::string& wanted) {
-  const double largest = 2 * need.inner_radius_mm;
+  const double largest = 2 * need.inner_radius_mm * (1 + kCornerShare);
   if (const PlanTool* t = first_usable(tools_for(tools, ToolUse::end_mill), need, largest))
     return ToolPick{t->tool.number, {}};
-  wanted = wanted_tool(need, ToolUse::end_mill, largest);
+  wanted = wanted_tool(need, ToolUse::end_mill, 2 * need.inner_radius_mm);
   return std::nullopt;
 }
 
@@ -139,6 +142,10 @@ std::optional<HoleTools> pick_hole_tools(const ToolNeed& need, const PlanTools& 
   for (const PlanTool* t : tools_for(tools, ToolUse::center_drill))
     if (t->tool.diameter_mm < d && !out.center_drill && t->tool.overhang_mm > mouth.depth_mm)
       out.center_drill = t->tool.number;
+  // Wider than the hole a spot drill cuts with its point alone; the smallest one.
+  if (!out.center_drill)
+    for (const PlanTool* t : tools_for(tools, ToolUse::center_drill))
+      if (t->tool.point_angle_rad > 0 && t->tool.overhang_mm > mouth.depth_mm) out.center_drill = t->tool.number;
   out.reamer = of_diameter(tools, ToolUse::reamer, need, d - kFits_mm, d + kFits_mm);
   if (out.reamer) out.drill = of_diameter(tools, ToolUse::drill, need, d - kReamingLow_mm, d - kReamingHigh_mm);
   if (out.reamer && out.drill) return out;

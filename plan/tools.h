@@ -10,12 +10,16 @@
 
 namespace camber::plan {
 
+/// Share of its radius by which facets tell that of an inner corner wrongly.
+inline constexpr double kCornerShare = 0.03;
+
 /// What a primitive asks of its tool.
 struct ToolNeed {
   Feature feature = Feature::face;
   double width_mm = 0;                         ///< see Step
   double depth_mm = 0;                         ///< from its top to its bottom
   double inner_radius_mm = machine::kNoLimit;  ///< smallest of its upright inner corners
+  bool walls_within = false;                   ///< something of the part stands in it
   std::function<double(double)> wall_mm{};     ///< height over the bottom of what stands within a distance
   std::function<bool(double)> has_room{};      ///< for a radius; empty: always
 };
@@ -39,12 +43,12 @@ double largest_diameter_mm(Feature feature, double width_mm);
 /// than the cutter likewise, and an overhang of more than the depth.
 std::string reach_fault(const machine::Tool& tool, const ToolNeed& need);
 
-/// The largest tool that keeps the rule, reaches and has room. Where none does: of end mills the largest that is
-/// narrower than the feature; for faces and steps an end mill; with a note. Nothing: none will do, and `wanted` says
-/// what tool would.
+/// The largest tool that keeps the rule, reaches and has room; where walls stand within a face or step, an end mill.
+/// Where none does: of end mills the largest that is narrower than the feature; for faces and steps an end mill; with a
+/// note. Nothing: none will do, and `wanted` says what tool would.
 std::optional<ToolPick> pick_mill(const ToolNeed& need, const PlanTools& tools, std::string& wanted);
 
-/// The largest end mill that gets into inner corners of this radius.
+/// The largest end mill that gets into the need's inner corners, within 3 %: a mesh tells their radius no better.
 std::optional<ToolPick> pick_rest_mill(const ToolNeed& need, const PlanTools& tools, std::string& wanted);
 
 /// Tools of a hole, in their order: centre drill, drill, reamer; or an end mill that bores it.

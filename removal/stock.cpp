@@ -10,6 +10,8 @@
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -38,13 +40,113 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 constexpr float kBelow = std::numeric_limits<float>::max();
 constexpr std::size_t kMaxBelow = 2;
 
+/// Leaves of a field that are the same at many places, each kept once: along a flat face of a box they differ by
+/// nothing. Does not change once it is made; may be read by many threads.
+class RepeatedLeaves {
+ public:
+  /// What the field has at the place of a leaf that was taken out.
+  static constexpr float kHere = std::numeric_limits<float>::lowest();
+
+  /// Takes every leaf whose values and active voxels stand at least twice in the tree out of it.
+  static std::shared_ptr<const RepeatedLeaves> take_from(openvdb::FloatTree& tree);
+
+  /// Where the tree has kHere; `at`: any voxel of the leaf. The leaf's own origin is that of one of its places.
+  const Leaf& leaf(const openvdb::Coord& at) const {
+    return *leaves_[static_cast<std::size_t>(numbers_.getValue(place(at)))];
+  }
+  /// Puts the leaves back into a tree, each at all the places at which the tree still has kHere.
+  void put_back(openvdb::FloatTree& tree) const;
+  std::size_t memory_bytes() const;
+
+ private:
+  using Numbers = openvdb::tree::Tree4<openvdb::Int32, 3, 3, 3>::Type;  // nodes smaller than the usual ones: 4 kB
+
+  static constexpr openvdb::Int32 kLog2Side = static_cast<openvdb::Int32>(Leaf::LOG2DIM);
+  static openvdb::Coord place(const openvdb::Coord& at) { return at >> kLog2Side; }
+
+  std::vector<std::unique_ptr<const Leaf>> leaves_;
+  Numbers numbers_{-1};  ///< of the leaf at a place, by place()
+};
+
+/// Calls f(origin) for every place at which a tree has RepeatedLeaves::kHere.
+template <class Function>
+void for_each_repeated(const openvdb::FloatTree& tree, Function f) {
+  auto tile = tree.cbeginValueOff();
+  tile.setMaxDepth(openvdb::FloatTree::ValueOffCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (tile.getValue() == RepeatedLeaves::kHere) f(tile.getCoord());
+}
+
+std::string_view bytes_of(const Leaf& leaf) {
+  return {reinterpret_cast<const char*>(leaf.buffer().data()), Leaf::SIZE * sizeof(float)};
+}
+
+bool same(const Leaf& a, const Leaf& b) { return a.getValueMask() == b.getValueMask() && bytes_of(a) == bytes_of(b); }
+
+std::shared_ptr<const RepeatedLeaves> RepeatedLeaves::take_from(openvdb::FloatTree& tree) {
+  std::vector<const Leaf*> leaves;
+  leaves.reserve(tree.leafCount());
+  for (auto it = std::as_const(tree).cbeginLeaf(); it; ++it) leaves.push_back(&*it);
+  std::vector<std::size_t> hashes(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(),
+                    [&](std::size_t i) { hashes[i] = std::hash<std::string_view>{}(bytes_of(*leaves[i])); });
+  // Of every leaf the first one that is the same.
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::unordered_map<std::size_t, std::size_t> first_with;
+  std::vector<std::size_t> first(leaves.size(), kNone), count(leaves.size(), 0);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const std::size_t f = first_with.try_emplace(hashes[i], i).first->second;
+    if (!same(*leaves[f], *leaves[i])) continue;
+    first[i] = f;
+    ++count[f];
+  }
+  auto out = std::make_shared<RepeatedLeaves>();
+  std::vector<openvdb::Int32> number(leaves.size(), -1);
+  openvdb::tree::ValueAccessor<openvdb::FloatTree> field(tree);
+  openvdb::tree::ValueAccessor<Numbers> numbers(out->numbers_);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (first[i] == kNone || count[first[i]] < 2) continue;
+    const openvdb::Coord origin = leaves[i]->origin();
+    if (first[i] == i) {
+      number[i] = static_cast<openvdb::Int32>(out->leaves_.size());
+      out->leaves_.push_back(std::make_unique<const Leaf>(*leaves[i]));
+    }
+    numbers.setValue(place(origin), number[first[i]]);
+    field.addTile(1, origin, kHere, false);
+  }
+  return out;
+}
+
+void RepeatedLeaves::put_back(openvdb::FloatTree& tree) const {
+  std::vector<openvdb::Coord> origins;
+  for_each_repeated(tree, [&](const openvdb::Coord& origin) { origins.push_back(origin); });
+  std::vector<std::unique_ptr<Leaf>> copies(origins.size());
+  tbb::parallel_for(std::size_t{0}, origins.size(), [&](std::size_t i) {
+    copies[i] = std::make_unique<Leaf>(leaf(origins[i]));
+    copies[i]->setOrigin(origins[i]);
+  });
+  for (auto& copy : copies) tree.addLeaf(copy.release());
+}
+
+std::size_t RepeatedLeaves::memory_bytes() const {
+  return static_cast<std::size_t>(numbers_.memUsage()) + leaves_.size() * (sizeof(Leaf) + Leaf::SIZE * sizeof(float));
+}
+
+/// What copies share, which does not change while they do. Leaves that stand in it more than once are in `repeated`.
+struct SharedLayer {
+  openvdb::FloatGrid::Ptr grid;
+  std::shared_ptr<const RepeatedLeaves> repeated;
+
+  bool alone() const { return grid.use_count() == 1; }
+};
+
 }  // namespace
 
 /// Layers: `distance` is this stock's alone and hides those below, which copies share (Stock::share).
 struct Stock::Impl {
   openvdb::FloatGrid::Ptr distance;
   openvdb::Int32Grid::Ptr stamp;
-  std::vector<openvdb::FloatGrid::Ptr> below{};  ///< uppermost first; not changed while they are shared
+  std::vector<SharedLayer> below{};  ///< uppermost first
 };
 
 namespace {
@@ -53,9 +155,12 @@ namespace {
 /// lock, and no reader lives while the tree changes.
 class LayerReader {
  public:
-  explicit LayerReader(const openvdb::FloatGrid& own, std::span<const openvdb::FloatGrid::Ptr> below)
+  explicit LayerReader(const openvdb::FloatGrid& own, std::span<const SharedLayer> below)
       : own_(own.getConstUnsafeAccessor()), count_(below.size()) {
-    for (std::size_t i = 0; i < count_; ++i) below_[i].emplace(std::as_const(*below[i]).getConstUnsafeAccessor());
+    for (std::size_t i = 0; i < count_; ++i) {
+      below_[i].emplace(std::as_const(*below[i].grid).getConstUnsafeAccessor());
+      repeated_[i] = below[i].repeated.get();
+    }
   }
 
   struct Found {
@@ -69,12 +174,16 @@ class LayerReader {
     for (std::size_t i = 0; i < count_ && value == kBelow; ++i) {
       if (const Leaf* node = below_[i]->probeConstLeaf(origin)) return {node, 0, false};
       value = below_[i]->getValue(origin);
+      if (value == RepeatedLeaves::kHere) return {&repeated_[i]->leaf(origin), 0, false};
     }
     return {nullptr, value, false};
   }
   float getValue(const Coord& at) const {
     float value = own_.getValue(at);
-    for (std::size_t i = 0; i < count_ && value == kBelow; ++i) value = below_[i]->getValue(at);
+    for (std::size_t i = 0; i < count_ && value == kBelow; ++i) {
+      value = below_[i]->getValue(at);
+      if (value == RepeatedLeaves::kHere) return repeated_[i]->leaf(at).getValue(at);
+    }
     return value;
   }
 
@@ -82,6 +191,7 @@ class LayerReader {
   using Accessor = openvdb::FloatGrid::ConstUnsafeAccessor;
   Accessor own_;
   std::array<std::optional<Accessor>, kMaxBelow> below_;
+  std::array<const RepeatedLeaves*, kMaxBelow> repeated_{};
   std::size_t count_;
 };
 
@@ -461,18 +571,18 @@ void put_over(openvdb::FloatTree& upper, openvdb::FloatTree& lower) {
   for (Leaf* leaf : leaves) lower.addLeaf(leaf);
 }
 
-/// One field of all layers. Layers that nobody else has are used up.
-openvdb::FloatGrid::Ptr merged(openvdb::FloatGrid::Ptr own, std::vector<openvdb::FloatGrid::Ptr> below) {
-  while (!below.empty()) {
-    auto lower = std::move(below.back());
-    below.pop_back();
-    if (lower.use_count() > 1) lower = lower->deepCopy();
-    openvdb::FloatGrid::Ptr& upper = below.empty() ? own : below.back();
-    if (upper.use_count() > 1) upper = upper->deepCopy();
-    put_over(upper->tree(), lower->tree());
-    upper = std::move(lower);
+/// One layer of several, uppermost first. Layers that nobody else has are used up.
+SharedLayer merged(std::vector<SharedLayer> layers) {
+  SharedLayer out = std::move(layers.back());
+  layers.pop_back();
+  for (; !layers.empty(); layers.pop_back()) {
+    SharedLayer& upper = layers.back();
+    if (!out.alone()) out.grid = out.grid->deepCopy();
+    if (!upper.alone()) upper.grid = upper.grid->deepCopy();
+    if (upper.repeated) upper.repeated->put_back(upper.grid->tree());
+    put_over(upper.grid->tree(), out.grid->tree());
   }
-  return own;
+  return out;
 }
 
 }  // namespace
@@ -480,7 +590,17 @@ openvdb::FloatGrid::Ptr merged(openvdb::FloatGrid::Ptr own, std::vector<openvdb:
 void Stock::share() {
   if (impl_->below.size() >= kMaxBelow || impl_->distance->tree().empty()) return;
   auto own = layer_like(*impl_->distance, kBelow);
-  impl_->below.insert(impl_->below.begin(), std::exchange(impl_->distance, std::move(own)));
+  SharedLayer shared{std::exchange(impl_->distance, std::move(own)), nullptr};
+  shared.repeated = RepeatedLeaves::take_from(shared.grid->tree());
+  impl_->below.insert(impl_->below.begin(), std::move(shared));
+}
+
+void Stock::share_as_one() {
+  if (impl_->below.empty()) return share();
+  auto own = layer_like(*impl_->distance, kBelow);
+  std::vector<SharedLayer> layers = std::exchange(impl_->below, {});
+  layers.insert(layers.begin(), {std::exchange(impl_->distance, std::move(own)), nullptr});
+  impl_->below = {merged(std::move(layers))};
 }
 
 Stock Stock::copy_within(const Vec3& min_mm, const Vec3& max_mm) const {
@@ -512,8 +632,12 @@ Stock Stock::copy_within(const Vec3& min_mm, const Vec3& max_mm) const {
 }
 
 void Stock::unshare() {
-  auto own = std::exchange(impl_->distance, nullptr);
-  impl_->distance = merged(std::move(own), std::exchange(impl_->below, {}));
+  if (impl_->below.empty()) return;
+  std::vector<SharedLayer> layers = std::exchange(impl_->below, {});
+  layers.insert(layers.begin(), {std::exchange(impl_->distance, nullptr), nullptr});
+  SharedLayer one = merged(std::move(layers));
+  if (one.repeated) one.repeated->put_back(one.grid->tree());
+  impl_->distance = std::move(one.grid);
 }
 
 void Stock::clear() {
@@ -542,15 +666,20 @@ double Stock::volume_mm3() const {
 std::vector<Index3> Stock::surface_tiles() const {
   std::vector<Index3> tiles;
   const LayerReader reader(*impl_->distance, impl_->below);
+  const auto add_tile_of = [&](const Coord& o) {
+    tiles.push_back({floor_div(o.x(), Tile::kCore), floor_div(o.y(), Tile::kCore), floor_div(o.z(), Tile::kCore)});
+  };
   const auto add = [&](const openvdb::FloatGrid& layer) {
-    for (auto it = layer.tree().cbeginLeaf(); it; ++it) {
-      const Coord& o = it->origin();
-      if (reader.leaf(o).leaf != &*it) continue;
-      tiles.push_back({floor_div(o.x(), Tile::kCore), floor_div(o.y(), Tile::kCore), floor_div(o.z(), Tile::kCore)});
-    }
+    for (auto it = layer.tree().cbeginLeaf(); it; ++it)
+      if (reader.leaf(it->origin()).leaf == &*it) add_tile_of(it->origin());
   };
   add(*impl_->distance);
-  for (const auto& layer : impl_->below) add(*layer);
+  for (const SharedLayer& layer : impl_->below) {
+    add(*layer.grid);
+    for_each_repeated(layer.grid->tree(), [&](const Coord& origin) {
+      if (reader.leaf(origin).leaf == &layer.repeated->leaf(origin)) add_tile_of(origin);
+    });
+  }
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
   return tiles;
@@ -558,7 +687,7 @@ std::vector<Index3> Stock::surface_tiles() const {
 
 std::size_t Stock::memory_bytes() const {
   std::size_t bytes = impl_->distance->memUsage() + impl_->stamp->memUsage();
-  for (const auto& layer : impl_->below) bytes += layer->memUsage();
+  for (const SharedLayer& layer : impl_->below) bytes += layer.grid->memUsage() + layer.repeated->memory_bytes();
   return bytes;
 }
 

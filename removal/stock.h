@@ -82,8 +82,11 @@ class Stock {
   /// Sets everything to air and frees the memory.
   void clear();
   /// From now on copies share what the stock is at this moment, and each has only what it changes for itself: a copy
-  /// takes hardly any memory or time. Not thread safe; copies may then be made and cut by different threads.
+  /// takes hardly any memory or time. What is the same along a flat face is kept once. Not thread safe; copies may then
+  /// be made and cut by different threads.
   void share();
+  /// share(), after which what was shared before and is hidden now takes no memory, unless another copy has it.
+  void share_as_one();
   /// A copy for who reads and cuts within a box alone, mm: elsewhere it has what was shared, if anything was. Takes as
   /// long as what of its own the stock has there, and as all of its own where nothing is shared.
   Stock copy_within(const Vec3& min_mm, const Vec3& max_mm) const;

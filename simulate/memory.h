@@ -36,6 +36,7 @@ struct MemoryFactors {
   double at_once_mm2 = 0;  ///< of it, by the stamps that are swept together
   double table_bytes = 0;  ///< deflections of the stamps that are cut together
   bool allowance = false;
+  bool flat = false;  ///< the blank's faces are, and kept once while the tool cuts (removal::Stock::share)
   // Of a part of the prediction (a section); not given: the whole.
   std::optional<double> blank_mm2{};        ///< of the stock's surface, what has a field
   std::optional<std::size_t> own_stamps{};  ///< that have loads and cutters of the target

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/output_file.h"
+#include "base/temporary_folder.h"
 #include "plan/plan_table.h"
 #include "plan/programs.h"
 
@@ -45,13 +47,11 @@ bool lies_as_given(const plan::PlanInput& input, const plan::SetupPlan& setup) {
 /// The job of camber copy; solids that are turned or scaled are files beside it.
 void add_copy_job(const plan::PlanInput& input, const plan::SetupPlan& setup, const std::string& end,
                   std::vector<std::pair<std::string, std::string>>& files) {
-  const bool as_given = lies_as_given(input, setup);
+  const bool as_given = lies_as_given(input, setup), part_given = as_given && !plan::is_stock_file(input.part_path);
   const std::string part = fmt::format("part{}.stl", end), blank = fmt::format("blank{}.stl", end);
-  if (!as_given) {
-    files.emplace_back(part, plan::stl_text(setup.part));
-    files.emplace_back(blank, plan::stl_text(setup.blank));
-  }
-  machine::Job job = plan::copy_job(input, as_given ? absolute(input.part_path) : part, as_given ? "" : blank);
+  if (!part_given) files.emplace_back(part, plan::stl_text(setup.part));
+  if (!as_given) files.emplace_back(blank, plan::stl_text(setup.blank));
+  machine::Job job = plan::copy_job(input, part_given ? absolute(input.part_path) : part, as_given ? "" : blank);
   job.machine_path = absolute(job.machine_path);
   job.program = fmt::format("program{}.nc", end);
   if (as_given) job.stock.mesh = absolute(job.stock.mesh), job.stock.vdb = absolute(job.stock.vdb);
@@ -65,7 +65,12 @@ using Programs = std::vector<std::optional<plan::PlanProgram>>;  ///< of the pla
 Programs make_programs(const plan::PlanInput& input, plan::SetupPlan& setup, const std::string& end, bool all,
                        Diagnostics& diagnostics) {
   Programs out(setup.plans.size());
-  const machine::Job job = plan::copy_job(input, input.part_path, "");
+  const TemporaryFolder folder;  // of a part that is a stock
+  machine::Job job = plan::copy_job(input, input.part_path, "");
+  if (plan::is_stock_file(input.part_path)) {
+    job.part.mesh = folder.path() + "/part.stl";
+    write_file(job.part.mesh, plan::stl_text(setup.part));
+  }
   std::map<std::string, std::size_t> by_operations;  // plans that come to the same share their program
   for (std::size_t p = 0; p < setup.plans.size(); ++p) {
     plan::PlannedDivision& of = setup.plans[p];

@@ -111,10 +111,6 @@ void write_files(const machine::Job& job, const PreparedJob& prepared, simulate:
   Stage stage("writing", work_of_writing(program, prediction, job));
   const report::FormErrorPoints points = counted(report::form_error_points(program, prediction, traced), stage);
   tbb::task_group others;
-  others.run([&] {
-    prediction.machined->save(folder / "stock.vdb");
-    prediction.machined.reset();
-  });
   others.run([&] { report::write_form_error_csv(folder / "form_error.csv", points); });
   others.run([&] { report::write_form_error_vtp(folder / "form_error.vtp", points); });
   others.run([&] {
@@ -124,6 +120,10 @@ void write_files(const machine::Job& job, const PreparedJob& prepared, simulate:
   });
   others.run([&] { report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95); });
   others.run_and_wait([&] {
+    prediction.machined->unshare();  // what is kept once takes its room again
+    prediction.machined->save(folder / "stock.vdb");
+    prediction.machined.reset();
+    return_freed_memory();
     auto feed = write_feed(program, traced, job, folder / "feed.csv", stage);
     report::ReportData page = report::predict_report(job, program, prediction, stock, std::move(feed), diagnostics);
     if (traced) report::add_traced(page, program, prediction, *traced, report::rows_of_program(program, job.machine));
@@ -175,8 +175,7 @@ simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prep
     setup.target.surface.clear();
     // One field again of the blank before and after the allowance, which the machined stock shares.
     setup.target.whole.reset();
-    setup.target.blank.unshare();
-    setup.target.blank.share();
+    setup.target.blank.share_as_one();
     return_freed_memory();
   };
   if (!prepared.traced) prepared.options.take_map = [&] { return *std::exchange(setup.target.map, std::nullopt); };
@@ -192,7 +191,6 @@ void finish_prediction(const machine::Job& job, PreparedJob& prepared, simulate:
   // Nothing reads them any more, and the files need room.
   prepared.setup.target.blank.clear();
   prepared.setup.target.map.reset();
-  prediction.machined->unshare();
   prediction.machined->clear_stamps();
   simulate::check_spindle_power(job.machine, prepared.setup.program, prediction.cut.loads, of_cut);
 }

@@ -108,6 +108,38 @@ TEST(PlanCommand, GoesOnFromTheStockOfAnInterruptedRun) {
   EXPECT_LT(taken.at("gouge_um"), 25);
 }
 
+TEST(PlanCommand, PlansForWhatAProgramLeaves) {
+  const TempFolder folder;
+  ASSERT_EQ(plan(folder, 8).status, 0);
+  const auto first = nlohmann::json::parse(tests::file_text(folder / "out/plan.json"));
+  const CamberRun copy = run_camber(folder, "copy out/job.toml -o out/made.nc --stock made.vdb --json out/copy.json");
+  ASSERT_EQ(copy.status, 0) << copy.err;
+  const double removed = nlohmann::json::parse(tests::file_text(folder / "out/copy.json")).at("removed_mm3");
+  folder.write("plan.toml", tests::replaced(kPlan, "part.stl", "made.vdb"));
+  const CamberRun run = run_camber(folder, "plan plan.toml -o again --programs");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "again/plan.json"));
+  EXPECT_NEAR(json.at("removal_mm3").get<double>(), removed, 2e-3 * removed);
+  ASSERT_EQ(json.at("operations").size(), first.at("operations").size());
+  for (std::size_t i = 0; i < json.at("operations").size(); ++i) {
+    EXPECT_EQ(json.at("operations").at(i).at("feature"), first.at("operations").at(i).at("feature"));
+    EXPECT_EQ(json.at("operations").at(i).at("tool"), first.at("operations").at(i).at("tool"));
+  }
+  const auto& taken = json.at("plans").at(json.at("setups").at(0).at("best").get<std::size_t>());
+  EXPECT_NEAR(taken.at("removed_mm3").get<double>(), removed, 5e-3 * removed);
+  EXPECT_LT(taken.at("gouge_um"), 25);
+  // The job goes through camber copy by itself.
+  const CamberRun again = run_camber(folder, "copy again/job.toml -o again/copied.nc --effective-config");
+  EXPECT_EQ(again.status, 0) << again.err;
+
+  folder.write("plan.toml", tests::replaced(kPlan, "part.stl", "made.vdb") + "[[setup]]\nturn = [[1, 0, 0, 180]]\n");
+  const CamberRun turned = run_camber(folder, "plan plan.toml -o turned");
+  EXPECT_EQ(turned.status, 1);
+  EXPECT_EQ(
+      turned.err,
+      "plan.toml: error: a part from a stock.vdb is not turned; a set-up without turn was expected [setup-turn]\n");
+}
+
 TEST(PlanCommand, ComparesTheProgramsOfAllPlans) {
   const TempFolder folder;
   const CamberRun run = plan(folder, 8, " -o out --all-programs");

@@ -272,6 +272,42 @@ TEST(Stock, ACopyOfASharedOneHasOnlyWhatItChanges) {
   EXPECT_LT(copy.memory_bytes(), whole + whole / 100);
 }
 
+TEST(Stock, FlatFacesOfASharedOneAreKeptOnce) {
+  const tests::TempFolder folder;
+  const Stock plain = make_box({0.03, -20, -10}, {40, 20.1, 0.07}, 0.1);
+  Stock shared(plain);
+  shared.share();
+  // What is left are the tree's inner nodes, of 128 voxels side.
+  EXPECT_LT(shared.memory_bytes(), plain.memory_bytes() / 4);
+  expect_same(shared, plain, folder);
+  Stock cut_shared(shared), cut_plain(plain);
+  std::vector<Stamp> row;
+  add_row(row, {-4, 3, -1.4}, {44, 3, -1.4}, 0.15);
+  EXPECT_EQ(carve_row(cut_shared, ball_envelope(), row), carve_row(cut_plain, ball_envelope(), row));
+  expect_same(cut_shared, cut_plain, folder);
+  cut_shared.unshare();
+  expect_same(cut_shared, cut_plain, folder);
+  expect_same(shared, plain, folder);
+}
+
+TEST(Stock, LayersOfASharedOneBecomeOneLayer) {
+  const tests::TempFolder folder;
+  const Family copied = family(false);
+  Family shared = family(true);
+  const std::size_t before = shared.first.memory_bytes();
+  shared.first.share_as_one();  // the others keep theirs
+  expect_same(shared.first, copied.first, folder);
+  expect_same(shared.second, copied.second, folder);
+  shared.second.clear();
+  shared.blank.clear();
+  Stock cut(shared.first), cut_copied(copied.first);
+  std::vector<Stamp> row;
+  add_row(row, {-4, 2, -1.4}, {14, 2, -1.4}, 0.15);
+  EXPECT_EQ(carve_row(cut, ball_envelope(), row), carve_row(cut_copied, ball_envelope(), row));
+  expect_same(cut, cut_copied, folder);
+  EXPECT_LT(shared.first.memory_bytes(), before) << "what is hidden is gone";
+}
+
 TEST(Stock, ACopyWithinABoxIsCutThereAsTheWholeIs) {
   const Family shared = family(true);
   const Vec3 lo(1, -3, -3), hi(8, 4, 1e9);

@@ -99,6 +99,19 @@ TEST(Memory, OfASectionIsThatOfItsRegion) {
   EXPECT_EQ(memory_factors(job, text, moves, path, stock, &nothing).blank_mm2.value(), 0);
 }
 
+TEST(Memory, FlatFacesTakeTheirRoomOnlyWhereTheyAreMadeAndWritten) {
+  machine::Job job = job_with(machine::ToolType::flat);
+  const StockSize stock{{0, 0, -100}, {500, 500, 0}, 4};
+  const removal::StampPath path = rows(0, 500, 500, -1);
+  const nc::Program text;
+  const nc::Interpretation moves;
+  const MemoryEstimate mesh = estimate_memory(memory_factors(job, text, moves, path, stock), 0.2);
+  job.stock.box = {{0, 0, -100}, {500, 500, 0}};
+  const MemoryEstimate box = estimate_memory(memory_factors(job, text, moves, path, stock), 0.2);
+  EXPECT_LT(box.total(), mesh.total() - 0.4e9);
+  EXPECT_GT(box.total(), field_bytes(Vec3(500, 500, 100), 0.2, 4));
+}
+
 TEST(Memory, OfALongProgramAloneCannotBeMadeSmallerByVoxels) {
   machine::Job job = job_with(machine::ToolType::ball);
   job.simulation.max_memory_GB = 1.0;
