@@ -167,7 +167,15 @@ class RankParts : public api::PartStore {
   void give(const api::PartName& name, const Write& write) override { files_.give(name, write); }
   std::string take(const api::PartName& name) override {
     if (name.section == ranks_.rank()) return files_.take(name);
-    return merging_ ? receive(static_cast<int>(name.section)) : parts_.at(api::file_name(name));
+    if (!merging_) return parts_.at(api::file_name(name));
+    const int wanted[kWanted] = {name.stage == api::PartStage::sweep ? kSweep : kSolve, name.round};
+    const int of = static_cast<int>(name.section);
+    MPI_Send(wanted, kWanted, MPI_INT, of, kRequest, MPI_COMM_WORLD);
+    return receive(of);
+  }
+  std::function<std::string()> take_pieces(const api::PartName& name) override { return files_.take_pieces(name); }
+  void check(const api::PartName& name) override {
+    if (name.section == ranks_.rank()) files_.check(name);  // the other ranks have just written theirs
   }
   void exchange_parts(api::SectionRun& run, api::PartStage stage, int round) {
     // What no later round reads.
@@ -179,21 +187,38 @@ class RankParts : public api::PartStore {
         exchange_all(ranks_, run.part_for_others(name(ranks_.rank())),
                      [&](std::size_t from, std::string part) { parts_[api::file_name(name(from))] = std::move(part); });
   }
-  /// From now on rank 0 takes whole parts, in the order in which a merge asks for them.
-  void begin_merge(int round) {
+  /// From now on rank 0 takes whole parts of others, as a merge asks for them.
+  void begin_merge() {
     merging_ = true;
     parts_.clear();
-    if (ranks_.rank() == 0) return;
-    for (const api::PartName& name : {api::PartName{api::PartStage::sweep, 1, ranks_.rank(), sections_},
-                                      api::PartName{api::PartStage::solve, round, ranks_.rank(), sections_}}) {
-      const std::string part = files_.take(name);
-      send(part, 0);
-      sent_bytes_ += part.size();
+  }
+  /// On rank 0: there is nothing more to ask for. Returns `status`.
+  int end_merge(int status) {
+    const int end[kWanted] = {kEnd, status};
+    for (int r = 1; r < static_cast<int>(sections_); ++r) MPI_Send(end, kWanted, MPI_INT, r, kRequest, MPI_COMM_WORLD);
+    return status;
+  }
+  /// On the others: sends what rank 0 asks for, and returns the status with which it ends. They wait asleep: meanwhile
+  /// it merges, and a rank that polls takes a processor.
+  int serve_merge() {
+    for (;;) {
+      int there = 0;
+      while (MPI_Iprobe(0, kRequest, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE) == MPI_SUCCESS && there == 0)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      int wanted[kWanted] = {};
+      MPI_Recv(wanted, kWanted, MPI_INT, 0, kRequest, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+      if (wanted[0] == kEnd) return wanted[1];
+      const api::PartStage stage = wanted[0] == kSweep ? api::PartStage::sweep : api::PartStage::solve;
+      send(files_.take({stage, wanted[1], ranks_.rank(), sections_}), 0);
     }
   }
   std::uint64_t sent_bytes() const { return sent_bytes_; }
 
  private:
+  // What rank 0 asks for: a stage and a round, or the end and a status.
+  static constexpr int kRequest = 1, kWanted = 2;
+  static constexpr int kSweep = 0, kSolve = 1, kEnd = 2;
+
   const Ranks& ranks_;
   api::PartFiles files_;
   std::size_t sections_;
@@ -204,13 +229,14 @@ class RankParts : public api::PartStore {
 
 /// That of rank 0. The others wait asleep: meanwhile it merges, and a rank that polls takes a processor.
 int status_of_first(int status) {
-  MPI_Request request{};
+  MPI_Request request = MPI_REQUEST_NULL;
   MPI_Ibcast(&status, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
-  for (int done = 0;;) {
-    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-    if (done != 0) return status;
+  int done = 0;
+  while (MPI_Test(&request, &done, MPI_STATUS_IGNORE) == MPI_SUCCESS && done == 0)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+  // Ends a request that could not be tested; the one that is done is null, and nothing is waited for.
+  MPI_Wait(&request, MPI_STATUS_IGNORE);
+  return status;
 }
 
 /// The mean over the ranks in percent of the largest.
@@ -277,12 +303,10 @@ int predict_on(const Ranks& ranks, SectionsArguments arguments, GlobalOptions op
   }
   progress.clear();
   if (options.verbosity > 0) tell_work(ranks, work, store.sent_bytes());
-  store.begin_merge(round);
-  int status = kDone;
-  if (ranks.rank() == 0)
-    status = merge_and_write(job, key, round, store, {arguments.output_folder, arguments.json, std::move(programs)},
-                             options, begin);
-  return status_of_first(status);
+  store.begin_merge();
+  if (ranks.rank() > 0) return store.serve_merge();
+  return store.end_merge(merge_and_write(
+      job, key, round, store, {arguments.output_folder, arguments.json, std::move(programs)}, options, begin));
 }
 
 /// How the predictions of a compensation were shared.

@@ -7,19 +7,21 @@
 
 namespace camber::copymill {
 
-/// What is felt over what the model expects, remembered by the tip's place in X and Y, whatever its height: a loop
-/// beside one that has been cut, or the level below, need not find out again that a part of the material is hard.
+/// What is felt over what the model expects, remembered by the place of the chips in X and Y, whatever their height: a
+/// loop beside one that has been cut, or the level below, need not find out again that a part of the material is hard.
+/// The ratio is that of mean torques, a sum in which every chip counts for itself. Lateral forces of chips on both
+/// sides of a border may cancel, and where some of them grow by 1.4 their sum may by 1.9.
 class FeltHardness {
  public:
   explicit FeltHardness(double cell_mm) : cell_mm_(cell_mm) {}
 
   /// Of a tooth passing. What is remembered of a cell rises at once, and falls by a fifth of the difference.
-  void feel(const Vec3& tip, double ratio);
+  void feel(const Vec3& chips, double ratio);
   /// The greatest in the cell of a place and those beside it; 1 at least.
-  double at(const Vec3& tip) const;
+  double at(const Vec3& chips) const;
 
  private:
-  std::uint64_t cell(const Vec3& tip, int di, int dj) const;
+  std::uint64_t cell(const Vec3& place, int di, int dj) const;
 
   double cell_mm_;
   std::unordered_map<std::uint64_t, float> ratio_;

@@ -32,6 +32,7 @@ simulate::LoadProbeOptions probe_options(const machine::Job& job, const machine:
           .rotation_step_rad = std::max(kRotationStep_rad, job.simulation.rotation_step_rad),
           .first_id = first_id,
           .drilling = operation.mode == machine::CopyMode::drilling,
+          .deflections = false,
           .regions = regions.none() ? nullptr : &regions};
 }
 
@@ -67,8 +68,9 @@ std::optional<double> LoadFollower::share_at_lowest_feed(const Vec3& tip, const 
   removal::Stamp stamp;
   stamp.pose.tip_mm = tip;
   stamp.feed_per_tooth_mm = band_.lowest * operation_.feed_mm_per_s * passing_s_ * direction;
-  const double load = load_of(probe_->look(stamp), LoadKind::force, operation_.spindle_rpm);
-  return load * std::max({1.0, rule_->hardness(), felt_.at(tip)}) / band_.limit;
+  const simulate::LoadProbe::Look look = probe_->look_at_two_feeds(stamp);
+  const double load = load_of(look.at_feed, LoadKind::force, operation_.spindle_rpm);
+  return load * std::max({1.0, rule_->hardness(), felt_.at(look.chips_at_mm)}) / band_.limit;
 }
 
 void LoadFollower::look_ahead(double t_s, const Ahead& ahead) {
@@ -78,14 +80,11 @@ void LoadFollower::look_ahead(double t_s, const Ahead& ahead) {
   stamp.t_s = t_s;
   stamp.pose.tip_mm = ahead.place;
   stamp.feed_per_tooth_mm = feed * passing_s_ * ahead.direction;
-  const double load = load_of(probe_->look(stamp), LoadKind::force, operation_.spindle_rpm);
-  double at_half = 0;
-  if (load > 0) {
-    stamp.feed_per_tooth_mm *= 0.5;
-    at_half = load_of(probe_->look(stamp), LoadKind::force, operation_.spindle_rpm);
-  }
+  const simulate::LoadProbe::Look look = probe_->look_at_two_feeds(stamp);
+  const double load = load_of(look.at_feed, LoadKind::force, operation_.spindle_rpm),
+               at_half = load_of(look.at_half, LoadKind::force, operation_.spindle_rpm);
   braking_mm_per_s2_ = ahead.braking_mm_per_s2;
-  bounds_.push_back({gone_mm_ + ahead.way_mm, rule_->feed_ahead(load, at_half, feed, felt_.at(ahead.place))});
+  bounds_.push_back({gone_mm_ + ahead.way_mm, rule_->feed_ahead(load, at_half, feed, felt_.at(look.chips_at_mm))});
   rule_->note_ahead(t_s, ahead.place, allowed_mm_per_s());
   choose_feed();
 }
@@ -120,7 +119,7 @@ double LoadFollower::pass(const removal::Stamp& stamp, double commanded) {
   figures_.max_N = std::max(figures_.max_N, force);
   if (!rule_) return force;
   if (load.expected.lateral_max_N > kTellsHardness * band_.limit)
-    felt_.feel(stamp.pose.tip_mm, force / load.expected.lateral_max_N);
+    felt_.feel(load.chips_at_mm, load.felt.torque_mean_Nmm / load.expected.torque_mean_Nmm);
   // Slower than commanded at corners and where the tool sets off: the load there says little of the feed.
   if (actual < kHeldBack * commanded && force <= figures_.target_N) return force;
   rule_->feel({.t_s = stamp.t_s,

@@ -50,6 +50,10 @@ class LoadFollower {
     double braking_mm_per_s2 = 1;  ///< deceleration along the path
   };
   void look_ahead(double t_s, const Ahead& ahead);
+  /// As removal::StepEngager::approach.
+  void approach(const Vec3& tip, int most) {
+    if (probe_) probe_->approach(tip, most);
+  }
   /// Cuts one tooth passing. `commanded`: the feed it was to be cut at. Returns the lateral force.
   double pass(const removal::Stamp& stamp, double commanded_mm_per_s);
 

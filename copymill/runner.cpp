@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "feedmodel/control_options.h"
+#include "removal/tile_size.h"
 
 namespace camber::copymill {
 namespace {
@@ -105,6 +106,8 @@ Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_s
   written_piece_ = 0, written_mm_ = 0;
   if (rapid) first_stamp_ = true;
   last_lowered_ = *at_;
+  look_due_ = !rapid;
+  if (!rapid) read_stock_here();
   const double begin_s = t_s_;
   // A rapid that begins after the stop lifts the tool.
   const auto halted = [&, lifts = rapid && stopped_] { return rapid ? stopped_ && !lifts : ended() != Ended::done; };
@@ -137,7 +140,10 @@ void Runner::tick(bool rapid, double feed_share, bool halted) {
   motion_.tick(wanted, {.distance_mm = 0, .speed_mm_per_s = kNoLimit_mm_per_s});
   t_s_ += motion_.period_s();
   if (!rapid) {
-    stamp_until(t_s_, before, motion_.tip());
+    // A tick is short: what lies ahead is looked at in the one after a tooth passing, where that has none.
+    const bool passed = stamp_until(t_s_, before, motion_.tip());
+    if (!passed && look_due_) look_ahead();
+    if (!passed) read_stock_ahead();
     lower_standing(motion_.tip());
   }
   ++ticks_;
@@ -150,13 +156,15 @@ void Runner::tick(bool rapid, double feed_share, bool halted) {
   if (depth_ && !rapid) depth_->add(motion_.tip());
 }
 
-void Runner::stamp_until(double t_s, const Vec3& before, const Vec3& now) {
+bool Runner::stamp_until(double t_s, const Vec3& before, const Vec3& now) {
   const double passing_s = 60 / (cut_->operation.spindle_rpm * cut_->tool.flutes);
   if (first_stamp_) next_passing_s_ = t_s - motion_.period_s(), last_stamp_ = before;
+  const bool any = next_passing_s_ <= t_s;
   for (; next_passing_s_ <= t_s; next_passing_s_ += passing_s) {
     const double share = 1 - (t_s - next_passing_s_) / motion_.period_s();
     stamp_at(next_passing_s_, before + share * (now - before));
   }
+  return any;
 }
 
 void Runner::stamp_at(double t_s, const Vec3& tip) {
@@ -169,9 +177,25 @@ void Runner::stamp_at(double t_s, const Vec3& tip) {
   last_stamp_ = tip;
   first_stamp_ = false;
   load_N_ = follower_->pass(stamp, commanded_);
-  const double way = motion_.stopping_mm() + stamp.feed_per_tooth_mm.norm();
+  if (look_due_) look_ahead();
+  look_due_ = true;
+}
+
+/// At what the tool reaches when it has braked, begun a tooth passing and a tick later.
+void Runner::look_ahead() {
+  look_due_ = false;
+  const double passing_s = 60 / (cut_->operation.spindle_rpm * cut_->tool.flutes);
+  const double way = motion_.stopping_mm() + motion_.speed_mm_per_s() * (passing_s + motion_.period_s());
   const Motion::Ahead ahead = motion_.ahead(way);
-  follower_->look_ahead(t_s, {ahead.place, ahead.direction, way, motion_.braking_mm_per_s2()});
+  const double since_passing = (motion_.tip() - last_stamp_).norm();
+  follower_->look_ahead(t_s_, {ahead.place, ahead.direction, since_passing + way, motion_.braking_mm_per_s2()});
+}
+
+void Runner::read_stock_here() { follower_->approach(*at_, removal::StepEngager::kAll); }
+
+void Runner::read_stock_ahead() {
+  const double way = motion_.stopping_mm() + removal::kTileVoxels * stock_.voxel_mm();
+  follower_->approach(motion_.ahead(way).place, 1);
 }
 
 /// Another feed from here on.

@@ -71,7 +71,12 @@ class Runner {
  private:
   Ended run(std::vector<PathPiece> path, bool rapid, double feed_share);
   void tick(bool rapid, double feed_share, bool halted);
-  void stamp_until(double t_s, const Vec3& before, const Vec3& now);
+  /// Tooth passings of a tick; true if there was one.
+  bool stamp_until(double t_s, const Vec3& before, const Vec3& now);
+  void look_ahead();
+  /// Before a tooth passing needs it: the stock around the tool at rest, and some of what it reaches soon.
+  void read_stock_here();
+  void read_stock_ahead();
   void stamp_at(double t_s, const Vec3& tip);
   void command(double feed_mm_per_s);
   void lower_standing(const Vec3& tip);
@@ -105,7 +110,7 @@ class Runner {
   double load_N_ = 0, commanded_ = 0, written_feed_ = 0;
   std::int32_t first_id_ = 0;
   double next_passing_s_ = 0;
-  bool first_stamp_ = true;
+  bool first_stamp_ = true, look_due_ = false;
   Vec3 last_stamp_ = Vec3::Zero(), last_lowered_ = Vec3::Zero();
   double removed_mm3_ = 0;
 };

@@ -225,7 +225,7 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
                               std::span<float> fine) const {
   const int turn = envelope_.steps, pitch = envelope_.steps_per_pitch;
   const auto steps = static_cast<std::size_t>(pitch);
-  const std::size_t nodes = node_height_mm_.size();
+  const std::size_t all_nodes = node_height_mm_.size(), nodes = fine.empty() ? 0 : all_nodes;
   const int last = static_cast<int>(envelope_.rings.size()) - 1;
   const PassSums sums(steps, nodes);
   out.chip_max_mm = out.chip_area_mm2 = 0;
@@ -261,7 +261,7 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
       s.sine_phi = blocks.sin_phi(chip.block) + half * kSteps;
       s.sine = ring.sine, s.cosine = ring.cosine;
       s.radius_mm = ring.profile.radius_mm;
-      s.compliance = compliance_.data() + static_cast<std::size_t>(r) * nodes;
+      s.compliance = compliance_.data() + static_cast<std::size_t>(r) * all_nodes;
       add_four(e, s);
     }
   };
@@ -300,7 +300,7 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
     ends = uneven_ends;
   }
   out.chip_max_mm = thickest;
-  for (std::size_t n = 0; n < nodes && !fine.empty(); ++n) {
+  for (std::size_t n = 0; n < nodes; ++n) {
     const double* x = sums.of(4 + 2 * n);
     draw_between_steps(x, x + sums.row(), steps, fine.data() + 2 * n * steps * kFine);
   }

@@ -2,6 +2,7 @@
 // The plan of a whole program: entry speed, motion, start and duration of each segment. Every
 // command that reports a time, a feed or a place of the tool takes it from here.
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "feedmodel/lookahead.h"
@@ -35,8 +36,15 @@ struct MotionPlan {
   double time_s() const { return times.empty() ? 0.0 : times.back().end_s(); }
 };
 
-/// Linear time; 80 bytes of memory a segment. Deterministic. Does not throw on valid input.
+/// Linear time; 88 bytes of memory a segment. Deterministic. Does not throw on valid input.
 MotionPlan plan_motion(const nc::Interpretation& program, const machine::Machine& machine);
+
+/// next_start_s: when the segment after it begins, which may be before this one ends.
+using TakeMotion = std::function<void(const Segment& segment, const SegmentMotion& motion, const SegmentTime& time,
+                                      double next_start_s)>;
+/// The same plan, segment by segment in order, without keeping it: 24 bytes a segment while the speeds are planned, 8
+/// while the segments are handed out.
+void follow_motion(const nc::Interpretation& program, const machine::Machine& machine, const TakeMotion& take);
 
 /// How segment i moves; `segment` is the i-th of build_segments.
 SegmentMotion motion_of(const MotionPlan& plan, std::size_t i, const Segment& segment, const machine::Machine& machine);

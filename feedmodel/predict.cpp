@@ -5,8 +5,8 @@
 
 #include "base/cancel.h"
 #include "feedmodel/axes.h"
-#include "feedmodel/follow_plan.h"
 #include "feedmodel/joint_map.h"
+#include "feedmodel/plan.h"
 #include "feedmodel/summary.h"
 #include "feedmodel/timed_path.h"
 
@@ -102,15 +102,15 @@ FeedSummary predict_feed(const nc::Interpretation& program, const machine::Machi
   if (has_rotary_motion(program, machine))
     return predict_joints(program, machine,
                           [&](std::span<const TimedSample> samples, std::span<const JointSample>) { sink(samples); });
-  const MotionPlan plan = plan_motion(program, machine);
-  const FeedSummary summary = summary_of(program, plan);
+  FeedSum sum(program);
   Sampler sampler(machine, sink);
-  follow_plan(program, machine, plan, summary.time_s,
-              [&](const Segment& segment, const SegmentMotion& motion, const SegmentTime& time, double next_start_s) {
-                sampler.pass(segment, motion, time, next_start_s);
-              });
+  follow_motion(program, machine,
+                [&](const Segment& segment, const SegmentMotion& motion, const SegmentTime& time, double next_start_s) {
+                  sum.add(time);
+                  sampler.pass(segment, motion, time, next_start_s);
+                });
   sampler.settle();
-  return summary;
+  return sum.summary();
 }
 
 }  // namespace camber::feedmodel

@@ -6,8 +6,8 @@
 #include "base/cancel.h"
 #include "base/units.h"
 #include "feedmodel/axes.h"
-#include "feedmodel/follow_plan.h"
 #include "feedmodel/joint_map.h"
+#include "feedmodel/plan.h"
 #include "feedmodel/summary.h"
 #include "feedmodel/timed_path.h"
 
@@ -154,14 +154,15 @@ class JointSampler {
 
 FeedSummary predict_joints(const nc::Interpretation& program, const machine::Machine& machine,
                            const JointSampleSink& sink) {
-  const MotionPlan plan = plan_motion(program, machine);
-  FeedSummary summary = summary_of(program, plan);
+  FeedSum sum(program);
   JointSampler sampler(machine, program, sink);
-  follow_plan(program, machine, plan, summary.time_s,
-              [&](const Segment& segment, const SegmentMotion& motion, const SegmentTime& time, double next_start_s) {
-                sampler.pass(segment, motion, time, next_start_s);
-              });
+  follow_motion(program, machine,
+                [&](const Segment& segment, const SegmentMotion& motion, const SegmentTime& time, double next_start_s) {
+                  sum.add(time);
+                  sampler.pass(segment, motion, time, next_start_s);
+                });
   sampler.settle();
+  FeedSummary summary = sum.summary();
   summary.contour = sampler.contour();
   return summary;
 }

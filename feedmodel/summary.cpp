@@ -19,16 +19,11 @@ std::size_t count_blocks(const nc::Interpretation& program) {
 
 }  // namespace
 
-FeedSummary summary_of(const nc::Interpretation& program, const MotionPlan& plan) {
-  FeedSummary summary;
-  summary.blocks = count_blocks(program);
-  summary.time_s = plan.time_s();
-  double end_s = 0;
-  for (const SegmentTime& time : plan.times) {
-    if (time.cutting) summary.cutting_time_s += time.end_s() - end_s;
-    end_s = time.end_s();
-  }
-  return summary;
+FeedSum::FeedSum(const nc::Interpretation& program) { summary_.blocks = count_blocks(program); }
+
+void FeedSum::add(const SegmentTime& time) {
+  if (time.cutting) summary_.cutting_time_s += time.end_s() - summary_.time_s;
+  summary_.time_s = time.end_s();
 }
 
 }  // namespace camber::feedmodel

@@ -5,6 +5,15 @@
 
 namespace camber::feedmodel {
 
-FeedSummary summary_of(const nc::Interpretation& program, const MotionPlan& plan);
+/// Summed up from segments in order.
+class FeedSum {
+ public:
+  explicit FeedSum(const nc::Interpretation& program);
+  void add(const SegmentTime& time);
+  const FeedSummary& summary() const { return summary_; }
+
+ private:
+  FeedSummary summary_;
+};
 
 }  // namespace camber::feedmodel

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -148,24 +150,54 @@ class NominalBuilder {
 
 }  // namespace
 
+struct NominalFollower::Impl {
+  TakeNominal take;
+  NominalBuilder builder;
+  std::uint32_t moves;  ///< of the program
+  std::optional<std::size_t> run_from{};
+
+  Impl(const nc::Interpretation& program, const std::vector<bool>& selected, const kinematics::PartPath* rotary,
+       TakeNominal take_)
+      : take(std::move(take_)),
+        builder(program, selected, rotary, take),
+        moves(static_cast<std::uint32_t>(program.moves.size())) {}
+
+  void end_run(std::uint32_t next_move) {
+    if (!run_from) return;
+    builder.close(next_move);
+    builder.end_run();
+  }
+};
+
+NominalFollower::NominalFollower(const nc::Interpretation& program, const std::vector<bool>& selected,
+                                 const kinematics::PartPath* rotary, TakeNominal take)
+    : impl_(std::make_unique<Impl>(program, selected, rotary, std::move(take))) {}
+NominalFollower::~NominalFollower() = default;
+
+void NominalFollower::add(const ToolRun& run, const Stamp& stamp) {
+  if (impl_->run_from != run.from) {
+    impl_->end_run(stamp.move);
+    impl_->builder.begin_run(run);
+    impl_->run_from = run.from;
+  }
+  if (run.kind == RunKind::milling)
+    impl_->builder.follow(stamp);
+  else
+    impl_->builder.copy(stamp);
+}
+
+std::vector<ToolRun> NominalFollower::finish() {
+  impl_->end_run(impl_->moves);
+  return impl_->builder.take_runs();
+}
+
 std::vector<ToolRun> follow_nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected,
                                          const StampPath& path, const kinematics::PartPath* rotary,
                                          const TakeNominal& take) {
-  NominalBuilder builder(program, selected, rotary, take);
-  for (const ToolRun& run : path.runs) {
-    builder.begin_run(run);
-    for (std::size_t k = run.from; k < run.from + run.count; ++k) {
-      if (run.kind == RunKind::milling)
-        builder.follow(path.stamps[k]);
-      else
-        builder.copy(path.stamps[k]);
-    }
-    const std::size_t after = run.from + run.count;
-    builder.close(after < path.stamps.size() ? path.stamps[after].move
-                                             : static_cast<std::uint32_t>(program.moves.size()));
-    builder.end_run();
-  }
-  return builder.take_runs();
+  NominalFollower follower(program, selected, rotary, take);
+  for (const ToolRun& run : path.runs)
+    for (std::size_t k = run.from; k < run.from + run.count; ++k) follower.add(run, path.stamps[k]);
+  return follower.finish();
 }
 
 StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected, const StampPath& path,

@@ -2,6 +2,7 @@
 // Engagement and carving of one tooth passing after another, where the path is made while the tool cuts.
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -38,6 +39,11 @@ class StepEngager {
   /// The chips of a stamp in the stock as it stands. Requires an upright tool with its tip in the box. Valid until the
   /// next call.
   std::span<const ChipBlock> read(const Stamp& stamp);
+  static constexpr int kAll = std::numeric_limits<int>::max();
+  /// Reads tiles that a cutter with its tip there, or in the box nearest to it, would meet and that are not in memory,
+  /// in `most` steps of about a tenth of a millisecond; what is not read beforehand is read by the stamp that comes
+  /// near it. Gives up tiles that are not needed, as many at most.
+  void approach(const Vec3& tip_mm, int most);
   /// Cuts a stamp. The stock is written lazily, tile by tile.
   void cut(const Stamp& stamp);
   /// As Stock::distance_mm, of the stock as it stands.

@@ -6,11 +6,15 @@
 
 #include <Eigen/Geometry>
 
+#include "removal/stamp_sink.h"
+
 namespace camber::removal {
 
 using feedmodel::TimedSample;
 
 namespace {
+
+thread_local const StampSink* the_sink = nullptr;
 
 constexpr double kStill_mm = 1e-6;
 constexpr double kStill = 1e-9;  // axis and spin
@@ -50,6 +54,12 @@ ToolPose between(const ToolPose& a, const ToolPose& b, double u) {
 }
 
 }  // namespace
+
+StampSinkScope::StampSinkScope(const StampSink& sink) {
+  assert(!the_sink);
+  the_sink = &sink;
+}
+StampSinkScope::~StampSinkScope() { the_sink = nullptr; }
 
 ToothMotion motion_in_tool(std::span<const Stamp> stamps, std::size_t k) {
   const Stamp& stamp = stamps[k];
@@ -98,7 +108,7 @@ StampBuilder::StampBuilder(const nc::Interpretation& program, const std::map<int
     const nc::ModalState& state = program.state_of(move);
     return !stamped || (tools.contains(state.tool) && state.spindle_speed_rpm > 0);
   }));
-  path_.stamps.reserve(room_for(program, tools, selected_));
+  if (!the_sink) path_.stamps.reserve(room_for(program, tools, selected_));
 }
 
 feedmodel::PathMeasure StampBuilder::measure_of(const kinematics::PartPath* rotary) const {
@@ -187,9 +197,14 @@ void StampBuilder::stamp_at(double t_s, const TimedSample& sample, const feedmod
 }
 
 void StampBuilder::append(const Stamp& stamp, int tool, RunKind kind) {
+  const std::size_t number = path_.runs.empty() ? 0 : path_.runs.back().from + path_.runs.back().count;
   if (path_.runs.empty() || path_.runs.back().tool != tool || path_.runs.back().kind != kind)
-    path_.runs.push_back({tool, path_.stamps.size(), 0, kind});
+    path_.runs.push_back({tool, number, 0, kind});
   ++path_.runs.back().count;
+  if (the_sink) {
+    path_.stamps.clear();
+    (*the_sink)(path_.runs.back(), number, stamp);
+  }
   path_.stamps.push_back(stamp);
   cutting_ = true;
 }

@@ -42,10 +42,10 @@ void mark_contour(const machine::Job& job, const removal::StampPath& path, Targe
   target.contour_mm = map.take_errors_mm();
 }
 
-void mark_contour_of(const machine::Job& job, const removal::StampPath& path, const removal::ToolRun& run,
-                     std::size_t from, std::size_t count, removal::SurfaceMap& map) {
-  mark_straight(map, outline_of(job.tools.at(run.tool)), std::span(path.stamps).subspan(run.from + from, count),
-                static_cast<std::int32_t>(run.from + from), nullptr);
+void mark_contour_of(const machine::Job& job, const PathStretch& path, const PathPiece& piece,
+                     removal::SurfaceMap& map) {
+  mark_straight(map, outline_of(job.tools.at(path.run_of(piece).tool)), path.stamps_of(piece),
+                static_cast<std::int32_t>(path.begin_of(piece)), nullptr);
 }
 
 }  // namespace camber::simulate

@@ -1,6 +1,7 @@
 #pragma once
 // Contour error: the effect of servo lag and corner rounding on the surface, without deflection.
 #include "simulate/predict.h"
+#include "simulate/section_pieces.h"
 
 namespace camber::simulate {
 
@@ -8,8 +9,8 @@ namespace camber::simulate {
 /// minus the nominal surface, along the nominal surface's normal at the points of Target::map.
 void mark_contour(const machine::Job& job, const removal::StampPath& path, Target& target);
 
-/// Marks stamps from ... from + count - 1 of a run on a map.
-void mark_contour_of(const machine::Job& job, const removal::StampPath& path, const removal::ToolRun& run,
-                     std::size_t from, std::size_t count, removal::SurfaceMap& map);
+/// Marks the stamps of a piece on a map.
+void mark_contour_of(const machine::Job& job, const PathStretch& path, const PathPiece& piece,
+                     removal::SurfaceMap& map);
 
 }  // namespace camber::simulate

@@ -17,6 +17,7 @@
 #include "deflection/static_cut.h"
 #include "deflection/tooth_marks.h"
 #include "removal/engagement.h"
+#include "removal/known_run.h"
 #include "simulate/pieces.h"
 #include "simulate/section_pieces.h"
 #include "simulate/tooth_loads.h"
@@ -40,6 +41,8 @@ namespace {
 /// As engaged_top_mm of the stamp below which the stock rises most.
 double engaged_top_mm(const Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps) {
   double rise = 0;
+  if (const removal::KnownRun* run = removal::known_run(stamps))
+    return simulate::engaged_top_mm(stock, tool, std::max(rise, stock.max_mm().z() - run->min_mm.z()));
   for (const auto& s : stamps) {
     // The corner of the stock's box that lies farthest up the tool.
     const Vec3 corner = (s.pose.axis.array() > 0).select(stock.max_mm(), stock.min_mm());

@@ -72,16 +72,18 @@ struct LoadProbe::Impl {
                 teeth.even() || options_.drilling ? 1 : envelope.flutes),
         row(1, deflection::kFine * model.steps(), model.node_height_mm(), model.axial()) {}
 
+  Vec3 middle_mm(const Stamp& stamp, std::span<const ChipBlock> chips) const;
   StampLoad expected(const Stamp& stamp, std::span<const ChipBlock> chips);
   StampLoad felt(const Stamp& stamp, std::span<const ChipBlock> chips, const StampLoad& without);
   StampLoad evaluate(const Stamp& stamp, std::span<const ChipBlock> chips);
 };
 
 StampLoad LoadProbe::Impl::evaluate(const Stamp& stamp, std::span<const ChipBlock> chips) {
-  const std::span<float> fine(row.row(0), options.drilling ? 0 : row.row_size());
+  const bool bends = options.deflections && !options.drilling;
+  const std::span<float> fine(row.row(0), bends ? row.row_size() : 0);
   model.evaluate(engager.blocks(), chips, engager.count(), removal::motion_in_tool({&stamp, 1}, 0), pass, fine);
   StampLoad load = summarize(pass);
-  if (!options.drilling) load.deflection_max_mm = tip_deflection_mm(row, row.row(0));
+  if (bends) load.deflection_max_mm = tip_deflection_mm(row, row.row(0));
   return load;
 }
 
@@ -89,6 +91,19 @@ StampLoad LoadProbe::Impl::expected(const Stamp& stamp, std::span<const ChipBloc
   StampLoad load = evaluate(stamp, chips);
   load.chip_mm3 = removal::chip_volume_mm3(envelope, engager.blocks(), chips);
   return load;
+}
+
+Vec3 LoadProbe::Impl::middle_mm(const Stamp& stamp, std::span<const ChipBlock> chips) const {
+  Vec3 sum = Vec3::Zero();
+  double weight = 0;
+  for (const ChipBlock& chip : chips) {
+    float thickness = 0;
+    for (const float h : chip.thickness_mm) thickness += std::max(0.0f, h);
+    if (!(thickness > 0)) continue;  // a block is small: any of its points tells where it is
+    sum += static_cast<double>(thickness) * model.place_mm(engager.blocks().point(chip.block, 0));
+    weight += static_cast<double>(thickness);
+  }
+  return weight > 0 ? Vec3(stamp.pose.tip_mm + sum / weight) : stamp.pose.tip_mm;
 }
 
 /// Forces are proportional to the width of a chip: each chip has the share of its width that its factor is of the
@@ -130,6 +145,7 @@ std::span<const ProbedLoad> LoadProbe::append(std::span<const Stamp> stamps) {
   for (const Stamp& stamp : stamps) {
     const std::span<const ChipBlock> chips = m.engager.read(stamp);
     ProbedLoad load;
+    load.chips_at_mm = m.middle_mm(stamp, chips);
     if (!chips.empty()) {
       load.expected = m.expected(stamp, chips);
       load.felt = m.felt(stamp, chips, load.expected);
@@ -144,6 +160,21 @@ StampLoad LoadProbe::look(const Stamp& stamp) {
   const std::span<const ChipBlock> chips = impl_->engager.read(stamp);
   return chips.empty() ? StampLoad{} : impl_->expected(stamp, chips);
 }
+
+LoadProbe::Look LoadProbe::look_at_two_feeds(const Stamp& stamp) {
+  Impl& m = *impl_;
+  const std::span<const ChipBlock> chips = m.engager.read(stamp);
+  Look out;
+  out.chips_at_mm = m.middle_mm(stamp, chips);
+  if (chips.empty()) return out;
+  out.at_feed = m.expected(stamp, chips);
+  Stamp half = stamp;
+  half.feed_per_tooth_mm *= 0.5;
+  out.at_half = m.expected(half, m.engager.read(half));
+  return out;
+}
+
+void LoadProbe::approach(const Vec3& tip_mm, int most) { impl_->engager.approach(tip_mm, most); }
 
 double LoadProbe::distance_mm(const Vec3& place_mm) const { return impl_->engager.distance_mm(place_mm); }
 double LoadProbe::flush() { return impl_->engager.flush(); }

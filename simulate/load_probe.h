@@ -19,13 +19,15 @@ struct LoadProbeOptions {
   Vec3 axis_compliance_mm_per_N = Vec3::Zero();
   std::int32_t first_id = 0;  ///< of the stamps in the stock: that of the run before, next_id()
   bool drilling = false;      ///< straight down: see simulate/holes.h
+  bool deflections = true;    ///< StampLoad::deflection_max_mm is told
   /// Known to ProbedLoad::felt alone; must outlive the probe.
   const ForceRegions* regions = nullptr;
 };
 
 struct ProbedLoad {
-  StampLoad felt;      ///< with the factors of the regions, chip by chip: what a sensor would tell
-  StampLoad expected;  ///< without them: what the model tells of the same chips
+  StampLoad felt;                   ///< with the factors of the regions, chip by chip: what a sensor would tell
+  StampLoad expected;               ///< without them: what the model tells of the same chips
+  Vec3 chips_at_mm = Vec3::Zero();  ///< their middle, by thickness
 };
 
 /// Cuts with the undeflected cutter: the loads are those of simulate::cut in rigid coupling where it reads every tooth
@@ -44,6 +46,14 @@ class LoadProbe {
   /// What the model tells of a stamp that might come next, or somewhat later along the path; nothing is cut. The load
   /// grows with Stamp::feed_per_tooth_mm.
   StampLoad look(const removal::Stamp& stamp);
+  struct Look {
+    StampLoad at_feed, at_half;
+    Vec3 chips_at_mm = Vec3::Zero();  ///< their middle, by thickness
+  };
+  /// The same at the stamp's feed and at half of it.
+  Look look_at_two_feeds(const removal::Stamp& stamp);
+  /// As StepEngager::approach: what the stock has around a place, read before a tooth passing needs it.
+  void approach(const Vec3& tip_mm, int most);
   /// As Stock::distance_mm, of the stock as it stands.
   double distance_mm(const Vec3& place_mm) const;
   /// Writes what is pending to the stock and goes on. Returns the volume removed since the last time, mm^3.

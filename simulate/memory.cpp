@@ -12,6 +12,7 @@
 #include "removal/cutter.h"
 #include "removal/form_error.h"
 #include "simulate/cut.h"
+#include "simulate/pieces.h"
 
 namespace camber::simulate {
 namespace {
@@ -75,7 +76,15 @@ class HeightMap {
   std::vector<double> height_;
 };
 
-double cell_of(const Job& job, const removal::StampPath& path, const StockSize& stock) {
+/// The stamps of a run that are in memory.
+std::vector<std::span<const removal::Stamp>> kept_of(const PathStretch& path, const removal::ToolRun& run) {
+  std::vector<std::span<const removal::Stamp>> out;
+  for (const ListRange& range : path.kept_in(run.from, run.count))
+    out.push_back(path.stamps_of(run).subspan(range.from, range.end - range.from));
+  return out;
+}
+
+double cell_of(const Job& job, const PathStretch& path, const StockSize& stock) {
   constexpr double kVoxels = 16, kOfRadius = 0.25, kOfStock = 1e-3;
   const Vec3 size = stock.max_mm - stock.min_mm;
   double cell = std::max(kVoxels * job.simulation.voxel_mm, kOfStock * std::max(size.x(), size.y()));
@@ -91,20 +100,30 @@ double thickness(double band_voxels) { return 2 * band_voxels - 1 + kLeaf - 1; }
 
 }  // namespace
 
-double cut_area_mm2(const Job& job, const removal::StampPath& path, const StockSize& stock) {
+namespace {
+
+double cut_area_of(const Job& job, const PathStretch& path, const StockSize& stock) {
   const double cell = cell_of(job, path, stock);
   HeightMap map(stock, cell);
   for (const auto& run : path.runs) {
     const removal::CutterShape shape = removal::shape_of(job.tools.at(run.tool));
-    std::optional<Vec3> last;
-    for (std::size_t k = run.from; k < run.from + run.count; ++k) {
-      const Vec3& tip = path.stamps[k].pose.tip_mm;
-      if (last && k + 1 < run.from + run.count && (tip - *last).norm() < cell / 2) continue;
-      map.cut(shape, tip);
-      last = tip;
+    for (const auto& stamps : kept_of(path, run)) {
+      std::optional<Vec3> last;
+      for (std::size_t k = 0; k < stamps.size(); ++k) {
+        const Vec3& tip = stamps[k].pose.tip_mm;
+        if (last && k + 1 < stamps.size() && (tip - *last).norm() < cell / 2) continue;
+        map.cut(shape, tip);
+        last = tip;
+      }
     }
   }
   return map.cut_area_mm2();
+}
+
+}  // namespace
+
+double cut_area_mm2(const Job& job, const removal::StampPath& path, const StockSize& stock) {
+  return cut_area_of(job, path, stock);
 }
 
 namespace {
@@ -143,20 +162,23 @@ double field_bytes(const Vec3& size, double voxel, double band_voxels) {
 namespace {
 
 /// The tiles that stamps swept together change are in memory until all of them are cut.
-double swept_at_once_mm2(const Job& job, const removal::StampPath& path, double cut_mm2) {
+double swept_at_once_mm2(const Job& job, const PathStretch& path, double cut_mm2) {
   constexpr double kAtOnce = 10000;
   double most = 0;
   for (const auto& run : path.runs) {
     double way = 0;
-    for (std::size_t k = run.from + 1; k < run.from + run.count; ++k)
-      way += (path.stamps[k].pose.tip_mm - path.stamps[k - 1].pose.tip_mm).norm();
-    const double length = way * std::min(1.0, kAtOnce / static_cast<double>(run.count));
+    std::size_t count = 0;
+    for (const auto& stamps : kept_of(path, run)) {
+      for (std::size_t k = 1; k < stamps.size(); ++k) way += (stamps[k].pose.tip_mm - stamps[k - 1].pose.tip_mm).norm();
+      count += stamps.size();
+    }
+    const double length = count == 0 ? 0 : way * std::min(1.0, kAtOnce / static_cast<double>(count));
     most = std::max(most, length * job.tools.at(run.tool).diameter_mm);
   }
   return std::min(cut_mm2, most);
 }
 
-double table_bytes(const Job& job, const removal::StampPath& path, const StockSize& stock) {
+double table_bytes(const Job& job, const PathStretch& path, const StockSize& stock) {
   const bool rigid = job.simulation.coupling == machine::Coupling::rigid;
   const CutOptions options;
   const std::size_t stretch = rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
@@ -164,8 +186,8 @@ double table_bytes(const Job& job, const removal::StampPath& path, const StockSi
   for (const auto& run : path.runs) {
     const machine::Tool& tool = job.tools.at(run.tool);
     double lowest = stock.max_mm.z();
-    for (std::size_t k = run.from; k < run.from + run.count; ++k)
-      lowest = std::min(lowest, path.stamps[k].pose.tip_mm.z());
+    for (const auto& stamps : kept_of(path, run))
+      for (const removal::Stamp& stamp : stamps) lowest = std::min(lowest, stamp.pose.tip_mm.z());
     const double flutes = std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm));
     const double top = std::clamp(stock.max_mm.z() - lowest, 0.0, flutes);
     const auto nodes = static_cast<double>(deflection::node_heights(top, flutes).size());
@@ -179,12 +201,25 @@ double table_bytes(const Job& job, const removal::StampPath& path, const StockSi
 
 MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::Interpretation& moves,
                              const removal::StampPath& path, const StockSize& stock, const removal::Region* within) {
+  return memory_factors(job, text, moves, PathStretch(path), stock, within);
+}
+
+MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::Interpretation& moves,
+                             const PathStretch& path, const StockSize& stock, const removal::Region* within) {
   const StockSize part = within ? clipped(stock, *within) : stock;
-  const double cut = cut_area_mm2(job, path, part);
+  const double cut = cut_area_of(job, path, part);
+  std::size_t stamps = 0, own = 0;
+  for (const auto& run : path.runs)
+    for (const auto& kept : kept_of(path, run)) {
+      stamps += kept.size();
+      if (within)
+        own += static_cast<std::size_t>(std::ranges::count_if(
+            kept, [&](const removal::Stamp& stamp) { return within->contains(stamp.pose.tip_mm); }));
+    }
   MemoryFactors out{.text_bytes = text.source.text().size(),
                     .blocks = text.blocks.size(),
                     .moves = moves.moves.size(),
-                    .stamps = path.stamps.size(),
+                    .stamps = stamps,
                     .size_mm = stock.max_mm - stock.min_mm,
                     .band_mm = stock.band_voxels * job.simulation.voxel_mm,
                     .cut_mm2 = cut,
@@ -194,13 +229,12 @@ MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::
                     .flat = job.stock.box.has_value()};
   if (!within) return out;
   out.blank_mm2 = faces_mm2(stock, part);
-  out.own_stamps = static_cast<std::size_t>(std::ranges::count_if(
-      path.stamps, [&](const removal::Stamp& stamp) { return within->contains(stamp.pose.tip_mm); }));
+  out.own_stamps = own;
   return out;
 }
 
 MemoryEstimate estimate_memory(const MemoryFactors& f, double voxel_mm) {
-  constexpr double kAlways = 80e6, kBytesPerBlock = 112, kBytesPerMove = 80 + 96;  // with the plan
+  constexpr double kAlways = 80e6, kBytesPerBlock = 112, kBytesPerMove = 80 + 48;  // with the plan
   constexpr double kPointsPerVoxel = 1.2, kGroups = 12, kMinBand = 4, kTilesDeep = 2;
   constexpr double kTileSide = 16, kTileBytes = 17 * 17 * 17 * 8;  // voxels; with one more layer, distance and stamp
   const auto stamps = static_cast<double>(f.stamps), own = static_cast<double>(f.own_stamps.value_or(f.stamps));

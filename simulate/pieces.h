@@ -11,9 +11,21 @@
 #include "removal/stock_part.h"
 #include "simulate/cut.h"
 #include "simulate/predict.h"
+#include "simulate/section_pieces.h"
 #include "simulate/setup.h"
 
 namespace camber::simulate {
+
+struct ThinPath;  // simulate/section_programs.h
+
+/// simulate_motion() in two steps. First: reads, interprets and checks a program; `path` and `feed` are empty.
+SimulatedProgram read_moves(SourceText source, const machine::Job& job, Diagnostics& diagnostics);
+/// Second: times it, and stamps it. Its text is not looked at. Twice the same.
+void time_path(SimulatedProgram& program, const machine::Job& job, const feedmodel::SampleSink& samples);
+
+/// memory_factors() of a path of which some stamps are in memory.
+MemoryFactors memory_factors(const machine::Job& job, const nc::Program& text, const nc::Interpretation& moves,
+                             const PathStretch& path, const StockSize& stock, const removal::Region* within);
 
 /// The programs of a job.
 struct Programs {
@@ -42,6 +54,9 @@ struct TargetWork {
   /// All that is read of blank and target lies here; null: everywhere. The target then has the cutters that reach in
   /// there, and no Target::stamps. Needs `surface`.
   const removal::Region* within = nullptr;
+  /// Of a target whose path SimulatedProgram::path has not got (`within` is given then): as the machine runs it, and
+  /// nominal.
+  const ThinPath *path = nullptr, *nominal = nullptr;
 };
 Blank make_blank(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, double min_chip_mm,
                  const TargetWork& work);
@@ -63,8 +78,7 @@ struct PieceCut {
   std::function<void(double)> progress{};
 };
 /// Cuts a part of a run; `stock` is as the stamps before it have left it.
-CutResult cut_piece(removal::Stock& stock, const machine::Job& job, const removal::StampPath& path,
-                    const PieceCut& piece);
+CutResult cut_piece(removal::Stock& stock, const machine::Job& job, const PathStretch& path, const PieceCut& piece);
 
 /// As cut(): stamps from ... from + count - 1 alone. Those before them are in the stock, and `before` says how they
 /// were bent, where that is known; contacts and loads are of these.

@@ -21,6 +21,7 @@
 #include "simulate/operations.h"
 #include "simulate/pieces.h"
 #include "simulate/region.h"
+#include "simulate/section_programs.h"
 #include "simulate/setup_checks.h"
 #include "simulate/shared_prediction.h"
 
@@ -41,25 +42,39 @@ double longest_feed_mm(const machine::Tool& tool, std::span<const removal::Stamp
   return longest;
 }
 
-/// Half width of the narrow band: three voxels for the field's sake, and the thickest chip with room for bending.
-double band_voxels(const Job& job, const removal::StampPath& path, double thickest) {
+double thickest_chip_mm(const Job& job, const removal::StampPath& path) {
+  double out = 0;
   for (const auto& run : path.runs)
     if (run.kind != removal::RunKind::tapping)
-      thickest = std::max(thickest,
-                          longest_feed_mm(job.tools.at(run.tool), std::span(path.stamps).subspan(run.from, run.count)));
+      out = std::max(out, longest_feed_mm(job.tools.at(run.tool), std::span(path.stamps).subspan(run.from, run.count)));
+  return out;
+}
+
+/// Of an upright path.
+double thickest_chip_mm(const PathOutline& path) {
+  double out = 0;
+  for (std::size_t r = 0; r < path.runs.size(); ++r)
+    if (path.runs[r].kind != removal::RunKind::tapping) out = std::max(out, path.of_runs[r].longest_feed_mm);
+  return out;
+}
+
+/// Half width of the narrow band: three voxels for the field's sake, and the thickest chip with room for bending.
+double band_voxels(const Job& job, double thickest) {
   constexpr double kMin = 4, kMax = 12, kBending_mm = 0.1;
   return std::clamp(std::ceil((thickest + kBending_mm) / job.simulation.voxel_mm) + 1, kMin, kMax);
 }
 
 removal::Stock raw_stock(const Job& job, const SimulatedProgram& program, double min_chip_mm, MemoryEstimate& memory,
-                         Diagnostics& diagnostics, const removal::Region* within) {
-  const double band = band_voxels(job, program.path, min_chip_mm);
+                         Diagnostics& diagnostics, const TargetWork& work) {
+  const double chip = work.path ? thickest_chip_mm(work.path->outline) : thickest_chip_mm(job, program.path);
+  const double band = band_voxels(job, std::max(min_chip_mm, chip));
+  const PathStretch path = work.path ? work.path->stretch() : PathStretch(program.path);
   const auto require_memory = [&](const Vec3& lo, const Vec3& hi) {
-    memory = check_memory(job, memory_factors(job, program.text, program.moves, program.path, {lo, hi, band}, within),
+    memory = check_memory(job, memory_factors(job, program.text, program.moves, path, {lo, hi, band}, work.within),
                           diagnostics);
     diagnostics.throw_if_errors();
   };
-  return job_stock(job, band, require_memory, within);
+  return job_stock(job, band, require_memory, work.within);
 }
 
 template <class Function>
@@ -94,9 +109,9 @@ std::vector<Contact> contacts_of(const removal::Stock& target, const machine::To
   return out;
 }
 
-/// The loads of a single run are not copied.
+/// The loads of a single run are not copied, unless there is room for all.
 void append(std::vector<StampLoad> run, std::vector<StampLoad>& all) {
-  if (all.empty())
+  if (all.capacity() == 0)
     all = std::move(run);
   else
     all.insert(all.end(), run.begin(), run.end());
@@ -123,6 +138,12 @@ double envelope_step_mm(const Job& job, const machine::Tool& tool) {
 
 SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmodel::SampleSink& samples,
                                  Diagnostics& diagnostics) {
+  SimulatedProgram out = read_moves(std::move(source), job, diagnostics);
+  time_path(out, job, samples);
+  return out;
+}
+
+SimulatedProgram read_moves(SourceText source, const Job& job, Diagnostics& diagnostics) {
   SimulatedProgram out;
   out.text = nc::read_program(std::move(source), diagnostics);
   out.moves = nc::interpret(out.text, interpreter_options(job, names_rotary_axes(job.machine, out.text)), diagnostics);
@@ -137,17 +158,21 @@ SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmo
     if (out.holes[i] != removal::HoleMove::none) out.selected[i] = false;
   check_cutting(job, out.text, out.moves, out.selected, out.holes, diagnostics);
   diagnostics.throw_if_errors();
-  removal::StampBuilder builder(out.moves, job.tools, out.selected, out.holes, out.part_path());
+  return out;
+}
+
+void time_path(SimulatedProgram& program, const Job& job, const feedmodel::SampleSink& samples) {
+  removal::StampBuilder builder(program.moves, job.tools, program.selected, program.holes, program.part_path());
   const auto take = [&](const auto& run, std::span<const feedmodel::TimedSample> timed) {
     builder.add(run);
     if (samples) samples(timed);
   };
-  out.feed = out.rotary ? predict_on_part(*out.rotary, job.machine,
-                                          [&](const feedmodel::PartSamples& run) { take(run, run.samples()); })
-                        : feedmodel::predict_feed(out.moves, job.machine,
-                                                  [&](std::span<const feedmodel::TimedSample> run) { take(run, run); });
-  out.path = builder.take();
-  return out;
+  program.feed = program.rotary
+                     ? predict_on_part(*program.rotary, job.machine,
+                                       [&](const feedmodel::PartSamples& run) { take(run, run.samples()); })
+                     : feedmodel::predict_feed(program.moves, job.machine,
+                                               [&](std::span<const feedmodel::TimedSample> run) { take(run, run); });
+  program.path = builder.take();
 }
 
 Motion motion_at(const SimulatedProgram& program, const Job& job, std::span<const feedmodel::TimedSample> samples) {
@@ -196,8 +221,20 @@ NominalCutters cutters_of(const Job& job, const removal::StampPath& nominal) {
   return out;
 }
 
+/// The stamps that a path has kept, in order. Returns its runs.
+std::vector<removal::ToolRun> take_kept(const ThinPath& path, const removal::TakeNominal& take) {
+  auto run = path.outline.runs.begin();
+  for (const ListRange& range : path.stamps.kept())
+    for (std::size_t k = range.from; k < range.end; ++k) {
+      while (k >= run->from + run->count) ++run;
+      take(*run, k, path.stamps.all()[k]);
+    }
+  return path.outline.runs;
+}
+
 /// Those that reach into a region, or nearly. Without `stamps`.
-NominalCutters cutters_within(const Job& job, const SimulatedProgram& target, const removal::Region& region) {
+NominalCutters cutters_within(const Job& job, const SimulatedProgram& target, const TargetWork& work) {
+  const removal::Region& region = *work.within;
   constexpr double kTilesAround = 4;
   NominalCutters out;
   std::vector<removal::Stamp> stretch;
@@ -210,20 +247,23 @@ NominalCutters cutters_within(const Job& job, const SimulatedProgram& target, co
   };
   std::optional<std::size_t> run_from;
   removal::Region near;
-  out.runs = removal::follow_nominal_path(
-      target.moves, target.selected, target.path, target.part_path(),
-      [&](const removal::ToolRun& run, std::size_t number, const removal::Stamp& stamp) {
-        if (run_from != run.from) {
-          put();
-          run_from = run.from;
-          tool = run.tool;
-          near = region.wider(removal::shape_of(job.tools.at(tool)).radius_mm +
-                              kTilesAround * removal::kTileVoxels * job.simulation.voxel_mm);
-        }
-        if (!near.contains(stamp.pose.tip_mm)) return put();
-        if (stretch.empty()) first = number;
-        stretch.push_back(stamp);
-      });
+  const auto take = [&](const removal::ToolRun& run, std::size_t number, const removal::Stamp& stamp) {
+    if (run_from != run.from) {
+      put();
+      run_from = run.from;
+      tool = run.tool;
+      near = region.wider(removal::shape_of(job.tools.at(tool)).radius_mm +
+                          kTilesAround * removal::kTileVoxels * job.simulation.voxel_mm);
+    }
+    if (first + stretch.size() != number) put();
+    if (!near.contains(stamp.pose.tip_mm)) return put();
+    if (stretch.empty()) first = number;
+    stretch.push_back(stamp);
+  };
+  if (work.nominal)
+    out.runs = take_kept(*work.nominal, take);
+  else
+    out.runs = removal::follow_nominal_path(target.moves, target.selected, target.path, target.part_path(), take);
   put();
   return out;
 }
@@ -254,7 +294,7 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
 Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, double min_chip_mm,
                  const TargetWork& work) {
   MemoryEstimate memory;
-  removal::Stock blank = raw_stock(job, target, min_chip_mm, memory, diagnostics, work.within);
+  removal::Stock blank = raw_stock(job, target, min_chip_mm, memory, diagnostics, work);
   blank.share();
   Places places = places_of(job, target, blank);
   if (!removal::all_upright(target.path.stamps))  // a tilted tool reaches down past its tip
@@ -287,7 +327,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
   double removed_mm3 = 0;
   if (work.within) {
     removed_mm3 = work.surface(surface);
-    cutters = cutters_within(job, target, *work.within);
+    cutters = cutters_within(job, target, work);
   } else {
     const removal::StampPath nominal =
         removal::nominal_path(target.moves, target.selected, target.path, target.part_path());
@@ -404,10 +444,10 @@ void add_piece(const Job& job, const removal::ToolRun& run, CutResult piece, Pat
   if (!piece.turn.teeth.empty()) out.cut.turn = std::move(piece.turn);
 }
 
-CutResult cut_piece(removal::Stock& stock, const Job& job, const removal::StampPath& path, const PieceCut& piece) {
+CutResult cut_piece(removal::Stock& stock, const Job& job, const PathStretch& path, const PieceCut& piece) {
   const removal::ToolRun& run = path.runs[piece.run];
   const machine::Tool& tool = job.tools.at(run.tool);
-  const std::span<const removal::Stamp> stamps = std::span(path.stamps).subspan(run.from, run.count);
+  const std::span<const removal::Stamp> stamps = path.stamps_of(run);
   const std::function<void(double)> progress = piece.progress;
   CutOptions options =
       cut_options_of(job, {.coupling = piece.coupling, .progress = progress, .surface = piece.surface}, tool);

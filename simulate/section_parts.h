@@ -3,6 +3,7 @@
 // piece.
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,10 +34,13 @@ struct SweptSection {
   void write(ByteWriter& out) const;
   static SweptSection read(ByteReader& in);
 };
-/// The same of the program alone, one per piece; no other section reads it. Pieces are read one after the other, so
-/// that they stay the bytes that they are in a file, which are not copied.
+/// The same of the program alone, one per piece; no other section reads it. Pieces are read one after the other: they
+/// stay the bytes that they are in a file, and those of a long section stay there.
 struct OwnSweep {
   std::string bytes;
+  /// Begins to read pieces that are elsewhere: each call of the result gives the bytes of the next one. Empty: they are
+  /// in `bytes`.
+  std::function<std::function<std::string()>()> open{};
 
   void add(const removal::StockPart& piece);
 };

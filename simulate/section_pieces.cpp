@@ -9,7 +9,17 @@ namespace camber::simulate {
 using machine::Job;
 using removal::Region;
 
-std::vector<PathPiece> path_pieces(const removal::StampPath& path) {
+std::vector<ListRange> PathStretch::kept_in(std::size_t from, std::size_t count) const {
+  if (!kept) return {{0, count}};
+  std::vector<ListRange> out;
+  for (const ListRange& range : *kept) {
+    const std::size_t begin = std::max(range.from, from - first), end = std::min(range.end, from - first + count);
+    if (begin < end) out.push_back({begin + first - from, end + first - from});
+  }
+  return out;
+}
+
+std::vector<PathPiece> path_pieces(const PathStretch& path) {
   std::vector<PathPiece> out;
   for (std::size_t r = 0; r < path.runs.size(); ++r) {
     const removal::ToolRun& run = path.runs[r];
@@ -50,11 +60,28 @@ std::vector<RunPieces> runs_of(const std::vector<PathPiece>& pieces, const Piece
   return out;
 }
 
+namespace {
+
+constexpr double kFar_mm = 1e9;
+
+double around_mm(const Job& job, const removal::ToolRun& run) {
+  constexpr double kMaxBandVoxels = 12;
+  return removal::shape_of(job.tools.at(run.tool)).radius_mm + kMaxBandVoxels * job.simulation.voxel_mm +
+         removal::DeflectedEngager::kMaxDeflection_mm;
+}
+
+}  // namespace
+
+Region reach_of_tips(const Job& job, const removal::ToolRun& run, const Region& tips) {
+  if (tips.empty()) return tips;
+  Region out = tips.wider(around_mm(job, run));
+  out.max_mm.z() = kFar_mm;
+  return out;
+}
+
 Region reach_of(const Job& job, const PathStretch& path, const PathPiece& piece) {
-  constexpr double kMaxBandVoxels = 12, kFar_mm = 1e9;
   Region out;
-  const double around = removal::shape_of(job.tools.at(path.run_of(piece).tool)).radius_mm +
-                        kMaxBandVoxels * job.simulation.voxel_mm + removal::DeflectedEngager::kMaxDeflection_mm;
+  const double around = around_mm(job, path.run_of(piece));
   const Vec3 wide(around, around, around);
   for (const removal::Stamp& s : path.stamps_of(piece)) {
     out.add(s.pose.tip_mm - wide);

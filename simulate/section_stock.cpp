@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace camber::simulate {
@@ -10,16 +11,22 @@ using removal::Region;
 using removal::Stock;
 using removal::StockPart;
 
-SectionPlace::SectionPlace(const removal::StampPath& path, std::size_t section_, std::size_t sections)
+SectionPlace::SectionPlace(const PathStretch& path, std::size_t section_, std::size_t sections)
     : pieces(path_pieces(path)), section(section_) {
   for (std::size_t s = 0; s < sections; ++s) ranges.push_back(section_pieces(pieces, s, sections));
   own = ranges[section];
 }
 
-SectionPlace::SectionPlace(const removal::StampPath& path, std::size_t section_, std::vector<PieceRange> ranges_)
+SectionPlace::SectionPlace(const PathStretch& path, std::size_t section_, std::vector<PieceRange> ranges_)
     : pieces(path_pieces(path)), ranges(std::move(ranges_)), section(section_), own(ranges[section_]) {}
 
 JoinOwnPiece pieces_of(const OwnSweep& own) {
+  if (own.open)
+    return [next = own.open()](std::size_t, Stock& stock, const Region& within) {
+      const std::string bytes = next();
+      ByteReader in(bytes);
+      StockPart::read(in).join_to(stock, &within);
+    };
   return [in = ByteReader(own.bytes)](std::size_t, Stock& stock, const Region& within) mutable {
     StockPart::read(in).join_to(stock, &within);
   };

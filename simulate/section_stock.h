@@ -17,9 +17,9 @@ struct SectionPlace {
   std::size_t section = 0;
   PieceRange own{};
 
-  SectionPlace(const removal::StampPath& path, std::size_t section, std::size_t sections);
+  SectionPlace(const PathStretch& path, std::size_t section, std::size_t sections);
   /// Divided as another path of as many pieces.
-  SectionPlace(const removal::StampPath& path, std::size_t section, std::vector<PieceRange> ranges);
+  SectionPlace(const PathStretch& path, std::size_t section, std::vector<PieceRange> ranges);
   std::vector<RunPieces> runs(std::size_t of_section) const { return runs_of(pieces, ranges[of_section]); }
 };
 

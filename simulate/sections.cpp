@@ -8,7 +8,7 @@
 #include "base/stage.h"
 #include "removal/engagement.h"
 #include "removal/joined_parts.h"
-#include "removal/nominal_path.h"
+#include "removal/known_run.h"
 #include "simulate/contour.h"
 #include "simulate/section_stock.h"
 
@@ -84,6 +84,13 @@ std::vector<StockPart> joined_runs(const SectionPlace& place, const std::vector<
   return out;
 }
 
+/// Of the section's own pieces.
+std::size_t stamps_in(const SectionPlace& place) {
+  std::size_t out = 0;
+  for (std::size_t p = place.own.begin; p < place.own.end; ++p) out += place.pieces[p].count;
+  return out;
+}
+
 /// Each of a section's pieces carved alone out of `raw`; `use(run, part)` for each.
 template <class Use>
 void sweep_pieces(const Stock& raw, const Job& job, const PathStretch& path, const SectionPlace& place,
@@ -123,47 +130,10 @@ SweptSection swept_path(const Job& job, const Stock& raw, const PathStretch& pat
   return out;
 }
 
-Region reach_of_section(const Job& job, const Programs& programs, std::size_t section, std::size_t sections) {
-  Region out;
-  for (const removal::StampPath* path : {&programs.program.path, &programs.of_target().path}) {
-    const std::vector<PathPiece> pieces = path_pieces(*path);
-    out.add(reach_of(job, *path, pieces, section_pieces(pieces, section, sections)));
-  }
-  return out;
-}
-
-/// The stamps of a section's pieces on the programmed path.
-struct NominalSection {
-  removal::StampPath path;  ///< all runs; stamps from `first` on
-  std::size_t first = 0;
-  SectionPlace place;
-
-  PathStretch stretch() const { return {path, first}; }
-};
-
-/// The path is gone through twice: where a section lies is known when all of it is counted.
-NominalSection nominal_section(const SimulatedProgram& program, std::size_t section, std::size_t sections) {
-  const auto follow = [&](const removal::TakeNominal& take) {
-    return removal::follow_nominal_path(program.moves, program.selected, program.path, program.part_path(), take);
-  };
-  removal::StampPath path;
-  path.runs = follow([](const removal::ToolRun&, std::size_t, const removal::Stamp&) {});
-  SectionPlace place(path, section, sections);
-  if (place.own.empty()) return {std::move(path), 0, std::move(place)};
-  const PathStretch whole(path);
-  const PathPiece& last = place.pieces[place.own.end - 1];
-  const std::size_t first = whole.begin_of(place.pieces[place.own.begin]), end = whole.begin_of(last) + last.count;
-  path.stamps.reserve(end - first);
-  follow([&](const removal::ToolRun&, std::size_t number, const removal::Stamp& stamp) {
-    if (number >= first && number < end) path.stamps.push_back(stamp);
-  });
-  return {std::move(path), first, std::move(place)};
-}
-
 /// One section of a path, piece after piece.
 class SectionSolver {
  public:
-  SectionSolver(const Job& job, const removal::StampPath& path, const Target& target, const SectionPlace& place,
+  SectionSolver(const Job& job, const PathStretch& path, const Target& target, const SectionPlace& place,
                 const SectionParts& parts, const SolveOptions& options)
       : job_(job),
         path_(path),
@@ -224,6 +194,8 @@ class SectionSolver {
     const auto done = static_cast<double>(p - place_.own.begin),
                all = static_cast<double>(place_.own.end - place_.own.begin);
     SolvedPiece out;
+    std::optional<removal::KnownRunScope> known;
+    if (const removal::KnownRun* run = known_run(piece.run)) known.emplace(*run);
     out.cut = cut_piece(stock, job_, path_,
                         {.run = piece.run,
                          .from = piece.from,
@@ -237,6 +209,7 @@ class SectionSolver {
                          .progress = [&](double share) {
                            if (options_.progress) options_.progress((done + share) / all);
                          }});
+    known.reset();
     out.marks = map_.take_marks();
     work.stamps += piece.count;
     if (coupling_ != machine::Coupling::static_) return out;
@@ -245,6 +218,22 @@ class SectionSolver {
         StockPart(stock, before.stock(), reach, std::array{first, first + static_cast<std::int32_t>(piece.count)});
     work.voxels += out.stock.voxels();
     return out;
+  }
+
+  /// What all pieces of a run share. Null: they look at all its stamps, which then are in memory.
+  const removal::KnownRun* known_run(std::size_t r) {
+    if (run_ == r) return known_ ? &*known_ : nullptr;
+    run_ = r;
+    known_.reset();
+    const removal::ToolRun& run = path_.runs[r];
+    if (run.kind != removal::RunKind::milling) return nullptr;
+    if (path_.kept) {
+      const removal::Region& tips = options_.outline->of_runs[r].tips;
+      known_.emplace(path_.stamps_of(run), tips.min_mm, tips.max_mm, path_.kept_in(run.from, run.count));
+    } else if (removal::all_upright(path_.stamps_of(run))) {
+      known_.emplace(path_.stamps_of(run));
+    }
+    return known_ ? &*known_ : nullptr;
   }
 
   /// What others need of the pieces.
@@ -271,7 +260,7 @@ class SectionSolver {
   }
 
   const Job& job_;
-  const removal::StampPath& path_;
+  PathStretch path_;
   const Target& target_;
   const SolveOptions& options_;
   const SectionPlace& place_;
@@ -281,6 +270,8 @@ class SectionSolver {
   bool again_;
   machine::Coupling coupling_;
   std::vector<BendBefore> bends_, earlier_bends_;
+  std::optional<std::size_t> run_;  ///< the last one
+  std::optional<removal::KnownRun> known_;
 };
 
 /// Contour and history of the round before, if there was one.
@@ -295,116 +286,131 @@ SolvedSection begin_round(const SectionParts& parts, std::size_t section) {
 
 }  // namespace
 
-Region section_region(const Job& job, const Programs& programs, std::size_t section, std::size_t sections) {
-  return joined_region(job, reach_of_section(job, programs, section, sections));
+Region section_region(const Job& job, const SectionPrograms& programs, std::size_t section, std::size_t sections) {
+  return joined_region(job, programs.reach(section, sections));
 }
 
-Region section_region(const Job& job, const removal::StampPath& path, const SectionPlace& place, std::size_t section) {
+Region section_region(const Job& job, const PathStretch& path, const SectionPlace& place, std::size_t section) {
   return joined_region(job, reach_of(job, path, place.pieces, place.ranges[section]));
 }
 
-SweptSection sweep_section(const Job& job, const Programs& programs, std::size_t section, std::size_t sections,
+SweptSection sweep_section(const Job& job, const SectionPrograms& programs, std::size_t section, std::size_t sections,
                            const std::function<void(const StockPart&)>& own, Diagnostics& diagnostics) {
   const SimulatedProgram& of_target = programs.of_target();
-  const NominalSection nominal = nominal_section(of_target, section, sections);
-  Region reach = reach_of_section(job, programs, section, sections);
+  const NominalSection nominal = programs.nominal(section, sections);
+  Region reach = programs.reach(section, sections);
   reach.add(reach_of(job, nominal.stretch(), nominal.place.pieces, nominal.place.own));
   const Region within = joined_region(job, reach);
   // The blank before any allowance: what lies above it is a part as any other.
-  const TargetWork nothing{.allowance = [](Stock&) { return 1e300; }, .within = &within};
+  TargetWork nothing{.allowance = [](Stock&) { return 1e300; }, .within = &within};
+  programs.add_to(nothing);
   const Blank raw = make_blank(job, of_target, diagnostics, 0, nothing);
   diagnostics.throw_if_errors();
-  const removal::StampPath& path = programs.program.path;
-  Stage stage("carving the section", path.stamps.size() / sections + nominal.path.stamps.size() + 1);
-  SweptSection out = swept_path(job, raw.stock, path, SectionPlace(path, section, sections), stage, own);
-  const auto joined = [&](const PathStretch& of, const SectionPlace& place, double shrink_mm, double& removed_mm3) {
+  const PathStretch path = programs.path();
+  const SectionPlace place(path, section, sections);
+  Stage stage("carving the section", stamps_in(place) + stamps_in(nominal.place) + 1);
+  SweptSection out = swept_path(job, raw.stock, path, place, stage, own);
+  const auto joined = [&](const PathStretch& of, const SectionPlace& where, double shrink_mm, double& removed_mm3) {
     removal::JoinedParts parts;
-    sweep_pieces(raw.stock, job, of, place, shrink_mm, removed_mm3, out.work, stage,
+    sweep_pieces(raw.stock, job, of, where, shrink_mm, removed_mm3, out.work, stage,
                  [&](std::size_t, StockPart part) { parts.add(std::move(part)); });
     return parts.take();
   };
   out.target = joined(nominal.stretch(), nominal.place, 0, out.target_mm3);
   if (job.stock.allowance_mm > 0)
-    out.allowance = joined(of_target.path, SectionPlace(of_target.path, section, sections), job.stock.allowance_mm,
-                           out.allowance_mm3);
+    out.allowance = joined(programs.target_path(), SectionPlace(programs.target_path(), section, sections),
+                           job.stock.allowance_mm, out.allowance_mm3);
   return out;
 }
 
-Swept sweep_path_section(const Job& job, const Stock& blank, const removal::StampPath& path,
-                         const SectionPlace& place) {
-  Stage stage("carving the section", path.stamps.size() / place.ranges.size() + 1);
+Swept sweep_path_section(const Job& job, const Stock& blank, const PathStretch& path, const SectionPlace& place) {
+  Stage stage("carving the section", stamps_in(place) + 1);
   Swept out;
   out.section = swept_path(job, blank, path, place, stage, [&](const StockPart& part) { out.own.add(part); });
   return out;
 }
 
-TargetWork joined_target(const std::vector<SweptSection>& swept, const std::vector<SolvedSection>& solved,
-                         const Region* within) {
+EachSwept each_of(const std::vector<SweptSection>& swept) {
+  return [&swept](const auto& use) {
+    for (const SweptSection& section : swept) use(section);
+  };
+}
+
+EachSolved each_of(std::vector<SolvedSection>& solved) {
+  return [&solved](const auto& use) {
+    for (SolvedSection& section : solved) use(section);
+  };
+}
+
+TargetWork joined_target(EachSwept swept, EachSolved solved, const Region* within) {
   TargetWork out;
-  out.allowance = [&swept, within](Stock& blank) {
+  out.allowance = [swept, within](Stock& blank) {
     double removed_mm3 = 0;
-    for (const SweptSection& s : swept) {
+    swept([&](const SweptSection& s) {
       s.allowance.join_to(blank, within, false);
       removed_mm3 += s.allowance_mm3;
-    }
+    });
     return removed_mm3;
   };
-  out.surface = [&swept, within](Stock& surface) {
+  out.surface = [swept, within](Stock& surface) {
     double removed_mm3 = 0;
-    for (const SweptSection& s : swept) {
+    swept([&](const SweptSection& s) {
       s.target.join_to(surface, within);
       removed_mm3 += s.target_mm3;
-    }
+    });
     return removed_mm3;
   };
-  out.contour = [&solved](Target& target) {
+  out.contour = [solved = std::move(solved)](Target& target) {
     std::vector<removal::SurfacePoint> points = removal::SurfaceMap(*target.map).take();
-    for (const SolvedSection& s : solved) join(s.contour, points);
+    solved([&](const SolvedSection& s) { join(s.contour, points); });
     target.contour_mm.reserve(points.size());
     for (const removal::SurfacePoint& p : points) target.contour_mm.push_back(static_cast<float>(p.error_mm));
   };
   return out;
 }
 
-Solved solve_section(const Job& job, const Programs& programs, const SectionParts& parts, const SolveOptions& options,
-                     Diagnostics& diagnostics, std::optional<Target>* kept) {
+Solved solve_section(const Job& job, const SectionPrograms& programs, const SectionParts& parts,
+                     const SolveOptions& options, Diagnostics& diagnostics, std::optional<Target>* kept) {
   Solved out;
   out.section = begin_round(parts, options.section);
   std::optional<Target> own;
   std::optional<Target>& target = kept ? *kept : own;
-  const SectionPlace own_place(programs.program.path, options.section, options.sections);
+  const PathStretch path = programs.path();
+  const SectionPlace own_place(path, options.section, options.sections);
+  SolveOptions solving = options;
+  solving.outline = programs.outline();
   if (target) {
-    SectionSolver(job, programs.program.path, *target, own_place, parts, options).solve(out);
+    SectionSolver(job, path, *target, own_place, parts, solving).solve(out);
     return out;
   }
   const Region joined = section_region(job, programs, options.section, options.sections);
   if (joined.empty()) return out;
-  TargetWork work = joined_target(parts.swept, parts.last, &joined);
+  TargetWork work = joined_target(each_of(parts.swept), {}, &joined);
   const Region within = joined_region(job, joined);
   work.within = &within;
+  programs.add_to(work);
   work.judged = false;
   work.contour = [&](Target& made) {
     if (!parts.last.empty()) return;
-    const removal::StampPath& path = programs.of_target().path;
-    const SectionPlace place(path, options.section, options.sections);
+    const PathStretch of_target = programs.target_path();
+    const SectionPlace place(of_target, options.section, options.sections);
     removal::SurfaceMap& map = *made.map;
     DeepestMarks marks(map);
     for (std::size_t p = place.own.begin; p < place.own.end; ++p) {
       const PathPiece& piece = place.pieces[p];
-      mark_contour_of(job, path, path.runs[piece.run], piece.from, piece.count, map);
+      mark_contour_of(job, of_target, piece, map);
       marks.add(map.take_marks());
       out.section.work.stamps += piece.count;
     }
     out.section.contour = marks.marks();
   };
   target.emplace(make_target(job, programs.of_target(), diagnostics, work));
-  SectionSolver(job, programs.program.path, *target, own_place, parts, options).solve(out);
+  SectionSolver(job, path, *target, own_place, parts, solving).solve(out);
   return out;
 }
 
-Solved solve_path_section(const Job& job, const Target& target, const removal::StampPath& path,
-                          const SectionPlace& place, const SectionParts& parts,
-                          const std::function<void(double)>& progress) {
+Solved solve_path_section(const Job& job, const Target& target, const PathStretch& path, const SectionPlace& place,
+                          const SectionParts& parts, const std::function<void(double)>& progress) {
   Solved out;
   out.section = begin_round(parts, place.section);
   const SolveOptions options{
@@ -413,30 +419,33 @@ Solved solve_path_section(const Job& job, const Target& target, const removal::S
   return out;
 }
 
-Prediction merge_sections(const Job& job, Target& target, const SimulatedProgram& program,
-                          const std::vector<SweptSection>& swept, std::vector<SolvedSection> solved) {
+Prediction merge_sections(const Job& job, Target& target, const SimulatedProgram& program, const EachSwept& swept,
+                          const EachSolved& solved) {
   removal::SurfaceMap map = std::move(*target.map);
   target.map.reset();
-  return merge_sections(job, target, std::move(map), program, swept, std::move(solved));
+  return merge_sections(job, target, std::move(map), program, swept, solved);
 }
 
 Prediction merge_sections(const Job& job, const Target& target, removal::SurfaceMap map,
-                          const SimulatedProgram& program, const std::vector<SweptSection>& swept,
-                          std::vector<SolvedSection> solved) {
+                          const SimulatedProgram& program, const EachSwept& swept, const EachSolved& solved) {
   PathLoads loads;
   loads.holes.count = removal::count_holes(program.moves, program.holes);
+  loads.cut.loads.reserve(program.path.stamps.size());
   auto machined = std::make_unique<Stock>(target.blank);
   std::vector<removal::SurfacePoint> surface = map.take();
+  const auto join_stock = [&](const std::vector<StockPart>& parts) {
+    for (const StockPart& part : parts) part.join_to(*machined);
+  };
   const bool is_static = job.simulation.coupling == machine::Coupling::static_;
-  for (const auto* parts : is_static ? stocks_of(solved) : stocks_of(swept))
-    for (const StockPart& part : *parts) part.join_to(*machined);
+  if (!is_static) swept([&](const SweptSection& section) { join_stock(section.stock); });
   const std::vector<PathPiece> pieces = path_pieces(program.path);
   std::size_t p = 0;
-  for (SolvedSection& section : solved) {
+  solved([&](SolvedSection& section) {
+    if (is_static) join_stock(section.stock);
     join(section.marks, surface);
     for (CutResult& cut : section.cuts) add_piece(job, program.path.runs[pieces[p++].run], std::move(cut), loads);
     section = {};
-  }
+  });
   return judge(target, std::move(loads), std::move(surface), std::move(machined));
 }
 

@@ -20,6 +20,7 @@
 #include "simulate/pieces.h"
 #include "simulate/section_parts.h"
 #include "simulate/section_pieces.h"
+#include "simulate/section_programs.h"
 #include "simulate/section_stock.h"
 
 namespace camber::simulate {
@@ -28,11 +29,13 @@ struct Swept {
   SweptSection section;
   OwnSweep own;
 };
-/// What the section keeps for itself (OwnSweep) is given piece by piece to `own`, and not kept.
-SweptSection sweep_section(const machine::Job& job, const Programs& programs, std::size_t section, std::size_t sections,
-                           const std::function<void(const removal::StockPart&)>& own, Diagnostics& diagnostics);
+/// What the section keeps for itself (OwnSweep) is given piece by piece to `own`, and not kept. `programs` are at the
+/// section, here and below.
+SweptSection sweep_section(const machine::Job& job, const SectionPrograms& programs, std::size_t section,
+                           std::size_t sections, const std::function<void(const removal::StockPart&)>& own,
+                           Diagnostics& diagnostics);
 /// The program's path alone, out of a stock.
-Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const removal::StampPath& path,
+Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const PathStretch& path,
                          const SectionPlace& place);
 
 /// Change of the stock that a piece must feel, or of the deflection with which the tool enters it, before it is solved
@@ -57,6 +60,7 @@ struct SolveOptions {
   std::size_t section = 0, sections = 1;
   std::optional<std::size_t> turn_from{};  ///< see PredictOptions
   std::function<void(double)> progress{};
+  const PathOutline* outline = nullptr;  ///< of a path that is not in memory as a whole
 };
 struct Solved {
   SolvedSection section;
@@ -64,30 +68,35 @@ struct Solved {
 };
 /// Solves a section; in a later round only the pieces whose stock has changed. `kept` (null: nothing is kept): the
 /// section's target, made where it is empty, for the next round of the same section.
-Solved solve_section(const machine::Job& job, const Programs& programs, const SectionParts& parts,
+Solved solve_section(const machine::Job& job, const SectionPrograms& programs, const SectionParts& parts,
                      const SolveOptions& options, Diagnostics& diagnostics, std::optional<Target>* kept = nullptr);
 /// The same against a whole target; no contour.
-Solved solve_path_section(const machine::Job& job, const Target& target, const removal::StampPath& path,
+Solved solve_path_section(const machine::Job& job, const Target& target, const PathStretch& path,
                           const SectionPlace& place, const SectionParts& parts,
                           const std::function<void(double)>& progress);
 
 /// What a section reads of others' parts: the rest may be left out, here. Empty where the section has nothing.
-removal::Region section_region(const machine::Job& job, const Programs& programs, std::size_t section,
+/// `programs` may be at another section.
+removal::Region section_region(const machine::Job& job, const SectionPrograms& programs, std::size_t section,
                                std::size_t sections);
-removal::Region section_region(const machine::Job& job, const removal::StampPath& path, const SectionPlace& place,
+removal::Region section_region(const machine::Job& job, const PathStretch& path, const SectionPlace& place,
                                std::size_t section);
 
-/// Joins the target's parts instead of sweeping it. `swept` and `solved` must outlive the result; `within` (null:
-/// everywhere) bounds what is joined.
-TargetWork joined_target(const std::vector<SweptSection>& swept, const std::vector<SolvedSection>& solved,
-                         const removal::Region* within = nullptr);
+/// Gives the parts of all sections one after the other, in order; each may be used up. Several times the same.
+using EachSwept = std::function<void(const std::function<void(const SweptSection&)>& use)>;
+using EachSolved = std::function<void(const std::function<void(SolvedSection&)>& use)>;
+EachSwept each_of(const std::vector<SweptSection>& swept);
+EachSolved each_of(std::vector<SolvedSection>& solved);
 
-/// The prediction of all parts. `solved`: of the last round. Target: made by joined_target(), or whole; its map is used
-/// up.
+/// Joins the target's parts instead of sweeping it. `within` (null: everywhere) bounds what is joined and must outlive
+/// the result, as what the parts come from must.
+TargetWork joined_target(EachSwept swept, EachSolved solved, const removal::Region* within = nullptr);
+
+/// The prediction of all parts. `solved`: of the last round. One part is looked at at a time. Target: made by
+/// joined_target(), or whole; its map is used up.
 Prediction merge_sections(const machine::Job& job, Target& target, const SimulatedProgram& program,
-                          const std::vector<SweptSection>& swept, std::vector<SolvedSection> solved);
+                          const EachSwept& swept, const EachSolved& solved);
 Prediction merge_sections(const machine::Job& job, const Target& target, removal::SurfaceMap map,
-                          const SimulatedProgram& program, const std::vector<SweptSection>& swept,
-                          std::vector<SolvedSection> solved);
+                          const SimulatedProgram& program, const EachSwept& swept, const EachSolved& solved);
 
 }  // namespace camber::simulate

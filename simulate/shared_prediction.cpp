@@ -123,8 +123,9 @@ Prediction predict_together(const machine::Job& job, const Target& target, const
     parts.own_before_last = std::exchange(parts.own_last, std::move(solved.own));
   }
   if (!in_rounds) memory.figures.solved += place.pieces.size();
-  Prediction out = merge_sections(job, target, removal::SurfaceMap(*target.map), program, parts.swept,
-                                  whole_parts_of_crew(crew, solved.section));
+  std::vector<SolvedSection> all = whole_parts_of_crew(crew, solved.section);
+  Prediction out =
+      merge_sections(job, target, removal::SurfaceMap(*target.map), program, each_of(parts.swept), each_of(all));
   out.cut.unsettled += unsettled;  // pieces that the last round has changed still
   return out;
 }

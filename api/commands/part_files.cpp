@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "camber part 4\n";
+constexpr std::string_view kMagic = "camber part 5\n";
 constexpr std::size_t kHashLength = 16;
 
 constexpr std::string_view kOwn = "own-";
@@ -39,11 +40,53 @@ std::string head_of(const PartName& name, const PartKey& key) {
   return out.take();
 }
 
+void read_head(ByteReader& in, PartFile& out) {
+  out.version = in.text();
+  out.name = in.text();
+  out.key.job_path = in.text();
+  out.key.hash = in.text();
+  out.key.sections = in.value<std::uint64_t>();
+  out.key.forces_at = in.value<std::uint64_t>();
+}
+
 std::string bytes_of_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string out(static_cast<std::size_t>(fs::file_size(path)), '\0');
   in.read(out.data(), static_cast<std::streamsize>(out.size()));
   out.resize(static_cast<std::size_t>(in.gcount()));
+  return out;
+}
+
+/// A part without its content, which is long: where that begins in the file, and how many bytes it has. Nothing where
+/// the file is not whole.
+struct PartHead {
+  PartFile part;
+  std::uint64_t begin = 0, bytes = 0;
+};
+std::optional<PartHead> head_of_file(const std::string& path) {
+  constexpr std::size_t kBefore = kMagic.size() + kHashLength, kTogether = std::size_t{1} << 20;
+  std::ifstream in(path, std::ios::binary);
+  std::string before(kBefore, '\0'), bytes(kTogether, '\0');
+  in.read(before.data(), kBefore);
+  if (!in || std::string_view(before).substr(0, kMagic.size()) != kMagic) return std::nullopt;
+  PartHead out;
+  compensate::RunningHash hash;
+  for (bool first = true; in; first = false) {
+    in.read(bytes.data(), kTogether);
+    const std::string_view read(bytes.data(), static_cast<std::size_t>(in.gcount()));
+    hash.add(read);
+    out.bytes += read.size();
+    if (!first) continue;
+    try {
+      ByteReader head(read);
+      read_head(head, out.part);
+      out.begin = kBefore + read.size() - head.left();
+    } catch (const BytesMissing&) {
+      return std::nullopt;
+    }
+  }
+  if (hash.text() != std::string_view(before).substr(kMagic.size())) return std::nullopt;
+  out.bytes -= out.begin - kBefore;
   return out;
 }
 
@@ -56,12 +99,7 @@ std::optional<PartFile> unpacked(std::string text) {
   try {
     ByteReader in(all.substr(kHead));
     PartFile out;
-    out.version = in.text();
-    out.name = in.text();
-    out.key.job_path = in.text();
-    out.key.hash = in.text();
-    out.key.sections = in.value<std::uint64_t>();
-    out.key.forces_at = in.value<std::uint64_t>();
+    read_head(in, out);
     text.erase(0, text.size() - in.left());
     out.content = std::move(text);
     return out;
@@ -105,9 +143,9 @@ std::string PartFiles::path(const PartName& name) const { return folder_ + "/par
 bool PartFiles::has(const PartName& name) {
   std::error_code ec;
   if (!fs::is_regular_file(path(name), ec)) return false;
-  const auto found = unpacked(bytes_of_file(path(name)));
-  return found && found->version == CAMBER_VERSION && found->key.hash == key_.hash &&
-         found->key.forces_at == key_.forces_at && found->name == file_name(name);
+  const auto found = head_of_file(path(name));
+  return found && found->part.version == CAMBER_VERSION && found->part.key.hash == key_.hash &&
+         found->part.key.forces_at == key_.forces_at && found->part.name == file_name(name);
 }
 
 void PartFiles::give(const PartName& name, const Write& write) {
@@ -127,26 +165,65 @@ void PartFiles::give(const PartName& name, const Write& write) {
   file.commit();
 }
 
-std::string PartFiles::take(const PartName& name) {
-  const std::string file = path(name);
-  const std::string again = "run " + command_of(name, key_, folder_);
+std::string PartFiles::again(const PartName& name) const { return "run " + command_of(name, key_, folder_); }
+
+void PartFiles::refuse_torn(const PartName& name) const {
+  fail_on_file(path(name), "is not whole; a part that was written to its end was expected: " + again(name),
+               "part-torn");
+}
+
+void PartFiles::expect_there(const PartName& name) const {
   std::error_code ec;
-  if (!fs::is_regular_file(file, ec))
-    fail_on_file(file, "is missing; the part of this section was expected: " + again, "part-missing");
-  auto found = unpacked(bytes_of_file(file));
-  if (!found)
-    fail_on_file(file, "is not whole; a part that was written to its end was expected: " + again, "part-torn");
-  if (found->version != CAMBER_VERSION)
-    fail_on_file(file,
-                 fmt::format("was written by camber {}, this is {}; parts of one version were expected: {}",
-                             found->version, CAMBER_VERSION, again),
+  if (!fs::is_regular_file(path(name), ec))
+    fail_on_file(path(name), "is missing; the part of this section was expected: " + again(name), "part-missing");
+}
+
+void PartFiles::expect_own(const PartName& name, const std::string& version, const std::string& of_name,
+                           const PartKey& key) const {
+  if (version != CAMBER_VERSION)
+    fail_on_file(path(name),
+                 fmt::format("was written by camber {}, this is {}; parts of one version were expected: {}", version,
+                             CAMBER_VERSION, again(name)),
                  "part-version");
-  if (found->key.hash != key_.hash || found->key.forces_at != key_.forces_at || found->name != file_name(name))
-    fail_on_file(file,
-                 fmt::format("is of another job, program or setting (hash {}) than {} now (hash {}): {}",
-                             found->key.hash, key_.job_path, key_.hash, again),
+  if (key.hash != key_.hash || key.forces_at != key_.forces_at || of_name != file_name(name))
+    fail_on_file(path(name),
+                 fmt::format("is of another job, program or setting (hash {}) than {} now (hash {}): {}", key.hash,
+                             key_.job_path, key_.hash, again(name)),
                  "part-job");
+}
+
+std::string PartFiles::take(const PartName& name) {
+  expect_there(name);
+  auto found = unpacked(bytes_of_file(path(name)));
+  if (!found) refuse_torn(name);
+  expect_own(name, found->version, found->name, found->key);
   return std::move(found->content);
+}
+
+void PartFiles::check(const PartName& name) {
+  expect_there(name);
+  const auto found = head_of_file(path(name));
+  if (!found) refuse_torn(name);
+  expect_own(name, found->part.version, found->part.name, found->part.key);
+}
+
+std::function<std::string()> PartFiles::take_pieces(const PartName& name) {
+  expect_there(name);
+  const auto found = head_of_file(path(name));
+  if (!found) refuse_torn(name);
+  expect_own(name, found->part.version, found->part.name, found->part.key);
+  auto in = std::make_shared<std::ifstream>(path(name), std::ios::binary);
+  in->seekg(static_cast<std::streamoff>(found->begin));
+  return [this, name, in, left = found->bytes]() mutable {
+    std::uint64_t size = 0;
+    in->read(reinterpret_cast<char*>(&size), sizeof size);
+    if (!*in || left < sizeof size || left - sizeof size < size) refuse_torn(name);
+    left -= sizeof size + size;
+    std::string out(size, '\0');
+    in->read(out.data(), static_cast<std::streamsize>(size));
+    if (!*in) refuse_torn(name);
+    return out;
+  };
 }
 
 PartKey find_parts(const std::string& folder) {

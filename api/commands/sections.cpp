@@ -1,5 +1,6 @@
 #include "api/commands/sections.h"
 
+#include <algorithm>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/bytes.h"
 #include "base/stage.h"
 #include "simulate/turn.h"
 
@@ -31,19 +33,29 @@ void add(const simulate::SectionWork& more, simulate::SectionWork& work) {
 }  // namespace
 
 SectionRun::SectionRun(const machine::Job& job, PartKey key, PartStore& store, StepProgress progress,
-                       Diagnostics& diagnostics)
+                       Diagnostics& diagnostics, std::size_t longest_path)
     : job_(job), key_(std::move(key)), store_(store), progress_(std::move(progress)), diagnostics_(diagnostics) {
   const StageScope stages(progress_);
   const auto check = [&](const simulate::SimulatedProgram& program) {
-    diagnostics.append(read_.said);
+    diagnostics.append(said_);
     simulate::check_program(job, program, diagnostics);
     diagnostics.throw_if_errors();
   };
   Diagnostics of_original;
-  read_.programs = simulate::read_programs(job, {.check = check},
-                                           {.program = read_.said, .original = of_original, .target = diagnostics});
-  if (key_.forces_at > 0) turn_from_ = simulate::turn_at_line(read_.programs.program, job, key_.forces_at, diagnostics);
+  // A line is looked for in the text, and along the whole path.
+  if (key_.forces_at > 0) longest_path = kWholePath;
+  programs_.emplace(job, simulate::SectionProgramsOptions{.longest_path = longest_path, .check = check},
+                    simulate::SetupFindings{.program = said_, .original = of_original, .target = diagnostics});
+  if (key_.forces_at > 0) turn_from_ = simulate::turn_at_line(programs_->program(), job, key_.forces_at, diagnostics);
   diagnostics.throw_if_errors();
+}
+
+std::shared_ptr<simulate::ReadPrograms> SectionRun::take_programs() {
+  target_.reset();
+  std::optional<simulate::Programs> programs = programs_->take();
+  programs_.reset();
+  if (!programs) return nullptr;
+  return std::make_shared<simulate::ReadPrograms>(*std::move(programs), std::move(said_));
 }
 
 bool SectionRun::is_there(const PartName& name) {
@@ -56,7 +68,7 @@ bool SectionRun::is_there(const PartName& name) {
 
 const removal::Region& SectionRun::region(std::size_t section) {
   for (std::size_t s = regions_.size(); s < key_.sections; ++s)
-    regions_.push_back(simulate::section_region(job_, read_.programs, s, key_.sections));
+    regions_.push_back(simulate::section_region(job_, *programs_, s, key_.sections));
   return regions_[section];
 }
 
@@ -64,12 +76,20 @@ bool SectionRun::sweep(std::size_t section) {
   const PartName whole = name(PartStage::sweep, 1, section);
   if (is_there(whole)) return false;
   const StageScope stages(progress_);
+  programs_->go_to(section, key_.sections);
   simulate::SweptSection part;
   // Its own pieces are many times what others need: they are written as they are carved.
   store_.give(name(PartStage::sweep, 1, section, true), [&](const auto& put) {
     part = simulate::sweep_section(
-        job_, read_.programs, section, key_.sections,
-        [&](const removal::StockPart& piece) { put(simulate::bytes_of_part(piece)); }, diagnostics_);
+        job_, *programs_, section, key_.sections,
+        [&](const removal::StockPart& piece) {
+          const std::string bytes = simulate::bytes_of_part(piece);
+          ByteWriter size;
+          size.value(static_cast<std::uint64_t>(bytes.size()));
+          put(size.take());
+          put(bytes);
+        },
+        diagnostics_);
   });
   add(part.work, work_);
   give_part(store_, whole, part);
@@ -89,7 +109,8 @@ simulate::SectionParts SectionRun::parts_before(std::size_t section, int round) 
   };
   // Later rounds read of the sweeps what the target is made of, if it is not kept.
   if (round <= 2 || !target_) take_all(out.swept, PartStage::sweep, 1);
-  if (round <= 2) out.own_sweep.bytes = store_.take(name(PartStage::sweep, 1, section, true));
+  if (round <= 2)
+    out.own_sweep.open = [this, own = name(PartStage::sweep, 1, section, true)] { return store_.take_pieces(own); };
   if (round > 1) {
     take_all(out.last, PartStage::solve, round - 1);
     out.own_last = part_of<simulate::OwnSolution>(store_, name(PartStage::solve, round - 1, section, true));
@@ -107,6 +128,7 @@ bool SectionRun::solve(std::size_t section, int round) {
   const StageScope stages(progress_);
   if (target_section_ != section) target_.reset();
   target_section_ = section;
+  programs_->go_to(section, key_.sections);
   const simulate::SectionParts parts = parts_before(section, round);
   const auto tell = [&](double share) {
     if (progress_) progress_("cutting", share);
@@ -114,7 +136,7 @@ bool SectionRun::solve(std::size_t section, int round) {
   const simulate::SolveOptions options{
       .section = section, .sections = key_.sections, .turn_from = turn_from_, .progress = tell};
   const simulate::Solved part =
-      simulate::solve_section(job_, read_.programs, parts, options, diagnostics_, is_static() ? &target_ : nullptr);
+      simulate::solve_section(job_, *programs_, parts, options, diagnostics_, is_static() ? &target_ : nullptr);
   add(part.section.work, work_);
   if (is_static()) give_part(store_, name(PartStage::solve, round, section, true), part.own);
   give_part(store_, whole, part.section);
@@ -152,31 +174,43 @@ std::string with_sections(const std::string& json, const SectionFigures& figures
   return out.dump(2) + "\n";
 }
 
+namespace {
+
+/// The parts of all sections as they are asked for, one after the other.
+template <class Part>
+auto each_part(PartStore& store, PartStage stage, int round, std::size_t sections) {
+  return [&store, stage, round, sections](const auto& use) {
+    for (std::size_t s = 0; s < sections; ++s) {
+      Part part = part_of<Part>(store, {stage, round, s, sections});
+      use(part);
+    }
+  };
+}
+
+}  // namespace
+
 MergedJob merge_parts(const machine::Job& job, const PartKey& key, int round, PartStore& store,
                       const PredictRequest& request, Diagnostics& found, Diagnostics& of_cut) {
-  std::vector<simulate::SweptSection> swept;
-  std::vector<simulate::SolvedSection> solved;
+  for (std::size_t s = 0; s < key.sections; ++s) store.check({PartStage::sweep, 1, s, key.sections});
+  const simulate::EachSwept swept = each_part<simulate::SweptSection>(store, PartStage::sweep, 1, key.sections);
+  const simulate::EachSolved solved = each_part<simulate::SolvedSection>(store, PartStage::solve, round, key.sections);
   SectionFigures figures;
-  for (std::size_t s = 0; s < key.sections; ++s)
-    swept.push_back(part_of<simulate::SweptSection>(store, {PartStage::sweep, 1, s, key.sections}));
   figures.rounds = static_cast<std::size_t>(round);
   figures.solved_again.assign(static_cast<std::size_t>(round) - 1, 0);
   figures.largest_change_um.assign(static_cast<std::size_t>(round) - 1, 0);
-  for (std::size_t s = 0; s < key.sections; ++s) {
-    solved.push_back(part_of<simulate::SolvedSection>(store, {PartStage::solve, round, s, key.sections}));
-    const simulate::SolvedSection& part = solved.back();
+  solved([&](const simulate::SolvedSection& part) {
     for (std::size_t r = 0; r < part.history.size() && r < figures.solved_again.size(); ++r) {
       figures.solved_again[r] += part.history[r].solved_again;
       figures.largest_change_um[r] = std::max(figures.largest_change_um[r], part.history[r].largest_change_um);
     }
     figures.pieces += part.cuts.size();
-  }
+  });
   PredictRequest joined = request;
   joined.forces_at = key.forces_at;
   joined.work = simulate::joined_target(swept, solved);
   MergedJob out{prepare(job, joined, found), {}, figures, {}};
   simulate::Setup& setup = out.prepared.setup;
-  out.prediction = simulate::merge_sections(job, setup.target, setup.program, swept, std::move(solved));
+  out.prediction = simulate::merge_sections(job, setup.target, setup.program, swept, solved);
   setup.target.surface.clear();
   setup.target.whole.reset();
   finish_prediction(job, out.prepared, out.prediction, of_cut);

@@ -2,6 +2,7 @@
 // The work of camber predict --sections and camber merge: parts as files or messages, stage after stage.
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,6 +47,11 @@ class PartStore {
   /// Throws InputError where it is missing [part-missing], torn [part-torn] or of another prediction [part-version],
   /// [part-job].
   virtual std::string take(const PartName& name) = 0;
+  /// The pieces of a part of this process, one after the other; each was given with its size before it, in 8 bytes.
+  /// Throws as take(), at once.
+  virtual std::function<std::string()> take_pieces(const PartName& name) = 0;
+  /// Throws as take().
+  virtual void check(const PartName& name) { take(name); }
 };
 
 /// Parts as files in FOLDER/parts, each written beside and renamed.
@@ -56,9 +62,18 @@ class PartFiles : public PartStore {
   bool has(const PartName& name) override;
   void give(const PartName& name, const Write& write) override;
   std::string take(const PartName& name) override;
+  std::function<std::string()> take_pieces(const PartName& name) override;
+  void check(const PartName& name) override;
   std::string path(const PartName& name) const;
 
  private:
+  /// The command that writes a part.
+  std::string again(const PartName& name) const;
+  void expect_there(const PartName& name) const;
+  [[noreturn]] void refuse_torn(const PartName& name) const;
+  void expect_own(const PartName& name, const std::string& version, const std::string& of_name,
+                  const PartKey& key) const;
+
   std::string folder_;
   PartKey key_;
 };
@@ -74,8 +89,10 @@ PartKey part_key(const machine::Job& job, std::size_t sections, std::size_t forc
 /// The stages of one prediction in sections. Programs are read once.
 class SectionRun {
  public:
-  /// Throws InputError.
-  SectionRun(const machine::Job& job, PartKey key, PartStore& store, StepProgress progress, Diagnostics& diagnostics);
+  static constexpr std::size_t kWholePath = std::numeric_limits<std::size_t>::max();
+  /// longest_path: see simulate::SectionProgramsOptions. Throws InputError.
+  SectionRun(const machine::Job& job, PartKey key, PartStore& store, StepProgress progress, Diagnostics& diagnostics,
+             std::size_t longest_path = simulate::SectionProgramsOptions().longest_path);
 
   /// Computes a part unless it is there. False: it was.
   bool sweep(std::size_t section);
@@ -89,11 +106,9 @@ class SectionRun {
   bool is_static() const { return job_.simulation.coupling == machine::Coupling::static_; }
   /// What one process has done so far, for the efficiency of many.
   const simulate::SectionWork& work() const { return work_; }
-  /// The programs, for the merge by the same process (PredictRequest::programs). Ends the run.
-  std::shared_ptr<simulate::ReadPrograms> take_programs() {
-    target_.reset();
-    return std::make_shared<simulate::ReadPrograms>(std::move(read_));
-  }
+  /// The programs, for the merge by the same process (PredictRequest::programs); null where they are too long to be
+  /// kept. Ends the run.
+  std::shared_ptr<simulate::ReadPrograms> take_programs();
 
  private:
   PartName name(PartStage stage, int round, std::size_t section, bool own = false) const {
@@ -108,7 +123,8 @@ class SectionRun {
   PartStore& store_;
   StepProgress progress_;
   Diagnostics& diagnostics_;
-  simulate::ReadPrograms read_;
+  Diagnostics said_;  ///< of the job's program
+  std::optional<simulate::SectionPrograms> programs_;
   std::optional<std::size_t> turn_from_;
   simulate::SectionWork work_;
   std::vector<removal::Region> regions_;  ///< of all sections, once one is asked for
@@ -133,9 +149,9 @@ struct MergedJob {
   SectionFigures figures;
   std::string doubt;  ///< about static coupling; empty: none
 };
-/// Joins all parts of the sweep and of a round. `request`: as for a prediction; its `work` is not looked at. `found`:
-/// what should be shown before. Throws InputError where a part is missing or not like the others: nothing is merged
-/// then.
+/// Joins all parts of the sweep and of a round, of which one is in memory at a time. `request`: as for a prediction;
+/// its `work` is not looked at. `found`: what should be shown before. Throws InputError where a part is missing or not
+/// like the others: nothing is merged then.
 MergedJob merge_parts(const machine::Job& job, const PartKey& key, int round, PartStore& store,
                       const PredictRequest& request, Diagnostics& found, Diagnostics& of_cut);
 

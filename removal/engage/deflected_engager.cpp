@@ -18,6 +18,7 @@
 #include "removal/field/upright/carve.h"
 #include "removal/field/upright/cut_tiles.h"
 #include "removal/field/upright/tile_arena.h"
+#include "removal/known_run.h"
 
 namespace camber::removal {
 
@@ -111,7 +112,7 @@ DeflectedEngager::DeflectedEngager(Stock& stock, const Stock& blank, const Envel
                                    std::span<const Stamp> stamps, std::int32_t first_id)
     : impl_(new Impl{stock, blank, envelope, stamps, first_id}) {
   assert(!envelope.patches.empty());
-  if (!all_upright(stamps)) impl_->tilted.emplace(stock, blank, envelope, stamps, first_id, tilted::ReadingRule{});
+  if (!upright_run(stamps)) impl_->tilted.emplace(stock, blank, envelope, stamps, first_id, tilted::ReadingRule{});
 }
 DeflectedEngager::~DeflectedEngager() = default;
 

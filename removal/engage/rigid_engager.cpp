@@ -17,6 +17,7 @@
 #include "removal/field/upright/cut_tiles.h"
 #include "removal/field/upright/stamp_order.h"
 #include "removal/field/upright/tile_arena.h"
+#include "removal/known_run.h"
 
 namespace camber::removal {
 
@@ -337,7 +338,7 @@ void RigidEngager::Impl::cut_general(std::size_t t) {
 RigidEngager::RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope,
                            std::span<const Stamp> stamps, std::int32_t first_id, int pitches)
     : impl_(std::make_unique<Impl>(stock, blank, envelope, stamps, first_id, pitches)) {
-  if (!all_upright(stamps)) impl_->tilted.emplace(stock, blank, envelope, stamps, first_id, pitches, impl_->blocks);
+  if (!upright_run(stamps)) impl_->tilted.emplace(stock, blank, envelope, stamps, first_id, pitches, impl_->blocks);
 }
 RigidEngager::~RigidEngager() = default;
 

@@ -69,11 +69,11 @@ struct StepEngager::Impl {
         widest_voxels(static_cast<int>(std::ceil(blocks.widest_mm() / stock_.voxel_mm()))) {}
 
   std::span<const std::int32_t> reach(const Vec3& tip_mm);
-  void approach(const Stamp& stamp);
+  void approach(const Vec3& tip_mm, int most);
   void begin_fresh();
   bool cut(std::size_t tile, const Stamp& stamp, std::int32_t id);
   void write(std::span<const std::size_t> numbers);
-  void give_up_some();
+  void give_up(StepArena::Keep keep, int most);
   float voxel(const Index3& index) const;
 };
 
@@ -101,13 +101,8 @@ std::span<const std::int32_t> StepEngager::Impl::reach(const Vec3& tip_mm) {
   return near;
 }
 
-/// Reads some of the tiles that the cutter will meet if it goes on as it does.
-void StepEngager::Impl::approach(const Stamp& stamp) {
-  constexpr int kAtOnce = 2;
-  const double feed = stamp.feed_per_tooth_mm.norm();
-  if (!(feed > 0)) return;
-  const Vec3 ahead = stamp.pose.tip_mm + Tile::kCore * stock.voxel_mm() / feed * stamp.feed_per_tooth_mm;
-  arena.approach(stock, blank, envelope.shape, ahead.cwiseMax(box.min_mm).cwiseMin(box.max_mm), kAtOnce);
+void StepEngager::Impl::approach(const Vec3& tip, int most) {
+  arena.approach(stock, blank, envelope.shape, tip.cwiseMax(box.min_mm).cwiseMin(box.max_mm), most);
   begin_fresh();
 }
 
@@ -135,9 +130,9 @@ void StepEngager::Impl::write(std::span<const std::size_t> numbers) {
   stock.store(changed);
 }
 
-void StepEngager::Impl::give_up_some() {
-  for (std::size_t given = 0;; ++given) {
-    const auto oldest = arena.to_give_up(given);
+void StepEngager::Impl::give_up(StepArena::Keep keep, int most) {
+  for (int given = 0; given < most; ++given) {
+    const auto oldest = arena.to_give_up(keep);
     if (!oldest) return;
     write({&*oldest, 1});
     arena.give_up(*oldest, tiles[*oldest]->cover.all_air());
@@ -172,6 +167,11 @@ std::span<const ChipBlock> StepEngager::read(const Stamp& stamp) {
   return m.reader.read(m.arena, stamp, {}, m.buffers);
 }
 
+void StepEngager::approach(const Vec3& tip_mm, int most) {
+  impl_->give_up(most == kAll ? StepArena::Keep::some : StepArena::Keep::more, most);
+  impl_->approach(tip_mm, most);
+}
+
 void StepEngager::cut(const Stamp& stamp) {
   Impl& m = *impl_;
   assert(stamp.pose.upright() && m.box.contains(stamp.pose.tip_mm));
@@ -186,8 +186,7 @@ void StepEngager::cut(const Stamp& stamp) {
   constexpr std::int32_t kStampsATop = 4;
   if (id % kStampsATop == 0)
     m.arena.read_a_top(m.widest_voxels, [&](std::size_t t) -> const ColumnCover& { return m.tiles[t]->cover; });
-  m.approach(stamp);
-  m.give_up_some();
+  m.give_up(StepArena::Keep::most, kAll);
 }
 
 double StepEngager::flush() {

@@ -190,31 +190,33 @@ void BlankEdges::clear() {
 
 void BlankEdges::find(const float* distance, double voxel_mm, double band_mm, const ReadAround& read) {
   clear();
+  for (int i = 0; i < Tile::kCore; ++i) find_in_layer(i, distance, voxel_mm, band_mm, read);
+}
+
+void BlankEdges::find_in_layer(int i, const float* distance, double voxel_mm, double band_mm, const ReadAround& read) {
   // Nothing clipped, and near the surface: deeper chips are hardly wrong.
   const auto voxel = static_cast<float>(voxel_mm), most = kNear * voxel,
              least = std::max(-most, kDiagonal * voxel - static_cast<float>(band_mm));
   std::array<float, kAround * kAround * kAround> d;
   std::vector<EdgeFace> faces;
-  for (int i = 0; i < Tile::kCore; ++i)
-    for (int j = 0; j < Tile::kCore; ++j)
-      for (int k = 0; k < Tile::kCore; ++k) {
-        const int cell = Tile::offset(i, j, k);
-        const float* lowest = distance + cell;
-        if (!(*lowest > least && *lowest < most) || !is_near(lowest, voxel) || !is_bent(lowest, voxel)) continue;
-        if (std::min({i, j, k}) > 0 && std::max({i, j, k}) + 2 < Tile::kSide)
-          copy_around(lowest, d.data());
-        else
-          read({i, j, k}, d.data());
-        if (is_one_face(d.data(), voxel_mm)) continue;
-        const std::vector<Group> groups = faces_of(d.data(), voxel_mm);
-        if (groups.size() < 2) continue;
-        faces.clear();
-        for (const Group& g : groups) faces.push_back(g.face(voxel_mm));
-        cell_.push_back(cell);
-        from_.push_back(static_cast<std::uint32_t>(face_.size()));
-        face_.insert(face_.end(), faces.begin(), faces.end());
-      }
-  if (!cell_.empty()) from_.push_back(static_cast<std::uint32_t>(face_.size()));
+  for (int j = 0; j < Tile::kCore; ++j)
+    for (int k = 0; k < Tile::kCore; ++k) {
+      const int cell = Tile::offset(i, j, k);
+      const float* lowest = distance + cell;
+      if (!(*lowest > least && *lowest < most) || !is_near(lowest, voxel) || !is_bent(lowest, voxel)) continue;
+      if (std::min({i, j, k}) > 0 && std::max({i, j, k}) + 2 < Tile::kSide)
+        copy_around(lowest, d.data());
+      else
+        read({i, j, k}, d.data());
+      if (is_one_face(d.data(), voxel_mm)) continue;
+      const std::vector<Group> groups = faces_of(d.data(), voxel_mm);
+      if (groups.size() < 2) continue;
+      faces.clear();
+      for (const Group& g : groups) faces.push_back(g.face(voxel_mm));
+      cell_.push_back(cell);
+      from_.push_back(static_cast<std::uint32_t>(face_.size()));
+      face_.insert(face_.end(), faces.begin(), faces.end());
+    }
 }
 
 std::span<const EdgeFace> BlankEdges::faces(int cell) const {
@@ -222,7 +224,8 @@ std::span<const EdgeFace> BlankEdges::faces(int cell) const {
   const auto found = std::ranges::lower_bound(cell_, cell);
   if (found == cell_.end() || *found != cell) return {};
   const auto i = static_cast<std::size_t>(found - cell_.begin());
-  return std::span(face_).subspan(from_[i], from_[i + 1] - from_[i]);
+  const std::size_t end = i + 1 < from_.size() ? from_[i + 1] : face_.size();
+  return std::span(face_).subspan(from_[i], end - from_[i]);
 }
 
 double BlankCell::distance_mm(double up_mm, const Vec3& axis) const {

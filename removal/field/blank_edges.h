@@ -34,13 +34,15 @@ class BlankEdges {
 
   /// `distance`: a tile's (Tile::kVolume). Values of band_mm and more are clipped.
   void find(const float* distance, double voxel_mm, double band_mm, const ReadAround& read);
+  /// The same for the cells of one layer, i along x. Requires those below it, one after the other since clear().
+  void find_in_layer(int i, const float* distance, double voxel_mm, double band_mm, const ReadAround& read);
   void clear();
   /// The faces that meet in the cell at this offset in the tile; none where the field is smooth.
   std::span<const EdgeFace> faces(int cell) const;
 
  private:
   std::vector<std::int32_t> cell_;   ///< rising
-  std::vector<std::uint32_t> from_;  ///< their first face; one more
+  std::vector<std::uint32_t> from_;  ///< their first face
   std::vector<EdgeFace> face_;
 };
 

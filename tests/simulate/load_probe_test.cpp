@@ -162,6 +162,25 @@ TEST_P(LoadProbeOfTool, ResultsDoNotDependOnHowStampsAreDivided) {
   EXPECT_TRUE(same_bytes(one_by_one, all));
 }
 
+TEST_P(LoadProbeOfTool, ResultsDoNotDependOnWhatWasReadBeforehand) {
+  const machine::Tool tool = tool_of(GetParam());
+  const std::vector<Stamp> stamps = rows();
+  Stock when_met = block(), beforehand = block();
+  LoadProbe a(when_met, tool, steel(), box_of(stamps), {}), b(beforehand, tool, steel(), box_of(stamps), {});
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    // Some tiles come with their edges, some are met with none or a few of them.
+    const Vec3& ahead = stamps[std::min(k + 12, stamps.size() - 1)].pose.tip_mm;
+    if (k % 3 != 0) b.approach(ahead, static_cast<int>(k % 3));
+    if (k % 100 == 0) b.approach(ahead, removal::StepEngager::kAll);
+    const ProbedLoad is = b.append({&stamps[k], 1})[0], was = a.append({&stamps[k], 1})[0];
+    ASSERT_EQ(is.felt.lateral_max_N, was.felt.lateral_max_N) << k;
+    ASSERT_EQ(is.felt.force_mean_N, was.felt.force_mean_N) << k;
+    ASSERT_EQ(is.felt.chip_mm3, was.felt.chip_mm3) << k;
+  }
+  EXPECT_NEAR(a.flush(), b.flush(), 1e-6);
+  EXPECT_TRUE(same_bytes(when_met, beforehand));
+}
+
 INSTANTIATE_TEST_SUITE_P(Tools, LoadProbeOfTool, ::testing::Values(ToolType::flat, ToolType::ball, ToolType::bull),
                          [](const auto& info) {
                            return info.param == ToolType::flat   ? "Flat"
@@ -186,6 +205,31 @@ TEST(LoadProbe, ALookTellsWhatTheNextPassingIsExpectedToTell) {
   }
   // What lies six passings ahead is told within a few percent: the stamps between take nothing of it on straight rows.
   EXPECT_NEAR(ahead / felt, 1, 0.03);
+}
+
+TEST(LoadProbe, ALookAtTwoFeedsIsTwoLooks) {
+  const machine::Tool tool = tool_of(ToolType::flat);
+  std::vector<Stamp> stamps;
+  testing::add_row(stamps, {-4, -3, -2}, {12, -3, -2}, 0.2);  // a slot
+  Stock stock = block();
+  LoadProbe probe(stock, tool, steel(), box_of(stamps), {}),
+      quick(stock, tool, steel(), box_of(stamps), {.deflections = false});
+  for (const Stamp& stamp : stamps) {
+    const LoadProbe::Look both = probe.look_at_two_feeds(stamp);
+    Stamp half = stamp;
+    half.feed_per_tooth_mm *= 0.5;
+    ASSERT_EQ(both.at_feed.lateral_max_N, probe.look(stamp).lateral_max_N);
+    ASSERT_EQ(both.at_half.lateral_max_N, probe.look(half).lateral_max_N);
+    ASSERT_EQ(both.at_feed.lateral_max_N, quick.look(stamp).lateral_max_N);
+    const ProbedLoad load = probe.append({&stamp, 1})[0];
+    quick.append({&stamp, 1});
+    EXPECT_EQ(load.chips_at_mm, both.chips_at_mm);
+    // The middle of half a circle, by thickness R sin(phi): pi / 4 of the radius ahead.
+    const double x = stamp.pose.tip_mm.x();
+    if (x > 4 && x < 6) {
+      EXPECT_NEAR((load.chips_at_mm.head<2>() - Vec2(x + kPi / 4 * 3, -3)).norm(), 0, 0.2) << x;
+    }
+  }
 }
 
 TEST(LoadProbe, TilesThatWereGivenUpHoldWhatWasCut) {

@@ -29,14 +29,21 @@ std::uint8_t RingPart::cut_255(double half_width_mm) const {
 
 RingPart part_in_material(const RingPlace& ring, const TipView& tips, std::int32_t first_id, const CutterShape& shape) {
   RingPart part{-ring.half_width_mm, ring.half_width_mm};
-  if (ring.blank)
+  // A smooth field is looked up before its gradient.
+  const auto is_far = [&](const BlankCell& b) {
+    return b.faces.empty() &&
+           std::abs(static_cast<double>(trilinear(b.lowest, b.share))) >= kWithin * ring.half_width_mm;
+  };
+  if (ring.blank && !is_far(*ring.blank))
     ring.blank->for_each_face([&](double above, const Vec3& up) {
       if (std::abs(above) < kWithin * ring.half_width_mm && std::abs(up.dot(ring.normal)) < kUpright * std::abs(up.z()))
         part.cut_by(-above / up.z(), up.z() > 0);
     });
+  std::int32_t last = -1;
   for (int c = 0; c < 8; ++c) {
     const std::int32_t id = ring.ids[cell_corner(c)] - first_id;
-    if (id < 0) continue;
+    if (id < 0 || id == last) continue;
+    last = id;
     Vec3 from_tip = ring.point_mm - tips[id];
     from_tip.z() -= ring.axial_mm;
     if (std::abs(from_tip.z()) >= kWithin * ring.half_width_mm || shape.gradient(from_tip).z() > -1 + kUpright)

@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "base/geometry.h"
+#include "removal/known_run.h"
 #include "removal/simd/upright_block_kernels.h"
 #include "removal/tool_path.h"
 
@@ -34,7 +36,7 @@ class TipView {
 /// Tips in steps that are a billionth of their range, twelve bytes each.
 class StampTips {
  public:
-  /// Of a whole run, which must outlive the object: view() has the tips as they are.
+  /// Of a whole run, which must outlive the object: view() has the tips as they are. Of a known_run() its own are used.
   explicit StampTips(std::span<const Stamp> stamps);
   /// Of a run that grows, with tips in this box: view() has them to a billionth of it. Room for `expected` is set
   /// aside, so that none of them takes longer than another; memory is used as they come.
@@ -47,12 +49,14 @@ class StampTips {
   FixedTips fixed(const Vec3& own_mm, std::int32_t first_id) const;
 
  private:
-  std::int32_t steps(const Vec3& tip_mm, int axis) const;
+  std::int32_t steps(const Vec3& tip_mm, int axis) const { return tip_steps(tip_mm[axis], min_mm_[axis], step_mm_); }
+  std::array<const std::int32_t*, 3> data() const;
 
   std::span<const Stamp> stamps_;
   Vec3 min_mm_ = Vec3::Zero();
   float step_mm_ = 1;
-  std::array<std::vector<std::int32_t>, 3> tip_;
+  std::shared_ptr<const TipSteps> known_;         ///< of a known run
+  std::array<std::vector<std::int32_t>, 3> tip_;  ///< of any other
 };
 
 }  // namespace camber::removal::upright

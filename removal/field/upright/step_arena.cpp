@@ -49,11 +49,26 @@ void StepArena::load(std::size_t place, const Stock& stock, const Stock& blank) 
   const std::size_t number = take_number(index);
   assert(number < room_);
   slots_.all()[place] = static_cast<std::int32_t>(number);
-  if (last_near_.size() <= number) last_near_.resize(number + 1);
+  if (last_near_.size() <= number) last_near_.resize(number + 1), layers_found_.resize(number + 1);
   last_near_[number] = stamps_;
-  read_tile(number, stock, &blank);
+  layers_found_[number] = read_fields(number, stock, &blank) ? 0 : Tile::kCore;
+  if (layers_found_[number] == 0) unfinished_.push_back(number);
   fresh_.push_back(number);
   ++there_;
+}
+
+/// False where all are known.
+bool StepArena::find_some_edges(const Stock& blank) {
+  constexpr int kLayers = 4;
+  while (!unfinished_.empty() && layers_found_[unfinished_.front()] >= Tile::kCore) unfinished_.pop_front();
+  if (unfinished_.empty()) return false;
+  const std::size_t tile = unfinished_.front();
+  for (int k = 0; k < kLayers && layers_found_[tile] < Tile::kCore; ++k) find_edges(tile, layers_found_[tile]++, blank);
+  return true;
+}
+
+void StepArena::find_all_edges(std::size_t tile, const Stock& blank) {
+  while (layers_found_[tile] < Tile::kCore) find_edges(tile, layers_found_[tile]++, blank);
 }
 
 std::span<const std::int32_t> StepArena::reach(const Stock& stock, const Stock& blank, const CutterShape& shape,
@@ -65,6 +80,7 @@ std::span<const std::int32_t> StepArena::reach(const Stock& stock, const Stock& 
     if (slots_.all()[place] == 0) load(place, stock, blank);
     const std::int32_t tile = slots_.all()[place];
     if (tile == 0) return;
+    find_all_edges(static_cast<std::size_t>(tile), blank);
     last_near_[static_cast<std::size_t>(tile)] = stamps_;
     tiles_of_stamp_.push_back(tile);
   });
@@ -76,11 +92,16 @@ std::span<const std::int32_t> StepArena::reach(const Stock& stock, const Stock& 
 void StepArena::approach(const Stock& stock, const Stock& blank, const CutterShape& shape, const Vec3& tip_mm,
                          int most) {
   fresh_.clear();
+  const auto find_edges_so_far = [&] {
+    while (most > 0 && find_some_edges(blank)) --most;
+  };
+  find_edges_so_far();
   if (there_ > (kKept + 1) * near_bound_) return;
   for_each_tile_reached(slots_, voxel_, shape, tip_mm, stock.band_mm(), [&](std::size_t place) {
     if (most > 0 && air_[place] == 0 && slots_.all()[place] == 0) load(place, stock, blank), --most;
   });
   for (const std::size_t t : fresh_) share_upper_layer(t, [](std::size_t) { return false; });
+  find_edges_so_far();
 }
 
 void StepArena::lowered(std::size_t tile) {
@@ -106,10 +127,11 @@ void StepArena::read_a_top(int reach_voxels, const std::function<const ColumnCov
   tops_.read_column(slots_, reach_voxels, static_cast<int>(column / ny), static_cast<int>(column % ny), covers_);
 }
 
-std::optional<std::size_t> StepArena::to_give_up(std::size_t given) const {
-  constexpr std::size_t kAtOnce = 2;
-  const bool crowded = there_ > (kKept + 1) * near_bound_;
-  if (there_ <= kKept * most_near_ || (given >= kAtOnce && !crowded)) return std::nullopt;
+std::optional<std::size_t> StepArena::to_give_up(Keep keep) const {
+  const std::size_t kept = keep == Keep::some   ? kKept * most_near_
+                           : keep == Keep::more ? kKept * near_bound_
+                                                : (kKept + 1) * near_bound_;
+  if (there_ <= kept) return std::nullopt;
   std::size_t oldest = 0;
   for (std::size_t t = 1; t < used_.size(); ++t)
     if (used_[t] != 0 && (oldest == 0 || last_near_[t] < last_near_[oldest])) oldest = t;
@@ -121,6 +143,7 @@ void StepArena::give_up(std::size_t t, bool is_air) {
   const std::size_t place = slots_.place(index[0], index[1], index[2]);
   slots_.all()[place] = 0;
   if (is_air) air_[place] = 1;
+  layers_found_[t] = Tile::kCore;
   used_[t] = 0;
   free_.push_back(t);
   --there_;

@@ -25,12 +25,17 @@ class StepArena : public TileArena {
   /// next call.
   std::span<const std::int32_t> reach(const Stock& stock, const Stock& blank, const CutterShape& shape,
                                       const Vec3& tip_mm);
-  /// The tile that no stamp has come near for longest, where there are more than are worth keeping. A few at a time,
-  /// so that no stamp takes much longer than another; `given`: how many since the last stamp.
-  std::optional<std::size_t> to_give_up(std::size_t given) const;
+  /// The tile that no stamp has come near for longest, where more are there than this.
+  enum class Keep {
+    some,  ///< as many as are worth keeping
+    more,  ///< so many that no time need be lost on giving up tiles
+    most   ///< as many as there is room for
+  };
+  std::optional<std::size_t> to_give_up(Keep keep) const;
   /// `is_air`: nothing will ever be there again.
   void give_up(std::size_t tile, bool is_air);
-  /// Loads tiles around a place where the cutter may soon be, `most` of them. Those of fresh() were loaded.
+  /// Loads tiles around a place where the cutter may soon be, in `most` steps of about a tenth of a millisecond: a
+  /// tile, or some of its blank's edges. Those of fresh() were loaded.
   void approach(const Stock& stock, const Stock& blank, const CutterShape& shape, const Vec3& tip_mm, int most);
   /// Reads how high the stock is in one column of tiles, the one that was cut and not read for longest. `reach_voxels`:
   /// see TopMap; `cover_of`: of a tile that is there.
@@ -42,6 +47,8 @@ class StepArena : public TileArena {
 
  private:
   void load(std::size_t place, const Stock& stock, const Stock& blank);
+  bool find_some_edges(const Stock& blank);
+  void find_all_edges(std::size_t tile, const Stock& blank);
   std::size_t column_of(std::size_t place) const { return place / static_cast<std::size_t>(slots_.extent()[2]); }
 
   std::vector<char> air_;  ///< by place
@@ -50,6 +57,8 @@ class StepArena : public TileArena {
   std::deque<std::size_t> lowered_;       ///< columns of places, to be read
   std::vector<char> is_lowered_;          ///< by column
   std::vector<const ColumnCover*> covers_;
+  std::vector<int> layers_found_;       ///< of the blank's edges, by tile
+  std::deque<std::size_t> unfinished_;  ///< tiles, in the order in which they came
   std::uint64_t stamps_ = 0;
   std::size_t there_ = 0, most_near_ = 0, near_bound_ = 0;  ///< tiles; near one stamp, until now and at most
 };

@@ -152,16 +152,26 @@ void TileArena::make_room(std::size_t tiles_wanted) {
 }
 
 void TileArena::read_tile(std::size_t t, const Stock& stock, const Stock* blank) {
+  if (!read_fields(t, stock, blank)) return;
+  for (int layer = 0; layer < Tile::kCore; ++layer) find_edges(t, layer, *blank);
+}
+
+bool TileArena::read_fields(std::size_t t, const Stock& stock, const Stock* blank) {
   stock.load(index_[t], tiles_[t]);
+  edges_[t].clear();
   in_solid_[t] = static_cast<char>(!blank || blank->is_solid(index_[t]));
-  if (in_solid_[t] != 0) return edges_[t].clear();
+  if (in_solid_[t] != 0) return false;
+  blank->read(first_voxel(index_[t]), Tile::kSide, blanks_.get() + t * Tile::kVolume, nullptr);
+  return true;
+}
+
+void TileArena::find_edges(std::size_t t, int layer, const Stock& blank) {
   const Index3 first = first_voxel(index_[t]);
-  float* distance = blanks_.get() + t * Tile::kVolume;
-  blank->read(first, Tile::kSide, distance, nullptr);
-  edges_[t].find(distance, blank->voxel_mm(), blank->band_mm(), [&](const Index3& cell, float* out) {
-    blank->read({first[0] + cell[0] - 1, first[1] + cell[1] - 1, first[2] + cell[2] - 1}, BlankEdges::kAround, out,
-                nullptr);
-  });
+  edges_[t].find_in_layer(layer, blanks_.get() + t * Tile::kVolume, blank.voxel_mm(), blank.band_mm(),
+                          [&](const Index3& cell, float* out) {
+                            blank.read({first[0] + cell[0] - 1, first[1] + cell[1] - 1, first[2] + cell[2] - 1},
+                                       BlankEdges::kAround, out, nullptr);
+                          });
 }
 
 void TileArena::load_fresh(const Stock& stock, const Stock* blank) {

@@ -66,8 +66,12 @@ class TileArena {
  protected:
   std::size_t take_number(const Index3& index);
   void make_room(std::size_t tiles);
-  /// The tile and its blank, as the stocks have them.
+  /// The tile and its blank, as the stocks have them, with the blank's edges.
   void read_tile(std::size_t tile, const Stock& stock, const Stock* blank);
+  /// The same without edges: find_edges() has to follow. False where the blank has none.
+  bool read_fields(std::size_t tile, const Stock& stock, const Stock* blank);
+  /// In one layer of the tile's cells, which follows the one before.
+  void find_edges(std::size_t tile, int layer, const Stock& blank);
   /// Its upper layer from the neighbours that are there, but for those that `is_read` says are as the stock has them.
   template <class IsRead>
   void share_upper_layer(std::size_t tile, IsRead is_read);

@@ -1,0 +1,48 @@
+#pragma once
+// What engagement needs of all stamps of a run, found once: a run that is cut in pieces is long, and some of it may not
+// be in memory.
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/sparse_list.h"
+#include "removal/tool_path.h"
+
+namespace camber::removal {
+
+/// Tips in whole steps of a box, x, y and z, by number.
+using TipSteps = std::array<SparseList<std::int32_t>, 3>;
+
+/// A run whose stamps are all upright.
+struct KnownRun {
+  std::span<const Stamp> stamps;                      ///< by number; those that are not kept may not be read
+  Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();  ///< of all its tips
+  std::shared_ptr<const TipSteps> tips{};             ///< of those that are kept
+
+  /// kept: of `stamps`, ascending; what stamps within reach of a piece that is cut have.
+  KnownRun(std::span<const Stamp> stamps, const Vec3& min_mm, const Vec3& max_mm, std::span<const ListRange> kept);
+  /// Of a run that is in memory; its stamps must be upright.
+  explicit KnownRun(std::span<const Stamp> stamps);
+};
+
+/// While it lives, what this thread makes of these very stamps looks at `run` instead of going through all of them.
+/// Only one may live in a thread.
+class KnownRunScope {
+ public:
+  explicit KnownRunScope(const KnownRun& run);
+  ~KnownRunScope();
+  KnownRunScope(const KnownRunScope&) = delete;
+  KnownRunScope& operator=(const KnownRunScope&) = delete;
+};
+/// Null: nothing is known of them.
+const KnownRun* known_run(std::span<const Stamp> stamps);
+/// all_upright() of the stamps of a run.
+bool upright_run(std::span<const Stamp> stamps);
+
+/// Whole steps of a box that is min_mm + extent_mm, for vector kernels: a billionth of its size each.
+float tip_step_mm(const Vec3& extent_mm);
+std::int32_t tip_steps(double tip_mm, double min_mm, float step_mm);
+
+}  // namespace camber::removal

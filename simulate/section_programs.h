@@ -1,0 +1,89 @@
+#pragma once
+// The programs of a job in a process that works on one section: of a long program it has no text, and of the path what
+// lies near the section.
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/sparse_list.h"
+#include "simulate/path_outline.h"
+#include "simulate/pieces.h"
+#include "simulate/section_pieces.h"
+#include "simulate/section_stock.h"
+
+namespace camber::simulate {
+
+/// A path that was gone through, and of which some stamps were kept.
+struct ThinPath {
+  PathOutline outline;
+  SparseList<removal::Stamp> stamps;
+
+  PathStretch stretch() const { return {outline.runs, stamps.all(), stamps.kept()}; }
+};
+
+struct SectionProgramsOptions {
+  /// A path of more stamps is not kept as a whole, if it is upright: it is timed again for the section that is asked
+  /// for.
+  std::size_t longest_path = 2'000'000;
+  /// Whether the machine can run the program; may throw InputError.
+  std::function<void(const SimulatedProgram&)> check{};
+};
+
+/// The stamps of a section's pieces on the programmed path.
+struct NominalSection {
+  removal::StampPath path{};  ///< all runs; stamps from `first` on; empty where `thin` has them
+  std::size_t first = 0;
+  const ThinPath* thin = nullptr;
+  SectionPlace place;
+
+  PathStretch stretch() const { return thin ? thin->stretch() : PathStretch(path, first); }
+};
+
+class SectionPrograms {
+ public:
+  /// Reads and times the programs. Throws InputError.
+  SectionPrograms(const machine::Job& job, const SectionProgramsOptions& options, const SetupFindings& findings);
+
+  /// False: paths and texts are as a whole in memory, as `program` has them.
+  bool thin() const { return thin_.has_value(); }
+  const SimulatedProgram& program() const { return read_.program; }
+  /// Its path is that of `program`, or of another one.
+  const SimulatedProgram& of_target() const { return read_.of_target(); }
+  /// All that is read from here on is of this section, or lies near it. Where paths are thin, the programs are timed
+  /// once more, unless it was the last one.
+  void go_to(std::size_t section, std::size_t sections);
+
+  /// As the machine runs them.
+  PathStretch path() const;
+  PathStretch target_path() const;
+  /// Of path(), where it is thin; else null.
+  const PathOutline* outline() const { return thin_ ? &thin_->path.outline : nullptr; }
+  /// Where the pieces of any section lie on these two, or a little more.
+  removal::Region reach(std::size_t section, std::size_t sections) const;
+  NominalSection nominal(std::size_t section, std::size_t sections) const;
+  /// Names what make_target() cannot take from of_target().
+  void add_to(TargetWork& work) const;
+
+  /// For the merge by the same process; nothing where texts were given up. Ends the object.
+  std::optional<Programs> take();
+
+ private:
+  /// Of thin programs.
+  struct Thin {
+    ThinPath path;
+    std::optional<ThinPath> original;  ///< of a target that is another program
+    ThinPath nominal;                  ///< of the target
+    std::optional<std::size_t> section{};
+    std::size_t sections = 0;
+    const ThinPath& target() const { return original ? *original : path; }
+  };
+  void time_all(std::size_t longest_path);
+
+  const machine::Job& job_;
+  Programs read_;
+  std::optional<Thin> thin_;
+};
+
+}  // namespace camber::simulate
