@@ -121,10 +121,15 @@ void RepeatedLeaves::put_back(openvdb::FloatTree& tree) const {
   std::vector<openvdb::Coord> origins;
   for_each_repeated(tree, [&](const openvdb::Coord& origin) { origins.push_back(origin); });
   std::vector<std::unique_ptr<Leaf>> copies(origins.size());
-  tbb::parallel_for(std::size_t{0}, origins.size(), [&](std::size_t i) {
-    copies[i] = std::make_unique<Leaf>(leaf(origins[i]));
-    copies[i]->setOrigin(origins[i]);
-  });
+  // Apart from what goes on around it, which may be given up half way (a file without room).
+  tbb::task_group_context alone(tbb::task_group_context::isolated);
+  tbb::parallel_for(
+      std::size_t{0}, origins.size(),
+      [&](std::size_t i) {
+        copies[i] = std::make_unique<Leaf>(leaf(origins[i]));
+        copies[i]->setOrigin(origins[i]);
+      },
+      alone);
   for (auto& copy : copies) tree.addLeaf(copy.release());
 }
 
