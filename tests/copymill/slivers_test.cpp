@@ -58,14 +58,14 @@ TEST(Slivers, RowsLeaveNoneAlongTheWallsAtTheirEnds) {
 TEST(Slivers, NoRapidComesDownOnAFin) {
   // The first two operations leave a fin from Y 9 to 9.05; cells of 0.2 mm have their middles at 8.9 mm and 9.1 mm.
   const TempFolder folder;
-  const BlockPart part{.block = tests::box(0, 0, 0, 40, 22, 4), .pockets = {}, .holes = {}};
+  const BlockPart part{.block = tests::box(0, -10, 0, 40, 32, 4), .pockets = {}, .holes = {}};
   const std::string depths = "radial_depth_mm = 4\naxial_depth_mm = 3\n";
   const SmallCopy job{.part = folder / "part.stl",
-                      .stock = "box_mm = [[0, 0, 0], [40, 22, 10]]",
-                      .operations = rows("box_mm = [[-6, 0], [46, 5]], z_mm = [7, 10]", depths) +
-                                    rows("box_mm = [[-6, 13.05], [46, 18]], z_mm = [7, 10]", depths) +
+                      .stock = "box_mm = [[0, -10, 0], [40, 32, 10]]",
+                      .operations = rows("box_mm = [[-6, -10], [46, 5]], z_mm = [7, 10]", depths) +
+                                    rows("box_mm = [[-6, 13.05], [46, 32]], z_mm = [7, 10]", depths) +
                                     rows("box_mm = [[14, 7], [26, 8]], z_mm = [4, 10]", depths)};
-  const Judged found = judged(folder, part, job, {0.03, 0.02, 0}, {40, 22, 10});
+  const Judged found = judged(folder, part, job, {0.03, -9.98, 0}, {40, 32, 10});
   EXPECT_EQ(found.program.rapid.depth, 0) << "line " << found.program.rapid.line;
   EXPECT_NEAR(found.map.height_at(5.03, 9.02), 10, 1e-9) << "else there was no fin";
   EXPECT_NEAR(found.map.height_at(20.03, 9.02), 4, 1e-9);
