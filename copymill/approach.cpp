@@ -38,8 +38,7 @@ Runner::Ended Approach::finish(const Pass& pass) {
   constexpr double kAlong_mm = 0.005;  // rows beside a wall are this near to the pass along it
   const double step = std::min(standing_.cell_mm(), 0.25 * cut_.shape.radius_mm);
   const auto left_out = [&](const Vec3& p) {
-    return std::ranges::all_of(ways_,
-                               [&](const std::vector<Vec3>& way) { return distance_mm(way, p) > kAlong_mm; });
+    return std::ranges::all_of(ways_, [&](const std::vector<Vec3>& way) { return distance_mm(way, p) > kAlong_mm; });
   };
   for (Pass& piece : stretches(pass, step, left_out, lead_mm(), join_mm()))
     if (cut_piece(std::move(piece)) != Runner::Ended::done) return runner_.ended();

@@ -92,9 +92,9 @@ double ClearHeight::lowest_clear_tip_mm(const removal::CutterShape& shape, const
       const double height = height_[grid_.index(i, row.j)];
       if (height <= out) continue;
       const double nearest = (grid_.at(i, row.j) - axis).norm() - half_diagonal_mm_;
-      out = std::max(
-          out, level_bottom ? height
-                            : height - underside_mm(shape, std::clamp(nearest, 0.0, shape.radius_mm * (1 - 1e-9))));
+      out = std::max(out, level_bottom
+                              ? height
+                              : height - underside_mm(shape, std::clamp(nearest, 0.0, shape.radius_mm * (1 - 1e-9))));
     }
   });
   return out;

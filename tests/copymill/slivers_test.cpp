@@ -43,10 +43,12 @@ Judged judged(const TempFolder& folder, const BlockPart& part, const SmallCopy& 
 TEST(Slivers, RowsLeaveNoneAlongTheWallsAtTheirEnds) {
   // Cusps of rows 2.4 mm apart are 0.18 mm thick. Cells of 0.2 mm have their middles at 3.9 mm and 4.1 mm.
   const TempFolder folder;
-  const BlockPart part{.block = tests::box(0, 0, 0, 24, 20, 10), .pockets = {tests::box(3.91, -1, 6, 25, 21, 11)}, .holes = {}};
-  const SmallCopy job{.part = folder / "part.stl",
-                      .stock = "box_mm = [[0, 0, 0], [24, 20, 10]]",
-                      .operations = rows("box_mm = [[3.91, -5], [29, 25]]", "radial_depth_mm = 2.4\naxial_depth_mm = 4\n")};
+  const BlockPart part{
+      .block = tests::box(0, 0, 0, 24, 20, 10), .pockets = {tests::box(3.91, -1, 6, 25, 21, 11)}, .holes = {}};
+  const SmallCopy job{
+      .part = folder / "part.stl",
+      .stock = "box_mm = [[0, 0, 0], [24, 20, 10]]",
+      .operations = rows("box_mm = [[3.91, -5], [29, 25]]", "radial_depth_mm = 2.4\naxial_depth_mm = 4\n")};
   const Judged found = judged(folder, part, job, {0.03, 0.03, 0}, {24, 20, 10});
   judge::Verdict v;
   found.map.compare(judge::PartMesh(judge::read_stl(job.part)), {-1, -1, -1}, {25, 21, 11}, 0, 0.006, kFlat8, v, 0.1);

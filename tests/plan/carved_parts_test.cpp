@@ -15,9 +15,9 @@
 namespace camber::plan {
 namespace {
 
-/// CAMBER_CARVED_PARTS seeds from 3 on (bench/plan/random-parts), else three. Of these 4 has a slot that is entered from
-/// the side where a graze of 0.05 mm stands, and rows along a wall of 84 would leave fins narrower than the planner's
-/// cells.
+/// CAMBER_CARVED_PARTS seeds from 3 on (bench/plan/random-parts), else three. Of these 4 has a slot that is entered
+/// from the side where a graze of 0.05 mm stands, and rows along a wall of 84 would leave fins narrower than the
+/// planner's cells.
 std::vector<unsigned> carved_seeds() {
   constexpr unsigned kFirst = 3;
   const char* given = std::getenv("CAMBER_CARVED_PARTS");
