@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/stage.h"
 #include "copymill/level_region.h"
 #include "copymill/levels.h"
+#include "copymill/loop_order.h"
 #include "copymill/operation.h"
 #include "copymill/slotting.h"
 
@@ -82,6 +84,7 @@ class LevelCutter {
  private:
   Runner::Ended cut_loops(const LevelRegion& region, int component) {
     const double radial = place_.runner.radial_mm();
+    if (!slotting_.wanted()) return cut_in_order(region, component, loop_distances(region, component, radial));
     // As far inside as loops can be had from the grid.
     double before = 0.97 * region.depth_mm(component);
     for (const double d : loop_distances(region, component, radial)) {
@@ -90,6 +93,17 @@ class LevelCutter {
       if (cut_at(region, component, d) != Runner::Ended::done) return place_.runner.ended();
       before = d;
     }
+    return Runner::Ended::done;
+  }
+
+  /// From boss to boss and corner to corner, not from distance to distance.
+  Runner::Ended cut_in_order(const LevelRegion& region, int component, const std::vector<double>& distances) {
+    LoopOrder order;
+    for (std::size_t k = 0; k < distances.size(); ++k)
+      order.add(passes_at(region, component, distances[k]),
+                k > 0 ? std::abs(distances[k] - distances[k - 1]) : place_.runner.radial_mm());
+    while (const std::optional<Pass> pass = order.next(place_.runner.at()))
+      if (approach_.follow(*pass) != Runner::Ended::done) return place_.runner.ended();
     return Runner::Ended::done;
   }
 
