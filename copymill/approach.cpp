@@ -7,6 +7,7 @@ namespace camber::copymill {
 namespace {
 
 constexpr double kStep_mm = 0.2;  ///< at which ways are looked at
+constexpr double kLift_s = 0.3;   ///< three rapids and an entry, about
 constexpr int kDirections = 24;   ///< in which an entry from the side is looked for
 
 }  // namespace
@@ -15,8 +16,10 @@ Runner::Ended Approach::follow(const Pass& pass) {
   const double radius = cut_.shape.radius_mm;
   Pass whole = pass;
   if (runner_.at()) start_near(whole, *runner_.at());
-  std::vector<Pass> pieces = stretches_in_material(standing_, cut_.shape, whole, options_.more_than_mm, 0.2 * radius,
-                                                   std::max(2 * radius, 4.0));
+  // Gaps that are passed through in less time than the tool is lifted over and comes down again.
+  const double join = std::max({2 * radius, 4.0, kLift_s * cut_.operation.feed_mm_per_s});
+  std::vector<Pass> pieces =
+      stretches_in_material(standing_, cut_.shape, whole, options_.more_than_mm, 0.2 * radius, join);
   // The nearest end of an open row first is for those who order passes; pieces keep the pass's direction.
   for (Pass& piece : pieces)
     if (cut_piece(std::move(piece)) != Runner::Ended::done) return runner_.ended();

@@ -25,7 +25,7 @@ double grid_step_mm(const Workplace& place) {
   return std::max(fine, std::sqrt((size.x() + 2) * (size.y() + 2) / kMaxGridPoints));
 }
 
-Levels levels_of(const Workplace& place, const SampledTips& tips) {
+BoxLevels levels_of(const Workplace& place, const SampledTips& tips) {
   const machine::CopyOperation& o = place.cut.operation;
   const Vec2 reach = Vec2::Constant(place.cut.shape.radius_mm);
   double top = place.standing.highest_mm(place.region.min_mm() - reach, place.region.max_mm() + reach);
@@ -36,8 +36,10 @@ Levels levels_of(const Workplace& place, const SampledTips& tips) {
   if (o.region.z_mm) bottom = std::max(bottom, (*o.region.z_mm)[0]), top = std::min(top, (*o.region.z_mm)[1]);
   const double least_mm2 = place.cut.shape.radius_mm * place.cut.shape.radius_mm;
   std::vector<double> floors = level_floors(place.part, place.region, least_mm2);
+  if (place.region.depends_on_level())
+    return box_levels(top, bottom, std::move(floors), place.region, o.allowance_mm);
   for (double& f : floors) f += o.allowance_mm;
-  return {top, bottom, std::move(floors)};
+  return {Levels(top, bottom, std::move(floors)), {}};
 }
 
 /// Loops of a component from the inside out where walls bound it; from the outside in where nothing does.
@@ -213,7 +215,8 @@ class LevelCutter {
 bool cut_levels(const Workplace& place) {
   const machine::CopyOperation& o = place.cut.operation;
   const SampledTips tips(place.field, place.region, grid_step_mm(place));
-  const Levels levels = levels_of(place, tips);
+  const BoxLevels all = levels_of(place, tips);
+  const Levels& levels = all.even;
   place.runner.begin(place.cut, place.standing, place.safe_z_mm, &place.depth, levels.bottom_mm());
   Approach approach(place.cut, place.field, place.standing, place.runner,
                     {.more_than_mm = kMaterial_mm, .link_mm = 2.1 * o.radial_depth_mm});
@@ -224,10 +227,17 @@ bool cut_levels(const Workplace& place) {
   double level = 0;
   for (double above = levels.top_mm(); levels.next(above, place.runner.axial_mm(), level);) {
     any_level = true;
-    const LevelRegion region(tips, level);
-    placed = placed || !region.empty();
-    ++place.runner.summary().levels;
-    const Runner::Ended ended = cutter.cut(region);
+    // The level first, then, from the side, what is left on the floors above it.
+    Runner::Ended ended = Runner::Ended::done;
+    std::vector<double> floors = all.floors_between(above, level);
+    floors.push_back(level);
+    while (!floors.empty() && ended == Runner::Ended::done) {
+      const LevelRegion region(tips, floors.back());
+      placed = placed || !region.empty();
+      ++place.runner.summary().levels;
+      ended = cutter.cut(region);
+      floors.pop_back();
+    }
     if (ended == Runner::Ended::stopped) return true;
     if (ended == Runner::Ended::replan) {
       // With the axial depth that is now: a level in between, or this one again with other loops or rows.

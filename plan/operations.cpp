@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "plan/joined_runs.h"
+
 namespace camber::plan {
 namespace {
 
@@ -471,6 +473,7 @@ PlannedDivision plan_division(const PlanInput& input, const RemovalVolume& remov
   out.primitives = divide(removal, division);
   out.order = put_in_order(removal, out.primitives);
   Planner(input, removal, out).plan();
+  join_operations(input, out);
   out.tool_changes = tool_changes(out.operations);
   out.nominal_time_s = total_time_s(out.operations, input.tool_change_s);
   out.form_error_p95_mm = form_error_p95_mm(out.operations);
