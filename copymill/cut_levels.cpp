@@ -36,8 +36,7 @@ BoxLevels levels_of(const Workplace& place, const SampledTips& tips) {
   if (o.region.z_mm) bottom = std::max(bottom, (*o.region.z_mm)[0]), top = std::min(top, (*o.region.z_mm)[1]);
   const double least_mm2 = place.cut.shape.radius_mm * place.cut.shape.radius_mm;
   std::vector<double> floors = level_floors(place.part, place.region, least_mm2);
-  if (place.region.depends_on_level())
-    return box_levels(top, bottom, std::move(floors), place.region, o.allowance_mm);
+  if (place.region.depends_on_level()) return box_levels(top, bottom, std::move(floors), place.region, o.allowance_mm);
   for (double& f : floors) f += o.allowance_mm;
   return {Levels(top, bottom, std::move(floors)), {}};
 }

@@ -26,9 +26,8 @@ AxisRegion::AxisRegion(const machine::CopyRegion& region, const Vec2& stock_min,
 bool AxisRegion::contains(const Vec2& p, double z) const {
   if (boxes_.empty()) return contains(p);
   constexpr double kRounding_mm = 1e-4;
-  return std::ranges::any_of(boxes_, [&](const auto& b) {
-    return z >= b[0].z() - kRounding_mm && z < b[1].z() - kRounding_mm && over(b, p);
-  });
+  return std::ranges::any_of(
+      boxes_, [&](const auto& b) { return z >= b[0].z() - kRounding_mm && z < b[1].z() - kRounding_mm && over(b, p); });
 }
 
 bool AxisRegion::contains(const Vec2& p) const {

@@ -155,8 +155,7 @@ class Joiner {
     Run all = runs_[a];
     all.insert(all.end(), runs_[b].begin(), runs_[b].end());
     std::ranges::stable_sort(all, {}, &Operation::primitive);
-    const bool loops =
-        std::ranges::any_of(all, [](const Operation& o) { return o.pattern == Pattern::contour_line; });
+    const bool loops = std::ranges::any_of(all, [](const Operation& o) { return o.pattern == Pattern::contour_line; });
     const double rate = removal_rate_mm3_per_s(input_.tools.at(all.front().tool), c);
     for (Operation& o : all) {
       o.conditions = c;
@@ -184,8 +183,7 @@ std::string not_joined_because(const Operation& before, const Operation& row) {
   constexpr double kSame_mm = 1e-4;
   if (!is_by_levels(before) || !is_by_levels(row)) return "only milling level by level can be joined";
   if (row.kind != before.kind) return "it is of another kind than the row before";
-  if (row.tool != before.tool)
-    return fmt::format("its tool is {}, that of the row before {}", row.tool, before.tool);
+  if (row.tool != before.tool) return fmt::format("its tool is {}, that of the row before {}", row.tool, before.tool);
   if (std::abs(row.allowance_mm - before.allowance_mm) > kSame_mm)
     return fmt::format("its allowance is {:g} mm, that of the row before {:g}", row.allowance_mm, before.allowance_mm);
   return {};

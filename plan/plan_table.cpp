@@ -107,8 +107,9 @@ void read_joined(TomlTable& row, const std::vector<Operation>& before, Operation
     row.error_at("joined", fmt::format("joined = true, but {}{}", why, kExpected), "plan-joined");
   const Conditions &c = op.conditions, &with = before.back().conditions;
   constexpr double kSame = 1e-4;  // the table's decimals
-  if (std::abs(c.spindle_rpm - with.spindle_rpm) > kSame || std::abs(c.feed_mm_per_min - with.feed_mm_per_min) > kSame ||
-      std::abs(c.radial_mm - with.radial_mm) > kSame || std::abs(c.axial_mm - with.axial_mm) > kSame)
+  if (std::abs(c.spindle_rpm - with.spindle_rpm) > kSame ||
+      std::abs(c.feed_mm_per_min - with.feed_mm_per_min) > kSame || std::abs(c.radial_mm - with.radial_mm) > kSame ||
+      std::abs(c.axial_mm - with.axial_mm) > kSame)
     row.error_at("joined",
                  "joined = true, but spindle speed, feed or depths are not those of the row before; the same were "
                  "expected in one run",
@@ -171,8 +172,7 @@ std::string operations_toml(const PlanInput& input, const SetupPlan& setup, std:
       "# {:.1f} s by equation (3), {} tool changes.\n",
       input.path, setup.setup.name, p.nominal_time_s, p.tool_changes);
   out += fmt::format("division = \"{}\"\n", to_string(p.division));
-  for (std::size_t i = 0; i < p.operations.size(); ++i)
-    out += row_toml(p, i, input.tools.at(p.operations[i].tool));
+  for (std::size_t i = 0; i < p.operations.size(); ++i) out += row_toml(p, i, input.tools.at(p.operations[i].tool));
   return out;
 }
 

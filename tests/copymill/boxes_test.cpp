@@ -72,8 +72,9 @@ double closed_form_mm3(double allowance) {
 
 TEST(Boxes, OfAnUpperAndALowerPrimitiveAreCutInOne) {
   const TempFolder folder;
-  const CopyResult r = copied(folder, "axial_depth_mm = 4\nallowance_mm = 0.1\nregion = { boxes_mm = [[-5, -5, "
-                                      "-3.4037, 40, 50, 0], [25, -5, -6.2, 40, 50, -3.4037]] }\n");
+  const CopyResult r = copied(folder,
+                              "axial_depth_mm = 4\nallowance_mm = 0.1\nregion = { boxes_mm = [[-5, -5, "
+                              "-3.4037, 40, 50, 0], [25, -5, -6.2, 40, 50, -3.4037]] }\n");
   EXPECT_NEAR(r.removed_mm3, closed_form_mm3(0.1), 0.002 * closed_form_mm3(0.1));
   EXPECT_LT(r.path_depth_um, 1);
   // Even ones at -3.05 and -6.1, and the upper step's floor with and without the allowance; heights of the mesh, which
@@ -84,8 +85,7 @@ TEST(Boxes, OfAnUpperAndALowerPrimitiveAreCutInOne) {
 
 TEST(Boxes, OfTheLowerPrimitiveAloneLeaveTheUpperOne) {
   const TempFolder folder;
-  const CopyResult r =
-      copied(folder, "axial_depth_mm = 7\nregion = { boxes_mm = [[29, -5, -6.2, 36, 50, 0]] }\n");
+  const CopyResult r = copied(folder, "axial_depth_mm = 7\nregion = { boxes_mm = [[29, -5, -6.2, 36, 50, 0]] }\n");
   EXPECT_NEAR(r.removed_mm3, 15 * 6.2 * 45, 0.002 * 15 * 6.2 * 45);
 }
 

@@ -106,9 +106,11 @@ TEST(JoinedRuns, LeaveApartWhatWallsDivide) {
 /// whole face, and then the face's own bottom.
 TEST(JoinedRuns, LeaveApartWhatTakesLongerTogether) {
   const TempFolder folder;
-  const Planned p = planned(folder, {.block = box(0, 0, 0, 120, 100, 25.4), .pockets = {box(90, -1, 24.4, 121, 30, 27)}, .holes = {}},
-                            box(0, 0, 0, 120, 100, 30));
-  for (const Operation& o : p.best().operations) EXPECT_FALSE(o.kind == OperationKind::rough && o.joined) << o.primitive;
+  const Planned p =
+      planned(folder, {.block = box(0, 0, 0, 120, 100, 25.4), .pockets = {box(90, -1, 24.4, 121, 30, 27)}, .holes = {}},
+              box(0, 0, 0, 120, 100, 30));
+  for (const Operation& o : p.best().operations)
+    EXPECT_FALSE(o.kind == OperationKind::rough && o.joined) << o.primitive;
 }
 
 /// Of random parts: what is joined fits together, what a primitive needs comes before it, nothing is lost.
@@ -144,7 +146,8 @@ TEST(JoinedRuns, KeepWhatMustComeFirst) {
           bool over = after.min_mm.z() > before.max_mm.z() - 1e-6 && first_of_run(plan, i) != first_of_run(plan, k) &&
                       ops[i].kind == OperationKind::rough && ops[k].kind == OperationKind::rough;
           for (int a = 0; a < 2; ++a)
-            over = over && std::min(before.max_mm[a], after.max_mm[a]) > std::max(before.min_mm[a], after.min_mm[a]) + 1e-6;
+            over = over &&
+                   std::min(before.max_mm[a], after.max_mm[a]) > std::max(before.min_mm[a], after.min_mm[a]) + 1e-6;
           EXPECT_FALSE(over) << seed << ": " << ops[k].primitive << " before " << ops[i].primitive << " above it";
         }
       }
@@ -175,14 +178,16 @@ TEST(JoinedRuns, AreReadBackFromTheTable) {
   EXPECT_EQ(operations_toml(p.input, p.setup(), 0), text);
   // Without the word each is cut by itself.
   std::string apart = text;
-  for (std::size_t at = 0; (at = apart.find("joined = true", at)) != std::string::npos;) apart.replace(at, 13, "joined = false");
+  for (std::size_t at = 0; (at = apart.find("joined = true", at)) != std::string::npos;)
+    apart.replace(at, 13, "joined = false");
   read_operations(folder.write("operations.toml", apart), p.input, p.setup(), diagnostics);
   EXPECT_EQ(copy_operations(p.input, p.best()).size(), 4U);
 }
 
 TEST(JoinedRuns, AreRefusedWhereTheyDoNotFit) {
   const TempFolder folder;
-  const std::string first = "[[operation]]\nprimitive = 1\nkind = \"rough\"\n", second = "[[operation]]\nprimitive = 2\n";
+  const std::string first = "[[operation]]\nprimitive = 1\nkind = \"rough\"\n",
+                    second = "[[operation]]\nprimitive = 2\n";
   const auto said = [&](const std::string& rows) {
     Planned p = face_and_step(folder);
     return table_error(p, folder, rows);
