@@ -102,9 +102,12 @@ class LevelCutter {
   /// From boss to boss and corner to corner, not from distance to distance.
   Runner::Ended cut_in_order(const LevelRegion& region, int component, const std::vector<double>& distances) {
     LoopOrder order;
+    // Along walls as asked for; "both" turns what lies farther inside.
+    const bool turns = place_.cut.operation.sense == machine::MillingSense::both;
     for (std::size_t k = 0; k < distances.size(); ++k)
       order.add(passes_at(region, component, distances[k]),
-                k > 0 ? std::abs(distances[k] - distances[k - 1]) : place_.runner.radial_mm());
+                k > 0 ? std::abs(distances[k] - distances[k - 1]) : place_.runner.radial_mm(),
+                turns && distances[k] > 0);
     while (const std::optional<Pass> pass = order.next(place_.runner.at()))
       if (approach_.follow(*pass) != Runner::Ended::done) return place_.runner.ended();
     return Runner::Ended::done;

@@ -40,14 +40,15 @@ class PointsByCell {
 
 }  // namespace
 
-void LoopOrder::add(std::vector<Pass> loops, double apart_mm) {
+void LoopOrder::add(std::vector<Pass> loops, double apart_mm, bool may_turn) {
   constexpr double kBeside = 1.3, kBetween = 0.25;  // times as far apart; of points that are looked at
   const std::size_t first = loops_.size();
   PointsByCell before(kBeside * std::max(apart_mm, 1e-3));
   for (std::size_t k = first_of_last_; k < first; ++k)
     for (const Vec3& p : dense(loops_[k].pass, kBetween * apart_mm)) before.add(k, p);
   for (Pass& pass : loops) {
-    Loop& loop = loops_.emplace_back(Loop{std::move(pass), {}});
+    const bool turns = may_turn && !pass.closed;
+    Loop& loop = loops_.emplace_back(Loop{std::move(pass), {}, turns});
     for (const Vec3& p : dense(loop.pass, kBetween * apart_mm)) before.find(p, loop.after);
   }
   first_of_last_ = first;
@@ -59,16 +60,19 @@ bool LoopOrder::may_be_next(const Loop& loop) const {
 
 std::optional<Pass> LoopOrder::next(const std::optional<Vec3>& tip) {
   Loop* best = nullptr;
+  bool turned = false;
   double nearest = std::numeric_limits<double>::infinity();
   for (Loop& loop : loops_) {
     if (!may_be_next(loop)) continue;
     if (tip) start_near(loop.pass, *tip);
     const double far = tip ? (loop.pass.points.front() - *tip).norm() : 0;
-    if (far < nearest) nearest = far, best = &loop;
+    if (far < nearest) nearest = far, best = &loop, turned = false;
+    const double back = loop.may_turn && tip ? (loop.pass.points.back() - *tip).norm() : far;
+    if (back < nearest) nearest = back, best = &loop, turned = true;
   }
   if (best == nullptr) return std::nullopt;
   best->taken = true;
-  return best->pass;
+  return turned ? reversed(best->pass) : best->pass;
 }
 
 }  // namespace camber::copymill

@@ -12,8 +12,9 @@ namespace camber::copymill {
 /// until it has come to the wall there, and never has more than one distance beside it.
 class LoopOrder {
  public:
-  /// The loops of the next distance, `apart_mm` from those of the one before.
-  void add(std::vector<Pass> loops, double apart_mm);
+  /// The loops of the next distance, `apart_mm` from those of the one before. `may_turn`: open ones may be followed
+  /// from either end.
+  void add(std::vector<Pass> loops, double apart_mm, bool may_turn);
   /// The next one, a closed one beginning as near to the tool as its points allow; nothing when all are taken. A tool
   /// that is nowhere yet gets the first.
   std::optional<Pass> next(const std::optional<Vec3>& tip);
@@ -22,6 +23,7 @@ class LoopOrder {
   struct Loop {
     Pass pass;
     std::vector<std::size_t> after;  ///< that are to be taken before
+    bool may_turn = false;
     bool taken = false;
   };
   bool may_be_next(const Loop& loop) const;

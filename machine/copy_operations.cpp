@@ -161,9 +161,6 @@ CopyOperation read_operation(TomlTable table, const Job& job) {
   read_numbers<CopyOperation>(table, kCopyKeys, out);
   out.sense =
       static_cast<MillingSense>(table.choice("sense", kSenseWords, out.mode == CopyMode::scanning_line ? 2 : 0));
-  if (out.sense == MillingSense::both && out.mode == CopyMode::contour_line)
-    table.error_at("sense", "sense = \"both\" is for rows; contour-line needs \"climb\" or \"conventional\"",
-                   "copy-mode");
   out.plunge = table.boolean("plunge", false);
   out.slotting = static_cast<Slotting>(table.choice("slotting", kSlottingWords, 0));
   out.force_N = table.optional_number("force_N", kPositive);

@@ -19,7 +19,7 @@ enum class CopyMode {
 enum class MillingSense {
   climb,         ///< down milling
   conventional,  ///< up milling
-  both           ///< rows to and fro
+  both           ///< rows to and fro; loops that end at the region's border too, but along walls climb milling
 };
 
 enum class HoleCycle {

@@ -68,10 +68,8 @@ machine::CopyOperation copy_operation(const Operation& o) {
   out.allowance_mm = o.allowance_mm;
   out.scallop_mm = o.pattern == Pattern::scanning_line ? o.scallop_mm : 0;
   out.region.box_mm = {rounded(o.box_mm[0]), rounded(o.box_mm[1])};
-  if (o.pattern == Pattern::scanning_line) {
-    out.angle_rad = row_angle_rad(o);
-    out.sense = machine::MillingSense::both;
-  }
+  if (o.pattern == Pattern::scanning_line) out.angle_rad = row_angle_rad(o);
+  out.sense = machine::MillingSense::both;
   return out;
 }
 
