@@ -101,7 +101,9 @@ class Joiner {
     if (!c || !c->within) return std::nullopt;
     const auto cost = first.kind == OperationKind::finish ? &Joiner::wall_levels : &Joiner::cost_s;
     const double apart = (this->*cost)(a, a.front().conditions) + (this->*cost)(b, b.front().conditions);
-    return (this->*cost)(all, *c) <= apart + kRounding ? c : std::nullopt;
+    // A path of another pattern must be worth it.
+    const bool alike = std::ranges::all_of(all, [&](const Operation& o) { return o.pattern == first.pattern; });
+    return (this->*cost)(all, *c) <= apart + (alike ? kRounding : -kRounding) ? c : std::nullopt;
   }
   bool joins(std::size_t a, std::size_t b) const { return together(runs_[a], runs_[b]).has_value(); }
 

@@ -6,6 +6,7 @@ namespace camber::plan {
 
 /// Joins milling operations by levels of the same kind and tool, with the same allowance, where their places touch and
 /// one region takes no longer than each by itself: fewer levels where one primitive lies under another, and never more.
+/// Where some have rows and some loops it must take less long; all get loops then.
 /// The conditions of a run are those of its depth. The second operation of a run and those after it have
 /// `joined = true` and stand behind the first. For that an operation comes earlier or later than its primitive's place
 /// in the order says, but never before another operation of its primitive, nor before the roughing of one above it.

@@ -260,7 +260,7 @@ class Planner {
 
   void add_finish(const Step& step, int number, double left_mm3) {
     const Primitive& p = out_.primitives[step.primitive];
-    const bool level = step.feature == Feature::face;
+    const bool level = step.feature == Feature::face && !p.contoured;
     Operation* finish = add(step, OperationKind::finish, number, level ? Pattern::scanning_line : Pattern::contour_line,
                             {true, p.max_mm.z() - p.min_mm.z(), machine::kNoLimit}, {});
     if (finish == nullptr) return;
