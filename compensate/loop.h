@@ -21,6 +21,7 @@
 #include "compensate/passes.h"
 #include "compensate/sensitivity.h"
 #include "compensate/splits.h"
+#include "compensate/step_model.h"
 
 namespace camber::compensate {
 
@@ -104,7 +105,9 @@ class Loop {
   PlainFigures figures_of(const Trial& trial) const;
   void record(CompensationResult& out, Round round);
   void take(CompensationResult& out);
-  bool done(CompensationResult& out, int without_gain);
+  bool done(const CompensationResult& out, const StepModel& model);
+  bool would_be_within(double effect);
+  bool ask_for_lifts(Guard& guard, double deepest_um);
 
   // loop_levers.cpp
   bool met(const CompensationResult& out) const;
