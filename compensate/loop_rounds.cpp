@@ -92,7 +92,7 @@ void Loop::stay_out_of_part(CompensationResult& out) {
   int without_gain = 0;
   for (int i = 0; i < kGuardRounds && without_gain < kGuardPatience && deepest_um > depth_limit_um_; ++i) {
     if (!ask_for_lifts(guard, deepest_um)) return;
-    step(out, share_, &guard);
+    step(out, 1, &guard);
     deepest_um = out.rounds.back().deepest_um;
     const bool gain = deepest_um - depth_limit_um_ < (1 - kGuardGain) * (least_um - depth_limit_um_);
     without_gain = gain ? 0 : without_gain + 1;
@@ -108,6 +108,7 @@ bool Loop::ask_for_lifts(Guard& guard, double deepest_um) {
   now_->sensitivity->apply_to(gains);
   Observed expected = observed;
   double expected_um = deepest_um;
+  guard.clear();
   for (int i = 0; i < kLiftings && expected_um > depth_limit_um_; ++i) {
     guard.learn(expected, expected_um / 1000);
     ShiftPath path = *now_->path;
@@ -116,14 +117,14 @@ bool Loop::ask_for_lifts(Guard& guard, double deepest_um) {
     const std::vector<RowLink> links = row_links(thin.path(), kRowReach_mm);
     const std::vector<double> stiffness = thin.greatest_of(now_->stiffness);
     thin.take_shifts(path);
-    fit_shift(thin.path(), thin.places_of(wanted_of(observed, &guard)), fit_options(stiffness, links, {}));
+    fit_lifts(thin.path(), thin.places_of(wanted_of(observed, &guard)), fit_options(stiffness, links, {}));
     thin.give_shifts(path);
     now_->path->set_shifts(last_->shifts);
     for (std::size_t p = 0; p < gains.size(); ++p) {
       const Observation& o = gains[p];
       if (!observed.compensated[p] || !o.own) continue;
       const Vec3 change = path.shift_at(o.place) - now_->path->shift_at(o.place);
-      expected.points[p].error_mm = o.error_mm + share_ * o.gain * o.normal.dot(change);
+      expected.points[p].error_mm = o.error_mm + o.gain * o.normal.dot(change);
     }
     expected_um = depth_of(last_->surface, expected, depth_limit_um_, true).gouge_depth_p999_um;
   }
@@ -151,8 +152,9 @@ void Loop::step(CompensationResult& out, double fraction, const Guard* guard, co
   now_->path->set_shifts(from->shifts);
   FeedLever::set_fractions(*now_->path, from->fractions);
   if (prepare) prepare(observations);
-  choose_splits(observations);
-  fit_and_emit(observations, fraction, round, *made);
+  Fit* fit = guard ? &fit_lifts : &fit_shift;
+  choose_splits(observations, fit);
+  fit_and_emit(observations, fraction, fit, round, *made);
   predict_trial(*made, fmt::format("round {}", out.rounds.size()));
   last_ = made;
   // What rows do that come out of the shadow of others says nothing of their gain, nor what another feed does.
@@ -162,7 +164,8 @@ void Loop::step(CompensationResult& out, double fraction, const Guard* guard, co
 }
 
 /// From the path's shifts; again with a stiffer path where it turns by more than the bound.
-void Loop::fit_and_emit(const std::vector<Observation>& observations, double fraction, Round& round, Trial& next) {
+void Loop::fit_and_emit(const std::vector<Observation>& observations, double fraction, Fit* fit, Round& round,
+                        Trial& next) {
   ShiftPath& path = *now_->path;
   const std::vector<Vec3> from = path.shifts();
   ThinPath thin(path, now_->splits->kept());
@@ -174,7 +177,7 @@ void Loop::fit_and_emit(const std::vector<Observation>& observations, double fra
     path.set_shifts(from);
     thin.take_shifts(path);
     const std::vector<double> stiffness = thin.greatest_of(now_->stiffness);
-    round.limited_points = fit_shift(thin.path(), asked, fit_options(stiffness, links, link_stiffness));
+    round.limited_points = fit(thin.path(), asked, fit_options(stiffness, links, link_stiffness));
     thin.give_shifts(path);
     for (std::size_t p = 0; p < from.size(); ++p) {
       Vec3& shift = path.points()[p].shift_mm;
@@ -202,16 +205,19 @@ void Loop::predict_trial(Trial& trial, const std::string& what) {
 
 /// The errors that the next shifts are to take away.
 std::vector<Observation> Loop::wanted_of(const Observed& observed, const Guard* guard) {
-  std::vector<Observation> out = without_row_form(*now_->path, observed.of_path(), fit_options());
-  if (guard) guard->apply_to(out);
+  std::vector<Observation> out = observed.of_path();
+  if (guard)
+    guard->apply_to(out);
+  else
+    out = without_row_form(*now_->path, out, fit_options());
   now_->sensitivity->apply_to(out);
   return out;
 }
 
 /// Where the shifts that the path could take with all its points ask for it; a late one must be worth more.
-void Loop::choose_splits(const std::vector<Observation>& observations) {
+void Loop::choose_splits(const std::vector<Observation>& observations, Fit* fit) {
   ShiftPath free = *now_->path;
-  fit_shift(free, observations, fit_options());
+  fit(free, observations, fit_options());
   if (now_->splits->add_strays(free, now_->split_once ? kLateSplit_mm : kSplit_mm) > 0) now_->link_stiffness.clear();
   now_->split_once = true;
 }
