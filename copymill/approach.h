@@ -1,5 +1,9 @@
 #pragma once
 // How the tool gets to a pass and into the material.
+#include <algorithm>
+#include <optional>
+#include <vector>
+
 #include "copymill/pass.h"
 #include "copymill/runner.h"
 #include "copymill/standing.h"
@@ -11,12 +15,14 @@ struct ApproachOptions {
   double clearance_mm = 1;     ///< above and beside material; rapids keep this away
   double more_than_mm = 0.02;  ///< material of less height is not met
   double link_mm = 0;          ///< longest straight way through material from pass to pass
+  bool remembers = false;      ///< where the axis has gone, for finish()
 };
 
 /// Links, entries and the passes themselves. Between passes the tool stays down where the straight way is free of the
 /// part and leads through air, or is short; else it is lifted over what stands on the way. Into material it goes from
 /// the side, through air, where that can be; else straight down where the cutter may; else down along the pass itself,
 /// which is free of the part at every height above it: a helix on a closed pass, a ramp to and fro on an open one.
+/// Rapids keep above the runner's ClearHeight.
 class Approach {
  public:
   Approach(const Cut& cut, const TipField& field, Standing& standing, Runner& runner, const ApproachOptions& options)
@@ -24,25 +30,34 @@ class Approach {
 
   /// Cuts the stretches of a pass that meet material.
   Runner::Ended follow(const Pass& pass);
+  /// The stretches of a pass that meet material now.
+  std::vector<Pass> in_material(const Pass& pass) const;
+  /// Of a pass what the axis has not gone along since forget(), whether or not anything is seen to stand there.
+  Runner::Ended finish(const Pass& pass);
+  void forget() { ways_.clear(); }
   /// To a closed pass that is cut from its beginning on: down through air where none of it meets material, else in a
   /// helix along it. Begins the pass where the tool is then, or as near to that as its points allow.
   Runner::Ended enter_ring(Pass& ring);
   /// Up, over what stands on the way to a place, and to its X and Y.
   Runner::Ended lift_over(const Vec3& to);
-  /// Down in rapid to the clearance above a place in air, and on at the feed.
+  /// Down in rapid to the clearance above a place in air, or above anything that can stand there, and on at the feed.
   Runner::Ended lower_to(const Vec3& to);
 
  private:
+  Runner::Ended cut(const std::vector<Vec3>& points, bool closed, double feed_share = 1);
   Runner::Ended cut_piece(Pass piece);
   bool stays_down(const Vec3& to) const;
   Runner::Ended enter(Pass& piece);
-  std::optional<Vec3> side_entry(const Vec3& to, const removal::CutterShape& shape) const;
-  /// Two cells wider: cells stand for their middles, and where the tool comes down in rapid, the tip of what stands may
-  /// reach beyond them.
+  Runner::Ended rapid_down(const Vec3& to);
+  bool nothing_can_stand(const Vec3& tip) const;
+  std::optional<Vec3> side_entry(const Vec3& to, const removal::CutterShape& shape, bool surely) const;
+  /// Two cells wider: cells stand for their middles.
   removal::CutterShape wide() const;
   bool free_way(const Vec3& from, const Vec3& to) const;
   bool in_air(const Vec3& from, const Vec3& to) const;
   double lift_into_air(const Vec3& tip) const;
+  double lead_mm() const { return 0.2 * cut_.shape.radius_mm; }
+  double join_mm() const { return std::max(2 * cut_.shape.radius_mm, 4.0); }
   Runner::Ended ramp(Pass& piece, double lift_mm);
 
   const Cut& cut_;
@@ -50,6 +65,7 @@ class Approach {
   Standing& standing_;
   Runner& runner_;
   ApproachOptions options_;
+  std::vector<std::vector<Vec3>> ways_;  ///< of each cut, from where it began
 };
 
 }  // namespace camber::copymill

@@ -1,6 +1,7 @@
 // Level by level: loops at equal distances from the walls, or rows and the outline.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "base/stage.h"
@@ -71,6 +72,7 @@ class LevelCutter {
       : place_(place), approach_(approach), slotting_(place, approach) {}
 
   Runner::Ended cut(const LevelRegion& region) {
+    if (walls_.empty()) approach_.forget();
     for (int c = 0; c < region.components(); ++c) {
       const bool loops = place_.cut.operation.mode == machine::CopyMode::contour_line;
       const Runner::Ended ended = loops ? cut_loops(region, c) : cut_rows(region, c);
@@ -160,6 +162,9 @@ class LevelCutter {
         v0 = std::min(v0, p.dot(across)), v1 = std::max(v1, p.dot(across));
       }
     if (u1 < u0) return Runner::Ended::done;
+    if (region.walled())
+      for (const Pass& wall : passes_at(region, component, 0))
+        for (Pass& piece : approach_.in_material(wall)) walls_.push_back(std::move(piece));
     constexpr double kInside_mm = 0.001;  // rows on the outline itself are the outline's
     const int n =
         std::max(1, static_cast<int>(std::ceil((v1 - v0 - 2 * kInside_mm) / place_.runner.radial_mm() - 1e-6)));
@@ -186,12 +191,36 @@ class LevelCutter {
       if (cut_nearest_first(std::move(passes), o.sense == machine::MillingSense::both) != Runner::Ended::done)
         return place_.runner.ended();
     }
-    return region.walled() ? cut_at(region, component, 0) : Runner::Ended::done;
+    return finish_walls(region.z_mm());
+  }
+
+  /// Those down to a height; lower ones wait where passes have been planned anew above them.
+  Runner::Ended finish_walls(double z) {
+    std::vector<Pass> now;
+    const auto waits = std::ranges::partition(walls_, [&](const Pass& p) { return p.points.front().z() < z; });
+    std::ranges::move(waits, std::back_inserter(now));
+    walls_.erase(waits.begin(), waits.end());
+    while (!now.empty()) {
+      const Vec3 here = place_.runner.at().value_or(now.front().points.front());
+      for (Pass& p : now) start_near(p, here);
+      const auto nearest =
+          std::ranges::min_element(now, {}, [&](const Pass& p) { return (p.points.front() - here).norm(); });
+      const Pass pass = std::move(*nearest);
+      now.erase(nearest);
+      if (approach_.finish(pass) == Runner::Ended::done) continue;
+      walls_.push_back(pass);
+      std::ranges::move(now, std::back_inserter(walls_));
+      return place_.runner.ended();
+    }
+    return Runner::Ended::done;
   }
 
   const Workplace& place_;
   Approach& approach_;
   Slotting slotting_;
+  /// Stretches of outlines that had material beside them before the rows of their level. What rows leave along walls
+  /// may be narrower than a cell of what is seen to stand, so they are followed all along.
+  std::vector<Pass> walls_;
 };
 
 }  // namespace
@@ -202,7 +231,9 @@ bool cut_levels(const Workplace& place) {
   const Levels levels = levels_of(place, tips);
   place.runner.begin(place.cut, place.standing, place.safe_z_mm, &place.depth, levels.bottom_mm());
   Approach approach(place.cut, place.field, place.standing, place.runner,
-                    {.more_than_mm = kMaterial_mm, .link_mm = 2.1 * o.radial_depth_mm});
+                    {.more_than_mm = kMaterial_mm,
+                     .link_mm = 2.1 * o.radial_depth_mm,
+                     .remembers = o.mode == machine::CopyMode::scanning_line});
   LevelCutter cutter(place, approach);
   bool placed = false, any_level = false;
   constexpr double kShares = 1000;  // of the depth, for progress

@@ -1,4 +1,6 @@
 // Centre drilling, pecks, reaming.
+#include <algorithm>
+
 #include "copymill/operation.h"
 
 namespace camber::copymill {
@@ -10,7 +12,9 @@ constexpr double kBackToDepth_mm = 0.5;  ///< a peck begins so far above the las
 Runner::Ended drill(const Cut& cut, const Standing& standing, Runner& runner, const Vec2& at) {
   const machine::CopyOperation& o = cut.operation;
   const auto [bottom, top] = *o.region.z_mm;
-  const double begin = std::max(top, standing.highest_under_mm(at, cut.shape.radius_mm)) + kClearance_mm;
+  const double begin = std::max({top, standing.highest_under_mm(at, cut.shape.radius_mm),
+                                 runner.clear_height().lowest_clear_tip_mm(cut.shape, at)}) +
+                       kClearance_mm;
   const Vec3 above(at.x(), at.y(), runner.safe_z_mm());
   const auto to = [&](double z) { return Vec3(at.x(), at.y(), z); };
   if (runner.rapid(above) != Runner::Ended::done || runner.rapid(to(begin)) != Runner::Ended::done)

@@ -1,5 +1,6 @@
 #pragma once
 // What the tip follows, before it becomes lines and arcs.
+#include <functional>
 #include <vector>
 
 #include "base/geometry.h"
@@ -26,5 +27,11 @@ void start_near(Pass& pass, const Vec3& place);
 double length_mm(const Pass& pass);
 /// Points added so that none is farther than this from the next.
 std::vector<Vec3> dense(const Pass& pass, double step_mm);
+/// The stretches of a pass whose points, `step_mm` apart, are `wanted`, `lead_mm` longer at either end; shorter gaps
+/// than `join_mm` between them are passed through. A pass that is wanted everywhere stays as it is.
+std::vector<Pass> stretches(const Pass& pass, double step_mm, const std::function<bool(const Vec3&)>& wanted,
+                            double lead_mm, double join_mm);
+/// Distance of a place from a line through points, beginning to end.
+double distance_mm(const std::vector<Vec3>& line, const Vec3& place);
 
 }  // namespace camber::copymill

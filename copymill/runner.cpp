@@ -14,6 +14,12 @@ namespace {
 constexpr double kBeside_mm = 20;  ///< of the stock: tips that enter from the side
 constexpr double kNoLimit_mm_per_s = std::numeric_limits<double>::infinity();
 
+double smallest_diameter_mm(const machine::Job& job) {
+  double out = std::numeric_limits<double>::infinity();
+  for (const auto& [number, tool] : job.tools) out = std::min(out, tool.diameter_mm);
+  return out;
+}
+
 /// Of this thread.
 double processor_ms() {
   timespec t{};
@@ -29,7 +35,8 @@ Runner::Runner(const machine::Job& job, const CopyOptions& options, removal::Sto
       stock_(stock),
       motion_(job.machine),
       writer_(feedmodel::dialect_of(job.machine.control.kind), 3),
-      piece_options_{.tolerance_mm = options.tolerance_mm} {}
+      piece_options_{.tolerance_mm = options.tolerance_mm},
+      clear_height_(stock, smallest_diameter_mm(job)) {}
 
 void Runner::begin(const Cut& cut, Standing& standing, double safe_z, PathDepth* depth, double lowest) {
   cut_.emplace(cut);
@@ -121,6 +128,7 @@ Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_s
   if (!rapid) {
     write_to(motion_.piece(), motion_.along_piece_mm(), written_feed_);
     standing_->cut(cut_->shape, last_lowered_, end);
+    clear_height_.lower(cut_->shape, end);
     stamp_at(t_s_, end);
     summary_.cutting_s += t_s_ - begin_s;
   } else {
@@ -209,6 +217,7 @@ void Runner::lower_standing(const Vec3& tip) {
   const double step = std::max(standing_->cell_mm(), cut_->shape.radius_mm / 16);
   if ((tip - last_lowered_).norm() < step) return;
   standing_->cut(cut_->shape, last_lowered_, tip);
+  clear_height_.lower(cut_->shape, tip);
   last_lowered_ = tip;
 }
 

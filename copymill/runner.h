@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "copymill/clear_height.h"
 #include "copymill/copy.h"
 #include "copymill/load_follower.h"
 #include "copymill/motion.h"
@@ -62,6 +63,8 @@ class Runner {
   std::optional<double> share_at_lowest_feed(const Vec3& tip, const Vec2& direction);
   /// For the log: how a full cut was made, or avoided. At the present time.
   void note_slot(const Vec3& tip, double from_mm, double to_mm, Cause cause, double share);
+  /// Of all operations so far.
+  const ClearHeight& clear_height() const { return clear_height_; }
   double increment_mm() const { return piece_options_.increment_mm; }
 
   OperationSummary& summary() { return summary_; }
@@ -90,6 +93,7 @@ class Runner {
   Motion motion_;
   ProgramWriter writer_;
   PieceOptions piece_options_;
+  ClearHeight clear_height_;
   std::optional<Cut> cut_;
   Standing* standing_ = nullptr;
   PathDepth* depth_ = nullptr;

@@ -5,18 +5,10 @@
 
 #include <tbb/parallel_for.h>
 
+#include "copymill/underside.h"
+
 namespace camber::copymill {
 namespace {
-
-/// Height of the cutter's underside above its tip; infinite outside.
-double underside_mm(const removal::CutterShape& shape, double r) {
-  if (r >= shape.radius_mm) return 1e30;
-  if (shape.general) return shape.profile.height_at_radius_mm(r);
-  const double out = r - (shape.radius_mm - shape.corner_radius_mm);
-  return out <= 0 ? 0
-                  : shape.corner_radius_mm -
-                        std::sqrt(std::max(0.0, shape.corner_radius_mm * shape.corner_radius_mm - out * out));
-}
 
 /// Highest place of a column that is not above `top` and is material; `floor` where there is none.
 double top_of_column(const removal::Stock::Probe& probe, const Vec2& p, double top, double floor, double voxel) {
@@ -138,39 +130,9 @@ double Standing::at(const Vec2& p) const {
 
 std::vector<Pass> stretches_in_material(const Standing& standing, const removal::CutterShape& shape, const Pass& pass,
                                         double more_than, double lead, double join) {
-  const double step = std::min(standing.cell_mm(), 0.25 * shape.radius_mm);
-  const std::vector<Vec3> points = dense(pass, step);
-  const std::size_t n = points.size();
-  std::vector<char> in(n);
-  for (std::size_t k = 0; k < n; ++k) in[k] = standing.meets(shape, points[k], more_than) ? 1 : 0;
-  if (std::ranges::find(in, 0) == in.end()) return {pass};
-  if (std::ranges::find(in, 1) == in.end()) return {};
-  // From a place in air on; an open pass from its beginning.
-  const std::size_t first = pass.closed ? static_cast<std::size_t>(std::ranges::find(in, 0) - in.begin()) : 0;
-  const auto leads = static_cast<std::ptrdiff_t>(std::ceil(lead / step));
-  const auto joins = static_cast<std::ptrdiff_t>(std::ceil(join / step)) + 2 * leads;
-  struct Range {
-    std::ptrdiff_t from, to;
-  };
-  std::vector<Range> ranges;
-  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(n); ++i) {
-    if (!in[(first + static_cast<std::size_t>(i)) % n]) continue;
-    if (!ranges.empty() && i - ranges.back().to <= joins)
-      ranges.back().to = i;
-    else
-      ranges.push_back({i, i});
-  }
-  std::vector<Pass> out;
-  const auto last = static_cast<std::ptrdiff_t>(n) - 1;
-  for (const Range& r : ranges) {
-    Pass piece;
-    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, r.from - leads);
-         i <= std::min(last + (pass.closed ? 1 : 0), r.to + leads); ++i)
-      piece.points.push_back(points[(first + static_cast<std::size_t>(i)) % n]);
-    if (piece.points.size() >= 2) out.push_back(std::move(piece));
-  }
-  if (pass.closed && out.size() == 1 && out[0].points.size() + static_cast<std::size_t>(joins) >= n) return {pass};
-  return out;
+  return stretches(
+      pass, std::min(standing.cell_mm(), 0.25 * shape.radius_mm),
+      [&](const Vec3& p) { return standing.meets(shape, p, more_than); }, lead, join);
 }
 
 }  // namespace camber::copymill

@@ -10,7 +10,7 @@
 namespace camber::tests {
 
 struct SmallCopy {
-  std::string part = "island";  ///< of samples/14-copy-milling
+  std::string part = "island";  ///< of samples/14-copy-milling; or a file, its name ending in .stl
   std::string stock = "box_mm = [[0, 0, -15], [60, 45, 0]]";
   std::string operations;
   double voxel_mm = 0.25;
@@ -23,7 +23,8 @@ inline std::string write_copy_job(const TempFolder& folder, const SmallCopy& c) 
                "[axis.y]\nmax_velocity_mm_per_min = 9000\nacceleration_mm_per_s2 = 1000\n"
                "[axis.z]\nmax_velocity_mm_per_min = 9000\nacceleration_mm_per_s2 = 1000\n"
                "[spindle]\nmax_rpm = 12000\n");
-  const std::string part = CAMBER_SOURCE_DIR "/samples/14-copy-milling/" + c.part + ".stl";
+  const std::string part =
+      c.part.ends_with(".stl") ? c.part : CAMBER_SOURCE_DIR "/samples/14-copy-milling/" + c.part + ".stl";
   return folder.write("job.toml",
                       "machine = \"machine.toml\"\n[part]\nmesh = \"" + part + "\"\n[stock]\n" + c.stock +
                           "\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 8\nflutes = 3\nhelix_deg = 30\noverhang_mm = 30\n"

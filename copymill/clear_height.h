@@ -1,0 +1,44 @@
+#pragma once
+// Above what height rapids meet nothing.
+#include <vector>
+
+#include "base/geometry.h"
+#include "copymill/grid.h"
+#include "removal/cutter.h"
+#include "removal/stock.h"
+
+namespace camber::copymill {
+
+/// A height a cell that nothing in the whole cell exceeds: an upper bound, where Standing has a sample at the cell's
+/// middle. So it also covers what is narrower than a cell, such as the fin between two cuts that nearly meet. Kept over
+/// all operations of a run, since the stock's voxels lose such fins. Cells along walls keep the height of the wall.
+///
+/// In the stock that is given, what is narrower than a voxel is not seen.
+class ClearHeight {
+ public:
+  static constexpr double kAir = -1e30;
+
+  /// `smallest_mm`: of the tools' diameters; the cells are a fraction of it, but no more than two million.
+  ClearHeight(const removal::Stock& stock, double smallest_mm);
+
+  /// The cutter has been at a place: lowers the cells that lie under it wholly.
+  void lower(const removal::CutterShape& shape, const Vec3& tip);
+  /// The lowest place of the tip at which the cutter certainly meets nothing; kAir where there is nothing.
+  double lowest_clear_tip_mm(const removal::CutterShape& shape, const Vec2& axis) const;
+  /// Of all cells that a rectangle touches; kAir where there are none.
+  double over_mm(const Vec2& min, const Vec2& max) const;
+  double cell_mm() const { return grid_.step_mm; }
+
+ private:
+  struct Row {
+    int j, first, last;  ///< of the cells whose middles are within a disc
+  };
+  template <class Visit>
+  void rows(const Vec2& axis, double radius_mm, Visit visit) const;
+
+  Grid grid_;
+  double half_diagonal_mm_;
+  std::vector<float> height_;
+};
+
+}  // namespace camber::copymill
