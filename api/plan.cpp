@@ -19,6 +19,7 @@ PlannedOperation operation_of(const plan::Operation& o, std::size_t setup) {
           .kind = std::string(plan::kOperationKinds[static_cast<std::size_t>(o.kind)]),
           .tool = o.tool,
           .mode = std::string(plan::kPatterns[static_cast<std::size_t>(o.pattern)]),
+          .joined = o.joined,
           .spindle_rpm = c.spindle_rpm,
           .feed_mm_per_min = c.feed_mm_per_min,
           .radial_mm = c.radial_mm,

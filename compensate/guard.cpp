@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace camber::compensate {
@@ -39,8 +40,10 @@ double fade(double distance, double reach) {
 
 Guard::Guard(const ShiftPath& path, double limit_mm, double reach_mm) : limit_mm_(limit_mm), reach_mm_(reach_mm) {
   for (const ControlPoint& p : path.points()) place_mm_.push_back(p.place_mm);
-  lift_mm_.assign(place_mm_.size(), Vec3::Zero());
+  clear();
 }
+
+void Guard::clear() { lift_mm_.assign(place_mm_.size(), Vec3::Zero()); }
 
 void Guard::learn(const Observed& observed, double depth_p999_mm) {
   std::map<std::size_t, Lift> asked;  // by the path's points
@@ -76,7 +79,25 @@ double Guard::lift_mm(const Observation& o) const {
 }
 
 void Guard::apply_to(std::vector<Observation>& observations) const {
-  for (Observation& o : observations) o.error_mm -= lift_mm(o);
+  for (Observation& o : observations) o.error_mm = -lift_mm(o);
+}
+
+std::size_t fit_lifts(ShiftPath& path, std::span<const Observation> lifts, const FitShiftOptions& options) {
+  const std::vector<Vec3> before = path.shifts();
+  path.set_shifts(std::vector<Vec3>(before.size(), Vec3::Zero()));
+  FitShiftOptions unbound = options;
+  unbound.max_shift_mm = std::numeric_limits<double>::infinity();
+  fit_shift(path, lifts, unbound);
+  std::size_t cut = 0;
+  for (std::size_t p = 0; p < before.size(); ++p) {
+    Vec3& shift = path.points()[p].shift_mm;
+    shift += before[p];
+    if (const double length = shift.norm(); length > options.max_shift_mm) {
+      shift *= options.max_shift_mm / length;
+      ++cut;
+    }
+  }
+  return cut;
 }
 
 }  // namespace camber::compensate

@@ -1,23 +1,27 @@
 #pragma once
 // Guard against gouging: lifts the path smoothly where the surface is too deep.
+#include <span>
 #include <vector>
 
 #include "compensate/attribution.h"
+#include "compensate/fit_shift.h"
 
 namespace camber::compensate {
 
-/// What a shift cannot make flat is left as excess material rather than overcut: the fit aims at excess material (a
-/// lift) instead of zero. A point of the surface that lies deeper than the limit requests a lift of its path position
-/// along its normal. Each lift fades out over `reach_mm`, along the path and across rows, as cos^2, so that its slope
-/// is at most pi / 2 of its height over that length.
+/// What a shift cannot make flat is left as excess material rather than overcut. A point of the surface that lies
+/// deeper than the limit requests a lift of its path position along its normal. Each lift fades out over `reach_mm`,
+/// along the path and across rows, as cos^2, so that its slope is at most pi / 2 of its height over that length. A
+/// round of the guard takes the lifts alone: elsewhere the path stays as it is.
 class Guard {
  public:
   /// Requests of single points are limited to the depth that 99.9 % of the surface does not exceed.
   Guard(const ShiftPath& path, double limit_mm, double reach_mm);
 
+  /// No lift is asked for.
+  void clear();
   /// Adds lifts for points that are too deep; `depth_p999_mm`: depth that 99.9 % of the surface does not exceed.
   void learn(const Observed& observed, double depth_p999_mm);
-  /// Errors as the fit is to see them: less the lift.
+  /// Errors as the fit is to see them: what takes the lifts away, and nothing else.
   void apply_to(std::vector<Observation>& observations) const;
 
  private:
@@ -28,5 +32,9 @@ class Guard {
   std::vector<Vec3> place_mm_;  ///< of the path's points
   std::vector<Vec3> lift_mm_;   ///< at the path's points
 };
+
+/// Adds to the path's shifts what takes the lifts (Guard::apply_to), as smooth as fit_shift makes it; the sum is cut to
+/// the largest shift. Returns at how many points it was.
+std::size_t fit_lifts(ShiftPath& path, std::span<const Observation> lifts, const FitShiftOptions& options);
 
 }  // namespace camber::compensate

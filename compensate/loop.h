@@ -21,6 +21,7 @@
 #include "compensate/passes.h"
 #include "compensate/sensitivity.h"
 #include "compensate/splits.h"
+#include "compensate/step_model.h"
 
 namespace camber::compensate {
 
@@ -72,6 +73,7 @@ class Loop {
 
  private:
   using Prepare = std::function<void(std::vector<Observation>&)>;
+  using Fit = std::size_t(ShiftPath&, std::span<const Observation>, const FitShiftOptions&);  ///< fit_shift, fit_lifts
 
   bool has(machine::Lever lever) const { return job_.compensation.has(lever); }
   double tolerance_mm() const { return job_.compensation.half_width_um() / 1000; }
@@ -96,15 +98,17 @@ class Loop {
   /// New shifts from the last trial's error, and their prediction. `prepare` may change the feeds of the path and the
   /// observations that the shifts are fitted to.
   void step(CompensationResult& out, double fraction, const Guard* guard, const Prepare& prepare = {});
-  void fit_and_emit(const std::vector<Observation>& observations, double fraction, Round& round, Trial& next);
+  void fit_and_emit(const std::vector<Observation>& observations, double fraction, Fit* fit, Round& round, Trial& next);
   void predict_trial(Trial& trial, const std::string& what);
   std::vector<Observation> wanted_of(const Observed& observed, const Guard* guard);
-  void choose_splits(const std::vector<Observation>& observations);
+  void choose_splits(const std::vector<Observation>& observations, Fit* fit);
   void stiffen(const std::vector<MoveMap::MovePlace>& places);
   PlainFigures figures_of(const Trial& trial) const;
   void record(CompensationResult& out, Round round);
   void take(CompensationResult& out);
-  bool done(CompensationResult& out, int without_gain);
+  bool done(const CompensationResult& out, const StepModel& model);
+  bool would_be_within(double effect);
+  bool ask_for_lifts(Guard& guard, double deepest_um);
 
   // loop_levers.cpp
   bool met(const CompensationResult& out) const;

@@ -10,13 +10,12 @@
 namespace camber::compensate {
 namespace {
 
-constexpr double kMinGain = 0.03;   // a round that lowers the rms by less has stalled
-constexpr int kPatience = 2;        // rounds without that gain before it counts
-constexpr double kWorse = 1.02;     // a round whose rms is over the best one's by this has over-corrected
-constexpr double kShorter = 0.5;    // then the next step starts at the best one's shifts, shorter
+constexpr double kMinGain = 0.05;   // a round that is expected to lower the rms by less is not worth a prediction
+constexpr double kLeast = 0.1;      // of a fitted step, after over-corrections
 constexpr int kGuardRounds = 5;     // beyond max_rounds, to stay out of the part
 constexpr int kGuardPatience = 2;   // of these, without the least depth so far falling by ...
 constexpr double kGuardGain = 0.1;  // ... this part of what it is over the limit
+constexpr int kLiftings = 5;        // of the path before a round of the guard, by what they are expected to bring
 constexpr int kStiffenings = 12;    // of the path where its angles grow by more than the bound
 constexpr double kStiffer = 2.5;
 constexpr double kGuardReach_mm = 2.0;   // a lift fades out over this length, or ...
@@ -64,16 +63,18 @@ FitShiftOptions Loop::fit_options(std::span<const double> stiffness, std::span<c
 FitShiftOptions Loop::fit_options() const { return fit_options(now_->stiffness, now_->links, {}); }
 
 void Loop::converge(CompensationResult& out) {
-  int without_gain = 0;
-  while (!done(out, without_gain)) {
+  StepModel model;
+  while (!done(out, model)) {
+    const Round from = out.rounds[out.best];
+    const bool by_expectation = !expected_.empty();
     step(out, share_, nullptr);
-    const double best = out.rounds[out.best].error_um.rms, now = out.rounds.back().error_um.rms;
-    without_gain = now < (1 - kMinGain) * best ? 0 : without_gain + 1;
-    if (now < best) {
+    const double now = out.rounds.back().error_um.rms;
+    if (!by_expectation) model.learn(from.error_um.rms, from.split, share_, now);
+    if (now < from.error_um.rms) {
       take(out);
-    } else if (now > kWorse * best) {
+    } else {
       last_ = best_;
-      share_ *= kShorter;
+      share_ = std::max(kLeast, model.best_fraction(share_));
     }
   }
   now_->best_shifted = best_;
@@ -90,13 +91,44 @@ void Loop::stay_out_of_part(CompensationResult& out) {
   double deepest_um = out.rounds[out.best].deepest_um, least_um = deepest_um;
   int without_gain = 0;
   for (int i = 0; i < kGuardRounds && without_gain < kGuardPatience && deepest_um > depth_limit_um_; ++i) {
-    guard.learn(last_->observed, deepest_um / 1000);
-    step(out, share_, &guard);
+    if (!ask_for_lifts(guard, deepest_um)) return;
+    step(out, 1, &guard);
     deepest_um = out.rounds.back().deepest_um;
     const bool gain = deepest_um - depth_limit_um_ < (1 - kGuardGain) * (least_um - depth_limit_um_);
     without_gain = gain ? 0 : without_gain + 1;
     least_um = std::min(least_um, deepest_um);
   }
+}
+
+/// Asks for lifts until the shifts that they lead to are expected to keep the limit. False: no shift brings the surface
+/// nearer to it, as where the shifts are at the largest one.
+bool Loop::ask_for_lifts(Guard& guard, double deepest_um) {
+  const Observed& observed = last_->observed;
+  std::vector<Observation> gains = observed.points;
+  now_->sensitivity->apply_to(gains);
+  Observed expected = observed;
+  double expected_um = deepest_um;
+  guard.clear();
+  for (int i = 0; i < kLiftings && expected_um > depth_limit_um_; ++i) {
+    guard.learn(expected, expected_um / 1000);
+    ShiftPath path = *now_->path;
+    path.set_shifts(last_->shifts);
+    ThinPath thin(path, now_->splits->kept());
+    const std::vector<RowLink> links = row_links(thin.path(), kRowReach_mm);
+    const std::vector<double> stiffness = thin.greatest_of(now_->stiffness);
+    thin.take_shifts(path);
+    fit_lifts(thin.path(), thin.places_of(wanted_of(observed, &guard)), fit_options(stiffness, links, {}));
+    thin.give_shifts(path);
+    now_->path->set_shifts(last_->shifts);
+    for (std::size_t p = 0; p < gains.size(); ++p) {
+      const Observation& o = gains[p];
+      if (!observed.compensated[p] || !o.own) continue;
+      const Vec3 change = path.shift_at(o.place) - now_->path->shift_at(o.place);
+      expected.points[p].error_mm = o.error_mm + o.gain * o.normal.dot(change);
+    }
+    expected_um = depth_of(last_->surface, expected, depth_limit_um_, true).gouge_depth_p999_um;
+  }
+  return expected_um - depth_limit_um_ < (1 - kGuardGain) * (deepest_um - depth_limit_um_);
 }
 
 void Loop::choose(CompensationResult& out) {
@@ -120,8 +152,9 @@ void Loop::step(CompensationResult& out, double fraction, const Guard* guard, co
   now_->path->set_shifts(from->shifts);
   FeedLever::set_fractions(*now_->path, from->fractions);
   if (prepare) prepare(observations);
-  choose_splits(observations);
-  fit_and_emit(observations, fraction, round, *made);
+  Fit* fit = guard ? &fit_lifts : &fit_shift;
+  choose_splits(observations, fit);
+  fit_and_emit(observations, fraction, fit, round, *made);
   predict_trial(*made, fmt::format("round {}", out.rounds.size()));
   last_ = made;
   // What rows do that come out of the shadow of others says nothing of their gain, nor what another feed does.
@@ -131,7 +164,8 @@ void Loop::step(CompensationResult& out, double fraction, const Guard* guard, co
 }
 
 /// From the path's shifts; again with a stiffer path where it turns by more than the bound.
-void Loop::fit_and_emit(const std::vector<Observation>& observations, double fraction, Round& round, Trial& next) {
+void Loop::fit_and_emit(const std::vector<Observation>& observations, double fraction, Fit* fit, Round& round,
+                        Trial& next) {
   ShiftPath& path = *now_->path;
   const std::vector<Vec3> from = path.shifts();
   ThinPath thin(path, now_->splits->kept());
@@ -143,7 +177,7 @@ void Loop::fit_and_emit(const std::vector<Observation>& observations, double fra
     path.set_shifts(from);
     thin.take_shifts(path);
     const std::vector<double> stiffness = thin.greatest_of(now_->stiffness);
-    round.limited_points = fit_shift(thin.path(), asked, fit_options(stiffness, links, link_stiffness));
+    round.limited_points = fit(thin.path(), asked, fit_options(stiffness, links, link_stiffness));
     thin.give_shifts(path);
     for (std::size_t p = 0; p < from.size(); ++p) {
       Vec3& shift = path.points()[p].shift_mm;
@@ -171,16 +205,19 @@ void Loop::predict_trial(Trial& trial, const std::string& what) {
 
 /// The errors that the next shifts are to take away.
 std::vector<Observation> Loop::wanted_of(const Observed& observed, const Guard* guard) {
-  std::vector<Observation> out = without_row_form(*now_->path, observed.of_path(), fit_options());
-  if (guard) guard->apply_to(out);
+  std::vector<Observation> out = observed.of_path();
+  if (guard)
+    guard->apply_to(out);
+  else
+    out = without_row_form(*now_->path, out, fit_options());
   now_->sensitivity->apply_to(out);
   return out;
 }
 
 /// Where the shifts that the path could take with all its points ask for it; a late one must be worth more.
-void Loop::choose_splits(const std::vector<Observation>& observations) {
+void Loop::choose_splits(const std::vector<Observation>& observations, Fit* fit) {
   ShiftPath free = *now_->path;
-  fit_shift(free, observations, fit_options());
+  fit(free, observations, fit_options());
   if (now_->splits->add_strays(free, now_->split_once ? kLateSplit_mm : kSplit_mm) > 0) now_->link_stiffness.clear();
   now_->split_once = true;
 }
@@ -221,14 +258,43 @@ void Loop::take(CompensationResult& out) {
   best_ = last_;
 }
 
-bool Loop::done(CompensationResult& out, int without_gain) {
+bool Loop::done(const CompensationResult& out, const StepModel& model) {
   const auto& c = job_.compensation;
-  const double left_um = out.rounds[out.best].split.correctable_p95_um;
+  const Round& best = out.rounds[out.best];
+  const std::size_t made = out.rounds.size() - first_round_;  // the first one is that of the version as given
   const bool ready = out.best > 0 || within_tolerance(out.plain_before, c);
-  ended_ = ready && left_um <= kLeftOver * c.half_width_um() ? Stop::stalled
-           : without_gain >= kPatience                       ? Stop::stalled
-                                                             : Stop::rounds;
-  return ended_ == Stop::stalled || static_cast<int>(out.rounds.size() - first_round_) > c.max_rounds;
+  const bool nothing_left = best.split.correctable_p95_um <= kLeftOver * c.half_width_um();
+  const bool worth_it =
+      model.expected_rms_um(best.error_um.rms, best.split, share_) <= (1 - kMinGain) * best.error_um.rms ||
+      would_be_within(model.effect(share_));
+  const bool stalled = (ready && nothing_left) || (made > 1 && !worth_it);
+  ended_ = stalled ? Stop::stalled : Stop::rounds;
+  return stalled || static_cast<int>(made) > c.max_rounds;
+}
+
+/// Whether the best round, which is not within tolerance, is expected to be with the fraction `effect` of what shifts
+/// can still take away taken away.
+bool Loop::would_be_within(double effect) {
+  const Observed& observed = best_->observed;
+  if (effect <= 0 || within_tolerance(figures_of(*best_), job_.compensation)) return false;
+  std::vector<Observation> judged;
+  std::vector<double> error_um, area_mm2;
+  for (std::size_t i = 0; i < observed.points.size(); ++i) {
+    if (!observed.judged(i)) continue;
+    if (observed.compensated[i]) {
+      judged.push_back(observed.points[i]);
+      continue;
+    }
+    error_um.push_back(1000 * observed.points[i].error_mm);
+    area_mm2.push_back(observed.points[i].area_mm2);
+  }
+  now_->path->set_shifts(best_->shifts);
+  const std::vector<double> left = left_by_shift_mm(*now_->path, judged, fit_options());
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    error_um.push_back(1000 * (judged[i].error_mm + effect * (left[i] - judged[i].error_mm)));
+    area_mm2.push_back(judged[i].area_mm2);
+  }
+  return within_tolerance(error_um, area_mm2, job_.compensation);
 }
 
 }  // namespace camber::compensate

@@ -65,6 +65,17 @@ double part_of(const ErrorSplit& s, Cause cause) {
   return s.not_compensated_um;
 }
 
+double fraction_in_band(const std::vector<double>& error_um, const std::vector<double>& area_mm2,
+                        const machine::CompensationSettings& asked) {
+  const std::array<double, 2> band = asked.profile_um.value_or(std::array{-asked.tolerance_um, asked.tolerance_um});
+  double inside = 0, whole = 0;
+  for (std::size_t i = 0; i < error_um.size(); ++i) {
+    whole += area_mm2[i];
+    if (error_um[i] >= band[0] && error_um[i] <= band[1]) inside += area_mm2[i];
+  }
+  return whole > 0 ? inside / whole : 1.0;
+}
+
 constexpr std::array kCauses{Cause::correctable, Cause::guard, Cause::limited, Cause::short_range,
                              Cause::opposed,     Cause::tip,   Cause::bow,     Cause::not_compensated};
 
@@ -72,9 +83,7 @@ constexpr std::array kCauses{Cause::correctable, Cause::guard, Cause::limited, C
 
 PlainFigures plain_figures(const std::vector<removal::SurfacePoint>& surface, const std::vector<double>& total_mm,
                            const Observed& observed, const machine::CompensationSettings& asked) {
-  std::vector<double> error, deflection, contour, total, area;
-  const std::array<double, 2> band = asked.profile_um.value_or(std::array{-asked.tolerance_um, asked.tolerance_um});
-  double inside = 0, whole = 0;
+  std::vector<double> error, deflection, contour, total, judged, area;
   for (std::size_t i = 0; i < surface.size(); ++i) {
     if (!observed.judged(i)) continue;
     const removal::SurfacePoint& p = surface[i];
@@ -82,13 +91,11 @@ PlainFigures plain_figures(const std::vector<removal::SurfacePoint>& surface, co
     deflection.push_back(1000 * (p.error_mm - p.contour_mm));
     contour.push_back(1000 * p.contour_mm);
     if (!total_mm.empty()) total.push_back(1000 * total_mm[i]);
+    judged.push_back(1000 * judged_mm(p, asked.reference));
     area.push_back(p.area_mm2);
-    const double judged = 1000 * judged_mm(p, asked.reference);
-    whole += p.area_mm2;
-    if (judged >= band[0] && judged <= band[1]) inside += p.area_mm2;
   }
   PlainFigures out{removal::error_figures(error, area), removal::error_figures(deflection, area),
-                   removal::error_figures(contour, area), std::nullopt, whole > 0 ? inside / whole : 1.0};
+                   removal::error_figures(contour, area), std::nullopt, fraction_in_band(judged, area, asked)};
   if (!total_mm.empty()) out.total_um = removal::error_figures(total, area);
   return out;
 }
@@ -100,6 +107,12 @@ const removal::ErrorFigures& judged_of(const PlainFigures& figures, machine::Ref
 bool within_tolerance(const PlainFigures& figures, const machine::CompensationSettings& asked) {
   if (asked.profile_um) return figures.in_band_fraction >= kWanted;
   return judged_of(figures, asked.reference).p95 <= asked.tolerance_um;
+}
+
+bool within_tolerance(const std::vector<double>& error_um, const std::vector<double>& area_mm2,
+                      const machine::CompensationSettings& asked) {
+  if (asked.profile_um) return fraction_in_band(error_um, area_mm2, asked) >= kWanted;
+  return removal::error_figures(error_um, area_mm2).p95 <= asked.tolerance_um;
 }
 
 std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<PointCause>& points,

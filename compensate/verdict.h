@@ -29,6 +29,10 @@ const removal::ErrorFigures& judged_of(const PlainFigures& figures, machine::Ref
 /// The 95th percentile is within tolerance_um; with profile_um: 95 % of the area is within the band.
 bool within_tolerance(const PlainFigures& figures, const machine::CompensationSettings& asked);
 
+/// The same of judged errors, um, each of an area.
+bool within_tolerance(const std::vector<double>& error_um, const std::vector<double>& area_mm2,
+                      const machine::CompensationSettings& asked);
+
 /// A part of the remaining error, and the lines of the program with most of it.
 struct CauseFigure {
   Cause cause = Cause::correctable;

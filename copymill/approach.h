@@ -57,7 +57,11 @@ class Approach {
   bool in_air(const Vec3& from, const Vec3& to) const;
   double lift_into_air(const Vec3& tip) const;
   double lead_mm() const { return 0.2 * cut_.shape.radius_mm; }
-  double join_mm() const { return std::max(2 * cut_.shape.radius_mm, 4.0); }
+  /// Also gaps that are passed through in less time than the tool is lifted over, about three rapids and an entry.
+  double join_mm() const {
+    constexpr double kLift_s = 0.3;
+    return std::max({2 * cut_.shape.radius_mm, 4.0, kLift_s * cut_.operation.feed_mm_per_s});
+  }
   Runner::Ended ramp(Pass& piece, double lift_mm);
 
   const Cut& cut_;

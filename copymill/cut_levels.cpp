@@ -3,10 +3,12 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 #include "base/stage.h"
 #include "copymill/level_region.h"
 #include "copymill/levels.h"
+#include "copymill/loop_order.h"
 #include "copymill/operation.h"
 #include "copymill/slotting.h"
 
@@ -24,7 +26,7 @@ double grid_step_mm(const Workplace& place) {
   return std::max(fine, std::sqrt((size.x() + 2) * (size.y() + 2) / kMaxGridPoints));
 }
 
-Levels levels_of(const Workplace& place, const SampledTips& tips) {
+BoxLevels levels_of(const Workplace& place, const SampledTips& tips) {
   const machine::CopyOperation& o = place.cut.operation;
   const Vec2 reach = Vec2::Constant(place.cut.shape.radius_mm);
   double top = place.standing.highest_mm(place.region.min_mm() - reach, place.region.max_mm() + reach);
@@ -35,8 +37,9 @@ Levels levels_of(const Workplace& place, const SampledTips& tips) {
   if (o.region.z_mm) bottom = std::max(bottom, (*o.region.z_mm)[0]), top = std::min(top, (*o.region.z_mm)[1]);
   const double least_mm2 = place.cut.shape.radius_mm * place.cut.shape.radius_mm;
   std::vector<double> floors = level_floors(place.part, place.region, least_mm2);
+  if (place.region.depends_on_level()) return box_levels(top, bottom, std::move(floors), place.region, o.allowance_mm);
   for (double& f : floors) f += o.allowance_mm;
-  return {top, bottom, std::move(floors)};
+  return {Levels(top, bottom, std::move(floors)), {}};
 }
 
 /// Loops of a component from the inside out where walls bound it; from the outside in where nothing does.
@@ -84,6 +87,7 @@ class LevelCutter {
  private:
   Runner::Ended cut_loops(const LevelRegion& region, int component) {
     const double radial = place_.runner.radial_mm();
+    if (!slotting_.wanted()) return cut_in_order(region, component, loop_distances(region, component, radial));
     // As far inside as loops can be had from the grid.
     double before = 0.97 * region.depth_mm(component);
     for (const double d : loop_distances(region, component, radial)) {
@@ -92,6 +96,20 @@ class LevelCutter {
       if (cut_at(region, component, d) != Runner::Ended::done) return place_.runner.ended();
       before = d;
     }
+    return Runner::Ended::done;
+  }
+
+  /// From boss to boss and corner to corner, not from distance to distance.
+  Runner::Ended cut_in_order(const LevelRegion& region, int component, const std::vector<double>& distances) {
+    LoopOrder order;
+    // Along walls as asked for; "both" turns what lies farther inside.
+    const bool turns = place_.cut.operation.sense == machine::MillingSense::both;
+    for (std::size_t k = 0; k < distances.size(); ++k)
+      order.add(passes_at(region, component, distances[k]),
+                k > 0 ? std::abs(distances[k] - distances[k - 1]) : place_.runner.radial_mm(),
+                turns && distances[k] > 0);
+    while (const std::optional<Pass> pass = order.next(place_.runner.at()))
+      if (approach_.follow(*pass) != Runner::Ended::done) return place_.runner.ended();
     return Runner::Ended::done;
   }
 
@@ -228,7 +246,8 @@ class LevelCutter {
 bool cut_levels(const Workplace& place) {
   const machine::CopyOperation& o = place.cut.operation;
   const SampledTips tips(place.field, place.region, grid_step_mm(place));
-  const Levels levels = levels_of(place, tips);
+  const BoxLevels all = levels_of(place, tips);
+  const Levels& levels = all.even;
   place.runner.begin(place.cut, place.standing, place.safe_z_mm, &place.depth, levels.bottom_mm());
   Approach approach(place.cut, place.field, place.standing, place.runner,
                     {.more_than_mm = kMaterial_mm,
@@ -241,10 +260,17 @@ bool cut_levels(const Workplace& place) {
   double level = 0;
   for (double above = levels.top_mm(); levels.next(above, place.runner.axial_mm(), level);) {
     any_level = true;
-    const LevelRegion region(tips, level);
-    placed = placed || !region.empty();
-    ++place.runner.summary().levels;
-    const Runner::Ended ended = cutter.cut(region);
+    // The level first, then, from the side, what is left on the floors above it.
+    Runner::Ended ended = Runner::Ended::done;
+    std::vector<double> floors = all.floors_between(above, level);
+    floors.push_back(level);
+    while (!floors.empty() && ended == Runner::Ended::done) {
+      const LevelRegion region(tips, floors.back());
+      placed = placed || !region.empty();
+      ++place.runner.summary().levels;
+      ended = cutter.cut(region);
+      floors.pop_back();
+    }
     if (ended == Runner::Ended::stopped) return true;
     if (ended == Runner::Ended::replan) {
       // With the axial depth that is now: a level in between, or this one again with other loops or rows.

@@ -27,16 +27,23 @@ SampledTips::SampledTips(const TipField& f, const AxisRegion& r, double step_mm)
   });
 }
 
+bool SampledTips::holds(std::size_t point, double z_mm) const {
+  if (!region.depends_on_level()) return in_region[point] != 0;
+  return in_region[point] != 0 && region.contains(grid.at(static_cast<int>(point % static_cast<std::size_t>(grid.nx)),
+                                                          static_cast<int>(point / static_cast<std::size_t>(grid.nx))),
+                                                  z_mm);
+}
+
 LevelRegion::LevelRegion(const SampledTips& tips, double z_mm)
     : tips_(tips),
       z_(z_mm),
-      inside_([&tips, z_mm](const Vec2& p) { return tips.region.contains(p) && tips.field.free(p, z_mm); }) {
+      inside_([&tips, z_mm](const Vec2& p) { return tips.region.contains(p, z_mm) && tips.field.free(p, z_mm); }) {
   const Grid& grid = tips.grid;
   state_.resize(grid.size());
   mask_.resize(grid.size());
   for (std::size_t k = 0; k < grid.size(); ++k) {
     const bool free = tips.lowest_mm[k] <= z_mm + 1e-7;
-    state_[k] = !free ? State::wall : tips.in_region[k] ? State::inside : State::border;
+    state_[k] = !free ? State::wall : tips.holds(k, z_mm) ? State::inside : State::border;
     mask_[k] = state_[k] == State::inside ? 1 : 0;
   }
   find_outline();
@@ -159,7 +166,7 @@ std::vector<FlatPass> LevelRegion::loops(double distance) const {
     for (std::size_t k = 0; k < grid.size(); ++k) farther[k] = mask_[k] && distance_[k] >= distance ? 1 : 0;
     const auto crossing = [&](const Vec2& in, const Vec2& out) -> Vec2 {
       const double a = distance_mm(in), b = distance_mm(out);
-      if (a > distance && b < distance) return in + (a - distance) / (a - b) * (out - in);
+      if (a > b && b < distance) return in + std::max(0.0, (a - distance) / (a - b)) * (out - in);
       return last_inside(inside_, in, out, kBisection_mm);
     };
     at = outlines(grid, farther, crossing);

@@ -15,12 +15,14 @@ namespace camber::copymill {
 /// The tip field at the points of a grid that covers a region and a margin.
 struct SampledTips {
   SampledTips(const TipField& field, const AxisRegion& region, double step_mm);
+  /// Whether a point lies in the region at a level.
+  bool holds(std::size_t point, double z_mm) const;
 
   const TipField& field;
   const AxisRegion& region;
   Grid grid;
   std::vector<double> lowest_mm;
-  std::vector<char> in_region;
+  std::vector<char> in_region;  ///< at some level
 };
 
 /// The points of the region at which the tip may stand at height z: the set {field <= z}, bounded by walls of the part

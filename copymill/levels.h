@@ -8,7 +8,8 @@
 
 namespace camber::copymill {
 
-/// Level faces of the part that look up, over the region: heights, descending, with more than `least_mm2` each.
+/// Level faces of the part that look up, over the region: heights, descending, with more than `least_mm2` each, those
+/// within a micrometre together. A tip that goes to such a height touches the face and does not go into it.
 std::vector<double> level_floors(const TriangleMesh& part, const AxisRegion& region, double least_mm2);
 
 /// From the top down to the bottom, each floor (raised by the allowance) on the way included: levels between two of
@@ -26,5 +27,20 @@ class Levels {
   double top_, bottom_;
   std::vector<double> stops_;  ///< floors and the bottom, descending
 };
+
+/// Levels of a region of several boxes: from its top to its bottom evenly, and the floors in between, which are cut
+/// after the even level below them, so that nothing is left there but what stands on them.
+struct BoxLevels {
+  Levels even;
+  std::vector<double> floors_mm;  ///< descending
+
+  /// Those below a level, down to another one.
+  std::vector<double> floors_between(double above_mm, double level_mm) const;
+};
+
+/// `floors_mm` of the part, without allowance; bottoms of boxes are floors too, with the allowance and, where no part
+/// is under them, without it.
+BoxLevels box_levels(double top_mm, double bottom_mm, std::vector<double> floors_mm, const AxisRegion& region,
+                     double allowance_mm);
 
 }  // namespace camber::copymill

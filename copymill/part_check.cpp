@@ -66,7 +66,7 @@ std::vector<Point> points_on(const TriangleMesh& part, double step) {
 
 bool free_tip(const Reach& tool, const Vec3& tip) {
   return tip.z() >= tool.lowest_mm - kContact_mm && tip.z() <= tool.highest_mm + kContact_mm &&
-         tool.region->contains(tip.head<2>()) && tool.field->free(tip.head<2>(), tip.z() + kContact_mm);
+         tool.region->contains(tip.head<2>(), tip.z()) && tool.field->free(tip.head<2>(), tip.z() + kContact_mm);
 }
 
 /// Whether the tool can stand so that it touches the part at a point. Under a flat bottom it may stand anywhere beside.

@@ -7,18 +7,24 @@
 
 namespace camber::copymill {
 
-/// A rectangle or a polygon; the border belongs to it.
+/// A rectangle, a polygon or boxes, each with the levels of the tip there; the border belongs to it.
 class AxisRegion {
  public:
   /// That of an operation; without one, the rectangle.
   AxisRegion(const machine::CopyRegion& region, const Vec2& stock_min, const Vec2& stock_max);
 
+  /// At some level.
   bool contains(const Vec2& p) const;
+  /// At a level of the tip. A box's upper end does not belong to it: what is cut there lies above.
+  bool contains(const Vec2& p, double z_mm) const;
+  bool depends_on_level() const { return !boxes_.empty(); }
+  const std::vector<machine::CopyRegion::Box>& boxes_mm() const { return boxes_; }
   const Vec2& min_mm() const { return min_; }
   const Vec2& max_mm() const { return max_; }
 
  private:
   std::vector<Vec2> polygon_;  ///< empty: the rectangle
+  std::vector<machine::CopyRegion::Box> boxes_;
   Vec2 min_, max_;
 };
 

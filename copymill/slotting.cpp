@@ -101,7 +101,7 @@ double Slotting::greatest_share(const Stretch& s) const {
   return out;
 }
 
-bool Slotting::inside(const Vec2& p, double z) const { return place_.region.contains(p) && place_.field.free(p, z); }
+bool Slotting::inside(const Vec2& p, double z) const { return place_.region.contains(p, z) && place_.field.free(p, z); }
 
 /// Of the circles about a place that the tool may run, the largest.
 double Slotting::room_mm(const Vec2& centre, double z) const {

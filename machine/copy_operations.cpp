@@ -1,5 +1,6 @@
 #include "machine/copy_operations.h"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -16,6 +17,35 @@ std::vector<Vec2> points_of(TomlTable& table, std::string_view key, std::size_t 
   std::vector<Vec2> out;
   const auto given = table.number_rows(key, rows, 2, kAnyNumber, wanted);
   for (const auto& row : given.value_or(std::vector<std::vector<double>>{})) out.emplace_back(row[0], row[1]);
+  return out;
+}
+
+constexpr std::string_view kBoxes = "boxes [x, y, z, x, y, z] of two opposite corners,";
+
+void read_boxes(TomlTable& table, CopyRegion& out) {
+  const auto rows = table.number_rows("boxes_mm", 0, 6, kAnyNumber, kBoxes);
+  if (!rows) return;
+  for (const auto& r : *rows) {
+    out.boxes_mm.push_back({Vec3(r[0], r[1], r[2]), Vec3(r[3], r[4], r[5])});
+    if (!(out.boxes_mm.back()[0].array() < out.boxes_mm.back()[1].array()).all())
+      table.error_at("boxes_mm",
+                     fmt::format("box {} of boxes_mm is empty; the second corner must be greater in X, Y and Z than "
+                                 "the first",
+                                 out.boxes_mm.size()),
+                     "region-empty");
+  }
+  if (out.boxes_mm.empty())
+    table.error_at("boxes_mm", "boxes_mm has no box; one at least was expected", "region-empty");
+  for (const std::string_view other : {"box_mm", "polygon_mm", "z_mm"})
+    if (table.has(other))
+      table.error_at_name(other, fmt::format("the region has boxes_mm and {}; one of them was expected", other),
+                          "region");
+}
+
+/// Levels of the tip in all boxes.
+std::array<double, 2> heights_of(const std::vector<CopyRegion::Box>& boxes) {
+  std::array<double, 2> out{boxes.front()[0].z(), boxes.front()[1].z()};
+  for (const CopyRegion::Box& b : boxes) out = {std::min(out[0], b[0].z()), std::max(out[1], b[1].z())};
   return out;
 }
 
@@ -38,6 +68,7 @@ CopyRegion read_region(TomlTable table) {
     if (out.box_mm)
       table.error_at_name("polygon_mm", "the region has box_mm and polygon_mm; one of them was expected", "region");
   }
+  read_boxes(table, out);
   if (const auto z = table.numbers("z_mm", 2, kAnyNumber, "[lowest, highest], levels of the tip,")) {
     out.z_mm = {(*z)[0], (*z)[1]};
     if ((*z)[0] >= (*z)[1])
@@ -45,8 +76,18 @@ CopyRegion read_region(TomlTable table) {
                      fmt::format("z_mm goes from {:g} to {:g}; [lowest, highest] was expected", (*z)[0], (*z)[1]),
                      "region-empty");
   }
+  if (!out.boxes_mm.empty()) out.z_mm = heights_of(out.boxes_mm);
   table.finish();
   return out;
+}
+
+void check_boxes(TomlTable& table, const CopyOperation& operation) {
+  if (operation.region.boxes_mm.empty()) return;
+  if (operation.mode == CopyMode::drilling || operation.scallop_mm > 0)
+    table.error_at("region",
+                   fmt::format("boxes_mm in {}; they are for loops and rows level by level",
+                               operation.mode == CopyMode::drilling ? "drilling" : "finishing by scallop"),
+                   "copy-mode");
 }
 
 void require_depths(TomlTable& table, const CopyOperation& operation) {
@@ -120,9 +161,6 @@ CopyOperation read_operation(TomlTable table, const Job& job) {
   read_numbers<CopyOperation>(table, kCopyKeys, out);
   out.sense =
       static_cast<MillingSense>(table.choice("sense", kSenseWords, out.mode == CopyMode::scanning_line ? 2 : 0));
-  if (out.sense == MillingSense::both && out.mode == CopyMode::contour_line)
-    table.error_at("sense", "sense = \"both\" is for rows; contour-line needs \"climb\" or \"conventional\"",
-                   "copy-mode");
   out.plunge = table.boolean("plunge", false);
   out.slotting = static_cast<Slotting>(table.choice("slotting", kSlottingWords, 0));
   out.force_N = table.optional_number("force_N", kPositive);
@@ -132,6 +170,7 @@ CopyOperation read_operation(TomlTable table, const Job& job) {
   if (mode) {
     require_depths(table, out);
     check_slotting(table, out);
+    check_boxes(table, out);
     check_tool(table, out, job);
     check_holes(table, out);
   }
@@ -175,7 +214,16 @@ std::string to_toml(const CopyOperation& o) {
   const auto add = [&](const std::string& text) { region += (region.empty() ? "" : ", ") + text; };
   if (o.region.box_mm) add("box_mm = " + points(*o.region.box_mm));
   if (!o.region.polygon_mm.empty()) add("polygon_mm = " + points(o.region.polygon_mm));
-  if (o.region.z_mm)
+  const auto box = [](const CopyRegion::Box& b) {
+    std::string text;
+    for (const Vec3& p : b)
+      for (const double v : p) text += (text.empty() ? "" : ", ") + toml_number(v, kAsIs);
+    return "[" + text + "]";
+  };
+  std::string boxes;
+  for (const CopyRegion::Box& b : o.region.boxes_mm) boxes += (boxes.empty() ? "" : ", ") + box(b);
+  if (!boxes.empty()) add("boxes_mm = [" + boxes + "]");
+  if (o.region.z_mm && boxes.empty())
     add(fmt::format("z_mm = [{}, {}]", toml_number((*o.region.z_mm)[0], kAsIs),
                     toml_number((*o.region.z_mm)[1], kAsIs)));
   if (!region.empty()) out += "region = { " + region + " }\n";

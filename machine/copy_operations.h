@@ -19,7 +19,7 @@ enum class CopyMode {
 enum class MillingSense {
   climb,         ///< down milling
   conventional,  ///< up milling
-  both           ///< rows to and fro
+  both           ///< rows to and fro; loops that end at the region's border too, but along walls climb milling
 };
 
 enum class HoleCycle {
@@ -37,9 +37,11 @@ enum class Slotting {
 
 /// Where the tool's axis may be while it cuts. Not given: over the stock.
 struct CopyRegion {
+  using Box = std::array<Vec3, 2>;              ///< lower and upper corner
   std::optional<std::array<Vec2, 2>> box_mm{};  ///< lower and upper corner
   std::vector<Vec2> polygon_mm{};               ///< empty: not given
-  std::optional<std::array<double, 2>> z_mm{};  ///< lowest and highest level of the tip
+  std::vector<Box> boxes_mm{};                  ///< several, each with the levels of the tip there; empty: not given
+  std::optional<std::array<double, 2>> z_mm{};  ///< lowest and highest level of the tip; of all boxes
 };
 
 struct CopyOperation {

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "plan/joined_runs.h"
+
 namespace camber::plan {
 namespace {
 
@@ -258,7 +260,7 @@ class Planner {
 
   void add_finish(const Step& step, int number, double left_mm3) {
     const Primitive& p = out_.primitives[step.primitive];
-    const bool level = step.feature == Feature::face;
+    const bool level = step.feature == Feature::face && !p.contoured;
     Operation* finish = add(step, OperationKind::finish, number, level ? Pattern::scanning_line : Pattern::contour_line,
                             {true, p.max_mm.z() - p.min_mm.z(), machine::kNoLimit}, {});
     if (finish == nullptr) return;
@@ -471,6 +473,7 @@ PlannedDivision plan_division(const PlanInput& input, const RemovalVolume& remov
   out.primitives = divide(removal, division);
   out.order = put_in_order(removal, out.primitives);
   Planner(input, removal, out).plan();
+  join_operations(input, out);
   out.tool_changes = tool_changes(out.operations);
   out.nominal_time_s = total_time_s(out.operations, input.tool_change_s);
   out.form_error_p95_mm = form_error_p95_mm(out.operations);

@@ -25,11 +25,12 @@ struct Operation {
   Conditions conditions;
   double allowance_mm = 0;
   double scallop_mm = 0;          ///< > 0: rows on a free-form face
+  bool joined = false;            ///< cut in one run with the operation before it (plan/joined_runs.h)
   std::array<Vec2, 2> box_mm{};   ///< where the tool's axis may be: lower and upper corner
   double from_mm = 0, to_mm = 0;  ///< heights of the tip: lowest and highest
   double volume_mm3 = 0;          ///< that it removes
   double nominal_time_s = 0;      ///< volume / removal rate
-  double time_s = 0;              ///< of its program, by the feed model; 0: none was made
+  double time_s = 0;              ///< of its program, by the feed model, of a run with its first; 0: none was made
   double surface_mm2 = 0;         ///< of the part that it finishes
   std::vector<std::string> notes{};
 };

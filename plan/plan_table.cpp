@@ -8,6 +8,7 @@
 #include "base/numbers.h"
 #include "machine/number_key.h"
 #include "machine/toml_table.h"
+#include "plan/joined_runs.h"
 
 namespace camber::plan {
 namespace {
@@ -20,7 +21,8 @@ std::string number(double v, int decimals = 4) { return format_trimmed(v, decima
 
 std::string point(const Vec2& p) { return fmt::format("[{}, {}]", number(p.x()), number(p.y())); }
 
-std::string row_toml(const Operation& o, std::size_t index, const PlanTool& tool) {
+std::string row_toml(const PlannedDivision& plan, std::size_t index, const PlanTool& tool) {
+  const Operation& o = plan.operations[index];
   const Conditions& c = o.conditions;
   std::string out = fmt::format("\n[[operation]]  # {}: {}, {} of {} mm\n", index + 1, to_string(o.feature),
                                 to_string(tool.use), number(tool.tool.diameter_mm));
@@ -30,6 +32,7 @@ std::string row_toml(const Operation& o, std::size_t index, const PlanTool& tool
   out += fmt::format("spindle_rpm = {}\nfeed_mm_per_min = {}\n", number(c.spindle_rpm), number(c.feed_mm_per_min));
   if (o.pattern != Pattern::drilling) out += fmt::format("radial_depth_mm = {}\n", number(c.radial_mm));
   out += fmt::format("axial_depth_mm = {}\n", number(c.axial_mm));
+  if (o.joined) out += fmt::format("joined = true  # cut in one run with {}\n", first_of_run(plan, index) + 1);
   if (o.allowance_mm > 0) out += fmt::format("allowance_mm = {}\n", number(o.allowance_mm));
   if (o.scallop_mm > 0) out += fmt::format("scallop_mm = {}\n", number(o.scallop_mm));
   out += fmt::format("box_mm = [{}, {}]\nz_mm = [{}, {}]\n", point(o.box_mm[0]), point(o.box_mm[1]), number(o.from_mm),
@@ -91,7 +94,30 @@ void read_conditions(TomlTable& row, const PlanInput& input, const PlanTool& too
         "plan-limit");
 }
 
-std::optional<Operation> read_row(TomlTable& row, const PlanInput& input, const PlannedDivision& plan) {
+/// Whether it is cut in one run with the row before.
+void read_joined(TomlTable& row, const std::vector<Operation>& before, Operation& op) {
+  op.joined = row.boolean("joined", false);
+  if (!op.joined) return;
+  constexpr std::string_view kExpected = "; an operation that is cut in one run with the row before was expected";
+  if (before.empty()) {
+    row.error_at("joined", fmt::format("joined = true in the first row{}", kExpected), "plan-joined");
+    return;
+  }
+  if (const std::string why = not_joined_because(before.back(), op); !why.empty())
+    row.error_at("joined", fmt::format("joined = true, but {}{}", why, kExpected), "plan-joined");
+  const Conditions &c = op.conditions, &with = before.back().conditions;
+  constexpr double kSame = 1e-4;  // the table's decimals
+  if (std::abs(c.spindle_rpm - with.spindle_rpm) > kSame ||
+      std::abs(c.feed_mm_per_min - with.feed_mm_per_min) > kSame || std::abs(c.radial_mm - with.radial_mm) > kSame ||
+      std::abs(c.axial_mm - with.axial_mm) > kSame)
+    row.error_at("joined",
+                 "joined = true, but spindle speed, feed or depths are not those of the row before; the same were "
+                 "expected in one run",
+                 "plan-joined");
+}
+
+std::optional<Operation> read_row(TomlTable& row, const PlanInput& input, const PlannedDivision& plan,
+                                  const std::vector<Operation>& before) {
   const double last = static_cast<double>(plan.order.steps.size());
   const auto primitive =
       static_cast<std::size_t>(row.required_number("primitive", {.min = 1, .max = last, .whole = true}));
@@ -125,6 +151,7 @@ std::optional<Operation> read_row(TomlTable& row, const PlanInput& input, const 
   }
   const PlanTool& with = input.tools.at(op.tool);
   read_conditions(row, input, with, op.tool == base->tool && op.kind == base->kind, op);
+  read_joined(row, before, op);
   row.finish();
   op.nominal_time_s = op.tool == base->tool && op.conditions.feed_mm_per_min == base->conditions.feed_mm_per_min &&
                               op.conditions.axial_mm == base->conditions.axial_mm &&
@@ -141,11 +168,11 @@ std::string operations_toml(const PlanInput& input, const SetupPlan& setup, std:
   std::string out = fmt::format(
       "# Operations of {}, {}: edit them and run `camber plan PLAN.toml --operations THIS -o DIR`.\n"
       "# A row names its primitive and kind; every other key may be left out and is decided anew.\n"
+      "# A row with joined = true is cut in one run with the row before it.\n"
       "# {:.1f} s by equation (3), {} tool changes.\n",
       input.path, setup.setup.name, p.nominal_time_s, p.tool_changes);
   out += fmt::format("division = \"{}\"\n", to_string(p.division));
-  for (std::size_t i = 0; i < p.operations.size(); ++i)
-    out += row_toml(p.operations[i], i, input.tools.at(p.operations[i].tool));
+  for (std::size_t i = 0; i < p.operations.size(); ++i) out += row_toml(p, i, input.tools.at(p.operations[i].tool));
   return out;
 }
 
@@ -159,7 +186,7 @@ void read_operations(const std::string& path, const PlanInput& input, SetupPlan&
     PlannedDivision plan = setup.plans[*division];
     std::vector<Operation> rows;
     for (TomlTable& row : top.tables("operation"))
-      if (auto op = read_row(row, input, plan)) rows.push_back(std::move(*op));
+      if (auto op = read_row(row, input, plan, rows)) rows.push_back(std::move(*op));
     plan.operations = std::move(rows);
     plan.tool_changes = tool_changes(plan.operations);
     plan.nominal_time_s = total_time_s(plan.operations, input.tool_change_s);

@@ -68,11 +68,31 @@ machine::CopyOperation copy_operation(const Operation& o) {
   out.allowance_mm = o.allowance_mm;
   out.scallop_mm = o.pattern == Pattern::scanning_line ? o.scallop_mm : 0;
   out.region.box_mm = {rounded(o.box_mm[0]), rounded(o.box_mm[1])};
-  if (o.pattern == Pattern::scanning_line) {
-    out.angle_rad = row_angle_rad(o);
-    out.sense = machine::MillingSense::both;
-  }
+  if (o.pattern == Pattern::scanning_line) out.angle_rad = row_angle_rad(o);
+  out.sense = machine::MillingSense::both;
   return out;
+}
+
+/// Rows run along the longer side of all boxes.
+double row_angle_rad(const machine::CopyRegion& region) {
+  Vec2 lo = region.boxes_mm.front()[0].head<2>(), hi = region.boxes_mm.front()[1].head<2>();
+  for (const auto& b : region.boxes_mm) lo = lo.cwiseMin(b[0].head<2>()), hi = hi.cwiseMax(b[1].head<2>());
+  return hi.x() - lo.x() >= hi.y() - lo.y() ? 0 : kPi / 2;
+}
+
+machine::CopyRegion::Box box_of(const machine::CopyRegion& region) {
+  const auto& [lo, hi] = *region.box_mm;
+  return {Vec3(lo.x(), lo.y(), (*region.z_mm)[0]), Vec3(hi.x(), hi.y(), (*region.z_mm)[1])};
+}
+
+/// One run: the region of `run` becomes that of both.
+void join_to(machine::CopyOperation& run, const machine::CopyOperation& other) {
+  machine::CopyRegion& region = run.region;
+  if (region.boxes_mm.empty()) region.boxes_mm = {box_of(region)};
+  region.box_mm.reset();
+  region.boxes_mm.push_back(box_of(other.region));
+  const auto& [low, high] = *other.region.z_mm;
+  region.z_mm = {std::min((*region.z_mm)[0], low), std::max((*region.z_mm)[1], high)};
 }
 
 bool brings_tool(std::string_view line) {
@@ -180,10 +200,17 @@ void add_warnings(const machine::Job& job, const std::string& name, const std::s
 
 std::vector<machine::CopyOperation> copy_operations(const PlanInput& input, const PlannedDivision& plan) {
   std::vector<machine::CopyOperation> out;
-  for (const Operation& o : plan.operations) {
+  for (std::size_t i = 0; i < plan.operations.size(); ++i) {
+    const Operation& o = plan.operations[i];
+    if (o.joined) {
+      join_to(out.back(), copy_operation(o));
+      continue;
+    }
     out.push_back(copy_operation(o));
-    out.back().place.location = {input.path, out.size(), 0};
+    out.back().place.location = {input.path, i + 1, 0};
   }
+  for (machine::CopyOperation& o : out)
+    if (!o.region.boxes_mm.empty() && o.mode == machine::CopyMode::scanning_line) o.angle_rad = row_angle_rad(o.region);
   return out;
 }
 
@@ -212,7 +239,7 @@ std::string copy_job_toml(const machine::Job& job, const std::vector<machine::Co
 PlanProgram make_program(const PlanInput& input, const machine::Job& job, const PlannedDivision& plan,
                          const std::string& name, Diagnostics& diagnostics) {
   std::vector<machine::CopyOperation> operations = copy_operations(input, plan);
-  const std::size_t count = operations.size();
+  const std::size_t count = plan.operations.size();
   std::optional<SavedStocks> saved;
   if (input.compensate) saved.emplace(plan);
   const copymill::CopyResult copied = copy_what_fits(input, job, operations, saved, diagnostics);

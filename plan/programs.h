@@ -12,13 +12,13 @@ namespace camber::plan {
 
 struct PlanProgram {
   std::string whole;               ///< all operations, with tool changes, spindle and coolant
-  std::vector<std::string> each;   ///< one an operation
-  std::vector<double> times_s;     ///< of each, by the feed model, with its rapids
+  std::vector<std::string> each;   ///< one an operation; a run's is its first operation's, the others have none
+  std::vector<double> times_s;     ///< of each, by the feed model, with its rapids; 0 where there is none
   std::vector<std::string> notes;  ///< of each; mostly empty
   ProgramFigures figures;
 };
 
-/// The operations as [[copy]] tables of a job.
+/// The operations as [[copy]] tables of a job, joined ones as one.
 std::vector<machine::CopyOperation> copy_operations(const PlanInput& input, const PlannedDivision& plan);
 
 /// The job of camber copy: part and blank as they lie on the machine, tools, material. Without `blank_stl` the plan's

@@ -40,6 +40,7 @@ void add_operation(py::module_& module) {
       .def_readonly("kind", &PlannedOperation::kind)
       .def_readonly("tool", &PlannedOperation::tool)
       .def_readonly("mode", &PlannedOperation::mode)
+      .def_readonly("joined", &PlannedOperation::joined)
       .def_readonly("spindle_rpm", &PlannedOperation::spindle_rpm)
       .def_readonly("feed_mm_per_min", &PlannedOperation::feed_mm_per_min)
       .def_readonly("radial_mm", &PlannedOperation::radial_mm)

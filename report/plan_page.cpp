@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/numbers.h"
+#include "plan/joined_runs.h"
 #include "report/page_tables.h"
 #include "report/plan_script.h"
 #include "report/plan_summary.h"
@@ -125,7 +126,7 @@ TextTable operations_table(const plan::PlanInput& input, const SetupPlan& s) {
     const plan::Operation& o = p.operations[i];
     const plan::PlanTool& t = input.tools.at(o.tool);
     const plan::Conditions& c = o.conditions;
-    std::string notes;
+    std::string notes = o.joined ? fmt::format("in one run with operation {}", plan::first_of_run(p, i) + 1) : "";
     for (const std::string& n : o.notes) notes += (notes.empty() ? "" : "; ") + n;
     table.rows.push_back(
         {fmt::format("{}", i + 1), std::string(to_string(o.feature)),

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/numbers.h"
+#include "plan/joined_runs.h"
 #include "report/summary.h"
 
 namespace camber::report {
@@ -43,6 +44,7 @@ ordered_json operation_json(const Operation& o) {
                  {"deflection_um", 1000 * c.loads.deflection_mm},
                  {"form_error_um", 1000 * c.loads.form_error_mm},
                  {"power_W", c.loads.power_W}};
+  if (o.joined) j["joined"] = true;
   if (o.time_s > 0) j["time_s"] = o.time_s;
   j["notes"] = o.notes;
   return j;
@@ -103,7 +105,8 @@ std::string operations_text(const plan::PlanInput& input, const PlannedDivision&
         fmt::format("{:>2} {:<14}{:<8}{:<18}{:>7.0f}{:>7.0f}{:>6}{:>6}{:>8.1f}  {}\n", i + 1, to_string(o.feature),
                     word(o.kind), fmt::format("{} {}", to_string(t.use), format_trimmed(t.tool.diameter_mm, 2)),
                     o.conditions.spindle_rpm, o.conditions.feed_mm_per_min, format_trimmed(o.conditions.radial_mm, 2),
-                    format_trimmed(o.conditions.axial_mm, 2), o.nominal_time_s, o.conditions.limit);
+                    format_trimmed(o.conditions.axial_mm, 2), o.nominal_time_s,
+                    o.conditions.limit + (o.joined ? fmt::format("; with {}", plan::first_of_run(p, i) + 1) : ""));
   }
   return out;
 }

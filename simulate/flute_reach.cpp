@@ -11,6 +11,7 @@
 #include "base/stage.h"
 #include "removal/cutter.h"
 #include "removal/engagement.h"
+#include "simulate/material_distance.h"
 #include "simulate/swept_stock.h"
 #include "simulate/tool_outline.h"
 
@@ -24,36 +25,53 @@ double radius_at(const machine::Tool& tool, double height_mm) {
   return shape.profile.at(shape.profile.length_to_height_mm(height_mm)).radius_mm;
 }
 
-/// One tool's cylinder above its flutes against the stock.
+/// Where a tool's flutes end.
+struct FluteEnd {
+  explicit FluteEnd(const machine::Tool& tool)
+      : height_mm(cutter_end_mm(tool)), radius_mm(radius_at(tool, height_mm)) {}
+
+  double height_mm, radius_mm;
+
+  /// Whether they end below the stock's top here, beside or in the stock.
+  bool near(const Vec3& tip, const removal::Stock& stock) const {
+    const Vec3 &lo = stock.min_mm(), &hi = stock.max_mm();
+    const bool beside = (tip.head<2>().array() + radius_mm <= lo.head<2>().array()).any() ||
+                        (tip.head<2>().array() - radius_mm >= hi.head<2>().array()).any();
+    return !beside && tip.z() + height_mm + stock.voxel_mm() < hi.z();
+  }
+};
+
+/// One tool's cylinder above its flutes against a stock. `distance`: of the stock or of one that had more.
 class UpperCylinder {
  public:
-  UpperCylinder(const machine::Tool& tool, const removal::Stock& stock)
-      : stock_(stock), end_mm_(cutter_end_mm(tool)), radius_mm_(radius_at(tool, end_mm_)) {}
+  UpperCylinder(const machine::Tool& tool, const removal::Stock& stock, const MaterialDistance& distance)
+      : stock_(stock), distance_(distance), flutes_(tool) {}
 
-  /// Whether the flutes end below the stock's top here, beside or in the stock.
-  bool near(const Vec3& tip) const {
-    const Vec3 &lo = stock_.min_mm(), &hi = stock_.max_mm();
-    const bool beside = (tip.head<2>().array() + radius_mm_ <= lo.head<2>().array()).any() ||
-                        (tip.head<2>().array() - radius_mm_ >= hi.head<2>().array()).any();
-    return !beside && tip.z() + end_mm_ + stock_.voxel_mm() < hi.z();
-  }
+  bool near(const Vec3& tip) const { return flutes_.near(tip, stock_); }
 
   /// Height above the tip at which the cylinder meets material.
   std::optional<double> meets(const removal::Stock::Probe& probe, const Vec3& tip) const {
-    const double voxel = stock_.voxel_mm();
-    const int n = std::max(12, static_cast<int>(std::ceil(2 * kPi * radius_mm_ / kStep_mm)));
-    for (double height = end_mm_ + voxel; tip.z() + height < stock_.max_mm().z(); height += kStep_mm)
+    const double voxel = stock_.voxel_mm(), radius = flutes_.radius_mm, lowest = flutes_.height_mm + voxel;
+    const int n = std::max(12, static_cast<int>(std::ceil(2 * kPi * radius / kStep_mm)));
+    const int count = static_cast<int>(std::ceil((stock_.max_mm().z() - tip.z() - lowest) / kStep_mm));
+    for (int ring = 0; ring < count;) {
+      const double height = lowest + ring * kStep_mm;
+      const double clear_mm = distance_.at_least_mm(tip + Vec3(0, 0, height)) - radius;
+      ring += std::max(1, static_cast<int>(clear_mm / kStep_mm));
+      if (clear_mm > 0) continue;
       for (int i = 0; i < n; ++i) {
         const double phi = 2 * kPi * i / n;
-        const Vec3 p = tip + Vec3(radius_mm_ * std::cos(phi), radius_mm_ * std::sin(phi), height);
+        const Vec3 p = tip + Vec3(radius * std::cos(phi), radius * std::sin(phi), height);
         if (probe.distance_mm(p) < -voxel) return height;
       }
+    }
     return std::nullopt;
   }
 
  private:
   const removal::Stock& stock_;
-  double end_mm_, radius_mm_;
+  const MaterialDistance& distance_;
+  FluteEnd flutes_;
 };
 
 constexpr std::size_t kMaxLines = 10;
@@ -89,54 +107,88 @@ class UprightSearch {
  public:
   UprightSearch(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                 Diagnostics& diagnostics)
-      : job_(job), program_(program), stock_(blank), report_(job, program, diagnostics) {}
+      : job_(job), program_(program), blank_(blank), distance_(blank), report_(job, program, diagnostics) {}
 
-  void run(std::size_t last_needed) {
+  /// Material goes only: what the cylinder does not meet in the blank it never meets.
+  void run() {
+    const std::size_t last_needed = last_in_blank();
+    if (last_needed == 0) return;
+    removal::Stock stock(blank_);
     Stage stage("checking the flutes' reach", last_needed);
+    for_stretches(last_needed, [&](const removal::ToolRun& run, std::size_t from, std::size_t to) {
+      if (run.kind == removal::RunKind::milling) look_at(stock, run.tool, from, to);
+      removal::sweep(stock, removal::shape_of(job_.tools.at(run.tool)),
+                     std::span(program_.path.stamps).subspan(from, to - from),
+                     {.first_id = static_cast<std::int32_t>(from), .stage = &stage});
+    });
+  }
+
+ private:
+  /// Stretches in which a cutter does not come down on what it has left.
+  void for_stretches(std::size_t end, const auto& visit) {
     for (const auto& run : program_.path.runs) {
-      const std::size_t end = std::min(run.from + run.count, last_needed);
-      for (std::size_t at = run.from; at < end && !report_.full();) {
+      const std::size_t run_end = std::min(run.from + run.count, end);
+      for (std::size_t at = run.from; at < run_end && !report_.full();) {
         const std::size_t to = level_stretch_end(job_.tools.at(run.tool), program_.path, run, at);
-        if (run.kind == removal::RunKind::milling) look_at(run.tool, at, to);
-        removal::sweep(stock_, removal::shape_of(job_.tools.at(run.tool)),
-                       std::span(program_.path.stamps).subspan(at, to - at),
-                       {.first_id = static_cast<std::int32_t>(at), .stage = &stage});
+        visit(run, at, to);
         at = to;
       }
     }
   }
 
- private:
-  void look_at(int tool, std::size_t from, std::size_t to) {
-    const UpperCylinder cylinder(job_.tools.at(tool), stock_);
-    const removal::Stock::Probe probe(stock_);
+  /// Stamps of a stretch kStep_mm apart whose flutes end below the stock's top; `visit` returns false to end.
+  void for_places(const UpperCylinder& cylinder, std::size_t from, std::size_t to, const auto& visit) const {
     Vec3 last = Vec3::Constant(1e9);
-    for (std::size_t k = from; k < to && !report_.full(); ++k) {
-      const removal::Stamp& s = program_.path.stamps[k];
-      if ((s.pose.tip_mm - last).norm() < kStep_mm || !cylinder.near(s.pose.tip_mm)) continue;
-      last = s.pose.tip_mm;
-      const std::uint32_t block = program_.moves.moves[s.move].block;
-      if (report_.has(block)) continue;
-      if (const auto height = cylinder.meets(probe, s.pose.tip_mm)) report_.add(tool, block, *height);
+    for (std::size_t k = from; k < to; ++k) {
+      const Vec3& tip = program_.path.stamps[k].pose.tip_mm;
+      if ((tip - last).norm() < kStep_mm || !cylinder.near(tip)) continue;
+      last = tip;
+      if (!visit(k, tip)) return;
     }
+  }
+
+  /// One past the last stamp at which a cylinder meets the blank; 0: none does.
+  std::size_t last_in_blank() {
+    std::size_t out = 0;
+    const removal::Stock::Probe probe(blank_);
+    for_stretches(program_.path.stamps.size(), [&](const removal::ToolRun& run, std::size_t from, std::size_t to) {
+      if (run.kind != removal::RunKind::milling) return;
+      const UpperCylinder cylinder(job_.tools.at(run.tool), blank_, distance_);
+      for_places(cylinder, from, to, [&](std::size_t k, const Vec3& tip) {
+        if (cylinder.meets(probe, tip)) out = k + 1;
+        return true;
+      });
+    });
+    return out;
+  }
+
+  void look_at(const removal::Stock& stock, int tool, std::size_t from, std::size_t to) {
+    const UpperCylinder cylinder(job_.tools.at(tool), stock, distance_);
+    const removal::Stock::Probe probe(stock);
+    for_places(cylinder, from, to, [&](std::size_t k, const Vec3& tip) {
+      const std::uint32_t block = program_.moves.moves[program_.path.stamps[k].move].block;
+      if (report_.has(block)) return true;
+      if (const auto height = cylinder.meets(probe, tip)) report_.add(tool, block, *height);
+      return !report_.full();
+    });
   }
 
   const machine::Job& job_;
   const SimulatedProgram& program_;
-  removal::Stock stock_;
+  const removal::Stock& blank_;
+  MaterialDistance distance_;
   Report report_;
 };
 
-/// One past the last stamp at which flutes end below the stock's top; 0: none.
-std::size_t last_needed(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank) {
-  std::size_t last = 0;
+/// Whether flutes end below the stock's top anywhere.
+bool any_near(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank) {
   for (const auto& run : program.path.runs) {
     if (run.kind != removal::RunKind::milling) continue;
-    const UpperCylinder cylinder(job.tools.at(run.tool), blank);
-    for (std::size_t k = run.from; k < run.from + run.count; ++k)
-      if (cylinder.near(program.path.stamps[k].pose.tip_mm)) last = k + 1;
+    const FluteEnd flutes(job.tools.at(run.tool));
+    for (const removal::Stamp& s : std::span(program.path.stamps).subspan(run.from, run.count))
+      if (flutes.near(s.pose.tip_mm, blank)) return true;
   }
-  return last;
+  return false;
 }
 
 /// The cylinder above the flutes, through the whole stock.
@@ -210,8 +262,8 @@ void check_flute_reach(const machine::Job& job, const SimulatedProgram& program,
                        Diagnostics& diagnostics) {
   if (!removal::all_upright(program.path.stamps))
     TiltedSearch(job, program, blank, diagnostics);
-  else if (const std::size_t last = last_needed(job, program, blank); last > 0)
-    UprightSearch(job, program, blank, diagnostics).run(last);
+  else if (any_near(job, program, blank))
+    UprightSearch(job, program, blank, diagnostics).run();
 }
 
 }  // namespace camber::simulate

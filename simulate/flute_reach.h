@@ -9,7 +9,8 @@ namespace camber::simulate {
 
 /// Errors [cut-above-flutes] and [cut-above-overhang] at the blocks in which the cutter's cylinder meets material, by
 /// more than a voxel, above the flutes' end (flute_length_mm; without it overhang_mm). The undeflected cutter is swept
-/// through a copy of the blank; where no tip comes so low that its flutes end below the stock's top, nothing is.
+/// through a copy of the blank, up to the last place at which what is above the flutes meets the whole blank; where it
+/// meets it nowhere, nothing is swept.
 void check_flute_reach(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                        Diagnostics& diagnostics);
 

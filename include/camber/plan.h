@@ -22,10 +22,11 @@ struct PlannedOperation {
   std::string feature{};      ///< "closed pocket"
   std::string kind{};         ///< "rough", "rest", "finish", "centre", "drill", "ream"
   int tool = 0;
-  std::string mode{};  ///< "scanning-line", "contour-line", "drilling"
+  std::string mode{};   ///< "scanning-line", "contour-line", "drilling"
+  bool joined = false;  ///< cut in one run with the operation before it
   double spindle_rpm = 0, feed_mm_per_min = 0, radial_mm = 0, axial_mm = 0;
   double nominal_time_s = 0;  ///< volume over removal rate
-  double time_s = 0;          ///< of its program; 0: none was made
+  double time_s = 0;          ///< of its program, of a run with its first operation; 0: none was made
   std::string limit{};        ///< what bounds the conditions; "cases": nothing but them
   double force_N = 0, form_error_um = 0, power_W = 0;
   std::vector<std::string> notes{};

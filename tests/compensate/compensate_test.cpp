@@ -21,11 +21,11 @@ namespace camber::compensate {
 namespace {
 
 /// Rows along X on the plane z = y (45 degrees), cut by a ball of R3; the tip stands R (1 - sqrt(1/2)) beside it.
-std::string plane_program() {
+std::string plane_program(double deeper_mm = 0) {
   std::string out = "%\nO0007 (PLANE)\nG21 G90 G17 G40 G49 G80\nT1 M6 (6. BALL)\nG54 S3000 M3\nG0 X8. Y-4. Z12.\n";
   int number = 10;
   for (double s = -1.8; s < 5; s += 0.3) {
-    const double c = std::sqrt(0.5), y = s * c - 3 * c, z = s * c + 3 * c - 3;
+    const double c = std::sqrt(0.5), y = s * c - 3 * c, z = s * c + 3 * c - 3 - deeper_mm;
     out += fmt::format("N{} G0 X8. Y{:.4f}\nZ{:.4f}\nG1 X4.25 F900\nX0.5\nX-3.\nG0 Z12. (ROW)\n", number, y, z);
     number += 10;
   }
@@ -239,7 +239,7 @@ TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates_slow) {
   EXPECT_GT(c.max_shift_mm, 0.005);
   EXPECT_LT(c.max_shift_mm, 0.05);
   EXPECT_EQ(c.rounds.size(), 3u);
-  EXPECT_EQ(c.stop, Stop::rounds);
+  EXPECT_EQ(c.stop, Stop::stalled) << "a third round is not expected to lower the rms by a twentieth";
 
   EXPECT_GT(c.split_before.correctable_um, 8);
   EXPECT_LT(c.split_after.correctable_um, 0.15 * c.split_before.correctable_um);  // in two rounds
@@ -275,6 +275,7 @@ TEST(Compensate, MakesNoNewCornersWhereTheControlStopsAtEveryOne_slow) {
   EXPECT_EQ(c.blocks_after, c.blocks_before);
   EXPECT_EQ(c.quality.shortest_mm, 0);
   EXPECT_LT(c.split_after.correctable_um, 0.3 * c.split_before.correctable_um);
+  EXPECT_EQ(c.stop, Stop::rounds);
 }
 
 TEST(Compensate, GivesTheSameProgramTwice_slow) {
@@ -311,11 +312,27 @@ TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth_slow) {
   job.compensation.max_overcut_um = 0.5 * free.depth_after.gouge_depth_p999_um;
   const CompensationResult guarded = compensate(job, diagnostics, {});
   EXPECT_TRUE(guarded.rounds.back().guard);
+  EXPECT_EQ(guarded.rounds.size(), free.rounds.size() + 1) << "one round, since its lifts are weighed beforehand";
   EXPECT_LT(guarded.depth_after.gouge_depth_p999_um, 0.9 * free.depth_after.gouge_depth_p999_um);
   EXPECT_EQ(guarded.within_part, guarded.depth_after.gouge_depth_p999_um <= job.compensation.max_overcut_um);
   double deepest = 0;
   for (const auto& p : guarded.surface_after) deepest = std::max(deepest, -1000 * p.error_mm);
   EXPECT_NEAR(std::max(guarded.depth_after.deepest_um, guarded.depth_others.deepest_um), deepest, 1e-9);
+}
+
+TEST(Compensate, TheGuardMakesNoRoundWhereNoShiftCanLiftThePathEnough_slow) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  job.part.program = job.program;
+  job.program = folder.write("deeper.nc", plane_program(0.06));
+  job.compensation.max_shift_mm = 0.004;
+  job.compensation.max_overcut_um = 5;
+  Diagnostics diagnostics;
+  const CompensationResult bound = compensate(job, diagnostics, {});
+  EXPECT_FALSE(bound.within_part);
+  EXPECT_GT(bound.depth_after.gouge_depth_p999_um, 10) << "not even with the largest shift";
+  EXPECT_EQ(bound.rounds.size(), 2u) << "the first one has shifted as far as it may";
+  for (const Round& r : bound.rounds) EXPECT_FALSE(r.guard);
 }
 
 TEST(Compensate, NothingIsEmittedWhereNoRoundIsBetter_slow) {

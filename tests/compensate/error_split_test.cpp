@@ -109,7 +109,7 @@ TEST(ErrorSplit, TheGuardGetsWhatIsLeftBeyondTheBestWithoutIt) {
   EXPECT_NEAR(lower.guard_um, 0, 1e-12);
 }
 
-/// The surface after rounds of the guard: it follows the shift, which is fitted to the error less the lift.
+/// The surface after rounds of the guard: it follows the shift, to which each round adds its lifts.
 Observed guarded(Wall& wall, double limit_mm, double reach_mm) {
   Guard guard(wall.path, limit_mm, reach_mm);
   Observed now = wall.observed;
@@ -119,10 +119,11 @@ Observed guarded(Wall& wall, double limit_mm, double reach_mm) {
     return out;
   };
   for (int round = 0; round < 6 && deepest() > limit_mm; ++round) {
+    guard.clear();
     guard.learn(now, deepest());
     std::vector<Observation> wanted = now.of_path();
     guard.apply_to(wanted);
-    fit_shift(wall.path, wanted, {});
+    fit_lifts(wall.path, wanted, {});
     for (std::size_t i = 0; i < now.points.size(); ++i)
       now.points[i].error_mm =
           wall.observed.points[i].error_mm + now.points[i].normal.dot(wall.path.shift_at(now.points[i].place));

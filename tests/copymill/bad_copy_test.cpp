@@ -75,6 +75,36 @@ TEST(BadCopy, SlottingWhereThereAreNoSlots) {
             "[value-choice]\n    slotting = \"never\"\n               ^\n");
 }
 
+TEST(BadCopy, BoxesThatAreNoRegion) {
+  const auto region = [](const std::string& keys) {
+    return said({.operations = operation("radial_depth_mm = 4\naxial_depth_mm = 4\nregion = { " + keys + " }\n")});
+  };
+  const auto shown = [](const std::string& keys, std::size_t column) {
+    return "    region = { " + keys + " }\n    " + std::string(column - 1, ' ') + "^\n";
+  };
+  const std::string empty = "boxes_mm = [[0, 0, -5, 9, 9, -5]]", none = "boxes_mm = []",
+                    two = "boxes_mm = [[0, 0, -5, 9, 9, 0]], z_mm = [-5, 0]", five = "boxes_mm = [[0, 0, -5, 9, 9]]";
+  EXPECT_EQ(region(empty),
+            "job.toml:35:23: error: box 1 of boxes_mm is empty; the second corner must be greater in X, Y and Z than "
+            "the first [region-empty]\n" +
+                shown(empty, 23));
+  EXPECT_EQ(region(none),
+            "job.toml:35:23: error: boxes_mm has no box; one at least was expected [region-empty]\n" + shown(none, 23));
+  EXPECT_EQ(
+      region(two),
+      "job.toml:35:46: error: the region has boxes_mm and z_mm; one of them was expected [region]\n" + shown(two, 46));
+  EXPECT_EQ(region(five),
+            "job.toml:35:23: error: boxes_mm: boxes [x, y, z, x, y, z] of two opposite corners, was "
+            "expected [value-count]\n" +
+                shown(five, 23));
+  EXPECT_EQ(
+      said({.operations = "[[copy]]\ntool = 3\nmode = \"drilling\"\nspindle_rpm = 4000\nfeed_mm_per_min = 400\n"
+                          "axial_depth_mm = 3\nholes_mm = [[10, 10]]\nregion = { boxes_mm = [[0, 0, -5, 9, 9, 0]] "
+                          "}\n"}),
+      "job.toml:35:10: error: boxes_mm in drilling; they are for loops and rows level by level [copy-mode]\n    "
+      "region = { boxes_mm = [[0, 0, -5, 9, 9, 0]] }\n             ^\n");
+}
+
 TEST(BadCopy, SlottingIsWrittenAsItIsRead) {
   const TempFolder folder;
   for (const std::string word : {"full-width", "trochoidal"}) {
