@@ -43,6 +43,7 @@ BoxLevels box_levels(double top_mm, double bottom_mm, std::vector<double> floors
                      double allowance_mm) {
   for (const auto& b : region.boxes_mm()) floors_mm.push_back(b[0].z());
   std::vector<double> all;
+  all.reserve(floors_mm.size() + region.boxes_mm().size());
   for (const double f : floors_mm) all.push_back(f + allowance_mm);
   if (allowance_mm > 0)
     for (const auto& b : region.boxes_mm()) all.push_back(b[0].z());
