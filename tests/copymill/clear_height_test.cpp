@@ -40,7 +40,8 @@ TEST(ClearHeight, StaysUpOverAFinThatNoMiddleOfACellIsIn) {
   Standing standing(stock, 0.3, 0);
   // The fin: Y 10.0 to 10.02. Middles of Standing's cells are at 9.75, 10.05 and so on, those of these at 9.9 and 10.5.
   for (const double y : {4.0, 16.02})
-    for (double x = -8; x <= 48; x += 0.25) {
+    for (int i = 0; i <= 224; ++i) {
+      const double x = -8 + 0.25 * i;
       clear.lower(flat, {x, y, 3});
       standing.cut(flat, {x - 0.25, y, 3}, {x, y, 3});
     }
