@@ -246,15 +246,7 @@ std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations
   for (const Chain& c : path.chains()) add_plunges(s, path, c);
   const std::vector<Vec3> shifts = solve(s, path, options.links, between);
   path.set_shifts(shifts);
-  std::size_t limited = 0;
-  for (auto& p : points) {
-    const double shift = p.shift_mm.norm();
-    if (shift <= options.max_shift_mm) continue;
-    p.shift_mm *= options.max_shift_mm / shift;
-    ++limited;
-  }
-  path.keep_plunges();
-  return limited;
+  return path.cut_to(options.max_shift_mm);
 }
 
 }  // namespace camber::compensate

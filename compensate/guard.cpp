@@ -88,16 +88,8 @@ std::size_t fit_lifts(ShiftPath& path, std::span<const Observation> lifts, const
   FitShiftOptions unbound = options;
   unbound.max_shift_mm = std::numeric_limits<double>::infinity();
   fit_shift(path, lifts, unbound);
-  std::size_t cut = 0;
-  for (std::size_t p = 0; p < before.size(); ++p) {
-    Vec3& shift = path.points()[p].shift_mm;
-    shift += before[p];
-    if (const double length = shift.norm(); length > options.max_shift_mm) {
-      shift *= options.max_shift_mm / length;
-      ++cut;
-    }
-  }
-  return cut;
+  for (std::size_t p = 0; p < before.size(); ++p) path.points()[p].shift_mm += before[p];
+  return path.cut_to(options.max_shift_mm);
 }
 
 }  // namespace camber::compensate

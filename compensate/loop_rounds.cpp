@@ -108,18 +108,17 @@ bool Loop::ask_for_lifts(Guard& guard, double deepest_um) {
   now_->sensitivity->apply_to(gains);
   Observed expected = observed;
   double expected_um = deepest_um;
+  now_->path->set_shifts(last_->shifts);
+  ShiftPath path = *now_->path;
+  ThinPath thin(path, now_->splits->kept());
+  const std::vector<RowLink> links = row_links(thin.path(), kRowReach_mm);
+  const std::vector<double> stiffness = thin.greatest_of(now_->stiffness);
   guard.clear();
   for (int i = 0; i < kLiftings && expected_um > depth_limit_um_; ++i) {
     guard.learn(expected, expected_um / 1000);
-    ShiftPath path = *now_->path;
-    path.set_shifts(last_->shifts);
-    ThinPath thin(path, now_->splits->kept());
-    const std::vector<RowLink> links = row_links(thin.path(), kRowReach_mm);
-    const std::vector<double> stiffness = thin.greatest_of(now_->stiffness);
-    thin.take_shifts(path);
+    thin.take_shifts(*now_->path);
     fit_lifts(thin.path(), thin.places_of(wanted_of(observed, &guard)), fit_options(stiffness, links, {}));
     thin.give_shifts(path);
-    now_->path->set_shifts(last_->shifts);
     for (std::size_t p = 0; p < gains.size(); ++p) {
       const Observation& o = gains[p];
       if (!observed.compensated[p] || !o.own) continue;

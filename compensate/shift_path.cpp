@@ -371,4 +371,16 @@ double ShiftPath::largest_shift_mm() const {
   return largest;
 }
 
+std::size_t ShiftPath::cut_to(double max_shift_mm) {
+  std::size_t limited = 0;
+  for (auto& p : points_) {
+    const double shift = p.shift_mm.norm();
+    if (shift <= max_shift_mm) continue;
+    p.shift_mm *= max_shift_mm / shift;
+    ++limited;
+  }
+  keep_plunges();
+  return limited;
+}
+
 }  // namespace camber::compensate

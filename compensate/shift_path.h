@@ -72,6 +72,8 @@ class ShiftPath {
   /// The path of the kept points alone; ends_of_moves() must be among them.
   ShiftPath thinned(const std::vector<bool>& kept) const;
   double largest_shift_mm() const;
+  /// Cuts longer shifts to `max_shift_mm`; plunges stay plunges. Returns at how many points.
+  std::size_t cut_to(double max_shift_mm);
 
  private:
   nc::MoveEdit edit_of(std::size_t first_point, std::size_t last_point, const std::vector<bool>& kept,
