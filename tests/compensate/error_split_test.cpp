@@ -164,6 +164,13 @@ TEST(Guard, LiftsWithoutSpikes) {
   EXPECT_NEAR(points[10].shift_mm.norm(), 0, 1e-4) << "ten millimetres away";
 }
 
+TEST(Guard, LeavesTheRestOfThePathAsItIs) {
+  Wall wall;  // one place is too deep, the rest has excess material, which is not the guard's business
+  wall.add([](double x, double) { return std::abs(x - 20.5) < 0.5 ? -0.010 : 0.004; });
+  EXPECT_GE(min_depth_mm(guarded(wall, 0.003, 2)), -0.003);
+  EXPECT_NEAR(wall.path.points()[10].shift_mm.norm(), 0, 1e-4) << "ten millimetres away";
+}
+
 TEST(DepthLimit, LeavesRoomForWhatNoShiftTakesAway) {
   Wall bow, even;
   bow.add([](double, double height) { return 0.010 + 0.010 * (height - 0.5); });
