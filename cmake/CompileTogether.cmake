@@ -1,5 +1,6 @@
-# Builds of everything at once (CAMBER_UNITY) compile the files of a folder in groups, and read the headers that nearly
-# every file includes once. Other builds compile each file alone, so that a change costs one file.
+# The files of a folder are compiled in groups (CAMBER_UNITY), and headers that nearly every file includes are read once.
+# Files that somebody works on are compiled alone, so that a change costs one file: scripts/build writes their names to
+# alone.txt in the build folder.
 if(CAMBER_UNITY)
   find_package(Python3 COMPONENTS Interpreter)
 endif()
@@ -33,18 +34,28 @@ function(camber_compile_together target)
   get_target_property(files ${target} SOURCES)
   list(FILTER files INCLUDE REGEX "\\.cpp$")
   list(FILTER files EXCLUDE REGEX "/simd/")
-  foreach(file IN LISTS CAMBER_COMPILED_ALONE)
+  set(alone ${CAMBER_COMPILED_ALONE})
+  set(changed ${PROJECT_BINARY_DIR}/alone.txt)
+  if(EXISTS ${changed})
+    file(STRINGS ${changed} more)
+    list(APPEND alone ${more})
+  endif()
+  foreach(file IN LISTS alone)
     list(REMOVE_ITEM files ${PROJECT_SOURCE_DIR}/${file})
     set_source_files_properties(${PROJECT_SOURCE_DIR}/${file} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endforeach()
-  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/unity_groups.py 1800 ${files}
+  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/unity_groups.py 1800
+      ${PROJECT_BINARY_DIR}/unity_groups/${target}.txt ${files}
     OUTPUT_VARIABLE groups OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   string(REPLACE ";" "," groups "${groups}")
   string(REPLACE "\n" ";" groups "${groups}")
   set(number 0)
   foreach(group IN LISTS groups)
-    string(REPLACE "," ";" group "${group}")
     math(EXPR number "${number} + 1")
+    if(group STREQUAL "-")
+      continue()
+    endif()
+    string(REPLACE "," ";" group "${group}")
     set_source_files_properties(${group} PROPERTIES UNITY_GROUP ${number})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)

@@ -1,14 +1,20 @@
-"""cmake/unity_groups.py LINES FILE...: which files a build may compile together.
+"""cmake/unity_groups.py LINES FORMER FILE...: which files a build may compile together.
 
-Prints a line for each group: its files, separated by semicolons. No group has more than LINES lines (a longer file is
+Prints a line for each group: its files, separated by semicolons ("-": a group that has lost its files, which keeps its
+number). No group has more than LINES lines (a longer file is
 alone), and no name that a file defines for itself stands twice in a group: such names are looked for at the start of
 a line, where the code's style puts them.
+
+FORMER holds what was printed for this build folder before, or does not exist: files stay in their group, so that a new
+file or name does not compile others again. What is printed is written there.
 """
+import os
 import re
 import sys
 
 DEFINED = re.compile(r"^(?:template\s*<[^>]*>\s*)?[A-Za-z_][\w:<>,&*\s\[\]]*?[\s&*>](?P<name>[A-Za-z_]\w*)\s*[(={;\[]")
 NOT_DEFINITIONS = re.compile(r"^(?:TEST|INSTANTIATE|RC_GTEST|namespace\b|extern\b|return\b|using (?!\w+ =))")
+GROWTH = 1.3  # a group that was full before may grow by so much
 
 
 def local_names(text):
@@ -24,23 +30,52 @@ def local_names(text):
     return found
 
 
-def main():
-    limit, groups = int(sys.argv[1]), []
-    for path in sys.argv[2:]:
+class Group:
+    def __init__(self):
+        self.files, self.names, self.lines = [], set(), 0
+
+    def takes(self, file, limit):
+        return self.lines + file.lines <= limit and not self.names & file.names
+
+    def add(self, file):
+        self.files.append(file.path)
+        self.names |= file.names
+        self.lines += file.lines
+
+
+class File:
+    def __init__(self, path):
         with open(path, encoding="utf8") as file:
             text = file.read()
-        lines, names = text.count("\n"), local_names(text)
-        for group in groups:
-            if group["lines"] + lines <= limit and not group["names"] & names:
-                break
-        else:
-            group = {"files": [], "names": set(), "lines": 0}
+        self.path, self.lines, self.names = path, text.count("\n"), local_names(text)
+
+
+def former_groups(path):
+    if not os.path.exists(path):
+        return []
+    with open(path, encoding="utf8") as file:
+        return [line.split(";") for line in file.read().splitlines()]
+
+
+def main():
+    limit, record, paths = int(sys.argv[1]), sys.argv[2], sys.argv[3:]
+    files, groups = {path: File(path) for path in paths}, []
+    for former in former_groups(record):
+        groups.append(Group())
+        for path in former:
+            if path in files and (not groups[-1].files or groups[-1].takes(files[path], GROWTH * limit)):
+                groups[-1].add(files.pop(path))
+    for file in files.values():
+        group = next((g for g in groups if g.takes(file, limit)), None)
+        if group is None:
+            group = Group()
             groups.append(group)
-        group["files"].append(path)
-        group["names"] |= names
-        group["lines"] += lines
-    for group in groups:
-        print(";".join(group["files"]))
+        group.add(file)
+    text = "\n".join(";".join(group.files) or "-" for group in groups)
+    os.makedirs(os.path.dirname(record), exist_ok=True)
+    with open(record, "w", encoding="utf8") as out:
+        out.write(text + "\n")
+    print(text)
 
 
 main()
