@@ -37,7 +37,7 @@ ordered_json range_json(const nc::Range& r) {
 }
 
 ordered_json tool_json(const nc::ToolUse& t) {
-  return {{"tool", t.tool},
+  ordered_json out = {{"tool", t.tool},
           {"line", t.line},
           {"calls", t.calls},
           {"cutting_moves", t.cutting_moves},
@@ -46,6 +46,8 @@ ordered_json tool_json(const nc::ToolUse& t) {
           {"feed_mm_per_min", range_json(t.feed_mm_per_min)},
           {"spindle_speed_rpm", range_json(t.spindle_speed_rpm)},
           {"cutting_extents_mm", extents_json(t.cutting)}};
+  if (!t.feed_deg_per_min.empty()) out["feed_deg_per_min"] = range_json(t.feed_deg_per_min);
+  return out;
 }
 
 ordered_json diagnostic_json(const Diagnostic& d) {
