@@ -18,7 +18,8 @@ if(CAMBER_UNITY AND Python3_FOUND)
     add_library(camber_plain_test_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
     target_link_libraries(camber_plain_test_headers PRIVATE camber_options fmt::fmt GTest::gtest)
     target_compile_options(camber_plain_test_headers PRIVATE -fPIC -O0)
-    target_precompile_headers(camber_plain_test_headers PRIVATE ${headers} <gtest/gtest.h>)
+    target_precompile_headers(camber_plain_test_headers PRIVATE ${headers} <gtest/gtest.h>
+      <nlohmann/json.hpp>)
   endif()
 endif()
 

@@ -14,6 +14,8 @@ import sys
 
 DEFINED = re.compile(r"^(?:template\s*<[^>]*>\s*)?[A-Za-z_][\w:<>,&*\s\[\]]*?[\s&*>](?P<name>[A-Za-z_]\w*)\s*[(={;\[]")
 NOT_DEFINITIONS = re.compile(r"^(?:TEST|INSTANTIATE|RC_GTEST|namespace\b|extern\b|return\b|using (?!\w+ =))")
+# Headers that take the compiler seconds: what includes them is compiled together.
+HEAVY = ("CLI/", "ceres/", "openvdb/", "nlohmann/", "toml++/", "tbb/")
 GROWTH = 1.3  # a group that was full before may grow by so much
 
 
@@ -48,6 +50,7 @@ class File:
         with open(path, encoding="utf8") as file:
             text = file.read()
         self.path, self.lines, self.names = path, text.count("\n"), local_names(text)
+        self.light = tuple(f"#include <{header}" not in text for header in HEAVY)
 
 
 def former_groups(path):
@@ -65,7 +68,7 @@ def main():
         for path in former:
             if path in files and (not groups[-1].files or groups[-1].takes(files[path], GROWTH * limit)):
                 groups[-1].add(files.pop(path))
-    for file in files.values():
+    for file in sorted(files.values(), key=lambda f: f.light):
         group = next((g for g in groups if g.takes(file, limit)), None)
         if group is None:
             group = Group()
