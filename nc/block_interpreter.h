@@ -235,7 +235,8 @@ class BlockInterpreter {
   void read_spiral_words(ArcWords& arc);
   void read_spiral_turns(ArcWords& arc);
   void position_in_one_direction();
-  void prepare_cutting(char const* what);
+  void prepare_cutting(char const* what, bool arc = false);
+  void motion_point(const Vec3& end_mm, const char* g);
   std::optional<double> cutting_feed(double length_mm, char const* g);
   std::optional<double> per_revolution_feed();
   void check_unit();

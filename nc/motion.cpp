@@ -289,12 +289,22 @@ void BlockInterpreter::move_on_line() {
   settle_axes();
 }
 
-/// A cutting move needs a place to start from: axes that were never programmed are taken to stand at zero.
-void BlockInterpreter::prepare_cutting(const char* what) {
+/// A cutting move needs a place to start from: axes that were never programmed are taken to stand at zero. `arc`: its
+/// centre counts from the start, so that axes that the block itself places need one too.
+void BlockInterpreter::prepare_cutting(const char* what, bool arc) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool placed = words_.has(kAxisLetters[axis]) && !state_.incremental;
-    if (place_[axis] == AxisPlace::known || placed) continue;
+    if (place_[axis] == AxisPlace::known) continue;
     const char letter = kAxisLetters[axis];
+    if (placed && !(arc && place_[axis] == AxisPlace::never)) {
+      if (place_[axis] == AxisPlace::never)
+        report_.warning(words_.offset(), "start-unknown",
+                        fmt::format("{} to {} from a place that the program has not given; the move is ignored for "
+                                    "material removal",
+                                    what, letter),
+                        "from nowhere");
+      continue;
+    }
     if (place_[axis] == AxisPlace::never) {
       report_.warning(
           words_.offset(), "start-unknown",
@@ -391,7 +401,7 @@ void BlockInterpreter::move_on_arc() {
   arc.absolute_centre = state_.absolute_arc_centre;
   const char* g = spiral_ ? (arc.clockwise ? "G2.1" : "G3.1") : arc.clockwise ? "G2" : "G3";
   settle_axes_for("an arc", false);
-  prepare_cutting(g);
+  prepare_cutting(g, true);
   if (leaving_) {
     error(words_.offset(), "cutter-radius",
           fmt::format("the move off the contour after G40 is an arc ({}); a straight move (G0, G1) was expected", g));
@@ -417,6 +427,10 @@ void BlockInterpreter::move_on_arc() {
   if (!spiral_) read_spiral_words(arc);
   ArcResult result = make_arc(arc);
   if (spiral_ && arc.r_mm) result.error = "a spiral with R leaves its centre open; I J K were expected";
+  if (result.is_point) {
+    motion_point(end_mm, g);
+    return;
+  }
   const auto in_moves = frame_.plain || !result.error.empty() ? result.arc : from_program(frame_, result.arc);
   if (!in_moves)
     error(words_.offset(), "scaling",
@@ -434,6 +448,15 @@ void BlockInterpreter::move_on_arc() {
   if (spiral_) move.editable = false;  // an arc in its place would need other words
   settle_axes();
   move.feed_mm_per_s = cutting_feed(length_mm(out_, move), g).value_or(0);
+}
+
+/// An arc so small that its centre coincides with an end to the last decimal: a line of that length.
+void BlockInterpreter::motion_point(const Vec3& end_mm, const char* g) {
+  const auto feed = cutting_feed((end_mm - position_mm_).norm(), g);
+  Move& move = add_move(MoveKind::linear, end_mm);
+  move.feed_mm_per_s = feed.value_or(0);
+  move.editable = false;
+  settle_axes();
 }
 
 /// G2.1, G3.1: the radius runs evenly from that of the start to that of the end; P full turns before the rest of one.
