@@ -103,7 +103,7 @@ TEST(SetUp, SpindleSpeedOverTheMachinesIsClamped) {
   // The cut is that of the greatest speed.
   folder.write("p.nc", replaced(kSlot, "S3000", "S12000"));
   EXPECT_EQ(run_camber(folder, "predict job.toml -o at").status, 0);
-  EXPECT_EQ(tests::read(folder / "over/forces.csv"), tests::read(folder / "at/forces.csv"));
+  EXPECT_EQ(tests::file_text(folder / "over/forces.csv"), tests::file_text(folder / "at/forces.csv"));
 }
 
 TEST(SetUp, FeedOverAnAxisIsClampedAndSaidOnceInEachOperation) {

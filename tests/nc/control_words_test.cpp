@@ -150,12 +150,12 @@ TEST(OffsetVariables, TakeEffectAndAreRead) {
   const auto ends = [&](const std::string& text, const char* dialect = "fanuc") {
     return ends_of(read_clean(known + text, as(dialect)));
   };
-  EXPECT_EQ(ends("#5241=10.\nG55 X1.\n"), "0 0 0; 11 2 0");
+  EXPECT_EQ(ends("#5241=10.\nG55 X1.\n"), "0 0 0; 11 0 0");
   EXPECT_EQ(ends("X1.\n#5221=10.\nX1.\n"), "0 0 0; 1 0 0; 11 0 0");
   EXPECT_EQ(ends("X#5241 Y#5242\n"), "0 0 0; 7 2 0");
   EXPECT_EQ(ends("#7021=3.\nG54.1 P2 X1. Y0 Z0\n#14021=8.\nX1.\n"), "0 0 0; 4 0 0; 9 0 0");
   EXPECT_EQ(ends("#7021=3.\nG154 P2 X1. Y0 Z0\nX#4014\n", "haas"), "0 0 0; 4 0 0; 157 0 0");
-  EXPECT_EQ(ends("G20\n#5241=1.\nG55 X1.\n"), "0 0 0; 50.8 2 0");
+  EXPECT_EQ(ends("G20\n#5241=1.\nG55 X1.\n"), "0 0 0; 50.8 0 0");
   // Relative to what is not known.
   EXPECT_EQ(ends_of(read_text("G0 X0 Y0 Z0\n#5221=#5221+10.\nX1.\n", as("fanuc"))), "0 0 0; 11 0 0");
   const std::string contour = "S100 M3\nG0 X-10. Y-20.\nG1 G41 D3 Y-10. F100.\nX0.\nY10.\nG40 X-20.\n";

@@ -64,7 +64,7 @@ TEST(CornerWords, RoundingsTouchLinesAndArcs) {
       {"G2 X20. Y0. R12. ,R2.\nG1 X20. Y30.\n", 2},       // arc, then line
       {"G3 X20. Y0. R12. ,R2.\nG1 X40. Y10.\n", 2},       // arc, then line
       {"G2 X20. Y0. R12. ,R1.5\nG2 X40. Y0. R12.\n", 1.5},   // two bows
-      {"G3 X20. Y0. R12. ,R1.5\nG2 X40. Y0. R12.\n", 1.5},   // opposite senses
+      {"G3 X20. Y0. R12. ,R1.5\nG2 X40. Y0. R30.\n", 1.5},   // opposite senses
       {"G2 X20. Y0. R12. ,R1.5\nG3 X40. Y10. R15.\n", 1.5},  // likewise
   };
   for (const auto& [pair, radius_mm] : pairs) {

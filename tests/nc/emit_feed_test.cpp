@@ -59,8 +59,8 @@ TEST(EmitFeed, OneFWordServesAllMovesOfOneFeed) {
 TEST(EmitFeed, AnFOnALineOfItsOwnStays) {
   EXPECT_EQ(with_feeds("G0X0Y0Z0\nF500\nG1X1.\nX2.\nF400\nX3.\n", {{1, 300}, {2, 300}}),
             "G0X0Y0Z0\nF500\nG1X1.F300\nX2.\nF400\nX3.\n");
-  EXPECT_EQ(with_feeds("G1F500X1.Y0Z0\nG0Z5.F200\nG1X2.\nG4P1.F100\nX3.\nX4.\n", {{0, 300}, {2, 250}, {4, 350}}),
-            "G1F300X1.Y0Z0\nG0Z5.F200\nG1X2.F250\nG4P1.F100\nX3.F350\nX4.F100\n");
+  EXPECT_EQ(with_feeds("G0X0Y0Z0\nG1F500X1.\nG0Z5.F200\nG1X2.\nG4P1.F100\nX3.\nX4.\n", {{1, 300}, {3, 250}, {5, 350}}),
+            "G0X0Y0Z0\nG1F300X1.\nG0Z5.F200\nG1X2.F250\nG4P1.F100\nX3.F350\nX4.F100\n");
 }
 
 TEST(EmitFeed, FeedsLookAsTheProgramWritesThem) {

@@ -71,7 +71,7 @@ TEST(NcMacro, ReturnInTheMainProgram) {
 }
 
 TEST(NcMacro, LocalSubprogramsOfHaas) {
-  EXPECT_EQ(run_text("M97 P1000 L2\nY1\nM30\nN1000 G91 X1\nG90\nM99\n", {.inch = false}), "1 0 0; 2 0 0; 2 1 0");
+  EXPECT_EQ(run_text("M97 P1000 L2\nY1\nM30\nN1000 G91 X1\nG90\nM99\n", units()), "1 0 0; 2 0 0; 2 1 0");
   EXPECT_EQ(run_text("M97 P7\n"), "p.nc:2:5: error: there is no block N7 in this program to call [block-number]\n");
 }
 
