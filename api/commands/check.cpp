@@ -35,14 +35,14 @@ Json range_json(const nc::Range& r) {
 
 Json tool_json(const nc::ToolUse& t) {
   Json out = {{"tool", t.tool},
-          {"line", t.line},
-          {"calls", t.calls},
-          {"cutting_moves", t.cutting_moves},
-          {"cutting_length_mm", t.cutting_length_mm},
-          {"rapid_length_mm", t.rapid_length_mm},
-          {"feed_mm_per_min", range_json(t.feed_mm_per_min)},
-          {"spindle_speed_rpm", range_json(t.spindle_speed_rpm)},
-          {"cutting_extents_mm", extents_json(t.cutting)}};
+              {"line", t.line},
+              {"calls", t.calls},
+              {"cutting_moves", t.cutting_moves},
+              {"cutting_length_mm", t.cutting_length_mm},
+              {"rapid_length_mm", t.rapid_length_mm},
+              {"feed_mm_per_min", range_json(t.feed_mm_per_min)},
+              {"spindle_speed_rpm", range_json(t.spindle_speed_rpm)},
+              {"cutting_extents_mm", extents_json(t.cutting)}};
   if (!t.feed_deg_per_min.empty()) out["feed_deg_per_min"] = range_json(t.feed_deg_per_min);
   return out;
 }
