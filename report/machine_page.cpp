@@ -198,7 +198,7 @@ MachineCards machine_cards(const machine::Machine& machine, std::span<const Pose
   out.scripts = fmt::format(
       "<script type=\"application/json\" id=\"index\">{}</script>\n"
       "<script type=\"text/plain\" id=\"arrays\">{}</script>\n<script>{}</script>\n",
-      script_safe(index.dump()), arrays.text(), kMachineScript);
+      script_safe(index.dump()), arrays.text(), machine_script());
   return out;
 }
 

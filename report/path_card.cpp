@@ -48,7 +48,7 @@ std::string path_scripts_html(const Json& index, const PackedArrays& arrays) {
   return fmt::format(
       "<script type=\"application/json\" id=\"index\">{}</script>\n"
       "<script type=\"text/plain\" id=\"arrays\">{}</script>\n<script>{}</script>\n",
-      script_safe(index.dump()), arrays.text(), kPathScript);
+      script_safe(index.dump()), arrays.text(), path_script());
 }
 
 ProgramCard program_card(std::string_view title, const PathPicture& picture) {
