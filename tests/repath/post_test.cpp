@@ -13,6 +13,7 @@
 #include "repath/post_deviation.h"
 #include "tests/kinematics/machines.h"
 #include "tests/repath/five_axis_program.h"
+#include "tests/support/temp_folder.h"
 #include "tests/support/test_data.h"
 
 namespace camber::repath {
