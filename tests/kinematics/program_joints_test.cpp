@@ -56,8 +56,9 @@ std::string said(const std::string& text, const machine::Machine& machine, doubl
 TEST(ProgramJoints, AreThoseOfTheTraceAtTheEndsOfBlocks) {
   const machine::Machine machine = sample("table_ac_linuxcnc");
   const Read r =
-      read(SourceText::read(tests::data_path("linuxcnc5/programs/tcp_fixed_g61.ngc")), machine, "linuxcnc", 80);
-  auto t = camber::tests::columns_of(SourceText::read(tests::unpacked_data("linuxcnc5/tcp_fixed_g61_t.csv")).text());
+      read(SourceText::read(camber::tests::data_path("linuxcnc5/programs/tcp_fixed_g61.ngc")), machine, "linuxcnc", 80);
+  auto t =
+      camber::tests::columns_of(SourceText::read(camber::tests::unpacked_data("linuxcnc5/tcp_fixed_g61_t.csv")).text());
   ProgramJoints joints(machine, r.moves);
   int compared = 0;
   while (!joints.done()) {
