@@ -132,6 +132,9 @@ std::vector<ToolProposal> read_tools(const std::string& path, bool inch, Diagnos
   if (ending == ".fctl") return read_freecad_library(path, diagnostics);
   if (ending == ".fctb") return {read_freecad_bit(path)};
   if (ending == ".vtdb") return read_vectric_library(path);
+  if (ending == ".toml")
+    fail_on_file(path, "is TOML, which a job names itself (tools = \"shop.toml\"); a tool library was expected",
+                 "tool-library");
   return read_tool_table(path, inch);
 }
 

@@ -123,7 +123,6 @@ class AddOn(unittest.TestCase):
         command = PathPost.CommandPathPost()
         plain = command.exportObjectsWith(command.buildPostList(self.job)[0], self.job, False)[1]
         target = os.path.join(self.folder, "posted.nc")
-        self.job.PostProcessor = self.job.getEnumerationsOfProperty("PostProcessor") + ["camber"]
         self.job.PostProcessor = "camber"
         self.job.PostProcessorArgs = "--post linuxcnc --no-show-editor --overhang 1=25 --keep %s/kept" % self.folder
         self.job.PostProcessorOutputFile = target
