@@ -64,12 +64,13 @@ json told(const ToolProposal& t) {
   return out;
 }
 
-bool same(const json& a, const json& b) {
-  constexpr double kRounding = 1e-5;  // of the table's decimals
-  if (a.is_number() && b.is_number()) return std::abs(a.get<double>() - b.get<double>()) <= kRounding;
+constexpr double kRounding_mm = 1e-5;  // of the table's decimals
+
+bool same(const json& a, const json& b, double rounding = kRounding_mm) {
+  if (a.is_number() && b.is_number()) return std::abs(a.get<double>() - b.get<double>()) <= rounding;
   if (!a.is_array() || !b.is_array() || a.size() != b.size()) return a == b;
   for (std::size_t i = 0; i < a.size(); ++i)
-    if (!same(a[i], b[i])) return false;
+    if (!same(a[i], b[i], rounding)) return false;
   return true;
 }
 
@@ -104,7 +105,7 @@ int compare(const std::string& folder) {
   return count;
 }
 
-TEST(ToolLibraries, TellWhatTheirFormatsSay) { EXPECT_EQ(compare(kTools), 69); }
+TEST(ToolLibraries, TellWhatTheirFormatsSay) { EXPECT_EQ(compare(kTools), 67); }
 
 TEST(ToolLibraries, OfOtherProgramsTellWhatTheirFormatsSay) {
   const std::string folder = CAMBER_SHARED_DATA_DIR "/tools/";
@@ -113,14 +114,16 @@ TEST(ToolLibraries, OfOtherProgramsTellWhatTheirFormatsSay) {
 }
 
 TEST(ToolLibraries, WithTheSameCuttersGiveTheSameTools) {
-  // Of each number in the Fusion library: what another format tells as well must be the same.
+  // Of each number in the Fusion library: what another format tells as well must be the same; HSMWorks keeps six
+  // figures.
+  constexpr double kDecimals_mm = 1e-4;
   const auto fusion = read(kTools + "fusion.json");
   for (const char* file : {"fusion.tools", "fusion.csv", "hsmworks.hsmlib", "freecad/Library/Shop.fctl", "vectric.vtdb"})
     for (const auto& tool : read(kTools + file)) {
       ASSERT_TRUE(tool.number && *tool.number >= 1 && *tool.number <= 8) << file;
       json a = told(fusion[static_cast<std::size_t>(*tool.number) - 1]), b = told(tool);
       if (b["type"] == "vbit") b["type"] = "chamfer";
-      for (const auto& [key, value] : b.items()) EXPECT_TRUE(same(a[key], value)) << file << ": " << key;
+      for (const auto& [key, value] : b.items()) EXPECT_TRUE(same(a[key], value, kDecimals_mm)) << file << ": " << key;
       EXPECT_EQ(tool.type, fusion[static_cast<std::size_t>(*tool.number) - 1].type) << file;
     }
 }
@@ -162,7 +165,8 @@ TEST(FreecadBit, SaysWhereItIsDamaged) {
     return message_of(folder.write("a.fctb", text), folder.path() + "/");
   };
   EXPECT_EQ(said("{\n\"name\": \"A\",\n"),
-            "a.fctb:3:1: error: this is not JSON; a tool bit of FreeCAD (.fctb) was expected [tool-library]");
+            "a.fctb:2:14: error: this is not JSON; a tool bit of FreeCAD (.fctb) was expected [tool-library]\n"
+            "    \"name\": \"A\",\n                ^");
   EXPECT_EQ(said("[]"),
             "a.fctb:1:1: error: this is no table {...}; a tool bit of FreeCAD (.fctb) was expected [tool-library]\n"
             "    []\n    ^");

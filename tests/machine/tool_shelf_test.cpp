@@ -133,7 +133,7 @@ TEST(ToolShelf, SaysWhatIsWrongAtItsPlace) {
             "job.toml:3:9: error: tools: none.toml: no such file (paths are relative to the job's folder) "
             "[file-missing]\n    tools = \"none.toml\"\n            ^");
   EXPECT_EQ(read("tools = \"bad.json\"\n[tool.1]\nfrom = 17\n").messages.substr(0, 51),
-            "bad.json:1:1: error: this is not JSON; a tool libra");
+            "bad.json:1:2: error: this is not JSON; a tool libra");
   // What stands in the shop's file is wrong there; what the job adds is wrong in the job.
   EXPECT_EQ(read("tools = \"broken.toml\"\n[tool.1]\nfrom = 1\noverhang_mm = -1\n").messages,
             "job.toml:4:1: error: diameter_mm is missing in [tool.1]; a number greater than zero was expected "

@@ -64,6 +64,10 @@ def _factory():
 
 def post_list(job):
     """The objects of a job in the order in which they are posted, tool changes and fixtures between them."""
+    factory = _factory()
+    if factory is not None:
+        build = factory.get_post_processor(job, job.PostProcessor)._buildPostList
+        return [obj for _, part in build() for obj in part]
     command = first_module("Path.Post.Command", "PathScripts.PathPost")
     build = getattr(command, "buildPostList", None)  # 0.21
     if build is None:
