@@ -17,7 +17,8 @@ struct PredictArguments {
 };
 
 /// Writes feed.csv, forces.csv, spindle_load.csv, form_error.csv, form_error.vtp, stock.vdb, report.html and
-/// summary.json, and forces_at_LINE.csv and meshes where asked. Throws InputError. Returns kDone or kNumbersDidNotWorkOut.
+/// summary.json, and forces_at_LINE.csv and meshes where asked. Throws InputError. Returns kDone or
+/// kNumbersDidNotWorkOut.
 int run_predict(const PredictArguments& arguments, const GlobalOptions& options);
 
 }  // namespace camber::cli

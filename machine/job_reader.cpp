@@ -1,6 +1,5 @@
 // job.toml into a Job.
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <regex>
 
@@ -9,8 +8,6 @@
 #include "machine/job_keys.h"
 #include "machine/job_tables.h"
 #include "machine/material_reader.h"
-#include "machine/tool_reader.h"
-#include "machine/tool_shelf.h"
 #include "machine/unprogrammed_job.h"
 
 namespace camber::machine {
@@ -272,62 +269,6 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
   if (auto compensation = top.table("compensation")) read_compensation(*compensation, job.tools, job.compensation);
   if (auto adapt = top.table("adapt")) job.adapt = read_adapt(*adapt);
 }
-
-/// What a file of tools says is wrong stands in it; where the file as a whole is wrong, also where the job names it.
-void shelf_error(TomlTable& top, const InputError& problem, Diagnostics& diagnostics) {
-  for (const Diagnostic& d : problem.diagnostics())
-    if (d.check == "file-missing" || d.check == "file-unreadable")
-      top.error_at("tools",
-                   fmt::format("tools: {}: {} (paths are relative to the job's folder)", d.location.file, d.message),
-                   d.check);
-    else
-      diagnostics.add(d);
-}
-
-}  // namespace
-
-void read_tools(TomlTable& top, const fs::path& folder, bool inch, std::map<int, Tool>& tools,
-                Diagnostics& diagnostics) {
-  std::optional<ToolShelf> shelf;
-  const std::string kept = top.text("tools", "");
-  try {
-    if (!kept.empty()) shelf.emplace((folder / kept).lexically_normal().string(), inch);
-  } catch (const InputError& problem) {
-    shelf_error(top, problem, diagnostics);
-  }
-  const auto tables = top.table("tool");
-  if (!tables) return;
-  for (const auto& key : tables->keys()) {
-    int number = 0;
-    const auto [end, ec] = std::from_chars(key.data(), key.data() + key.size(), number);
-    const bool is_number = ec == std::errc{} && end == key.data() + key.size() && number >= 0;
-    TomlTable all = *tables;
-    auto tool = all.table(key);
-    if (!is_number) {
-      all.error_at_name(key, fmt::format("[tool.{}]: a tool number was expected, as in [tool.1] for T1", key),
-                        "tool-number");
-      continue;
-    }
-    if (!tool) continue;
-    if (tool->has("from")) {
-      tool->ignore("from");
-      if (shelf)
-        shelf->fill(*tool);
-      else if (kept.empty())
-        tool->error_at_name("from",
-                            "from names a tool kept elsewhere, but no file: tools = \"shop.toml\" was expected at "
-                            "the top of the job",
-                            "key-missing");
-      if (!tool->has_fallback()) {  // its sizes are not known: nothing more is asked for
-        tools[number].number = number;
-        continue;
-      }
-    }
-    tools.emplace(number, read_tool(*tool, number));
-  }
-}
-
-namespace {
 
 Job read(const std::string& path, Diagnostics& diagnostics, bool programmed) {
   Job job;

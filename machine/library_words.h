@@ -15,8 +15,8 @@ std::string kind_of_fusion(std::string_view type);
 /// "tapered ball", "drill"; "chamfer", "vbit" and "engraving" are chamfer tools; "tap" and "reamer" stand as drills.
 void set_type_by_kind(ToolProposal& tool);
 
-/// What Fusion's JSON, its CSV and HSMWorks' XML tell of a cutter, in mm and degrees. Zero or less means that it does not
-/// apply.
+/// What Fusion's JSON, its CSV and HSMWorks' XML tell of a cutter, in mm and degrees. Zero or less means that it does
+/// not apply.
 struct FusionSizes {
   double diameter = 0, corner_radius = 0, flute_length = 0, body_length = 0, overall_length = 0, shank_diameter = 0;
   double shoulder_diameter = 0, shoulder_length = 0, tip_diameter = 0, flutes = 0;

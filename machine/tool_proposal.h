@@ -10,7 +10,8 @@
 
 namespace camber::machine {
 
-/// A cutter as a source describes it. Not given: the source does not say. Lengths are in mm, whatever the source's unit.
+/// A cutter as a source describes it. Not given: the source does not say. Lengths are in mm, whatever the source's
+/// unit.
 struct ToolProposal {
   std::optional<int> number;  ///< in the T word; libraries may list cutters without one
   std::string what;           ///< the source's own words; in a library the cutter's name
@@ -47,8 +48,8 @@ std::vector<ToolProposal> read_tool_table(const std::string& path, bool inch);
 /// cutter are listed with kind "holder". Throws InputError [tool-library], [file-missing].
 std::vector<ToolProposal> read_fusion_library(const std::string& path);
 
-/// Fusion's export as CSV: a row for each preset, tools told apart by "Tool Index (tool_index)". Columns are found by the
-/// names in parentheses, which do not follow the language. Throws InputError [tool-library], [file-missing].
+/// Fusion's export as CSV: a row for each preset, tools told apart by "Tool Index (tool_index)". Columns are found by
+/// the names in parentheses, which do not follow the language. Throws InputError [tool-library], [file-missing].
 std::vector<ToolProposal> read_fusion_csv(const std::string& path);
 
 /// A tool library of HSMWorks, Inventor CAM or older Fusion: .hsmlib, XML in UTF-16 or UTF-8, root tool-library or
@@ -62,30 +63,30 @@ std::vector<ToolProposal> read_hsm_library(const std::string& path);
 /// InputError [tool-library], [file-missing].
 ToolProposal read_freecad_bit(const std::string& path);
 
-/// A library of FreeCAD, .fctl: numbers and the bits that they name, in the library's folder, or in the folder Bit beside
-/// it or beside the library itself. A bit that is missing is a warning [file-missing] at its line. Throws InputError
-/// [tool-library], [file-missing].
+/// A library of FreeCAD, .fctl: numbers and the bits that they name, in the library's folder, or in the folder Bit
+/// beside it or beside the library itself. A bit that is missing is a warning [file-missing] at its line. Throws
+/// InputError [tool-library], [file-missing].
 std::vector<ToolProposal> read_freecad_library(const std::string& path, Diagnostics& diagnostics);
 
 /// A tool database of Vectric, .vtdb (SQLite). Throws InputError [tool-library], [file-missing].
 std::vector<ToolProposal> read_vectric_library(const std::string& path);
 
-/// By the name's ending: .json, .tools, .csv (Fusion), .hsmlib, .fctl, .fctb, .vtdb, all others a tool table. Of a folder
-/// all libraries in it and in its subfolders, by name; bits of FreeCAD that one of its libraries lists once. Files with
-/// other endings are passed over there, and .json and .csv that are no tool library. Throws InputError [tool-library],
-/// [tool-table], [file-missing].
+/// By the name's ending: .json, .tools, .csv (Fusion), .hsmlib, .fctl, .fctb, .vtdb, all others a tool table. Of a
+/// folder all libraries in it and in its subfolders, by name; bits of FreeCAD that one of its libraries lists once.
+/// Files with other endings are passed over there, and .json and .csv that are no tool library. Throws InputError
+/// [tool-library], [tool-table], [file-missing].
 std::vector<ToolProposal> read_tools(const std::string& path, bool inch, Diagnostics& diagnostics);
 
-/// Adds the tools of a library to those that are known. A known tool is completed by one of the same number that does not
-/// contradict it in type or diameter; where several cutters of the library bear the number, the first counts and the tool
-/// says so in `doubt`. Tools without a number are left out.
+/// Adds the tools of a library to those that are known. A known tool is completed by one of the same number that does
+/// not contradict it in type or diameter; where several cutters of the library bear the number, the first counts and
+/// the tool says so in `doubt`. Tools without a number are left out.
 void add_tools(std::vector<ToolProposal>& known, const std::vector<ToolProposal>& library);
 
 /// Type, size, corner radius and flutes as far as the words tell, "1/2 BULL ENDMILL 0.125 RAD".
 ToolProposal tool_of_words(std::string_view words, bool inch);
 
-/// Lines of a [tool.N] table for what is above the cutting edges: flutes, neck, shank, holder. Flutes that reach into the
-/// holder end at its face.
+/// Lines of a [tool.N] table for what is above the cutting edges: flutes, neck, shank, holder. Flutes that reach into
+/// the holder end at its face.
 std::string body_toml(const ToolProposal& tool);
 
 /// Fills what `tool` does not know from `other`.

@@ -9,11 +9,20 @@
 #include <fmt/ranges.h>
 
 #include "machine/job_keys.h"
+#include "machine/job_tables.h"
+#include "machine/tool_reader.h"
 
 namespace camber::machine {
 namespace {
 
 constexpr std::size_t kNearest = 3;
+
+/// N of [tool.N]; nothing where it is a name.
+std::optional<int> number_of(const std::string& key) {
+  int number = 0;
+  const auto [end, ec] = std::from_chars(key.data(), key.data() + key.size(), number);
+  return ec == std::errc{} && end == key.data() + key.size() && number >= 0 ? std::optional(number) : std::nullopt;
+}
 
 std::string described(const std::optional<double>& number, const std::string& name) {
   if (!number) return fmt::format("\"{}\"", name);
@@ -60,10 +69,8 @@ void ToolShelf::add_tables(std::unique_ptr<TomlFile> file, Diagnostics& diagnost
         continue;
       }
       Kept kept{.number = {}, .name = {}, .place = "tool." + entry.key, .text = {}, .node = &entry.value};
-      int number = 0;
-      const auto [end, ec] = std::from_chars(entry.key.data(), entry.key.data() + entry.key.size(), number);
-      if (ec == std::errc{} && end == entry.key.data() + entry.key.size() && number >= 0)
-        kept.number = number;
+      if (const auto number = number_of(entry.key))
+        kept.number = *number;
       else
         kept.name = entry.key;
       TomlTable table(entry.value, kept.place, diagnostics);
@@ -127,6 +134,59 @@ void ToolShelf::fill(TomlTable& table) const {
                     : fmt::format("from = {}: {} has {} different tools of this {} ({}); one was expected", wanted,
                                   path_, found.size(), number ? "number" : "name", others),
       "tool-missing");
+}
+
+namespace {
+
+/// What a file of tools says is wrong stands in it; where it is missing, the job names it.
+void add_problem(TomlTable& top, const InputError& problem, Diagnostics& diagnostics) {
+  for (const Diagnostic& d : problem.diagnostics())
+    if (d.check == "file-missing" || d.check == "file-unreadable")
+      top.error_at("tools",
+                   fmt::format("tools: {}: {} (paths are relative to the job's folder)", d.location.file, d.message),
+                   d.check);
+    else
+      diagnostics.add(d);
+}
+
+/// False where nothing stands behind `from`: then nothing more can be asked of the tool.
+bool take_from(const std::optional<ToolShelf>& shelf, bool named, TomlTable& tool) {
+  tool.ignore("from");
+  if (shelf)
+    shelf->fill(tool);
+  else if (!named)
+    tool.error_at_name(
+        "from",
+        "from names a tool kept elsewhere, but no file: tools = \"shop.toml\" was expected at the top of "
+        "the job",
+        "key-missing");
+  return tool.has_fallback();
+}
+
+}  // namespace
+
+void read_tools(TomlTable& top, const std::filesystem::path& folder, bool inch, std::map<int, Tool>& tools,
+                Diagnostics& diagnostics) {
+  std::optional<ToolShelf> shelf;
+  const std::string kept = top.text("tools", "");
+  try {
+    if (!kept.empty()) shelf.emplace((folder / kept).lexically_normal().string(), inch);
+  } catch (const InputError& problem) {
+    add_problem(top, problem, diagnostics);
+  }
+  auto tables = top.table("tool");
+  if (!tables) return;
+  for (const auto& key : tables->keys()) {
+    auto tool = tables->table(key);
+    const auto number = number_of(key);
+    if (!number)
+      tables->error_at_name(key, fmt::format("[tool.{}]: a tool number was expected, as in [tool.1] for T1", key),
+                            "tool-number");
+    else if (tool && tool->has("from") && !take_from(shelf, !kept.empty(), *tool))
+      tools[*number].number = *number;
+    else if (tool)
+      tools.emplace(*number, read_tool(*tool, *number));
+  }
 }
 
 }  // namespace camber::machine

@@ -55,8 +55,9 @@ TEST(Predict, WritesEveryFileThatIsPromised) {
   const auto run = run_camber(folder, "predict job.toml -o result --json figures.json --meshes");
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
-  for (const char* name : {"feed.csv", "forces.csv", "machined.stl", "machined.ply", "form_error_mesh.ply", "form_error.csv", "form_error.vtp", "form_error.ply", "stock.vdb",
-                           "report.html", "summary.json"})
+  for (const char* name :
+       {"feed.csv", "forces.csv", "machined.stl", "machined.ply", "form_error_mesh.ply", "form_error.csv",
+        "form_error.vtp", "form_error.ply", "stock.vdb", "report.html", "summary.json"})
     EXPECT_GT(std::filesystem::file_size(folder / ("result/" + std::string(name))), 0u) << name;
   EXPECT_EQ(tests::file_text(folder / "figures.json"), tests::file_text(folder / "result/summary.json"));
   const auto figures = nlohmann::json::parse(tests::file_text(folder / "figures.json"));

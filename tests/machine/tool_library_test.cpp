@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include <gtest/gtest.h>
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "machine/quantity.h"
@@ -46,7 +46,7 @@ json told(const ToolProposal& t) {
   out["name"] = t.what;
   if (!t.kind.empty()) out["type"] = t.kind;
   put("diameter", t.diameter_mm);
-  put("corner_radius", t.kind == "flat" && t.diameter_mm                                ? std::optional(0.0)
+  put("corner_radius", t.kind == "flat" && t.diameter_mm              ? std::optional(0.0)
                        : t.kind == "ball" || t.kind == "tapered ball" ? half(t.diameter_mm)
                                                                       : t.corner_radius_mm);
   put("flutes", t.flutes);
@@ -118,7 +118,8 @@ TEST(ToolLibraries, WithTheSameCuttersGiveTheSameTools) {
   // figures.
   constexpr double kDecimals_mm = 1e-4;
   const auto fusion = read(kTools + "fusion.json");
-  for (const char* file : {"fusion.tools", "fusion.csv", "hsmworks.hsmlib", "freecad/Library/Shop.fctl", "vectric.vtdb"})
+  for (const char* file :
+       {"fusion.tools", "fusion.csv", "hsmworks.hsmlib", "freecad/Library/Shop.fctl", "vectric.vtdb"})
     for (const auto& tool : read(kTools + file)) {
       ASSERT_TRUE(tool.number && *tool.number >= 1 && *tool.number <= 8) << file;
       json a = told(fusion[static_cast<std::size_t>(*tool.number) - 1]), b = told(tool);
@@ -161,9 +162,7 @@ TEST(FreecadLibrary, NamesTheLineOfAMissingBitAndKeepsTheOthers) {
 
 TEST(FreecadBit, SaysWhereItIsDamaged) {
   const tests::TempFolder folder;
-  const auto said = [&](const char* text) {
-    return message_of(folder.write("a.fctb", text), folder.path() + "/");
-  };
+  const auto said = [&](const char* text) { return message_of(folder.write("a.fctb", text), folder.path() + "/"); };
   EXPECT_EQ(said("{\n\"name\": \"A\",\n"),
             "a.fctb:2:14: error: this is not JSON; a tool bit of FreeCAD (.fctb) was expected [tool-library]\n"
             "    \"name\": \"A\",\n                ^");
@@ -194,10 +193,11 @@ TEST(FreecadBit, SaysThatAConeDoesNotReachItsDiameter) {
 
 TEST(Quantities, OfFreecadAreRead) {
   const std::pair<const char*, double> lengths[] = {
-      {"5.0000 mm", 5},  {"1.063 \"", 1.063 * 25.4}, {"0.000 in", 0},       {"6,0 mm", 6},      {"1 cm", 10},
-      {"25,0 \u03bcm", 0.025}, {"25 \u00b5m", 0.025}, {"25um", 0.025}, {"3.175", 3.175}, {"1/4 in", 6.35},
-      {"1 1/4\"", 31.75}, {"1' 2 1/2\"", 14.5 * 25.4}, {"1.234,5 mm", 1234.5}, {"1,234.5 mm", 1234.5},
-      {"5\u00a0mm", 5}, {"1e1 mm", 10}, {"-2 mm", -2}, {"1' + 1\"", 13 * 25.4}};
+      {"5.0000 mm", 5},       {"1.063 \"", 1.063 * 25.4}, {"0.000 in", 0},       {"6,0 mm", 6},
+      {"1 cm", 10},           {"25,0 \u03bcm", 0.025},    {"25 \u00b5m", 0.025}, {"25um", 0.025},
+      {"3.175", 3.175},       {"1/4 in", 6.35},           {"1 1/4\"", 31.75},    {"1' 2 1/2\"", 14.5 * 25.4},
+      {"1.234,5 mm", 1234.5}, {"1,234.5 mm", 1234.5},     {"5\u00a0mm", 5},      {"1e1 mm", 10},
+      {"-2 mm", -2},          {"1' + 1\"", 13 * 25.4}};
   for (const auto& [text, mm] : lengths) {
     ASSERT_TRUE(length_mm_of(text)) << text;
     EXPECT_NEAR(*length_mm_of(text), mm, 1e-9) << text;

@@ -200,8 +200,7 @@ TEST(ToolLibrary, SaysWhatIsWrongInAZipFile) {
             "expected [tool-library]\n"
             "    }\n"
             "    ^");
-  EXPECT_NE(message_of([&] { read(folder / "none.tools", false); }, folder).find("[file-missing]"),
-            std::string::npos);
+  EXPECT_NE(message_of([&] { read(folder / "none.tools", false); }, folder).find("[file-missing]"), std::string::npos);
 }
 
 std::string hsm(const std::string& tools) {
@@ -291,8 +290,7 @@ TEST(ToolLibrary, SaysWhatWasExpected) {
             "[tool-library]");
   EXPECT_EQ(message_of([&] { read(zip, false); }, folder),
             "c.tools: error: is not a zip file; one with a .json file in it was expected [tool-library]");
-  EXPECT_NE(message_of([&] { read(folder / "none.json", false); }, folder).find("[file-missing]"),
-            std::string::npos);
+  EXPECT_NE(message_of([&] { read(folder / "none.json", false); }, folder).find("[file-missing]"), std::string::npos);
 }
 
 }  // namespace

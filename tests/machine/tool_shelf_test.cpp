@@ -89,9 +89,9 @@ TEST(ToolShelf, GivesAToolByItsNumberOrName) {
 }
 
 TEST(ToolShelf, TakesWhatALibraryTells) {
-  const auto [job, messages] =
-      read("tools = \"lib.json\"\n[tool.1]\nfrom = 3\nhelix_deg = 40.0\n[tool.2]\nfrom = \"Ball 4\"\noverhang_mm = "
-           "20.0\n");
+  const auto [job, messages] = read(
+      "tools = \"lib.json\"\n[tool.1]\nfrom = 3\nhelix_deg = 40.0\n[tool.2]\nfrom = \"Ball 4\"\noverhang_mm = "
+      "20.0\n");
   EXPECT_EQ(messages, "");
   const Tool& bull = job.tools.at(1);
   EXPECT_EQ(bull.type, ToolType::bull);
@@ -120,9 +120,10 @@ TEST(ToolShelf, NamesTheNearestToolsWhereOneIsMissing) {
   EXPECT_EQ(read("tools = \"shop.toml\"\n[tool.1]\nfrom = \"wall finishr\"\n").messages,
             "job.toml:5:8: error: from = \"wall finishr\": shop.toml has no such tool; the nearest: \"wall finisher\", "
             "\"slotter\" [tool-missing]\n    from = \"wall finishr\"\n           ^");
-  EXPECT_EQ(read("tools = \"lib.json\"\n[tool.1]\nfrom = 4\n").messages,
-            "job.toml:5:8: error: from = 4: lib.json has 2 different tools of this number (\"Ball 6\", \"Ball 4\"); one "
-            "was expected [tool-missing]\n    from = 4\n           ^");
+  EXPECT_EQ(
+      read("tools = \"lib.json\"\n[tool.1]\nfrom = 4\n").messages,
+      "job.toml:5:8: error: from = 4: lib.json has 2 different tools of this number (\"Ball 6\", \"Ball 4\"); one "
+      "was expected [tool-missing]\n    from = 4\n           ^");
 }
 
 TEST(ToolShelf, SaysWhatIsWrongAtItsPlace) {
