@@ -128,13 +128,10 @@ class Run:
             import pty
             master, slave = pty.openpty()
         except (ImportError, OSError):
-            process = self._process = subprocess.Popen(self._arguments(), stdout=subprocess.DEVNULL,
-                                                       stderr=subprocess.PIPE, **_hidden())
+            process = self._begin(subprocess.PIPE, **_hidden())
             text = process.communicate()[1].decode("utf8", "replace")
             return process.returncode, text
-        environment = dict(os.environ, NO_COLOR="1")
-        process = self._process = subprocess.Popen(self._arguments(), stdout=subprocess.DEVNULL, stderr=slave,
-                                                   env=environment)
+        process = self._begin(slave)
         os.close(slave)
         pieces = []
         while True:
@@ -149,6 +146,13 @@ class Run:
         os.close(master)
         text = b"".join(pieces).decode("utf8", "replace").replace("\r\n", "\n")
         return process.wait(), re.sub(r"\r[^\n]*?\x1b\[K(?:[^\n\r]*(?=\r))?", "", text)
+
+    def _begin(self, errors, **how):
+        process = self._process = subprocess.Popen(self._arguments(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                                   stderr=errors, env=dict(os.environ, NO_COLOR="1"), **how)
+        if self._cancelled:  # before there was a process to end
+            process.terminate()
+        return process
 
     def _take_progress(self, text):
         for m in re.finditer(r"\s*(\d+) % \[[#.]*\] ([^\r\n\x1b,]*)", text):
