@@ -12,7 +12,9 @@
 #include "api/run.h"
 #include "base/output_file.h"
 #include "report/forces_csv.h"
+#include "report/mesh_file.h"
 #include "report/report_data.h"
+#include "report/spindle_load.h"
 #include "report/summary.h"
 #include "simulate/moves_of_axes.h"
 
@@ -57,6 +59,16 @@ std::vector<ErrorPoint> points_of(const report::FormErrorPoints& points) {
   return out;
 }
 
+Mesh mesh_of(const report::SurfaceMesh& mesh) {
+  Mesh out;
+  out.points.reserve(mesh.vertices.size());
+  for (const report::SurfaceSample& v : mesh.vertices)
+    out.points.push_back({v.place_mm.x(), v.place_mm.y(), v.place_mm.z(), v.normal.x(), v.normal.y(), v.normal.z(),
+                          v.error_um, v.error_um - v.contour_um, v.contour_um, v.block});
+  for (const auto& t : report::triangles_of(mesh)) out.triangles.push_back({t[0], t[1], t[2]});
+  return out;
+}
+
 TraceComparison comparison_of(const simulate::TracedRun& t) {
   return {.by_line = t.by_line,
           .samples = static_cast<std::int64_t>(t.samples.size()),
@@ -85,6 +97,8 @@ PredictResult api::result_of(const machine::Job& job, const PreparedJob& prepare
   if (prepared.traced) out.trace = comparison_of(*prepared.traced);
   for (const auto& load : p.cut.loads) out.force_max_N = std::max(out.force_max_N, load.lateral_max_N);
   report::for_each_force_row(job, program, p, [&](const report::ForceRow& row) { out.forces.push_back(row_of(row)); });
+  for (const report::SpindleLoad& l : report::spindle_loads(job, program, p))
+    out.spindle_load.push_back({l.tool, static_cast<std::int64_t>(l.line), l.power_W, l.torque_Nm});
   return out;
 }
 
@@ -100,6 +114,7 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
         .forces_at = options.forces_at,
         .trace = options.trace,
         .columns = options.columns,
+        .meshes = options.meshes,
         .progress = [&](const std::string& what, std::optional<double> share) { run.show(what, share.value_or(0)); }};
     api::PreparedJob prepared = api::prepare(job, request, found);
     run.settle(found);
@@ -110,6 +125,11 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
     run.settle(of_cut);
     const simulate::SimulatedProgram& program = prepared.setup.program;
     result = api::result_of(job, prepared, prediction);
+    if (options.meshes) {
+      result.machined_mesh = mesh_of(report::machined_mesh(*prediction.machined));
+      result.error_mesh = mesh_of(report::error_mesh(
+          report::form_error_points(program, prediction, prepared.traced_run()), job.simulation.voxel_mm));
+    }
     if (options.feed && prepared.traced)
       api::points_sink(program.moves, result.feed)(prepared.traced->samples);
     else if (options.feed && program.rotary)

@@ -29,16 +29,10 @@ std::string seen_from(const std::string& file, const std::string& job) {
 }
 
 /// Comments of the program come first: they belong to it.
-std::vector<machine::ToolProposal> all_tools(const SourceText& program, const InitArguments& arguments, bool inch) {
+std::vector<machine::ToolProposal> all_tools(const SourceText& program, const InitArguments& arguments, bool inch,
+                                             Diagnostics& diagnostics) {
   std::vector<machine::ToolProposal> out = machine::tools_in_comments(program, inch);
-  for (const auto& path : arguments.tools)
-    for (auto& tool : machine::read_tools(path, inch)) {
-      const auto same = std::find_if(out.begin(), out.end(), [&](const auto& t) { return t.number == tool.number; });
-      if (same == out.end())
-        out.push_back(std::move(tool));
-      else
-        machine::complete(*same, tool);
-    }
+  for (const auto& path : arguments.tools) machine::add_tools(out, machine::read_tools(path, inch, diagnostics));
   return out;
 }
 
@@ -51,9 +45,9 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   Diagnostics diagnostics;
   const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const nc::Interpretation moves = nc::interpret(text, arguments.interpreter, diagnostics);
-  settle(diagnostics, options);
   const nc::Summary summary = nc::summarize(text, moves);
-  const auto tools = all_tools(text.source, arguments, summary.has_inch);
+  const auto tools = all_tools(text.source, arguments, summary.has_inch, diagnostics);
+  settle(diagnostics, options);
   write_file(arguments.output, report::job_text({seen_from(arguments.program, arguments.output),
                                                  seen_from(arguments.machine, arguments.output), summary, tools, text,
                                                  moves, arguments.material, arguments.interpreter.inch}));
@@ -74,10 +68,11 @@ void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chose
   command
       ->add_option(
           "--tools", arguments->tools,
-          "LinuxCNC's tool table, or a tool library of Fusion (.json, .tools) or HSMWorks (.hsmlib); may be repeated")
+          "a tool library of Fusion (.json, .tools, .csv), HSMWorks (.hsmlib), FreeCAD (.fctl), Vectric (.vtdb) or "
+          "LinuxCNC (.tbl), or a folder of them; may be repeated")
       ->expected(1)
       ->take_all()
-      ->type_name("FILE");
+      ->type_name("FILE|FOLDER");
   command->add_option("--machine", arguments->machine, "the machine that the job names")->type_name("M.toml");
   std::vector<std::string> presets;
   for (const auto& preset : machine::material_presets()) presets.emplace_back(preset.name);

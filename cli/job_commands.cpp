@@ -91,8 +91,12 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
                    "a map of the trace's columns, if they are not t_s, x_act_mm, y_act_mm, z_act_mm ...")
       ->type_name("MAP.toml")
       ->needs(trace);
+  auto* meshes = command->add_flag("--meshes", arguments->meshes,
+                                   "also write machined.stl and machined.ply, the machined part, and "
+                                   "form_error_mesh.ply, its surface with the form error in colours");
   auto parts = std::make_shared<SectionsArguments>();
   add_section_options(*command, *parts, *trace);
+  command->get_option("--sections")->excludes(meshes);
   command->callback([arguments, parts, command, &options, &chosen] {
     const bool in_sections = command->count("--sections") > 0, one = command->count("--section") > 0;
     if (one != (command->count("--stage") > 0)) throw CLI::RequiredError(one ? "--stage" : "--section");

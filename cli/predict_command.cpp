@@ -34,6 +34,7 @@ int run_predict(const PredictArguments& arguments, const GlobalOptions& options)
                                     .forces_at = arguments.forces_at,
                                     .trace = arguments.trace,
                                     .columns = arguments.columns,
+                                    .meshes = arguments.meshes,
                                     .progress = steps_of(progress)};
   api::PreparedJob prepared = api::prepare(job, request, diagnostics);
   const simulate::SimulatedProgram& program = prepared.setup.program;

@@ -10,7 +10,7 @@ target_compile_features(camber_library PUBLIC cxx_std_20)
 file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/camber/*.h)
 target_sources(camber_library PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${headers})
 target_link_libraries(camber_library PRIVATE OpenVDB::openvdb TBB::tbb Ceres::ceres LibZip::zip pugixml::pugixml
-  ZLIB::ZLIB fmt::fmt ${CAMBER_OPENCASCADE_LIBRARIES})
+  SQLite::SQLite3 ZLIB::ZLIB fmt::fmt ${CAMBER_OPENCASCADE_LIBRARIES})
 if(BUILD_SHARED_LIBS)
   # Only the public names are shown, and those of OpenVDB's templates, whose static members libopenvdb shares.
   target_link_options(camber_library PRIVATE -fuse-ld=lld

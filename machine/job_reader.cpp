@@ -1,6 +1,5 @@
 // job.toml into a Job.
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <regex>
 
@@ -9,7 +8,6 @@
 #include "machine/job_keys.h"
 #include "machine/job_tables.h"
 #include "machine/material_reader.h"
-#include "machine/tool_reader.h"
 #include "machine/unprogrammed_job.h"
 
 namespace camber::machine {
@@ -252,7 +250,7 @@ void read_part(TomlTable table, const fs::path& folder, const std::map<int, Tool
 }
 
 void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& diagnostics) {
-  if (auto tools = top.table("tool")) read_tools(*tools, job.tools);
+  read_tools(top, folder, job.inch.value_or(false), job.tools, diagnostics);
   if (job.tools.empty() && !top.has("tool")) top.missing("[tool.1]", "a table for each tool of the program");
   if (const auto operations = top.table("operations")) job.operations = read_operations(*operations, job.tools);
   if (auto material = top.table("material"))
@@ -271,24 +269,6 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
   if (auto compensation = top.table("compensation")) read_compensation(*compensation, job.tools, job.compensation);
   if (auto adapt = top.table("adapt")) job.adapt = read_adapt(*adapt);
 }
-
-}  // namespace
-
-void read_tools(TomlTable table, std::map<int, Tool>& tools) {
-  for (const auto& key : table.keys()) {
-    int number = 0;
-    const auto [end, ec] = std::from_chars(key.data(), key.data() + key.size(), number);
-    const bool is_number = ec == std::errc{} && end == key.data() + key.size() && number >= 0;
-    const auto tool = table.table(key);
-    if (!is_number)
-      table.error_at_name(key, fmt::format("[tool.{}]: a tool number was expected, as in [tool.1] for T1", key),
-                          "tool-number");
-    else if (tool)
-      tools.emplace(number, read_tool(*tool, number));
-  }
-}
-
-namespace {
 
 Job read(const std::string& path, Diagnostics& diagnostics, bool programmed) {
   Job job;

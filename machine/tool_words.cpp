@@ -222,6 +222,12 @@ void complete(ToolProposal& tool, const ToolProposal& other) {
   fill(tool.flutes, other.flutes);
   fill(tool.youngs_modulus_GPa, other.youngs_modulus_GPa);
   fill(tool.point_angle_deg, other.point_angle_deg);
+  fill(tool.tip_diameter_mm, other.tip_diameter_mm);
+  fill(tool.taper_deg, other.taper_deg);
+  fill(tool.neck_diameter_mm, other.neck_diameter_mm);
+  fill(tool.shoulder_length_mm, other.shoulder_length_mm);
+  fill(tool.overall_length_mm, other.overall_length_mm);
+  if (tool.holder.empty()) tool.holder = other.holder;
 }
 
 }  // namespace camber::machine

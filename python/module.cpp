@@ -113,7 +113,7 @@ camber::FitFeedResult fit_feed(const std::vector<std::pair<py::object, Path>>& t
 
 camber::PredictResult predict(const py::object& job, bool feed, const std::optional<Path>& output_folder,
                               std::size_t forces_at, const std::optional<Path>& trace,
-                              const std::optional<Path>& columns, const py::object& progress, bool strict,
+                              const std::optional<Path>& columns, bool meshes, const py::object& progress, bool strict,
                               int threads) {
   const camber::Job given = job_of(job);
   camber::PredictResult result;
@@ -123,7 +123,8 @@ camber::PredictResult predict(const py::object& job, bool feed, const std::optio
                               .output_folder = output_folder ? output_folder->string() : std::string(),
                               .forces_at = forces_at,
                               .trace = trace ? trace->string() : std::string(),
-                              .columns = columns ? columns->string() : std::string()},
+                              .columns = columns ? columns->string() : std::string(),
+                              .meshes = meshes},
                              run);
   });
   return result;
@@ -225,8 +226,9 @@ void add_functions(py::module_& module) {
              "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Fits the feed model of a machine to pairs of a program and its trace.");
   module.def("predict", predict, "job"_a, py::kw_only(), "feed"_a = false, "output_folder"_a = py::none(),
-             "forces_at"_a = 0, "trace"_a = py::none(), "columns"_a = py::none(), "progress"_a = py::none(),
-             "strict"_a = false, "threads"_a = 0, "Cutting force, deflection and form error of a job.");
+             "forces_at"_a = 0, "trace"_a = py::none(), "columns"_a = py::none(), "meshes"_a = false,
+             "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "Cutting force, deflection and form error of a job.");
   module.def("compensate", compensate, "job"_a, py::kw_only(), "uncertainty"_a = std::vector<std::string>(),
              "measured"_a = py::none(), "measured_program"_a = py::none(), "check_voxels_mm"_a = std::vector<double>(),
              "time_budget_percent"_a = py::none(), "keep_anyway"_a = false, "header"_a = false, "header_hash"_a = false,

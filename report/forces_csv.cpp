@@ -92,7 +92,9 @@ void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgra
              (k == from || !stamps[k].first))
         turn.add(prediction.cut.loads[k++]);
       const double rpm = program.moves.state_of(move).spindle_speed_rpm;
-      take(row_of(stamps[from], move.block + 1, turn, rpm, static_cast<int>(flutes)));
+      ForceRow row = row_of(stamps[from], move.block + 1, turn, rpm, static_cast<int>(flutes));
+      row.tool = run.tool;
+      take(row);
       from = k;
     }
   }

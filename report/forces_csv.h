@@ -24,6 +24,7 @@ struct ForceRow {
   double torque_max_Nm = 0, torque_mean_Nm = 0, power_W = 0;
   double chip_max_mm = 0, chip_mean_mm = 0;
   double specific_energy_MPa = 0;
+  int tool = 0;
 };
 
 /// Calls `take` with every row, in the order of the path.

@@ -1,5 +1,6 @@
 #pragma once
 // form_error.csv and form_error.vtp: the error at every point of the machined surface.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,6 +13,7 @@ namespace camber::report {
 
 struct FormErrorPoint {
   Vec3 place_mm = Vec3::Zero();
+  Vec3 crossing_mm = Vec3::Zero();  ///< where a line of the voxels' grid crosses the surface; for meshes
   Vec3 normal = Vec3::UnitZ();
   double error_um = 0;    ///< machined minus nominal surface along the normal; positive: excess material
   double contour_um = 0;  ///< of it, what servo lag and corner rounding do to the target program
@@ -38,6 +40,9 @@ void write_form_error_csv(const std::string& path, const FormErrorPoints& points
 /// The same points for ParaView (VTK PolyData, XML, base64): normals, error_um, deflection_um, contour_um, area_mm2,
 /// block, tool and, where there is one, total_error_um. Throws InputError [file-unwritable].
 void write_form_error_vtp(const std::string& path, const FormErrorPoints& points);
+
+/// Blue, white, red for -1, 0, 1.
+std::array<std::uint8_t, 3> error_colour(double fraction);
 
 /// The same points as binary PLY with colours: blue where the cutter went too deep, white at zero, red where material
 /// is left; full colour at `full_um` and beyond. Properties x y z nx ny nz red green blue error_um deflection_um

@@ -104,7 +104,10 @@ double typical_overhang_mm(const ToolProposal& tool, double depth_mm) {
 std::string profile_text(const ToolProposal& tool) {
   std::string out = number_line("diameter_mm", tool.diameter_mm, "");
   if (tool.type == ToolType::bull) out += number_line("corner_radius_mm", tool.corner_radius_mm, "");
-  if (tool.type == ToolType::tapered_ball) out += line("# taper_deg =", "between the wall and the axis");
+  if (tool.type == ToolType::tapered_ball)
+    out += number_line("taper_deg", tool.taper_deg, "between the wall and the axis");
+  if (tool.type == ToolType::chamfer && tool.tip_diameter_mm)
+    out += fmt::format("tip_diameter_mm = {}\n", decimal(*tool.tip_diameter_mm));
   if (tool.point_angle_deg)
     out += fmt::format("point_angle_deg = {}\n", decimal(*tool.point_angle_deg));
   else if (tool.type == ToolType::chamfer)
@@ -143,8 +146,7 @@ std::string tool_text(const nc::ToolUse& use, const ToolProposal& tool, double d
                                  "the library's body length; holder face to tip: measure it")
                           : line(fmt::format("overhang_mm = {}", decimal(typical_overhang_mm(tool, depth_mm))),
                                  "typical: holder face to tip; bending grows with its cube: measure it");
-  if (tool.flute_length_mm) out += fmt::format("flute_length_mm = {}\n", decimal(*tool.flute_length_mm));
-  if (tool.shank_diameter_mm) out += fmt::format("shank_diameter_mm = {}\n", decimal(*tool.shank_diameter_mm));
+  out += machine::body_toml(tool);
   out += line("# effective_diameter_ratio = 0.8", "bending diameter of the fluted part / diameter");
   out += tool.youngs_modulus_GPa
              ? line(fmt::format("youngs_modulus_GPa = {}", decimal(*tool.youngs_modulus_GPa)), "by what it is made of")
@@ -225,7 +227,8 @@ std::string job_text(const JobProposal& proposal) {
   out += proposal.machine.empty() ? line("# machine =", "\"machine.toml\": camber protocol and fit-feed measure one")
                                   : fmt::format("machine = {}\n", quoted(proposal.machine));
   ToolsByNumber by_number;
-  for (const auto& tool : proposal.tools) by_number.emplace(tool.number, tool);
+  for (const auto& tool : proposal.tools)
+    if (tool.number) by_number.emplace(*tool.number, tool);
   mill_with_drills(proposal.moves, by_number);
   const std::optional<StockProposal> stock = propose_stock(proposal.text, proposal.moves, by_number);
   std::string cutting, tools;

@@ -161,6 +161,7 @@ FormErrorPoints form_error_points(const SimulatedProgram& program, const simulat
   return {prediction.surface.size(), [&program, &prediction, traced](std::size_t i) {
             const auto& p = prediction.surface[i];
             FormErrorPoint point{.place_mm = p.place_mm,
+                                 .crossing_mm = p.crossing_mm,
                                  .normal = p.normal,
                                  .error_um = 1000 * p.error_mm,
                                  .contour_um = 1000 * p.contour_mm,
