@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "machine/force_law.h"
+#include "simulate/pieces.h"
 #include "simulate/setup_checks.h"
 
 namespace camber::checks {

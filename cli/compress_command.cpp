@@ -3,8 +3,8 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/output_file.h"
 #include "base/units.h"
 #include "cli/console.h"
@@ -57,22 +57,22 @@ std::string text_report(const Figures& before, const Figures& after, const repat
 
 std::string json_report(const Figures& before, const Figures& after, const repath::Compression& result,
                         double tolerance_mm, const repath::DeviationFigures& measured) {
-  nlohmann::ordered_json report = {{"blocks_before", before.blocks},
-                                   {"blocks_after", after.blocks},
-                                   {"lines", after.lines},
-                                   {"arcs", after.arcs},
-                                   {"lines_before", before.lines},
-                                   {"arcs_before", before.arcs},
-                                   {"length_before_mm", before.length_mm},
-                                   {"length_after_mm", after.length_mm},
-                                   {"tolerance_mm", tolerance_mm},
-                                   {"max_deviation_mm", result.max_deviation_mm},
-                                   {"measured_deviation_mm", measured.max_mm},
-                                   {"max_kink_deg", deg_from_rad(result.max_kink_rad)},
-                                   {"rms_kink_deg", deg_from_rad(result.rms_kink_rad)},
-                                   {"runs", result.runs.size()},
-                                   {"time_before_s", nullptr},
-                                   {"time_after_s", nullptr}};
+  Json report = {{"blocks_before", before.blocks},
+                 {"blocks_after", after.blocks},
+                 {"lines", after.lines},
+                 {"arcs", after.arcs},
+                 {"lines_before", before.lines},
+                 {"arcs_before", before.arcs},
+                 {"length_before_mm", before.length_mm},
+                 {"length_after_mm", after.length_mm},
+                 {"tolerance_mm", tolerance_mm},
+                 {"max_deviation_mm", result.max_deviation_mm},
+                 {"measured_deviation_mm", measured.max_mm},
+                 {"max_kink_deg", deg_from_rad(result.max_kink_rad)},
+                 {"rms_kink_deg", deg_from_rad(result.rms_kink_rad)},
+                 {"runs", result.runs.size()},
+                 {"time_before_s", nullptr},
+                 {"time_after_s", nullptr}};
   if (before.time_s) {
     report["time_before_s"] = *before.time_s;
     report["time_after_s"] = *after.time_s;

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/output_file.h"
 #include "base/units.h"
 #include "calib/fit_force.h"
@@ -18,7 +18,6 @@ namespace camber::cli {
 namespace {
 
 using calib::FitForceResult;
-using nlohmann::ordered_json;
 
 std::vector<calib::MeasuredLog> read_logs(const FitForceArguments& arguments, Diagnostics& diagnostics) {
   std::vector<calib::MeasuredLog> logs;
@@ -53,25 +52,23 @@ void print(const FitForceResult& result) {
   fmt::print("; {}\n", result.message);
 }
 
-ordered_json components(const std::array<bool, 3>& has, const Vec3& f) {
-  ordered_json out = ordered_json::array();
-  for (int a = 0; a < 3; ++a)
-    out.push_back(has[static_cast<std::size_t>(a)] ? ordered_json(f[a]) : ordered_json(nullptr));
+Json components(const std::array<bool, 3>& has, const Vec3& f) {
+  Json out = Json::array();
+  for (int a = 0; a < 3; ++a) out.push_back(has[static_cast<std::size_t>(a)] ? Json(f[a]) : Json(nullptr));
   return out;
 }
 
-ordered_json report_of(const FitForceResult& result) {
-  ordered_json report;
+Json report_of(const FitForceResult& result) {
+  Json report;
   for (const auto& p : result.parameters)
     report["parameters"].push_back({{"name", p.name},
                                     {"value", p.value},
                                     {"unit", p.unit},
-                                    {"std_error", p.std_error ? ordered_json(*p.std_error) : ordered_json(nullptr)},
+                                    {"std_error", p.std_error ? Json(*p.std_error) : Json(nullptr)},
                                     {"note", p.note}});
-  report["held_out"] = {
-      {"rms_N", result.held_out_rms_N ? ordered_json(*result.held_out_rms_N) : ordered_json(nullptr)}};
+  report["held_out"] = {{"rms_N", result.held_out_rms_N ? Json(*result.held_out_rms_N) : Json(nullptr)}};
   report["fitted"] = {{"rms_N", result.residual_rms_N}};
-  report["run_out"] = ordered_json::array();
+  report["run_out"] = Json::array();
   for (const auto& r : result.run_out)
     report["run_out"].push_back({{"log", r.log},
                                  {"offset_um", 1000 * r.offset_mm},

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/mesh_file.h"
 #include "base/output_file.h"
 #include "cli/console.h"
@@ -162,32 +162,32 @@ struct Report {
     const auto [least, most] = row_spaces_mm(raster.spacing);
     const repath::ContourFigures& now = chosen().figures;
     const auto um = [](const repath::ContourFigures& f) {
-      return nlohmann::ordered_json{{"max", 1000 * f.contour_max_mm}, {"rms", 1000 * f.contour_rms_mm}};
+      return Json{{"max", 1000 * f.contour_max_mm}, {"rms", 1000 * f.contour_rms_mm}};
     };
-    nlohmann::ordered_json out = {{"rows", raster.spacing.rows_mm.size()},
-                                  {"row_spacing_mm", {{"min", least}, {"max", most}}},
-                                  {"pieces", raster.pieces},
-                                  {"links", {{"surface", raster.links}, {"clearance", raster.chains.size() - 1}}},
-                                  {"scallop_mm",
-                                   {{"asked", arguments.scallop_mm},
-                                    {"largest", raster.spacing.largest_scallop_mm},
-                                    {"too_high_share", raster.spacing.steep_fraction}}},
-                                  {"compared_step_mm", kComparedStepMm},
-                                  {"blocks_before", before.blocks},
-                                  {"blocks_after", after.blocks},
-                                  {"lines", after.lines},
-                                  {"arcs", after.arcs},
-                                  {"length_before_mm", before.length_mm},
-                                  {"length_after_mm", after.length_mm},
-                                  {"tolerance_mm", arguments.tolerance_mm},
-                                  {"max_deviation_mm", result.path.max_deviation_mm},
-                                  {"time_before_s", compared.time_s},
-                                  {"time_after_s", now.time_s},
-                                  {"contour_before_um", um(compared)},
-                                  {"contour_after_um", um(now)},
-                                  {"within_contour_limit", result.within_limit},
-                                  {"length_factor", chosen().length_factor},
-                                  {"feed_factor", chosen().feed_factor}};
+    Json out = {{"rows", raster.spacing.rows_mm.size()},
+                {"row_spacing_mm", {{"min", least}, {"max", most}}},
+                {"pieces", raster.pieces},
+                {"links", {{"surface", raster.links}, {"clearance", raster.chains.size() - 1}}},
+                {"scallop_mm",
+                 {{"asked", arguments.scallop_mm},
+                  {"largest", raster.spacing.largest_scallop_mm},
+                  {"too_high_share", raster.spacing.steep_fraction}}},
+                {"compared_step_mm", kComparedStepMm},
+                {"blocks_before", before.blocks},
+                {"blocks_after", after.blocks},
+                {"lines", after.lines},
+                {"arcs", after.arcs},
+                {"length_before_mm", before.length_mm},
+                {"length_after_mm", after.length_mm},
+                {"tolerance_mm", arguments.tolerance_mm},
+                {"max_deviation_mm", result.path.max_deviation_mm},
+                {"time_before_s", compared.time_s},
+                {"time_after_s", now.time_s},
+                {"contour_before_um", um(compared)},
+                {"contour_after_um", um(now)},
+                {"within_contour_limit", result.within_limit},
+                {"length_factor", chosen().length_factor},
+                {"feed_factor", chosen().feed_factor}};
     for (const auto& c : result.tried)
       out["tried"].push_back({{"length_factor", c.length_factor},
                               {"feed_factor", c.feed_factor},

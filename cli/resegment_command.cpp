@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/program_figures.h"
@@ -52,33 +52,33 @@ struct Report {
   }
 
   std::string json() const {
-    nlohmann::ordered_json report = {{"blocks_before", before.blocks},
-                                     {"blocks_after", after.blocks},
-                                     {"lines", after.lines},
-                                     {"arcs", after.arcs},
-                                     {"length_before_mm", before.length_mm},
-                                     {"length_after_mm", after.length_mm},
-                                     {"tolerance_mm", tolerance_mm},
-                                     {"max_deviation_mm", result.path.max_deviation_mm},
-                                     {"measured_deviation_mm", measured.max_mm},
-                                     {"lines_before", before.lines},
-                                     {"arcs_before", before.arcs},
-                                     {"time_before_s", contour_before.time_s},
-                                     {"time_after_s", chosen().figures.time_s},
-                                     {"contour_before_um", of(contour_before)},
-                                     {"contour_after_um", of(chosen().figures)},
-                                     {"contour_limit_um", 1000 * result.limit.max_mm},
-                                     {"contour_limit_rms_um", rms_limit()},
-                                     {"within_contour_limit", result.within_limit},
-                                     {"runs", result.path.runs.size()},
-                                     {"corners", result.path.corners},
-                                     {"gains", result.gains},
-                                     {"length_factor", chosen().length_factor},
-                                     {"feed_factor", chosen().feed_factor},
-                                     {"corner_feed_share", chosen().corners.fraction},
-                                     {"settle_s", chosen().corners.settle_s}};
+    Json report = {{"blocks_before", before.blocks},
+                   {"blocks_after", after.blocks},
+                   {"lines", after.lines},
+                   {"arcs", after.arcs},
+                   {"length_before_mm", before.length_mm},
+                   {"length_after_mm", after.length_mm},
+                   {"tolerance_mm", tolerance_mm},
+                   {"max_deviation_mm", result.path.max_deviation_mm},
+                   {"measured_deviation_mm", measured.max_mm},
+                   {"lines_before", before.lines},
+                   {"arcs_before", before.arcs},
+                   {"time_before_s", contour_before.time_s},
+                   {"time_after_s", chosen().figures.time_s},
+                   {"contour_before_um", of(contour_before)},
+                   {"contour_after_um", of(chosen().figures)},
+                   {"contour_limit_um", 1000 * result.limit.max_mm},
+                   {"contour_limit_rms_um", rms_limit()},
+                   {"within_contour_limit", result.within_limit},
+                   {"runs", result.path.runs.size()},
+                   {"corners", result.path.corners},
+                   {"gains", result.gains},
+                   {"length_factor", chosen().length_factor},
+                   {"feed_factor", chosen().feed_factor},
+                   {"corner_feed_share", chosen().corners.fraction},
+                   {"settle_s", chosen().corners.settle_s}};
     if (!result.tried.empty()) report["fastest_unbounded"] = of(result.tried[result.unbounded]);
-    report["tried"] = nlohmann::ordered_json::array();
+    report["tried"] = Json::array();
     for (const auto& c : result.tried) report["tried"].push_back(of(c));
     return report.dump(2) + "\n";
   }
@@ -98,18 +98,18 @@ struct Report {
   }
 
  private:
-  nlohmann::ordered_json rms_limit() const {
+  Json rms_limit() const {
     if (std::isinf(result.limit.rms_mm)) return nullptr;
     return 1000 * result.limit.rms_mm;
   }
 
-  static nlohmann::ordered_json of(const repath::Candidate& c) {
+  static Json of(const repath::Candidate& c) {
     return {
         {"length_factor", c.length_factor}, {"feed_factor", c.feed_factor}, {"corner_feed_share", c.corners.fraction},
         {"settle_s", c.corners.settle_s},   {"time_s", c.figures.time_s},   {"contour_um", of(c.figures)}};
   }
 
-  static nlohmann::ordered_json of(const repath::ContourFigures& f) {
+  static Json of(const repath::ContourFigures& f) {
     return {{"max", 1000 * f.contour_max_mm}, {"rms", 1000 * f.contour_rms_mm}};
   }
 };

@@ -18,12 +18,13 @@ if(CAMBER_UNITY AND Python3_FOUND)
     add_library(camber_plain_test_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
     target_link_libraries(camber_plain_test_headers PRIVATE camber_options fmt::fmt GTest::gtest)
     target_compile_options(camber_plain_test_headers PRIVATE -fPIC -O0)
-    target_precompile_headers(camber_plain_test_headers PRIVATE ${headers} <gtest/gtest.h>)
+    target_precompile_headers(camber_plain_test_headers PRIVATE ${headers} <gtest/gtest.h>
+      <nlohmann/json.hpp>)
   endif()
 endif()
 
 # Names of theirs stand in headers that others of their folder include.
-set(CAMBER_COMPILED_ALONE cli/compress_command.cpp tests/calib/fit_stretches_test.cpp tests/repath/resegment_test.cpp)
+set(CAMBER_COMPILED_ALONE report/page_bundle.cpp cli/compress_command.cpp tests/calib/fit_stretches_test.cpp tests/repath/resegment_test.cpp)
 
 # camber_compile_together(TARGET [HEADERS]): files of a group have no local name in common. HEADERS: the target whose
 # precompiled headers it takes; camber_headers without it.

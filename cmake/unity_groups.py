@@ -14,6 +14,8 @@ import sys
 
 DEFINED = re.compile(r"^(?:template\s*<[^>]*>\s*)?[A-Za-z_][\w:<>,&*\s\[\]]*?[\s&*>](?P<name>[A-Za-z_]\w*)\s*[(={;\[]")
 NOT_DEFINITIONS = re.compile(r"^(?:TEST|INSTANTIATE|RC_GTEST|namespace\b|extern\b|return\b|using (?!\w+ =))")
+# Headers that take the compiler seconds: what includes them is compiled together.
+HEAVY = ("CLI/", "ceres/", "openvdb/", "nlohmann/", "toml++/", "tbb/")
 GROWTH = 1.3  # a group that was full before may grow by so much
 
 
@@ -30,16 +32,24 @@ def local_names(text):
     return found
 
 
+def used_names(text):
+    """Those that `using` brings from elsewhere: two files may use the same, but none may define it."""
+    return set(re.findall(r"^using [\w:]*::(\w+);", text, re.M))
+
+
 class Group:
     def __init__(self):
-        self.files, self.names, self.lines = [], set(), 0
+        self.files, self.names, self.used, self.lines = [], set(), set(), 0
 
     def takes(self, file, limit):
-        return self.lines + file.lines <= limit and not self.names & file.names
+        if self.lines + file.lines > limit:
+            return False
+        return not (self.names & file.names or self.names & file.used or self.used & file.names)
 
     def add(self, file):
         self.files.append(file.path)
         self.names |= file.names
+        self.used |= file.used
         self.lines += file.lines
 
 
@@ -48,6 +58,8 @@ class File:
         with open(path, encoding="utf8") as file:
             text = file.read()
         self.path, self.lines, self.names = path, text.count("\n"), local_names(text)
+        self.used = used_names(text)
+        self.light = tuple(f"#include <{header}" not in text for header in HEAVY)
 
 
 def former_groups(path):
@@ -65,7 +77,7 @@ def main():
         for path in former:
             if path in files and (not groups[-1].files or groups[-1].takes(files[path], GROWTH * limit)):
                 groups[-1].add(files.pop(path))
-    for file in files.values():
+    for file in sorted(files.values(), key=lambda f: f.light):
         group = next((g for g in groups if g.takes(file, limit)), None)
         if group is None:
             group = Group()

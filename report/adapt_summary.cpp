@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "base/units.h"
 #include "report/summary.h"
@@ -12,14 +12,13 @@
 namespace camber::report {
 
 using adapt::AdaptResult;
-using nlohmann::ordered_json;
 
 namespace {
 
 double shown(const adapt::LoadLimit& limit, double value) { return adapt::text_of(limit.load).scale * value; }
 
-ordered_json loads_json(const AdaptResult& r) {
-  ordered_json out = ordered_json::array();
+Json loads_json(const AdaptResult& r) {
+  Json out = Json::array();
   for (const adapt::LoadFigure& f : r.loads)
     out.push_back({{"name", adapt::text_of(f.limit.load).key},
                    {"limit", shown(f.limit, f.limit.value)},
@@ -29,8 +28,8 @@ ordered_json loads_json(const AdaptResult& r) {
   return out;
 }
 
-ordered_json over_json(const AdaptResult& r) {
-  ordered_json out = ordered_json::array();
+Json over_json(const AdaptResult& r) {
+  Json out = Json::array();
   for (const adapt::OverLimit& o : r.over)
     out.push_back({{"line", o.line},
                    {"new_line", o.new_line},
@@ -41,8 +40,8 @@ ordered_json over_json(const AdaptResult& r) {
   return out;
 }
 
-ordered_json sweep_json(const AdaptResult& r) {
-  ordered_json out = ordered_json::array();
+Json sweep_json(const AdaptResult& r) {
+  Json out = Json::array();
   for (const adapt::SweepRow& row : r.sweep)
     out.push_back({{"factor", row.factor},
                    {"time_s", row.time_s},
@@ -72,7 +71,7 @@ std::string over_row(const adapt::OverLimit& o) {
 }  // namespace
 
 std::string adapt_json(const AdaptResult& r, const machine::AdaptSettings& asked, double compute_s) {
-  ordered_json j;
+  Json j;
   j["schema_version"] = kSchemaVersion;
   j["time_before_s"] = r.time_before_s;
   j["time_after_s"] = r.time_after_s;

@@ -4,8 +4,8 @@
 #include <iterator>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/units.h"
 #include "report/figure_rows.h"
 #include "report/summary.h"
@@ -14,9 +14,7 @@
 namespace camber::report {
 namespace {
 
-using nlohmann::ordered_json;
-
-ordered_json split(const compensate::ErrorSplit& s) {
+Json split(const compensate::ErrorSplit& s) {
   return {{"correctable", s.correctable_um},
           {"correctable_p95", s.correctable_p95_um},
           {"correctable_max", s.correctable_max_um},
@@ -30,27 +28,27 @@ ordered_json split(const compensate::ErrorSplit& s) {
           {"not_compensated", s.not_compensated_um}};
 }
 
-ordered_json plain(const compensate::PlainFigures& p) {
-  ordered_json j = {{"error_um", figures_json(p.error_um)},
-                    {"deflection_um", figures_json(p.deflection_um)},
-                    {"contour_um", figures_json(p.contour_um)}};
+Json plain(const compensate::PlainFigures& p) {
+  Json j = {{"error_um", figures_json(p.error_um)},
+            {"deflection_um", figures_json(p.deflection_um)},
+            {"contour_um", figures_json(p.contour_um)}};
   if (p.total_um) j["total_error_um"] = figures_json(*p.total_um);
   j["in_band_share"] = p.in_band_fraction;
   return j;
 }
 
-ordered_json causes(const compensate::CompensationResult& c) {
-  ordered_json out = ordered_json::array();
+Json causes(const compensate::CompensationResult& c) {
+  Json out = Json::array();
   for (const auto& cause : c.causes)
     out.push_back({{"rms_um", cause.rms_um}, {"lines", cause.lines}, {"sentence", compensate::sentence(cause)}});
   return out;
 }
 
-ordered_json verdict(const VerdictText& v) {
+Json verdict(const VerdictText& v) {
   return {{"success", v.success}, {"headline", v.headline}, {"reasons", v.reasons}};
 }
 
-ordered_json depth(const compensate::Depth& d) {
+Json depth(const compensate::Depth& d) {
   return {{"deepest_um", d.deepest_um},
           {"gouge_depth_p999_um", d.gouge_depth_p999_um},
           {"held_um", d.gouge_depth_p999_um},  // former name, for one more release
@@ -58,10 +56,10 @@ ordered_json depth(const compensate::Depth& d) {
           {"area_over_tolerance", d.over_fraction}};
 }
 
-ordered_json rounds(const compensate::CompensationResult& c) {
-  ordered_json out = ordered_json::array();
+Json rounds(const compensate::CompensationResult& c) {
+  Json out = Json::array();
   for (const auto& r : c.rounds) {
-    ordered_json row = figures_json(r.error_um);
+    Json row = figures_json(r.error_um);
     row["split_um"] = split(r.split);
     row["largest_shift_um"] = 1000 * r.largest_shift_mm;
     row["limited_points"] = r.limited_points;
@@ -80,8 +78,8 @@ ordered_json rounds(const compensate::CompensationResult& c) {
   return out;
 }
 
-ordered_json time_points(const compensate::CompensationResult& c) {
-  ordered_json out = ordered_json::array();
+Json time_points(const compensate::CompensationResult& c) {
+  Json out = Json::array();
   for (const auto& p : c.time_points) {
     const compensate::Round& r = c.rounds[p.round];
     out.push_back({{"allowed_percent", p.allowed_percent},
@@ -95,13 +93,13 @@ ordered_json time_points(const compensate::CompensationResult& c) {
   return out;
 }
 
-ordered_json passes_json(const compensate::CompensationResult& c) {
-  ordered_json runs = ordered_json::array();
+Json passes_json(const compensate::CompensationResult& c) {
+  Json runs = Json::array();
   for (const auto& run : c.repeated) runs.push_back({run.first_line, run.last_line});
   return {{"runs", runs}, {"allowance_um", 1000 * c.pass_allowance_mm}};
 }
 
-ordered_json recheck(const compensate::Recheck& r) {
+Json recheck(const compensate::Recheck& r) {
   return {{"voxel_mm", r.voxel_mm},
           {"before_um", figures_json(r.before_um)},
           {"after_um", figures_json(r.after_um)},
@@ -110,21 +108,21 @@ ordered_json recheck(const compensate::Recheck& r) {
           {"deepest_um", r.deepest_um}};
 }
 
-ordered_json band(const compensate::Band& b) {
-  ordered_json groups = ordered_json::array();
+Json band(const compensate::Band& b) {
+  Json groups = Json::array();
   for (const auto& g : b.groups) groups.push_back({{"name", g.name}, {"rms_um", g.rms_um}});
   return {{"groups", groups},   {"sigma_rms_um", b.sigma_rms_um}, {"rms_um", b.rms_um},
           {"p95_um", b.p95_um}, {"deepest_um", b.deepest_um},     {"safe_share", b.safe_fraction}};
 }
 
-ordered_json measured(const compensate::MeasuredFit& m) {
+Json measured(const compensate::MeasuredFit& m) {
   return {{"deflection_scale", m.scale}, {"std_error", m.std_error},         {"points", m.points},
           {"left_out", m.left_out},      {"rms_before_um", m.rms_before_um}, {"rms_after_um", m.rms_after_um},
           {"predictions", m.predictions}};
 }
 
-ordered_json operations(const compensate::CompensationResult& c) {
-  ordered_json out = ordered_json::array();
+Json operations(const compensate::CompensationResult& c) {
+  Json out = Json::array();
   for (const auto& o : c.finishing.operations)
     out.push_back({{"tool", o.tool},
                    {"lines", {o.first_line, o.last_line}},
@@ -138,7 +136,7 @@ ordered_json operations(const compensate::CompensationResult& c) {
 
 std::string compensate_json(const compensate::CompensationResult& c, const machine::CompensationSettings& asked,
                             double compute_s) {
-  ordered_json j;
+  Json j;
   j["schema_version"] = kSchemaVersion;
   j["before_um"] = figures_json(c.before_um);
   j["after_um"] = figures_json(c.after_um);
@@ -197,7 +195,7 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
 
 std::string verify_json(const compensate::Verification& v, const machine::CompensationSettings& asked,
                         double compute_s) {
-  ordered_json j;
+  Json j;
   j["schema_version"] = kSchemaVersion;
   const bool machine = v.reference == machine::Reference::machine;
   j["reference"] = machine ? "machine" : "commanded";

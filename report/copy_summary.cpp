@@ -1,18 +1,17 @@
 #include "report/copy_summary.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "report/summary.h"
 
 namespace camber::report {
 
 using copymill::CopyResult;
-using nlohmann::ordered_json;
 
 namespace {
 
-ordered_json load_json(const copymill::LoadFigures& l) {
+Json load_json(const copymill::LoadFigures& l) {
   return {{"target", l.target_N},
           {"max", l.max_N},
           {"within_share", l.counted > 0 ? static_cast<double>(l.within) / static_cast<double>(l.counted) : 0.0},
@@ -34,8 +33,8 @@ copymill::LoadFigures together(const CopyResult& r) {
   return out;
 }
 
-ordered_json operations_json(const CopyResult& r) {
-  ordered_json out = ordered_json::array();
+Json operations_json(const CopyResult& r) {
+  Json out = Json::array();
   for (const copymill::OperationSummary& o : r.operations)
     out.push_back({{"tool", o.tool},
                    {"mode", machine::word_of(o.mode)},
@@ -57,7 +56,7 @@ ordered_json operations_json(const CopyResult& r) {
 }  // namespace
 
 std::string copy_json(const CopyResult& r, double compute_s) {
-  ordered_json j;
+  Json j;
   j["schema_version"] = kSchemaVersion;
   j["time_s"] = r.time_s;
   j["blocks"] = r.blocks;

@@ -3,13 +3,13 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "removal/form_error.h"
 
 namespace camber::report {
 
-inline nlohmann::ordered_json figures_json(const removal::ErrorFigures& f) {
+inline Json figures_json(const removal::ErrorFigures& f) {
   return {{"min", f.min}, {"max", f.max}, {"mean", f.mean}, {"rms", f.rms}, {"p95", f.p95}, {"area_mm2", f.area_mm2}};
 }
 

@@ -67,7 +67,7 @@ std::string head_html(const ReportData& data) {
   out += kPagePolicy;
   out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   out +=
-      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, kReportStyle);
+      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, report_style());
   out += fmt::format("<header><div><h1>{}</h1>\n<p class=\"sub\">{}</p></div></header>\n", title,
                      html_text(data.subtitle));
   if (data.verdict) out += verdict_html(*data.verdict);
@@ -95,7 +95,7 @@ std::string scripts_html(const PageData& page) {
   for (std::size_t i = 0; i < page.programs.size(); ++i)
     if (!page.programs[i].empty())
       out += fmt::format("<script type=\"text/plain\" id=\"program{}\">{}</script>\n", i, page.programs[i]);
-  return out + fmt::format("<script>{}</script>\n", kReportScript);
+  return out + fmt::format("<script>{}</script>\n", report_script());
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "base/output_file.h"
 #include "base/units.h"
@@ -20,7 +20,6 @@ namespace camber::report {
 namespace {
 
 using kinematics::PoseSample;
-using nlohmann::json;
 
 constexpr double kBeyond = 1e-6;  ///< mm, degrees: what rounding leaves
 
@@ -88,9 +87,9 @@ std::vector<PoseSample> thinned(std::span<const PoseSample> samples, const std::
   return out;
 }
 
-json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-json limit_json(double value) { return std::isinf(value) ? json(nullptr) : json(value); }
+Json limit_json(double value) { return std::isinf(value) ? Json(nullptr) : Json(value); }
 
 template <class Value>
 std::vector<double> column(const std::vector<PoseSample>& samples, Value value) {
@@ -99,8 +98,8 @@ std::vector<double> column(const std::vector<PoseSample>& samples, Value value) 
   return out;
 }
 
-json part_json(PackedArrays& arrays, const TriangleMesh& part) {
-  json out = {{"place", json::array()}, {"corner", json::array()}};
+Json part_json(PackedArrays& arrays, const TriangleMesh& part) {
+  Json out = {{"place", Json::array()}, {"corner", Json::array()}};
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
     for (const auto& p : part.points) values.push_back(p[axis]);
@@ -114,16 +113,16 @@ json part_json(PackedArrays& arrays, const TriangleMesh& part) {
   return out;
 }
 
-json index_json(PackedArrays& arrays, const machine::Machine& machine, const std::vector<PoseSample>& samples,
+Json index_json(PackedArrays& arrays, const machine::Machine& machine, const std::vector<PoseSample>& samples,
                 const MachinePage& page) {
   const kinematics::Chain chain(machine);
-  json out = {{"chain", chain_json(machine)},
+  Json out = {{"chain", chain_json(machine)},
               {"work", vector_json(page.work_origin_mm)},
               {"diameter", page.tool_diameter_mm},
               {"time_label", page.time_label},
-              {"axes", json::array()},
-              {"tip", json::array()},
-              {"axis", json::array()}};
+              {"axes", Json::array()},
+              {"tip", Json::array()},
+              {"axis", Json::array()}};
   out["time"] = arrays.add_floats(column(samples, [](const PoseSample& s) { return s.time_s; }));
   out["length"] = arrays.add_quantised(
       column(samples, [&](const PoseSample& s) { return (chain.pose(s.joints, 0).tip_mm - s.pose.tip_mm).norm(); }));
@@ -195,11 +194,11 @@ MachineCards machine_cards(const machine::Machine& machine, std::span<const Pose
   out.pictures = std::string(kMachineCard) + kJointsCard;
   out.axes = table_html(axis_table(machine, samples));
   PackedArrays arrays;
-  const json index = index_json(arrays, machine, shown, page);
+  const Json index = index_json(arrays, machine, shown, page);
   out.scripts = fmt::format(
       "<script type=\"application/json\" id=\"index\">{}</script>\n"
       "<script type=\"text/plain\" id=\"arrays\">{}</script>\n<script>{}</script>\n",
-      script_safe(index.dump()), arrays.text(), kMachineScript);
+      script_safe(index.dump()), arrays.text(), machine_script());
   return out;
 }
 

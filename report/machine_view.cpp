@@ -5,14 +5,12 @@
 #include <cmath>
 #include <string>
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 namespace camber::report {
 namespace {
 
-using nlohmann::json;
-
-json numbers_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Json numbers_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
 
@@ -32,13 +30,13 @@ MachineView machine_view(const machine::Job& job, const std::vector<PathRow>& ro
   return out;
 }
 
-json chain_json(const machine::Machine& machine) {
+Json chain_json(const machine::Machine& machine) {
   const machine::Kinematics& k = machine.kinematics;
-  json links = json::array();
+  Json links = Json::array();
   for (std::size_t i = 0; i < k.chain.size(); ++i) {
     const char letter = k.chain[i];
     const bool rotary = letter < 'x';
-    json link = {{"axis", std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(letter))))},
+    Json link = {{"axis", std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(letter))))},
                  {"rotary", rotary},
                  {"table", i < k.table_axes}};
     if (rotary) {
@@ -54,11 +52,11 @@ json chain_json(const machine::Machine& machine) {
   return {{"links", links}, {"gauge", numbers_of(k.gauge_point_mm)}, {"tool", numbers_of(k.tool_axis.normalized())}};
 }
 
-json machine_json(const MachineView& view) {
+Json machine_json(const MachineView& view) {
   const auto rounded = [](double v) { return std::round(1e4 * v) / 1e4; };
-  json tools = json::object();
+  Json tools = Json::object();
   for (const auto& [number, rings] : view.tools) {
-    json outline = json::array();
+    Json outline = Json::array();
     for (const simulate::OutlineRing& ring : rings)
       outline.push_back({static_cast<int>(ring.part), rounded(ring.radius_mm), rounded(ring.height_mm)});
     tools[std::to_string(number)] = outline;

@@ -3,8 +3,7 @@
 #include <map>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "base/json.h"
 #include "machine/job.h"
 #include "report/path_rows.h"
 #include "simulate/tool_outline.h"
@@ -22,8 +21,8 @@ bool turns(const std::vector<PathRow>& rows);
 MachineView machine_view(const machine::Job& job, const std::vector<PathRow>& rows);
 
 /// As report/web/src/chain.js reads it.
-nlohmann::json chain_json(const machine::Machine& machine);
+Json chain_json(const machine::Machine& machine);
 /// {chain, tools: {number: [[part, radius, height], ...]}}, parts as of OutlineRing::Part.
-nlohmann::json machine_json(const MachineView& view);
+Json machine_json(const MachineView& view);
 
 }  // namespace camber::report

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <zlib.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "report/base64.h"
 
 namespace camber::report {
@@ -37,11 +37,11 @@ void PackedArrays::append(std::span<const T> values) {
     for (const T v : values) bytes_ += static_cast<char>((v >> (8 * byte)) & 0xff);
 }
 
-nlohmann::json PackedArrays::describe(std::size_t count, const char* kind) const {
+Json PackedArrays::describe(std::size_t count, const char* kind) const {
   return {{"at", bytes_.size()}, {"n", count}, {"kind", kind}};
 }
 
-nlohmann::json PackedArrays::add_floats(std::span<const double> values) {
+Json PackedArrays::add_floats(std::span<const double> values) {
   auto out = describe(values.size(), "f4");
   std::vector<std::uint32_t> bits(values.size());
   std::transform(values.begin(), values.end(), bits.begin(),
@@ -50,7 +50,7 @@ nlohmann::json PackedArrays::add_floats(std::span<const double> values) {
   return out;
 }
 
-nlohmann::json PackedArrays::add_quantised(std::span<const double> values) {
+Json PackedArrays::add_quantised(std::span<const double> values) {
   auto out = describe(values.size(), "q2");
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double v : values) {
@@ -71,7 +71,7 @@ nlohmann::json PackedArrays::add_quantised(std::span<const double> values) {
   return out;
 }
 
-nlohmann::json PackedArrays::add_whole(std::span<const std::uint32_t> values) {
+Json PackedArrays::add_whole(std::span<const std::uint32_t> values) {
   auto out = describe(values.size(), "d4");
   std::vector<std::uint32_t> steps(values.size());
   std::uint32_t before = 0;

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json_fwd.hpp>
+#include "base/json.h"
 
 namespace camber::report {
 
@@ -18,18 +18,18 @@ std::string deflated(std::string_view bytes);
 class PackedArrays {
  public:
   /// "f4": floats. NaN is "nothing here".
-  nlohmann::json add_floats(std::span<const double> values);
+  Json add_floats(std::span<const double> values);
   /// "q2": value = from + step q, q in 0 ... 65534; 65535 is NaN. The least and the greatest value are exact; what lies
   /// between is within half a step, 1/131068 of the range.
-  nlohmann::json add_quantised(std::span<const double> values);
+  Json add_quantised(std::span<const double> values);
   /// "d4": whole numbers, each as the difference to the one before, the sign in the lowest bit.
-  nlohmann::json add_whole(std::span<const std::uint32_t> values);
+  Json add_whole(std::span<const std::uint32_t> values);
 
   /// All bytes so far, deflated, as base64.
   std::string text() const;
 
  private:
-  nlohmann::json describe(std::size_t count, const char* kind) const;
+  Json describe(std::size_t count, const char* kind) const;
   template <class T>
   void append(std::span<const T> values);
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/units.h"
 #include "report/base64.h"
 #include "report/decimate.h"
@@ -14,8 +14,6 @@
 
 namespace camber::report {
 namespace {
-
-using nlohmann::json;
 
 /// Share of the surface whose error the colour scale is to hold.
 constexpr double kScaleFraction = 0.95;
@@ -33,7 +31,7 @@ double scale_um(const SurfaceSamples& samples, double SurfaceSample::*error) {
 
 /// From where the picture looks first: against the mean normal of the surface, from a little aside and above. Nothing
 /// where the surface faces all ways or upwards: the usual view shows it as well as any.
-json view_of(const SurfaceSamples& samples) {
+Json view_of(const SurfaceSamples& samples) {
   constexpr double kOneWay = 0.3, kUpwards = 0.7, kAside_rad = 0.35, kAbove = 0.6;
   Vec3 sum = Vec3::Zero();
   double area = 0;
@@ -55,15 +53,15 @@ std::vector<double> column(const std::vector<Row>& rows, Get get) {
 }
 
 template <class Row, class Get>
-json triple(PackedArrays& arrays, const std::vector<Row>& rows, Get get) {
-  json out = json::array();
+Json triple(PackedArrays& arrays, const std::vector<Row>& rows, Get get) {
+  Json out = Json::array();
   for (int a = 0; a < 3; ++a)
     out.push_back(arrays.add_quantised(column(rows, [&](const Row& r) { return get(r)[a]; })));
   return out;
 }
 
 template <class Row>
-json whole(PackedArrays& arrays, const std::vector<Row>& rows, std::uint32_t Row::*field) {
+Json whole(PackedArrays& arrays, const std::vector<Row>& rows, std::uint32_t Row::*field) {
   std::vector<std::uint32_t> values(rows.size());
   std::transform(rows.begin(), rows.end(), values.begin(), [&](const Row& r) { return r.*field; });
   return arrays.add_whole(values);
@@ -71,10 +69,10 @@ json whole(PackedArrays& arrays, const std::vector<Row>& rows, std::uint32_t Row
 
 /// Places of the vertices, and quadrangles: the first corner as a step from the one before, the others as steps from
 /// the first.
-json mesh_json(const SurfaceMesh& mesh, PackedArrays& arrays) {
-  json out;
+Json mesh_json(const SurfaceMesh& mesh, PackedArrays& arrays) {
+  Json out;
   out["place"] = triple(arrays, mesh.vertices, [](const SurfaceSample& s) -> const Vec3& { return s.place_mm; });
-  out["quad"] = json::array();
+  out["quad"] = Json::array();
   for (std::size_t corner = 0; corner < 4; ++corner) {
     std::vector<std::uint32_t> values;
     values.reserve(mesh.quads.size());
@@ -85,7 +83,7 @@ json mesh_json(const SurfaceMesh& mesh, PackedArrays& arrays) {
   return out;
 }
 
-json stock_json(const ReportData& data, PackedArrays& arrays, PageData& page) {
+Json stock_json(const ReportData& data, PackedArrays& arrays, PageData& page) {
   const SurfaceMesh mesh = surface_mesh(data.stock, data.stock_cell_mm, 4 * data.stock.size());
   page.left_out.push_back(
       fmt::format("Grey is the remaining stock, in cells of {:.3g} mm; features thinner than a cell may be missing.",
@@ -93,7 +91,7 @@ json stock_json(const ReportData& data, PackedArrays& arrays, PageData& page) {
   return mesh_json(mesh, arrays);
 }
 
-json surface_json(const ReportData& data, const ReportOptions& options, PackedArrays& arrays, PageData& page) {
+Json surface_json(const ReportData& data, const ReportOptions& options, PackedArrays& arrays, PageData& page) {
   const SurfaceMesh mesh = surface_mesh(data.surface, data.voxel_mm, options.max_vertices);
   if (mesh.cell_mm > 1.5 * data.voxel_mm)
     page.left_out.push_back(
@@ -101,10 +99,10 @@ json surface_json(const ReportData& data, const ReportOptions& options, PackedAr
                     "largest magnitude in it.",
                     mesh.cell_mm, mesh.vertices.size(), data.surface.size()));
   using S = SurfaceSample;
-  json out = mesh_json(mesh, arrays);
+  Json out = mesh_json(mesh, arrays);
   out["normal"] = triple(arrays, mesh.vertices, [](const S& s) -> const Vec3& { return s.normal; });
-  out["error"] = json::array({arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.error_um; }))});
-  out["block"] = json::array({whole(arrays, mesh.vertices, &S::block)});
+  out["error"] = Json::array({arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.error_um; }))});
+  out["block"] = Json::array({whole(arrays, mesh.vertices, &S::block)});
   if (data.compared) {
     out["error"].push_back(arrays.add_quantised(column(mesh.vertices, [](const S& s) { return s.error_after_um; })));
     out["block"].push_back(whole(arrays, mesh.vertices, &S::block_after));
@@ -116,7 +114,7 @@ json surface_json(const ReportData& data, const ReportOptions& options, PackedAr
 }
 
 /// Tool and rotary axes along the path.
-void add_poses(json& out, const std::vector<PathRow>& rows, PackedArrays& arrays) {
+void add_poses(Json& out, const std::vector<PathRow>& rows, PackedArrays& arrays) {
   out["axis"] = triple(arrays, rows, [](const PathRow& r) -> const Vec3& { return r.axis; });
   for (int i = 0; i < 3; ++i)
     out[std::string(1, "abc"[i])] =
@@ -124,7 +122,7 @@ void add_poses(json& out, const std::vector<PathRow>& rows, PackedArrays& arrays
   out["tool"] = whole(arrays, rows, &PathRow::tool);
 }
 
-json run_json(const PathRun& run, const ReportOptions& options, bool poses, PackedArrays& arrays, PageData& page) {
+Json run_json(const PathRun& run, const ReportOptions& options, bool poses, PackedArrays& arrays, PageData& page) {
   const auto kept = rows_to_draw(run.rows, options.max_rows);
   if (kept.size() < run.rows.size())
     page.left_out.push_back(
@@ -134,7 +132,7 @@ json run_json(const PathRun& run, const ReportOptions& options, bool poses, Pack
   std::vector<PathRow> rows;
   rows.reserve(kept.size());
   for (const std::size_t i : kept) rows.push_back(run.rows[i]);
-  json out{{"name", run.name}};
+  Json out{{"name", run.name}};
   out["t"] = arrays.add_floats(column(rows, [](const PathRow& r) { return r.t_s; }));
   out["place"] = triple(arrays, rows, [](const PathRow& r) -> const Vec3& { return r.place_mm; });
   out["block"] = whole(arrays, rows, &PathRow::block);
@@ -179,21 +177,21 @@ void add_programs(const ReportData& data, const ReportOptions& options, PageData
 PageData page_data(const ReportData& data, const ReportOptions& options) {
   PageData page;
   PackedArrays arrays;
-  json index;
+  Json index;
   page.scale_um = scale_um(data.surface, &SurfaceSample::error_um);
   page.scale_after_um = data.compared ? scale_um(data.surface, &SurfaceSample::error_after_um) : page.scale_um;
   index["scales"] = {page.scale_um, page.scale_after_um};
-  if (const json view = view_of(data.surface); !view.is_null()) index["view"] = view;
+  if (const Json view = view_of(data.surface); !view.is_null()) index["view"] = view;
   if (!data.surface.empty()) index["surface"] = surface_json(data, options, arrays, page);
   if (!data.stock.empty()) index["stock"] = stock_json(data, arrays, page);
   if (data.compared && data.names[0] != "before") index["names"] = data.names;
-  index["runs"] = json::array();
+  index["runs"] = Json::array();
   for (const auto& run : data.path)
     index["runs"].push_back(run_json(run, options, data.machine.has_value(), arrays, page));
   if (data.machine) index["machine"] = machine_json(*data.machine);
   add_programs(data, options, page);
   if (!data.download_name.empty()) index["download"] = data.download_name;
-  page.index = index.dump(-1, ' ', false, json::error_handler_t::replace);
+  page.index = index.dump();
   page.arrays = arrays.text();
   return page;
 }

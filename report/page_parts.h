@@ -7,10 +7,10 @@ namespace camber::report {
 extern const std::string_view kPageStyle;   ///< CSS of every page
 extern const std::string_view kPagePolicy;  ///< nothing is fetched from anywhere: the browser itself refuses
 
-/// The script of the report page and the style of its pictures: report/web, bundled while Camber is built.
-extern const std::string_view kReportScript;
-extern const std::string_view kReportStyle;
-extern const std::string_view kPathScript;     ///< of the page of compress and resegment
-extern const std::string_view kMachineScript;  ///< of the page of a machine with rotary axes
+// report/web, bundled (report/web/bundle).
+std::string_view report_script();   ///< of the report page
+std::string_view report_style();    ///< of its pictures
+std::string_view path_script();     ///< of the page of compress and resegment
+std::string_view machine_script();  ///< of the page of a machine with rotary axes
 
 }  // namespace camber::report

@@ -4,15 +4,13 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "report/page_parts.h"
 #include "report/page_tables.h"
 
 namespace camber::report {
 namespace {
-
-using nlohmann::json;
 
 std::vector<double> doubles(const std::vector<float>& values) { return {values.begin(), values.end()}; }
 
@@ -27,8 +25,8 @@ std::string path_card_html(std::string_view title, std::string_view hint) {
       html_text(title), html_text(hint));
 }
 
-json picture_json(PackedArrays& arrays, const PathPicture& picture, std::string_view name) {
-  json out = {{"name", name}, {"place", json::array()}, {"thinned", picture.thinned}};
+Json picture_json(PackedArrays& arrays, const PathPicture& picture, std::string_view name) {
+  Json out = {{"name", name}, {"place", Json::array()}, {"thinned", picture.thinned}};
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values(picture.points.size());
     std::transform(picture.points.begin(), picture.points.end(), values.begin(),
@@ -46,16 +44,16 @@ json picture_json(PackedArrays& arrays, const PathPicture& picture, std::string_
   return out;
 }
 
-std::string path_scripts_html(const json& index, const PackedArrays& arrays) {
+std::string path_scripts_html(const Json& index, const PackedArrays& arrays) {
   return fmt::format(
       "<script type=\"application/json\" id=\"index\">{}</script>\n"
       "<script type=\"text/plain\" id=\"arrays\">{}</script>\n<script>{}</script>\n",
-      script_safe(index.dump()), arrays.text(), kPathScript);
+      script_safe(index.dump()), arrays.text(), path_script());
 }
 
 ProgramCard program_card(std::string_view title, const PathPicture& picture) {
   PackedArrays arrays;
-  const json index = {{"paths", json::array({picture_json(arrays, picture, "")})}, {"motion", true}};
+  const Json index = {{"paths", Json::array({picture_json(arrays, picture, "")})}, {"motion", true}};
   const std::string hint =
       "Drag to rotate, drag with the right button or Shift to pan, use the wheel or two fingers to zoom, double-click "
       "to reset. The cursor shows line, position and feed.";

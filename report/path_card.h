@@ -3,8 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "base/json.h"
 #include "report/packed_arrays.h"
 #include "report/path_picture.h"
 
@@ -17,10 +16,10 @@ constexpr std::size_t kMaxPicturePoints = 80000;
 std::string path_card_html(std::string_view title, std::string_view hint);
 
 /// A picture as the script reads it; tools and feeds where the picture has them.
-nlohmann::json picture_json(PackedArrays& arrays, const PathPicture& picture, std::string_view name);
+Json picture_json(PackedArrays& arrays, const PathPicture& picture, std::string_view name);
 
 /// What the page ends with: index, arrays and script.
-std::string path_scripts_html(const nlohmann::json& index, const PackedArrays& arrays);
+std::string path_scripts_html(const Json& index, const PackedArrays& arrays);
 
 /// The card of a whole program, rapids and cutting apart, feeds as a further view; and its scripts.
 struct ProgramCard {

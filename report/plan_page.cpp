@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "plan/joined_runs.h"
 #include "report/page_tables.h"
@@ -14,7 +14,6 @@
 namespace camber::report {
 namespace {
 
-using nlohmann::ordered_json;
 using plan::PlannedDivision;
 using plan::SetupPlan;
 
@@ -22,11 +21,11 @@ constexpr std::size_t kMostTriangles = 6000;
 
 double rounded(double v) { return std::round(1000 * v) / 1000; }
 
-ordered_json place_json(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
+Json place_json(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
 
 /// Boxes of a primitive: itself, or of a free-form one its cells.
-ordered_json boxes_json(const plan::Primitive& p, const plan::CellGrid& grid) {
-  ordered_json out = ordered_json::array();
+Json boxes_json(const plan::Primitive& p, const plan::CellGrid& grid) {
+  Json out = Json::array();
   const Vec3 size = p.max_mm - p.min_mm;
   double cells = 0;
   for (const plan::CellIndex& c : p.cells) cells += grid.volume_mm3(c);
@@ -37,8 +36,8 @@ ordered_json boxes_json(const plan::Primitive& p, const plan::CellGrid& grid) {
   return out;
 }
 
-ordered_json primitives_json(const PlannedDivision& p, const plan::CellGrid& grid) {
-  ordered_json out = ordered_json::array();
+Json primitives_json(const PlannedDivision& p, const plan::CellGrid& grid) {
+  Json out = Json::array();
   for (const plan::Step& step : p.order.steps) {
     const plan::Primitive& of = p.primitives[step.primitive];
     const Vec3 size = of.max_mm - of.min_mm;
@@ -53,17 +52,17 @@ ordered_json primitives_json(const PlannedDivision& p, const plan::CellGrid& gri
 }
 
 std::string view_data(const SetupPlan& s) {
-  ordered_json j;
+  Json j;
   j["low"] = place_json(s.removal.blank_bounds.min_mm);
   j["high"] = place_json(s.removal.blank_bounds.max_mm);
   j["best"] = s.best;
-  j["points"] = ordered_json::array();
-  j["part"] = ordered_json::array();
+  j["points"] = Json::array();
+  j["part"] = Json::array();
   if (s.part.triangles.size() <= kMostTriangles) {
     for (const Vec3& p : s.part.points) j["points"].push_back(place_json(p));
     for (const plan::Triangle& t : s.part.triangles) j["part"].push_back({t[0], t[1], t[2]});
   }
-  j["plans"] = ordered_json::array();
+  j["plans"] = Json::array();
   for (const PlannedDivision& p : s.plans) j["plans"].push_back({{"primitives", primitives_json(p, s.removal.grid)}});
   return script_safe(j.dump());
 }

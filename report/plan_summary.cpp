@@ -5,15 +5,14 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "plan/joined_runs.h"
 #include "report/summary.h"
 
 namespace camber::report {
 
-using nlohmann::ordered_json;
 using plan::Operation;
 using plan::PlannedDivision;
 using plan::SetupPlan;
@@ -23,34 +22,34 @@ namespace {
 std::string_view word(plan::Pattern p) { return plan::kPatterns[static_cast<std::size_t>(p)]; }
 std::string_view word(plan::OperationKind k) { return plan::kOperationKinds[static_cast<std::size_t>(k)]; }
 
-ordered_json corner(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+Json corner(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-ordered_json operation_json(const Operation& o) {
+Json operation_json(const Operation& o) {
   const plan::Conditions& c = o.conditions;
-  ordered_json j{{"primitive", o.primitive},
-                 {"tool", o.tool},
-                 {"feature", plan::to_string(o.feature)},
-                 {"kind", word(o.kind)},
-                 {"mode", word(o.pattern)},
-                 {"S", c.spindle_rpm},
-                 {"F", c.feed_mm_per_min},
-                 {"radial_mm", c.radial_mm},
-                 {"axial_mm", c.axial_mm},
-                 {"allowance_mm", o.allowance_mm},
-                 {"nominal_time_s", o.nominal_time_s},
-                 {"volume_mm3", o.volume_mm3},
-                 {"limit", c.limit},
-                 {"force_N", c.loads.force_N},
-                 {"deflection_um", 1000 * c.loads.deflection_mm},
-                 {"form_error_um", 1000 * c.loads.form_error_mm},
-                 {"power_W", c.loads.power_W}};
+  Json j{{"primitive", o.primitive},
+         {"tool", o.tool},
+         {"feature", plan::to_string(o.feature)},
+         {"kind", word(o.kind)},
+         {"mode", word(o.pattern)},
+         {"S", c.spindle_rpm},
+         {"F", c.feed_mm_per_min},
+         {"radial_mm", c.radial_mm},
+         {"axial_mm", c.axial_mm},
+         {"allowance_mm", o.allowance_mm},
+         {"nominal_time_s", o.nominal_time_s},
+         {"volume_mm3", o.volume_mm3},
+         {"limit", c.limit},
+         {"force_N", c.loads.force_N},
+         {"deflection_um", 1000 * c.loads.deflection_mm},
+         {"form_error_um", 1000 * c.loads.form_error_mm},
+         {"power_W", c.loads.power_W}};
   if (o.joined) j["joined"] = true;
   if (o.time_s > 0) j["time_s"] = o.time_s;
   j["notes"] = o.notes;
   return j;
 }
 
-ordered_json primitive_json(const PlannedDivision& p, std::size_t number) {
+Json primitive_json(const PlannedDivision& p, std::size_t number) {
   const plan::Step& step = p.order.steps[number];
   const plan::Primitive& of = p.primitives[step.primitive];
   return {{"primitive", number + 1},      {"feature", plan::to_string(step.feature)},
@@ -59,32 +58,32 @@ ordered_json primitive_json(const PlannedDivision& p, std::size_t number) {
           {"width_mm", step.width_mm}};
 }
 
-ordered_json plan_row(const PlannedDivision& p) {
-  ordered_json j{{"division", plan::to_string(p.division)}, {"nominal_time_s", p.nominal_time_s},
-                 {"tool_changes", p.tool_changes},          {"form_error_p95_um", 1000 * p.form_error_p95_mm},
-                 {"primitives", p.primitives.size()},       {"complete", p.complete()}};
+Json plan_row(const PlannedDivision& p) {
+  Json j{{"division", plan::to_string(p.division)}, {"nominal_time_s", p.nominal_time_s},
+         {"tool_changes", p.tool_changes},          {"form_error_p95_um", 1000 * p.form_error_p95_mm},
+         {"primitives", p.primitives.size()},       {"complete", p.complete()}};
   if (p.program) {
     j["time_s"] = p.program->time_s;
     j["removed_mm3"] = p.program->removed_mm3;
     j["left_um"] = {{"p95", p.program->left_p95_um}, {"max", p.program->left_max_um}};
     j["gouge_um"] = p.program->gouge_um;
   }
-  j["unmachined"] = ordered_json::array();
+  j["unmachined"] = Json::array();
   for (const plan::Unmachined& u : p.unmachined) j["unmachined"].push_back({{"what", u.what}, {"reason", u.reason}});
   return j;
 }
 
-ordered_json setup_json(const SetupPlan& s) {
+Json setup_json(const SetupPlan& s) {
   const PlannedDivision& best = s.plans[s.best];
-  ordered_json j{{"name", s.setup.name},
-                 {"removal_mm3", s.removal.cells_mm3 + s.removal.holes_mm3},
-                 {"balance", s.removal.balance()},
-                 {"best", s.best}};
-  j["plans"] = ordered_json::array();
+  Json j{{"name", s.setup.name},
+         {"removal_mm3", s.removal.cells_mm3 + s.removal.holes_mm3},
+         {"balance", s.removal.balance()},
+         {"best", s.best}};
+  j["plans"] = Json::array();
   for (const PlannedDivision& p : s.plans) j["plans"].push_back(plan_row(p));
-  j["primitives"] = ordered_json::array();
+  j["primitives"] = Json::array();
   for (std::size_t i = 0; i < best.order.steps.size(); ++i) j["primitives"].push_back(primitive_json(best, i));
-  j["operations"] = ordered_json::array();
+  j["operations"] = Json::array();
   for (const Operation& o : best.operations) j["operations"].push_back(operation_json(o));
   return j;
 }
@@ -133,14 +132,14 @@ std::string plans_text(const SetupPlan& s) {
 }  // namespace
 
 std::string plan_json(const plan::PlanInput&, const plan::PlanResult& result, double compute_s) {
-  ordered_json j;
+  Json j;
   j["schema_version"] = kSchemaVersion;
   j["removal_mm3"] = result.removal_mm3;
   const SetupPlan& first = result.setups.front();
-  const ordered_json of_first = setup_json(first);
+  Json of_first = setup_json(first);
   j["plans"] = of_first["plans"];
-  j["operations"] = ordered_json::array();
-  j["setups"] = ordered_json::array();
+  j["operations"] = Json::array();
+  j["setups"] = Json::array();
   for (const SetupPlan& s : result.setups) {
     j["setups"].push_back(setup_json(s));
     for (const Operation& o : s.plans[s.best].operations) j["operations"].push_back(operation_json(o));

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "report/decimate.h"
 #include "report/packed_arrays.h"
@@ -15,8 +15,6 @@
 
 namespace camber::report {
 namespace {
-
-using nlohmann::json;
 
 constexpr double kWidth = 560, kHeight = 250, kLeft = 44, kRight = 10, kTop = 26, kBottom = 40;
 
@@ -105,8 +103,8 @@ std::string rewrite_page(const RewritePage& page) {
     if (!note.empty()) notes.push_back(note);
   out += list_html("Notes", "notes", notes) + "</div>\n</main>\n";
   PackedArrays arrays;
-  json index = {
-      {"paths", json::array({picture_json(arrays, page.before, "before"), picture_json(arrays, page.after, "after")})}};
+  Json index = {
+      {"paths", Json::array({picture_json(arrays, page.before, "before"), picture_json(arrays, page.after, "after")})}};
   if (page.measured_deviation_mm > 0)
     index["worst"] = {page.worst_place_mm.x(), page.worst_place_mm.y(), page.worst_place_mm.z()};
   if (!page.part.points.empty()) index["part"] = picture_json(arrays, page.part, "part");

@@ -8,15 +8,13 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "report/figure_rows.h"
 #include "simulate/verdict.h"
 
 namespace camber::report {
 namespace {
-
-using nlohmann::ordered_json;
 
 /// Area-weighted figures of |total error| against the mesh.
 removal::ErrorFigures total_error(const simulate::Prediction& p) {
@@ -29,16 +27,16 @@ removal::ErrorFigures total_error(const simulate::Prediction& p) {
 }
 
 /// Percentiles of the signed error and its histogram, by area.
-ordered_json spread(const removal::ErrorSpread& s) {
-  ordered_json percentiles = ordered_json::object();
+Json spread(const removal::ErrorSpread& s) {
+  Json percentiles = Json::object();
   for (std::size_t i = 0; i < s.kFractions.size(); ++i)
     percentiles[fmt::format("p{:02.0f}", 100 * s.kFractions[i])] = s.percentile[i];
   return {{"percentiles", percentiles},
           {"histogram", {{"from", s.bin_from}, {"width", s.bin_width}, {"area_mm2", s.bin_area_mm2}}}};
 }
 
-ordered_json form_error(const simulate::Prediction& p) {
-  ordered_json j = figures_json(p.form_error_um);
+Json form_error(const simulate::Prediction& p) {
+  Json j = figures_json(p.form_error_um);
   std::vector<double> um, area;
   for (const auto& point : p.surface) {
     um.push_back(1000 * point.error_mm);
@@ -80,7 +78,7 @@ SpindleFigures spindle_figures(const simulate::SimulatedProgram& program, const 
   return out;
 }
 
-ordered_json holes(const simulate::HoleFigures& h) {
+Json holes(const simulate::HoleFigures& h) {
   return {{"drilled", h.count.drilled},
           {"tapped", h.count.tapped},
           {"drilled_mm3", h.drilled_mm3},
@@ -151,7 +149,7 @@ std::vector<std::size_t> unsettled_lines(const simulate::SimulatedProgram& progr
 namespace {
 
 /// Why there are no figures; those that there would be are null.
-void leave_out_figures(const simulate::SimulatedProgram& program, const simulate::Prediction& p, ordered_json& j) {
+void leave_out_figures(const simulate::SimulatedProgram& program, const simulate::Prediction& p, Json& j) {
   j["force_N"]["max"] = nullptr;
   j["torque_Nm"]["max"] = nullptr;
   j["power_W"] = {{"max", nullptr}, {"mean", nullptr}};
@@ -183,7 +181,7 @@ double simulated_time_s(std::span<const removal::Stamp> stamps) {
 
 namespace {
 
-ordered_json traced_json(const simulate::TracedRun& t) {
+Json traced_json(const simulate::TracedRun& t) {
   return {{"file", t.trace},
           {"matched_by", t.by_line ? "line" : "place"},
           {"samples", t.samples.size()},
@@ -208,7 +206,7 @@ std::string traced_text(const simulate::TracedRun& t) {
 
 std::string predict_json(const simulate::SimulatedProgram& program, const simulate::Prediction& p, double compute_s,
                          const simulate::TracedRun* traced, const std::vector<std::string>& doubts) {
-  ordered_json j;
+  Json j;
   j["schema_version"] = kSchemaVersion;
   j["machine_time_s"] = program.feed.time_s;
   j["cutting_time_s"] = program.feed.cutting_time_s;

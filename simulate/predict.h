@@ -19,7 +19,6 @@
 #include "simulate/holes.h"
 #include "simulate/memory.h"
 #include "simulate/rotary_motion.h"
-#include "simulate/setup_checks.h"
 
 namespace camber::simulate {
 
@@ -162,14 +161,6 @@ struct PathLoads {
 };
 PathLoads predict_loads(const machine::Job& job, const removal::Stock& blank, const SimulatedProgram& program,
                         const LoadOptions& options);
-
-/// What a prediction of the program in this stock needs. Error [voxel-memory], as check_memory(). Requires a program
-/// that is timed.
-MemoryEstimate check_memory_of(const machine::Job& job, const SimulatedProgram& program, const machine::Box& stock,
-                               Diagnostics& diagnostics);
-
-/// Where the tools of a program go that cut, beside the job's stock.
-Places places_of(const machine::Job& job, const SimulatedProgram& program, const machine::Box& stock);
 
 /// Sample spacing along the profile for chips and forces: a hundredth of the diameter, 0.02 to 0.1 mm, with a lag of
 /// the edge of at most a degree; or the job's value.

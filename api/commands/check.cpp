@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 #include "api/commands/predict.h"
 #include "api/commands/rotary_program.h"
+#include "base/json.h"
 #include "checks/plausibility.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/fitted_range.h"
@@ -20,8 +19,6 @@
 namespace camber::api {
 namespace {
 
-using nlohmann::ordered_json;
-
 nc::InterpreterOptions options_of(nc::InterpreterOptions options, const machine::Machine* machine,
                                   const machine::Job* job) {
   if (job && !options.inch) options.inch = job->inch;
@@ -30,17 +27,17 @@ nc::InterpreterOptions options_of(nc::InterpreterOptions options, const machine:
   return feedmodel::interpreter_options(*machine, options);
 }
 
-ordered_json extents_json(const nc::Extents& e) {
+Json extents_json(const nc::Extents& e) {
   if (e.empty()) return nullptr;
   return {{"min", {e.min_mm.x(), e.min_mm.y(), e.min_mm.z()}}, {"max", {e.max_mm.x(), e.max_mm.y(), e.max_mm.z()}}};
 }
 
-ordered_json range_json(const nc::Range& r) {
+Json range_json(const nc::Range& r) {
   if (r.empty()) return nullptr;
   return {{"min", r.min}, {"max", r.max}};
 }
 
-ordered_json tool_json(const nc::ToolUse& t) {
+Json tool_json(const nc::ToolUse& t) {
   return {{"tool", t.tool},
           {"line", t.line},
           {"calls", t.calls},
@@ -52,7 +49,7 @@ ordered_json tool_json(const nc::ToolUse& t) {
           {"cutting_extents_mm", extents_json(t.cutting)}};
 }
 
-ordered_json diagnostic_json(const Diagnostic& d) {
+Json diagnostic_json(const Diagnostic& d) {
   return {{"severity", d.severity == Severity::error ? "error" : "warning"},
           {"file", d.location.file},
           {"line", d.location.line},
@@ -157,41 +154,41 @@ CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptio
 std::string check_json(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics,
                        std::optional<double> memory_bytes,
                        const std::vector<kinematics::FeedMeaningUse>& feed_meanings) {
-  ordered_json tools = ordered_json::array(), found = ordered_json::array();
+  Json tools = Json::array(), found = Json::array();
   for (const auto& t : s.tools) tools.push_back(tool_json(t));
   for (const auto& d : diagnostics.all()) found.push_back(diagnostic_json(d));
-  ordered_json report = {{"program", program},
-                         {"blocks", s.blocks},
-                         {"blocks_with_words", s.blocks_with_words},
-                         {"unit", unit_text(s)},
-                         {"moves",
-                          {{"rapid", s.rapids},
-                           {"linear", s.lines},
-                           {"arc", s.arcs},
-                           {"dwell", s.dwells},
-                           {"canned", s.canned},
-                           {"cutter_radius", s.cutter_radius},
-                           {"high_speed_contouring", s.high_speed_contouring},
-                           {"rotary", s.rotary},
-                           {"tip_control", s.tip_control},
-                           {"tilted_frame", s.tilted_frame},
-                           {"dynamic_offset", s.dynamic_offset},
-                           {"reference", s.reference}}},
-                         {"cutting_length_mm", s.cutting_length_mm},
-                         {"rapid_length_mm", s.rapid_length_mm},
-                         {"dwell_s", s.dwell_s},
-                         {"cutting_extents_mm", extents_json(s.cutting)},
-                         {"rapid_extents_mm", extents_json(s.rapid)},
-                         {"tools", tools},
-                         {"warnings", diagnostics.warnings()},
-                         {"diagnostics", found}};
+  Json report = {{"program", program},
+                 {"blocks", s.blocks},
+                 {"blocks_with_words", s.blocks_with_words},
+                 {"unit", unit_text(s)},
+                 {"moves",
+                  {{"rapid", s.rapids},
+                   {"linear", s.lines},
+                   {"arc", s.arcs},
+                   {"dwell", s.dwells},
+                   {"canned", s.canned},
+                   {"cutter_radius", s.cutter_radius},
+                   {"high_speed_contouring", s.high_speed_contouring},
+                   {"rotary", s.rotary},
+                   {"tip_control", s.tip_control},
+                   {"tilted_frame", s.tilted_frame},
+                   {"dynamic_offset", s.dynamic_offset},
+                   {"reference", s.reference}}},
+                 {"cutting_length_mm", s.cutting_length_mm},
+                 {"rapid_length_mm", s.rapid_length_mm},
+                 {"dwell_s", s.dwell_s},
+                 {"cutting_extents_mm", extents_json(s.cutting)},
+                 {"rapid_extents_mm", extents_json(s.rapid)},
+                 {"tools", tools},
+                 {"warnings", diagnostics.warnings()},
+                 {"diagnostics", found}};
   for (const kinematics::FeedMeaningUse& use : feed_meanings)
     report["feed_meanings"].push_back(
         {{"meaning", kinematics::kFeedMeaningTexts[static_cast<std::size_t>(use.meaning)].name},
          {"moves", use.moves},
          {"first_line", use.first_line}});
   if (memory_bytes) report["memory_GB"] = *memory_bytes / 1e9;
-  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return report.dump(2) + "\n";
 }
 
 }  // namespace camber::api

@@ -1,14 +1,11 @@
 #include "api/commands/explain_kinematics.h"
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "machine/job.h"
 #include "machine/toml_table.h"
 
 namespace camber::api {
 namespace {
-
-using nlohmann::ordered_json;
 
 machine::Machine machine_of(const std::string& path, Diagnostics& found) {
   const auto file = machine::read_toml(path, "a machine description or a job", found);
@@ -33,16 +30,15 @@ ExplainedKinematics explain_kinematics(const std::string& path, Diagnostics& fou
 
 std::string explained_kinematics_json(const ExplainedKinematics& explained) {
   const kinematics::Explanation& e = explained.explanation;
-  ordered_json axes = ordered_json::array();
+  Json axes = Json::array();
   for (const kinematics::AxisExplanation& axis : e.axes)
     axes.push_back({{"axis", std::string(1, axis.letter)},
                     {"axis_type", axis.rotary ? "rotary" : "linear"},
                     {"carried_by", axis.table ? "table" : "head"},
                     {"positive", axis.motion},
                     {"limits", axis.limits}});
-  const ordered_json report = {
-      {"machine", explained.machine}, {"machine_type", e.type}, {"axes", axes}, {"reach", e.reach}};
-  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  const Json report = {{"machine", explained.machine}, {"machine_type", e.type}, {"axes", axes}, {"reach", e.reach}};
+  return report.dump(2) + "\n";
 }
 
 }  // namespace camber::api

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "api/commands/rotary_program.h"
+#include "base/json.h"
 #include "base/units.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
@@ -51,8 +51,7 @@ std::string contour_text(const feedmodel::PoseContourFigures& contour) {
 }
 
 std::string feed_json(const feedmodel::FeedSummary& summary) {
-  nlohmann::ordered_json report = {
-      {"time_s", summary.time_s}, {"cutting_time_s", summary.cutting_time_s}, {"blocks", summary.blocks}};
+  Json report = {{"time_s", summary.time_s}, {"cutting_time_s", summary.cutting_time_s}, {"blocks", summary.blocks}};
   if (summary.contour) {
     const feedmodel::PoseContourFigures& c = *summary.contour;
     report["contour"] = {{"tip_max_um", 1000 * c.tip_max_mm},

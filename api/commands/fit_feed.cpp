@@ -5,9 +5,9 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "api/commands/rotary_program.h"
+#include "base/json.h"
 #include "calib/column_map.h"
 #include "calib/fit_drive.h"
 #include "calib/machine_log.h"
@@ -17,7 +17,6 @@ namespace camber::api {
 namespace {
 
 using calib::FitFeedResult;
-using nlohmann::ordered_json;
 
 /// What a trace file holds shows in its content.
 enum class TraceKind { servo, machine_log, stretch_table };
@@ -60,36 +59,36 @@ nc::Interpretation moves_of(const TracedProgram& traced, const machine::Machine&
 }
 
 /// JSON has no infinity.
-ordered_json number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-ordered_json error_json(const calib::FitError& e) {
+Json error_json(const calib::FitError& e) {
   return {{"parts", e.parts},
           {"part_time_percent", e.part_time_percent},
           {"speed_rms_percent", e.speed_rms_percent},
           {"speed_p95_percent", e.speed_p95_percent}};
 }
 
-ordered_json parameters_json(const std::vector<calib::FitParameter>& parameters) {
-  ordered_json list = ordered_json::array();
+Json parameters_json(const std::vector<calib::FitParameter>& parameters) {
+  Json list = Json::array();
   for (const calib::FitParameter& p : parameters)
     list.push_back({{"name", p.name},
                     {"value", number(p.value)},
                     {"unit", p.unit},
-                    {"std_error", p.std_error ? number(*p.std_error) : ordered_json(nullptr)},
+                    {"std_error", p.std_error ? number(*p.std_error) : Json(nullptr)},
                     {"written", p.written},
                     {"note", p.note}});
   return list;
 }
 
-ordered_json errors_json(const calib::StretchErrors& e) {
+Json errors_json(const calib::StretchErrors& e) {
   return {{"stretch_time_mean_percent", e.mean},
           {"stretch_time_p90_percent", e.p90},
           {"stretch_time_worst_percent", e.worst},
           {"total_time_percent", e.total}};
 }
 
-ordered_json report_of(const calib::StretchFit& fit) {
-  ordered_json report;
+Json report_of(const calib::StretchFit& fit) {
+  Json report;
   report["parameters"] = parameters_json(fit.parameters);
   report["held_out"] = errors_json(fit.held_out);
   report["held_out"]["stretches"] = fit.stretches.size();
@@ -117,8 +116,8 @@ ordered_json report_of(const calib::StretchFit& fit) {
   return report;
 }
 
-ordered_json report_of(const FitFeedResult& result) {
-  ordered_json report;
+Json report_of(const FitFeedResult& result) {
+  Json report;
   report["parameters"] = parameters_json(result.parameters);
   report["held_out"] = error_json(result.held_out);
   report["fitted"] = error_json(result.fitted);

@@ -3,17 +3,15 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "api/commands/new_program.h"
 #include "api/commands/rotary_program.h"
+#include "base/json.h"
 #include "base/numbers.h"
 #include "base/units.h"
 
 namespace camber::api {
 namespace {
-
-using nlohmann::ordered_json;
 
 constexpr int kSamples = 16;  ///< of each piece
 
@@ -81,9 +79,9 @@ std::string post_text(const PostedProgram& program) {
 std::string post_json(const PostedProgram& program, const PostRequest& request) {
   const repath::Posted& p = program.posted;
   const repath::PostDeviation& d = program.deviation;
-  ordered_json back = ordered_json::array();
+  Json back = Json::array();
   for (const repath::TurnBack& t : p.turns_back) {
-    ordered_json from, to;
+    Json from, to;
     for (int i = 0; i < 3; ++i)
       if (t.from_rad[i] != t.to_rad[i]) {
         const std::string axis(1, "abc"[i]);
@@ -92,29 +90,29 @@ std::string post_json(const PostedProgram& program, const PostRequest& request) 
       }
     back.push_back({{"in_air", t.in_air}, {"from_deg", from}, {"to_deg", to}, {"retract_mm", t.retract_mm}});
   }
-  const ordered_json report = {{"target", request.options.target == repath::PostTarget::tcp ? "tcp" : "joints"},
-                               {"tolerance_mm", request.options.tolerance_mm},
-                               {"rapid_tolerance_mm", request.options.rapid_tolerance_mm},
-                               {"inverse_time", request.options.inverse_time},
-                               {"rule", request.options.one_degree ? "one-degree" : "tolerance"},
-                               {"blocks_before", program.blocks_before},
-                               {"blocks_after", program.blocks_after},
-                               {"moves", p.moves},
-                               {"feed_moves", p.feed_moves},
-                               {"feed_blocks", p.feed_blocks},
-                               {"one_degree_blocks", p.one_degree_blocks},
-                               {"tip_bound_mm", p.tip_bound_mm},
-                               {"rapid_tip_bound_mm", p.rapid_bound_mm},
-                               {"one_degree_tip_bound_mm", p.one_degree_bound_mm},
-                               {"axis_bound_deg", deg_from_rad(p.axis_bound_rad)},
-                               {"sampled",
-                                {{"samples", d.samples},
-                                 {"tip_mm", d.tip_mm},
-                                 {"rapid_tip_mm", d.rapid_tip_mm},
-                                 {"axis_deg", deg_from_rad(d.axis_rad)},
-                                 {"end_tip_mm", d.end_tip_mm},
-                                 {"end_axis_deg", deg_from_rad(d.end_axis_rad)}}},
-                               {"turns_back", back}};
+  const Json report = {{"target", request.options.target == repath::PostTarget::tcp ? "tcp" : "joints"},
+                       {"tolerance_mm", request.options.tolerance_mm},
+                       {"rapid_tolerance_mm", request.options.rapid_tolerance_mm},
+                       {"inverse_time", request.options.inverse_time},
+                       {"rule", request.options.one_degree ? "one-degree" : "tolerance"},
+                       {"blocks_before", program.blocks_before},
+                       {"blocks_after", program.blocks_after},
+                       {"moves", p.moves},
+                       {"feed_moves", p.feed_moves},
+                       {"feed_blocks", p.feed_blocks},
+                       {"one_degree_blocks", p.one_degree_blocks},
+                       {"tip_bound_mm", p.tip_bound_mm},
+                       {"rapid_tip_bound_mm", p.rapid_bound_mm},
+                       {"one_degree_tip_bound_mm", p.one_degree_bound_mm},
+                       {"axis_bound_deg", deg_from_rad(p.axis_bound_rad)},
+                       {"sampled",
+                        {{"samples", d.samples},
+                         {"tip_mm", d.tip_mm},
+                         {"rapid_tip_mm", d.rapid_tip_mm},
+                         {"axis_deg", deg_from_rad(d.axis_rad)},
+                         {"end_tip_mm", d.end_tip_mm},
+                         {"end_axis_deg", deg_from_rad(d.end_axis_rad)}}},
+                       {"turns_back", back}};
   return report.dump(2) + "\n";
 }
 

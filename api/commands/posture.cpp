@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
-#include <nlohmann/json.hpp>
 
 #include "api/commands/new_program.h"
 #include "api/commands/rotary_program.h"
+#include "base/json.h"
 #include "base/units.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
@@ -18,8 +18,6 @@
 
 namespace camber::api {
 namespace {
-
-using nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 4> kModes{"chosen", "normal", "lead-tilt", "seed"};
 constexpr std::array<std::string_view, 4> kWritten{"tip", "tilted", "dynamic", "joints"};
@@ -90,7 +88,7 @@ std::size_t least_error(const std::vector<PosturedProgram>& rows) {
   return static_cast<std::size_t>(std::ranges::min_element(rows, {}, error_um) - rows.begin());
 }
 
-ordered_json figures_json(const PosturedProgram& program) {
+Json figures_json(const PosturedProgram& program) {
   const posture::PostureFigures& f = program.postured.figures;
   return {{"overhang_mm", f.overhang_mm},
           {"points", f.points},
@@ -201,7 +199,7 @@ std::string overhang_text(const PosturedOverhangs& overhangs) {
 
 std::string posture_json(const PosturedOverhangs& overhangs, const PostureCommand& command) {
   const PosturedProgram& program = overhangs.program();
-  ordered_json report = figures_json(program);
+  Json report = figures_json(program);
   report["mode"] = kModes[static_cast<std::size_t>(command.options.mode)];
   if (command.options.indexed) {
     report["mode"] = "indexed";

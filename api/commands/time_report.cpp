@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "base/json.h"
 #include "base/numbers.h"
 #include "base/units.h"
 
@@ -16,7 +16,6 @@ using calib::TimePair;
 using feedmodel::CycleTime;
 using feedmodel::CycleUse;
 using feedmodel::kCycleKinds;
-using nlohmann::ordered_json;
 
 constexpr std::size_t kMaxPartsShown = 8;
 
@@ -111,10 +110,10 @@ std::string accuracy_text(const calib::CycleAccuracy& a) {
 // --- JSON ------------------------------------------------------------------------------------------------------
 
 /// JSON has no infinity.
-ordered_json number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-ordered_json use_json(const CycleUse& use) {
-  ordered_json out;
+Json use_json(const CycleUse& use) {
+  Json out;
   for (const auto& kind : kCycleKinds) out[std::string(kind.key)] = use.time.*kind.field;
   out["total_s"] = use.time.total_s();
   out["tool_changes"] = use.tool_changes;
@@ -129,39 +128,39 @@ ordered_json use_json(const CycleUse& use) {
   return out;
 }
 
-ordered_json histogram_json(const feedmodel::DistanceHistogram& h) {
+Json histogram_json(const feedmodel::DistanceHistogram& h) {
   return {{"up_to_mm", h.edges_mm}, {"counts", h.counts}, {"moves", h.moves}, {"length_mm", h.length_mm}};
 }
 
-ordered_json time_of(const CycleTime& time) {
-  ordered_json out = use_json(time.all);
+Json time_of(const CycleTime& time) {
+  Json out = use_json(time.all);
   out["dominant"] = std::string(feedmodel::dominant_kind(time.all.time).key);
   out["speed_changes"] = time.speed_changes;
   out["positionings_below_full_rapid"] = time.below_full_rapid;
   out["unplaced_moves"] = time.unplaced_moves;
   out["distances"] = {{"g00", histogram_json(time.g00)}, {"g01", histogram_json(time.g01)}};
-  out["tools"] = ordered_json::array();
+  out["tools"] = Json::array();
   for (const CycleUse& use : time.tools) {
-    ordered_json tool = {{"tool", use.tool}};
+    Json tool = {{"tool", use.tool}};
     tool.update(use_json(use));
     out["tools"].push_back(tool);
   }
   return out;
 }
 
-ordered_json pair_json(const TimePair& pair) {
+Json pair_json(const TimePair& pair) {
   return {{"measured_s", pair.measured_s}, {"predicted_s", pair.predicted_s}, {"error_percent", pair.error_percent()}};
 }
 
-ordered_json accuracy_json(const calib::CycleAccuracy& a) {
-  ordered_json out = {{"total", pair_json(a.total)}};
+Json accuracy_json(const calib::CycleAccuracy& a) {
+  Json out = {{"total", pair_json(a.total)}};
   if (!a.has_lines) return out;
   out["cutting"] = pair_json(a.cutting);
   out["positioning"] = pair_json(a.positioning);
   out["dwell"] = pair_json(a.dwell);
-  out["parts"] = ordered_json::array();
+  out["parts"] = Json::array();
   for (const auto& part : a.parts) {
-    ordered_json row = {{"line_first", part.line_first}, {"line_last", part.line_last}};
+    Json row = {{"line_first", part.line_first}, {"line_last", part.line_last}};
     row.update(pair_json(part.time));
     out["parts"].push_back(row);
   }
@@ -185,13 +184,13 @@ std::string time_text(const TimeReport& report) {
 }
 
 std::string time_json(const TimeReport& report) {
-  ordered_json out = {{"program", report.program}, {"machine", report.machine}};
+  Json out = {{"program", report.program}, {"machine", report.machine}};
   out.update(time_of(report.rows.front().time));
   if (report.accuracy) out["trace"] = accuracy_json(*report.accuracy);
   if (report.rows.size() > 1 || !report.keys.empty()) {
-    ordered_json rows = ordered_json::array();
+    Json rows = Json::array();
     for (const auto& row : report.rows) {
-      ordered_json one = {{"name", row.name}};
+      Json one = {{"name", row.name}};
       for (std::size_t k = 0; k < report.keys.size(); ++k) one["values"][report.keys[k]] = row.values[k];
       one.update(time_of(row.time));
       rows.push_back(one);
@@ -199,7 +198,7 @@ std::string time_json(const TimeReport& report) {
     out[report.keys.empty() ? "cases" : "sweep"] = rows;
   }
   out["notes"] = report.notes;
-  return out.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return out.dump(2) + "\n";
 }
 
 }  // namespace camber::api

@@ -89,7 +89,7 @@ def main():
     def numbers(text):
         return [float(n) for n in text.split(",")]
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("camber", nargs="?", default=os.path.join(HERE, "../../build/dev/camber"))
+    parser.add_argument("camber", nargs="?", default=os.path.join(HERE, "../../build/release/camber"))
     parser.add_argument("--leads", type=numbers, default=[-30, -10, 0, 10, 30])
     parser.add_argument("--tilts", type=numbers, default=[0, 15, 30])
     arguments = parser.parse_args()

@@ -1,7 +1,7 @@
 // Rotation tells all: stock, path and axis of an upright cut, turned together by every lead and tilt of -40 to 40
 // degrees, against that cut. Static coupling. Prints the differences of each cutter's worst case.
 //
-//     build/dev/bench/rotation_grid [STEP_DEG [CUTTER [VOXEL_MM]]]
+//     build/release/bench/rotation_grid [STEP_DEG [CUTTER [VOXEL_MM]]]
 //
 // Default: steps of 20 degrees, all cutters, voxels of 0.1 mm.
 #include <algorithm>
