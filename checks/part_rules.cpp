@@ -70,7 +70,11 @@ void look_at_part_in_stock(const Evidence& e, Diagnostics& diagnostics) {
       if (from.x() < 1 || from.y() < 1) continue;
       const auto column = static_cast<std::size_t>(from.x()), row = static_cast<std::size_t>(from.y());
       if (column + 1 >= stock->columns() || row + 1 >= stock->rows()) continue;
-      const double out = part.at(i, j) - stock->at(column, row);
+      // Between the cells of steep sides.
+      double top = stock->at(column, row);
+      for (std::size_t r = row - 1; r <= row + 1; ++r)
+        for (std::size_t c = column - 1; c <= column + 1; ++c) top = std::max(top, stock->at(c, r));
+      const double out = part.at(i, j) - top;
       if (out > most) most = out, where = p;
     }
   if (most <= kOut_mm) return;
