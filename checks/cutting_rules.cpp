@@ -8,6 +8,7 @@
 #include "checks/rules.h"
 #include "deflection/beam.h"
 #include "machine/force_law.h"
+#include "simulate/setup_checks.h"
 
 namespace camber::checks {
 namespace {
@@ -82,7 +83,7 @@ void look_at_speed(const Evidence& e, Diagnostics& diagnostics) {
 void look_at_depth(const Evidence& e, Diagnostics& diagnostics) {
   constexpr double kSlot = 0.7;                 // of the diameter, and wider
   constexpr double kDeepSlot = 3, kDeepSide = 8;  // diameters
-  constexpr double kFraction = 0.02;            // of the tool's way in material
+  constexpr double kFraction = 0.15;              // of the tool's way in material
   if (!e.survey) return;
   const nc::Interpretation& moves = e.program.moves;
   for (const ToolWork& work : e.tools) {
@@ -123,7 +124,7 @@ void look_at_power(const Evidence& e, Diagnostics& diagnostics) {
                                             "(depth of the cut, [material], F?)",
                                             work.number, power / 1000, motor / 1000),
                                 "cut-power"));
-    else if (bend > kBroken * work.tool->diameter_mm)
+    else if (bend > kBroken * work.tool->diameter_mm && simulate::slenderness(*work.tool) <= simulate::kMaxSlenderness)
       diagnostics.add(e.at_move(
           Severity::error, work.deepest_move,
           fmt::format("T{} would bend by {:.2g} mm under the mean force of its chips, {:.3g} N, and break; a cut that a "

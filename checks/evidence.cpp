@@ -85,6 +85,7 @@ std::vector<ToolWork> tool_works(const Evidence& e) {
         ++work.holes;
         continue;
       }
+      work.mills = true;
       add_motion(moves, m, work);
       if (!e.survey) continue;
       const simulate::MoveCut& cut = e.survey->moves[i];
@@ -121,6 +122,28 @@ Evidence::Evidence(const machine::Job& of_job, const simulate::SimulatedProgram&
     survey = simulate::survey_heights(job, program, {.cell_mm = cell, .tolerance_mm = cell});
   }
   tools = tool_works(*this);
+}
+
+namespace {
+
+const simulate::SimulatedProgram& no_program() {
+  static const simulate::SimulatedProgram none;
+  return none;
+}
+
+}  // namespace
+
+Evidence::Evidence(const machine::Job& of_job)
+    : job(of_job),
+      program(no_program()),
+      stock(simulate::stock_box(of_job)),
+      specific_force_MPa(specific_force(of_job.material)) {
+  for (const auto& [number, tool] : job.tools) {
+    ToolWork& work = tools.emplace_back();
+    work.number = number;
+    work.tool = &tool;
+    work.mills = tool.type != machine::ToolType::drill;
+  }
 }
 
 Diagnostic Evidence::at_job(Severity severity, std::string message, std::string check) const {

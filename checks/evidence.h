@@ -36,6 +36,7 @@ struct ToolWork {
   int number = 0;
   const machine::Tool* tool = nullptr;           ///< of the job
   const machine::ToolProposal* said = nullptr;   ///< of the program's comments; null: they do not name it
+  bool mills = false;
   std::uint32_t first_move = 0;                  ///< that cuts
   double milling_mm = 0;                         ///< length of its milling moves
   double level_mm = 0;                           ///< of this, at one height
@@ -60,6 +61,8 @@ struct Evidence {
   double specific_force_MPa = 0;            ///< tangential, of chips of 0.1 mm
 
   Evidence(const machine::Job& job, const simulate::SimulatedProgram& program);
+  /// Of a job whose program is yet to be made: all of its tools.
+  explicit Evidence(const machine::Job& job);
   Evidence(const Evidence&) = delete;
   Evidence& operator=(const Evidence&) = delete;
 

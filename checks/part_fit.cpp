@@ -61,8 +61,8 @@ double quantile(std::vector<double> values, double fraction) {
   return *at;
 }
 
-double gouging_of(const std::vector<PartFit::Place>& places) {
-  const auto count = std::ranges::count_if(places, [](const auto& p) { return p.clearance_mm < -kGouge_mm; });
+double gouging_of(const std::vector<PartFit::Place>& places, double depth_mm = kGouge_mm) {
+  const auto count = std::ranges::count_if(places, [&](const auto& p) { return p.clearance_mm < -depth_mm; });
   return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, places.size()));
 }
 
@@ -79,7 +79,7 @@ double misfit(const std::vector<PartFit::Place>& places) {
 std::optional<Vec3> find_shift(const removal::PartMesh& part, const Cutters& cutters,
                                const std::vector<PartFit::Place>& all) {
   constexpr std::size_t kUsed = 300;
-  constexpr double kStep_mm = 0.01, kBetter = 0.35, kLeast_mm = 0.1;
+  constexpr double kStep_mm = 0.01, kBetter = 0.35, kLeast_mm = 0.2;
   constexpr int kRounds = 12;
   std::vector<PartFit::Place> places;
   for (std::size_t i = 0; i < all.size(); i += std::max<std::size_t>(1, all.size() / kUsed)) places.push_back(all[i]);
@@ -167,9 +167,10 @@ PartFit fit_part(const machine::Job& job, const simulate::SimulatedProgram& prog
     if (-p.clearance_mm > out.gouge_mm) out.gouge_mm = -p.clearance_mm, out.gouge_move = p.move;
   }
   out.gouging = gouging_of(out.places);
+  out.cutting_in = gouging_of(out.places, kCutIn_mm);
   out.nearest_mm = quantile(clearances, 0.01);
   constexpr double kClear_mm = 0.3;
-  if (out.gouging > kGouging || out.nearest_mm > kClear_mm) out.shift_mm = find_shift(part, cutters, out.places);
+  if (out.gouging > kGouging || out.cutting_in > kCuttingIn || out.nearest_mm > kClear_mm) out.shift_mm = find_shift(part, cutters, out.places);
   return out;
 }
 

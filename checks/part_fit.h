@@ -37,6 +37,7 @@ struct PartFit {
   double gouge_mm = 0;             ///< deepest, positive
   std::uint32_t gouge_move = 0;    ///< where
   double gouging = 0;              ///< fraction of the places that cut into the part by more than kGouge_mm
+  double cutting_in = 0;           ///< by more than kCutIn_mm
   double nearest_mm = 0;           ///< clearance that a hundredth of the places stays below
   std::optional<Vec3> shift_mm{};  ///< of the part, with which path and part fit; where they do not fit without
 };
@@ -45,6 +46,10 @@ struct PartFit {
 inline constexpr double kGouge_mm = 0.15;
 /// Fraction of the places.
 inline constexpr double kGouging = 0.02;
+
+/// Less than a gouge, and too much for a path that only a shift makes fit.
+inline constexpr double kCutIn_mm = 0.04;
+inline constexpr double kCuttingIn = 0.05;
 
 /// Milling moves of the program against the part's mesh.
 PartFit fit_part(const machine::Job& job, const simulate::SimulatedProgram& program, const removal::PartMesh& part);

@@ -23,7 +23,7 @@ std::string shift_text(const Vec3& s) {
 }  // namespace
 
 void look_at_part(const Evidence& e, Diagnostics& diagnostics) {
-  if (e.job.part.mesh.empty()) return;
+  if (e.job.part.mesh.empty() || e.program.moves.moves.empty()) return;
   const removal::PartMesh part(e.job.part.mesh);
   if (e.stock) {
     const std::size_t before = diagnostics.errors();
@@ -34,12 +34,13 @@ void look_at_part(const Evidence& e, Diagnostics& diagnostics) {
   if (fit.places.empty()) return;
   constexpr double kClear_mm = 0.5;
   const std::string fits = fit.shift_mm ? fmt::format("; moved by {} they fit", shift_text(*fit.shift_mm)) : "";
-  if (fit.gouging > kGouging)
+  const bool shifted = fit.shift_mm && fit.cutting_in > kCuttingIn;
+  if (fit.gouging > kGouging || shifted)
     diagnostics.add(e.at_move(
         Severity::error, fit.gouge_move,
         fmt::format("the cutters cut into {} along {:.0f} % of their path, by up to {:.2f} mm here{}; a part that the "
                     "path leaves was expected (its place, its size, another part, another tool?)",
-                    e.job.part.mesh, 100 * fit.gouging, fit.gouge_mm, fits),
+                    e.job.part.mesh, 100 * std::max(fit.gouging, fit.cutting_in), fit.gouge_mm, fits),
         "part-place"));
   else if (fit.nearest_mm > kClear_mm)
     diagnostics.add(Diagnostic{

@@ -38,6 +38,11 @@ void check_plausibility(const machine::Job& job, const simulate::SimulatedProgra
   for (const Rule& rule : kRules) rule.look(evidence, diagnostics);
 }
 
+void check_job_values(const machine::Job& job, Diagnostics& diagnostics) {
+  const Evidence evidence(job);
+  for (const Rule& rule : kRules) rule.look(evidence, diagnostics);
+}
+
 void check_program(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics) {
   simulate::check_machine(job.machine, program.text, program.text_moves(), diagnostics);
   check_plausibility(job, program, diagnostics);

@@ -26,6 +26,9 @@ std::span<const Rule> rules();
 /// moves alone are needed (simulate::read_moves). Throws InputError where stock or part cannot be read.
 void check_plausibility(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics);
 
+/// The same of a job whose program is yet to be made (copy, resegment --part): its tools, material, stock and part.
+void check_job_values(const machine::Job& job, Diagnostics& diagnostics);
+
 /// What every command asks of a job's program before its work: whether the machine can run it
 /// (simulate/machine_checks.h), and whether the job is plausible.
 void check_program(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics);

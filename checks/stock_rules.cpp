@@ -69,10 +69,10 @@ void look_at_allowance(const Evidence& e, Diagnostics& diagnostics) {
   constexpr double kOfDiameter = 0.2, kMost_mm = 2, kLeast_mm = 0.02;
   const double allowance = e.job.stock.allowance_mm;
   // A cut before that meets nothing is an error of its own.
-  if (allowance <= 0 || (e.survey && e.survey->allowance_mm3 == 0)) return;
+  if (allowance <= 0 || (e.survey && e.survey->allowance_mm3 == 0) || e.tools.empty()) return;
   double diameter = std::numeric_limits<double>::infinity();
   for (const ToolWork& work : e.tools)
-    if (work.milling_mm > 0) diameter = std::min(diameter, work.tool->diameter_mm);
+    if (work.mills) diameter = std::min(diameter, work.tool->diameter_mm);
   const double most = std::min(kMost_mm, kOfDiameter * diameter);
   if (allowance >= kLeast_mm && allowance <= most) return;
   diagnostics.add(e.at_job(Severity::warning,

@@ -111,6 +111,7 @@ void look_at_overhang(const Evidence& e, Diagnostics& diagnostics) {
   constexpr double kLongest_mm = 400;         // of any milling tool
   constexpr double kShortest = 1, kWide = 20;  // diameters; mm
   for (const ToolWork& work : e.tools) {
+    if (!work.mills) continue;
     const Tool& tool = *work.tool;
     const double slender = simulate::slenderness(tool);
     const auto say = [&](Severity severity, std::string why) {
@@ -119,7 +120,7 @@ void look_at_overhang(const Evidence& e, Diagnostics& diagnostics) {
     };
     if (tool.overhang_mm > kLongest_mm)
       say(Severity::error, fmt::format("longer than any milling tool; up to {:g} mm was expected", kLongest_mm));
-    else if (slender > kImpossible && work.milling_mm > 0)
+    else if (slender > kImpossible)
       say(Severity::error, fmt::format("{:.1f} times its diameter; no such tool mills: up to {:g} times was expected",
                                        slender, simulate::kMaxSlenderness));
     else if (slender > simulate::kMaxSlenderness)
@@ -204,7 +205,7 @@ void look_at_path_shape(const Evidence& e, Diagnostics& diagnostics) {
   for (const ToolWork& work : e.tools) {
     const Tool& tool = *work.tool;
     constexpr double kRounded = 0.2;  // corner over radius from which bull end mills follow surfaces
-    const bool mills = work.milling_mm > 0;
+    const bool mills = work.milling_mm > 0;  // along a program's path
     const bool flat = tool.type == ToolType::flat ||
                       (tool.type == ToolType::bull && tool.corner_radius_mm < kRounded * tool.diameter_mm / 2);
     if (mills && flat) look_at_flat(e, work, diagnostics);
