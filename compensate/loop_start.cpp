@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "checks/plausibility.h"
 #include "compensate/expected.h"
 #include "compensate/loop.h"
 #include "nc/emit.h"
@@ -39,8 +40,7 @@ void check_given(const machine::Job& job, const SimulatedProgram& program, Diagn
   if (early.operations.size() == 1 || job.compensation.operations.given())
     check_compensated(program, early.moves, diagnostics);
   if (job.compensation.has(machine::Lever::passes)) check_allowance(job, diagnostics);
-  simulate::check_travel(job, program, diagnostics);
-  simulate::check_program(job, program, diagnostics);
+  checks::check_program(job, program, diagnostics);
 }
 
 }  // namespace
@@ -50,7 +50,8 @@ Loop::Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOp
       diagnostics_(diagnostics),
       options_(options),
       setup_(simulate::set_up(
-          job, {.check = [&](const SimulatedProgram& program) { check_given(job, program, diagnostics); }},
+          job,
+          {.check = [&](const SimulatedProgram& program) { check_given(job, program, diagnostics); }, .clearance = true},
           {.program = diagnostics, .original = diagnostics, .target = diagnostics})),
       trials_(job_, setup_) {
   simulate::check_clearance(job_, setup_, diagnostics_);

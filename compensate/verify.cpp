@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "checks/plausibility.h"
 #include "compensate/header.h"
 #include "compensate/safety.h"
 #include "compensate/trial.h"
@@ -182,11 +183,10 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
                     const simulate::Progress& progress) {
   Diagnostics of_given;  // it was warned of when it was compensated
   const auto check = [&](const simulate::SimulatedProgram& emitted) {
-    simulate::check_travel(job, emitted, diagnostics);
-    simulate::check_program(job, emitted, diagnostics);
+    checks::check_program(job, emitted, diagnostics);
   };
   const simulate::Setup setup =
-      simulate::set_up(job, {.check = check}, {.program = diagnostics, .original = of_given, .target = diagnostics});
+      simulate::set_up(job, {.check = check, .clearance = true}, {.program = diagnostics, .original = of_given, .target = diagnostics});
   simulate::check_clearance(job, setup, diagnostics);
   diagnostics.throw_if_errors();
   const simulate::Prediction p =

@@ -64,14 +64,25 @@ double band_voxels(const Job& job, double thickest) {
   return std::clamp(std::ceil((thickest + kBending_mm) / job.simulation.voxel_mm) + 1, kMin, kMax);
 }
 
+MemoryEstimate check_memory_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock, double band,
+                               const TargetWork& work, Diagnostics& diagnostics) {
+  const PathStretch path = work.path ? work.path->stretch() : PathStretch(program.path);
+  return check_memory(job,
+                      memory_factors(job, program.text, program.moves, path, {stock.min_mm, stock.max_mm, band},
+                                     work.within),
+                      diagnostics);
+}
+
+double band_of(const Job& job, const SimulatedProgram& program, double min_chip_mm, const TargetWork& work) {
+  const double chip = work.path ? thickest_chip_mm(work.path->outline) : thickest_chip_mm(job, program.path);
+  return band_voxels(job, std::max(min_chip_mm, chip));
+}
+
 removal::Stock raw_stock(const Job& job, const SimulatedProgram& program, double min_chip_mm, MemoryEstimate& memory,
                          Diagnostics& diagnostics, const TargetWork& work) {
-  const double chip = work.path ? thickest_chip_mm(work.path->outline) : thickest_chip_mm(job, program.path);
-  const double band = band_voxels(job, std::max(min_chip_mm, chip));
-  const PathStretch path = work.path ? work.path->stretch() : PathStretch(program.path);
+  const double band = band_of(job, program, min_chip_mm, work);
   const auto require_memory = [&](const Vec3& lo, const Vec3& hi) {
-    memory = check_memory(job, memory_factors(job, program.text, program.moves, path, {lo, hi, band}, work.within),
-                          diagnostics);
+    memory = check_memory_of(job, program, {lo, hi}, band, work, diagnostics);
     diagnostics.throw_if_errors();
   };
   return job_stock(job, band, require_memory, work.within);
@@ -196,13 +207,22 @@ void add_turned(const Job& job, const SimulatedProgram& program, Places& places)
     places.radius_mm = std::max(places.radius_mm, job.tools.at(tool).overhang_mm);
 }
 
-Places places_of(const Job& job, const SimulatedProgram& program, const removal::Stock& blank) {
-  Places out{tip_extents(program.moves, program.selected, program.holes), 0, {blank.min_mm(), blank.max_mm()}};
+}  // namespace
+
+MemoryEstimate check_memory_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock,
+                               Diagnostics& diagnostics) {
+  return check_memory_of(job, program, stock, band_of(job, program, 0, {}), {}, diagnostics);
+}
+
+Places places_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock) {
+  Places out{tip_extents(program.moves, program.selected, program.holes), 0, stock};
   for (const int tool : cutting_tools(program.moves, program.selected, program.holes))
     out.radius_mm = std::max(out.radius_mm, job.tools.at(tool).diameter_mm / 2);
   if (program.rotary) add_turned(job, program, out);
   return out;
 }
+
+namespace {
 
 /// The cutters of a nominal path.
 struct NominalCutters {
@@ -296,7 +316,7 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
   MemoryEstimate memory;
   removal::Stock blank = raw_stock(job, target, min_chip_mm, memory, diagnostics, work);
   blank.share();
-  Places places = places_of(job, target, blank);
+  Places places = places_of(job, target, {blank.min_mm(), blank.max_mm()});
   if (!removal::all_upright(target.path.stamps))  // a tilted tool reaches down past its tip
     places.tip.add(places.tip.min_mm - Vec3(0, 0, places.radius_mm));
   check_places(target.text.source.name(), places, diagnostics);
@@ -321,7 +341,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
 
 Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, const TargetWork& work) {
   auto [blank, whole, memory] = make_blank(job, target, diagnostics, 0, work);
-  const Places where = places_of(job, target, blank);
+  const Places where = places_of(job, target, {blank.min_mm(), blank.max_mm()});
   removal::Stock surface(blank);
   NominalCutters cutters;
   double removed_mm3 = 0;

@@ -13,6 +13,7 @@
 #include "calib/column_map.h"
 #include "calib/trace.h"
 #include "calib/traced_motion.h"
+#include "checks/plausibility.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
 #include "report/forces_at_csv.h"
@@ -22,7 +23,6 @@
 #include "report/spindle_load.h"
 #include "report/summary.h"
 #include "simulate/spindle_power.h"
-#include "simulate/travel.h"
 #include "simulate/turn.h"
 #include "simulate/verdict.h"
 
@@ -155,8 +155,7 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   const StageScope stages(request.progress);
   std::optional<calib::TracedMotion> measured;
   const auto check = [&](const simulate::SimulatedProgram& given) {
-    simulate::check_program(job, given, diagnostics);
-    if (given.rotary) simulate::check_travel(job, given, diagnostics);
+    checks::check_program(job, given, diagnostics);
     if (!request.trace.empty())
       simulate::refuse_rotary_motion(given.rotary.get(), given.text, "traces are of X, Y and Z", diagnostics);
     if (!request.folder.empty())
@@ -166,7 +165,7 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   };
   Diagnostics of_original;  // a program like the job's: what is to be said of it, the job's own says too
   PreparedJob out{
-      simulate::set_up(job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics},
+      simulate::set_up(job, {.check = check, .clearance = request.trace.empty()}, {.program = diagnostics, .original = of_original, .target = diagnostics},
                        request.work, request.programs.get()),
       {}};
   out.setup.original.reset();
