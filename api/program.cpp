@@ -31,7 +31,7 @@ nc::InterpreterOptions interpreter_options(const ReadOptions& options, const std
     out.skip_switches |= static_cast<std::uint16_t>(1u << static_cast<unsigned>(n));
   }
   if (!options.dialect.empty()) out.dialect = dialect_of_control(options.dialect, path);
-  out.whole_numbers_are_increments = options.least_increments;
+  if (options.least_increments) out.whole_numbers_are_increments = true;
   for (const auto& [number, length_mm] : options.tool_lengths_mm) out.tool_offsets[number].length_mm = length_mm;
   for (const auto& [name, values] : options.work_offsets) {
     const auto number = nc::work_offset_number(name);

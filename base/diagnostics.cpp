@@ -100,10 +100,19 @@ void Diagnostics::append(const Diagnostics& other) {
 
 namespace {
 
-/// Start of the line behind the one that `from` lies in; npos where the text ends before.
-std::size_t next_line(const std::string& text, std::size_t from) {
-  const std::size_t end = text.find('\n', from);
-  return end == std::string::npos || end + 1 >= text.size() ? std::string::npos : end + 1;
+/// Carriage returns that end a line alone outnumber line feeds in the first part of the text.
+char line_end_of(std::string_view text) {
+  constexpr std::size_t kSample = 1 << 16;
+  const std::string_view part = text.substr(0, kSample);
+  std::size_t alone = 0, feeds = 0;
+  char before = 0;
+  for (std::size_t i = 0; i < part.size(); before = part[i++]) {
+    if (part[i] == '\n') ++feeds;
+    if (part[i] != '\r' || before == '\n' || before == '\r') continue;
+    const char next = i + 1 < part.size() ? part[i + 1] : '\0';
+    if (next != '\n' && next != '\r') ++alone;
+  }
+  return alone > feeds ? '\r' : '\n';
 }
 
 /// All that is left of a stream whose length nobody knows (a pipe).
@@ -115,9 +124,16 @@ std::string read_to_end(std::istream& in) {
 
 }  // namespace
 
-SourceText::SourceText(std::string name, std::string text) : name_(std::move(name)), text_(std::move(text)) {
-  for (std::size_t at = 0; at != std::string::npos; at = next_line(text_, at))
+SourceText::SourceText(std::string name, std::string text)
+    : name_(std::move(name)), text_(std::move(text)), line_end_(line_end_of(text_)) {
+  for (std::size_t at = 0; at != std::string::npos; at = next_line(at))
     if (line_count_++ % kLinesPerMark == 0) marks_.push_back(at);
+}
+
+/// Start of the line behind the one that `from` lies in; npos where the text ends before.
+std::size_t SourceText::next_line(std::size_t from) const {
+  const std::size_t end = text_.find(line_end_, from);
+  return end == std::string::npos || end + 1 >= text_.size() ? std::string::npos : end + 1;
 }
 
 SourceText SourceText::read(const std::string& path) {
@@ -141,7 +157,7 @@ SourceLocation SourceText::location(std::size_t offset) const {
   offset = std::min(offset, text_.size());
   const auto mark = std::upper_bound(marks_.begin(), marks_.end(), offset) - 1;
   std::size_t line = static_cast<std::size_t>(mark - marks_.begin()) * kLinesPerMark + 1, begin = *mark;
-  for (std::size_t next = next_line(text_, begin); next <= offset; next = next_line(text_, begin)) {
+  for (std::size_t next = next_line(begin); next <= offset; next = next_line(begin)) {
     begin = next;
     ++line;
   }
@@ -151,8 +167,8 @@ SourceLocation SourceText::location(std::size_t offset) const {
 std::string_view SourceText::line(std::size_t number) const {
   if (number == 0 || number > line_count_) return {};
   std::size_t begin = marks_[(number - 1) / kLinesPerMark];
-  for (std::size_t i = (number - 1) % kLinesPerMark; i > 0; --i) begin = next_line(text_, begin);
-  std::size_t end = std::min(text_.find('\n', begin), text_.size());
+  for (std::size_t i = (number - 1) % kLinesPerMark; i > 0; --i) begin = next_line(begin);
+  std::size_t end = std::min(text_.find(line_end_, begin), text_.size());
   while (end > begin && text_[end - 1] == '\r') --end;
   return std::string_view(text_).substr(begin, end - begin);
 }

@@ -49,12 +49,16 @@ class SourceText {
   /// Text of a 1-based line without its line end.
   std::string_view line(std::size_t number) const;
   std::size_t line_count() const { return line_count_; }
+  /// The last character of a line: a line feed; in a text whose lines end in a carriage return alone, that.
+  char line_end() const { return line_end_; }
   Diagnostic diagnostic(Severity severity, std::size_t offset, std::string message, std::string check) const;
 
  private:
   std::string name_;
   std::string text_;
   std::size_t line_count_ = 0;
+  char line_end_ = '\n';
+  std::size_t next_line(std::size_t from) const;
   /// Offsets of lines 1, 1 + kLinesPerMark ...; the others are counted from there: a program of millions of lines is
   /// asked for few of them.
   std::vector<std::size_t> marks_;

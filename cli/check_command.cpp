@@ -99,7 +99,7 @@ std::string tool_table(const std::vector<nc::ToolUse>& tools) {
       "\n" + fmt::format(kRow, "tool", "line", "moves", "feed mm/min", "spindle rpm", "cut mm", "cut Z mm");
   for (const auto& t : tools) {
     const std::string z = cut_depths_text(t);
-    out += fmt::format(kRow, fmt::format("T{}", t.tool), t.line, t.cutting_moves, range_text(t.feed_mm_per_min, 1),
+    out += fmt::format(kRow, fmt::format("T{}", t.tool), t.line, t.cutting_moves, feeds_text(t),
                        range_text(t.spindle_speed_rpm, 0), fmt::format("{:.1f}", t.cutting_length_mm), z);
   }
   return out;

@@ -14,7 +14,7 @@ report::TextTable tools_of(const std::vector<nc::ToolUse>& tools) {
       "Tools", {"tool", "line", "cutting moves", "feed, mm/min", "spindle, rpm", "cut, mm", "cut Z, mm"}, {}, {}};
   for (const nc::ToolUse& t : tools)
     table.rows.push_back({fmt::format("T{}", t.tool), fmt::format("{}", t.line), fmt::format("{}", t.cutting_moves),
-                          range_text(t.feed_mm_per_min, 1), range_text(t.spindle_speed_rpm, 0),
+                          feeds_text(t), range_text(t.spindle_speed_rpm, 0),
                           fmt::format("{:.1f}", t.cutting_length_mm), cut_depths_text(t)});
   return table;
 }
@@ -37,6 +37,13 @@ report::Figure count(const char* name, std::size_t value, const char* key) {
 }
 
 }  // namespace
+
+std::string feeds_text(const nc::ToolUse& t) {
+  std::string out = t.feed_mm_per_min.empty() && !t.feed_deg_per_min.empty() ? "" : range_text(t.feed_mm_per_min, 1);
+  if (!t.feed_deg_per_min.empty())
+    out += fmt::format("{}{} deg/min", out.empty() ? "" : ", ", range_text(t.feed_deg_per_min, 1));
+  return out;
+}
 
 std::string range_text(const nc::Range& r, int decimals) {
   if (r.empty()) return "-";

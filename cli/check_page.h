@@ -29,6 +29,8 @@ std::string check_page(const CheckCommand& command, const nc::Summary& summary, 
                        const CheckPicture& picture);
 
 /// "100 to 400", "400", or "-".
+/// Feeds of a tool: mm/min, and degrees/min of moves of rotary axes alone.
+std::string feeds_text(const nc::ToolUse& tool);
 std::string range_text(const nc::Range& range, int decimals);
 /// Lowest and highest Z of a tool's cutting moves.
 std::string cut_depths_text(const nc::ToolUse& tool);

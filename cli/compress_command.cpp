@@ -38,7 +38,8 @@ std::optional<repath::FeedsByKind> feeds_of(const CompressArguments& arguments) 
                              mm_per_s_from_mm_per_min(*arguments.arc_feed_mm_per_min), arguments.block_s};
 }
 
-std::string text_report(const Figures& before, const Figures& after, const repath::Compression& result) {
+std::string text_report(const Figures& before, const Figures& after, const repath::Compression& result,
+                        const std::string& why) {
   std::string out =
       fmt::format("                before        after\nblocks     {:>11} {:>12}   / {:.2f}\n", before.blocks,
                   after.blocks, static_cast<double>(before.blocks) / static_cast<double>(after.blocks));
@@ -50,13 +51,15 @@ std::string text_report(const Figures& before, const Figures& after, const repat
     out +=
         fmt::format("at the given feeds {:>5.1f} s {:>10.1f} s   / {:.2f}, without rapids\n", *before.time_at_feeds_s,
                     *after.time_at_feeds_s, *before.time_at_feeds_s / *after.time_at_feeds_s);
-  out += fmt::format("largest deviation {:.4f} mm in {} rewritten runs; largest kink at an arc {:.1f} degrees\n",
+  if (result.runs.empty()) return out + fmt::format("nothing was rewritten: {}\n", why);
+  out += fmt::format("largest deviation {:.4f} mm in {} rewritten runs; largest kink at an arc {:.1f} degrees",
                      result.max_deviation_mm, result.runs.size(), deg_from_rad(result.max_kink_rad));
-  return out;
+  if (result.max_kink_rad > 0) out += fmt::format(", line {} of the new program", result.max_kink_block + 1);
+  return out + "\n";
 }
 
 std::string json_report(const Figures& before, const Figures& after, const repath::Compression& result,
-                        double tolerance_mm, const repath::DeviationFigures& measured) {
+                        double tolerance_mm, const repath::DeviationFigures& measured, const std::string& why) {
   Json report = {{"blocks_before", before.blocks},
                  {"blocks_after", after.blocks},
                  {"lines", after.lines},
@@ -70,9 +73,12 @@ std::string json_report(const Figures& before, const Figures& after, const repat
                  {"measured_deviation_mm", measured.max_mm},
                  {"max_kink_deg", deg_from_rad(result.max_kink_rad)},
                  {"rms_kink_deg", deg_from_rad(result.rms_kink_rad)},
+                 {"max_kink_line", nullptr},
                  {"runs", result.runs.size()},
                  {"time_before_s", nullptr},
                  {"time_after_s", nullptr}};
+  if (result.max_kink_rad > 0) report["max_kink_line"] = result.max_kink_block + 1;
+  if (!why.empty()) report["unchanged_because"] = why;
   if (before.time_s) {
     report["time_before_s"] = *before.time_s;
     report["time_after_s"] = *after.time_s;
@@ -119,11 +125,12 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   compress_options.feeds = feeds_of(arguments);
   compress_options.switch_planes = arguments.switch_planes;
   compress_options.helices = arguments.helices;
-  compress_options.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
   compress_options.fit.max_kink_rad = rad_from_deg(arguments.tangent_deg);
   compress_options.fit.arcs = !arguments.lines_only;
   compress_options.progress = [&](double fraction) { progress.show("compressing", fraction); };
   const repath::Compression result = repath::compress(program, moves, compress_options);
+  const std::string why =
+      result.runs.empty() ? repath::why_unchanged(program, moves, repath::RunKind::in_space) : std::string();
 
   Diagnostics again;  // what it says of the text was said above; an error is ours
   const nc::Program new_program = nc::read_program(SourceText(arguments.output, result.text), again);
@@ -136,7 +143,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   if (!arguments.json.empty() || !arguments.report.empty()) {
     const auto measured = repath::measure_deviation(moves, new_moves, result.runs, arguments.tolerance_mm);
     if (!arguments.json.empty())
-      write_file(arguments.json, json_report(before, after, result, arguments.tolerance_mm, measured));
+      write_file(arguments.json, json_report(before, after, result, arguments.tolerance_mm, measured, why));
     if (!arguments.report.empty()) {
       report::RewritePage page =
           rewrite_page_of({moves, new_moves, result.runs, arguments.tolerance_mm, result.max_deviation_mm, measured},
@@ -147,7 +154,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
     }
   }
   progress.clear();
-  if (!options.quiet) fmt::print("{}", text_report(before, after, result));
+  if (!options.quiet) fmt::print("{}", text_report(before, after, result, why));
   return kDone;
 }
 

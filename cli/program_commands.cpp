@@ -109,8 +109,10 @@ void add_language_options(CLI::App& command, nc::InterpreterOptions& interpreter
                       name_of_dialect_with(&nc::Dialect::shown_by_m97), nc::default_dialect().name))
       ->transform(CLI::CheckedTransformer(rows_of_controls()).description(""))
       ->type_name(fmt::format("{}", fmt::join(machine::control_kind_names(), "|")));
-  command.add_flag("--least-increments", interpreter.whole_numbers_are_increments,
-                   "X1000 without a point is 1000 least increments (1 mm), not 1000 mm");
+  command.add_flag_function(
+      "--least-increments,!--no-least-increments",
+      [&interpreter](std::int64_t count) { interpreter.whole_numbers_are_increments = count > 0; },
+      "X1000 without a point is 1000 least increments (1 mm), not 1000 mm");
 }
 
 int print_effective_machine(const std::string& path, const GlobalOptions& options) {

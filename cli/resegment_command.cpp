@@ -22,6 +22,7 @@ struct Report {
   const repath::Fastest& result;
   double tolerance_mm;
   const repath::DeviationFigures& measured;
+  std::string why;  ///< it is unchanged; empty: it is not
 
   repath::Candidate chosen() const {
     return result.gains ? result.tried[result.chosen] : repath::Candidate{.figures = contour_before};
@@ -77,6 +78,7 @@ struct Report {
                    {"feed_factor", chosen().feed_factor},
                    {"corner_feed_share", chosen().corners.fraction},
                    {"settle_s", chosen().corners.settle_s}};
+    if (!why.empty()) report["unchanged_because"] = why;
     if (!result.tried.empty()) report["fastest_unbounded"] = of(result.tried[result.unbounded]);
     report["tried"] = Json::array();
     for (const auto& c : result.tried) report["tried"].push_back(of(c));
@@ -127,7 +129,6 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   repath::FastestOptions fastest;
   fastest.layout.tolerance_mm = arguments.tolerance_mm;
   fastest.layout.length_mm = arguments.length_mm;
-  fastest.layout.whole_numbers_are_increments = interpreter.whole_numbers_are_increments;
   fastest.contour_mm = arguments.contour_mm;
   fastest.interpreter = interpreter;
   ProgressLine progress(options, "timing the old blocks");
@@ -140,8 +141,14 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   const nc::Interpretation new_moves = nc::interpret(new_program, interpreter, again);
   again.throw_if_errors();
   const auto measured = repath::measure_deviation(moves, new_moves, result.path.runs, arguments.tolerance_mm);
-  const Report report{
-      figures_of(program, moves), figures_of(new_program, new_moves), before, result, arguments.tolerance_mm, measured};
+  const bool unchanged = result.path.runs.empty();
+  const std::string runs = unchanged ? repath::why_unchanged(program, moves, repath::RunKind::with_arcs) : std::string();
+  const std::string why = !unchanged ? ""
+                          : result.tried.empty()
+                              ? fmt::format("it is as near to its feed as its blocks allow ({})", runs)
+                              : fmt::format("no length of segments is faster ({})", runs);
+  const Report report{figures_of(program, moves), figures_of(new_program, new_moves), before, result,
+                      arguments.tolerance_mm, measured, why};
   write_file(arguments.output, result.path.text);
   if (!arguments.json.empty()) write_file(arguments.json, report.json());
   if (!arguments.report.empty()) {
@@ -155,7 +162,7 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   }
   progress.clear();
   if (!options.quiet) fmt::print("{}", report.text());
-  if (!result.gains && !options.quiet) fmt::print("no length is faster: the program is unchanged\n");
+  if (!options.quiet && !why.empty()) fmt::print("the program is unchanged: {}\n", why);
   if (result.within_limit) return kDone;
   fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the closest one was written\n",
              1000 * result.limit.max_mm);

@@ -44,6 +44,9 @@ nc::InterpreterOptions interpreter_options(const machine::Machine& machine, std:
 nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given) {
   given.dialect = dialect_of(machine.control.kind);
   given.dwell_p_is_ms = given.dialect->dwell_p_is_ms;
+  if (!given.whole_numbers_are_increments)
+    given.whole_numbers_are_increments = machine.control.whole_numbers_are_increments;
+  given.max_spindle_speed_rpm = machine.spindle.max_rpm;
   for (int i = 0; i < 3; ++i) given.single_direction_mm[i] = machine.axis[i].g60_mm;
   return given;
 }

@@ -9,7 +9,6 @@ namespace camber::kinematics {
 namespace {
 
 constexpr double kNoLengthMm = 1e-9;
-constexpr double kMmPerInch = 25.4;
 
 }  // namespace
 
@@ -28,11 +27,12 @@ double feed_along_path(const nc::Interpretation& program, const nc::Move& move, 
   const double linear_mm = nc::length_mm(program, move), turn_deg = deg_from_rad(turn_rad.norm());
   const double length = linear_mm < kNoLengthMm ? turn_deg : linear_mm;
   if (inverse_time_s > 0) return length / inverse_time_s;
+  const double unit_mm = program.state_of(move).inch ? kMmPerInch : 1;
   switch (feed_meaning(program, move, turn_rad, control)) {
     case FeedMeaning::degrees:  // F is in degrees, whichever unit lengths have
-      return program.state_of(move).inch ? move.feed_mm_per_s / kMmPerInch : move.feed_mm_per_s;
-    case FeedMeaning::joints:
-      return move.feed_mm_per_s * linear_mm / std::hypot(linear_mm, turn_deg);
+      return move.feed_mm_per_s / unit_mm;
+    case FeedMeaning::joints:  // a degree counts as a millimetre or as an inch, as lengths do
+      return move.feed_mm_per_s * linear_mm / std::hypot(linear_mm, turn_deg * unit_mm);
     case FeedMeaning::linear:
     case FeedMeaning::tip:
     case FeedMeaning::inverse:

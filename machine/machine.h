@@ -63,6 +63,8 @@ struct Control {
   /// Minimum wait at the stop between rapid and feed moves; 0: no stop.
   double rapid_change_s = 0;
   std::optional<double> least_increment_mm{};  ///< of coordinates in an emitted program; not given: as the program has
+  /// Numbers without a decimal point count least increments, not millimetres or inches; not given: not known.
+  std::optional<bool> whole_numbers_are_increments{};
   /// In-position width: between rapid and feed moves, and at exact stops (G9, G61.1), the control waits until every
   /// axis is within it. Infinite: no wait. Read from a file without the key: kInPositionMm, LinuxCNC infinite.
   double in_position_mm = kNoLimit;

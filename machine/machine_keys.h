@@ -11,6 +11,7 @@ namespace camber::machine {
 inline constexpr std::array<std::string_view, 5> kCornerLawWords{"speed_difference", "angle", "blend", "exact_stop",
                                                                  "radius"};
 inline constexpr std::array<std::string_view, 2> kRotaryFeedWords{"linear", "joints"};
+inline constexpr std::array<std::string_view, 2> kWholeNumberWords{"units", "increments"};
 inline constexpr std::array<std::string_view, 3> kAxisNames{"x", "y", "z"};
 
 inline constexpr NumberRange kFraction{.min = 0, .max = 1, .above_min = true};

@@ -63,6 +63,8 @@ void read_control(TomlTable table, Control& control) {
   control.kind = control_kinds()[table.choice("dialect", control_kind_names(), 0)];
   read_numbers<Control>(table, kControlKeys, control);
   control.least_increment_mm = table.optional_number("least_increment_mm", kMinIncrementMm);
+  if (table.has("whole_numbers"))
+    control.whole_numbers_are_increments = table.choice("whole_numbers", kWholeNumberWords, 0) == 1;
   control.lookahead_blocks = static_cast<int>(table.number("lookahead_blocks", kBlockCount, control.lookahead_blocks));
   control.rotary_feed = static_cast<RotaryFeed>(
       table.choice("rotary_feed", kRotaryFeedWords, static_cast<std::size_t>(control.kind.rotary_feed)));

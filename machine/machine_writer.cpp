@@ -71,6 +71,8 @@ std::string to_toml(const Machine& machine) {
   out += toml_line("lookahead_blocks", machine.control.lookahead_blocks, kAsIs);
   if (machine.control.least_increment_mm)
     out += toml_line("least_increment_mm", *machine.control.least_increment_mm, kAsIs);
+  if (machine.control.whole_numbers_are_increments)
+    out += toml_line("whole_numbers", kWholeNumberWords[*machine.control.whole_numbers_are_increments ? 1 : 0]);
   if (machine.kinematics.given())
     out += toml_line("rotary_feed", kRotaryFeedWords[static_cast<std::size_t>(machine.control.rotary_feed)]) +
            fmt::format("joint_limits = {}\n", machine.control.joint_limits);

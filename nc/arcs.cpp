@@ -113,7 +113,9 @@ ArcResult make_arc(const ArcWords& words) {
   result.end_radius_mm = radius_at(words.end_mm);
   result.radius_difference_mm = std::abs(result.end_radius_mm - result.start_radius_mm);
   if (result.start_radius_mm < 1e-9 || result.end_radius_mm < 1e-9) {
-    result.error = "the centre of the arc lies on its start or its end; an arc with a radius was expected";
+    result.is_point = std::max(result.start_radius_mm, result.end_radius_mm) <= kPointMm;
+    if (!result.is_point)
+      result.error = "the centre of the arc lies on its start or its end; an arc with a radius was expected";
     return result;
   }
   result.arc.center_mm = centre;

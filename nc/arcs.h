@@ -32,8 +32,12 @@ struct ArcResult {
   Arc arc;
   double radius_difference_mm = 0;  ///< |radius at end - radius at start|
   double start_radius_mm = 0, end_radius_mm = 0;
+  bool is_point = false;  ///< the whole arc is no larger than kPointMm and its centre coincides with an end: no arc
   std::string error;  ///< not empty: no arc
 };
+
+/// Rounding of programs with three decimals (four in inches) leaves of arcs that are so small nothing but their ends.
+inline constexpr double kPointMm = 0.005;
 
 /// Centre and sweep. R: the arc up to half a turn, for R < 0 the larger one (the centre lies at
 /// sqrt(R^2 - (chord/2)^2) from the chord's middle; Yan & Shirase 1997 eq. 1 in vector form). A chord longer than

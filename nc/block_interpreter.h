@@ -10,6 +10,7 @@
 #include "nc/frames.h"
 #include "nc/interpreter.h"
 #include "nc/modal_codes.h"
+#include "nc/offset_variables.h"
 
 namespace camber::nc {
 
@@ -42,6 +43,16 @@ struct RunBlock {
   bool editable = true;         ///< Move::editable
 };
 
+/// What a run makes one doubt of its options.
+struct RunVerdict {
+  /// Arcs fit with absolute centres only, none with relative ones only, and no word says which they are.
+  bool centres_look_absolute = false;
+  /// Not empty: how numbers without a decimal point count is not known, no coordinate has a point, and read as
+  /// millimetres or inches they are larger than any machine.
+  std::string increments_warning{};
+  std::size_t increments_offset = 0;
+};
+
 class BlockInterpreter {
  public:
   BlockInterpreter(const Program& program, const InterpreterOptions& options, Reporter& report, Interpretation& out);
@@ -50,12 +61,13 @@ class BlockInterpreter {
   bool run(std::uint32_t block) { return run({*program_, block, program_->words_of(block), block}); }
   bool run(const RunBlock& block);
   MachineFacts facts() const;
+  /// The value of an offset in millimetres or degrees; nothing where it is not known.
+  std::optional<double> offset_value(const OffsetVariable& variable);
+  /// The program sets it (#5221 = 10.). `offset`: in the text.
+  void set_offset(const OffsetVariable& variable, double value, std::size_t offset);
   /// What can be said only at the end.
   void finish();
-  /// True when arcs fit with absolute centres only, none with relative ones only, and no word says which they are.
-  bool centres_look_absolute() const {
-    return arcs_fit_absolute_ > 0 && arcs_fit_relative_ == 0 && !centre_mode_given_;
-  }
+  RunVerdict verdict() const;
 
  private:
   enum class Motion : std::uint8_t { none, rapid, linear, clockwise, counter_clockwise };
@@ -82,16 +94,31 @@ class BlockInterpreter {
   struct Cycle {
     int g = 0;  ///< 0: none active
     std::optional<double> r_mm, z_mm, p_s, q_mm;
+    std::optional<double> first_peck_mm, peck_less_mm, least_peck_mm;  ///< I J K (Dialect::pecks_by_ijk)
     Vec3 shift_mm = Vec3::Zero();  ///< I J K of G76 and G87
     double initial_mm = 0;
     bool incremental = false;
     bool peck_warned = false;
   };
 
+  /// ,R or ,C of a block that has moved, until the next one does.
+  struct Corner {
+    bool waits = false;
+    bool chamfer = false;
+    double size_mm = 0;     ///< radius; of a chamfer the distance from the corner
+    std::size_t move = 0;   ///< in Interpretation::moves
+    std::size_t offset = 0;
+    std::string text;       ///< of the word, for messages
+  };
+
   // modal_state.cpp: words that change the state
   bool read_g_codes();
   bool read_g_code(const Code& code, const GCode& meaning);
   void check_one_of_each_group();
+  void check_m_groups();
+  void check_strict_block();
+  int additional_work_offset(const Code& code);
+  void check_offset_numbers();
   void set_motion(const Code& code);
   void set_cycle(const Code& code);
   void set_plane(const Code& code);
@@ -101,7 +128,13 @@ class BlockInterpreter {
   void set_feed_mode(FeedMode mode);
   void set_contouring(const Code& code);
   void scale_whole_numbers();
+  /// What a number without a decimal point counts: factor on the word's value. 1: as it stands.
+  double whole_number_scale_of(const Word& word);
+  double whole_number_unit(char letter, bool& is_angle) const;
+  std::string whole_numbers_setting() const;
+  void warn_of_whole_numbers();
   void read_feed();
+  void read_radius_number();
   void read_spindle_speed();
   void read_tool();
   bool read_m_codes_before();
@@ -121,6 +154,8 @@ class BlockInterpreter {
   void set_mirror();
   void set_data();
   void set_work_offset_data(bool touch_off);
+  void warn_of_moved_offset(int number, std::size_t at, const std::string& name);
+  void take_pending_offset();
   void set_tool_data(int kind);
   double scale_value(char letter);
   void update_frame();
@@ -136,6 +171,13 @@ class BlockInterpreter {
   void end_radius();
   void leave_contour(Move& move);
 
+  // corner_words.cpp: ,R ,C ,A
+  void read_corner_words(std::size_t moves_before);
+  void finish_corner(std::size_t moves_before);
+  void put_corner(const Corner& corner, std::size_t before, std::size_t after);
+  void corner_error(std::size_t offset, std::string message);
+  Vec3 target_at_angle(const Vec3& start, Vec3 end);
+
   // rotary_codes.cpp: A B C, tool-centre-point control, clamps
   const RotaryOption* rotary_axis(char letter) const;
   bool read_clamp(const Code& code);
@@ -147,7 +189,6 @@ class BlockInterpreter {
   void read_rotary_words();
   void read_rotary_word(const RotaryOption& axis, RotaryTarget& target);
   void read_tool_direction();
-  void settle_tip();
   std::string needs_kinematics(const Code& code, const char* name) const;
   bool sets_rotary_offset() const;
   void add_rotary_target(std::size_t move);
@@ -169,9 +210,11 @@ class BlockInterpreter {
 
   // motion.cpp: words that make moves
   void dwell();
+  void move_after_dwell();
   std::optional<double> dwell_seconds(char letter);
   void go_to_reference();
-  void turn_home(bool all, std::uint8_t letters);
+  void store_reference(const Code& code);
+  void turn_home(bool all, std::uint8_t letters, const Vec3& home_rad);
   void go_in_machine_frame();
   void move();
   void move_on_line();
@@ -179,6 +222,7 @@ class BlockInterpreter {
   // cycle_codes.cpp
   void run_cycle();
   bool read_cycle_words();
+  void read_peck_words();
   bool set_shift(CycleHole& hole);
   void drill(const Vec3& place);
   Move& add_cycle_move(const CycleStep& step);
@@ -191,7 +235,8 @@ class BlockInterpreter {
   void read_spiral_words(ArcWords& arc);
   void read_spiral_turns(ArcWords& arc);
   void position_in_one_direction();
-  void prepare_cutting(char const* what);
+  void prepare_cutting(char const* what, bool arc = false);
+  void motion_point(const Vec3& end_mm, const char* g);
   std::optional<double> cutting_feed(double length_mm, char const* g);
   std::optional<double> per_revolution_feed();
   void check_unit();
@@ -208,6 +253,20 @@ class BlockInterpreter {
   bool written_as_number(const Word& word) const;
   double unit_mm() const { return state_.inch ? kInch : 1.0; }
   static constexpr double kInch = 25.4;
+
+  /// Words whose reading depends on the setting for numbers without a decimal point, where it is not known.
+  struct WholeNumbers {
+    const Program* file = nullptr;  ///< of the first; none: there is none
+    std::size_t offset = 0;
+    std::string text;
+    double scale = 1;
+    std::size_t more = 0;
+    bool any_point = false;  ///< a coordinate of the program has a point
+    double largest_mm = 0;   ///< coordinate without one
+    double value = 0;  ///< as written
+    bool inch = false, is_time = false, is_angle = false;
+    std::string read_with(double factor) const;
+  };
 
   const Program* main_;
   const Program* program_;
@@ -241,14 +300,22 @@ class BlockInterpreter {
   std::size_t arcs_fit_relative_ = 0, arcs_fit_absolute_ = 0;
 
   Frames frames_;
+  std::vector<std::pair<OffsetVariable, double>> pending_offsets_;  ///< LinuxCNC: count when they are next selected
   Frame frame_;
   bool frames_used_ = false;  ///< something but unknown work offsets is in play
   bool not_editable_told_ = false;
   double polar_angle_deg_ = 0;
   std::optional<Vec3> reference_via_mm_;  ///< the intermediate point of G28, G30; for G29
+  struct StoredReference {
+    Vec3 place_mm = Vec3::Zero(), rotary_rad = Vec3::Zero();  ///< in the frame of the moves
+  };
+  std::array<std::optional<StoredReference>, 2> stored_reference_{};  ///< G28.1, G30.1
   std::map<int, ToolOffset> tool_offsets_;
   Radius radius_;
   int radius_number_ = -1;  ///< the last D
+  Corner corner_;
+  WholeNumbers whole_numbers_;
+  std::size_t operation_ = 0;  ///< counts tool changes: limits are said once in each
   bool leaving_ = false;    ///< G40 was read; the cutter is still beside the contour
   Vec3 beside_mm_ = Vec3::Zero();
 
@@ -261,7 +328,6 @@ class BlockInterpreter {
   const char* direction_code_ = "";  ///< which of them
   bool tool_length_active_ = false;  ///< G43
   std::uint8_t clamped_ = 0;         ///< bit i: A, B, C
-  std::uint8_t unsettled_ = 0;       ///< bit i: X, Y, Z; see settle_tip
   std::uint8_t open_axes_ = 0;       ///< bit i: X, Y, Z; Move::open_axes, because of rotary axes
   bool aligned_ = false;             ///< G53.1 has put the tool along Z of the tilted frame
   bool start_open_ = false;          ///< of the next move

@@ -19,12 +19,15 @@ void BlockWords::read(std::span<const Word> words, Reporter& report) {
   given_ = used_ = 0;
   g_.clear();
   m_.clear();
+  corner_words_.clear();
   offset_ = words.empty() ? 0 : words.front().offset;
   for (const Word& w : words) {
     if (w.letter == 'G') {
       g_.push_back({tenths_of(w.value), &w});
     } else if (w.letter == 'M') {
       m_.push_back({tenths_of(w.value), &w});
+    } else if (is_corner_word(w)) {
+      corner_words_.push_back(&w);
     } else {
       if (has(w.letter) && w.letter != 'N')
         report.error(w.offset, "word-twice", fmt::format("{} appears twice in the block; one was expected", w.letter));

@@ -47,6 +47,8 @@ class BlockWords {
     assert(has(letter));
     return *word_[index(letter)];
   }
+  /// The corner words of the block: ,R ,C ,A (is_corner_word).
+  const std::vector<const Word*>& corner_words() const { return corner_words_; }
   void use(const char* letters);
   /// Words that nothing asked for: bits of the letters.
   std::uint32_t unused() const { return given_ & ~used_; }
@@ -66,6 +68,7 @@ class BlockWords {
   std::array<double, 26> value_{};
   std::array<const Word*, 26> word_{};
   std::vector<Code> g_, m_;
+  std::vector<const Word*> corner_words_;
   std::size_t offset_ = 0;
 };
 

@@ -61,16 +61,21 @@ class HoleWriter {
   }
 
   void drill_in_pecks() {
-    double depth = hole_.retract_mm;
+    double depth = hole_.retract_mm, peck = hole_.peck_mm, cleared = depth;
+    bool out = false;  // at R
     while (depth > hole_.bottom_mm) {
-      const double next = std::max(depth - hole_.peck_mm, hole_.bottom_mm);
-      if (hole_.g == 83 && depth < hole_.retract_mm)
+      const double next = std::max(depth - peck, hole_.bottom_mm);
+      peck = std::max(peck - hole_.peck_less_mm, hole_.peck_less_mm > 0 ? hole_.least_peck_mm : peck);
+      if (out && depth < hole_.retract_mm)
         go(CycleStep::Kind::rapid, std::min(depth + hole_.peck_clearance_mm, hole_.retract_mm));
       go(CycleStep::Kind::feed, next);
       depth = next;
       if (depth <= hole_.bottom_mm) break;
+      constexpr double kRounding_mm = 1e-9;
+      out = hole_.g == 83 || (hole_.clear_every_mm > 0 && cleared - depth >= hole_.clear_every_mm - kRounding_mm);
+      if (out) cleared = depth;
       go(CycleStep::Kind::rapid,
-         hole_.g == 83 ? hole_.retract_mm : std::min(depth + hole_.peck_clearance_mm, hole_.retract_mm));
+         out ? hole_.retract_mm : std::min(depth + hole_.peck_clearance_mm, hole_.retract_mm));
     }
   }
 

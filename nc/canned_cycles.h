@@ -16,7 +16,10 @@ struct CycleHole {
   double retract_mm = 0;             ///< R
   double bottom_mm = 0;              ///< Z
   double clear_mm = 0;               ///< where the tool ends: the initial level (G98) or R (G99)
-  double peck_mm = 0;                ///< Q of G73 and G83; 0: in one go
+  double peck_mm = 0;                ///< Q of G73 and G83, or the first of pecks that become smaller; 0: in one go
+  double peck_less_mm = 0;           ///< each peck is so much smaller than the one before it
+  double least_peck_mm = 0;          ///< but no smaller than this
+  double clear_every_mm = 0;         ///< G73: back to R whenever so much was drilled; 0: never
   double dwell_s = 0;                ///< P
   Vec3 shift_mm = Vec3::Zero();      ///< G76, G87: off the wall, with the spindle oriented
   double peck_clearance_mm = 0.254;  ///< G83: back to so far above the last depth; G73: retract of each peck

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "nc/plane_curves.h"
+
 namespace camber::nc {
 namespace {
 
@@ -13,11 +15,6 @@ constexpr double kSamePlaceMm = 1e-6;
 constexpr double kTangentRad = 1e-4;   ///< corners that turn by less are none
 constexpr double kTooShortMm = 0.002;  ///< programs with three decimals make lines that are short by so much
 constexpr double kSpiralMm = 0.05;     ///< as kArcRadiusErrorMm: radii that differ by more make a spiral
-
-Vec2 left_of(const Vec2& direction) { return {-direction.y(), direction.x()}; }
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-/// Counter-clockwise from a to b, -pi .. pi.
-double angle_between(const Vec2& a, const Vec2& b) { return std::atan2(cross(a, b), a.dot(b)); }
 
 /// A programmed line or arc in the plane and its offset.
 struct Element {
@@ -179,7 +176,7 @@ class RadiusCompensation {
   void cut_inside(Element& before, Element& after) {
     std::optional<Vec2> best;
     double best_cost = 0, best_before = 0, best_after = 0;
-    for (const Vec2& x : meetings(before, after)) {
+    for (const Vec2& x : meetings(curve_at_end(before), curve_at_start(after))) {
       const double t_before = back_to(before, x), t_after = forward_to(after, x);
       if (t_before < -kTooShortMm || t_after < -kTooShortMm) continue;
       const double cost = t_before + t_after;
@@ -210,41 +207,11 @@ class RadiusCompensation {
     if (!e.arc) return (x - e.offset_start).dot(e.start_direction);
     return e.start_radius * turn_from(e.offset_start - e.centre, x - e.centre, e.sense);
   }
-  /// From a to b in the sense, 0 .. 2 pi; just short of a full turn counts as just behind.
-  static double turn_from(const Vec2& a, const Vec2& b, double sense) {
-    double turn = sense * angle_between(a, b);
-    if (turn < -1e-9) turn += 2 * kPi;
-    return turn;
+  static PlaneCurve curve_at_end(const Element& e) {
+    return {e.arc, e.offset_end, e.end_direction, e.centre, e.end_radius};
   }
-
-  static std::vector<Vec2> meetings(const Element& before, const Element& after) {
-    if (!before.arc && !after.arc) {
-      const double across = cross(before.end_direction, after.start_direction);
-      const double along = cross(after.offset_start - before.offset_end, after.start_direction) / across;
-      return {before.offset_end + along * before.end_direction};
-    }
-    if (before.arc && after.arc) return of_circles(before.centre, before.end_radius, after.centre, after.start_radius);
-    return before.arc ? of_line(after.offset_start, after.start_direction, before.centre, before.end_radius)
-                      : of_line(before.offset_end, before.end_direction, after.centre, after.start_radius);
-  }
-
-  static std::vector<Vec2> of_line(const Vec2& point, const Vec2& direction, const Vec2& centre, double radius) {
-    const double along = (centre - point).dot(direction);
-    const Vec2 foot = point + along * direction;
-    const double rest = radius * radius - (foot - centre).squaredNorm();
-    if (rest < 0) return {};
-    const double half = std::sqrt(rest);
-    return {foot - half * direction, foot + half * direction};
-  }
-
-  static std::vector<Vec2> of_circles(const Vec2& a, double ra, const Vec2& b, double rb) {
-    const Vec2 across = b - a;
-    const double d = across.norm();
-    if (d < kSamePlaceMm) return {};
-    const double along = (d * d + ra * ra - rb * rb) / (2 * d), rest = ra * ra - along * along;
-    if (rest < 0) return {};
-    const Vec2 middle = a + along / d * across, side = std::sqrt(rest) / d * left_of(across);
-    return {middle - side, middle + side};
+  static PlaneCurve curve_at_start(const Element& e) {
+    return {e.arc, e.offset_start, e.start_direction, e.centre, e.start_radius};
   }
 
   void arc_outside(std::size_t i, const Element& before, const Element& after, double turn) {

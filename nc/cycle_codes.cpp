@@ -49,6 +49,7 @@ bool BlockInterpreter::read_cycle_words() {
   if (words_.has('R')) cycle_.r_mm = words_.scaled('R', unit_mm());
   if (words_.has('Q')) cycle_.q_mm = std::abs(*words_.scaled('Q', unit_mm()));
   if (words_.has('P')) cycle_.p_s = dwell_seconds('P');
+  read_peck_words();
   for (int axis = 0; axis < 3; ++axis)
     if (words_.has("IJK"[axis]) && (cycle_.g == 76 || cycle_.g == 87))
       cycle_.shift_mm[axis] = words_.value("IJK"[axis]) * unit_mm();
@@ -60,11 +61,35 @@ bool BlockInterpreter::read_cycle_words() {
   if (!cycle_.r_mm) error(words_.offset(), "cycle", name + " has no retract level; R was expected", "cycle R");
   if (!cycle_.z_mm)
     error(words_.offset(), "cycle", fmt::format("{} has no depth; {} was expected", name, normal), "cycle Z");
-  if ((cycle_.g == 73 || cycle_.g == 83) && cycle_.q_mm.value_or(0) <= 0) {
+  if ((cycle_.g == 73 || cycle_.g == 83) && cycle_.q_mm.value_or(0) <= 0 && !cycle_.first_peck_mm) {
     error(words_.offset(), "cycle", name + " has no depth of each peck; Q greater than zero was expected", "cycle Q");
     return false;
   }
   return cycle_.r_mm && cycle_.z_mm;
+}
+
+/// Haas: I the first peck of G73 and G83, J less with each, K at least; with Q, K of G73 is the depth after which the
+/// tool goes back to R.
+void BlockInterpreter::read_peck_words() {
+  if (!options_.dialect_or_default().pecks_by_ijk || (cycle_.g != 73 && cycle_.g != 83)) return;
+  const auto length = [&](char letter, std::optional<double>& out) {
+    if (!words_.has(letter)) return;
+    out = words_.value(letter) * unit_mm();
+    if (*out >= 0) return;
+    error(words_.offset_of(letter), "cycle", fmt::format("{} of G{} is negative; a depth was expected", letter, cycle_.g));
+    out = 0;
+  };
+  length('I', cycle_.first_peck_mm);
+  length('J', cycle_.peck_less_mm);
+  length('K', cycle_.least_peck_mm);
+  if (!cycle_.first_peck_mm) return;
+  if (*cycle_.first_peck_mm <= 0 || (cycle_.peck_less_mm.value_or(0) > 0 && cycle_.least_peck_mm.value_or(0) <= 0)) {
+    error(words_.offset(), "cycle",
+          fmt::format("G{} with I (first peck) and J (less with each) needs I and K (least peck) greater than zero",
+                      cycle_.g),
+          "cycle I");
+    cycle_.first_peck_mm.reset();
+  }
 }
 
 void BlockInterpreter::run_cycle() {
@@ -78,7 +103,8 @@ void BlockInterpreter::run_cycle() {
         open_axes_ = static_cast<std::uint8_t>(open_axes_ & ~(1U << static_cast<unsigned>(axis)));
   settle_axes_for("a drilling cycle", false);
   prepare_cutting("a drilling cycle");
-  const double repeats = words_.has('L') ? words_.value('L') : words_.has('K') ? words_.value('K') : 1;
+  const bool k_repeats = !options_.dialect_or_default().pecks_by_ijk;
+  const double repeats = words_.has('L') ? words_.value('L') : k_repeats && words_.has('K') ? words_.value('K') : 1;
   if (repeats < 0 || repeats > 1e5 || repeats != std::floor(repeats)) {
     error(words_.offset(), "cycle",
           fmt::format("{} repeats of a cycle; a whole number up to 100000 was expected", repeats));
@@ -110,7 +136,11 @@ void BlockInterpreter::drill(const Vec3& place) {
   hole.retract_mm = *cycle_.r_mm + (state_.incremental ? cycle_.initial_mm : 0);
   hole.bottom_mm = *cycle_.z_mm + (state_.incremental ? hole.retract_mm : 0);
   hole.clear_mm = return_to_r_ ? hole.retract_mm : std::max(cycle_.initial_mm, hole.retract_mm);
-  hole.peck_mm = cycle_.q_mm.value_or(0);
+  hole.peck_mm = cycle_.first_peck_mm.value_or(cycle_.q_mm.value_or(0));
+  hole.peck_less_mm = cycle_.first_peck_mm ? cycle_.peck_less_mm.value_or(0) : 0;
+  hole.least_peck_mm = cycle_.first_peck_mm ? cycle_.least_peck_mm.value_or(0) : 0;
+  if (cycle_.g == 73 && !cycle_.first_peck_mm && options_.dialect_or_default().pecks_by_ijk)
+    hole.clear_every_mm = cycle_.least_peck_mm.value_or(0);
   hole.dwell_s = cycle_.p_s.value_or(0);
   hole.peck_clearance_mm = options_.peck_clearance_mm;
   const std::string name = fmt::format("G{}", cycle_.g);
@@ -121,7 +151,8 @@ void BlockInterpreter::drill(const Vec3& place) {
                       kAxisLetters[normal], hole.bottom_mm, hole.retract_mm));
     return;
   }
-  if ((cycle_.g == 73 || cycle_.g == 83) && depth > hole.peck_mm * kMaxPecks) {
+  const double smallest_mm = hole.peck_less_mm > 0 ? std::min(hole.peck_mm, hole.least_peck_mm) : hole.peck_mm;
+  if ((cycle_.g == 73 || cycle_.g == 83) && depth > smallest_mm * kMaxPecks) {
     error(words_.offset(), "cycle", fmt::format("{} would peck more than 100000 times; a larger Q was expected", name));
     return;
   }

@@ -1,6 +1,7 @@
 #pragma once
 // The facts in which the NC dialects differ. The rows are in nc/dialects.h; code queries a fact of the dialect and
 // never compares its name.
+#include <cstdint>
 #include <span>
 #include <string_view>
 
@@ -13,6 +14,9 @@ struct NumberRange {
   int first = 0, last = -1;
   bool holds(double number) const { return number >= first && number <= last; }
 };
+
+/// Columns of the memory of tool offsets, by their variables (nc/offset_variables.h).
+enum class OffsetColumns : std::uint8_t { none, fanuc, haas, mazak };
 
 /// One dialect of RS-274. Siemens and Heidenhain have languages of their own: read_program refuses them by name (see
 /// foreign.h).
@@ -28,17 +32,37 @@ struct Dialect {
   std::string_view program_end = "M30";
   std::string_view file_extension = ".nc";
 
+  bool semicolon_ends_block = true;  ///< G0 X1; G1 X2 in one line are two blocks; else a comment begins
+  /// Errors are what other dialects read: a modal group twice in a block, a word that nothing uses, a cycle without
+  /// axis words, a comment within a comment, abbreviated macro words.
+  bool strict = false;
+
+  // Words
+  bool corner_words = true;           ///< ,R ,C ,A at the end of a block
+  bool d_is_modal = true;             ///< D holds until the next D, in whatever block; else in blocks with G41, G42
+  bool dwell_takes_p_alone = false;   ///< axis words beside G4 belong to the motion code: it dwells, then moves
+  bool stores_reference_points = false;  ///< G28.1, G30.1: the place of the tool becomes the reference point
+  bool haas_work_offsets = false;     ///< G154 P1 to P99, G110 to G129
+  bool pecks_by_ijk = false;          ///< G73, G83: I first peck, J less each time, K at least; L alone repeats
+
   // Numbers
   bool dwell_p_is_ms = true;                  ///< G4 P500 is 500 ms; else 500 s
   bool whole_numbers_are_increments = false;  ///< X1000 is 1000 least increments (Fanuc 3401#0 = 0); else 1000 mm
+  /// The setting of the control that decides it; empty: there is none, a point makes no difference.
+  std::string_view whole_numbers_setting{};
   double least_increment_mm = 0.001;
   double least_increment_inch = 0.0001;
+  double least_increment_deg = 0.001;
+  /// What an F without a point counts where numbers are increments: per minute, per revolution (Fanuc 1403#0, 1405#1).
+  double whole_feed_mm = 1, whole_feed_inch = 0.01;
+  double whole_feed_per_turn_mm = 0.01, whole_feed_per_turn_inch = 0.0001;
 
   // Variables
   NumberRange local{1, 33};  ///< one set for each level of macro calls
   NumberRange common[2]{{100, 199}, {500, 999}};
   bool has_null = true;     ///< a variable never set is vacant (#0): X#1 is then as if it were not written; else 0
   bool system_4000 = true;  ///< #1000.. #5000.. as Fanuc numbers them; else LinuxCNC's #5061..#5428
+  OffsetColumns offset_columns = OffsetColumns::fanuc;  ///< which variables are tool offsets
 
   // Expressions
   bool logic_is_bitwise = true;      ///< 5 AND 2 is 0; else any number but 0 is true, and the result is 0 or 1

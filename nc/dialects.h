@@ -8,18 +8,33 @@
 namespace camber::nc {
 
 /// Fanuc 0i, 16i, 30i with custom macro B. Sources: B-64484EN (custom macro) and the parameters named in dialect.h.
-inline constexpr Dialect kFanuc{.name = "fanuc", .title = "Fanuc", .m98_count_in_p = true};
+inline constexpr Dialect kFanuc{.name = "fanuc",
+                                .title = "Fanuc",
+                                .whole_numbers_setting = "decimal point input, parameter 3401#0",
+                                .m98_count_in_p = true};
 
 /// Haas mill operator's manual, macros: as Fanuc, but O numbers of five digits, so that P is always the whole number,
 /// and common variables up to #999 without a gap.
 inline constexpr Dialect kHaas{.name = "haas",
                                .title = "Haas",
                                .shown_by_m97 = true,
+                               .haas_work_offsets = true,
+                               .pecks_by_ijk = true,
+                               .whole_numbers_setting = "default to float, setting 162",
+                               .whole_feed_mm = 0.001,  // setting 77 at DEFAULT
+                               .whole_feed_inch = 0.0001,
+                               .whole_feed_per_turn_mm = 0.001,
+                               .whole_feed_per_turn_inch = 0.0001,
                                .common = {{100, 999}, {10000, 10999}},
+                               .offset_columns = OffsetColumns::haas,
                                .rotation_r_adds_in_g91 = true};
 
 /// Mazak EIA/ISO (Mazatrol's custom macro follows Fanuc's), O numbers of eight digits.
-inline constexpr Dialect kMazak{.name = "mazak", .title = "Mazak EIA", .common = {{100, 199}, {400, 999}}};
+inline constexpr Dialect kMazak{.name = "mazak",
+                                .title = "Mazak EIA",
+                                .whole_numbers_setting = "decimal point input",
+                                .common = {{100, 199}, {400, 999}},
+                                .offset_columns = OffsetColumns::mazak};
 
 /// LinuxCNC 2.9; the facts of expressions were read off rs274 (tests/nc/macro_rs274_test.cpp holds them to it).
 inline constexpr Dialect kLinuxCnc{.name = "linuxcnc",
@@ -29,11 +44,18 @@ inline constexpr Dialect kLinuxCnc{.name = "linuxcnc",
                                    .g64_p_is_tolerance = true,
                                    .program_end = "M2",
                                    .file_extension = ".ngc",
+                                   .semicolon_ends_block = false,
+                                   .strict = true,
+                                   .corner_words = false,
+                                   .d_is_modal = false,
+                                   .dwell_takes_p_alone = true,
+                                   .stores_reference_points = true,
                                    .dwell_p_is_ms = false,
                                    .local = {1, 30},
                                    .common = {{31, 5000}, {5429, 5601}},
                                    .has_null = false,
                                    .system_4000 = false,
+                                   .offset_columns = OffsetColumns::none,
                                    .logic_is_bitwise = false,
                                    .and_binds_as_product = false,
                                    .fix_to_zero = false,

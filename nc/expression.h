@@ -73,6 +73,11 @@ struct Expressions {
   std::vector<ExpressionOp> ops;
   std::vector<Expression> list;
   std::vector<std::string> names;  ///< of named parameters, lower case, without blanks
+  /// Offset of the first abbreviated function, operator or statement (SI[30], GO10); none: not given.
+  std::optional<std::uint32_t> abbreviation{};
+  void note_abbreviation(std::size_t offset) {
+    if (!abbreviation) abbreviation = static_cast<std::uint32_t>(offset);
+  }
 };
 
 /// What is wrong with an expression or a statement, and where.
@@ -113,8 +118,8 @@ class ExpressionReader {
   void number();
   void bracketed();
   void function(Op op, std::size_t begin);
-  std::optional<Op> function_here(std::size_t& length) const;
-  std::optional<Op> operator_here(std::size_t& length) const;
+  std::optional<Op> function_here(std::size_t& length, bool* abbreviated = nullptr) const;
+  std::optional<Op> operator_here(std::size_t& length, bool* abbreviated = nullptr) const;
   int priority(Op op) const;
   void push(Op op, std::size_t offset, double operand = 0);
   void skip_blanks();

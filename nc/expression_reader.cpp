@@ -14,6 +14,7 @@ constexpr int kMaxDepth = 100;  ///< brackets in brackets; controls stop at 5 to
 struct Spelling {
   std::string_view text;
   Op op;
+  bool abbreviated = false;  ///< its first two letters, as Fanuc accepts them
 };
 
 /// The longer of two that begin alike comes first.
@@ -25,6 +26,14 @@ constexpr std::array kFunctions{
     Spelling{"FUP", Op::fup},           Spelling{"LN", Op::logarithm},    Spelling{"EXP", Op::exponential},
     Spelling{"EXISTS", Op::name_known}, Spelling{"POW", Op::power},       Spelling{"BIN", Op::from_bcd},
     Spelling{"BCD", Op::to_bcd},        Spelling{"NOT", Op::logic_not},
+    Spelling{"AS", Op::arc_sine, true}, Spelling{"AC", Op::arc_cosine, true},
+    Spelling{"AT", Op::arc_tangent, true}, Spelling{"SI", Op::sine, true},
+    Spelling{"CO", Op::cosine, true},   Spelling{"TA", Op::tangent, true},
+    Spelling{"SQ", Op::square_root, true}, Spelling{"AB", Op::absolute, true},
+    Spelling{"RO", Op::round, true},    Spelling{"FI", Op::fix, true},
+    Spelling{"FU", Op::fup, true},      Spelling{"EX", Op::exponential, true},
+    Spelling{"PO", Op::power, true},    Spelling{"BI", Op::from_bcd, true},
+    Spelling{"BC", Op::to_bcd, true},
 };
 constexpr std::array kOperators{
     Spelling{"**", Op::power},         Spelling{"*", Op::multiply},
@@ -34,7 +43,8 @@ constexpr std::array kOperators{
     Spelling{"OR", Op::logic_or},      Spelling{"EQ", Op::equal},
     Spelling{"NE", Op::not_equal},     Spelling{"GT", Op::greater},
     Spelling{"GE", Op::greater_equal}, Spelling{"LT", Op::less},
-    Spelling{"LE", Op::less_equal},
+    Spelling{"LE", Op::less_equal},    Spelling{"AN", Op::logic_and, true},
+    Spelling{"XO", Op::logic_xor, true}, Spelling{"MO", Op::modulo, true},
 };
 
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
@@ -68,22 +78,24 @@ void ExpressionReader::expect(char c, std::string_view where) {
   ++at_;
 }
 
-std::optional<Op> ExpressionReader::function_here(std::size_t& length) const {
+std::optional<Op> ExpressionReader::function_here(std::size_t& length, bool* abbreviated) const {
   for (const Spelling& s : kFunctions) {
     if (!stands_at(text_, at_, end_, s.text)) continue;
     std::size_t i = at_ + s.text.size();
     while (i < end_ && is_blank(text_[i])) ++i;
     if (i >= end_ || text_[i] != '[') continue;
     length = s.text.size();
+    if (abbreviated) *abbreviated = s.abbreviated;
     return s.op;
   }
   return std::nullopt;
 }
 
-std::optional<Op> ExpressionReader::operator_here(std::size_t& length) const {
+std::optional<Op> ExpressionReader::operator_here(std::size_t& length, bool* abbreviated) const {
   for (const Spelling& s : kOperators) {
     if (!stands_at(text_, at_, end_, s.text)) continue;
     length = s.text.size();
+    if (abbreviated) *abbreviated = s.abbreviated;
     return s.op;
   }
   return std::nullopt;
@@ -168,9 +180,11 @@ void ExpressionReader::binary(int min_priority) {
   for (;;) {
     skip_blanks();
     std::size_t length = 0;
-    const auto op = at_ < end_ ? operator_here(length) : std::nullopt;
+    bool abbreviated = false;
+    const auto op = at_ < end_ ? operator_here(length, &abbreviated) : std::nullopt;
     if (!op || priority(*op) < min_priority) return;
     const std::size_t at = at_;
+    if (abbreviated) out_.note_abbreviation(at);
     at_ += length;
     has_logic_ |= *op == Op::logic_and || *op == Op::logic_or || *op == Op::logic_xor;
     binary(priority(*op) + 1);
@@ -183,6 +197,7 @@ void ExpressionReader::operand() {
   const char c = peek();
   const std::size_t begin = at_;
   std::size_t length = 0;
+  bool abbreviated = false;
   if (c == '-' || c == '+') {
     ++at_;
     operand();
@@ -194,7 +209,8 @@ void ExpressionReader::operand() {
     bracketed();
   } else if (is_digit(c) || c == '.') {
     number();
-  } else if (const auto op = at_ < end_ ? function_here(length) : std::nullopt) {
+  } else if (const auto op = at_ < end_ ? function_here(length, &abbreviated) : std::nullopt) {
+    if (abbreviated) out_.note_abbreviation(at_);
     at_ += length;
     function(*op, begin);
   } else if (c == '\0') {

@@ -1,6 +1,8 @@
 // Codes that say where programmed coordinates lie: G10, G15 G16, G29, G50 G51, G50.1 G51.1, G52, G68, G92. Frames that
 // follow the part: tilted_codes.cpp.
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -323,12 +325,7 @@ void BlockInterpreter::set_work_offset_data(bool touch_off) {
     value += position_mm_ - frame.from_program(p_mm);
     return;
   }
-  if (!external && !offset.known && !adds && number == state_.work_offset && !out_.moves.empty())
-    report_.warning(at, "work-offsets",
-                    fmt::format("{} sets the work offset that the program has moved in; its previous position is not "
-                                "known and is assumed to be the same",
-                                name),
-                    "G10");
+  if (!external && !offset.known && !adds) warn_of_moved_offset(number, at, name);
   for (int axis = 0; axis < 3; ++axis) {
     if (!words_.has(kAxisLetters[axis])) continue;
     const double given = words_.value(kAxisLetters[axis]) * unit_mm();
@@ -342,6 +339,86 @@ void BlockInterpreter::set_work_offset_data(bool touch_off) {
   }
   if (words_.has('R')) offset.rotation_rad = words_.value('R') * kPi / 180;
   if (!external && !adds) offset.known = true;
+}
+
+void BlockInterpreter::warn_of_moved_offset(int number, std::size_t at, const std::string& name) {
+  if (number != state_.work_offset || out_.moves.empty()) return;
+  report_.warning(at, "work-offsets",
+                  fmt::format("{} sets the work offset that the program has moved in; its previous position is not "
+                              "known and is assumed to be the same",
+                              name),
+                  "G10");
+}
+
+namespace {
+
+std::optional<double> ToolOffset::*column_of(OffsetVariable::Kind kind) {
+  switch (kind) {
+    case OffsetVariable::Kind::tool_length:
+      return &ToolOffset::length_mm;
+    case OffsetVariable::Kind::tool_length_wear:
+      return &ToolOffset::length_wear_mm;
+    case OffsetVariable::Kind::tool_radius:
+      return &ToolOffset::radius_mm;
+    default:
+      return &ToolOffset::radius_wear_mm;
+  }
+}
+
+}  // namespace
+
+std::optional<double> BlockInterpreter::offset_value(const OffsetVariable& v) {
+  if (v.kind == OffsetVariable::Kind::external)
+    return v.axis < 3 ? std::optional(frames_.offsets.external_mm[v.axis]) : std::nullopt;
+  if (v.kind != OffsetVariable::Kind::work) {
+    const auto tool = tool_offsets_.find(v.number);
+    return tool == tool_offsets_.end() ? std::nullopt : tool->second.*column_of(v.kind);
+  }
+  WorkOffset& offset = frames_.offsets.at(v.number);
+  if (v.axis == OffsetVariable::kRotation) return deg_from_rad(offset.rotation_rad);
+  if (v.axis >= 3) return deg_from_rad(offset.rotary_rad[v.axis - 3]);
+  if (offset.known || offset.value_mm != Vec3::Zero()) return offset.value_mm[v.axis];
+  offset.read = true;
+  return std::nullopt;
+}
+
+void BlockInterpreter::set_offset(const OffsetVariable& v, double value, std::size_t at) {
+  if (v.kind == OffsetVariable::Kind::external) {
+    if (v.axis < 3) frames_.offsets.external_mm[v.axis] = value;
+  } else if (v.kind != OffsetVariable::Kind::work) {
+    tool_offsets_[v.number].*column_of(v.kind) = value;
+    return;
+  } else if (!options_.dialect_or_default().system_4000 && v.number == state_.work_offset) {
+    pending_offsets_.emplace_back(v, value);
+    return;
+  } else {
+    WorkOffset& offset = frames_.offsets.at(v.number);
+    if (v.axis == OffsetVariable::kRotation) {
+      offset.rotation_rad = rad_from_deg(value);
+    } else if (v.axis >= 3) {
+      offset.rotary_rad[v.axis - 3] = rad_from_deg(value);
+    } else {
+      if (!offset.known && !offset.read) warn_of_moved_offset(v.number, at, "the assignment");
+      offset.value_mm[v.axis] = value;
+      offset.known = offset.known || !offset.read;
+    }
+  }
+  frames_used_ = true;
+  update_frame();
+}
+
+/// A LinuxCNC control takes what a program has set of the active offset when it is next selected.
+void BlockInterpreter::take_pending_offset() {
+  const auto pending = std::exchange(pending_offsets_, {});
+  for (const auto& [variable, value] : pending)
+    if (variable.number == state_.work_offset) {
+      WorkOffset& offset = frames_.offsets.at(variable.number);
+      if (variable.axis == OffsetVariable::kRotation) offset.rotation_rad = rad_from_deg(value);
+      if (variable.axis < 3) offset.value_mm[variable.axis] = value, offset.known = true;
+      frames_used_ = true;
+    } else {
+      pending_offsets_.emplace_back(variable, value);
+    }
 }
 
 void BlockInterpreter::set_tool_data(int kind) {

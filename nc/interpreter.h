@@ -1,6 +1,7 @@
 #pragma once
 // From words to moves: modal state, units, planes, arcs, canned cycles.
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -31,7 +32,10 @@ struct InterpreterOptions {
   /// differ. Not given: the dialect that the text shows (O-words, M97), else default_dialect(), except that
   /// `dwell_p_is_ms` then decides the unit of a dwell.
   std::optional<Dialect> dialect{};
-  bool whole_numbers_are_increments = false;  ///< X1000 is 1000 least increments of the dialect (1 mm), not 1000 mm
+  /// X1000 is 1000 least increments of the dialect (1 mm), not 1000 mm. Not given: a setting of the control that is not
+  /// known; it is assumed (docs/nc-language.md), with the warning [decimal-point] where the path depends on it.
+  std::optional<bool> whole_numbers_are_increments{};
+  double max_spindle_speed_rpm = std::numeric_limits<double>::infinity();  ///< of the machine: a greater S is clamped
   std::uint16_t skip_switches = 0;            ///< bit n: blocks that begin with /n are left out (/ is /1)
   /// Blocks that loops and repeated subprograms may run again before the program counts as endless.
   std::size_t max_repeated_blocks = 10'000'000;

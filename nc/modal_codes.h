@@ -19,10 +19,10 @@ enum class GGroup {
   unit,           ///< G20 G21
   cutter_radius,  ///< G40 G41 G42 G41.1 G42.1
   tool_length,    ///< G43 G44 G49
-  work_offset,    ///< G54 .. G59.3, G54.1
+  work_offset,    ///< G54 .. G59.3, G54.1, G154
   path_control,   ///< G61 G61.1 G62 G63 G64
   return_level,   ///< G98 G99
-  one_shot,       ///< G4 G9 G28 G29 G30 G53
+  one_shot,       ///< G4 G9 G28 G28.1 G29 G30 G30.1 G53 G60
   frame,          ///< G10 G15 G16 G50 G51 G50.1 G51.1 G52 G53.1 G68 G68.2 G69 G92 G254 G255: where coordinates lie
   contouring,     ///< G05 G05.1 G08, and CYCLE832 (kCycle832): modes for fine paths
   macro,          ///< G65 G66 G67: the sequencer's
@@ -40,6 +40,11 @@ struct GCode {
 
 /// code in tenths: 541 is G54.1.
 GCode g_code(int tenths);
+/// G110 to G129 of Haas: the number of the additional work offset (1 to 20); 0 for other codes. In other dialects some
+/// of them mean other things.
+constexpr int haas_work_offset_of(int tenths) {
+  return tenths >= 1100 && tenths <= 1290 && tenths % 10 == 0 ? tenths / 10 - 109 : 0;
+}
 /// All codes of the table, in tenths, ascending.
 std::vector<int> known_g_codes();
 /// As docs/nc-language.md names it, e.g. "work offset".

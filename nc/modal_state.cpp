@@ -20,6 +20,35 @@ bool is_exclusive(GGroup group) {
          group != GGroup::unknown && group != GGroup::contouring && group != GGroup::frame;
 }
 
+/// Modal group of a strict control (LinuxCNC's manual, modal groups): a number, the same for codes that exclude each
+/// other; negative: none.
+int strict_group(int tenths) {
+  constexpr int kNonModal = 1000;
+  constexpr std::array kNonModalCodes{40, 100, 280, 281, 300, 301, 520, 530, 920, 921, 922, 923};
+  if (std::ranges::find(kNonModalCodes, tenths) != kNonModalCodes.end()) return kNonModal;
+  if (tenths == 800) return -1;  // goes with a motion
+  GGroup group = g_code(tenths).group;
+  if (group == GGroup::cycle) group = GGroup::motion;
+  return is_exclusive(group) && group != GGroup::one_shot ? static_cast<int>(group) : -1;
+}
+
+/// Of M codes, likewise.
+int strict_m_group(int tenths) {
+  switch (m_code(tenths)) {
+    case MGroup::stop:
+    case MGroup::end:
+      return 4;
+    case MGroup::tool:
+      return 6;
+    case MGroup::spindle:
+      return 7;
+    case MGroup::coolant:
+      return 8;
+    default:
+      return tenths >= 480 && tenths <= 530 ? 9 : -1;
+  }
+}
+
 /// M codes that act after the motion of their block.
 bool acts_at_end(const Code& code) {
   const MGroup group = m_code(code.tenths);
@@ -62,6 +91,13 @@ void BlockInterpreter::check_one_of_each_group() {
   for (std::size_t i = 0; i < words_.g().size(); ++i)
     for (std::size_t k = i + 1; k < words_.g().size(); ++k) {
       const Code &a = words_.g()[i], &b = words_.g()[k];
+      if (options_.dialect_or_default().strict) {
+        if (strict_group(a.tenths) < 0 || strict_group(a.tenths) != strict_group(b.tenths)) continue;
+        error(b.word->offset, "modal-group",
+              fmt::format("{} and {} in one block are of one modal group; one of them was expected", code_text(a),
+                          code_text(b)));
+        continue;
+      }
       if (a.tenths == b.tenths) continue;
       GGroup group_a = g_code(a.tenths).group, group_b = g_code(b.tenths).group;
       if (a.tenths == 800 || b.tenths == 800) continue;  // G80 may stand with G0..G3
@@ -73,6 +109,37 @@ void BlockInterpreter::check_one_of_each_group() {
             fmt::format("{} and {} in one block exclude each other; one of them was expected", code_text(a),
                         code_text(b)));
     }
+}
+
+/// Axis words of a block belong to one code, and a cycle needs some.
+void BlockInterpreter::check_strict_block() {
+  const bool axes = words_.has_any("XYZABCUVW");
+  const Word* motion = request_.motion_given || request_.cycle_given ? request_.motion_word : nullptr;
+  if (request_.cycle_given && !axes)
+    error(motion->offset, "cycle", fmt::format("G{:g} without axis words; X, Y or Z was expected", motion->value));
+  const auto takes_axes = [](const Code& c) {
+    return c.tenths == 100 || c.tenths == 280 || c.tenths == 300 || c.tenths == 520 || c.tenths == 920;
+  };
+  const auto other = std::ranges::find_if(words_.g(), takes_axes);
+  if (axes && motion && other != words_.g().end())
+    error(other->word->offset, "modal-group",
+          fmt::format("{} and G{:g} in one block both use axis words; one of them was expected", code_text(*other),
+                      motion->value));
+  const auto off = std::ranges::find(words_.g(), 800, &Code::tenths);
+  if (axes && !motion && off != words_.g().end() && other == words_.g().end())
+    error(off->word->offset, "modal-group", "G80 with axis words and no motion; G0, G1, G2 or G3 was expected");
+}
+
+/// Of a strict control.
+void BlockInterpreter::check_m_groups() {
+  if (!options_.dialect_or_default().strict) return;
+  const auto& codes = words_.m();
+  for (std::size_t i = 0; i < std::min(codes.size(), kMaxGWords); ++i)
+    for (std::size_t k = i + 1; k < std::min(codes.size(), kMaxGWords); ++k)
+      if (const int group = strict_m_group(codes[i].tenths); group >= 0 && group == strict_m_group(codes[k].tenths))
+        error(codes[k].word->offset, "modal-group",
+              fmt::format("{} and {} in one block are of one modal group; one of them was expected",
+                          code_text(codes[i]), code_text(codes[k])));
 }
 
 bool BlockInterpreter::read_g_codes() {
@@ -94,6 +161,10 @@ bool BlockInterpreter::read_g_code(const Code& code, const GCode& meaning) {
     error(code.word->offset, "turning",
           "G50 with S (largest spindle speed) belongs to a turning program; milling programs are read");
     return false;
+  }
+  if (options_.dialect_or_default().haas_work_offsets && haas_work_offset_of(code.tenths) > 0) {
+    set_work_offset(code);
+    return state_changed_ = true;
   }
   switch (meaning.group) {
     case GGroup::motion:
@@ -138,6 +209,10 @@ bool BlockInterpreter::read_g_code(const Code& code, const GCode& meaning) {
       return_to_r_ = code.tenths == 990;
       break;
     case GGroup::one_shot:
+      if (code.tenths == 281 || code.tenths == 301) {
+        store_reference(code);
+        break;
+      }
       request_.dwell |= code.tenths == 40;
       request_.exact_stop |= code.tenths == 90;
       request_.machine_frame |= code.tenths == 530;
@@ -207,9 +282,33 @@ void BlockInterpreter::set_plane(const Code& code) {
   state_changed_ = true;
 }
 
+/// G154 P1 to P99, G110 to G129; 0: another code; negative: an error was reported.
+int BlockInterpreter::additional_work_offset(const Code& code) {
+  constexpr double kLast = 99;
+  const bool haas = options_.dialect_or_default().haas_work_offsets;
+  if (haas && haas_work_offset_of(code.tenths) > 0) return haas_work_offset_of(code.tenths);
+  if (code.tenths != 1540) return 0;
+  if (!haas) {
+    error(code.word->offset, "unknown-g",
+          fmt::format("G154 is the additional work offset of Haas; G54.1 P was expected in a {} program (--dialect)",
+                      options_.dialect_or_default().title));
+    words_.use("P");
+    return -1;
+  }
+  const double p = words_.has('P') ? words_.value('P') : 0;
+  if (is_whole(p) && p >= 1 && p <= kLast) return static_cast<int>(p);
+  error(words_.has('P') ? words_.offset_of('P') : code.word->offset, "work-offset",
+        words_.has('P') ? fmt::format("G154 P{} is not a work offset; P1 to P{} was expected", p, kLast)
+                        : fmt::format("G154 has no number; P1 to P{} was expected", kLast));
+  return -1;
+}
+
 void BlockInterpreter::set_work_offset(const Code& code) {
   const int before = state_.work_offset;
-  if (code.tenths >= 591) {
+  if (const int additional = additional_work_offset(code); additional != 0) {
+    if (additional < 0) return;
+    state_.work_offset = 540000 + additional;
+  } else if (code.tenths >= 591) {
     state_.work_offset = code.tenths;
   } else if (code.tenths == 541) {
     if (!words_.has('P') || !is_whole(words_.value('P')))
@@ -223,6 +322,7 @@ void BlockInterpreter::set_work_offset(const Code& code) {
       state_.work_offset = 540000 + static_cast<int>(words_.value('P'));
   }
   if (state_.work_offset == before) return;
+  if (!pending_offsets_.empty()) take_pending_offset();
   if (state_.work_frame != WorkFrame::machine)
     error(code.word->offset, "tilted-frame",
           fmt::format("{} changes the work offset while {} is active; {} was expected before", code_text(code),
@@ -311,8 +411,9 @@ void BlockInterpreter::read_spindle_speed() {
     return;
   }
   add_event(EventKind::spindle_speed, value);
-  state_changed_ |= value != state_.spindle_speed_rpm;
-  state_.spindle_speed_rpm = value;
+  state_changed_ |= value != state_.programmed_spindle_speed_rpm;
+  state_.programmed_spindle_speed_rpm = value;
+  state_.spindle_speed_rpm = std::min(value, options_.max_spindle_speed_rpm);
 }
 
 void BlockInterpreter::read_tool() {
@@ -328,13 +429,14 @@ void BlockInterpreter::read_tool() {
 }
 
 bool BlockInterpreter::read_m_codes_before() {
+  check_m_groups();
   const Word* spindle = nullptr;
   for (const Code& code : words_.m()) {
     if (read_clamp(code) || read_tip_control_m(code)) continue;
     if (!acts_at_end(code)) add_m_event(code);
     switch (m_code(code.tenths)) {
       case MGroup::spindle:
-        if (spindle && spindle->value != code.word->value)
+        if (spindle && spindle->value != code.word->value && !options_.dialect_or_default().strict)
           error(code.word->offset, "modal-group",
                 fmt::format("M{} and {} in one block exclude each other; one of them was expected", spindle->value,
                             code_text(code)));
@@ -424,10 +526,25 @@ void BlockInterpreter::check_letters() {
   }
 }
 
+/// D and H beside codes that do not use them, which a strict control refuses.
+void BlockInterpreter::check_offset_numbers() {
+  for (const char letter : {'D', 'H'}) {
+    if (!words_.has(letter) || (words_.unused() & (1U << (letter - 'A'))) == 0) continue;
+    words_.use(letter == 'D' ? "D" : "H");
+    error(words_.offset_of(letter), "offset-number",
+          fmt::format("{} in a block without a code that uses it; {} was expected", letter,
+                      letter == 'D' ? "G41, G41.1, G42 or G42.1" : "G43"),
+          std::string(1, letter));
+  }
+}
+
 void BlockInterpreter::warn_of_unused_words() {
   if (request_.trouble) return;
   words_.use("NOFST");
-  if (words_.has_any("DH")) words_.use("DH");  // numbers of offsets: the tip is what is programmed
+  if (options_.dialect_or_default().strict)
+    check_offset_numbers();
+  else
+    words_.use("DH");  // numbers of offsets: the tip is what is programmed
   if (!words_.m().empty()) words_.use("PQRL");
   const std::uint32_t unused = words_.unused();
   if (unused == 0) return;

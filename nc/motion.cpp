@@ -63,7 +63,7 @@ void BlockInterpreter::check_unit() {
                   "the program has moves before G20 or G21 says which unit it is in; millimetres are assumed");
 }
 
-/// The axis words of the block, counted from `start`, a point in the same coordinates.
+/// The axis words of the block, and an angle (,A), counted from `start`, a point in the same coordinates.
 Vec3 BlockInterpreter::target_from(const Vec3& start) {
   Vec3 end = start;
   for (int axis = 0; axis < 3; ++axis) {
@@ -71,7 +71,7 @@ Vec3 BlockInterpreter::target_from(const Vec3& start) {
     const double value = words_.value(kAxisLetters[axis]) * unit_mm();
     end[axis] = state_.incremental ? end[axis] + value : value;
   }
-  return end;
+  return words_.corner_words().empty() ? end : target_at_angle(start, end);
 }
 
 Vec3 BlockInterpreter::programmed_target() {
@@ -85,7 +85,8 @@ Vec3 BlockInterpreter::target() {
   Vec3 end = frame_.from_program(programmed_target());
   if (!frame_.shift_only) return end;
   for (int axis = 0; axis < 3; ++axis)
-    if (!words_.has(kAxisLetters[axis]) && !frame_.polar) end[axis] = position_mm_[axis];
+    if (!words_.has(kAxisLetters[axis]) && !frame_.polar && words_.corner_words().empty())
+      end[axis] = position_mm_[axis];
   return end;
 }
 
@@ -104,6 +105,7 @@ std::optional<double> BlockInterpreter::dwell_seconds(char letter) {
     error(word.offset, "dwell", fmt::format("a dwell of {} {} is negative; zero or more was expected", letter, value));
     return 0.0;
   }
+  if (letter != 'P') return value;  // seconds, as scale_whole_numbers has read it
   if (written_with_point(word)) return value;
   if (options_.dwell_p_is_ms) return value / 1000.0;
   if (value >= 100)
@@ -117,13 +119,38 @@ std::optional<double> BlockInterpreter::dwell_seconds(char letter) {
 
 void BlockInterpreter::dwell() {
   std::optional<double> seconds;
+  const bool p_alone = options_.dialect_or_default().dwell_takes_p_alone;
   for (const char letter : {'P', 'X', 'U'})
-    if (!seconds) seconds = dwell_seconds(letter);
+    if (!seconds && (letter == 'P' || !p_alone)) seconds = dwell_seconds(letter);
   if (!seconds) {
     error(words_.offset(), "dwell", "G4 has no time; P with the time was expected");
     return;
   }
   add_move(MoveKind::dwell, position_mm_).dwell_s = *seconds;
+}
+
+/// G4 takes P alone: the other words move as if it were not there.
+void BlockInterpreter::move_after_dwell() {
+  const bool arc = motion_ == Motion::clockwise || motion_ == Motion::counter_clockwise;
+  const bool moves = words_.has_any("XYZ") || rotary_target_ || request_.cycle_given || (arc && words_.has_any("IJKR"));
+  if (!moves || request_.trouble) return;
+  if (arc && cycle_.g == 0)
+    error(words_.offset(), "modal-group",
+          "G4 with an arc (G2, G3), both of which use P; two blocks were expected");
+  else
+    move();
+}
+
+/// G28.1, G30.1: where the tool stands is the reference point from now on.
+void BlockInterpreter::store_reference(const Code& code) {
+  if (!options_.dialect_or_default().stores_reference_points) {
+    error(code.word->offset, "unknown-g",
+          fmt::format("{} is not a G code of a {} program that Camber knows", code_text(code),
+                      options_.dialect_or_default().title));
+    request_.skip_motion = true;
+    return;
+  }
+  stored_reference_[code.tenths == 281 ? 0 : 1] = StoredReference{position_mm_, rotary_rad_};
 }
 
 void BlockInterpreter::go_to_reference() {
@@ -154,11 +181,16 @@ void BlockInterpreter::go_to_reference() {
     add_move(MoveKind::rapid, via);
     settle_axes();
   }
-  turn_home(none, turns);
+  const auto stored = point < stored_reference_.size() ? stored_reference_[point] : std::nullopt;
+  turn_home(none, turns, stored ? stored->rotary_rad : Vec3(Vec3::Zero()));
   Vec3 home = position_mm_, machine_mm = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   std::uint8_t given = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!none && !goes[axis]) continue;
+    if (stored) {
+      home[static_cast<Eigen::Index>(axis)] = stored->place_mm[static_cast<Eigen::Index>(axis)];
+      continue;
+    }
     home[static_cast<Eigen::Index>(axis)] = 0;
     place_[axis] = AxisPlace::reference;
     given = static_cast<std::uint8_t>(given | 1U << axis);
@@ -169,6 +201,7 @@ void BlockInterpreter::go_to_reference() {
   }
   add_machine_target(machine_mm, given);
   Move& move = add_move(MoveKind::rapid, home);
+  if (stored) return;
   move.reference_point = static_cast<std::uint8_t>(point & 3U);
   for (unsigned axis = 0; axis < 3; ++axis)
     if (none || goes[axis]) move.reference_axes = static_cast<std::uint8_t>((move.reference_axes | 1U << axis) & 7U);
@@ -244,7 +277,6 @@ void BlockInterpreter::move() {
 
 void BlockInterpreter::move_on_line() {
   check_unit();
-  settle_tip();
   settle_axes_for("cutter radius compensation", !radius_.active);
   const Vec3 end = target();
   if (motion_ == Motion::rapid) {
@@ -257,12 +289,22 @@ void BlockInterpreter::move_on_line() {
   settle_axes();
 }
 
-/// A cutting move needs a place to start from: axes that were never programmed are taken to stand at zero.
-void BlockInterpreter::prepare_cutting(const char* what) {
+/// A cutting move needs a place to start from: axes that were never programmed are taken to stand at zero. `arc`: its
+/// centre counts from the start, so that axes that the block itself places need one too.
+void BlockInterpreter::prepare_cutting(const char* what, bool arc) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool placed = words_.has(kAxisLetters[axis]) && !state_.incremental;
-    if (place_[axis] == AxisPlace::known || placed) continue;
+    if (place_[axis] == AxisPlace::known) continue;
     const char letter = kAxisLetters[axis];
+    if (placed && !(arc && place_[axis] == AxisPlace::never)) {
+      if (place_[axis] == AxisPlace::never)
+        report_.warning(words_.offset(), "start-unknown",
+                        fmt::format("{} to {} from a place that the program has not given; the move is ignored for "
+                                    "material removal",
+                                    what, letter),
+                        "from nowhere");
+      continue;
+    }
     if (place_[axis] == AxisPlace::never) {
       report_.warning(
           words_.offset(), "start-unknown",
@@ -359,7 +401,7 @@ void BlockInterpreter::move_on_arc() {
   arc.absolute_centre = state_.absolute_arc_centre;
   const char* g = spiral_ ? (arc.clockwise ? "G2.1" : "G3.1") : arc.clockwise ? "G2" : "G3";
   settle_axes_for("an arc", false);
-  prepare_cutting(g);
+  prepare_cutting(g, true);
   if (leaving_) {
     error(words_.offset(), "cutter-radius",
           fmt::format("the move off the contour after G40 is an arc ({}); a straight move (G0, G1) was expected", g));
@@ -385,6 +427,10 @@ void BlockInterpreter::move_on_arc() {
   if (!spiral_) read_spiral_words(arc);
   ArcResult result = make_arc(arc);
   if (spiral_ && arc.r_mm) result.error = "a spiral with R leaves its centre open; I J K were expected";
+  if (result.is_point) {
+    motion_point(end_mm, g);
+    return;
+  }
   const auto in_moves = frame_.plain || !result.error.empty() ? result.arc : from_program(frame_, result.arc);
   if (!in_moves)
     error(words_.offset(), "scaling",
@@ -402,6 +448,15 @@ void BlockInterpreter::move_on_arc() {
   if (spiral_) move.editable = false;  // an arc in its place would need other words
   settle_axes();
   move.feed_mm_per_s = cutting_feed(length_mm(out_, move), g).value_or(0);
+}
+
+/// An arc so small that its centre coincides with an end to the last decimal: a line of that length.
+void BlockInterpreter::motion_point(const Vec3& end_mm, const char* g) {
+  const auto feed = cutting_feed((end_mm - position_mm_).norm(), g);
+  Move& move = add_move(MoveKind::linear, end_mm);
+  move.feed_mm_per_s = feed.value_or(0);
+  move.editable = false;
+  settle_axes();
 }
 
 /// G2.1, G3.1: the radius runs evenly from that of the start to that of the end; P full turns before the rest of one.

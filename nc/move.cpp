@@ -1,8 +1,11 @@
 #include "nc/move.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
+
+#include "base/units.h"
 
 namespace camber::nc {
 namespace {
@@ -30,6 +33,19 @@ ArcFrame frame_of(const Arc& arc, const Move& move) {
 }
 
 }  // namespace
+
+bool only_turns(const Interpretation& program, std::size_t move) {
+  constexpr double kNoLengthMm = 1e-9;
+  const Move& m = program.moves[move];
+  if (m.kind != MoveKind::linear || program.state_of(m).feed_mode == FeedMode::inverse_time) return false;
+  const auto turn = std::ranges::lower_bound(program.rotary, move, {}, &RotaryTarget::move);
+  return turn != program.rotary.end() && turn->move == move && length_mm(program, m) < kNoLengthMm;
+}
+
+double feed_deg_per_min(const Interpretation& program, const Move& move) {
+  const double per_min = mm_per_min_from_mm_per_s(move.feed_mm_per_s);
+  return program.state_of(move).inch ? per_min / kMmPerInch : per_min;
+}
 
 double length_mm(const Interpretation& program, const Move& move) {
   if (move.kind == MoveKind::dwell) return 0;

@@ -26,6 +26,7 @@ enum class FeedMode : std::uint8_t { per_minute, inverse_time, per_revolution };
 struct ModalState {
   int tool = 0;  ///< in the spindle (after M6)
   double spindle_speed_rpm = 0;
+  double programmed_spindle_speed_rpm = 0;  ///< S; more than spindle_speed_rpm where the machine clamps it
   SpindleDirection spindle = SpindleDirection::stopped;
   PathControl path_control = PathControl::blend;
   double blend_tolerance_mm = -1;  ///< G64 P; negative: G64 without P (the control's own)
@@ -102,11 +103,16 @@ struct Interpretation {
   std::vector<RotaryTarget> rotary;            ///< of the moves that turn rotary axes, in order; all axes start at 0
   /// Origin of the machine's coordinates in the frame of the moves, where the work offset is known.
   std::optional<Vec3> machine_origin_mm{};
+  bool whole_numbers_are_increments = false;  ///< how the program's numbers without a decimal point were read
 
   const ModalState& state_of(const Move& m) const { return states[m.state]; }
   const Frame& frame_of(const Move& m) const { return frames[states[m.state].frame]; }
 };
 
+/// True for a feed move of rotary axes alone: its F is degrees per minute, whatever unit lengths have.
+bool only_turns(const Interpretation& program, std::size_t move);
+/// F of such a move.
+double feed_deg_per_min(const Interpretation& program, const Move& move);
 /// Length along the path, mm (helices included).
 double length_mm(const Interpretation& program, const Move& move);
 /// Point at the fraction u in [0, 1] of the move's length.

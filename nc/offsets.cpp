@@ -6,15 +6,20 @@
 #include <utility>
 
 #include "base/numbers.h"
+#include "nc/modal_codes.h"
 
 namespace camber::nc {
 
 std::optional<int> work_offset_number(std::string_view name) {
-  if (name.starts_with("G54.1P")) {
-    const auto p = parse_number(name.substr(6));
+  for (const std::string_view prefix : {"G54.1P", "G154P"}) {
+    if (!name.starts_with(prefix)) continue;
+    const auto p = parse_number(name.substr(prefix.size()));
     return p && *p >= 1 && *p <= 999 && *p == std::floor(*p) ? std::optional(540000 + static_cast<int>(*p))
                                                              : std::nullopt;
   }
+  if (name.size() == 4 && name.front() == 'G')
+    if (const auto g = parse_number(name.substr(1)); g && *g == std::floor(*g))
+      if (const int additional = haas_work_offset_of(static_cast<int>(*g) * 10)) return 540000 + additional;
   constexpr std::array<std::pair<std::string_view, int>, 9> kNames{{{"G54", 54},
                                                                     {"G55", 55},
                                                                     {"G56", 56},

@@ -8,7 +8,7 @@
 
 namespace camber::nc {
 
-/// G54, G59.1, G54.1P7 as ModalState::work_offset has them; nothing for other names.
+/// G54, G59.1, G54.1P7, G154P7, G112 (Haas: G154 P3) as ModalState::work_offset has them; nothing for other names.
 std::optional<int> work_offset_number(std::string_view name);
 
 /// One of G54 .. G59.3, G54.1 Pn. Numbers as in ModalState::work_offset.
@@ -17,6 +17,7 @@ struct WorkOffset {
   double rotation_rad = 0;         ///< about Z (G10 L2 R of LinuxCNC)
   Vec3 rotary_rad = Vec3::Zero();  ///< machine coordinates of A, B, C at words of 0
   bool known = false;              ///< false: where it lies is not known; value_mm is relative to that unknown place
+  bool read = false;               ///< the program has read it while it was not known: what it sets is relative to that
 };
 
 /// One line of the tool offset memory, by its H or D number.

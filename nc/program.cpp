@@ -15,7 +15,12 @@
 namespace camber::nc {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+/// Characters of a tape that are no text: its blank leader, rubouts, and what switches readers and punches (DC1 to
+/// DC4).
+bool is_of_tape(char c) { return c == '\0' || c == '\x7f' || (c >= '\x11' && c <= '\x14'); }
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f' || is_of_tape(c);
+}
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
@@ -29,6 +34,98 @@ std::string printable(unsigned char c) {
   if (c > 32 && c < 127) return fmt::format("`{}`", static_cast<char>(c));
   return fmt::format("byte 0x{:02X}", c);
 }
+
+/// Walks over a line without reading it.
+class Glance {
+ public:
+  Glance(std::string_view text, std::size_t at, std::size_t end) : text_(text), at_(at), end_(end) {}
+
+  /// True where up to the end, or to the next `;`, there are words and comments and nothing else, and at least one word.
+  bool reads_as_block() {
+    bool any = false;
+    for (skip_blanks(); at_ < end_ && text_[at_] != ';'; skip_blanks()) {
+      if (text_[at_] == '(') {
+        if (!skip_comment()) return false;
+      } else if (word() || assignment()) {
+        any = true;
+      } else {
+        return false;
+      }
+    }
+    return any;
+  }
+
+  /// The code of an M word that ends a program; comments are passed over.
+  bool ends_program() {
+    for (; at_ < end_; ++at_) {
+      if (text_[at_] == '(' && !skip_comment()) return false;
+      if (at_ >= end_ || upper(text_[at_]) != 'M') continue;
+      std::size_t digits = at_ + 1;
+      while (digits < end_ && (is_digit(text_[digits]) || text_[digits] == ' ')) ++digits;
+      const auto code = parse_number(text_.substr(at_ + 1, digits - at_ - 1));
+      if (code && (*code == 2 || *code == 30 || *code == 99)) return true;
+    }
+    return false;
+  }
+
+ private:
+  void skip_blanks() {
+    while (at_ < end_ && is_blank(text_[at_])) ++at_;
+  }
+
+  bool skip_comment() {
+    const std::size_t close = text_.find(')', at_);
+    if (close >= end_) return false;
+    at_ = close + 1;
+    return true;
+  }
+
+  /// A letter and a number, a variable or an expression; ,R and its kind; statements.
+  bool word() {
+    std::size_t i = at_ + (text_[at_] == ',' ? 1 : 0);
+    std::size_t letters = i;
+    while (letters < end_ && is_letter(text_[letters])) ++letters;
+    if (letters == i) return false;
+    if (letters - i > 1) {
+      std::string keyword;
+      for (std::size_t k = i; k < letters; ++k) keyword += upper(text_[k]);
+      constexpr std::array<std::string_view, 11> kKeywords{"IF", "WHILE", "WH", "DO", "END",  "EN",
+                                                           "GOTO", "GO",  "THEN", "TH", "ELSE"};
+      if (std::ranges::find(kKeywords, keyword) == kKeywords.end()) return false;
+    }
+    at_ = letters;
+    return value();
+  }
+
+  bool value() {
+    skip_blanks();
+    while (at_ < end_ && (text_[at_] == '-' || text_[at_] == '+')) ++at_;
+    if (at_ < end_ && text_[at_] == '#') ++at_;
+    if (at_ < end_ && text_[at_] == '[') {
+      int depth = 0;
+      for (; at_ < end_; ++at_) {
+        depth += text_[at_] == '[' ? 1 : text_[at_] == ']' ? -1 : 0;
+        if (depth == 0) return ++at_, true;
+      }
+      return false;
+    }
+    const std::size_t begin = at_;
+    while (at_ < end_ && (is_digit(text_[at_]) || text_[at_] == '.')) ++at_;
+    return at_ > begin;
+  }
+
+  /// #1 = anything up to the end of the block.
+  bool assignment() {
+    if (text_[at_] != '#') return false;
+    const std::size_t end = std::min(text_.find(';', at_), end_);
+    if (text_.find('=', at_) >= end) return false;
+    at_ = end;
+    return true;
+  }
+
+  std::string_view text_;
+  std::size_t at_, end_;
+};
 
 constexpr std::array<double, 20> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,
                                                  1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19};
@@ -47,37 +144,82 @@ class Scanner {
   bool run() {
     program_.blocks.reserve(program_.source.line_count());
     program_.words.reserve(size_ / 4);  // pages that are not written to cost nothing
+    const std::size_t leader = leader_length();
     std::size_t at = 0;
     while (at < size_ && !foreign_ && !main_report_.full()) {
-      const void* found = std::char_traits<char>::find(text_ + at, size_ - at, '\n');
+      const void* found = std::char_traits<char>::find(text_ + at, size_ - at, program_.source.line_end());
       const std::size_t next = found ? static_cast<std::size_t>(static_cast<const char*>(found) - text_) : size_;
       std::size_t end = next;
       while (end > at && text_[end - 1] == '\r') --end;
-      scan_block(at, end);
+      if (at < leader)
+        pass_over(at, end);
+      else
+        scan_block(at, end);
       at = next + 1;
     }
     return !foreign_;
   }
 
  private:
+  /// Bytes before the line with the first %, where that begins the program: a control reads nothing before it. Where a
+  /// program ends before the %, or none stands behind it, the % is the end.
+  std::size_t leader_length() const {
+    const auto first_of_line = [&](std::size_t at) {
+      while (at > 0 && text_[at - 1] != program_.source.line_end())
+        if (!is_blank(text_[--at])) return false;
+      return true;
+    };
+    const std::string_view all = text();
+    std::size_t start = all.find('%');
+    while (start != std::string_view::npos && !first_of_line(start)) start = all.find('%', start + 1);
+    if (start == std::string_view::npos || start == 0) return 0;
+    if (Glance(all, 0, start).ends_program()) return 0;
+    const std::size_t behind = all.find_first_not_of(std::string_view("% \t\r\n\0\x7f\x1a", 8), start);
+    if (behind == std::string_view::npos) return 0;
+    while (start > 0 && text_[start - 1] != program_.source.line_end()) --start;
+    return start;
+  }
+
+  /// A line of the leader: a block without words.
+  void pass_over(std::size_t begin, std::size_t end) {
+    Block block;
+    block.offset = static_cast<std::uint32_t>(begin);
+    block.length = static_cast<std::uint32_t>(end - begin);
+    program_.blocks.push_back(block);
+    ++program_.leader_blocks;
+    while (begin < end && is_blank(text_[begin])) ++begin;
+    if (begin < end && text_[begin] != '(' && text_[begin] != ';')
+      main_report_.warning(begin, "before-start", "text before the first % is no part of the program and is not read",
+                           "before-start");
+  }
+
   void scan_block(std::size_t begin, std::size_t end) {
     Block block;
     block.offset = static_cast<std::uint32_t>(begin);
     block.length = static_cast<std::uint32_t>(end - begin);
     block.first_word = static_cast<std::uint32_t>(program_.words.size());
-    at_ = begin;
+    at_ = block_begin_ = begin;
     end_ = end;
     if (ended_) ended_ = !begins_program(begin, end);
     report_ = ended_ ? &behind_end_ : &main_report_;
     skip_ = 0;
     flow_ = false;
     if (begin == 0 && end >= 3 && std::string_view(text_, 3) == "\xEF\xBB\xBF") at_ = 3;  // byte order mark
+    behind_percent_ &= ended_;
+    if (behind_percent_) pass_behind_percent();
+    const std::size_t parts = program_.parts.size();
     while (at_ < end_ && scan_item_or_fail(begin)) {
     }
     std::size_t count = program_.words.size() - block.first_word;
+    if (program_.parts.size() > parts) {
+      block.divided = true;
+      count = close_parts(parts, block.first_word);
+    }
     if (count > std::numeric_limits<std::uint16_t>::max()) {
       report_->error(begin, "too-many-words", fmt::format("{} words in one block; at most 65535 are read", count));
       program_.words.resize(block.first_word);
+      program_.parts.resize(parts);
+      block.divided = false;
       std::erase_if(program_.macro.words, [&](const ExpressionWord& w) { return w.word >= block.first_word; });
       count = 0;
     }
@@ -89,9 +231,39 @@ class Scanner {
       ended_ |= program_.words[i].letter == 'M' && (program_.words[i].value == 2 || program_.words[i].value == 30);
   }
 
+  /// Gives the parts of a line their words. Returns how many are left for the block itself.
+  std::size_t close_parts(std::size_t first, std::uint32_t first_word) {
+    auto end = static_cast<std::uint32_t>(program_.words.size());
+    for (std::size_t i = program_.parts.size(); i-- > first;) {
+      program_.parts[i].word_count = end - program_.parts[i].first_word;
+      end = program_.parts[i].first_word;
+    }
+    return end - first_word;
+  }
+
+  /// At a `;`: the end of a block, where words follow; else a comment begins.
+  bool scan_divider(std::size_t block_begin) {
+    const bool first = text().substr(block_begin, at_ - block_begin).find_first_not_of(" \t") == std::string_view::npos;
+    if (first || !Glance(text(), at_ + 1, end_).reads_as_block()) return false;
+    ++at_;
+    program_.parts.push_back({static_cast<std::uint32_t>(program_.blocks.size()), static_cast<std::uint32_t>(at_),
+                              static_cast<std::uint32_t>(program_.words.size()), 0});
+    return true;
+  }
+
+  /// A % behind the words of a program ends it: nothing is read up to the O of another one.
+  void end_at_percent() { behind_percent_ = ended_ = ended_ || !program_.words.empty() || program_.macro.flow(); }
+
+  void pass_behind_percent() {
+    const std::size_t at = behind_blanks();
+    if (at < end_ && is_letter(text_[at]))
+      main_report_.warning(at, "after-end", "text behind the % that ends the program is not read", "behind-percent");
+    at_ = end_;
+  }
+
   /// An O word, or a colon for one.
   bool begins_program(std::size_t begin, std::size_t end) const {
-    while (begin < end && is_blank(text_[begin])) ++begin;
+    while (begin < end && (is_blank(text_[begin]) || text_[begin] == '%')) ++begin;
     return begin < end && (upper(text_[begin]) == 'O' || text_[begin] == ':');
   }
 
@@ -122,8 +294,9 @@ class Scanner {
       case '<':
         return skip_comment('<', '>');  // a program name, as in <PART_1>
       case ';':
-        return false;
+        return scan_divider(block_begin);
       case '%':
+        end_at_percent();
         return ++at_, true;
       case '/':
         return scan_skip();
@@ -132,6 +305,8 @@ class Scanner {
         return flow_ = true;
       case ':':
         return scan_program_number(block_begin);
+      case ',':
+        return scan_corner_word();
       default:
         return refuse(c);
     }
@@ -144,6 +319,8 @@ class Scanner {
     std::size_t last_close = 0;
     for (; at_ < end_; ++at_) {
       if (text_[at_] == open) ++depth;
+      if (depth == 2 && open == '(' && program_.nested_comment == Program::kNowhere && !ended_)
+        program_.nested_comment = static_cast<std::uint32_t>(at_);
       if (text_[at_] != close) continue;
       last_close = at_;
       if (--depth == 0) return ++at_, true;
@@ -171,10 +348,28 @@ class Scanner {
     const char letter = upper(text_[at_]);
     const char next = at_ + 1 < end_ ? text_[at_ + 1] : '\0';
     if (letter == 'O' && scan_o_word()) return true;
+    if (letter == 'O' && is_program_name()) {
+      if (is_digit(text_[behind_blanks_at(at_ + 1)])) scan_word_as('O', at_);
+      return false;
+    }
     if (is_letter(next) && scan_statement()) return true;
     if (is_letter(next) && value_follows(at_ + 1)) return scan_word_as(letter, at_);
     if (is_letter(next) || next == '_' || next == '=' || next == '<') return refuse_letters();
     return scan_word_as(letter, at_);
+  }
+
+  /// At an O with a text behind it: the name of the program, in place of its number or behind it (OFinal path).
+  bool is_program_name() const {
+    const std::string_view before = text().substr(block_begin_, at_ - block_begin_);
+    if (before.find_first_not_of(" \t%") != std::string_view::npos) return false;
+    std::size_t i = at_ + 1;
+    while (i < end_ && (is_blank(text_[i]) || is_digit(text_[i]))) ++i;
+    const std::string name = letters_from(i);
+    constexpr std::array<std::string_view, 10> kStatements{"IF", "WHILE", "WH",   "DO", "END",
+                                                           "EN", "GOTO",  "ELSE", "GO", "ENDIF"};
+    const auto is_text = [](const ForeignWord& w) { return w.check == "not-a-word" || w.check == "no-number"; };
+    return name.size() > 1 && std::ranges::find(kStatements, name) == kStatements.end() &&
+           is_text(explain_letters(name)) && is_text(explain_letters("O" + name));
   }
 
   StatementReader statements() {
@@ -240,8 +435,8 @@ class Scanner {
   }
 
   /// Next character of a number at or behind blanks; at_ stays behind the last character that belongs to it.
-  std::size_t behind_blanks() const {
-    std::size_t i = at_;
+  std::size_t behind_blanks() const { return behind_blanks_at(at_); }
+  std::size_t behind_blanks_at(std::size_t i) const {
     while (i < end_ && is_blank(text_[i])) ++i;
     return i;
   }
@@ -299,7 +494,8 @@ class Scanner {
       report_->warning(begin, "no-number", fmt::format("{} has no number; it is taken as {}0", letter, letter));
       return add_word(letter, begin, begin + 1, begin + 1, 0);
     } else
-      report_->error(begin, "no-number", fmt::format("{} has no number; a number was expected", letter));
+      report_->error(begin, "no-number",
+                     fmt::format("{}{} has no number; a number was expected", letter >= 'a' ? "," : "", upper(letter)));
     return false;
   }
 
@@ -352,20 +548,27 @@ class Scanner {
   }
 
   bool refuse(char c) {
-    if (c == '\x1a' || c == '\0') {
-      if (at_ + 1 == size_) return false;  // end-of-file mark of old systems
-    }
-    if (c == ',') {
-      const std::string name = letters_from(at_ + 1);
-      report_->error(at_, "corner-word",
-                     fmt::format("chamfers and roundings in a block (,{}) are not supported; a word was expected",
-                                 name.substr(0, 1)));
-    } else {
-      report_->error(at_, "unexpected-character",
-                     fmt::format("{} is not expected here; a word (a letter and a number) or a comment was expected",
-                                 printable(static_cast<unsigned char>(c))));
-    }
+    constexpr char kEndOfFile = '\x1a';  // of old systems, which fill their last sector with it
+    const auto behind = [&](char other) { return other == kEndOfFile || is_blank(other); };
+    if (c == kEndOfFile && std::all_of(text_ + at_, text_ + size_, behind)) return false;
+    report_->error(at_, "unexpected-character",
+                   fmt::format("{} is not expected here; a word (a letter and a number) or a comment was expected",
+                               printable(static_cast<unsigned char>(c))));
     return false;
+  }
+
+  /// ,R5. ,C2. ,A30.: a word whose letter is lower case.
+  bool scan_corner_word() {
+    const std::size_t begin = at_++;
+    skip_blanks();
+    const char letter = at_ < end_ ? upper(text_[at_]) : '\0';
+    if (letter != 'R' && letter != 'C' && letter != 'A') {
+      report_->error(begin, "corner-word",
+                     fmt::format("a comma and {}; ,R (rounding), ,C (chamfer) or ,A (angle) was expected",
+                                 letter ? printable(static_cast<unsigned char>(text_[at_])) : "nothing behind it"));
+      return false;
+    }
+    return scan_word_as(static_cast<char>(letter - 'A' + 'a'), begin);
   }
 
   Program& program_;
@@ -374,11 +577,12 @@ class Scanner {
   Reporter* report_ = &main_report_;
   const char* text_;
   std::size_t size_;
-  std::size_t at_ = 0, end_ = 0;
+  std::size_t at_ = 0, end_ = 0, block_begin_ = 0;
   std::uint8_t skip_ = 0;
   bool flow_ = false;
   bool foreign_ = false;
-  bool ended_ = false;  ///< M2 or M30 was read, and no further program has begun
+  bool ended_ = false;  ///< M2, M30 or the closing % was read, and no further program has begun
+  bool behind_percent_ = false;
 };
 
 /// Blocks behind M30 may run: something jumps to block numbers.

@@ -1,6 +1,7 @@
 #pragma once
 // An NC program as text: blocks and words with their positions in the file, without interpretation.
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,7 +14,7 @@ namespace camber::nc {
 
 /// One word, e.g. `X-12.5`. Offsets count bytes from the start of the file.
 struct Word {
-  char letter = 0;            ///< upper case
+  char letter = 0;            ///< upper case; of a word with a comma (,R ,C ,A) lower case
   std::uint8_t value_at = 0;  ///< of the number's first character, from `offset`
   std::uint16_t length = 0;   ///< letter, blanks inside and number
   std::uint32_t offset = 0;   ///< of the letter
@@ -21,6 +22,9 @@ struct Word {
 };
 
 static_assert(sizeof(Word) == 16, "large programs have a hundred million of them");
+
+/// True for ,R ,C and ,A: rounding, chamfer and angle at the end of a block. `offset` is that of the comma.
+constexpr bool is_corner_word(const Word& word) { return word.letter >= 'a'; }
 
 /// One line of the file. Comments, % and empty lines are blocks without words.
 struct Block {
@@ -30,6 +34,16 @@ struct Block {
   std::uint16_t word_count = 0;
   std::uint8_t skip = 0;  ///< begins with / or /1: 1; with /2 .. /9: 2 .. 9
   bool flow = false;      ///< holds statements, expressions or calls (M97 M98 M99, G65 G66 G67)
+  bool divided = false;   ///< a `;` stands in the line with words behind it: Program::parts
+};
+
+/// Words of a line behind a `;`: a further block for some controls, a comment for others
+/// (Dialect::semicolon_ends_block).
+struct BlockPart {
+  std::uint32_t block = 0;
+  std::uint32_t offset = 0;      ///< behind the `;`
+  std::uint32_t first_word = 0;  ///< in Program::words, behind those of the block itself
+  std::uint32_t word_count = 0;
 };
 
 struct Program {
@@ -37,9 +51,19 @@ struct Program {
   std::vector<Block> blocks;  ///< blocks[i] is line i + 1 of the file
   std::vector<Word> words;
   MacroTables macro;
+  std::vector<BlockPart> parts;     ///< ascending
+  std::uint32_t leader_blocks = 0;  ///< lines before the first %, which are no part of the program
+  /// Offset of the first comment within a comment, (a (b) c), which some dialects refuse.
+  std::uint32_t nested_comment = kNowhere;
+  static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
+  /// Those before the first `;` of a divided block.
   std::span<const Word> words_of(std::size_t block) const {
     return {words.data() + blocks[block].first_word, blocks[block].word_count};
+  }
+  /// Of the first word of a block, or of the block where it has none.
+  std::size_t offset_of(std::size_t block) const {
+    return blocks[block].word_count > 0 ? words[blocks[block].first_word].offset : blocks[block].offset;
   }
 };
 

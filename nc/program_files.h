@@ -15,6 +15,7 @@ namespace camber::nc {
 struct BlockPlace {
   const Program* file = nullptr;
   std::uint32_t block = 0;
+  std::uint32_t part = 0;  ///< of a divided block: 0 before the first `;`
 };
 
 /// Reads subprogram files when they are first asked for: O1234, O1234.nc, 1234.nc, name.ngc and the like, in the main

@@ -1,5 +1,8 @@
 // G40, G41, G42: which radius holds, and when the path under it is computed.
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -7,6 +10,32 @@
 #include "nc/cutter_radius.h"
 
 namespace camber::nc {
+
+/// D, which holds from then on, or in its block alone.
+void BlockInterpreter::read_radius_number() {
+  const bool modal = options_.dialect_or_default().d_is_modal;
+  if (!modal) radius_number_ = -1;
+  if (!words_.has('D')) return;
+  const auto is_code = [&](std::initializer_list<int> tenths) {
+    return std::ranges::any_of(words_.g(), [&](const Code& c) { return std::ranges::count(tenths, c.tenths) > 0; });
+  };
+  const bool starts = is_code({410, 420});
+  if (is_code({411, 421}) || (!modal && !starts)) return;  // a diameter; a word that nothing uses
+  const double d = words_.value('D');
+  if (d != std::floor(d) || d < 0 || d > 1e6) {
+    radius_number_ = -1;
+    error(words_.offset_of('D'), "cutter-radius",
+          fmt::format("D{} is not an offset number; a whole number of zero or more was expected", d));
+    return;
+  }
+  const int before = std::exchange(radius_number_, static_cast<int>(d));
+  if (!radius_.active || starts || before == radius_number_ || is_code({400})) return;
+  const auto found = tool_offsets_.find(radius_number_);
+  const auto radius_mm = found == tool_offsets_.end() ? std::nullopt : found->second.effective_radius_mm();
+  if (radius_mm.value_or(0) != radius_.radius_mm)
+    error(words_.offset_of('D'), "cutter-radius",
+          fmt::format("D{} is another radius while G{} is active; G40 was expected before", d, radius_.g_tenths / 10));
+}
 
 void BlockInterpreter::read_radius_code(const Code& code) {
   if (code.tenths == 400) {
@@ -49,15 +78,7 @@ std::optional<double> BlockInterpreter::radius_of(const Code& code) {
     }
     return 0.5 * words_.value('D') * unit_mm();
   }
-  if (words_.has('D')) {
-    const double d = words_.value('D');
-    if (d != std::floor(d) || d < 0 || d > 1e6) {
-      error(words_.offset_of('D'), "cutter-radius",
-            fmt::format("D{} is not an offset number; a whole number of zero or more was expected", d));
-      return std::nullopt;
-    }
-    radius_number_ = static_cast<int>(d);
-  }
+  if (words_.has('D') && radius_number_ < 0) return std::nullopt;  // no number: said in read_radius_number
   const int number = radius_number_ >= 0 ? radius_number_ : state_.tool;
   if (number == 0 && radius_number_ >= 0) return 0.0;
   const auto found = tool_offsets_.find(number);
@@ -114,7 +135,7 @@ void BlockInterpreter::end_radius() {
   cutter.name = fmt::format("G{}", radius.g_tenths / 10);
   const CutterRadiusResult result = compensate_radius(out_, radius.first_move, cutter);
   for (const CutterRadiusProblem& problem : result.problems)
-    report_.error(program_ == main_ ? main_->words_of(problem.block).front().offset : words_.offset(), "cutter-radius",
+    report_.error(program_ == main_ ? main_->offset_of(problem.block) : words_.offset(), "cutter-radius",
                   problem.message);
   beside_mm_ = result.end_mm - position_mm_;
   leaving_ = result.problems.empty() && beside_mm_ != Vec3::Zero();

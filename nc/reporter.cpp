@@ -30,13 +30,17 @@ void Reporter::add(Severity severity, std::size_t offset, std::string_view check
   entries_.push_back({source_, severity, offset, std::string(check), std::move(message)});
 }
 
+void Reporter::forget() {
+  entries_.clear();
+  index_.clear();
+  errors_ = 0;
+}
+
 void Reporter::finish() {
   std::stable_sort(entries_.begin(), entries_.end(),
                    [](const Entry& a, const Entry& b) { return a.offset < b.offset; });
   const std::vector<Entry> entries = std::move(entries_);
-  entries_.clear();
-  index_.clear();
-  errors_ = 0;
+  forget();
   for (const Entry& e : entries) {
     const std::string more = e.more > 0 ? fmt::format(" (and {} more like it)", e.more) : "";
     diagnostics_.add(e.source->diagnostic(e.severity, e.offset, e.message + more, e.check));

@@ -23,6 +23,8 @@ class Reporter {
   void error(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});
   void warning(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});
 
+  /// Nothing was said so far.
+  void forget();
   /// True when as many different errors were met as a reader may give: time to stop.
   bool full() const { return errors_ + diagnostics_.errors() >= Diagnostics::kMaxErrors; }
   bool has_errors() const { return errors_ > 0; }

@@ -69,20 +69,22 @@ void BlockInterpreter::set_tip_control(TipControl control, const Code& code) {
             fmt::format("{} while {} is active; {} was expected before", code_text(code),
                         state_.work_frame == WorkFrame::tilted ? "a tilted frame" : "the dynamic work offset (G254)",
                         state_.work_frame == WorkFrame::tilted ? "G69" : "G255"));
-    if (!tool_length_active_)
+    // On a control that switches by M codes the tool length is none (0) without G43.
+    if (!tool_length_active_ && code.word->letter == 'M')
+      report_.warning(code.word->offset, "tool-length",
+                      fmt::format("{} without G43: tool-centre-point control with a tool length of 0", code_text(code)),
+                      "M without G43");
+    else if (!tool_length_active_)
       error(code.word->offset, "tool-length",
-            fmt::format("{} switches tool-centre-point control on without a tool length; {} was expected",
-                        code_text(code), code.word->letter == 'M' ? "G43 before it" : "H with its number"));
+            fmt::format("{} switches tool-centre-point control on without a tool length; H with its number was expected",
+                        code_text(code)));
     if (radius_.active)
       error(code.word->offset, "cutter-radius",
             fmt::format("{} under G{}; G40 was expected before", code_text(code), radius_.g_tenths / 10));
   }
   const bool switched = (control == TipControl::off) != (state_.tip_control == TipControl::off);
   // X Y Z of where the tool is change their meaning.
-  if (switched && !out_.moves.empty() && rotary_axes_turned()) {
-    unsettled_ = 7;
-    start_open_ = true;
-  }
+  if (switched && !out_.moves.empty() && rotary_axes_turned()) open_axes(code_text(code));
   state_.tip_control = control;
   state_changed_ = true;
 }
@@ -133,7 +135,7 @@ void BlockInterpreter::read_tool_length(const Code& code) {
 
 /// What keeps rotary words from being read in this block; empty: nothing.
 std::string BlockInterpreter::refuses_rotary() const {
-  if (request_.dwell) return "G4";
+  if (request_.dwell && !options_.dialect_or_default().dwell_takes_p_alone) return "G4";
   if (request_.frame_code.word) return code_text(request_.frame_code);
   if (request_.return_from_reference) return "G29";
   if (request_.reference || request_.machine_frame) return {};
@@ -220,24 +222,6 @@ void BlockInterpreter::read_tool_direction() {
   rotary_target_ = target;
 }
 
-/// After tool-centre-point control was switched with turned axes, X Y Z of the text no longer say where the tool is.
-void BlockInterpreter::settle_tip() {
-  if (unsettled_ == 0) return;
-  for (unsigned axis = 0; axis < 3; ++axis)
-    if (words_.has(kAxisLetters[axis]) && !state_.incremental)
-      unsettled_ = static_cast<std::uint8_t>(unsettled_ & ~(1U << axis));
-  if (unsettled_ == 0) return;
-  error(words_.offset(), "tip-control",
-        fmt::format(
-            "the first move after tool-centre-point control was switched {} with turned axes leaves {} open; X, Y "
-            "and Z in G90 were expected",
-            state_.tip_control == TipControl::off ? "off" : "on",
-            (unsettled_ & 1U) != 0   ? 'X'
-            : (unsettled_ & 2U) != 0 ? 'Y'
-                                     : 'Z'));
-  unsettled_ = 0;
-}
-
 /// What a message says of a code that turns rotary axes, on a machine without them.
 std::string BlockInterpreter::needs_kinematics(const Code& code, const char* name) const {
   return fmt::format("{} ({}) is read on a machine with [kinematics], by camber {}", code_text(code), name, kReaders);
@@ -249,13 +233,13 @@ bool BlockInterpreter::sets_rotary_offset() const {
          words_.word('L').value == 2;
 }
 
-/// G28, G30: the rotary axes of the block, or all, go to 0 of the machine.
-void BlockInterpreter::turn_home(bool all, std::uint8_t letters) {
+/// G28, G30: the rotary axes of the block, or all, go to the reference point.
+void BlockInterpreter::turn_home(bool all, std::uint8_t letters, const Vec3& home_rad) {
   RotaryTarget target;
   target.end = rotary_rad_;
   for (const RotaryOption& axis : options_.rotary_axes)
     if (all || (letters & bit_of(axis.letter)) != 0) {
-      target.end[axis.letter - 'A'] = 0;
+      target.end[axis.letter - 'A'] = home_rad[axis.letter - 'A'];
       target.given = static_cast<std::uint8_t>(target.given | bit_of(axis.letter));
     }
   if (target.given != 0 && ((angles_unknown_ & target.given) != 0 || target.end != rotary_rad_))

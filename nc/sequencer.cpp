@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -32,7 +33,12 @@ Sequencer::Sequencer(ProgramFiles& files, const InterpreterOptions& options, Rep
 
 void Sequencer::run() {
   out_.moves.reserve(at_.file->blocks.size());
-  if (at_.file->macro.flow())
+  if (divides_lines(*at_.file) && !options_.dialect)
+    report_.warning(at_.file->parts.front().offset - 1, "block-end",
+                    "the words behind `;` are read as a further block, as a Fanuc or a Haas control does; --dialect "
+                    "linuxcnc reads a comment");
+  if (dialect_.strict) refuse_what_is_read_elsewhere();
+  if (at_.file->macro.flow() || divides_lines(*at_.file))
     run_blocks();
   else
     run_plain();
@@ -93,16 +99,77 @@ void Sequencer::count_run() {
 void Sequencer::step() {
   if (at_.block >= at_.file->blocks.size()) return end_of_program_text();
   const Block& block = at_.file->blocks[at_.block];
-  if (is_skipped(block) || (block.word_count == 0 && !block.flow)) {
-    ++at_.block;
+  if (is_skipped(block)) {
+    at_ = {at_.file, at_.block + 1};
     return;
   }
+  const auto words = words_here();
+  if (words.empty() && !block.flow) return advance();
   if (runs_into_next_program()) return end_of_program_text();
-  count_run();
+  if (at_.part == 0) count_run();
   if (block.flow) return run_flow_block(block);
-  editable_ = true;
-  const auto words = at_.file->words_of(at_.block);
+  editable_ = !is_divided(block);
   run_words(words);
+}
+
+/// Constructs that a strict control refuses and others read.
+void Sequencer::refuse_what_is_read_elsewhere() {
+  const Program& file = *at_.file;
+  if (file.nested_comment != Program::kNowhere)
+    report_.error(file.nested_comment, "comment-nested",
+                  fmt::format("a comment in a comment; a {} control refuses it, `)` was expected first", dialect_.title));
+  if (const auto at = file.macro.expressions.abbreviation)
+    report_.error(*at, "expression",
+                  fmt::format("an abbreviated word; a {} control knows it by its full name only", dialect_.title));
+}
+
+// --- lines of several blocks
+
+bool Sequencer::divides_lines(const Program& file) const {
+  return !file.parts.empty() && dialect_.semicolon_ends_block;
+}
+
+bool Sequencer::is_divided(const Block& block) const { return block.divided && dialect_.semicolon_ends_block; }
+
+/// Of a divided block, the parts behind the first `;`.
+std::span<const BlockPart> Sequencer::parts_of(std::uint32_t block) const {
+  const auto& parts = at_.file->parts;
+  const auto first = std::ranges::lower_bound(parts, block, {}, &BlockPart::block);
+  const auto end = std::ranges::upper_bound(parts, block, {}, &BlockPart::block);
+  return {first, end};
+}
+
+std::span<const Word> Sequencer::words_here() const {
+  if (at_.part == 0) return at_.file->words_of(at_.block);
+  const BlockPart& part = parts_of(at_.block)[at_.part - 1];
+  return {at_.file->words.data() + part.first_word, part.word_count};
+}
+
+/// To the next block, which may be in the same line.
+void Sequencer::advance() {
+  const Block& block = at_.file->blocks[at_.block];
+  if (is_divided(block) && at_.part < parts_of(at_.block).size()) {
+    ++at_.part;
+  } else {
+    ++at_.block;
+    at_.part = 0;
+  }
+}
+
+/// The part of a line that an offset lies in.
+std::uint32_t Sequencer::part_of(std::uint32_t block, std::uint32_t offset) const {
+  if (!at_.file->blocks[block].divided) return 0;
+  const auto parts = parts_of(block);
+  const auto behind = std::ranges::upper_bound(parts, offset, {}, &BlockPart::offset);
+  return static_cast<std::uint32_t>(behind - parts.begin());
+}
+
+/// The next block behind a statement.
+BlockPlace Sequencer::behind(const Statement& s) {
+  const BlockPlace here = at_;
+  at_ = {at_.file, s.block, part_of(s.block, s.offset)};
+  advance();
+  return std::exchange(at_, here);
 }
 
 /// Runs plain words of the block and goes on to the next block, or to the macro that G66 has called behind each move.
@@ -112,7 +179,7 @@ void Sequencer::run_words(std::span<const Word> words) {
   const bool go_on = interpreter_.run({*at_.file, at_.block, words, called_from(), editable_ && in_main});
   const std::size_t made = out_.moves.size() - before;
   if ((*runs_)[at_.block] > 1) repeated_ += made;
-  ++at_.block;
+  advance();
   running_ = go_on;
   const auto& modal = modal_calls_.back();
   if (!go_on || !modal || made == 0 || !is_motion(out_.moves.back())) return;
@@ -134,9 +201,12 @@ void Sequencer::run_flow_block(const Block&) {
   const auto& statements = at_.file->macro.statements;
   const auto first = std::lower_bound(statements.begin(), statements.end(), at_.block,
                                       [](const Statement& s, std::uint32_t block) { return s.block < block; });
-  auto end = first;
-  while (end != statements.end() && end->block == at_.block) ++end;
-  if (run_statements(static_cast<std::size_t>(first - statements.begin()),
+  const auto here = [&](const Statement& s) { return part_of(at_.block, s.offset) == at_.part; };
+  auto begin = first;
+  while (begin != statements.end() && begin->block == at_.block && !here(*begin)) ++begin;
+  auto end = begin;
+  while (end != statements.end() && end->block == at_.block && here(*end)) ++end;
+  if (run_statements(static_cast<std::size_t>(begin - statements.begin()),
                      static_cast<std::size_t>(end - statements.begin())))
     run_words_and_calls();
 }
@@ -147,7 +217,7 @@ bool Sequencer::run_statements(std::size_t first, std::size_t end) {
   const auto& statements = at_.file->macro.statements;
   for (std::size_t i = first; i < end && statements[i].kind == StatementKind::condition; ++i) {
     if (holds(statements[i])) continue;
-    ++at_.block;
+    advance();
     return false;
   }
   evaluate_words();
@@ -196,7 +266,7 @@ void Sequencer::run_flow_statement(std::uint32_t index) {
     case StatementKind::leave_loop:
       return leave_loop(s.partner);
     case StatementKind::sub:
-      at_.block = statement(s.partner).block + 1;
+      at_ = behind(statement(s.partner));
       return;
     case StatementKind::call:
       return call_sub(s);
@@ -204,21 +274,21 @@ void Sequencer::run_flow_statement(std::uint32_t index) {
     case StatementKind::sub_return:
       return return_from_sub(s);
     default:
-      ++at_.block;
+      advance();
   }
 }
 
 /// if asks one condition after the other; elseif and else that are come upon from above end the branch before them.
 void Sequencer::run_branch(std::uint32_t index) {
   if (statement(index).kind != StatementKind::branch_if) {
-    at_.block = statement(statement(index).partner).block + 1;
+    at_ = behind(statement(statement(index).partner));
     return;
   }
   for (std::uint32_t i = index;; i = statement(i).next_branch) {
     const Statement& s = statement(i);
     const bool asks = s.kind == StatementKind::branch_if || s.kind == StatementKind::branch_elseif;
     if (asks && !holds(s)) continue;
-    at_.block = s.block + 1;
+    at_ = behind(s);
     return;
   }
 }
@@ -226,7 +296,7 @@ void Sequencer::run_branch(std::uint32_t index) {
 void Sequencer::leave_loop(std::uint32_t head) {
   const Statement& s = statement(head);
   entered_.erase({at_.file, s.offset});
-  at_.block = statement(s.partner).block + 1;
+  at_ = behind(statement(s.partner));
 }
 
 void Sequencer::run_loop(std::uint32_t index) {
@@ -239,7 +309,7 @@ void Sequencer::run_loop(std::uint32_t index) {
   } else if (s.value_count > 0 && !holds(s)) {
     return leave_loop(index);
   }
-  ++at_.block;
+  advance();
 }
 
 /// At the end of a loop, and at continue.
@@ -255,7 +325,7 @@ void Sequencer::next_turn(std::uint32_t head) {
   else if (s.value_count > 0)
     again = holds(s);
   if (!again) return leave_loop(head);
-  at_.block = s.block + 1;
+  at_ = behind(s);
 }
 
 void Sequencer::jump_to_number(double number, std::uint32_t offset, BlockPlace from) {
@@ -289,13 +359,14 @@ void Sequencer::fail_as_endless() {
 /// The words of the block with numbers for values; those of vacant variables are left out.
 bool Sequencer::evaluate_words() {
   const Program& file = *at_.file;
-  const Block& block = file.blocks[at_.block];
-  editable_ = true;
+  editable_ = !is_divided(file.blocks[at_.block]);
   words_.clear();
-  auto expression = std::lower_bound(file.macro.words.begin(), file.macro.words.end(), block.first_word,
+  const auto here = words_here();
+  const auto first_word = static_cast<std::uint32_t>(here.data() - file.words.data());
+  auto expression = std::lower_bound(file.macro.words.begin(), file.macro.words.end(), first_word,
                                      [](const ExpressionWord& w, std::uint32_t word) { return w.word < word; });
   const bool inch = interpreter_.facts().state->inch;
-  for (std::uint32_t i = block.first_word; i < block.first_word + block.word_count; ++i) {
+  for (std::uint32_t i = first_word; i < first_word + here.size(); ++i) {
     Word word = file.words[i];
     if (expression != file.macro.words.end() && expression->word == i) {
       double step = 1;
@@ -330,7 +401,7 @@ void Sequencer::warn_of_blocks_behind_the_end() {
     const Block& block = program.blocks[b];
     if (block.word_count == 0 && !block.flow) continue;
     if (flow && ((files_.runs(program)[b] > 0) || block.flow || program_number(program, b))) return;
-    report_.warning(program.words_of(b).front().offset, "after-end",
+    report_.warning(program.offset_of(b), "after-end",
                     "the blocks after the end of the program (M2, M30) are not run");
     return;
   }

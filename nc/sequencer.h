@@ -18,7 +18,7 @@ class Sequencer {
   /// Runs the program to its end, or to the first thing that makes running on senseless. A program without macros,
   /// calls and skipped blocks goes through BlockInterpreter block by block.
   void run();
-  bool centres_look_absolute() const { return interpreter_.centres_look_absolute(); }
+  RunVerdict verdict() const { return interpreter_.verdict(); }
 
  private:
   /// A subprogram to run.
@@ -38,6 +38,14 @@ class Sequencer {
   };
   using LoopKey = std::pair<const Program*, std::uint32_t>;
 
+  bool divides_lines(const Program& file) const;
+  bool is_divided(const Block& block) const;
+  std::span<const BlockPart> parts_of(std::uint32_t block) const;
+  std::span<const Word> words_here() const;
+  std::uint32_t part_of(std::uint32_t block, std::uint32_t offset) const;
+  BlockPlace behind(const Statement& s);
+  void advance();
+  void refuse_what_is_read_elsewhere();
   void run_plain();
   void run_blocks();
   void step();

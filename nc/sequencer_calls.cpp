@@ -24,7 +24,7 @@ void Sequencer::call_sub(const Statement& s) {
                      fmt::format("there is no O{0} SUB in the program, and no file {0}.ngc with one beside it", label));
   LocalVariables locals;
   for (std::size_t i = first; i < s.value_count; ++i) locals.numbered[i - first + 1] = value_of(s, i);
-  ++at_.block;
+  advance();
   enter({{sub->file, sub->block + 1}, 1, std::move(locals), s.offset}, true);
 }
 
@@ -44,7 +44,7 @@ void Sequencer::enter(Call call, bool o_word) {
     throw MacroError(call.offset, "call-depth",
                      fmt::format("calls nested deeper than {} levels; a {} control reads no more", dialect_.max_levels,
                                  dialect_.name));
-  const BlockPlace caller{at_.file, at_.block == 0 ? 0 : at_.block - 1};
+  const BlockPlace caller{at_.file, at_.block == 0 || at_.part > 0 ? at_.block : at_.block - 1};
   const std::uint32_t from = caller.file == &files_.main() ? caller.block : frames_.back().called_from;
   if (call.locals) {
     variables_.enter_level(*call.locals);
@@ -114,7 +114,7 @@ void Sequencer::take_calls(std::vector<Word>& words) {
   const bool only_number =
       std::all_of(rest.begin(), rest.end(), [](const Word& w) { return w.letter == 'N' || w.letter == 'O'; });
   if (only_number)
-    ++at_.block;
+    advance();
   else
     run_words(rest);
   if (!running_) return;
@@ -197,7 +197,7 @@ void Sequencer::call_macro(std::size_t at, std::vector<Word>& words) {
     return take_calls(words);
   }
   if (only_number)
-    ++at_.block;
+    advance();
   else
     run_words(words);
   if (!running_) return;

@@ -16,6 +16,17 @@ bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
 
 constexpr std::size_t kMaxArguments = 30;
 
+/// Statements that a Fanuc control knows by their first two letters.
+constexpr std::array<std::string_view, 9> kAbbreviable{"WHILE", "GOTO",  "END",   "THEN", "DPRNT",
+                                                       "BPRNT", "POPEN", "PCLOS", "SETVN"};
+
+std::string unabbreviated(const std::string& word) {
+  if (word.size() == 2)
+    for (const std::string_view full : kAbbreviable)
+      if (full.starts_with(word)) return std::string(full);
+  return word;
+}
+
 struct OKeyword {
   std::string_view word;
   StatementKind kind;
@@ -103,6 +114,10 @@ StatementReader::Found StatementReader::read_keyword() {
   std::string word;
   for (std::size_t i = begin; i < letters && word.size() < 9; ++i) word += upper(text_[i]);
   at_ = letters;
+  if (const auto full = unabbreviated(word); full != word) {
+    out_.expressions.note_abbreviation(begin);
+    word = full;
+  }
   if (word == "IF") {
     read_if(begin);
   } else if (word == "WHILE") {
@@ -133,7 +148,11 @@ StatementReader::Found StatementReader::read_keyword() {
 
 void StatementReader::read_if(std::size_t begin) {
   const std::uint32_t condition = expressions().read_bracketed();
-  const bool then = take("THEN");
+  bool then = take("THEN");
+  if (!then && take("TH")) {
+    out_.expressions.note_abbreviation(at_ - 2);
+    then = true;
+  }
   const bool alone = at_block_end();
   if (alone && !then)
     throw MacroError(begin, "statement", "IF [condition] with nothing after it; GOTO or THEN was expected");

@@ -47,12 +47,13 @@ class Summarizer {
 
   Summary run() {
     count_rotary();
-    for (const Move& move : program_.moves) {
+    for (std::size_t m = 0; m < program_.moves.size(); ++m) {
+      const Move& move = program_.moves[m];
       count(move);
       if (move.kind == MoveKind::dwell) {
         s_.dwell_s += move.dwell_s;
       } else if (!move.reference && move.open_axes == 0 && !move.start_open) {
-        measure(move, tool_of(move));
+        measure(m, tool_of(move));
       }
     }
     return std::move(s_);
@@ -102,7 +103,8 @@ class Summarizer {
     return after == changes_.begin() ? block + 1 : *(after - 1) + 1;
   }
 
-  void measure(const Move& move, ToolUse& tool) {
+  void measure(std::size_t m, ToolUse& tool) {
+    const Move& move = program_.moves[m];
     const double length = length_mm(program_, move);
     const Extents box = extents_of(program_, move);
     const bool rapid = move.kind == MoveKind::rapid;
@@ -113,7 +115,10 @@ class Summarizer {
     (rapid ? tool.rapid_length_mm : tool.cutting_length_mm) += length;
     if (rapid) return;
     ++tool.cutting_moves;
-    tool.feed_mm_per_min.add(mm_per_min_from_mm_per_s(move.feed_mm_per_s));
+    if (only_turns(program_, m))
+      tool.feed_deg_per_min.add(feed_deg_per_min(program_, move));
+    else
+      tool.feed_mm_per_min.add(mm_per_min_from_mm_per_s(move.feed_mm_per_s));
     tool.spindle_speed_rpm.add(program_.state_of(move).spindle_speed_rpm);
     tool.cutting.add(box.min_mm);
     tool.cutting.add(box.max_mm);

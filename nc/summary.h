@@ -33,6 +33,7 @@ struct ToolUse {
   std::size_t cutting_moves = 0;
   double cutting_length_mm = 0, rapid_length_mm = 0;
   Range feed_mm_per_min{};    ///< of its cutting moves
+  Range feed_deg_per_min{};   ///< of those that turn rotary axes alone
   Range spindle_speed_rpm{};  ///< of its cutting moves
   Extents cutting{};
 };

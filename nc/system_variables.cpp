@@ -12,8 +12,8 @@ namespace {
 
 bool within(int number, int first, int last) { return number >= first && number <= last; }
 
-double work_offset_code(int work_offset) {
-  return work_offset > 540000 ? 54.1 : work_offset > 100 ? work_offset / 10.0 : work_offset;
+double work_offset_code(const Dialect& dialect, int work_offset) {
+  return work_offset > 540000 ? (dialect.haas_work_offsets ? 154 : 54.1) : work_offset > 100 ? work_offset / 10.0 : work_offset;
 }
 
 }  // namespace
@@ -62,6 +62,7 @@ Value SystemVariables::fanuc(int number, std::size_t offset) {
   }
   if (within(number, 3003, 3007) || within(number, 3008, 3010)) return 0.0;
   if (within(number, 1000, 1199)) return not_known(number, offset, "signal");
+  if (const auto value = offset_value(number, offset)) return *value;
   if (within(number, 2000, 2999) || within(number, 10001, 19999)) return not_known(number, offset, "tool offset");
   if (within(number, 3011, 3012)) return not_known(number, offset, "date or time");
   if (within(number, 3901, 3902)) return not_known(number, offset, "number of parts");
@@ -71,6 +72,26 @@ Value SystemVariables::fanuc(int number, std::size_t offset) {
     return not_known(number, offset, "work offset");
   throw MacroError(offset, "variable",
                    fmt::format("there is no variable #{} on a {} control that Camber knows", number, dialect_.name));
+}
+
+/// Nothing where the variable is no offset.
+std::optional<Value> SystemVariables::offset_value(int number, std::size_t offset) {
+  const auto variable = offset_variable(dialect_, number);
+  if (!variable) return std::nullopt;
+  const bool work = variable->kind == OffsetVariable::Kind::work || variable->kind == OffsetVariable::Kind::external;
+  const auto value = interpreter_.offset_value(*variable);
+  if (!value) return not_known(number, offset, work ? "work offset" : "tool offset");
+  return Value(work && variable->axis >= 3 ? *value : *value / interpreter_.facts().unit_mm);
+}
+
+/// False where the variable is no offset.
+bool SystemVariables::set_offset(int number, Value value, std::size_t offset) {
+  const auto variable = offset_variable(dialect_, number);
+  if (!variable) return false;
+  const bool work = variable->kind == OffsetVariable::Kind::work || variable->kind == OffsetVariable::Kind::external;
+  const double unit = work && variable->axis >= 3 ? 1 : interpreter_.facts().unit_mm;
+  interpreter_.set_offset(*variable, value.value_or(0) * unit, offset);
+  return true;
 }
 
 /// number: 4001 .. 4130, or a set of 200 higher, less 4000 (see the caller's modulo).
@@ -98,7 +119,7 @@ Value SystemVariables::modal(int number) const {
     case 10:
       return f.return_to_r ? 99.0 : 98.0;
     case 14:
-      return work_offset_code(s.work_offset);
+      return work_offset_code(dialect_, s.work_offset);
     case 15:
       return s.path_control == PathControl::blend ? 64.0 : 61.0;
     case 109:
@@ -114,7 +135,11 @@ Value SystemVariables::modal(int number) const {
   }
 }
 
-Value SystemVariables::linuxcnc(int number, std::size_t offset) const {
+Value SystemVariables::linuxcnc(int number, std::size_t offset) {
+  if (const auto variable = offset_variable(dialect_, number)) {
+    const double value = interpreter_.offset_value(*variable).value_or(0);
+    return variable->axis < 3 ? value / interpreter_.facts().unit_mm : value;
+  }
   if (within(number, 5420, 5428)) return position(number - 5420);
   const MachineFacts f = interpreter_.facts();
   if (number == 5220) {
@@ -181,6 +206,7 @@ std::string SystemVariables::message_of_block() const {
 }
 
 void SystemVariables::set(int number, Value value, std::size_t offset) {
+  if (set_offset(number, value, offset)) return;
   if (!dialect_.system_4000)
     throw MacroError(offset, "variable", fmt::format("#{} cannot be set by a program", number));
   if (number == 3000)
@@ -196,7 +222,9 @@ void SystemVariables::set(int number, Value value, std::size_t offset) {
   } else if (within(number, 2000, 2999) || within(number, 5201, 5400) || within(number, 7001, 7960) ||
              within(number, 10001, 19999)) {
     report_.warning(offset, "variable",
-                    fmt::format("#{} (an offset) is set by the program; it is assumed not to affect the path", number),
+                    fmt::format("#{} (an offset that Camber does not know) is set by the program; it is assumed not to "
+                                "affect the path",
+                                number),
                     "offset set");
   } else if (!within(number, 1000, 1199) && !within(number, 3003, 3012) && !within(number, 3901, 3902)) {
     throw MacroError(offset, "variable",

@@ -8,21 +8,22 @@
 
 namespace camber::nc {
 
-/// Positions are in the program's unit, in the work frame. What a program cannot know before it runs (machine
-/// positions, offsets, signals, the date) is taken as 0, or as the work position, with a warning.
+/// Positions and offsets are in the program's unit, positions in the work frame. What a program cannot know before it
+/// runs (machine positions, offsets that it has not set, signals, the date) is taken as 0, or as the work position, with
+/// a warning.
 ///
-/// Fanuc, Haas, Mazak: #1000..#1135 signals (0), #2000..#2999, #10001.. tool offsets (0), #3000 alarm: an error,
+/// Fanuc, Haas, Mazak: #1000..#1135 signals (0), offsets as in nc/offset_variables.h, #3000 alarm: an error,
 /// #3001 #3002 clocks, #3003 #3004 #3005 #3007 switches, #3006 stop, #3011 #3012 date and time (0), #3901 #3902 parts,
 /// #4001..#4130 modal codes, #5001.. end of the last block, #5021.. machine position, #5041.. position, #5061.. skip
-/// position, #5081.. tool length, #5201.. #7001.. #14001.. work offsets (0).
-/// LinuxCNC: #5061.. probe, #5161.. #5181.. reference points, #5211.. offsets (0), #5220 coordinate system, #5400 tool,
+/// position, #5081.. tool length.
+/// LinuxCNC: #5061.. probe, #5161.. #5181.. reference points (0), #5221.. work offsets, #5220 coordinate system, #5400 tool,
 /// #5401.. its offsets (0), #5420.. position.
 ///
 /// The clocks count the programmed time of cutting moves and dwells and a millisecond for every variable block, so that
 /// a loop that waits for them ends.
 class SystemVariables {
  public:
-  SystemVariables(const Dialect& dialect, const BlockInterpreter& interpreter, Reporter& report, Interpretation& out)
+  SystemVariables(const Dialect& dialect, BlockInterpreter& interpreter, Reporter& report, Interpretation& out)
       : dialect_(dialect), interpreter_(interpreter), report_(report), out_(out) {}
 
   /// LinuxCNC's numbers stand among its common variables.
@@ -42,7 +43,9 @@ class SystemVariables {
 
  private:
   Value fanuc(int number, std::size_t offset);
-  Value linuxcnc(int number, std::size_t offset) const;
+  Value linuxcnc(int number, std::size_t offset);
+  std::optional<Value> offset_value(int number, std::size_t offset);
+  bool set_offset(int number, Value value, std::size_t offset);
   Value modal(int number) const;
   double position(int axis) const;
   Value not_known(int number, std::size_t offset, const char* what);
@@ -50,7 +53,7 @@ class SystemVariables {
   std::string message_of_block() const;
 
   const Dialect& dialect_;
-  const BlockInterpreter& interpreter_;
+  BlockInterpreter& interpreter_;
   Reporter& report_;
   Interpretation& out_;
   const Program* program_ = nullptr;

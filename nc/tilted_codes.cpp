@@ -134,6 +134,7 @@ void BlockInterpreter::cancel_tilted_frame() {
 
 void BlockInterpreter::set_dynamic_offset(const Code& code) {
   const bool on = code.tenths == 2540;
+  if (!on && state_.work_frame != WorkFrame::dynamic) return;  // off already, whatever else is active
   if (!may_set_frame(code)) {
     request_.skip_motion = on;
     return;
@@ -182,7 +183,7 @@ void BlockInterpreter::add_machine_target(const Vec3& end_mm, std::uint8_t given
 
 /// Move::open_axes of the block's move.
 std::uint8_t BlockInterpreter::open_axes_of_move() const {
-  auto open = static_cast<std::uint8_t>(open_axes_ | unsettled_);
+  auto open = static_cast<std::uint8_t>(open_axes_);
   // Words that say where the move ends in the frame of the program.
   const bool words_count = !state_.incremental && cycle_.g == 0 && !request_.frame_code.word &&
                            !request_.machine_frame && !request_.reference;

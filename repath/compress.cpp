@@ -47,7 +47,7 @@ class Compressor {
       : program_(program),
         moves_(moves),
         options_(options),
-        style_(text_style_of(program, moves, options.whole_numbers_are_increments)) {}
+        style_(text_style_of(program, moves)) {}
 
   void rewrite(const RunChain& runs) {
     if (runs.path.points.size() < 2) return;
@@ -62,26 +62,39 @@ class Compressor {
       for (const RunChain::Part& part : runs.parts) {
         if (part.last_point == part.first_point) continue;
         Rewrite now = rewritten(runs, part, chain);
-        const bool stays = now.text.lines.size() >= now.text.last - now.text.first + 1;
+        // The G1 behind an arc costs no block where a further run follows: see join_modes.
+        const bool more = part.last_point < runs.parts.back().last_point;
+        const std::size_t lines = now.text.lines.size() + (now.mode_behind.empty() || more ? 0 : 1);
+        const bool stays = lines >= now.text.last - now.text.first + 1;
         if (!stays) rewrites.push_back(std::move(now));
         again |= stays && now.primitives.size() < part.last_point - part.first_point && runs.parts.size() > 1 &&
                  keep_blocks(part, ends);
       }
-      if (!again) take(std::move(rewrites), smooth_kinks_of(polyline, options, chain));
+      if (again) continue;
+      join_modes(runs, rewrites);
+      take(std::move(rewrites), runs, smooth_kinks_of(polyline, options, chain));
     }
   }
 
   Compression result() {
     if (joints_ > 0) out_.rms_kink_rad = std::sqrt(kink_squares_ / static_cast<double>(joints_));
     place_after(out_.runs, replacements_);
+    if (joints_ > 0) out_.max_kink_block = block_of(worst_kink_);
     out_.text = nc::replace_blocks(program_, replacements_);
     return std::move(out_);
   }
 
  private:
+  static constexpr std::size_t kNoRewrite = static_cast<std::size_t>(-1);
+  struct KinkPlace {
+    std::size_t rewrite = kNoRewrite, line = 0;  ///< line of the text of a replacement, or
+    std::uint32_t block = 0;                     ///< a block of the given program
+  };
   struct Rewrite {
+    const RunChain::Part* part = nullptr;
     std::vector<Primitive> primitives;
     nc::BlockReplacement text;
+    std::string mode_behind;
   };
 
   FitOptions fit_options(const Run& run) const {
@@ -98,10 +111,27 @@ class Compressor {
   Rewrite rewritten(const RunChain& runs, const RunChain::Part& part, const std::vector<Primitive>& chain) const {
     const auto from = [](const Primitive& p, std::uint32_t point) { return p.first < point; };
     const auto begin = std::lower_bound(chain.begin(), chain.end(), part.first_point, from);
-    Rewrite out{{begin, std::lower_bound(begin, chain.end(), part.last_point, from)}, {}};
-    out.text = {moves_.moves[part.run.first_move].block, moves_.moves[part.run.last_move].block,
-                text_of(program_, moves_, part.run, runs.path, out.primitives, style_)};
+    Rewrite out{&part, {begin, std::lower_bound(begin, chain.end(), part.last_point, from)}, {}, {}};
+    write(runs, out, false);
     return out;
+  }
+
+  void write(const RunChain& runs, Rewrite& rewrite, bool says_mode) const {
+    const Run& run = rewrite.part->run;
+    RunLines lines = text_of(program_, moves_, run, runs.path, rewrite.primitives, style_, says_mode);
+    rewrite.text = {moves_.moves[run.first_move].block, moves_.moves[run.last_move].block, std::move(lines.lines)};
+    rewrite.mode_behind = std::move(lines.mode_behind);
+  }
+
+  /// Behind a run that ends on an arc the next one says its code itself; where none follows, G1 stands alone.
+  void join_modes(const RunChain& runs, std::vector<Rewrite>& rewrites) const {
+    for (std::size_t k = 0; k < rewrites.size(); ++k) {
+      if (rewrites[k].mode_behind.empty()) continue;
+      if (k + 1 < rewrites.size() && rewrites[k + 1].text.first == rewrites[k].text.last + 1)
+        write(runs, rewrites[k + 1], true);
+      else
+        rewrites[k].text.lines.push_back(rewrites[k].mode_behind);
+    }
   }
 
   /// Makes every point of the run an end. False where they all were.
@@ -114,8 +144,9 @@ class Compressor {
     return more;
   }
 
-  void take(std::vector<Rewrite> rewrites, const std::vector<double>& kinks) {
+  void take(std::vector<Rewrite> rewrites, const RunChain& runs, const std::vector<Kink>& kinks) {
     if (rewrites.empty()) return;
+    const std::size_t first = replacements_.size();
     for (Rewrite& r : rewrites) {
       RewrittenRun run{r.text.first, r.text.last};
       for (const Primitive& p : r.primitives) {
@@ -126,11 +157,37 @@ class Compressor {
       out_.runs.push_back(run);
       replacements_.push_back(std::move(r.text));
     }
-    for (const double kink : kinks) {
-      out_.max_kink_rad = std::max(out_.max_kink_rad, kink);
-      kink_squares_ += kink * kink;
+    for (const Kink& kink : kinks) {
+      if (kink.angle_rad > out_.max_kink_rad) {
+        out_.max_kink_rad = kink.angle_rad;
+        worst_kink_ = place_of(kink, runs, rewrites, first);
+      }
+      kink_squares_ += kink.angle_rad * kink.angle_rad;
       ++joints_;
     }
+  }
+
+  /// The primitive that begins at the kink: a line of the text of a rewritten run, or a block that stays.
+  KinkPlace place_of(const Kink& kink, const RunChain& runs, const std::vector<Rewrite>& rewrites,
+                     std::size_t first) const {
+    for (std::size_t k = 0; k < rewrites.size(); ++k) {
+      const auto& primitives = rewrites[k].primitives;
+      const auto at = std::ranges::find(primitives, kink.point, &Primitive::first);
+      if (at != primitives.end()) return {first + k, static_cast<std::size_t>(at - primitives.begin()), 0};
+    }
+    const std::size_t next = std::min<std::size_t>(kink.point + 1, runs.path.block.size() - 1);
+    return {kNoRewrite, 0, runs.path.block[next]};
+  }
+
+  /// Of the new text.
+  std::uint32_t block_of(const KinkPlace& place) const {
+    if (place.rewrite != kNoRewrite)
+      return out_.runs[place.rewrite].first_block_after + static_cast<std::uint32_t>(place.line);
+    std::int64_t shift = 0;
+    for (const nc::BlockReplacement& r : replacements_)
+      if (r.last < place.block)
+        shift += static_cast<std::int64_t>(r.lines.size()) - (static_cast<std::int64_t>(r.last) - r.first + 1);
+    return static_cast<std::uint32_t>(place.block + shift);
   }
 
   const nc::Program& program_;
@@ -140,6 +197,7 @@ class Compressor {
   FitMemory memory_;
   Compression out_;
   std::vector<nc::BlockReplacement> replacements_;
+  KinkPlace worst_kink_;
   double kink_squares_ = 0;
   std::size_t joints_ = 0;
 };

@@ -73,8 +73,12 @@ double chord_angle_rad(std::span<const Vec2> points, const Primitive& p);
 /// Arcs may meet there with a kink, as large as the path's.
 std::vector<bool> edges_of(const Polyline& path, const FitOptions& options);
 
-/// The kinks at the joints beside an arc that are neither corners nor edges of the path, rad.
-std::vector<double> smooth_kinks_of(const Polyline& path, const FitOptions& options, std::span<const Primitive> chain);
+struct Kink {
+  double angle_rad = 0;
+  std::uint32_t point = 0;  ///< of the path
+};
+/// The kinks at the joints beside an arc that are neither corners nor edges of the path.
+std::vector<Kink> smooth_kinks_of(const Polyline& path, const FitOptions& options, std::span<const Primitive> chain);
 
 /// Where joints of a chain kink too much, as after rounding, arcs give way to the blocks as they were, until none does.
 void give_way(const Joints& joints, std::vector<Primitive>& chain);

@@ -28,7 +28,7 @@ Resegmenter::Resegmenter(const nc::Program& program, const nc::Interpretation& m
     : program_(program),
       moves_(moves),
       options_(options),
-      style_(text_style_of(program, moves, options.whole_numbers_are_increments)),
+      style_(text_style_of(program, moves)),
       runs_(find_runs(program, moves, RunKind::with_arcs)) {}
 
 Resegmenter::~Resegmenter() = default;

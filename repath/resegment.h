@@ -28,7 +28,6 @@ struct ResegmentOptions {
   double feed_factor = 1;      ///< factor on the feed of the rewritten runs
   CornerFeeds corners{};       ///< of that feed
   double corner_rad = 5 * kPi / 180;
-  bool whole_numbers_are_increments = false;
 };
 
 /// L_b = F T_b: shorter blocks than that the control cannot read at the feed.

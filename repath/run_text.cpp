@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "nc/arcs.h"
+#include "repath/plain_blocks.h"
 
 namespace camber::repath {
 namespace {
@@ -53,8 +54,7 @@ class RunBlockWriter {
 
  protected:
   bool says_g1(std::uint32_t block) const {
-    const nc::Word* g = find(program_.words_of(block), 'G');
-    return g != nullptr && g->value == 1;
+    return std::ranges::any_of(program_.words_of(block), [](const nc::Word& w) { return w.letter == 'G' && w.value == 1; });
   }
 
   std::string code(int g) const { return fmt::format("G{}{}", style_.two_digit_codes ? "0" : "", g); }
@@ -76,8 +76,15 @@ class RunBlockWriter {
     return 'F' + nc::format_number(value, unit_mm_ == 1 ? 1 : 2, style_.numbers);
   }
 
-  void add_feed(std::vector<std::string>& words) const {
-    if (const nc::Word* f = find(program_.words_of(first_block_), 'F')) words.emplace_back(written(program_, *f));
+  /// Codes of the run's first block that stand before its motion. `plane`: those of the plane among them.
+  void add_codes(std::vector<std::string>& words, bool plane) const {
+    for (const nc::Word& w : further_words_of(program_.words_of(first_block_)))
+      if (w.letter == 'G' && (plane || w.value < 17 || w.value > 19)) words.emplace_back(written(program_, w));
+  }
+  /// Its other words: S, M and, where it is to be the old one, F.
+  void add_further(std::vector<std::string>& words, bool feed) const {
+    for (const nc::Word& w : further_words_of(program_.words_of(first_block_)))
+      if (w.letter != 'G' && (feed || w.letter != 'F')) words.emplace_back(written(program_, w));
   }
 
   const nc::Program& program_;
@@ -104,16 +111,15 @@ class PointWriter : RunBlockWriter {
         if (const nc::Word* n = find(program_.words_of(path.block[old]), 'N'))
           words.emplace_back(written(program_, *n));
       before = old;
+      if (lines.empty()) add_codes(words, true);
       if (says_mode_always_ || (lines.empty() && says_mode_first_)) words.push_back(code(1));
       const Vec3 &from = layout.points[k - 1], &to = layout.points[k];
       for (int a = 0; a < 3; ++a)
         if (from[a] != to[a])
           words.push_back(number(kAxis[static_cast<std::size_t>(a)], incremental_ ? to[a] - from[a] : to[a]));
       const double factor = feed_factor(layout, k, feeds);
-      if (factor != feed_now)
-        words.push_back(feed(factor));
-      else if (lines.empty())
-        add_feed(words);
+      if (factor != feed_now) words.push_back(feed(factor));
+      if (lines.empty()) add_further(words, factor == feed_now);
       feed_now = factor;
       lines.push_back(joined(words));
     }
@@ -144,29 +150,33 @@ class RunWriter : RunBlockWriter {
                           : run.normal == 1 ? nc::Plane::zx
                                             : nc::Plane::yz)) {}
 
-  std::vector<std::string> write(const std::vector<Primitive>& chain) {
-    std::vector<std::string> lines;
+  RunLines write(const std::vector<Primitive>& chain, bool says_mode) {
+    RunLines out;
+    std::vector<std::string>& lines = out.lines;
     const bool arcs = std::any_of(chain.begin(), chain.end(), [](const Primitive& p) { return p.arc; });
     const bool other_plane = arcs && !run_.current_plane;
-    int mode = says_mode_first_ ? -1 : 1;
+    int mode = says_mode_first_ || says_mode ? -1 : 1;
     for (const Primitive& p : chain) {
       std::vector<std::string> words;
       if (const nc::Word* n = find(program_.words_of(path_.block[p.last]), 'N'))
         words.emplace_back(written(program_, *n));
       if (lines.empty() && other_plane)
         words.push_back(fmt::format("G{}", run_.normal == 2 ? 17 : run_.normal == 1 ? 18 : 19));
+      if (lines.empty()) add_codes(words, !other_plane);
       const int now = !p.arc ? 1 : p.sweep_rad < 0 ? 2 : 3;
       if (now != mode || says_mode_always_) words.push_back(code(now));
       mode = now;
       add_coordinates(p, words);
-      if (lines.empty()) add_feed(words);
+      if (lines.empty()) add_further(words, true);
       lines.push_back(joined(words));
     }
-    std::vector<std::string> behind;
-    if (other_plane) behind.push_back(fmt::format("G{}", plane_g_));
-    if (mode != 1 && mode_is_used_behind(program_, last_block_)) behind.push_back(code(1));
-    if (!behind.empty()) lines.push_back(joined(behind));
-    return lines;
+    const bool restores = mode != 1 && mode_is_used_behind(program_, last_block_);
+    if (other_plane)
+      lines.push_back(joined(restores ? std::vector{fmt::format("G{}", plane_g_), code(1)}
+                                      : std::vector{fmt::format("G{}", plane_g_)}));
+    else if (restores)
+      out.mode_behind = code(1);
+    return out;
   }
 
  private:
@@ -212,8 +222,7 @@ bool mode_is_used_behind(const nc::Program& program, std::size_t block) {
   return false;
 }
 
-TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& moves,
-                        bool whole_numbers_are_increments) {
+TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& moves) {
   TextStyle style{.numbers = nc::style_of(program)};
   const bool inch = std::any_of(moves.states.begin(), moves.states.end(), [](const auto& s) { return s.inch; });
   style.decimals = inch ? 4 : 3;
@@ -224,13 +233,13 @@ TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& mo
       style.decimals = std::max(style.decimals, nc::decimals_of(text.substr(w.value_at)));
   }
   style.decimals = std::min(style.decimals, kMaxDecimals);
-  if (whole_numbers_are_increments) style.numbers.whole = nc::WholeStyle::point;
+  if (moves.whole_numbers_are_increments) style.numbers.whole = nc::WholeStyle::point;
   return style;
 }
 
-std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
-                                 const RunPath& path, const std::vector<Primitive>& chain, const TextStyle& style) {
-  return RunWriter(program, moves, run, path, style).write(chain);
+RunLines text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,
+                 const std::vector<Primitive>& chain, const TextStyle& style, bool says_mode) {
+  return RunWriter(program, moves, run, path, style).write(chain, says_mode);
 }
 
 std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,

@@ -15,13 +15,17 @@ struct TextStyle {
   int decimals = 3;              ///< the most that a coordinate has; at least 3 (mm) or 4 (inch)
   bool two_digit_codes = false;  ///< G01 rather than G1
 };
-TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& moves, bool whole_numbers_are_increments);
+TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& moves);
 
 /// The blocks of the chain: the N of the block that ended where the primitive ends, G1 G2 G3 where the mode changes (or
 /// always, where the program does so), X Y Z that change (arcs: both of the plane, but for a full turn), I J K, and the
-/// F of the run's first block. Where the blocks behind rely on G1 and the chain ends on an arc, a block `G1` follows.
-std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
-                                 const RunPath& path, const std::vector<Primitive>& chain, const TextStyle& style);
+/// further words of the run's first block (F, S, M8 ...). `says_mode`: the first block says its G1, G2 or G3.
+struct RunLines {
+  std::vector<std::string> lines;
+  std::string mode_behind{};  ///< G1, where the chain ends on an arc and the blocks behind rely on G1; else empty
+};
+RunLines text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,
+                 const std::vector<Primitive>& chain, const TextStyle& style, bool says_mode);
 
 /// What the segments of a layout get of the programmed feed; see ResegmentOptions.
 struct LayoutFeeds {

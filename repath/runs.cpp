@@ -2,10 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string_view>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "nc/arcs.h"
 #include "repath/compress.h"
+#include "repath/plain_blocks.h"
 #include "repath/program_point.h"
 
 namespace camber::repath {
@@ -16,17 +19,23 @@ constexpr double kStandsStillMm = 1e-9;
 class RunFinder {
  public:
   RunFinder(const nc::Program& program, const nc::Interpretation& moves, RunKind kind)
-      : program_(program), moves_(moves), kind_(kind), jumps_(program.macro.flow()) {}
+      : moves_(moves), kind_(kind), blocks_(program, kind == RunKind::with_arcs) {}
 
   std::vector<Run> find() {
     const auto& all = moves_.moves;
     for (std::uint32_t m = 0; m < all.size(); ++m) {
-      const unsigned still = fits(m);
-      if (still == 0) {
+      unsigned still = 0;
+      const Apart apart = is_cut(m) ? fits(m, still) : Apart::nothing;
+      if (!is_cut(m) || apart != Apart::nothing || still == 0) {
+        if (is_cut(m)) count(apart);
         close(m);
         continue;
       }
-      if (open_ && (!continues(m) || (still_ & still) == 0)) close(m);
+      if (open_) {
+        const Apart from_last = continues(m);
+        if (from_last != Apart::nothing) count(from_last);
+        if (from_last != Apart::nothing || (still_ & still) == 0) close(m);
+      }
       still_ = open_ ? still_ & still : still;
       if (!open_) first_ = m, open_ = true;
     }
@@ -34,68 +43,46 @@ class RunFinder {
     return std::move(runs_);
   }
 
+  const ApartCounts& apart() const { return apart_; }
+
  private:
-  /// A bit for every axis that the move does not move; 0: not a block for a run.
-  unsigned fits(std::uint32_t m) const {
+  /// What keeps the move out of every run; `still`: a bit for every axis that it does not move.
+  Apart fits(std::uint32_t m, unsigned& still) const {
     const nc::Move& move = moves_.moves[m];
-    const bool arc = move.kind == nc::MoveKind::arc && kind_ == RunKind::with_arcs;
-    if ((move.kind != nc::MoveKind::linear && !arc) || !move.editable || move.canned || move.reference) return 0;
+    if (move.canned || move.reference) return Apart::not_editable;
     if ((m > 0 && moves_.moves[m - 1].block == move.block) ||
         (m + 1 < moves_.moves.size() && moves_.moves[m + 1].block == move.block))
-      return 0;
+      return Apart::several;
     const nc::ModalState& state = moves_.state_of(move);
     const nc::Frame& frame = moves_.frame_of(move);
-    if (state.feed_mode != nc::FeedMode::per_minute || state.cutter_radius || !frame.shift_only || frame.polar ||
-        state.path_control == nc::PathControl::exact_stop)
-      return 0;
-    if (!plain_block(move.block)) return 0;
+    if (state.cutter_radius) return Apart::radius;
+    if (!move.editable) return Apart::not_editable;
+    if (state.feed_mode != nc::FeedMode::per_minute) return Apart::feed_mode;
+    if (!frame.shift_only || frame.polar) return Apart::frame;
+    if (state.path_control == nc::PathControl::exact_stop) return Apart::stop;
     constexpr unsigned kAll = 7;
-    if (in_space()) return kAll;
-    unsigned still = 0;
+    still = in_space() ? kAll : 0;
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(move.end_mm[axis] - move.start_mm[axis]) < kStandsStillMm) still |= 1u << axis;
-    return still;
+    return blocks_.apart(move.block, true);
   }
 
-  bool plain_block(std::uint32_t b) const {
-    const nc::Block& block = program_.blocks[b];
-    if (block.skip != 0 || block.flow) return false;
-    std::size_t at = block.offset;
-    const std::string& text = program_.source.text();
-    const auto blank = [&](std::size_t to) {
-      for (; at < to; ++at)
-        if (text[at] != ' ' && text[at] != '\t') return false;
-      return true;
-    };
-    for (const nc::Word& w : program_.words_of(b)) {
-      if (std::isnan(w.value) || !blank(w.offset)) return false;
-      at = w.offset + w.length;
-      const bool coordinate = w.letter >= 'X' && w.letter <= 'Z';
-      if (coordinate || w.letter == 'F' || (w.letter == 'G' && w.value == 1)) continue;
-      if (kind_ == RunKind::with_arcs && of_arc(w)) continue;
-      if (w.letter == 'N' && !jumps_) continue;
-      return false;
-    }
-    return blank(block.offset + block.length);
-  }
-
-  static bool of_arc(const nc::Word& w) {
-    return (w.letter >= 'I' && w.letter <= 'K') || w.letter == 'R' ||
-           (w.letter == 'G' && (w.value == 2 || w.value == 3));
+  bool is_cut(std::uint32_t m) const {
+    const nc::MoveKind kind = moves_.moves[m].kind;
+    return kind == nc::MoveKind::linear || (kind == nc::MoveKind::arc && kind_ == RunKind::with_arcs);
   }
 
   bool in_space() const { return kind_ != RunKind::in_plane; }
 
-  bool has_feed(std::uint32_t b) const {
-    const auto words = program_.words_of(b);
-    return std::any_of(words.begin(), words.end(), [](const nc::Word& w) { return w.letter == 'F'; });
-  }
-
-  bool continues(std::uint32_t m) const {
+  /// What keeps the move apart from the one before it.
+  Apart continues(std::uint32_t m) const {
     const nc::Move &now = moves_.moves[m], &before = moves_.moves[m - 1];
     // Where the control stops (before an M code, say) the run ends and keeps its stop.
-    return now.block == before.block + 1 && !before.exact_stop && now.state == before.state &&
-           now.feed_mm_per_s == before.feed_mm_per_s && !has_feed(now.block);
+    if (before.exact_stop) return Apart::stop;
+    if (now.block != before.block + 1) return Apart::between;
+    if (now.feed_mm_per_s != before.feed_mm_per_s) return Apart::feed;
+    if (now.state != before.state) return Apart::state;
+    return blocks_.apart(now.block, false);
   }
 
   void close(std::uint32_t behind) {
@@ -114,10 +101,12 @@ class RunFinder {
     open_ = false;
   }
 
-  const nc::Program& program_;
+  void count(Apart apart) { ++apart_[static_cast<std::size_t>(apart)]; }
+
   const nc::Interpretation& moves_;
   RunKind kind_;
-  bool jumps_;
+  PlainBlocks blocks_;
+  ApartCounts apart_{};
   std::vector<Run> runs_;
   bool open_ = false;
   std::uint32_t first_ = 0;
@@ -157,6 +146,21 @@ bool goes_on(const nc::Interpretation& moves, const Run& run, const Run& next) {
 
 std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, RunKind kind) {
   return RunFinder(program, moves, kind).find();
+}
+
+std::string why_unchanged(const nc::Program& program, const nc::Interpretation& moves, RunKind kind) {
+  RunFinder finder(program, moves, kind);
+  const std::vector<Run> runs = finder.find();
+  const auto cuts = std::ranges::count_if(moves.moves, [](const nc::Move& m) {
+    return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc;
+  });
+  const ApartCounts& apart = finder.apart();
+  const auto most = std::ranges::max_element(apart.begin() + 1, apart.end());
+  std::string why = fmt::format("{} cuts in {} runs", cuts, runs.size());
+  if (*most > 0)
+    why += fmt::format("; what ends runs most often ({} times) is {}", *most,
+                       reason_of(static_cast<Apart>(most - apart.begin())));
+  return why;
 }
 
 std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart) {

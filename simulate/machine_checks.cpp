@@ -29,6 +29,24 @@ Vec3 largest_direction(const nc::Interpretation& moves, const nc::Move& m) {
   return out;
 }
 
+/// The stretches between tool changes: what a machine clamps is said once in each.
+class Operations {
+ public:
+  explicit Operations(const nc::Interpretation& moves) : events_(moves.events) {}
+
+  /// Of the moves in ascending order: true where a tool change lies before it.
+  bool begins(std::size_t move) {
+    bool changed = false;
+    for (; next_ < events_.size() && events_[next_].before_move <= move; ++next_)
+      changed |= events_[next_].kind == nc::EventKind::tool_change;
+    return changed;
+  }
+
+ private:
+  const std::vector<nc::Event>& events_;
+  std::size_t next_ = 0;
+};
+
 class MachineCheck {
  public:
   MachineCheck(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
@@ -36,29 +54,42 @@ class MachineCheck {
       : machine_(machine), program_(program), moves_(moves), diagnostics_(diagnostics) {}
 
   void run() {
-    for (const nc::Move& m : moves_.moves) {
+    Operations operations(moves_);
+    for (std::size_t i = 0; i < moves_.moves.size(); ++i) {
+      if (operations.begins(i)) report();
+      const nc::Move& m = moves_.moves[i];
       if (m.kind == nc::MoveKind::dwell || m.reference) continue;
       if (cuts(m)) look_at_spindle(m);
       // Under tool-centre-point control and in tilted frames X Y Z are not the axes (kinematics/travel_check.h).
       const nc::ModalState& state = moves_.state_of(m);
       if (state.tip_control == nc::TipControl::off && state.work_frame == nc::WorkFrame::machine) look_at_axes(m);
     }
-    for (std::size_t a = 0; a < 3; ++a)
-      if (worst_[a].move) report_feed(a);
+    report();
   }
 
  private:
-  void error(const nc::Move& m, const char* check, std::string message) {
+  /// What is clamped in one operation.
+  struct Clamped {
+    const nc::Move* move = nullptr;  ///< the first
+    double largest = 0;              ///< asked for
+    std::size_t count = 0;
+    void add(const nc::Move& m, double asked) {
+      if (!move) move = &m;
+      if (asked > largest * (1 + kRounding)) largest = asked;
+      ++count;
+    }
+    std::string more() const { return count > 1 ? fmt::format(" in this move and {} more", count - 1) : std::string(); }
+  };
+
+  void say(const nc::Move& m, Severity severity, const char* check, std::string message) {
     diagnostics_.add(
-        program_.source.diagnostic(Severity::error, program_.blocks[m.block].offset, std::move(message), check));
+        program_.source.diagnostic(severity, program_.blocks[m.block].offset, std::move(message), check));
   }
 
   void look_at_spindle(const nc::Move& m) {
-    const double rpm = moves_.state_of(m).spindle_speed_rpm;
-    if (rpm <= machine_.spindle.max_rpm || !said_rpm_.insert(rpm).second) return;
-    error(m, "spindle-limit",
-          fmt::format("S{:g} here, but the spindle of {} turns at up to {:g} rpm (max_rpm); no more was expected", rpm,
-                      machine_.path, machine_.spindle.max_rpm));
+    const nc::ModalState& state = moves_.state_of(m);
+    const double rpm = std::max(state.programmed_spindle_speed_rpm, state.spindle_speed_rpm);
+    if (rpm > machine_.spindle.max_rpm) spindle_.add(m, rpm);
   }
 
   void look_at_axes(const nc::Move& m) {
@@ -70,43 +101,42 @@ class MachineCheck {
       if (fraction <= kStill_mm) continue;
       if (!axis.given && !said_missing_[a]) {
         said_missing_[a] = true;
-        error(m, "axis-missing",
-              fmt::format("{} moves here, but {} has no [axis.{}]; an axis with its limits was expected", kLetters[a],
-                          machine_.path, static_cast<char>(kLetters[a] - 'A' + 'a')));
+        say(m, Severity::error, "axis-missing",
+            fmt::format("{} moves here, but {} has no [axis.{}]; an axis with its limits was expected", kLetters[a],
+                        machine_.path, static_cast<char>(kLetters[a] - 'A' + 'a')));
       }
-      const double over = fraction * m.feed_mm_per_s / axis.max_velocity_mm_per_s;
-      if (!cuts(m) || over <= 1 + kRounding) continue;
-      if (over > worst_[a].over * (1 + kRounding)) worst_[a].over = over;
-      if (!worst_[a].move) worst_[a].move = &m;
-      ++worst_[a].count;
+      const double asked = fraction * m.feed_mm_per_s;
+      if (cuts(m) && asked > axis.max_velocity_mm_per_s * (1 + kRounding)) axes_[a].add(m, asked);
     }
   }
 
-  /// At its first place, with the largest speed of all.
-  void report_feed(std::size_t a) {
-    const double limit = mm_per_min_from_mm_per_s(machine_.axis[a].max_velocity_mm_per_s);
-    const std::size_t more = worst_[a].count - 1;
-    error(*worst_[a].move, "feed-limit",
+  /// Of the operation that ends: at its first places, with the largest of all.
+  void report() {
+    if (spindle_.move)
+      say(*spindle_.move, Severity::warning, "spindle-limit",
+          fmt::format("up to S{:g} here{}, but the spindle of {} turns at up to {:g} rpm (max_rpm); it is clamped to "
+                      "that",
+                      spindle_.largest, spindle_.more(), machine_.path, machine_.spindle.max_rpm));
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!axes_[a].move) continue;
+      say(*axes_[a].move, Severity::warning, "feed-limit",
           fmt::format("the feed requires up to {:.0f} mm/min of {}{}, but {} allows {:g} (max_velocity_mm_per_min of "
-                      "[axis.{}]); no more was expected",
-                      worst_[a].over * limit, kLetters[a],
-                      more > 0 ? fmt::format(" in this move and {} more", more) : std::string(), machine_.path, limit,
+                      "[axis.{}]); it is clamped to that",
+                      mm_per_min_from_mm_per_s(axes_[a].largest), kLetters[a], axes_[a].more(), machine_.path,
+                      mm_per_min_from_mm_per_s(machine_.axis[a].max_velocity_mm_per_s),
                       static_cast<char>(kLetters[a] - 'A' + 'a')));
+    }
+    spindle_ = {};
+    axes_ = {};
   }
-
-  struct Worst {
-    const nc::Move* move = nullptr;  ///< the first
-    double over = 1;                 ///< largest asked, over the limit
-    std::size_t count = 0;
-  };
 
   const machine::Machine& machine_;
   const nc::Program& program_;
   const nc::Interpretation& moves_;
   Diagnostics& diagnostics_;
-  std::set<double> said_rpm_;
   std::array<bool, 3> said_missing_{};
-  std::array<Worst, 3> worst_{};
+  Clamped spindle_;
+  std::array<Clamped, 3> axes_{};
 };
 
 bool has_spindle(const nc::Interpretation& moves) {
@@ -127,9 +157,10 @@ void check_feeds(const nc::Program& program, const nc::Interpretation& moves, Di
   const nc::Move* first = nullptr;
   double fastest = 0;
   std::size_t count = 0;
-  for (const nc::Move& m : moves.moves) {
+  for (std::size_t i = 0; i < moves.moves.size(); ++i) {
+    const nc::Move& m = moves.moves[i];
     const double feed = mm_per_min_from_mm_per_s(m.feed_mm_per_s);
-    if (!cuts(m) || m.reference || feed <= kAbsurd_mm_per_min) continue;
+    if (!cuts(m) || m.reference || feed <= kAbsurd_mm_per_min || nc::only_turns(moves, i)) continue;
     if (!first) first = &m;
     fastest = std::max(fastest, feed);
     ++count;
@@ -164,7 +195,8 @@ void check_spindle(const nc::Program& program, const nc::Interpretation& moves, 
                       s.spindle_speed_rpm <= 0 ? "at S0" : "stopped"),
           "spindle-stopped");
     else if (s.spindle == nc::SpindleDirection::counter_clockwise)
-      say(m, Severity::error,
+      // Without a tool number nobody knows what stands in the spindle.
+      say(m, s.tool == 0 ? Severity::warning : Severity::error,
           fmt::format("T{} cuts here under M4, but cutters are right-hand; M3 was expected", s.tool),
           "spindle-direction");
   }

@@ -7,10 +7,11 @@
 
 namespace camber::simulate {
 
-/// Errors at the program's blocks, each said once with its first place:
-///  [axis-missing]   the program moves an axis that the machine file does not have;
-///  [feed-limit]     the programmed feed requires more of an axis than its max_velocity_mm_per_min;
-///  [spindle-limit]  S is over the spindle's max_rpm in a line or an arc.
+/// At the program's blocks:
+///  [axis-missing]   error, once: the program moves an axis that the machine file does not have;
+///  [feed-limit]     warning: the programmed feed requires more of an axis than its max_velocity_mm_per_min;
+///  [spindle-limit]  warning: S is over the spindle's max_rpm in a line or an arc.
+/// The control clamps feed and spindle speed; each is said once between two tool changes, with the count.
 void check_machine(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                    Diagnostics& diagnostics);
 

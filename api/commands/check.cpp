@@ -38,7 +38,7 @@ Json range_json(const nc::Range& r) {
 }
 
 Json tool_json(const nc::ToolUse& t) {
-  return {{"tool", t.tool},
+  Json out = {{"tool", t.tool},
           {"line", t.line},
           {"calls", t.calls},
           {"cutting_moves", t.cutting_moves},
@@ -47,6 +47,8 @@ Json tool_json(const nc::ToolUse& t) {
           {"feed_mm_per_min", range_json(t.feed_mm_per_min)},
           {"spindle_speed_rpm", range_json(t.spindle_speed_rpm)},
           {"cutting_extents_mm", extents_json(t.cutting)}};
+  if (!t.feed_deg_per_min.empty()) out["feed_deg_per_min"] = range_json(t.feed_deg_per_min);
+  return out;
 }
 
 Json diagnostic_json(const Diagnostic& d) {

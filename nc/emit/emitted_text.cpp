@@ -6,10 +6,15 @@
 
 namespace camber::nc {
 
+std::string_view usual_line_end(const SourceText& source) {
+  if (source.line_end() == '\r') return "\r";
+  const std::size_t first = source.text().find('\n');
+  return first != std::string::npos && first > 0 && source.text()[first - 1] == '\r' ? "\r\n" : "\n";
+}
+
 EmittedText::EmittedText(const Program& program) : program_(program) {
   const std::string& text = program.source.text();
-  const std::size_t end = text.find('\n');
-  line_end_ = end != std::string::npos && end > 0 && text[end - 1] == '\r' ? "\r\n" : "\n";
+  line_end_ = usual_line_end(program.source);
   out_.reserve(text.size() + 64);
 }
 
@@ -29,7 +34,7 @@ void EmittedText::add_line_behind(std::uint32_t block, const std::string& line) 
 std::string EmittedText::line_end_of(std::uint32_t block) const {
   const auto& text = program_.source.text();
   const std::size_t end = program_.blocks[block].offset + program_.blocks[block].length;
-  const std::size_t next = text.find('\n', end);
+  const std::size_t next = text.find(program_.source.line_end(), end);
   return next == std::string::npos ? line_end_ : text.substr(end, next + 1 - end);
 }
 
@@ -53,18 +58,19 @@ void EmittedText::copy_until(std::size_t offset) {
 
 void EmittedText::add_header(const std::string& header) {
   if (header.empty()) return;
-  std::size_t block = 0;
+  std::size_t block = program_.leader_blocks;
   const auto& text = program_.source.text();
   while (block < program_.blocks.size()) {
     const Block& b = program_.blocks[block];
     const bool tape = b.length > 0 && text[b.offset] == '%';
     const auto words = program_.words_of(block);
-    if (!tape && (words.empty() || words.front().letter != 'O')) break;
+    const bool name = words.empty() && b.length > 0 && (text[b.offset] == 'O' || text[b.offset] == 'o');
+    if (!tape && !name && (words.empty() || words.front().letter != 'O')) break;
     ++block;
   }
   const std::size_t at = block < program_.blocks.size() ? program_.blocks[block].offset : text.size();
   copy_until(at);
-  if (!out_.empty() && out_.back() != '\n') out_ += line_end_;
+  if (!out_.empty() && out_.back() != program_.source.line_end()) out_ += line_end_;
   std::size_t from = 0;
   while (from < header.size()) {
     const std::size_t end = std::min(header.find('\n', from), header.size());
@@ -83,7 +89,8 @@ std::vector<std::uint32_t> EmittedText::block_of_lines() const {
     if (block == header_before_) out.insert(out.end(), header_lines_, Emission::kNoBlock);
     std::size_t lines = 1;
     for (; next < replaced_.size() && replaced_[next].first == block; ++next)
-      lines += static_cast<std::size_t>(std::count(replaced_[next].second.begin(), replaced_[next].second.end(), '\n'));
+      lines += static_cast<std::size_t>(std::count(replaced_[next].second.begin(), replaced_[next].second.end(),
+                                                   program_.source.line_end()));
     out.insert(out.end(), lines, block);
   }
   return out;

@@ -2,12 +2,16 @@
 // The emitted text in the making: the given one, blocks that become others, and a header.
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "nc/program.h"
 
 namespace camber::nc {
+
+/// What a further line of the text begins behind: "\n", "\r\n" or "\r".
+std::string_view usual_line_end(const SourceText& source);
 
 class EmittedText {
  public:
@@ -19,7 +23,7 @@ class EmittedText {
   /// A line of its own behind the block's (new) text.
   void add_line_behind(std::uint32_t block, const std::string& line);
 
-  /// "\n" or "\r\n", as behind the block.
+  /// "\n", "\r\n" or "\r", as behind the block.
   std::string line_end_of(std::uint32_t block) const;
 
   /// The whole text, `header` (lines without brackets; empty: none) behind % and the O word.

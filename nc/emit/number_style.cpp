@@ -87,7 +87,7 @@ NumberStyle style_of(const Program& program) {
   for (std::size_t i = 0; i < count; ++i) {
     const Word& w = program.words[i];
     if (!is_coordinate(w.letter) || std::isnan(w.value)) continue;
-    const bool first_of_line = w.offset == 0 || text[w.offset - 1] == '\n';
+    const bool first_of_line = w.offset == 0 || text[w.offset - 1] == program.source.line_end();
     if (!first_of_line) ++(text[w.offset - 1] == ' ' ? c.blank : c.no_blank);
     if (w.length > w.value_at) c.add(number_of(program, w), w.value);
   }

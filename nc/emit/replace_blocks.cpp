@@ -3,6 +3,8 @@
 #include <cassert>
 #include <string_view>
 
+#include "nc/emit/emitted_text.h"
+
 namespace camber::nc {
 namespace {
 
@@ -13,8 +15,7 @@ std::string_view line_end_of(const Program& program, std::size_t block) {
     const std::size_t end = program.blocks[block].offset + program.blocks[block].length;
     return text.substr(end, program.blocks[block + 1].offset - end);
   }
-  const std::size_t first = text.find('\n');
-  return first != std::string_view::npos && first > 0 && text[first - 1] == '\r' ? "\r\n" : "\n";
+  return usual_line_end(program.source);
 }
 
 }  // namespace
