@@ -221,6 +221,8 @@ ServoTrace read_mapped_trace(const std::string& path, const ColumnMap& map, Diag
   const std::size_t first = source.text().find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first != std::string::npos && source.text()[first] == '<')
     return trace_of(path, read_sinumerik_channels(source), map, diagnostics);
+  if (first != std::string::npos && source.text()[first] == '{')
+    return trace_of(path, read_edge_channels(source), map, diagnostics);
   for (std::size_t line = 1; line <= std::min<std::size_t>(source.line_count(), 100); ++line) {
     const std::string_view text = source.line(line);
     if (text.starts_with("Name") && text.size() > 4 && (text[4] == map.separator))

@@ -192,6 +192,20 @@ class Reader {
 
 }  // namespace
 
+double joint_position(const ServoTrace& trace, std::size_t sample, std::size_t joint) {
+  const auto i = static_cast<Eigen::Index>(joint % 3);
+  if (joint < 3) return trace.has_command[joint] ? trace.command_mm[sample][i] : trace.actual_mm[sample][i];
+  if (trace.rotary_command_deg.empty()) return 0;
+  return trace.has_rotary_command[joint - 3] ? trace.rotary_command_deg[sample][i] : trace.rotary_actual_deg[sample][i];
+}
+
+double joint_step(const ServoTrace& trace, std::size_t from, std::size_t to) {
+  double most = 0;
+  for (std::size_t joint = 0; joint < kJoints; ++joint)
+    most = std::max(most, std::abs(joint_position(trace, to, joint) - joint_position(trace, from, joint)));
+  return most;
+}
+
 std::vector<std::size_t> set_stretches(ServoTrace& trace) {
   std::vector<double> steps(trace.size() - 1);
   for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = trace.t_s[i + 1] - trace.t_s[i];

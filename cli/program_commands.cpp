@@ -255,6 +255,9 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command
       ->add_option("--block-time-plot", arguments->block_time_plot, "speed against block length of the saturated runs")
       ->type_name("P.svg");
+  command->add_flag(
+      "--update", arguments->update,
+      "refine the machine file: its corner law stands, its numbers change where the traces determine them");
   command->add_flag("--leave-one-out", arguments->leave_one_out,
                     "also predict each servo trace by a fit on the others (one fit per trace)");
   add_tool_lengths(*command, arguments->interpreter);

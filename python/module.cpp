@@ -99,14 +99,15 @@ camber::TimeResult time(const py::object& program, const py::object& machine, co
 }
 
 camber::FitFeedResult fit_feed(const std::vector<std::pair<py::object, Path>>& traces, const py::object& machine,
-                               const std::optional<Path>& columns, const py::object& progress, bool strict,
+                               const std::optional<Path>& columns, bool update, const py::object& progress, bool strict,
                                int threads) {
   const camber::Machine start = machine_of(machine);
   std::vector<camber::FeedTrace> runs;
   for (const auto& [program, trace] : traces) runs.push_back({program_of(program), trace.string()});
   std::optional<camber::FitFeedResult> result;
   call({progress, strict, threads}, [&](const camber::RunOptions& run) {
-    result = camber::fit_feed(runs, start, {.columns = columns ? columns->string() : std::string()}, run);
+    result =
+        camber::fit_feed(runs, start, {.columns = columns ? columns->string() : std::string(), .update = update}, run);
   });
   return *std::move(result);
 }
@@ -222,7 +223,7 @@ void add_functions(py::module_& module) {
   module.def("time", time, "program"_a, "machine"_a, py::kw_only(), "trace"_a = py::none(),
              "sweep"_a = std::vector<std::string>(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Cycle time by kind of operation and by tool.");
-  module.def("fit_feed", fit_feed, "traces"_a, "machine"_a, py::kw_only(), "columns"_a = py::none(),
+  module.def("fit_feed", fit_feed, "traces"_a, "machine"_a, py::kw_only(), "columns"_a = py::none(), "update"_a = false,
              "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Fits the feed model of a machine to pairs of a program and its trace.");
   module.def("predict", predict, "job"_a, py::kw_only(), "feed"_a = false, "output_folder"_a = py::none(),

@@ -279,7 +279,9 @@ void add_fit(py::module_& module) {
       .def_readonly("unit", &FitParameter::unit)
       .def_readonly("std_error", &FitParameter::std_error)
       .def_readonly("note", &FitParameter::note)
-      .def_readonly("written", &FitParameter::written);
+      .def_readonly("written", &FitParameter::written)
+      .def_readonly("stretches", &FitParameter::stretches)
+      .def_readonly("changed_from", &FitParameter::changed_from);
   result_class<FitFeedResult>(module, "FitFeedResult")
       .def_readonly("machine", &FitFeedResult::machine)
       .def_readonly("parameters", &FitFeedResult::parameters)
