@@ -77,7 +77,8 @@ void add_tables(py::module_& module) {
       .add("h_max_mm", &ForceRow::h_max_mm)
       .add("h_mean_mm", &ForceRow::h_mean_mm)
       .add("specific_energy_MPa", &ForceRow::specific_energy_MPa)
-      .add("f_axial_max_N", &ForceRow::f_axial_max_N);
+      .add("f_axial_max_N", &ForceRow::f_axial_max_N)
+      .add("valid", &ForceRow::valid);
   TableClass<ErrorPoint>(module, "ErrorPoints")
       .add("x_mm", &ErrorPoint::x_mm)
       .add("y_mm", &ErrorPoint::y_mm)
@@ -92,7 +93,8 @@ void add_tables(py::module_& module) {
       .add("model_error_um", &ErrorPoint::model_error_um)
       .add("area_mm2", &ErrorPoint::area_mm2)
       .add("block", &ErrorPoint::block)
-      .add("tool", &ErrorPoint::tool);
+      .add("tool", &ErrorPoint::tool)
+      .add("valid", &ErrorPoint::valid);
   TableClass<CompensatedPoint>(module, "CompensatedPoints")
       .add("x_mm", &CompensatedPoint::x_mm)
       .add("y_mm", &CompensatedPoint::y_mm)

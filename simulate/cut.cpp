@@ -300,10 +300,8 @@ class Cutter {
       loads[k].deflection_max_mm = deflection;
       result.deflection_max_mm = std::max(result.deflection_max_mm, deflection);
       if (deflection <= limit) continue;
-      result.deflection_limit_mm = result.beyond == 0 ? limit : std::min(result.deflection_limit_mm, limit);
-      ++result.beyond;
-      if (result.beyond_moves.empty() || result.beyond_moves.back() != stamps[k].move)
-        result.beyond_moves.push_back(stamps[k].move);
+      result.deflection_limit_mm = result.beyond_stamps.empty() ? limit : std::min(result.deflection_limit_mm, limit);
+      result.beyond_stamps.push_back(static_cast<std::uint32_t>(result.loads.size() + k));
     }
   }
 
@@ -365,8 +363,12 @@ class Cutter {
       cancellation_point();
       const Stamp& stamp = all[from + k];
       const auto passing = static_cut_->cut(k);
+      const auto stand = [&] {
+        if (!settled_) result.unsettled_stamps.push_back(static_cast<std::uint32_t>(result.loads.size() + k));
+      };
       if (passing.rounds == 0) {
         read[k] = 0;
+        stand();
         continue;
       }
       ++result.read;
@@ -387,6 +389,7 @@ class Cutter {
         }
       }
       settled_ = passing.settled;
+      stand();
     }
     behind.wait();
     fill_between(read, result.loads, loads);

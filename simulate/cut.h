@@ -83,13 +83,13 @@ struct CutResult {
   int rounds_max = 0;                             ///< of the static solution: readings of a tooth passing's chips
   std::size_t unsettled = 0;                      ///< stretches of tooth passings without a static equilibrium
   std::vector<std::uint32_t> unsettled_moves;     ///< their Stamp::move, without consecutive repetitions
+  std::vector<std::uint32_t> unsettled_stamps;    ///< all of their passings: indices of `loads`
   std::vector<deflection::NoEquilibrium> unsettled_reasons;  ///< of the first passing of each
-  std::size_t beyond = 0;                   ///< tooth passings with a deflection beyond the model's range
-  std::vector<std::uint32_t> beyond_moves;  ///< their Stamp::move, without consecutive repetitions
-  double deflection_max_mm = 0;             ///< of the edge at the tip, in any tooth passing
-  double deflection_limit_mm = 0;           ///< smallest limit among those exceeded
-  BendBefore bend;                          ///< static: at the end
-  deflection::TurnForces turn;              ///< empty without CutOptions::turn_from
+  std::vector<std::uint32_t> beyond_stamps;  ///< with a deflection beyond the model's range: indices of `loads`
+  double deflection_max_mm = 0;              ///< of the edge at the tip, in any tooth passing
+  double deflection_limit_mm = 0;            ///< smallest limit among those exceeded
+  BendBefore bend;                           ///< static: at the end
+  deflection::TurnForces turn;               ///< empty without CutOptions::turn_from
 };
 
 /// Cuts `stock`: with the deflected cutter, or in rigid coupling (no feedback of the deflection) with the undeflected

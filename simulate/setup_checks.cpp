@@ -181,9 +181,9 @@ void check_tool_lengths(const machine::Job& job, const std::vector<int>& tools, 
   for (const int number : tools) {
     const auto tool = job.tools.find(number);
     if (tool == job.tools.end() || slenderness(tool->second) <= kMaxSlenderness) continue;
-    add(Severity::warning, job.path,
-        fmt::format("T{}: overhang_mm = {:g} is {:.1f} times its diameter; the model covers up to {:g} times, so its "
-                    "figures are not shown",
+    add(Severity::error, job.path,
+        fmt::format("T{}: overhang_mm = {:g} is {:.1f} times its diameter; no more than {:g} times was expected: a "
+                    "longer tool is no static beam (diameter_mm and overhang_mm are in mm)",
                     number, tool->second.overhang_mm, slenderness(tool->second), kMaxSlenderness),
         "tool-slender", diagnostics);
   }

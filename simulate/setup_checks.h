@@ -46,7 +46,7 @@ double slenderness(const machine::Tool& tool);
 /// A static beam does not describe longer tools.
 constexpr double kMaxSlenderness = 15;
 
-/// Warnings [tool-slender] for tools of the list that are more slender than kMaxSlenderness.
+/// Errors [tool-slender] for tools of the list that are more slender than kMaxSlenderness.
 void check_tool_lengths(const machine::Job& job, const std::vector<int>& tools, Diagnostics& diagnostics);
 
 /// What camber check asks of a program before any of it is simulated: [tool-missing] and the like (job_checks.h), tools
