@@ -32,16 +32,24 @@ def local_names(text):
     return found
 
 
+def used_names(text):
+    """Those that `using` brings from elsewhere: two files may use the same, but none may define it."""
+    return set(re.findall(r"^using [\w:]*::(\w+);", text, re.M))
+
+
 class Group:
     def __init__(self):
-        self.files, self.names, self.lines = [], set(), 0
+        self.files, self.names, self.used, self.lines = [], set(), set(), 0
 
     def takes(self, file, limit):
-        return self.lines + file.lines <= limit and not self.names & file.names
+        if self.lines + file.lines > limit:
+            return False
+        return not (self.names & file.names or self.names & file.used or self.used & file.names)
 
     def add(self, file):
         self.files.append(file.path)
         self.names |= file.names
+        self.used |= file.used
         self.lines += file.lines
 
 
@@ -50,6 +58,7 @@ class File:
         with open(path, encoding="utf8") as file:
             text = file.read()
         self.path, self.lines, self.names = path, text.count("\n"), local_names(text)
+        self.used = used_names(text)
         self.light = tuple(f"#include <{header}" not in text for header in HEAVY)
 
 
