@@ -119,19 +119,6 @@ namespace {
 
 using Reason = deflection::NoEquilibrium;
 
-/// What keeps the tool from an equilibrium, before the lines in which it does.
-const char* condition(Reason reason) {
-  switch (reason) {
-    case Reason::pulled_in:
-      return "the tool is pulled into its cut (the force grows faster with the chip than the tool is stiff) in";
-    case Reason::pushed_out:
-      return "the tool is pushed out of its cut by more than 0.5 mm in";
-    case Reason::swings:
-      break;
-  }
-  return "the tool swings between two deflections in";
-}
-
 const char* name(Reason reason) {
   return reason == Reason::pulled_in ? "pulled in" : reason == Reason::pushed_out ? "pushed out" : "swings";
 }
@@ -326,7 +313,8 @@ std::string unsettled_sentence(const simulate::SimulatedProgram& program, const 
   std::string why;
   for (const auto reason : {Reason::pulled_in, Reason::pushed_out, Reason::swings}) {
     const std::vector<std::size_t> lines = unsettled_lines(program, p, reason);
-    if (!lines.empty()) why += fmt::format("{}{} {}", why.empty() ? "" : "; ", condition(reason), named(lines));
+    if (!lines.empty())
+      why += fmt::format("{}{} in {}", why.empty() ? "" : "; ", simulate::no_equilibrium_text(reason), named(lines));
   }
   return fmt::format(
       "the static deflection did not converge in {} stretch{} of the path: {}; figures from there on are uncertain",

@@ -390,6 +390,12 @@ class Cutter {
       }
       settled_ = passing.settled;
       stand();
+      if (!passing.settled && ++unsettled_readings_ >= options_.give_up_after &&
+          static_cast<double>(unsettled_readings_) > NoRest::kHopeless * static_cast<double>(result.read)) {
+        behind.wait();
+        throw NoRest{unsettled_readings_, result.read, result.unsettled_moves.front(),
+                     result.unsettled_reasons.front()};
+      }
     }
     behind.wait();
     fill_between(read, result.loads, loads);
@@ -443,7 +449,8 @@ class Cutter {
   std::size_t different_teeth_ = 1;               ///< of which each takes another chip
   std::optional<removal::RigidEngager> engager_;  ///< rigid
   std::optional<StaticCut> static_cut_;
-  bool settled_ = true;           ///< the last tooth passing
+  bool settled_ = true;  ///< the last tooth passing
+  std::size_t unsettled_readings_ = 0;
   DeflectionTable deflections_;   ///< of the stretch
   std::vector<float> last_rows_;  ///< of the deflection tables before, BendBefore::kRows at most
   double largest_bend_mm_ = 0;    ///< so far

@@ -25,6 +25,7 @@
 #include "simulate/setup_checks.h"
 #include "simulate/shared_prediction.h"
 #include "simulate/validity.h"
+#include "simulate/verdict.h"
 
 namespace camber::simulate {
 
@@ -408,6 +409,9 @@ CutResult cut_run_of(removal::Stock& stock, const Job& job, const removal::ToolR
   return tap(stock, tool, stamps, first_id, options);
 }
 
+/// Tooth passings without a static equilibrium: about half a minute of them.
+constexpr std::size_t kGiveUpAfter = 2000;
+
 /// Cuts every run of the path out of `stock`, which is `blank` before the first one.
 PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job& job, const SimulatedProgram& program,
                    PathCut how) {
@@ -426,7 +430,13 @@ PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job
       };
     if (how.turn_from && *how.turn_from >= from && *how.turn_from < from + stamps.size())
       options.turn_from = *how.turn_from - from;
-    CutResult cut_run = cut_run_of(stock, job, run, stamps, contacts, options);
+    options.give_up_after = kGiveUpAfter;
+    CutResult cut_run;
+    try {
+      cut_run = cut_run_of(stock, job, run, stamps, contacts, options);
+    } catch (const NoRest& given_up) {
+      throw BeyondModel(no_rest_sentence(program, given_up));
+    }
     if (how.chip_ratio > 0) cut_run.loads_at_ratio.resize(stamps.size());
     add_piece(run, std::move(cut_run), out);
   });

@@ -44,6 +44,27 @@ double imbalance(double chip_mm3, double stock_mm3, double voxel_mm) {
 bool beyond_model(const Prediction& p) { return p.validity.surface_fraction() > kMaxInvalid; }
 bool forces_beyond_model(const Prediction& p) { return p.validity.passing_fraction() > kMaxInvalid; }
 
+const char* no_equilibrium_text(deflection::NoEquilibrium reason) {
+  switch (reason) {
+    case deflection::NoEquilibrium::pulled_in:
+      return "the tool is pulled into its cut (the force grows faster with the chip than the tool is stiff)";
+    case deflection::NoEquilibrium::pushed_out:
+      return "the tool is pushed out of its cut by more than 0.5 mm";
+    case deflection::NoEquilibrium::swings:
+      break;
+  }
+  return "the tool swings between two deflections";
+}
+
+std::string no_rest_sentence(const SimulatedProgram& program, const NoRest& given_up) {
+  return fmt::format(
+      "the static deflection does not converge, from line {} on: {}; given up after {} of {} tooth passings; a shorter "
+      "or thicker tool or a smaller cut was expected (or coupling = \"rigid\", which does not feed the deflection back "
+      "into the chip)",
+      program.moves.moves[given_up.move].block + 1, no_equilibrium_text(given_up.reason), given_up.unsettled,
+      given_up.readings);
+}
+
 std::string imbalance_sentence(double chip_mm3, double stock_mm3) {
   return fmt::format(
       "the chips add up to {:.3f} mm3, but the stock loses {:.3f} mm3; no more than {:g} % between them was expected, "

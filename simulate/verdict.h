@@ -19,6 +19,11 @@ bool beyond_model(const Prediction& prediction);
 /// True if it covers less than half of the tooth passings: forces must not be reported.
 bool forces_beyond_model(const Prediction& prediction);
 
+/// What keeps the tool from an equilibrium: "the tool is pulled into its cut (...)".
+const char* no_equilibrium_text(deflection::NoEquilibrium reason);
+/// Of a cut that was given up, with its line.
+std::string no_rest_sentence(const SimulatedProgram& program, const NoRest& given_up);
+
 /// One sentence for each reason why the figures are not reliable: beyond the model, chips against stock, no
 /// surface that could be judged. Empty: none.
 std::vector<std::string> doubts(const machine::Job& job, const SimulatedProgram& program, const Prediction& prediction);
