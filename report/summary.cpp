@@ -323,13 +323,13 @@ std::string unsettled_sentence(const simulate::SimulatedProgram& program, const 
 
 namespace {
 
-std::string unsettled_sentence(bool settled) {
+std::string sentence_unless(bool settled) {
   return settled ? "" : "the static deflection of some stretches did not converge; their figures are uncertain";
 }
 
 }  // namespace
 
-std::string unsettled_sentence(const compensate::CompensationResult& c) { return unsettled_sentence(c.settled); }
-std::string unsettled_sentence(const compensate::Verification& v) { return unsettled_sentence(v.settled); }
+std::string unsettled_sentence(const compensate::CompensationResult& c) { return sentence_unless(c.settled); }
+std::string unsettled_sentence(const compensate::Verification& v) { return sentence_unless(v.settled); }
 
 }  // namespace camber::report
