@@ -45,7 +45,8 @@ ForceRow row_of(const report::ForceRow& r) {
           .h_mean_mm = r.chip_mean_mm,
           .specific_energy_MPa = r.specific_energy_MPa,
           .block = static_cast<std::int64_t>(r.line),
-          .f_axial_max_N = r.axial_max_N};
+          .f_axial_max_N = r.axial_max_N,
+          .valid = r.valid};
 }
 
 std::vector<ErrorPoint> points_of(const report::FormErrorPoints& points) {
@@ -54,7 +55,8 @@ std::vector<ErrorPoint> points_of(const report::FormErrorPoints& points) {
   for (std::size_t i = 0; i < points.count; ++i) {
     const report::FormErrorPoint p = points.at(i);
     out.push_back({p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(), p.error_um,
-                   p.deflection_um(), p.contour_um, p.total_error_um, p.model_error_um, p.area_mm2, p.block, p.tool});
+                   p.deflection_um(), p.contour_um, p.total_error_um, p.model_error_um, p.area_mm2, p.block, p.tool,
+                   p.valid});
   }
   return out;
 }
@@ -86,7 +88,7 @@ PredictResult api::result_of(const machine::Job& job, const PreparedJob& prepare
   const simulate::SimulatedProgram& program = prepared.setup.program;
   PredictResult out{.machine_time_s = program.feed.time_s,
                     .cutting_time_s = program.feed.cutting_time_s,
-                    .chips_mm3 = p.cut.chip_mm3,
+                    .chips_mm3 = report::chips_mm3(p),
                     .stock_mm3 = p.cut.stock_mm3,
                     .form_error_um = api::figures_of(p.form_error_um),
                     .deflection_um = api::figures_of(p.deflection_um),
@@ -95,7 +97,7 @@ PredictResult api::result_of(const machine::Job& job, const PreparedJob& prepare
                     .form_error = points_of(report::form_error_points(program, p, prepared.traced_run())),
                     .doubts = api::doubts_of(job, program, p)};
   if (prepared.traced) out.trace = comparison_of(*prepared.traced);
-  for (const auto& load : p.cut.loads) out.force_max_N = std::max(out.force_max_N, load.lateral_max_N);
+  out.force_max_N = report::largest_force_N(p);
   report::for_each_force_row(job, program, p, [&](const report::ForceRow& row) { out.forces.push_back(row_of(row)); });
   for (const report::SpindleLoad& l : report::spindle_loads(job, program, p))
     out.spindle_load.push_back({l.tool, static_cast<std::int64_t>(l.line), l.power_W, l.torque_Nm});

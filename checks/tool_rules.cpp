@@ -107,7 +107,6 @@ void look_at_comments(const Evidence& e, Diagnostics& diagnostics) {
 }
 
 void look_at_overhang(const Evidence& e, Diagnostics& diagnostics) {
-  constexpr double kImpossible = 25;          // diameters
   constexpr double kLongest_mm = 400;         // of any milling tool
   constexpr double kShortest = 1, kWide = 20;  // diameters; mm
   for (const ToolWork& work : e.tools) {
@@ -120,13 +119,10 @@ void look_at_overhang(const Evidence& e, Diagnostics& diagnostics) {
     };
     if (tool.overhang_mm > kLongest_mm)
       say(Severity::error, fmt::format("longer than any milling tool; up to {:g} mm was expected", kLongest_mm));
-    else if (slender > kImpossible)
-      say(Severity::error, fmt::format("{:.1f} times its diameter; no such tool mills: up to {:g} times was expected",
-                                       slender, simulate::kMaxSlenderness));
     else if (slender > simulate::kMaxSlenderness)
-      say(Severity::warning,
-          fmt::format("{:.1f} times its diameter; the model covers up to {:g} times, so its figures are not shown",
-                      slender, simulate::kMaxSlenderness));
+      say(Severity::error, fmt::format("{:.1f} times its diameter; no more than {:g} times was expected: a longer tool is "
+                                       "no static beam (diameter_mm and overhang_mm are in mm)",
+                                       slender, simulate::kMaxSlenderness));
     else if (tool.diameter_mm <= kWide && tool.overhang_mm < kShortest * tool.diameter_mm)
       say(Severity::warning, fmt::format("less than its diameter, {:g} mm; at least that was expected (holder face to "
                                          "tip)",

@@ -1,4 +1,5 @@
 // The program as given: its error, what of it is compensated, and the points of the path.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include "compensate/expected.h"
 #include "compensate/loop.h"
 #include "nc/emit.h"
+#include "removal/engagement.h"
 #include "simulate/operations.h"
 #include "simulate/verdict.h"
 
@@ -19,6 +21,12 @@ namespace {
 
 constexpr double kSpacing_mm = 0.4;  // between points of a long line
 constexpr double kForeign = 0.2;     // of the area, cut by another row than it should be: expected_errors are used
+
+/// No default lets the tool go deeper than the model bends it, or than the stock is thick.
+double deepest_limit_um(const removal::Stock& blank) {
+  const Vec3 size = blank.max_mm() - blank.min_mm();
+  return 1000 * std::min(removal::DeflectedEngager::kMaxDeflection_mm, size.minCoeff());
+}
 
 /// Where the blank has an allowance, the first of two cuts must find some of it.
 void check_allowance(const machine::Job& job, Diagnostics& diagnostics) {
@@ -89,7 +97,9 @@ void Loop::start(CompensationResult& out) {
   out.own_depth_limit = job_.compensation.depth_limit_um().has_value();
   depth_limit_um_ = job_.compensation.depth_limit_um().value_or(0);
   if (!out.own_depth_limit)
-    depth_limit_um_ = default_depth_limit_um(*now_->path, given->observed, fit_options(), 1000 * tolerance_mm());
+    depth_limit_um_ =
+        std::min(deepest_limit_um(setup_.target.blank),
+                 default_depth_limit_um(*now_->path, given->observed, fit_options(), 1000 * tolerance_mm()));
   out.depth_limit_um = depth_limit_um_;
   out.plain_before = figures_of(*given);
   out.feed_before = setup_.program.feed;

@@ -79,6 +79,7 @@ void add_tables(py::module_& module) {
       .add("h_mean_mm", &ForceRow::h_mean_mm)
       .add("specific_energy_MPa", &ForceRow::specific_energy_MPa)
       .add("f_axial_max_N", &ForceRow::f_axial_max_N)
+      .add("valid", &ForceRow::valid)
       .add_vectors("points", &ForceRow::x_mm);
   TableClass<ErrorPoint>(module, "ErrorPoints")
       .add("x_mm", &ErrorPoint::x_mm)
@@ -95,6 +96,7 @@ void add_tables(py::module_& module) {
       .add("area_mm2", &ErrorPoint::area_mm2)
       .add("block", &ErrorPoint::block)
       .add("tool", &ErrorPoint::tool)
+      .add("valid", &ErrorPoint::valid)
       .add_vectors("points", &ErrorPoint::x_mm)
       .add_vectors("normals", &ErrorPoint::nx);
   TableClass<CompensatedPoint>(module, "CompensatedPoints")

@@ -23,6 +23,7 @@ struct FormErrorPoint {
   double model_error_um = std::numeric_limits<double>::quiet_NaN();  ///< of a trace: the feed model's; NaN: no trace
   std::uint32_t block = 0;  ///< 1-based line that generated the surface here; 0: unknown
   int tool = 0;             ///< whose stamp made it; 0: unknown
+  bool valid = true;        ///< the model holds here
 };
 
 /// Points made as they are asked for: there are millions of them.
@@ -31,14 +32,14 @@ struct FormErrorPoints {
   std::function<FormErrorPoint(std::size_t)> at;
 };
 
-/// Columns x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool; every figure
-/// of the form error can be worked out from them again. total_error_um is empty where there is none. Of a trace
-/// model_error_um,difference_um follow: the feed model's error, and error_um minus that.
+/// Columns x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool,valid; every
+/// figure of the form error can be worked out again from the rows whose `valid` is 1. total_error_um is empty where
+/// there is none. Of a trace model_error_um,difference_um follow: the feed model's error, and error_um minus that.
 /// Throws InputError [file-unwritable].
 void write_form_error_csv(const std::string& path, const FormErrorPoints& points);
 
 /// The same points for ParaView (VTK PolyData, XML, base64): normals, error_um, deflection_um, contour_um, area_mm2,
-/// block, tool and, where there is one, total_error_um. Throws InputError [file-unwritable].
+/// block, tool, valid and, where there is one, total_error_um. Throws InputError [file-unwritable].
 void write_form_error_vtp(const std::string& path, const FormErrorPoints& points);
 
 /// Blue, white, red for -1, 0, 1.

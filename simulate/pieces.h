@@ -97,11 +97,11 @@ CutResult cut_range(removal::Stock& stock, const machine::Tool& tool, const mach
                     const BendBefore* before = nullptr);
 
 /// Adds what a run, or a part of one, has given. In the order of the path.
-void add_piece(const machine::Job& job, const removal::ToolRun& run, CutResult piece, PathLoads& out);
+void add_piece(const removal::ToolRun& run, CutResult piece, PathLoads& out);
 
 /// The prediction from what a cut left: all points of Target::map with their errors, as SurfaceMap::take() returns
 /// them.
-Prediction judge(const Target& target, PathLoads loads, std::vector<removal::SurfacePoint> surface,
-                 std::unique_ptr<removal::Stock> machined);
+Prediction judge(const machine::Job& job, const Target& target, const SimulatedProgram& program, PathLoads loads,
+                 std::vector<removal::SurfacePoint> surface, std::unique_ptr<removal::Stock> machined);
 
 }  // namespace camber::simulate

@@ -36,6 +36,7 @@ struct ForceRow {
   double specific_energy_MPa = 0;
   std::int64_t block = 0;    ///< 1-based line
   double f_axial_max_N = 0;  ///< along the tool, towards the spindle; signed, of maximum magnitude
+  bool valid = true;         ///< the model holds in all of the row's tooth passings
 };
 
 /// A row of form_error.csv: a point of the nominal surface.
@@ -49,6 +50,7 @@ struct ErrorPoint {
   double area_mm2 = 0;        ///< represented by the point
   std::int64_t block = 0;     ///< 1-based line that generated the surface here; 0: unknown
   std::int64_t tool = 0;      ///< 0: unknown
+  bool valid = true;          ///< the model holds here; figures are of valid points
 };
 
 /// A row of spindle_load.csv: the heaviest turn of the spindle in a line, for cutting alone.
