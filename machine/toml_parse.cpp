@@ -1,5 +1,6 @@
 #include <toml++/toml.h>
 
+#include "machine/toml_parse.h"
 #include "machine/toml_table.h"
 
 namespace camber::machine {
@@ -53,8 +54,13 @@ std::string reason(std::string_view description) {
 }  // namespace
 
 std::unique_ptr<TomlFile> read_toml(const std::string& path, const std::string& contents, Diagnostics& diagnostics) {
+  return parse_toml(SourceText::read(path), contents, diagnostics);
+}
+
+std::unique_ptr<TomlFile> parse_toml(SourceText text, const std::string& contents, Diagnostics& diagnostics) {
   auto file = std::make_unique<TomlFile>();
-  file->source = SourceText::read(path);
+  file->source = std::move(text);
+  const std::string& path = file->source.name();
   file->root.kind = TomlNode::Kind::table;
   if (is_blank(file->source.text())) {
     diagnostics.add(
