@@ -57,8 +57,7 @@ AdaptResult v0::adapt(const Job& job, const AdaptOptions& options, const RunOpti
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result = result_of(done);
     result.diagnostics = found.all();
-    result.json =
-        machine::with_assumptions(report::adapt_json(done, *of.adapt, compute_s), machine::assumptions(of));
+    result.json = machine::with_assumptions(report::adapt_json(done, *of.adapt, compute_s), machine::assumptions(of));
   });
   return result;
 }

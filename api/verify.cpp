@@ -43,9 +43,8 @@ VerifyResult v0::verify(const std::string& place, const RunOptions& run_options)
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result = result_of(emitted, verified);
     result.diagnostics = found.all();
-    result.json =
-        machine::with_assumptions(report::verify_json(verified.result, verified.job.compensation, compute_s),
-                                  machine::assumptions(verified.job));
+    result.json = machine::with_assumptions(report::verify_json(verified.result, verified.job.compensation, compute_s),
+                                            machine::assumptions(verified.job));
   });
   return result;
 }

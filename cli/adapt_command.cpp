@@ -56,8 +56,7 @@ int run_adapt(const AdaptArguments& arguments, const GlobalOptions& options) {
                                         warnings_of(diagnostics)));
         },
         failed);
-  if (!options.quiet)
-    fmt::print("{}{}", machine::assumptions_text(assumed), report::adapt_text(result, compute_s));
+  if (!options.quiet) fmt::print("{}{}", machine::assumptions_text(assumed), report::adapt_text(result, compute_s));
   failed.throw_if_errors();
   for (const std::string& failure : failures) print_error(failure);
   if (!written) print_error(fmt::format("{} was not written; --keep-anyway writes it all the same", arguments.output));

@@ -83,7 +83,7 @@ Checked read_and_summarize(const CheckCommand& command, const std::optional<mach
   };
   try {
     api::CheckedProgram program = api::check_program(text, command.interpreter, machine ? &*machine : nullptr,
-                                                           job ? &*job : nullptr, found, read);
+                                                     job ? &*job : nullptr, found, read);
     checked.summary = program.summary;
     checked.feed_meanings = program.feed_meanings;
     checked.memory_bytes = program.memory_bytes;

@@ -66,7 +66,8 @@ api::CompensateRequest compensate_request(const CompensateArguments& arguments) 
 
 namespace {
 
-/// `diagnostics`: of the job. `json`: the figures; empty where there are none. `emitted`: whether a program was written.
+/// `diagnostics`: of the job. `json`: the figures; empty where there are none. `emitted`: whether a program was
+/// written.
 int compensate_program(const machine::Job& given, Diagnostics diagnostics, const CompensateArguments& arguments,
                        const GlobalOptions& options, std::string& json, bool& emitted) {
   const auto begin = std::chrono::steady_clock::now();
@@ -138,8 +139,8 @@ std::string own_name(const std::string& path, const std::string& program) {
 
 /// Each program on what the compensated one before it has left; the emitted programs have the names of the given ones,
 /// in the folder of the output.
-int compensate_in_turn(const machine::JobOfPrograms& all, const Diagnostics& diagnostics, const CompensateArguments& arguments,
-                       const GlobalOptions& options) {
+int compensate_in_turn(const machine::JobOfPrograms& all, const Diagnostics& diagnostics,
+                       const CompensateArguments& arguments, const GlobalOptions& options) {
   if (!arguments.measured.empty()) {
     print_error("--measured belongs to one program, and the job has several");
     return kCommandLineWrong;
@@ -155,9 +156,9 @@ int compensate_in_turn(const machine::JobOfPrograms& all, const Diagnostics& dia
     if (!arguments.dry_run) {
       own.output = (std::filesystem::path(arguments.output) / std::filesystem::path(one.program).filename()).string();
       if (std::ranges::find(outputs, own.output) != outputs.end())
-        own.output = (std::filesystem::path(arguments.output) /
-                      (name + std::filesystem::path(one.program).extension().string()))
-                         .string();
+        own.output =
+            (std::filesystem::path(arguments.output) / (name + std::filesystem::path(one.program).extension().string()))
+                .string();
       check_outputs({own.output}, all.programs);
     }
     own.report = own_name(arguments.report, name);

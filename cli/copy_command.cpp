@@ -81,7 +81,9 @@ int run_copy(const CopyArguments& arguments, const GlobalOptions& options) {
         },
         failed);
   if (!arguments.json.empty())
-    try_to_write([&] { write_file(arguments.json, machine::with_assumptions(report::copy_json(result, compute_s), assumed)); }, failed);
+    try_to_write(
+        [&] { write_file(arguments.json, machine::with_assumptions(report::copy_json(result, compute_s), assumed)); },
+        failed);
   if (!options.quiet) fmt::print("{}{}", machine::assumptions_text(assumed), report::copy_text(result, compute_s));
   failed.throw_if_errors();
   return kDone;

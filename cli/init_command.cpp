@@ -125,9 +125,10 @@ void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chose
       ->check(machine_name())
       ->type_name("M.toml|preset:NAME");
   command
-      ->add_option("--material", arguments->material,
-                   "by number or name (1.2343, 42CrMo4, 4140, SKD61, Al6082-T6 ...), with a hardness where it is not as "
-                   "supplied: \"1.2379 60 HRC\"; default: C45, or aluminium at the speeds that only it is cut with")
+      ->add_option(
+          "--material", arguments->material,
+          "by number or name (1.2343, 42CrMo4, 4140, SKD61, Al6082-T6 ...), with a hardness where it is not as "
+          "supplied: \"1.2379 60 HRC\"; default: C45, or aluminium at the speeds that only it is cut with")
       ->check(material_name())
       ->type_name("NAME");
   command->add_option("--units", arguments->interpreter.inch, "unit of a program without G20 and G21")

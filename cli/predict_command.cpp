@@ -61,7 +61,8 @@ int predict_program(const machine::Job& job, Diagnostics diagnostics, const Pred
   progress.clear();
 
   if (!options.quiet)
-    fmt::print("{}{}", machine::assumptions_text(assumed), report::predict_text(program, prediction, compute_s, prepared.traced_run()));
+    fmt::print("{}{}", machine::assumptions_text(assumed),
+               report::predict_text(program, prediction, compute_s, prepared.traced_run()));
   failed.throw_if_errors();
   settle(of_cut, options);
   for (const std::string& sentence : wrong) print_error(sentence);
@@ -69,8 +70,8 @@ int predict_program(const machine::Job& job, Diagnostics diagnostics, const Pred
 }
 
 /// Each program on what the one before has left, each in a folder of its own.
-int predict_in_turn(const machine::JobOfPrograms& all, const Diagnostics& diagnostics, const PredictArguments& arguments,
-                    const GlobalOptions& options) {
+int predict_in_turn(const machine::JobOfPrograms& all, const Diagnostics& diagnostics,
+                    const PredictArguments& arguments, const GlobalOptions& options) {
   if (!arguments.trace.empty() || arguments.forces_at > 0) {
     print_error("--trace and --forces-at belong to one program, and the job has several");
     return kCommandLineWrong;
@@ -83,8 +84,8 @@ int predict_in_turn(const machine::JobOfPrograms& all, const Diagnostics& diagno
     one.output_folder += "/" + api::name_of_program(all.programs, i);
     one.json.clear();
     if (!options.quiet) fmt::print("{}{}\n", i > 0 ? "\n" : "", all.programs[i]);
-    const int own = predict_program(api::job_of_program(all, i, stock), i == 0 ? diagnostics : Diagnostics(), one, options,
-                                    results.emplace_back());
+    const int own = predict_program(api::job_of_program(all, i, stock), i == 0 ? diagnostics : Diagnostics(), one,
+                                    options, results.emplace_back());
     status = std::max(status, own);
     stock = one.output_folder + "/stock.vdb";
     folders.push_back(one.output_folder);

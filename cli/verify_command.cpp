@@ -47,8 +47,7 @@ int run_verify(const VerifyArguments& arguments, const GlobalOptions& options) {
         failed);
   const report::VerdictText verdict = report::verdict_text(result, job.compensation);
   if (!options.quiet) {
-    fmt::print("{}{}\n{}", machine::assumptions_text(assumed), emitted.program,
-               report::verify_text(result, compute_s));
+    fmt::print("{}{}\n{}", machine::assumptions_text(assumed), emitted.program, report::verify_text(result, compute_s));
     if (verdict.success) fmt::print("{}\n", verdict.headline);
     fmt::print("the same, with forces and pictures: camber predict {} -o DIR\n", emitted.job_file);
   }

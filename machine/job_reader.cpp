@@ -313,7 +313,8 @@ std::vector<std::string> read_programs(TomlTable& top, const fs::path& folder) {
                    fmt::format("program: no such file: {} (paths are relative to the job's folder)", out.back()),
                    "file-missing");
   }
-  if (out.empty()) top.error_at("program", "program is an empty list; at least one NC program was expected", "program-list");
+  if (out.empty())
+    top.error_at("program", "program is an empty list; at least one NC program was expected", "program-list");
   return out;
 }
 

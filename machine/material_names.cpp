@@ -22,7 +22,8 @@ std::string plain(std::string_view name) {
   for (const char c : name.substr(0, kLongestName))
     if (c != '-' && c != '_' && c != ' ' && c != '(' && c != ')' && c != ',' && c != '\t')
       out += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  static const std::regex kStandard(R"(^(?:AISI|SAE|ASTM|JIS|DIN|EN(?!GJ|AC)|AW|ISO|UNS|BS|GB|AA|W\.?NR\.?|WNR|MAT\.?NR\.?)+:?)"),
+  static const std::regex kStandard(
+      R"(^(?:AISI|SAE|ASTM|JIS|DIN|EN(?!GJ|AC)|AW|ISO|UNS|BS|GB|AA|W\.?NR\.?|WNR|MAT\.?NR\.?)+:?)"),
       kTemper(R"(^(?:AL|A)?([1-8]\d{3}A?)(?:H\d+|T\d+|O|F)$)"), kAluminium(R"(^ALU?(?:MIN(?:I?UM)?)?(?=\d{4}))");
   out = std::regex_replace(out, kStandard, "");
   if (std::smatch m; std::regex_match(out, m, kTemper)) return m[1].str();
@@ -92,8 +93,9 @@ constexpr std::array kFamilies{
            "martensitic and ferritic stainless steels"},
     Family{R"(^1\.4[3-9].*|^[23]\d\d[A-Z]{0,2}$|^SUS[23]\d\d.*|^X\d+CR.*NI.*|^S3\d{4}$)", "304",
            "austenitic stainless steels"},
-    Family{R"(^1\.[5-8].*|^4[1-8]\d\d$|^5[1]\d\d$|^[689][1-9]\d\d$|^SCM\d+.*|^S?NCM\d+.*|^SCR\d+.*|^\d\d(?:CR|MN|NI|MO|SI).*)",
-           "42CrMo4", "low-alloy steels"},
+    Family{
+        R"(^1\.[5-8].*|^4[1-8]\d\d$|^5[1]\d\d$|^[689][1-9]\d\d$|^SCM\d+.*|^S?NCM\d+.*|^SCR\d+.*|^\d\d(?:CR|MN|NI|MO|SI).*)",
+        "42CrMo4", "low-alloy steels"},
     Family{R"(^0\.6.*|^GG\d\d$|^(?:EN)?GJL.*|^FC\d{3}$)", "FC250", "grey cast irons"},
     Family{R"(^0\.7.*|^GGG\d\d.*|^(?:EN)?GJS.*|^FCD\d{3}.*)", "GJS-600", "ductile cast irons"},
     Family{R"(^2\.0.*|^CUZN.*|^CW[5-7]\d\d[A-Z]$|^C[23]\d{3,4}$)", "brass", "copper-zinc alloys"},
@@ -138,8 +140,8 @@ const MaterialPreset* of_family(const std::string& name, std::string_view& what)
 }
 
 /// Steels by hardness, from soft to hard.
-constexpr std::array<std::string_view, 6> kSteelsByHardness{"S235JR", "C45",            "34CrNiMo6",
-                                                             "P20",    "hardened-55HRC", "hardened-60HRC"};
+constexpr std::array<std::string_view, 6> kSteelsByHardness{"S235JR",         "C45",           "34CrNiMo6", "P20",
+                                                            "hardened-55HRC", "hardened-60HRC"};
 
 const MaterialPreset* of_hardness(double hardness_HB) {
   const MaterialPreset* best = nullptr;
@@ -173,9 +175,9 @@ MaterialMatch find_material(std::string_view given) {
     if (match.preset)
       match.note = fmt::format("\"{}\" is not in the library; values of {} for {}", given, match.preset->name, family);
   }
-  const bool other_hardness = hardness_HB && (!match.preset || (is_steel(*match.preset) &&
-                                                                std::abs(*hardness_HB / match.preset->hardness_HB - 1) >
-                                                                    kSameHardness));
+  const bool other_hardness =
+      hardness_HB && (!match.preset || (is_steel(*match.preset) &&
+                                        std::abs(*hardness_HB / match.preset->hardness_HB - 1) > kSameHardness));
   if (other_hardness) {
     match.preset = of_hardness(*hardness_HB);
     match.note = fmt::format("\"{}\": values of {}, the class of steel nearest to {:.0f} HB", given, match.preset->name,

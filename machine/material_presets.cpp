@@ -58,9 +58,16 @@ MaterialPreset typical(std::string_view name, std::string_view what, double kc1_
 MaterialPreset table(std::string_view name, std::string_view what, std::string_view source, std::string_view range,
                      Rows rows, std::string_view names, double hardness_HB) {
   const KienzlePair pair = kienzle_from_catalogue(rows);
-  return {name, what,  source,      range,
-          kienzle(pair.k1_1_MPa, pair.m), false, std::move(rows), names,
-          hardness_HB, kMillingTable_percent};
+  return {name,
+          what,
+          source,
+          range,
+          kienzle(pair.k1_1_MPa, pair.m),
+          false,
+          std::move(rows),
+          names,
+          hardness_HB,
+          kMillingTable_percent};
 }
 
 MaterialPreset catalogue(std::string_view name, std::string_view what, Rows rows, std::string_view names,
@@ -81,8 +88,7 @@ MaterialPreset group(std::string_view name, std::string_view what, double kc1, d
 
 MaterialPreset hardened(std::string_view name, std::string_view what, double kc1, double hardness_HB) {
   constexpr double kTempered = 0.24;
-  return {name, what, kGroups,     kHardGroupsRange, kienzle(kc1, kTempered), false, {},
-          {},   hardness_HB, kGroup_percent};
+  return {name, what, kGroups, kHardGroupsRange, kienzle(kc1, kTempered), false, {}, {}, hardness_HB, kGroup_percent};
 }
 
 MaterialPreset estimate(std::string_view name, std::string_view what, double kc1, double mc, std::string_view names) {
@@ -109,8 +115,16 @@ const Rows kMild{{0.1, 2200}, {0.2, 1950}, {0.3, 1820}, {0.4, 1700}, {0.6, 1580}
     kAlZnMgCu{{0.1, 880}, {0.2, 840}, {0.3, 840}, {0.4, 810}, {0.6, 720}};
 
 void add_steels(std::vector<MaterialPreset>& out) {
-  out.push_back({"C45", "carbon steel C45 (1.0503)", "typical value", kTypicalRange, kienzle(2220, 0.14), false, {},
-                 "1.0503 1.1191 C45E Ck45 1045 S45C S48C 080M46", 190, kGroup_percent});
+  out.push_back({"C45",
+                 "carbon steel C45 (1.0503)",
+                 "typical value",
+                 kTypicalRange,
+                 kienzle(2220, 0.14),
+                 false,
+                 {},
+                 "1.0503 1.1191 C45E Ck45 1045 S45C S48C 080M46",
+                 190,
+                 kGroup_percent});
   out.push_back(catalogue("S55C", "carbon steel, JIS G 4051 (C55)",
                           {{0.1, 1970}, {0.15, 1860}, {0.2, 1800}, {0.3, 1760}, {0.4, 1620}},
                           "C55 1.0535 1.1203 C55E Ck55 1055 C50 C50E 1.1206 1050 S50C", 230));
@@ -202,16 +216,16 @@ void add_stainless_and_cast(std::vector<MaterialPreset>& out) {
 }
 
 void add_others(std::vector<MaterialPreset>& out) {
-  out.push_back(measured("Al6082-T6", "wrought aluminium alloy, cemented carbide, dry", kReview,
-                         "the table names none", linear(631, 99, 273, 13, 10, 2.8),
+  out.push_back(measured("Al6082-T6", "wrought aluminium alloy, cemented carbide, dry", kReview, "the table names none",
+                         linear(631, 99, 273, 13, 10, 2.8),
                          "6082 3.2315 AlSi1MgMn AlMgSi1 6061 3.3211 AlMg1SiCu 6063 3.3206 AlMg0.7Si 6060 6005 6005A "
                          "Al6061 A6061 A6063",
                          95));
   out.push_back(measured("Al7075", "wrought aluminium alloy", "typical value for end mills", "not stated",
                          linear(951.8, 608.6, 288.5, 14.0, 16.5, -1.25), "7050 7022 3.4345 7010 Certal Alumold", 150));
-  out.push_back(measured("Al7075-T6", "wrought aluminium alloy, cemented carbide, dry", kReview,
-                         "the table names none", linear(767.01, 168.8, 222, 27.7, 26.6, 0.7),
-                         "7075 3.4365 AlZn5.5MgCu AlZnMgCu1.5 A7075 Ergal", 150));
+  out.push_back(measured("Al7075-T6", "wrought aluminium alloy, cemented carbide, dry", kReview, "the table names none",
+                         linear(767.01, 168.8, 222, 27.7, 26.6, 0.7), "7075 3.4365 AlZn5.5MgCu AlZnMgCu1.5 A7075 Ergal",
+                         150));
   out.push_back(power_table("Al2024", "wrought aluminium alloy AlCu4Mg1 (values of AlZnMgCu)", kAlZnMgCu,
                             "2024 3.1355 AlCu4Mg1 AlCuMg2 A2024 2017 2017A 3.1325 AlCuMg1 A2017 2007 3.1645 2011 2014",
                             120));
@@ -252,9 +266,15 @@ void add_others(std::vector<MaterialPreset>& out) {
                          "PVC ABS PTFE PP HIPS"));
   out.push_back(estimate("tooling-board", "polyurethane board and rigid foam", 15, 0.25,
                          "Ureol Renshape Necuron Obomodulan PU-board foam wax Raku-Tool RAKU"));
-  out.push_back({"particleboard", "particleboard, MDF, plywood, wood", kParticleboard,
-                 "peripheral up-milling at 40 to 60 m/s; tangential force only", kienzle(35, 0), false, {},
-                 "MDF plywood wood pine birch beech oak maple walnut hardwood softwood HDF OSB bamboo", 0,
+  out.push_back({"particleboard",
+                 "particleboard, MDF, plywood, wood",
+                 kParticleboard,
+                 "peripheral up-milling at 40 to 60 m/s; tangential force only",
+                 kienzle(35, 0),
+                 false,
+                 {},
+                 "MDF plywood wood pine birch beech oak maple walnut hardwood softwood HDF OSB bamboo",
+                 0,
                  kEstimate_percent});
 }
 

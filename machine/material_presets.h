@@ -36,7 +36,8 @@ struct MaterialMatch {
 /// The preset for a material by any of its names (1.2343, AISI H11, SKD6, X37CrMoV5-1), however it is spaced. A
 /// hardness in the name ("1.2379 60 HRC", "Toolox 44 45 HRC", "42CrMo4 300 HB") selects the hardness class of steel. A
 /// name that is not in the library is taken for the material of the same standard's group (1.2xxx: tool steel, 3xx:
-/// austenitic stainless steel ...), else, where it has a hardness, for the steel of the nearest hardness; `note` says so.
+/// austenitic stainless steel ...), else, where it has a hardness, for the steel of the nearest hardness; `note` says
+/// so.
 MaterialMatch find_material(std::string_view name);
 
 /// What is wrong with a name of which nothing is known, the nearest known one, and what was expected.

@@ -34,8 +34,7 @@ std::optional<Vec3> three_sizes(const std::string& text, bool inch) {
 }
 
 std::optional<Box> cutviewer_block(const std::string& comment, bool inch, std::optional<Vec3>& size) {
-  static const std::regex kBlock(R"(^\s*STOCK\s*/\s*BLOCK\s*,(.*)$)", std::regex::icase),
-      kNumber(R"(-?\d*\.?\d+\.?)");
+  static const std::regex kBlock(R"(^\s*STOCK\s*/\s*BLOCK\s*,(.*)$)", std::regex::icase), kNumber(R"(-?\d*\.?\d+\.?)");
   std::smatch m;
   if (!std::regex_search(comment, m, kBlock)) return std::nullopt;
   std::vector<double> n;
@@ -54,8 +53,9 @@ bool is_box(const Box& box) { return ((box.max_mm - box.min_mm).array() > 0).all
 struct Patterns {
   std::regex min{R"(^\s*(?:STOCK\s*MIN|(?:STOCK\s+|MATERIAL\s+)?MIN\s*EXTENTS?)\s*[:=]?(.*)$)", std::regex::icase};
   std::regex max{R"(^\s*(?:STOCK\s*MAX|(?:STOCK\s+|MATERIAL\s+)?MAX\s*EXTENTS?)\s*[:=]?(.*)$)", std::regex::icase};
-  std::regex size{R"(^\s*(?:(?:RAW\s+)?MATERIAL|STOCK|BLANK|WORKPIECE|BLOCK|ROHTEIL|RAW)\s*(?:SIZE|DIMENSIONS?)?\s*[:=]?(.*)$)",
-                  std::regex::icase};
+  std::regex size{
+      R"(^\s*(?:(?:RAW\s+)?MATERIAL|STOCK|BLANK|WORKPIECE|BLOCK|ROHTEIL|RAW)\s*(?:SIZE|DIMENSIONS?)?\s*[:=]?(.*)$)",
+      std::regex::icase};
   std::regex table{R"(Z\s*(?:ZERO|ORIGIN|0).*(?:TABLE|BED|BOTTOM)|ORIGIN\s*=.*(?:TABLE|BED))", std::regex::icase};
   std::regex surface{R"(Z\s*(?:ZERO|ORIGIN|0).*(?:SURFACE|TOP)|ORIGIN\s*=.*(?:SURFACE|TOP))", std::regex::icase};
   std::regex centre{R"(ORIGIN\s*[=:]?\s*CENT(?:ER|RE)|XY\s*(?:ZERO|ORIGIN).*CENT(?:ER|RE))", std::regex::icase};
@@ -95,10 +95,14 @@ std::optional<CommentedStock> stock_in_comments(const SourceText& program, bool 
         found(line);
       }
     size_follows = names_size && !out.size_mm;
-    if (std::regex_search(text, patterns.table)) out.zero_on_table = true;
-    else if (std::regex_search(text, patterns.surface)) out.zero_on_table = false;
-    if (std::regex_search(text, patterns.centre)) out.zero_in_centre = true;
-    else if (std::regex_search(text, patterns.corner)) out.zero_in_centre = false;
+    if (std::regex_search(text, patterns.table))
+      out.zero_on_table = true;
+    else if (std::regex_search(text, patterns.surface))
+      out.zero_on_table = false;
+    if (std::regex_search(text, patterns.centre))
+      out.zero_in_centre = true;
+    else if (std::regex_search(text, patterns.corner))
+      out.zero_in_centre = false;
   }
   if (!out.box && low && high && is_box({*low, *high})) out.box = Box{*low, *high};
   return out.box || out.size_mm ? std::optional(out) : std::nullopt;

@@ -19,9 +19,9 @@ struct CommentedStock {
 
 /// "(STOCK/BLOCK,X,Y,Z,x0,y0,z0)" (CutViewer, Carbide Create; x0 y0 z0: the program's zero, from the lower corner),
 /// "(stockMin:0.00mm, 0.00mm, -18.00mm)" with stockMax, "( Material Size)" with "( X= 100.0, Y= 50.0, Z= 12.0)",
-/// "( Min Extents: X= ...)" with Max (Vectric), "[MATERIAL size: 12.1\" x 12.6\" x 0.17\"]", "(STOCK SIZE 100 X 50 X 20)".
-/// The program's zero: "XYZ Origin=Center - Material Surface", "Z Zero Position: Table Surface". Numbers without a unit
-/// are in the program's. Nothing where no comment gives a size.
+/// "( Min Extents: X= ...)" with Max (Vectric), "[MATERIAL size: 12.1\" x 12.6\" x 0.17\"]", "(STOCK SIZE 100 X 50 X
+/// 20)". The program's zero: "XYZ Origin=Center - Material Surface", "Z Zero Position: Table Surface". Numbers without
+/// a unit are in the program's. Nothing where no comment gives a size.
 std::optional<CommentedStock> stock_in_comments(const SourceText& program, bool inch);
 
 }  // namespace camber::machine

@@ -94,9 +94,9 @@ std::optional<Mention> freecad(const std::string& comment, bool inch) {
   if (const auto length = size({"FLUTELENGTH", "CUTTINGEDGEHEIGHT"})) out.tool.flute_length_mm = length;
   if (const auto shank = size({"SHANKDIAMETER"})) out.tool.shank_diameter_mm = shank;
   for (const char* key : {"CUTTINGEDGEANGLE", "TIPANGLE"})
-    if (const auto angle = fields.contains(key) ? parse_number(fields[key].substr(0, fields[key].find_first_not_of(
-                                                      "0123456789.")))
-                                                : std::nullopt;
+    if (const auto angle = fields.contains(key)
+                               ? parse_number(fields[key].substr(0, fields[key].find_first_not_of("0123456789.")))
+                               : std::nullopt;
         angle && *angle >= 10 && *angle <= 170)
       out.tool.point_angle_deg = angle;
   return out;
@@ -130,7 +130,8 @@ std::optional<Mention> cutviewer(const std::string& comment, bool inch) {
     tool.type = ToolType::chamfer;
     tool.point_angle_deg = 2 * taper_deg;
     tool.tip_diameter_mm = n[0] * unit;
-    tool.diameter_mm = at(2) > 0 ? std::optional((n[0] + 2 * at(2) * std::tan(rad_from_deg(taper_deg))) * unit) : std::nullopt;
+    tool.diameter_mm =
+        at(2) > 0 ? std::optional((n[0] + 2 * at(2) * std::tan(rad_from_deg(taper_deg))) * unit) : std::nullopt;
   } else if (std::abs(corner - n[0] / 2) <= kSame) {
     tool.type = ToolType::ball;
   } else if (corner > 0) {
@@ -145,15 +146,16 @@ std::optional<Mention> cutviewer(const std::string& comment, bool inch) {
 
 /// Kiri:Moto: "tool#=1 flute=6 len=20 unit=metric".
 std::optional<Mention> kiri_moto(const std::string& comment) {
-  static const std::regex kTool(R"(tool#\s*=\s*(\d+)\s+flute\s*=\s*([\d.]+)\s+len\s*=\s*([\d.]+)(?:\s+unit\s*=\s*(\w+))?)",
-                                std::regex::icase);
+  static const std::regex kTool(
+      R"(tool#\s*=\s*(\d+)\s+flute\s*=\s*([\d.]+)\s+len\s*=\s*([\d.]+)(?:\s+unit\s*=\s*(\w+))?)", std::regex::icase);
   std::smatch m;
   if (!std::regex_search(comment, m, kTool)) return std::nullopt;
   const double unit = upper(m[4].str()).starts_with("IMP") || upper(m[4].str()).starts_with("IN") ? kMmPerInch : 1;
   Mention out;
   out.number = whole_number(m[1].str());
   out.tool.what = comment;
-  if (const auto diameter = parse_number(m[2].str()); diameter && *diameter > 0) out.tool.diameter_mm = *diameter * unit;
+  if (const auto diameter = parse_number(m[2].str()); diameter && *diameter > 0)
+    out.tool.diameter_mm = *diameter * unit;
   if (const auto length = parse_number(m[3].str()); length && *length > 0) out.tool.flute_length_mm = *length * unit;
   return out;
 }
@@ -163,13 +165,15 @@ std::optional<Mention> kiri_moto(const std::string& comment) {
 std::optional<Mention> numbered(const std::string& comment, bool inch) {
   static const std::regex kT(R"(^\s*T\s*0*(\d{1,6})(?![\d.])\s*[:=]?(.*)$)", std::regex::icase),
       kList(R"(^\s*(\d{1,3})\s*=\s*(?=[A-Za-z.\d])(.+)$)"),
-      kTool(R"(\bTOOL\s*(?:NO\.?|NUMBER|NUM\.?)?\s*[-#=:]+\s*#?\s*-?\s*0*(\d{1,6})(?![\d./])(?!\s*(?:MM\b|IN\b|INCH|")))",
-            std::regex::icase),
+      kTool(
+          R"(\bTOOL\s*(?:NO\.?|NUMBER|NUM\.?)?\s*[-#=:]+\s*#?\s*-?\s*0*(\d{1,6})(?![\d./])(?!\s*(?:MM\b|IN\b|INCH|")))",
+          std::regex::icase),
       kNumber(R"(^\s*NO\.\s*(\d{1,3})\s*:(.*)$)", std::regex::icase);
   std::smatch m;
   Mention out;
   std::string words;
-  if (std::regex_search(comment, m, kT) || std::regex_search(comment, m, kList) || std::regex_search(comment, m, kNumber)) {
+  if (std::regex_search(comment, m, kT) || std::regex_search(comment, m, kList) ||
+      std::regex_search(comment, m, kNumber)) {
     words = m[2].str();
   } else if (std::regex_search(comment, m, kTool)) {
     words = m.prefix().str() + " " + m.suffix().str();
@@ -187,8 +191,9 @@ std::optional<Mention> numbered(const std::string& comment, bool inch) {
 /// Without a number: a label with a size, or a type with a size.
 std::optional<Mention> anonymous(const CommentedLine& line, bool inch) {
   static const std::regex kCompensated(R"(COMPENSATED TOOL PATH\.\s*DIAMETER:\s*([\d.]+))", std::regex::icase),
-      kLabel(R"(^\s*(?:TC|TOOL(?:\s*(?:NAME|TYPE|DESC(?:RIPTION)?|DIA(?:METER)?))?|CUTTER|WERKZEUG|FRAISE|FREZA|FRESA|FR\S{1,3}SER)\s*[-:=. ])",
-             std::regex::icase),
+      kLabel(
+          R"(^\s*(?:TC|TOOL(?:\s*(?:NAME|TYPE|DESC(?:RIPTION)?|DIA(?:METER)?))?|CUTTER|WERKZEUG|FRAISE|FREZA|FRESA|FR\S{1,3}SER)\s*[-:=. ])",
+          std::regex::icase),
       kCode(R"([A-MO-Z]\s*[-+.\d])");
   Mention out;
   std::smatch m;

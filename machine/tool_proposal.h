@@ -30,11 +30,11 @@ struct ToolProposal {
 ///
 /// Comments with a number: "(T3 D=0.125 CR=0.0625 - ZMIN=-0.54 - BALL END MILL)" (Fusion, HSMWorks), "(T1| 3/4 FLAT
 /// ENDMILL|H0)", "( 1/2 FLAT ENDMILL TOOL - 1 DIA. OFF. - 1 LEN. - 1 DIA. - .5 )" (Mastercam), "(T02 ID=002  DIA-0.5000
-/// TOOL END MILL)" (SolidWorks CAM), "(@FC|TOOL|number=1|type=Endmill|diameter=6|...)" (FreeCAD), "(1 = End Mill {6 mm})"
-/// (Vectric), "( T1 : 6.0 )" (CamBam), and a comment beside T and M6. Comments without one, or whose number is none of
-/// the program's, belong to the tool change that follows within eight lines, else to the tool that is in: "( 1/2\" DIA. 2
-/// FLUTE E.M. )", "(TOOL/MILL,6.35,0.00,19.05,0.00)" (CutViewer, Carbide Create), "(Compensated Tool Path. Diameter:
-/// 3.18)" (FreeCAD), "(TOOL NAME : MILL_D10R1)" (NX). In a program without T words they describe tool 0.
+/// TOOL END MILL)" (SolidWorks CAM), "(@FC|TOOL|number=1|type=Endmill|diameter=6|...)" (FreeCAD), "(1 = End Mill {6
+/// mm})" (Vectric), "( T1 : 6.0 )" (CamBam), and a comment beside T and M6. Comments without one, or whose number is
+/// none of the program's, belong to the tool change that follows within eight lines, else to the tool that is in: "(
+/// 1/2\" DIA. 2 FLUTE E.M. )", "(TOOL/MILL,6.35,0.00,19.05,0.00)" (CutViewer, Carbide Create), "(Compensated Tool Path.
+/// Diameter: 3.18)" (FreeCAD), "(TOOL NAME : MILL_D10R1)" (NX). In a program without T words they describe tool 0.
 ///
 /// Drills by their gauge ("#30 DRILL", "LET. B DRILL") have its diameter; taps and reamers stand as drills, with a
 /// doubt; a bare size of 3 or more in a program in inches is taken as millimetres, with a doubt (a mill of 6 inches is

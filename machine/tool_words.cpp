@@ -50,15 +50,16 @@ bool is_end_mill(const std::string& words) {
 bool has_word(const std::string& words, const std::string& pattern) {
   static thread_local std::map<std::string, std::regex> known;
   const auto at = known.find(pattern);
-  const std::regex& regex =
-      at != known.end() ? at->second : known.emplace(pattern, "(?:^|[^A-Z])(?:" + pattern + ")(?:[^A-Z]|$)").first->second;
+  const std::regex& regex = at != known.end()
+                                ? at->second
+                                : known.emplace(pattern, "(?:^|[^A-Z])(?:" + pattern + ")(?:[^A-Z]|$)").first->second;
   return std::regex_search(words, regex);
 }
 
 /// "90 V GROOVE", "V-BIT", "VBIT", "ENGRAVE 30": named by the angle between their sides.
 bool is_v_bit(const std::string& words) {
-  return has_word(words, "V[ -]?(?:BIT|GROOVE|CARVE|CUTTER|MILL|TOOL)") || has_word(words, "V ?[1-9]\\d{1,2} ?(?:DEG|GRAD)?") ||
-         has(words, "ENGRAV") || has(words, "GRAVIER");
+  return has_word(words, "V[ -]?(?:BIT|GROOVE|CARVE|CUTTER|MILL|TOOL)") ||
+         has_word(words, "V ?[1-9]\\d{1,2} ?(?:DEG|GRAD)?") || has(words, "ENGRAV") || has(words, "GRAVIER");
 }
 
 /// A cutter of any kind, in the languages that programs are met in; longest words first where one holds another.
@@ -67,8 +68,8 @@ std::optional<ToolType> type_of(const std::string& words, const ToolProposal& to
       has(words, "T SLOT") || has_word(words, "SAW"))
     return std::nullopt;
   if (has(words, "TAPER") && has(words, "BALL")) return ToolType::tapered_ball;
-  if (has(words, "BALL") || has(words, "SPHER") || has(words, "KUGEL") || has(words, "HEMISPH") || has(words, "SFERIC") ||
-      has(words, "BOULE") || has_word(words, "BEM|BNEM|BN|B/E"))
+  if (has(words, "BALL") || has(words, "SPHER") || has(words, "KUGEL") || has(words, "HEMISPH") ||
+      has(words, "SFERIC") || has(words, "BOULE") || has_word(words, "BEM|BNEM|BN|B/E"))
     return ToolType::ball;
   if (is_end_mill(words) && has(words, "CHAMFERS")) return ToolType::flat;
   if (is_v_bit(words) || has(words, "CHAMFER") || has(words, "COUNTERSINK") || has(words, "SENKER") ||
@@ -83,7 +84,8 @@ std::optional<ToolType> type_of(const std::string& words, const ToolProposal& to
     return ToolType::bull;
   if (has(words, "FLAT") || is_end_mill(words) || has(words, "FACE MILL") || has(words, "FACEMILL") ||
       has(words, "FLY CUT") || has(words, "FLYCUT") || has(words, "FRAESER") || has(words, "FRASER") ||
-      has(words, "FR\xc3\x84SER") || has(words, "FR\xc3\xa4SER") || has_word(words, "MILL|FRAISE|FRESA|FREZA|BIT|ROUGHER"))
+      has(words, "FR\xc3\x84SER") || has(words, "FR\xc3\xa4SER") ||
+      has_word(words, "MILL|FRAISE|FRESA|FREZA|BIT|ROUGHER"))
     return ToolType::flat;
   return std::nullopt;
 }
@@ -148,8 +150,8 @@ std::string doubt_of(const std::string& words) {
   return {};
 }
 
-/// "45 DEG CHAMFER MILL" counts from the axis, "90 DEG SPOT DRILL" and "60 V-BIT" between the sides; the sign in Latin-1
-/// or UTF-8.
+/// "45 DEG CHAMFER MILL" counts from the axis, "90 DEG SPOT DRILL" and "60 V-BIT" between the sides; the sign in
+/// Latin-1 or UTF-8.
 void read_angle(const std::string& words, ToolProposal& tool) {
   static const std::regex kAngle("(\\d{2,3})(?:\\.\\d*)?\\s*-?\\s*(?:\xb0|\xc2\xb0|DEG|GRAD)"),
       kBeforeV(R"((\d{2,3})\s*-?\s*V[ -]?(?:BIT|GROOVE|CARVE|CUTTER|MILL|TOOL))"),
@@ -172,9 +174,8 @@ void read_diameter(const std::string& words, bool inch, ToolProposal& tool) {
   static const std::regex kShankDiameter(R"(SHANK\s*DIA(?:METER)?)");
   tool.diameter_mm = find_size(words, R"((?:^[\s|]*|[^-.\d/\s"]\s*)NUM\s*DIA(?:M|METER)?\b)", inch);
   if (!tool.diameter_mm && has(words, "DIA"))
-    tool.diameter_mm = find_size(
-        std::regex_replace(words, kShankDiameter, "SHANK"),
-        R"(\bDIA(?:M|METER)?\b\.?\s*[-=:]*\s*NUM)", inch);
+    tool.diameter_mm =
+        find_size(std::regex_replace(words, kShankDiameter, "SHANK"), R"(\bDIA(?:M|METER)?\b\.?\s*[-=:]*\s*NUM)", inch);
   if (!tool.diameter_mm) tool.diameter_mm = find_size(words, R"(\bD\s*[=:]\s*NUM)", inch);
   if (!tool.diameter_mm) read_gauge(words, tool);
   if (!tool.diameter_mm) read_bare_size(words, inch, tool);
@@ -207,7 +208,8 @@ void read_corner(const std::string& words, bool inch, ToolProposal& tool) {
 void read_lengths(const std::string& words, bool inch, ToolProposal& tool) {
   tool.overhang_mm = find_size(
       words, R"(\b(?:STICK[ -]?OUT|OVERHANG|OHL|PROJECTION|EXTENSION|AUSKRAG\w*|AUSSPANN\w*)\s*[-=:.]*\s*NUM)", inch);
-  if (!tool.overhang_mm) tool.overhang_mm = find_size(words, R"((?:^|[^\d./])NUM\s*(?:STICK[ -]?OUT|OVERHANG)\b)", inch);
+  if (!tool.overhang_mm)
+    tool.overhang_mm = find_size(words, R"((?:^|[^\d./])NUM\s*(?:STICK[ -]?OUT|OVERHANG)\b)", inch);
   tool.flute_length_mm = find_size(words, R"(\b(?:FLUTE ?LENGTH|CUT(?:TING)? ?LENGTH|LOC|LCF)\s*[-=:.]*\s*NUM)", inch);
   if (!tool.flute_length_mm) tool.flute_length_mm = find_size(words, R"((?:^|[^\d./])NUM\s*LOC\b)", inch);
   tool.shank_diameter_mm = find_size(words, R"((?:^|[^\d./])NUM\s*(?:DIA\w*\s*)?(?:SHANK|SHK)\b)", inch);

@@ -198,7 +198,8 @@ std::string usual_material(const nc::Summary& summary, const ToolsByNumber& tool
   double fastest = 0;
   for (const auto& use : summary.tools) {
     const auto at = tools.find(use.tool);
-    if (use.cutting_moves == 0 || use.spindle_speed_rpm.empty() || at == tools.end() || !at->second.diameter_mm) continue;
+    if (use.cutting_moves == 0 || use.spindle_speed_rpm.empty() || at == tools.end() || !at->second.diameter_mm)
+      continue;
     fastest = std::max(fastest, kPi * *at->second.diameter_mm * use.spindle_speed_rpm.max / 1000);
   }
   if (fastest > kFasterThanSteel_m_per_min) {
@@ -215,10 +216,12 @@ std::string material_text(const std::string& chosen, const nc::Summary& summary,
   const machine::MaterialMatch match = machine::find_material(name);
   const machine::MaterialPreset& preset = *match.preset;
   std::string out =
-      "\n[material]\n# Measured on your tool: file = \"material.toml\" (camber fit-force). Other names: docs/materials.md.\n";
+      "\n[material]\n# Measured on your tool: file = \"material.toml\" (camber fit-force). Other names: "
+      "docs/materials.md.\n";
   if (!why.empty()) out += fmt::format("# CHECK: {}. Or camber init --material NAME.\n", why);
   if (!match.note.empty()) out += fmt::format("# CHECK: {}.\n", plain(match.note));
-  out += line(fmt::format("preset = {}", quoted(name)), fmt::format("{}; within {:g} %", preset.what, preset.scatter_percent));
+  out += line(fmt::format("preset = {}", quoted(name)),
+              fmt::format("{}; within {:g} %", preset.what, preset.scatter_percent));
   std::vector<std::string> assumed;
   if (chosen.empty()) assumed.emplace_back("preset");
   if (!preset.radial_known) {
@@ -242,7 +245,8 @@ std::string usual_machine(const JobProposal& proposal) {
   constexpr double kRouter_rpm = 30000, kRouter_mm_per_min = 5000, kVmc_rpm = 12000, kVmc_mm_per_min = 18000,
                    kLinear_rpm = 20000;
   const auto comments = machine::commented_lines(proposal.text.source);
-  const bool router = std::ranges::any_of(comments, [&](const auto& c) { return std::regex_search(c.comment, kRouter); });
+  const bool router =
+      std::ranges::any_of(comments, [&](const auto& c) { return std::regex_search(c.comment, kRouter); });
   if (router && rpm <= kRouter_rpm && feed_mm_per_min <= kRouter_mm_per_min) return "router";
   if (rpm <= kVmc_rpm && feed_mm_per_min <= kVmc_mm_per_min) return "vmc-40";
   return rpm <= kLinear_rpm ? "vmc-linear" : "hsc-die-mould";
@@ -269,7 +273,8 @@ std::string simulation_text(const std::optional<StockProposal>& stock) {
   std::string out = "\n[simulation]\n" + line(fmt::format("voxel_mm = {}", decimal(voxel)),
                                               "by the blank's size; for finishing half the allowance or less");
   if (stock && stock->in_the_way)
-    out += line("collisions = \"warning\"", stock->told.empty() ? "until the blank is right" : "rapids run through the blank");
+    out += line("collisions = \"warning\"",
+                stock->told.empty() ? "until the blank is right" : "rapids run through the blank");
   return out;
 }
 
@@ -295,7 +300,8 @@ std::string job_text(const JobProposal& proposal) {
     cutting += (cutting.empty() ? "" : ", ") + std::to_string(use.tool);
   }
   out += line(fmt::format("# operations = {{ tools = [{}] }}", cutting), "only these are simulated and compensated");
-  out += tools + material_text(proposal.material, proposal.summary, by_number) + "\n[stock]\n" + stock_text(proposal.summary, stock);
+  out += tools + material_text(proposal.material, proposal.summary, by_number) + "\n[stock]\n" +
+         stock_text(proposal.summary, stock);
   out += simulation_text(stock) + "\n[compensation]\n";
   out += line("tolerance_um = 5.0", "95 % of the surface; or profile_um = [-5, 10], the band that the drawing gives");
   return out + "max_shift_mm = 0.1\n";

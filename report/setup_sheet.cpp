@@ -21,10 +21,10 @@ namespace {
 
 using simulate::OutlineRing;
 
-constexpr double kPageWidth_mm = 186;      // A4 less its margins
-constexpr double kToolHeight_mm = 100;     // of the drawings
+constexpr double kPageWidth_mm = 186;   // A4 less its margins
+constexpr double kToolHeight_mm = 100;  // of the drawings
 constexpr double kViewWidth_mm = 88, kViewHeight_mm = 60;
-constexpr double kNominalHolder_mm = 8;    // drawn where the job has no holder
+constexpr double kNominalHolder_mm = 8;  // drawn where the job has no holder
 
 constexpr std::string_view kStyle = R"css(
 @page { size: A4 portrait; margin: 12mm; }
@@ -41,7 +41,9 @@ figure { margin: 0; break-inside: avoid; } figcaption { font-size: 7.5pt; } svg 
 .shank { fill: #fff; stroke: #000; stroke-width: .25; } .holder { fill: #bbb; stroke: #000; stroke-width: .25; } .label { font-size: 2.6px; }
 )css";
 
-std::string number(double value, int decimals = 3) { return std::isfinite(value) ? format_trimmed(value, decimals) : "no limit"; }
+std::string number(double value, int decimals = 3) {
+  return std::isfinite(value) ? format_trimmed(value, decimals) : "no limit";
+}
 
 std::string file_name(const std::string& path) {
   return path.starts_with("preset:") ? path : std::filesystem::path(path).filename().string();
@@ -49,7 +51,8 @@ std::string file_name(const std::string& path) {
 
 std::string clock(double seconds) {
   const auto s = static_cast<long long>(std::llround(seconds));
-  return s >= 3600 ? fmt::format("{}:{:02}:{:02} h", s / 3600, s / 60 % 60, s % 60) : fmt::format("{}:{:02} min", s / 60, s % 60);
+  return s >= 3600 ? fmt::format("{}:{:02}:{:02} h", s / 3600, s / 60 % 60, s % 60)
+                   : fmt::format("{}:{:02} min", s / 60, s % 60);
 }
 
 std::string range_text(const nc::Range& r, int decimals) {
@@ -122,8 +125,8 @@ std::map<int, Use> uses_of(const SetupSheet& sheet) {
     for (const nc::ToolUse& t : p.summary.tools) {
       if (t.cutting_moves == 0) continue;
       Use& use = out[t.tool];
-      for (const auto& [from, to] : {std::pair{&t.feed_mm_per_min, &use.feed_mm_per_min},
-                                     std::pair{&t.spindle_speed_rpm, &use.speed_rpm}})
+      for (const auto& [from, to] :
+           {std::pair{&t.feed_mm_per_min, &use.feed_mm_per_min}, std::pair{&t.spindle_speed_rpm, &use.speed_rpm}})
         if (!from->empty()) to->add(from->min), to->add(from->max);
       use.cutting.add(t.cutting.min_mm);
       use.cutting.add(t.cutting.max_mm);
@@ -203,13 +206,17 @@ constexpr const char* kPartClass[] = {"cutter", "shank", "holder"};
 std::string tool_drawing(const machine::Tool& tool, double scale) {
   const double height = height_of(tool), width = width_of(tool);
   const double w = width * scale + 16, h = height * scale + 2, middle = width * scale / 2 + 1;
-  const auto at = [&](double r, double z) { return fmt::format("{:.3f},{:.3f}", middle + r * scale, h - 1 - z * scale); };
-  std::string out = fmt::format("<svg width=\"{0:.2f}mm\" height=\"{1:.2f}mm\" viewBox=\"0 0 {0:.2f} {1:.2f}\">\n", w, h);
+  const auto at = [&](double r, double z) {
+    return fmt::format("{:.3f},{:.3f}", middle + r * scale, h - 1 - z * scale);
+  };
+  std::string out =
+      fmt::format("<svg width=\"{0:.2f}mm\" height=\"{1:.2f}mm\" viewBox=\"0 0 {0:.2f} {1:.2f}\">\n", w, h);
   for (const Part& part : parts_of(tool, height)) {
     std::string points;
     for (const Vec2& p : part.points) points += at(p.x(), p.y()) + " ";
     for (auto p = part.points.rbegin(); p != part.points.rend(); ++p) points += at(-p->x(), p->y()) + " ";
-    out += fmt::format("<polygon class=\"{}\" points=\"{}\"/>\n", kPartClass[static_cast<std::size_t>(part.part)], points);
+    out +=
+        fmt::format("<polygon class=\"{}\" points=\"{}\"/>\n", kPartClass[static_cast<std::size_t>(part.part)], points);
   }
   if (tool.holder.empty()) {
     const double r = 0.8 * std::max(tool.diameter_mm, tool.shank_diameter_mm);
@@ -230,8 +237,10 @@ std::string tool_drawing(const machine::Tool& tool, double scale) {
 /// 1:1, or the largest of the usual reductions with which all drawings fit; enlarged where all tools are small.
 double scale_of(const std::vector<const machine::Tool*>& tools, std::string& name) {
   double tallest = 1, widest = 1;
-  for (const machine::Tool* t : tools) tallest = std::max(tallest, height_of(*t)), widest = std::max(widest, width_of(*t));
-  for (const auto& [scale, text] : {std::pair{2.0, "2:1"}, {1.0, "1:1"}, {0.5, "1:2"}, {0.2, "1:5"}, {0.1, "1:10"}, {0.05, "1:20"}})
+  for (const machine::Tool* t : tools)
+    tallest = std::max(tallest, height_of(*t)), widest = std::max(widest, width_of(*t));
+  for (const auto& [scale, text] :
+       {std::pair{2.0, "2:1"}, {1.0, "1:1"}, {0.5, "1:2"}, {0.2, "1:5"}, {0.1, "1:10"}, {0.05, "1:20"}})
     if (tallest * scale <= kToolHeight_mm && widest * scale <= kPageWidth_mm / 2) return name = text, scale;
   return name = "1:50", 0.02;
 }
@@ -240,12 +249,13 @@ std::optional<machine::Box> stock_box(const machine::StockDescription& stock) {
   if (stock.box) return stock.box;
   if (!stock.cylinder) return std::nullopt;
   const double r = stock.cylinder->diameter_mm / 2;
-  return machine::Box{stock.cylinder->base_mm - Vec3(r, r, 0), stock.cylinder->base_mm + Vec3(r, r, stock.cylinder->height_mm)};
+  return machine::Box{stock.cylinder->base_mm - Vec3(r, r, 0),
+                      stock.cylinder->base_mm + Vec3(r, r, stock.cylinder->height_mm)};
 }
 
 /// The blank and the path from above (axes 0, 1) or from the front (0, 2), with the program's zero.
-std::string view(const machine::StockDescription& stock, const std::optional<machine::Box>& box, const nc::Extents& cutting,
-                 int up, const char* caption) {
+std::string view(const machine::StockDescription& stock, const std::optional<machine::Box>& box,
+                 const nc::Extents& cutting, int up, const char* caption) {
   nc::Extents all;
   all.add(Vec3::Zero());
   if (box) all.add(box->min_mm), all.add(box->max_mm);
@@ -259,16 +269,18 @@ std::string view(const machine::StockDescription& stock, const std::optional<mac
     return fmt::format("<rect class=\"{}\" x=\"{:.3f}\" y=\"{:.3f}\" width=\"{:.3f}\" height=\"{:.3f}\"/>\n", style,
                        x(low.x()), y(high[up]), (high.x() - low.x()) * scale, (high[up] - low[up]) * scale);
   };
-  std::string out = fmt::format(
-      "<figure><svg width=\"{0:.2f}mm\" height=\"{1:.2f}mm\" viewBox=\"0 0 {0:.2f} {1:.2f}\">\n", w, h);
+  std::string out =
+      fmt::format("<figure><svg width=\"{0:.2f}mm\" height=\"{1:.2f}mm\" viewBox=\"0 0 {0:.2f} {1:.2f}\">\n", w, h);
   if (stock.cylinder && up == 1)
-    out += fmt::format("<circle class=\"line\" cx=\"{:.3f}\" cy=\"{:.3f}\" r=\"{:.3f}\"/>\n", x(stock.cylinder->base_mm.x()),
-                       y(stock.cylinder->base_mm.y()), stock.cylinder->diameter_mm / 2 * scale);
+    out += fmt::format("<circle class=\"line\" cx=\"{:.3f}\" cy=\"{:.3f}\" r=\"{:.3f}\"/>\n",
+                       x(stock.cylinder->base_mm.x()), y(stock.cylinder->base_mm.y()),
+                       stock.cylinder->diameter_mm / 2 * scale);
   else if (box)
     out += rectangle(box->min_mm, box->max_mm, "line");
   if (!cutting.empty()) out += rectangle(cutting.min_mm, cutting.max_mm, "dash");
   out += fmt::format(
-      "<circle class=\"line\" cx=\"{0:.3f}\" cy=\"{1:.3f}\" r=\"1.2\"/><polyline class=\"line\" points=\"{2:.3f},{1:.3f} "
+      "<circle class=\"line\" cx=\"{0:.3f}\" cy=\"{1:.3f}\" r=\"1.2\"/><polyline class=\"line\" "
+      "points=\"{2:.3f},{1:.3f} "
       "{3:.3f},{1:.3f}\"/><polyline class=\"line\" points=\"{0:.3f},{4:.3f} {0:.3f},{5:.3f}\"/>\n",
       x(0), y(0), x(0) - 2, x(0) + 2, y(0) - 2, y(0) + 2);
   return out + fmt::format("</svg><figcaption>{}</figcaption></figure>\n", caption);
@@ -305,7 +317,8 @@ std::string tool_section(const SetupSheet& sheet, const std::map<int, Use>& uses
   for (const auto& [number_of, use] : uses) {
     const auto at = sheet.job.tools.find(number_of);
     const std::string t = fmt::format("T{}", number_of);
-    const std::string length = numbers('H', offsets.length, number_of), radius = numbers('D', offsets.radius, number_of);
+    const std::string length = numbers('H', offsets.length, number_of),
+                      radius = numbers('D', offsets.radius, number_of);
     if (at == sheet.job.tools.end()) {
       rows.push_back({t, "not in the job", "", "", "", length, radius, range_text(use.speed_rpm, 0),
                       range_text(use.feed_mm_per_min, 1), number(use.cutting.min_mm.z()), clock(use.time_s)});
@@ -316,17 +329,19 @@ std::string tool_section(const SetupSheet& sheet, const std::map<int, Use>& uses
     const auto keys = assumed.find(fmt::format("tool.{}", number_of));
     const bool guessed = keys != assumed.end() && std::ranges::find(keys->second, "overhang_mm") != keys->second.end();
     rows.push_back({t, tool_name(tool), number(tool.diameter_mm), fmt::format("{}", tool.flutes),
-                    number(tool.overhang_mm, 2) + (guessed ? " (assumed)" : ""), length, radius, range_text(use.speed_rpm, 0),
-                    range_text(use.feed_mm_per_min, 1), number(use.cutting.min_mm.z()), clock(use.time_s)});
+                    number(tool.overhang_mm, 2) + (guessed ? " (assumed)" : ""), length, radius,
+                    range_text(use.speed_rpm, 0), range_text(use.feed_mm_per_min, 1), number(use.cutting.min_mm.z()),
+                    clock(use.time_s)});
   }
   std::string out = "<h2>Tools</h2>\n" + table({"tool", "type", "D mm", "flutes", "overhang mm", "length offset",
                                                 "radius offset", "S rpm", "F mm/min", "lowest Z mm", "time"},
                                                rows);
   std::string scale_name;
   const double scale = scale_of(drawn, scale_name);
-  out += fmt::format("<p>Drawn {}; the figure beside each is its overhang, from the holder's face to the tip, mm.</p>\n",
-                     scale_name) +
-         "<div class=\"tools\">\n";
+  out +=
+      fmt::format("<p>Drawn {}; the figure beside each is its overhang, from the holder's face to the tip, mm.</p>\n",
+                  scale_name) +
+      "<div class=\"tools\">\n";
   for (const machine::Tool* tool : drawn)
     out += "<figure>" + tool_drawing(*tool, scale) +
            fmt::format("<figcaption>T{} {} D {}</figcaption></figure>\n", tool->number, html_text(tool_name(*tool)),
@@ -361,11 +376,13 @@ std::string limits_section(const SetupSheet& sheet, const std::map<int, Use>& us
     if (!use.speed_rpm.empty()) speed.add(use.speed_rpm.max);
   }
   return "<h2>Limits</h2>\n" +
-         table({"axis", "cutting, tip mm", "all moves, tip mm", "travel of the machine mm", "greatest feed mm/min"}, rows) +
-         fmt::format("<p>Greatest feed of the program {} mm/min; greatest spindle speed {} rpm, of the machine {} rpm. "
-                     "Travel is in machine coordinates, the path in the work offset.</p>\n",
-                     feed.empty() ? "-" : number(feed.max, 1), speed.empty() ? "-" : number(speed.max, 0),
-                     number(m.spindle.max_rpm, 0));
+         table({"axis", "cutting, tip mm", "all moves, tip mm", "travel of the machine mm", "greatest feed mm/min"},
+               rows) +
+         fmt::format(
+             "<p>Greatest feed of the program {} mm/min; greatest spindle speed {} rpm, of the machine {} rpm. "
+             "Travel is in machine coordinates, the path in the work offset.</p>\n",
+             feed.empty() ? "-" : number(feed.max, 1), speed.empty() ? "-" : number(speed.max, 0),
+             number(m.spindle.max_rpm, 0));
 }
 
 std::string times_section(const SetupSheet& sheet) {
@@ -387,17 +404,21 @@ std::string head(const SetupSheet& sheet) {
   const std::string title = fmt::format("Set-up sheet: {}", fmt::join(names, ", "));
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   out += kPagePolicy;
-  out += fmt::format("<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n", html_text(title), kStyle);
+  out +=
+      fmt::format("<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n", html_text(title), kStyle);
   const machine::Job& job = sheet.job;
   const bool inch = std::ranges::any_of(sheet.programs, [](const SheetProgram& p) { return p.summary.has_inch; });
   const bool mm = std::ranges::any_of(sheet.programs, [](const SheetProgram& p) { return p.summary.has_mm; });
   out += fmt::format("<p>Job {}; machine {}; material {}; programs in {}. All lengths on this sheet are in mm.</p>\n",
                      html_text(file_name(job.path)), html_text(file_name(job.machine_path)),
                      html_text(job.material.preset.empty() ? "as in the job" : std::string(job.material.preset)),
-                     mm && inch ? "mm and inch" : inch ? "inch" : "mm");
+                     mm && inch ? "mm and inch"
+                     : inch     ? "inch"
+                                : "mm");
   const auto assumed = machine::assumptions(job);
   if (!assumed.empty())
-    out += "<p class=\"assumed\"><b>Assumed, not given:</b> " + html_text(fmt::format("{}", fmt::join(assumed, "; "))) + "</p>\n";
+    out += "<p class=\"assumed\"><b>Assumed, not given:</b> " + html_text(fmt::format("{}", fmt::join(assumed, "; "))) +
+           "</p>\n";
   return out;
 }
 

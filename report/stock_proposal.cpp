@@ -237,14 +237,15 @@ class Proposer {
         tips.add(e.max_mm);
       }
     const auto outside = [&](const Vec3& low) {
-      return (low - tips.min_mm).head<2>().cwiseMax(0.0).sum() + (tips.max_mm - low - size).head<2>().cwiseMax(0.0).sum();
+      return (low - tips.min_mm).head<2>().cwiseMax(0.0).sum() +
+             (tips.max_mm - low - size).head<2>().cwiseMax(0.0).sum();
     };
     const Vec3 corner(0, 0, 0), middle(-size.x() / 2, -size.y() / 2, 0);
     const bool centred = stock.zero_in_centre.value_or(outside(middle) < outside(corner));
     const bool on_table = stock.zero_on_table.value_or(highest_pass_mm() > kTouch_mm);
     if (!stock.zero_in_centre || !stock.zero_on_table)
-      how = fmt::format("X0 Y0 {}, Z0 {}, where it holds the path", centred ? "in the middle" : "in the lower left corner",
-                        on_table ? "on the table" : "on top");
+      how = fmt::format("X0 Y0 {}, Z0 {}, where it holds the path",
+                        centred ? "in the middle" : "in the lower left corner", on_table ? "on the table" : "on top");
     machine::Box box{centred ? middle : corner, {}};
     box.min_mm.z() = on_table ? 0 : -size.z();
     box.max_mm = box.min_mm + size;

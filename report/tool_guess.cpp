@@ -40,7 +40,8 @@ double in_table(std::span<const Row> rows, double diameter_mm) {
 }
 
 bool cuts_level(const nc::Move& m) {
-  return m.kind == nc::MoveKind::linear && !m.reference && m.cycle == 0 && std::abs(m.end_mm.z() - m.start_mm.z()) < 1e-3;
+  return m.kind == nc::MoveKind::linear && !m.reference && m.cycle == 0 &&
+         std::abs(m.end_mm.z() - m.start_mm.z()) < 1e-3;
 }
 
 /// The usual distance between parallel passes that are joined by a short move across; 0: there are none.
@@ -93,7 +94,8 @@ bool only_drills(const nc::Interpretation& moves, int tool) {
 double standard_diameter_mm(double step_mm) {
   constexpr double kUsual_mm = 10, kStepFraction = 0.75;
   if (step_mm <= 0) return kUsual_mm;
-  const auto at = std::ranges::find_if(kStandardDiameters_mm, [&](double d) { return d >= step_mm / kStepFraction - 0.5; });
+  const auto at =
+      std::ranges::find_if(kStandardDiameters_mm, [&](double d) { return d >= step_mm / kStepFraction - 0.5; });
   return at == kStandardDiameters_mm.end() ? kStandardDiameters_mm.back() : *at;
 }
 
@@ -120,7 +122,8 @@ void fill_profile(ToolProposal& tool, std::vector<std::string>& assumed) {
   if (tool.type == ToolType::chamfer) take(tool.point_angle_deg, kVBit_deg, "point_angle_deg");
   if (tool.type == ToolType::bull && *tool.corner_radius_mm > *tool.diameter_mm / 2)
     tool.corner_radius_mm = *tool.diameter_mm / 2;
-  if (tool.type == ToolType::chamfer && tool.tip_diameter_mm.value_or(0) >= *tool.diameter_mm) tool.tip_diameter_mm.reset();
+  if (tool.type == ToolType::chamfer && tool.tip_diameter_mm.value_or(0) >= *tool.diameter_mm)
+    tool.tip_diameter_mm.reset();
 }
 
 /// A thin cutter on the smallest shank.

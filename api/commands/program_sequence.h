@@ -19,7 +19,8 @@ machine::Job job_of_program(const machine::JobOfPrograms& all, std::size_t index
 /// Throws InputError.
 void save_stock_after(const machine::Job& job, const std::string& path);
 
-/// The rigid sweep of a job's program, saved to `path`: what a check of the next program starts from. Throws InputError.
+/// The rigid sweep of a job's program, saved to `path`: what a check of the next program starts from. Throws
+/// InputError.
 void save_swept_stock(const machine::Job& job, const std::string& path);
 
 /// JSON of all programs from that of each: `programs`, a list with `program` and `folder` or `output` first, and the

@@ -56,10 +56,11 @@ TEST(Init, WritesWhatProgramAndTablesTell) {
   folder.write("m.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
   const auto run = run_camber(folder, "init p.nc --tools tool.tbl --machine m.toml -o job.toml");
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.out,
-            "warning: assumed, not given: material C45 (preset, krc_ratio, within 40 %); T1 flutes, helix_deg, overhang_mm, "
-            "root_stiffness_N_per_um; T2 helix_deg, overhang_mm, root_stiffness_N_per_um; stock box_mm [assumed]\n"
-            "job.toml: 2 tools; what is assumed is marked \"typical\" or CHECK in it\n");
+  EXPECT_EQ(
+      run.out,
+      "warning: assumed, not given: material C45 (preset, krc_ratio, within 40 %); T1 flutes, helix_deg, overhang_mm, "
+      "root_stiffness_N_per_um; T2 helix_deg, overhang_mm, root_stiffness_N_per_um; stock box_mm [assumed]\n"
+      "job.toml: 2 tools; what is assumed is marked \"typical\" or CHECK in it\n");
   const std::string job = tests::file_text(folder / "job.toml");
   EXPECT_EQ(job.substr(0, job.find("\n[material]")), kExpected);
   EXPECT_NE(job.find("# Its top: the program's Z0, below which all cutting lies.\n"
@@ -123,8 +124,9 @@ TEST(Init, NamesMaterialsAsEveryStandardDoes) {
             "preset = \"SKD61\"                # hot work steel X37CrMoV5-1, annealed; within 25 %\n"
             "krc_ratio = 0.4                   # typical: radial over tangential force, 0.3 to 0.6\n"
             "assumed = [\"krc_ratio\"]           # results begin with these: take out what you have put in\n");
-  EXPECT_NE(material_of("1.2379 60 HRC").find("# CHECK: \"1.2379 60 HRC\": values of hardened-60HRC, the class of "
-                                              "steel nearest to 654 HB.\npreset = \"1.2379 60 HRC\" "),
+  EXPECT_NE(material_of("1.2379 60 HRC")
+                .find("# CHECK: \"1.2379 60 HRC\": values of hardened-60HRC, the class of "
+                      "steel nearest to 654 HB.\npreset = \"1.2379 60 HRC\" "),
             std::string::npos);
   const auto unknown = run_camber(folder, "init wall.nc --material unobtainium -o other.toml");
   EXPECT_EQ(unknown.status, 2);
@@ -140,8 +142,8 @@ TEST(Init, WritesAPresetAsAMachineFile) {
   folder.write("p.nc", "G21 G90\nS9000 M3\nG0 X0 Y0 Z1\nG1 X20 F2000\nM30\n");
   const auto feed = run_camber(folder, "feed p.nc --machine machine.toml --json f.json");
   EXPECT_EQ(feed.status, 0) << feed.err;
-  EXPECT_EQ(feed.out.find("warning: assumed, not given: machine preset:router, typical values of its class [assumed]\n"),
-            0u)
+  EXPECT_EQ(
+      feed.out.find("warning: assumed, not given: machine preset:router, typical values of its class [assumed]\n"), 0u)
       << feed.out;
   const auto time = run_camber(folder, "time p.nc --machine preset:vmc-linear");
   EXPECT_EQ(time.status, 0) << time.err;
@@ -167,8 +169,9 @@ TEST(Init, TakesToolsAndBlankFromComments) {
                      "box_mm = [[0.0, 0.0, -12.0], [60.0, 40.0, 0.0]]\n\n"),
             std::string::npos)
       << job;
-  folder.write("fusion.nc", "(T12  D=12 CR=0 - flat end mill)\nG21 G90\nS6000 M3\nG0 X0 Y0 Z5\nG1 Z-1 F300\nX30 F800\n"
-                            "G0 Z5\nM30\n");
+  folder.write("fusion.nc",
+               "(T12  D=12 CR=0 - flat end mill)\nG21 G90\nS6000 M3\nG0 X0 Y0 Z5\nG1 Z-1 F300\nX30 F800\n"
+               "G0 Z5\nM30\n");
   ASSERT_EQ(run_camber(folder, "-q init fusion.nc -o fusion.toml").status, 0);
   const std::string fusion = tests::file_text(folder / "fusion.toml");
   EXPECT_NE(fusion.find("\n[tool.0]\n"), std::string::npos) << fusion;
@@ -183,10 +186,11 @@ TEST(Init, GuessesWhatNoCommentSays) {
                "Y111.6\nX-40\nG0 Z5\nM30\n");
   ASSERT_EQ(run_camber(folder, "-q init face.nc -o job.toml").status, 0);
   const std::string job = tests::file_text(folder / "job.toml");
-  EXPECT_NE(job.find("\ntype = \"flat\"                     # CHECK: no comment names the tool\n"
-                     "diameter_mm = 50.0                # CHECK: no comment gives it; by the distance between passes, else "
-                     "10\nflutes = 5 "),
-            std::string::npos)
+  EXPECT_NE(
+      job.find("\ntype = \"flat\"                     # CHECK: no comment names the tool\n"
+               "diameter_mm = 50.0                # CHECK: no comment gives it; by the distance between passes, else "
+               "10\nflutes = 5 "),
+      std::string::npos)
       << job;
   EXPECT_NE(job.find("\noverhang_mm = 40.0 "), std::string::npos) << job;  // not four diameters
 }

@@ -38,7 +38,8 @@ TEST(ProgramsInTurn, ArePredictedOnOneBlank) {
   // Each takes one millimetre of a slot 6 mm wide and 20 mm long.
   for (const auto& p : r["programs"]) EXPECT_NEAR(p["removed_mm3"]["stock"].get<double>(), 120, 3) << p["program"];
   EXPECT_NEAR(r["machine_time_s"].get<double>(),
-              r["programs"][0]["machine_time_s"].get<double>() + r["programs"][1]["machine_time_s"].get<double>(), 1e-9);
+              r["programs"][0]["machine_time_s"].get<double>() + r["programs"][1]["machine_time_s"].get<double>(),
+              1e-9);
   EXPECT_EQ(r["assumed"], (nlohmann::json{"machine preset:vmc-40, typical values of its class", "stock box_mm"}));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/2-second/report.html"));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/summary.json"));
@@ -65,16 +66,18 @@ TEST(ProgramsInTurn, AreCompensatedIntoAFolder) {
 TEST(ProgramsInTurn, AreRefusedWhereOneIsWanted) {
   const TempFolder folder;
   write_job(folder);
-  EXPECT_EQ(run_camber(folder, "adapt job.toml -o new.nc").err,
-            "job.toml:1:11: error: the job has 2 programs, which predict, compensate and check run one after the other; "
-            "one program was expected here [several-programs]\n"
-            "    program = [\"first.nc\", \"second.nc\"]\n"
-            "              ^\n");
+  EXPECT_EQ(
+      run_camber(folder, "adapt job.toml -o new.nc").err,
+      "job.toml:1:11: error: the job has 2 programs, which predict, compensate and check run one after the other; "
+      "one program was expected here [several-programs]\n"
+      "    program = [\"first.nc\", \"second.nc\"]\n"
+      "              ^\n");
   folder.write("lines.toml", file_text(folder / "job.toml") + "[operations]\nblocks = [[1, 5]]\n");
-  EXPECT_NE(run_camber(folder, "predict lines.toml -o out")
-                .err.find("the job has 2 programs, and the lines of operations belong to one; a job for each program was "
-                          "expected [several-programs]"),
-            std::string::npos);
+  EXPECT_NE(
+      run_camber(folder, "predict lines.toml -o out")
+          .err.find("the job has 2 programs, and the lines of operations belong to one; a job for each program was "
+                    "expected [several-programs]"),
+      std::string::npos);
 }
 
 TEST(SetupSheet, HasToolsBlankOffsetsLimitsAndTimes) {
@@ -83,16 +86,12 @@ TEST(SetupSheet, HasToolsBlankOffsetsLimitsAndTimes) {
   const auto run = run_camber(folder, "check --job job.toml --sheet sheet.html");
   ASSERT_EQ(run.status, 0) << run.err;
   const std::string sheet = file_text(folder / "sheet.html");
-  for (const char* text : {"<h1>Set-up sheet: first.nc, second.nc</h1>",
-                           "@page { size: A4 portrait;",
+  for (const char* text : {"<h1>Set-up sheet: first.nc, second.nc</h1>", "@page { size: A4 portrait;",
                            "<b>Assumed, not given:</b> machine preset:vmc-40",
-                           "Box 20 x 20 x 5 mm, from X 0 Y 0 Z -5 to X 20 Y 20 Z 0 (assumed)",
-                           "<td>G54</td>",
+                           "Box 20 x 20 x 5 mm, from X 0 Y 0 Z -5 to X 20 Y 20 Z 0 (assumed)", "<td>G54</td>",
                            "<td>T1</td><td>flat end mill</td><td>6</td><td>2</td><td>20</td><td>H1</td><td>-</td>"
                            "<td>4000</td><td>400</td><td>-2</td>",
-                           "<p>Drawn 2:1;",
-                           "<td>first.nc</td>",
-                           "<td>all</td>"})
+                           "<p>Drawn 2:1;", "<td>first.nc</td>", "<td>all</td>"})
     EXPECT_NE(sheet.find(text), std::string::npos) << text << "\n" << sheet;
   // The cutter is drawn twice its size: a polygon 12 mm wide.
   EXPECT_NE(sheet.find("class=\"cutter\""), std::string::npos);

@@ -15,19 +15,58 @@ struct NameCase {
 
 TEST(MaterialNames, AreThoseOfEveryStandard) {
   const NameCase cases[] = {
-      {"1.2343", "1.2343"},       {"W.-Nr. 1.2343", "1.2343"},  {"X37CrMoV5-1", "1.2343"}, {"AISI H11", "1.2343"},
-      {"SKD61", "1.2343"},        {"skd 61", "1.2343"},         {"H13", "1.2343"},         {"1.2311", "P20"},
-      {"P20", "P20"},             {"1.2738", "P20"},            {"NAK80", "NAK80"},        {"1.2379", "1.2379"},
-      {"D2", "1.2379"},           {"SKD11", "1.2379"},          {"C45", "C45"},            {"Ck45", "C45"},
-      {"1045", "C45"},            {"S45C", "C45"},              {"1.0503", "C45"},         {"42CrMo4", "42CrMo4"},
-      {"1.7225", "42CrMo4"},      {"AISI 4140", "42CrMo4"},     {"SCM440", "42CrMo4"},     {"316L", "316L"},
-      {"1.4404", "316L"},         {"SUS316L", "316L"},          {"AISI 316 L", "316L"},    {"1.4301", "304"},
-      {"Ti64", "Ti6Al4V"},        {"Ti-6Al-4V", "Ti6Al4V"},     {"3.7165", "Ti6Al4V"},     {"Inconel 718", "Inconel718"},
-      {"2.4668", "Inconel718"},   {"IN718", "Inconel718"},      {"6061", "Al6082-T6"},     {"6061-T6", "Al6082-T6"},
-      {"EN AW-6061", "Al6082-T6"}, {"AlMg1SiCu", "Al6082-T6"},  {"7075", "Al7075-T6"},     {"7075-T651", "Al7075-T6"},
-      {"3.4365", "Al7075-T6"},    {"graphite", "graphite"},     {"brass", "brass"},        {"CuZn39Pb3", "brass"},
-      {"2.0401", "brass"},        {"POM", "POM"},               {"Delrin", "POM"},         {"EN-GJL-250", "FC250"},
-      {"GGG40", "GJS-400"},       {"MDF", "particleboard"},     {"1.4462", "2205"},        {"1.2083", "420"},
+      {"1.2343", "1.2343"},
+      {"W.-Nr. 1.2343", "1.2343"},
+      {"X37CrMoV5-1", "1.2343"},
+      {"AISI H11", "1.2343"},
+      {"SKD61", "1.2343"},
+      {"skd 61", "1.2343"},
+      {"H13", "1.2343"},
+      {"1.2311", "P20"},
+      {"P20", "P20"},
+      {"1.2738", "P20"},
+      {"NAK80", "NAK80"},
+      {"1.2379", "1.2379"},
+      {"D2", "1.2379"},
+      {"SKD11", "1.2379"},
+      {"C45", "C45"},
+      {"Ck45", "C45"},
+      {"1045", "C45"},
+      {"S45C", "C45"},
+      {"1.0503", "C45"},
+      {"42CrMo4", "42CrMo4"},
+      {"1.7225", "42CrMo4"},
+      {"AISI 4140", "42CrMo4"},
+      {"SCM440", "42CrMo4"},
+      {"316L", "316L"},
+      {"1.4404", "316L"},
+      {"SUS316L", "316L"},
+      {"AISI 316 L", "316L"},
+      {"1.4301", "304"},
+      {"Ti64", "Ti6Al4V"},
+      {"Ti-6Al-4V", "Ti6Al4V"},
+      {"3.7165", "Ti6Al4V"},
+      {"Inconel 718", "Inconel718"},
+      {"2.4668", "Inconel718"},
+      {"IN718", "Inconel718"},
+      {"6061", "Al6082-T6"},
+      {"6061-T6", "Al6082-T6"},
+      {"EN AW-6061", "Al6082-T6"},
+      {"AlMg1SiCu", "Al6082-T6"},
+      {"7075", "Al7075-T6"},
+      {"7075-T651", "Al7075-T6"},
+      {"3.4365", "Al7075-T6"},
+      {"graphite", "graphite"},
+      {"brass", "brass"},
+      {"CuZn39Pb3", "brass"},
+      {"2.0401", "brass"},
+      {"POM", "POM"},
+      {"Delrin", "POM"},
+      {"EN-GJL-250", "FC250"},
+      {"GGG40", "GJS-400"},
+      {"MDF", "particleboard"},
+      {"1.4462", "2205"},
+      {"1.2083", "420"},
   };
   for (const auto& c : cases) {
     const MaterialMatch match = find_material(c.name);
@@ -51,10 +90,11 @@ TEST(MaterialNames, NoNameStandsForTwoMaterials) {
 }
 
 TEST(MaterialNames, UnknownOnesOfAKnownGroupStandForIt) {
-  const NameCase cases[] = {{"1.2746", "1.2343"},   {"1.4529", "304"},        {"347", "304"},     {"4150", "42CrMo4"},
-                            {"S275NL", "S235JR"},   {"6101", "Al6082-T6"},    {"7020", "Al7075-T6"},
-                            {"1.8509", "42CrMo4"},  {"Ti-10-2-3", "Ti6Al4V"}, {"Hastelloy B", "Inconel718"},
-                            {"X39CrMo17-1", "420"}, {"stainless", "304"},     {"aluminium", "Al6082-T6"}};
+  const NameCase cases[] = {{"1.2746", "1.2343"},          {"1.4529", "304"},      {"347", "304"},
+                            {"4150", "42CrMo4"},           {"S275NL", "S235JR"},   {"6101", "Al6082-T6"},
+                            {"7020", "Al7075-T6"},         {"1.8509", "42CrMo4"},  {"Ti-10-2-3", "Ti6Al4V"},
+                            {"Hastelloy B", "Inconel718"}, {"X39CrMo17-1", "420"}, {"stainless", "304"},
+                            {"aluminium", "Al6082-T6"}};
   for (const auto& c : cases) {
     const MaterialMatch match = find_material(c.name);
     ASSERT_TRUE(match.preset) << c.name;
@@ -66,11 +106,11 @@ TEST(MaterialNames, UnknownOnesOfAKnownGroupStandForIt) {
 }
 
 TEST(MaterialNames, AHardnessSelectsTheClassOfSteel) {
-  const NameCase cases[] = {{"1.2379 60 HRC", "hardened-60HRC"},   {"1.2343 (50-52 HRC)", "hardened-55HRC"},
+  const NameCase cases[] = {{"1.2379 60 HRC", "hardened-60HRC"},    {"1.2343 (50-52 HRC)", "hardened-55HRC"},
                             {"Toolox 44 45 HRC", "hardened-55HRC"}, {"Weldox 300 HB", "P20"},
-                            {"Something 30HRC", "34CrNiMo6"},      {"SKD61 HRC 48", "hardened-55HRC"},
-                            {"42CrMo4 250 HB", "42CrMo4"},         {"C45 190 HB", "C45"},
-                            {"mystery 130 HB", "S235JR"},          {"XYZ 700 HV", "hardened-60HRC"}};
+                            {"Something 30HRC", "34CrNiMo6"},       {"SKD61 HRC 48", "hardened-55HRC"},
+                            {"42CrMo4 250 HB", "42CrMo4"},          {"C45 190 HB", "C45"},
+                            {"mystery 130 HB", "S235JR"},           {"XYZ 700 HV", "hardened-60HRC"}};
   for (const auto& c : cases) {
     const MaterialMatch match = find_material(c.name);
     ASSERT_TRUE(match.preset) << c.name;

@@ -127,13 +127,14 @@ TEST(StockComments, GiveABox) {
   expect_box("(STOCK/BLOCK,4,2,.5,0,0,.5)\n", true, {0, 0, -12.7}, {101.6, 50.8, 0});
   expect_box("(stockMin:0.00mm, 0.00mm, -18.00mm)\n(stockMax:762.00mm, 600.00mm, 0.00mm)\n", true, {0, 0, -18},
              {762, 600, 0});
-  expect_box("( Min Extents: X= -10.000, Y= -20.000, Z= -5.000)\n( Max Extents: X= 10.000, Y= 20.000, Z= 0.000)\n", false,
-             {-10, -20, -5}, {10, 20, 0});
+  expect_box("( Min Extents: X= -10.000, Y= -20.000, Z= -5.000)\n( Max Extents: X= 10.000, Y= 20.000, Z= 0.000)\n",
+             false, {-10, -20, -5}, {10, 20, 0});
 }
 
 TEST(StockComments, GiveASizeAndWhereTheZeroIs) {
   const auto vectric = stock_in_comments(
-      SourceText("p.nc", "( Material Size)\n( X= 457.200, Y= 304.800, Z= 19.050)\n(XYZ Origin=Center - Material Surface)\n"),
+      SourceText("p.nc",
+                 "( Material Size)\n( X= 457.200, Y= 304.800, Z= 19.050)\n(XYZ Origin=Center - Material Surface)\n"),
       false);
   ASSERT_TRUE(vectric && vectric->size_mm);
   EXPECT_EQ(*vectric->size_mm, Vec3(457.2, 304.8, 19.05));
