@@ -1,15 +1,13 @@
 #include "calib/fit_stretches.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "feedmodel/plan.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
-#include "test_paths.h"
+#include "tests/support/test_data.h"
 #include "tests/support/test_program.h"
 
 namespace camber::calib {
@@ -17,14 +15,12 @@ namespace {
 
 constexpr double kExtrapolation = 0.025;  // of a time, at feeds of two to ten times those that were fitted
 
-std::string nist(const char* file) { return fmt::format("{}/nist/{}", CAMBER_SHARED_DATA_DIR, file); }
+std::string nist(const std::string& file) { return tests::data_path("nist/" + file); }
 
 nc::Interpretation nist_program() {
   Diagnostics diagnostics;
   return nc::interpret(nc::read_program(SourceText::read(nist("box_op5.nc")), diagnostics), {}, diagnostics);
 }
-
-bool have_nist() { return std::filesystem::exists(nist("box_op5.nc")); }
 
 StretchLaw stop_law() { return {"stop", machine::CornerLaw::angle, 0.6, false}; }
 
@@ -110,7 +106,6 @@ TEST(FitStretches, PrefersTheLawThatTheTimesWereMadeWith) {
 }
 
 TEST(FitStretches, CountsCopiesOnceAndKeepsThemInOneFold) {
-  if (!have_nist()) GTEST_SKIP() << "no ../shared/data";
   const nc::Interpretation program = nist_program();
   const auto table = read_stretch_table(nist("op5_feed_runs.csv"), program);
   ASSERT_EQ(table.size(), 82u);
@@ -123,7 +118,6 @@ TEST(FitStretches, CountsCopiesOnceAndKeepsThemInOneFold) {
 }
 
 TEST(FitStretches, PredictsToolsOfTheNistBoxThatItHasNotSeen) {
-  if (!have_nist()) GTEST_SKIP() << "no ../shared/data";
   StretchRun run{"box_op5", nist_program(), {}};
   run.timed = read_stretch_table(nist("op5_feed_runs.csv"), run.program);
   StretchLaw law = stop_law();
