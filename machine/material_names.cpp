@@ -86,7 +86,7 @@ constexpr std::array kFamilies{
     Family{R"(^1\.00.*|^1\.0[13].*|^S\d{3}[JKNMQ].*|^ST\d\d.*)", "S235JR", "structural steels"},
     Family{R"(^1\.0[4-9].*|^1\.1.*|^C\d\d[ERU]?$|^CK\d\d$|^S\d\dC$|^10\d\d$|^15[1-6]\d$)", "C45", "carbon steels"},
     Family{R"(^11\d\d$|^12\d\d$|^12L\d\d$|^SUM\d\dL?$)", "S235JR", "free-cutting steels"},
-    Family{R"(^1\.2.*|^1\.3[23].*|^[AHOSW]\d{1,2}$|^SK[DST]\d{1,2}.*|^[ADM]\d$|^[MT]\d\d$|^SKH\d\d.*)", "1.2343",
+    Family{R"(^1\.2.*|^1\.3[23].*|^[AOSW]\d$|^A10$|^H[1-4]\d$|^SK[DST]\d{1,2}.*|^[ADM]\d$|^[MT]\d\d$|^SKH\d\d.*)", "1.2343",
            "tool steels, annealed"},
     Family{R"(^P\d{1,2}(?:\+.*)?$|^NAK\d\d$|^HPM.*|^TOOLOX.*)", "P20", "prehardened mould steels"},
     Family{R"(^1\.4[01].*|^4[0-4]\d[A-Z]{0,2}$|^SUS4\d\d.*|^X\d+CR(?!.*NI).*)", "420",
@@ -94,7 +94,7 @@ constexpr std::array kFamilies{
     Family{R"(^1\.4[3-9].*|^[23]\d\d[A-Z]{0,2}$|^SUS[23]\d\d.*|^X\d+CR.*NI.*|^S3\d{4}$)", "304",
            "austenitic stainless steels"},
     Family{
-        R"(^1\.[5-8].*|^4[1-8]\d\d$|^5[1]\d\d$|^[689][1-9]\d\d$|^SCM\d+.*|^S?NCM\d+.*|^SCR\d+.*|^\d\d(?:CR|MN|NI|MO|SI).*)",
+        R"(^1\.[5-8].*|^4[1-8]\d\d$|^5[1]\d\d$|^61(?:1[78]|20|4\d|50)$|^8[1-8]\d\d$|^9[2-4]\d\d$|^SCM\d+.*|^S?NCM\d+.*|^SCR\d+.*|^\d\d(?:CR|MN|NI|MO|SI).*)",
         "42CrMo4", "low-alloy steels"},
     Family{R"(^0\.6.*|^GG\d\d$|^(?:EN)?GJL.*|^FC\d{3}$)", "FC250", "grey cast irons"},
     Family{R"(^0\.7.*|^GGG\d\d.*|^(?:EN)?GJS.*|^FCD\d{3}.*)", "GJS-600", "ductile cast irons"},

@@ -177,7 +177,7 @@ void add_steels(std::vector<MaterialPreset>& out) {
   out.push_back(typical("mild-steel", "mild steel", 2298, 0.20, {}, 125));
   out.push_back(typical("low-alloy-steel", "low-alloy steel", 2809, 0.24, {}, 220));
   out.push_back(typical("tool-steel", "tool steel", 3191, 0.27, {}, 230));
-  out.push_back(hardened("hardened-55HRC", "hardened steel, 45 to 57 HRC", 4600, 560));
+  out.push_back(hardened("hardened-55HRC", "hardened steel, 47 to 57 HRC", 4600, 560));
   out.push_back(hardened("hardened-60HRC", "hardened steel, more than 57 HRC", 4700, 650));
 }
 
@@ -260,7 +260,7 @@ void add_others(std::vector<MaterialPreset>& out) {
                       250));
   out.push_back(group("A286", "iron-based heat resistant alloy, age hardened", 3100, 0.24,
                       "1.4980 S66286 Incoloy800 1.4876 Incoloy825", 280));
-  out.push_back(estimate("graphite", "electrode graphite", 120, 0.2, "EDM-3 EDM3 ISO-63 TTK-50 EllorPlus"));
+  out.push_back(estimate("graphite", "electrode graphite", 120, 0.2, "EDM-3 TTK-50 EllorPlus"));
   out.push_back(estimate("POM", "thermoplastics: POM, PA, PE, PMMA, PC, PEEK", 70, 0.25,
                          "Delrin Acetal PA6 PA66 Nylon PMMA Acrylic Plexiglas PC Polycarbonate PEEK PE PE-HD HDPE UHMW "
                          "PVC ABS PTFE PP HIPS"));

@@ -1,6 +1,7 @@
 // Tools as the comments of a program name them, and which of its tools each comment belongs to.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <regex>

@@ -73,7 +73,7 @@ std::optional<ToolType> type_of(const std::string& words, const ToolProposal& to
     return ToolType::ball;
   if (is_end_mill(words) && has(words, "CHAMFERS")) return ToolType::flat;
   if (is_v_bit(words) || has(words, "CHAMFER") || has(words, "COUNTERSINK") || has(words, "SENKER") ||
-      has(words, "ENTGRAT") || has(words, "CHANFR") || has(words, "DEBURR"))
+      has(words, "ENTGRAT") || has(words, "ENTFR") || has(words, "CHANFR") || has(words, "DEBURR"))
     return ToolType::chamfer;
   if (has(words, "SLOT DRILL")) return ToolType::flat;
   if (has(words, "DRILL") || has(words, "SPOT") || has(words, "BOHRER") || has_word(words, "FORET|BROCA|PUNTA"))
@@ -172,7 +172,7 @@ void read_angle(const std::string& words, ToolProposal& tool) {
 /// "DIA. - .5", "D=10.", "1/4 DIAMETER", "6MM", "MILL_D10R1": the most outspoken first.
 void read_diameter(const std::string& words, bool inch, ToolProposal& tool) {
   static const std::regex kShankDiameter(R"(SHANK\s*DIA(?:METER)?)");
-  tool.diameter_mm = find_size(words, R"((?:^[\s|]*|[^-.\d/\s"]\s*)NUM\s*DIA(?:M|METER)?\b)", inch);
+  tool.diameter_mm = find_size(words, R"((?:^[\s|]*|[^-.=#:\d/\s"]\s*)NUM\s*DIA(?:M|METER)?\b)", inch);
   if (!tool.diameter_mm && has(words, "DIA"))
     tool.diameter_mm =
         find_size(std::regex_replace(words, kShankDiameter, "SHANK"), R"(\bDIA(?:M|METER)?\b\.?\s*[-=:]*\s*NUM)", inch);
@@ -199,7 +199,7 @@ void read_diameter(const std::string& words, bool inch, ToolProposal& tool) {
 }
 
 void read_corner(const std::string& words, bool inch, ToolProposal& tool) {
-  for (const char* pattern : {R"((?:\bCR\s*=\s*|\bRAD(?:IUS)?[\s.=-]+|\bR\s*=\s*)NUM)", R"(NUM\s*RAD(?:IUS)?\b)",
+  for (const char* pattern : {R"((?:\bCR\s*=\s*|\bRAD[\s.=-]+|\bRADIUS\s*[=:-]\s*|\bR\s*=\s*)NUM)", R"(NUM\s*RAD(?:IUS)?\b)",
                               R"(\bD\s?[\d.]+\s?R\s?NUM)", R"(\b(?:BULL|TORUS|TORIC)\w*[ A-Z]*\bR\s?NUM)"})
     if (!tool.corner_radius_mm) tool.corner_radius_mm = find_size(words, pattern, inch);
 }
