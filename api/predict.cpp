@@ -11,6 +11,7 @@
 #include "api/predict_result.h"
 #include "api/run.h"
 #include "base/output_file.h"
+#include "machine/assumptions.h"
 #include "report/forces_csv.h"
 #include "report/mesh_file.h"
 #include "report/report_data.h"
@@ -140,7 +141,9 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
     else if (options.feed)
       feedmodel::predict_feed(program.moves, job.machine, api::points_sink(program.moves, result.feed));
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    result.json = report::predict_json(program, prediction, compute_s, prepared.traced_run(), result.doubts);
+    result.json = machine::with_assumptions(
+        report::predict_json(program, prediction, compute_s, prepared.traced_run(), result.doubts),
+        machine::assumptions(job));
     result.diagnostics = found.all();
     if (request.folder.empty()) return;
     Diagnostics failed;

@@ -11,6 +11,7 @@
 #include "compensate/header.h"
 #include "compensate/safety.h"
 #include "compensate/trial.h"
+#include "machine/machine_presets.h"
 #include "simulate/verdict.h"
 
 namespace camber::compensate {
@@ -88,7 +89,8 @@ machine::Job judging_job(const machine::Job& job, const CompensationResult& c, c
   const fs::path folder = fs::absolute(output).parent_path();
   for (std::string* path :
        {&out.program, &out.machine_path, &out.stock.mesh, &out.stock.vdb, &out.part.mesh, &out.part.program})
-    if (!path->empty()) *path = fs::absolute(*path).lexically_normal().lexically_proximate(folder).string();
+    if (!path->empty() && !machine::is_preset(*path))
+      *path = fs::absolute(*path).lexically_normal().lexically_proximate(folder).string();
   return out;
 }
 

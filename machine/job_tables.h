@@ -17,4 +17,7 @@ void read_tools(TomlTable& top, const std::filesystem::path& folder, bool inch, 
 /// A [stock] table; its paths count from `folder`. Problems go to the table's diagnostics.
 void read_stock(TomlTable table, const std::filesystem::path& folder, StockDescription& stock);
 
+/// The path at `machine`, against the folder, or the name of a preset, "preset:vmc-40".
+std::string machine_path_at(TomlTable& top, const std::filesystem::path& folder);
+
 }  // namespace camber::machine

@@ -68,12 +68,15 @@ std::unique_ptr<TomlFile> parse_toml(SourceText source, Diagnostics& diagnostics
   return file;
 }
 
-std::unique_ptr<TomlFile> read_toml(const std::string& path, const std::string& contents, Diagnostics& diagnostics) {
-  SourceText source = SourceText::read(path);
+std::unique_ptr<TomlFile> parse_toml(SourceText source, const std::string& contents, Diagnostics& diagnostics) {
   if (is_blank(source.text()))
     diagnostics.add(
-        {Severity::error, {path, 0, 0}, "the file is empty; " + contents + " was expected", "file-empty", {}});
+        {Severity::error, {source.name(), 0, 0}, "the file is empty; " + contents + " was expected", "file-empty", {}});
   return parse_toml(std::move(source), diagnostics);
+}
+
+std::unique_ptr<TomlFile> read_toml(const std::string& path, const std::string& contents, Diagnostics& diagnostics) {
+  return parse_toml(SourceText::read(path), contents, diagnostics);
 }
 
 }  // namespace camber::machine

@@ -48,7 +48,8 @@ struct TomlFile {
 /// Throws InputError where the file cannot be read.
 std::unique_ptr<TomlFile> read_toml(const std::string& path, const std::string& contents, Diagnostics& diagnostics);
 
-/// The same of a text in memory.
+/// The same of a text in memory; diagnostics name it by the text's name. Without `contents` it may be empty.
+std::unique_ptr<TomlFile> parse_toml(SourceText source, const std::string& contents, Diagnostics& diagnostics);
 std::unique_ptr<TomlFile> parse_toml(SourceText source, Diagnostics& diagnostics);
 
 class TomlTable {

@@ -31,13 +31,20 @@ struct ToolProposal {
   std::vector<HolderPart> holder{};  ///< from the holder's face up
 };
 
-/// Tools that a program's comments name, one a number, the first mention first: "(T3 D=0.125 CR=0.0625 - ZMIN=-0.54 -
-/// BALL END MILL)" (Fusion), "(T1| 3/4 FLAT ENDMILL|H0)" (Mastercam), "(T02 ID=002  DIA-0.5000  TOOL END MILL)"
-/// (SolidWorks CAM), a comment beside T and M6, and one alone on its line, with type and size, up to eight lines above
-/// the change: "( 1/2\" DIA. 2 FLUTE E.M. )", "N146 T2", "N147 G91 G28 Z0 M06". Drills by their gauge ("#30 DRILL",
-/// "LET. B DRILL") have its diameter; taps and reamers stand as drills, with a doubt. Sizes are in the program's unit;
-/// a bare size of 3 or more in a program in inches is taken as millimetres, with a doubt (a mill of 6 inches is rarer
-/// than one of 6 mm).
+/// Tools that a program's comments name, one a number, the first mention first; sizes are in the program's unit unless
+/// the comment names another, and fractions are inches.
+///
+/// Comments with a number: "(T3 D=0.125 CR=0.0625 - ZMIN=-0.54 - BALL END MILL)" (Fusion, HSMWorks), "(T1| 3/4 FLAT
+/// ENDMILL|H0)", "( 1/2 FLAT ENDMILL TOOL - 1 DIA. OFF. - 1 LEN. - 1 DIA. - .5 )" (Mastercam), "(T02 ID=002  DIA-0.5000
+/// TOOL END MILL)" (SolidWorks CAM), "(@FC|TOOL|number=1|type=Endmill|diameter=6|...)" (FreeCAD), "(1 = End Mill {6
+/// mm})" (Vectric), "( T1 : 6.0 )" (CamBam), and a comment beside T and M6. Comments without one, or whose number is
+/// none of the program's, belong to the tool change that follows within eight lines, else to the tool that is in: "(
+/// 1/2\" DIA. 2 FLUTE E.M. )", "(TOOL/MILL,6.35,0.00,19.05,0.00)" (CutViewer, Carbide Create), "(Compensated Tool Path.
+/// Diameter: 3.18)" (FreeCAD), "(TOOL NAME : MILL_D10R1)" (NX). In a program without T words they describe tool 0.
+///
+/// Drills by their gauge ("#30 DRILL", "LET. B DRILL") have its diameter; taps and reamers stand as drills, with a
+/// doubt; a bare size of 3 or more in a program in inches is taken as millimetres, with a doubt (a mill of 6 inches is
+/// rarer than one of 6 mm).
 std::vector<ToolProposal> tools_in_comments(const SourceText& program, bool inch);
 
 /// LinuxCNC's tool table: "T1 P17 Z0.511 D0.125 ;remark" a line. D is in the machine's unit. Throws InputError

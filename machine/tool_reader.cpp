@@ -143,6 +143,7 @@ Tool read_tool(TomlTable table, int number) {
   read_holder(table, tool);
   if (tool.flutes > 0) read_teeth(table, tool);
   check_overhang(table, tool);
+  table.ignore("assumed");  // assumptions.h
   if (type) check_profile(table, tool);
   table.finish();
   return tool;

@@ -1,10 +1,12 @@
 #include "report/report_data.h"
+#include "machine/assumptions.h"
 #include "report/compensation_tables.h"
 
 #include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "report/model_tables.h"
 #include "report/page_tables.h"
@@ -76,6 +78,8 @@ void add_parts(ReportData& data, const simulate::Prediction& p) {
 
 void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& diagnostics,
                const std::string& unsettled) {
+  if (const auto assumed = machine::assumptions(job); !assumed.empty())
+    data.warnings.push_back(fmt::format("assumed, not given: {}", fmt::join(assumed, "; ")));
   for (const auto& d : diagnostics.all()) data.warnings.push_back(to_string(d));
   if (!unsettled.empty()) data.warnings.push_back(unsettled);
   data.notes.push_back(
