@@ -79,13 +79,14 @@ void look_at_part_in_stock(const Evidence& e, Diagnostics& diagnostics) {
       if (out > most) most = out, where = p;
     }
   if (most <= kOut_mm) return;
-  diagnostics.add(Diagnostic{Severity::warning,
-                             {e.job.part.mesh, 0, 0},
-                             fmt::format("the part rises out of the stock by up to {:.2f} mm, at X{:.2f} Y{:.2f}; a stock "
-                                         "that holds the part was expected",
-                                         most, where.x(), where.y()),
-                             "part-in-stock",
-                             {}});
+  diagnostics.add(
+      Diagnostic{Severity::warning,
+                 {e.job.part.mesh, 0, 0},
+                 fmt::format("the part rises out of the stock by up to {:.2f} mm, at X{:.2f} Y{:.2f}; a stock "
+                             "that holds the part was expected",
+                             most, where.x(), where.y()),
+                 "part-in-stock",
+                 {}});
 }
 
 }  // namespace camber::checks

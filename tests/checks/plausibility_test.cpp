@@ -23,8 +23,7 @@ constexpr double kSlope = 0.5;  // of the roof
 
 /// Rows of a ball of 6 mm over a roof: ridge along Y at X20, falling by kSlope to both sides.
 std::string roof_rows() {
-  std::string out =
-      "G21 G90 G17 G40 G49 G80 G54\n(T1 D=6. CR=3. - BALL END MILL)\nT1 M6\nS8000 M3\nG0 X2 Y2 Z20\n";
+  std::string out = "G21 G90 G17 G40 G49 G80 G54\n(T1 D=6. CR=3. - BALL END MILL)\nT1 M6\nS8000 M3\nG0 X2 Y2 Z20\n";
   const double n = std::hypot(1, kSlope);
   // Centre over the slope by the radius along its normal, the tip below it.
   const auto tip = [&](double x) { return -kSlope * std::abs(x - 20) + 3 * n - 3; };
@@ -42,8 +41,7 @@ const std::string kSteel = "[material]\nktc_MPa = 1860.0\nkrc_MPa = 700.0\nkte_N
 const std::string kRoof =
     "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"ball\"\ndiameter_mm = 6.0\nflutes = 2\n"
     "helix_deg = 30.0\noverhang_mm = 30.0\nroot_stiffness_N_per_um = 20.0\n" +
-    kSteel +
-    "[stock]\nbox_mm = [[0, 0, -20], [40, 20, 2]]\nallowance_mm = 0.3\n[simulation]\nvoxel_mm = 0.2\n";
+    kSteel + "[stock]\nbox_mm = [[0, 0, -20], [40, 20, 2]]\nallowance_mm = 0.3\n[simulation]\nvoxel_mm = 0.2\n";
 
 /// A pocket of 40 x 24 mm, 6 mm deep in two levels, by a flat end mill of 8 mm, right.
 const std::string kPocket = replaced(
@@ -61,7 +59,7 @@ std::string pocket_rows() {
 
 /// A closed roof; shift moves it.
 std::string roof_stl(const Vec3& shift) {
-  const std::vector<Vec3> p{{0, 0, -20}, {40, 0, -20}, {40, 0, -10}, {20, 0, 0}, {0, 0, -10},
+  const std::vector<Vec3> p{{0, 0, -20},  {40, 0, -20},  {40, 0, -10},  {20, 0, 0},  {0, 0, -10},
                             {0, 20, -20}, {40, 20, -20}, {40, 20, -10}, {20, 20, 0}, {0, 20, -10}};
   const std::vector<std::array<int, 3>> triangles{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {5, 7, 6}, {5, 8, 7}, {5, 9, 8},
                                                   {0, 5, 6}, {0, 6, 1}, {1, 6, 7}, {1, 7, 2}, {2, 7, 8}, {2, 8, 3},
@@ -113,7 +111,8 @@ std::string pocket(std::string_view from, std::string_view to) {
 }
 /// Without the comment that names the tool.
 std::string silent_roof(std::string_view from, std::string_view to) {
-  return said({.job = replaced(kRoof, from, to), .program = replaced(roof_rows(), "(T1 D=6. CR=3. - BALL END MILL)", "")});
+  return said(
+      {.job = replaced(kRoof, from, to), .program = replaced(roof_rows(), "(T1 D=6. CR=3. - BALL END MILL)", "")});
 }
 
 TEST(Plausibility, NothingIsSaidOfRightJobs) {
