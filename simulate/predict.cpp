@@ -69,10 +69,9 @@ double band_voxels(const Job& job, double thickest) {
 MemoryEstimate check_memory_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock, double band,
                                const TargetWork& work, Diagnostics& diagnostics) {
   const PathStretch path = work.path ? work.path->stretch() : PathStretch(program.path);
-  return check_memory(job,
-                      memory_factors(job, program.text, program.moves, path, {stock.min_mm, stock.max_mm, band},
-                                     work.within),
-                      diagnostics);
+  return check_memory(
+      job, memory_factors(job, program.text, program.moves, path, {stock.min_mm, stock.max_mm, band}, work.within),
+      diagnostics);
 }
 
 double band_of(const Job& job, const SimulatedProgram& program, double min_chip_mm, const TargetWork& work) {
