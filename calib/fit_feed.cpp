@@ -160,11 +160,17 @@ void add_timed_lines(const FeedRun& run, const Machine& machine, int keep_back_e
   // Blocks that overlap have no times of their own.
   const bool overlap =
       machine.control.kind.turning_blocks_overlap && feedmodel::has_rotary_motion(run.program, machine);
+  const std::vector<LineFeed> feeds = overlap ? feeds_of_lines(run.program, machine) : std::vector<LineFeed>{};
+  const auto turns_near = [&](std::uint32_t line) {
+    for (std::uint32_t l = line > 0 ? line - 1 : 0; l <= line + 1; ++l)
+      if (l < feeds.size() && feeds[l].turns) return true;
+    return false;
+  };
   for (const Part& part : parts_of(run.program, machine)) {
     const bool kept_back = ++count % static_cast<std::size_t>(keep_back_every) == 0;
-    const bool by_block =
-        !overlap && part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
+    const bool by_block = part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
     for (std::uint32_t line = part.line_first; by_block && line <= part.line_last; ++line) {
+      if (overlap && turns_near(line)) continue;
       blocks.parts.push_back({line, line, part.feed_mm_per_s});
       blocks.kept_back.push_back(kept_back);
       blocks.group.push_back(static_cast<int>(count));
@@ -439,6 +445,8 @@ void add_smoothing(FitFeedResult& result, const std::vector<FeedRun>& runs,
   std::array<std::optional<FittedValue>, 3> ramps;
   bool any = false, agree = true;
   for (int axis = 0; axis < 3; ++axis) {
+    // Without its acceleration a plan has no ramp that could be compared.
+    if (!std::isfinite(result.machine.axis[axis].acceleration_mm_per_s2)) continue;
     auto& ramp = ramps[static_cast<std::size_t>(axis)] = ramp_time_s(runs, result.machine, axis);
     if (!ramp) continue;
     any = true;

@@ -356,8 +356,10 @@ bool any_logged(const std::vector<TimedLines>& data) {
 std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged) {
   const auto fraction = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double),
                            double value) {
-    return LimitParameter{
+    LimitParameter p{
         .name = name, .unit = "1", .get = get, .set = set, .least = 0.02, .most = 1, .start = value, .fitted = {}};
+    p.usual = value;
+    return p;
   };
   std::vector<LimitParameter> p;
   p.push_back(acceleration<0>("axis.x.acceleration_mm_per_s2"));
@@ -381,6 +383,7 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
                  .least = 1e-3,
                  .most = 0.7,
                  .start = 0.05,
+                 .usual = 0.1,
                  .fitted = {}});
   }
   if (differs_by_axis(machine)) {
@@ -544,8 +547,9 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
       free.push_back(p);
       continue;
     }
-    p.set(base, p.start);
-    p.fitted = {p.start, INFINITY};
+    p.start = p.usual;
+    p.set(base, p.usual);
+    p.fitted = {p.usual, INFINITY};
     p.assumed = p.acts = true;
   }
   fit = fit_once(data, base, std::move(free), max_iterations, far_away);
