@@ -25,6 +25,7 @@ using machine::Machine;
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 constexpr std::size_t kRestSamples = 20;  // a command that stands for longer rests
+constexpr double kBelowHeld = 0.99;       // of a speed that an axis holds: a limit below it is wrong
 constexpr double kSamePeriod = 0.02;      // two periods that differ by less are one
 constexpr std::uint32_t kMaxBlocksApart = 60;
 constexpr double kSameWindow = 0.3;        // two estimates of one window differ by less than this fraction of it
@@ -254,9 +255,9 @@ void add_top_speed(FitFeedResult& result, JointName joint, const TopSpeed& top) 
     return;
   }
   const double start = 60 * (joint.rotary() ? deg_from_rad(limit) : limit);
-  const std::string kept =
-      start < 60 * top.highest ? "the start value is exceeded and was taken out" : "start value kept";
-  if (start < 60 * top.highest) limit = machine::kNoLimit;
+  const bool exceeded = start < kBelowHeld * 60 * top.highest;
+  const std::string kept = exceeded ? "the start value is exceeded and was taken out" : "start value kept";
+  if (exceeded) limit = machine::kNoLimit;
   result.parameters.push_back(
       {name, 60 * (joint.rotary() ? deg_from_rad(limit) : limit), unit, std::nullopt,
        fmt::format("no move shows the axis at its limit (it holds up to {:.0f} {}); {} (run a long rapid of {} alone)",
@@ -394,6 +395,10 @@ void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start
     if (p.assumed) {
       result.parameters.push_back({p.name, p.fitted.value, p.unit, std::nullopt,
                                    "usual value: the traces tell it only together with the accelerations", true});
+    } else if (p.together) {
+      result.parameters.push_back({p.name, p.fitted.value, p.unit, std::nullopt,
+                                   fmt::format("the traces tell it only together with others ({})", what_tells(p.name)),
+                                   true, p.stretches});
     } else if (p.determined) {
       const std::string note = p.from_ramps ? "constant accelerations of the commands" : logged ? source_of(p) : "";
       result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, note, true, p.stretches});
