@@ -192,6 +192,9 @@ class AddOn(unittest.TestCase):
         self.assertFalse(os.path.exists(os.path.join(files.folder, "out.nc")))
 
     def test_settings_that_are_missing_are_named(self):
+        for name in run.MATERIALS:
+            self.job.CamberMaterial = name
+            self.assertEqual(run.problems_of_job(self.files("material").toml), "", name)
         self.job.CamberMaterial = ""
         with self.assertRaisesRegex(settings.MissingSetting, "The material is missing"):
             self.files("none")
