@@ -43,9 +43,9 @@ std::string factor_hint(double job, double comment) {
 std::string other_tool_hint(const Evidence& e, const Tool& tool) {
   constexpr double kNear = 0.02;
   for (const ToolProposal& other : e.said)
-    if (other.number != tool.number && other.type && same_kind(tool.type, *other.type) && other.diameter_mm &&
+    if (other.number && *other.number != tool.number && other.type && same_kind(tool.type, *other.type) && other.diameter_mm &&
         near(*other.diameter_mm, tool.diameter_mm, kNear))
-      return fmt::format("; it is like T{} there", other.number);
+      return fmt::format("; it is like T{} there", *other.number);
   return {};
 }
 

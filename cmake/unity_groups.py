@@ -21,7 +21,7 @@ GROWTH = 1.3  # a group that was full before may grow by so much
 
 def local_names(text):
     found = set()
-    for line in text.splitlines():
+    for line in re.sub(r"^\[\[\w+\]\] ", "", text, flags=re.M).splitlines():
         if not line[:1].isalpha() or NOT_DEFINITIONS.match(line):
             continue
         if m := DEFINED.match(line):

@@ -309,7 +309,7 @@ std::vector<ToolProposal> tools_in_comments(const SourceText& program, bool inch
     ToolProposal& tool = mention->tool;
     tool.number = *number;
     tool.from = fmt::format("{}:{}", program.name(), mention->line);
-    const auto same = std::ranges::find(out, *number, &ToolProposal::number);
+    const auto same = std::ranges::find(out, number, &ToolProposal::number);
     if (same == out.end()) {
       out.push_back(std::move(tool));
     } else if (mention->number && *mention->number != *number) {
@@ -321,7 +321,7 @@ std::vector<ToolProposal> tools_in_comments(const SourceText& program, bool inch
     }
   }
   for (ToolProposal& tool : out)
-    if (taken_for.contains(tool.number) && tool.doubt.empty())
+    if (taken_for.contains(tool.number.value_or(0)) && tool.doubt.empty())
       tool.doubt = "the comments name several tools, and the program calls none of them; this is the first";
   return out;
 }
