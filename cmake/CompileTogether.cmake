@@ -3,6 +3,7 @@
 # alone.txt in the build folder.
 if(CAMBER_UNITY)
   find_package(Python3 COMPONENTS Interpreter)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/unity_groups.py)
 endif()
 if(CAMBER_UNITY AND Python3_FOUND)
   file(WRITE ${PROJECT_BINARY_DIR}/headers.cpp "")

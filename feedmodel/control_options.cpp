@@ -50,6 +50,8 @@ nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::
   }
   if (!given.whole_numbers_are_increments)
     given.whole_numbers_are_increments = machine.control.whole_numbers_are_increments;
+  // Of a control that nobody named nothing is said: numbers count units.
+  if (!given.whole_numbers_are_increments && !machine.control.kind_given) given.whole_numbers_are_increments = false;
   given.max_spindle_speed_rpm = machine.spindle.max_rpm;
   for (int i = 0; i < 3; ++i) given.single_direction_mm[i] = machine.axis[i].g60_mm;
   return given;

@@ -62,6 +62,7 @@ void read_modes(TomlTable table, Machine& machine) {
 }
 
 void read_control(TomlTable table, Control& control) {
+  control.kind_given = table.has("dialect");
   control.kind = control_kinds()[table.choice("dialect", control_kind_names(), 0)];
   read_numbers<Control>(table, kControlKeys, control);
   control.least_increment_mm = table.optional_number("least_increment_mm", kMinIncrementMm);

@@ -238,7 +238,7 @@ std::string BlockInterpreter::WholeNumbers::read_with(double factor) const {
 
 void BlockInterpreter::warn_of_whole_numbers() {
   const WholeNumbers& w = whole_numbers_;
-  if (options_.whole_numbers_are_increments || !w.file) return;
+  if (options_.whole_numbers_are_increments || !options_.dialect || !w.file) return;  // no control is named
   report_.set_source(w.file->source);
   report_.warning(
       w.offset, "decimal-point",
@@ -253,7 +253,7 @@ std::string BlockInterpreter::whole_numbers_setting() const {
   if (options_.dialect) return std::string(options_.dialect->whole_numbers_setting);
   std::string out;
   for (const Dialect& dialect : dialects())
-    if (!dialect.whole_numbers_setting.empty() && out.find(dialect.whole_numbers_setting) == std::string::npos)
+    if (!dialect.whole_numbers_setting.empty())
       out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", dialect.title, dialect.whole_numbers_setting);
   return out;
 }

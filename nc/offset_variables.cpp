@@ -63,11 +63,10 @@ std::optional<OffsetVariable> offset_variable(const Dialect& dialect, int number
   if (number > 5200 && number <= 5200 + kAxes) return OffsetVariable{Kind::external, 0, number - 5201};
   if (auto found = work_offset(number, 5220, 6, kAxes, basic)) return found;
   if (auto found = work_offset(number, 7000, 48, kAxes, additional)) return found;
-  if (auto found = work_offset(number, 14000, 300, kAxes, additional)) return found;
   for (const Column& column : columns_of(dialect.offset_columns))
     if (number > column.first && number <= column.first + column.count)
       return OffsetVariable{column.kind, number - column.first, 0};
-  return std::nullopt;
+  return work_offset(number, 14000, 300, kAxes, additional);
 }
 
 }  // namespace camber::nc

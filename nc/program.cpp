@@ -173,11 +173,25 @@ class Scanner {
     std::size_t start = all.find('%');
     while (start != std::string_view::npos && !first_of_line(start)) start = all.find('%', start + 1);
     if (start == std::string_view::npos || start == 0) return 0;
-    if (Glance(all, 0, start).ends_program()) return 0;
+    if (Glance(all, 0, start).ends_program() || is_program(start)) return 0;
     const std::size_t behind = all.find_first_not_of(std::string_view("% \t\r\n\0\x7f\x1a", 8), start);
     if (behind == std::string_view::npos) return 0;
     while (start > 0 && text_[start - 1] != program_.source.line_end()) --start;
     return start;
+  }
+
+  /// True when more of the lines up to `end` are blocks than text.
+  bool is_program(std::size_t end) const {
+    std::size_t blocks = 0, others = 0;
+    for (std::size_t at = 0; at < end;) {
+      const std::size_t next = std::min(text().find(program_.source.line_end(), at), end);
+      std::size_t first = at;
+      while (first < next && is_blank(text_[first])) ++first;
+      if (first < next && text_[first] != '(' && text_[first] != ';')
+        ++(Glance(text(), first, next).reads_as_block() ? blocks : others);
+      at = next + 1;
+    }
+    return blocks > others;
   }
 
   /// A line of the leader: a block without words.
@@ -252,7 +266,10 @@ class Scanner {
   }
 
   /// A % behind the words of a program ends it: nothing is read up to the O of another one.
-  void end_at_percent() { behind_percent_ = ended_ = ended_ || !program_.words.empty() || program_.macro.flow(); }
+  void end_at_percent() {
+    if (ended_ || (program_.words.empty() && !program_.macro.flow())) return;
+    behind_percent_ = ended_ = true;
+  }
 
   void pass_behind_percent() {
     const std::size_t at = behind_blanks();

@@ -133,7 +133,7 @@ Json parameters_json(const std::vector<calib::FitParameter>& parameters) {
                     {"std_error", p.std_error ? number(*p.std_error) : Json(nullptr)},
                     {"written", p.written},
                     {"stretches", p.stretches},
-                    {"changed_from", p.changed_from ? number(*p.changed_from) : ordered_json(nullptr)},
+                    {"changed_from", p.changed_from ? number(*p.changed_from) : Json(nullptr)},
                     {"note", p.note}});
   return list;
 }

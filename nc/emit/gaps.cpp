@@ -14,7 +14,7 @@ std::string to_string(EmitGap why) {
     case EmitGap::dwell:
       return "a dwell";
     case EmitGap::not_in_text:
-      return "a move of a loop, an expression or a subprogram";
+      return "a move of a loop, an expression, a subprogram, a corner word or a line of several blocks";
     case EmitGap::several_moves:
       return "a block of several moves";
     case EmitGap::subprogram:
@@ -44,8 +44,9 @@ void warn_of_uneditable(const Program& program, const Interpretation& interpreta
   if (!first) return;
   diagnostics.add(program.source.diagnostic(
       Severity::warning, program.blocks[first->block].offset,
-      fmt::format("{} cutting move{} from here on {} made by a loop, an expression or a subprogram that is called more "
-                  "than once or is in another file; the text has no words of their own, so they stay unchanged",
+      fmt::format("{} cutting move{} from here on {} made by a loop, an expression, a corner word, a line of several "
+                  "blocks, numbers in least increments, or a subprogram that is called more than once or is in another "
+                  "file; the text has no words of their own, so they stay unchanged",
                   count, count == 1 ? "" : "s", count == 1 ? "is" : "are"),
       "not-editable"));
 }

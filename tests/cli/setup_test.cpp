@@ -87,28 +87,49 @@ TEST(SetUp, AxisThatTheMachineDoesNotHave) {
       "[axis-missing]\n    G1 X12 Y0.5 F900\n    ^\n");
 }
 
-TEST(SetUp, SpindleSpeedOverTheMachines) {
-  expect_refused_by_machine({.program = replaced(kSlot, "S3000", "S20000")},
-                            "p.nc:6:1: error: S20000 here, but the spindle of machine.toml turns at up to 12000 rpm "
-                            "(max_rpm); no more was expected [spindle-limit]\n    G1 X12 F900\n    ^\n");
+/// What a control clamps is clamped, said once between two tool changes, and the command goes on.
+TEST(SetUp, SpindleSpeedOverTheMachinesIsClamped) {
+  const TempFolder folder;
+  write(folder, {.program = replaced(kSlot, "S3000", "S20000")});
+  const std::string warning =
+      "p.nc:6:1: warning: up to S20000 here, but the spindle of machine.toml turns at up to 12000 rpm (max_rpm); it is "
+      "clamped to that [spindle-limit]\n    G1 X12 F900\n    ^\n";
+  for (const char* command : {"check p.nc --machine machine.toml", "feed p.nc --machine machine.toml -o f.csv",
+                              "time p.nc --machine machine.toml", "predict job.toml -o over"}) {
+    const CamberRun run = run_camber(folder, command);
+    EXPECT_EQ(run.status, 0) << command << run.err;
+    EXPECT_NE(run.err.find("[spindle-limit]"), std::string::npos) << command;
+  }
+  EXPECT_EQ(run_camber(folder, "check p.nc --machine machine.toml").err, warning);
+  // The cut is that of the greatest speed.
+  folder.write("p.nc", replaced(kSlot, "S3000", "S12000"));
+  EXPECT_EQ(run_camber(folder, "predict job.toml -o at").status, 0);
+  EXPECT_EQ(tests::read(folder / "over/forces.csv"), tests::read(folder / "at/forces.csv"));
 }
 
-TEST(SetUp, FeedOverAnAxis) {
-  expect_refused_by_machine({.program = replaced(kSlot, "F900", "F9000")},
-                            "p.nc:6:1: error: the feed requires up to 9000 mm/min of X, but machine.toml allows 3000 "
-                            "(max_velocity_mm_per_min of [axis.x]); no more was expected [feed-limit]\n"
-                            "    G1 X12 F9000\n"
-                            "    ^\n");
-  // Along the diagonal each axis moves more slowly than the tool.
+TEST(SetUp, FeedOverAnAxisIsClampedAndSaidOnceInEachOperation) {
   const TempFolder folder;
+  write(folder, {.program = "G21 G90\nT1 M6\nS3000 M3\nG0 X0 Y0 Z0\nG1 X10 F9000\nX20\nG0 Y5\nT2 M6\nS3000 M3\n"
+                            "G1 X0 F6000\nM30\n"});
+  const CamberRun check = run_camber(folder, "check p.nc --machine machine.toml");
+  EXPECT_EQ(check.status, 0);
+  EXPECT_EQ(check.err,
+            "p.nc:5:1: warning: the feed requires up to 9000 mm/min of X in this move and 1 more, but machine.toml "
+            "allows 3000 (max_velocity_mm_per_min of [axis.x]); it is clamped to that [feed-limit]\n"
+            "    G1 X10 F9000\n    ^\n"
+            "p.nc:10:1: warning: the feed requires up to 6000 mm/min of X, but machine.toml allows 3000 "
+            "(max_velocity_mm_per_min of [axis.x]); it is clamped to that [feed-limit]\n"
+            "    G1 X0 F6000\n    ^\n");
+  EXPECT_EQ(run_camber(folder, "time p.nc --machine machine.toml").status, 0);
+  // Along the diagonal each axis moves more slowly than the tool.
   write(folder, {.program = "G21 G90\nT1 M6\nS3000 M3\nG0 X0 Y0 Z0\nG1 X10 Y10 F4200\nM30\n"});
   EXPECT_EQ(run_camber(folder, "check p.nc --machine machine.toml").err, "");
   // In an arc the feed comes to be along X, wherever it begins.
   folder.write("p.nc",
                "G21 G90 G17\nT1 M6\nS3000 M3\nG0 X0 Y0 Z0\nG2 X10 Y10 I10 J0 F4200\nG2 X10 Y-10 I0 J-10\nM30\n");
   EXPECT_EQ(run_camber(folder, "check p.nc --machine machine.toml").err,
-            "p.nc:5:1: error: the feed requires up to 4200 mm/min of X in this move and 1 more, but machine.toml "
-            "allows 3000 (max_velocity_mm_per_min of [axis.x]); no more was expected [feed-limit]\n"
+            "p.nc:5:1: warning: the feed requires up to 4200 mm/min of X in this move and 1 more, but machine.toml "
+            "allows 3000 (max_velocity_mm_per_min of [axis.x]); it is clamped to that [feed-limit]\n"
             "    G2 X10 Y10 I10 J0 F4200\n"
             "    ^\n");
 }
@@ -123,6 +144,16 @@ TEST(SetUp, SpindleTheWrongWay) {
   expect_refused_by_machine({.program = replaced(kSlot, "M3\n", "M4\n")},
                             "p.nc:6:1: error: T1 cuts here under M4, but cutters are right-hand; M3 was expected "
                             "[spindle-direction]\n    G1 X12 F900\n    ^\n");
+}
+
+TEST(SetUp, WithoutAToolNumberNobodyKnowsWhatM4Turns) {
+  const TempFolder folder;
+  folder.write("m4.nc", "G21 G90\nS3000 M4\nG0 X0 Y0 Z0\nG1 X10 F600\nM30\n");
+  const CamberRun run = run_camber(folder, "check m4.nc");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.err,
+            "m4.nc:4:1: warning: T0 cuts here under M4, but cutters are right-hand; M3 was expected "
+            "[spindle-direction]\n    G1 X10 F600\n    ^\n");
 }
 
 TEST(SetUp, ProgramThatRunsInAirIsWarnedOfAndTimed) {

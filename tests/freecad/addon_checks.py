@@ -198,7 +198,10 @@ class AddOn(unittest.TestCase):
         self.job.CamberMaterial, self.job.CamberMachine = "C45", "/no/machine.toml"
         with self.assertRaisesRegex(settings.MissingSetting, "The machine file /no/machine.toml is missing"):
             self.files("none")
-        self.assertIn("C45", run.material_presets())
+        self.assertIn("preset:vmc-40", run.machine_presets())
+        self.job.CamberMachine = "preset:vmc-40"
+        with open(self.files("preset").toml) as file:
+            self.assertIn('machine = "preset:vmc-40"', file.read())
 
     def test_holders(self):
         controller = self.job.Tools.Group[0]

@@ -45,7 +45,7 @@ std::string complaint(const std::string& text, const InterpreterOptions& o = as(
 }
 
 InterpreterOptions fanuc() {
-  InterpreterOptions o{.inch = false};
+  InterpreterOptions o = units();
   o.dialect = *dialect_named("fanuc");
   o.tool_offsets[4].radius_mm = 2;
   return o;

@@ -78,7 +78,7 @@ double tolerance_mm(const Read& r, const Move& m) {
 
 /// Reading the text again, with what the first reading knew.
 Read read_again(const Read& before, const std::string& text) {
-  InterpreterOptions options{.inch = false};
+  InterpreterOptions options = units();
   if (!before.moves.states.empty()) options.absolute_arc_centre = before.moves.states[0].absolute_arc_centre;
   return read_text(text, options);
 }

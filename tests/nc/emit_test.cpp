@@ -204,7 +204,7 @@ TEST(NcEmit, PutsAHeaderCommentBehindTheProgramNumber) {
 struct RoundTrip {
   double resolution_mm;
   void check(const Read& before, const std::vector<MoveEdit>& edits, const std::string& text) const {
-    InterpreterOptions options{.inch = false};
+    InterpreterOptions options = units();
     options.absolute_arc_centre = !before.moves.states.empty() && before.moves.states[0].absolute_arc_centre;
     const Read after = read_text(text, options);
     for (const auto& m : after.messages) EXPECT_EQ(m.find("error"), std::string::npos) << m;

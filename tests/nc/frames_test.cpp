@@ -10,7 +10,7 @@ namespace {
 using Messages = std::vector<std::string>;
 
 InterpreterOptions fanuc() {
-  InterpreterOptions o{.inch = false};
+  InterpreterOptions o = units();
   o.dialect = *dialect_named("fanuc");
   return o;
 }
@@ -71,7 +71,7 @@ TEST(Frames, WorkOffsetsSetByTheProgramLieWhereTheyAreSet) {
 }
 
 TEST(Frames, WorkOffsetsGivenByTheCaller) {
-  InterpreterOptions o{.inch = false};
+  InterpreterOptions o = units();
   o.work_offsets_mm = {{54, {100, 0, 0}}, {55, {150, 10, 0}}, {540007, {90, 0, 0}}};
   expect_ends("G55 X0 Y0\nG54.1 P7 X0 Y0\nG53 X100 Y5\nG54 G1 X1\n", {{50, 10, 0}, {-10, 0, 0}, {0, 5, 0}, {1, 5, 0}},
               o);
@@ -233,7 +233,7 @@ TEST(Spirals, AreToldFromMistakes) {
   EXPECT_EQ(read_text(spiral + " L2 Q4\n").messages,
             Messages{"p.nc:2:27: error: the spiral ends at a radius of 20.0000 mm, with Q at 15.0000 mm; a difference "
                      "below 0.05 mm was expected [arc-radius]"});
-  InterpreterOptions o{.inch = false};
+  InterpreterOptions o = units();
   o.dialect = *dialect_named("fanuc");
   // LinuxCNC takes a thousandth of the radius.
   const auto linuxcnc = as("linuxcnc");

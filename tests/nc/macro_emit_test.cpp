@@ -45,9 +45,9 @@ TEST(MacroEmit, LoopsRepeatedSubprogramsAndExpressionsStayAsTheyAre) {
   warn_of_uneditable(r.program, r.moves, std::vector<bool>(r.moves.moves.size(), true), diagnostics);
   ASSERT_EQ(diagnostics.all().size(), 1u);
   EXPECT_EQ(headline(diagnostics.all()[0]),
-            "p.nc:4:1: warning: 8 cutting moves from here on are made by a loop, an expression or a subprogram that is "
-            "called more than once or is in another file; the text has no words of their own, so they stay unchanged "
-            "[not-editable]");
+            "p.nc:4:1: warning: 8 cutting moves from here on are made by a loop, an expression, a corner word, a line "
+            "of several blocks, numbers in least increments, or a subprogram that is called more than once or is in "
+            "another file; the text has no words of their own, so they stay unchanged [not-editable]");
 }
 
 TEST(MacroEmit, CyclesAreNoWarningAndWholeIncrementsAreNotEdited) {

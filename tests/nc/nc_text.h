@@ -22,14 +22,21 @@ inline std::string headline(const Diagnostic& d) {
   return to_string(short_one);
 }
 
-inline InterpreterOptions as(std::string_view dialect) {
+/// Millimetres, and numbers without a point count them.
+inline InterpreterOptions units() {
   InterpreterOptions options{.inch = false};
+  options.whole_numbers_are_increments = false;
+  return options;
+}
+
+inline InterpreterOptions as(std::string_view dialect) {
+  InterpreterOptions options = units();
   options.dialect = *dialect_named(dialect);
   return options;
 }
 
 /// Reads and interprets; an InputError thrown on the way ends up in `messages` like the rest.
-inline Read read_text(std::string text, const InterpreterOptions& options = {.inch = false},
+inline Read read_text(std::string text, const InterpreterOptions& options = units(),
                       std::string name = "p.nc") {
   Read r;
   std::vector<Diagnostic> found;
@@ -45,7 +52,7 @@ inline Read read_text(std::string text, const InterpreterOptions& options = {.in
 }
 
 /// Reads a program that nothing is said of.
-inline Read read_clean(std::string text, const InterpreterOptions& options = {.inch = false}) {
+inline Read read_clean(std::string text, const InterpreterOptions& options = units()) {
   Read r = read_text(std::move(text), options);
   EXPECT_EQ(r.messages, std::vector<std::string>{});
   return r;

@@ -100,11 +100,6 @@ TEST(NcReader, RefusesWhatIsNoNumber) {
 TEST(NcReader, RefusesACommentWithoutAnEnd) {
   EXPECT_EQ(complaint("G0 X1 (no end"), "p.nc:1:7: error: the comment has no closing `)` in its block [comment-open]");
 }
-TEST(NcReader, SaysThatCornerWordsAreNotReadYet) {
-  EXPECT_EQ(
-      complaint("G1 X1 ,C2"),
-      "p.nc:1:7: error: chamfers and roundings in a block (,C) are not supported; a word was expected [corner-word]");
-}
 TEST(NcReader, NamesTheLanguageOfOtherControlsAndStops) {
   const Read siemens = read_text("N10 G17\nN20 SUPA G0 Z=_Z_HOME D0\nN30 T=\"MILL\"\n");
   EXPECT_EQ(

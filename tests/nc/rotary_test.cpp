@@ -118,8 +118,8 @@ TEST(Rotary, TipControlNeedsAToolLength) {
             Messages{"p.nc:2:1: error: G43.4 switches tool-centre-point control on without a tool length; H with its "
                      "number was expected [tool-length]"});
   EXPECT_EQ(read_text("G0 X0 Y0 Z0\nM428\n", five_axes("linuxcnc")).messages,
-            Messages{"p.nc:2:1: error: M428 switches tool-centre-point control on without a tool length; G43 before it "
-                     "was expected [tool-length]"});
+            Messages{"p.nc:2:1: warning: M428 without G43: tool-centre-point control with a tool length of 0 "
+                     "[tool-length]"});
 }
 
 TEST(Rotary, NumbersOfToolLengthsAreWhole) {
@@ -146,10 +146,11 @@ TEST(Rotary, ToolDirectionsOfG435) {
             "p.nc:6:5: error: A in G91 after G43.5, which leaves its position open; G90 was expected [rotary-axis]");
 }
 
-TEST(Rotary, TheFirstMoveAfterASwitchNamesEveryAxis) {
-  EXPECT_EQ(read_text("G0 X0 Y0 Z0 A5.\nG43.4 H1\nX1 Y2\n", five_axes("fanuc")).messages,
-            Messages{"p.nc:3:1: error: the first move after tool-centre-point control was switched on with turned axes "
-                     "leaves Z open; X, Y and Z in G90 were expected [tip-control]"});
+TEST(Rotary, AfterASwitchWithTurnedAxesTheirPlacesAreOpenUntilTheyAreNamed) {
+  const Read r = read_clean("G0 X0 Y0 Z0 A5.\nG43.4 H1\nX1 Y2\nZ3\nG49\nG43.4 H1\nX2\n", five_axes("fanuc"));
+  EXPECT_EQ(r.moves.moves[1].open_axes, 4);  // Z
+  EXPECT_EQ(r.moves.moves[2].open_axes, 0);
+  EXPECT_EQ(r.moves.moves[3].open_axes, 6);  // Y and Z
   read_clean("G0 X0 Y0 Z0 A5.\nG43.4 H1\nX1 Y2 Z3\nX5\nG49\nX1 Y2 Z3\n", five_axes("fanuc"));
   read_clean("G0 X0 Y0 Z0\nG43.4 H1\nX1 Y2\n", five_axes("fanuc"));
 }

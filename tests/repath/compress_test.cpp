@@ -82,6 +82,108 @@ TEST(Compress, AFeedInABlockBeginsARun) {
   EXPECT_EQ(compressed(text), kHead + "X12.\nX15. F300\nM30\n");
 }
 
+/// Chords of 1 degree on a radius of 20 mm, each with further words; `first` in the first of them.
+std::string half_circle(const std::string& before, const std::string& behind, const std::string& first = "") {
+  std::string out = "G21 G90 G17\nS3000 M3\nG0 X20. Y0 Z5.\nG1 Z-1. F300\n";
+  for (int i = 1; i <= 180; ++i)
+    out += fmt::format("{}X{:.3f} Y{:.3f}{}{}\n", before, 20 * std::cos(i * kPi / 180), 20 * std::sin(i * kPi / 180),
+                       i == 1 ? first : "", behind);
+  return out + "G0 Z5.\nM30\n";
+}
+
+std::size_t lines_of(const std::string& text) { return static_cast<std::size_t>(std::ranges::count(text, '\n')); }
+
+TEST(Compress, WordsThatRepeatWhatIsInForceStopNothing) {
+  const struct {
+    const char *before, *behind, *first;
+    const char* arc;
+  } forms[] = {
+      {"", "", " F800", "G3 X-20. Y0. I-20. J0. F800\n"},
+      {"", " F800", "", "G3 X-20. Y0. I-20. J0. F800\n"},
+      {"G1 ", " F800.", "", "G3 X-20. Y0. I-20. J0. F800.\n"},
+      {"G1 ", " Z-1.000 F800.000", "", "G3 X-20. Y0. I-20. J0. F800.000\n"},
+      {"G1 ", " S3000", " F800", "G3 X-20. Y0. I-20. J0. F800 S3000\n"},
+      {"", " M8", " F800", "G3 X-20. Y0. I-20. J0. F800 M8\n"},
+      {"", " M3 S3000 F800", "", "G3 X-20. Y0. I-20. J0. M3 S3000 F800\n"},
+      {"G90 G17 G01 ", " F800", "", "G90 G17 G03 X-20. Y0. I-20. J0. F800\n"},
+  };
+  for (const auto& form : forms) {
+    const std::string text = half_circle(form.before, form.behind, form.first), out = compressed(text);
+    EXPECT_EQ(lines_of(out), 7u) << form.before << form.behind;
+    EXPECT_NE(out.find(form.arc), std::string::npos) << out;
+    EXPECT_LE(distance_mm(text, out), 0.0101);
+    const auto before = nc::read_clean(text).moves, behind = nc::read_clean(out).moves;
+    EXPECT_EQ(behind.states.size(), before.states.size());
+    EXPECT_EQ(behind.moves[2].feed_mm_per_s, before.moves[2].feed_mm_per_s);
+  }
+}
+
+TEST(Compress, WordsThatChangeWhatIsInForceEndARunAndStandWhereTheyStood) {
+  std::string text = half_circle("", " F1000");
+  const auto from = text.find("X-0.349");
+  std::string rest = text.substr(from);
+  for (std::size_t at = 0; (at = rest.find("F1000", at)) != std::string::npos;) rest.replace(at, 5, "F700");
+  const std::string out = compressed(text.substr(0, from) + rest);
+  // No G1 between the two arcs.
+  EXPECT_NE(out.find("G3 X0. Y20. I-20. J0. F1000\nG3 X-20. Y0. I0. J-20. F700\nG0 Z5.\n"), std::string::npos) << out;
+  // A coolant that is switched in the middle, a speed that changes.
+  for (const char* word : {" M8", " S3500", " G40 M9"}) {
+    std::string other = half_circle("", " F800");
+    const auto line = other.find('\n', other.find("X0.000 Y20.000"));
+    other.insert(line, word);
+    EXPECT_NE(compressed(other).find(word), std::string::npos) << word;
+    EXPECT_LE(distance_mm(other, compressed(other)), 0.0101);
+  }
+}
+
+/// The path keeps to the tolerance with the switch on and off.
+TEST(Compress, ABlockThatMayBeSkippedSplitsARunOnBothReadings) {
+  const auto read = [](const std::string& text, bool skips) {
+    nc::InterpreterOptions options = nc::units();
+    options.skip_slash_blocks = skips;
+    return nc::read_clean(text, options).moves;
+  };
+  for (const char* skipped : {"/X25. Y30.", "/X-3.", "/Z-2.", "/X-3. Y21. F300", "/M8", "/G4 P100", "/G91 X1.\nG90"}) {
+    std::string text = half_circle("", " F800");
+    const auto line = text.find('\n', text.find("X0.000 Y20.000"));
+    text.insert(line + 1, std::string(skipped) + "\n");
+    const std::string out = compressed(text);
+    EXPECT_LT(lines_of(out), 20u) << out;
+    for (const bool skips : {false, true})
+      EXPECT_LE(tests::hausdorff_mm(read(text, skips), read(out, skips), 0.01), 0.0101) << skipped << skips << out;
+  }
+}
+
+TEST(Compress, SaysWhatKeptRunsApart) {
+  const auto why = [](const std::string& text) {
+    const Read r = nc::read_clean(text);
+    return why_unchanged(r.program, r.moves, RunKind::in_space);
+  };
+  EXPECT_EQ(why(half_circle("", " F800 (note)")),
+            "181 cuts in 0 runs; what ends runs most often (180 times) is a comment or a sign in the block");
+  EXPECT_EQ(why("G21 G90\nG0 X0 Y0 Z0\nG1 X1 F100\nX5\nM30\n"), "2 cuts in 1 runs");
+}
+
+TEST(Compress, NamesTheLineOfTheLargestKink) {
+  // A straight line, then a coarse circle that leaves it with a kink.
+  std::string text = kHead + "X20. Y0.\n";
+  for (int i = 1; i <= 40; ++i)
+    text += fmt::format("X{:.3f} Y{:.3f}\n", 20 + 10 * std::sin(i * 0.03 + 0.2) - 10 * std::sin(0.2),
+                        10 * std::cos(0.2) - 10 * std::cos(i * 0.03 + 0.2));
+  const Read r = nc::read_clean(text + "M30\n");
+  CompressOptions options;
+  options.fit.max_kink_rad = kPi;
+  const Compression out = compress(r.program, r.moves, options);
+  ASSERT_GT(out.max_kink_rad, 0);
+  std::vector<std::string> lines;
+  std::stringstream in(out.text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  ASSERT_LT(out.max_kink_block, lines.size());
+  EXPECT_TRUE(lines[out.max_kink_block].starts_with("G3") || lines[out.max_kink_block].starts_with("G2") ||
+              lines[out.max_kink_block].starts_with("X"))
+      << lines[out.max_kink_block];
+}
+
 TEST(Compress, AnotherPlaneGetsLinesOnlyUnlessItMaySwitch) {
   const std::string text = kHead + arc_words(10, 0.5, 40, "XZ") + "X0. Y1. Z0.\nM30\n";
   const std::string lines = compressed(text);

@@ -28,13 +28,16 @@ def ask_for(job, name):
     """Asks for a setting and stores it in the document; False where the user gives none."""
     window = FreeCADGui.getMainWindow()
     if name == "CamberMachine":
-        path = QtGui.QFileDialog.getOpenFileName(window, "Machine file of Camber", os.path.dirname(
-            job.Document.FileName or ""), "Machine files (*.toml)")[0]
-        if path:
-            job.CamberMachine = path
-        return bool(path)
-    name, chosen = QtGui.QInputDialog.getItem(window, "Camber", "Material of the workpiece (or a file with a [material] "
-                                              "table)", run.material_presets(), 0, True)
+        file = "a machine file ..."
+        text, chosen = QtGui.QInputDialog.getItem(window, "Camber", "Machine", [file] + run.machine_presets(), 0, False)
+        if chosen and text == file:
+            text = QtGui.QFileDialog.getOpenFileName(window, "Machine file of Camber", os.path.dirname(
+                job.Document.FileName or ""), "Machine files (*.toml)")[0]
+        if chosen and text:
+            job.CamberMachine = text
+        return bool(chosen and text)
+    name, chosen = QtGui.QInputDialog.getItem(window, "Camber", "Material of the workpiece: a number or name, or a file "
+                                              "with a [material] table", run.MATERIALS, 0, True)
     if chosen and name:
         job.CamberMaterial = name
     return bool(chosen and name)

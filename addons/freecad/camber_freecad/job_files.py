@@ -83,9 +83,10 @@ def _quoted(text):
 
 
 def _head(job):
+    machine = settings.file_or_name(job, job.CamberMachine)
     return ("# Made by the FreeCAD add-on from the job '%s'.\nprogram = \"%s\"\nmachine = %s\ntools = \"tools.fctl\"\n" %
             (job.Label.replace("\n", " "), PROGRAM,
-             _quoted(os.path.abspath(settings.file_or_name(job, job.CamberMachine)))))
+             _quoted(machine if machine.startswith(settings.PRESET) else os.path.abspath(machine))))
 
 
 def _material(job):

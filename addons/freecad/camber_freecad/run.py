@@ -55,15 +55,17 @@ def module():
         return None
 
 
-def material_presets():
-    """Names of the presets, as the program tells them."""
+MATERIALS = ["C45", "42CrMo4", "1.2343", "1.2379", "Al6082-T6"]  # to begin with; Camber knows many more names
+
+
+def machine_presets():
+    """Classes of machines, "preset:vmc-40", as the program tells them."""
     program = executable()
     if not program:
         return []
     text = subprocess.run([program, "init", "--help"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                           universal_newlines=True).stdout
-    m = re.search(r"--material\s+(\S+)", text)
-    return m[1].split("|") if m else []
+    return list(dict.fromkeys(name for name in re.findall(r"preset:[a-z0-9-]+", text)))
 
 
 class Run:

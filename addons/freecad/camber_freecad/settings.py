@@ -2,10 +2,11 @@
 import os
 
 GROUP = "Camber"
+PRESET = "preset:"  # before a class of machines
 
 # name, type, default, description. Of the job.
 JOB_PROPERTIES = [
-    ("CamberMachine", "App::PropertyFile", "", "Machine file of Camber (machine.toml)"),
+    ("CamberMachine", "App::PropertyFile", "", "Machine file of Camber, or a class of machines (preset:vmc-40)"),
     ("CamberMaterial", "App::PropertyString", "", "Material: the name of a preset, or a file with a [material] table"),
     ("CamberVoxel", "App::PropertyLength", 0.0, "Width of the voxels; 0: chosen by the size of the stock"),
     ("CamberTolerance", "App::PropertyFloat", 5.0, "Tolerance of the surface in micrometres"),
@@ -67,7 +68,7 @@ def check(job):
     machine = file_or_name(job, job.CamberMachine)
     if not machine:
         raise MissingSetting("CamberMachine", "The machine file")
-    if not os.path.isfile(machine):
+    if not machine.startswith(PRESET) and not os.path.isfile(machine):
         raise MissingSetting("CamberMachine", "The machine file %s" % machine)
     if not job.CamberMaterial:
         raise MissingSetting("CamberMaterial", "The material")
